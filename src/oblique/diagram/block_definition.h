@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <oblique/text/document.h>
+#include <oblique/text/expression.h>
+
+namespace oblique {
+
+/// An input of a block. A `sum` port adds its weighted signals, as a summing junction does; any other takes one.
+struct InputPort {
+  std::string name;
+  bool sum = false;
+  std::optional<double> default_value;  ///< what an unconnected input sees [machine unit]; without it: an error
+  std::string doc;
+};
+
+/// An output of a block; on a composite, `wire` is the inner signal that it shows.
+struct OutputPort {
+  std::string name;
+  std::string wire;
+  std::string doc;
+};
+
+/// A parameter of a block with its default, unit and allowed range.
+struct ParameterDefinition {
+  std::string name;
+  double default_value = 0;
+  std::string unit = "1";
+  std::optional<double> above, below;        ///< exclusive limits
+  std::optional<double> at_least, at_most;   ///< inclusive limits
+  std::string doc;
+};
+
+/// One equation of a primitive block; names in it are inputs, outputs, parameters, other targets, `time`, and
+/// `polarity` (−1 on a machine whose summers and integrators invert, else 1).
+struct Equation {
+  enum class Kind {
+    assignment,  ///< target = expression
+    derivative,  ///< der(target) = expression; target is a state
+    implicit,    ///< 0 = expression; target is the unknown that makes it so
+  };
+  Kind kind = Kind::assignment;
+  std::string target;
+  Expression expression;
+  Place place;
+};
+
+/// The equations of a block in one case; the first case whose condition on the parameters holds applies.
+struct Behaviour {
+  std::optional<Expression> when;  ///< none: the default, which comes last
+  std::vector<Equation> equations;
+};
+
+/// Where a state starts, or from where an implicit unknown is sought.
+struct StartRule {
+  std::string target;
+  Expression value;      ///< of parameters
+  bool at_rest = false;  ///< a state brought to rest (zero derivative) before the clock starts; `value` is the guess
+};
+
+/// One block of a diagram or of a composite as its file has it. Which key of `settings` is an input and which a
+/// parameter only the block's definition tells, so that is settled by `flatten`.
+struct BlockInstance {
+  std::string name;
+  std::string type;
+  std::string label;            ///< any text, for people
+  std::string comment;          ///< lines that `write_diagram` puts above the block
+  std::vector<Entry> settings;  ///< every key but `type` and `label`
+  Place place;
+
+  bool operator==(const BlockInstance& other) const;  ///< without places and comments
+};
+
+/// A kind of block: `blocks/<name>.toml`. Primitive ones have behaviours, composite ones have inner blocks.
+struct BlockDefinition {
+  std::string name;
+  std::string title;
+  std::string summary;
+  std::string source;
+  std::string symbol;
+  std::string doc;
+  std::vector<InputPort> inputs;
+  std::vector<OutputPort> outputs;
+  std::vector<ParameterDefinition> parameters;
+
+  std::vector<Behaviour> behaviours;
+  std::vector<StartRule> starts;
+
+  std::vector<BlockInstance> blocks;
+  bool inverting = false;  ///< whether the inner summers and integrators invert (the composite's own convention)
+
+  std::string file;
+  std::string text;  ///< the file as it stands
+
+  bool is_composite() const { return !blocks.empty(); }
+  std::optional<std::size_t> find_input(std::string_view input) const;
+  std::optional<std::size_t> find_output(std::string_view output) const;
+  std::optional<std::size_t> find_parameter(std::string_view parameter) const;
+};
+
+/// Reads one block file (oblique-block/1). Checks all that one file can tell: kinds of keys, ranges, that every
+/// output has an equation in every case, that equations use known names. Throws DiagramError with all findings.
+BlockDefinition parse_block(std::string_view text, std::string file, std::string name);
+
+}  // namespace oblique

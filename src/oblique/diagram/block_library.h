@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <oblique/diagram/block_definition.h>
+
+namespace oblique {
+
+/// The kinds of blocks a diagram may use, by name.
+class BlockLibrary {
+ public:
+  /// The shipped library, embedded in the program.
+  static BlockLibrary shipped();
+
+  /// Adds every `*.toml` of a directory; a name that is there already is replaced.
+  /// Throws DiagramError with the findings of all files.
+  void add_directory(const std::filesystem::path& directory);
+
+  void add(BlockDefinition definition);
+  const BlockDefinition* find(std::string_view name) const;
+  /// All names in alphabetical order.
+  std::vector<std::string> names() const;
+
+ private:
+  std::map<std::string, BlockDefinition, std::less<>> definitions_;
+};
+
+}  // namespace oblique

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <oblique/diagram/block_definition.h>
+
+namespace oblique {
+
+/// Thrown by the `diagram` stage: a block or diagram file that is wrong, or wiring that is.
+class DiagramError : public Error {
+ public:
+  using Error::Error;
+};
+
+/// The machine a diagram is for.
+struct MachineSettings {
+  std::string profile = "ideal";
+  bool inverting = false;  ///< summers and integrators invert
+  bool operator==(const MachineSettings&) const = default;
+};
+
+/// How a diagram is run unless the request says otherwise.
+struct RunSettings {
+  double until = 1;         ///< end of the run [s]
+  double tolerance = 1e-8;  ///< relative; absolute tolerance is the same in machine units
+  int samples = 1001;       ///< rows of the trajectory, both ends included
+  long max_steps = 10'000'000;  ///< of the solver, over the whole run
+  bool operator==(const RunSettings&) const = default;
+};
+
+/// A column of the trajectory: `scale` · signal, in `unit`.
+struct OutputSpec {
+  std::string name;
+  std::string signal;
+  double scale = 1;
+  std::string unit = "machine unit";
+  Place place;
+  bool operator==(const OutputSpec& other) const;  ///< without places
+};
+
+/// What a diagram is known to give: an output at a time, or its extreme over the run.
+struct Expectation {
+  enum class Kind { at_time, maximum, minimum };
+  std::string text;  ///< the key as written, "side at pi"
+  std::string output;
+  Kind kind = Kind::at_time;
+  double time = 0;  ///< [s], for `at_time`
+  double value = 0;
+  double within = 0;
+  Place place;
+  bool operator==(const Expectation& other) const;  ///< without places
+};
+
+/// A block diagram as its file has it (oblique-diagram/1).
+struct Diagram {
+  std::string file;
+  std::string title;
+  std::string source;
+  std::string comment;  ///< lines that `write_diagram` puts at the head
+  MachineSettings machine;
+  RunSettings run;
+  std::vector<BlockInstance> blocks;
+  std::vector<OutputSpec> outputs;
+  std::vector<Expectation> expectations;
+
+  bool operator==(const Diagram& other) const;  ///< without file, places and comments
+};
+
+/// Reads a diagram's text. Throws DiagramError with all findings of this one file (wiring is checked by `flatten`),
+/// ReadError for broken TOML.
+Diagram parse_diagram(std::string_view text, std::string file);
+Diagram read_diagram(const std::filesystem::path& path);
+
+/// The text of a diagram, one block a line, with its comments; `parse_diagram` gives an equal diagram back.
+std::string write_diagram(const Diagram& diagram);
+
+/// Builds the value of a `settings` entry: a number, a signal, a list of weighted signals.
+Entry number_setting(std::string key, double value);
+Entry text_setting(std::string key, std::string text);
+struct WeightedSignal {
+  double weight = 1;
+  std::string signal;
+};
+/// "2*abc", "-a2": one signal with its weight, as a file writes it.
+std::string to_string(const WeightedSignal& term);
+Entry wire_setting(std::string key, const std::vector<WeightedSignal>& terms);
+
+}  // namespace oblique

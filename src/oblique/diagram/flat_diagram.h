@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include <oblique/diagram/block_library.h>
+#include <oblique/diagram/diagram.h>
+
+namespace oblique {
+
+/// An output of a flat block: indices into FlatDiagram::blocks and BlockDefinition::outputs.
+struct SignalRef {
+  std::size_t block = 0;
+  std::size_t output = 0;
+  bool operator==(const SignalRef&) const = default;
+};
+
+/// weight · signal at an input.
+struct FlatTerm {
+  double weight = 1;
+  SignalRef signal;
+};
+
+/// What arrives at one input: the sum of its terms plus a constant (the default of an unconnected input).
+struct FlatInput {
+  std::vector<FlatTerm> terms;
+  double constant = 0;
+};
+
+/// A primitive block with everything about it decided but its place in the equations.
+struct FlatBlock {
+  std::string path;                              ///< "C.direction.length": the names of the composites around it
+  const BlockDefinition* definition = nullptr;   ///< in the library given to `flatten`
+  const Behaviour* behaviour = nullptr;          ///< the case that its parameters select
+  std::vector<double> parameters;                ///< in the order of the definition
+  std::vector<FlatInput> inputs;                 ///< in the order of the definition
+  double polarity = 1;                           ///< −1 where summers and integrators invert
+  Place place;
+};
+
+/// A column of the trajectory.
+struct FlatOutput {
+  std::string name;
+  SignalRef signal;
+  double scale = 1;
+  std::string unit;
+};
+
+/// A diagram of primitive blocks, all names resolved. Refers to the definitions of the library it was made with.
+struct FlatDiagram {
+  std::string file;
+  std::vector<FlatBlock> blocks;
+  std::vector<FlatOutput> outputs;  ///< those of `[outputs]`; every signal of the top level where there are none
+
+  /// "path" for a block of one output, "path.port" for others.
+  std::string signal_name(SignalRef signal) const;
+};
+
+/// A parameter to replace, by path: `--set c.gain=1e4`; the value is a quantity in the parameter's unit.
+struct ParameterOverride {
+  std::string path;  ///< "block.parameter"
+  std::string value;
+};
+
+/// Expands composites, resolves types, parameters and wires. Throws DiagramError with all findings: unknown types,
+/// keys and signals (each with the nearest valid name), open and doubly driven inputs, wrong units and ranges.
+/// `library` must outlive the result.
+FlatDiagram flatten(const Diagram& diagram, const BlockLibrary& library,
+                    const std::vector<ParameterOverride>& overrides = {});
+
+}  // namespace oblique

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/text/diagnostic.h>
+
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace oblique {
+
+std::string to_string(const Diagnostic& diagnostic) {
+  std::string text;
+  const SourcePosition at = diagnostic.place.position;
+  if (!diagnostic.place.file.empty()) {
+    text += diagnostic.place.file + ":";
+    if (at.line > 0) text += fmt::format("{}:{}:", at.line, at.column);
+    text += " ";
+  }
+  text += diagnostic.what;
+  if (!diagnostic.expected.empty()) text += "; expected " + diagnostic.expected;
+  if (!diagnostic.remedy.empty()) text += "\n  remedy: " + diagnostic.remedy;
+  return text;
+}
+
+Error::Error(std::vector<Diagnostic> diagnostics) : diagnostics_(std::move(diagnostics)) {
+  for (const Diagnostic& diagnostic : diagnostics_) {
+    if (!message_.empty()) message_ += "\n";
+    message_ += to_string(diagnostic);
+  }
+}
+
+Error::Error(Diagnostic diagnostic) : Error(std::vector{std::move(diagnostic)}) {}
+
+void Diagnostics::sort_by_place() {
+  const auto key = [](const Diagnostic& d) {
+    return std::tie(d.place.file, d.place.position.line, d.place.position.column);
+  };
+  std::stable_sort(items_.begin(), items_.end(),
+                   [&](const Diagnostic& a, const Diagnostic& b) { return key(a) < key(b); });
+}
+
+namespace {
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+std::optional<std::string> nearest_name(std::string_view name, const std::vector<std::string>& candidates) {
+  const std::size_t allowed = std::max<std::size_t>(1, name.size() / 3);
+  std::optional<std::string> best;
+  std::size_t best_distance = allowed + 1;
+  for (const std::string& candidate : candidates) {
+    const std::size_t distance = edit_distance(name, candidate);
+    if (distance < best_distance && distance < candidate.size()) {
+      best = candidate;
+      best_distance = distance;
+    }
+  }
+  return best;
+}
+
+std::string suggest(std::string_view name, const std::vector<std::string>& candidates) {
+  if (const auto nearest = nearest_name(name, candidates)) return fmt::format("did you mean '{}'?", *nearest);
+  if (candidates.empty()) return {};
+  constexpr std::size_t kMostNames = 12;
+  const std::size_t shown = std::min(candidates.size(), kMostNames);
+  std::string text = fmt::format("known: {}", fmt::join(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(shown), ", "));
+  if (shown < candidates.size()) text += fmt::format(" and {} more", candidates.size() - shown);
+  return text;
+}
+
+}  // namespace oblique

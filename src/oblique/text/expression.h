@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <oblique/text/diagnostic.h>
+
+namespace oblique {
+
+/// The functions of the expression language.
+enum class Function {
+  sin, cos, tan, asin, acos, atan, atan2, exp, log, sqrt, abs, min, max, hypot,
+  sign, clip, deadzone, step, table, if_,
+};
+
+/// What the language knows of one function.
+struct FunctionInfo {
+  Function function;
+  std::string_view name;
+  std::size_t min_arguments;
+  std::size_t max_arguments;
+  bool switches;  ///< has a kink or a jump: an event where its argument varies, never part of a smooth step
+  std::string_view doc;
+};
+
+/// All functions, in the order of `Function`.
+std::span<const FunctionInfo> functions();
+
+/// A parsed expression; a value type, one node and its operands.
+struct Expression {
+  enum class Kind {
+    number, name, call,
+    negate, add, subtract, multiply, divide, power,
+    less, less_equal, greater, greater_equal, equal, not_equal, logical_and, logical_or, logical_not,
+  };
+  Kind kind = Kind::number;
+  double number = 0;                 ///< for `number`
+  std::string name;                  ///< for `name`; dots join the parts of a path ("tri.amp.out")
+  Function function = Function::sin; ///< for `call`
+  std::vector<Expression> operands;
+  int column = 0;                    ///< of the operator or the first character, from 1; not part of the value
+
+  bool operator==(const Expression& other) const;
+};
+
+/// A malformed expression or one that has no value; `column` counts from 1 in the expression's text.
+struct ExpressionError {
+  int column = 0;
+  std::string what;
+  std::string expected;
+  std::string remedy;
+};
+
+/// Parses a whole text. Grammar, loosest first: `or`, `and`, `not`, comparisons, `+ -`, `* /`, unary `-`,
+/// `^` (right associative), calls, names, numbers, parentheses. Throws ExpressionError.
+Expression parse_expression(std::string_view text);
+
+/// Parses the longest expression at the front of `text` and sets `rest` to where it ends (for "30 deg").
+Expression parse_expression_prefix(std::string_view text, std::size_t& rest);
+
+/// Prints with as few parentheses as the grammar needs; `parse_expression` reads it back unchanged.
+std::string to_string(const Expression& expression);
+
+/// Value of a name inside a constant expression; `pi` and `inf` need no entry.
+using NameLookup = std::function<std::optional<double>(std::string_view)>;
+
+/// Value of an expression of constants. Throws ExpressionError for a name that `lookup` does not know.
+double evaluate(const Expression& expression, const NameLookup& lookup = {});
+
+/// Value of one function; `arguments` has the number that FunctionInfo allows.
+double evaluate(Function function, std::span<const double> arguments);
+
+/// True for an identifier: `[A-Za-z_][A-Za-z0-9_]*`.
+bool is_identifier(std::string_view text);
+
+}  // namespace oblique

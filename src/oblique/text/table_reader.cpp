@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/text/table_reader.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace oblique {
+
+TableReader::TableReader(const std::string& file, const Value& table, std::string what, Diagnostics& diagnostics)
+    : file_(file), table_(&table), what_(std::move(what)), diagnostics_(&diagnostics) {
+  if (table.kind != Value::Kind::table) {
+    diagnostics_->add({place(table.position), fmt::format("{} is {}", what_, kind_name(table.kind)), "a table", {}});
+  }
+}
+
+const Value* TableReader::find(std::string_view key) {
+  known_.emplace_back(key);
+  return table_->find(key);
+}
+
+const Value* TableReader::expect(std::string_view key, Value::Kind kind) {
+  const Value* const value = find(key);
+  if (value == nullptr || value->kind == kind) return value;
+  report(key, fmt::format("'{}' of {} is {}", key, what_, kind_name(value->kind)), std::string(kind_name(kind)));
+  return nullptr;
+}
+
+std::optional<std::string> TableReader::string(std::string_view key) {
+  const Value* const value = expect(key, Value::Kind::string);
+  return value == nullptr ? std::nullopt : std::optional(value->text);
+}
+
+std::optional<bool> TableReader::boolean(std::string_view key) {
+  const Value* const value = expect(key, Value::Kind::boolean);
+  return value == nullptr ? std::nullopt : std::optional(value->boolean);
+}
+
+const Value* TableReader::table(std::string_view key) { return expect(key, Value::Kind::table); }
+
+std::optional<double> TableReader::quantity(std::string_view key, std::string_view unit, const NameLookup& lookup) {
+  const Value* const value = find(key);
+  if (value == nullptr) return std::nullopt;
+  return read_quantity(file_, *value, unit, fmt::format("'{}' of {}", key, what_), *diagnostics_, lookup);
+}
+
+std::optional<std::vector<std::string>> TableReader::strings(std::string_view key, bool allow_single) {
+  const Value* const value = find(key);
+  if (value == nullptr) return std::nullopt;
+  if (allow_single && value->kind == Value::Kind::string) return std::vector{value->text};
+  const bool all_strings = value->kind == Value::Kind::array &&
+                           std::all_of(value->elements.begin(), value->elements.end(),
+                                       [](const Value& v) { return v.kind == Value::Kind::string; });
+  if (!all_strings) {
+    report(key, fmt::format("'{}' of {} is not a list of names", key, what_),
+           allow_single ? R"("name" or ["name", …])" : R"(["name", …])");
+    return std::nullopt;
+  }
+  std::vector<std::string> texts;
+  for (const Value& element : value->elements) texts.push_back(element.text);
+  return texts;
+}
+
+std::optional<std::string> TableReader::required_string(std::string_view key, std::string_view expected) {
+  auto value = string(key);
+  if (!value && table_->find(key) == nullptr) {
+    report(key, fmt::format("{} has no '{}'", what_, key), std::string(expected));
+  }
+  return value;
+}
+
+std::optional<double> TableReader::required_quantity(std::string_view key, std::string_view unit) {
+  auto value = quantity(key, unit);
+  if (!value && table_->find(key) == nullptr) {
+    report(key, fmt::format("{} has no '{}'", what_, key), fmt::format("a number of '{}'", unit));
+  }
+  return value;
+}
+
+void TableReader::report(std::string_view key, std::string what, std::string expected, std::string remedy) {
+  const Value* const value = table_->find(key);
+  diagnostics_->add({place(value != nullptr ? value->position : table_->position), std::move(what),
+                     std::move(expected), std::move(remedy)});
+}
+
+void TableReader::finish() {
+  for (const Entry& entry : table_->entries) {
+    if (std::find(known_.begin(), known_.end(), entry.key) != known_.end()) continue;
+    diagnostics_->add({place(entry.position), fmt::format("unknown key '{}' in {}", entry.key, what_), {},
+                       suggest(entry.key, known_)});
+  }
+}
+
+std::optional<double> read_quantity(const std::string& file, const Value& value, std::string_view unit,
+                                    const std::string& what, Diagnostics& diagnostics, const NameLookup& lookup) {
+  double number = 0;
+  if (value.kind == Value::Kind::number) {
+    number = value.number;
+  } else if (value.kind == Value::Kind::string) {
+    try {
+      number = parse_quantity(value.text, parse_unit(unit).value(), lookup);
+    } catch (const ExpressionError& error) {
+      diagnostics.add(to_diagnostic(error, file, value, what));
+      return std::nullopt;
+    }
+  } else {
+    diagnostics.add({{file, value.position},
+                     fmt::format("{} is {}", what, kind_name(value.kind)),
+                     fmt::format("a number or a quantity in '{}'", unit),
+                     {}});
+    return std::nullopt;
+  }
+  if (std::isnan(number)) {
+    diagnostics.add({{file, value.position}, fmt::format("{} has no value (not a number)", what), "a number", {}});
+    return std::nullopt;
+  }
+  return number;
+}
+
+Diagnostic to_diagnostic(const ExpressionError& error, const std::string& file, const Value& string_value,
+                         const std::string& what) {
+  SourcePosition at = string_value.position;
+  at.column += error.column;  // the text starts after its quote
+  return {{file, at}, fmt::format("{}: {}", what, error.what), error.expected, error.remedy};
+}
+
+void check_format(TableReader& reader, std::string_view expected) {
+  const auto format = reader.required_string("format", fmt::format("format = \"{}\"", expected));
+  if (format && *format != expected) {
+    reader.report("format", fmt::format("the format is '{}'", *format), fmt::format("'{}'", expected),
+                  "a diagram is oblique-diagram/1, a mechanism oblique-mechanism/1, a block oblique-block/1");
+  }
+}
+
+}  // namespace oblique
