@@ -25,6 +25,7 @@ struct OutputPort {
   std::string name;
   std::string wire;
   std::string doc;
+  Place place;
 };
 
 /// A parameter of a block with its default, unit and allowed range.
@@ -35,6 +36,9 @@ struct ParameterDefinition {
   std::optional<double> above, below;        ///< exclusive limits
   std::optional<double> at_least, at_most;   ///< inclusive limits
   std::string doc;
+
+  bool allows(double value) const;  ///< within the limits; never for "not a number"
+  std::string range() const;        ///< "a number above 0 [Hz]"
 };
 
 /// One equation of a primitive block; names in it are inputs, outputs, parameters, other targets, `time`, and

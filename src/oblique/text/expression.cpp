@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -37,6 +38,12 @@ constexpr std::array<FunctionInfo, 20> kFunctions{{
     {Function::table, "table", 5, kAny, true, "table(x, x1, y1, x2, y2, …): straight lines through the points"},
     {Function::if_, "if", 3, 3, true, "if(condition, a, b): a where the condition holds, else b"},
 }};
+
+const FunctionInfo* find_function(std::string_view name) {
+  const auto* const found = std::find_if(kFunctions.begin(), kFunctions.end(),
+                                         [&](const FunctionInfo& f) { return f.name == name; });
+  return found == kFunctions.end() ? nullptr : found;
+}
 
 [[noreturn]] void fail(std::size_t offset, std::string what, std::string expected = {}, std::string remedy = {}) {
   throw ExpressionError{static_cast<int>(offset) + 1, std::move(what), std::move(expected), std::move(remedy)};
@@ -82,11 +89,22 @@ class Parser {
   explicit Parser(std::string_view text) : text_(text) {}
 
   Expression parse(int loosest = kOr) {
-    if (++depth_ > kDeepest) fail(at_, "the expression is nested too deeply", "at most 200 levels");
+    if (++depth_ > kDeepest) {
+      fail(at_, "the expression is nested too deeply", fmt::format("at most {} levels", kDeepest));
+    }
     Expression left = prefix(loosest);
+    bool compared = false;
     while (const BinaryOperator* op = peek_operator()) {
       if (op->precedence < loosest) break;
       const std::size_t offset = at_;
+      // A chain of operators is a tree as deep as it is long, and whoever walks it does so by recursion.
+      if (++operators_ > kMostOperators) {
+        fail(offset, "the expression is too long", fmt::format("at most {} operators", kMostOperators),
+             "split it over several blocks");
+      }
+      if (op->precedence == kComparison && std::exchange(compared, true)) {
+        fail(offset, "comparisons do not chain", {}, "join two comparisons with 'and': a < b and b < c");
+      }
       at_ += op->text.size();
       Expression node;
       node.kind = op->kind;
@@ -106,9 +124,13 @@ class Parser {
 
  private:
   static constexpr int kDeepest = 200;
+  static constexpr int kMostOperators = 1000;
 
   void skip_space() {
-    while (at_ < text_.size() && (text_[at_] == ' ' || text_[at_] == '\t' || text_[at_] == '\n')) ++at_;
+    while (at_ < text_.size() && (text_[at_] == ' ' || text_[at_] == '\t' || text_[at_] == '\n' ||
+                                  text_[at_] == '\r')) {
+      ++at_;
+    }
   }
 
   bool take(char c) {
@@ -136,13 +158,25 @@ class Parser {
   Expression prefix(int loosest) {
     skip_space();
     const std::size_t offset = at_;
-    if (take('-')) return unary(Expression::Kind::negate, kNegation, offset);
+    if (take('-')) return negation(offset);
     if (take('+')) return parse(kNegation);
     if (loosest <= kNot && peek_word() == "not") {
       at_ += 3;
       return unary(Expression::Kind::logical_not, kNot, offset);
     }
     return atom();
+  }
+
+  /// A minus before a number that stands alone belongs to the number: "-2" is a number, "-2^2" is not.
+  Expression negation(std::size_t offset) {
+    skip_space();
+    const bool before_number = at_number();
+    Expression node = unary(Expression::Kind::negate, kNegation, offset);
+    Expression& operand = node.operands[0];
+    if (!before_number || operand.kind != Expression::Kind::number) return node;
+    operand.number = -operand.number;
+    operand.column = node.column;
+    return Expression(std::move(operand));
   }
 
   Expression unary(Expression::Kind kind, int precedence, std::size_t offset) {
@@ -161,7 +195,7 @@ class Parser {
       if (!take(')')) fail(at_, "a parenthesis is not closed", "')'");
       return inner;
     }
-    if (is_digit(text_[at_]) || text_[at_] == '.') return number();
+    if (at_number()) return number();
     if (is_letter(text_[at_])) return name_or_call();
     fail(at_, fmt::format("'{}' cannot start a value", text_.substr(at_, utf8_length(text_[at_]))),
          "a number, a name or '('");
@@ -172,13 +206,18 @@ class Parser {
     return byte >= 0xF0 ? 4 : byte >= 0xE0 ? 3 : byte >= 0xC0 ? 2 : 1;
   }
 
+  bool at_number() const { return at_ < text_.size() && (is_digit(text_[at_]) || text_[at_] == '.'); }
+
   Expression number() {
     Expression node;
     node.column = static_cast<int>(at_) + 1;
     const char* const begin = text_.data() + at_;
     const auto [end, error] = std::from_chars(begin, text_.data() + text_.size(), node.number);
     if (error != std::errc{}) {
-      fail(at_, error == std::errc::result_out_of_range ? "the number is out of range" : "not a number");
+      if (error == std::errc::result_out_of_range) {
+        fail(at_, "the number is out of range", "a magnitude between 2.3e-308 and 1.7e308");
+      }
+      fail(at_, "'.' is not a number", "a digit before or after the point");
     }
     at_ += static_cast<std::size_t>(end - begin);
     return node;
@@ -189,6 +228,9 @@ class Parser {
     node.kind = Expression::Kind::name;
     node.column = static_cast<int>(at_) + 1;
     const std::size_t start = at_;
+    if (const std::string_view word = peek_word(); word == "and" || word == "or" || word == "not") {
+      fail(start, fmt::format("'{}' is an operator and cannot stand here", word), "a number, a name or '('");
+    }
     at_ += peek_word().size();
     while (at_ + 1 < text_.size() && text_[at_] == '.' && is_letter(text_[at_ + 1])) {
       ++at_;
@@ -202,9 +244,8 @@ class Parser {
   }
 
   Expression call(Expression node, std::size_t start) {
-    const auto* const info = std::find_if(kFunctions.begin(), kFunctions.end(),
-                                          [&](const FunctionInfo& f) { return f.name == node.name; });
-    if (info == kFunctions.end()) {
+    const FunctionInfo* const info = find_function(node.name);
+    if (info == nullptr) {
       std::vector<std::string> names;
       for (const FunctionInfo& f : kFunctions) names.emplace_back(f.name);
       fail(start, fmt::format("there is no function '{}'", node.name), {}, suggest(node.name, names));
@@ -219,16 +260,24 @@ class Parser {
     }
     const std::size_t count = node.operands.size();
     if (count < info->min_arguments || count > info->max_arguments) {
-      fail(start, fmt::format("{} was given {} arguments", info->name, count),
-           info->min_arguments == info->max_arguments ? std::to_string(info->min_arguments)
-                                                      : fmt::format("at least {}", info->min_arguments));
+      fail(start, fmt::format("{} was given {} argument{}", info->name, count, count == 1 ? "" : "s"),
+           argument_range(*info), std::string(info->doc));
+    }
+    if (info->function == Function::table && count % 2 == 0) {
+      fail(start, "a point of the table has no second coordinate", std::string(info->doc));
     }
     return node;
+  }
+
+  static std::string argument_range(const FunctionInfo& info) {
+    if (info.min_arguments == info.max_arguments) return std::to_string(info.min_arguments);
+    return fmt::format("{} to {}", info.min_arguments, info.max_arguments);
   }
 
   std::string_view text_;
   std::size_t at_ = 0;
   int depth_ = 0;
+  int operators_ = 0;
 };
 
 int precedence_of(const Expression& e) {
@@ -240,6 +289,10 @@ int precedence_of(const Expression& e) {
     case Expression::Kind::call: return kAtom;
     default: return operator_of(e.kind)->precedence;
   }
+}
+
+bool is_unsigned_number(const Expression& e) {
+  return e.kind == Expression::Kind::number && !std::signbit(e.number);
 }
 
 void print(const Expression& e, std::string& out);
@@ -265,7 +318,8 @@ void print(const Expression& e, std::string& out) {
       return;
     case Expression::Kind::negate:
       out += '-';
-      print_operand(e.operands[0], kNegation, out);
+      // "-2" would be the number, not the negation of 2.
+      print_operand(e.operands[0], is_unsigned_number(e.operands[0]) ? kAtom + 1 : kNegation, out);
       return;
     case Expression::Kind::logical_not:
       out += "not ";
@@ -276,9 +330,19 @@ void print(const Expression& e, std::string& out) {
   const BinaryOperator& op = *operator_of(e.kind);
   const bool tight = op.precedence == kProduct || op.precedence == kPower;
   const bool power = op.precedence == kPower;
-  print_operand(e.operands[0], power ? kAtom : op.precedence, out);
+  const bool chains = op.precedence != kComparison;
+  print_operand(e.operands[0], power ? kAtom : op.precedence + (chains ? 0 : 1), out);
   out += tight ? std::string(op.text) : fmt::format(" {} ", op.text);
   print_operand(e.operands[1], power ? kNegation : op.precedence + 1, out);
+}
+
+/// The first characters of a text, for a message.
+std::string excerpt(std::string_view text) {
+  constexpr std::size_t kMost = 20;
+  if (text.size() <= kMost) return std::string(text);
+  std::size_t end = kMost;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
+  return std::string(text.substr(0, end)) + "…";
 }
 
 double interpolate(std::span<const double> table) {
@@ -311,7 +375,9 @@ Expression parse_expression(std::string_view text) {
   std::size_t rest = 0;
   Expression expression = parse_expression_prefix(text, rest);
   if (rest < text.size()) {
-    fail(rest, fmt::format("'{}' does not belong here", text.substr(rest)), "an operator or the end");
+    const bool product = is_letter(text[rest]) || is_digit(text[rest]) || text[rest] == '(';
+    fail(rest, fmt::format("'{}' does not belong here", excerpt(text.substr(rest))), "an operator or the end",
+         product ? "a product is written with '*'" : "");
   }
   return expression;
 }
@@ -357,7 +423,10 @@ double evaluate(const Expression& e, const NameLookup& lookup) {
     if (lookup) {
       if (const auto value = lookup(e.name)) return *value;
     }
-    throw ExpressionError{e.column, fmt::format("'{}' is not a known constant", e.name), {}, {}};
+    const FunctionInfo* const function = find_function(e.name);
+    throw ExpressionError{e.column, fmt::format("'{}' is not a known constant", e.name),
+                          lookup ? "" : "a number, 'pi' or 'inf'",
+                          function == nullptr ? "" : fmt::format("a function needs its argument: {}(…)", e.name)};
   }
   std::vector<double> v;
   v.reserve(e.operands.size());

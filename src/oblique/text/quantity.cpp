@@ -29,7 +29,8 @@ const std::vector<Unit>& named_units() {
       base_unit("cm", 0.01, {{U::length, 1}}),
       base_unit("mm", 1e-3, {{U::length, 1}}),
       base_unit("um", 1e-6, {{U::length, 1}}),
-      base_unit("µm", 1e-6, {{U::length, 1}}),
+      base_unit("µm", 1e-6, {{U::length, 1}}),  // the micro sign
+      base_unit("μm", 1e-6, {{U::length, 1}}),  // the Greek letter, which looks the same
       base_unit("km", 1e3, {{U::length, 1}}),
       base_unit("in", 0.0254, {{U::length, 1}}),
       base_unit("ft", 0.3048, {{U::length, 1}}),
@@ -37,6 +38,7 @@ const std::vector<Unit>& named_units() {
       base_unit("ms", 1e-3, {{U::time, 1}}),
       base_unit("us", 1e-6, {{U::time, 1}}),
       base_unit("µs", 1e-6, {{U::time, 1}}),
+      base_unit("μs", 1e-6, {{U::time, 1}}),
       base_unit("min", 60, {{U::time, 1}}),
       base_unit("h", 3600, {{U::time, 1}}),
       base_unit("Hz", 1, {{U::time, -1}}),
@@ -73,10 +75,10 @@ std::optional<Unit> parse_unit(std::string_view text) {
     std::string_view factor = trim(text.substr(0, end));
     int power = 1;
     if (const std::size_t caret = factor.find('^'); caret != std::string_view::npos) {
-      const std::string_view digits = factor.substr(caret + 1);
+      const std::string_view digits = trim(factor.substr(caret + 1));
       if (digits.size() != 1 || digits[0] < '1' || digits[0] > '9') return std::nullopt;
       power = digits[0] - '0';
-      factor = factor.substr(0, caret);
+      factor = trim(factor.substr(0, caret));
     }
     const auto& names = named_units();
     const auto known = std::find_if(names.begin(), names.end(), [&](const Unit& u) { return u.name == factor; });
@@ -89,6 +91,30 @@ std::optional<Unit> parse_unit(std::string_view text) {
   }
 }
 
+namespace {
+
+/// True where a number stands at the front of `text`, as in "2 pi".
+bool has_value(std::string_view text, const NameLookup& lookup) {
+  try {
+    std::size_t rest = 0;
+    evaluate(parse_expression_prefix(text, rest), lookup);
+    return true;
+  } catch (const ExpressionError&) {
+    return false;
+  }
+}
+
+/// The units that may stand for `wanted`.
+std::vector<std::string> names_like(const Unit& wanted) {
+  std::vector<std::string> names{wanted.name};
+  for (const Unit& known : named_units()) {
+    if (known.same_dimension(wanted) && known.name != wanted.name) names.push_back(known.name);
+  }
+  return names;
+}
+
+}  // namespace
+
 double parse_quantity(std::string_view text, const Unit& wanted, const NameLookup& lookup) {
   std::size_t rest = 0;
   const double number = evaluate(parse_expression_prefix(text, rest), lookup);
@@ -97,13 +123,12 @@ double parse_quantity(std::string_view text, const Unit& wanted, const NameLooku
   const int column = static_cast<int>(rest) + 1;
   const auto unit = parse_unit(unit_text);
   if (!unit) {
-    std::vector<std::string> names;
-    for (const Unit& known : named_units()) {
-      if (known.same_dimension(wanted) && known.name != wanted.name) names.push_back(known.name);
-    }
-    std::string expected = fmt::format("a number of '{}'", wanted.name);
-    throw ExpressionError{column, fmt::format("there is no unit '{}'", unit_text), std::move(expected),
-                          suggest(unit_text, names)};
+    const std::string number_text(trim(text.substr(0, rest)));
+    std::string remedy = has_value(unit_text, lookup)
+                             ? fmt::format("a product is written with '*': {}*{}", number_text, unit_text)
+                             : suggest(unit_text, names_like(wanted));
+    throw ExpressionError{column, fmt::format("there is no unit '{}'", unit_text),
+                          fmt::format("a quantity in '{}'", wanted.name), std::move(remedy)};
   }
   if (!unit->same_dimension(wanted)) {
     throw ExpressionError{column, fmt::format("'{}' is the wrong unit here", unit_text),

@@ -16,7 +16,7 @@ TableReader::TableReader(const std::string& file, const Value& table, std::strin
 }
 
 const Value* TableReader::find(std::string_view key) {
-  known_.emplace_back(key);
+  if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.emplace_back(key);
   return table_->find(key);
 }
 
@@ -64,18 +64,20 @@ std::optional<std::vector<std::string>> TableReader::strings(std::string_view ke
 
 std::optional<std::string> TableReader::required_string(std::string_view key, std::string_view expected) {
   auto value = string(key);
-  if (!value && table_->find(key) == nullptr) {
-    report(key, fmt::format("{} has no '{}'", what_, key), std::string(expected));
-  }
+  if (!value) report_absent(key, std::string(expected));
   return value;
 }
 
 std::optional<double> TableReader::required_quantity(std::string_view key, std::string_view unit) {
   auto value = quantity(key, unit);
-  if (!value && table_->find(key) == nullptr) {
-    report(key, fmt::format("{} has no '{}'", what_, key), fmt::format("a number of '{}'", unit));
-  }
+  if (!value) report_absent(key, fmt::format("a quantity in '{}'", unit));
   return value;
+}
+
+void TableReader::report_absent(std::string_view key, std::string expected) {
+  // What is no table at all has been reported already.
+  if (table_->kind != Value::Kind::table || table_->find(key) != nullptr) return;
+  report(key, fmt::format("{} has no '{}'", what_, key), std::move(expected));
 }
 
 void TableReader::report(std::string_view key, std::string what, std::string expected, std::string remedy) {
@@ -121,7 +123,14 @@ std::optional<double> read_quantity(const std::string& file, const Value& value,
 Diagnostic to_diagnostic(const ExpressionError& error, const std::string& file, const Value& string_value,
                          const std::string& what) {
   SourcePosition at = string_value.position;
-  at.column += error.column;  // the text starts after its quote
+  const std::string_view text = string_value.text;
+  if (text.find('\n') == std::string_view::npos) {
+    // The text starts after its quote; columns count characters, not bytes.
+    const std::string_view before = text.substr(0, static_cast<std::size_t>(std::max(error.column - 1, 0)));
+    const auto continuations =
+        std::count_if(before.begin(), before.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; });
+    at.column += error.column - static_cast<int>(continuations);
+  }
   return {{file, at}, fmt::format("{}: {}", what, error.what), error.expected, error.remedy};
 }
 

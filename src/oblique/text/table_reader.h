@@ -48,6 +48,7 @@ class TableReader {
 
  private:
   const Value* expect(std::string_view key, Value::Kind kind);
+  void report_absent(std::string_view key, std::string expected);
 
   std::string file_;
   const Value* table_;
@@ -56,13 +57,14 @@ class TableReader {
   std::vector<std::string> known_;
 };
 
-/// A number or a string holding a quantity, in `unit`; a finding (also of an infinite or missing number) goes to
-/// `diagnostics` with `what` as the subject of the sentence.
+/// A number or a string holding a quantity, in `unit` (which must be one `parse_unit` knows); a finding (also of not-a-
+/// number; infinity is a number) goes to `diagnostics` with `what` as the subject of the sentence.
 std::optional<double> read_quantity(const std::string& file, const Value& value, std::string_view unit,
                                     const std::string& what, Diagnostics& diagnostics,
                                     const NameLookup& lookup = {});
 
-/// Turns the error of an expression inside a string value into a diagnostic at the right column.
+/// Turns the error of an expression inside a string value into a diagnostic at the right column (of a string of several
+/// lines: at its beginning).
 Diagnostic to_diagnostic(const ExpressionError& error, const std::string& file, const Value& string_value,
                          const std::string& what);
 

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/diagram/behaviour_reader.h>
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include <oblique/diagram/names.h>
+
+namespace oblique {
+namespace {
+
+class BehaviourReader {
+ public:
+  BehaviourReader(TableReader& reader, BlockDefinition& definition, Diagnostics& diagnostics)
+      : reader_(reader), definition_(definition), diagnostics_(diagnostics) {
+    for (const ParameterDefinition& parameter : definition_.parameters) constants_.push_back(parameter.name);
+    constants_.emplace_back("polarity");
+  }
+
+  void read() {
+    if (const Value* const cases = reader_.find("cases")) read_cases(*cases);
+    read_behaviour(reader_, {}, "");
+    read_starts();
+  }
+
+ private:
+  /// An equation as the file has it, with the value that its positions refer to.
+  struct Written {
+    Equation equation;
+    const Value* value = nullptr;
+    std::string key;
+  };
+
+  Place place(SourcePosition position) const { return {definition_.file, position}; }
+
+  void report(SourcePosition position, std::string what, std::string expected = {}, std::string remedy = {}) {
+    diagnostics_.add({place(position), std::move(what), std::move(expected), std::move(remedy)});
+  }
+
+  void read_cases(const Value& cases) {
+    if (cases.kind != Value::Kind::array) {
+      report(cases.position, fmt::format("'cases' is {}", kind_name(cases.kind)),
+             "[[cases]], an array of tables");
+      return;
+    }
+    for (const Value& element : cases.elements) {
+      TableReader reader(definition_.file, element, "[[cases]]", diagnostics_);
+      if (element.kind != Value::Kind::table) continue;
+      const Value* const when = reader.find("when");
+      std::optional<Expression> condition;
+      if (when == nullptr) {
+        reader.report("when", "[[cases]] has no 'when'", "a condition on the parameters");
+      } else {
+        condition = read_expression(*when, "'when'");
+        if (condition) check_names(*condition, *when, "'when'", constants_);
+      }
+      // Without a condition the case would pass for the default; the finding above ends the reading anyway.
+      read_behaviour(reader, condition ? std::move(condition) : Expression{},
+                     when != nullptr ? fmt::format(" where {}", when->text) : " of [[cases]]");
+      reader.finish();
+    }
+  }
+
+  void read_behaviour(TableReader& reader, std::optional<Expression> when, const std::string& which) {
+    std::vector<Written> written;
+    if (const Value* const table = reader.table("equations")) {
+      for (const Entry& entry : table->entries) read_equation(entry, false, written);
+    }
+    if (const Value* const table = reader.table("implicit")) {
+      for (const Entry& entry : table->entries) read_equation(entry, true, written);
+    }
+    check_targets(written, which);
+
+    std::vector<std::string> names = constants_;
+    names.emplace_back("time");
+    for (const InputPort& input : definition_.inputs) names.push_back(input.name);
+    for (const OutputPort& output : definition_.outputs) names.push_back(output.name);
+    for (const Written& w : written) {
+      if (std::find(names.begin(), names.end(), w.equation.target) == names.end())
+        names.push_back(w.equation.target);
+    }
+    Behaviour behaviour;
+    behaviour.when = std::move(when);
+    for (Written& w : written) {
+      check_names(w.equation.expression, *w.value, fmt::format("equation '{}'", w.key), names);
+      behaviour.equations.push_back(std::move(w.equation));
+    }
+    definition_.behaviours.push_back(std::move(behaviour));
+  }
+
+  void read_equation(const Entry& entry, bool implicit, std::vector<Written>& written) {
+    Equation equation;
+    std::string_view target = entry.key;
+    if (implicit) {
+      equation.kind = Equation::Kind::implicit;
+    } else if (target.starts_with("der(") && target.ends_with(")")) {
+      equation.kind = Equation::Kind::derivative;
+      target = target.substr(4, target.size() - 5);
+    }
+    if (!is_identifier(target)) {
+      report(entry.position, fmt::format("'{}' is not the left side of an equation", entry.key),
+             implicit ? "the name of an unknown" : "\"name\" or \"der(name)\"");
+      return;
+    }
+    equation.target = std::string(target);
+    equation.place = place(entry.value.position);
+    const bool name_is_good = check_target(equation.target, entry);
+    auto expression = read_expression(entry.value, fmt::format("equation '{}'", entry.key));
+    if (!expression || !name_is_good) {
+      broken_targets_.push_back(equation.target);
+      return;
+    }
+    equation.expression = std::move(*expression);
+    written.push_back({std::move(equation), &entry.value, entry.key});
+  }
+
+  bool check_target(const std::string& target, const Entry& entry) {
+    if (definition_.find_input(target) || definition_.find_parameter(target)) {
+      report(entry.position,
+             fmt::format("'{}' is {} and cannot have an equation", target,
+                         definition_.find_input(target) ? "an input" : "a parameter"),
+             "an output or another name");
+      return false;
+    }
+    return check_name(target, "equation's unknown", place(entry.position), diagnostics_);
+  }
+
+  void check_targets(const std::vector<Written>& written, const std::string& which) {
+    for (std::size_t i = 0; i < written.size(); ++i) {
+      const std::string& target = written[i].equation.target;
+      const auto same = [&](const Written& w) { return w.equation.target == target; };
+      const auto end = written.begin() + static_cast<std::ptrdiff_t>(i);
+      if (std::any_of(written.begin(), end, same)) {
+        report(written[i].value->position, fmt::format("'{}' has two equations", target), "one",
+               "name it once: as 'x', as 'der(x)' or in [implicit]");
+      }
+    }
+    for (const OutputPort& output : definition_.outputs) {
+      const bool found = std::any_of(written.begin(), written.end(),
+                                     [&](const Written& w) { return w.equation.target == output.name; });
+      const bool broken =
+          std::find(broken_targets_.begin(), broken_targets_.end(), output.name) != broken_targets_.end();
+      if (!found && !broken) {
+        diagnostics_.add({output.place,
+                          fmt::format("output '{0}' has no equation{1}", output.name, which),
+                          fmt::format("'{0} = …', 'der({0}) = …' or an [implicit] entry '{0}'", output.name),
+                          {}});
+      }
+    }
+  }
+
+  void read_starts() {
+    const Value* const table = reader_.table("start");
+    std::vector<std::string> targets;
+    for (const Behaviour& behaviour : definition_.behaviours) {
+      for (const Equation& equation : behaviour.equations) {
+        const bool known = std::find(targets.begin(), targets.end(), equation.target) != targets.end();
+        if (equation.kind != Equation::Kind::assignment && !known) targets.push_back(equation.target);
+      }
+    }
+    for (const std::string& target : targets) {
+      const Value* const written = table != nullptr ? table->find(target) : nullptr;
+      definition_.starts.push_back(written != nullptr ? read_start(target, *written) : usual_start(target));
+    }
+    if (table == nullptr) return;
+    for (const Entry& entry : table->entries) {
+      if (std::find(targets.begin(), targets.end(), entry.key) != targets.end()) continue;
+      report(entry.position, fmt::format("[start] names '{}', which is no state and no unknown", entry.key),
+             {}, suggest(entry.key, targets));
+    }
+  }
+
+  StartRule usual_start(const std::string& target) const {
+    StartRule rule{target, {}, false};
+    if (definition_.find_parameter("initial")) {
+      rule.value.kind = Expression::Kind::name;
+      rule.value.name = "initial";
+      rule.value.column = 1;
+    }
+    return rule;
+  }
+
+  StartRule read_start(const std::string& target, const Value& written) {
+    StartRule rule = usual_start(target);
+    const std::string what = fmt::format("start of '{}'", target);
+    const Value* value = &written;
+    if (written.kind == Value::Kind::table) {
+      TableReader reader(definition_.file, written, what, diagnostics_);
+      value = reader.find("guess");
+      rule.at_rest = reader.boolean("at_rest").value_or(false);
+      reader.finish();
+    }
+    if (value == nullptr) return rule;
+    if (auto expression = read_expression(*value, what)) {
+      check_names(*expression, *value, what, constants_);
+      rule.value = std::move(*expression);
+    }
+    return rule;
+  }
+
+  std::optional<Expression> read_expression(const Value& value, const std::string& what) {
+    if (value.kind == Value::Kind::number) {
+      Expression number;
+      number.number = value.number;
+      number.column = 1;
+      return number;
+    }
+    if (value.kind != Value::Kind::string) {
+      report(value.position, fmt::format("{} is {}", what, kind_name(value.kind)),
+             "a number or an expression");
+      return std::nullopt;
+    }
+    try {
+      return parse_expression(value.text);
+    } catch (const ExpressionError& error) {
+      diagnostics_.add(to_diagnostic(error, definition_.file, value, what));
+      return std::nullopt;
+    }
+  }
+
+  void check_names(const Expression& expression, const Value& value, const std::string& what,
+                   const std::vector<std::string>& known) {
+    for (const Expression* const name : names_in(expression)) {
+      if (name->name == "pi" || name->name == "inf") continue;
+      if (std::find(known.begin(), known.end(), name->name) != known.end()) continue;
+      report(position_in(value, name->column), fmt::format("{}: there is no name '{}'", what, name->name), {},
+             suggest(name->name, known));
+    }
+  }
+
+  TableReader& reader_;
+  BlockDefinition& definition_;
+  Diagnostics& diagnostics_;
+  std::vector<std::string> constants_;       ///< what a condition or a start value may name
+  std::vector<std::string> broken_targets_;  ///< reported already; not also "has no equation"
+};
+
+}  // namespace
+
+void read_behaviours(TableReader& reader, BlockDefinition& definition, Diagnostics& diagnostics) {
+  BehaviourReader(reader, definition, diagnostics).read();
+}
+
+}  // namespace oblique

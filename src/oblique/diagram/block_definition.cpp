@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/diagram/block_definition.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <oblique/diagram/behaviour_reader.h>
+#include <oblique/diagram/diagram.h>
+#include <oblique/diagram/names.h>
+#include <oblique/text/table_reader.h>
+
+namespace oblique {
+namespace {
+
+template <class Named>
+std::optional<std::size_t> find_named(const std::vector<Named>& things, std::string_view name) {
+  const auto found =
+      std::find_if(things.begin(), things.end(), [&](const Named& n) { return n.name == name; });
+  if (found == things.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - things.begin());
+}
+
+class BlockReader {
+ public:
+  BlockReader(const Document& document, BlockDefinition& definition)
+      : reader_(document.file, document.root, "the block file", diagnostics_), definition_(definition) {}
+
+  void read() {
+    check_format(reader_, "oblique-block/1");
+    definition_.title = reader_.required_string("title", "what people call the block").value_or("");
+    definition_.summary = reader_.string("summary").value_or("");
+    definition_.source = reader_.string("source").value_or("");
+    definition_.symbol = reader_.string("symbol").value_or("");
+    definition_.doc = reader_.string("doc").value_or("");
+    const Value* const blocks = reader_.table("blocks");
+    each("inputs", [&](const Entry& entry) { read_input(entry); });
+    each("outputs", [&](const Entry& entry) { read_output(entry, blocks != nullptr); });
+    each("parameters", [&](const Entry& entry) { read_parameter(entry); });
+    if (reader_.table().find("outputs") == nullptr) {
+      reader_.report("outputs", "the block has no [outputs]", "at least one output");
+    }
+    if (blocks != nullptr) {
+      read_composite(*blocks);
+    } else {
+      read_behaviours(reader_, definition_, diagnostics_);
+    }
+    reader_.finish();
+    diagnostics_.throw_if_any<DiagramError>();
+  }
+
+ private:
+  template <class Read>
+  void each(std::string_view key, Read read) {
+    const Value* const table = reader_.table(key);
+    if (table == nullptr) return;
+    for (const Entry& entry : table->entries) read(entry);
+  }
+
+  Place place(SourcePosition position) const { return {definition_.file, position}; }
+
+  void check_port(const Entry& entry, std::string_view what, std::initializer_list<std::string_view> taken) {
+    check_name(entry.key, what, place(entry.position), diagnostics_);
+    if (std::find(taken.begin(), taken.end(), entry.key) != taken.end()) {
+      diagnostics_.add(
+          {place(entry.position),
+           fmt::format("'{}' cannot be the name of {}: a block in a diagram has that key for itself",
+                       entry.key, what == "input" ? "an input" : "a parameter"),
+           fmt::format("another name than {}", fmt::join(taken, ", ")),
+           {}});
+    }
+    if (!names_.insert(entry.key).second) {
+      diagnostics_.add({place(entry.position),
+                        fmt::format("the name '{}' is used twice", entry.key),
+                        "different names for inputs, outputs and parameters",
+                        {}});
+    }
+  }
+
+  TableReader entry_reader(const Entry& entry, std::string_view what) {
+    return {definition_.file, entry.value, fmt::format("{} '{}'", what, entry.key), diagnostics_};
+  }
+
+  void read_input(const Entry& entry) {
+    check_port(entry, "input", {"type", "label"});
+    TableReader reader = entry_reader(entry, "input");
+    InputPort input;
+    input.name = entry.key;
+    input.sum = reader.boolean("sum").value_or(false);
+    input.default_value = reader.quantity("default", "machine unit");
+    if (input.default_value && !std::isfinite(*input.default_value)) {
+      reader.report("default", fmt::format("'default' of input '{}' is infinite", entry.key),
+                    "a finite number");
+    }
+    input.doc = reader.string("doc").value_or("");
+    reader.finish();
+    definition_.inputs.push_back(std::move(input));
+  }
+
+  void read_output(const Entry& entry, bool composite) {
+    check_port(entry, "output", {});
+    TableReader reader = entry_reader(entry, "output");
+    OutputPort output;
+    output.name = entry.key;
+    output.place = place(entry.position);
+    if (composite) {
+      output.wire = reader.required_string("wire", "the inner signal that the output shows").value_or("");
+    } else if (reader.find("wire") != nullptr) {
+      reader.report("wire", fmt::format("output '{}' of a block without [blocks] has a 'wire'", entry.key),
+                    {}, "give the output an equation, or the block inner [blocks]");
+    }
+    output.doc = reader.string("doc").value_or("");
+    reader.finish();
+    definition_.outputs.push_back(std::move(output));
+  }
+
+  void read_parameter(const Entry& entry) {
+    check_port(entry, "parameter", {"type", "label", "in"});
+    TableReader reader = entry_reader(entry, "parameter");
+    ParameterDefinition parameter;
+    parameter.name = entry.key;
+    if (auto unit = reader.string("unit")) {
+      if (parse_unit(*unit)) {
+        parameter.unit = std::move(*unit);
+      } else {
+        reader.report("unit", fmt::format("parameter '{}': there is no unit '{}'", entry.key, *unit),
+                      R"(a unit such as "1", "Hz", "s", "rad", "m/s" or "machine unit")");
+      }
+    }
+    parameter.default_value = reader.quantity("default", parameter.unit).value_or(0);
+    parameter.above = reader.quantity("above", parameter.unit);
+    parameter.below = reader.quantity("below", parameter.unit);
+    parameter.at_least = reader.quantity("at_least", parameter.unit);
+    parameter.at_most = reader.quantity("at_most", parameter.unit);
+    parameter.doc = reader.string("doc").value_or("");
+    if (!parameter.allows(parameter.default_value)) {
+      reader.report("default",
+                    fmt::format("the default of parameter '{}' is {}", entry.key, parameter.default_value),
+                    parameter.range());
+    }
+    reader.finish();
+    definition_.parameters.push_back(std::move(parameter));
+  }
+
+  void read_composite(const Value& blocks) {
+    for (const std::string_view key : {"equations", "implicit", "cases", "start"}) {
+      if (reader_.find(key) == nullptr) continue;
+      reader_.report(key, fmt::format("a block with [blocks] has '{}' too", key), "one or the other",
+                     "put the equations into a block file of their own");
+    }
+    definition_.blocks = read_blocks(definition_.file, blocks, diagnostics_);
+    if (const Value* const machine = reader_.table("machine")) {
+      TableReader reader(definition_.file, *machine, "[machine]", diagnostics_);
+      definition_.inverting = reader.boolean("inverting").value_or(false);
+      reader.finish();
+    }
+    for (const BlockInstance& block : definition_.blocks) {
+      const bool parameter = definition_.find_parameter(block.name).has_value();
+      if (!parameter && !definition_.find_input(block.name)) continue;
+      diagnostics_.add({block.place,
+                        fmt::format("'{}' is the name of an inner block and of {} too", block.name,
+                                    parameter ? "a parameter" : "an input"),
+                        "different names, since a wire may name either",
+                        {}});
+    }
+  }
+
+  Diagnostics diagnostics_;
+  TableReader reader_;
+  BlockDefinition& definition_;
+  std::set<std::string, std::less<>> names_;
+};
+
+}  // namespace
+
+bool ParameterDefinition::allows(double value) const {
+  return !std::isnan(value) && (!above || value > *above) && (!below || value < *below) &&
+         (!at_least || value >= *at_least) && (!at_most || value <= *at_most);
+}
+
+std::string ParameterDefinition::range() const {
+  std::string text;
+  const auto add = [&](std::string_view word, const std::optional<double>& limit) {
+    if (limit) text += fmt::format("{}{} {}", text.empty() ? " " : " and ", word, *limit);
+  };
+  add("above", above);
+  add("at least", at_least);
+  add("below", below);
+  add("at most", at_most);
+  return fmt::format("a number{}{}", text, unit == "1" ? "" : fmt::format(" [{}]", unit));
+}
+
+std::optional<std::size_t> BlockDefinition::find_input(std::string_view input) const {
+  return find_named(inputs, input);
+}
+
+std::optional<std::size_t> BlockDefinition::find_output(std::string_view output) const {
+  return find_named(outputs, output);
+}
+
+std::optional<std::size_t> BlockDefinition::find_parameter(std::string_view parameter) const {
+  return find_named(parameters, parameter);
+}
+
+BlockDefinition parse_block(std::string_view text, std::string file, std::string name) {
+  BlockDefinition definition;
+  definition.name = std::move(name);
+  definition.file = std::move(file);
+  definition.text = std::string(text);
+  BlockReader(parse_document(text, definition.file), definition).read();
+  return definition;
+}
+
+}  // namespace oblique

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/diagram/block_library.h>
+
+#include <algorithm>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include <oblique/diagram/diagram.h>
+#include <oblique/diagram/shipped_blocks.h>
+
+namespace oblique {
+namespace {
+
+/// A block type is called as its file: an identifier that may hold '-' too.
+bool is_type_name(std::string name) {
+  std::replace(name.begin(), name.end(), '-', '_');
+  return is_identifier(name);
+}
+
+Diagnostic bad_file_name(const std::filesystem::path& file, const std::string& name) {
+  return {{file.string(), {}},
+          fmt::format("'{}' cannot be the name of a block type", name),
+          "a file name of letters, digits, '_' and '-', with a letter or '_' first",
+          {}};
+}
+
+}  // namespace
+
+BlockLibrary BlockLibrary::shipped() {
+  BlockLibrary library;
+  for (const ShippedBlock& block : shipped_blocks()) {
+    library.add(parse_block(block.text, fmt::format("blocks/{}.toml", block.name), std::string(block.name)));
+  }
+  return library;
+}
+
+void BlockLibrary::add_directory(const std::filesystem::path& directory) {
+  std::error_code error;
+  std::vector<std::filesystem::path> files;
+  for (auto at = std::filesystem::directory_iterator(directory, error);
+       !error && at != std::filesystem::directory_iterator(); at.increment(error)) {
+    if (at->path().extension() == ".toml") files.push_back(at->path());
+  }
+  if (error) {
+    const Place place{directory.string(), {}};
+    throw DiagramError(Diagnostic{place,
+                                  fmt::format("cannot read the blocks here: {}", error.message()),
+                                  "a directory with block files",
+                                  {}});
+  }
+  std::sort(files.begin(), files.end());
+  Diagnostics diagnostics;
+  for (const std::filesystem::path& file : files) {
+    const std::string name = file.stem().string();
+    if (!is_type_name(name)) {
+      diagnostics.add(bad_file_name(file, name));
+      continue;
+    }
+    try {
+      add(parse_block(read_file(file), file.string(), name));
+    } catch (const Error& found) {
+      for (const Diagnostic& diagnostic : found.diagnostics()) diagnostics.add(diagnostic);
+    }
+  }
+  diagnostics.throw_if_any<DiagramError>();
+}
+
+void BlockLibrary::add(BlockDefinition definition) {
+  std::string name = definition.name;
+  definitions_.insert_or_assign(std::move(name), std::move(definition));
+}
+
+const BlockDefinition* BlockLibrary::find(std::string_view name) const {
+  const auto found = definitions_.find(name);
+  return found == definitions_.end() ? nullptr : &found->second;
+}
+
+std::vector<std::string> BlockLibrary::names() const {
+  std::vector<std::string> names;
+  for (const auto& [name, definition] : definitions_) names.push_back(name);
+  return names;
+}
+
+}  // namespace oblique

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/diagram/diagram.h>
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace oblique {
+namespace {
+
+bool same(const Value& a, const Value& b);
+
+bool same_entry(const Entry& a, const Entry& b) {
+  return a.key == b.key && same(a.value, b.value);
+}
+
+/// Equality without positions.
+bool same(const Value& a, const Value& b) {
+  return a.kind == b.kind && a.boolean == b.boolean && a.number == b.number && a.text == b.text &&
+         std::equal(a.elements.begin(), a.elements.end(), b.elements.begin(), b.elements.end(), same) &&
+         std::equal(a.entries.begin(), a.entries.end(), b.entries.begin(), b.entries.end(), same_entry);
+}
+
+Value text_value(std::string text) {
+  Value value;
+  value.kind = Value::Kind::string;
+  value.text = std::move(text);
+  return value;
+}
+
+}  // namespace
+
+bool BlockInstance::operator==(const BlockInstance& other) const {
+  return name == other.name && type == other.type && label == other.label &&
+         std::equal(settings.begin(), settings.end(), other.settings.begin(), other.settings.end(),
+                    same_entry);
+}
+
+bool OutputSpec::operator==(const OutputSpec& other) const {
+  return name == other.name && signal == other.signal && scale == other.scale && unit == other.unit;
+}
+
+bool Expectation::operator==(const Expectation& other) const {
+  return text == other.text && output == other.output && kind == other.kind && time == other.time &&
+         value == other.value && within == other.within;
+}
+
+bool Diagram::operator==(const Diagram& other) const {
+  return title == other.title && source == other.source && machine == other.machine && run == other.run &&
+         blocks == other.blocks && outputs == other.outputs && expectations == other.expectations;
+}
+
+Entry number_setting(std::string key, double value) {
+  Entry entry;
+  entry.key = std::move(key);
+  entry.value.kind = Value::Kind::number;
+  entry.value.number = value;
+  return entry;
+}
+
+Entry text_setting(std::string key, std::string text) {
+  return {std::move(key), {}, text_value(std::move(text))};
+}
+
+std::string to_string(const WeightedSignal& term) {
+  if (term.weight == 1) return term.signal;
+  if (term.weight == -1) return "-" + term.signal;
+  return fmt::format("{}*{}", term.weight, term.signal);
+}
+
+Entry wire_setting(std::string key, const std::vector<WeightedSignal>& terms) {
+  if (terms.size() == 1) return text_setting(std::move(key), to_string(terms.front()));
+  Entry entry;
+  entry.key = std::move(key);
+  entry.value.kind = Value::Kind::array;
+  for (const WeightedSignal& term : terms) entry.value.elements.push_back(text_value(to_string(term)));
+  return entry;
+}
+
+}  // namespace oblique

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/diagram/diagram.h>
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <oblique/diagram/expectations.h>
+#include <oblique/diagram/names.h>
+#include <oblique/text/table_reader.h>
+
+namespace oblique {
+namespace {
+
+/// The largest whole number that a run setting takes; a double holds it exactly.
+constexpr double kLargestWhole = 1e15;
+
+class DiagramReader {
+ public:
+  DiagramReader(const Document& document, Diagram& diagram)
+      : reader_(document.file, document.root, "the diagram", diagnostics_), diagram_(diagram) {}
+
+  void read() {
+    check_format(reader_, "oblique-diagram/1");
+    diagram_.title = reader_.string("title").value_or("");
+    diagram_.source = reader_.string("source").value_or("");
+    if (const Value* const table = reader_.table("machine")) read_machine(*table);
+    if (const Value* const table = reader_.table("run")) read_run(*table);
+    if (const Value* const table = reader_.table("blocks")) {
+      diagram_.blocks = read_blocks(diagram_.file, *table, diagnostics_);
+    } else if (reader_.table().find("blocks") == nullptr) {
+      reader_.report("blocks", "the diagram has no [blocks]", "at least one block");
+    }
+    if (const Value* const table = reader_.table("outputs")) read_outputs(*table);
+    if (const Value* const table = reader_.table("expect")) {
+      diagram_.expectations = read_expectations(diagram_.file, *table, diagram_.run.until, diagnostics_);
+    }
+    if (!diagram_.outputs.empty()) {
+      std::vector<std::string> names;
+      for (const OutputSpec& output : diagram_.outputs) names.push_back(output.name);
+      check_expected_outputs(diagram_.expectations, names, diagnostics_);
+    }
+    reader_.finish();
+    diagnostics_.throw_if_any<DiagramError>();
+  }
+
+ private:
+  void read_machine(const Value& table) {
+    TableReader reader(diagram_.file, table, "[machine]", diagnostics_);
+    diagram_.machine.profile = reader.string("profile").value_or("ideal");
+    if (diagram_.machine.profile != "ideal") {
+      reader.report("profile", fmt::format("there is no machine profile '{}'", diagram_.machine.profile), {},
+                    suggest(diagram_.machine.profile, {"ideal"}));
+    }
+    diagram_.machine.inverting = reader.boolean("inverting").value_or(false);
+    reader.finish();
+  }
+
+  void read_run(const Value& table) {
+    TableReader reader(diagram_.file, table, "[run]", diagnostics_);
+    RunSettings& run = diagram_.run;
+    if (const auto until = reader.quantity("until", "s")) {
+      if (*until > 0 && std::isfinite(*until)) {
+        run.until = *until;
+      } else {
+        reader.report("until", fmt::format("'until' of [run] is {} s", *until), "a finite time above 0 [s]");
+      }
+    }
+    if (const auto tolerance = reader.quantity("tolerance", "1")) {
+      if (*tolerance > 0 && *tolerance < 1) {
+        run.tolerance = *tolerance;
+      } else {
+        reader.report("tolerance", fmt::format("'tolerance' of [run] is {}", *tolerance),
+                      "a number above 0 and below 1, such as 1e-8");
+      }
+    }
+    run.samples = static_cast<int>(whole(reader, "samples", 2, 1e9).value_or(run.samples));
+    run.max_steps = whole(reader, "max_steps", 1, kLargestWhole).value_or(run.max_steps);
+    reader.finish();
+  }
+
+  static std::optional<long> whole(TableReader& reader, std::string_view key, double least, double most) {
+    const auto number = reader.quantity(key, "1");
+    if (!number) return std::nullopt;
+    if (*number >= least && *number <= most && *number == std::floor(*number))
+      return static_cast<long>(*number);
+    reader.report(key, fmt::format("'{}' of [run] is {}", key, *number),
+                  fmt::format("a whole number from {} to {}", least, most));
+    return std::nullopt;
+  }
+
+  void read_outputs(const Value& table) {
+    for (const Entry& entry : table.entries) {
+      OutputSpec output;
+      output.name = entry.key;
+      output.place = {diagram_.file, entry.value.position};
+      if (entry.value.kind == Value::Kind::string) {
+        output.signal = entry.value.text;
+      } else if (entry.value.kind == Value::Kind::table) {
+        read_output(entry, output);
+      } else {
+        diagnostics_.add({output.place,
+                          fmt::format("output '{}' is {}", entry.key, kind_name(entry.value.kind)),
+                          R"("signal" or { signal = "…", scale = 1, unit = "…" })",
+                          {}});
+      }
+      diagram_.outputs.push_back(std::move(output));
+    }
+  }
+
+  void read_output(const Entry& entry, OutputSpec& output) {
+    TableReader reader(diagram_.file, entry.value, fmt::format("output '{}'", entry.key), diagnostics_);
+    output.signal = reader.required_string("signal", "the name of a signal").value_or("");
+    if (const Value* const signal = entry.value.find("signal")) output.place.position = signal->position;
+    output.scale = reader.quantity("scale", "1").value_or(1);
+    if (!std::isfinite(output.scale)) {
+      reader.report("scale", fmt::format("'scale' of output '{}' is infinite", entry.key), "a finite number");
+    }
+    output.unit = reader.string("unit").value_or(output.unit);
+    reader.finish();
+  }
+
+  Diagnostics diagnostics_;
+  TableReader reader_;
+  Diagram& diagram_;
+};
+
+}  // namespace
+
+Diagram parse_diagram(std::string_view text, std::string file) {
+  Diagram diagram;
+  diagram.file = std::move(file);
+  DiagramReader(parse_document(text, diagram.file), diagram).read();
+  return diagram;
+}
+
+Diagram read_diagram(const std::filesystem::path& path) {
+  return parse_diagram(read_file(path), path.string());
+}
+
+}  // namespace oblique

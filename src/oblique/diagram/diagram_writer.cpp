@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/diagram/diagram.h>
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include <oblique/diagram/expectations.h>
+
+namespace oblique {
+namespace {
+
+/// Control characters have no place in a TOML text.
+bool is_control(char c) {
+  return (c >= 0 && c < 0x20) || c == 0x7F;
+}
+
+std::string toml_string(std::string_view text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') {
+      out += '\\';
+      out += c;
+    } else if (is_control(c)) {
+      out += fmt::format("\\u{:04X}", static_cast<unsigned>(c));
+    } else {
+      out += c;
+    }
+  }
+  return out + '"';
+}
+
+std::string key_text(std::string_view key) {
+  const bool bare = !key.empty() && std::all_of(key.begin(), key.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  });
+  return bare ? std::string(key) : toml_string(key);
+}
+
+/// The value of a setting: a number, a string or a list of strings.
+std::string value_text(const Value& value) {
+  if (value.kind == Value::Kind::string) return toml_string(value.text);
+  if (value.kind != Value::Kind::array) return fmt::format("{}", value.number);
+  std::string out = "[";
+  for (const Value& element : value.elements) out += (out.size() > 1 ? ", " : "") + value_text(element);
+  return out + "]";
+}
+
+std::string block_text(const BlockInstance& block) {
+  std::string out = "{ type = " + toml_string(block.type);
+  if (!block.label.empty()) out += ", label = " + toml_string(block.label);
+  for (const Entry& setting : block.settings) {
+    out += fmt::format(", {} = {}", key_text(setting.key), value_text(setting.value));
+  }
+  return out + " }";
+}
+
+std::string output_text(const OutputSpec& output) {
+  const OutputSpec usual;
+  if (output.scale == usual.scale && output.unit == usual.unit) return toml_string(output.signal);
+  return fmt::format("{{ signal = {}, scale = {}, unit = {} }}", toml_string(output.signal), output.scale,
+                     toml_string(output.unit));
+}
+
+/// Width of a text on a terminal, near enough: code points.
+std::size_t width(std::string_view text) {
+  return static_cast<std::size_t>(std::count_if(
+      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+}
+
+struct Line {
+  std::string comment;
+  std::string key;
+  std::string value;
+};
+
+void write_comment(std::string_view comment, std::string& out) {
+  while (!comment.empty()) {
+    const std::size_t end = std::min(comment.find('\n'), comment.size());
+    std::string line = "# " + std::string(comment.substr(0, end));
+    std::replace_if(line.begin(), line.end(), is_control, ' ');
+    while (line.back() == ' ') line.pop_back();
+    out += line + "\n";
+    comment.remove_prefix(std::min(end + 1, comment.size()));
+  }
+}
+
+/// A table of one line an entry, the equal signs below each other.
+void write_table(std::string_view name, const std::vector<Line>& lines, std::string& out) {
+  if (lines.empty()) return;
+  std::size_t widest = 0;
+  for (const Line& line : lines) widest = std::max(widest, width(line.key));
+  out += fmt::format("\n[{}]\n", name);
+  for (const Line& line : lines) {
+    if (!line.comment.empty()) {
+      if (&line != &lines.front()) out += "\n";
+      write_comment(line.comment, out);
+    }
+    out += line.key + std::string(widest - width(line.key), ' ') + " = " + line.value + "\n";
+  }
+}
+
+}  // namespace
+
+std::string write_diagram(const Diagram& diagram) {
+  std::string out;
+  write_comment(diagram.comment, out);
+  if (!diagram.comment.empty()) out += "\n";
+  out += "format = \"oblique-diagram/1\"\n";
+  if (!diagram.title.empty()) out += "title  = " + toml_string(diagram.title) + "\n";
+  if (!diagram.source.empty()) out += "source = " + toml_string(diagram.source) + "\n";
+
+  const RunSettings& run = diagram.run;
+  write_table("machine",
+              {{{}, "profile", toml_string(diagram.machine.profile)},
+               {{}, "inverting", diagram.machine.inverting ? "true" : "false"}},
+              out);
+  write_table("run",
+              {{{}, "until", fmt::format("{}", run.until)},
+               {{}, "tolerance", fmt::format("{}", run.tolerance)},
+               {{}, "samples", fmt::format("{}", run.samples)},
+               {{}, "max_steps", fmt::format("{}", run.max_steps)}},
+              out);
+
+  std::vector<Line> blocks, outputs, expectations;
+  for (const BlockInstance& block : diagram.blocks) {
+    blocks.push_back({block.comment, key_text(block.name), block_text(block)});
+  }
+  for (const OutputSpec& output : diagram.outputs)
+    outputs.push_back({{}, key_text(output.name), output_text(output)});
+  for (const Expectation& expectation : diagram.expectations) {
+    const std::string key = expectation.text.empty() ? expectation_key(expectation) : expectation.text;
+    expectations.push_back(
+        {{},
+         toml_string(key),
+         fmt::format("{{ value = {}, within = {} }}", expectation.value, expectation.within)});
+  }
+  write_table("blocks", blocks, out);
+  write_table("outputs", outputs, out);
+  write_table("expect", expectations, out);
+  return out;
+}
+
+}  // namespace oblique

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <oblique/diagram/diagram.h>
+#include <oblique/text/table_reader.h>
+
+namespace oblique {
+
+/// Reads `[expect]`; times must lie within a run of `until` [s].
+std::vector<Expectation> read_expectations(const std::string& file, const Value& table, double until,
+                                           Diagnostics& diagnostics);
+
+/// "side at 3.5", "side maximum": the key of an expectation that has no text of its own.
+std::string expectation_key(const Expectation& expectation);
+
+/// Reports every expectation about an output that is not among `outputs`.
+void check_expected_outputs(const std::vector<Expectation>& expectations,
+                            const std::vector<std::string>& outputs, Diagnostics& diagnostics);
+
+}  // namespace oblique

@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/diagram/flat_diagram.h>
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <oblique/diagram/expectations.h>
+#include <oblique/diagram/overrides.h>
+#include <oblique/diagram/wiring.h>
+
+namespace oblique {
+namespace {
+
+using wiring::Constant;
+using wiring::Scope;
+using wiring::Source;
+using wiring::WiredBlock;
+
+/// Guards against composites of composites whose size explodes.
+constexpr std::size_t kMostBlocks = 1'000'000;
+constexpr std::size_t kMostWires = 10'000'000;
+
+/// One block of the tree of composites, laid out with its own parameters.
+struct Node {
+  const WiredBlock* wired = nullptr;  ///< none for the diagram itself, which is the root
+  const Scope* inside = nullptr;
+  std::size_t parent = 0;
+  std::size_t first_child = 0;  ///< children stand side by side, in the order of `inside->blocks`
+  std::size_t flat = 0;         ///< of a primitive block: its index in the flat diagram
+  std::string path;
+  std::vector<double> parameters;
+  std::vector<FlatInput> inputs;  ///< of a composite
+};
+
+class Layout {
+ public:
+  Layout(const Scope& diagram, const wiring::Replacements& replacements, FlatDiagram& flat,
+         Diagnostics& diagnostics)
+      : replacements_(replacements), flat_(flat), diagnostics_(diagnostics) {
+    Node root;
+    root.inside = &diagram;
+    nodes_.push_back(std::move(root));
+    expand(0);
+    connect_children(0);
+  }
+
+  /// The output that a source of the diagram means; nothing where the way there is broken and reported.
+  std::optional<SignalRef> signal(const Source& source) const { return signal(0, source); }
+
+ private:
+  void report_size(std::string_view things, std::size_t most) {
+    if (!too_large_) {
+      const Place place{flat_.file, {}};
+      diagnostics_.add({place,
+                        fmt::format("the diagram has too many {}", things),
+                        fmt::format("at most {}, those inside composites counted", most),
+                        {}});
+    }
+    too_large_ = true;
+  }
+
+  /// Makes the blocks inside a composite, depth first, so that the flat blocks keep the order of the files.
+  void expand(std::size_t parent) {
+    const Scope& scope = *nodes_[parent].inside;
+    const std::size_t first = nodes_.size();
+    if (first + scope.blocks.size() > kMostBlocks) {
+      report_size("blocks", kMostBlocks);
+      nodes_[parent].inside = nullptr;
+      return;
+    }
+    nodes_[parent].first_child = first;
+    nodes_.resize(first + scope.blocks.size());
+    for (std::size_t i = 0; i < scope.blocks.size(); ++i) {
+      const WiredBlock& wired = scope.blocks[i];
+      Node& node = nodes_[first + i];
+      node.wired = &wired;
+      node.inside = wired.inside;
+      node.parent = parent;
+      if (wired.definition == nullptr) continue;
+      const std::string& around = nodes_[parent].path;
+      node.path = around.empty() ? wired.instance->name : around + "." + wired.instance->name;
+      set_parameters(node, nodes_[parent]);
+      if (wired.inside != nullptr) {
+        expand(first + i);
+      } else {
+        add_flat_block(node, scope);
+      }
+    }
+  }
+
+  void set_parameters(Node& node, const Node& parent) {
+    const BlockDefinition& definition = *node.wired->definition;
+    node.parameters.reserve(definition.parameters.size());
+    for (std::size_t k = 0; k < definition.parameters.size(); ++k) {
+      const wiring::WiredParameter& wired = node.wired->parameters[k];
+      const double value =
+          wired.given ? value_of(wired.value, parent) : definition.parameters[k].default_value;
+      if (wired.value.expression) {  // fixed values were checked with their file
+        wiring::check_range(definition.parameters[k], value,
+                            fmt::format("parameter '{}.{}'", node.path, definition.parameters[k].name),
+                            {parent.inside->file, wired.position}, origin(parent), diagnostics_);
+      }
+      node.parameters.push_back(value);
+    }
+    if (replacements_.empty()) return;
+    const auto replaced = replacements_.find(node.path);
+    if (replaced == replacements_.end()) return;
+    for (const auto& [parameter, value] : replaced->second) node.parameters[parameter] = value;
+  }
+
+  static double value_of(const Constant& constant, const Node& composite) {
+    return constant.value(composite.inside->composite, composite.parameters);
+  }
+
+  /// Where the parameters of a composite come from: the remedy for values that follow from them.
+  static std::string origin(const Node& composite) {
+    const Place& place = composite.wired->instance->place;
+    return fmt::format("it follows from the parameters of '{}' ({}:{}:{})", composite.path, place.file,
+                       place.position.line, place.position.column);
+  }
+
+  void add_flat_block(Node& node, const Scope& scope) {
+    FlatBlock block;
+    block.path = node.path;
+    block.definition = node.wired->definition;
+    block.polarity = scope.inverting ? -1 : 1;
+    block.behaviour = choose_behaviour(*block.definition, node.parameters, block.polarity);
+    block.parameters = node.parameters;
+    block.place = node.wired->instance->place;
+    node.flat = flat_.blocks.size();
+    flat_.blocks.push_back(std::move(block));
+  }
+
+  static const Behaviour* choose_behaviour(const BlockDefinition& definition,
+                                           const std::vector<double>& parameters, double polarity) {
+    const auto lookup = [&](std::string_view name) -> std::optional<double> {
+      if (name == "polarity") return polarity;
+      const auto index = definition.find_parameter(name);
+      return index ? std::optional(parameters[*index]) : std::nullopt;
+    };
+    for (const Behaviour& behaviour : definition.behaviours) {
+      if (!behaviour.when || evaluate(*behaviour.when, lookup) != 0) return &behaviour;
+    }
+    return nullptr;
+  }
+
+  /// Connects the inputs of all blocks inside a composite whose own inputs are known.
+  void connect_children(std::size_t parent) {
+    const Scope* const scope = nodes_[parent].inside;
+    if (scope == nullptr) return;
+    for (std::size_t i = 0; i < scope->blocks.size(); ++i) {
+      const std::size_t child = nodes_[parent].first_child + i;
+      if (scope->blocks[i].definition == nullptr) continue;
+      std::vector<FlatInput> inputs = connect(nodes_[child], parent);
+      if (nodes_[child].wired->inside != nullptr) {
+        nodes_[child].inputs = std::move(inputs);
+        connect_children(child);
+      } else {
+        flat_.blocks[nodes_[child].flat].inputs = std::move(inputs);
+      }
+    }
+  }
+
+  std::vector<FlatInput> connect(const Node& node, std::size_t parent) {
+    const BlockDefinition& definition = *node.wired->definition;
+    std::vector<FlatInput> inputs(definition.inputs.size());
+    for (std::size_t k = 0; k < inputs.size(); ++k) {
+      const wiring::WiredInput& wired = node.wired->inputs[k];
+      if (!wired.connected) inputs[k].constant = definition.inputs[k].default_value.value_or(0);
+      for (const wiring::Term& term : wired.terms) {
+        const double weight = value_of(term.weight, nodes_[parent]);
+        if (std::isfinite(weight)) {
+          add_term(inputs[k], weight, term.source, parent);
+        } else {
+          diagnostics_.add(
+              {{nodes_[parent].inside->file, term.position},
+               fmt::format("input '{}.{}': a weight is {}", node.path, definition.inputs[k].name, weight),
+               "a finite number",
+               origin(nodes_[parent])});
+        }
+      }
+    }
+    return inputs;
+  }
+
+  void add_term(FlatInput& input, double weight, const Source& source, std::size_t parent) {
+    if (source.own_input) {
+      const FlatInput& outer = nodes_[parent].inputs[*source.own_input];
+      wires_ += outer.terms.size();
+      if (wires_ > kMostWires) {
+        report_size("wires", kMostWires);
+        return;
+      }
+      for (const FlatTerm& term : outer.terms) input.terms.push_back({weight * term.weight, term.signal});
+      input.constant += weight * outer.constant;
+    } else if (const auto ref = signal(parent, source)) {
+      input.terms.push_back({weight, *ref});
+    }
+  }
+
+  std::optional<SignalRef> signal(std::size_t parent, const Source& source) const {
+    std::size_t at = parent;
+    for (const std::size_t block : source.blocks) {
+      if (nodes_[at].inside == nullptr) return std::nullopt;
+      at = nodes_[at].first_child + block;
+    }
+    if (nodes_[at].wired->inside == nullptr) return SignalRef{nodes_[at].flat, source.output};
+    const std::optional<Source>& inner = nodes_[at].wired->inside->outputs[source.output];
+    return inner ? signal(at, *inner) : std::nullopt;
+  }
+
+  const wiring::Replacements& replacements_;
+  FlatDiagram& flat_;
+  Diagnostics& diagnostics_;
+  std::vector<Node> nodes_;
+  std::size_t wires_ = 0;  ///< that composites passed on from their inputs
+  bool too_large_ = false;
+};
+
+void add_output(const Layout& layout, const OutputSpec& spec, const Source& source, FlatDiagram& flat) {
+  if (const auto signal = layout.signal(source))
+    flat.outputs.push_back({spec.name, *signal, spec.scale, spec.unit});
+}
+
+void choose_outputs(const Diagram& diagram, const Scope& scope, const Layout& layout, FlatDiagram& flat,
+                    Diagnostics& diagnostics) {
+  for (const OutputSpec& output : diagram.outputs) {
+    const std::string subject = fmt::format("output '{}'", output.name);
+    const auto source =
+        wiring::find_signal(scope, output.signal, output.place.position, subject, diagnostics);
+    if (source) add_output(layout, output, *source, flat);
+  }
+  if (!diagram.outputs.empty()) return;
+  for (std::size_t i = 0; i < scope.blocks.size(); ++i) {
+    const BlockDefinition* const definition = scope.blocks[i].definition;
+    if (definition == nullptr) continue;
+    for (std::size_t k = 0; k < definition->outputs.size(); ++k) {
+      OutputSpec all;
+      all.name = diagram.blocks[i].name;
+      if (definition->outputs.size() > 1) all.name += "." + definition->outputs[k].name;
+      add_output(layout, all, {{}, {i}, k}, flat);
+    }
+  }
+}
+
+}  // namespace
+
+std::string FlatDiagram::signal_name(SignalRef signal) const {
+  const FlatBlock& block = blocks[signal.block];
+  if (block.definition->outputs.size() == 1) return block.path;
+  return block.path + "." + block.definition->outputs[signal.output].name;
+}
+
+FlatDiagram flatten(const Diagram& diagram, const BlockLibrary& library,
+                    const std::vector<ParameterOverride>& overrides) {
+  FlatDiagram flat;
+  flat.file = diagram.file;
+  Diagnostics diagnostics;
+  wiring::Resolver resolver(library, diagnostics);
+  const Scope scope = resolver.diagram(diagram);
+  const wiring::Replacements replacements = wiring::resolve_overrides(scope, overrides, diagnostics);
+  const Layout layout(scope, replacements, flat, diagnostics);
+  choose_outputs(diagram, scope, layout, flat, diagnostics);
+  std::vector<std::string> names;
+  for (const FlatOutput& output : flat.outputs) names.push_back(output.name);
+  if (diagnostics.empty()) check_expected_outputs(diagram.expectations, names, diagnostics);
+  diagnostics.throw_if_any<DiagramError>();
+  return flat;
+}
+
+}  // namespace oblique

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/diagram/names.h>
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <oblique/text/table_reader.h>
+
+namespace oblique {
+namespace {
+
+constexpr std::array<std::string_view, 7> kReserved{"time", "polarity", "pi", "inf", "and", "or", "not"};
+
+bool is_list_of_strings(const Value& value) {
+  return value.kind == Value::Kind::array &&
+         std::all_of(value.elements.begin(), value.elements.end(),
+                     [](const Value& element) { return element.kind == Value::Kind::string; });
+}
+
+bool can_be_setting(const Value& value) {
+  return value.kind == Value::Kind::number || value.kind == Value::Kind::string || is_list_of_strings(value);
+}
+
+BlockInstance read_block(const std::string& file, const Entry& entry, Diagnostics& diagnostics) {
+  BlockInstance block;
+  block.name = entry.key;
+  block.place = {file, entry.position};
+  TableReader reader(file, entry.value, fmt::format("block '{}'", entry.key), diagnostics);
+  if (entry.value.kind != Value::Kind::table) return block;
+  block.type = reader.required_string("type", "the name of a block type").value_or("");
+  block.label = reader.string("label").value_or("");
+  for (const Entry& setting : entry.value.entries) {
+    if (setting.key == "type" || setting.key == "label") continue;
+    if (can_be_setting(setting.value)) {
+      block.settings.push_back(setting);
+      continue;
+    }
+    diagnostics.add({{file, setting.value.position},
+                     fmt::format("'{}.{}' is {}", entry.key, setting.key, kind_name(setting.value.kind)),
+                     "a number, a string or a list of strings",
+                     R"(an input takes "signal" or ["signal", …], a parameter a number or a quantity)"});
+  }
+  return block;
+}
+
+void collect_names(const Expression& expression, std::vector<const Expression*>& names) {
+  if (expression.kind == Expression::Kind::name) names.push_back(&expression);
+  for (const Expression& operand : expression.operands) collect_names(operand, names);
+}
+
+}  // namespace
+
+bool check_name(std::string_view name, std::string_view what, const Place& place, Diagnostics& diagnostics) {
+  if (!is_identifier(name)) {
+    diagnostics.add({place,
+                     fmt::format("'{}' cannot be the name of a {}", name, what),
+                     "letters, digits and '_', with a letter or '_' first",
+                     {}});
+    return false;
+  }
+  if (std::find(kReserved.begin(), kReserved.end(), name) != kReserved.end()) {
+    diagnostics.add({place,
+                     fmt::format("'{}' cannot be the name of a {}: it is reserved", name, what),
+                     fmt::format("another name than {}", fmt::join(kReserved, ", ")),
+                     {}});
+    return false;
+  }
+  return true;
+}
+
+std::vector<BlockInstance> read_blocks(const std::string& file, const Value& table,
+                                       Diagnostics& diagnostics) {
+  std::vector<BlockInstance> blocks;
+  blocks.reserve(table.entries.size());
+  for (const Entry& entry : table.entries) {
+    check_name(entry.key, "block", {file, entry.position}, diagnostics);
+    blocks.push_back(read_block(file, entry, diagnostics));
+  }
+  if (blocks.empty())
+    diagnostics.add({{file, table.position}, "[blocks] is empty", "at least one block", {}});
+  return blocks;
+}
+
+std::vector<const Expression*> names_in(const Expression& expression) {
+  std::vector<const Expression*> names;
+  collect_names(expression, names);
+  return names;
+}
+
+SourcePosition position_in(const Value& value, int column) {
+  if (value.kind != Value::Kind::string) return value.position;
+  return to_diagnostic({column, {}, {}, {}}, {}, value, {}).place.position;
+}
+
+}  // namespace oblique

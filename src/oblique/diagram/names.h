@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <oblique/diagram/block_definition.h>
+
+namespace oblique {
+
+/// Whether a file may call a block, port or parameter so: an identifier that the equations do not keep for
+/// themselves. Reports otherwise; `what` names the thing ("block", "input").
+bool check_name(std::string_view name, std::string_view what, const Place& place, Diagnostics& diagnostics);
+
+/// Reads a `[blocks]` table: every key a block, with its type, its label and its settings as they stand.
+std::vector<BlockInstance> read_blocks(const std::string& file, const Value& table, Diagnostics& diagnostics);
+
+/// All name nodes of an expression, in the order of the text.
+std::vector<const Expression*> names_in(const Expression& expression);
+
+/// The position of a column of the text of a string value; of a number, the value's own.
+SourcePosition position_in(const Value& value, int column);
+
+}  // namespace oblique

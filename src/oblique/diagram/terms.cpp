@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/diagram/scope.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <oblique/diagram/names.h>
+#include <oblique/text/table_reader.h>
+
+namespace oblique::wiring {
+namespace {
+
+using Kind = Expression::Kind;
+
+bool is_number_name(std::string_view name) {
+  return name == "pi" || name == "inf";
+}
+
+bool is_own_parameter(const Scope& scope, std::string_view name) {
+  return scope.composite != nullptr && scope.composite->find_parameter(name).has_value();
+}
+
+bool depends_on_parameters(const Expression& expression) {
+  const auto names = names_in(expression);
+  return std::any_of(names.begin(), names.end(),
+                     [](const Expression* e) { return !is_number_name(e->name); });
+}
+
+/// Replaces the signal in a product by 1, which leaves its weight; false where it is no plain factor.
+bool take_signal_out(Expression& expression, int column) {
+  switch (expression.kind) {
+    case Kind::name:
+      if (expression.column != column || is_number_name(expression.name)) return false;
+      expression.kind = Kind::number;
+      expression.number = 1;
+      expression.name.clear();
+      return true;
+    case Kind::negate:
+    case Kind::divide:
+      return take_signal_out(expression.operands[0], column);
+    case Kind::multiply:
+      return take_signal_out(expression.operands[0], column) ||
+             take_signal_out(expression.operands[1], column);
+    default:
+      return false;
+  }
+}
+
+Constant fold(Expression expression, double factor) {
+  if (depends_on_parameters(expression)) return {factor, std::move(expression)};
+  return {factor * evaluate(expression), std::nullopt};
+}
+
+}  // namespace
+
+std::optional<Term> read_term(const Scope& scope, const Value& value, const std::string& subject,
+                              Diagnostics& diagnostics) {
+  const auto report = [&](int column, std::string what, std::string expected, std::string remedy) {
+    diagnostics.add({{scope.file, position_in(value, column)},
+                     fmt::format("{}: {}", subject, what),
+                     std::move(expected),
+                     std::move(remedy)});
+    return std::nullopt;
+  };
+  Expression expression;
+  try {
+    expression = parse_expression(value.text);
+  } catch (const ExpressionError& error) {
+    diagnostics.add(to_diagnostic(error, scope.file, value, subject));
+    return std::nullopt;
+  }
+  std::vector<const Expression*> signals;
+  for (const Expression* const name : names_in(expression)) {
+    if (!is_number_name(name->name) && !is_own_parameter(scope, name->name)) signals.push_back(name);
+  }
+  if (signals.empty()) {
+    return report(1, fmt::format("'{}' names no signal", value.text), "[sign][weight*]signal",
+                  "a fixed value comes from a block that gives a constant");
+  }
+  std::optional<Source> source;
+  bool all_known = true;
+  for (const Expression* const signal : signals) {
+    source = find_signal(scope, signal->name, position_in(value, signal->column), subject, diagnostics);
+    all_known = all_known && source;
+  }
+  if (!all_known) return std::nullopt;
+  if (signals.size() > 1) {
+    std::vector<std::string> names;
+    for (const Expression* const signal : signals) names.push_back(signal->name);
+    return report(
+        1, fmt::format("'{}' names {} signals ({})", value.text, signals.size(), fmt::join(names, ", ")),
+        "[sign][weight*]signal with one signal",
+        R"(a sum is a list, ["a", "-2*b"]; a product takes a block that multiplies)");
+  }
+  const std::string name = signals.front()->name;
+  const int column = signals.front()->column;
+  if (!take_signal_out(expression, column)) {
+    return report(column, fmt::format("'{}' is no plain factor of '{}'", name, value.text),
+                  "[sign][weight*]signal, such as '-2*a' or 'a/3'",
+                  "functions of a signal take a block of their own");
+  }
+  Term term{fold(std::move(expression), 1), std::move(*source), position_in(value, column)};
+  if (!term.weight.expression && !std::isfinite(term.weight.number)) {
+    return report(1, fmt::format("the weight of '{}' is {}", name, term.weight.number), "a finite number",
+                  {});
+  }
+  return term;
+}
+
+std::optional<Constant> read_parameter(const Scope& scope, const Value& value,
+                                       const ParameterDefinition& parameter, const std::string& subject,
+                                       Diagnostics& diagnostics) {
+  const Place place{scope.file, value.position};
+  if (value.kind == Value::Kind::array) {
+    diagnostics.add({place,
+                     fmt::format("{} is a list", subject),
+                     fmt::format("a number or a quantity in '{}'", parameter.unit),
+                     {}});
+    return std::nullopt;
+  }
+  if (value.kind == Value::Kind::number) {
+    const std::size_t before = diagnostics.size();
+    check_range(parameter, value.number, subject, place, {}, diagnostics);
+    return diagnostics.size() == before ? std::optional(Constant{value.number, {}}) : std::nullopt;
+  }
+  try {
+    std::size_t rest = 0;
+    Expression expression = parse_expression_prefix(value.text, rest);
+    for (const Expression* const name : names_in(expression)) {
+      if (is_number_name(name->name) || is_own_parameter(scope, name->name)) continue;
+      std::vector<std::string> known;
+      if (scope.composite != nullptr) {
+        for (const ParameterDefinition& own : scope.composite->parameters) known.push_back(own.name);
+      }
+      const bool signal = scope.index.count(name->name) > 0;
+      diagnostics.add(
+          {{scope.file, position_in(value, name->column)},
+           fmt::format("{}: '{}' is {}", subject, name->name, signal ? "a signal" : "no known constant"),
+           fmt::format("a number or a quantity in '{}'", parameter.unit),
+           signal ? "signals go to inputs, not to parameters" : suggest(name->name, known)});
+      return std::nullopt;
+    }
+    // The unit is the business of parse_quantity; any value of the names will do to learn it.
+    const Unit wanted = parse_unit(parameter.unit).value_or(Unit{});
+    parse_quantity(value.text, wanted, [](std::string_view) { return 1.0; });
+    const auto unit = parse_unit(std::string_view(value.text).substr(rest));
+    Constant constant = fold(std::move(expression), unit ? unit->scale / wanted.scale : 1);
+    if (constant.expression) return constant;
+    const std::size_t before = diagnostics.size();
+    check_range(parameter, constant.number, subject, place, {}, diagnostics);
+    return diagnostics.size() == before ? std::optional(std::move(constant)) : std::nullopt;
+  } catch (const ExpressionError& error) {
+    diagnostics.add(to_diagnostic(error, scope.file, value, subject));
+    return std::nullopt;
+  }
+}
+
+void check_range(const ParameterDefinition& parameter, double value, const std::string& subject,
+                 const Place& place, const std::string& remedy, Diagnostics& diagnostics) {
+  if (parameter.allows(value)) return;
+  diagnostics.add({place,
+                   std::isnan(value) ? fmt::format("{} has no value (not a number)", subject)
+                                     : fmt::format("{} is {}", subject, value),
+                   parameter.range(), remedy});
+}
+
+}  // namespace oblique::wiring

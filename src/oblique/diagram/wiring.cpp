@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/diagram/wiring.h>
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace oblique::wiring {
+namespace {
+
+/// Composites may stand in composites this deep.
+constexpr std::size_t kDeepest = 100;
+
+/// The wires of a setting: one string or a list of them.
+std::vector<const Value*> wires_of(const Value& value) {
+  if (value.kind == Value::Kind::string) return {&value};
+  std::vector<const Value*> wires;
+  for (const Value& element : value.elements) wires.push_back(&element);
+  return wires;
+}
+
+template <class Port>
+std::vector<std::string> names_of(const std::vector<Port>& ports) {
+  std::vector<std::string> names;
+  for (const Port& port : ports) names.push_back(port.name);
+  return names;
+}
+
+}  // namespace
+
+Scope Resolver::diagram(const Diagram& diagram) {
+  Scope scope;
+  scope.file = diagram.file;
+  scope.inverting = diagram.machine.inverting;
+  add_blocks(diagram.blocks, scope);
+  return scope;
+}
+
+const Scope* Resolver::composite(const BlockDefinition& definition, const Place& user) {
+  const auto start = std::find(open_.begin(), open_.end(), &definition);
+  if (start != open_.end()) {
+    std::vector<std::string> circle;
+    for (auto step = start; step != open_.end(); ++step) circle.push_back((*step)->name);
+    circle.push_back(definition.name);
+    diagnostics_->add(
+        {user,
+         fmt::format("composite '{}' contains itself: {}", definition.name, fmt::join(circle, " contains ")),
+         {},
+         "build one of them without the other"});
+    return nullptr;
+  }
+  if (open_.size() >= kDeepest) {
+    diagnostics_->add({user,
+                       fmt::format("composite '{}' is nested too deeply", definition.name),
+                       fmt::format("at most {} composites around a block", kDeepest),
+                       {}});
+    return nullptr;
+  }
+  auto& scope = composites_[&definition];
+  if (scope) return scope.get();
+  auto made = std::make_unique<Scope>();
+  made->composite = &definition;
+  made->file = definition.file;
+  made->inverting = definition.inverting;
+  open_.push_back(&definition);
+  add_blocks(definition.blocks, *made);
+  read_outputs(*made);
+  open_.pop_back();
+  return (composites_[&definition] = std::move(made)).get();
+}
+
+void Resolver::add_blocks(const std::vector<BlockInstance>& blocks, Scope& scope) {
+  scope.blocks.resize(blocks.size());
+  scope.index.reserve(blocks.size());
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    WiredBlock& block = scope.blocks[i];
+    block.instance = &blocks[i];
+    if (!scope.index.emplace(blocks[i].name, i).second) {
+      diagnostics_->add({blocks[i].place,
+                         fmt::format("there are two blocks '{}'{}", blocks[i].name, scope.belonging()),
+                         "a name of its own for each block",
+                         {}});
+    }
+    find_definition(scope, block);
+  }
+  for (WiredBlock& block : scope.blocks) {
+    if (block.definition != nullptr) read_settings(scope, block);
+  }
+}
+
+void Resolver::find_definition(const Scope& scope, WiredBlock& block) {
+  const BlockInstance& instance = *block.instance;
+  const BlockDefinition* const definition = library_->find(instance.type);
+  if (definition == nullptr) {
+    diagnostics_->add({instance.place,
+                       fmt::format("block '{}'{}: there is no block type '{}'", instance.name,
+                                   scope.belonging(), instance.type),
+                       {},
+                       suggest(instance.type, library_->names())});
+    return;
+  }
+  if (definition->is_composite()) {
+    block.inside = composite(*definition, instance.place);
+    if (block.inside == nullptr) return;
+  }
+  block.definition = definition;
+  block.parameters.resize(definition->parameters.size());
+  block.inputs.resize(definition->inputs.size());
+}
+
+void Resolver::read_settings(const Scope& scope, WiredBlock& block) {
+  const BlockDefinition& definition = *block.definition;
+  std::vector<const Entry*> drivers(definition.inputs.size());
+  for (const Entry& entry : block.instance->settings) {
+    if (const auto parameter = definition.find_parameter(entry.key)) {
+      WiredParameter& wired = block.parameters[*parameter];
+      const std::string subject = describe_port(scope, "parameter", block, entry.key);
+      const auto value =
+          read_parameter(scope, entry.value, definition.parameters[*parameter], subject, *diagnostics_);
+      if (value) wired = {true, *value, entry.value.position};
+    } else if (const auto input = definition.find_input(entry.key)) {
+      connect(scope, block, *input, entry, wires_of(entry.value), drivers);
+    } else if (entry.key == "in") {
+      read_input_list(scope, block, entry, drivers);
+    } else {
+      std::vector<std::string> known = names_of(definition.inputs);
+      for (const ParameterDefinition& p : definition.parameters) known.push_back(p.name);
+      diagnostics_->add(
+          {{scope.file, entry.position},
+           fmt::format("{} has no input and no parameter '{}'", describe_block(scope, block), entry.key),
+           {},
+           suggest(entry.key, known)});
+    }
+  }
+  check_open_inputs(scope, block);
+}
+
+void Resolver::read_input_list(const Scope& scope, WiredBlock& block, const Entry& entry,
+                               std::vector<const Entry*>& drivers) {
+  const std::vector<InputPort>& inputs = block.definition->inputs;
+  const auto wires = wires_of(entry.value);
+  if (inputs.size() == 1) {
+    connect(scope, block, 0, entry, wires, drivers);
+    return;
+  }
+  if (wires.size() > inputs.size() || inputs.empty()) {
+    const std::string count =
+        inputs.empty() ? "no inputs"
+                       : fmt::format("{} inputs ({})", inputs.size(), fmt::join(names_of(inputs), ", "));
+    diagnostics_->add(
+        {{scope.file, entry.value.position},
+         fmt::format("{} has {}, but 'in' lists {}", describe_block(scope, block), count, wires.size()),
+         {},
+         inputs.empty() ? "take 'in' away" : "list one signal for each input"});
+    for (std::size_t i = 0; i < inputs.size(); ++i) block.inputs[i].connected = true;
+    return;
+  }
+  for (std::size_t i = 0; i < wires.size(); ++i) connect(scope, block, i, entry, {wires[i]}, drivers);
+}
+
+void Resolver::connect(const Scope& scope, WiredBlock& block, std::size_t input, const Entry& entry,
+                       std::vector<const Value*> wires, std::vector<const Entry*>& drivers) {
+  const InputPort& port = block.definition->inputs[input];
+  WiredInput& wired = block.inputs[input];
+  const std::string subject = describe_port(scope, "input", block, port.name);
+  if (entry.value.kind == Value::Kind::number) {
+    wired.connected = true;
+    diagnostics_->add({{scope.file, entry.value.position},
+                       fmt::format("{} is given the number {}", subject, entry.value.number),
+                       "the name of a signal",
+                       "a fixed value comes from a block that gives a constant"});
+    return;
+  }
+  if (drivers[input] != nullptr) {
+    diagnostics_->add(
+        {{scope.file, entry.position},
+         fmt::format("{} is doubly driven: by '{}' and by '{}'", subject, drivers[input]->key, entry.key),
+         {},
+         "keep one of the two"});
+    return;
+  }
+  if (!port.sum && wires.size() > 1) {
+    wired.connected = true;
+    diagnostics_->add(
+        {{scope.file, wires[1]->position},
+         fmt::format("{} is doubly driven: it takes one signal and was given {}", subject, wires.size()),
+         {},
+         "add the signals in a block with a summing input and wire its output here"});
+    return;
+  }
+  wired.connected = !wires.empty();
+  if (wired.connected) drivers[input] = &entry;
+  for (const Value* const wire : wires) {
+    if (auto term = read_term(scope, *wire, subject, *diagnostics_)) wired.terms.push_back(std::move(*term));
+  }
+}
+
+void Resolver::check_open_inputs(const Scope& scope, const WiredBlock& block) {
+  for (std::size_t i = 0; i < block.inputs.size(); ++i) {
+    const InputPort& port = block.definition->inputs[i];
+    if (block.inputs[i].connected || port.default_value) continue;
+    diagnostics_->add({block.instance->place,
+                       fmt::format("{} ({}) is not connected",
+                                   describe_port(scope, "input", block, port.name), block.instance->type),
+                       "a signal", fmt::format("{} = \"NAME OF A SIGNAL\"", port.name)});
+  }
+}
+
+void Resolver::read_outputs(Scope& scope) {
+  for (const OutputPort& output : scope.composite->outputs) {
+    const std::string subject = fmt::format("output '{}'{}", output.name, scope.belonging());
+    auto source = find_signal(scope, output.wire, output.place.position, subject, *diagnostics_);
+    if (source && source->own_input) {
+      diagnostics_->add({output.place,
+                         fmt::format("{} shows the input '{}'", subject, output.wire),
+                         "the signal of an inner block",
+                         {}});
+      source.reset();
+    }
+    const auto hidden = scope.index.find(output.name);
+    if (source && hidden != scope.index.end() && source->blocks.front() != hidden->second) {
+      diagnostics_->add(
+          {output.place,
+           fmt::format("{} has the name of an inner block but shows '{}'", subject, output.wire),
+           "another name", "'block.name' would not say which of the two is meant"});
+    }
+    scope.outputs.push_back(std::move(source));
+  }
+}
+
+}  // namespace oblique::wiring

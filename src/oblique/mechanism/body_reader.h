@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <Eigen/Core>
+
+#include <oblique/mechanism/mechanism.h>
+#include <oblique/text/document.h>
+#include <oblique/text/table_reader.h>
+
+namespace oblique {
+
+/// Reads `[x, y]` in `unit`; both may be quantities. Findings go to `diagnostics` with `what` as their subject.
+std::optional<Eigen::Vector2d> read_coordinates(const std::string& file, const Value& value, std::string_view unit,
+                                                const std::string& what, Diagnostics& diagnostics);
+
+/// True for an identifier; otherwise reports it at `place` as the name of a `kind` ("body", "point").
+bool check_name(std::string_view kind, const std::string& name, const Place& place, Diagnostics& diagnostics);
+
+/// Reads one entry of `[bodies]` and appends it, with the points it is first to name, to `mechanism`.
+void read_body(const Entry& entry, Mechanism& mechanism, Diagnostics& diagnostics);
+
+}  // namespace oblique

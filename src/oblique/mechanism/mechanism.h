@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <oblique/text/diagnostic.h>
+
+namespace oblique {
+
+/// Thrown by the `mechanism` stage; `kind` says which question went wrong.
+class MechanismError : public Error {
+ public:
+  enum class Kind {
+    file,         ///< the file contradicts itself or the format
+    request,      ///< the caller asks for something that has no answer (no drive, one position …)
+    mobility,     ///< degrees of freedom and drives do not match
+    group_class,  ///< the links form a group that is neither crank nor dyad
+    sketch,       ///< the sketch does not pick an assembly mode
+    assembly,     ///< the links do not reach each other at the start position
+  };
+
+  explicit MechanismError(std::vector<Diagnostic> diagnostics) : MechanismError(Kind::file, std::move(diagnostics)) {}
+  MechanismError(Kind kind, std::vector<Diagnostic> diagnostics) : Error(std::move(diagnostics)), kind_(kind) {}
+  MechanismError(Kind kind, Diagnostic diagnostic) : Error(std::move(diagnostic)), kind_(kind) {}
+
+  Kind kind() const { return kind_; }
+
+ private:
+  Kind kind_;
+};
+
+/// A named point: fixed in the frame, or carried by the bodies that name it (hinged there if several do).
+struct Point {
+  std::string name;
+  bool fixed = false;
+  Eigen::Vector2d position = Eigen::Vector2d::Zero();  ///< [length unit], of a fixed point only
+};
+
+/// A point of a body in the body's own frame: origin in its first point, x axis from the first to the second.
+struct BodyPoint {
+  std::size_t point = 0;  ///< index in Mechanism::points
+  Eigen::Vector2d local = Eigen::Vector2d::Zero();  ///< [length unit]
+};
+
+/// A rigid body: its two or three named points, then its marks, in the order of the file.
+struct Body {
+  std::string name;
+  std::vector<BodyPoint> points;
+  Place place;
+
+  /// The body's point with this index in Mechanism::points, or nothing.
+  const BodyPoint* find(std::size_t point) const;
+};
+
+/// Turns a body: the angle of first → second point from +x is start + speed·t.
+struct Drive {
+  std::string name;
+  std::size_t body = 0;   ///< index in Mechanism::bodies
+  std::size_t about = 0;  ///< index in Mechanism::points; a point of the body
+  double speed = 0;       ///< [rad/s], not zero
+  double start = 0;       ///< [rad]
+  Place place;
+};
+
+/// A rough position of a point at the start; picks assembly modes and nothing else.
+struct SketchPoint {
+  std::size_t point = 0;  ///< index in Mechanism::points
+  Eigen::Vector2d position = Eigen::Vector2d::Zero();  ///< [length unit]
+};
+
+/// A plane mechanism as its file has it (oblique-mechanism/1). Lengths and coordinates are in `length_unit`.
+struct Mechanism {
+  std::string file;
+  std::string title;
+  std::string source;
+  std::string length_unit = "m";
+  std::vector<Point> points;  ///< those of the frame first, then in the order in which the bodies name them
+  std::vector<Body> bodies;
+  std::vector<Drive> drives;
+  std::vector<SketchPoint> sketch;
+
+  /// Indices by name, or nothing.
+  std::optional<std::size_t> find_point(std::string_view name) const;
+  std::optional<std::size_t> find_body(std::string_view name) const;
+
+  /// The drive that turns a body, or nothing.
+  std::optional<std::size_t> drive_of(std::size_t body) const;
+  /// The bodies that name a point, in file order; the frame is not counted.
+  std::vector<std::size_t> bodies_at(std::size_t point) const;
+
+  /// Largest distance between two points of one body [length unit]; 0 without bodies.
+  double largest_length() const;
+};
+
+/// Distance between two points of one body [length unit]; both must be points of it.
+double distance(const Body& body, std::size_t first, std::size_t second);
+
+}  // namespace oblique

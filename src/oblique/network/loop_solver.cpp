@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/network/loop_solver.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace oblique {
+namespace {
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+constexpr int kMostIterations = 100;
+constexpr double kSmallestFraction = 1e-9;  ///< of a Newton step, below which the search along it gives up
+
+/// Size of an unknown for relative tests; the floor keeps one that passes zero from demanding digits that its
+/// equation cannot have.
+double magnitude(double z) { return std::abs(z) + 1e-9; }
+
+Eigen::Index index(std::size_t i) { return static_cast<Eigen::Index>(i); }
+
+}  // namespace
+
+LoopWorkspace::LoopWorkspace(std::size_t size)
+    : matrix_(index(size), index(size)), scale_(index(size)), step_(index(size), 1), start_(index(size)),
+      permuted_(index(size)), lu_(index(size)) {}
+
+bool LoopWorkspace::factor(const LoopCode& loop, const double* slots) {
+  scale_ = Eigen::Map<const Eigen::VectorXd>(loop.natural_scale.data(), index(loop.size()));
+  for (const MatrixEntry& entry : loop.slopes) {
+    scale_[entry.row] = std::max(scale_[entry.row], std::abs(slots[entry.slot]));
+  }
+  if (!scale_.allFinite() || scale_.minCoeff() <= 0) return false;
+  matrix_.setZero();
+  for (const MatrixEntry& entry : loop.slopes) {
+    matrix_(entry.row, entry.column) = slots[entry.slot] / scale_[entry.row];
+  }
+  const double smallest_pivot = 8 * kEpsilon * static_cast<double>(loop.size());
+  if (loop.size() == 1) return std::abs(matrix_(0, 0)) > smallest_pivot;
+  lu_.compute(matrix_);
+  return lu_.matrixLU().diagonal().cwiseAbs().minCoeff() > smallest_pivot;
+}
+
+void LoopWorkspace::solve(Eigen::Ref<Eigen::MatrixXd> right_sides) {
+  for (Eigen::Index column = 0; column < right_sides.cols(); ++column) {
+    right_sides.col(column).array() /= scale_.array();
+  }
+  if (matrix_.rows() == 1) {
+    right_sides /= matrix_(0, 0);
+    return;
+  }
+  const auto& row_of = lu_.permutationP().indices();
+  for (Eigen::Index column = 0; column < right_sides.cols(); ++column) {
+    for (Eigen::Index i = 0; i < row_of.size(); ++i) permuted_[row_of[i]] = right_sides(i, column);
+    right_sides.col(column) = permuted_;
+  }
+  lu_.matrixLU().triangularView<Eigen::UnitLower>().solveInPlace(right_sides);
+  lu_.matrixLU().triangularView<Eigen::Upper>().solveInPlace(right_sides);
+}
+
+/// Largest residual over the scale of its row: the length of the step that the row asks for.
+double LoopWorkspace::residual_norm(const LoopCode& loop, const double* slots) const {
+  double norm = 0;
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    const double residual = slots[loop.residual_slots[i]];
+    if (!std::isfinite(residual)) return std::numeric_limits<double>::infinity();
+    norm = std::max(norm, std::abs(residual) / scale_[index(i)]);
+  }
+  return norm;
+}
+
+/// Puts start + fraction · step into the unknowns' slots; the largest relative change.
+double LoopWorkspace::move(const LoopCode& loop, double* slots, double fraction) const {
+  double change = 0;
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    const double by = fraction * step_(index(i), 0);
+    slots[loop.unknown_slots[i]] = start_[index(i)] + by;
+    change = std::max(change, std::abs(by) / magnitude(start_[index(i)]));
+  }
+  return change;
+}
+
+LoopFailure LoopWorkspace::solve_loop(const LoopCode& loop, std::span<const Instruction> tape, double* slots) {
+  const auto body = tape.subspan(loop.body.begin, loop.body.end - loop.body.begin);
+  run_tape(body, slots);
+  double last_change = std::numeric_limits<double>::infinity();
+  for (int iteration = 0; iteration < kMostIterations; ++iteration) {
+    for (const std::uint32_t slot : loop.residual_slots) {
+      if (!std::isfinite(slots[slot])) return LoopFailure::not_finite;
+    }
+    if (!factor(loop, slots)) return LoopFailure::singular;
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      step_(index(i), 0) = -slots[loop.residual_slots[i]];
+      start_[index(i)] = slots[loop.unknown_slots[i]];
+    }
+    const double norm = residual_norm(loop, slots);
+    solve(step_);
+
+    double fraction = 1;
+    double change = move(loop, slots, fraction);
+    run_tape(body, slots);
+    if (loop.linear) return LoopFailure::none;
+    // Steps at the level of rounding are not judged by the residual, which is noise there.
+    while (change > 1e-13 && !(residual_norm(loop, slots) < (1 - 1e-4 * fraction) * norm)) {
+      fraction /= 2;
+      if (fraction < kSmallestFraction) return LoopFailure::diverged;
+      change = move(loop, slots, fraction);
+      run_tape(body, slots);
+    }
+    const bool stagnates = change < 1e-10 && change > last_change / 2;
+    if (change < 2 * kEpsilon || stagnates) return LoopFailure::none;
+    last_change = change;
+  }
+  return LoopFailure::diverged;
+}
+
+}  // namespace oblique

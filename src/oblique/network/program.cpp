@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/network/program.h>
+
+#include <algorithm>
+
+#include <oblique/network/program_compiler.h>
+
+namespace oblique {
+
+Program::Program(Network network) { ProgramCompiler(*this, std::move(network)).compile(); }
+
+std::vector<double> Program::start() const {
+  std::vector<double> x;
+  x.reserve(states_.size());
+  for (const State& state : states_) x.push_back(state.start);
+  return x;
+}
+
+bool Program::run(const std::vector<Step>& steps, Workspace& workspace) const {
+  double* const slots = workspace.slots_.data();
+  const std::span<const Instruction> tape(tape_);
+  const std::size_t first_unknown = 1 + states_.size();
+  for (const Step& step : steps) {
+    run_tape(tape.subspan(step.stretch.begin, step.stretch.end - step.stretch.begin), slots);
+    if (!step.loop) continue;
+    const LoopCode& loop = loop_codes_[*step.loop];
+    const LoopFailure failure = workspace.loops_[*step.loop].solve_loop(loop, tape, slots);
+    if (failure != LoopFailure::none) {
+      const double slope = loop.size() == 1 && !loop.slopes.empty() ? slots[loop.slopes[0].slot] : 0;
+      workspace.trouble_ = {*step.loop, failure, slope};
+      for (const std::uint32_t slot : loop.unknown_slots) slots[slot] = workspace.solved_[slot - first_unknown];
+      return false;
+    }
+    for (const std::uint32_t slot : loop.unknown_slots) workspace.solved_[slot - first_unknown] = slots[slot];
+  }
+  return true;
+}
+
+bool Program::load_and_run(double t, const double* x, Workspace& workspace) const {
+  workspace.slots_[0] = t;
+  std::copy(x, x + states_.size(), workspace.slots_.begin() + 1);
+  return run(derivative_steps_, workspace);
+}
+
+bool Program::derivatives(double t, const double* x, double* dxdt, Workspace& workspace) const {
+  if (!load_and_run(t, x, workspace)) return false;
+  for (std::size_t i = 0; i < derivative_slots_.size(); ++i) dxdt[i] = workspace.slots_[derivative_slots_[i]];
+  return true;
+}
+
+bool Program::signals(double t, const double* x, double* values, Workspace& workspace) const {
+  if (!load_and_run(t, x, workspace) || !run(signal_steps_, workspace)) return false;
+  for (std::size_t i = 0; i < signal_slots_.size(); ++i) values[i] = workspace.slots_[signal_slots_[i]];
+  return true;
+}
+
+bool Program::differentiate_loops(Workspace& workspace) const {
+  const double* const slots = workspace.slots_.data();
+  for (const std::uint32_t l : sensitivity_order_) {
+    const Sensitivity& sensitivity = sensitivities_[l];
+    Eigen::MatrixXd& dz_dx = workspace.dz_dx_[l];
+    dz_dx.setZero();
+    for (const MatrixEntry& entry : sensitivity.direct) dz_dx(entry.row, entry.column) -= slots[entry.slot];
+    for (const Coupling& coupling : sensitivity.couplings) {
+      const Eigen::MatrixXd& other = workspace.dz_dx_[coupling.loop];
+      for (const MatrixEntry& entry : coupling.entries) {
+        for (std::size_t k = 0; k < coupling.targets.size(); ++k) {
+          dz_dx(entry.row, coupling.targets[k]) -= slots[entry.slot] * other(entry.column, static_cast<Eigen::Index>(k));
+        }
+      }
+    }
+    if (!workspace.loops_[l].factor(loop_codes_[l], slots)) {
+      workspace.trouble_ = {l, LoopFailure::singular, 0};
+      return false;
+    }
+    workspace.loops_[l].solve(dz_dx);
+  }
+  return true;
+}
+
+bool Program::jacobian(double t, const double* x, double* values, Workspace& workspace) const {
+  if (!load_and_run(t, x, workspace)) return false;
+  double* const slots = workspace.slots_.data();
+  run_tape(std::span(tape_).subspan(jacobian_stretch_.begin, jacobian_stretch_.end - jacobian_stretch_.begin), slots);
+  if (!differentiate_loops(workspace)) return false;
+  std::fill(values, values + pattern_.entries(), 0.0);
+  for (const DirectEntry& entry : direct_entries_) values[entry.position] += slots[entry.slot];
+  for (const RowCoupling& coupling : row_couplings_) {
+    const Eigen::MatrixXd& dz_dx = workspace.dz_dx_[coupling.loop];
+    for (Eigen::Index k = 0; k < dz_dx.cols(); ++k) {
+      values[row_positions_[coupling.first_position + static_cast<std::size_t>(k)]] +=
+          slots[coupling.slot] * dz_dx(coupling.unknown, k);
+    }
+  }
+  return true;
+}
+
+Workspace::Workspace(const Program& program) : program_(&program), slots_(program.initial_slots_) {
+  for (std::size_t l = 0; l < program.loop_codes_.size(); ++l) {
+    const std::size_t size = program.loop_codes_[l].size();
+    loops_.emplace_back(size);
+    dz_dx_.emplace_back(static_cast<Eigen::Index>(size),
+                        static_cast<Eigen::Index>(program.sensitivities_[l].states.size()));
+  }
+  reset();
+}
+
+void Workspace::reset() {
+  solved_.clear();
+  for (const Unknown& unknown : program_->unknowns_) solved_.push_back(unknown.guess);
+  std::copy(solved_.begin(), solved_.end(), slots_.begin() + static_cast<std::ptrdiff_t>(1 + program_->n_states()));
+  trouble_ = {};
+}
+
+}  // namespace oblique

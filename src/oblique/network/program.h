@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <oblique/network/loop_solver.h>
+#include <oblique/network/network.h>
+
+namespace oblique {
+
+/// Pattern of a square sparse matrix in compressed columns: rows ascending in each column, the diagonal always there.
+struct SparsePattern {
+  std::vector<std::int64_t> column_starts{0};
+  std::vector<std::int64_t> rows;
+
+  std::size_t size() const { return column_starts.size() - 1; }
+  std::size_t entries() const { return rows.size(); }
+};
+
+class Workspace;
+
+/// The equations of a diagram, compiled: immutable, and shared between threads as long as each has a Workspace.
+/// Nothing allocates inside `derivatives`, `jacobian` and `signals`.
+class Program {
+ public:
+  /// Compiles a network: differentiates, shares and drops expressions, lays out the tape.
+  explicit Program(Network network);
+
+  std::size_t n_states() const { return states_.size(); }
+  std::size_t n_signals() const { return signal_names_.size(); }
+  const std::vector<State>& states() const { return states_; }
+  const std::vector<Unknown>& unknowns() const { return unknowns_; }
+  const std::vector<Loop>& loops() const { return loops_; }
+  const std::vector<std::string>& signal_names() const { return signal_names_; }
+  std::size_t signal_index(SignalRef signal) const { return first_signal_[signal.block] + signal.output; }
+  std::size_t n_instructions() const { return tape_.size(); }
+
+  /// Start values of the states, before servo loops are brought to rest.
+  std::vector<double> start() const;
+
+  /// dx/dt at (t, x). False where an algebraic loop could not be solved; `workspace.trouble()` then says which.
+  bool derivatives(double t, const double* x, double* dxdt, Workspace& workspace) const;
+
+  /// d(dx/dt)/dx in the order of `jacobian_pattern`, algebraic loops included: f_x − f_z g_z⁻¹ g_x. False as above.
+  bool jacobian(double t, const double* x, double* values, Workspace& workspace) const;
+  const SparsePattern& jacobian_pattern() const { return pattern_; }
+
+  /// Every signal of every block at (t, x), `n_signals` of them. False as above.
+  bool signals(double t, const double* x, double* values, Workspace& workspace) const;
+
+ private:
+  friend class Workspace;
+  friend class ProgramCompiler;
+
+  /// A stretch of the tape, then perhaps a loop to solve.
+  struct Step {
+    TapeRange stretch;
+    std::optional<std::uint32_t> loop;
+  };
+
+  /// A derivative of a residual or of dx/dt by an unknown of a loop: where it enters the sums over dz/dx.
+  struct Coupling {
+    std::uint32_t loop;
+    std::vector<MatrixEntry> entries;    ///< row of the target, unknown within `loop`, slot
+    std::vector<std::uint32_t> targets;  ///< for a residual: column of the target for each column of dz/dx of `loop`
+  };
+
+  /// dz/dx of a loop: on which states it depends and what that is made of.
+  struct Sensitivity {
+    std::vector<std::uint32_t> states;  ///< columns of dz/dx
+    std::vector<MatrixEntry> direct;    ///< dg/dx: row, column in `states`, slot
+    std::vector<Coupling> couplings;    ///< dg/dz of loops solved earlier
+  };
+
+  struct DirectEntry {
+    std::uint32_t position, slot;
+  };
+  /// One row of f_z: entry k of dz/dx's columns goes to `positions[k]` of the Jacobian.
+  struct RowCoupling {
+    std::uint32_t loop, unknown, slot;
+    std::uint32_t first_position;  ///< in `row_positions_`
+  };
+
+  bool run(const std::vector<Step>& steps, Workspace& workspace) const;
+  bool load_and_run(double t, const double* x, Workspace& workspace) const;
+  bool differentiate_loops(Workspace& workspace) const;
+
+  std::vector<State> states_;
+  std::vector<Unknown> unknowns_;
+  std::vector<Loop> loops_;
+  std::vector<std::string> signal_names_;
+  std::vector<std::size_t> first_signal_;
+
+  std::vector<Instruction> tape_;
+  std::vector<double> initial_slots_;
+  std::vector<LoopCode> loop_codes_;
+  std::vector<Step> derivative_steps_;
+  std::vector<Step> signal_steps_;  ///< after `derivative_steps_`
+  TapeRange jacobian_stretch_;      ///< after `derivative_steps_`
+  std::vector<std::uint32_t> derivative_slots_;
+  std::vector<std::uint32_t> signal_slots_;
+
+  SparsePattern pattern_;
+  std::vector<DirectEntry> direct_entries_;
+  std::vector<Sensitivity> sensitivities_;       ///< of each loop; empty for those no derivative needs
+  std::vector<std::uint32_t> sensitivity_order_; ///< loops that derivatives need
+  std::vector<RowCoupling> row_couplings_;
+  std::vector<std::uint32_t> row_positions_;
+};
+
+/// The scratch memory of one run of a Program. It keeps the last solution of every algebraic loop, from which the next
+/// one is sought.
+class Workspace {
+ public:
+  explicit Workspace(const Program& program);
+
+  /// Forgets the solutions of the loops: the next search starts from the guesses of the diagram.
+  void reset();
+
+  /// The loop that could not be solved in the last evaluation.
+  struct Trouble {
+    std::size_t loop = 0;
+    LoopFailure failure = LoopFailure::none;
+    double slope = 0;  ///< dg/dz where the loop has one unknown
+  };
+  const Trouble& trouble() const { return trouble_; }
+
+ private:
+  friend class Program;
+  const Program* program_;
+  std::vector<double> slots_;
+  std::vector<double> solved_;  ///< unknowns at the last success
+  std::vector<LoopWorkspace> loops_;
+  std::vector<Eigen::MatrixXd> dz_dx_;
+  Trouble trouble_;
+};
+
+}  // namespace oblique

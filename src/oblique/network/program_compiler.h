@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <oblique/network/program.h>
+
+namespace oblique {
+
+/// Fills a Program from a Network; used by Program's constructor only.
+class ProgramCompiler {
+ public:
+  ProgramCompiler(Program& program, Network network);
+  void compile();
+
+ private:
+  using Gradient = std::vector<std::pair<std::uint32_t, NodeId>>;
+
+  /// Which nodes and loops an evaluation needs.
+  struct Needs {
+    std::vector<bool> nodes;
+    std::vector<bool> loops;
+  };
+
+  void differentiate();
+  void find_levels();
+  void find_needs();
+  void close_over(NodeId root, Needs& needs) const;
+  void require_loop(std::size_t loop, Needs& needs, std::vector<NodeId>& pending) const;
+  std::vector<std::uint32_t> count_uses() const;
+
+  void write_tapes();
+  std::vector<Program::Step> write_steps(const Needs& wanted, const Needs& done);
+  std::vector<NodeId> write_loop_body(std::size_t loop, std::vector<NodeId> nodes);
+
+  void find_sensitivities();
+  void find_sensitivity(std::size_t loop);
+  void lay_out_jacobian();
+
+  bool is_state(std::uint32_t variable) const { return variable >= 1 && variable <= network_.states.size(); }
+  bool is_unknown(std::uint32_t variable) const { return variable > network_.states.size(); }
+  std::size_t state_of(std::uint32_t variable) const { return variable - 1; }
+  std::size_t unknown_of(std::uint32_t variable) const { return variable - 1 - network_.states.size(); }
+
+  Program& program_;
+  Network network_;
+  std::vector<Gradient> state_gradients_;
+  std::vector<Gradient> residual_gradients_;
+  std::vector<std::uint32_t> loop_of_unknown_;
+  std::vector<std::uint32_t> place_in_loop_;
+  std::vector<std::uint32_t> levels_;  ///< of a node: 1 + the last loop it depends on, 0 for none
+  Needs for_derivatives_, for_signals_, for_jacobian_;
+  std::vector<bool> in_body_;          ///< of a node: written as part of its loop
+  std::optional<TapeWriter> writer_;   ///< made once the graph is complete
+};
+
+}  // namespace oblique

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/solve/cvodes_solver.h>
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+
+#include <cvodes/cvodes.h>
+#include <nvector/nvector_serial.h>
+#include <sunlinsol/sunlinsol_klu.h>
+#include <sunmatrix/sunmatrix_sparse.h>
+
+namespace oblique {
+namespace {
+
+static_assert(sizeof(sunindextype) == sizeof(std::int64_t), "SparsePattern shares its arrays with SUNDIALS");
+
+/// Steps shorter than this fraction of the run cannot move the clock any more.
+constexpr double kSmallestStep = 1e-15;
+constexpr int kMostSmallSteps = 20;
+
+/// SUNDIALS' sentences are for its own log; ours are made from the return code.
+void ignore_message(int, const char*, const char*, char*, void*) {}
+
+struct VectorDeleter {
+  void operator()(N_Vector v) const { N_VDestroy(v); }
+};
+struct MatrixDeleter {
+  void operator()(SUNMatrix m) const { SUNMatDestroy(m); }
+};
+struct LinearSolverDeleter {
+  void operator()(SUNLinearSolver s) const { SUNLinSolFree(s); }
+};
+struct ContextDeleter {
+  void operator()(SUNContext c) const { SUNContext_Free(&c); }
+};
+struct CvodesDeleter {
+  void operator()(void* memory) const { CVodeFree(&memory); }
+};
+
+template <class Handle, class Deleter>
+using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Deleter>;
+
+SUNContext make_context() {
+  SUNContext context = nullptr;
+  if (SUNContext_Create(nullptr, &context) != 0) throw std::bad_alloc();
+  return context;
+}
+
+template <class Handle>
+Handle made(Handle handle) {
+  if (handle == nullptr) throw std::bad_alloc();
+  return handle;
+}
+
+/// Setup calls fail only for lack of memory or for arguments that this file fixes.
+void check_setup(int code) {
+  if (code != CV_SUCCESS) throw SolverFailure{SolverFailure::Kind::other, 0, code};
+}
+
+bool all_finite(const double* values, std::size_t size) {
+  return std::all_of(values, values + size, [](double v) { return std::isfinite(v); });
+}
+
+}  // namespace
+
+struct CvodesSolver::Handles {
+  OdeSystem* system;
+  double t;
+  double end;
+  long max_steps;
+  long steps = 0;
+  int small_steps = 0;
+  bool saw_not_finite = false;
+
+  Owned<SUNContext, ContextDeleter> context;
+  Owned<N_Vector, VectorDeleter> states;
+  Owned<N_Vector, VectorDeleter> scratch;
+  Owned<SUNMatrix, MatrixDeleter> matrix;
+  Owned<SUNLinearSolver, LinearSolverDeleter> linear_solver;
+  std::unique_ptr<void, CvodesDeleter> memory;
+
+  Handles(OdeSystem& system_, double t0, std::span<const double> x0, double end_, const SolverSettings& settings)
+      : system(&system_), t(t0), end(end_), max_steps(settings.max_steps), context(make_context()) {
+    const auto n = static_cast<sunindextype>(x0.size());
+    states.reset(made(N_VNew_Serial(n, context.get())));
+    scratch.reset(made(N_VNew_Serial(n, context.get())));
+    std::copy(x0.begin(), x0.end(), N_VGetArrayPointer(states.get()));
+    const auto entries = static_cast<sunindextype>(system->pattern().entries());
+    matrix.reset(made(SUNSparseMatrix(n, n, entries, CSC_MAT, context.get())));
+    linear_solver.reset(made(SUNLinSol_KLU(states.get(), matrix.get(), context.get())));
+    memory.reset(made(CVodeCreate(CV_BDF, context.get())));
+    void* const cvodes = memory.get();
+    check_setup(CVodeInit(cvodes, evaluate, t0, states.get()));
+    check_setup(CVodeSetErrHandlerFn(cvodes, ignore_message, nullptr));
+    check_setup(CVodeSetUserData(cvodes, this));
+    check_setup(CVodeSStolerances(cvodes, settings.relative_tolerance, settings.absolute_tolerance));
+    check_setup(CVodeSetLinearSolver(cvodes, linear_solver.get(), matrix.get()));
+    check_setup(CVodeSetJacFn(cvodes, differentiate));
+    check_setup(CVodeSetStopTime(cvodes, end));
+  }
+
+  static int evaluate(sunrealtype t, N_Vector x, N_Vector dxdt, void* user) {
+    auto& self = *static_cast<Handles*>(user);
+    const double* const states = N_VGetArrayPointer(x);
+    double* const slopes = N_VGetArrayPointer(dxdt);
+    if (!self.system->derivatives(t, states, slopes)) return 1;
+    if (all_finite(slopes, self.system->size())) return 0;
+    self.saw_not_finite = true;
+    return 1;  // recoverable: CVODES tries a shorter step
+  }
+
+  static int differentiate(sunrealtype t, N_Vector x, N_Vector, SUNMatrix matrix, void* user, N_Vector, N_Vector,
+                           N_Vector) {
+    auto& self = *static_cast<Handles*>(user);
+    const SparsePattern& pattern = self.system->pattern();
+    std::copy(pattern.column_starts.begin(), pattern.column_starts.end(), SUNSparseMatrix_IndexPointers(matrix));
+    std::copy(pattern.rows.begin(), pattern.rows.end(), SUNSparseMatrix_IndexValues(matrix));
+    double* const values = SUNSparseMatrix_Data(matrix);
+    if (!self.system->jacobian(t, N_VGetArrayPointer(x), values)) return 1;
+    return all_finite(values, pattern.entries()) ? 0 : 1;
+  }
+
+  SolverFailure failure(int code) const {
+    SolverFailure failure{SolverFailure::Kind::other, t, code};
+    const bool refused = code == CV_RHSFUNC_FAIL || code == CV_FIRST_RHSFUNC_ERR || code == CV_REPTD_RHSFUNC_ERR ||
+                         code == CV_UNREC_RHSFUNC_ERR;
+    if (refused) failure.kind = SolverFailure::Kind::no_value;
+    if (code == CV_ERR_FAILURE || code == CV_CONV_FAILURE) failure.kind = SolverFailure::Kind::small_step;
+    if (saw_not_finite && failure.kind != SolverFailure::Kind::other) failure.kind = SolverFailure::Kind::not_finite;
+    return failure;
+  }
+};
+
+CvodesSolver::CvodesSolver(OdeSystem& system, double t0, std::span<const double> x0, double end,
+                           const SolverSettings& settings)
+    : handles_(std::make_unique<Handles>(system, t0, x0, end, settings)) {}
+CvodesSolver::~CvodesSolver() = default;
+CvodesSolver::CvodesSolver(CvodesSolver&&) noexcept = default;
+CvodesSolver& CvodesSolver::operator=(CvodesSolver&&) noexcept = default;
+
+double CvodesSolver::step() {
+  Handles& h = *handles_;
+  if (h.steps >= h.max_steps) throw SolverFailure{SolverFailure::Kind::step_budget, h.t, 0};
+  h.saw_not_finite = false;
+  const double before = h.t;
+  // In one-step mode this time only tells the direction; it must not be the stop time itself.
+  const double direction = h.end + (h.end - before) + 1;
+  const int code = CVode(h.memory.get(), direction, h.states.get(), &h.t, CV_ONE_STEP);
+  if (code < 0) throw h.failure(code);
+  ++h.steps;
+  if (!all_finite(N_VGetArrayPointer(h.states.get()), h.system->size())) {
+    throw SolverFailure{SolverFailure::Kind::not_finite, h.t, code};
+  }
+  h.small_steps = h.t - before < kSmallestStep * h.end && h.t < h.end ? h.small_steps + 1 : 0;
+  if (h.small_steps > kMostSmallSteps) throw SolverFailure{SolverFailure::Kind::small_step, h.t, code};
+  return h.t;
+}
+
+void CvodesSolver::states_at(double t, std::span<double> x) const {
+  check_setup(CVodeGetDky(handles_->memory.get(), t, 0, handles_->scratch.get()));
+  const double* const values = N_VGetArrayPointer(handles_->scratch.get());
+  std::copy(values, values + x.size(), x.begin());
+}
+
+std::span<const double> CvodesSolver::states() const {
+  return {N_VGetArrayPointer(handles_->states.get()), handles_->system->size()};
+}
+
+SolverStatistics CvodesSolver::statistics() const {
+  void* const memory = handles_->memory.get();
+  SolverStatistics s;
+  CVodeGetNumSteps(memory, &s.steps);
+  CVodeGetNumRhsEvals(memory, &s.evaluations);
+  CVodeGetNumJacEvals(memory, &s.jacobians);
+  CVodeGetNumLinSolvSetups(memory, &s.factorizations);
+  CVodeGetNumErrTestFails(memory, &s.error_test_failures);
+  CVodeGetLastStep(memory, &s.last_step);
+  return s;
+}
+
+std::vector<double> CvodesSolver::weighted_errors() const {
+  const Handles& h = *handles_;
+  const Owned<N_Vector, VectorDeleter> weights(made(N_VClone(h.states.get())));
+  CVodeGetEstLocalErrors(h.memory.get(), h.scratch.get());
+  CVodeGetErrWeights(h.memory.get(), weights.get());
+  std::vector<double> errors(h.system->size());
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    errors[i] = std::abs(N_VGetArrayPointer(h.scratch.get())[i] * N_VGetArrayPointer(weights.get())[i]);
+  }
+  return errors;
+}
+
+}  // namespace oblique

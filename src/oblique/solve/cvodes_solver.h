@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <oblique/solve/ode_system.h>
+
+namespace oblique {
+
+struct SolverSettings {
+  double relative_tolerance = 1e-8;
+  double absolute_tolerance = 1e-8;  ///< [machine unit]
+  long max_steps = 10'000'000;
+};
+
+struct SolverStatistics {
+  long steps = 0;
+  long evaluations = 0;            ///< of dx/dt
+  long jacobians = 0;              ///< evaluations of the Jacobian
+  long factorizations = 0;
+  long error_test_failures = 0;
+  double last_step = 0;            ///< [s]
+};
+
+/// Why a solver could not go on.
+struct SolverFailure {
+  enum class Kind {
+    not_finite,     ///< dx/dt or a state is not a number
+    no_value,       ///< the system refused to give dx/dt, however short the step
+    small_step,     ///< the step fell below what the time can resolve
+    step_budget,    ///< `max_steps` are used up
+    other,          ///< anything else CVODES reports
+  };
+  Kind kind = Kind::other;
+  double time = 0;  ///< [s] reached
+  int code = 0;     ///< CVODES' return value
+};
+
+/// CVODES with variable-order BDF, Newton's method, and KLU on the analytic Jacobian. Owns all of SUNDIALS' memory.
+class CvodesSolver {
+ public:
+  /// Starts at (t0, x0) and will not pass `end`. `system` must outlive the solver.
+  CvodesSolver(OdeSystem& system, double t0, std::span<const double> x0, double end, const SolverSettings& settings);
+  ~CvodesSolver();
+  CvodesSolver(CvodesSolver&&) noexcept;
+  CvodesSolver& operator=(CvodesSolver&&) noexcept;
+
+  /// Takes one step and returns the time reached [s], exactly `end` at last. Throws SolverFailure.
+  double step();
+
+  /// The states at a time within the last step, from the solver's own interpolating polynomial.
+  void states_at(double t, std::span<double> x) const;
+
+  /// The states at the time reached.
+  std::span<const double> states() const;
+
+  SolverStatistics statistics() const;
+
+  /// Of each state: estimated local error of the last step over its tolerance; the test is that these are below 1.
+  std::vector<double> weighted_errors() const;
+
+ private:
+  struct Handles;
+  std::unique_ptr<Handles> handles_;
+};
+
+}  // namespace oblique

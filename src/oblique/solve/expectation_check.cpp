@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/solve/expectation_check.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace oblique {
+namespace {
+
+double extreme(const Trajectory& trajectory, std::size_t column, bool maximum, double so_far) {
+  for (std::size_t r = 0; r < trajectory.rows(); ++r) {
+    const double value = trajectory.at(r, column);
+    so_far = maximum ? std::max(so_far, value) : std::min(so_far, value);
+  }
+  return so_far;
+}
+
+double value_at(const Trajectory& extra, double time, std::size_t column) {
+  std::size_t row = 0;
+  while (extra.at(row, 0) != time) ++row;  // expectation_times asked for it
+  return extra.at(row, column);
+}
+
+}  // namespace
+
+std::vector<double> expectation_times(const Diagram& diagram, double until) {
+  std::vector<double> times;
+  Diagnostics diagnostics;
+  for (const Expectation& e : diagram.expectations) {
+    if (e.kind != Expectation::Kind::at_time) continue;
+    if (e.time < 0 || e.time > until) {
+      diagnostics.add({e.place, fmt::format("'{}' is at t = {} s, outside the run", e.text, e.time),
+                       fmt::format("a time from 0 to {} s", until),
+                       "let the run last longer ('until' of [run], or --until)"});
+    }
+    times.push_back(e.time);
+  }
+  diagnostics.throw_if_any<DiagramError>();
+  std::sort(times.begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  return times;
+}
+
+std::vector<ExpectationResult> check_expectations(const Diagram& diagram, const Run& run) {
+  std::vector<ExpectationResult> results;
+  Diagnostics diagnostics;
+  std::vector<std::string> names;
+  for (const auto& column : run.trajectory.columns()) names.push_back(column.name);
+  for (const Expectation& e : diagram.expectations) {
+    const auto column = run.trajectory.find(e.output);
+    if (!column) {
+      diagnostics.add({e.place, fmt::format("'{}': there is no output '{}'", e.text, e.output), {},
+                       suggest(e.output, names)});
+      continue;
+    }
+    const bool maximum = e.kind == Expectation::Kind::maximum;
+    const double actual = e.kind == Expectation::Kind::at_time
+                              ? value_at(run.extra, e.time, *column)
+                              : extreme(run.trajectory, *column, maximum, run.trajectory.at(0, *column));
+    results.push_back({e, actual, std::abs(actual - e.value) <= e.within});
+  }
+  diagnostics.throw_if_any<DiagramError>();
+  return results;
+}
+
+}  // namespace oblique

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <vector>
+
+#include <oblique/diagram/diagram.h>
+#include <oblique/solve/run.h>
+
+namespace oblique {
+
+/// One line of `[expect]` held against a run.
+struct ExpectationResult {
+  Expectation expectation;
+  double actual = 0;
+  bool met = false;
+};
+
+/// The times that `[expect]` asks for, ascending: the `extra_times` of the run. Throws DiagramError for a time
+/// outside [0, until].
+std::vector<double> expectation_times(const Diagram& diagram, double until);
+
+/// Checks every expectation; `run` was made with `expectation_times`. Throws DiagramError for an output that is
+/// not among the columns.
+std::vector<ExpectationResult> check_expectations(const Diagram& diagram, const Run& run);
+
+}  // namespace oblique

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+
+#include <oblique/network/program.h>
+
+namespace oblique {
+
+/// A system dx/dt = f(t, x) as the solver sees it.
+class OdeSystem {
+ public:
+  virtual ~OdeSystem() = default;
+  virtual std::size_t size() const = 0;
+  virtual const SparsePattern& pattern() const = 0;
+  /// False where f has no value at (t, x); the solver then tries a shorter step.
+  virtual bool derivatives(double t, const double* x, double* dxdt) = 0;
+  /// df/dx in the order of `pattern`; false as above.
+  virtual bool jacobian(double t, const double* x, double* values) = 0;
+};
+
+/// A diagram in the mode "operate".
+class OperateSystem final : public OdeSystem {
+ public:
+  OperateSystem(const Program& program, Workspace& workspace) : program_(program), workspace_(workspace) {}
+  std::size_t size() const override { return program_.n_states(); }
+  const SparsePattern& pattern() const override { return program_.jacobian_pattern(); }
+  bool derivatives(double t, const double* x, double* dxdt) override {
+    return program_.derivatives(t, x, dxdt, workspace_);
+  }
+  bool jacobian(double t, const double* x, double* values) override {
+    return program_.jacobian(t, x, values, workspace_);
+  }
+
+ private:
+  const Program& program_;
+  Workspace& workspace_;
+};
+
+}  // namespace oblique

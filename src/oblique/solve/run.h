@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <oblique/diagram/flat_diagram.h>
+#include <oblique/network/program.h>
+#include <oblique/solve/cvodes_solver.h>
+#include <oblique/solve/trajectory.h>
+
+namespace oblique {
+
+/// How to run; `RunSettings` of the diagram are the usual source.
+struct RunOptions {
+  double until = 1;         ///< [s]
+  double tolerance = 1e-8;  ///< relative, and absolute in machine units
+  int samples = 1001;       ///< rows, evenly spaced, both ends included
+  long max_steps = 10'000'000;
+  std::vector<double> extra_times;               ///< [s] ascending, within [0, until]: further rows, kept apart
+  std::function<void(double fraction)> progress;  ///< called now and then with the part of the run that is done
+};
+
+/// The options that a diagram states.
+RunOptions options_of(const RunSettings& settings);
+
+/// The largest magnitude that a signal had at the rows of a run.
+struct Peak {
+  double value = 0;  ///< with its sign [machine unit]
+  double time = 0;   ///< [s]
+};
+
+/// What came out of a run.
+struct Run {
+  Trajectory trajectory;    ///< `t`, then the outputs of the diagram
+  Trajectory extra;         ///< the same columns at `extra_times`
+  std::vector<Peak> peaks;  ///< of every signal of the program, in its order
+  SolverStatistics statistics;
+  double seconds = 0;  ///< wall clock of the run itself, compilation apart
+};
+
+/// Runs a compiled diagram from t = 0: brings servo loops to rest, integrates with BDF and KLU, and samples the
+/// solver's own interpolant on an exact grid. A diagram without states is evaluated on that grid.
+/// Throws SolveError.
+Run run(const Program& program, const FlatDiagram& diagram, const RunOptions& options);
+
+}  // namespace oblique

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <utility>
+
+#include <oblique/network/program.h>
+#include <oblique/solve/cvodes_solver.h>
+#include <oblique/text/diagnostic.h>
+
+namespace oblique {
+
+/// Thrown by the `solve` stage: the diagram is well formed, but its equations could not be solved.
+class SolveError : public Error {
+ public:
+  enum class Kind { singular_loop, no_rest, blow_up, step_budget, other };
+
+  SolveError(Kind kind, double time, Diagnostic diagnostic)
+      : Error(std::move(diagnostic)), kind_(kind), time_(time) {}
+
+  Kind kind() const { return kind_; }
+  double time() const { return time_; }  ///< [s] where the run stopped
+
+ private:
+  Kind kind_;
+  double time_;
+};
+
+/// The error of an algebraic loop that could not be solved at time t: its members, its gain, the remedy.
+SolveError loop_error(const Program& program, const Workspace::Trouble& trouble, double t, const std::string& file);
+
+/// The error of a run that the solver gave up: why, where, and the signals with the largest weighted local errors.
+SolveError run_error(const Program& program, const SolverFailure& failure, const CvodesSolver& solver,
+                     const Workspace& workspace, const std::string& file);
+
+/// The error of servo loops that do not settle; `worst` are states by how fast they still move, fastest first.
+SolveError rest_error(const Program& program, const std::vector<std::size_t>& worst, const std::vector<double>& states,
+                      const std::string& file);
+
+}  // namespace oblique

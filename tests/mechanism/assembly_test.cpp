@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/mechanism/assembly.h>
+
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <oblique/mechanism/read_mechanism.h>
+
+namespace oblique {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+/// A 3-4-5 triangle standing on A and D, with C at (1.8, ±2.4), and a mark M of AC one to the left of its middle.
+std::string truss(const std::string& sketch, double frame = 5) {
+  return "format = \"oblique-mechanism/1\"\n[units]\nlength = \"mm\"\n[frame]\nA = [0, 0]\nD = [" + std::to_string(frame) +
+         ", 0]\n[bodies]\nAC = { points = [\"A\", \"C\"], length = 3, marks = { M = [1.5, 1] } }\n"
+         "CD = { points = [\"C\", \"D\"], length = 4 }\n[sketch]\n" + sketch;
+}
+
+Structure structure_of(const std::string& text) { return decompose(parse_mechanism(text, "truss.toml")); }
+
+int side(const Structure& structure) { return std::get<DyadGroup>(structure.groups.at(0)).side; }
+
+std::pair<MechanismError::Kind, std::string> refusal(const std::string& text) {
+  try {
+    structure_of(text);
+  } catch (const MechanismError& error) {
+    return {error.kind(), error.what()};
+  }
+  return {MechanismError::Kind::file, "not refused"};
+}
+
+TEST(AssemblyMode, IsTheOneNearerToTheSketch) {
+  EXPECT_EQ(side(structure_of(truss("C = [3, 0.1]"))), 1);
+  EXPECT_EQ(side(structure_of(truss("C = [3, -0.1]"))), -1);
+  // M lies at (0.1, 1.8) with C above, at (1.7, −0.6) with C below
+  EXPECT_EQ(side(structure_of(truss("M = [0, 2]"))), 1);
+  EXPECT_EQ(side(structure_of(truss("M = [2, -1]"))), -1);
+}
+
+TEST(AssemblyMode, WeighsAllSketchedPointsOfTheGroup) {
+  // C is nearer to the upper mode by little, M to the lower by much
+  EXPECT_EQ(side(structure_of(truss("C = [1.8, 0.1]\nM = [1.7, -0.6]"))), -1);
+}
+
+TEST(AssemblyMode, WithoutASketchIsAnErrorThatListsBoth) {
+  const auto [kind, text] = refusal(truss("A = [0, 0]"));
+  EXPECT_EQ(kind, MechanismError::Kind::sketch);
+  EXPECT_THAT(text, AllOf(HasSubstr("truss.toml:8:1: dyad 'AC-CD' has two assembly modes and no point in [sketch]"),
+                          HasSubstr("C = [1.8, 2.4]   # left of A → D"), HasSubstr("C = [1.8, -2.4]   # right of A → D")));
+}
+
+TEST(AssemblyMode, IsNotGuessedFromAnUndecidedSketch) {
+  const auto [kind, text] = refusal(truss("C = [3, 0]"));
+  EXPECT_EQ(kind, MechanismError::Kind::sketch);
+  EXPECT_THAT(text, HasSubstr("the sketch is equally far from both assembly modes of dyad 'AC-CD'"));
+}
+
+TEST(AssemblyMode, IsNotChosenAtADeadCentre) {
+  const auto [kind, text] = refusal(truss("C = [3, 1]", 7));
+  EXPECT_EQ(kind, MechanismError::Kind::sketch);
+  EXPECT_THAT(text, HasSubstr("dyad 'AC-CD' is at a dead centre at the start"));
+}
+
+TEST(AssemblyMode, OfLinksThatDoNotReachIsAnAssemblyError) {
+  const auto [kind, text] = refusal(truss("C = [3, 1]", 7.5));
+  EXPECT_EQ(kind, MechanismError::Kind::assembly);
+  EXPECT_THAT(text, AllOf(HasSubstr("dyad 'AC-CD' cannot be assembled at the start: its pivots 'A' and 'D' are 7.5 mm apart"),
+                          HasSubstr("'AC' (A to C: 3 mm)"), HasSubstr("'CD' (D to C: 4 mm)"),
+                          HasSubstr("expected a distance of the pivots from 1 to 7 mm")));
+  EXPECT_EQ(refusal(truss("C = [3, 1]", 0.5)).first, MechanismError::Kind::assembly);
+}
+
+// Two trusses without sketch on the same frame, and one that hangs on the first.
+TEST(AssemblyMode, IsReportedForAllIndependentDyadsInOneGo) {
+  const std::string text = truss("A = [0, 0]");
+  const std::size_t at = text.find("[sketch]");
+  try {
+    structure_of(text.substr(0, at) + R"(AE = { points = ["A", "E"], length = 3 }
+ED = { points = ["E", "D"], length = 4 }
+CF = { points = ["C", "F"], length = 3 }
+FD = { points = ["F", "D"], length = 4 }
+)");
+    FAIL();
+  } catch (const MechanismError& error) {
+    ASSERT_EQ(error.diagnostics().size(), 2U) << error.what();
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("'AC-CD'"), HasSubstr("'AE-ED'"), Not(HasSubstr("'CF-FD'"))));
+  }
+}
+
+TEST(AssemblyModes, AreOneForACrankAndTwoForADyad) {
+  const Mechanism four_bar = read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/four-bar.toml");
+  const Structure structure = decompose(four_bar);
+  const auto groups = assembly_modes(four_bar, structure, drive_angles(four_bar, 0));
+  ASSERT_EQ(groups.size(), 2U);
+  ASSERT_EQ(groups[0].modes.size(), 1U);
+  EXPECT_EQ(groups[0].modes[0].positions[0], Eigen::Vector2d(1, 0));
+  ASSERT_EQ(groups[1].modes.size(), 2U);
+  EXPECT_TRUE(groups[1].modes[0].selected);
+  EXPECT_FALSE(groups[1].modes[1].selected);
+  ASSERT_EQ(groups[1].modes[0].points.size(), 2U);  // C and the mark M
+  // C over BD = 3: x = 1 + (9 + 3.5² − 3²)/6 = 73/24, mirrored in y; a few roundings of numbers near 3
+  EXPECT_NEAR(groups[1].modes[0].positions[0].x(), 73.0 / 24, 1e-15);
+  EXPECT_NEAR(groups[1].modes[1].positions[0].x(), 73.0 / 24, 1e-15);
+  EXPECT_EQ(groups[1].modes[0].positions[0].y(), -groups[1].modes[1].positions[0].y());
+}
+
+TEST(AssemblyModes, AreNoneWhereTheLinksDoNotReach) {
+  Mechanism mechanism = parse_mechanism(truss("C = [3, 1]"), "truss.toml");
+  const Structure structure = decompose(mechanism);
+  mechanism.points[1].position.x() = 8;
+  EXPECT_TRUE(assembly_modes(mechanism, structure, {}).at(0).modes.empty());
+}
+
+}  // namespace
+}  // namespace oblique

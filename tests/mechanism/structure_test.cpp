@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/mechanism/structure.h>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <oblique/mechanism/read_mechanism.h>
+
+namespace oblique {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+Mechanism mechanism(const std::string& body) { return parse_mechanism("format = \"oblique-mechanism/1\"\n" + body, "test.toml"); }
+
+Mechanism shipped(const std::string& name) {
+  return read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/" + name);
+}
+
+std::vector<std::string> names(const Structure& structure) {
+  std::vector<std::string> all;
+  for (const Group& group : structure.groups) all.push_back(group_name(group));
+  return all;
+}
+
+/// Kind and text of what `find_groups` says.
+std::pair<MechanismError::Kind, std::string> refusal(const std::string& body) {
+  try {
+    find_groups(mechanism(body));
+  } catch (const MechanismError& error) {
+    return {error.kind(), error.what()};
+  }
+  return {MechanismError::Kind::file, "not refused"};
+}
+
+//            B ─── C              F ─── G            A Watt chain with a further dyad: eight bars. The bodies stand in
+//           /     / \            /       \           the file in the reverse of the order in which they move.
+//          A     D   E ─────────·         H
+const std::string kEightBar = R"([frame]
+A = [0, 0]
+D = [4, 0]
+H = [12, 0]
+[bodies]
+GH  = { points = ["G", "H"], length = 4 }
+EG  = { points = ["E", "G"], length = 4 }
+EF  = { points = ["F", "C"], length = 3 }
+FK  = { points = ["F", "K"], length = 5 }
+BC  = { points = ["B", "C"], length = 3.5, marks = { K = [1, 1] } }
+CD  = { points = ["C", "D"], length = 3, marks = { E = [-1, 2] } }
+AB  = { points = ["A", "B"], length = 1 }
+[drives]
+crank = { turns = "AB", about = "A", speed = 1 }
+)";
+
+TEST(Mobility, CountsHingesOfSeveralBodiesAndTheFrame) {
+  EXPECT_EQ(mobility(shipped("four-bar.toml")), 1);
+  EXPECT_EQ(mobility(shipped("six-bar.toml")), 1);
+  EXPECT_EQ(mobility(shipped("jansen.toml")), 1);  // 13 bodies, 19 hinges: O2 is four of them, P6 and Q6 two each
+  EXPECT_EQ(mobility(mechanism("[frame]\nA = [0, 0]\n[bodies]\nAB = { points = [\"A\", \"B\"], length = 1 }")), 1);
+  EXPECT_EQ(mobility(mechanism("[frame]\nA = [0, 0]\n[bodies]\nBC = { points = [\"B\", \"C\"], length = 1 }")), 3);
+}
+
+TEST(Structure, TakesAFourBarApart) {
+  const Mechanism four_bar = shipped("four-bar.toml");
+  const Structure structure = decompose(four_bar);
+  EXPECT_THAT(names(structure), ElementsAre("AB", "BCM-CD"));
+  const auto& crank = std::get<CrankGroup>(structure.groups[0]);
+  EXPECT_EQ(four_bar.points[crank.pivot].name, "A");
+  const auto& dyad = std::get<DyadGroup>(structure.groups[1]);
+  EXPECT_EQ(four_bar.points[dyad.p].name, "B");
+  EXPECT_EQ(four_bar.points[dyad.q].name, "D");
+  EXPECT_EQ(four_bar.points[dyad.c].name, "C");
+  EXPECT_EQ(dyad.r1, 3.5);
+  EXPECT_EQ(dyad.r2, 3);
+  EXPECT_EQ(dyad.side, 1);
+  EXPECT_THAT(group_bodies(structure.groups[1]), ElementsAre(1U, 2U));
+}
+
+TEST(Structure, TakesAnEightBarApartWhateverTheOrderOfItsBodies) {
+  EXPECT_THAT(names(find_groups(mechanism(kEightBar))), ElementsAre("AB", "BC-CD", "GH-EG", "EF-FK"));
+}
+
+TEST(Structure, TakesBothLegsOfJansenApart) {
+  EXPECT_THAT(names(decompose(shipped("jansen.toml"))),
+              ElementsAre("crank", "rod_j-upper", "rod_k-rod_c", "rod_f-lower", "rod_j2-upper2", "rod_k2-rod_c2", "rod_f2-lower2"));
+}
+
+TEST(Structure, ChainsDrives) {
+  const Structure robot = decompose(mechanism(R"([frame]
+A = [0, 0]
+[bodies]
+hand = { points = ["C", "B"], length = 1 }
+arm  = { points = ["A", "B"], length = 2 }
+[drives]
+wrist    = { turns = "hand", about = "B", speed = 2 }
+shoulder = { turns = "arm", about = "A", speed = 1 }
+)"));
+  EXPECT_THAT(names(robot), ElementsAre("arm", "hand"));
+  EXPECT_EQ(std::get<CrankGroup>(robot.groups[1]).drive, 0U);
+}
+
+TEST(Structure, IsRefusedWhenUnderDriven) {
+  const auto [kind, text] = refusal(R"([frame]
+A = [0, 0]
+D = [4, 0]
+[bodies]
+AB = { points = ["A", "B"], length = 1 }
+BC = { points = ["B", "c"], length = 3.5 }
+CD = { points = ["C", "D"], length = 3 }
+[drives]
+crank = { turns = "AB", about = "A", speed = 1 }
+)");
+  EXPECT_EQ(kind, MechanismError::Kind::mobility);
+  EXPECT_THAT(text, AllOf(HasSubstr("test.toml:10:1: the mechanism has mobility 3 (3·3 bodies − 2·3 hinges) but 1 drive"),
+                          HasSubstr("under-driven: add drives"), HasSubstr("no hinge at c, C")));
+}
+
+TEST(Structure, IsRefusedWhenOverDriven) {
+  const auto [kind, text] = refusal(R"([frame]
+A = [0, 0]
+D = [4, 0]
+[bodies]
+AB = { points = ["A", "B"], length = 1 }
+BC = { points = ["B", "C"], length = 3.5 }
+CD = { points = ["C", "D"], length = 3 }
+[drives]
+crank  = { turns = "AB", about = "A", speed = 1 }
+rocker = { turns = "CD", about = "D", speed = 1 }
+)");
+  EXPECT_EQ(kind, MechanismError::Kind::mobility);
+  EXPECT_THAT(text, AllOf(HasSubstr("mobility 1"), HasSubstr("but 2 drives"), HasSubstr("over-driven")));
+}
+
+TEST(Structure, IsRefusedWhenOneBodyIsTooMuchAndAnotherIsFree) {
+  const auto [kind, text] = refusal(R"([frame]
+A = [0, 0]
+D = [4, 0]
+G = [2, 0]
+[bodies]
+AB = { points = ["A", "B"], length = 1 }
+BC = { points = ["B", "C"], length = 3.5, marks = { M = [1, 1] } }
+CD = { points = ["C", "D"], length = 3 }
+GM = { points = ["G", "M"], length = 1 }
+CX = { points = ["C", "X"], length = 1 }
+[drives]
+crank = { turns = "AB", about = "A", speed = 1 }
+)");
+  EXPECT_EQ(kind, MechanismError::Kind::mobility);
+  EXPECT_THAT(text, AllOf(HasSubstr("test.toml:10:1: body 'GM' is over-constrained"), HasSubstr("'G' and 'M' already"),
+                          HasSubstr("test.toml:11:1: body 'CX' can move freely (mobility 1 after the drives)")));
+}
+
+// The ternary link BCD on three leads, the crank OA among them (method of 003_69ea068b7b221c3d.txt).
+TEST(Structure, NamesTheBodiesOfAClassThreeGroup) {
+  const auto [kind, text] = refusal(R"([frame]
+O = [0, 0]
+P = [0, 1.2]
+E = [1.46, 0.824]
+[bodies]
+OA  = { points = ["O", "A"], length = 0.3 }
+AB  = { points = ["A", "B"], length = 1.07 }
+BCD = { points = ["B", "D"], length = 0.665, marks = { C = [0.825, -0.581] } }
+DE  = { points = ["D", "E"], length = 0.757 }
+PC  = { points = ["P", "C"], length = 1.945 }
+[drives]
+crank = { turns = "OA", about = "O", speed = 1 }
+)");
+  EXPECT_EQ(kind, MechanismError::Kind::group_class);
+  EXPECT_THAT(text, HasSubstr("bodies 'AB', 'BCD', 'DE', 'PC' form a group of class III or higher; this version handles cranks and dyads"));
+}
+
+TEST(Structure, ExplainsADriveWhosePivotIsNotKnown) {
+  const auto [kind, text] = refusal(R"([frame]
+A = [0, 0]
+D = [4, 0]
+[bodies]
+AB = { points = ["A", "B"], length = 1 }
+BC = { points = ["B", "C"], length = 3.5 }
+CD = { points = ["C", "D"], length = 3 }
+[drives]
+push = { turns = "BC", about = "B", speed = 1 }
+)");
+  EXPECT_EQ(kind, MechanismError::Kind::group_class);
+  EXPECT_THAT(text, HasSubstr("drive 'push' turns 'BC' about 'B', whose motion depends on the driven body itself"));
+}
+
+}  // namespace
+}  // namespace oblique

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <oblique/text/document.h>
+
+namespace oblique {
+namespace {
+
+/// A folder of its own for each test, empty at the start and gone at the end.
+class File : public testing::Test {
+ protected:
+  File() {
+    std::string name = testing::TempDir() + "oblique-file-XXXXXX";
+    folder_ = mkdtemp(name.data());
+  }
+  ~File() override { std::filesystem::remove_all(folder_); }
+
+  std::size_t files() const {
+    const std::filesystem::directory_iterator all(folder_);
+    return static_cast<std::size_t>(std::distance(begin(all), end(all)));
+  }
+
+  std::filesystem::path folder_;
+};
+
+TEST_F(File, IsReadBackAsWritten) {
+  const std::string text("line\nφ\0\r\n", 10);
+  write_file(folder_ / "a.csv", text);
+  EXPECT_EQ(read_file(folder_ / "a.csv"), text);
+  write_file(folder_ / "a.csv", "");
+  EXPECT_EQ(read_file(folder_ / "a.csv"), "");
+  EXPECT_EQ(files(), 1U);
+}
+
+TEST_F(File, KeepsItsPermissions) {
+  write_file(folder_ / "a.csv", "old");
+  std::filesystem::permissions(folder_ / "a.csv", std::filesystem::perms(0600));
+  write_file(folder_ / "a.csv", "new");
+  EXPECT_EQ(std::filesystem::status(folder_ / "a.csv").permissions(), std::filesystem::perms(0600));
+}
+
+TEST_F(File, BehindALinkIsReplacedAndTheLinkKept) {
+  write_file(folder_ / "a.csv", "old");
+  std::filesystem::create_symlink("a.csv", folder_ / "link");
+  write_file(folder_ / "link", "new");
+  EXPECT_TRUE(std::filesystem::is_symlink(folder_ / "link"));
+  EXPECT_EQ(read_file(folder_ / "a.csv"), "new");
+}
+
+// A device must be written to and never replaced by a file, which root otherwise could.
+TEST_F(File, ThatIsADeviceIsWrittenToAndNotReplaced) {
+  std::filesystem::create_symlink("/dev/null", folder_ / "sink");
+  write_file(folder_ / "sink", "text");
+  EXPECT_TRUE(std::filesystem::is_character_file(folder_ / "sink"));
+  std::filesystem::create_symlink("/dev/full", folder_ / "full");
+  EXPECT_THAT([&] { write_file(folder_ / "full", "text"); },
+              testing::ThrowsMessage<ReadError>((folder_ / "full").string() +
+                                                ": cannot write the file: No space left on device\n  remedy: make room on "
+                                                "the disk"));
+}
+
+TEST_F(File, IsWrittenWholeOrNotAtAll) {
+  write_file(folder_ / "a.csv", "old");
+  // A limit on the size of files makes the write fail half-way, for root too.
+  const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
+  rlimit old_limit{};
+  getrlimit(RLIMIT_FSIZE, &old_limit);
+  rlimit limit = old_limit;
+  limit.rlim_cur = 4096;
+  setrlimit(RLIMIT_FSIZE, &limit);
+  std::string message = "no error";
+  try {
+    write_file(folder_ / "a.csv", std::string(100'000, 'x'));
+  } catch (const ReadError& error) {
+    message = error.what();
+  }
+  setrlimit(RLIMIT_FSIZE, &old_limit);
+  std::signal(SIGXFSZ, old_handler);
+  EXPECT_EQ(message, (folder_ / "a.csv").string() +
+                         ": cannot write the file: File too large\n  remedy: name a file in a folder that exists and that "
+                         "you may write to");
+  EXPECT_EQ(read_file(folder_ / "a.csv"), "old");
+  EXPECT_EQ(files(), 1U) << "no litter";
+}
+
+TEST_F(File, InAMissingFolderCannotBeWritten) {
+  EXPECT_THAT([&] { write_file(folder_ / "no" / "a.csv", "text"); },
+              testing::ThrowsMessage<ReadError>((folder_ / "no" / "a.csv").string() +
+                                                ": cannot write the file: No such file or directory\n  remedy: name a file "
+                                                "in a folder that exists and that you may write to"));
+}
+
+TEST_F(File, ThatIsAFolderIsNoFile) {
+  EXPECT_THAT([&] { write_file(folder_, "text"); },
+              testing::ThrowsMessage<ReadError>(folder_.string() +
+                                                ": cannot write the file: Is a directory\n  remedy: name a file in it"));
+  EXPECT_THAT([&] { read_file(folder_); },
+              testing::ThrowsMessage<ReadError>(folder_.string() +
+                                                ": this is a directory, not a file\n  remedy: name a file in it"));
+  EXPECT_TRUE(std::filesystem::is_directory(folder_));
+}
+
+TEST_F(File, ThatIsMissingCannotBeRead) {
+  EXPECT_THAT([&] { read_document(folder_ / "no.toml"); },
+              testing::ThrowsMessage<ReadError>((folder_ / "no.toml").string() +
+                                                ": cannot open the file: No such file or directory\n  remedy: check the "
+                                                "spelling and the folder you stand in"));
+}
+
+TEST_F(File, ThatMayNotBeReadSaysSo) {
+  if (geteuid() == 0) GTEST_SKIP() << "root may read everything";
+  write_file(folder_ / "a.toml", "a = 1");
+  std::filesystem::permissions(folder_ / "a.toml", std::filesystem::perms::none);
+  EXPECT_THAT([&] { read_document(folder_ / "a.toml"); },
+              testing::ThrowsMessage<ReadError>((folder_ / "a.toml").string() +
+                                                ": cannot open the file: Permission denied\n  remedy: check its permissions"));
+}
+
+TEST_F(File, IsADocumentWithItsPathAsName) {
+  write_file(folder_ / "a.toml", "a = 1\n");
+  const Document document = read_document(folder_ / "a.toml");
+  EXPECT_EQ(document.file, (folder_ / "a.toml").string());
+  EXPECT_EQ(document.root.find("a")->number, 1);
+}
+
+}  // namespace
+}  // namespace oblique
