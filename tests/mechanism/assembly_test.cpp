@@ -15,16 +15,23 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// A 3-4-5 triangle standing on A and D, with C at (1.8, ±2.4), and a mark M of AC one to the left of its middle.
+/// A 3-4-5 triangle standing on A and D, with C at (1.8, ±2.4), and a mark M of AC one to the left of its
+/// middle.
 std::string truss(const std::string& sketch, double frame = 5) {
-  return "format = \"oblique-mechanism/1\"\n[units]\nlength = \"mm\"\n[frame]\nA = [0, 0]\nD = [" + std::to_string(frame) +
+  return "format = \"oblique-mechanism/1\"\n[units]\nlength = \"mm\"\n[frame]\nA = [0, 0]\nD = [" +
+         std::to_string(frame) +
          ", 0]\n[bodies]\nAC = { points = [\"A\", \"C\"], length = 3, marks = { M = [1.5, 1] } }\n"
-         "CD = { points = [\"C\", \"D\"], length = 4 }\n[sketch]\n" + sketch;
+         "CD = { points = [\"C\", \"D\"], length = 4 }\n[sketch]\n" +
+         sketch;
 }
 
-Structure structure_of(const std::string& text) { return decompose(parse_mechanism(text, "truss.toml")); }
+Structure structure_of(const std::string& text) {
+  return decompose(parse_mechanism(text, "truss.toml"));
+}
 
-int side(const Structure& structure) { return std::get<DyadGroup>(structure.groups.at(0)).side; }
+int side(const Structure& structure) {
+  return std::get<DyadGroup>(structure.groups.at(0)).side;
+}
 
 std::pair<MechanismError::Kind, std::string> refusal(const std::string& text) {
   try {
@@ -51,8 +58,10 @@ TEST(AssemblyMode, WeighsAllSketchedPointsOfTheGroup) {
 TEST(AssemblyMode, WithoutASketchIsAnErrorThatListsBoth) {
   const auto [kind, text] = refusal(truss("A = [0, 0]"));
   EXPECT_EQ(kind, MechanismError::Kind::sketch);
-  EXPECT_THAT(text, AllOf(HasSubstr("truss.toml:8:1: dyad 'AC-CD' has two assembly modes and no point in [sketch]"),
-                          HasSubstr("C = [1.8, 2.4]   # left of A → D"), HasSubstr("C = [1.8, -2.4]   # right of A → D")));
+  EXPECT_THAT(
+      text,
+      AllOf(HasSubstr("truss.toml:8:1: dyad 'AC-CD' has two assembly modes and no point in [sketch]"),
+            HasSubstr("C = [1.8, 2.4]   # left of A → D"), HasSubstr("C = [1.8, -2.4]   # right of A → D")));
 }
 
 TEST(AssemblyMode, IsNotGuessedFromAnUndecidedSketch) {
@@ -70,9 +79,12 @@ TEST(AssemblyMode, IsNotChosenAtADeadCentre) {
 TEST(AssemblyMode, OfLinksThatDoNotReachIsAnAssemblyError) {
   const auto [kind, text] = refusal(truss("C = [3, 1]", 7.5));
   EXPECT_EQ(kind, MechanismError::Kind::assembly);
-  EXPECT_THAT(text, AllOf(HasSubstr("dyad 'AC-CD' cannot be assembled at the start: its pivots 'A' and 'D' are 7.5 mm apart"),
-                          HasSubstr("'AC' (A to C: 3 mm)"), HasSubstr("'CD' (D to C: 4 mm)"),
-                          HasSubstr("expected a distance of the pivots from 1 to 7 mm")));
+  EXPECT_THAT(
+      text,
+      AllOf(
+          HasSubstr("dyad 'AC-CD' cannot be assembled at the start: its pivots 'A' and 'D' are 7.5 mm apart"),
+          HasSubstr("'AC' (A to C: 3 mm)"), HasSubstr("'CD' (D to C: 4 mm)"),
+          HasSubstr("expected a distance of the pivots from 1 to 7 mm")));
   EXPECT_EQ(refusal(truss("C = [3, 1]", 0.5)).first, MechanismError::Kind::assembly);
 }
 
@@ -94,7 +106,8 @@ FD = { points = ["F", "D"], length = 4 }
 }
 
 TEST(AssemblyModes, AreOneForACrankAndTwoForADyad) {
-  const Mechanism four_bar = read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/four-bar.toml");
+  const Mechanism four_bar =
+      read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/four-bar.toml");
   const Structure structure = decompose(four_bar);
   const auto groups = assembly_modes(four_bar, structure, drive_angles(four_bar, 0));
   ASSERT_EQ(groups.size(), 2U);

@@ -88,10 +88,11 @@ TEST(MechanismReader, ConvertsQuantitiesToTheUnitOfTheFile) {
 
 TEST(MechanismReader, PutsTheThirdPointOfATriangleOnItsSide) {
   for (const bool left : {true, false}) {
-    const Mechanism mechanism = parse_mechanism(
-        with(R"(CD = { points = ["C", "D"], length = 3 })",
-             std::string(R"(CD = { points = ["C", "D", "E"], sides = [3, 4, 5], turn = ")") + (left ? "left" : "right") + "\" }"),
-        "triangle.toml");
+    const Mechanism mechanism =
+        parse_mechanism(with(R"(CD = { points = ["C", "D"], length = 3 })",
+                             std::string(R"(CD = { points = ["C", "D", "E"], sides = [3, 4, 5], turn = ")") +
+                                 (left ? "left" : "right") + "\" }"),
+                        "triangle.toml");
     const Body& body = mechanism.bodies[2];
     // |CD| = 3, |DE| = 4, |EC| = 5: a right angle at D
     EXPECT_NEAR(body.points[2].local.x(), 3, 1e-15);
@@ -101,10 +102,10 @@ TEST(MechanismReader, PutsTheThirdPointOfATriangleOnItsSide) {
 }
 
 TEST(MechanismReader, AllowsAFlatTriangle) {
-  const Mechanism mechanism = parse_mechanism(
-      with(R"(CD = { points = ["C", "D"], length = 3 })",
-           R"(CD = { points = ["C", "D", "E"], sides = [0.1, 0.2, 0.3], turn = "left" })"),
-      "flat.toml");
+  const Mechanism mechanism =
+      parse_mechanism(with(R"(CD = { points = ["C", "D"], length = 3 })",
+                           R"(CD = { points = ["C", "D", "E"], sides = [0.1, 0.2, 0.3], turn = "left" })"),
+                      "flat.toml");
   EXPECT_NEAR(mechanism.bodies[2].points[2].local.x(), 0.3, 1e-15);
   // 0.1 + 0.2 exceeds 0.3 by 5e-17, which is a height of √(2·0.3·5e-17…) at most
   EXPECT_NEAR(mechanism.bodies[2].points[2].local.y(), 0, 1e-8);
@@ -116,17 +117,21 @@ TEST(MechanismReader, ReadsAStructureWithoutDrives) {
 A = [0, 0]
 [bodies]
 AB = { points = ["A", "B"], length = 1 }
-)", "pendulum.toml").drives.empty());
+)",
+                              "pendulum.toml")
+                  .drives.empty());
 }
 
 struct BadFile {
   std::string name;
-  std::string line;         ///< of kFourBar
+  std::string line;  ///< of kFourBar
   std::string replacement;
   std::vector<std::string> says;
 };
 
-void PrintTo(const BadFile& bad, std::ostream* out) { *out << bad.name; }
+void PrintTo(const BadFile& bad, std::ostream* out) {
+  *out << bad.name;
+}
 
 class MechanismReaderMessage : public ::testing::TestWithParam<BadFile> {};
 
@@ -142,63 +147,162 @@ const std::string kCrank = R"(crank = { turns = "AB", about = "A", speed = "1 ra
 INSTANTIATE_TEST_SUITE_P(
     Files, MechanismReaderMessage,
     ::testing::Values(
-        BadFile{"Format", "oblique-mechanism/1", "oblique-diagram/1", {"bad.toml:1:10:", "the format is 'oblique-diagram/1'"}},
-        BadFile{"UnknownTable", "[sketch]", "[sketsh]", {"bad.toml:13:", "unknown key 'sketsh'", "did you mean 'sketch'?"}},
-        BadFile{"UnknownKey", kCD, R"(CD = { points = ["C", "D"], lenght = 3 })",
-                {"bad.toml:10:29:", "unknown key 'lenght' in body 'CD'", "did you mean 'length'?", "has no 'length'"}},
-        BadFile{"LengthUnit", R"(length = "m")", R"(length = "cmm")", {"bad.toml:3:", "'cmm' is no unit of length", "did you mean 'cm'?"}},
+        BadFile{"Format",
+                "oblique-mechanism/1",
+                "oblique-diagram/1",
+                {"bad.toml:1:10:", "the format is 'oblique-diagram/1'"}},
+        BadFile{"UnknownTable",
+                "[sketch]",
+                "[sketsh]",
+                {"bad.toml:13:", "unknown key 'sketsh'", "did you mean 'sketch'?"}},
+        BadFile{"UnknownKey",
+                kCD,
+                R"(CD = { points = ["C", "D"], lenght = 3 })",
+                {"bad.toml:10:29:", "unknown key 'lenght' in body 'CD'", "did you mean 'length'?",
+                 "has no 'length'"}},
+        BadFile{"LengthUnit",
+                R"(length = "m")",
+                R"(length = "cmm")",
+                {"bad.toml:3:", "'cmm' is no unit of length", "did you mean 'cm'?"}},
         BadFile{"UnitOfTime", R"(length = "m")", R"(length = "s")", {"'s' is no unit of length"}},
-        BadFile{"ZeroLength", kCD, R"(CD = { points = ["C", "D"], length = 0 })",
+        BadFile{"ZeroLength",
+                kCD,
+                R"(CD = { points = ["C", "D"], length = 0 })",
                 {"bad.toml:10:38:", "'length' of body 'CD' is 0; expected a length above 0"}},
-        BadFile{"NegativeLength", kCD, R"(CD = { points = ["C", "D"], length = -3 })", {"'length' of body 'CD' is -3"}},
-        BadFile{"InfiniteLength", kCD, R"(CD = { points = ["C", "D"], length = "inf" })", {"bad.toml:10:", "'length' of body 'CD' is inf"}},
-        BadFile{"WrongUnit", kCD, R"(CD = { points = ["C", "D"], length = "3 rad" })", {"bad.toml:10:", "'rad' is the wrong unit here"}},
+        BadFile{"NegativeLength",
+                kCD,
+                R"(CD = { points = ["C", "D"], length = -3 })",
+                {"'length' of body 'CD' is -3"}},
+        BadFile{"InfiniteLength",
+                kCD,
+                R"(CD = { points = ["C", "D"], length = "inf" })",
+                {"bad.toml:10:", "'length' of body 'CD' is inf"}},
+        BadFile{"WrongUnit",
+                kCD,
+                R"(CD = { points = ["C", "D"], length = "3 rad" })",
+                {"bad.toml:10:", "'rad' is the wrong unit here"}},
         BadFile{"NoTable", kCD, "CD = 3", {"bad.toml:10:", "body 'CD' is a number", "a table"}},
         BadFile{"NoPoints", kCD, "CD = { length = 3 }", {"body 'CD' has no 'points'"}},
-        BadFile{"OnePoint", kCD, R"(CD = { points = ["D"], length = 3 })", {"body 'CD' has 1 points; expected two or three"}},
-        BadFile{"FourPoints", kCD, R"(CD = { points = ["C", "D", "E", "F"], length = 3 })", {"has 4 points", "marks"}},
-        BadFile{"PointTwice", kCD, R"(CD = { points = ["C", "C"], length = 3 })", {"body 'CD' names point 'C' twice"}},
-        BadFile{"MarkTwice", kCD, R"(CD = { points = ["C", "D"], length = 3, marks = { D = [1, 1] } })", {"names point 'D' twice"}},
-        BadFile{"MarkOnPoint", kCD, R"(CD = { points = ["C", "D"], length = 3, marks = { E = [3, 0] } })",
+        BadFile{"OnePoint",
+                kCD,
+                R"(CD = { points = ["D"], length = 3 })",
+                {"body 'CD' has 1 points; expected two or three"}},
+        BadFile{"FourPoints",
+                kCD,
+                R"(CD = { points = ["C", "D", "E", "F"], length = 3 })",
+                {"has 4 points", "marks"}},
+        BadFile{"PointTwice",
+                kCD,
+                R"(CD = { points = ["C", "C"], length = 3 })",
+                {"body 'CD' names point 'C' twice"}},
+        BadFile{"MarkTwice",
+                kCD,
+                R"(CD = { points = ["C", "D"], length = 3, marks = { D = [1, 1] } })",
+                {"names point 'D' twice"}},
+        BadFile{"MarkOnPoint",
+                kCD,
+                R"(CD = { points = ["C", "D"], length = 3, marks = { E = [3, 0] } })",
                 {"points 'D' and 'E' of body 'CD' lie in the same place"}},
-        BadFile{"MarkNotAPair", kCD, R"(CD = { points = ["C", "D"], length = 3, marks = { E = [3] } })",
+        BadFile{"MarkNotAPair",
+                kCD,
+                R"(CD = { points = ["C", "D"], length = 3, marks = { E = [3] } })",
                 {"mark 'E' of body 'CD' is not a pair of numbers"}},
-        BadFile{"PointName", kCD, R"(CD = { points = ["C", "4D"], length = 3 })", {"'4D' is no name for a point"}},
-        BadFile{"BodyName", kCD, R"("C-D" = { points = ["C", "D"], length = 3 })", {"'C-D' is no name for a body"}},
-        BadFile{"SidesOfABar", kCD, R"(CD = { points = ["C", "D"], sides = [3, 4, 5] })", {"'sides' and 'turn' are for three"}},
-        BadFile{"LengthOfATriangle", kCD, R"(CD = { points = ["C", "D", "E"], length = 3 })",
-                {"has three points and a 'length'", "has three points and no 'sides'", "has three points and no 'turn'"}},
-        BadFile{"TriangleInequality", kCD, R"(CD = { points = ["C", "D", "E"], sides = [1, 2, 4], turn = "left" })",
+        BadFile{"PointName",
+                kCD,
+                R"(CD = { points = ["C", "4D"], length = 3 })",
+                {"'4D' is no name for a point"}},
+        BadFile{"BodyName",
+                kCD,
+                R"("C-D" = { points = ["C", "D"], length = 3 })",
+                {"'C-D' is no name for a body"}},
+        BadFile{"SidesOfABar",
+                kCD,
+                R"(CD = { points = ["C", "D"], sides = [3, 4, 5] })",
+                {"'sides' and 'turn' are for three"}},
+        BadFile{"LengthOfATriangle",
+                kCD,
+                R"(CD = { points = ["C", "D", "E"], length = 3 })",
+                {"has three points and a 'length'", "has three points and no 'sides'",
+                 "has three points and no 'turn'"}},
+        BadFile{"TriangleInequality",
+                kCD,
+                R"(CD = { points = ["C", "D", "E"], sides = [1, 2, 4], turn = "left" })",
                 {"bad.toml:10:", "sides 1, 2 and 4 of body 'CD' make no triangle", "|C D|, |D E|, |E C|"}},
-        BadFile{"TwoSides", kCD, R"(CD = { points = ["C", "D", "E"], sides = [1, 2], turn = "left" })", {"are not three lengths"}},
-        BadFile{"NegativeSide", kCD, R"(CD = { points = ["C", "D", "E"], sides = [3, -4, 5], turn = "left" })",
+        BadFile{"TwoSides",
+                kCD,
+                R"(CD = { points = ["C", "D", "E"], sides = [1, 2], turn = "left" })",
+                {"are not three lengths"}},
+        BadFile{"NegativeSide",
+                kCD,
+                R"(CD = { points = ["C", "D", "E"], sides = [3, -4, 5], turn = "left" })",
                 {"side 2 of body 'CD' is -4; expected a length above 0"}},
-        BadFile{"Turn", kCD, R"(CD = { points = ["C", "D", "E"], sides = [3, 4, 5], turn = "up" })",
+        BadFile{"Turn",
+                kCD,
+                R"(CD = { points = ["C", "D", "E"], sides = [3, 4, 5], turn = "up" })",
                 {R"('turn' of body 'CD' is "up"; expected "left" or "right")"}},
-        BadFile{"TwoFramePoints", kCD, R"(CD = { points = ["A", "D"], length = 3 })",
+        BadFile{"TwoFramePoints",
+                kCD,
+                R"(CD = { points = ["A", "D"], length = 3 })",
                 {"body 'CD' is held by two points of the frame, 'A' and 'D', and cannot move"}},
-        BadFile{"SharedPoints", kCD, R"(CD = { points = ["C", "B"], length = 3 })",
+        BadFile{"SharedPoints",
+                kCD,
+                R"(CD = { points = ["C", "B"], length = 3 })",
                 {"bodies 'BC' and 'CD' share the points 'C' and 'B'"}},
-        BadFile{"BodyAndPoint", kCD, R"(C = { points = ["C", "D"], length = 3 })", {"'C' is the name of a body and of a point"}},
-        BadFile{"DriveAndPoint", kCrank, R"(B = { turns = "AB", about = "A", speed = 1 })", {"'B' is the name of a drive and of a point"}},
-        BadFile{"DriveCalledT", kCrank, R"(t = { turns = "AB", about = "A", speed = 1 })", {"a drive cannot be called 't'"}},
-        BadFile{"FramePoint", "D = [4, 0]", "D = 4", {"bad.toml:6:", "frame point 'D' is not a pair of numbers; expected [x, y]"}},
+        BadFile{"BodyAndPoint",
+                kCD,
+                R"(C = { points = ["C", "D"], length = 3 })",
+                {"'C' is the name of a body and of a point"}},
+        BadFile{"DriveAndPoint",
+                kCrank,
+                R"(B = { turns = "AB", about = "A", speed = 1 })",
+                {"'B' is the name of a drive and of a point"}},
+        BadFile{"DriveCalledT",
+                kCrank,
+                R"(t = { turns = "AB", about = "A", speed = 1 })",
+                {"a drive cannot be called 't'"}},
+        BadFile{"FramePoint",
+                "D = [4, 0]",
+                "D = 4",
+                {"bad.toml:6:", "frame point 'D' is not a pair of numbers; expected [x, y]"}},
         BadFile{"InfinitePoint", "D = [4, 0]", R"(D = ["inf", 0])", {"frame point 'D' is infinite"}},
-        BadFile{"DrivenBody", kCrank, R"(crank = { turns = "ABB", about = "A", speed = 1 })",
+        BadFile{"DrivenBody",
+                kCrank,
+                R"(crank = { turns = "ABB", about = "A", speed = 1 })",
                 {"bad.toml:12:", "drive 'crank' turns 'ABB', which is no body", "did you mean 'AB'?"}},
-        BadFile{"DrivePoint", kCrank, R"(crank = { turns = "AB", about = "D", speed = 1 })",
+        BadFile{"DrivePoint",
+                kCrank,
+                R"(crank = { turns = "AB", about = "D", speed = 1 })",
                 {"turns about 'D', which is no point of body 'AB'", "known: A, B"}},
-        BadFile{"SpeedZero", kCrank, R"(crank = { turns = "AB", about = "A", speed = 0 })", {"drive 'crank' has speed zero and never turns"}},
-        BadFile{"SpeedUnit", kCrank, R"(crank = { turns = "AB", about = "A", speed = "3 Hz" })", {"'Hz' is the wrong unit here"}},
-        BadFile{"NoSpeed", kCrank, R"(crank = { turns = "AB", about = "A" })", {"drive 'crank' has no 'speed'"}},
-        BadFile{"InfiniteStart", kCrank, R"(crank = { turns = "AB", about = "A", speed = 1, start = "inf" })", {"starts at inf"}},
-        BadFile{"DrivenTwice", kCrank, kCrank + "\n" + R"(other = { turns = "AB", about = "A", speed = 1 })",
+        BadFile{"SpeedZero",
+                kCrank,
+                R"(crank = { turns = "AB", about = "A", speed = 0 })",
+                {"drive 'crank' has speed zero and never turns"}},
+        BadFile{"SpeedUnit",
+                kCrank,
+                R"(crank = { turns = "AB", about = "A", speed = "3 Hz" })",
+                {"'Hz' is the wrong unit here"}},
+        BadFile{
+            "NoSpeed", kCrank, R"(crank = { turns = "AB", about = "A" })", {"drive 'crank' has no 'speed'"}},
+        BadFile{"InfiniteStart",
+                kCrank,
+                R"(crank = { turns = "AB", about = "A", speed = 1, start = "inf" })",
+                {"starts at inf"}},
+        BadFile{"DrivenTwice",
+                kCrank,
+                kCrank + "\n" + R"(other = { turns = "AB", about = "A", speed = 1 })",
                 {"bad.toml:13:", "body 'AB' is turned by drive 'crank' already"}},
-        BadFile{"Slides", "[sketch]", "[slides]\ns = { point = \"D\", along = [\"B\", \"C\"] }\n[sketch]",
+        BadFile{"Slides",
+                "[sketch]",
+                "[slides]\ns = { point = \"D\", along = [\"B\", \"C\"] }\n[sketch]",
                 {"slides are not handled by this version"}},
-        BadFile{"DriveSlides", kCrank, R"(crank = { slides = "s", speed = "20 mm/s" })",
+        BadFile{"DriveSlides",
+                kCrank,
+                R"(crank = { slides = "s", speed = "20 mm/s" })",
                 {"drive 'crank' moves a slide: slides are not handled by this version"}},
-        BadFile{"SketchedPoint", "C = [3.5, 2.9]", "c1 = [3.5, 2.9]\nBB = [0, 0]", {"bad.toml:14:", "[sketch] places 'c1', which is no point"}}),
+        BadFile{"SketchedPoint",
+                "C = [3.5, 2.9]",
+                "c1 = [3.5, 2.9]\nBB = [0, 0]",
+                {"bad.toml:14:", "[sketch] places 'c1', which is no point"}}),
     [](const auto& test) { return test.param.name; });
 
 TEST(MechanismReader, ReportsAllFindingsInOneGo) {

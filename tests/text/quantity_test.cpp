@@ -81,10 +81,11 @@ TEST(Quantity, WithoutAUnitIsInTheWantedOne) {
 }
 
 TEST(Quantity, SaysWhichUnitWasMeant) {
-  EXPECT_EQ(message_of("60 rmp", "rad/s"), "4: there is no unit 'rmp'; expected a quantity in 'rad/s'; known: rad/s, rpm");
+  EXPECT_EQ(message_of("60 rmp", "rad/s"), "4: there is no unit 'rmp'; expected a quantity in 'rad/s'; did you mean 'rpm'?");
   EXPECT_EQ(message_of("60 rpms", "rad/s"), "4: there is no unit 'rpms'; expected a quantity in 'rad/s'; did you mean 'rpm'?");
   EXPECT_EQ(message_of("30 dge", "rad"),
-            "4: there is no unit 'dge'; expected a quantity in 'rad'; known: rad, deg, °, rev");
+            "4: there is no unit 'dge'; expected a quantity in 'rad'; did you mean 'deg'?");
+  EXPECT_EQ(message_of("30 grade", "rad"), "4: there is no unit 'grade'; expected a quantity in 'rad'; known: rad, deg, °, rev");
   EXPECT_EQ(message_of("30 rads", "rad"), "4: there is no unit 'rads'; expected a quantity in 'rad'; did you mean 'rad'?");
 }
 

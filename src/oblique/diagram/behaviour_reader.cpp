@@ -123,7 +123,7 @@ class BehaviourReader {
              "an output or another name");
       return false;
     }
-    return check_name(target, "equation's unknown", place(entry.position), diagnostics_);
+    return check_name(target, "an unknown", place(entry.position), diagnostics_);
   }
 
   void check_targets(const std::vector<Written>& written, const std::string& which) {

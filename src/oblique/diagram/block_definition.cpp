@@ -68,7 +68,7 @@ class BlockReader {
       diagnostics_.add(
           {place(entry.position),
            fmt::format("'{}' cannot be the name of {}: a block in a diagram has that key for itself",
-                       entry.key, what == "input" ? "an input" : "a parameter"),
+                       entry.key, what),
            fmt::format("another name than {}", fmt::join(taken, ", ")),
            {}});
     }
@@ -85,7 +85,7 @@ class BlockReader {
   }
 
   void read_input(const Entry& entry) {
-    check_port(entry, "input", {"type", "label"});
+    check_port(entry, "an input", {"type", "label"});
     TableReader reader = entry_reader(entry, "input");
     InputPort input;
     input.name = entry.key;
@@ -101,7 +101,7 @@ class BlockReader {
   }
 
   void read_output(const Entry& entry, bool composite) {
-    check_port(entry, "output", {});
+    check_port(entry, "an output", {});
     TableReader reader = entry_reader(entry, "output");
     OutputPort output;
     output.name = entry.key;
@@ -118,7 +118,7 @@ class BlockReader {
   }
 
   void read_parameter(const Entry& entry) {
-    check_port(entry, "parameter", {"type", "label", "in"});
+    check_port(entry, "a parameter", {"type", "label", "in"});
     TableReader reader = entry_reader(entry, "parameter");
     ParameterDefinition parameter;
     parameter.name = entry.key;

@@ -2,6 +2,7 @@
 #include <oblique/diagram/diagram.h>
 
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -14,6 +15,8 @@ namespace {
 
 /// The largest whole number that a run setting takes; a double holds it exactly.
 constexpr double kLargestWhole = 1e15;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 class DiagramReader {
  public:
@@ -33,7 +36,7 @@ class DiagramReader {
     }
     if (const Value* const table = reader_.table("outputs")) read_outputs(*table);
     if (const Value* const table = reader_.table("expect")) {
-      diagram_.expectations = read_expectations(diagram_.file, *table, diagram_.run.until, diagnostics_);
+      diagram_.expectations = read_expectations(diagram_.file, *table, last_time_, diagnostics_);
     }
     if (!diagram_.outputs.empty()) {
       std::vector<std::string> names;
@@ -61,8 +64,9 @@ class DiagramReader {
     RunSettings& run = diagram_.run;
     if (const auto until = reader.quantity("until", "s")) {
       if (*until > 0 && std::isfinite(*until)) {
-        run.until = *until;
+        run.until = last_time_ = *until;
       } else {
+        last_time_ = kInfinity;
         reader.report("until", fmt::format("'until' of [run] is {} s", *until), "a finite time above 0 [s]");
       }
     }
@@ -123,6 +127,7 @@ class DiagramReader {
   Diagnostics diagnostics_;
   TableReader reader_;
   Diagram& diagram_;
+  double last_time_ = RunSettings{}.until;  ///< of expectations; infinite where `until` is wrong
 };
 
 }  // namespace

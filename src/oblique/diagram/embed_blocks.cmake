@@ -2,7 +2,7 @@
 # Writes the block files BLOCKS as string literals into the C++ file OUTPUT (see shipped_blocks.h).
 set(entries "")
 foreach(file IN LISTS BLOCKS)
-  get_filename_component(name "${file}" NAME_WE)
+  get_filename_component(name "${file}" NAME_WLE)
   file(READ "${file}" text)
   string(APPEND entries "    {\"${name}\", R\"toml-text(${text})toml-text\"},\n")
 endforeach()

@@ -18,8 +18,8 @@ using wiring::Source;
 using wiring::WiredBlock;
 
 /// Guards against composites of composites whose size explodes.
-constexpr std::size_t kMostBlocks = 1'000'000;
-constexpr std::size_t kMostWires = 10'000'000;
+constexpr std::size_t kMostBlocks = 300'000;
+constexpr std::size_t kMostWires = 3'000'000;
 
 /// One block of the tree of composites, laid out with its own parameters.
 struct Node {
@@ -173,11 +173,11 @@ class Layout {
         if (std::isfinite(weight)) {
           add_term(inputs[k], weight, term.source, parent);
         } else {
-          diagnostics_.add(
-              {{nodes_[parent].inside->file, term.position},
-               fmt::format("input '{}.{}': a weight is {}", node.path, definition.inputs[k].name, weight),
-               "a finite number",
-               origin(nodes_[parent])});
+          diagnostics_.add({{nodes_[parent].inside->file, term.position},
+                            fmt::format("input '{}.{}': a weight is {}", node.path, definition.inputs[k].name,
+                                        wiring::describe_number(weight)),
+                            "a finite number",
+                            origin(nodes_[parent])});
         }
       }
     }

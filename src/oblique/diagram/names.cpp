@@ -56,14 +56,14 @@ void collect_names(const Expression& expression, std::vector<const Expression*>&
 bool check_name(std::string_view name, std::string_view what, const Place& place, Diagnostics& diagnostics) {
   if (!is_identifier(name)) {
     diagnostics.add({place,
-                     fmt::format("'{}' cannot be the name of a {}", name, what),
+                     fmt::format("'{}' cannot be the name of {}", name, what),
                      "letters, digits and '_', with a letter or '_' first",
                      {}});
     return false;
   }
   if (std::find(kReserved.begin(), kReserved.end(), name) != kReserved.end()) {
     diagnostics.add({place,
-                     fmt::format("'{}' cannot be the name of a {}: it is reserved", name, what),
+                     fmt::format("'{}' cannot be the name of {}: it is reserved", name, what),
                      fmt::format("another name than {}", fmt::join(kReserved, ", ")),
                      {}});
     return false;
@@ -76,7 +76,7 @@ std::vector<BlockInstance> read_blocks(const std::string& file, const Value& tab
   std::vector<BlockInstance> blocks;
   blocks.reserve(table.entries.size());
   for (const Entry& entry : table.entries) {
-    check_name(entry.key, "block", {file, entry.position}, diagnostics);
+    check_name(entry.key, "a block", {file, entry.position}, diagnostics);
     blocks.push_back(read_block(file, entry, diagnostics));
   }
   if (blocks.empty())

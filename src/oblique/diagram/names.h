@@ -10,7 +10,7 @@
 namespace oblique {
 
 /// Whether a file may call a block, port or parameter so: an identifier that the equations do not keep for
-/// themselves. Reports otherwise; `what` names the thing ("block", "input").
+/// themselves. Reports otherwise; `what` names the thing ("a block", "an input").
 bool check_name(std::string_view name, std::string_view what, const Place& place, Diagnostics& diagnostics);
 
 /// Reads a `[blocks]` table: every key a block, with its type, its label and its settings as they stand.

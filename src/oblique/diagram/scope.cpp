@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/diagram/scope.h>
 
+#include <cmath>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -59,6 +61,10 @@ std::string describe_block(const Scope& scope, const WiredBlock& block) {
   return fmt::format("block '{}' ({}){}", block.instance->name, block.instance->type, scope.belonging());
 }
 
+std::string describe_number(double number) {
+  return std::isnan(number) ? "not a number" : fmt::format("{}", number);
+}
+
 std::optional<Source> find_signal(const Scope& scope, std::string_view path, SourcePosition position,
                                   const std::string& subject, Diagnostics& diagnostics) {
   const auto report = [&](std::string what, std::string expected, std::string remedy) {
@@ -102,14 +108,20 @@ std::optional<Source> find_signal(const Scope& scope, std::string_view path, Sou
       return source;
     }
     const std::string_view part = take_part(rest);
-    const auto inner = block->inside != nullptr ? block->inside->index.find(part) : found;
-    if (block->inside == nullptr || inner == block->inside->index.end()) {
-      return report(fmt::format("'{}' ({}) has no output{} '{}'", block_path, block->instance->type,
-                                block->inside == nullptr ? "" : " and no inner block", part),
-                    {}, suggest(part, names_inside(*block)));
+    if (block->inside != nullptr) {
+      if (const auto inner = block->inside->index.find(part); inner != block->inside->index.end()) {
+        source.blocks.push_back(inner->second);
+        block = &block->inside->blocks[inner->second];
+        continue;
+      }
     }
-    source.blocks.push_back(inner->second);
-    block = &block->inside->blocks[inner->second];
+    if (block->definition->find_output(part)) {
+      return report(fmt::format("'{}.{}' is a signal, so there is no '{}'", block_path, part, path),
+                    fmt::format("'{}.{}'", block_path, part), {});
+    }
+    return report(fmt::format("'{}' ({}) has no output{} '{}'", block_path, block->instance->type,
+                              block->inside == nullptr ? "" : " and no inner block", part),
+                  {}, suggest(part, names_inside(*block)));
   }
 }
 

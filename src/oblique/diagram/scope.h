@@ -82,6 +82,9 @@ std::string describe_port(const Scope& scope, std::string_view kind, const Wired
                           std::string_view port);
 std::string describe_block(const Scope& scope, const WiredBlock& block);
 
+/// A number as messages give it: "not a number" has no sign there.
+std::string describe_number(double number);
+
 /// The signal that a path names ("c", "crank.cos", "C.direction.length"). Reports a path that names none.
 std::optional<Source> find_signal(const Scope& scope, std::string_view path, SourcePosition position,
                                   const std::string& subject, Diagnostics& diagnostics);

@@ -65,6 +65,13 @@ std::optional<Term> read_term(const Scope& scope, const Value& value, const std:
                      std::move(remedy)});
     return std::nullopt;
   };
+  if (value.kind == Value::Kind::number) {
+    diagnostics.add({{scope.file, value.position},
+                     fmt::format("{} is given the number {}", subject, value.number),
+                     "the name of a signal",
+                     "a fixed value comes from a block that gives a constant"});
+    return std::nullopt;
+  }
   Expression expression;
   try {
     expression = parse_expression(value.text);
@@ -104,8 +111,8 @@ std::optional<Term> read_term(const Scope& scope, const Value& value, const std:
   }
   Term term{fold(std::move(expression), 1), std::move(*source), position_in(value, column)};
   if (!term.weight.expression && !std::isfinite(term.weight.number)) {
-    return report(1, fmt::format("the weight of '{}' is {}", name, term.weight.number), "a finite number",
-                  {});
+    return report(1, fmt::format("the weight of '{}' is {}", name, describe_number(term.weight.number)),
+                  "a finite number", {});
   }
   return term;
 }
@@ -161,10 +168,8 @@ std::optional<Constant> read_parameter(const Scope& scope, const Value& value,
 void check_range(const ParameterDefinition& parameter, double value, const std::string& subject,
                  const Place& place, const std::string& remedy, Diagnostics& diagnostics) {
   if (parameter.allows(value)) return;
-  diagnostics.add({place,
-                   std::isnan(value) ? fmt::format("{} has no value (not a number)", subject)
-                                     : fmt::format("{} is {}", subject, value),
-                   parameter.range(), remedy});
+  diagnostics.add(
+      {place, fmt::format("{} is {}", subject, describe_number(value)), parameter.range(), remedy});
 }
 
 }  // namespace oblique::wiring

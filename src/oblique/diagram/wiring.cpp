@@ -12,9 +12,9 @@ namespace {
 /// Composites may stand in composites this deep.
 constexpr std::size_t kDeepest = 100;
 
-/// The wires of a setting: one string or a list of them.
+/// The wires of a setting: a list of them, or one that stands alone.
 std::vector<const Value*> wires_of(const Value& value) {
-  if (value.kind == Value::Kind::string) return {&value};
+  if (value.kind != Value::Kind::array) return {&value};
   std::vector<const Value*> wires;
   for (const Value& element : value.elements) wires.push_back(&element);
   return wires;
@@ -164,14 +164,6 @@ void Resolver::connect(const Scope& scope, WiredBlock& block, std::size_t input,
   const InputPort& port = block.definition->inputs[input];
   WiredInput& wired = block.inputs[input];
   const std::string subject = describe_port(scope, "input", block, port.name);
-  if (entry.value.kind == Value::Kind::number) {
-    wired.connected = true;
-    diagnostics_->add({{scope.file, entry.value.position},
-                       fmt::format("{} is given the number {}", subject, entry.value.number),
-                       "the name of a signal",
-                       "a fixed value comes from a block that gives a constant"});
-    return;
-  }
   if (drivers[input] != nullptr) {
     diagnostics_->add(
         {{scope.file, entry.position},

@@ -20,7 +20,8 @@ struct Candidate {
   Configuration configuration;
 };
 
-std::array<Candidate, 2> candidates(const Mechanism& mechanism, const DyadGroup& dyad, const Configuration& before) {
+std::array<Candidate, 2> candidates(const Mechanism& mechanism, const DyadGroup& dyad,
+                                    const Configuration& before) {
   const auto assemble = [&](int side) {
     DyadGroup on_side = dyad;
     on_side.side = side;
@@ -40,7 +41,8 @@ class ModeChooser {
   ModeChooser(const Mechanism& mechanism, Structure& structure)
       : mechanism_(mechanism), structure_(structure), configuration_(frame_configuration(mechanism)) {}
 
-  /// A dyad without a mode leaves its points NaN; the groups that hang on it are passed over, all others are judged.
+  /// A dyad without a mode leaves its points NaN; the groups that hang on it are passed over, all others are
+  /// judged.
   void run() {
     const std::vector<double> angles = drive_angles(mechanism_, 0);
     for (Group& group : structure_.groups) {
@@ -71,7 +73,8 @@ class ModeChooser {
       }
       sketched = true;
       for (std::size_t i = 0; i < 2; ++i) {
-        far[i] = std::hypot(far[i], (both[i].configuration.points[mark.point].position - mark.position).norm());
+        far[i] =
+            std::hypot(far[i], (both[i].configuration.points[mark.point].position - mark.position).norm());
       }
     }
     if (!sketched || std::abs(far[0] - far[1]) <= kUndecidedWithin * (dyad.r1 + dyad.r2)) {
@@ -85,14 +88,18 @@ class ModeChooser {
 
   void report_open(const DyadGroup& dyad) {
     const std::string& unit = mechanism_.length_unit;
-    const double distance = (configuration_.points[dyad.q].position - configuration_.points[dyad.p].position).norm();
+    const double distance =
+        (configuration_.points[dyad.q].position - configuration_.points[dyad.p].position).norm();
     add(MechanismError::Kind::assembly, dyad,
-        fmt::format("dyad '{}' cannot be assembled at the start: its pivots '{}' and '{}' are {:.6g} {} apart, and '{}' "
+        fmt::format("dyad '{}' cannot be assembled at the start: its pivots '{}' and '{}' are {:.6g} {} "
+                    "apart, and '{}' "
                     "({} to {}: {:.6g} {}) and '{}' ({} to {}: {:.6g} {}) do not meet",
                     dyad.name, point_name(dyad.p), point_name(dyad.q), distance, unit,
                     mechanism_.bodies[dyad.body1].name, point_name(dyad.p), point_name(dyad.c), dyad.r1, unit,
-                    mechanism_.bodies[dyad.body2].name, point_name(dyad.q), point_name(dyad.c), dyad.r2, unit),
-        fmt::format("a distance of the pivots from {:.6g} to {:.6g} {}", std::abs(dyad.r1 - dyad.r2), dyad.r1 + dyad.r2, unit),
+                    mechanism_.bodies[dyad.body2].name, point_name(dyad.q), point_name(dyad.c), dyad.r2,
+                    unit),
+        fmt::format("a distance of the pivots from {:.6g} to {:.6g} {}", std::abs(dyad.r1 - dyad.r2),
+                    dyad.r1 + dyad.r2, unit),
         "change a length, or the start of the drive");
   }
 
@@ -100,8 +107,8 @@ class ModeChooser {
     const std::string& hinge = point_name(dyad.c);
     if (both[0].status == Status::dead_centre) {
       add(MechanismError::Kind::sketch, dyad,
-          fmt::format("dyad '{}' is at a dead centre at the start: its assembly modes coincide", dyad.name), {},
-          "start the drive at another angle and sketch that position");
+          fmt::format("dyad '{}' is at a dead centre at the start: its assembly modes coincide", dyad.name),
+          {}, "start the drive at another angle and sketch that position");
       return;
     }
     const auto line = [&](const Candidate& candidate) {
@@ -116,9 +123,11 @@ class ModeChooser {
         "put one of these lines into [sketch]" + line(both[0]) + line(both[1]));
   }
 
-  void add(MechanismError::Kind kind, const DyadGroup& dyad, std::string what, std::string expected, std::string remedy) {
+  void add(MechanismError::Kind kind, const DyadGroup& dyad, std::string what, std::string expected,
+           std::string remedy) {
     if (findings_.empty() || kind == MechanismError::Kind::assembly) kind_ = kind;
-    findings_.push_back({mechanism_.bodies[dyad.body1].place, std::move(what), std::move(expected), std::move(remedy)});
+    findings_.push_back(
+        {mechanism_.bodies[dyad.body1].place, std::move(what), std::move(expected), std::move(remedy)});
   }
 
   const std::string& point_name(std::size_t point) const { return mechanism_.points[point].name; }
@@ -131,17 +140,20 @@ class ModeChooser {
 };
 
 /// The points that a group places.
-std::vector<std::size_t> new_points(const Mechanism& mechanism, const Group& group, const Configuration& before) {
+std::vector<std::size_t> new_points(const Mechanism& mechanism, const Group& group,
+                                    const Configuration& before) {
   std::vector<std::size_t> points;
   for (const std::size_t body : group_bodies(group)) {
     for (const BodyPoint& p : mechanism.bodies[body].points) {
-      if (!is_placed(before, p.point) && std::count(points.begin(), points.end(), p.point) == 0) points.push_back(p.point);
+      if (!is_placed(before, p.point) && std::count(points.begin(), points.end(), p.point) == 0)
+        points.push_back(p.point);
     }
   }
   return points;
 }
 
-AssemblyMode mode_of(int side, bool selected, const std::vector<std::size_t>& points, const Configuration& configuration) {
+AssemblyMode mode_of(int side, bool selected, const std::vector<std::size_t>& points,
+                     const Configuration& configuration) {
   AssemblyMode mode{side, selected, points, {}};
   for (const std::size_t point : points) mode.positions.push_back(configuration.points[point].position);
   return mode;
@@ -149,7 +161,9 @@ AssemblyMode mode_of(int side, bool selected, const std::vector<std::size_t>& po
 
 }  // namespace
 
-void choose_modes(const Mechanism& mechanism, Structure& structure) { ModeChooser(mechanism, structure).run(); }
+void choose_modes(const Mechanism& mechanism, Structure& structure) {
+  ModeChooser(mechanism, structure).run();
+}
 
 std::vector<GroupModes> assembly_modes(const Mechanism& mechanism, const Structure& structure,
                                        std::span<const double> angles) {

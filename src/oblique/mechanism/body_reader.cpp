@@ -56,8 +56,9 @@ class BodyReader {
       return {};
     }
     if (names->size() < 2 || names->size() > 3) {
-      reader_.report("points", fmt::format("{} has {} points", reader_.what(), names->size()), "two or three",
-                     names->size() > 3 ? "keep the first two and give the others as marks = { F = [along, left] }" : "");
+      reader_.report(
+          "points", fmt::format("{} has {} points", reader_.what(), names->size()), "two or three",
+          names->size() > 3 ? "keep the first two and give the others as marks = { F = [along, left] }" : "");
       return {};
     }
     return *names;
@@ -75,7 +76,8 @@ class BodyReader {
 
   void read_bar(const std::vector<std::string>& names, std::optional<double> length, bool has_triangle_keys) {
     if (has_triangle_keys) {
-      reader_.report("sides", fmt::format("{} has two points; 'sides' and 'turn' are for three", reader_.what()),
+      reader_.report("sides",
+                     fmt::format("{} has two points; 'sides' and 'turn' are for three", reader_.what()),
                      "length = the distance of the two points");
     } else if (!length && reader_.table().find("length") == nullptr) {
       reader_.report("length", fmt::format("{} has no 'length'", reader_.what()),
@@ -86,38 +88,44 @@ class BodyReader {
     add_point(names[1], {length.value_or(1), 0}, "points");
   }
 
-  void read_triangle(const std::vector<std::string>& names, const Value* sides, const std::optional<std::string>& turn) {
+  void read_triangle(const std::vector<std::string>& names, const Value* sides,
+                     const std::optional<std::string>& turn) {
     if (reader_.table().find("length") != nullptr) {
       reader_.report("length", fmt::format("{} has three points and a 'length'", reader_.what()),
                      "sides = [first to second, second to third, third to first]");
     }
     if (!turn && reader_.table().find("turn") == nullptr) {
       reader_.report("turn", fmt::format("{} has three points and no 'turn'", reader_.what()),
-                     fmt::format(R"(turn = "left" or "right": the side of {} → {} on which {} lies)", names[0],
-                                 names[1], names[2]));
+                     fmt::format(R"(turn = "left" or "right": the side of {} → {} on which {} lies)",
+                                 names[0], names[1], names[2]));
     } else if (turn && *turn != "left" && *turn != "right") {
-      reader_.report("turn", fmt::format("'turn' of {} is \"{}\"", reader_.what(), *turn), R"("left" or "right")");
+      reader_.report("turn", fmt::format("'turn' of {} is \"{}\"", reader_.what(), *turn),
+                     R"("left" or "right")");
     }
     const auto lengths = side_lengths(sides, names);
     if (!lengths) {
-      for (const std::string& name : names) add_point(name, Eigen::Vector2d::Constant(std::nan("")), "points");
+      for (const std::string& name : names)
+        add_point(name, Eigen::Vector2d::Constant(std::nan("")), "points");
       return;
     }
     const auto& [base, second, third] = *lengths;
     const Triangle shape = triangle(base, third, second);
     if (shape.slack < -kFlatWithin * std::max({base, second, third})) {
-      reader_.report("sides",
-                     fmt::format("sides {}, {} and {} of {} make no triangle", base, second, third, reader_.what()),
-                     "each side no longer than the other two together",
-                     fmt::format("the order is |{0} {1}|, |{1} {2}|, |{2} {0}|", names[0], names[1], names[2]));
+      reader_.report(
+          "sides",
+          fmt::format("sides {}, {} and {} of {} make no triangle", base, second, third, reader_.what()),
+          "each side no longer than the other two together",
+          fmt::format("the order is |{0} {1}|, |{1} {2}|, |{2} {0}|", names[0], names[1], names[2]));
     }
     add_point(names[0], Eigen::Vector2d::Zero(), "points");
     add_point(names[1], {base, 0}, "points");
     add_point(names[2], {shape.along, turn == "right" ? -shape.height : shape.height}, "points");
   }
 
-  std::optional<std::array<double, 3>> side_lengths(const Value* sides, const std::vector<std::string>& names) {
-    const std::string expected = fmt::format("sides = [|{0} {1}|, |{1} {2}|, |{2} {0}|]", names[0], names[1], names[2]);
+  std::optional<std::array<double, 3>> side_lengths(const Value* sides,
+                                                    const std::vector<std::string>& names) {
+    const std::string expected =
+        fmt::format("sides = [|{0} {1}|, |{1} {2}|, |{2} {0}|]", names[0], names[1], names[2]);
     if (sides == nullptr || sides->kind != Value::Kind::array || sides->elements.size() != 3) {
       reader_.report("sides",
                      sides == nullptr ? fmt::format("{} has three points and no 'sides'", reader_.what())
@@ -133,7 +141,8 @@ class BodyReader {
       const auto length = read_quantity(mechanism_.file, side, mechanism_.length_unit, what, diagnostics_);
       lengths[i] = length.value_or(0);
       if (length && !(*length > 0 && std::isfinite(*length))) {
-        diagnostics_.add({reader_.place(side.position), fmt::format("{} is {}", what, *length), "a length above 0", {}});
+        diagnostics_.add(
+            {reader_.place(side.position), fmt::format("{} is {}", what, *length), "a length above 0", {}});
       }
       good = good && lengths[i] > 0 && std::isfinite(lengths[i]);
     }
@@ -145,7 +154,8 @@ class BodyReader {
     if (marks == nullptr) return;
     for (const Entry& mark : marks->entries) {
       const std::string what = fmt::format("mark '{}' of {}", mark.key, reader_.what());
-      const auto local = read_coordinates(mechanism_.file, mark.value, mechanism_.length_unit, what, diagnostics_);
+      const auto local =
+          read_coordinates(mechanism_.file, mark.value, mechanism_.length_unit, what, diagnostics_);
       add_point(mark.key, local.value_or(Eigen::Vector2d::Constant(std::nan(""))), mark.position);
     }
   }
@@ -158,8 +168,10 @@ class BodyReader {
     if (!check_name("point", name, reader_.place(position), diagnostics_)) return;
     auto index = mechanism_.find_point(name);
     if (index && body_.find(*index) != nullptr) {
-      diagnostics_.add({reader_.place(position), fmt::format("{} names point '{}' twice", reader_.what(), name),
-                        "a name for each point", {}});
+      diagnostics_.add({reader_.place(position),
+                        fmt::format("{} names point '{}' twice", reader_.what(), name),
+                        "a name for each point",
+                        {}});
       return;
     }
     if (!index) {
@@ -174,8 +186,8 @@ class BodyReader {
       for (std::size_t j = 0; j < i; ++j) {
         if (body_.points[i].local != body_.points[j].local) continue;
         diagnostics_.add({body_.place,
-                          fmt::format("points '{}' and '{}' of {} lie in the same place", point_name(j), point_name(i),
-                                      reader_.what()),
+                          fmt::format("points '{}' and '{}' of {} lie in the same place", point_name(j),
+                                      point_name(i), reader_.what()),
                           {},
                           "give them one name"});
       }
@@ -205,8 +217,9 @@ class BodyReader {
 
 }  // namespace
 
-std::optional<Eigen::Vector2d> read_coordinates(const std::string& file, const Value& value, std::string_view unit,
-                                                const std::string& what, Diagnostics& diagnostics) {
+std::optional<Eigen::Vector2d> read_coordinates(const std::string& file, const Value& value,
+                                                std::string_view unit, const std::string& what,
+                                                Diagnostics& diagnostics) {
   if (value.kind != Value::Kind::array || value.elements.size() != 2) {
     diagnostics.add({{file, value.position}, fmt::format("{} is not a pair of numbers", what), "[x, y]", {}});
     return std::nullopt;
@@ -221,10 +234,13 @@ std::optional<Eigen::Vector2d> read_coordinates(const std::string& file, const V
   return Eigen::Vector2d(*x, *y);
 }
 
-bool check_name(std::string_view kind, const std::string& name, const Place& place, Diagnostics& diagnostics) {
+bool check_name(std::string_view kind, const std::string& name, const Place& place,
+                Diagnostics& diagnostics) {
   if (is_identifier(name)) return true;
-  diagnostics.add({place, fmt::format("'{}' is no name for a {}", name, kind),
-                   "letters, digits and _, with no digit in front", {}});
+  diagnostics.add({place,
+                   fmt::format("'{}' is no name for a {}", name, kind),
+                   "letters, digits and _, with no digit in front",
+                   {}});
   return false;
 }
 

@@ -12,9 +12,11 @@
 
 namespace oblique {
 
-/// Reads `[x, y]` in `unit`; both may be quantities. Findings go to `diagnostics` with `what` as their subject.
-std::optional<Eigen::Vector2d> read_coordinates(const std::string& file, const Value& value, std::string_view unit,
-                                                const std::string& what, Diagnostics& diagnostics);
+/// Reads `[x, y]` in `unit`; both may be quantities. Findings go to `diagnostics` with `what` as their
+/// subject.
+std::optional<Eigen::Vector2d> read_coordinates(const std::string& file, const Value& value,
+                                                std::string_view unit, const std::string& what,
+                                                Diagnostics& diagnostics);
 
 /// True for an identifier; otherwise reports it at `place` as the name of a `kind` ("body", "point").
 bool check_name(std::string_view kind, const std::string& name, const Place& place, Diagnostics& diagnostics);

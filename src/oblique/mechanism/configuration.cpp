@@ -15,12 +15,14 @@ using Eigen::Vector2d;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// A triangle is flat where its slack is within this of its size. The coordinates of P and Q carry a few roundings of their
-/// size each, and more behind several groups; 32 of them leave every angle between the links whose sine is above
-/// about 2e-7 to the regular case.
+/// A triangle is flat where its slack is within this of its size. The coordinates of P and Q carry a few
+/// roundings of their size each, and more behind several groups; 32 of them leave every angle between the
+/// links whose sine is above about 2e-7 to the regular case.
 constexpr double kFlatWithin = 32 * std::numeric_limits<double>::epsilon();
 
-Vector2d left_normal(const Vector2d& v) { return {-v.y(), v.x()}; }
+Vector2d left_normal(const Vector2d& v) {
+  return {-v.y(), v.x()};
+}
 
 /// A body's turn as cosine and sine, about a point whose state is known.
 struct Pose {
@@ -37,7 +39,8 @@ void place_points(const Body& body, const Pose& pose, std::size_t keep, Configur
   for (const BodyPoint& p : body.points) {
     if (p.point == pose.pivot || p.point == keep) continue;
     const Vector2d local = p.local - origin;
-    const Vector2d arm{pose.cosine * local.x() - pose.sine * local.y(), pose.sine * local.x() + pose.cosine * local.y()};
+    const Vector2d arm{pose.cosine * local.x() - pose.sine * local.y(),
+                       pose.sine * local.x() + pose.cosine * local.y()};
     PointState& state = configuration.points[p.point];
     state.position = pivot.position + arm;
     state.velocity = pivot.velocity + pose.omega * left_normal(arm);
@@ -46,7 +49,8 @@ void place_points(const Body& body, const Pose& pose, std::size_t keep, Configur
 }
 
 /// The pose that turns the body's own pivot → hinge into `arm`.
-Pose pose_of(const Body& body, std::size_t pivot, std::size_t hinge, const Vector2d& arm, double omega, double alpha) {
+Pose pose_of(const Body& body, std::size_t pivot, std::size_t hinge, const Vector2d& arm, double omega,
+             double alpha) {
   const Vector2d local = body.find(hinge)->local - body.find(pivot)->local;
   const double cosine = local.dot(arm);
   const double sine = local.x() * arm.y() - local.y() * arm.x();
@@ -78,11 +82,12 @@ Configuration frame_configuration(const Mechanism& mechanism) {
   return configuration;
 }
 
-Status place_crank(const Mechanism& mechanism, const CrankGroup& crank, double angle, Configuration& configuration) {
+Status place_crank(const Mechanism& mechanism, const CrankGroup& crank, double angle,
+                   Configuration& configuration) {
   const double omega = mechanism.drives[crank.drive].speed;
   configuration.bodies[crank.body] = {angle, omega, 0};
-  place_points(mechanism.bodies[crank.body], {crank.pivot, std::cos(angle), std::sin(angle), omega, 0}, crank.pivot,
-               configuration);
+  place_points(mechanism.bodies[crank.body], {crank.pivot, std::cos(angle), std::sin(angle), omega, 0},
+               crank.pivot, configuration);
   return Status::ok;
 }
 
@@ -92,9 +97,11 @@ Status place_dyad(const Mechanism& mechanism, const DyadGroup& dyad, Configurati
   const Vector2d d = q.position - p.position;
   const double base = std::hypot(d.x(), d.y());
   const Triangle shape = triangle(base, dyad.r1, dyad.r2);
-  const double size = std::max({dyad.r1 + dyad.r2, p.position.lpNorm<Eigen::Infinity>(), q.position.lpNorm<Eigen::Infinity>()});
+  const double size = std::max(
+      {dyad.r1 + dyad.r2, p.position.lpNorm<Eigen::Infinity>(), q.position.lpNorm<Eigen::Infinity>()});
   const double rounding = kFlatWithin * size;
-  // P on Q: no C where r₁ ≠ r₂, and any direction of it where r₁ = r₂; neither gives a number. NaN ends here too.
+  // P on Q: no C where r₁ ≠ r₂, and any direction of it where r₁ = r₂; neither gives a number. NaN ends here
+  // too.
   if (!(base > rounding && shape.slack >= -rounding)) return Status::open;
   const bool flat = shape.slack <= rounding;
 
@@ -116,7 +123,8 @@ Status place_dyad(const Mechanism& mechanism, const DyadGroup& dyad, Configurati
   c.velocity = p.velocity + omega1 * left_normal(e1);
   c.acceleration = p.acceleration + alpha1 * left_normal(e1) - omega1 * omega1 * e1;
 
-  const auto place_body = [&](std::size_t index, std::size_t pivot, const Vector2d& arm, double omega, double alpha) {
+  const auto place_body = [&](std::size_t index, std::size_t pivot, const Vector2d& arm, double omega,
+                              double alpha) {
     const Body& body = mechanism.bodies[index];
     const Pose pose = pose_of(body, pivot, dyad.c, arm, omega, alpha);
     configuration.bodies[index] = {std::atan2(pose.sine, pose.cosine), omega, alpha};
@@ -139,8 +147,9 @@ Configuration solve_configuration(const Mechanism& mechanism, const Structure& s
   for (std::size_t i = 0; i < structure.groups.size(); ++i) {
     const Group& group = structure.groups[i];
     const auto* const crank = std::get_if<CrankGroup>(&group);
-    const Status status = crank != nullptr ? place_crank(mechanism, *crank, angles[crank->drive], configuration)
-                                           : place_dyad(mechanism, std::get<DyadGroup>(group), configuration);
+    const Status status = crank != nullptr
+                              ? place_crank(mechanism, *crank, angles[crank->drive], configuration)
+                              : place_dyad(mechanism, std::get<DyadGroup>(group), configuration);
     if (status == Status::ok) continue;
     if (!configuration.group || status == Status::open) configuration.group = i;
     configuration.status = status;

@@ -17,7 +17,8 @@ namespace oblique {
 /// How the mechanism stands.
 enum class Status {
   ok,
-  dead_centre,  ///< a dyad's triangle is flat to rounding: positions are good, rates of the group have no value
+  dead_centre,  ///< a dyad's triangle is flat to rounding: positions are good, rates of the group have no
+                ///< value
   open,         ///< a dyad cannot be assembled: no numbers
 };
 
@@ -46,10 +47,11 @@ struct Configuration {
   std::optional<std::size_t> group;  ///< the first group that is not `ok`, index in Structure::groups
 };
 
-/// Exact configuration at given drive angles [rad], one for each of Mechanism::drives; rates belong to the drives'
-/// constant speeds. Driven bodies have exactly the drive's angle, the others one in (−π, π].
+/// Exact configuration at given drive angles [rad], one for each of Mechanism::drives; rates belong to the
+/// drives' constant speeds. Driven bodies have exactly the drive's angle, the others one in (−π, π].
 ///
-/// A crank is a rotation. In a dyad, with d = Q − P, e₁ = C − P, e₂ = C − Q and D = e₁ × e₂ = ± 2·area of PQC,
+/// A crank is a rotation. In a dyad, with d = Q − P, e₁ = C − P, e₂ = C − Q and D = e₁ × e₂ = ± 2·area of
+/// PQC,
 ///
 ///     C = P + (along·d + side·height·d⊥)/L          from the triangle's three sides
 ///     ω₁ = e₂·(Q̇ − Ṗ)/D,   ω₂ = e₁·(Q̇ − Ṗ)/D       derivatives of |e₁| = r₁, |e₂| = r₂
@@ -65,7 +67,8 @@ std::vector<double> drive_angles(const Mechanism& mechanism, double t);
 /// The parts of `solve_configuration`: places one group whose known points stand in `configuration` already.
 /// A dyad that does not reach leaves its points NaN and gives `open`.
 Configuration frame_configuration(const Mechanism& mechanism);
-Status place_crank(const Mechanism& mechanism, const CrankGroup& crank, double angle, Configuration& configuration);
+Status place_crank(const Mechanism& mechanism, const CrankGroup& crank, double angle,
+                   Configuration& configuration);
 Status place_dyad(const Mechanism& mechanism, const DyadGroup& dyad, Configuration& configuration);
 
 }  // namespace oblique

@@ -16,7 +16,8 @@ std::optional<std::size_t> index_of(const Items& items, Predicate predicate) {
 }  // namespace
 
 const BodyPoint* Body::find(std::size_t point) const {
-  const auto found = std::find_if(points.begin(), points.end(), [&](const BodyPoint& p) { return p.point == point; });
+  const auto found =
+      std::find_if(points.begin(), points.end(), [&](const BodyPoint& p) { return p.point == point; });
   return found == points.end() ? nullptr : &*found;
 }
 

@@ -25,8 +25,10 @@ class MechanismError : public Error {
     assembly,     ///< the links do not reach each other at the start position
   };
 
-  explicit MechanismError(std::vector<Diagnostic> diagnostics) : MechanismError(Kind::file, std::move(diagnostics)) {}
-  MechanismError(Kind kind, std::vector<Diagnostic> diagnostics) : Error(std::move(diagnostics)), kind_(kind) {}
+  explicit MechanismError(std::vector<Diagnostic> diagnostics)
+      : MechanismError(Kind::file, std::move(diagnostics)) {}
+  MechanismError(Kind kind, std::vector<Diagnostic> diagnostics)
+      : Error(std::move(diagnostics)), kind_(kind) {}
   MechanismError(Kind kind, Diagnostic diagnostic) : Error(std::move(diagnostic)), kind_(kind) {}
 
   Kind kind() const { return kind_; }
@@ -44,7 +46,7 @@ struct Point {
 
 /// A point of a body in the body's own frame: origin in its first point, x axis from the first to the second.
 struct BodyPoint {
-  std::size_t point = 0;  ///< index in Mechanism::points
+  std::size_t point = 0;                            ///< index in Mechanism::points
   Eigen::Vector2d local = Eigen::Vector2d::Zero();  ///< [length unit]
 };
 
@@ -70,7 +72,7 @@ struct Drive {
 
 /// A rough position of a point at the start; picks assembly modes and nothing else.
 struct SketchPoint {
-  std::size_t point = 0;  ///< index in Mechanism::points
+  std::size_t point = 0;                               ///< index in Mechanism::points
   Eigen::Vector2d position = Eigen::Vector2d::Zero();  ///< [length unit]
 };
 

@@ -18,12 +18,13 @@ constexpr double kBodyStep = std::numbers::pi / 6;
 /// Halvings of a step: beyond them a turn is a jump (P passing over Q), not a motion.
 constexpr int kMostHalvings = 30;
 
-/// Follows the angles of bodies from one time to the next. An angle known up to whole turns is continued by the turn
-/// nearest to the last one, which is right as long as no body turns by half a turn in a step; steps are made so
-/// small that none turns by more than kBodyStep.
+/// Follows the angles of bodies from one time to the next. An angle known up to whole turns is continued by
+/// the turn nearest to the last one, which is right as long as no body turns by half a turn in a step; steps
+/// are made so small that none turns by more than kBodyStep.
 class AngleTracker {
  public:
-  AngleTracker(const Mechanism& mechanism, const Structure& structure) : mechanism_(mechanism), structure_(structure) {
+  AngleTracker(const Mechanism& mechanism, const Structure& structure)
+      : mechanism_(mechanism), structure_(structure) {
     for (const Drive& drive : mechanism.drives) fastest_ = std::max(fastest_, std::abs(drive.speed));
   }
 
@@ -134,7 +135,8 @@ std::vector<MotionColumn> motion_columns(const Mechanism& mechanism, const Motio
   for (std::size_t i = 0; i < mechanism.points.size(); ++i) {
     if (mechanism.points[i].fixed) continue;
     const std::string& name = mechanism.points[i].name;
-    const auto add_vector = [&](const char* x, const char* y, const std::string& unit, Eigen::Vector2d PointState::*part) {
+    const auto add_vector = [&](const char* x, const char* y, const std::string& unit,
+                                Eigen::Vector2d PointState::*part) {
       add(name + x, unit, [&](std::size_t row) { return (motion.configurations[row].points[i].*part).x(); });
       add(name + y, unit, [&](std::size_t row) { return (motion.configurations[row].points[i].*part).y(); });
     };
@@ -145,8 +147,10 @@ std::vector<MotionColumn> motion_columns(const Mechanism& mechanism, const Motio
   for (std::size_t i = 0; i < mechanism.bodies.size(); ++i) {
     const std::string& name = mechanism.bodies[i].name;
     add(name + ".angle", "rad", [&](std::size_t row) { return motion.configurations[row].bodies[i].angle; });
-    add(name + ".omega", "rad/s", [&](std::size_t row) { return motion.configurations[row].bodies[i].omega; });
-    add(name + ".alpha", "rad/s^2", [&](std::size_t row) { return motion.configurations[row].bodies[i].alpha; });
+    add(name + ".omega", "rad/s",
+        [&](std::size_t row) { return motion.configurations[row].bodies[i].omega; });
+    add(name + ".alpha", "rad/s^2",
+        [&](std::size_t row) { return motion.configurations[row].bodies[i].alpha; });
   }
   return columns;
 }

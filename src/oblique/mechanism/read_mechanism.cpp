@@ -23,7 +23,8 @@ std::vector<std::string> names_of(const Items& items) {
 
 class MechanismReader {
  public:
-  explicit MechanismReader(const Document& document) : reader_(document.file, document.root, "the mechanism", diagnostics_) {
+  explicit MechanismReader(const Document& document)
+      : reader_(document.file, document.root, "the mechanism", diagnostics_) {
     mechanism_.file = document.file;
   }
 
@@ -78,7 +79,8 @@ class MechanismReader {
   void read_bodies() {
     const Value* const bodies = reader_.table("bodies");
     if (bodies == nullptr || bodies->entries.empty()) {
-      reader_.report("bodies", "the mechanism has no bodies", R"([bodies] with AB = { points = ["A", "B"], length = 1 })");
+      reader_.report("bodies", "the mechanism has no bodies",
+                     R"([bodies] with AB = { points = ["A", "B"], length = 1 })");
       return;
     }
     for (const Entry& entry : bodies->entries) read_body(entry, mechanism_, diagnostics_);
@@ -93,7 +95,8 @@ class MechanismReader {
 
   void report_slides(SourcePosition position, std::string what) {
     diagnostics_.add({reader_.place(position), what + ": slides are not handled by this version",
-                      "bodies joined by hinges only", "replace a slide by a long bar where that is near enough"});
+                      "bodies joined by hinges only",
+                      "replace a slide by a long bar where that is near enough"});
   }
 
   void read_drives() {
@@ -117,7 +120,8 @@ class MechanismReader {
     const auto start = reader.quantity("start", "rad");
     reader.finish();
     if (speed && *speed == 0) {
-      reader.report("speed", fmt::format("{} has speed zero and never turns", reader.what()), "a speed other than 0");
+      reader.report("speed", fmt::format("{} has speed zero and never turns", reader.what()),
+                    "a speed other than 0");
     } else if (speed && !std::isfinite(*speed)) {
       reader.report("speed", fmt::format("{} has speed {}", reader.what(), *speed), "a finite speed");
     }
@@ -134,17 +138,23 @@ class MechanismReader {
     const auto point = mechanism_.find_point(*about);
     if (!point || mechanism_.bodies[*body].find(*point) == nullptr) {
       std::vector<std::string> names;
-      for (const BodyPoint& p : mechanism_.bodies[*body].points) names.push_back(mechanism_.points[p.point].name);
-      reader.report("about", fmt::format("{} turns about '{}', which is no point of body '{}'", reader.what(), *about, *turns),
-                    {}, suggest(*about, names));
+      for (const BodyPoint& p : mechanism_.bodies[*body].points)
+        names.push_back(mechanism_.points[p.point].name);
+      reader.report(
+          "about",
+          fmt::format("{} turns about '{}', which is no point of body '{}'", reader.what(), *about, *turns),
+          {}, suggest(*about, names));
       return;
     }
     if (const auto other = mechanism_.drive_of(*body)) {
-      reader.report("turns", fmt::format("body '{}' is turned by drive '{}' already", *turns, mechanism_.drives[*other].name),
-                    "one drive for a body");
+      reader.report(
+          "turns",
+          fmt::format("body '{}' is turned by drive '{}' already", *turns, mechanism_.drives[*other].name),
+          "one drive for a body");
       return;
     }
-    mechanism_.drives.push_back({entry.key, *body, *point, speed.value_or(1), start.value_or(0), reader.place(entry.position)});
+    mechanism_.drives.push_back(
+        {entry.key, *body, *point, speed.value_or(1), start.value_or(0), reader.place(entry.position)});
   }
 
   void read_sketch() {
@@ -155,7 +165,8 @@ class MechanismReader {
                                              fmt::format("sketched point '{}'", entry.key), diagnostics_);
       const auto point = mechanism_.find_point(entry.key);
       if (!point) {
-        diagnostics_.add({reader_.place(entry.position), fmt::format("[sketch] places '{}', which is no point", entry.key),
+        diagnostics_.add({reader_.place(entry.position),
+                          fmt::format("[sketch] places '{}', which is no point", entry.key),
                           "a point of a body", suggest(entry.key, names_of(mechanism_.points))});
       } else if (position) {
         mechanism_.sketch.push_back({*point, *position});
@@ -167,19 +178,25 @@ class MechanismReader {
   void check_names() {
     for (const Body& body : mechanism_.bodies) {
       if (mechanism_.find_point(body.name)) {
-        diagnostics_.add({body.place, fmt::format("'{}' is the name of a body and of a point", body.name), {},
+        diagnostics_.add({body.place,
+                          fmt::format("'{}' is the name of a body and of a point", body.name),
+                          {},
                           "rename one of them"});
       }
     }
     for (const Drive& drive : mechanism_.drives) {
       if (mechanism_.find_point(drive.name)) {
-        diagnostics_.add({drive.place, fmt::format("'{}' is the name of a drive and of a point", drive.name), {},
+        diagnostics_.add({drive.place,
+                          fmt::format("'{}' is the name of a drive and of a point", drive.name),
+                          {},
                           "rename one of them"});
       }
       if (drive.name == "t" || drive.name == "status") {
-        diagnostics_.add({drive.place, fmt::format("a drive cannot be called '{}': a column of the motion has that name",
-                                                   drive.name),
-                          {}, "rename the drive"});
+        diagnostics_.add(
+            {drive.place,
+             fmt::format("a drive cannot be called '{}': a column of the motion has that name", drive.name),
+             {},
+             "rename the drive"});
       }
     }
   }
@@ -194,7 +211,8 @@ class MechanismReader {
         }
         if (shared.size() < 2) continue;
         diagnostics_.add({bodies[i].place,
-                          fmt::format("bodies '{}' and '{}' share the points '{}' and '{}', so they cannot move against each other",
+                          fmt::format("bodies '{}' and '{}' share the points '{}' and '{}', so they cannot "
+                                      "move against each other",
                                       bodies[j].name, bodies[i].name, shared[0], shared[1]),
                           "at most one common point", "make them one body, with marks for the other points"});
       }

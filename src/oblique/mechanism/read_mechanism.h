@@ -9,8 +9,8 @@
 
 namespace oblique {
 
-/// Reads an oblique-mechanism/1 text; `file` is the name that messages give. Everything that is wrong with the
-/// file is reported together. Whether it can move and be assembled is not asked here: see `decompose`.
+/// Reads an oblique-mechanism/1 text; `file` is the name that messages give. Everything that is wrong with
+/// the file is reported together. Whether it can move and be assembled is not asked here: see `decompose`.
 /// Throws ReadError (broken TOML) and MechanismError (kind `file`).
 Mechanism parse_mechanism(std::string_view text, std::string file);
 

@@ -36,15 +36,18 @@ void check_mobility(const Mechanism& mechanism) {
   if (freedom == drives) return;
   Diagnostic finding;
   finding.place = drives > 0 ? mechanism.drives.back().place : mechanism.bodies.front().place;
-  finding.what = fmt::format("the mechanism has mobility {} (3·{} bodies − 2·{} hinges) but {} {}", freedom,
-                             mechanism.bodies.size(), (3 * static_cast<int>(mechanism.bodies.size()) - freedom) / 2,
-                             drives, drives == 1 ? "drive" : "drives");
+  finding.what =
+      fmt::format("the mechanism has mobility {} (3·{} bodies − 2·{} hinges) but {} {}", freedom,
+                  mechanism.bodies.size(), (3 * static_cast<int>(mechanism.bodies.size()) - freedom) / 2,
+                  drives, drives == 1 ? "drive" : "drives");
   finding.expected = "one drive for each degree of freedom";
   if (freedom > drives) {
-    finding.remedy = fmt::format("under-driven: add {} or join bodies by hinges", freedom - drives == 1 ? "a drive" : "drives") +
+    finding.remedy = fmt::format("under-driven: add {} or join bodies by hinges",
+                                 freedom - drives == 1 ? "a drive" : "drives") +
                      loose_ends(mechanism);
   } else {
-    finding.remedy = freedom < 0 ? "over-constrained: leave out bodies or hinges" : "over-driven: leave out drives, or add bodies";
+    finding.remedy = freedom < 0 ? "over-constrained: leave out bodies or hinges"
+                                 : "over-driven: leave out drives, or add bodies";
   }
   throw MechanismError(MechanismError::Kind::mobility, std::move(finding));
 }
@@ -86,7 +89,8 @@ class Decomposition {
       if (points.size() < 2) continue;
       add(MechanismError::Kind::mobility, mechanism_.bodies[body].place,
           fmt::format("body '{}' is over-constrained: the other bodies move its points '{}' and '{}' already",
-                      mechanism_.bodies[body].name, mechanism_.points[points[0]].name, mechanism_.points[points[1]].name),
+                      mechanism_.bodies[body].name, mechanism_.points[points[0]].name,
+                      mechanism_.points[points[1]].name),
           "at most one such point", "leave the body out, or remove another drive or hinge");
       place(body);
       return true;
@@ -98,7 +102,8 @@ class Decomposition {
     for (std::size_t i = 0; i < mechanism_.drives.size(); ++i) {
       const Drive& drive = mechanism_.drives[i];
       if (placed_[drive.body] || !known_[drive.about]) continue;
-      structure_.groups.emplace_back(CrankGroup{mechanism_.bodies[drive.body].name, drive.body, drive.about, i});
+      structure_.groups.emplace_back(
+          CrankGroup{mechanism_.bodies[drive.body].name, drive.body, drive.about, i});
       place(drive.body);
       return true;
     }
@@ -179,26 +184,32 @@ class Decomposition {
       }
     }
     if (freedom > 0) {
-      add(MechanismError::Kind::mobility, at, fmt::format("{} can move freely (mobility {} after the drives)", names, freedom),
+      add(MechanismError::Kind::mobility, at,
+          fmt::format("{} can move freely (mobility {} after the drives)", names, freedom),
           "every body held by drives and hinges", "hinge to the rest, or drive" + loose_ends(mechanism_));
     } else if (freedom < 0) {
-      add(MechanismError::Kind::mobility, at, fmt::format("{} are over-constrained (mobility {})", names, freedom), {},
+      add(MechanismError::Kind::mobility, at,
+          fmt::format("{} are over-constrained (mobility {})", names, freedom), {},
           "leave out a body or a drive of this part");
-    } else if (const auto driven = std::find_if(part.begin(), part.end(), [&](std::size_t b) { return mechanism_.drive_of(b).has_value(); });
+    } else if (const auto driven =
+                   std::find_if(part.begin(), part.end(),
+                                [&](std::size_t b) { return mechanism_.drive_of(b).has_value(); });
                driven != part.end()) {
       const Drive& drive = mechanism_.drives[*mechanism_.drive_of(*driven)];
       add(MechanismError::Kind::group_class, drive.place,
-          fmt::format("drive '{}' turns '{}' about '{}', whose motion depends on the driven body itself", drive.name,
-                      mechanism_.bodies[drive.body].name, mechanism_.points[drive.about].name),
-          "a point of the frame or of a body that is placed before", "this version drives cranks; drive a body with a known pivot");
+          fmt::format("drive '{}' turns '{}' about '{}', whose motion depends on the driven body itself",
+                      drive.name, mechanism_.bodies[drive.body].name, mechanism_.points[drive.about].name),
+          "a point of the frame or of a body that is placed before",
+          "this version drives cranks; drive a body with a known pivot");
     } else {
       add(MechanismError::Kind::group_class, at,
-          fmt::format("{} form a group of class III or higher; this version handles cranks and dyads", names), {},
-          "drive another body so that only dyads remain, if the task allows it");
+          fmt::format("{} form a group of class III or higher; this version handles cranks and dyads", names),
+          {}, "drive another body so that only dyads remain, if the task allows it");
     }
   }
 
-  void add(MechanismError::Kind kind, const Place& at, std::string what, std::string expected, std::string remedy) {
+  void add(MechanismError::Kind kind, const Place& at, std::string what, std::string expected,
+           std::string remedy) {
     if (findings_.empty() || kind == MechanismError::Kind::mobility) kind_ = kind;
     findings_.push_back({at, std::move(what), std::move(expected), std::move(remedy)});
   }

@@ -4,15 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
-
 namespace oblique {
 
 /// The oblique triangle over a base: where its apex lies, from three side lengths.
 struct Triangle {
-  double along = 0;             ///< of the apex, from the base's first end along the base
-  double height = 0;            ///< of the apex over the base, ≥ 0; 0 for a flat or impossible triangle
-  double four_area = 0;         ///< 4·area = √((r₁+r₂)²−L²)(L²−(r₁−r₂)²), ≥ 0
-  double slack = 0;             ///< min(r₁+r₂−L, L−|r₁−r₂|): negative where the sides do not reach each other
+  double along = 0;      ///< of the apex, from the base's first end along the base
+  double height = 0;     ///< of the apex over the base, ≥ 0; 0 for a flat or impossible triangle
+  double four_area = 0;  ///< 4·area = √((r₁+r₂)²−L²)(L²−(r₁−r₂)²), ≥ 0
+  double slack = 0;  ///< min(r₁+r₂−L, L−|r₁−r₂|): negative where the sides do not reach each other
 };
 
 /// Triangle with base L > 0, side r₁ at the base's first end and r₂ at its second.

@@ -38,6 +38,7 @@ class Sampler {
       evaluate(time);
       if (grid_left && grid_time == time) {
         result.trajectory.add_row(row_);
+        if (options_.on_sample) options_.on_sample(time, states_);
         ++next_sample_;
       }
       if (extra_left && extra_time == time) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,7 @@ struct RunOptions {
   long max_steps = 10'000'000;
   std::vector<double> extra_times;               ///< [s] ascending, within [0, until]: further rows, kept apart
   std::function<void(double fraction)> progress;  ///< called now and then with the part of the run that is done
+  std::function<void(double t, std::span<const double> states)> on_sample;  ///< called at every row of the grid
 };
 
 /// The options that a diagram states.

@@ -264,7 +264,7 @@ class Parser {
            argument_range(*info), std::string(info->doc));
     }
     if (info->function == Function::table && count % 2 == 0) {
-      fail(start, "a point of the table has no second coordinate", std::string(info->doc));
+      fail(start, "a point of the table has no second coordinate", {}, std::string(info->doc));
     }
     return node;
   }

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: MIT
+#include "arguments.h"
+
+#include <algorithm>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <oblique/text/diagnostic.h>
+
+#include "terminal.h"
+
+namespace oblique::cli {
+namespace {
+
+constexpr const char* kIntroduction =
+    "Oblique, an analog computer in software: runs block diagrams with high-gain servo loops as the equations they\n"
+    "are, patches mechanisms into such diagrams, and compares them with the exact motion.";
+
+constexpr const char* kEpilogue =
+    "First steps:\n"
+    "  oblique compare diagrams/mechanisms/four-bar.toml     analog against exact, gain by gain\n"
+    "  oblique run diagrams/lessons/triangle-side.toml       one oblique triangle, tracked by a servo amplifier\n"
+    "  oblique blocks                                        what diagrams are made of\n"
+    "Exit status: 0 done, 1 the answer is no, 2 the request or a file is wrong, 3 the solver failed.";
+
+std::vector<std::string> verb_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* verb : app.get_subcommands({})) names.push_back(verb->get_name());
+  return names;
+}
+
+std::vector<std::string> option_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  return names;
+}
+
+/// What CLI11 does not say: the nearest verb or option.
+std::string remedy_for(const CLI::App& app, const std::vector<std::string>& arguments) {
+  const auto chosen = app.get_subcommands();
+  for (const std::string& argument : arguments) {
+    if (argument.starts_with("--")) {
+      std::vector<std::string> names = option_names(chosen.empty() ? app : *chosen.front());
+      const std::string name = argument.substr(0, argument.find('='));
+      if (std::find(names.begin(), names.end(), name) == names.end()) return suggest(name, names);
+    } else if (chosen.empty()) {
+      return suggest(argument, verb_names(app));
+    }
+  }
+  return chosen.empty() ? "oblique --help lists the commands" : fmt::format("oblique {} --help", chosen.front()->get_name());
+}
+
+
+template <class Request>
+void choose(CLI::App* verb, Chosen& chosen, const std::shared_ptr<Request>& request,
+            ExitStatus (*work)(const Session&, const Request&)) {
+  verb->callback([&chosen, request, work] { chosen.work = [&chosen, request, work] { return work(chosen.session, *request); }; });
+}
+
+void add_run(CLI::App& app, Chosen& chosen) {
+  auto request = std::make_shared<RunRequest>();
+  CLI::App* const verb = app.add_subcommand("run", "Run a diagram: its outputs over time");
+  verb->add_option("DIAGRAM", request->diagram, "diagram file (oblique-diagram/1)")->required();
+  verb->add_option("-o,--output", request->output, "write all rows and columns to FILE.csv")->type_name("FILE");
+  verb->add_option("--until", request->until, "end of the run, for example 2*pi or \"500 ms\"")->type_name("T");
+  verb->add_option("--set", request->settings, "change a parameter: block.parameter=value; may be repeated")
+      ->type_name("SETTING")
+      ->allow_extra_args(false);
+  verb->add_flag("--check", request->check, "hold the run against the diagram's [expect]; status 1 where it fails");
+  choose(verb, chosen, request, run_diagram);
+}
+
+void add_check(CLI::App& app, Chosen& chosen) {
+  auto request = std::make_shared<CheckRequest>();
+  CLI::App* const verb = app.add_subcommand("check", "Check a diagram or a mechanism without running it");
+  verb->add_option("FILE", request->file, "diagram or mechanism file")->required();
+  choose(verb, chosen, request, check_file);
+}
+
+void add_solve(CLI::App& app, Chosen& chosen) {
+  auto request = std::make_shared<SolveRequest>();
+  CLI::App* const verb = app.add_subcommand("solve", "Solve a mechanism exactly: its motion over one turn");
+  verb->add_option("MECHANISM", request->mechanism, "mechanism file (oblique-mechanism/1)")->required();
+  verb->add_option("--positions", request->positions, "rows over the turn, both ends included")
+      ->capture_default_str()
+      ->check(CLI::Range(2, 10'000'000));
+  verb->add_option("-o,--output", request->output, "write all rows and columns to FILE.csv")->type_name("FILE");
+  choose(verb, chosen, request, solve_mechanism);
+}
+
+void add_patch(CLI::App& app, Chosen& chosen) {
+  auto request = std::make_shared<PatchRequest>();
+  CLI::App* const verb = app.add_subcommand("patch", "Patch a mechanism: the diagram that simulates it");
+  verb->add_option("MECHANISM", request->mechanism, "mechanism file (oblique-mechanism/1)")->required();
+  verb->add_option("--gain", request->gain, "gain of the servo amplifiers; inf: ideal")->capture_default_str();
+  verb->add_option("--bandwidth", request->bandwidth,
+                   "bandwidth of the servo amplifiers, in Hz or with a unit; inf: algebraic loops "
+                   "(default: 100 times the crank's frequency)");
+  verb->add_option("-o,--output", request->output, "write the diagram to FILE.toml")->type_name("FILE");
+  choose(verb, chosen, request, patch_mechanism);
+}
+
+void add_compare(CLI::App& app, Chosen& chosen) {
+  auto request = std::make_shared<CompareRequest>();
+  CLI::App* const verb =
+      app.add_subcommand("compare", "Compare the patched mechanism with its exact motion, gain by gain");
+  verb->add_option("MECHANISM", request->mechanism, "mechanism file (oblique-mechanism/1)")->required();
+  verb->add_option("--gain", request->gains, "gains of the servo amplifiers (default 1e2,1e3,1e4,1e5,1e6)")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("G,G,…");
+  verb->add_flag("--json", request->json, "print JSON instead of the table");
+  verb->add_option("-o,--output", request->output, "write the JSON to FILE.json")->type_name("FILE");
+  choose(verb, chosen, request, compare_mechanism);
+}
+
+void add_blocks(CLI::App& app, Chosen& chosen) {
+  auto request = std::make_shared<BlocksRequest>();
+  CLI::App* const verb = app.add_subcommand("blocks", "List the blocks, or tell all about one");
+  verb->add_option("NAME", request->name, "block to tell about");
+  choose(verb, chosen, request, show_blocks);
+}
+
+}  // namespace
+
+std::optional<ExitStatus> parse_arguments(int argc, char** argv, Chosen& chosen) {
+  CLI::App app(kIntroduction, "oblique");
+  app.footer(kEpilogue);
+  app.set_version_flag("--version", std::string("oblique ") + OBLIQUE_VERSION);
+  app.add_option("--blocks", chosen.session.block_directories, "folder with further blocks (*.toml); may be repeated")
+      ->type_name("DIR")
+      ->allow_extra_args(false);
+  app.require_subcommand(1);
+  app.fallthrough();
+  add_run(app, chosen);
+  add_check(app, chosen);
+  add_solve(app, chosen);
+  add_patch(app, chosen);
+  add_compare(app, chosen);
+  add_blocks(app, chosen);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& success) {  // --help, --version
+    return static_cast<ExitStatus>(app.exit(success));
+  } catch (const CLI::ParseError& error) {
+    const std::vector<std::string> arguments(argv + 1, argv + argc);
+    print_error(to_string(Diagnostic{{}, error.what(), {}, remedy_for(app, arguments)}));
+    return ExitStatus::bad_request;
+  }
+  return std::nullopt;
+}
+
+}  // namespace oblique::cli

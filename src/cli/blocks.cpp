@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <oblique/diagram/diagram.h>
+
+#include "command.h"
+#include "terminal.h"
+
+namespace oblique::cli {
+namespace {
+
+std::string list_of(const BlockLibrary& library) {
+  Table table({"block", "what it does"});
+  for (const std::string& name : library.names()) table.add({name, library.find(name)->summary});
+  return table.text(2) + "\n`oblique blocks NAME` tells all about one.\n";
+}
+
+std::string range_of(const ParameterDefinition& p) {
+  std::string text;
+  const auto add = [&](std::string_view words, const std::optional<double>& limit) {
+    if (limit) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", words, *limit);
+  };
+  add("above", p.above);
+  add("at least", p.at_least);
+  add("below", p.below);
+  add("at most", p.at_most);
+  return text;
+}
+
+std::string page_of(const BlockDefinition& block) {
+  std::string text = fmt::format("{} ({})\n{}\n", block.title, block.name, block.summary);
+  if (!block.doc.empty()) text += fmt::format("\n{}\n", block.doc);
+  if (!block.inputs.empty()) {
+    Table table({"input", "takes", "meaning"});
+    for (const InputPort& p : block.inputs) table.add({p.name, p.sum ? "a sum" : "one signal", p.doc});
+    text += table.text(3) + "\n";
+  }
+  Table outputs({"output", "meaning"});
+  for (const OutputPort& p : block.outputs) outputs.add({p.name, p.doc});
+  text += outputs.text(2);
+  if (!block.parameters.empty()) {
+    Table table({"parameter", "default", "unit", "range", "meaning"});
+    for (const ParameterDefinition& p : block.parameters) {
+      table.add({p.name, short_number(p.default_value), p.unit, range_of(p), p.doc});
+    }
+    text += "\n" + table.text(5);
+  }
+  if (!block.source.empty()) text += fmt::format("\nsource: {}\n", block.source);
+  return text + "\n" + block.text;
+}
+
+}  // namespace
+
+ExitStatus show_blocks(const Session& session, const BlocksRequest& request) {
+  const BlockLibrary library = session.library();
+  if (request.name.empty()) {
+    print(list_of(library));
+    return ExitStatus::done;
+  }
+  const BlockDefinition* const block = library.find(request.name);
+  if (block == nullptr) {
+    throw DiagramError(Diagnostic{{}, fmt::format("there is no block '{}'", request.name), {}, suggest(request.name, library.names())});
+  }
+  print(page_of(*block));
+  return ExitStatus::done;
+}
+
+}  // namespace oblique::cli

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <oblique/mechanism/motion.h>
+#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/network/program.h>
+#include <oblique/solve/rest.h>
+
+#include "command.h"
+#include "terminal.h"
+
+namespace oblique::cli {
+namespace {
+
+std::string count(std::size_t n, std::string_view one, std::string_view many) {
+  return fmt::format("{} {}", n, n == 1 ? one : many);
+}
+
+ExitStatus check_diagram(const Session& session, const std::string& path) {
+  const BlockLibrary library = session.library();
+  const Diagram diagram = read_diagram(path);
+  const FlatDiagram flat = flatten(diagram, library);
+  const Program program(assemble(flat));
+  print(fmt::format("{}: a diagram, \"{}\"\n", path, diagram.title));
+  print(fmt::format("  {}; flattened: {}\n", count(diagram.blocks.size(), "block", "blocks"),
+                    count(flat.blocks.size(), "element", "elements")));
+  print(fmt::format("  {}, {} of them servo amplifiers brought to rest at the start\n",
+                    count(program.n_states(), "state", "states"), rest_states(program).size()));
+  for (const Loop& loop : program.loops()) {
+    print(fmt::format("  algebraic loop with {}: {}\n", count(loop.unknowns.size(), "unknown", "unknowns"),
+                      fmt::join(loop.members, ", ")));
+  }
+  if (program.loops().empty()) print("  no algebraic loops\n");
+  print(fmt::format("  {}\n", count(flat.outputs.size(), "output", "outputs")));
+  print("ok: all names, wires, units and ranges are right\n");
+  return ExitStatus::done;
+}
+
+std::string describe(const Mechanism& mechanism, const Group& group) {
+  if (const auto* const crank = std::get_if<CrankGroup>(&group)) {
+    return fmt::format("crank {}: turns about {} with drive '{}'", crank->name, mechanism.points[crank->pivot].name,
+                       mechanism.drives[crank->drive].name);
+  }
+  const auto& dyad = std::get<DyadGroup>(group);
+  return fmt::format("dyad {} (class II, RRR): {} lies {} of {} → {}", dyad.name, mechanism.points[dyad.c].name,
+                     dyad.side > 0 ? "left" : "right", mechanism.points[dyad.p].name, mechanism.points[dyad.q].name);
+}
+
+ExitStatus check_mechanism(const std::string& path) {
+  const Mechanism mechanism = read_mechanism(path);
+  const Structure structure = decompose(mechanism);
+  print(fmt::format("{}: a mechanism, \"{}\"\n", path, mechanism.title));
+  print(fmt::format("  {}, mobility {}, {}\n", count(mechanism.bodies.size(), "body", "bodies"), mobility(mechanism),
+                    count(mechanism.drives.size(), "drive", "drives")));
+  for (const Group& group : structure.groups) print(fmt::format("  {}\n", describe(mechanism, group)));
+  for (const Configuration& c : solve_motion(mechanism, 361).configurations) {
+    if (c.status == oblique::Status::ok) continue;
+    print(fmt::format("no: over one turn the group {} {}\n", group_name(structure.groups[c.group.value()]),
+                      c.status == oblique::Status::open ? "cannot be assembled everywhere" : "passes a dead centre"));
+    return ExitStatus::no;
+  }
+  print("ok: it can be assembled over the whole turn, without dead centres\n");
+  return ExitStatus::done;
+}
+
+}  // namespace
+
+ExitStatus check_file(const Session& session, const CheckRequest& request) {
+  const Document document = read_document(request.file);
+  const Value* const format = document.root.find("format");
+  const std::string name = format != nullptr ? format->text : "";
+  if (name == "oblique-diagram/1") return check_diagram(session, request.file);
+  if (name == "oblique-mechanism/1") return check_mechanism(request.file);
+  throw ReadError(Diagnostic{{request.file, {1, 1}}, "this is neither a diagram nor a mechanism",
+                             "format = \"oblique-diagram/1\" or \"oblique-mechanism/1\" at the head of the file", {}});
+}
+
+}  // namespace oblique::cli

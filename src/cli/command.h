@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <oblique/diagram/block_library.h>
+
+namespace oblique::cli {
+
+/// Exit status of the program (formats.md).
+enum class ExitStatus { done = 0, no = 1, bad_request = 2, solver_failed = 3 };
+
+/// The options of the program itself.
+struct Session {
+  std::vector<std::filesystem::path> block_directories;
+
+  /// The shipped blocks and those of `--blocks`. Throws DiagramError.
+  BlockLibrary library() const;
+};
+
+// One request and one function a verb. Options are texts where they may carry units. Empty: not given.
+
+struct RunRequest {
+  std::string diagram;
+  std::string output;
+  std::string until;
+  std::vector<std::string> settings;
+  bool check = false;
+};
+ExitStatus run_diagram(const Session& session, const RunRequest& request);
+
+struct CheckRequest {
+  std::string file;
+};
+ExitStatus check_file(const Session& session, const CheckRequest& request);
+
+struct SolveRequest {
+  std::string mechanism;
+  std::string output;
+  int positions = 361;
+};
+ExitStatus solve_mechanism(const Session& session, const SolveRequest& request);
+
+struct PatchRequest {
+  std::string mechanism;
+  std::string output;
+  std::string gain = "1e6";
+  std::string bandwidth;
+};
+ExitStatus patch_mechanism(const Session& session, const PatchRequest& request);
+
+struct CompareRequest {
+  std::string mechanism;
+  std::string output;
+  std::vector<std::string> gains{"1e2", "1e3", "1e4", "1e5", "1e6"};
+  bool json = false;
+};
+ExitStatus compare_mechanism(const Session& session, const CompareRequest& request);
+
+struct BlocksRequest {
+  std::string name;
+};
+ExitStatus show_blocks(const Session& session, const BlocksRequest& request);
+
+}  // namespace oblique::cli

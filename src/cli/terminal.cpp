@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+#include "terminal.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <fmt/format.h>
+
+#include <oblique/text/document.h>
+#include <oblique/text/quantity.h>
+
+namespace oblique::cli {
+namespace {
+
+/// Width on a terminal, near enough: code points.
+std::size_t width(std::string_view text) {
+  return static_cast<std::size_t>(std::count_if(
+      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+}
+
+}  // namespace
+
+std::string Table::text(std::size_t left_columns) const {
+  std::vector<std::size_t> widths(rows_.front().size(), 0);
+  for (const auto& row : rows_) {
+    for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], width(row[c]));
+  }
+  std::string out;
+  for (const auto& row : rows_) {
+    std::string line;
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      const std::string padding(widths[c] - width(row[c]), ' ');
+      if (c > 0) line += "  ";
+      line += c < left_columns ? row[c] + padding : padding + row[c];
+    }
+    line.erase(line.find_last_not_of(' ') + 1);
+    out += line + "\n";
+  }
+  return out;
+}
+
+std::vector<std::size_t> spread_rows(std::size_t rows, std::size_t most) {
+  std::vector<std::size_t> chosen;
+  const std::size_t shown = std::min(rows, most);
+  for (std::size_t k = 0; k < shown; ++k) chosen.push_back(shown == 1 ? 0 : k * (rows - 1) / (shown - 1));
+  return chosen;
+}
+
+std::size_t columns_that_fit(std::size_t column_width) {
+  winsize size{};
+  const bool known = isatty(STDOUT_FILENO) != 0 && ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  const std::size_t terminal = known ? size.ws_col : 110;
+  return std::max<std::size_t>(2, terminal / column_width);
+}
+
+std::string short_number(double value) { return fmt::format("{:.6g}", value); }
+
+void print(std::string_view text) { std::fwrite(text.data(), 1, text.size(), stdout); }
+
+void note(std::string_view text) { std::fwrite(text.data(), 1, text.size(), stderr); }
+
+void print_error(std::string_view text) {
+  const bool colours = isatty(STDERR_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr;
+  note(fmt::format("{}error:{} {}\n", colours ? "\033[1;31m" : "", colours ? "\033[0m" : "", text));
+}
+
+void save(const std::filesystem::path& path, std::string_view text) {
+  write_file(path, text);
+  note(fmt::format("wrote {}\n", path.string()));
+}
+
+Progress::~Progress() {
+  if (shown_) note("\r\033[K");
+}
+
+void Progress::show(double fraction) {
+  if (isatty(STDERR_FILENO) == 0) return;
+  const auto now = std::chrono::steady_clock::now();
+  if (now - begin_ < std::chrono::seconds(1) || now - last_ < std::chrono::milliseconds(200)) return;
+  last_ = now;
+  shown_ = true;
+  note(fmt::format("\r{}: {:3.0f} %\033[K", what_, 100 * fraction));
+}
+
+double quantity_option(const std::string& option, const std::string& text, std::string_view unit) {
+  try {
+    return parse_quantity(text, parse_unit(unit).value());
+  } catch (const ExpressionError& error) {
+    throw ReadError(Diagnostic{{}, fmt::format("{} {}: {}", option, text, error.what), error.expected, error.remedy});
+  }
+}
+
+void check_output(const std::filesystem::path& path, std::string_view ending) {
+  if (path.extension() != ending) {
+    throw ReadError(Diagnostic{{path.string(), {}},
+                               fmt::format("cannot write a '{}' file", path.extension().string()),
+                               fmt::format("a name that ends in {}", ending),
+                               {}});
+  }
+  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  if (!std::filesystem::is_directory(folder)) {
+    throw ReadError(Diagnostic{{path.string(), {}}, "the folder of this file does not exist", {},
+                               fmt::format("make it first: mkdir -p {}", folder.string())});
+  }
+}
+
+}  // namespace oblique::cli

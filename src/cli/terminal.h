@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <oblique/text/expression.h>
+
+namespace oblique::cli {
+
+/// A table for people: text cells, numbers aligned to the right.
+class Table {
+ public:
+  explicit Table(std::vector<std::string> header) : rows_{std::move(header)} {}
+  void add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }
+  /// Lines with two blanks between columns; cells of `left_columns` first columns are aligned to the left.
+  std::string text(std::size_t left_columns = 0) const;
+
+ private:
+  std::vector<std::vector<std::string>> rows_;
+};
+
+/// Up to `most` row numbers of `rows`, evenly spread, the first and the last among them.
+std::vector<std::size_t> spread_rows(std::size_t rows, std::size_t most);
+
+/// How many columns of `width` characters a table may have on this terminal (110 characters where there is none).
+std::size_t columns_that_fit(std::size_t width);
+
+/// "0.0125", "1.2e-07": six significant digits.
+std::string short_number(double value);
+
+/// Writes results to stdout.
+void print(std::string_view text);
+
+/// Writes anything else to stderr.
+void note(std::string_view text);
+
+/// Writes an error to stderr, "error:" in red where that is a terminal that wants colours (NO_COLOR).
+void print_error(std::string_view text);
+
+/// Writes a file and says so on stderr.
+void save(const std::filesystem::path& path, std::string_view text);
+
+/// A line on stderr that shows how far work of more than a second has come; nothing where stderr is no terminal.
+class Progress {
+ public:
+  explicit Progress(std::string what) : what_(std::move(what)) {}
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+  void show(double fraction);
+
+ private:
+  std::string what_;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  std::chrono::steady_clock::time_point last_ = begin_;
+  bool shown_ = false;
+};
+
+/// A quantity given as an option, in `unit`. Throws ReadError that names the option.
+double quantity_option(const std::string& option, const std::string& text, std::string_view unit);
+
+/// Checks that a result can be written to `path` before the work is done; `ending` is what its name must end with.
+/// Throws ReadError.
+void check_output(const std::filesystem::path& path, std::string_view ending);
+
+}  // namespace oblique::cli

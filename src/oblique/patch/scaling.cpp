@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/patch/scaling.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include <oblique/patch/patch.h>
+
+namespace oblique {
+namespace {
+
+[[noreturn]] void refuse(const Mechanism& mechanism, const Structure& structure, const Motion& motion, std::size_t row) {
+  const Configuration& configuration = motion.configurations[row];
+  const std::string group = configuration.group ? group_name(structure.groups[*configuration.group]) : "";
+  const bool open = configuration.status == Status::open;
+  throw PatchError(Diagnostic{
+      {mechanism.file, {}},
+      fmt::format("the dyad {} {} at t = {:.6g} s, so its triangle cannot be tracked over a whole turn", group,
+                  open ? "cannot be assembled" : "is at a dead centre", motion.times[row]),
+      open ? "links that reach each other in every position" : "a triangle that never goes flat",
+      open ? "lengthen the links of the dyad, or shorten the crank; `oblique solve` shows where it opens"
+           : "change a length a little: at a dead centre the servo loop of sin γ loses its gain"});
+}
+
+}  // namespace
+
+double round_scale_up(double value) {
+  const double decade = std::pow(10, std::floor(std::log10(value)));
+  for (const double step : {1.0, 2.0, 4.0, 5.0, 8.0}) {
+    if (step * decade >= value) return step * decade;
+  }
+  return 10 * decade;
+}
+
+double round_up(double value) {
+  const double unit = std::pow(10, std::floor(std::log10(value)) - 2);
+  return std::ceil(value / unit) * unit;
+}
+
+Scaling find_scaling(const Mechanism& mechanism, const Structure& structure, const Motion& motion) {
+  Scaling scaling;
+  scaling.triangles.resize(structure.groups.size());
+  for (TriangleRange& range : scaling.triangles) range.shortest = std::numeric_limits<double>::infinity();
+  double farthest = 0;
+  for (std::size_t row = 0; row < motion.configurations.size(); ++row) {
+    const Configuration& configuration = motion.configurations[row];
+    if (configuration.status != Status::ok) refuse(mechanism, structure, motion, row);
+    for (const PointState& point : configuration.points) {
+      farthest = std::max(farthest, point.position.cwiseAbs().maxCoeff());
+    }
+    for (std::size_t g = 0; g < structure.groups.size(); ++g) {
+      const auto* const dyad = std::get_if<DyadGroup>(&structure.groups[g]);
+      if (dyad == nullptr) continue;
+      const double length = (configuration.points[dyad->q].position - configuration.points[dyad->p].position).norm();
+      const double cosine = (dyad->r1 * dyad->r1 + length * length - dyad->r2 * dyad->r2) / (2 * dyad->r1 * length);
+      TriangleRange& range = scaling.triangles[g];
+      range.shortest = std::min(range.shortest, length);
+      range.longest = std::max(range.longest, length);
+      range.flattest = std::min(range.flattest, std::sqrt(std::max(0.0, 1 - cosine * cosine)));
+    }
+  }
+  scaling.length = round_scale_up(farthest);
+  return scaling;
+}
+
+}  // namespace oblique

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/mechanism/motion.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <oblique/mechanism/assembly.h>
+#include <oblique/mechanism/read_mechanism.h>
+
+namespace oblique {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::EndsWith;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+constexpr double kPi = std::numbers::pi;
+
+/// A four-bar ABCD with its frame on the x axis.
+Mechanism four_bar(double crank, double coupler, double rocker, double frame, const std::string& speed,
+                   const std::string& start, const std::string& sketch) {
+  std::ostringstream text;
+  text.precision(17);
+  text << "format = \"oblique-mechanism/1\"\n[frame]\nA = [0, 0]\nD = [" << frame << ", 0]\n[bodies]\n"
+       << R"(AB = { points = ["A", "B"], length = )" << crank << " }\n"
+       << R"(BC = { points = ["B", "C"], length = )" << coupler << " }\n"
+       << R"(CD = { points = ["C", "D"], length = )" << rocker << " }\n"
+       << "[drives]\ncrank = { turns = \"AB\", about = \"A\", speed = \"" << speed << "\", start = \""
+       << start << "\" }\n[sketch]\nC = " << sketch << "\n";
+  return parse_mechanism(text.str(), "four.toml");
+}
+
+TEST(Motion, SpansOneTurnWithBothEnds) {
+  const Mechanism mechanism = four_bar(1, 3.5, 3, 4, "-2 rad/s", "30 deg", "[3, 3]");
+  const Motion motion = solve_motion(mechanism, 5);
+  ASSERT_EQ(motion.times.size(), 5U);
+  for (int k = 0; k < 5; ++k) {
+    const auto row = static_cast<std::size_t>(k);
+    EXPECT_EQ(motion.times[row], kPi * k / 4);
+    EXPECT_DOUBLE_EQ(motion.drive_angles[row][0], kPi / 6 - 2 * motion.times[row]);
+    EXPECT_EQ(motion.configurations[row].bodies[0].angle, motion.drive_angles[row][0]);
+    EXPECT_EQ(motion.configurations[row].bodies[0].omega, -2);
+  }
+}
+
+TEST(Motion, NeedsADriveAndTwoPositions) {
+  Mechanism mechanism = four_bar(1, 3.5, 3, 4, "1 rad/s", "0 deg", "[3, 3]");
+  EXPECT_THROW(solve_motion(mechanism, 1), MechanismError);
+  mechanism.drives.clear();
+  try {
+    period(mechanism);
+    FAIL();
+  } catch (const MechanismError& error) {
+    EXPECT_EQ(error.kind(), MechanismError::Kind::request);
+    EXPECT_THAT(error.what(), HasSubstr("four.toml: the mechanism has no drive and does not move"));
+  }
+}
+
+// A drag link (the shortest bar is the frame): all bars turn fully with the crank.
+TEST(Motion, FollowsWholeTurnsOfAllBodiesHoweverFewThePositions) {
+  const Mechanism mechanism = four_bar(3, 3.5, 3, 1, "1 rad/s", "0 deg", "[0, 2]");
+  for (const int positions : {2, 3, 4, 7, 361}) {
+    const Motion motion = solve_motion(mechanism, positions);
+    for (const std::size_t body : {1U, 2U}) {
+      // the crank's last angle is 2π to its rounding, and a triangle multiplies that by a few
+      EXPECT_NEAR(
+          motion.configurations.back().bodies[body].angle - motion.configurations.front().bodies[body].angle,
+          2 * kPi, 1e-14);
+    }
+  }
+}
+
+TEST(Motion, GivesTheSameAnglesForAnyRows) {
+  const Mechanism mechanism = four_bar(3, 3.5, 3, 1, "-3 rad/s", "100 deg", "[-2, 2]");
+  const std::array times{0.0, 5.0, 2.0, 2.0, -4.0, 0.0};
+  const Motion sparse = solve_motion(mechanism, times);
+  std::vector<double> fine_times;
+  for (int k = -400; k <= 500; ++k) fine_times.push_back(k / 100.0);
+  const Motion fine = solve_motion(mechanism, fine_times);
+  for (const std::size_t body : {0U, 1U, 2U}) {
+    const auto fine_angle = [&](double t) {
+      return fine.configurations[static_cast<std::size_t>(std::lround(100 * t) + 400)].bodies[body].angle;
+    };
+    for (std::size_t row = 0; row < times.size(); ++row) {
+      // turns counted from the first row in both; angles of some −17 rad carry a rounding of 4e-15 for the
+      // whole turns
+      EXPECT_NEAR(sparse.configurations[row].bodies[body].angle - sparse.configurations[0].bodies[body].angle,
+                  fine_angle(times[row]) - fine_angle(0), 2e-14);
+    }
+  }
+}
+
+// D lies 1e-5 inside the circle of B, so seen from D, B swings by more than half a turn within one degree of
+// the crank. With equal links the triangle BCD is the same at both ends, and both bodies turn with the
+// direction from D to B.
+TEST(Motion, FollowsABodyThatTurnsMuchFasterThanItsDrive) {
+  const double end = 20.45 * kPi / 180;
+  const Mechanism mechanism = four_bar(2, 1.5, 1.5, 1.99999, "1 rad/s", "-20.45 deg", "[2.5, 0.5]");
+  const Motion motion = solve_motion(mechanism, std::array{0.0, 2 * end});
+  const double swing = 2 * std::atan2(2 * std::sin(end), 2 * std::cos(end) - 1.99999);
+  EXPECT_GT(swing, kPi);
+  for (const std::size_t body : {1U, 2U}) {
+    // roundings of lengths near 2 over |BD| = 0.7; a lost turn would be 2π
+    EXPECT_NEAR(motion.configurations[1].bodies[body].angle - motion.configurations[0].bodies[body].angle,
+                swing, 1e-14);
+  }
+}
+
+// Crank and rocker 1, coupler and frame 4: flat at 0° and 180°. There C is where it must be and its rates
+// have no value.
+TEST(Motion, PassesDeadCentresOfAParallelogram) {
+  const Mechanism mechanism = four_bar(1, 4, 1, 4, "1 rad/s", "90 deg", "[4, 1]");
+  const Motion motion = solve_motion(mechanism, 9);
+  const std::size_t b = mechanism.find_point("B").value();
+  const std::size_t c = mechanism.find_point("C").value();
+  for (std::size_t row = 0; row < motion.times.size(); ++row) {
+    const Configuration& here = motion.configurations[row];
+    const bool flat = row == 2 || row == 6;
+    EXPECT_EQ(here.status, flat ? Status::dead_centre : Status::ok) << row;
+    EXPECT_EQ(here.group, flat ? std::optional<std::size_t>(1) : std::nullopt);
+    EXPECT_EQ(std::isnan(here.points[c].velocity.x()), flat);
+    EXPECT_EQ(std::isnan(here.bodies[2].omega), flat);
+    EXPECT_FALSE(std::isnan(here.points[b].velocity.x()));
+    // roundings of lengths up to 4; at the dead centre the height of the triangle is √ of one
+    EXPECT_NEAR((here.points[c].position - here.points[b].position).norm(), 4, 4e-15);
+    EXPECT_NEAR((here.points[c].position - Eigen::Vector2d(4, 0)).norm(), 1, 4e-15);
+  }
+  EXPECT_NEAR(motion.configurations[0].points[c].position.x(), 4, 4e-15);
+  EXPECT_NEAR(motion.configurations[0].points[c].position.y(), 1, 4e-15);
+  EXPECT_NEAR(motion.configurations[2].points[c].position.x(), 3, 1e-14);
+  EXPECT_NEAR(motion.configurations[6].points[c].position.x(), 5, 1e-14);
+  // the side of B → D is kept: beyond the dead centre the bars cross, C above the frame while B is below
+  EXPECT_LT(motion.configurations[4].points[b].position.y(), -0.9);
+  EXPECT_GT(motion.configurations[4].points[c].position.y(), 0);
+}
+
+// 0.1 + 0.2 against 0.3: the exact sum is reached, missed and passed by roundings.
+TEST(Motion, TakesRoundingJustPastFlatForADeadCentre) {
+  Mechanism mechanism = parse_mechanism(R"(format = "oblique-mechanism/1"
+[frame]
+A = [0, 0]
+D = [0.3, 0]
+[bodies]
+AC = { points = ["A", "C"], length = 0.1 }
+CD = { points = ["C", "D"], length = 0.2 }
+)",
+                                        "flat.toml");
+  Structure structure = find_groups(mechanism);
+  std::get<DyadGroup>(structure.groups[0]).side = 1;
+  for (const double excess : {-2e-16, 0.0, 2e-16}) {
+    mechanism.points[1].position.x() = 0.3 + excess;
+    const Configuration here = solve_configuration(mechanism, structure, {});
+    EXPECT_EQ(here.status, Status::dead_centre) << excess;
+    EXPECT_NEAR(here.points[2].position.x(), 0.1, 1e-15);
+  }
+  for (const double excess : {-1e-12, 1e-12}) {
+    mechanism.points[1].position.x() = 0.3 + excess;
+    EXPECT_EQ(solve_configuration(mechanism, structure, {}).status, excess > 0 ? Status::open : Status::ok);
+  }
+}
+
+// C has no place of its own while B lies on D and both links are equal.
+TEST(Motion, HasNoNumbersWhereThePivotsOfEqualLinksMeet) {
+  const Mechanism mechanism = four_bar(2, 1.5, 1.5, 2, "1 rad/s", "40 deg", "[2.5, 0.5]");
+  EXPECT_EQ(solve_configuration(mechanism, decompose(mechanism), std::array{0.0}).status, Status::open);
+}
+
+// Crank 2, coupler 1.5, rocker 1, frame 3.5: BD ≤ 2.5 only while |φ| < arccos(10/14).
+TEST(Motion, MarksTheRowsWhereTheMechanismIsOpen) {
+  const Mechanism mechanism = four_bar(2, 1.5, 1, 3.5, "2 rad/s", "0 deg", "[3, 1]");
+  const Motion motion = solve_motion(mechanism, 361);
+  const double limit = std::acos(10.0 / 14);
+  int open = 0;
+  for (std::size_t row = 0; row < motion.times.size(); ++row) {
+    const Configuration& here = motion.configurations[row];
+    const bool closed = std::abs(std::remainder(motion.drive_angles[row][0], 2 * kPi)) < limit;
+    EXPECT_EQ(here.status, closed ? Status::ok : Status::open) << row;
+    if (closed) continue;
+    ++open;
+    EXPECT_EQ(here.group, 1U);
+    for (std::size_t point = 2; point < here.points.size(); ++point)
+      EXPECT_TRUE(std::isnan(here.points[point].position.x()));
+    for (const BodyState& body : here.bodies) EXPECT_TRUE(std::isnan(body.angle));
+  }
+  EXPECT_EQ(open, 361 - 90);  // arccos(10/14) = 44.4°: rows 0 … 44 and 316 … 360 are closed
+  const std::string csv = motion_csv(mechanism, motion);
+  EXPECT_THAT(csv, HasSubstr(",,,,,,,,,,,,,,,,,,,,,open\n"));
+}
+
+TEST(MotionCsv, HasTheColumnsOfTheFormatAndRoundTrips) {
+  const Mechanism mechanism = four_bar(1, 3.5, 3, 4, "1 rad/s", "30 deg", "[3, 3]");
+  const Motion motion = solve_motion(mechanism, 7);
+  const std::string csv = motion_csv(mechanism, motion);
+  EXPECT_THAT(
+      csv,
+      AllOf(StartsWith(
+                "t,crank,B.x,B.y,B.vx,B.vy,B.ax,B.ay,C.x,C.y,C.vx,C.vy,C.ax,C.ay,"
+                "AB.angle,AB.omega,AB.alpha,BC.angle,BC.omega,BC.alpha,CD.angle,CD.omega,CD.alpha,status\n"
+                "0,0.5235987755982988,"),
+            EndsWith(",ok\n")));
+  const auto columns = motion_columns(mechanism, motion);
+  std::istringstream lines(csv);
+  std::string line;
+  std::getline(lines, line);
+  for (std::size_t row = 0; std::getline(lines, line); ++row) {
+    std::istringstream cells(line);
+    std::string cell;
+    for (const MotionColumn& column : columns) {
+      std::getline(cells, cell, ',');
+      EXPECT_EQ(std::stod(cell), column.values[row]) << column.name;
+    }
+  }
+  EXPECT_EQ(columns[2].unit, "m");
+  EXPECT_EQ(columns[4].unit, "m/s");
+  EXPECT_EQ(columns[6].unit, "m/s^2");
+}
+
+TEST(MotionCsv, LeavesRatesAtADeadCentreEmpty) {
+  const Mechanism mechanism = four_bar(1, 4, 1, 4, "1 rad/s", "90 deg", "[4, 1]");
+  const std::string csv = motion_csv(mechanism, solve_motion(mechanism, 5));
+  EXPECT_THAT(csv, HasSubstr(",,,,,"));
+  EXPECT_THAT(csv, HasSubstr(",,dead-centre\n"));
+}
+
+}  // namespace
+}  // namespace oblique
