@@ -38,21 +38,24 @@ std::vector<std::string> option_names(const CLI::App& app) {
   return names;
 }
 
-/// What CLI11 does not say: the nearest verb or option.
-std::string remedy_for(const CLI::App& app, const std::vector<std::string>& arguments) {
+/// CLI11's finding with the nearest verb or option added, which it does not know.
+Diagnostic explain(const CLI::App& app, const CLI::ParseError& error, const std::vector<std::string>& arguments) {
   const auto chosen = app.get_subcommands();
-  for (const std::string& argument : arguments) {
-    if (argument.starts_with("--")) {
-      std::vector<std::string> names = option_names(chosen.empty() ? app : *chosen.front());
-      const std::string name = argument.substr(0, argument.find('='));
-      if (std::find(names.begin(), names.end(), name) == names.end()) return suggest(name, names);
-    } else if (chosen.empty()) {
-      return suggest(argument, verb_names(app));
+  if (chosen.empty()) {
+    for (const std::string& argument : arguments) {
+      if (argument.starts_with("-")) continue;
+      return {{}, fmt::format("there is no command '{}'", argument), {}, suggest(argument, verb_names(app))};
     }
+    return {{}, error.what(), {}, "oblique --help lists the commands"};
   }
-  return chosen.empty() ? "oblique --help lists the commands" : fmt::format("oblique {} --help", chosen.front()->get_name());
+  const std::vector<std::string> names = option_names(*chosen.front());
+  for (const std::string& argument : arguments) {
+    const std::string name = argument.substr(0, argument.find('='));
+    if (!argument.starts_with("--") || std::find(names.begin(), names.end(), name) != names.end()) continue;
+    return {{}, fmt::format("'{}' has no option '{}'", chosen.front()->get_name(), name), {}, suggest(name, names)};
+  }
+  return {{}, error.what(), {}, fmt::format("oblique {} --help tells how to call it", chosen.front()->get_name())};
 }
-
 
 template <class Request>
 void choose(CLI::App* verb, Chosen& chosen, const std::shared_ptr<Request>& request,
@@ -141,13 +144,16 @@ std::optional<ExitStatus> parse_arguments(int argc, char** argv, Chosen& chosen)
   add_patch(app, chosen);
   add_compare(app, chosen);
   add_blocks(app, chosen);
+  if (argc < 2) {
+    print(app.help());
+    return ExitStatus::done;
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& success) {  // --help, --version
     return static_cast<ExitStatus>(app.exit(success));
   } catch (const CLI::ParseError& error) {
-    const std::vector<std::string> arguments(argv + 1, argv + argc);
-    print_error(to_string(Diagnostic{{}, error.what(), {}, remedy_for(app, arguments)}));
+    print_error(to_string(explain(app, error, std::vector<std::string>(argv + 1, argv + argc))));
     return ExitStatus::bad_request;
   }
   return std::nullopt;

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include <oblique/diagram/diagram.h>
@@ -27,6 +29,15 @@ std::string range_of(const ParameterDefinition& p) {
   return text;
 }
 
+/// The part of a block's file that says what it does, without the tables that stand above it already.
+std::string definition_of(const BlockDefinition& block) {
+  std::size_t begin = block.text.size();
+  for (const std::string_view section : {"\n[equations]", "\n[implicit]", "\n[[cases]]", "\n[machine]", "\n[blocks]"}) {
+    begin = std::min(begin, block.text.find(section));
+  }
+  return begin < block.text.size() ? block.text.substr(begin + 1) : block.text;
+}
+
 std::string page_of(const BlockDefinition& block) {
   std::string text = fmt::format("{} ({})\n{}\n", block.title, block.name, block.summary);
   if (!block.doc.empty()) text += fmt::format("\n{}\n", block.doc);
@@ -46,7 +57,7 @@ std::string page_of(const BlockDefinition& block) {
     text += "\n" + table.text(5);
   }
   if (!block.source.empty()) text += fmt::format("\nsource: {}\n", block.source);
-  return text + "\n" + block.text;
+  return text + "\n" + definition_of(block);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <oblique/mechanism/mechanism.h>
+#include <oblique/patch/patch.h>
 #include <oblique/solve/solve_error.h>
 
 #include "arguments.h"
@@ -26,6 +27,8 @@ ExitStatus run_program(int argc, char** argv) {
     return report(error, ExitStatus::solver_failed);
   } catch (const MechanismError& error) {
     return report(error, error.kind() == MechanismError::Kind::assembly ? ExitStatus::no : ExitStatus::bad_request);
+  } catch (const PatchError& error) {
+    return report(error, ExitStatus::no);
   } catch (const Error& error) {
     return report(error, ExitStatus::bad_request);
   }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 
@@ -36,8 +35,7 @@ std::string table_of(const Mechanism& mechanism, const Motion& motion) {
   for (const std::size_t row : spread_rows(motion.times.size(), kMostRows)) {
     std::vector<std::string> cells;
     for (std::size_t c = 0; c < shown; ++c) {
-      const double value = columns[c].values[row];
-      cells.push_back(std::isnan(value) ? "" : short_number(value));
+      cells.push_back(short_number(columns[c].values[row], mechanism.largest_length()));
     }
     cells.emplace_back(status_name(motion.configurations[row].status));
     table.add(cells);

@@ -2,6 +2,7 @@
 #include "terminal.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 
@@ -57,7 +58,11 @@ std::size_t columns_that_fit(std::size_t column_width) {
   return std::max<std::size_t>(2, terminal / column_width);
 }
 
-std::string short_number(double value) { return fmt::format("{:.6g}", value); }
+std::string short_number(double value, double scale) {
+  constexpr double kRounding = 1e-14;
+  if (std::isnan(value)) return {};
+  return fmt::format("{:.6g}", std::abs(value) < kRounding * scale ? 0.0 : value);
+}
 
 void print(std::string_view text) { std::fwrite(text.data(), 1, text.size(), stdout); }
 

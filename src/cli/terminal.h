@@ -29,8 +29,9 @@ std::vector<std::size_t> spread_rows(std::size_t rows, std::size_t most);
 /// How many columns of `width` characters a table may have on this terminal (110 characters where there is none).
 std::size_t columns_that_fit(std::size_t width);
 
-/// "0.0125", "1.2e-07": six significant digits.
-std::string short_number(double value);
+/// "0.0125", "1.2e-07": six significant digits; empty for what is not a number. A value that is rounding beside
+/// `scale`, the size of its neighbours, is shown as 0.
+std::string short_number(double value, double scale = 0);
 
 /// Writes results to stdout.
 void print(std::string_view text);

@@ -25,6 +25,7 @@ x = { type = "integrator", in = ["-x"], initial = 1 }
   const oblique::Run run = oblique::run(program, flat, oblique::options_of(diagram.run));
   const double end = run.trajectory.at(run.trajectory.rows() - 1, run.trajectory.find("x").value());
   std::printf("x(1) = %.9f\n", end);
-  // The tolerance of the run is 1e-8 a step; over these few steps errors of that size add up to less than 1e-6.
+  // The tolerance of the run is 1e-8 a step; over these few steps errors of that size add up to less than
+  // 1e-6.
   return std::abs(end - std::exp(-1.0)) < 1e-6 ? 0 : 1;
 }

@@ -8,13 +8,15 @@ namespace oblique {
 namespace {
 
 TEST(Diagnostic, PrintsPlaceFindingExpectationAndRemedy) {
-  const Diagnostic diagnostic{{"four-bar.toml", {4, 7}}, "'length' is a table", "a number", "write length = 80"};
+  const Diagnostic diagnostic{
+      {"four-bar.toml", {4, 7}}, "'length' is a table", "a number", "write length = 80"};
   EXPECT_EQ(to_string(diagnostic),
             "four-bar.toml:4:7: 'length' is a table; expected a number\n  remedy: write length = 80");
 }
 
 TEST(Diagnostic, LeavesOutWhatIsNotKnown) {
-  EXPECT_EQ(to_string(Diagnostic{{"a.toml", {}}, "cannot open the file", {}, {}}), "a.toml: cannot open the file");
+  EXPECT_EQ(to_string(Diagnostic{{"a.toml", {}}, "cannot open the file", {}, {}}),
+            "a.toml: cannot open the file");
   EXPECT_EQ(to_string(Diagnostic{{}, "there is no block", {}, {}}), "there is no block");
 }
 
@@ -38,7 +40,8 @@ TEST(Diagnostics, ThrowsEverythingInTheOrderOfTheFile) {
   diagnostics.add({{"a", {9, 30}}, "same place", {}, {}});
   EXPECT_EQ(diagnostics.size(), 4U);
   EXPECT_THAT([&] { diagnostics.throw_if_any<ReadError>(); },
-              testing::ThrowsMessage<ReadError>("a:9:30: early\na:9:30: same place\na:10:2: late\nb:1:1: in another file"));
+              testing::ThrowsMessage<ReadError>(
+                  "a:9:30: early\na:9:30: same place\na:10:2: late\nb:1:1: in another file"));
 }
 
 TEST(NearestName, FindsASlipOfTheHand) {
@@ -64,7 +67,8 @@ TEST(Suggest, KeepsALongListShort) {
   std::vector<std::string> names;
   for (int i = 0; i < 15; ++i) names.push_back("block" + std::to_string(i));
   EXPECT_EQ(suggest("zzzzzzzzz", names),
-            "known: block0, block1, block2, block3, block4, block5, block6, block7, block8, block9, block10, block11 "
+            "known: block0, block1, block2, block3, block4, block5, block6, block7, block8, block9, block10, "
+            "block11 "
             "and 3 more");
 }
 

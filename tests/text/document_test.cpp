@@ -68,14 +68,20 @@ TEST(Document, KnowsWhereKeysAndValuesStand) {
   EXPECT_EQ(key.value.position, (SourcePosition{3, 11}));
   const Entry& inner = key.value.entries[0];
   EXPECT_EQ(inner.position, (SourcePosition{3, 13}));
-  EXPECT_EQ(inner.value.elements[1].position, (SourcePosition{3, 24})) << "columns count characters, not bytes";
+  EXPECT_EQ(inner.value.elements[1].position, (SourcePosition{3, 24}))
+      << "columns count characters, not bytes";
   EXPECT_EQ(document.root.find("b")->find("c")->position, (SourcePosition{4, 1}));
 }
 
 TEST(Document, TakesAnEmptyFileAndAByteOrderMark) {
   EXPECT_TRUE(parse_document("", "test.toml").root.entries.empty());
   EXPECT_TRUE(parse_document("# nothing\n", "test.toml").root.entries.empty());
-  EXPECT_EQ(parse_document("\xEF\xBB\xBF" "a = 1", "test.toml").root.find("a")->number, 1);
+  EXPECT_EQ(parse_document("\xEF\xBB\xBF"
+                           "a = 1",
+                           "test.toml")
+                .root.find("a")
+                ->number,
+            1);
 }
 
 TEST(Document, ReadsNotANumberAndInfinityAsTomlHasThem) {
@@ -100,20 +106,27 @@ TEST(DocumentMessages, GiveThePlaceAndHowToWriteIt) {
             "  remedy: words, and numbers with a unit, stand in quotes (\"60 rpm\"); the syntax is at "
             "https://toml.io/en/v1.0.0");
   EXPECT_THAT(message_of("type = summer\n"), StartsWith("test.toml:1:8: broken TOML: parsing value: "));
-  EXPECT_THAT(message_of("a = 1\na = 2\n"), StartsWith("test.toml:2:5: broken TOML: parsing key-value pair: cannot redefine"));
-  EXPECT_THAT(message_of("a = \"\xFF\"\n"), StartsWith("test.toml:1:5: broken TOML: Encountered invalid utf-8 sequence"));
-  EXPECT_THAT(message_of("a = 1e400"), StartsWith("test.toml:1:10: broken TOML: parsing floating-point: '1e400'"));
+  EXPECT_THAT(message_of("a = 1\na = 2\n"),
+              StartsWith("test.toml:2:5: broken TOML: parsing key-value pair: cannot redefine"));
+  EXPECT_THAT(message_of("a = \"\xFF\"\n"),
+              StartsWith("test.toml:1:5: broken TOML: Encountered invalid utf-8 sequence"));
+  EXPECT_THAT(message_of("a = 1e400"),
+              StartsWith("test.toml:1:10: broken TOML: parsing floating-point: '1e400'"));
   EXPECT_THAT(message_of("a = 99999999999999999999"), HasSubstr("is not representable in 64 bits"));
 }
 
-// The three assertions of toml++ 3.3 that malformed text breaks: each is a message with its place, in every build type.
+// The three assertions of toml++ 3.3 that malformed text breaks: each is a message with its place, in every
+// build type.
 TEST(DocumentMessages, GiveThePlaceWhereTheParserWouldAssert) {
   EXPECT_THAT(message_of("[&"), StartsWith("test.toml:1:2: broken TOML: parsing key: expected bare key"));
-  EXPECT_THAT(message_of("[φ]\n"), HasSubstr("1:2: broken TOML: parsing key: expected bare key starting character or string "
-                                             "delimiter, saw 'φ'"));
-  EXPECT_THAT(message_of("a = [}"), StartsWith("test.toml:1:6: broken TOML: parsing value: could not determine"));
+  EXPECT_THAT(message_of("[φ]\n"),
+              HasSubstr("1:2: broken TOML: parsing key: expected bare key starting character or string "
+                        "delimiter, saw 'φ'"));
+  EXPECT_THAT(message_of("a = [}"),
+              StartsWith("test.toml:1:6: broken TOML: parsing value: could not determine"));
   // Longer than the parser can step back, in a function that is noexcept.
-  EXPECT_THAT(message_of("a = 2020" + std::string(116, '_') + "-01-01 00000"), StartsWith("test.toml:1:5: broken TOML: "));
+  EXPECT_THAT(message_of("a = 2020" + std::string(116, '_') + "-01-01 00000"),
+              StartsWith("test.toml:1:5: broken TOML: "));
   EXPECT_THAT(message_of("a = 2020-01-01" + std::string(116, '_') + " 0" + std::string(200, '0')),
               StartsWith("test.toml:1:"));
 }
@@ -138,7 +151,8 @@ TEST(DeepDocument, IsRefusedAndNotACrash) {
 TEST(DeepDocument, DotsElsewhereAreNoNesting) {
   const std::string dots = repeated("a.", 100);
   EXPECT_EQ(message_of("# " + dots + "\na = \"" + dots + "\\\"" + dots + "\" # " + dots), "no error");
-  EXPECT_EQ(message_of("a = '" + dots + "'\nb = \"\"\"\n" + dots + "\"\"\"\"\" # \"" + dots + "\n"), "no error");
+  EXPECT_EQ(message_of("a = '" + dots + "'\nb = \"\"\"\n" + dots + "\"\"\"\"\" # \"" + dots + "\n"),
+            "no error");
   EXPECT_EQ(message_of("a = [" + repeated("1.5, ", 1000) + "]"), "no error");
   EXPECT_EQ(message_of("a" + repeated(".a", 19) + " = 1"), "no error");
   EXPECT_EQ(message_of("a = " + repeated("[", 31) + repeated("]", 31)), "no error");

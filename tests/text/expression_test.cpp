@@ -40,9 +40,13 @@ Expression call(Function function, std::vector<Expression> operands) {
   return e;
 }
 
-double value_of(std::string_view text) { return evaluate(parse_expression(text)); }
+double value_of(std::string_view text) {
+  return evaluate(parse_expression(text));
+}
 
-std::string reprinted(std::string_view text) { return to_string(parse_expression(text)); }
+std::string reprinted(std::string_view text) {
+  return to_string(parse_expression(text));
+}
 
 /// The whole message of a malformed expression: "column: what; expected …; remedy".
 std::string message_of(std::string_view text) {
@@ -60,14 +64,19 @@ std::string message_of(std::string_view text) {
 // The tree each text must give is built by hand: the oracle of precedence and of grouping.
 
 TEST(ExpressionParser, BindsProductsTighterThanSums) {
-  EXPECT_EQ(parse_expression("a+b*c"), node(Kind::add, {name("a"), node(Kind::multiply, {name("b"), name("c")})}));
-  EXPECT_EQ(parse_expression("(a+b)*c"), node(Kind::multiply, {node(Kind::add, {name("a"), name("b")}), name("c")}));
+  EXPECT_EQ(parse_expression("a+b*c"),
+            node(Kind::add, {name("a"), node(Kind::multiply, {name("b"), name("c")})}));
+  EXPECT_EQ(parse_expression("(a+b)*c"),
+            node(Kind::multiply, {node(Kind::add, {name("a"), name("b")}), name("c")}));
 }
 
 TEST(ExpressionParser, GroupsToTheLeftExceptPowers) {
-  EXPECT_EQ(parse_expression("a-b-c"), node(Kind::subtract, {node(Kind::subtract, {name("a"), name("b")}), name("c")}));
-  EXPECT_EQ(parse_expression("a/b/c"), node(Kind::divide, {node(Kind::divide, {name("a"), name("b")}), name("c")}));
-  EXPECT_EQ(parse_expression("a^b^c"), node(Kind::power, {name("a"), node(Kind::power, {name("b"), name("c")})}));
+  EXPECT_EQ(parse_expression("a-b-c"),
+            node(Kind::subtract, {node(Kind::subtract, {name("a"), name("b")}), name("c")}));
+  EXPECT_EQ(parse_expression("a/b/c"),
+            node(Kind::divide, {node(Kind::divide, {name("a"), name("b")}), name("c")}));
+  EXPECT_EQ(parse_expression("a^b^c"),
+            node(Kind::power, {name("a"), node(Kind::power, {name("b"), name("c")})}));
 }
 
 TEST(ExpressionParser, MinusBindsLooserThanPowers) {
@@ -91,7 +100,8 @@ TEST(ExpressionParser, ReadsLogicBelowComparisonsBelowSums) {
   const Expression less = node(Kind::less, {node(Kind::add, {name("a"), number(1)}), name("b")});
   const Expression negated = node(Kind::logical_not, {node(Kind::greater_equal, {name("c"), name("d")})});
   EXPECT_EQ(parse_expression("a + 1 < b and not c >= d or e == f"),
-            node(Kind::logical_or, {node(Kind::logical_and, {less, negated}), node(Kind::equal, {name("e"), name("f")})}));
+            node(Kind::logical_or,
+                 {node(Kind::logical_and, {less, negated}), node(Kind::equal, {name("e"), name("f")})}));
   EXPECT_EQ(parse_expression("a<=b").kind, Kind::less_equal);
   EXPECT_EQ(parse_expression("a>b").kind, Kind::greater);
   EXPECT_EQ(parse_expression("a!=b").kind, Kind::not_equal);
@@ -155,26 +165,33 @@ TEST(ExpressionMessages, KnowTheFunctions) {
   EXPECT_EQ(message_of("min()"), "1: min was given 0 arguments; expected 1 to 1000; smallest argument");
   EXPECT_EQ(message_of("sin(1"), "6: the arguments of sin are not closed; expected ',' or ')'");
   EXPECT_EQ(message_of("table(1, 0,0, 1)"),
-            "1: table was given 4 arguments; expected 5 to 1000; table(x, x1, y1, x2, y2, …): straight lines through the "
+            "1: table was given 4 arguments; expected 5 to 1000; table(x, x1, y1, x2, y2, …): straight lines "
+            "through the "
             "points");
   EXPECT_EQ(message_of("table(1, 0,0, 1,1, 2)"),
-            "1: a point of the table has no second coordinate; table(x, x1, y1, x2, y2, …): straight lines through the "
+            "1: a point of the table has no second coordinate; table(x, x1, y1, x2, y2, …): straight lines "
+            "through the "
             "points");
 }
 
 TEST(ExpressionMessages, RefuseComparisonsThatChain) {
-  EXPECT_EQ(message_of("0 < x < 1"), "7: comparisons do not chain; join two comparisons with 'and': a < b and b < c");
+  EXPECT_EQ(message_of("0 < x < 1"),
+            "7: comparisons do not chain; join two comparisons with 'and': a < b and b < c");
   EXPECT_EQ(message_of("(0 < 1) < 1"), "no error");
 }
 
 TEST(ExpressionMessages, RefuseOperatorsAsNames) {
-  EXPECT_EQ(message_of("2*and"), "3: 'and' is an operator and cannot stand here; expected a number, a name or '('");
-  EXPECT_EQ(message_of("2*or"), "3: 'or' is an operator and cannot stand here; expected a number, a name or '('");
-  EXPECT_EQ(message_of("2*not 1"), "3: 'not' is an operator and cannot stand here; expected a number, a name or '('");
+  EXPECT_EQ(message_of("2*and"),
+            "3: 'and' is an operator and cannot stand here; expected a number, a name or '('");
+  EXPECT_EQ(message_of("2*or"),
+            "3: 'or' is an operator and cannot stand here; expected a number, a name or '('");
+  EXPECT_EQ(message_of("2*not 1"),
+            "3: 'not' is an operator and cannot stand here; expected a number, a name or '('");
 }
 
 TEST(ExpressionMessages, KnowTheLimitsOfNumbers) {
-  const std::string range = "1: the number is out of range; expected a magnitude between 2.3e-308 and 1.7e308";
+  const std::string range =
+      "1: the number is out of range; expected a magnitude between 2.3e-308 and 1.7e308";
   EXPECT_EQ(message_of("1e400"), range);
   EXPECT_EQ(message_of("1e-400"), range);
   EXPECT_EQ(message_of("."), "1: '.' is not a number; expected a digit before or after the point");
@@ -184,7 +201,8 @@ TEST(ExpressionMessages, KnowTheLimitsOfNumbers) {
 TEST(ExpressionMessages, SayWhatConstantsThereAre) {
   EXPECT_EQ(message_of("2*gain"), "3: 'gain' is not a known constant; expected a number, 'pi' or 'inf'");
   EXPECT_EQ(message_of("sin"),
-            "1: 'sin' is not a known constant; expected a number, 'pi' or 'inf'; a function needs its argument: sin(…)");
+            "1: 'sin' is not a known constant; expected a number, 'pi' or 'inf'; a function needs its "
+            "argument: sin(…)");
 }
 
 // Each text would overflow the stack by far, were it parsed, walked or freed without a limit.
@@ -194,14 +212,16 @@ TEST_P(DeepExpression, IsRefusedAndNotACrash) {
   std::string text;
   for (int i = 0; i < 200'000; ++i) text += GetParam();
   text += "1";
-  EXPECT_THAT(message_of(text), testing::AnyOf(testing::HasSubstr("the expression is nested too deeply; expected at most 200 levels"),
-                                               testing::HasSubstr("the expression is too long; expected at most 1000 operators; "
-                                                                  "split it over several blocks")));
+  EXPECT_THAT(
+      message_of(text),
+      testing::AnyOf(testing::HasSubstr("the expression is nested too deeply; expected at most 200 levels"),
+                     testing::HasSubstr("the expression is too long; expected at most 1000 operators; "
+                                        "split it over several blocks")));
 }
 
 INSTANTIATE_TEST_SUITE_P(Repeated, DeepExpression,
-                         testing::Values("- ", "+", "+-", "not ", "(", "2^", "2^-", "sin(", "max(1,", "if(1,2,", "1+", "1/",
-                                         "a and ", "not 1 or "));
+                         testing::Values("- ", "+", "+-", "not ", "(", "2^", "2^-", "sin(", "max(1,",
+                                         "if(1,2,", "1+", "1/", "a and ", "not 1 or "));
 
 TEST(DeepExpression, UpToTheLimitIsRead) {
   const std::string open(198, '(');
@@ -235,33 +255,39 @@ TEST(ExpressionPrinter, PrintsInfinityAsTheName) {
 rc::Gen<Expression> random_expression(int depth) {
   const auto leaf = rc::gen::oneOf(
       // All finite doubles, negative ones too.
-      rc::gen::map(rc::gen::suchThat(rc::gen::arbitrary<double>(), [](double x) { return std::isfinite(x); }), number),
+      rc::gen::map(rc::gen::suchThat(rc::gen::arbitrary<double>(), [](double x) { return std::isfinite(x); }),
+                   number),
       rc::gen::map(rc::gen::inRange(0, 10), [](int n) { return number(n); }),
-      rc::gen::map(rc::gen::element<std::string>("x", "phi", "a.b", "tri.amp.out", "pi", "_1", "nota", "e5"), name));
+      rc::gen::map(rc::gen::element<std::string>("x", "phi", "a.b", "tri.amp.out", "pi", "_1", "nota", "e5"),
+                   name));
   if (depth == 0) return leaf;
   return rc::gen::oneOf(
       leaf,
       rc::gen::mapcat(rc::gen::element(Kind::negate, Kind::logical_not),
                       [=](Kind kind) {
-                        return rc::gen::map(random_expression(depth - 1), [=](Expression a) { return node(kind, {std::move(a)}); });
+                        return rc::gen::map(random_expression(depth - 1),
+                                            [=](Expression a) { return node(kind, {std::move(a)}); });
                       }),
-      rc::gen::mapcat(
-          rc::gen::element(Kind::add, Kind::subtract, Kind::multiply, Kind::divide, Kind::power, Kind::less, Kind::less_equal,
-                           Kind::greater, Kind::greater_equal, Kind::equal, Kind::not_equal, Kind::logical_and, Kind::logical_or),
-          [=](Kind kind) {
-            return rc::gen::map(rc::gen::pair(random_expression(depth - 1), random_expression(depth - 1)),
-                                [=](std::pair<Expression, Expression> operands) {
-                                  return node(kind, {std::move(operands.first), std::move(operands.second)});
-                                });
-          }),
+      rc::gen::mapcat(rc::gen::element(Kind::add, Kind::subtract, Kind::multiply, Kind::divide, Kind::power,
+                                       Kind::less, Kind::less_equal, Kind::greater, Kind::greater_equal,
+                                       Kind::equal, Kind::not_equal, Kind::logical_and, Kind::logical_or),
+                      [=](Kind kind) {
+                        return rc::gen::map(
+                            rc::gen::pair(random_expression(depth - 1), random_expression(depth - 1)),
+                            [=](std::pair<Expression, Expression> operands) {
+                              return node(kind, {std::move(operands.first), std::move(operands.second)});
+                            });
+                      }),
       rc::gen::mapcat(rc::gen::inRange<std::size_t>(0, functions().size()), [=](std::size_t index) {
         const FunctionInfo& info = functions()[index];
-        return rc::gen::map(rc::gen::container<std::vector<Expression>>(info.min_arguments, random_expression(depth - 1)),
-                            [&info](std::vector<Expression> operands) { return call(info.function, std::move(operands)); });
+        return rc::gen::map(
+            rc::gen::container<std::vector<Expression>>(info.min_arguments, random_expression(depth - 1)),
+            [&info](std::vector<Expression> operands) { return call(info.function, std::move(operands)); });
       }));
 }
 
-// The tree itself is the oracle, and equality of numbers is exact: the printer writes the shortest digits that round-trip.
+// The tree itself is the oracle, and equality of numbers is exact: the printer writes the shortest digits
+// that round-trip.
 RC_GTEST_PROP(ExpressionPrinter, IsReadBackUnchanged, ()) {
   const Expression expression = *random_expression(4);
   const std::string text = to_string(expression);
@@ -284,23 +310,56 @@ TEST(ExpressionValue, AgreesWithTheLibraryOnConstants) {
 TEST(ExpressionValue, OfEveryFunctionIsItsDefinition) {
   // Exact: each case is a value that the definition gives without rounding.
   const std::vector<std::pair<std::string, double>> cases{
-      {"sin(0)", 0}, {"cos(0)", 1}, {"tan(0)", 0}, {"asin(0)", 0}, {"acos(1)", 0}, {"atan(0)", 0},
-      {"atan2(0, 1)", 0}, {"exp(0)", 1}, {"log(1)", 0}, {"sqrt(9)", 3}, {"abs(-2)", 2},
-      {"min(3, 1, 2)", 1}, {"max(3, 1, 2)", 3}, {"hypot(5, 12)", 13},
-      {"sign(-3)", -1}, {"sign(0)", 0}, {"sign(3)", 1},
-      {"clip(5, -1, 1)", 1}, {"clip(-5, -1, 1)", -1}, {"clip(0.5, -1, 1)", 0.5},
-      {"deadzone(0.5, 1)", 0}, {"deadzone(3, 1)", 2}, {"deadzone(-3, 1)", -2},
-      {"step(-1)", 0}, {"step(0)", 1}, {"step(1)", 1},
-      {"table(0.5, 0, 0, 1, 10)", 5}, {"table(3, 0, 0, 1, 10, 2, 30)", 50}, {"table(-1, 0, 0, 1, 10)", -10},
-      {"if(1 < 2, 3, 4)", 3}, {"if(1 > 2, 3, 4)", 4},
+      {"sin(0)", 0},
+      {"cos(0)", 1},
+      {"tan(0)", 0},
+      {"asin(0)", 0},
+      {"acos(1)", 0},
+      {"atan(0)", 0},
+      {"atan2(0, 1)", 0},
+      {"exp(0)", 1},
+      {"log(1)", 0},
+      {"sqrt(9)", 3},
+      {"abs(-2)", 2},
+      {"min(3, 1, 2)", 1},
+      {"max(3, 1, 2)", 3},
+      {"hypot(5, 12)", 13},
+      {"sign(-3)", -1},
+      {"sign(0)", 0},
+      {"sign(3)", 1},
+      {"clip(5, -1, 1)", 1},
+      {"clip(-5, -1, 1)", -1},
+      {"clip(0.5, -1, 1)", 0.5},
+      {"deadzone(0.5, 1)", 0},
+      {"deadzone(3, 1)", 2},
+      {"deadzone(-3, 1)", -2},
+      {"step(-1)", 0},
+      {"step(0)", 1},
+      {"step(1)", 1},
+      {"table(0.5, 0, 0, 1, 10)", 5},
+      {"table(3, 0, 0, 1, 10, 2, 30)", 50},
+      {"table(-1, 0, 0, 1, 10)", -10},
+      {"if(1 < 2, 3, 4)", 3},
+      {"if(1 > 2, 3, 4)", 4},
   };
   for (const auto& [text, value] : cases) EXPECT_EQ(value_of(text), value) << text;
 }
 
 TEST(ExpressionValue, OfComparisonsAndLogicIsZeroOrOne) {
   const std::vector<std::pair<std::string, double>> cases{
-      {"1 < 1", 0}, {"1 <= 1", 1}, {"1 > 1", 0}, {"1 >= 1", 1}, {"1 == 1", 1}, {"1 != 1", 0}, {"1 and 0", 0}, {"2 and 3", 1},
-      {"0 or 5", 1}, {"0 or 0", 0}, {"not 0", 1}, {"not 7", 0}, {"2 < 3 and not 3 < 2", 1},
+      {"1 < 1", 0},
+      {"1 <= 1", 1},
+      {"1 > 1", 0},
+      {"1 >= 1", 1},
+      {"1 == 1", 1},
+      {"1 != 1", 0},
+      {"1 and 0", 0},
+      {"2 and 3", 1},
+      {"0 or 5", 1},
+      {"0 or 0", 0},
+      {"not 0", 1},
+      {"not 7", 0},
+      {"2 < 3 and not 3 < 2", 1},
   };
   for (const auto& [text, value] : cases) EXPECT_EQ(value_of(text), value) << text;
 }
@@ -330,7 +389,8 @@ TEST(Functions, StandInTheOrderOfTheirEnumeration) {
 TEST(Identifier, IsALetterAndThenLettersDigitsUnderscores) {
   EXPECT_TRUE(is_identifier("phi_2"));
   EXPECT_TRUE(is_identifier("_"));
-  for (const char* const text : {"", "2phi", "a.b", "a-b", "a b", "φ"}) EXPECT_FALSE(is_identifier(text)) << text;
+  for (const char* const text : {"", "2phi", "a.b", "a-b", "a b", "φ"})
+    EXPECT_FALSE(is_identifier(text)) << text;
 }
 
 }  // namespace

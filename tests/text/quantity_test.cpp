@@ -12,9 +12,13 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-Unit unit(std::string_view text) { return parse_unit(text).value(); }
+Unit unit(std::string_view text) {
+  return parse_unit(text).value();
+}
 
-double quantity(std::string_view text, std::string_view wanted) { return parse_quantity(text, unit(wanted)); }
+double quantity(std::string_view text, std::string_view wanted) {
+  return parse_quantity(text, unit(wanted));
+}
 
 std::string message_of(std::string_view text, std::string_view wanted) {
   try {
@@ -53,7 +57,8 @@ TEST(Unit, ReadsBothLettersForMicro) {
 }
 
 TEST(Unit, IsEmptyWhereTheTextIsNone) {
-  for (const char* const text : {"", " ", "furlong", "m/", "/s", "m//s", "m^", "m^0", "m^-1", "m^10", "m^x", "m s", "2"}) {
+  for (const char* const text :
+       {"", " ", "furlong", "m/", "/s", "m//s", "m^", "m^0", "m^-1", "m^10", "m^x", "m s", "2"}) {
     EXPECT_FALSE(parse_unit(text)) << "'" << text << "'";
   }
 }
@@ -81,28 +86,36 @@ TEST(Quantity, WithoutAUnitIsInTheWantedOne) {
 }
 
 TEST(Quantity, SaysWhichUnitWasMeant) {
-  EXPECT_EQ(message_of("60 rmp", "rad/s"), "4: there is no unit 'rmp'; expected a quantity in 'rad/s'; did you mean 'rpm'?");
-  EXPECT_EQ(message_of("60 rpms", "rad/s"), "4: there is no unit 'rpms'; expected a quantity in 'rad/s'; did you mean 'rpm'?");
+  EXPECT_EQ(message_of("60 rmp", "rad/s"),
+            "4: there is no unit 'rmp'; expected a quantity in 'rad/s'; did you mean 'rpm'?");
+  EXPECT_EQ(message_of("60 rpms", "rad/s"),
+            "4: there is no unit 'rpms'; expected a quantity in 'rad/s'; did you mean 'rpm'?");
   EXPECT_EQ(message_of("30 dge", "rad"),
             "4: there is no unit 'dge'; expected a quantity in 'rad'; did you mean 'deg'?");
-  EXPECT_EQ(message_of("30 grade", "rad"), "4: there is no unit 'grade'; expected a quantity in 'rad'; known: rad, deg, °, rev");
-  EXPECT_EQ(message_of("30 rads", "rad"), "4: there is no unit 'rads'; expected a quantity in 'rad'; did you mean 'rad'?");
+  EXPECT_EQ(message_of("30 grade", "rad"),
+            "4: there is no unit 'grade'; expected a quantity in 'rad'; known: rad, deg, °, rev");
+  EXPECT_EQ(message_of("30 rads", "rad"),
+            "4: there is no unit 'rads'; expected a quantity in 'rad'; did you mean 'rad'?");
 }
 
 TEST(Quantity, SaysHowToWriteAProduct) {
   EXPECT_EQ(message_of("2 pi", "rad"),
             "3: there is no unit 'pi'; expected a quantity in 'rad'; a product is written with '*': 2*pi");
-  EXPECT_EQ(message_of("2 pi rad", "rad"),
-            "3: there is no unit 'pi rad'; expected a quantity in 'rad'; a product is written with '*': 2*pi rad");
-  EXPECT_EQ(message_of("2 (1+1)", "1"),
-            "3: there is no unit '(1+1)'; expected a quantity in '1'; a product is written with '*': 2*(1+1)");
+  EXPECT_EQ(
+      message_of("2 pi rad", "rad"),
+      "3: there is no unit 'pi rad'; expected a quantity in 'rad'; a product is written with '*': 2*pi rad");
+  EXPECT_EQ(
+      message_of("2 (1+1)", "1"),
+      "3: there is no unit '(1+1)'; expected a quantity in '1'; a product is written with '*': 2*(1+1)");
 }
 
 TEST(Quantity, RefusesTheWrongDimension) {
   EXPECT_EQ(message_of("10 Hz", "rad/s"),
-            "4: 'Hz' is the wrong unit here; expected a quantity in 'rad/s'; give it in 'rad/s', or as a number without a unit");
+            "4: 'Hz' is the wrong unit here; expected a quantity in 'rad/s'; give it in 'rad/s', or as a "
+            "number without a unit");
   EXPECT_EQ(message_of("3 mm", "s"),
-            "3: 'mm' is the wrong unit here; expected a quantity in 's'; give it in 's', or as a number without a unit");
+            "3: 'mm' is the wrong unit here; expected a quantity in 's'; give it in 's', or as a number "
+            "without a unit");
 }
 
 TEST(Quantity, PassesOnTheErrorsOfItsExpression) {
@@ -119,11 +132,12 @@ TEST(Quantity, AsksTheLookupForNames) {
   EXPECT_DOUBLE_EQ(parse_quantity("2*width mm", unit("m"), lookup), 6e-3);
 }
 
-// There and back again is the identity; each of the four roundings costs at most half a unit in the last place, which
-// 1e-15 relative covers.
+// There and back again is the identity; each of the four roundings costs at most half a unit in the last
+// place, which 1e-15 relative covers.
 RC_GTEST_PROP(Quantity, SurvivesTheWayThroughAnotherUnit, ()) {
-  const auto pair = *rc::gen::element(std::pair{"mm", "in"}, std::pair{"rpm", "rad/s"}, std::pair{"deg", "rev"},
-                                      std::pair{"kHz", "1/s"}, std::pair{"km/h", "ft/min"});
+  const auto pair =
+      *rc::gen::element(std::pair{"mm", "in"}, std::pair{"rpm", "rad/s"}, std::pair{"deg", "rev"},
+                        std::pair{"kHz", "1/s"}, std::pair{"km/h", "ft/min"});
   const double number = *rc::gen::inRange(1, 1'000'000);
   const double there = quantity(std::to_string(static_cast<int>(number)) + " " + pair.first, pair.second);
   const double back = there * (unit(pair.second).scale / unit(pair.first).scale);

@@ -34,7 +34,8 @@ class TableReaderTest : public testing::Test {
 };
 
 TEST_F(TableReaderTest, GivesTypedValues) {
-  TableReader& reader = read("s = \"x\"\nb = true\nq = \"60 rpm\"\nn = 2\nt = {}\nl = [\"a\", \"b\"]\none = \"c\"\n");
+  TableReader& reader =
+      read("s = \"x\"\nb = true\nq = \"60 rpm\"\nn = 2\nt = {}\nl = [\"a\", \"b\"]\none = \"c\"\n");
   EXPECT_EQ(reader.string("s"), "x");
   EXPECT_EQ(reader.boolean("b"), true);
   EXPECT_DOUBLE_EQ(reader.quantity("q", "rev/min").value(), 60);
@@ -133,7 +134,8 @@ TEST_F(TableReaderTest, AsksTheLookupForNames) {
 }
 
 TEST_F(TableReaderTest, PointsIntoTheTextOfAString) {
-  TableReader& reader = read("a = \"2*gain\"\nb = \"5 φφ furlong\"\nc = '3 mm'\nd = \"\"\"\n1 +\n gain\"\"\"\n");
+  TableReader& reader =
+      read("a = \"2*gain\"\nb = \"5 φφ furlong\"\nc = '3 mm'\nd = \"\"\"\n1 +\n gain\"\"\"\n");
   reader.quantity("a", "1");
   reader.quantity("b", "m");
   reader.quantity("c", "s");
@@ -168,9 +170,10 @@ TEST_F(TableReaderTest, ChecksTheFormat) {
   check_format(read("format = \"oblique-diagram/1\"\n"), "oblique-diagram/1");
   EXPECT_EQ(findings(), "");
   check_format(read("format = \"oblique-mechanism/1\"\n"), "oblique-diagram/1");
-  EXPECT_EQ(findings(),
-            "t.toml:1:10: the format is 'oblique-mechanism/1'; expected 'oblique-diagram/1'\n"
-            "  remedy: a diagram is oblique-diagram/1, a mechanism oblique-mechanism/1, a block oblique-block/1");
+  EXPECT_EQ(
+      findings(),
+      "t.toml:1:10: the format is 'oblique-mechanism/1'; expected 'oblique-diagram/1'\n"
+      "  remedy: a diagram is oblique-diagram/1, a mechanism oblique-mechanism/1, a block oblique-block/1");
 }
 
 TEST_F(TableReaderTest, MissesTheFormat) {

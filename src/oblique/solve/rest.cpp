@@ -6,6 +6,7 @@
 
 #include <Eigen/SparseLU>
 
+#include <oblique/network/dependency_order.h>
 #include <oblique/solve/cvodes_solver.h>
 #include <oblique/solve/solve_error.h>
 
@@ -14,12 +15,12 @@ namespace {
 
 using SparseMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, std::int64_t>;
 
-/// The diagram with its clock stopped: only the states at rest_states move.
+/// The diagram with its clock stopped: only some states move.
 class SettlingSystem final : public OdeSystem {
  public:
-  SettlingSystem(const Program& program, Workspace& workspace, double t)
+  SettlingSystem(const Program& program, Workspace& workspace, double t, const std::vector<std::size_t>& moving)
       : program_(program), workspace_(workspace), t_(t), moves_(program.n_states(), false) {
-    for (const std::size_t i : rest_states(program)) moves_[i] = true;
+    for (const std::size_t i : moving) moves_[i] = true;
   }
 
   std::size_t size() const override { return program_.n_states(); }
@@ -93,10 +94,10 @@ bool polish(SettlingSystem& system, std::vector<double>& states) {
 }
 
 /// Of the moving states, the fastest first.
-std::vector<std::size_t> by_speed(SettlingSystem& system, const Program& program, const std::vector<double>& states) {
+std::vector<std::size_t> by_speed(SettlingSystem& system, std::vector<std::size_t> order,
+                                  const std::vector<double>& states) {
   std::vector<double> slopes(states.size(), 0.0);
   system.derivatives(0, states.data(), slopes.data());
-  std::vector<std::size_t> order = rest_states(program);
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return std::abs(slopes[a]) > std::abs(slopes[b]); });
   return order;
@@ -114,6 +115,56 @@ double fastest_time_constant(SettlingSystem& system, const std::vector<double>& 
   return rate > 0 ? 1 / rate : 1;
 }
 
+/// Lets the states in `moving` run until Newton's method finds them at rest nearby. False, with `states` as they were
+/// last, where they do not settle.
+bool settle(const Program& program, Workspace& workspace, double t, const std::vector<std::size_t>& moving,
+            std::vector<double>& states) {
+  // Loops differ in speed by orders of magnitude: each time wait ten times longer.
+  constexpr int kMostDecades = 18;
+  constexpr long kMostSteps = 20'000;
+  SettlingSystem system(program, workspace, t, moving);
+  double wait = fastest_time_constant(system, states);
+  for (int decade = 0; decade < kMostDecades; ++decade, wait *= 10) {
+    try {
+      CvodesSolver solver(system, 0, states, wait, {1e-6, 1e-6, kMostSteps});
+      while (solver.step() < wait) {
+      }
+      std::copy(solver.states().begin(), solver.states().end(), states.begin());
+    } catch (const SolverFailure&) {
+      return false;
+    }
+    if (polish(system, states)) return true;
+  }
+  return false;
+}
+
+/// Groups of servo states that act on each other, each after the groups whose signals it follows.
+std::vector<std::vector<std::size_t>> groups_in_order(const Program& program) {
+  const std::vector<std::size_t> servos = rest_states(program);
+  std::vector<std::uint32_t> place(program.n_states(), 0);
+  std::vector<bool> is_servo(program.n_states(), false);
+  for (std::size_t i = 0; i < servos.size(); ++i) {
+    place[servos[i]] = static_cast<std::uint32_t>(i);
+    is_servo[servos[i]] = true;
+  }
+  std::vector<std::vector<std::uint32_t>> needed(servos.size());
+  const SparsePattern& pattern = program.jacobian_pattern();
+  for (std::size_t column = 0; column < pattern.size(); ++column) {
+    for (auto k = pattern.column_starts[column]; k < pattern.column_starts[column + 1]; ++k) {
+      const auto row = static_cast<std::size_t>(pattern.rows[static_cast<std::size_t>(k)]);
+      if (is_servo[row] && is_servo[column]) needed[place[row]].push_back(place[column]);
+    }
+  }
+  Dependencies dependencies;
+  for (const auto& row : needed) dependencies.add_row(row);
+  std::vector<std::vector<std::size_t>> groups;
+  for (const OrderStep& step : dependency_order(dependencies, std::vector<bool>(servos.size(), true))) {
+    std::vector<std::size_t>& group = groups.emplace_back();
+    for (const std::uint32_t member : step.tears) group.push_back(servos[member]);
+  }
+  return groups;
+}
+
 }  // namespace
 
 std::vector<std::size_t> rest_states(const Program& program) {
@@ -127,26 +178,23 @@ std::vector<std::size_t> rest_states(const Program& program) {
 void bring_to_rest(const Program& program, Workspace& workspace, double t, std::vector<double>& states,
                    const std::string& file) {
   if (rest_states(program).empty()) return;
-  SettlingSystem system(program, workspace, t);
+  SettlingSystem all(program, workspace, t, rest_states(program));
   std::vector<double> slopes(states.size());
-  if (!system.derivatives(t, states.data(), slopes.data())) throw loop_error(program, workspace.trouble(), t, file);
+  if (!all.derivatives(t, states.data(), slopes.data())) throw loop_error(program, workspace.trouble(), t, file);
 
-  // Loops differ in speed by orders of magnitude: wait ten times longer until Newton's method finds rest nearby.
-  constexpr int kMostDecades = 18;
-  constexpr long kMostSteps = 20'000;
-  double wait = fastest_time_constant(system, states);
-  for (int decade = 0; decade < kMostDecades; ++decade, wait *= 10) {
-    try {
-      CvodesSolver solver(system, 0, states, wait, {1e-6, 1e-6, kMostSteps});
-      while (solver.step() < wait) {
-      }
-      std::copy(solver.states().begin(), solver.states().end(), states.begin());
-    } catch (const SolverFailure&) {
-      break;
-    }
-    if (polish(system, states)) return;
+  // All at once, as on the machine. A loop that follows others may be driven over its edge while those still move (a
+  // triangle that does not close for a moment): then one group after the other, along the flow of the signals.
+  std::vector<double> settled = states;
+  if (settle(program, workspace, t, rest_states(program), settled)) {
+    states = settled;
+    return;
   }
-  throw rest_error(program, by_speed(system, program, states), states, file);
+  workspace.reset();
+  for (const std::vector<std::size_t>& group : groups_in_order(program)) {
+    if (settle(program, workspace, t, group, states)) continue;
+    SettlingSystem system(program, workspace, t, group);
+    throw rest_error(program, by_speed(system, group, states), states, file);
+  }
 }
 
 }  // namespace oblique

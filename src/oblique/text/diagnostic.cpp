@@ -43,7 +43,8 @@ void Diagnostics::sort_by_place() {
 
 namespace {
 
-/// Letters to insert, drop, replace, or exchange with their neighbour to make `b` of `a` (optimal string alignment).
+/// Letters to insert, drop, replace, or exchange with their neighbour to make `b` of `a` (optimal string
+/// alignment).
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before_last(b.size() + 1);
   std::vector<std::size_t> last(b.size() + 1);
@@ -85,7 +86,9 @@ std::string suggest(std::string_view name, const std::vector<std::string>& candi
   if (candidates.empty()) return {};
   constexpr std::size_t kMostNames = 12;
   const std::size_t shown = std::min(candidates.size(), kMostNames);
-  std::string text = fmt::format("known: {}", fmt::join(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(shown), ", "));
+  std::string text = fmt::format(
+      "known: {}",
+      fmt::join(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(shown), ", "));
   if (shown < candidates.size()) text += fmt::format(" and {} more", candidates.size() - shown);
   return text;
 }

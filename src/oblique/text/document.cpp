@@ -7,22 +7,26 @@
 
 #include <fmt/format.h>
 
-// This is the only translation unit of toml++ 3.3, which asserts or assumes away things that malformed text can bring
-// about. Here an assertion that fails throws. It throws from a function because many asserts stand in functions that
-// are noexcept: a throw written there would be a warning of its own, although none of those can fail but the one below.
+// This is the only translation unit of toml++ 3.3, which asserts or assumes away things that malformed text
+// can bring about. Here an assertion that fails throws. It throws from a function because many asserts stand
+// in functions that are noexcept: a throw written there would be a warning of its own, although none of those
+// can fail but the one below.
 namespace oblique {
 namespace {
 
 struct TomlAssertion {};
 
-[[noreturn]] void toml_assertion_failed() { throw TomlAssertion{}; }
+[[noreturn]] void toml_assertion_failed() {
+  throw TomlAssertion{};
+}
 
-/// The three assertions that malformed text does break. In each case the lines after it cope and report the mistake
-/// with its place: the first two repeat the test, and the third (in a noexcept function, for a date of more than 127
-/// characters) only makes the parser read on two characters late, where no date can be.
+/// The three assertions that malformed text does break. In each case the lines after it cope and report the
+/// mistake with its place: the first two repeat the test, and the third (in a noexcept function, for a date
+/// of more than 127 characters) only makes the parser read on two characters late, where no date can be.
 constexpr bool left_to_the_parser(std::string_view condition) {
   return condition == "is_bare_key_character(*cp) || is_string_delimiter(*cp)" ||
-         condition == "!is_value_terminator(*cp)" || condition == "negative_offset_ + count <= history_.count";
+         condition == "!is_value_terminator(*cp)" ||
+         condition == "negative_offset_ + count <= history_.count";
 }
 
 /// toml++ frees nested values by recursion, so nesting must be bounded by far less than the stack.
@@ -146,18 +150,25 @@ std::optional<SourcePosition> find_overlong_key(std::string_view text) {
 }  // namespace
 
 const Value* Value::find(std::string_view key) const {
-  const auto found = std::find_if(entries.begin(), entries.end(), [&](const Entry& e) { return e.key == key; });
+  const auto found =
+      std::find_if(entries.begin(), entries.end(), [&](const Entry& e) { return e.key == key; });
   return found == entries.end() ? nullptr : &found->value;
 }
 
 std::string_view kind_name(Value::Kind kind) {
   switch (kind) {
-    case Value::Kind::boolean: return "true or false";
-    case Value::Kind::number: return "a number";
-    case Value::Kind::string: return "a string";
-    case Value::Kind::array: return "an array";
-    case Value::Kind::table: return "a table";
-    case Value::Kind::date: return "a date";
+    case Value::Kind::boolean:
+      return "true or false";
+    case Value::Kind::number:
+      return "a number";
+    case Value::Kind::string:
+      return "a string";
+    case Value::Kind::array:
+      return "an array";
+    case Value::Kind::table:
+      return "a table";
+    case Value::Kind::date:
+      return "a date";
   }
   return "a value";
 }
@@ -176,13 +187,16 @@ Document parse_document(std::string_view text, std::string file) {
     constexpr std::string_view kPrefix = "Error while ";
     if (description.starts_with(kPrefix)) description.remove_prefix(kPrefix.size());
     fail(std::move(file), position_of(error.source().begin), fmt::format("broken TOML: {}", description),
-         "words, and numbers with a unit, stand in quotes (\"60 rpm\"); the syntax is at https://toml.io/en/v1.0.0");
+         "words, and numbers with a unit, stand in quotes (\"60 rpm\"); the syntax is at "
+         "https://toml.io/en/v1.0.0");
   } catch (const TomlAssertion&) {
     fail(std::move(file), {}, "broken TOML: the parser lost its way in this file",
          "look for an unfinished [table] header or string");
   }
 }
 
-Document read_document(const std::filesystem::path& path) { return parse_document(read_file(path), path.string()); }
+Document read_document(const std::filesystem::path& path) {
+  return parse_document(read_file(path), path.string());
+}
 
 }  // namespace oblique

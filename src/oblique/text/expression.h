@@ -13,10 +13,12 @@
 namespace oblique {
 
 /// The functions of the expression language.
+// clang-format off
 enum class Function {
   sin, cos, tan, asin, acos, atan, atan2, exp, log, sqrt, abs, min, max, hypot,
   sign, clip, deadzone, step, table, if_,
 };
+// clang-format on
 
 /// What the language knows of one function.
 struct FunctionInfo {
@@ -33,17 +35,19 @@ std::span<const FunctionInfo> functions();
 
 /// A parsed expression; a value type, one node and its operands.
 struct Expression {
+  // clang-format off
   enum class Kind {
     number, name, call,
     negate, add, subtract, multiply, divide, power,
     less, less_equal, greater, greater_equal, equal, not_equal, logical_and, logical_or, logical_not,
   };
+  // clang-format on
   Kind kind = Kind::number;
-  double number = 0;                 ///< for `number`
-  std::string name;                  ///< for `name`; dots join the parts of a path ("tri.amp.out")
-  Function function = Function::sin; ///< for `call`
+  double number = 0;                  ///< for `number`
+  std::string name;                   ///< for `name`; dots join the parts of a path ("tri.amp.out")
+  Function function = Function::sin;  ///< for `call`
   std::vector<Expression> operands;
-  int column = 0;                    ///< of the operator or the first character, from 1; not part of the value
+  int column = 0;  ///< of the operator or the first character, from 1; not part of the value
 
   bool operator==(const Expression& other) const;
 };
@@ -56,16 +60,16 @@ struct ExpressionError {
   std::string remedy;
 };
 
-/// Parses a whole text. Grammar, loosest first: `or`, `and`, `not`, comparisons (which do not chain), `+ -`, `* /`,
-/// unary `-`, `^` (right associative), calls, names, numbers, parentheses. A minus before a lone number makes a negative
-/// number. At most 200 levels and 1000 operators. Throws ExpressionError.
+/// Parses a whole text. Grammar, loosest first: `or`, `and`, `not`, comparisons (which do not chain), `+ -`,
+/// `* /`, unary `-`, `^` (right associative), calls, names, numbers, parentheses. A minus before a lone
+/// number makes a negative number. At most 200 levels and 1000 operators. Throws ExpressionError.
 Expression parse_expression(std::string_view text);
 
 /// Parses the longest expression at the front of `text` and sets `rest` to where it ends (for "30 deg").
 Expression parse_expression_prefix(std::string_view text, std::size_t& rest);
 
-/// Prints with as few parentheses as the grammar needs; `parse_expression` reads it back unchanged (an infinite number
-/// as the name `inf`; not-a-number has no text).
+/// Prints with as few parentheses as the grammar needs; `parse_expression` reads it back unchanged (an
+/// infinite number as the name `inf`; not-a-number has no text).
 std::string to_string(const Expression& expression);
 
 /// Value of a name inside a constant expression; `pi` and `inf` need no entry.

@@ -13,7 +13,8 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-Unit base_unit(std::string_view name, double scale, std::initializer_list<std::pair<Unit::Base, int>> powers) {
+Unit base_unit(std::string_view name, double scale,
+               std::initializer_list<std::pair<Unit::Base, int>> powers) {
   Unit unit{std::string(name), scale, {}};
   for (const auto& [base, power] : powers) unit.exponents[base] = power;
   return unit;
@@ -81,10 +82,12 @@ std::optional<Unit> parse_unit(std::string_view text) {
       factor = trim(factor.substr(0, caret));
     }
     const auto& names = named_units();
-    const auto known = std::find_if(names.begin(), names.end(), [&](const Unit& u) { return u.name == factor; });
+    const auto known =
+        std::find_if(names.begin(), names.end(), [&](const Unit& u) { return u.name == factor; });
     if (known == names.end()) return std::nullopt;
     unit.scale *= std::pow(known->scale, sign * power);
-    for (std::size_t i = 0; i < unit.exponents.size(); ++i) unit.exponents[i] += sign * power * known->exponents[i];
+    for (std::size_t i = 0; i < unit.exponents.size(); ++i)
+      unit.exponents[i] += sign * power * known->exponents[i];
     if (end == std::string_view::npos) return unit;
     sign = text[end] == '/' ? -1 : 1;
     text.remove_prefix(end + 1);

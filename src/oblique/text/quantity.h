@@ -10,8 +10,8 @@
 
 namespace oblique {
 
-/// A unit of measure: its name, its size in coherent base units (m, s, rad, kg, V, machine unit), and its dimension.
-/// An angle is a dimension of its own, so that "60 rpm" is never mistaken for "1 Hz".
+/// A unit of measure: its name, its size in coherent base units (m, s, rad, kg, V, machine unit), and its
+/// dimension. An angle is a dimension of its own, so that "60 rpm" is never mistaken for "1 Hz".
 struct Unit {
   enum Base { length, time, angle, mass, voltage, signal, kBases };
   std::string name;
@@ -21,7 +21,8 @@ struct Unit {
   bool same_dimension(const Unit& other) const { return exponents == other.exponents; }
 };
 
-/// Reads a unit: base names joined by `*`, `/` and `^n` ("mm/s^2", "rad/s", "machine unit", "1"). Empty if unknown.
+/// Reads a unit: base names joined by `*`, `/` and `^n` ("mm/s^2", "rad/s", "machine unit", "1"). Empty if
+/// unknown.
 std::optional<Unit> parse_unit(std::string_view text);
 
 /// Reads a constant expression with an optional unit ("60 rpm", "2*pi/3", "30 deg") and gives it in `wanted`;

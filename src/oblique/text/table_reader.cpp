@@ -8,10 +8,12 @@
 
 namespace oblique {
 
-TableReader::TableReader(const std::string& file, const Value& table, std::string what, Diagnostics& diagnostics)
-    : file_(file), table_(&table), what_(std::move(what)), diagnostics_(&diagnostics) {
+TableReader::TableReader(std::string file, const Value& table, std::string what,
+                         Diagnostics& diagnostics)
+    : file_(std::move(file)), table_(&table), what_(std::move(what)), diagnostics_(&diagnostics) {
   if (table.kind != Value::Kind::table) {
-    diagnostics_->add({place(table.position), fmt::format("{} is {}", what_, kind_name(table.kind)), "a table", {}});
+    diagnostics_->add(
+        {place(table.position), fmt::format("{} is {}", what_, kind_name(table.kind)), "a table", {}});
   }
 }
 
@@ -23,7 +25,8 @@ const Value* TableReader::find(std::string_view key) {
 const Value* TableReader::expect(std::string_view key, Value::Kind kind) {
   const Value* const value = find(key);
   if (value == nullptr || value->kind == kind) return value;
-  report(key, fmt::format("'{}' of {} is {}", key, what_, kind_name(value->kind)), std::string(kind_name(kind)));
+  report(key, fmt::format("'{}' of {} is {}", key, what_, kind_name(value->kind)),
+         std::string(kind_name(kind)));
   return nullptr;
 }
 
@@ -37,9 +40,12 @@ std::optional<bool> TableReader::boolean(std::string_view key) {
   return value == nullptr ? std::nullopt : std::optional(value->boolean);
 }
 
-const Value* TableReader::table(std::string_view key) { return expect(key, Value::Kind::table); }
+const Value* TableReader::table(std::string_view key) {
+  return expect(key, Value::Kind::table);
+}
 
-std::optional<double> TableReader::quantity(std::string_view key, std::string_view unit, const NameLookup& lookup) {
+std::optional<double> TableReader::quantity(std::string_view key, std::string_view unit,
+                                            const NameLookup& lookup) {
   const Value* const value = find(key);
   if (value == nullptr) return std::nullopt;
   return read_quantity(file_, *value, unit, fmt::format("'{}' of {}", key, what_), *diagnostics_, lookup);
@@ -89,13 +95,16 @@ void TableReader::report(std::string_view key, std::string what, std::string exp
 void TableReader::finish() {
   for (const Entry& entry : table_->entries) {
     if (std::find(known_.begin(), known_.end(), entry.key) != known_.end()) continue;
-    diagnostics_->add({place(entry.position), fmt::format("unknown key '{}' in {}", entry.key, what_), {},
+    diagnostics_->add({place(entry.position),
+                       fmt::format("unknown key '{}' in {}", entry.key, what_),
+                       {},
                        suggest(entry.key, known_)});
   }
 }
 
 std::optional<double> read_quantity(const std::string& file, const Value& value, std::string_view unit,
-                                    const std::string& what, Diagnostics& diagnostics, const NameLookup& lookup) {
+                                    const std::string& what, Diagnostics& diagnostics,
+                                    const NameLookup& lookup) {
   double number = 0;
   if (value.kind == Value::Kind::number) {
     number = value.number;
@@ -114,7 +123,8 @@ std::optional<double> read_quantity(const std::string& file, const Value& value,
     return std::nullopt;
   }
   if (std::isnan(number)) {
-    diagnostics.add({{file, value.position}, fmt::format("{} has no value (not a number)", what), "a number", {}});
+    diagnostics.add(
+        {{file, value.position}, fmt::format("{} has no value (not a number)", what), "a number", {}});
     return std::nullopt;
   }
   return number;
@@ -127,8 +137,8 @@ Diagnostic to_diagnostic(const ExpressionError& error, const std::string& file, 
   if (text.find('\n') == std::string_view::npos) {
     // The text starts after its quote; columns count characters, not bytes.
     const std::string_view before = text.substr(0, static_cast<std::size_t>(std::max(error.column - 1, 0)));
-    const auto continuations =
-        std::count_if(before.begin(), before.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; });
+    const auto continuations = std::count_if(
+        before.begin(), before.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; });
     at.column += error.column - static_cast<int>(continuations);
   }
   return {{file, at}, fmt::format("{}: {}", what, error.what), error.expected, error.remedy};

@@ -12,11 +12,12 @@
 namespace oblique {
 
 /// Reads the keys of one table, adding every finding to a `Diagnostics` instead of stopping at the first.
-/// Each getter marks its key as known; `finish` reports the keys nobody asked for, with the nearest known name.
+/// Each getter marks its key as known; `finish` reports the keys nobody asked for, with the nearest known
+/// name.
 class TableReader {
  public:
-  /// `what` names the table in messages ("[run]", "block 'phi'"); all references must outlive the reader.
-  TableReader(const std::string& file, const Value& table, std::string what, Diagnostics& diagnostics);
+  /// `what` names the table in messages ("[run]", "block 'phi'"); the references must outlive the reader.
+  TableReader(std::string file, const Value& table, std::string what, Diagnostics& diagnostics);
 
   const Value& table() const { return *table_; }
   const std::string& what() const { return what_; }
@@ -57,14 +58,14 @@ class TableReader {
   std::vector<std::string> known_;
 };
 
-/// A number or a string holding a quantity, in `unit` (which must be one `parse_unit` knows); a finding (also of not-a-
-/// number; infinity is a number) goes to `diagnostics` with `what` as the subject of the sentence.
+/// A number or a string holding a quantity, in `unit` (which must be one `parse_unit` knows); a finding (also
+/// of not-a- number; infinity is a number) goes to `diagnostics` with `what` as the subject of the sentence.
 std::optional<double> read_quantity(const std::string& file, const Value& value, std::string_view unit,
                                     const std::string& what, Diagnostics& diagnostics,
                                     const NameLookup& lookup = {});
 
-/// Turns the error of an expression inside a string value into a diagnostic at the right column (of a string of several
-/// lines: at its beginning).
+/// Turns the error of an expression inside a string value into a diagnostic at the right column (of a string
+/// of several lines: at its beginning).
 Diagnostic to_diagnostic(const ExpressionError& error, const std::string& file, const Value& string_value,
                          const std::string& what);
 

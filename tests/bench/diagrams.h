@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include <oblique/diagram/flat_diagram.h>
+#include <oblique/network/program.h>
+#include <oblique/solve/run.h>
+
+namespace oblique::bench {
+
+/// A chain of `n` servo amplifiers, each tracking the one before it, the first a cosine from a crank that
+/// turns once:
+///
+///     crank.cos ──► s1 ──► s2 ──► … ──► sn        r_k = out_k − out_{k−1}
+///
+/// Weights of 1 carry the signal to the last block: with 0.9 it would underflow after a few thousand of them,
+/// and denormal numbers, not the engine, would be measured.
+std::string servo_chain_text(int n);
+
+/// Triangles side by side, `n` dyads that one crank drives: 23 primitive blocks each.
+std::string dyad_row_text(int n);
+
+/// A diagram with all that `run` needs. `library` must outlive it.
+struct CompiledDiagram {
+  CompiledDiagram(const Diagram& diagram, const BlockLibrary& library)
+      : flat(flatten(diagram, library)), program(assemble(flat)), options(options_of(diagram.run)) {}
+
+  FlatDiagram flat;
+  Program program;
+  RunOptions options;
+};
+
+/// A run and the CPU time of its parts [s].
+struct TimedRun {
+  Run run;
+  double rest = 0;         ///< to bring the servo loops to rest
+  double integration = 0;  ///< all that comes after it: integration and sampling
+};
+
+TimedRun timed_run(const CompiledDiagram& diagram);
+
+}  // namespace oblique::bench

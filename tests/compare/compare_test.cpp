@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/compare/compare.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/solve/run.h>
+
+namespace oblique {
+namespace {
+
+Mechanism shipped(const std::string& name) {
+  return read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/" + name + ".toml");
+}
+
+struct Case {
+  const char* mechanism;
+  double relative_error;  ///< allowed at gain 1e6, of the largest link
+};
+
+void PrintTo(const Case& tested, std::ostream* out) { *out << tested.mechanism; }
+
+class Convergence : public testing::TestWithParam<Case> {};
+INSTANTIATE_TEST_SUITE_P(Compare, Convergence,
+                         testing::Values(Case{"four-bar", 1e-6}, Case{"six-bar", 1e-6}, Case{"jansen", 1e-5}),
+                         [](const auto& tested) {
+                           std::string name = tested.param.mechanism;
+                           name.erase(std::remove(name.begin(), name.end(), '-'), name.end());
+                           return name;
+                         });
+
+// A servo loop errs by −x/(μ ∂r/∂x): the error of the whole falls as 1/μ, from gain 1e2 to 1e6.
+TEST_P(Convergence, ErrorFallsWithTheGainOverFourDecades) {
+  const Comparison comparison = compare(shipped(GetParam().mechanism), BlockLibrary::shipped());
+  ASSERT_EQ(comparison.runs.size(), 5U);
+  ASSERT_TRUE(comparison.order);
+  EXPECT_NEAR(*comparison.order, -1, 0.05);
+  for (std::size_t i = 1; i < comparison.runs.size(); ++i) {
+    const double decade = comparison.runs[i].max_error / comparison.runs[i - 1].max_error;
+    EXPECT_NEAR(std::log10(decade), -1, 0.05) << "gain " << comparison.runs[i].gain;
+  }
+  EXPECT_LT(comparison.runs.back().max_error, GetParam().relative_error * comparison.size);
+  // The tolerance must not hide the last run: 1e-10 over some hundred steps against 1e-7.
+  EXPECT_LT(comparison.floor, 0.1 * comparison.runs.back().max_error);
+  for (const GainRun& run : comparison.runs) {
+    EXPECT_TRUE(run.stable) << run.gain;
+    EXPECT_LT(run.slowest_pole, 0);
+    EXPECT_TRUE(run.overloads.empty()) << run.gain << " " << run.overloads.front().signal;
+    EXPECT_LE(run.rms_error, run.max_error);
+    EXPECT_GT(run.steps, 0);
+  }
+}
+
+TEST(Compare, SizeIsTheLargestLink) {
+  CompareOptions options;
+  options.gains = {1e3};
+  const Comparison comparison = compare(shipped("six-bar"), BlockLibrary::shipped(), options);
+  EXPECT_EQ(comparison.size, 150);
+  EXPECT_EQ(comparison.unit, "mm");
+  EXPECT_FALSE(comparison.order);  // one gain has no slope
+}
+
+TEST(Compare, ReportsProgressUpToTheEnd) {
+  CompareOptions options;
+  options.gains = {1e3, 1e4};
+  double last = 0;
+  options.progress = [&](double fraction) {
+    EXPECT_GE(fraction, last);
+    last = fraction;
+  };
+  compare(shipped("four-bar"), BlockLibrary::shipped(), options);
+  EXPECT_GT(last, 0.6);
+  EXPECT_LE(last, 1);
+}
+
+// At rest every amplifier stands where its own equation with the finite gain says (w = input_gain, m = 1/(w μ)):
+//
+//     L² + m L = d²,   c (L + m) = dx,   s (L + m) = dy,
+//     cos γ (L + m) = L²/(2a) + (a² − b²)/(2a),   sin²γ + m sin γ = 1 − cos²γ
+//
+// so the static error of a patched dyad is known in closed form; the run must start there.
+TEST(DyadBlock, RestsWhereItsFiniteGainPutsIt) {
+  const char* const text = R"(
+format = "oblique-diagram/1"
+[run]
+until = 1e-9
+samples = 2
+[blocks]
+one = { type = "constant", value = 1 }
+C   = { type = "dyad-rrr", px = "0.1*one", py = "0.2*one", qx = "0.7*one", qy = "-0.1*one", r1 = 0.5, r2 = 0.4, side = -1, reach = 0.8, gain = 200, bandwidth = "50 Hz", input_gain = 5 }
+[outputs]
+x = "C.x"
+y = "C.y"
+)";
+  const BlockLibrary library = BlockLibrary::shipped();
+  const Diagram diagram = parse_diagram(text, "dyad.toml");
+  const FlatDiagram flat = flatten(diagram, library);
+  const oblique::Run result = run(Program(assemble(flat)), flat, options_of(diagram.run));
+
+  const double reach = 0.8, m = 1 / (5.0 * 200), a = 0.5 / reach, b = 0.4 / reach;
+  const double dx = 0.6 / reach, dy = -0.3 / reach;
+  const auto root = [](double half, double square) { return -half + std::sqrt(half * half + square); };
+  const double length = root(m / 2, dx * dx + dy * dy);
+  const double c = dx / (length + m), s = dy / (length + m);
+  const double cosine = (length * length / (2 * a) + (a * a - b * b) / (2 * a)) / (length + m);
+  const double sine = root(m / 2, 1 - cosine * cosine);
+  // Newton's method ends at rounding, magnified by 1/(sin γ) at most.
+  EXPECT_NEAR(result.trajectory.at(0, 1), 0.1 + 0.5 * (c * cosine + s * sine), 1e-13);
+  EXPECT_NEAR(result.trajectory.at(0, 2), 0.2 + 0.5 * (s * cosine - c * sine), 1e-13);
+}
+
+}  // namespace
+}  // namespace oblique

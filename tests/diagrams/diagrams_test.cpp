@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+// Every diagram that is shipped runs and gives what its [expect] says; every mechanism can be patched and agrees.
+#include <algorithm>
+#include <filesystem>
+
+#include <gtest/gtest.h>
+
+#include <oblique/compare/compare.h>
+#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/solve/expectation_check.h>
+
+namespace oblique {
+namespace {
+
+std::vector<std::string> files_in(const std::string& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/" + folder)) {
+    names.push_back(folder + "/" + entry.path().filename().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::string test_name(const testing::TestParamInfo<std::string>& tested) {
+  std::string name;
+  for (const char c : tested.param) {
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0) name += c;
+  }
+  return name;
+}
+
+std::string path_of(const std::string& name) { return std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/" + name; }
+
+class Lesson : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Diagrams, Lesson, testing::ValuesIn(files_in("lessons")), test_name);
+
+TEST_P(Lesson, GivesWhatItExpects) {
+  const BlockLibrary library = BlockLibrary::shipped();
+  const Diagram diagram = read_diagram(path_of(GetParam()));
+  ASSERT_FALSE(diagram.expectations.empty());
+  const FlatDiagram flat = flatten(diagram, library);
+  RunOptions options = options_of(diagram.run);
+  options.extra_times = expectation_times(diagram, options.until);
+  const oblique::Run result = run(Program(assemble(flat)), flat, options);
+  for (const ExpectationResult& expectation : check_expectations(diagram, result)) {
+    EXPECT_TRUE(expectation.met) << expectation.expectation.text << " = " << expectation.actual;
+  }
+}
+
+class PatchedMechanism : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Diagrams, PatchedMechanism, testing::ValuesIn(files_in("mechanisms")), test_name);
+
+TEST_P(PatchedMechanism, AgreesWithItsExactMotion) {
+  const Mechanism mechanism = read_mechanism(path_of(GetParam()));
+  CompareOptions options;
+  options.gains = {1e4};
+  const Comparison comparison = compare(mechanism, BlockLibrary::shipped(), options);
+  EXPECT_LT(comparison.runs[0].max_error, 1e-3 * comparison.size);  // 1/gain, magnified at most ten times
+  EXPECT_TRUE(comparison.runs[0].stable);
+}
+
+}  // namespace
+}  // namespace oblique

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+#include "targets.h"
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+#include <oblique/text/document.h>
+#include <oblique/text/quantity.h>
+
+namespace oblique::fuzz {
+namespace {
+
+void require(bool promise, const char* what) {
+  if (promise) return;
+  std::fprintf(stderr, "broken promise: %s\n", what);
+  std::abort();
+}
+
+bool holds_infinite_number(const Expression& e) {
+  if (e.kind == Expression::Kind::number && !std::isfinite(e.number)) return true;
+  for (const Expression& operand : e.operands) {
+    if (holds_infinite_number(operand)) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+void document(std::string_view bytes) {
+  try {
+    parse_document(bytes, "fuzz.toml");
+  } catch (const ReadError& error) {
+    require(error.diagnostics().size() == 1, "broken TOML is one finding");
+    require(error.diagnostics()[0].place.position.line > 0, "broken TOML has a place");
+  }
+}
+
+void expression(std::string_view bytes) {
+  try {
+    const Expression e = parse_expression(bytes);
+    require(!holds_infinite_number(e), "a number in the text of an expression is finite");
+    const std::string text = to_string(e);
+    require(parse_expression(text) == e, "an expression is printed and read back unchanged");
+    evaluate(e, [](std::string_view name) { return std::optional(static_cast<double>(name.size())); });
+  } catch (const ExpressionError& error) {
+    require(error.column >= 1 && static_cast<std::size_t>(error.column) <= bytes.size() + 1,
+            "a column lies in the text");
+  }
+  try {
+    parse_quantity(bytes, parse_unit("rad/s").value());
+  } catch (const ExpressionError& error) {
+    require(error.column >= 1 && static_cast<std::size_t>(error.column) <= bytes.size() + 1,
+            "a column lies in the text");
+  }
+}
+
+}  // namespace oblique::fuzz

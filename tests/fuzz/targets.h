@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <functional>
+#include <string_view>
+
+// What is fuzzed: each takes any bytes, and may refuse them with the exceptions of its stage and in no other
+// way. A broken promise of the stage itself ends the process.
+namespace oblique::fuzz {
+
+/// A TOML file: read, or refused at a place.
+void document(std::string_view bytes);
+
+/// An expression (printed and read back unchanged) and a quantity.
+void expression(std::string_view bytes);
+
+}  // namespace oblique::fuzz

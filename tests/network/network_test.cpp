@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/network/network.h>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "../support/compiled.h"
+
+namespace oblique {
+namespace {
+
+using testing::Compiled;
+using testing::message_of;
+using testing::shipped_blocks_and;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+/// What `assemble` says about a block with these tables, wired to an integrator.
+std::string refusal_of(const std::string& tables) {
+  const BlockLibrary library = shipped_blocks_and("odd", "[inputs]\nin = {}\n[outputs]\nout = {}\n" + tables);
+  const std::string text = testing::diagram_text(
+      "o = { type = \"odd\", in = \"x\" }\nx = { type = \"integrator\", in = [\"-x\"], initial = 1 }\n");
+  return message_of<NetworkError>([&] { assemble(flatten(parse_diagram(text, "d.toml"), library)); });
+}
+
+double slope_at(const Compiled& made, double x) {
+  Workspace workspace(made.program);
+  double slope = 0;
+  EXPECT_TRUE(made.program.derivatives(0, &x, &slope, workspace));
+  return slope;
+}
+
+// Whatever switches is refused where its argument varies, and only there.
+
+TEST(Network, RefusesASwitchingFunctionOfASignal) {
+  EXPECT_EQ(refusal_of("[equations]\nout = \"2*min(in, 0.5)\"\n"),
+            "odd.toml:8: equation of 'o': min of a varying signal switches inside a step; "
+            "expected a smooth function, or constant arguments\n"
+            "  remedy: this version has no events: use smooth functions of the signals");
+}
+
+TEST(Network, RefusesAConditionOnASignal) {
+  EXPECT_THAT(refusal_of("[equations]\nout = \"if(in > 0, in, 1)\"\n"),
+              ::testing::HasSubstr("equation of 'o': a condition of a varying signal switches inside a step"));
+  EXPECT_THAT(refusal_of("[equations]\nout = \"if(sin(in), in, 1)\"\n"),
+              ::testing::HasSubstr("equation of 'o': if of a varying signal switches inside a step"));
+}
+
+TEST(Network, FoldsSwitchingFunctionsOfConstants) {
+  const BlockLibrary library = shipped_blocks_and("odd", R"toml([inputs]
+in = {}
+[outputs]
+out = {}
+[parameters]
+p = { default = -3 }
+[equations]
+out = "if(p < 0 and abs(p) == 3, max(p, 2)*in, min(in, 0))"
+)toml");
+  const Compiled made("o = { type = \"odd\", in = \"x\" }\nx = { type = \"integrator\", in = [\"o\"] }\n", "", library);
+  EXPECT_EQ(slope_at(made, 0.5), 1.0);
+}
+
+TEST(Network, RefusesAnEquationThatIsNeverFinite) {
+  EXPECT_EQ(refusal_of("[parameters]\np = { default = 0 }\n[equations]\nout = \"1/p\"\n"),
+            "d.toml:3:1: 'o' is inf whatever the signals are; expected a finite value\n"
+            "  remedy: check the parameters in '1/p'");
+  EXPECT_EQ(refusal_of("[parameters]\np = { default = 0 }\n[equations]\nout = \"in + log(p - 1)\"\n"), "")
+      << "it depends on a signal: found out when it runs";
+}
+
+TEST(Network, RefusesAStartThatIsNotFinite) {
+  EXPECT_EQ(refusal_of("[parameters]\np = { default = 0 }\n[equations]\n\"der(out)\" = \"in\"\n[start]\nout = \"1/p\"\n"),
+            "d.toml:3:1: 'o' would start at inf; expected a finite start value\n"
+            "  remedy: give the block another 'initial'");
+}
+
+TEST(Network, ReportsAllFindingsTogether) {
+  const BlockLibrary library = shipped_blocks_and(
+      "odd", "[inputs]\nin = {}\n[outputs]\na = {}\nb = {}\n[equations]\na = \"abs(in)\"\nb = \"sign(in)\"\n");
+  const std::string text = testing::diagram_text(
+      "o = { type = \"odd\", in = \"x\" }\nx = { type = \"integrator\", in = [\"-x\"] }\n");
+  try {
+    assemble(flatten(parse_diagram(text, "d.toml"), library));
+    FAIL() << "nothing was refused";
+  } catch (const NetworkError& error) {
+    EXPECT_EQ(error.diagnostics().size(), 2U);
+  }
+}
+
+// Direct feed-through is a matter of paths, and only after flattening.
+
+constexpr const char* kTwoPaths = R"([inputs]
+a = {}
+b = {}
+[outputs]
+fast = { wire = "double" }
+slow = { wire = "store" }
+[blocks]
+double = { type = "summer", in = ["2*a"] }
+store = { type = "integrator", in = ["b"], initial = 1 }
+)";
+
+//        ┌──────────── p ───────────┐
+//   ┌─▶ a ──▶ double (direct) ──▶ fast ──┐
+//   │┌▶ b ──▶ store (∫) ───────▶ slow ─┐ │
+//   ││  └──────────────────────────┘   │ │
+//   │└─────────────────────────────────┼─┘
+//   └──────────────────────────────────┘
+// Block by block p feeds through to itself; path by path the only way round leads through the integrator.
+
+TEST(FeedThrough, OfACompositeIsDecidedPathByPath) {
+  const BlockLibrary library = shipped_blocks_and("two-paths", kTwoPaths);
+  const Compiled made("p = { type = \"two-paths\", a = \"p.slow\", b = \"p.fast\" }\n", "", library);
+  EXPECT_THAT(made.program.loops(), IsEmpty());
+  EXPECT_EQ(slope_at(made, 0.5), 1.0);  // d slow/dt = fast = 2 slow
+}
+
+TEST(FeedThrough, FindsTheLoopThatIsThere) {
+  const BlockLibrary library = shipped_blocks_and("two-paths", kTwoPaths);
+  const Compiled made("p = { type = \"two-paths\", a = \"s\", b = \"p.fast\" }\n"
+                      "s = { type = \"summer\", in = [\"-p.fast\", \"p.slow\"] }\n",
+                      "", library);
+  ASSERT_EQ(made.program.loops().size(), 1U);
+  EXPECT_THAT(made.program.loops()[0].members, ElementsAre("p.double", "s"));
+  EXPECT_DOUBLE_EQ(slope_at(made, 0.6), 0.4);  // fast = 2 s, s = slow − fast
+}
+
+TEST(FeedThrough, OfTwoOutputsOfOneBlockIsApart) {
+  // u = a and v = b: wiring u to b closes no loop, although it leads from the block to itself.
+  const BlockLibrary library = shipped_blocks_and(
+      "pair", "[inputs]\na = {}\nb = {}\n[outputs]\nu = {}\nv = {}\n[equations]\nu = \"3*a\"\nv = \"b\"\n");
+  const Compiled made("p = { type = \"pair\", a = \"x\", b = \"p.u\" }\nx = { type = \"integrator\", in = [\"p.v\"] }\n",
+                      "", library);
+  EXPECT_THAT(made.program.loops(), IsEmpty());
+  EXPECT_EQ(slope_at(made, 0.5), 1.5);
+}
+
+TEST(FeedThrough, EndsAtAServoAmplifierOfFiniteBandwidth) {
+  const auto loops = [](const std::string& bandwidth) {
+    return Compiled("q = { type = \"servo-amplifier\", in = [\"2*q\", \"-x\"], bandwidth = " + bandwidth +
+                    " }\nx = { type = \"integrator\", in = [\"q\"] }\n")
+        .program.loops()
+        .size();
+  };
+  EXPECT_EQ(loops("\"10 Hz\""), 0U);
+  EXPECT_EQ(loops("inf"), 1U);
+}
+
+// Machines whose summers and integrators invert.
+
+TEST(Polarity, TurnsSummersAndIntegratorsOnly) {
+  const std::string blocks = "s = { type = \"summer\", in = [\"2*x\", \"i\"] }\n"
+                             "i = { type = \"inverter\", in = \"x\" }\n"
+                             "x = { type = \"integrator\", in = [\"s\"], initial = 0.25 }\n";
+  const Compiled plain(blocks), turned(blocks, "[machine]\ninverting = true\n");
+  EXPECT_EQ(slope_at(plain, 0.5), 0.5);
+  EXPECT_EQ(slope_at(turned, 0.5), 0.5);  // −(−(2x − x)): once by the summer, once by the integrator
+  Workspace workspace(turned.program);
+  const double x = 0.5;
+  std::vector<double> signals(3);
+  ASSERT_TRUE(turned.program.signals(0, &x, signals.data(), workspace));
+  EXPECT_EQ(signals[turned.signal("s")], -0.5);
+  EXPECT_EQ(signals[turned.signal("i")], -0.5);
+  EXPECT_EQ(turned.program.start()[0], 0.25);
+}
+
+TEST(Polarity, TurnsALoneIntegrator) {
+  const Compiled made("x = { type = \"integrator\", in = [\"3*x\"] }\n", "[machine]\ninverting = true\n");
+  EXPECT_EQ(slope_at(made, 1), -3.0);
+}
+
+}  // namespace
+}  // namespace oblique

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/patch/patch.h>
+
+#include <cmath>
+#include <numbers>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <oblique/mechanism/motion.h>
+#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/patch/scaling.h>
+#include <oblique/solve/run.h>
+
+namespace oblique {
+namespace {
+
+using testing::HasSubstr;
+
+const char* const kFourBar = R"(
+format = "oblique-mechanism/1"
+[frame]
+A = [0, 0]
+D = [4, 0]
+[bodies]
+AB = { points = ["A", "B"], length = 1 }
+BC = { points = ["B", "C"], length = 3.5 }
+CD = { points = ["C", "D"], length = 3 }
+[drives]
+crank = { turns = "AB", about = "A", speed = 1 }
+[sketch]
+C = [3, 2.8]
+)";
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  text.replace(text.find(from), from.size(), to);
+  return text;
+}
+
+Mechanism shipped(const std::string& name) {
+  return read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/" + name + ".toml");
+}
+
+/// A patched diagram run over its turn, and the program it became.
+struct PatchedRun {
+  explicit PatchedRun(const Diagram& diagram)
+      : flat(flatten(diagram, library)), program(assemble(flat)), result(run(program, flat, options_of(diagram.run))) {}
+  BlockLibrary library = BlockLibrary::shipped();
+  FlatDiagram flat;
+  Program program;
+  Run result;
+};
+
+/// Largest distance of any moving point from its exact place [length unit].
+double largest_error(const Mechanism& mechanism, const Run& analog) {
+  const Trajectory& table = analog.trajectory;
+  std::vector<double> times;
+  for (std::size_t r = 0; r < table.rows(); ++r) times.push_back(table.at(r, 0));
+  const Motion exact = solve_motion(mechanism, times);
+  double largest = 0;
+  for (std::size_t p = 0; p < mechanism.points.size(); ++p) {
+    if (mechanism.points[p].fixed) continue;
+    const auto x = table.find(mechanism.points[p].name + ".x"), y = table.find(mechanism.points[p].name + ".y");
+    EXPECT_TRUE(x && y) << mechanism.points[p].name;
+    for (std::size_t r = 0; r < table.rows(); ++r) {
+      const Eigen::Vector2d& place = exact.configurations[r].points[p].position;
+      largest = std::max(largest, std::hypot(table.at(r, *x) - place.x(), table.at(r, *y) - place.y()));
+    }
+  }
+  return largest;
+}
+
+class ShippedMechanism : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Patch, ShippedMechanism, testing::Values("four-bar", "six-bar", "jansen"));
+
+TEST_P(ShippedMechanism, KeepsEverySignalWithinOneMachineUnit) {
+  const PatchedRun patched(patch_triangles(shipped(GetParam())));
+  double largest = 0;
+  for (std::size_t s = 0; s < patched.result.peaks.size(); ++s) {
+    // Cosines stand at 1 and overshoot by the run's tolerance of 1e-10, accumulated over a thousand steps.
+    EXPECT_LE(std::abs(patched.result.peaks[s].value), 1 + 1e-6) << patched.program.signal_names()[s];
+    largest = std::max(largest, std::abs(patched.result.peaks[s].value));
+  }
+  EXPECT_GT(largest, 0.9);  // the machine's range is used
+}
+
+TEST_P(ShippedMechanism, WithIdealAmplifiersIsExactToTheTolerance) {
+  const Mechanism mechanism = shipped(GetParam());
+  PatchOptions options;
+  options.gain = std::numeric_limits<double>::infinity();
+  // What is left is the crank's phase: tolerance 1e-10 accumulated over a turn of some hundred steps.
+  EXPECT_LT(largest_error(mechanism, PatchedRun(patch_triangles(mechanism, options)).result),
+            1e-7 * mechanism.largest_length());
+}
+
+TEST_P(ShippedMechanism, WithAlgebraicAmplifiersErrsByItsGainOnly) {
+  const Mechanism mechanism = shipped(GetParam());
+  PatchOptions options;
+  options.gain = 1e4;
+  options.bandwidth = std::numeric_limits<double>::infinity();
+  const PatchedRun patched(patch_triangles(mechanism, options));
+  EXPECT_EQ(patched.program.n_states(), 2U);  // the crank's
+  // Static error of a dyad is of the order of reach/(input_gain·μ); three dyads in a row magnify it (method.md).
+  EXPECT_LT(largest_error(mechanism, patched.result), 20 / (10 * 1e4) * mechanism.largest_length());
+}
+
+TEST_P(ShippedMechanism, WritesADiagramThatReadsBackEqual) {
+  const Diagram diagram = patch_triangles(shipped(GetParam()));
+  EXPECT_TRUE(parse_diagram(write_diagram(diagram), "patched.toml") == diagram);
+}
+
+TEST(Patch, HasACommentedSectionForTheCrankAndEachDyad) {
+  const std::string text = write_diagram(patch_triangles(parse_mechanism(kFourBar, "four-bar.toml")));
+  EXPECT_THAT(text, HasSubstr("# Coordinates: 1 machine unit = 4 m."));
+  EXPECT_THAT(text, HasSubstr("# crank AB: turns about A at 1 rad/s"));
+  EXPECT_THAT(text, HasSubstr("# dyad BC-CD: C is hinged to B (3.5 m) and D (3 m), on the left of B → D."));
+  EXPECT_THAT(text, HasSubstr("# B–D is 3 … 5 m long; sin γ at B falls to 0.59."));
+  EXPECT_THAT(text, HasSubstr("\"C.x\" = { signal = \"C.x\", scale = 4, unit = \"m\" }"));
+}
+
+// The same four-bar, described otherwise: turning backwards, from another angle, the crank's pivot in the middle of its
+// points, the other assembly mode.
+TEST(Patch, TracksEveryWayToDescribeACrank) {
+  const std::string backwards = replaced(kFourBar, "speed = 1", "speed = \"-30 rpm\", start = \"50 deg\"");
+  const std::string mirrored = replaced(backwards, "C = [3, 2.8]", "C = [3, -2.8]");
+  const std::string lever = replaced(replaced(kFourBar, R"(AB = { points = ["A", "B"], length = 1 })",
+                                              R"(AB = { points = ["E", "B"], length = 1.5, marks = { A = [0.5, 0.2] } })"),
+                                     "turns = \"AB\"", "turns = \"AB\", start = \"10 deg\"");
+  for (const std::string& text : {backwards, mirrored, lever}) {
+    const Mechanism mechanism = parse_mechanism(text, "crank.toml");
+    // Error 1.7e-7 of the largest link is measured for the plain four-bar at gain 1e6.
+    EXPECT_LT(largest_error(mechanism, PatchedRun(patch_triangles(mechanism)).result),
+              1e-6 * mechanism.largest_length())
+        << text;
+  }
+}
+
+TEST(Patch, GivesClashingNamesANumber) {
+  std::string text = replaced(kFourBar, "crank = {", "B_x = {");
+  const Mechanism mechanism = parse_mechanism(text, "clash.toml");
+  const Diagram diagram = patch_triangles(mechanism);
+  EXPECT_LT(largest_error(mechanism, PatchedRun(diagram).result), 1e-6 * mechanism.largest_length());
+  EXPECT_THAT(write_diagram(diagram), HasSubstr("B_x_2"));
+}
+
+TEST(Patch, RefusesATriangleThatOpensOnTheWay) {
+  const Mechanism mechanism = parse_mechanism(replaced(kFourBar, "length = 1 ", "length = 2.7 "), "opens.toml");
+  try {
+    patch_triangles(mechanism);
+    FAIL();
+  } catch (const PatchError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("opens.toml: the dyad BC-CD cannot be assembled at t = "));
+    EXPECT_THAT(error.what(), HasSubstr("remedy: lengthen the links of the dyad, or shorten the crank"));
+  }
+}
+
+// Crank 1, frame 4, coupler 2, rocker 3: at angle π the distance B–D is 5 = 2 + 3, the triangle is flat.
+TEST(Patch, RefusesADeadCentre) {
+  const Mechanism mechanism =
+      parse_mechanism(replaced(replaced(kFourBar, "length = 3.5", "length = 2"), "C = [3, 2.8]", "C = [2.5, 2]"), "flat.toml");
+  try {
+    patch_triangles(mechanism);
+    FAIL();
+  } catch (const PatchError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("the dyad BC-CD is at a dead centre at t = 3.14159 s"));
+    EXPECT_THAT(error.what(), HasSubstr("expected a triangle that never goes flat"));
+  }
+}
+
+TEST(Patch, ChoosesABandwidthAHundredTimesTheFastestDrive) {
+  const auto of_speed = [](const std::string& speed) {
+    return default_bandwidth(parse_mechanism(replaced(kFourBar, "speed = 1", "speed = " + speed), "m.toml"));
+  };
+  EXPECT_EQ(of_speed("1"), 20);          // 100/(2π) = 15.9
+  EXPECT_EQ(of_speed("-100"), 2000);     // 1591
+  EXPECT_EQ(of_speed("\"60 rpm\""), 100);  // 100 exactly
+}
+
+TEST(Scaling, RoundsUpToShortNumbers) {
+  EXPECT_EQ(round_scale_up(1), 1);
+  EXPECT_EQ(round_scale_up(1.01), 2);
+  EXPECT_EQ(round_scale_up(330), 400);
+  EXPECT_EQ(round_scale_up(0.09), 0.1);
+  EXPECT_DOUBLE_EQ(round_up(1.2345), 1.24);
+  EXPECT_DOUBLE_EQ(round_up(1.23), 1.23);
+  EXPECT_DOUBLE_EQ(round_up(0.071501), 0.0716);
+}
+
+}  // namespace
+}  // namespace oblique

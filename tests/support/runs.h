@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include <oblique/solve/run.h>
+#include <oblique/solve/solve_error.h>
+
+#include "compiled.h"
+
+namespace oblique::testing {
+
+inline Run run_of(const Compiled& made, const RunOptions& options = {}) {
+  return run(made.program, made.flat, options);
+}
+
+/// A column of a trajectory.
+inline std::vector<double> column_of(const Trajectory& trajectory, std::string_view name) {
+  const std::size_t column = trajectory.find(name).value();
+  std::vector<double> values;
+  for (std::size_t r = 0; r < trajectory.rows(); ++r) values.push_back(trajectory.at(r, column));
+  return values;
+}
+
+/// A column of a run, at the rows of its grid.
+inline std::vector<double> row_values(const Run& result, std::string_view name) {
+  return column_of(result.trajectory, name);
+}
+
+/// What a run that fails says.
+struct RunFailure {
+  SolveError::Kind kind;
+  double time;
+  std::string message;
+};
+
+/// How the run of a diagram fails; nothing where it does not.
+inline std::optional<RunFailure> failure_of(const Compiled& made, const RunOptions& options = {}) {
+  try {
+    run_of(made, options);
+  } catch (const SolveError& error) {
+    return RunFailure{error.kind(), error.time(), error.what()};
+  }
+  return std::nullopt;
+}
+
+}  // namespace oblique::testing
