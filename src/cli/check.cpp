@@ -13,10 +13,6 @@
 namespace oblique::cli {
 namespace {
 
-std::string count(std::size_t n, std::string_view one, std::string_view many) {
-  return fmt::format("{} {}", n, n == 1 ? one : many);
-}
-
 ExitStatus check_diagram(const Session& session, const std::string& path) {
   const BlockLibrary library = session.library();
   const Diagram diagram = read_diagram(path);

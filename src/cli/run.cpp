@@ -86,8 +86,10 @@ ExitStatus run_diagram(const Session& session, const RunRequest& request) {
   print(table_of(result.trajectory));
   if (!request.output.empty()) save(request.output, to_csv(result.trajectory));
   const SolverStatistics& s = result.statistics;
-  note(fmt::format("{} states, {} algebraic loops; {} steps (BDF, relative tolerance {}), {:.3g} ms\n",
-                   program.n_states(), program.loops().size(), s.steps, options.tolerance, 1e3 * result.seconds));
+  note(fmt::format("{}, {}; {} (BDF, relative tolerance {}), {:.3g} ms\n",
+                   count(program.n_states(), "state", "states"),
+                   count(program.loops().size(), "algebraic loop", "algebraic loops"),
+                   count(static_cast<std::size_t>(s.steps), "step", "steps"), options.tolerance, 1e3 * result.seconds));
   return request.check ? report_expectations(diagram, result) : ExitStatus::done;
 }
 

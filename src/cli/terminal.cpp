@@ -66,7 +66,14 @@ std::string short_number(double value, double scale) {
 
 void print(std::string_view text) { std::fwrite(text.data(), 1, text.size(), stdout); }
 
-void note(std::string_view text) { std::fwrite(text.data(), 1, text.size(), stderr); }
+std::string count(std::size_t n, std::string_view one, std::string_view many) {
+  return fmt::format("{} {}", n, n == 1 ? one : many);
+}
+
+void note(std::string_view text) {
+  std::fflush(stdout);  // where both go to one place, results and notes stay in order
+  std::fwrite(text.data(), 1, text.size(), stderr);
+}
 
 void print_error(std::string_view text) {
   const bool colours = isatty(STDERR_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr;

@@ -33,6 +33,9 @@ std::size_t columns_that_fit(std::size_t width);
 /// `scale`, the size of its neighbours, is shown as 0.
 std::string short_number(double value, double scale = 0);
 
+/// "1 block", "3 blocks".
+std::string count(std::size_t n, std::string_view one, std::string_view many);
+
 /// Writes results to stdout.
 void print(std::string_view text);
 

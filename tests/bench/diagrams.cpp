@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::string_view kHead = R"(format = "oblique-diagram/1"
 [run]
-until     = "2*pi"
+until     = "20*pi"
 tolerance = 1e-8
 samples   = 101
 [blocks]

@@ -16,7 +16,7 @@ namespace oblique::bench {
 ///     crank.cos ──► s1 ──► s2 ──► … ──► sn        r_k = out_k − out_{k−1}
 ///
 /// Weights of 1 carry the signal to the last block: with 0.9 it would underflow after a few thousand of them,
-/// and denormal numbers, not the engine, would be measured.
+/// and denormal numbers, not the engine, would be measured. The amplifiers begin at 1, near their rest.
 std::string servo_chain_text(int n);
 
 /// Triangles side by side, `n` dyads that one crank drives: 23 primitive blocks each.

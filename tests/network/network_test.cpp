@@ -34,7 +34,7 @@ double slope_at(const Compiled& made, double x) {
 
 TEST(Network, RefusesASwitchingFunctionOfASignal) {
   EXPECT_EQ(refusal_of("[equations]\nout = \"2*min(in, 0.5)\"\n"),
-            "odd.toml:8: equation of 'o': min of a varying signal switches inside a step; "
+            "odd.toml:8:7: equation of 'o': min of a varying signal switches inside a step; "
             "expected a smooth function, or constant arguments\n"
             "  remedy: this version has no events: use smooth functions of the signals");
 }

@@ -21,7 +21,7 @@ constexpr double kZ = 0.3;
 /// A z/(1 + A x), in the form that also holds for A = inf.
 double quotient(double gain, double x) { return kZ / (x + 1 / gain); }
 
-/// Ten gains up to infinity: below A x = 1 a loop broken by a delay would settle too, above it would not.
+/// Gains up to infinity: below A x = 1 a loop broken by a delay would settle too, above it would not.
 const std::vector<double> kGains{0.5, 1, 10, 1e4, 1e8, kInfinity};
 
 //                 ┌───────────┐
@@ -40,7 +40,7 @@ xq = {{ type = "multiplier", in = ["x", "q"] }}
 q  = {{ type = "servo-amplifier", in = ["xq", "-z"], gain = {}, bandwidth = inf }}
 )toml",
                                   GetParam()));
-  const Run result = run_of(made, {.samples = 101});
+  const auto result = run_of(made, {.samples = 101});
   const auto x = row_values(result, "x"), q = row_values(result, "q");
   EXPECT_NEAR(x.back(), 2, 1e-12);  // a straight line: no truncation error, some roundings
   for (std::size_t r = 0; r < x.size(); ++r) {
@@ -61,7 +61,7 @@ q  = {{ type = "summer", in = ["{0}*z", "-{0}*xq"] }}
 )toml",
                                   gain));
   ASSERT_EQ(made.program.loops().size(), 1U);
-  const Run result = run_of(made, {.samples = 101});
+  const auto result = run_of(made, {.samples = 101});
   const auto x = row_values(result, "x"), q = row_values(result, "q");
   for (std::size_t r = 0; r < x.size(); ++r) EXPECT_NEAR(q[r], quotient(gain, x[r]), 1e-12) << r;
 }
@@ -75,7 +75,7 @@ xq = {{ type = "multiplier", in = ["x", "q"] }}
 q  = {{ type = "servo-amplifier", in = ["xq", "-z"], gain = {}, bandwidth = inf }}
 )toml",
                                   GetParam()));
-  const Run result = run_of(made, {.until = 4, .samples = 41});
+  const auto result = run_of(made, {.until = 4, .samples = 41});
   const auto t = row_values(result, "t"), x = row_values(result, "x");
   const double shift = 1 / GetParam();
   for (std::size_t r = 0; r < x.size(); ++r) {  // (x + 1/A) x′ = z
@@ -96,7 +96,7 @@ x = {{ type = "integrator", in = ["0.5*one"], initial = 0.5 }}
 d = {{ type = "divider", numerator = "z", denominator = "x", gain = {}, bandwidth = {} }}
 )toml",
                                   gain, bandwidth));
-  const Run result = run_of(made, {.tolerance = 1e-10, .samples = 51});
+  const auto result = run_of(made, {.tolerance = 1e-10, .samples = 51});
   const auto x = row_values(result, "x"), q = row_values(result, "d");
   double error = 0;
   for (std::size_t r = 0; r < x.size(); ++r) error = std::max(error, std::abs(q[r] - kZ / x[r]));
@@ -109,7 +109,9 @@ TEST(Divider, ConvergesAsOneOverGain) {
     for (const double gain : {1e3, 1e4, 1e5, 1e6}) {
       const double error = divider_error(gain, bandwidth);
       // The error is z/(A x²) (1 + O(1/(A x))): its order leaves −1 by less than 2/(A x) = 0.4 %.
-      if (last > 0) EXPECT_NEAR(std::log10(last / error), 1, 4e-3) << gain << ' ' << bandwidth;
+      if (last > 0) {
+        EXPECT_NEAR(std::log10(last / error), 1, 4e-3) << gain << ' ' << bandwidth;
+      }
       last = error;
     }
     EXPECT_NEAR(last, kZ / 1e6 / 0.25, 1e-8);  // at x = 0.5

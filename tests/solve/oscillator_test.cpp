@@ -32,7 +32,7 @@ std::vector<double> radii(const Run& result) {
 
 TEST(Circle, KeepsItsRadiusOverAThousandTurns) {
   const Compiled made(kCircle);
-  const Run result = run_of(made, {.until = 2000 * kPi, .samples = 1001});  // a row a turn
+  const auto result = run_of(made, {.until = 2000 * kPi, .samples = 1001});  // a row a turn
   const auto r = radii(result), x = row_values(result, "x");
   for (std::size_t k = 0; k < r.size(); ++k) {
     // The published drift of the default tolerance, 1e-8 a step over some 1e5 steps, stays within 1e-3.
@@ -49,7 +49,7 @@ TEST(Circle, ErrorFallsWithTheTolerance) {
   const Compiled made(kCircle);
   double last = 1;
   for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10}) {
-    const Run result = run_of(made, {.until = 20 * kPi, .tolerance = tolerance, .samples = 2});
+    const auto result = run_of(made, {.until = 20 * kPi, .tolerance = tolerance, .samples = 2});
     const double error = std::hypot(row_values(result, "x").back() - 1, row_values(result, "y").back());
     EXPECT_LT(error, 2000 * tolerance);  // ten turns of a few hundred steps
     EXPECT_LT(error, last / 10);         // a hundredth of the tolerance buys more than a tenth of the error
@@ -59,7 +59,7 @@ TEST(Circle, ErrorFallsWithTheTolerance) {
 
 TEST(ExponentialDecay, IsTheExponential) {
   const Compiled made("x = { type = \"integrator\", in = [\"-x\"], initial = 1, rate = 3 }\n");
-  const Run result = run_of(made, {.until = 2, .samples = 201});
+  const auto result = run_of(made, {.until = 2, .samples = 201});
   const auto t = row_values(result, "t"), x = row_values(result, "x");
   // Some hundred steps of 1e-8, damped as the solution is.
   for (std::size_t k = 0; k < t.size(); ++k) EXPECT_NEAR(x[k], std::exp(-3 * t[k]), 1e-6) << t[k];
@@ -70,7 +70,7 @@ TEST(HarmonicOscillator, TurnsAtItsFrequency) {
   const Compiled made(R"toml(v = { type = "integrator", in = ["-4*x"] }
 x = { type = "integrator", in = ["v"], initial = 0.5 }
 )toml");
-  const Run result = run_of(made, {.until = 2 * kPi, .samples = 361});
+  const auto result = run_of(made, {.until = 2 * kPi, .samples = 361});
   const auto t = row_values(result, "t"), x = row_values(result, "x"), v = row_values(result, "v");
   for (std::size_t k = 0; k < t.size(); ++k) {
     EXPECT_NEAR(x[k], std::cos(2 * t[k]) / 2, 2e-6) << t[k];
@@ -83,7 +83,7 @@ TEST(StiffDecay, NeedsNoShortSteps) {
   const Compiled made(R"toml(x = { type = "integrator", in = ["-x", "y"], rate = 1e6 }
 y = { type = "integrator", in = ["-y"], initial = 1 }
 )toml");
-  const Run result = run_of(made, {.until = 2, .samples = 21});
+  const auto result = run_of(made, {.until = 2, .samples = 21});
   const auto t = row_values(result, "t"), x = row_values(result, "x");
   EXPECT_LT(result.statistics.steps, 2000);
   for (std::size_t k = 1; k < t.size(); ++k) {
@@ -98,7 +98,7 @@ TEST(MachineTime, PolarityDoesNotChangeASolution) {
 y = { type = "integrator", in = ["-x"], initial = 0 }
 )toml",
                            "[machine]\ninverting = true\n");
-  const Run a = run_of(plain, {.samples = 11}), b = run_of(inverting, {.samples = 11});
+  const auto a = run_of(plain, {.samples = 11}), b = run_of(inverting, {.samples = 11});
   EXPECT_EQ(row_values(a, "x"), row_values(b, "x"));
   EXPECT_EQ(row_values(a, "y"), row_values(b, "y"));
 }

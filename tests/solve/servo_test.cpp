@@ -45,7 +45,7 @@ TEST(ServoAmplifier, FollowsARampWithItsLag) {
   constexpr double kWeight = 10, kGain = 20, kSpeed = 0.5;
   const Compiled made(follower(kWeight, kGain,
                                "one = { type = \"constant\" }\nu = { type = \"integrator\", in = [\"0.5*one\"] }"));
-  const Run result = run_of(made, {.until = 0.01, .tolerance = 1e-10, .samples = 101});
+  const auto result = run_of(made, {.until = 0.01, .tolerance = 1e-10, .samples = 101});
   constexpr double kLoop = 1 + kGain * kWeight, kLag = kTau / kLoop;
   const auto t = row_values(result, "t"), out = row_values(result, "out");
   for (std::size_t r = 0; r < t.size(); ++r) {
@@ -58,7 +58,7 @@ TEST(ServoAmplifier, LeavesTheStaticErrorOfItsGain) {
   for (const double gain : {1e2, 1e4, 1e6}) {
     const Compiled made(follower(2, gain, "u = { type = \"constant\", value = 0.4 }"));
     std::vector<double> x = made.program.start();
-    const Run result = run_of(made, {.samples = 11});
+    const auto result = run_of(made, {.samples = 11});
     const double out = row_values(result, "out").back();
     // δ = −out/(μ ∂r/∂out), exactly, since the residual is linear: rounding only.
     EXPECT_NEAR(out - 0.4, -out / (gain * 2), 1e-15) << gain;

@@ -12,7 +12,22 @@
 
 namespace oblique::testing {
 
-inline Run run_of(const Compiled& made, const RunOptions& options = {}) {
+/// What a test changes about a run: the plain members of RunOptions.
+struct Request {
+  double until = 1;
+  double tolerance = 1e-8;
+  int samples = 1001;
+  long max_steps = 10'000'000;
+  std::vector<double> extra_times = {};
+};
+
+inline Run run_of(const Compiled& made, const Request& request = {}) {
+  RunOptions options;
+  options.until = request.until;
+  options.tolerance = request.tolerance;
+  options.samples = request.samples;
+  options.max_steps = request.max_steps;
+  options.extra_times = request.extra_times;
   return run(made.program, made.flat, options);
 }
 
@@ -37,9 +52,9 @@ struct RunFailure {
 };
 
 /// How the run of a diagram fails; nothing where it does not.
-inline std::optional<RunFailure> failure_of(const Compiled& made, const RunOptions& options = {}) {
+inline std::optional<RunFailure> failure_of(const Compiled& made, const Request& request = {}) {
   try {
-    run_of(made, options);
+    run_of(made, request);
   } catch (const SolveError& error) {
     return RunFailure{error.kind(), error.time(), error.what()};
   }

@@ -115,7 +115,7 @@ TEST(DocumentMessages, GiveThePlaceAndHowToWriteIt) {
   EXPECT_THAT(message_of("a = 99999999999999999999"), HasSubstr("is not representable in 64 bits"));
 }
 
-// The three assertions of toml++ 3.3 that malformed text breaks: each is a message with its place, in every
+// The assertions of toml++ 3.3 that malformed text breaks: each is a message with its place, in every
 // build type.
 TEST(DocumentMessages, GiveThePlaceWhereTheParserWouldAssert) {
   EXPECT_THAT(message_of("[&"), StartsWith("test.toml:1:2: broken TOML: parsing key: expected bare key"));
@@ -124,6 +124,8 @@ TEST(DocumentMessages, GiveThePlaceWhereTheParserWouldAssert) {
                         "delimiter, saw 'φ'"));
   EXPECT_THAT(message_of("a = [}"),
               StartsWith("test.toml:1:6: broken TOML: parsing value: could not determine"));
+  EXPECT_THAT(message_of("a = 1984-07-20T :17"),
+              StartsWith("test.toml:1:16: broken TOML: parsing time: expected 2-digit hour"));
   // Longer than the parser can step back, in a function that is noexcept.
   EXPECT_THAT(message_of("a = 2020" + std::string(116, '_') + "-01-01 00000"),
               StartsWith("test.toml:1:5: broken TOML: "));

@@ -87,6 +87,7 @@ double period(const Mechanism& mechanism) {
     finding.place.file = mechanism.file;
     finding.what = "the mechanism has no drive and does not move";
     finding.expected = "[drives]";
+    finding.remedy = "turn a link: crank = { turns = \"AB\", about = \"A\", speed = \"1 rad/s\" }";
     throw MechanismError(MechanismError::Kind::request, std::move(finding));
   }
   return kTurn / std::abs(mechanism.drives.front().speed);

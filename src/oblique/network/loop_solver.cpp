@@ -81,6 +81,9 @@ double LoopWorkspace::move(const LoopCode& loop, double* slots, double fraction)
 
 LoopFailure LoopWorkspace::solve_loop(const LoopCode& loop, std::span<const Instruction> tape, double* slots) {
   const auto body = tape.subspan(loop.body.begin, loop.body.end - loop.body.begin);
+  if (loop.linear) {  // its one step rounds as the point does that it starts from
+    for (const std::uint32_t slot : loop.unknown_slots) slots[slot] = 0;
+  }
   run_tape(body, slots);
   double last_change = std::numeric_limits<double>::infinity();
   for (int iteration = 0; iteration < kMostIterations; ++iteration) {

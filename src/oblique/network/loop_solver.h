@@ -41,8 +41,8 @@ class LoopWorkspace {
   /// Overwrites `right_sides` (a column for each) with the solutions of dg/dz · X = right_sides.
   void solve(Eigen::Ref<Eigen::MatrixXd> right_sides);
 
-  /// Solves the loop by Newton's method, damped where the residual would grow (one LU where it is linear), from what
-  /// the unknowns' slots hold; they then hold the solution, to rounding, and `body` has been run on it.
+  /// Solves the loop by Newton's method, damped where the residual would grow, from what the unknowns' slots hold (one LU
+  /// from zero where it is linear); they then hold the solution, to rounding, and `body` has been run on it.
   LoopFailure solve_loop(const LoopCode& loop, std::span<const Instruction> tape, double* slots);
 
  private:

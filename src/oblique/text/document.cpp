@@ -20,12 +20,12 @@ struct TomlAssertion {};
   throw TomlAssertion{};
 }
 
-/// The three assertions that malformed text does break. In each case the lines after it cope and report the
-/// mistake with its place: the first two repeat the test, and the third (in a noexcept function, for a date
-/// of more than 127 characters) only makes the parser read on two characters late, where no date can be.
+/// The assertions that malformed text does break. In each case the lines after it cope and report the mistake
+/// with its place: the first three repeat the test, and the last (in a noexcept function, for a date of more
+/// than 127 characters) only makes the parser read on two characters late, where no date can be.
 constexpr bool left_to_the_parser(std::string_view condition) {
   return condition == "is_bare_key_character(*cp) || is_string_delimiter(*cp)" ||
-         condition == "!is_value_terminator(*cp)" ||
+         condition == "!is_value_terminator(*cp)" || condition == "is_decimal_digit(*cp)" ||
          condition == "negative_offset_ + count <= history_.count";
 }
 

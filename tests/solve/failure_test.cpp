@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: MIT
+// Runs that cannot be finished, and what they say.
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "../support/runs.h"
+
+namespace oblique {
+namespace {
+
+using testing::Compiled;
+using testing::failure_of;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+testing::RunFailure failure(const std::string& blocks, const testing::Request& request = {},
+                            const BlockLibrary& library = testing::shipped_blocks()) {
+  const auto found = failure_of(Compiled(blocks, "", library), request);
+  if (!found) throw std::runtime_error("the run did not fail");
+  return *found;
+}
+
+// Algebraic loops without one solution.
+
+TEST(SingularLoop, OfASummerOnItself) {
+  const auto f = failure("one = { type = \"constant\" }\ns = { type = \"summer\", in = [\"one\", \"s\"] }\n");
+  EXPECT_EQ(f.kind, SolveError::Kind::singular_loop);
+  EXPECT_EQ(f.time, 0);
+  EXPECT_EQ(f.message,
+            "d.toml:4:1: the algebraic loop s → s is singular at t = 0 s: its gain is 1\n"
+            "  remedy: change a weight so that the gain of the loop is not 1, or put an integrator into it");
+}
+
+TEST(SingularLoop, OfTwoSummersInARing) {
+  // a = 1 + 2 b, b = a/2
+  const auto f = failure("one = { type = \"constant\" }\na = { type = \"summer\", in = [\"one\", \"2*b\"] }\n"
+                         "b = { type = \"summer\", in = [\"0.5*a\"] }\n");
+  EXPECT_EQ(f.kind, SolveError::Kind::singular_loop);
+  EXPECT_THAT(f.message, HasSubstr("the algebraic loop a → b → a is singular at t = 0 s: its gain is 1\n"));
+}
+
+TEST(SingularLoop, OfTwoCoupledSummers) {
+  // Both equations are a = b up to a constant; each summer alone has a gain of 1/2.
+  const auto f = failure("one = { type = \"constant\" }\na = { type = \"summer\", in = [\"0.5*a\", \"0.5*b\"] }\n"
+                         "b = { type = \"summer\", in = [\"0.5*a\", \"0.5*b\", \"one\"] }\n");
+  EXPECT_EQ(f.kind, SolveError::Kind::singular_loop);
+  EXPECT_THAT(f.message, HasSubstr("the algebraic loop a → b → a is singular at t = 0 s: its 2 equations determine no "
+                                   "unique solution (a combination of its gains is 1)\n"
+                                   "  remedy: change a weight, or put an integrator or a servo amplifier"));
+}
+
+TEST(SingularLoop, ThatIsSingularOnlyToRounding) {
+  // 0.1 + 0.2 + 0.7 is 1 − 2⁻⁵³ or 1, according to the order of the terms: no gain to divide by.
+  const auto f = failure("one = { type = \"constant\" }\n"
+                         "s = { type = \"summer\", in = [\"one\", \"0.1*s\", \"0.2*s\", \"0.7*s\"] }\n");
+  EXPECT_EQ(f.kind, SolveError::Kind::singular_loop);
+}
+
+TEST(SingularLoop, OfAnIdealAmplifierThatDoesNotSeeItsOutput) {
+  const auto f = failure("one = { type = \"constant\" }\n"
+                         "q = { type = \"servo-amplifier\", in = [\"one\"], gain = inf }\n");
+  EXPECT_EQ(f.kind, SolveError::Kind::singular_loop);
+  EXPECT_THAT(f.message, HasSubstr("the algebraic loop q → q is singular at t = 0 s: its gain is 0, "
+                                   "the inputs of 'q' do not respond to its output\n"
+                                   "  remedy: wire the output back so that the residual changes with it"));
+}
+
+TEST(SingularLoop, AtTheTimeWhereADivisorPassesZero) {
+  // x = 1/2 − t: z/x ends at t = 1/2.
+  const auto f = failure(R"toml(one = { type = "constant" }
+x = { type = "integrator", in = ["-one"], initial = 0.5 }
+q = { type = "divider", numerator = "one", denominator = "x", gain = inf, bandwidth = inf }
+y = { type = "integrator", in = ["q"] }
+)toml",
+                         {.tolerance = 1e-6});
+  EXPECT_TRUE(f.kind == SolveError::Kind::singular_loop || f.kind == SolveError::Kind::blow_up);
+  EXPECT_NEAR(f.time, 0.5, 1e-3);
+}
+
+TEST(LoopWithoutSolution, IsNamedWithWhereItWasSought) {
+  const auto f = failure("z = { type = \"constant\", value = -0.5 }\n"
+                         "r = { type = \"square-root\", in = \"z\", gain = inf, bandwidth = inf }\n");
+  EXPECT_EQ(f.kind, SolveError::Kind::singular_loop);
+  EXPECT_THAT(f.message, HasSubstr("the algebraic loop r.square → r.root → r.square has no solution near r.root = 1 "
+                                   "at t = 0 s"));
+  EXPECT_THAT(f.message, HasSubstr("remedy: check that its equation can be satisfied"));
+}
+
+TEST(LoopWithoutSolution, ComesUpInTheMiddleOfARun) {
+  // x = 1/2 − t: the root ends at t = 1/2.
+  const auto f = failure(R"toml(one = { type = "constant" }
+x = { type = "integrator", in = ["-one"], initial = 0.5 }
+r = { type = "square-root", in = "x", gain = inf, bandwidth = inf }
+y = { type = "integrator", in = ["r"] }
+)toml",
+                         {.samples = 2});
+  EXPECT_EQ(f.kind, SolveError::Kind::singular_loop);
+  EXPECT_NEAR(f.time, 0.5, 1e-2);
+  EXPECT_THAT(f.message, HasSubstr("r.square → r.root"));
+}
+
+// Solutions that leave the machine.
+
+TEST(BlowUp, StopsAtThePoleAndNamesTheBlock) {
+  // x′ = x², x = 1/(1 − t)
+  const auto f = failure(R"toml(xx = { type = "multiplier", in = ["x", "x"] }
+x = { type = "integrator", in = ["xx"], initial = 1 }
+y = { type = "integrator", in = ["-y"], initial = 1 }
+)toml",
+                         {.until = 2});
+  EXPECT_EQ(f.kind, SolveError::Kind::blow_up);
+  EXPECT_NEAR(f.time, 1, 1e-6);  // the pole itself is moved by 2000 steps of 1e-8
+  EXPECT_THAT(f.message, StartsWith("d.toml: the run stopped at t = 1 s: the solution grows without bound or jumps there, "
+                                    "'x' = "));
+  EXPECT_THAT(f.message, HasSubstr("largest weighted local errors:\n    x = "));
+  EXPECT_THAT(f.message, HasSubstr("remedy: look for a positive feedback"));
+}
+
+TEST(BlowUp, OfExponentialGrowthIsFoundBeforeInfinity) {
+  const auto f = failure("x = { type = \"integrator\", in = [\"x\"], initial = 1, rate = 1000 }\n");
+  EXPECT_EQ(f.kind, SolveError::Kind::blow_up);
+  EXPECT_NEAR(f.time, 0.71, 0.01);  // e^(1000 t) leaves the range of a double at ln(1.8e308)/1000
+}
+
+TEST(NotFinite, SignalAtTheStart) {
+  const BlockLibrary library = testing::shipped_blocks_and(
+      "inverse", "[inputs]\nin = {}\n[outputs]\nout = {}\n[equations]\nout = \"1/in\"\n");
+  const auto f = failure("x = { type = \"integrator\", in = [\"-x\"] }\nv = { type = \"inverse\", in = \"x\" }\n", {}, library);
+  EXPECT_EQ(f.kind, SolveError::Kind::blow_up);
+  EXPECT_EQ(f.time, 0);
+  EXPECT_THAT(f.message, HasSubstr("the signal 'v' is not a finite number at t = 0"));
+  EXPECT_THAT(f.message, HasSubstr("remedy: look for a division by zero or a root or logarithm of a negative signal"));
+}
+
+TEST(NotFinite, DerivativeAtTheStart) {
+  const BlockLibrary library = testing::shipped_blocks_and(
+      "slope", "[outputs]\nout = {}\n[equations]\n\"der(out)\" = \"1/out\"\n[start]\nout = \"0\"\n");
+  const auto f = failure("x = { type = \"slope\" }\n", {}, library);
+  EXPECT_EQ(f.kind, SolveError::Kind::blow_up);
+  EXPECT_EQ(f.time, 0);
+  EXPECT_THAT(f.message, HasSubstr("the run stopped at t = 0 s"));
+}
+
+TEST(StepBudget, IsKept) {
+  const auto f = failure("x = { type = \"integrator\", in = [\"-y\"], initial = 1 }\n"
+                         "y = { type = \"integrator\", in = [\"x\"] }\n",
+                         {.until = 1000, .max_steps = 50});
+  EXPECT_EQ(f.kind, SolveError::Kind::step_budget);
+  EXPECT_GT(f.time, 0);
+  EXPECT_LT(f.time, 20);
+  EXPECT_THAT(f.message, HasSubstr(": its budget of 50 steps is used up, the last step was "));
+  EXPECT_THAT(f.message, HasSubstr("remedy: raise max_steps in [run], loosen the tolerance"));
+}
+
+TEST(StepBudget, OfExactlyTheStepsNeededIsEnough) {
+  const Compiled made("x = { type = \"integrator\", in = [\"-x\"], initial = 1 }\n");
+  const long needed = testing::run_of(made).statistics.steps;
+  EXPECT_FALSE(failure_of(made, {.max_steps = needed}));
+  EXPECT_TRUE(failure_of(made, {.max_steps = needed - 1}));
+}
+
+}  // namespace
+}  // namespace oblique

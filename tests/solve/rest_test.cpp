@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/solve/rest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "../support/runs.h"
+
+namespace oblique {
+namespace {
+
+using testing::Compiled;
+using testing::failure_of;
+using ::testing::HasSubstr;
+
+/// A diagram brought to rest at t = 0.
+struct Rested {
+  Compiled made;
+  std::vector<double> states;
+  std::vector<double> slopes;
+
+  explicit Rested(std::string_view blocks) : made(blocks), states(made.program.start()), slopes(states.size()) {
+    Workspace workspace(made.program);
+    bring_to_rest(made.program, workspace, 0, states, "d.toml");
+    if (!made.program.derivatives(0, states.data(), slopes.data(), workspace)) throw std::runtime_error("no slopes");
+  }
+
+  double state(std::string_view name) const {
+    const auto& all = made.program.states();
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (all[i].name == name) return states[i];
+    }
+    throw std::out_of_range(std::string(name));
+  }
+
+  /// Largest residual of the servo loops: dx/dt without its factor μ/τ.
+  double residual(double gain, double bandwidth = 10) const {
+    double largest = 0;
+    for (const std::size_t i : rest_states(made.program)) largest = std::max(largest, std::abs(slopes[i]));
+    return largest / (2 * std::numbers::pi * bandwidth * gain);
+  }
+};
+
+constexpr double kRounding = 1e-14;  // of a residual whose terms are of order 1 to 10 (input_gain)
+
+TEST(Rest, TakesServoLoopsToTheirEquationAndHoldsIntegrators) {
+  const Rested at(R"toml(x  = { type = "integrator", in = ["one"], initial = 0.6 }
+one = { type = "constant" }
+z  = { type = "constant", value = 0.3 }
+q  = { type = "divider", numerator = "z", denominator = "x", gain = 1e6 }
+)toml");
+  EXPECT_EQ(at.state("x"), 0.6);
+  EXPECT_EQ(at.slopes[0], 1);  // the clock only stood still
+  EXPECT_NEAR(at.state("q.quotient"), 0.3 / (0.6 + 1e-6), 1e-15);
+  EXPECT_LT(at.residual(1e6), kRounding);
+}
+
+TEST(Rest, ChoosesTheRootThatIsStableFromItsInitial) {
+  const auto root = [](double initial) {
+    return Rested(fmt::format(R"toml(u  = {{ type = "constant", value = 0.49 }}
+cc = {{ type = "multiplier", in = ["c", "c"] }}
+c  = {{ type = "servo-amplifier", in = ["cc", "-u"], gain = 1e5, initial = {} }}
+)toml",
+                              initial))
+        .state("c");
+  };
+  for (const double initial : {0.0, 0.1, 1.0, 5.0}) EXPECT_NEAR(root(initial), 0.7, 1e-5) << initial;
+}
+
+TEST(Rest, ReachesLoopsOfVeryDifferentSpeeds) {
+  // A chain of divisions by 0.5 through amplifiers from 1 Hz to 1 MHz and gains from 1e2 to 1e8.
+  const Rested at(R"toml(one  = { type = "constant" }
+half = { type = "constant", value = 0.5 }
+a = { type = "divider", numerator = "one", denominator = "half", gain = 1e2, bandwidth = "1 Hz" }
+b = { type = "divider", numerator = "a", denominator = "half", gain = 1e8, bandwidth = "1 MHz" }
+c = { type = "divider", numerator = "b", denominator = "half", gain = 1e5, bandwidth = "100 Hz" }
+)toml");
+  const double a = 1 / (0.5 + 1e-2), b = a / (0.5 + 1e-8), c = b / (0.5 + 1e-5);
+  EXPECT_NEAR(at.state("a.quotient"), a, 1e-14);
+  EXPECT_NEAR(at.state("b.quotient"), b, 1e-14);
+  EXPECT_NEAR(at.state("c.quotient"), c, 1e-13);
+}
+
+//  Two dyads, the second on the apex of the first, as in Jansen's leg. Until the first has settled its apex is far
+//  from where the links of the second reach.
+//
+//        C ───── D          P = (0, 0), Q = (0.5, 0), C by links 0.4 and 0.3: a right angle, C = (0.32, 0.24)
+//      /   \    /           R = (1.2, 0.24), D on C and R by links 0.5 and 0.4
+//     P     Q  R
+
+constexpr const char* kTwoDyads = R"toml(o  = {{ type = "constant", value = 0 }}
+qx = {{ type = "constant", value = 0.5 }}
+rx = {{ type = "constant", value = 1.2 }}
+ry = {{ type = "constant", value = 0.24 }}
+c  = {{ type = "dyad-rrr", px = "o", py = "o", qx = "qx", qy = "o", r1 = 0.4, r2 = 0.3, gain = {0} }}
+d  = {{ type = "dyad-rrr", px = "c.x", py = "c.y", qx = "rx", qy = "ry", r1 = 0.5, r2 = 0.4, gain = {0} }}
+)toml";
+
+TEST(Rest, SettlesGroupAfterGroupWhereAllAtOnceFail) {
+  constexpr double kGain = 1e6;
+  const Rested at(fmt::format(kTwoDyads, kGain));
+  EXPECT_LT(at.residual(kGain), 1e-13);  // as kRounding, with weights of 10
+  Workspace workspace(at.made.program);
+  std::vector<double> signals(at.made.program.n_signals());
+  ASSERT_TRUE(at.made.program.signals(0, at.states.data(), signals.data(), workspace));
+  // The foot of the height of D on C–R (length 0.88) by Pythagoras.
+  constexpr double kFoot = (0.88 * 0.88 + 0.25 - 0.16) / (2 * 0.88);
+  const double height = std::sqrt(0.25 - kFoot * kFoot);
+  // The static errors of ten loops of slope 1 to 10, each 1e-6, through a triangle of gain below ten.
+  EXPECT_NEAR(signals[at.made.signal("c.cx")], 0.32, 1e-5);
+  EXPECT_NEAR(signals[at.made.signal("c.cy")], 0.24, 1e-5);
+  EXPECT_NEAR(signals[at.made.signal("d.cx")], 0.32 + kFoot, 1e-5);
+  EXPECT_NEAR(signals[at.made.signal("d.cy")], 0.24 + height, 1e-5);
+}
+
+TEST(Rest, NeedsNothingWithoutServoLoops) {
+  const Rested at("x = { type = \"integrator\", in = [\"x\"], initial = 0.25 }\n");
+  EXPECT_TRUE(rest_states(at.made.program).empty());
+  EXPECT_EQ(at.states, std::vector<double>{0.25});
+}
+
+TEST(Rest, MakesARunStartWithoutATransient) {
+  // q = 0.3/(0.5 + …) from the first row on: a loop that had to settle would start at 0.
+  const Compiled made(R"toml(one = { type = "constant" }
+z = { type = "constant", value = 0.3 }
+x = { type = "integrator", in = ["0.5*one"], initial = 0.5 }
+d = { type = "divider", numerator = "z", denominator = "x", gain = 1e6 }
+)toml");
+  const auto q = testing::row_values(testing::run_of(made, {.until = 1e-6, .samples = 101}), "d");
+  for (const double value : q) EXPECT_NEAR(value, 0.6, 3e-6);
+}
+
+// Loops that do not settle.
+
+TEST(Rest, RefusesPositiveFeedback) {
+  //  r = z − q falls with q: the output runs to the rail.
+  const Compiled made(R"toml(z = { type = "constant", value = 0.3 }
+q = { type = "servo-amplifier", in = ["z", "-q"] }
+)toml");
+  const auto failure = failure_of(made);
+  ASSERT_TRUE(failure);
+  EXPECT_EQ(failure->kind, SolveError::Kind::no_rest);
+  EXPECT_EQ(failure->time, 0);
+  EXPECT_THAT(failure->message, HasSubstr("the servo loops do not come to rest before the clock starts; still moving: 'q'"));
+  EXPECT_THAT(failure->message, HasSubstr("expected residuals that rise with the output of their amplifier"));
+  EXPECT_THAT(failure->message, HasSubstr("remedy: check the signs at the amplifier's inputs, that its equation has a "
+                                          "solution at the start, and its 'initial'"));
+}
+
+TEST(Rest, RefusesATriangleThatCannotClose) {
+  const Compiled made(R"toml(o  = { type = "constant", value = 0 }
+qx = { type = "constant", value = 0.9 }
+c  = { type = "dyad-rrr", px = "o", py = "o", qx = "qx", qy = "o", r1 = 0.4, r2 = 0.3 }
+)toml");
+  const auto failure = failure_of(made);
+  ASSERT_TRUE(failure);
+  EXPECT_EQ(failure->kind, SolveError::Kind::no_rest);
+  EXPECT_THAT(failure->message, HasSubstr("'c.triangle.sine'"));
+}
+
+TEST(Rest, NamesTheGroupThatFailsNotThoseBeforeIt) {
+  const Compiled made(R"toml(one = { type = "constant" }
+good = { type = "divider", numerator = "one", denominator = "one" }
+bad  = { type = "servo-amplifier", in = ["good", "-bad"] }
+)toml");
+  const auto failure = failure_of(made);
+  ASSERT_TRUE(failure);
+  EXPECT_THAT(failure->message, HasSubstr("still moving: 'bad' (at "));
+  EXPECT_THAT(failure->message, ::testing::Not(HasSubstr("good")));
+}
+
+TEST(Rest, ReportsAnAlgebraicLoopThatFailsAtTheStart) {
+  const Compiled made(R"toml(one = { type = "constant" }
+s = { type = "summer", in = ["one", "s"] }
+q = { type = "servo-amplifier", in = ["q", "-s"] }
+)toml");
+  const auto failure = failure_of(made);
+  ASSERT_TRUE(failure);
+  EXPECT_EQ(failure->kind, SolveError::Kind::singular_loop);
+}
+
+}  // namespace
+}  // namespace oblique

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/solve/run.h>
+
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "../support/runs.h"
+
+namespace oblique {
+namespace {
+
+using testing::Compiled;
+using testing::column_of;
+using testing::row_values;
+using testing::run_of;
+
+constexpr double kPi = std::numbers::pi;
+constexpr const char* kCircle = R"toml(x = { type = "integrator", in = ["-y"], initial = 1 }
+y = { type = "integrator", in = ["x"] }
+)toml";
+
+TEST(Run, SamplesOnAnExactGrid) {
+  const Compiled made(kCircle);
+  for (const double until : {1.0, 2 * kPi, 0.1, 1e-3, 1e4}) {
+    const auto result = run_of(made, {.until = until, .tolerance = 1e-4, .samples = 72});
+    const auto t = row_values(result, "t");
+    ASSERT_EQ(t.size(), 72U);
+    for (int k = 0; k < 72; ++k) {
+      // k·until/(n − 1) rounded once or twice; the ends exactly.
+      EXPECT_NEAR(t[static_cast<std::size_t>(k)], until * k / 71, 1e-15 * until);
+    }
+    EXPECT_EQ(t.front(), 0);
+    EXPECT_EQ(t.back(), until);
+  }
+}
+
+TEST(Run, DoesNotDependOnTheNumberOfRows) {
+  const Compiled made(kCircle);
+  const auto few = run_of(made, {.until = 10, .samples = 11}), many = run_of(made, {.until = 10, .samples = 10001});
+  EXPECT_EQ(few.statistics.steps, many.statistics.steps);  // rows are interpolated, never stepped to
+  for (std::size_t k = 0; k < 11; ++k) {
+    EXPECT_EQ(few.trajectory.at(k, 1), many.trajectory.at(1000 * k, 1)) << k;
+  }
+}
+
+TEST(Run, InterpolatesAsWellAsItSteps) {
+  // Far more rows than steps: the polynomial between two steps is as good as the steps.
+  const Compiled made(kCircle);
+  const auto result = run_of(made, {.until = 10, .samples = 5001});
+  EXPECT_LT(result.statistics.steps, 2500);
+  const auto t = row_values(result, "t"), x = row_values(result, "x");
+  for (std::size_t k = 0; k < t.size(); ++k) EXPECT_NEAR(x[k], std::cos(t[k]), 2e-6) << t[k];  // as at the ends
+}
+
+TEST(Run, GivesRowsAtExtraTimes) {
+  const Compiled made(kCircle);
+  const std::vector<double> times{0, 0.3, 0.5, 1 / 3.0 + 0.5, 1};  // with both ends and one row of the grid
+  const auto plain = run_of(made, {.samples = 11});
+  const auto result = run_of(made, {.samples = 11, .extra_times = times});
+  EXPECT_EQ(column_of(result.extra, "t"), times);
+  const auto x = column_of(result.extra, "x");
+  for (std::size_t k = 0; k < times.size(); ++k) EXPECT_NEAR(x[k], std::cos(times[k]), 1e-6);  // as the rows
+  EXPECT_EQ(row_values(result, "t"), row_values(plain, "t"));
+  EXPECT_EQ(row_values(result, "x"), row_values(plain, "x"));
+}
+
+TEST(Run, FindsPeaksOfEverySignal) {
+  const Compiled made("x = { type = \"integrator\", in = [\"-4*y\"], initial = 1 }\n"
+                      "y = { type = \"integrator\", in = [\"x\"] }\n"
+                      "s = { type = \"summer\", in = [\"-3*y\"] }\n"
+                      "o = { type = \"constant\", value = 0 }\n",
+                      "[outputs]\nx = \"x\"\n");
+  // x = cos 2t, y = sin(2t)/2: on the first half turn y is largest at π/4, s = −3y there smallest.
+  const auto result = run_of(made, {.until = kPi / 2 - 0.1, .samples = 10001});
+  const auto& peaks = result.peaks;
+  ASSERT_EQ(peaks.size(), 4U);
+  EXPECT_NEAR(peaks[made.signal("y")].value, 0.5, 1e-6);  // a grid of 1.5e-4 misses by its square at most
+  EXPECT_NEAR(peaks[made.signal("y")].time, kPi / 4, 2e-4);
+  EXPECT_NEAR(peaks[made.signal("s")].value, -1.5, 1e-6);
+  EXPECT_EQ(peaks[made.signal("x")].value, 1);
+  EXPECT_EQ(peaks[made.signal("x")].time, 0);
+  EXPECT_EQ(peaks[made.signal("o")].value, 0);
+}
+
+TEST(Run, ScalesOutputsToTheirUnits) {
+  const Compiled made("x = { type = \"constant\", value = 0.25 }\n",
+                      "[outputs]\nlength = { signal = \"x\", scale = 80, unit = \"mm\" }\n");
+  const auto result = run_of(made, {.samples = 3});
+  ASSERT_EQ(result.trajectory.columns().size(), 2U);
+  EXPECT_EQ(result.trajectory.columns()[0].name, "t");
+  EXPECT_EQ(result.trajectory.columns()[0].unit, "s");
+  EXPECT_EQ(result.trajectory.columns()[1].name, "length");
+  EXPECT_EQ(result.trajectory.columns()[1].unit, "mm");
+  EXPECT_EQ(row_values(result, "length"), (std::vector<double>{20, 20, 20}));
+  EXPECT_EQ(result.peaks[0].value, 0.25);  // in machine units
+}
+
+TEST(Run, EvaluatesADiagramWithoutStates) {
+  const BlockLibrary library =
+      testing::shipped_blocks_and("clock", "[outputs]\nt = {}\n[equations]\nt = \"time\"\n");
+  // q = √(t + 1) by an algebraic loop that each row continues from the last.
+  const Compiled made("c = { type = \"clock\" }\none = { type = \"constant\" }\n"
+                      "s = { type = \"summer\", in = [\"c\", \"one\"] }\n"
+                      "q = { type = \"square-root\", in = \"s\", gain = inf, bandwidth = inf }\n",
+                      "", library);
+  const auto result = run_of(made, {.until = 3, .samples = 31, .extra_times = {0.25}});
+  const auto t = row_values(result, "t"), q = row_values(result, "q");
+  ASSERT_EQ(q.size(), 31U);
+  for (std::size_t k = 0; k < q.size(); ++k) EXPECT_NEAR(q[k], std::sqrt(t[k] + 1), 1e-15);  // Newton to rounding
+  EXPECT_NEAR(column_of(result.extra, "q")[0], std::sqrt(1.25), 1e-15);
+  EXPECT_EQ(result.statistics.steps, 0);
+}
+
+TEST(Run, TellsItsProgressAndItsRows) {
+  const Compiled made(kCircle);
+  std::vector<double> fractions, seen;
+  RunOptions options;
+  options.until = 200;
+  options.samples = 5;
+  options.progress = [&](double fraction) { fractions.push_back(fraction); };
+  options.on_sample = [&](double t, std::span<const double> states) {
+    EXPECT_EQ(states.size(), 2U);
+    EXPECT_NEAR(states[0], std::cos(t), 1e-3);
+    seen.push_back(t);
+  };
+  const auto result = run(made.program, made.flat, options);
+  EXPECT_EQ(seen, row_values(result, "t"));
+  ASSERT_FALSE(fractions.empty());
+  EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
+  EXPECT_GT(fractions.front(), 0);
+  EXPECT_LE(fractions.back(), 1);
+}
+
+TEST(Run, TakesItsOptionsFromTheDiagram) {
+  const Compiled made(kCircle, "[run]\nuntil = 3\ntolerance = 1e-5\nsamples = 7\nmax_steps = 99\n");
+  const RunOptions options = options_of(made.diagram.run);
+  EXPECT_EQ(options.until, 3);
+  EXPECT_EQ(options.tolerance, 1e-5);
+  EXPECT_EQ(options.samples, 7);
+  EXPECT_EQ(options.max_steps, 99);
+}
+
+TEST(Run, CountsItsWork) {
+  const Compiled made(kCircle);
+  const SolverStatistics work = run_of(made).statistics;
+  EXPECT_GT(work.steps, 10);
+  EXPECT_GE(work.evaluations, work.steps);
+  EXPECT_GE(work.factorizations, work.jacobians);
+  EXPECT_GE(work.jacobians, 1);
+  EXPECT_GT(work.last_step, 0);
+}
+
+}  // namespace
+}  // namespace oblique
