@@ -16,7 +16,7 @@ until     = "20*pi"
 tolerance = 1e-8
 samples   = 101
 [blocks]
-crank = { type = "crank-generator" }
+one = { type = "constant" }
 )";
 
 }  // namespace
@@ -24,13 +24,13 @@ crank = { type = "crank-generator" }
 std::string servo_chain_text(int n) {
   fmt::memory_buffer text;
   auto out = std::back_inserter(text);
-  fmt::format_to(out, "{}", kHead);
+  fmt::format_to(out, "{}phi = {{ type = \"integrator\", in = [\"one\"] }}\n", kHead);
+  fmt::format_to(out, "s0 = {{ type = \"cosine\", in = \"phi\" }}\n");
   for (int k = 1; k <= n; ++k) {
-    const std::string leader = k == 1 ? "crank.cos" : fmt::format("s{}", k - 1);
     fmt::format_to(out,
-                   "s{} = {{ type = \"servo-amplifier\", in = [\"s{}\", \"-{}\"], gain = 1e6, bandwidth = "
-                   "\"20 Hz\" }}\n",
-                   k, k, leader);
+                   "s{} = {{ type = \"servo-amplifier\", in = [\"s{}\", \"-s{}\"], gain = 1e6, bandwidth = "
+                   "\"20 Hz\", initial = 1 }}\n",
+                   k, k, k - 1);
   }
   fmt::format_to(out, "[outputs]\nfirst = \"s1\"\nlast = \"s{}\"\n", n);
   return fmt::to_string(text);
@@ -39,8 +39,8 @@ std::string servo_chain_text(int n) {
 std::string dyad_row_text(int n) {
   fmt::memory_buffer text;
   auto out = std::back_inserter(text);
-  fmt::format_to(out, "{}one = {{ type = \"constant\" }}\nzero = {{ type = \"constant\", value = 0 }}\n",
-                 kHead);
+  fmt::format_to(out, "{}zero = {{ type = \"constant\", value = 0 }}\n", kHead);
+  fmt::format_to(out, "crank = {{ type = \"crank-generator\" }}\n");
   for (int k = 1; k <= n; ++k) {
     fmt::format_to(
         out,

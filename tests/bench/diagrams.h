@@ -10,13 +10,14 @@
 
 namespace oblique::bench {
 
-/// A chain of `n` servo amplifiers, each tracking the one before it, the first a cosine from a crank that
-/// turns once:
+/// A chain of `n` servo amplifiers, each tracking the one before it, the first the cosine s0 of an angle that
+/// turns ten times:
 ///
-///     crank.cos ──► s1 ──► s2 ──► … ──► sn        r_k = out_k − out_{k−1}
+///     one ──► phi ──► s0 ──► s1 ──► s2 ──► … ──► sn        r_k = s_k − s_{k−1}
 ///
 /// Weights of 1 carry the signal to the last block: with 0.9 it would underflow after a few thousand of them,
-/// and denormal numbers, not the engine, would be measured. The amplifiers begin at 1, near their rest.
+/// and denormal numbers, not the engine, would be measured. The amplifiers begin at 1, where they are at rest
+/// but for 1e-6 a block.
 std::string servo_chain_text(int n);
 
 /// Triangles side by side, `n` dyads that one crank drives: 23 primitive blocks each.

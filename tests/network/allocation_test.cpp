@@ -7,8 +7,8 @@
 
 #include "../support/compiled.h"
 
-// Eigen allocates with malloc and operator new ends there too, so malloc itself is watched. It cannot be where a
-// sanitizer has put its own in that place.
+// Eigen allocates with malloc and operator new ends there too, so malloc itself is watched. It cannot be
+// where a sanitizer has put its own in that place.
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define OBLIQUE_WATCHES_MALLOC 1
 #else
@@ -78,9 +78,10 @@ std::string full_loop(int n) {
   for (int i = 0; i < n; ++i) {
     std::string terms = "\"x" + std::to_string(i) + "\"";
     for (int j = 0; j < n; ++j) terms += fmt::format(", \"{}*s{}\"", i == j ? -0.5 : 0.1 / (1 + i + j), j);
-    text += fmt::format("s{0} = {{ type = \"summer\", in = [{1}] }}\n"
-                        "x{0} = {{ type = \"integrator\", in = [\"s{0}\"], initial = 0.5 }}\n",
-                        i, terms);
+    text += fmt::format(
+        "s{0} = {{ type = \"summer\", in = [{1}] }}\n"
+        "x{0} = {{ type = \"integrator\", in = [\"s{0}\"], initial = 0.5 }}\n",
+        i, terms);
   }
   return text;
 }
@@ -90,7 +91,8 @@ TEST_P(AllocationTest, NothingAfterTheFirstCall) {
   const Program& program = made.program;
   Workspace workspace(program);
   std::vector<double> x = program.start();
-  std::vector<double> slopes(x.size()), values(program.jacobian_pattern().entries()), signals(program.n_signals());
+  std::vector<double> slopes(x.size()), values(program.jacobian_pattern().entries()),
+      signals(program.n_signals());
   const auto evaluate_all = [&] {
     x[0] += 1e-3;  // so that the loops have something to do
     return program.derivatives(0, x.data(), slopes.data(), workspace) &&
@@ -107,10 +109,12 @@ TEST_P(AllocationTest, NothingAfterTheFirstCall) {
 }
 
 const std::pair<const char*, std::string> kDiagrams[]{
-    {"LoopOfOne", "r = { type = \"square-root\", in = \"x\", gain = inf, bandwidth = inf }\n"
-                  "x = { type = \"integrator\", in = [\"-r\"], initial = 0.5 }\n"},
+    {"LoopOfOne",
+     "r = { type = \"square-root\", in = \"x\", gain = inf, bandwidth = inf }\n"
+     "x = { type = \"integrator\", in = [\"-r\"], initial = 0.5 }\n"},
     {"LoopOfFour", full_loop(4)},
-    {"LoopOfForty", full_loop(40)},  // more than the blocks of Eigen's LU (16) and products without scratch (20)
+    {"LoopOfForty",
+     full_loop(40)},  // more than the blocks of Eigen's LU (16) and products without scratch (20)
     {"NonLinearLoopOfThree", R"(aa = { type = "multiplier", in = ["a", "c"] }
 bb = { type = "multiplier", in = ["b", "b"] }
 a = { type = "servo-amplifier", in = ["aa", "0.1*b", "-x"], gain = inf, initial = 1 }

@@ -58,7 +58,8 @@ std::string fault_of(const std::vector<OrderStep>& order, const Rows& rows) {
     }
     for (const std::uint32_t q : order[s].tears) {
       for (const std::uint32_t needed : rows[q]) {
-        if (!known[needed]) return "the equation of " + std::to_string(q) + " before " + std::to_string(needed);
+        if (!known[needed])
+          return "the equation of " + std::to_string(q) + " before " + std::to_string(needed);
       }
     }
   }
@@ -69,7 +70,8 @@ std::string fault_of(const std::vector<OrderStep>& order, const Rows& rows) {
 RC_GTEST_PROP(DependencyOrder, PutsEveryQuantityAfterWhatItNeeds, ()) {
   const auto n = *rc::gen::inRange<std::uint32_t>(1, 14);
   Rows rows(n);
-  for (auto& row : rows) row = *rc::gen::container<std::vector<std::uint32_t>>(rc::gen::inRange<std::uint32_t>(0, n));
+  for (auto& row : rows)
+    row = *rc::gen::container<std::vector<std::uint32_t>>(rc::gen::inRange<std::uint32_t>(0, n));
   for (auto& row : rows) row.resize(std::min<std::size_t>(row.size(), 3));
   const auto implicit = *rc::gen::container<std::vector<bool>>(n, rc::gen::arbitrary<bool>());
   const auto order = order_of(rows, implicit);
@@ -93,7 +95,9 @@ RC_GTEST_PROP(DependencyOrder, PutsEveryQuantityAfterWhatItNeeds, ()) {
   }
 }
 
-TEST(DependencyOrder, OfNothingIsEmpty) { EXPECT_THAT(order_of({}), IsEmpty()); }
+TEST(DependencyOrder, OfNothingIsEmpty) {
+  EXPECT_THAT(order_of({}), IsEmpty());
+}
 
 TEST(DependencyOrder, TearsACycleOnce) {
   // 0 → 1 → 2 → 0, and 3 reads 1.

@@ -104,12 +104,13 @@ constexpr double kA = 0.6;
 constexpr double kB = 0.8;
 
 // a² + b² = 1, √(1 − a²) = 0.8: most of these are rational.
+// clang-format off
 const std::array kFormulas{
     Formula{"add", Op::add, 1.4, 1, 1},
     Formula{"subtract", Op::subtract, -0.2, 1, -1},
     Formula{"multiply", Op::multiply, 0.48, 0.8, 0.6},
     Formula{"divide", Op::divide, 0.75, 1.25, -0.9375},
-    Formula{"power", Op::power, std::pow(kA, kB), kB* std::pow(kA, kB - 1), std::pow(kA, kB) * std::log(kA)},
+    Formula{"power", Op::power, std::pow(kA, kB), kB * std::pow(kA, kB - 1), std::pow(kA, kB) * std::log(kA)},
     Formula{"negate", Op::negate, -0.6, -1, 0},
     Formula{"sin", Op::sin, std::sin(kA), std::cos(kA), 0},
     Formula{"cos", Op::cos, std::cos(kA), -std::sin(kA), 0},
@@ -123,6 +124,7 @@ const std::array kFormulas{
     Formula{"sqrt", Op::sqrt, std::sqrt(kA), 0.5 / std::sqrt(kA), 0},
     Formula{"hypot", Op::hypot, 1, 0.6, 0.8},
 };
+// clang-format on
 
 TEST_F(ExpressionGraphTest, DifferentiatesEveryOperation) {
   const std::array point{kA, kB};
@@ -142,13 +144,13 @@ TEST_F(ExpressionGraphTest, DifferentiatesEveryOperation) {
 }
 
 TEST_F(ExpressionGraphTest, CountsEveryOccurrenceOfAVariable) {
-  // d(x·x·x + x/x… ) by the product rule: x³ sin x → 3x² sin x + x³ cos x
+  // the product rule: x³ sin x → 3x² sin x + x³ cos x
   const NodeId cube = g.apply(Op::power, x, g.constant(3));
   const auto partials = g.gradient(g.apply(Op::multiply, cube, g.apply(Op::sin, x)));
   ASSERT_EQ(partials.size(), 1U);
   const std::array point{0.7, 0.0};
-  EXPECT_NEAR(naive_value(g, partials[0].second, point),
-              3 * 0.49 * std::sin(0.7) + 0.343 * std::cos(0.7), 1e-15);
+  EXPECT_NEAR(naive_value(g, partials[0].second, point), 3 * 0.49 * std::sin(0.7) + 0.343 * std::cos(0.7),
+              1e-15);
 }
 
 // Random smooth expressions, built twice: as a graph, and as a function of long doubles that knows no graph.
@@ -171,29 +173,34 @@ class Gardener {
     const Twin a = grow(depth - 1);
     const Twin b = *rc::gen::arbitrary<bool>() ? grow(depth - 1) : leaf();
     const NodeId sine = g.apply(Op::sin, b.node);
-    const Smooth f = a.value, s = [h = b.value](const Vector& v) { return std::sin(h(v)); };
+    const Smooth f = a.value, h = b.value;
+    const Smooth s = [h](const Vector& v) { return std::sin(h(v)); };
     const Twin above{g.apply(Op::add, sine, g.constant(2)), [s](const Vector& v) { return 2 + s(v); }};
-    const Twin inside{g.apply(Op::multiply, sine, g.constant(0.5)), [s](const Vector& v) { return s(v) / 2; }};
-    const Smooth p = above.value, q = inside.value, h = b.value;
+    const Twin inside{g.apply(Op::multiply, sine, g.constant(0.5)),
+                      [s](const Vector& v) { return s(v) / 2; }};
+    const Smooth p = above.value, q = inside.value;
+    using V = const Vector&;
+    // clang-format off
     switch (*rc::gen::inRange(0, 17)) {
-      case 0: return {g.apply(Op::add, a.node, b.node), [=](const Vector& v) { return f(v) + h(v); }};
-      case 1: return {g.apply(Op::subtract, a.node, b.node), [=](const Vector& v) { return f(v) - h(v); }};
-      case 2: return {g.apply(Op::multiply, a.node, b.node), [=](const Vector& v) { return f(v) * h(v); }};
-      case 3: return {g.apply(Op::divide, a.node, above.node), [=](const Vector& v) { return f(v) / p(v); }};
-      case 4: return {g.apply(Op::power, above.node, inside.node), [=](const Vector& v) { return std::pow(p(v), q(v)); }};
-      case 5: return {g.apply(Op::negate, a.node), [=](const Vector& v) { return -f(v); }};
-      case 6: return {g.apply(Op::sin, a.node), [=](const Vector& v) { return std::sin(f(v)); }};
-      case 7: return {g.apply(Op::cos, a.node), [=](const Vector& v) { return std::cos(f(v)); }};
-      case 8: return {g.apply(Op::tan, inside.node), [=](const Vector& v) { return std::tan(q(v)); }};
-      case 9: return {g.apply(Op::asin, inside.node), [=](const Vector& v) { return std::asin(q(v)); }};
-      case 10: return {g.apply(Op::acos, inside.node), [=](const Vector& v) { return std::acos(q(v)); }};
-      case 11: return {g.apply(Op::atan, a.node), [=](const Vector& v) { return std::atan(f(v)); }};
-      case 12: return {g.apply(Op::atan2, a.node, above.node), [=](const Vector& v) { return std::atan2(f(v), p(v)); }};
-      case 13: return {g.apply(Op::exp, inside.node), [=](const Vector& v) { return std::exp(q(v)); }};
-      case 14: return {g.apply(Op::log, above.node), [=](const Vector& v) { return std::log(p(v)); }};
-      case 15: return {g.apply(Op::sqrt, above.node), [=](const Vector& v) { return std::sqrt(p(v)); }};
-      default: return {g.apply(Op::hypot, a.node, above.node), [=](const Vector& v) { return std::hypot(f(v), p(v)); }};
+      case 0: return {g.apply(Op::add, a.node, b.node), [=](V v) { return f(v) + h(v); }};
+      case 1: return {g.apply(Op::subtract, a.node, b.node), [=](V v) { return f(v) - h(v); }};
+      case 2: return {g.apply(Op::multiply, a.node, b.node), [=](V v) { return f(v) * h(v); }};
+      case 3: return {g.apply(Op::divide, a.node, above.node), [=](V v) { return f(v) / p(v); }};
+      case 4: return {g.apply(Op::power, above.node, inside.node), [=](V v) { return std::pow(p(v), q(v)); }};
+      case 5: return {g.apply(Op::negate, a.node), [=](V v) { return -f(v); }};
+      case 6: return {g.apply(Op::sin, a.node), [=](V v) { return std::sin(f(v)); }};
+      case 7: return {g.apply(Op::cos, a.node), [=](V v) { return std::cos(f(v)); }};
+      case 8: return {g.apply(Op::tan, inside.node), [=](V v) { return std::tan(q(v)); }};
+      case 9: return {g.apply(Op::asin, inside.node), [=](V v) { return std::asin(q(v)); }};
+      case 10: return {g.apply(Op::acos, inside.node), [=](V v) { return std::acos(q(v)); }};
+      case 11: return {g.apply(Op::atan, a.node), [=](V v) { return std::atan(f(v)); }};
+      case 12: return {g.apply(Op::atan2, a.node, above.node), [=](V v) { return std::atan2(f(v), p(v)); }};
+      case 13: return {g.apply(Op::exp, inside.node), [=](V v) { return std::exp(q(v)); }};
+      case 14: return {g.apply(Op::log, above.node), [=](V v) { return std::log(p(v)); }};
+      case 15: return {g.apply(Op::sqrt, above.node), [=](V v) { return std::sqrt(p(v)); }};
+      default: return {g.apply(Op::hypot, a.node, above.node), [=](V v) { return std::hypot(f(v), p(v)); }};
     }
+    // clang-format on
   }
 
  private:
@@ -218,7 +225,8 @@ RC_GTEST_PROP(ExpressionGraph, GradientsAgreeWithCentralDifferences, ()) {
   RC_ASSERT(std::abs(naive_value(g, twin.node, point) - value) <= 1e-12 * (1 + std::abs(value)));
 
   std::array<double, 3> found{};
-  for (const auto& [variable, partial] : g.gradient(twin.node)) found[variable] = naive_value(g, partial, point);
+  for (const auto& [variable, partial] : g.gradient(twin.node))
+    found[variable] = naive_value(g, partial, point);
   for (std::size_t i = 0; i < 3; ++i) {
     // Truncation is h² f‴/6; with long doubles rounding is 1e-19/h. f‴ of products four deep may reach 1e5.
     constexpr long double kStep = 1e-6L;

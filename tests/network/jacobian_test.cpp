@@ -14,15 +14,15 @@ namespace {
 using testing::Compiled;
 using Vector = std::vector<double>;
 
-/// A diagram whose states are integrators "x", "y", "z" in this order, and what dx/dt must be, with its loops solved
-/// by hand.
+/// A diagram whose states are integrators "x", "y", "z" in this order, and what dx/dt must be, with its loops
+/// solved by hand.
 struct Case {
   std::string name;
   std::string blocks;
   std::function<Vector(double x, double y, double z)> slopes;
-  std::vector<std::size_t> loops;  ///< number of unknowns of each
+  std::vector<std::size_t> loops;          ///< number of unknowns of each
   std::vector<std::pair<int, int>> zeros;  ///< (row, column) that must not be in the pattern
-  double rounding = 1e-13;         ///< of dx/dt, relative to 1 + |dx/dt|
+  double rounding = 1e-13;                 ///< of dx/dt, relative to 1 + |dx/dt|
 
   friend std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.name; }
 };
@@ -45,7 +45,9 @@ const std::vector<Case> kCases{
         x = { type = "integrator", in = ["y"] }
         y = { type = "integrator", in = ["dy", "-x"] }
         z = { type = "integrator", in = ["2*sine"], rate = 3 })",
-     [](double x, double y, double) { return Vector{y, (1 - x * x) * y - x, 6 * std::sin(x)}; },
+     [](double x, double y, double) {
+       return Vector{y, (1 - x * x) * y - x, 6 * std::sin(x)};
+     },
      {},
      {{0, 2}, {1, 2}, {2, 1}}},
 
@@ -77,7 +79,9 @@ const std::vector<Case> kCases{
         ys = { type = "multiplier", in = ["y", "s"] }
         x = { type = "integrator", in = ["s"] }
         y = { type = "integrator", in = ["-y"] })",
-     [](double x, double y, double) { return Vector{x / (1 - y), -y}; },
+     [](double x, double y, double) {
+       return Vector{x / (1 - y), -y};
+     },
      {1},
      {{1, 0}}},
 
@@ -93,7 +97,8 @@ const std::vector<Case> kCases{
      {2},
      {{0, 2}, {2, 0}, {2, 1}}},
 
-    // Ideal amplifiers whose residuals depend on the next one's output: dg/dz is a cyclic permutation, which only a
+    // Ideal amplifiers whose residuals depend on the next one's output: dg/dz is a cyclic permutation, which
+    // only a
     // pivoting LU solves, and only with its permutation the right way round.
     {"ThreeAmplifiersCrosswise",
      R"(a = { type = "servo-amplifier", in = ["2*b", "-x"], gain = inf }
@@ -102,7 +107,9 @@ const std::vector<Case> kCases{
         x = { type = "integrator", in = ["a"] }
         y = { type = "integrator", in = ["b"] }
         z = { type = "integrator", in = ["c"] })",
-     [](double x, double y, double z) { return Vector{z - x / 4, x / 2, y / 3}; },
+     [](double x, double y, double z) {
+       return Vector{z - x / 4, x / 2, y / 3};
+     },
      {3},
      {}},
 
@@ -111,7 +118,9 @@ const std::vector<Case> kCases{
         ry = { type = "multiplier", in = ["r", "y"] }
         x = { type = "integrator", in = ["-r"] }
         y = { type = "integrator", in = ["ry"] })",
-     [](double x, double y, double) { return Vector{-std::sqrt(x), std::sqrt(x) * y}; },
+     [](double x, double y, double) {
+       return Vector{-std::sqrt(x), std::sqrt(x) * y};
+     },
      {1},
      {{0, 1}}},
 
@@ -120,7 +129,9 @@ const std::vector<Case> kCases{
         x = { type = "integrator", in = ["q"] }
         y = { type = "integrator", in = ["z"] }
         z = { type = "integrator", in = ["-q"] })",
-     [](double x, double y, double z) { return Vector{10 * x / (1 + 10 * y), z, -10 * x / (1 + 10 * y)}; },
+     [](double x, double y, double z) {
+       return Vector{10 * x / (1 + 10 * y), z, -10 * x / (1 + 10 * y)};
+     },
      {1},
      {}},
 
@@ -160,7 +171,9 @@ const std::vector<Case> kCases{
         p = { type = "multiplier", in = ["s", "y"] }
         x = { type = "integrator", in = ["y"] }
         y = { type = "integrator", in = ["-x"] })",
-     [](double x, double y, double) { return Vector{y, -x}; },
+     [](double x, double y, double) {
+       return Vector{y, -x};
+     },
      {1},
      {}},
 };
@@ -226,7 +239,8 @@ TEST_P(JacobianTest, AgreesWithDifferencesOfTheClosedForm) {
     for (std::size_t column = 0; column < x.size(); ++column) {
       Vector found(x.size(), 0.0);
       for (auto k = pattern.column_starts[column]; k < pattern.column_starts[column + 1]; ++k) {
-        found[static_cast<std::size_t>(pattern.rows[static_cast<std::size_t>(k)])] = values[static_cast<std::size_t>(k)];
+        found[static_cast<std::size_t>(pattern.rows[static_cast<std::size_t>(k)])] =
+            values[static_cast<std::size_t>(k)];
       }
       constexpr double kStep = 1e-5;
       Vector left = x, right = x;

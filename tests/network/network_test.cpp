@@ -10,10 +10,10 @@ namespace oblique {
 namespace {
 
 using testing::Compiled;
-using testing::message_of;
-using testing::shipped_blocks_and;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
+using testing::message_of;
+using testing::shipped_blocks_and;
 
 /// What `assemble` says about a block with these tables, wired to an integrator.
 std::string refusal_of(const std::string& tables) {
@@ -40,8 +40,9 @@ TEST(Network, RefusesASwitchingFunctionOfASignal) {
 }
 
 TEST(Network, RefusesAConditionOnASignal) {
-  EXPECT_THAT(refusal_of("[equations]\nout = \"if(in > 0, in, 1)\"\n"),
-              ::testing::HasSubstr("equation of 'o': a condition of a varying signal switches inside a step"));
+  EXPECT_THAT(
+      refusal_of("[equations]\nout = \"if(in > 0, in, 1)\"\n"),
+      ::testing::HasSubstr("equation of 'o': a condition of a varying signal switches inside a step"));
   EXPECT_THAT(refusal_of("[equations]\nout = \"if(sin(in), in, 1)\"\n"),
               ::testing::HasSubstr("equation of 'o': if of a varying signal switches inside a step"));
 }
@@ -56,7 +57,8 @@ p = { default = -3 }
 [equations]
 out = "if(p < 0 and abs(p) == 3, max(p, 2)*in, min(in, 0))"
 )toml");
-  const Compiled made("o = { type = \"odd\", in = \"x\" }\nx = { type = \"integrator\", in = [\"o\"] }\n", "", library);
+  const Compiled made("o = { type = \"odd\", in = \"x\" }\nx = { type = \"integrator\", in = [\"o\"] }\n", "",
+                      library);
   EXPECT_EQ(slope_at(made, 0.5), 1.0);
 }
 
@@ -69,14 +71,17 @@ TEST(Network, RefusesAnEquationThatIsNeverFinite) {
 }
 
 TEST(Network, RefusesAStartThatIsNotFinite) {
-  EXPECT_EQ(refusal_of("[parameters]\np = { default = 0 }\n[equations]\n\"der(out)\" = \"in\"\n[start]\nout = \"1/p\"\n"),
-            "d.toml:3:1: 'o' would start at inf; expected a finite start value\n"
-            "  remedy: give the block another 'initial'");
+  EXPECT_EQ(
+      refusal_of(
+          "[parameters]\np = { default = 0 }\n[equations]\n\"der(out)\" = \"in\"\n[start]\nout = \"1/p\"\n"),
+      "d.toml:3:1: 'o' would start at inf; expected a finite start value\n"
+      "  remedy: give the block another 'initial'");
 }
 
 TEST(Network, ReportsAllFindingsTogether) {
   const BlockLibrary library = shipped_blocks_and(
-      "odd", "[inputs]\nin = {}\n[outputs]\na = {}\nb = {}\n[equations]\na = \"abs(in)\"\nb = \"sign(in)\"\n");
+      "odd",
+      "[inputs]\nin = {}\n[outputs]\na = {}\nb = {}\n[equations]\na = \"abs(in)\"\nb = \"sign(in)\"\n");
   const std::string text = testing::diagram_text(
       "o = { type = \"odd\", in = \"x\" }\nx = { type = \"integrator\", in = [\"-x\"] }\n");
   try {
@@ -117,9 +122,10 @@ TEST(FeedThrough, OfACompositeIsDecidedPathByPath) {
 
 TEST(FeedThrough, FindsTheLoopThatIsThere) {
   const BlockLibrary library = shipped_blocks_and("two-paths", kTwoPaths);
-  const Compiled made("p = { type = \"two-paths\", a = \"s\", b = \"p.fast\" }\n"
-                      "s = { type = \"summer\", in = [\"-p.fast\", \"p.slow\"] }\n",
-                      "", library);
+  const Compiled made(
+      "p = { type = \"two-paths\", a = \"s\", b = \"p.fast\" }\n"
+      "s = { type = \"summer\", in = [\"-p.fast\", \"p.slow\"] }\n",
+      "", library);
   ASSERT_EQ(made.program.loops().size(), 1U);
   EXPECT_THAT(made.program.loops()[0].members, ElementsAre("p.double", "s"));
   EXPECT_DOUBLE_EQ(slope_at(made, 0.6), 0.4);  // fast = 2 s, s = slow − fast
@@ -129,8 +135,9 @@ TEST(FeedThrough, OfTwoOutputsOfOneBlockIsApart) {
   // u = a and v = b: wiring u to b closes no loop, although it leads from the block to itself.
   const BlockLibrary library = shipped_blocks_and(
       "pair", "[inputs]\na = {}\nb = {}\n[outputs]\nu = {}\nv = {}\n[equations]\nu = \"3*a\"\nv = \"b\"\n");
-  const Compiled made("p = { type = \"pair\", a = \"x\", b = \"p.u\" }\nx = { type = \"integrator\", in = [\"p.v\"] }\n",
-                      "", library);
+  const Compiled made(
+      "p = { type = \"pair\", a = \"x\", b = \"p.u\" }\nx = { type = \"integrator\", in = [\"p.v\"] }\n", "",
+      library);
   EXPECT_THAT(made.program.loops(), IsEmpty());
   EXPECT_EQ(slope_at(made, 0.5), 1.5);
 }
@@ -149,9 +156,10 @@ TEST(FeedThrough, EndsAtAServoAmplifierOfFiniteBandwidth) {
 // Machines whose summers and integrators invert.
 
 TEST(Polarity, TurnsSummersAndIntegratorsOnly) {
-  const std::string blocks = "s = { type = \"summer\", in = [\"2*x\", \"i\"] }\n"
-                             "i = { type = \"inverter\", in = \"x\" }\n"
-                             "x = { type = \"integrator\", in = [\"s\"], initial = 0.25 }\n";
+  const std::string blocks =
+      "s = { type = \"summer\", in = [\"2*x\", \"i\"] }\n"
+      "i = { type = \"inverter\", in = \"x\" }\n"
+      "x = { type = \"integrator\", in = [\"s\"], initial = 0.25 }\n";
   const Compiled plain(blocks), turned(blocks, "[machine]\ninverting = true\n");
   EXPECT_EQ(slope_at(plain, 0.5), 0.5);
   EXPECT_EQ(slope_at(turned, 0.5), 0.5);  // −(−(2x − x)): once by the summer, once by the integrator

@@ -46,8 +46,10 @@ y = { type = "integrator", in = ["-x"] }
 }
 
 TEST(Program, ReadsTheClock) {
-  const BlockLibrary library = testing::shipped_blocks_and("clock", "[outputs]\nt = {}\n[equations]\nt = \"time\"\n");
-  const Compiled made("c = { type = \"clock\" }\nx = { type = \"integrator\", in = [\"2*c\"] }\n", "", library);
+  const BlockLibrary library =
+      testing::shipped_blocks_and("clock", "[outputs]\nt = {}\n[equations]\nt = \"time\"\n");
+  const Compiled made("c = { type = \"clock\" }\nx = { type = \"integrator\", in = [\"2*c\"] }\n", "",
+                      library);
   Workspace workspace(made.program);
   const double x = 0;
   double slope = 0;
@@ -102,8 +104,9 @@ x = { type = "integrator", in = ["y"] }
 }
 
 TEST(Workspace, ReportsALoopWithoutSolution) {
-  const Compiled made("r = { type = \"square-root\", in = \"x\", gain = inf, bandwidth = inf }\n"
-                      "x = { type = \"integrator\", in = [\"-r\"] }\n");
+  const Compiled made(
+      "r = { type = \"square-root\", in = \"x\", gain = inf, bandwidth = inf }\n"
+      "x = { type = \"integrator\", in = [\"-r\"] }\n");
   Workspace workspace(made.program);
   const double x = -0.5;
   double slope = 0;
@@ -113,11 +116,13 @@ TEST(Workspace, ReportsALoopWithoutSolution) {
 
 TEST(Workspace, SolvesANonLinearLoopFromFarAway) {
   // From 1 the full Newton step to √1e12 overshoots by 5e5 times; damping must not stop short of the root.
-  const Compiled made("r = { type = \"square-root\", in = \"x\", gain = inf, bandwidth = inf }\n"
-                      "x = { type = \"integrator\", in = [\"r\"] }\n");
+  const Compiled made(
+      "r = { type = \"square-root\", in = \"x\", gain = inf, bandwidth = inf }\n"
+      "x = { type = \"integrator\", in = [\"r\"] }\n");
   for (const double x : {1e-12, 1e-3, 1.0, 1e12}) {
     Workspace workspace(made.program);
-    EXPECT_NEAR(slope_of_only_state(made.program, x, workspace), std::sqrt(x), 1e-15 * std::sqrt(x) + 1e-18) << x;
+    EXPECT_NEAR(slope_of_only_state(made.program, x, workspace), std::sqrt(x), 1e-15 * std::sqrt(x) + 1e-18)
+        << x;
   }
 }
 

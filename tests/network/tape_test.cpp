@@ -130,7 +130,8 @@ RC_GTEST_PROP(Tape, GivesWhatTheGraphMeans, ()) {
   std::vector<NodeId> pool{g.variable(0), g.variable(1), g.variable(2), g.constant(0.5), g.constant(-3)};
   const int n = *rc::gen::inRange(1, 40);
   for (int i = 0; i < n; ++i) {
-    const auto op = *rc::gen::elementOf(std::vector{Op::add, Op::subtract, Op::multiply, Op::multiply, Op::sin});
+    const auto op =
+        *rc::gen::elementOf(std::vector{Op::add, Op::subtract, Op::multiply, Op::multiply, Op::sin});
     const NodeId a = *rc::gen::elementOf(pool);
     const NodeId b = *rc::gen::elementOf(pool);
     pool.push_back(g.apply(op, a, b));

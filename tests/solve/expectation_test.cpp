@@ -12,10 +12,10 @@ namespace oblique {
 namespace {
 
 using testing::Compiled;
-using testing::message_of;
-using testing::run_of;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using testing::message_of;
+using testing::run_of;
 
 constexpr const char* kCircle = R"toml(x = { type = "integrator", in = ["-y"], initial = 1 }
 y = { type = "integrator", in = ["x"] }
@@ -36,7 +36,7 @@ until = 4
 "x minimum" = { value = -1, within = 1e-5 }
 "y maximum" = { value = 1, within = 1e-5 }
 "y minimum" = { value = -0.7568024953, within = 1e-6 }
-"x at 0"    = { value = 1, within = 0 }
+"x at 0"    = { value = 1, within = 1e-12 }
 )toml");
   const auto results = check(made);
   ASSERT_EQ(results.size(), 6U);
@@ -66,8 +66,9 @@ until = 4
 }
 
 TEST(Expectations, RefuseATimeOutsideOfAShorterRun) {
-  const Compiled made(kCircle, "[run]\nuntil = 4\n[expect]\n\"x at 3\" = { value = 0, within = 9 }\n"
-                               "\"y at 1\" = { value = 0, within = 9 }\n");
+  const Compiled made(kCircle,
+                      "[run]\nuntil = 4\n[expect]\n\"x at 3\" = { value = 0, within = 9 }\n"
+                      "\"y at 1\" = { value = 0, within = 9 }\n");
   EXPECT_EQ(message_of<DiagramError>([&] { expectation_times(made.diagram, 2); }),
             "d.toml:8:1: 'x at 3' is at t = 3 s, outside the run; expected a time from 0 to 2 s\n"
             "  remedy: let the run last longer ('until' of [run], or --until)");

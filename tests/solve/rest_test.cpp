@@ -23,10 +23,12 @@ struct Rested {
   std::vector<double> states;
   std::vector<double> slopes;
 
-  explicit Rested(std::string_view blocks) : made(blocks), states(made.program.start()), slopes(states.size()) {
+  explicit Rested(std::string_view blocks)
+      : made(blocks), states(made.program.start()), slopes(states.size()) {
     Workspace workspace(made.program);
     bring_to_rest(made.program, workspace, 0, states, "d.toml");
-    if (!made.program.derivatives(0, states.data(), slopes.data(), workspace)) throw std::runtime_error("no slopes");
+    if (!made.program.derivatives(0, states.data(), slopes.data(), workspace))
+      throw std::runtime_error("no slopes");
   }
 
   double state(std::string_view name) const {
@@ -85,8 +87,8 @@ c = { type = "divider", numerator = "b", denominator = "half", gain = 1e5, bandw
   EXPECT_NEAR(at.state("c.quotient"), c, 1e-13);
 }
 
-//  Two dyads, the second on the apex of the first, as in Jansen's leg. Until the first has settled its apex is far
-//  from where the links of the second reach.
+//  Two dyads, the second on the apex of the first, as in Jansen's leg. Until the first has settled its apex
+//  is far from where the links of the second reach.
 //
 //        C ───── D          P = (0, 0), Q = (0.5, 0), C by links 0.4 and 0.3: a right angle, C = (0.32, 0.24)
 //      /   \    /           R = (1.2, 0.24), D on C and R by links 0.5 and 0.4
@@ -117,6 +119,18 @@ TEST(Rest, SettlesGroupAfterGroupWhereAllAtOnceFail) {
   EXPECT_NEAR(signals[at.made.signal("d.cy")], 0.24 + height, 1e-5);
 }
 
+TEST(Rest, ReachesRoundingNearADeadCentre) {
+  // sin γ = 1e-3 or so: rounding of sin² + cos² − 1 moves it by 1e-13, where Newton's method then wanders
+  // about.
+  for (const double side : {0.699999, 0.6999999, 0.699990}) {
+    const Rested at(fmt::format(R"toml(l = {{ type = "constant", value = {} }}
+t = {{ type = "triangle-two-sides", side = "l", adjacent = 0.4, opposite = 0.3, gain = 1e6 }}
+)toml",
+                                side));
+    EXPECT_LT(at.residual(1e6), 1e-13) << side;  // rounding of terms of order 10 (input_gain)
+  }
+}
+
 TEST(Rest, NeedsNothingWithoutServoLoops) {
   const Rested at("x = { type = \"integrator\", in = [\"x\"], initial = 0.25 }\n");
   EXPECT_TRUE(rest_states(at.made.program).empty());
@@ -145,10 +159,12 @@ q = { type = "servo-amplifier", in = ["z", "-q"] }
   ASSERT_TRUE(failure);
   EXPECT_EQ(failure->kind, SolveError::Kind::no_rest);
   EXPECT_EQ(failure->time, 0);
-  EXPECT_THAT(failure->message, HasSubstr("the servo loops do not come to rest before the clock starts; still moving: 'q'"));
+  EXPECT_THAT(failure->message,
+              HasSubstr("the servo loops do not come to rest before the clock starts; still moving: 'q'"));
   EXPECT_THAT(failure->message, HasSubstr("expected residuals that rise with the output of their amplifier"));
-  EXPECT_THAT(failure->message, HasSubstr("remedy: check the signs at the amplifier's inputs, that its equation has a "
-                                          "solution at the start, and its 'initial'"));
+  EXPECT_THAT(failure->message,
+              HasSubstr("remedy: check the signs at the amplifier's inputs, that its equation has a "
+                        "solution at the start, and its 'initial'"));
 }
 
 TEST(Rest, RefusesATriangleThatCannotClose) {

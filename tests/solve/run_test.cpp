@@ -11,8 +11,8 @@
 namespace oblique {
 namespace {
 
-using testing::Compiled;
 using testing::column_of;
+using testing::Compiled;
 using testing::row_values;
 using testing::run_of;
 
@@ -38,7 +38,8 @@ TEST(Run, SamplesOnAnExactGrid) {
 
 TEST(Run, DoesNotDependOnTheNumberOfRows) {
   const Compiled made(kCircle);
-  const auto few = run_of(made, {.until = 10, .samples = 11}), many = run_of(made, {.until = 10, .samples = 10001});
+  const auto few = run_of(made, {.until = 10, .samples = 11}),
+             many = run_of(made, {.until = 10, .samples = 10001});
   EXPECT_EQ(few.statistics.steps, many.statistics.steps);  // rows are interpolated, never stepped to
   for (std::size_t k = 0; k < 11; ++k) {
     EXPECT_EQ(few.trajectory.at(k, 1), many.trajectory.at(1000 * k, 1)) << k;
@@ -51,7 +52,8 @@ TEST(Run, InterpolatesAsWellAsItSteps) {
   const auto result = run_of(made, {.until = 10, .samples = 5001});
   EXPECT_LT(result.statistics.steps, 2500);
   const auto t = row_values(result, "t"), x = row_values(result, "x");
-  for (std::size_t k = 0; k < t.size(); ++k) EXPECT_NEAR(x[k], std::cos(t[k]), 2e-6) << t[k];  // as at the ends
+  for (std::size_t k = 0; k < t.size(); ++k)
+    EXPECT_NEAR(x[k], std::cos(t[k]), 2e-6) << t[k];  // as at the ends
 }
 
 TEST(Run, GivesRowsAtExtraTimes) {
@@ -67,11 +69,12 @@ TEST(Run, GivesRowsAtExtraTimes) {
 }
 
 TEST(Run, FindsPeaksOfEverySignal) {
-  const Compiled made("x = { type = \"integrator\", in = [\"-4*y\"], initial = 1 }\n"
-                      "y = { type = \"integrator\", in = [\"x\"] }\n"
-                      "s = { type = \"summer\", in = [\"-3*y\"] }\n"
-                      "o = { type = \"constant\", value = 0 }\n",
-                      "[outputs]\nx = \"x\"\n");
+  const Compiled made(
+      "x = { type = \"integrator\", in = [\"-4*y\"], initial = 1 }\n"
+      "y = { type = \"integrator\", in = [\"x\"] }\n"
+      "s = { type = \"summer\", in = [\"-3*y\"] }\n"
+      "o = { type = \"constant\", value = 0 }\n",
+      "[outputs]\nx = \"x\"\n");
   // x = cos 2t, y = sin(2t)/2: on the first half turn y is largest at π/4, s = −3y there smallest.
   const auto result = run_of(made, {.until = kPi / 2 - 0.1, .samples = 10001});
   const auto& peaks = result.peaks;
@@ -101,14 +104,16 @@ TEST(Run, EvaluatesADiagramWithoutStates) {
   const BlockLibrary library =
       testing::shipped_blocks_and("clock", "[outputs]\nt = {}\n[equations]\nt = \"time\"\n");
   // q = √(t + 1) by an algebraic loop that each row continues from the last.
-  const Compiled made("c = { type = \"clock\" }\none = { type = \"constant\" }\n"
-                      "s = { type = \"summer\", in = [\"c\", \"one\"] }\n"
-                      "q = { type = \"square-root\", in = \"s\", gain = inf, bandwidth = inf }\n",
-                      "", library);
+  const Compiled made(
+      "c = { type = \"clock\" }\none = { type = \"constant\" }\n"
+      "s = { type = \"summer\", in = [\"c\", \"one\"] }\n"
+      "q = { type = \"square-root\", in = \"s\", gain = inf, bandwidth = inf }\n",
+      "", library);
   const auto result = run_of(made, {.until = 3, .samples = 31, .extra_times = {0.25}});
   const auto t = row_values(result, "t"), q = row_values(result, "q");
   ASSERT_EQ(q.size(), 31U);
-  for (std::size_t k = 0; k < q.size(); ++k) EXPECT_NEAR(q[k], std::sqrt(t[k] + 1), 1e-15);  // Newton to rounding
+  for (std::size_t k = 0; k < q.size(); ++k)
+    EXPECT_NEAR(q[k], std::sqrt(t[k] + 1), 1e-15);  // Newton to rounding
   EXPECT_NEAR(column_of(result.extra, "q")[0], std::sqrt(1.25), 1e-15);
   EXPECT_EQ(result.statistics.steps, 0);
 }

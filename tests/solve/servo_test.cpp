@@ -21,8 +21,9 @@ constexpr double kTau = 1 / (2 * std::numbers::pi * 10);  // of 10 Hz [s]
 
 /// r = w (out − u): the loop time constant is τ/(1 + μ w) and the static gain μ w/(1 + μ w).
 std::string follower(double weight, double gain, const std::string& input) {
-  return fmt::format("out = {{ type = \"servo-amplifier\", in = [\"{0}*out\", \"-{0}*u\"], gain = {1} }}\n{2}\n", weight,
-                     gain, input);
+  return fmt::format(
+      "out = {{ type = \"servo-amplifier\", in = [\"{0}*out\", \"-{0}*u\"], gain = {1} }}\n{2}\n", weight,
+      gain, input);
 }
 
 TEST(ServoAmplifier, AnswersAStepExponentially) {
@@ -43,8 +44,8 @@ TEST(ServoAmplifier, AnswersAStepExponentially) {
 
 TEST(ServoAmplifier, FollowsARampWithItsLag) {
   constexpr double kWeight = 10, kGain = 20, kSpeed = 0.5;
-  const Compiled made(follower(kWeight, kGain,
-                               "one = { type = \"constant\" }\nu = { type = \"integrator\", in = [\"0.5*one\"] }"));
+  const Compiled made(follower(
+      kWeight, kGain, "one = { type = \"constant\" }\nu = { type = \"integrator\", in = [\"0.5*one\"] }"));
   const auto result = run_of(made, {.until = 0.01, .tolerance = 1e-10, .samples = 101});
   constexpr double kLoop = 1 + kGain * kWeight, kLag = kTau / kLoop;
   const auto t = row_values(result, "t"), out = row_values(result, "out");
@@ -113,9 +114,10 @@ c  = { type = "servo-amplifier", in = ["cc", "-u"], gain = 100, initial = 1 }
 TEST(ServoStability, SeesAPairThatRingsUp) {
   // τ ȧ = −a − μ(−b), τ ḃ = −b − μ a: poles (−1 ± iμ)/τ. With −b instead of b in both: (−1 ± μ)/τ.
   const auto stability = [](const char* first, const char* second) {
-    const Compiled made(fmt::format("a = {{ type = \"servo-amplifier\", in = [\"{}\"], gain = 50 }}\n"
-                                    "b = {{ type = \"servo-amplifier\", in = [\"{}\"], gain = 50 }}\n",
-                                    first, second));
+    const Compiled made(
+        fmt::format("a = {{ type = \"servo-amplifier\", in = [\"{}\"], gain = 50 }}\n"
+                    "b = {{ type = \"servo-amplifier\", in = [\"{}\"], gain = 50 }}\n",
+                    first, second));
     Workspace workspace(made.program);
     const std::vector<double> x{0, 0};
     return servo_stability(made.program, workspace, 0, x);
@@ -130,17 +132,19 @@ TEST(ServoStability, FreezesIntegratorsAndIsMinusInfinityWithoutServos) {
   const std::vector<double> x{1};
   EXPECT_EQ(servo_stability(grows.program, workspace, 0, x), -std::numeric_limits<double>::infinity());
   // out follows x, x reads out: together they would grow, the loop alone does not.
-  const Compiled both("out = { type = \"servo-amplifier\", in = [\"out\", \"-x\"], gain = 10 }\n"
-                      "x = { type = \"integrator\", in = [\"5*out\"] }\n");
+  const Compiled both(
+      "out = { type = \"servo-amplifier\", in = [\"out\", \"-x\"], gain = 10 }\n"
+      "x = { type = \"integrator\", in = [\"5*out\"] }\n");
   Workspace frozen(both.program);
   const std::vector<double> two{0, 1};
   EXPECT_NEAR(servo_stability(both.program, frozen, 0, two), -11 / kTau, 1e-9);
 }
 
 TEST(ServoStability, IsNotANumberWhereAnAlgebraicLoopHasNoSolution) {
-  const Compiled made("r = { type = \"square-root\", in = \"x\", bandwidth = inf }\n"
-                      "out = { type = \"servo-amplifier\", in = [\"out\", \"-r\"] }\n"
-                      "x = { type = \"integrator\", in = [\"out\"] }\n");
+  const Compiled made(
+      "r = { type = \"square-root\", in = \"x\", bandwidth = inf }\n"
+      "out = { type = \"servo-amplifier\", in = [\"out\", \"-r\"] }\n"
+      "x = { type = \"integrator\", in = [\"out\"] }\n");
   Workspace workspace(made.program);
   const std::vector<double> x{0, -1};
   EXPECT_TRUE(std::isnan(servo_stability(made.program, workspace, 0, x)));

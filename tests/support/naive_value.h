@@ -16,8 +16,10 @@ inline double naive_value(const ExpressionGraph& graph, NodeId id, std::span<con
   if (node.op == Op::variable) return variables[node.variable];
   const double a = naive_value(graph, node.a, variables);
   const bool binary = node.op == Op::add || node.op == Op::subtract || node.op == Op::multiply ||
-                      node.op == Op::divide || node.op == Op::power || node.op == Op::atan2 || node.op == Op::hypot;
+                      node.op == Op::divide || node.op == Op::power || node.op == Op::atan2 ||
+                      node.op == Op::hypot;
   const double b = binary ? naive_value(graph, node.b, variables) : 0;
+  // clang-format off
   switch (node.op) {
     case Op::add: return a + b;
     case Op::subtract: return a - b;
@@ -38,6 +40,7 @@ inline double naive_value(const ExpressionGraph& graph, NodeId id, std::span<con
     case Op::hypot: return std::hypot(a, b);
     default: return std::numeric_limits<double>::quiet_NaN();
   }
+  // clang-format on
 }
 
 }  // namespace oblique::testing

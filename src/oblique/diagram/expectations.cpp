@@ -99,7 +99,7 @@ void check_expected_outputs(const std::vector<Expectation>& expectations,
                             const std::vector<std::string>& outputs, Diagnostics& diagnostics) {
   const std::unordered_set<std::string_view> known(outputs.begin(), outputs.end());
   for (const Expectation& expectation : expectations) {
-    if (known.count(expectation.output) > 0) continue;
+    if (known.contains(expectation.output)) continue;
     diagnostics.add({expectation.place,
                      fmt::format("[expect] names '{}', which is no output", expectation.output),
                      {},

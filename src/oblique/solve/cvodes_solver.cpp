@@ -71,6 +71,7 @@ struct CvodesSolver::Handles {
   long max_steps;
   long steps = 0;
   int small_steps = 0;
+  bool saw_refusal = false;  ///< these two since the last step that was not small
   bool saw_not_finite = false;
 
   Owned<SUNContext, ContextDeleter> context;
@@ -104,7 +105,10 @@ struct CvodesSolver::Handles {
     auto& self = *static_cast<Handles*>(user);
     const double* const states = N_VGetArrayPointer(x);
     double* const slopes = N_VGetArrayPointer(dxdt);
-    if (!self.system->derivatives(t, states, slopes)) return 1;
+    if (!self.system->derivatives(t, states, slopes)) {
+      self.saw_refusal = true;
+      return 1;
+    }
     if (all_finite(slopes, self.system->size())) return 0;
     self.saw_not_finite = true;
     return 1;  // recoverable: CVODES tries a shorter step
@@ -117,16 +121,21 @@ struct CvodesSolver::Handles {
     std::copy(pattern.column_starts.begin(), pattern.column_starts.end(), SUNSparseMatrix_IndexPointers(matrix));
     std::copy(pattern.rows.begin(), pattern.rows.end(), SUNSparseMatrix_IndexValues(matrix));
     double* const values = SUNSparseMatrix_Data(matrix);
-    if (!self.system->jacobian(t, N_VGetArrayPointer(x), values)) return 1;
+    if (!self.system->jacobian(t, N_VGetArrayPointer(x), values)) {
+      self.saw_refusal = true;
+      return 1;
+    }
     return all_finite(values, pattern.entries()) ? 0 : 1;
   }
 
+  /// What ended a step with this code, or the row of small steps that one of success ends.
   SolverFailure failure(int code) const {
     SolverFailure failure{SolverFailure::Kind::other, t, code};
     const bool refused = code == CV_RHSFUNC_FAIL || code == CV_FIRST_RHSFUNC_ERR || code == CV_REPTD_RHSFUNC_ERR ||
                          code == CV_UNREC_RHSFUNC_ERR;
     if (refused) failure.kind = SolverFailure::Kind::no_value;
-    if (code == CV_ERR_FAILURE || code == CV_CONV_FAILURE) failure.kind = SolverFailure::Kind::small_step;
+    const bool too_short = code == CV_ERR_FAILURE || code == CV_CONV_FAILURE || code >= 0;
+    if (too_short) failure.kind = saw_refusal ? SolverFailure::Kind::no_value : SolverFailure::Kind::small_step;
     if (saw_not_finite && failure.kind != SolverFailure::Kind::other) failure.kind = SolverFailure::Kind::not_finite;
     return failure;
   }
@@ -142,7 +151,7 @@ CvodesSolver& CvodesSolver::operator=(CvodesSolver&&) noexcept = default;
 double CvodesSolver::step() {
   Handles& h = *handles_;
   if (h.steps >= h.max_steps) throw SolverFailure{SolverFailure::Kind::step_budget, h.t, 0};
-  h.saw_not_finite = false;
+  if (h.small_steps == 0) h.saw_refusal = h.saw_not_finite = false;
   const double before = h.t;
   // In one-step mode this time only tells the direction; it must not be the stop time itself.
   const double direction = h.end + (h.end - before) + 1;
@@ -153,7 +162,7 @@ double CvodesSolver::step() {
     throw SolverFailure{SolverFailure::Kind::not_finite, h.t, code};
   }
   h.small_steps = h.t - before < kSmallestStep * h.end && h.t < h.end ? h.small_steps + 1 : 0;
-  if (h.small_steps > kMostSmallSteps) throw SolverFailure{SolverFailure::Kind::small_step, h.t, code};
+  if (h.small_steps > kMostSmallSteps) throw h.failure(code);
   return h.t;
 }
 

@@ -70,7 +70,8 @@ class SettlingSystem final : public OdeSystem {
 /// rest to rounding.
 bool polish(SettlingSystem& system, std::vector<double>& states) {
   constexpr double kNearby = 1e-2;
-  constexpr int kMostIterations = 20;
+  constexpr double kAtRest = 1e-12;      // rounding, where a loop has lost most of its gain
+  constexpr int kMostIterations = 50;    // a lost gain makes it halve its error a step
   const auto n = static_cast<Eigen::Index>(states.size());
   Eigen::VectorXd x = Eigen::Map<const Eigen::VectorXd>(states.data(), n);
   Eigen::VectorXd slopes(n);
@@ -84,11 +85,12 @@ bool polish(SettlingSystem& system, std::vector<double>& states) {
     const Eigen::VectorXd step = -lu.solve(slopes);
     if (!step.allFinite()) return false;
     const double size = (step.array() / (1 + x.array().abs())).abs().maxCoeff();
-    if (size > last) return iteration > 0 && last < 1e-12;  // rounding has been reached
+    if (size > last) break;  // far away, or rounding has been reached
     x += step;
-    if (size < 1e-15) break;
     last = size;
+    if (size < 1e-15) break;
   }
+  if (last > kAtRest) return false;
   std::copy(x.begin(), x.end(), states.begin());
   return true;
 }
