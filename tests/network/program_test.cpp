@@ -126,6 +126,32 @@ TEST(Workspace, SolvesANonLinearLoopFromFarAway) {
   }
 }
 
+/// atan y = x by an ideal amplifier that starts at 3.
+class ArcTest : public ::testing::Test {
+ protected:
+  BlockLibrary library = testing::shipped_blocks_and(
+      "arc", "[inputs]\nin = {}\n[outputs]\nout = {}\n[equations]\nout = \"atan(in)\"\n");
+  Compiled made{
+      "a = { type = \"arc\", in = \"y\" }\n"
+      "y = { type = \"servo-amplifier\", in = [\"a\", \"-x\"], gain = inf, initial = 3 }\n"
+      "x = { type = \"integrator\", in = [\"y\"] }\n",
+      "", library};
+  Workspace workspace{made.program};
+};
+
+TEST_F(ArcTest, DampsStepsThatWouldOvershoot) {
+  // From |y| > 1.39 the full Newton steps alternate with growing size.
+  EXPECT_NEAR(slope_of_only_state(made.program, 0.5, workspace), std::tan(0.5), 1e-15);
+}
+
+TEST_F(ArcTest, ReturnsFromAFailureToTheLastSolution) {
+  EXPECT_NEAR(slope_of_only_state(made.program, 0.5, workspace), std::tan(0.5), 1e-15);
+  const double x = 2;  // beyond π/2: the search ends far out, where the slope is lost
+  double slope = 0;
+  EXPECT_FALSE(made.program.derivatives(0, &x, &slope, workspace));
+  EXPECT_NEAR(slope_of_only_state(made.program, 0.5, workspace), std::tan(0.5), 1e-15);
+}
+
 TEST(Program, IsSharedBetweenThreads) {
   // A dyad on a moving pivot, five loops: each thread follows the same path with a Workspace of its own.
   const Compiled made(

@@ -32,7 +32,7 @@ TEST(Expectations, AreHeldAgainstTheRun) {
 until = 4
 [expect]
 "x at 2"    = { value = -0.4161468365, within = 1e-6 }
-"y at 0.05" = { value = 0.06, within = 1e-3 }
+"y at 0.05" = { value = 0.06, within = 0.01 }
 "x minimum" = { value = -1, within = 1e-5 }
 "y maximum" = { value = 1, within = 1e-5 }
 "y minimum" = { value = -0.7568024953, within = 1e-6 }

@@ -62,6 +62,14 @@ TEST(SingularLoop, ThatIsSingularOnlyToRounding) {
   EXPECT_EQ(f.kind, SolveError::Kind::singular_loop);
 }
 
+TEST(SingularLoop, OfTwoThatAreSingularOnlyToRounding) {
+  // a = 0.9 a + 0.1 b, b = 0.3 a + 0.7 b + 1: the determinant is some 1e-17.
+  const auto f = failure(
+      "one = { type = \"constant\" }\na = { type = \"summer\", in = [\"0.9*a\", \"0.1*b\"] }\n"
+      "b = { type = \"summer\", in = [\"0.3*a\", \"0.7*b\", \"one\"] }\n");
+  EXPECT_EQ(f.kind, SolveError::Kind::singular_loop);
+}
+
 TEST(SingularLoop, OfAnIdealAmplifierThatDoesNotSeeItsOutput) {
   const auto f = failure(
       "one = { type = \"constant\" }\n"

@@ -23,7 +23,7 @@ y = { type = "integrator", in = ["x"] }
 
 TEST(Run, SamplesOnAnExactGrid) {
   const Compiled made(kCircle);
-  for (const double until : {1.0, 2 * kPi, 0.1, 1e-3, 1e4}) {
+  for (const double until : {1.0, 2 * kPi, 0.23, 1e-3, 1e4}) {
     const auto result = run_of(made, {.until = until, .tolerance = 1e-4, .samples = 72});
     const auto t = row_values(result, "t");
     ASSERT_EQ(t.size(), 72U);
@@ -32,7 +32,7 @@ TEST(Run, SamplesOnAnExactGrid) {
       EXPECT_NEAR(t[static_cast<std::size_t>(k)], until * k / 71, 1e-15 * until);
     }
     EXPECT_EQ(t.front(), 0);
-    EXPECT_EQ(t.back(), until);
+    EXPECT_EQ(t.back(), until);  // 0.23 · 71/71 is not 0.23
   }
 }
 

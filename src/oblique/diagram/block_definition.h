@@ -12,11 +12,13 @@
 
 namespace oblique {
 
-/// An input of a block. A `sum` port adds its weighted signals, as a summing junction does; any other takes one.
+/// An input of a block. A `sum` port adds its weighted signals, as a summing junction does; any other takes
+/// one.
 struct InputPort {
   std::string name;
   bool sum = false;
-  std::optional<double> default_value;  ///< what an unconnected input sees [machine unit]; without it: an error
+  std::optional<double>
+      default_value;  ///< what an unconnected input sees [machine unit]; without it: an error
   std::string doc;
 };
 
@@ -33,8 +35,8 @@ struct ParameterDefinition {
   std::string name;
   double default_value = 0;
   std::string unit = "1";
-  std::optional<double> above, below;        ///< exclusive limits
-  std::optional<double> at_least, at_most;   ///< inclusive limits
+  std::optional<double> above, below;       ///< exclusive limits
+  std::optional<double> at_least, at_most;  ///< inclusive limits
   std::string doc;
 
   bool allows(double value) const;  ///< within the limits; never for "not a number"
@@ -64,12 +66,13 @@ struct Behaviour {
 /// Where a state starts, or from where an implicit unknown is sought.
 struct StartRule {
   std::string target;
-  Expression value;      ///< of parameters
-  bool at_rest = false;  ///< a state brought to rest (zero derivative) before the clock starts; `value` is the guess
+  Expression value;  ///< of parameters
+  bool at_rest =
+      false;  ///< a state brought to rest (zero derivative) before the clock starts; `value` is the guess
 };
 
-/// One block of a diagram or of a composite as its file has it. Which key of `settings` is an input and which a
-/// parameter only the block's definition tells, so that is settled by `flatten`.
+/// One block of a diagram or of a composite as its file has it. Which key of `settings` is an input and which
+/// a parameter only the block's definition tells, so that is settled by `flatten`.
 struct BlockInstance {
   std::string name;
   std::string type;
@@ -97,7 +100,8 @@ struct BlockDefinition {
   std::vector<StartRule> starts;
 
   std::vector<BlockInstance> blocks;
-  bool inverting = false;  ///< whether the inner summers and integrators invert (the composite's own convention)
+  bool inverting =
+      false;  ///< whether the inner summers and integrators invert (the composite's own convention)
 
   std::string file;
   std::string text;  ///< the file as it stands
@@ -108,8 +112,9 @@ struct BlockDefinition {
   std::optional<std::size_t> find_parameter(std::string_view parameter) const;
 };
 
-/// Reads one block file (oblique-block/1). Checks all that one file can tell: kinds of keys, ranges, that every
-/// output has an equation in every case, that equations use known names. Throws DiagramError with all findings.
+/// Reads one block file (oblique-block/1). Checks all that one file can tell: kinds of keys, ranges, that
+/// every output has an equation in every case, that equations use known names. Throws DiagramError with all
+/// findings.
 BlockDefinition parse_block(std::string_view text, std::string file, std::string name);
 
 }  // namespace oblique

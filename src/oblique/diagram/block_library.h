@@ -21,7 +21,8 @@ class BlockLibrary {
   /// Throws DiagramError with the findings of all files.
   void add_directory(const std::filesystem::path& directory);
 
-  /// Adds a block, or replaces the one of that name; flat diagrams that were made with the old one are then void.
+  /// Adds a block, or replaces the one of that name; flat diagrams that were made with the old one are then
+  /// void.
   void add(BlockDefinition definition);
   /// The block of that name, or nothing.
   const BlockDefinition* find(std::string_view name) const;

@@ -26,9 +26,9 @@ struct MachineSettings {
 
 /// How a diagram is run unless the request says otherwise.
 struct RunSettings {
-  double until = 1;         ///< end of the run [s]
-  double tolerance = 1e-8;  ///< relative; absolute tolerance is the same in machine units
-  int samples = 1001;       ///< rows of the trajectory, both ends included
+  double until = 1;             ///< end of the run [s]
+  double tolerance = 1e-8;      ///< relative; absolute tolerance is the same in machine units
+  int samples = 1001;           ///< rows of the trajectory, both ends included
   long max_steps = 10'000'000;  ///< of the solver, over the whole run
   bool operator==(const RunSettings&) const = default;
 };
@@ -71,8 +71,8 @@ struct Diagram {
   bool operator==(const Diagram& other) const;  ///< without file, places and comments
 };
 
-/// Reads a diagram's text. Throws DiagramError with all findings of this one file (wiring is checked by `flatten`),
-/// ReadError for broken TOML.
+/// Reads a diagram's text. Throws DiagramError with all findings of this one file (wiring is checked by
+/// `flatten`), ReadError for broken TOML.
 Diagram parse_diagram(std::string_view text, std::string file);
 Diagram read_diagram(const std::filesystem::path& path);
 

@@ -31,12 +31,12 @@ struct FlatInput {
 
 /// A primitive block with everything about it decided but its place in the equations.
 struct FlatBlock {
-  std::string path;                              ///< "C.direction.length": the names of the composites around it
-  const BlockDefinition* definition = nullptr;   ///< in the library given to `flatten`
-  const Behaviour* behaviour = nullptr;          ///< the case that its parameters select
-  std::vector<double> parameters;                ///< in the order of the definition
-  std::vector<FlatInput> inputs;                 ///< in the order of the definition
-  double polarity = 1;                           ///< −1 where summers and integrators invert
+  std::string path;  ///< "C.direction.length": the names of the composites around it
+  const BlockDefinition* definition = nullptr;  ///< in the library given to `flatten`
+  const Behaviour* behaviour = nullptr;         ///< the case that its parameters select
+  std::vector<double> parameters;               ///< in the order of the definition
+  std::vector<FlatInput> inputs;                ///< in the order of the definition
+  double polarity = 1;                          ///< −1 where summers and integrators invert
   Place place;
 };
 
@@ -48,11 +48,13 @@ struct FlatOutput {
   std::string unit;
 };
 
-/// A diagram of primitive blocks, all names resolved. Refers to the definitions of the library it was made with.
+/// A diagram of primitive blocks, all names resolved. Refers to the definitions of the library it was made
+/// with.
 struct FlatDiagram {
   std::string file;
   std::vector<FlatBlock> blocks;
-  std::vector<FlatOutput> outputs;  ///< those of `[outputs]`; every signal of the top level where there are none
+  std::vector<FlatOutput>
+      outputs;  ///< those of `[outputs]`; every signal of the top level where there are none
 
   /// "path" for a block of one output, "path.port" for others.
   std::string signal_name(SignalRef signal) const;
@@ -64,9 +66,9 @@ struct ParameterOverride {
   std::string value;
 };
 
-/// Expands composites, resolves types, parameters and wires. Throws DiagramError with all findings: unknown types,
-/// keys and signals (each with the nearest valid name), open and doubly driven inputs, wrong units and ranges.
-/// `library` must outlive the result.
+/// Expands composites, resolves types, parameters and wires. Throws DiagramError with all findings: unknown
+/// types, keys and signals (each with the nearest valid name), open and doubly driven inputs, wrong units and
+/// ranges. `library` must outlive the result.
 FlatDiagram flatten(const Diagram& diagram, const BlockLibrary& library,
                     const std::vector<ParameterOverride>& overrides = {});
 
