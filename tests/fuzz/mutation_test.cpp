@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The fuzz targets on mutations of our own files with a fixed seed: short, and the same in every run.
-#include <chrono>
-#include <cstdio>
+#include <algorithm>
 #include <filesystem>
 #include <functional>
 #include <random>
@@ -36,7 +35,8 @@ std::string mutate(std::string text, const std::vector<std::string>& others, std
   const auto below = [&](std::size_t n) {
     return n == 0 ? 0 : random() % n;  // the standard distributions differ between libraries
   };
-  static const std::string kSpecial("[]{}=,.\"'#\\\n\r\t +-*/^()_09eE\0\x7F\xC3\xFF", 33);
+  using namespace std::string_literals;
+  static const std::string special = "[]{}=,.\"'#\\\n\r\t +-*/^()_09eE\0\x7F\xC3\xFF"s;
   for (std::size_t changes = 1 + below(4); changes > 0; --changes) {
     const std::size_t at = below(text.size() + 1);
     const std::size_t length = std::min(below(20), text.size() - at);
@@ -51,7 +51,7 @@ std::string mutate(std::string text, const std::vector<std::string>& others, std
         text.insert(at, text.substr(at, length));
         break;
       case 3:
-        text.insert(at, 1, kSpecial[below(kSpecial.size())]);
+        text.insert(at, 1, special[below(special.size())]);
         break;
       default: {
         const std::string& other = others[below(others.size())];

@@ -7,7 +7,7 @@
 #include <Eigen/SparseLU>
 
 #include <oblique/network/dependency_order.h>
-#include <oblique/solve/cvodes_solver.h>
+#include <oblique/solve/ode_system.h>
 #include <oblique/solve/solve_error.h>
 
 namespace oblique {
@@ -43,15 +43,15 @@ class SettlingSystem final : public OdeSystem {
     return true;
   }
 
-  /// df/dx with −1 on the diagonal of held states, whose Newton step is then zero.
-  SparseMatrix newton_matrix(const double* x) {
+  /// 1/h − df/dx: the matrix of an implicit Euler step. Held states have 1/h alone, so that they stay.
+  SparseMatrix step_matrix(const double* x, double h) {
     const SparsePattern& p = pattern();
     std::vector<double> values(p.entries());
     if (!jacobian(0, x, values.data())) return {};
     for (std::size_t column = 0; column < p.size(); ++column) {
       for (auto k = p.column_starts[column]; k < p.column_starts[column + 1]; ++k) {
         const auto entry = static_cast<std::size_t>(k);
-        if (!moves_[column] && static_cast<std::size_t>(p.rows[entry]) == column) values[entry] = -1;
+        values[entry] = (static_cast<std::size_t>(p.rows[entry]) == column ? 1 / h : 0) - values[entry];
       }
     }
     const auto n = static_cast<Eigen::Index>(p.size());
@@ -65,35 +65,6 @@ class SettlingSystem final : public OdeSystem {
   double t_;
   std::vector<bool> moves_;
 };
-
-/// Newton's method on dx/dt = 0, from nearby only: gives up on a first step that is not small. True: `states` are at
-/// rest to rounding.
-bool polish(SettlingSystem& system, std::vector<double>& states) {
-  constexpr double kNearby = 1e-2;
-  constexpr double kAtRest = 1e-12;      // rounding, where a loop has lost most of its gain
-  constexpr int kMostIterations = 50;    // a lost gain makes it halve its error a step
-  const auto n = static_cast<Eigen::Index>(states.size());
-  Eigen::VectorXd x = Eigen::Map<const Eigen::VectorXd>(states.data(), n);
-  Eigen::VectorXd slopes(n);
-  double last = kNearby;
-  for (int iteration = 0; iteration < kMostIterations; ++iteration) {
-    if (!system.derivatives(0, x.data(), slopes.data())) return false;
-    const SparseMatrix matrix = system.newton_matrix(x.data());
-    Eigen::SparseLU<SparseMatrix> lu;
-    lu.compute(matrix);
-    if (matrix.rows() != n || lu.info() != Eigen::Success) return false;
-    const Eigen::VectorXd step = -lu.solve(slopes);
-    if (!step.allFinite()) return false;
-    const double size = (step.array() / (1 + x.array().abs())).abs().maxCoeff();
-    if (size > last) break;  // far away, or rounding has been reached
-    x += step;
-    last = size;
-    if (size < 1e-15) break;
-  }
-  if (last > kAtRest) return false;
-  std::copy(x.begin(), x.end(), states.begin());
-  return true;
-}
 
 /// Of the moving states, the fastest first.
 std::vector<std::size_t> by_speed(SettlingSystem& system, std::vector<std::size_t> order,
@@ -117,25 +88,54 @@ double fastest_time_constant(SettlingSystem& system, const std::vector<double>& 
   return rate > 0 ? 1 / rate : 1;
 }
 
-/// Lets the states in `moving` run until Newton's method finds them at rest nearby. False, with `states` as they were
-/// last, where they do not settle.
+/// Lets the states in `moving` run until they rest: implicit Euler steps, short at first so that they follow the way
+/// the loops take, then ever longer until they are Newton's method (pseudo-transient continuation). A step that changes
+/// a state much, or across which 1/h − df/dx changes the sign of its determinant (there a loop is unstable), is
+/// taken again shorter. False, with `states` as they were last, where they do not settle.
 bool settle(const Program& program, Workspace& workspace, double t, const std::vector<std::size_t>& moving,
             std::vector<double>& states) {
-  // Loops differ in speed by orders of magnitude: each time wait ten times longer.
-  constexpr int kMostDecades = 18;
-  constexpr long kMostSteps = 20'000;
+  constexpr double kMostChange = 0.2;   // of 1 + |x|, in a step
+  constexpr double kSmallChange = 0.02;
+  constexpr double kLongest = 1e18;     // of a step, in time constants of the fastest loop: nothing but Newton's method
+  constexpr double kShortest = 1e-9;
+  constexpr double kAtRest = 1e-12;     // rounding, where a loop has lost most of its gain
+  constexpr double kFarAway = 1e6;      // [machine unit]
+  constexpr int kMostSteps = 2000;
   SettlingSystem system(program, workspace, t, moving);
-  double wait = fastest_time_constant(system, states);
-  for (int decade = 0; decade < kMostDecades; ++decade, wait *= 10) {
-    try {
-      CvodesSolver solver(system, 0, states, wait, {1e-6, 1e-6, kMostSteps});
-      while (solver.step() < wait) {
-      }
-      std::copy(solver.states().begin(), solver.states().end(), states.begin());
-    } catch (const SolverFailure&) {
-      return false;
+  const double unit = fastest_time_constant(system, states);
+  const auto n = static_cast<Eigen::Index>(states.size());
+  Eigen::Map<Eigen::VectorXd> x(states.data(), n);
+  Eigen::VectorXd slopes(n), next(n), next_slopes(n);
+  if (!system.derivatives(0, x.data(), slopes.data())) return false;
+  Eigen::SparseLU<SparseMatrix> lu;
+  double h = unit;
+  double last = 1;
+  for (int step = 0; step < kMostSteps && h > kShortest * unit; ++step) {
+    const SparseMatrix matrix = system.step_matrix(x.data(), h);
+    if (matrix.rows() != n) return false;
+    lu.compute(matrix);
+    bool good = lu.info() == Eigen::Success && lu.signDeterminant() > 0;
+    double change = 0;
+    if (good) {
+      next = x + lu.solve(slopes);
+      change = ((next - x).array() / (1 + x.array().abs())).abs().maxCoeff();
+      good = change < kMostChange && system.derivatives(0, next.data(), next_slopes.data()) && next_slopes.allFinite();
     }
-    if (polish(system, states)) return true;
+    if (!good) {
+      h /= 4;
+      continue;
+    }
+    if (h >= kLongest * unit && change < kAtRest && change >= last) return true;  // rounding has been reached
+    x = next;
+    slopes = next_slopes;
+    if (x.cwiseAbs().maxCoeff() > kFarAway) return false;
+    if (h >= kLongest * unit && change == 0) return true;
+    last = change;
+    if (change < kSmallChange) {
+      h *= 10;
+    } else if (change < kMostChange / 2) {
+      h *= 2;
+    }
   }
   return false;
 }
