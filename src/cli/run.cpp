@@ -86,10 +86,18 @@ ExitStatus run_diagram(const Session& session, const RunRequest& request) {
   print(table_of(result.trajectory));
   if (!request.output.empty()) save(request.output, to_csv(result.trajectory));
   const SolverStatistics& s = result.statistics;
-  note(fmt::format("{}, {}; {} (BDF, relative tolerance {}), {:.3g} ms\n",
+  note(fmt::format("{}, {}; {} (relative tolerance {}), {:.3g} ms\n",
                    count(program.n_states(), "state", "states"),
                    count(program.loops().size(), "algebraic loop", "algebraic loops"),
                    count(static_cast<std::size_t>(s.steps), "step", "steps"), options.tolerance, 1e3 * result.seconds));
+  if (program.n_states() > 0) {
+    note(fmt::format("method {}: {}\n", method_name(result.method.method), result.method.reason));
+  }
+  constexpr double kCoarseForAdams = 1e-5;
+  if (result.method.method == IntegrationMethod::adams && options.tolerance > kCoarseForAdams) {
+    note(fmt::format("warning: at a tolerance of {} Adams lets oscillations grow; 1e-5 or less is safe\n",
+                     options.tolerance));
+  }
   return request.check ? report_expectations(diagram, result) : ExitStatus::done;
 }
 

@@ -149,7 +149,7 @@ FourBarRun run_four_bar_by_hand(const FourBarSettings& settings) {
   void* memory = CVodeCreate(CV_BDF, context);
   check(CVodeInit(memory, derivatives, 0, states) == CV_SUCCESS);
   check(CVodeSetUserData(memory, &constants) == CV_SUCCESS);
-  check(CVodeSStolerances(memory, settings.tolerance, settings.tolerance) == CV_SUCCESS);
+  check(CVodeSStolerances(memory, settings.tolerance, settings.absolute_tolerance) == CV_SUCCESS);
   check(CVodeSetLinearSolver(memory, solver, matrix) == CV_SUCCESS);
   check(CVodeSetJacFn(memory, jacobian) == CV_SUCCESS);
   check(CVodeSetStopTime(memory, settings.until) == CV_SUCCESS);

@@ -12,6 +12,7 @@ struct FourBarSettings {
   double bandwidth = 20;  ///< [Hz]
   double until = 0;       ///< [s]
   double tolerance = 0;
+  double absolute_tolerance = 0;
   int samples = 0;
 };
 

@@ -37,6 +37,7 @@ inverting = true
 [run]
 until = "2 min"
 tolerance = 1e-6
+method = "adams"
 samples = 11
 max_steps = 5000
 [blocks]
@@ -56,13 +57,13 @@ b = { type = "adder", in = ["a", "-2*b"] }
   EXPECT_EQ(d.title, "A title");
   EXPECT_EQ(d.source, "a book");
   EXPECT_EQ(d.machine, (MachineSettings{"ideal", true}));
-  EXPECT_EQ(d.run, (RunSettings{120, 1e-6, 11, 5000}));
+  EXPECT_EQ(d.run, (RunSettings{120, 1e-6, IntegrationMethod::adams, 11, 5000}));
 
   ASSERT_EQ(d.blocks.size(), 2U);
   EXPECT_EQ(d.blocks[0].name, "a");
   EXPECT_EQ(d.blocks[0].label, "φ̇");
   EXPECT_EQ(d.blocks[1].type, "adder");
-  EXPECT_EQ(d.blocks[1].place, (Place{"d.toml", {14, 1}}));
+  EXPECT_EQ(d.blocks[1].place, (Place{"d.toml", {15, 1}}));
   ASSERT_EQ(d.blocks[1].settings.size(), 1U);
   EXPECT_EQ(d.blocks[1].settings[0].value.elements[1].text, "-2*b");
 
@@ -148,9 +149,10 @@ TEST(ParseDiagram, ChecksMachineAndRun) {
   EXPECT_EQ(diagram_message("[run]\ntolerance = 1\n"),
             "d.toml:5:13: 'tolerance' of [run] is 1; expected a number above 0 and below 1, such as 1e-8");
   EXPECT_EQ(diagram_message("[run]\nsamples = 1\n"),
-            "d.toml:5:11: 'samples' of [run] is 1; expected a whole number from 2 to 1000000000");
+            "d.toml:5:11: 'samples' of [run] is 1; expected a whole number from 2 to 10000000");
   EXPECT_THAT(diagram_message("[run]\nsamples = 2.5\n"), HasSubstr("'samples' of [run] is 2.5"));
   EXPECT_THAT(diagram_message("[run]\nsamples = inf\n"), HasSubstr("'samples' of [run] is inf"));
+  EXPECT_THAT(diagram_message("[run]\nmethod = \"adam\"\n"), HasSubstr("there is no method 'adam'\n  remedy: did you mean 'adams'?"));
   EXPECT_THAT(diagram_message("[run]\nmax_steps = 0\n"), HasSubstr("'max_steps' of [run] is 0"));
 }
 

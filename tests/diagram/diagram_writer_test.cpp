@@ -43,6 +43,7 @@ inverting = false
 [run]
 until     = 0.001
 tolerance = 1e-08
+method    = "auto"
 samples   = 1001
 max_steps = 10000000
 
@@ -148,6 +149,7 @@ Diagram any_diagram() {
   d.machine.inverting = *rc::gen::arbitrary<bool>();
   d.run.until = 100 + *positive_number();
   d.run.tolerance = 1 / (1 + *positive_number());
+  d.run.method = *rc::gen::element(IntegrationMethod::automatic, IntegrationMethod::bdf, IntegrationMethod::adams);
   d.run.samples = *rc::gen::inRange(2, 1'000'000);
   d.run.max_steps = *rc::gen::inRange(1L, 1'000'000'000'000L);
   for (const std::string& name :
@@ -193,6 +195,7 @@ TEST(WriteDiagram, DiagramsThatDifferAnywhereAreNotEqual) {
   EXPECT_TRUE(differs([](Diagram& o) { o.title = "x"; }));
   EXPECT_TRUE(differs([](Diagram& o) { o.source = "x"; }));
   EXPECT_TRUE(differs([](Diagram& o) { o.machine.inverting = true; }));
+  EXPECT_TRUE(differs([](Diagram& o) { o.run.method = IntegrationMethod::bdf; }));
   EXPECT_TRUE(differs([](Diagram& o) { o.run.samples = 2; }));
   EXPECT_TRUE(differs([](Diagram& o) { o.blocks[0].name = "x"; }));
   EXPECT_TRUE(differs([](Diagram& o) { o.blocks[0].label = "x"; }));

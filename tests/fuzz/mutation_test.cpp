@@ -55,7 +55,8 @@ std::string mutate(std::string text, const std::vector<std::string>& others, std
         break;
       default: {
         const std::string& other = others[below(others.size())];
-        text.insert(at, other.substr(below(other.size() + 1), below(40)));
+        const std::size_t from = below(other.size() + 1);
+        text.insert(at, other.substr(from, below(40)));
       }
     }
   }

@@ -35,14 +35,10 @@ TEST(Circle, KeepsItsRadiusOverAThousandTurns) {
   const auto result = run_of(made, {.until = 2000 * kPi, .samples = 1001});  // a row a turn
   const auto r = radii(result), x = row_values(result, "x");
   for (std::size_t k = 0; k < r.size(); ++k) {
-    // The published drift of the default tolerance, 1e-8 a step over some 1e5 steps, stays within 1e-3.
-    EXPECT_NEAR(r[k], 1, 1e-3) << k;
-    EXPECT_NEAR(x[k], 1, 1e-3) << k;  // t = 2πk: back at the start
+    // The published drift of the default settings is 1e-6 in amplitude and phase; asked for is 1e-3.
+    EXPECT_NEAR(r[k], 1, 1e-5) << k;
+    EXPECT_NEAR(x[k], 1, 1e-5) << k;  // t = 2πk: back at the start
   }
-  // BDF damps or drives, but does one of the two: a drift that changes its sign would be noise of the solver.
-  // A turn changes r by less than 1e-6, what the interpolant adds to a row is of the tolerance.
-  const double direction = r.back() > 1 ? 1 : -1;
-  for (std::size_t k = 10; k < r.size(); k += 10) EXPECT_GT(direction * (r[k] - r[k - 10]), -1e-7) << k;
 }
 
 TEST(Circle, ErrorFallsWithTheTolerance) {

@@ -30,6 +30,18 @@ Value text_value(std::string text) {
 
 }  // namespace
 
+std::string_view method_name(IntegrationMethod method) {
+  switch (method) {
+    case IntegrationMethod::automatic:
+      return "auto";
+    case IntegrationMethod::bdf:
+      return "bdf";
+    case IntegrationMethod::adams:
+      return "adams";
+  }
+  return "auto";
+}
+
 bool BlockInstance::operator==(const BlockInstance& other) const {
   return name == other.name && type == other.type && label == other.label &&
          std::equal(settings.begin(), settings.end(), other.settings.begin(), other.settings.end(),

@@ -24,10 +24,21 @@ struct MachineSettings {
   bool operator==(const MachineSettings&) const = default;
 };
 
+/// The family of formulas with which a diagram is integrated.
+enum class IntegrationMethod {
+  automatic,  ///< chosen for the diagram; the run says which and why
+  bdf,        ///< backward differentiation: for servo loops and everything that holds fast decays
+  adams,      ///< Adams-Moulton: for oscillators, whose amplitude it keeps better
+};
+
+/// "auto", "bdf", "adams".
+std::string_view method_name(IntegrationMethod method);
+
 /// How a diagram is run unless the request says otherwise.
 struct RunSettings {
   double until = 1;             ///< end of the run [s]
-  double tolerance = 1e-8;      ///< relative; absolute tolerance is the same in machine units
+  double tolerance = 1e-8;      ///< of the solver, relative
+  IntegrationMethod method = IntegrationMethod::automatic;
   int samples = 1001;           ///< rows of the trajectory, both ends included
   long max_steps = 10'000'000;  ///< of the solver, over the whole run
   bool operator==(const RunSettings&) const = default;

@@ -16,6 +16,9 @@ namespace {
 /// The largest whole number that a run setting takes; a double holds it exactly.
 constexpr double kLargestWhole = 1e15;
 
+/// Rows of a trajectory that fit into memory with some hundred columns.
+constexpr double kMostSamples = 1e7;
+
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 class DiagramReader {
@@ -59,6 +62,20 @@ class DiagramReader {
     reader.finish();
   }
 
+  void read_method(TableReader& reader) {
+    const auto name = reader.string("method");
+    if (!name) return;
+    std::vector<std::string> names;
+    for (const auto method : {IntegrationMethod::automatic, IntegrationMethod::bdf, IntegrationMethod::adams}) {
+      names.emplace_back(method_name(method));
+      if (*name == names.back()) {
+        diagram_.run.method = method;
+        return;
+      }
+    }
+    reader.report("method", fmt::format("there is no method '{}'", *name), {}, suggest(*name, names));
+  }
+
   void read_run(const Value& table) {
     TableReader reader(diagram_.file, table, "[run]", diagnostics_);
     RunSettings& run = diagram_.run;
@@ -78,7 +95,8 @@ class DiagramReader {
                       "a number above 0 and below 1, such as 1e-8");
       }
     }
-    run.samples = static_cast<int>(whole(reader, "samples", 2, 1e9).value_or(run.samples));
+    read_method(reader);
+    run.samples = static_cast<int>(whole(reader, "samples", 2, kMostSamples).value_or(run.samples));
     run.max_steps = whole(reader, "max_steps", 1, kLargestWhole).value_or(run.max_steps);
     reader.finish();
   }

@@ -118,6 +118,7 @@ std::string write_diagram(const Diagram& diagram) {
   write_table("run",
               {{{}, "until", fmt::format("{}", run.until)},
                {{}, "tolerance", fmt::format("{}", run.tolerance)},
+               {{}, "method", toml_string(method_name(run.method))},
                {{}, "samples", fmt::format("{}", run.samples)},
                {{}, "max_steps", fmt::format("{}", run.max_steps)}},
               out);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/diagram/flat_diagram.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -264,6 +265,12 @@ FlatDiagram flatten(const Diagram& diagram, const BlockLibrary& library,
   choose_outputs(diagram, scope, layout, flat, diagnostics);
   std::vector<std::string> names;
   for (const FlatOutput& output : flat.outputs) names.push_back(output.name);
+  if (std::find(names.begin(), names.end(), "t") != names.end()) {
+    diagnostics.add({{diagram.file, {}},
+                     "an output is called 't', which is the column of time",
+                     "another name",
+                     "name it in [outputs]"});
+  }
   if (diagnostics.empty()) check_expected_outputs(diagram.expectations, names, diagnostics);
   diagnostics.throw_if_any<DiagramError>();
   return flat;

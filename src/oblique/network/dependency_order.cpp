@@ -2,6 +2,7 @@
 #include <oblique/network/dependency_order.h>
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 
 namespace oblique {
@@ -116,8 +117,16 @@ std::uint32_t choose_tear(const Dependencies& graph, const Component& cycle) {
 }
 
 /// Adds the members of a loop to `step`: in `inner` where what they need is known or torn, else in `tears`.
-void break_cycles(const Dependencies& graph, ComponentFinder& finder, Component members, OrderStep& step) {
-  for (Component& component : finder.find(members)) {
+void break_cycles(const Dependencies& graph, ComponentFinder& finder, const Component& members, OrderStep& step) {
+  std::vector<Component> waiting;  // the next one last
+  const auto wait = [&](std::vector<Component> components) {
+    waiting.insert(waiting.end(), std::make_move_iterator(components.rbegin()),
+                   std::make_move_iterator(components.rend()));
+  };
+  wait(finder.find(members));
+  while (!waiting.empty()) {
+    Component component = std::move(waiting.back());
+    waiting.pop_back();
     if (component.size() == 1 && !needs_itself(graph, component[0])) {
       step.inner.push_back(component[0]);
       continue;
@@ -125,7 +134,7 @@ void break_cycles(const Dependencies& graph, ComponentFinder& finder, Component 
     const std::uint32_t tear = choose_tear(graph, component);
     step.tears.push_back(tear);
     component.erase(std::find(component.begin(), component.end(), tear));
-    break_cycles(graph, finder, std::move(component), step);
+    wait(finder.find(component));
   }
 }
 
@@ -147,7 +156,7 @@ std::vector<OrderStep> dependency_order(const Dependencies& dependencies, const 
     for (const std::uint32_t member : component) {
       (implicit[member] ? step.tears : explicit_members).push_back(member);
     }
-    break_cycles(dependencies, finder, std::move(explicit_members), step);
+    break_cycles(dependencies, finder, explicit_members, step);
     std::sort(step.tears.begin(), step.tears.end());
   }
   return order;

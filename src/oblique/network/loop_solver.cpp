@@ -90,7 +90,8 @@ LoopFailure LoopWorkspace::solve_loop(const LoopCode& loop, std::span<const Inst
     for (const std::uint32_t slot : loop.residual_slots) {
       if (!std::isfinite(slots[slot])) return LoopFailure::not_finite;
     }
-    if (!factor(loop, slots)) return LoopFailure::singular;
+    // Singular where it started: the loop itself. Singular on the way: a search that found no solution.
+    if (!factor(loop, slots)) return iteration == 0 ? LoopFailure::singular : LoopFailure::diverged;
     for (std::size_t i = 0; i < loop.size(); ++i) {
       step_(index(i), 0) = -slots[loop.residual_slots[i]];
       start_[index(i)] = slots[loop.unknown_slots[i]];
@@ -101,7 +102,7 @@ LoopFailure LoopWorkspace::solve_loop(const LoopCode& loop, std::span<const Inst
     double fraction = 1;
     double change = move(loop, slots, fraction);
     run_tape(body, slots);
-    if (loop.linear) return LoopFailure::none;
+    if (loop.linear) return std::isfinite(change) ? LoopFailure::none : LoopFailure::not_finite;
     // Steps at the level of rounding are not judged by the residual, which is noise there.
     while (change > 1e-13 && !(residual_norm(loop, slots) < (1 - 1e-4 * fraction) * norm)) {
       fraction /= 2;

@@ -121,7 +121,7 @@ class Workspace {
   /// Forgets the solutions of the loops: the next search starts from the guesses of the diagram.
   void reset();
 
-  /// The loop that could not be solved in the last evaluation.
+  /// The loop that could not be solved when an evaluation last failed.
   struct Trouble {
     std::size_t loop = 0;
     LoopFailure failure = LoopFailure::none;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <new>
+#include <stdexcept>
+#include <string>
 
 #include <cvodes/cvodes.h>
 #include <nvector/nvector_serial.h>
@@ -55,7 +57,7 @@ Handle made(Handle handle) {
 
 /// Setup calls fail only for lack of memory or for arguments that this file fixes.
 void check_setup(int code) {
-  if (code != CV_SUCCESS) throw SolverFailure{SolverFailure::Kind::other, 0, code};
+  if (code != CV_SUCCESS) throw std::logic_error("CVODES refuses its setup with code " + std::to_string(code));
 }
 
 bool all_finite(const double* values, std::size_t size) {
@@ -90,7 +92,7 @@ struct CvodesSolver::Handles {
     const auto entries = static_cast<sunindextype>(system->pattern().entries());
     matrix.reset(made(SUNSparseMatrix(n, n, entries, CSC_MAT, context.get())));
     linear_solver.reset(made(SUNLinSol_KLU(states.get(), matrix.get(), context.get())));
-    memory.reset(made(CVodeCreate(CV_BDF, context.get())));
+    memory.reset(made(CVodeCreate(settings.adams ? CV_ADAMS : CV_BDF, context.get())));
     void* const cvodes = memory.get();
     check_setup(CVodeInit(cvodes, evaluate, t0, states.get()));
     check_setup(CVodeSetErrHandlerFn(cvodes, ignore_message, nullptr));

@@ -13,6 +13,7 @@ struct SolverSettings {
   double relative_tolerance = 1e-8;
   double absolute_tolerance = 1e-8;  ///< [machine unit]
   long max_steps = 10'000'000;
+  bool adams = false;  ///< Adams–Moulton formulas in place of BDF
 };
 
 struct SolverStatistics {
@@ -38,7 +39,7 @@ struct SolverFailure {
   int code = 0;     ///< CVODES' return value
 };
 
-/// CVODES with variable-order BDF, Newton's method, and KLU on the analytic Jacobian. Owns all of SUNDIALS' memory.
+/// CVODES with variable-order BDF (or Adams), Newton's method, and KLU on the analytic Jacobian. Owns all of SUNDIALS' memory.
 class CvodesSolver {
  public:
   /// Starts at (t0, x0) and will not pass `end`. `system` must outlive the solver.

@@ -18,9 +18,10 @@ double extreme(const Trajectory& trajectory, std::size_t column, bool maximum, d
 }
 
 double value_at(const Trajectory& extra, double time, std::size_t column) {
-  std::size_t row = 0;
-  while (extra.at(row, 0) != time) ++row;  // expectation_times asked for it
-  return extra.at(row, column);
+  for (std::size_t row = 0; row < extra.rows(); ++row) {
+    if (extra.at(row, 0) == time) return extra.at(row, column);
+  }
+  return std::nan("");  // the run was made without expectation_times
 }
 
 }  // namespace

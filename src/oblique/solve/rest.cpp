@@ -9,6 +9,7 @@
 #include <oblique/network/dependency_order.h>
 #include <oblique/solve/ode_system.h>
 #include <oblique/solve/solve_error.h>
+#include <oblique/solve/stability.h>
 
 namespace oblique {
 namespace {
@@ -140,8 +141,17 @@ bool settle(const Program& program, Workspace& workspace, double t, const std::v
   return false;
 }
 
-/// Groups of servo states that act on each other, each after the groups whose signals it follows.
-std::vector<std::vector<std::size_t>> groups_in_order(const Program& program) {
+}  // namespace
+
+std::vector<std::size_t> rest_states(const Program& program) {
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < program.n_states(); ++i) {
+    if (program.states()[i].at_rest) found.push_back(i);
+  }
+  return found;
+}
+
+std::vector<std::vector<std::size_t>> servo_groups(const Program& program) {
   const std::vector<std::size_t> servos = rest_states(program);
   std::vector<std::uint32_t> place(program.n_states(), 0);
   std::vector<bool> is_servo(program.n_states(), false);
@@ -167,16 +177,6 @@ std::vector<std::vector<std::size_t>> groups_in_order(const Program& program) {
   return groups;
 }
 
-}  // namespace
-
-std::vector<std::size_t> rest_states(const Program& program) {
-  std::vector<std::size_t> found;
-  for (std::size_t i = 0; i < program.n_states(); ++i) {
-    if (program.states()[i].at_rest) found.push_back(i);
-  }
-  return found;
-}
-
 void bring_to_rest(const Program& program, Workspace& workspace, double t, std::vector<double>& states,
                    const std::string& file) {
   if (rest_states(program).empty()) return;
@@ -189,14 +189,16 @@ void bring_to_rest(const Program& program, Workspace& workspace, double t, std::
   std::vector<double> settled = states;
   if (settle(program, workspace, t, rest_states(program), settled)) {
     states = settled;
-    return;
+  } else {
+    workspace.reset();
+    for (const std::vector<std::size_t>& group : servo_groups(program)) {
+      if (settle(program, workspace, t, group, states)) continue;
+      SettlingSystem system(program, workspace, t, group);
+      throw rest_error(program, by_speed(system, group, states), states, file);
+    }
   }
-  workspace.reset();
-  for (const std::vector<std::size_t>& group : groups_in_order(program)) {
-    if (settle(program, workspace, t, group, states)) continue;
-    SettlingSystem system(program, workspace, t, group);
-    throw rest_error(program, by_speed(system, group, states), states, file);
-  }
+  const auto unstable = unstable_group(program, workspace, t, states);
+  if (!unstable.empty()) throw rest_error(program, unstable, states, file);
 }
 
 }  // namespace oblique

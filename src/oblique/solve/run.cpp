@@ -5,6 +5,8 @@
 #include <chrono>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include <oblique/solve/rest.h>
 #include <oblique/solve/solve_error.h>
 
@@ -84,8 +86,8 @@ class Sampler {
 void Sampler::throw_not_finite(std::size_t signal, double time) const {
   throw SolveError(SolveError::Kind::blow_up, time,
                    {{diagram_.file, {}},
-                    "the signal '" + program_.signal_names()[signal] + "' is not a finite number at t = " +
-                        std::to_string(time) + " s",
+                    fmt::format("the signal '{}' is not a finite number at t = {:.6g} s",
+                                program_.signal_names()[signal], time),
                     {},
                     "look for a division by zero or a root or logarithm of a negative signal"});
 }
@@ -96,6 +98,7 @@ RunOptions options_of(const RunSettings& settings) {
   RunOptions options;
   options.until = settings.until;
   options.tolerance = settings.tolerance;
+  options.method = settings.method;
   options.samples = settings.samples;
   options.max_steps = settings.max_steps;
   return options;
@@ -113,7 +116,11 @@ Run run(const Program& program, const FlatDiagram& diagram, const RunOptions& op
     sampler.advance(options.until, [](double, std::span<double>) {});
   } else {
     OperateSystem system(program, workspace);
-    CvodesSolver solver(system, 0, start, options.until, {options.tolerance, options.tolerance, options.max_steps});
+    const MethodChoice method = choose_method(options.method, program, workspace, start);
+    sampler.result.method = method;
+    CvodesSolver solver(system, 0, start, options.until,
+                        {options.tolerance, kAbsoluteTolerance * options.tolerance, options.max_steps,
+                         method.method == IntegrationMethod::adams});
     constexpr long kStepsPerReport = 256;
     long steps = 0;
     try {

@@ -8,8 +8,7 @@
 
 namespace oblique {
 
-TableReader::TableReader(std::string file, const Value& table, std::string what,
-                         Diagnostics& diagnostics)
+TableReader::TableReader(std::string file, const Value& table, std::string what, Diagnostics& diagnostics)
     : file_(std::move(file)), table_(&table), what_(std::move(what)), diagnostics_(&diagnostics) {
   if (table.kind != Value::Kind::table) {
     diagnostics_->add(

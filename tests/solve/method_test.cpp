@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/solve/method.h>
+
+#include <cmath>
+#include <numbers>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "../support/runs.h"
+
+namespace oblique {
+namespace {
+
+using testing::Compiled;
+using ::testing::HasSubstr;
+
+MethodChoice choice_for(const Compiled& made, IntegrationMethod asked = IntegrationMethod::automatic) {
+  Workspace workspace(made.program);
+  return choose_method(asked, made.program, workspace, made.program.start());
+}
+
+//      ┌──── −y ◄───┐
+//      └─► [x] ─► [y]        x″ = −ω² x
+std::string ring(double rate) {
+  const std::string k = std::to_string(rate);
+  return "x = { type = \"integrator\", in = [\"-y\"], initial = 1, rate = " + k + " }\n" +
+         "y = { type = \"integrator\", in = [\"x\"], rate = " + k + " }\n";
+}
+
+TEST(ChooseMethod, TakesAdamsForAnOscillator) {
+  const MethodChoice choice = choice_for(Compiled(ring(3)));
+  EXPECT_EQ(choice.method, IntegrationMethod::adams);
+  EXPECT_THAT(choice.reason, HasSubstr("the fastest mode at the start oscillates, at 3 rad/s"));
+}
+
+TEST(ChooseMethod, TakesBdfForServoLoops) {
+  const MethodChoice choice = choice_for(Compiled(ring(1) + "q = { type = \"servo-amplifier\", in = [\"q\", \"-x\"] }\n"));
+  EXPECT_EQ(choice.method, IntegrationMethod::bdf);
+  EXPECT_EQ(choice.reason, "1 servo loop is faster than what it follows");
+}
+
+TEST(ChooseMethod, TakesBdfForADecayThatIsFastBesideTheRest) {
+  const MethodChoice choice = choice_for(Compiled(ring(1) + "d = { type = \"integrator\", in = [\"-d\"], initial = 1, rate = 1000 }\n"));
+  EXPECT_EQ(choice.method, IntegrationMethod::bdf);
+  EXPECT_THAT(choice.reason, HasSubstr("decays from 1 to 1e+03 1/s at the start"));
+}
+
+TEST(ChooseMethod, TakesAdamsWhereNothingIsFast) {
+  EXPECT_EQ(choice_for(Compiled("d = { type = \"integrator\", in = [\"-d\"], initial = 1 }\n")).method,
+            IntegrationMethod::adams);
+}
+
+TEST(ChooseMethod, ObeysTheDiagram) {
+  const Compiled made(ring(1));
+  EXPECT_EQ(choice_for(made, IntegrationMethod::bdf).method, IntegrationMethod::bdf);
+  EXPECT_EQ(choice_for(made, IntegrationMethod::adams).reason, "as the diagram asks");
+}
+
+// The amplitude is a conserved quantity of x″ = −x. What a method leaves of it after 1000 turns is that method's own
+// error: BDF damps by 5·10⁻⁴ at a tolerance of 10⁻⁸, Adams must keep it to 10⁻⁵.
+TEST(Circle, KeepsItsAmplitudeByMethod) {
+  const Compiled made(ring(1));
+  const auto amplitude = [&](IntegrationMethod method) {
+    RunOptions options;
+    options.until = 2000 * std::numbers::pi;
+    options.samples = 2;
+    options.method = method;
+    const oblique::Run result = oblique::run(made.program, made.flat, options);
+    return std::hypot(result.trajectory.at(1, 1), result.trajectory.at(1, 2));
+  };
+  EXPECT_NEAR(amplitude(IntegrationMethod::adams), 1, 1e-5);
+  const double bdf = amplitude(IntegrationMethod::bdf);
+  EXPECT_NEAR(bdf, 1, 1e-3);
+  EXPECT_LT(bdf, 1 - 1e-4);  // it is BDF indeed
+}
+
+}  // namespace
+}  // namespace oblique
