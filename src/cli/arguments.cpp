@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <oblique/text/diagnostic.h>
 
@@ -14,13 +14,15 @@ namespace oblique::cli {
 namespace {
 
 constexpr const char* kIntroduction =
-    "Oblique, an analog computer in software: runs block diagrams with high-gain servo loops as the equations they\n"
+    "Oblique, an analog computer in software: runs block diagrams with high-gain servo loops as the "
+    "equations they\n"
     "are, patches mechanisms into such diagrams, and compares them with the exact motion.";
 
 constexpr const char* kEpilogue =
     "First steps:\n"
     "  oblique compare diagrams/mechanisms/four-bar.toml     analog against exact, gain by gain\n"
-    "  oblique run diagrams/lessons/triangle-side.toml       one oblique triangle, tracked by a servo amplifier\n"
+    "  oblique run diagrams/lessons/triangle-side.toml       one oblique triangle, tracked by a servo "
+    "amplifier\n"
     "  oblique blocks                                        what diagrams are made of\n"
     "Exit status: 0 done, 1 the answer is no, 2 the request or a file is wrong, 3 the solver failed.";
 
@@ -39,7 +41,8 @@ std::vector<std::string> option_names(const CLI::App& app) {
 }
 
 /// CLI11's finding with the nearest verb or option added, which it does not know.
-Diagnostic explain(const CLI::App& app, const CLI::ParseError& error, const std::vector<std::string>& arguments) {
+Diagnostic explain(const CLI::App& app, const CLI::ParseError& error,
+                   const std::vector<std::string>& arguments) {
   const auto chosen = app.get_subcommands();
   if (chosen.empty()) {
     for (const std::string& argument : arguments) {
@@ -52,27 +55,38 @@ Diagnostic explain(const CLI::App& app, const CLI::ParseError& error, const std:
   for (const std::string& argument : arguments) {
     const std::string name = argument.substr(0, argument.find('='));
     if (!argument.starts_with("--") || std::find(names.begin(), names.end(), name) != names.end()) continue;
-    return {{}, fmt::format("'{}' has no option '{}'", chosen.front()->get_name(), name), {}, suggest(name, names)};
+    return {{},
+            fmt::format("'{}' has no option '{}'", chosen.front()->get_name(), name),
+            {},
+            suggest(name, names)};
   }
-  return {{}, error.what(), {}, fmt::format("oblique {} --help tells how to call it", chosen.front()->get_name())};
+  return {{},
+          error.what(),
+          {},
+          fmt::format("oblique {} --help tells how to call it", chosen.front()->get_name())};
 }
 
 template <class Request>
 void choose(CLI::App* verb, Chosen& chosen, const std::shared_ptr<Request>& request,
             ExitStatus (*work)(const Session&, const Request&)) {
-  verb->callback([&chosen, request, work] { chosen.work = [&chosen, request, work] { return work(chosen.session, *request); }; });
+  verb->callback([&chosen, request, work] {
+    chosen.work = [&chosen, request, work] { return work(chosen.session, *request); };
+  });
 }
 
 void add_run(CLI::App& app, Chosen& chosen) {
   auto request = std::make_shared<RunRequest>();
   CLI::App* const verb = app.add_subcommand("run", "Run a diagram: its outputs over time");
   verb->add_option("DIAGRAM", request->diagram, "diagram file (oblique-diagram/1)")->required();
-  verb->add_option("-o,--output", request->output, "write all rows and columns to FILE.csv")->type_name("FILE");
-  verb->add_option("--until", request->until, "end of the run, for example 2*pi or \"500 ms\"")->type_name("T");
+  verb->add_option("-o,--output", request->output, "write all rows and columns to FILE.csv")
+      ->type_name("FILE");
+  verb->add_option("--until", request->until, "end of the run, for example 2*pi or \"500 ms\"")
+      ->type_name("T");
   verb->add_option("--set", request->settings, "change a parameter: block.parameter=value; may be repeated")
       ->type_name("SETTING")
       ->allow_extra_args(false);
-  verb->add_flag("--check", request->check, "hold the run against the diagram's [expect]; status 1 where it fails");
+  verb->add_flag("--check", request->check,
+                 "hold the run against the diagram's [expect]; status 1 where it fails");
   choose(verb, chosen, request, run_diagram);
 }
 
@@ -90,7 +104,8 @@ void add_solve(CLI::App& app, Chosen& chosen) {
   verb->add_option("--positions", request->positions, "rows over the turn, both ends included")
       ->capture_default_str()
       ->check(CLI::Range(2, 10'000'000));
-  verb->add_option("-o,--output", request->output, "write all rows and columns to FILE.csv")->type_name("FILE");
+  verb->add_option("-o,--output", request->output, "write all rows and columns to FILE.csv")
+      ->type_name("FILE");
   choose(verb, chosen, request, solve_mechanism);
 }
 
@@ -98,7 +113,8 @@ void add_patch(CLI::App& app, Chosen& chosen) {
   auto request = std::make_shared<PatchRequest>();
   CLI::App* const verb = app.add_subcommand("patch", "Patch a mechanism: the diagram that simulates it");
   verb->add_option("MECHANISM", request->mechanism, "mechanism file (oblique-mechanism/1)")->required();
-  verb->add_option("--gain", request->gain, "gain of the servo amplifiers; inf: ideal")->capture_default_str();
+  verb->add_option("--gain", request->gain, "gain of the servo amplifiers; inf: ideal")
+      ->capture_default_str();
   verb->add_option("--bandwidth", request->bandwidth,
                    "bandwidth of the servo amplifiers, in Hz or with a unit; inf: algebraic loops "
                    "(default: 100 times the crank's frequency)");
@@ -133,7 +149,8 @@ std::optional<ExitStatus> parse_arguments(int argc, char** argv, Chosen& chosen)
   CLI::App app(kIntroduction, "oblique");
   app.footer(kEpilogue);
   app.set_version_flag("--version", std::string("oblique ") + OBLIQUE_VERSION);
-  app.add_option("--blocks", chosen.session.block_directories, "folder with further blocks (*.toml); may be repeated")
+  app.add_option("--blocks", chosen.session.block_directories,
+                 "folder with further blocks (*.toml); may be repeated")
       ->type_name("DIR")
       ->allow_extra_args(false);
   app.require_subcommand(1);

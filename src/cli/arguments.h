@@ -14,8 +14,9 @@ struct Chosen {
   std::function<ExitStatus()> work;  ///< the verb, bound to its request
 };
 
-/// Reads the command line into `chosen`. Gives a status where there is nothing to run: --help, --version, or a mistake,
-/// which it has then reported with the nearest verb or option. CLI11 is used here and nowhere else.
+/// Reads the command line into `chosen`. Gives a status where there is nothing to run: --help, --version, or
+/// a mistake, which it has then reported with the nearest verb or option. CLI11 is used here and nowhere
+/// else.
 std::optional<ExitStatus> parse_arguments(int argc, char** argv, Chosen& chosen);
 
 }  // namespace oblique::cli

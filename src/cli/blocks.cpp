@@ -32,7 +32,8 @@ std::string range_of(const ParameterDefinition& p) {
 /// The part of a block's file that says what it does, without the tables that stand above it already.
 std::string definition_of(const BlockDefinition& block) {
   std::size_t begin = block.text.size();
-  for (const std::string_view section : {"\n[equations]", "\n[implicit]", "\n[[cases]]", "\n[machine]", "\n[blocks]"}) {
+  for (const std::string_view section :
+       {"\n[equations]", "\n[implicit]", "\n[[cases]]", "\n[machine]", "\n[blocks]"}) {
     begin = std::min(begin, block.text.find(section));
   }
   return begin < block.text.size() ? block.text.substr(begin + 1) : block.text;
@@ -70,7 +71,8 @@ ExitStatus show_blocks(const Session& session, const BlocksRequest& request) {
   }
   const BlockDefinition* const block = library.find(request.name);
   if (block == nullptr) {
-    throw DiagramError(Diagnostic{{}, fmt::format("there is no block '{}'", request.name), {}, suggest(request.name, library.names())});
+    throw DiagramError(Diagnostic{
+        {}, fmt::format("there is no block '{}'", request.name), {}, suggest(request.name, library.names())});
   }
   print(page_of(*block));
   return ExitStatus::done;

@@ -35,25 +35,27 @@ ExitStatus check_diagram(const Session& session, const std::string& path) {
 
 std::string describe(const Mechanism& mechanism, const Group& group) {
   if (const auto* const crank = std::get_if<CrankGroup>(&group)) {
-    return fmt::format("crank {}: turns about {} with drive '{}'", crank->name, mechanism.points[crank->pivot].name,
-                       mechanism.drives[crank->drive].name);
+    return fmt::format("crank {}: turns about {} with drive '{}'", crank->name,
+                       mechanism.points[crank->pivot].name, mechanism.drives[crank->drive].name);
   }
   const auto& dyad = std::get<DyadGroup>(group);
-  return fmt::format("dyad {} (class II, RRR): {} lies {} of {} → {}", dyad.name, mechanism.points[dyad.c].name,
-                     dyad.side > 0 ? "left" : "right", mechanism.points[dyad.p].name, mechanism.points[dyad.q].name);
+  return fmt::format("dyad {} (class II, RRR): {} lies {} of {} → {}", dyad.name,
+                     mechanism.points[dyad.c].name, dyad.side > 0 ? "left" : "right",
+                     mechanism.points[dyad.p].name, mechanism.points[dyad.q].name);
 }
 
 ExitStatus check_mechanism(const std::string& path) {
   const Mechanism mechanism = read_mechanism(path);
   const Structure structure = decompose(mechanism);
   print(fmt::format("{}: a mechanism, \"{}\"\n", path, mechanism.title));
-  print(fmt::format("  {}, mobility {}, {}\n", count(mechanism.bodies.size(), "body", "bodies"), mobility(mechanism),
-                    count(mechanism.drives.size(), "drive", "drives")));
+  print(fmt::format("  {}, mobility {}, {}\n", count(mechanism.bodies.size(), "body", "bodies"),
+                    mobility(mechanism), count(mechanism.drives.size(), "drive", "drives")));
   for (const Group& group : structure.groups) print(fmt::format("  {}\n", describe(mechanism, group)));
   for (const Configuration& c : solve_motion(mechanism, 361).configurations) {
     if (c.status == oblique::Status::ok) continue;
-    print(fmt::format("no: over one turn the group {} {}\n", group_name(structure.groups[c.group.value()]),
-                      c.status == oblique::Status::open ? "cannot be assembled everywhere" : "passes a dead centre"));
+    print(fmt::format(
+        "no: over one turn the group {} {}\n", group_name(structure.groups[c.group.value()]),
+        c.status == oblique::Status::open ? "cannot be assembled everywhere" : "passes a dead centre"));
     return ExitStatus::no;
   }
   print("ok: it can be assembled over the whole turn, without dead centres\n");
@@ -68,8 +70,11 @@ ExitStatus check_file(const Session& session, const CheckRequest& request) {
   const std::string name = format != nullptr ? format->text : "";
   if (name == "oblique-diagram/1") return check_diagram(session, request.file);
   if (name == "oblique-mechanism/1") return check_mechanism(request.file);
-  throw ReadError(Diagnostic{{request.file, {1, 1}}, "this is neither a diagram nor a mechanism",
-                             "format = \"oblique-diagram/1\" or \"oblique-mechanism/1\" at the head of the file", {}});
+  throw ReadError(
+      Diagnostic{{request.file, {1, 1}},
+                 "this is neither a diagram nor a mechanism",
+                 R"(format = "oblique-diagram/1" or "oblique-mechanism/1" at the head of the file)",
+                 {}});
 }
 
 }  // namespace oblique::cli

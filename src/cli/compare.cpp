@@ -25,20 +25,23 @@ std::string to_json(const Comparison& comparison) {
                     {"overloads", run.overloads.size()},
                     {"stable", run.stable}});
   }
-  nlohmann::ordered_json json{{"mechanism", comparison.mechanism}, {"method", "triangles"}, {"size", comparison.size}};
+  nlohmann::ordered_json json{
+      {"mechanism", comparison.mechanism}, {"method", "triangles"}, {"size", comparison.size}};
   json["runs"] = std::move(runs);
-  json["order"] = comparison.order ? nlohmann::ordered_json(*comparison.order) : nlohmann::ordered_json(nullptr);
+  json["order"] =
+      comparison.order ? nlohmann::ordered_json(*comparison.order) : nlohmann::ordered_json(nullptr);
   return json.dump(2) + "\n";
 }
 
 std::string to_table(const Comparison& comparison) {
   const std::string& unit = comparison.unit;
   std::string text = fmt::format(
-      "{}\nanalog: servo-tracked triangles, amplifiers of {:.6g} Hz; exact: closed form; errors over all moving points "
+      "{}\nanalog: servo-tracked triangles, amplifiers of {:.6g} Hz; exact: closed form; errors over all "
+      "moving points "
       "and one turn\n\n",
       comparison.mechanism, comparison.bandwidth);
-  Table table({"gain", fmt::format("max error [{}]", unit), "of the largest link", fmt::format("rms error [{}]", unit),
-               "worst point", "steps", "ms", "overloads", "stable"});
+  Table table({"gain", fmt::format("max error [{}]", unit), "of the largest link",
+               fmt::format("rms error [{}]", unit), "worst point", "steps", "ms", "overloads", "stable"});
   for (const GainRun& run : comparison.runs) {
     table.add({short_number(run.gain), fmt::format("{:.3e}", run.max_error),
                fmt::format("{:.3e}", run.max_error / comparison.size), fmt::format("{:.3e}", run.rms_error),
@@ -53,8 +56,8 @@ std::string to_table(const Comparison& comparison) {
               : std::string("no order: it takes two gains whose errors stand clear of the tolerance\n");
   for (const GainRun& run : comparison.runs) {
     for (const Overload& overload : run.overloads) {
-      text += fmt::format("overload at gain {:.6g}: {} reaches {:.6g} at t = {:.6g} s\n", run.gain, overload.signal,
-                          overload.peak.value, overload.peak.time);
+      text += fmt::format("overload at gain {:.6g}: {} reaches {:.6g} at t = {:.6g} s\n", run.gain,
+                          overload.signal, overload.peak.value, overload.peak.time);
     }
   }
   return text;
@@ -70,7 +73,8 @@ ExitStatus compare_mechanism(const Session& session, const CompareRequest& reque
   for (const std::string& gain : request.gains) {
     options.gains.push_back(quantity_option("--gain", gain, "1"));
     if (!(options.gains.back() > 0)) {
-      throw ReadError(Diagnostic{{}, fmt::format("--gain {}", gain), "gains above 0, such as 1e3,1e4,1e5", {}});
+      throw ReadError(
+          Diagnostic{{}, fmt::format("--gain {}", gain), "gains above 0, such as 1e3,1e4,1e5", {}});
     }
   }
   const Mechanism mechanism = read_mechanism(request.mechanism);

@@ -26,7 +26,8 @@ ExitStatus run_program(int argc, char** argv) {
   } catch (const SolveError& error) {
     return report(error, ExitStatus::solver_failed);
   } catch (const MechanismError& error) {
-    return report(error, error.kind() == MechanismError::Kind::assembly ? ExitStatus::no : ExitStatus::bad_request);
+    return report(error,
+                  error.kind() == MechanismError::Kind::assembly ? ExitStatus::no : ExitStatus::bad_request);
   } catch (const PatchError& error) {
     return report(error, ExitStatus::no);
   } catch (const Error& error) {

@@ -13,7 +13,8 @@ namespace {
 
 double positive_option(const std::string& option, const std::string& text, std::string_view unit) {
   const double value = quantity_option(option, text, unit);
-  if (!(value > 0)) throw ReadError(Diagnostic{{}, fmt::format("{} {}", option, text), "a number above 0", {}});
+  if (!(value > 0))
+    throw ReadError(Diagnostic{{}, fmt::format("{} {}", option, text), "a number above 0", {}});
   return value;
 }
 

@@ -14,7 +14,9 @@ namespace {
 ParameterOverride parse_override(const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0) {
-    throw ReadError(Diagnostic{{}, fmt::format("--set {}: this sets nothing", text), "block.parameter=value",
+    throw ReadError(Diagnostic{{},
+                               fmt::format("--set {}: this sets nothing", text),
+                               "block.parameter=value",
                                "for example --set c.gain=1e4"});
   }
   return {text.substr(0, equals), text.substr(equals + 1)};
@@ -49,8 +51,9 @@ ExitStatus report_expectations(const Diagram& diagram, const Run& run) {
   print("\n");
   for (const ExpectationResult& result : check_expectations(diagram, run)) {
     if (!result.met) status = ExitStatus::no;
-    print(fmt::format("{}  {} = {}, expected {} ± {}\n", result.met ? "ok    " : "FAILED", result.expectation.text,
-                      result.actual, result.expectation.value, result.expectation.within));
+    print(fmt::format("{}  {} = {}, expected {} ± {}\n", result.met ? "ok    " : "FAILED",
+                      result.expectation.text, result.actual, result.expectation.value,
+                      result.expectation.within));
   }
   return status;
 }
@@ -63,12 +66,17 @@ ExitStatus run_diagram(const Session& session, const RunRequest& request) {
   Diagram diagram = read_diagram(request.diagram);
   if (!request.until.empty()) diagram.run.until = quantity_option("--until", request.until, "s");
   if (!(diagram.run.until > 0)) {
-    throw ReadError(Diagnostic{{}, fmt::format("the run would end at t = {} s", diagram.run.until),
-                               "a time above 0", "give --until, or 'until' in [run]"});
+    throw ReadError(Diagnostic{{},
+                               fmt::format("the run would end at t = {} s", diagram.run.until),
+                               "a time above 0",
+                               "give --until, or 'until' in [run]"});
   }
   if (request.check && diagram.expectations.empty()) {
-    throw DiagramError(Diagnostic{{diagram.file, {}}, "there is nothing to check: the diagram has no [expect]",
-                                  R"([expect] with lines such as "side at pi" = { value = 0.7, within = 1e-4 })", {}});
+    throw DiagramError(
+        Diagnostic{{diagram.file, {}},
+                   "there is nothing to check: the diagram has no [expect]",
+                   R"([expect] with lines such as "side at pi" = { value = 0.7, within = 1e-4 })",
+                   {}});
   }
   std::vector<ParameterOverride> overrides;
   for (const std::string& text : request.settings) overrides.push_back(parse_override(text));
@@ -86,10 +94,10 @@ ExitStatus run_diagram(const Session& session, const RunRequest& request) {
   print(table_of(result.trajectory));
   if (!request.output.empty()) save(request.output, to_csv(result.trajectory));
   const SolverStatistics& s = result.statistics;
-  note(fmt::format("{}, {}; {} (relative tolerance {}), {:.3g} ms\n",
-                   count(program.n_states(), "state", "states"),
-                   count(program.loops().size(), "algebraic loop", "algebraic loops"),
-                   count(static_cast<std::size_t>(s.steps), "step", "steps"), options.tolerance, 1e3 * result.seconds));
+  note(fmt::format(
+      "{}, {}; {} (relative tolerance {}), {:.3g} ms\n", count(program.n_states(), "state", "states"),
+      count(program.loops().size(), "algebraic loop", "algebraic loops"),
+      count(static_cast<std::size_t>(s.steps), "step", "steps"), options.tolerance, 1e3 * result.seconds));
   if (program.n_states() > 0) {
     note(fmt::format("method {}: {}\n", method_name(result.method.method), result.method.reason));
   }

@@ -40,9 +40,11 @@ std::string table_of(const Mechanism& mechanism, const Motion& motion) {
     cells.emplace_back(status_name(motion.configurations[row].status));
     table.add(cells);
   }
-  return table.text() + fmt::format("(positions only, {} of {} rows; -o FILE.csv writes velocities, accelerations and "
-                                    "the bodies' angles too)\n",
-                                    std::min(kMostRows, motion.times.size()), motion.times.size());
+  return table.text() +
+         fmt::format(
+             "(positions only, {} of {} rows; -o FILE.csv writes velocities, accelerations and "
+             "the bodies' angles too)\n",
+             std::min(kMostRows, motion.times.size()), motion.times.size());
 }
 
 }  // namespace

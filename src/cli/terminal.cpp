@@ -53,7 +53,8 @@ std::vector<std::size_t> spread_rows(std::size_t rows, std::size_t most) {
 
 std::size_t columns_that_fit(std::size_t column_width) {
   winsize size{};
-  const bool known = isatty(STDOUT_FILENO) != 0 && ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  const bool known =
+      isatty(STDOUT_FILENO) != 0 && ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
   const std::size_t terminal = known ? size.ws_col : 110;
   return std::max<std::size_t>(2, terminal / column_width);
 }
@@ -64,7 +65,9 @@ std::string short_number(double value, double scale) {
   return fmt::format("{:.6g}", std::abs(value) < kRounding * scale ? 0.0 : value);
 }
 
-void print(std::string_view text) { std::fwrite(text.data(), 1, text.size(), stdout); }
+void print(std::string_view text) {
+  std::fwrite(text.data(), 1, text.size(), stdout);
+}
 
 std::string count(std::size_t n, std::string_view one, std::string_view many) {
   return fmt::format("{} {}", n, n == 1 ? one : many);
@@ -102,7 +105,8 @@ double quantity_option(const std::string& option, const std::string& text, std::
   try {
     return parse_quantity(text, parse_unit(unit).value());
   } catch (const ExpressionError& error) {
-    throw ReadError(Diagnostic{{}, fmt::format("{} {}: {}", option, text, error.what), error.expected, error.remedy});
+    throw ReadError(
+        Diagnostic{{}, fmt::format("{} {}: {}", option, text, error.what), error.expected, error.remedy});
   }
 }
 
@@ -115,7 +119,9 @@ void check_output(const std::filesystem::path& path, std::string_view ending) {
   }
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
   if (!std::filesystem::is_directory(folder)) {
-    throw ReadError(Diagnostic{{path.string(), {}}, "the folder of this file does not exist", {},
+    throw ReadError(Diagnostic{{path.string(), {}},
+                               "the folder of this file does not exist",
+                               {},
                                fmt::format("make it first: mkdir -p {}", folder.string())});
   }
 }

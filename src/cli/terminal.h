@@ -26,11 +26,12 @@ class Table {
 /// Up to `most` row numbers of `rows`, evenly spread, the first and the last among them.
 std::vector<std::size_t> spread_rows(std::size_t rows, std::size_t most);
 
-/// How many columns of `width` characters a table may have on this terminal (110 characters where there is none).
+/// How many columns of `width` characters a table may have on this terminal (110 characters where there is
+/// none).
 std::size_t columns_that_fit(std::size_t width);
 
-/// "0.0125", "1.2e-07": six significant digits; empty for what is not a number. A value that is rounding beside
-/// `scale`, the size of its neighbours, is shown as 0.
+/// "0.0125", "1.2e-07": six significant digits; empty for what is not a number. A value that is rounding
+/// beside `scale`, the size of its neighbours, is shown as 0.
 std::string short_number(double value, double scale = 0);
 
 /// "1 block", "3 blocks".
@@ -48,7 +49,8 @@ void print_error(std::string_view text);
 /// Writes a file and says so on stderr.
 void save(const std::filesystem::path& path, std::string_view text);
 
-/// A line on stderr that shows how far work of more than a second has come; nothing where stderr is no terminal.
+/// A line on stderr that shows how far work of more than a second has come; nothing where stderr is no
+/// terminal.
 class Progress {
  public:
   explicit Progress(std::string what) : what_(std::move(what)) {}
@@ -67,8 +69,8 @@ class Progress {
 /// A quantity given as an option, in `unit`. Throws ReadError that names the option.
 double quantity_option(const std::string& option, const std::string& text, std::string_view unit);
 
-/// Checks that a result can be written to `path` before the work is done; `ending` is what its name must end with.
-/// Throws ReadError.
+/// Checks that a result can be written to `path` before the work is done; `ending` is what its name must end
+/// with. Throws ReadError.
 void check_output(const std::filesystem::path& path, std::string_view ending);
 
 }  // namespace oblique::cli

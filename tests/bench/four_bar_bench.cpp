@@ -39,8 +39,11 @@ void four_bar(benchmark::State& state) {
   const double patched = cpu_seconds();
   const CompiledDiagram compiled(diagram, library);
   const double compile_time = cpu_seconds() - patched;
-  const FourBarSettings settings{PatchOptions{}.gain, default_bandwidth(mechanism), diagram.run.until,
-                                 diagram.run.tolerance, kAbsoluteTolerance * diagram.run.tolerance,
+  const FourBarSettings settings{PatchOptions{}.gain,
+                                 default_bandwidth(mechanism),
+                                 diagram.run.until,
+                                 diagram.run.tolerance,
+                                 kAbsoluteTolerance * diagram.run.tolerance,
                                  diagram.run.samples};
 
   std::vector<double> ratios, whole_ratios, ours_times, hand_times, rest_times;

@@ -28,10 +28,12 @@ std::string diagram(const std::string& blocks, const std::string& rest = "") {
   return "format = \"oblique-diagram/1\"\n" + rest + "[blocks]\n" + blocks;
 }
 
-std::string mechanism(const std::string& bodies, const std::string& drives = "crank = { turns = \"AB\", about = \"A\", speed = 1 }\n",
-                      const std::string& frame = "A = [0, 0]\nD = [4, 0]\n", const std::string& sketch = "C = [3, 3]\n") {
-  return "format = \"oblique-mechanism/1\"\n[frame]\n" + frame + "[bodies]\n" + bodies + "[drives]\n" + drives + "[sketch]\n" +
-         sketch;
+std::string mechanism(const std::string& bodies,
+                      const std::string& drives = "crank = { turns = \"AB\", about = \"A\", speed = 1 }\n",
+                      const std::string& frame = "A = [0, 0]\nD = [4, 0]\n",
+                      const std::string& sketch = "C = [3, 3]\n") {
+  return "format = \"oblique-mechanism/1\"\n[frame]\n" + frame + "[bodies]\n" + bodies + "[drives]\n" +
+         drives + "[sketch]\n" + sketch;
 }
 
 const std::string kCrank = "AB = { points = [\"A\", \"B\"], length = 1 }\n";
@@ -39,74 +41,141 @@ const std::string kCoupler = "BC = { points = [\"B\", \"C\"], length = 3.5 }\n";
 const std::string kRocker = "CD = { points = [\"C\", \"D\"], length = 3 }\n";
 
 const std::vector<BadInput> kCases{
-    {"BrokenToml", "run", "format = \"oblique-diagram/1\"\n[blocks\n", 2, {"input.toml:2:", "broken TOML", "remedy"}},
-    {"WrongFormat", "run", "format = \"oblique-mechanism/1\"\n", 2,
+    {"BrokenToml",
+     "run",
+     "format = \"oblique-diagram/1\"\n[blocks\n",
+     2,
+     {"input.toml:2:", "broken TOML", "remedy"}},
+    {"WrongFormat",
+     "run",
+     "format = \"oblique-mechanism/1\"\n",
+     2,
      {"input.toml:1:10: the format is 'oblique-mechanism/1'; expected 'oblique-diagram/1'"}},
-    {"UnknownKey", "run", diagram("a = { type = \"constant\" }\n", "tilte = \"x\"\n"), 2,
+    {"UnknownKey",
+     "run",
+     diagram("a = { type = \"constant\" }\n", "tilte = \"x\"\n"),
+     2,
      {"input.toml:2:1: unknown key 'tilte'", "did you mean 'title'?"}},
-    {"UnknownBlockType", "run", diagram("a = { type = \"integrater\", in = \"a\" }\n"), 2,
+    {"UnknownBlockType",
+     "run",
+     diagram("a = { type = \"integrater\", in = \"a\" }\n"),
+     2,
      {"input.toml:3:", "integrater", "did you mean 'integrator'?"}},
-    {"UnknownPort", "run", diagram("a = { type = \"constant\", valeu = 1 }\n"), 2,
+    {"UnknownPort",
+     "run",
+     diagram("a = { type = \"constant\", valeu = 1 }\n"),
+     2,
      {"input.toml:3:", "valeu", "did you mean 'value'?"}},
-    {"UnknownSignal", "run", diagram("one = { type = \"constant\" }\nb = { type = \"cosine\", in = \"onne\" }\n"), 2,
+    {"UnknownSignal",
+     "run",
+     diagram("one = { type = \"constant\" }\nb = { type = \"cosine\", in = \"onne\" }\n"),
+     2,
      {"input.toml:4:", "onne", "did you mean 'one'?"}},
-    {"OpenInput", "run", diagram("m = { type = \"multiplier\", x = \"m\" }\n"), 2, {"input.toml:3:", "input 'm.y' (multiplier) is not connected", "remedy"}},
-    {"DoublyDrivenInput", "run",
-     diagram("one = { type = \"constant\" }\nc = { type = \"cosine\", in = [\"one\", \"one\"] }\n"), 2,
+    {"OpenInput",
+     "run",
+     diagram("m = { type = \"multiplier\", x = \"m\" }\n"),
+     2,
+     {"input.toml:3:", "input 'm.y' (multiplier) is not connected", "remedy"}},
+    {"DoublyDrivenInput",
+     "run",
+     diagram("one = { type = \"constant\" }\nc = { type = \"cosine\", in = [\"one\", \"one\"] }\n"),
+     2,
      {"input.toml:4:37: input 'c.in' is doubly driven: it takes one signal and was given 2", "remedy"}},
-    {"WrongUnit", "run",
-     diagram("one = { type = \"constant\" }\na = { type = \"servo-amplifier\", in = \"one\", bandwidth = \"10 mm\" }\n"), 2,
+    {"WrongUnit",
+     "run",
+     diagram("one = { type = \"constant\" }\na = { type = \"servo-amplifier\", in = \"one\", bandwidth = "
+             "\"10 mm\" }\n"),
+     2,
      {"input.toml:4:", "'mm' is the wrong unit here", "Hz"}},
-    {"OutOfRange", "run",
-     diagram("one = { type = \"constant\" }\na = { type = \"potentiometer\", in = \"one\", setting = 2 }\n"), 2,
+    {"OutOfRange",
+     "run",
+     diagram("one = { type = \"constant\" }\na = { type = \"potentiometer\", in = \"one\", setting = 2 }\n"),
+     2,
      {"input.toml:4:", "setting", "2", "1"}},
-    {"SingularLoop", "run", diagram("one = { type = \"constant\" }\na = { type = \"summer\", in = [\"a\", \"one\"] }\n"), 3,
+    {"SingularLoop",
+     "run",
+     diagram("one = { type = \"constant\" }\na = { type = \"summer\", in = [\"a\", \"one\"] }\n"),
+     3,
      {"the algebraic loop a → a is singular at t = 0 s: its gain is 1",
       "remedy: change a weight so that the gain of the loop is not 1, or put an integrator into it"}},
-    {"AmplifierWithoutFeedback", "run",
-     diagram("one = { type = \"constant\" }\na = { type = \"servo-amplifier\", in = [\"one\"], gain = inf }\n"), 3,
+    {"AmplifierWithoutFeedback",
+     "run",
+     diagram(
+         "one = { type = \"constant\" }\na = { type = \"servo-amplifier\", in = [\"one\"], gain = inf }\n"),
+     3,
      {"the algebraic loop a → a is singular", "the inputs of 'a' do not respond to its output", "remedy"}},
-    {"PositiveFeedbackServo", "run",
-     diagram("one = { type = \"constant\" }\na = { type = \"servo-amplifier\", in = [\"one\", \"-a\"] }\n"), 3,
+    {"PositiveFeedbackServo",
+     "run",
+     diagram("one = { type = \"constant\" }\na = { type = \"servo-amplifier\", in = [\"one\", \"-a\"] }\n"),
+     3,
      {"the servo loops do not come to rest", "'a'", "remedy: check the signs at the amplifier's inputs"}},
-    {"BlowUp", "run",
-     diagram("x = { type = \"integrator\", in = [\"xx\"], initial = 1 }\nxx = { type = \"multiplier\", in = [\"x\", \"x\"] }\n",
+    {"BlowUp",
+     "run",
+     diagram("x = { type = \"integrator\", in = [\"xx\"], initial = 1 }\nxx = { type = \"multiplier\", in = "
+             "[\"x\", \"x\"] }\n",
              "[run]\nuntil = 2\n"),
-     3, {"the run stopped at t = ", "the solution grows without bound", "'x' =", "largest weighted local errors", "remedy"}},
-    {"ZeroLength", "solve", mechanism("AB = { points = [\"A\", \"B\"], length = 0 }\n" + kCoupler + kRocker), 2,
+     3,
+     {"the run stopped at t = ", "the solution grows without bound", "'x' =", "largest weighted local errors",
+      "remedy"}},
+    {"ZeroLength",
+     "solve",
+     mechanism("AB = { points = [\"A\", \"B\"], length = 0 }\n" + kCoupler + kRocker),
+     2,
      {"input.toml:6:", "length", "0", "above 0"}},
-    {"MechanismWrongUnit", "solve",
-     mechanism(kCrank + kCoupler + kRocker, "crank = { turns = \"AB\", about = \"A\", speed = \"1 Hz\" }\n"), 2,
+    {"MechanismWrongUnit",
+     "solve",
+     mechanism(kCrank + kCoupler + kRocker, "crank = { turns = \"AB\", about = \"A\", speed = \"1 Hz\" }\n"),
+     2,
      {"input.toml:10:", "'Hz' is the wrong unit here", "rad/s"}},
-    {"UnknownBody", "solve",
-     mechanism(kCrank + kCoupler + kRocker, "crank = { turns = \"AC\", about = \"A\", speed = 1 }\n"), 2,
+    {"UnknownBody",
+     "solve",
+     mechanism(kCrank + kCoupler + kRocker, "crank = { turns = \"AC\", about = \"A\", speed = 1 }\n"),
+     2,
      {"input.toml:10:", "'AC'", "remedy: did you mean"}},
-    {"CannotBeAssembled", "solve",
-     mechanism(kCrank + "BC = { points = [\"B\", \"C\"], length = 0.5 }\nCD = { points = [\"C\", \"D\"], length = 0.5 }\n"), 1,
+    {"CannotBeAssembled",
+     "solve",
+     mechanism(
+         kCrank +
+         "BC = { points = [\"B\", \"C\"], length = 0.5 }\nCD = { points = [\"C\", \"D\"], length = 0.5 }\n"),
+     1,
      {"cannot be assembled", "BC", "CD"}},
     {"WithoutDrive", "solve", mechanism(kCrank + kCoupler + kRocker, ""), 2, {"the mechanism has no drive"}},
-    {"UnderDriven", "solve",
-     mechanism(kCrank + kCoupler + "CE = { points = [\"C\", \"E\"], length = 1 }\nED = { points = [\"E\", \"D\"], length = 2 }\n"),
-     2, {"mobility", "2", "1 drive"}},
-    {"OverDriven", "solve",
+    {"UnderDriven",
+     "solve",
+     mechanism(
+         kCrank + kCoupler +
+         "CE = { points = [\"C\", \"E\"], length = 1 }\nED = { points = [\"E\", \"D\"], length = 2 }\n"),
+     2,
+     {"mobility", "2", "1 drive"}},
+    {"OverDriven",
+     "solve",
      mechanism(kCrank + kCoupler + kRocker,
-               "crank = { turns = \"AB\", about = \"A\", speed = 1 }\nrocker = { turns = \"CD\", about = \"D\", speed = 1 }\n"),
-     2, {"mobility", "1", "2 drives"}},
-    {"NoSketch", "solve", mechanism(kCrank + kCoupler + kRocker, "crank = { turns = \"AB\", about = \"A\", speed = 1 }\n",
-                                    "A = [0, 0]\nD = [4, 0]\n", ""),
-     2, {"[sketch]", "C = [3.0416", "C = [3.0416"}},
+               "crank = { turns = \"AB\", about = \"A\", speed = 1 }\nrocker = { turns = \"CD\", about = "
+               "\"D\", speed = 1 }\n"),
+     2,
+     {"mobility", "1", "2 drives"}},
+    {"NoSketch",
+     "solve",
+     mechanism(kCrank + kCoupler + kRocker, "crank = { turns = \"AB\", about = \"A\", speed = 1 }\n",
+               "A = [0, 0]\nD = [4, 0]\n", ""),
+     2,
+     {"[sketch]", "C = [3.0416", "C = [3.0416"}},
 };
 
-void PrintTo(const BadInput& input, std::ostream* out) { *out << input.name; }
+void PrintTo(const BadInput& input, std::ostream* out) {
+  *out << input.name;
+}
 
 class BadInputs : public testing::TestWithParam<BadInput> {};
-INSTANTIATE_TEST_SUITE_P(Cli, BadInputs, testing::ValuesIn(kCases), [](const auto& tested) { return tested.param.name; });
+INSTANTIATE_TEST_SUITE_P(Cli, BadInputs, testing::ValuesIn(kCases),
+                         [](const auto& tested) { return tested.param.name; });
 
 TEST_P(BadInputs, EndWithTheirStatusAndAMessage) {
   const auto folder = std::filesystem::temp_directory_path() / ("oblique-bad-" + std::to_string(getpid()));
   std::filesystem::create_directories(folder);
   std::ofstream(folder / "input.toml") << GetParam().text;
-  const Outcome outcome = run_command(std::string("oblique ") + GetParam().verb + " input.toml", folder.string());
+  const Outcome outcome =
+      run_command(std::string("oblique ") + GetParam().verb + " input.toml", folder.string());
   EXPECT_EQ(outcome.status, GetParam().status) << outcome.err;
   EXPECT_THAT(outcome.out, IsEmpty());
   EXPECT_THAT(outcome.err, testing::StartsWith("error: "));
@@ -124,8 +193,10 @@ TEST(BadRequest, MissingFileSaysWhere) {
 
 TEST(BadRequest, ReportsAllWiringErrorsAtOnce) {
   const Outcome outcome = run_command(
-      "printf 'format = \"oblique-diagram/1\"\\n[blocks]\\na = { type = \"cosine\" }\\nb = { type = \"sine\", in = \"c\" }\\n' "
-      ">/tmp/oblique-two.toml; oblique run /tmp/oblique-two.toml; status=$?; rm /tmp/oblique-two.toml; exit $status",
+      "printf 'format = \"oblique-diagram/1\"\\n[blocks]\\na = { type = \"cosine\" }\\nb = { type = "
+      "\"sine\", in = \"c\" }\\n' "
+      ">/tmp/oblique-two.toml; oblique run /tmp/oblique-two.toml; status=$?; rm /tmp/oblique-two.toml; exit "
+      "$status",
       OBLIQUE_SOURCE_DIR);
   EXPECT_EQ(outcome.status, 2);
   EXPECT_THAT(outcome.err, HasSubstr("oblique-two.toml:3:"));
@@ -139,39 +210,48 @@ struct BadRequestCase {
   const char* says;
 };
 
-void PrintTo(const BadRequestCase& request, std::ostream* out) { *out << request.command; }
+void PrintTo(const BadRequestCase& request, std::ostream* out) {
+  *out << request.command;
+}
 
 class BadRequests : public testing::TestWithParam<BadRequestCase> {};
 INSTANTIATE_TEST_SUITE_P(
     Cli, BadRequests,
     testing::Values(
-        BadRequestCase{"UnknownVerb", "oblique rnu x", 2, "there is no command 'rnu'\n  remedy: did you mean 'run'?"},
+        BadRequestCase{"UnknownVerb", "oblique rnu x", 2,
+                       "there is no command 'rnu'\n  remedy: did you mean 'run'?"},
         BadRequestCase{"UnknownOption", "oblique run x --chek", 2,
                        "'run' has no option '--chek'\n  remedy: did you mean '--check'?"},
-        BadRequestCase{"MissingArgument", "oblique solve", 2, "remedy: oblique solve --help tells how to call it"},
-        BadRequestCase{"PositionsOutOfRange", "oblique solve diagrams/mechanisms/four-bar.toml --positions 1", 2,
-                       "not in range 2 to"},
-        BadRequestCase{"GainThatIsNoNumber", "oblique compare diagrams/mechanisms/four-bar.toml --gain high", 2,
-                       "--gain high: 'high' is not a known constant"},
+        BadRequestCase{"MissingArgument", "oblique solve", 2,
+                       "remedy: oblique solve --help tells how to call it"},
+        BadRequestCase{"PositionsOutOfRange", "oblique solve diagrams/mechanisms/four-bar.toml --positions 1",
+                       2, "not in range 2 to"},
+        BadRequestCase{"GainThatIsNoNumber", "oblique compare diagrams/mechanisms/four-bar.toml --gain high",
+                       2, "--gain high: 'high' is not a known constant"},
         BadRequestCase{"GainBelowZero", "oblique compare diagrams/mechanisms/four-bar.toml --gain 1e3,0", 2,
                        "--gain 0; expected gains above 0"},
         BadRequestCase{"UntilInMillimetres", "oblique run diagrams/lessons/circle.toml --until '5 mm'", 2,
                        "--until 5 mm: 'mm' is the wrong unit here; expected a quantity in 's'"},
         BadRequestCase{"UntilZero", "oblique run diagrams/lessons/circle.toml --until 0", 2,
                        "the run would end at t = 0 s"},
-        BadRequestCase{"SetOfAnUnknownParameter", "oblique run diagrams/lessons/triangle-side.toml --set c.gian=3", 2,
+        BadRequestCase{"SetOfAnUnknownParameter",
+                       "oblique run diagrams/lessons/triangle-side.toml --set c.gian=3", 2,
                        "remedy: did you mean 'gain'?"},
-        BadRequestCase{"SetOfAnUnknownBlock", "oblique run diagrams/lessons/triangle-side.toml --set q.gain=3", 2, "'q'"},
+        BadRequestCase{"SetOfAnUnknownBlock",
+                       "oblique run diagrams/lessons/triangle-side.toml --set q.gain=3", 2, "'q'"},
         BadRequestCase{"SetWithoutValue", "oblique run diagrams/lessons/triangle-side.toml --set c.gain", 2,
                        "--set c.gain: this sets nothing"},
         BadRequestCase{"OutputOfAnUnknownKind", "oblique run diagrams/lessons/triangle-side.toml -o x.xls", 2,
                        "x.xls: cannot write a '.xls' file; expected a name that ends in .csv"},
-        BadRequestCase{"OutputInNoFolder", "oblique run diagrams/lessons/triangle-side.toml -o no/where/x.csv", 2,
+        BadRequestCase{"OutputInNoFolder",
+                       "oblique run diagrams/lessons/triangle-side.toml -o no/where/x.csv", 2,
                        "the folder of this file does not exist\n  remedy: make it first: mkdir -p no/where"},
         BadRequestCase{"UnknownBlockPage", "oblique blocks multiplyer", 2, "did you mean 'multiplier'?"},
-        BadRequestCase{"FileOfNoKnownFormat", "oblique check CMakePresets.json", 2, "error: CMakePresets.json"},
+        BadRequestCase{"FileOfNoKnownFormat", "oblique check CMakePresets.json", 2,
+                       "error: CMakePresets.json"},
         BadRequestCase{"BlocksFolderThatIsNotThere", "oblique --blocks nowhere blocks", 2, "nowhere"},
-        BadRequestCase{"FailedExpectation", "oblique run diagrams/lessons/triangle-side.toml --set c.gain=100 --check", 1, ""}),
+        BadRequestCase{"FailedExpectation",
+                       "oblique run diagrams/lessons/triangle-side.toml --set c.gain=100 --check", 1, ""}),
     [](const auto& tested) { return tested.param.name; });
 
 TEST_P(BadRequests, EndWithTheirStatusAndAMessage) {

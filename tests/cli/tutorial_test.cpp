@@ -48,7 +48,8 @@ std::vector<std::string> words_of(const std::string& line) {
   return words;
 }
 
-/// Numbers may differ in what depends on the compiler's rounding: by 2 %, or by the size of a solver's tolerance.
+/// Numbers may differ in what depends on the compiler's rounding: by 2 %, or by the size of a solver's
+/// tolerance.
 bool same_word(const std::string& a, const std::string& b) {
   if (a == b) return true;
   char* end_a = nullptr;
@@ -58,7 +59,8 @@ bool same_word(const std::string& a, const std::string& b) {
   return std::abs(x - y) <= 0.02 * std::max(std::abs(x), std::abs(y)) + 1e-9;
 }
 
-/// Words that tell time or work ("ms", "steps") and so differ from machine to machine, by their place from the end.
+/// Words that tell time or work ("ms", "steps") and so differ from machine to machine, by their place from
+/// the end.
 bool same_line(const std::string& a, const std::string& b, const std::vector<std::size_t>& ignored) {
   const auto left = words_of(a), right = words_of(b);
   if (left.size() != right.size()) return false;
@@ -93,9 +95,12 @@ void expect_output(const Example& example, const std::string& printed) {
     if (words_of(expected).empty()) continue;
     const std::vector<std::size_t> places = places_from_the_end(expected);
     if (!places.empty() && words_of(expected)[0] == "gain") ignored = places;
-    while (at < lines.size() && (words_of(lines[at]).empty() || (anything && !same_line(expected, lines[at], ignored)))) ++at;
+    while (at < lines.size() &&
+           (words_of(lines[at]).empty() || (anything && !same_line(expected, lines[at], ignored))))
+      ++at;
     ASSERT_LT(at, lines.size()) << "missing: " << expected << "\nprinted:\n" << printed;
-    EXPECT_TRUE(same_line(expected, lines[at], ignored)) << "page:    " << expected << "\nprinted: " << lines[at];
+    EXPECT_TRUE(same_line(expected, lines[at], ignored))
+        << "page:    " << expected << "\nprinted: " << lines[at];
     ++at;
     anything = false;
   }
@@ -103,9 +108,12 @@ void expect_output(const Example& example, const std::string& printed) {
 
 class Page : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Docs, Page, testing::Values("docs/tutorial.md", "README.md"),
-                         [](const auto& tested) { return std::string(tested.param).find("README") == 0 ? "Readme" : "Tutorial"; });
+                         [](const auto& tested) {
+                           return std::string(tested.param).find("README") == 0 ? "Readme" : "Tutorial";
+                         });
 
-// The commands of a page run in order, in a copy of the diagrams, since some write files that later ones read.
+// The commands of a page run in order, in a copy of the diagrams, since some write files that later ones
+// read.
 TEST_P(Page, PrintsWhatItSays) {
   const auto folder = std::filesystem::temp_directory_path() / ("oblique-page-" + std::to_string(getpid()));
   std::filesystem::create_directories(folder);

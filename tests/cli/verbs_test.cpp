@@ -25,7 +25,9 @@ class Verbs : public testing::Test {
   }
   ~Verbs() override { std::filesystem::remove_all(folder_); }
 
-  static Outcome oblique(const std::string& arguments) { return run_command("oblique " + arguments, OBLIQUE_SOURCE_DIR); }
+  static Outcome oblique(const std::string& arguments) {
+    return run_command("oblique " + arguments, OBLIQUE_SOURCE_DIR);
+  }
   std::string file(const std::string& name) const { return (folder_ / name).string(); }
 
   /// Rows of a CSV file, the header apart; empty fields are NaN.
@@ -51,7 +53,8 @@ TEST_F(Verbs, WithoutArgumentsTheProgramIntroducesItself) {
   const Outcome outcome = oblique("");
   EXPECT_EQ(outcome.status, 0);
   EXPECT_THAT(outcome.out, HasSubstr("First steps:"));
-  for (const char* verb : {"run", "check", "solve", "patch", "compare", "blocks"}) EXPECT_THAT(outcome.out, HasSubstr(verb));
+  for (const char* verb : {"run", "check", "solve", "patch", "compare", "blocks"})
+    EXPECT_THAT(outcome.out, HasSubstr(verb));
 }
 
 TEST_F(Verbs, RunWritesAllRowsAndTheLawOfCosines) {
@@ -78,7 +81,8 @@ TEST_F(Verbs, RunChecksExpectations) {
 }
 
 TEST_F(Verbs, RunTakesAnotherEndAndUnits) {
-  const Outcome outcome = oblique("run diagrams/lessons/circle.toml --until '500 ms' -o " + file("circle.csv"));
+  const Outcome outcome =
+      oblique("run diagrams/lessons/circle.toml --until '500 ms' -o " + file("circle.csv"));
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   std::string header;
   const auto rows = csv_rows(file("circle.csv"), header);
@@ -87,7 +91,8 @@ TEST_F(Verbs, RunTakesAnotherEndAndUnits) {
 }
 
 TEST_F(Verbs, SolveWritesTheColumnsOfTheContract) {
-  const Outcome outcome = oblique("solve diagrams/mechanisms/four-bar.toml --positions 13 -o " + file("motion.csv"));
+  const Outcome outcome =
+      oblique("solve diagrams/mechanisms/four-bar.toml --positions 13 -o " + file("motion.csv"));
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   std::string header;
   const auto rows = csv_rows(file("motion.csv"), header);
@@ -101,7 +106,8 @@ TEST_F(Verbs, SolveWritesTheColumnsOfTheContract) {
 }
 
 TEST_F(Verbs, PatchWritesADiagramThatRuns) {
-  const Outcome patched = oblique("patch diagrams/mechanisms/six-bar.toml --gain 1e5 -o " + file("patched.toml"));
+  const Outcome patched =
+      oblique("patch diagrams/mechanisms/six-bar.toml --gain 1e5 -o " + file("patched.toml"));
   ASSERT_EQ(patched.status, 0) << patched.err;
   EXPECT_THAT(patched.err, HasSubstr("run it with: oblique run "));
   const Outcome checked = oblique("check " + file("patched.toml"));
@@ -124,7 +130,8 @@ TEST_F(Verbs, PatchPrintsToStdoutWithoutAFile) {
 }
 
 TEST_F(Verbs, CompareGivesTheJsonOfTheContract) {
-  const Outcome outcome = oblique("compare diagrams/mechanisms/four-bar.toml --gain 1e3,1e4 --json -o " + file("c.json"));
+  const Outcome outcome =
+      oblique("compare diagrams/mechanisms/four-bar.toml --gain 1e3,1e4 --json -o " + file("c.json"));
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const auto json = nlohmann::json::parse(outcome.out);
   EXPECT_EQ(json.at("mechanism"), "Four-bar linkage with a coupler point");
@@ -159,9 +166,10 @@ TEST_F(Verbs, BlocksListsAndTells) {
 }
 
 TEST_F(Verbs, AFolderOfOwnBlocksExtendsTheLibrary) {
-  std::ofstream(file("doubler.toml")) << "format = \"oblique-block/1\"\ntitle = \"Doubler\"\nsummary = \"Doubles.\"\n"
-                                         "[inputs]\nin = { doc = \"x\" }\n[outputs]\nout = { doc = \"2 x\" }\n"
-                                         "[equations]\nout = \"2*in\"\n";
+  std::ofstream(file("doubler.toml"))
+      << "format = \"oblique-block/1\"\ntitle = \"Doubler\"\nsummary = \"Doubles.\"\n"
+         "[inputs]\nin = { doc = \"x\" }\n[outputs]\nout = { doc = \"2 x\" }\n"
+         "[equations]\nout = \"2*in\"\n";
   const std::string folder = std::filesystem::path(file("doubler.toml")).parent_path().string();
   EXPECT_THAT(oblique("blocks doubler --blocks " + folder).out, HasSubstr("Doubler (doubler)"));
 }

@@ -21,7 +21,9 @@ struct Case {
   double relative_error;  ///< allowed at gain 1e6, of the largest link
 };
 
-void PrintTo(const Case& tested, std::ostream* out) { *out << tested.mechanism; }
+void PrintTo(const Case& tested, std::ostream* out) {
+  *out << tested.mechanism;
+}
 
 class Convergence : public testing::TestWithParam<Case> {};
 INSTANTIATE_TEST_SUITE_P(Compare, Convergence,
@@ -76,7 +78,8 @@ TEST(Compare, ReportsProgressUpToTheEnd) {
   EXPECT_LE(last, 1);
 }
 
-// At rest every amplifier stands where its own equation with the finite gain says (w = input_gain, m = 1/(w μ)):
+// At rest every amplifier stands where its own equation with the finite gain says (w = input_gain, m = 1/(w
+// μ)):
 //
 //     L² + m L = d²,   c (L + m) = dx,   s (L + m) = dy,
 //     cos γ (L + m) = L²/(2a) + (a² − b²)/(2a),   sin²γ + m sin γ = 1 − cos²γ

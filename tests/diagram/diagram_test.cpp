@@ -152,7 +152,8 @@ TEST(ParseDiagram, ChecksMachineAndRun) {
             "d.toml:5:11: 'samples' of [run] is 1; expected a whole number from 2 to 10000000");
   EXPECT_THAT(diagram_message("[run]\nsamples = 2.5\n"), HasSubstr("'samples' of [run] is 2.5"));
   EXPECT_THAT(diagram_message("[run]\nsamples = inf\n"), HasSubstr("'samples' of [run] is inf"));
-  EXPECT_THAT(diagram_message("[run]\nmethod = \"adam\"\n"), HasSubstr("there is no method 'adam'\n  remedy: did you mean 'adams'?"));
+  EXPECT_THAT(diagram_message("[run]\nmethod = \"adam\"\n"),
+              HasSubstr("there is no method 'adam'\n  remedy: did you mean 'adams'?"));
   EXPECT_THAT(diagram_message("[run]\nmax_steps = 0\n"), HasSubstr("'max_steps' of [run] is 0"));
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Every diagram that is shipped runs and gives what its [expect] says; every mechanism can be patched and agrees.
+// Every diagram that is shipped runs and gives what its [expect] says; every mechanism can be patched and
+// agrees.
 #include <algorithm>
 #include <filesystem>
 
@@ -14,7 +15,8 @@ namespace {
 
 std::vector<std::string> files_in(const std::string& folder) {
   std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/" + folder)) {
+  for (const auto& entry :
+       std::filesystem::directory_iterator(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/" + folder)) {
     names.push_back(folder + "/" + entry.path().filename().string());
   }
   std::sort(names.begin(), names.end());
@@ -29,7 +31,9 @@ std::string test_name(const testing::TestParamInfo<std::string>& tested) {
   return name;
 }
 
-std::string path_of(const std::string& name) { return std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/" + name; }
+std::string path_of(const std::string& name) {
+  return std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/" + name;
+}
 
 class Lesson : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Diagrams, Lesson, testing::ValuesIn(files_in("lessons")), test_name);

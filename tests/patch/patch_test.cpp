@@ -44,7 +44,9 @@ Mechanism shipped(const std::string& name) {
 /// A patched diagram run over its turn, and the program it became.
 struct PatchedRun {
   explicit PatchedRun(const Diagram& diagram)
-      : flat(flatten(diagram, library)), program(assemble(flat)), result(run(program, flat, options_of(diagram.run))) {}
+      : flat(flatten(diagram, library)),
+        program(assemble(flat)),
+        result(run(program, flat, options_of(diagram.run))) {}
   BlockLibrary library = BlockLibrary::shipped();
   FlatDiagram flat;
   Program program;
@@ -60,7 +62,8 @@ double largest_error(const Mechanism& mechanism, const Run& analog) {
   double largest = 0;
   for (std::size_t p = 0; p < mechanism.points.size(); ++p) {
     if (mechanism.points[p].fixed) continue;
-    const auto x = table.find(mechanism.points[p].name + ".x"), y = table.find(mechanism.points[p].name + ".y");
+    const auto x = table.find(mechanism.points[p].name + ".x"),
+               y = table.find(mechanism.points[p].name + ".y");
     EXPECT_TRUE(x && y) << mechanism.points[p].name;
     for (std::size_t r = 0; r < table.rows(); ++r) {
       const Eigen::Vector2d& place = exact.configurations[r].points[p].position;
@@ -100,7 +103,8 @@ TEST_P(ShippedMechanism, WithAlgebraicAmplifiersErrsByItsGainOnly) {
   options.bandwidth = std::numeric_limits<double>::infinity();
   const PatchedRun patched(patch_triangles(mechanism, options));
   EXPECT_EQ(patched.program.n_states(), 2U);  // the crank's
-  // Static error of a dyad is of the order of reach/(input_gain·μ); three dyads in a row magnify it (method.md).
+  // Static error of a dyad is of the order of reach/(input_gain·μ); three dyads in a row magnify it
+  // (method.md).
   EXPECT_LT(largest_error(mechanism, patched.result), 20 / (10 * 1e4) * mechanism.largest_length());
 }
 
@@ -118,14 +122,15 @@ TEST(Patch, HasACommentedSectionForTheCrankAndEachDyad) {
   EXPECT_THAT(text, HasSubstr("\"C.x\" = { signal = \"C.x\", scale = 4, unit = \"m\" }"));
 }
 
-// The same four-bar, described otherwise: turning backwards, from another angle, the crank's pivot in the middle of its
-// points, the other assembly mode.
+// The same four-bar, described otherwise: turning backwards, from another angle, the crank's pivot in the
+// middle of its points, the other assembly mode.
 TEST(Patch, TracksEveryWayToDescribeACrank) {
   const std::string backwards = replaced(kFourBar, "speed = 1", "speed = \"-30 rpm\", start = \"50 deg\"");
   const std::string mirrored = replaced(backwards, "C = [3, 2.8]", "C = [3, -2.8]");
-  const std::string lever = replaced(replaced(kFourBar, R"(AB = { points = ["A", "B"], length = 1 })",
-                                              R"(AB = { points = ["E", "B"], length = 1.5, marks = { A = [0.5, 0.2] } })"),
-                                     "turns = \"AB\"", "turns = \"AB\", start = \"10 deg\"");
+  const std::string lever =
+      replaced(replaced(kFourBar, R"(AB = { points = ["A", "B"], length = 1 })",
+                        R"(AB = { points = ["E", "B"], length = 1.5, marks = { A = [0.5, 0.2] } })"),
+               "turns = \"AB\"", "turns = \"AB\", start = \"10 deg\"");
   for (const std::string& text : {backwards, mirrored, lever}) {
     const Mechanism mechanism = parse_mechanism(text, "crank.toml");
     // Error 1.7e-7 of the largest link is measured for the plain four-bar at gain 1e6.
@@ -144,7 +149,8 @@ TEST(Patch, GivesClashingNamesANumber) {
 }
 
 TEST(Patch, RefusesATriangleThatOpensOnTheWay) {
-  const Mechanism mechanism = parse_mechanism(replaced(kFourBar, "length = 1 ", "length = 2.7 "), "opens.toml");
+  const Mechanism mechanism =
+      parse_mechanism(replaced(kFourBar, "length = 1 ", "length = 2.7 "), "opens.toml");
   try {
     patch_triangles(mechanism);
     FAIL();
@@ -156,8 +162,9 @@ TEST(Patch, RefusesATriangleThatOpensOnTheWay) {
 
 // Crank 1, frame 4, coupler 2, rocker 3: at angle π the distance B–D is 5 = 2 + 3, the triangle is flat.
 TEST(Patch, RefusesADeadCentre) {
-  const Mechanism mechanism =
-      parse_mechanism(replaced(replaced(kFourBar, "length = 3.5", "length = 2"), "C = [3, 2.8]", "C = [2.5, 2]"), "flat.toml");
+  const Mechanism mechanism = parse_mechanism(
+      replaced(replaced(kFourBar, "length = 3.5", "length = 2"), "C = [3, 2.8]", "C = [2.5, 2]"),
+      "flat.toml");
   try {
     patch_triangles(mechanism);
     FAIL();
@@ -171,8 +178,8 @@ TEST(Patch, ChoosesABandwidthAHundredTimesTheFastestDrive) {
   const auto of_speed = [](const std::string& speed) {
     return default_bandwidth(parse_mechanism(replaced(kFourBar, "speed = 1", "speed = " + speed), "m.toml"));
   };
-  EXPECT_EQ(of_speed("1"), 20);          // 100/(2π) = 15.9
-  EXPECT_EQ(of_speed("-100"), 2000);     // 1591
+  EXPECT_EQ(of_speed("1"), 20);            // 100/(2π) = 15.9
+  EXPECT_EQ(of_speed("-100"), 2000);       // 1591
   EXPECT_EQ(of_speed("\"60 rpm\""), 100);  // 100 exactly
 }
 

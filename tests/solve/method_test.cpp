@@ -35,13 +35,15 @@ TEST(ChooseMethod, TakesAdamsForAnOscillator) {
 }
 
 TEST(ChooseMethod, TakesBdfForServoLoops) {
-  const MethodChoice choice = choice_for(Compiled(ring(1) + "q = { type = \"servo-amplifier\", in = [\"q\", \"-x\"] }\n"));
+  const MethodChoice choice =
+      choice_for(Compiled(ring(1) + "q = { type = \"servo-amplifier\", in = [\"q\", \"-x\"] }\n"));
   EXPECT_EQ(choice.method, IntegrationMethod::bdf);
   EXPECT_EQ(choice.reason, "1 servo loop is faster than what it follows");
 }
 
 TEST(ChooseMethod, TakesBdfForADecayThatIsFastBesideTheRest) {
-  const MethodChoice choice = choice_for(Compiled(ring(1) + "d = { type = \"integrator\", in = [\"-d\"], initial = 1, rate = 1000 }\n"));
+  const MethodChoice choice = choice_for(
+      Compiled(ring(1) + "d = { type = \"integrator\", in = [\"-d\"], initial = 1, rate = 1000 }\n"));
   EXPECT_EQ(choice.method, IntegrationMethod::bdf);
   EXPECT_THAT(choice.reason, HasSubstr("decays from 1 to 1e+03 1/s at the start"));
 }
@@ -57,8 +59,8 @@ TEST(ChooseMethod, ObeysTheDiagram) {
   EXPECT_EQ(choice_for(made, IntegrationMethod::adams).reason, "as the diagram asks");
 }
 
-// The amplitude is a conserved quantity of x″ = −x. What a method leaves of it after 1000 turns is that method's own
-// error: BDF damps by 5·10⁻⁴ at a tolerance of 10⁻⁸, Adams must keep it to 10⁻⁵.
+// The amplitude is a conserved quantity of x″ = −x. What a method leaves of it after 1000 turns is that
+// method's own error: BDF damps by 5·10⁻⁴ at a tolerance of 10⁻⁸, Adams must keep it to 10⁻⁵.
 TEST(Circle, KeepsItsAmplitudeByMethod) {
   const Compiled made(ring(1));
   const auto amplitude = [&](IntegrationMethod method) {

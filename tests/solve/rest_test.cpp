@@ -199,8 +199,8 @@ q = { type = "servo-amplifier", in = ["q", "-s"] }
   EXPECT_EQ(failure->kind, SolveError::Kind::singular_loop);
 }
 
-// Each divider has a negative denominator, so its loop runs away from the quotient. The determinant of two of them
-// has the sign of a stable pair; the eigenvalues tell.
+// Each divider has a negative denominator, so its loop runs away from the quotient. The determinant of two of
+// them has the sign of a stable pair; the eigenvalues tell.
 TEST(Rest, RefusesAnUnstablePairThatBalances) {
   const auto failure = failure_of(Compiled(R"toml(x = { type = "constant", value = -0.5 }
 z = { type = "constant", value = 0.001 }

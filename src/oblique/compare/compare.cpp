@@ -26,18 +26,21 @@ std::vector<PointColumns> point_columns(const Mechanism& mechanism, const Trajec
   for (std::size_t p = 0; p < mechanism.points.size(); ++p) {
     const Point& point = mechanism.points[p];
     if (point.fixed) continue;
-    columns.push_back({p, trajectory.find(point.name + ".x").value(), trajectory.find(point.name + ".y").value()});
+    columns.push_back(
+        {p, trajectory.find(point.name + ".x").value(), trajectory.find(point.name + ".y").value()});
   }
   return columns;
 }
 
-void measure_errors(const Mechanism& mechanism, const Trajectory& analog, const Motion& exact, GainRun& result) {
+void measure_errors(const Mechanism& mechanism, const Trajectory& analog, const Motion& exact,
+                    GainRun& result) {
   double sum = 0;
   std::size_t count = 0;
   for (const PointColumns& columns : point_columns(mechanism, analog)) {
     for (std::size_t row = 0; row < analog.rows(); ++row, ++count) {
       const Eigen::Vector2d& place = exact.configurations[row].points[columns.point].position;
-      const double error = std::hypot(analog.at(row, columns.x) - place.x(), analog.at(row, columns.y) - place.y());
+      const double error =
+          std::hypot(analog.at(row, columns.x) - place.x(), analog.at(row, columns.y) - place.y());
       sum += error * error;
       if (error <= result.max_error) continue;
       result.max_error = error;
@@ -48,8 +51,8 @@ void measure_errors(const Mechanism& mechanism, const Trajectory& analog, const 
   result.rms_error = std::sqrt(sum / static_cast<double>(std::max<std::size_t>(count, 1)));
 }
 
-GainRun run_with_gain(const Mechanism& mechanism, const BlockLibrary& library, const Motion& exact, double gain,
-                      const std::function<void(double)>& progress) {
+GainRun run_with_gain(const Mechanism& mechanism, const BlockLibrary& library, const Motion& exact,
+                      double gain, const std::function<void(double)>& progress) {
   PatchOptions patch_options;
   patch_options.gain = gain;
   patch_options.samples = static_cast<int>(exact.times.size());
@@ -65,7 +68,8 @@ GainRun run_with_gain(const Mechanism& mechanism, const BlockLibrary& library, c
   RunOptions options = options_of(diagram.run);
   options.progress = progress;
   options.on_sample = [&](double t, std::span<const double> states) {
-    if (row++ % kRowsPerStabilityCheck == 0) checkpoints.emplace_back(t, std::vector(states.begin(), states.end()));
+    if (row++ % kRowsPerStabilityCheck == 0)
+      checkpoints.emplace_back(t, std::vector(states.begin(), states.end()));
   };
   const Run analog = run(program, flat, options);
   result.steps = analog.statistics.steps;
@@ -112,7 +116,7 @@ Comparison compare(const Mechanism& mechanism, const BlockLibrary& library, cons
   comparison.bandwidth = default_bandwidth(mechanism);
   const Motion exact = solve_motion(mechanism, options.positions);
 
-  const double total = static_cast<double>(options.gains.size() + 1);
+  const auto total = static_cast<double>(options.gains.size() + 1);
   double done = 0;
   const auto progress = [&](double fraction) {
     if (options.progress) options.progress((done + fraction) / total);

@@ -35,8 +35,8 @@ struct GainRun {
   long steps = 0;
   double seconds = 0;  ///< of the run, wall clock
   std::vector<Overload> overloads;
-  bool stable = true;        ///< every servo loop would return to rest, at every tenth row
-  double slowest_pole = 0;   ///< largest real part of the servo loops' eigenvalues over these rows [1/s]
+  bool stable = true;       ///< every servo loop would return to rest, at every tenth row
+  double slowest_pole = 0;  ///< largest real part of the servo loops' eigenvalues over these rows [1/s]
 };
 
 struct Comparison {
@@ -46,15 +46,18 @@ struct Comparison {
   double bandwidth = 0;   ///< of the amplifiers [Hz]
   double floor = 0;       ///< largest error with ideal amplifiers: what tolerance alone leaves [length unit]
   std::vector<GainRun> runs;
-  std::optional<double> order;  ///< slope of log error over log gain; none with fewer than two runs above the floor
+  std::optional<double>
+      order;  ///< slope of log error over log gain; none with fewer than two runs above the floor
 };
 
-/// A signal may pass 1 machine unit by this much before it counts as an overload: cosines that stand at 1 overshoot by
-/// the tolerance of the run.
+/// A signal may pass 1 machine unit by this much before it counts as an overload: cosines that stand at 1
+/// overshoot by the tolerance of the run.
 inline constexpr double kOverloadMargin = 1e-6;
 
-/// Patches a mechanism with each gain, runs the diagrams over one turn, and measures them against the exact motion.
-/// The order is fitted where the error is at least ten times the floor. Throws as `patch_triangles` and `run`.
-Comparison compare(const Mechanism& mechanism, const BlockLibrary& library, const CompareOptions& options = {});
+/// Patches a mechanism with each gain, runs the diagrams over one turn, and measures them against the exact
+/// motion. The order is fitted where the error is at least ten times the floor. Throws as `patch_triangles`
+/// and `run`.
+Comparison compare(const Mechanism& mechanism, const BlockLibrary& library,
+                   const CompareOptions& options = {});
 
 }  // namespace oblique

@@ -36,8 +36,8 @@ std::string_view method_name(IntegrationMethod method);
 
 /// How a diagram is run unless the request says otherwise.
 struct RunSettings {
-  double until = 1;             ///< end of the run [s]
-  double tolerance = 1e-8;      ///< of the solver, relative
+  double until = 1;         ///< end of the run [s]
+  double tolerance = 1e-8;  ///< of the solver, relative
   IntegrationMethod method = IntegrationMethod::automatic;
   int samples = 1001;           ///< rows of the trajectory, both ends included
   long max_steps = 10'000'000;  ///< of the solver, over the whole run

@@ -16,7 +16,10 @@ constexpr std::uint32_t kUnvisited = std::numeric_limits<std::uint32_t>::max();
 class ComponentFinder {
  public:
   explicit ComponentFinder(const Dependencies& graph)
-      : graph_(&graph), scope_(graph.size(), 0), index_(graph.size(), kUnvisited), low_(graph.size(), 0),
+      : graph_(&graph),
+        scope_(graph.size(), 0),
+        index_(graph.size(), kUnvisited),
+        low_(graph.size(), 0),
         on_stack_(graph.size(), false) {}
 
   /// The strongly connected components among `members`, each after those it needs.
@@ -117,7 +120,8 @@ std::uint32_t choose_tear(const Dependencies& graph, const Component& cycle) {
 }
 
 /// Adds the members of a loop to `step`: in `inner` where what they need is known or torn, else in `tears`.
-void break_cycles(const Dependencies& graph, ComponentFinder& finder, const Component& members, OrderStep& step) {
+void break_cycles(const Dependencies& graph, ComponentFinder& finder, const Component& members,
+                  OrderStep& step) {
   std::vector<Component> waiting;  // the next one last
   const auto wait = [&](std::vector<Component> components) {
     waiting.insert(waiting.end(), std::make_move_iterator(components.rbegin()),

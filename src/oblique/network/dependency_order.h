@@ -16,16 +16,17 @@ struct Dependencies {
   void add_row(const std::vector<std::uint32_t>& row);
 };
 
-/// A step of the order in which quantities are computed: one explicit quantity (no tears), or an algebraic loop whose
-/// `tears` are solved for together, with the explicit quantities between them in `inner`, in order.
+/// A step of the order in which quantities are computed: one explicit quantity (no tears), or an algebraic
+/// loop whose `tears` are solved for together, with the explicit quantities between them in `inner`, in
+/// order.
 struct OrderStep {
   std::vector<std::uint32_t> tears;
   std::vector<std::uint32_t> inner;
 };
 
-/// Orders quantities so that each comes after what it needs (Tarjan's strongly connected components). Within a cycle,
-/// every quantity marked `implicit` is a tear, and explicit ones become tears until no cycle is left: each time the
-/// one with the largest product of incoming and outgoing wires.
+/// Orders quantities so that each comes after what it needs (Tarjan's strongly connected components). Within
+/// a cycle, every quantity marked `implicit` is a tear, and explicit ones become tears until no cycle is
+/// left: each time the one with the largest product of incoming and outgoing wires.
 std::vector<OrderStep> dependency_order(const Dependencies& dependencies, const std::vector<bool>& implicit);
 
 }  // namespace oblique

@@ -14,30 +14,49 @@ namespace {
 /// The graph's operation for a smooth function.
 std::optional<Op> smooth_operation(Function function) {
   switch (function) {
-    case Function::sin: return Op::sin;
-    case Function::cos: return Op::cos;
-    case Function::tan: return Op::tan;
-    case Function::asin: return Op::asin;
-    case Function::acos: return Op::acos;
-    case Function::atan: return Op::atan;
-    case Function::atan2: return Op::atan2;
-    case Function::exp: return Op::exp;
-    case Function::log: return Op::log;
-    case Function::sqrt: return Op::sqrt;
-    case Function::hypot: return Op::hypot;
-    default: return std::nullopt;
+    case Function::sin:
+      return Op::sin;
+    case Function::cos:
+      return Op::cos;
+    case Function::tan:
+      return Op::tan;
+    case Function::asin:
+      return Op::asin;
+    case Function::acos:
+      return Op::acos;
+    case Function::atan:
+      return Op::atan;
+    case Function::atan2:
+      return Op::atan2;
+    case Function::exp:
+      return Op::exp;
+    case Function::log:
+      return Op::log;
+    case Function::sqrt:
+      return Op::sqrt;
+    case Function::hypot:
+      return Op::hypot;
+    default:
+      return std::nullopt;
   }
 }
 
 std::optional<Op> smooth_operation(Expression::Kind kind) {
   switch (kind) {
-    case Expression::Kind::add: return Op::add;
-    case Expression::Kind::subtract: return Op::subtract;
-    case Expression::Kind::multiply: return Op::multiply;
-    case Expression::Kind::divide: return Op::divide;
-    case Expression::Kind::power: return Op::power;
-    case Expression::Kind::negate: return Op::negate;
-    default: return std::nullopt;
+    case Expression::Kind::add:
+      return Op::add;
+    case Expression::Kind::subtract:
+      return Op::subtract;
+    case Expression::Kind::multiply:
+      return Op::multiply;
+    case Expression::Kind::divide:
+      return Op::divide;
+    case Expression::Kind::power:
+      return Op::power;
+    case Expression::Kind::negate:
+      return Op::negate;
+    default:
+      return std::nullopt;
   }
 }
 
@@ -75,9 +94,8 @@ class Builder {
     Expression folded = e;
     for (std::size_t i = 0; i < operands.size(); ++i) {
       if (!graph_.is_constant(operands[i])) {
-        refuse(e, e.kind == Expression::Kind::call
-                      ? functions()[static_cast<std::size_t>(e.function)].name
-                      : std::string_view("a condition"));
+        refuse(e, e.kind == Expression::Kind::call ? functions()[static_cast<std::size_t>(e.function)].name
+                                                   : std::string_view("a condition"));
       }
       folded.operands[i] = Expression{};
       folded.operands[i].number = graph_[operands[i]].value;

@@ -9,9 +9,9 @@
 
 namespace oblique {
 
-/// Adds an expression to a graph; `node_of_name` gives the nodes of its names (never asked for `pi` and `inf`).
-/// Conditions and switching functions (min, sign, …) must have constant arguments and vanish here: of a varying
-/// signal they would be a kink inside a step. Throws ExpressionError where one has not.
+/// Adds an expression to a graph; `node_of_name` gives the nodes of its names (never asked for `pi` and
+/// `inf`). Conditions and switching functions (min, sign, …) must have constant arguments and vanish here: of
+/// a varying signal they would be a kink inside a step. Throws ExpressionError where one has not.
 NodeId build_expression(ExpressionGraph& graph, const Expression& expression,
                         const std::function<NodeId(std::string_view)>& node_of_name);
 

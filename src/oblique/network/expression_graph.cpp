@@ -12,45 +12,67 @@ namespace oblique {
 int operand_count(Op op) {
   switch (op) {
     case Op::constant:
-    case Op::variable: return 0;
+    case Op::variable:
+      return 0;
     case Op::add:
     case Op::subtract:
     case Op::multiply:
     case Op::divide:
     case Op::power:
     case Op::atan2:
-    case Op::hypot: return 2;
-    default: return 1;
+    case Op::hypot:
+      return 2;
+    default:
+      return 1;
   }
 }
 
 double evaluate(Op op, double a, double b) {
   switch (op) {
-    case Op::add: return a + b;
-    case Op::subtract: return a - b;
-    case Op::multiply: return a * b;
-    case Op::divide: return a / b;
-    case Op::power: return std::pow(a, b);
-    case Op::negate: return -a;
-    case Op::sin: return std::sin(a);
-    case Op::cos: return std::cos(a);
-    case Op::tan: return std::tan(a);
-    case Op::asin: return std::asin(a);
-    case Op::acos: return std::acos(a);
-    case Op::atan: return std::atan(a);
-    case Op::atan2: return std::atan2(a, b);
-    case Op::exp: return std::exp(a);
-    case Op::log: return std::log(a);
-    case Op::sqrt: return std::sqrt(a);
-    case Op::hypot: return std::hypot(a, b);
+    case Op::add:
+      return a + b;
+    case Op::subtract:
+      return a - b;
+    case Op::multiply:
+      return a * b;
+    case Op::divide:
+      return a / b;
+    case Op::power:
+      return std::pow(a, b);
+    case Op::negate:
+      return -a;
+    case Op::sin:
+      return std::sin(a);
+    case Op::cos:
+      return std::cos(a);
+    case Op::tan:
+      return std::tan(a);
+    case Op::asin:
+      return std::asin(a);
+    case Op::acos:
+      return std::acos(a);
+    case Op::atan:
+      return std::atan(a);
+    case Op::atan2:
+      return std::atan2(a, b);
+    case Op::exp:
+      return std::exp(a);
+    case Op::log:
+      return std::log(a);
+    case Op::sqrt:
+      return std::sqrt(a);
+    case Op::hypot:
+      return std::hypot(a, b);
     case Op::constant:
-    case Op::variable: break;
+    case Op::variable:
+      break;
   }
   return std::numeric_limits<double>::quiet_NaN();
 }
 
 std::size_t ExpressionGraph::Hash::operator()(const Key& key) const {
-  std::uint64_t h = (static_cast<std::uint64_t>(key.a) << 32) ^ key.b ^ (static_cast<std::uint64_t>(key.op) << 58);
+  std::uint64_t h =
+      (static_cast<std::uint64_t>(key.a) << 32) ^ key.b ^ (static_cast<std::uint64_t>(key.op) << 58);
   h ^= key.bits * 0x9E3779B97F4A7C15ULL;
   h = (h ^ (h >> 31)) * 0xBF58476D1CE4E5B9ULL;
   return static_cast<std::size_t>(h ^ (h >> 29));
@@ -117,7 +139,8 @@ NodeId ExpressionGraph::simplified(Op op, NodeId a, NodeId b, bool& done) {
       if (nodes_[a].op == Op::negate) return nodes_[a].a;
       if (nodes_[a].op == Op::subtract) return apply(Op::subtract, nodes_[a].b, nodes_[a].a);
       break;
-    default: break;
+    default:
+      break;
   }
   done = false;
   return 0;
@@ -147,9 +170,12 @@ NodeId ExpressionGraph::partial(NodeId id, int operand) {
   const NodeId a = node.a, b = node.b;
   const bool first = operand == 0;
   switch (node.op) {
-    case Op::add: return constant(1);
-    case Op::subtract: return constant(first ? 1 : -1);
-    case Op::multiply: return first ? b : a;
+    case Op::add:
+      return constant(1);
+    case Op::subtract:
+      return constant(first ? 1 : -1);
+    case Op::multiply:
+      return first ? b : a;
     case Op::divide: {
       const NodeId inverse = apply(Op::divide, constant(1), b);
       return first ? inverse : apply(Op::negate, apply(Op::multiply, id, inverse));
@@ -158,10 +184,14 @@ NodeId ExpressionGraph::partial(NodeId id, int operand) {
       if (first) return apply(Op::multiply, b, apply(Op::power, a, apply(Op::subtract, b, constant(1))));
       return apply(Op::multiply, id, apply(Op::log, a));
     }
-    case Op::negate: return constant(-1);
-    case Op::sin: return apply(Op::cos, a);
-    case Op::cos: return apply(Op::negate, apply(Op::sin, a));
-    case Op::tan: return apply(Op::add, constant(1), apply(Op::multiply, id, id));
+    case Op::negate:
+      return constant(-1);
+    case Op::sin:
+      return apply(Op::cos, a);
+    case Op::cos:
+      return apply(Op::negate, apply(Op::sin, a));
+    case Op::tan:
+      return apply(Op::add, constant(1), apply(Op::multiply, id, id));
     case Op::asin:
     case Op::acos: {
       const NodeId root = apply(Op::sqrt, apply(Op::subtract, constant(1), apply(Op::multiply, a, a)));
@@ -173,18 +203,24 @@ NodeId ExpressionGraph::partial(NodeId id, int operand) {
       const NodeId square = apply(Op::add, apply(Op::multiply, a, a), apply(Op::multiply, b, b));
       return first ? apply(Op::divide, b, square) : apply(Op::negate, apply(Op::divide, a, square));
     }
-    case Op::exp: return id;
-    case Op::log: return apply(Op::divide, constant(1), a);
-    case Op::sqrt: return apply(Op::divide, constant(0.5), id);
-    case Op::hypot: return apply(Op::divide, first ? a : b, id);
+    case Op::exp:
+      return id;
+    case Op::log:
+      return apply(Op::divide, constant(1), a);
+    case Op::sqrt:
+      return apply(Op::divide, constant(0.5), id);
+    case Op::hypot:
+      return apply(Op::divide, first ? a : b, id);
     case Op::constant:
-    case Op::variable: break;
+    case Op::variable:
+      break;
   }
   return constant(0);
 }
 
 std::vector<std::pair<std::uint32_t, NodeId>> ExpressionGraph::gradient(NodeId root) {
-  // Operands have smaller indices than their users, so a descending walk meets every user before its operands.
+  // Operands have smaller indices than their users, so a descending walk meets every user before its
+  // operands.
   std::map<NodeId, NodeId, std::greater<>> adjoints{{root, constant(1)}};
   std::vector<std::pair<std::uint32_t, NodeId>> partials;
   while (!adjoints.empty()) {

@@ -12,9 +12,25 @@ using NodeId = std::uint32_t;
 
 /// What a node computes from its operands.
 enum class Op : std::uint8_t {
-  constant, variable,
-  add, subtract, multiply, divide, power, negate,
-  sin, cos, tan, asin, acos, atan, atan2, exp, log, sqrt, hypot,
+  constant,
+  variable,
+  add,
+  subtract,
+  multiply,
+  divide,
+  power,
+  negate,
+  sin,
+  cos,
+  tan,
+  asin,
+  acos,
+  atan,
+  atan2,
+  exp,
+  log,
+  sqrt,
+  hypot,
 };
 
 /// Number of operands of an operation: 0, 1 or 2.
@@ -29,8 +45,8 @@ struct Node {
   std::uint32_t variable = 0;  ///< number of a variable
 };
 
-/// Expressions as a directed acyclic graph in which equal sub-expressions are one node. Constants are folded and
-/// neutral operands dropped (x+0, x·1, x·0, x/1, x^1, x^2 = x·x, −−x) as the nodes are made.
+/// Expressions as a directed acyclic graph in which equal sub-expressions are one node. Constants are folded
+/// and neutral operands dropped (x+0, x·1, x·0, x/1, x^1, x^2 = x·x, −−x) as the nodes are made.
 class ExpressionGraph {
  public:
   NodeId constant(double value);
@@ -45,8 +61,9 @@ class ExpressionGraph {
   bool is_constant(NodeId id) const { return nodes_[id].op == Op::constant; }
   bool is_constant(NodeId id, double value) const { return is_constant(id) && nodes_[id].value == value; }
 
-  /// Partial derivatives of `root` with respect to every variable it depends on, by variable number, zeros left out.
-  /// Reverse accumulation: the cost is proportional to the sub-graph below `root`. Adds nodes to the graph.
+  /// Partial derivatives of `root` with respect to every variable it depends on, by variable number, zeros
+  /// left out. Reverse accumulation: the cost is proportional to the sub-graph below `root`. Adds nodes to
+  /// the graph.
   std::vector<std::pair<std::uint32_t, NodeId>> gradient(NodeId root);
 
  private:

@@ -14,15 +14,23 @@ constexpr double kSmallestFraction = 1e-9;  ///< of a Newton step, below which t
 
 /// Size of an unknown for relative tests; the floor keeps one that passes zero from demanding digits that its
 /// equation cannot have.
-double magnitude(double z) { return std::abs(z) + 1e-9; }
+double magnitude(double z) {
+  return std::abs(z) + 1e-9;
+}
 
-Eigen::Index index(std::size_t i) { return static_cast<Eigen::Index>(i); }
+Eigen::Index index(std::size_t i) {
+  return static_cast<Eigen::Index>(i);
+}
 
 }  // namespace
 
 LoopWorkspace::LoopWorkspace(std::size_t size)
-    : matrix_(index(size), index(size)), scale_(index(size)), step_(index(size), 1), start_(index(size)),
-      permuted_(index(size)), lu_(index(size)) {}
+    : matrix_(index(size), index(size)),
+      scale_(index(size)),
+      step_(index(size), 1),
+      start_(index(size)),
+      permuted_(index(size)),
+      lu_(index(size)) {}
 
 bool LoopWorkspace::factor(const LoopCode& loop, const double* slots) {
   scale_ = Eigen::Map<const Eigen::VectorXd>(loop.natural_scale.data(), index(loop.size()));
@@ -79,7 +87,8 @@ double LoopWorkspace::move(const LoopCode& loop, double* slots, double fraction)
   return change;
 }
 
-LoopFailure LoopWorkspace::solve_loop(const LoopCode& loop, std::span<const Instruction> tape, double* slots) {
+LoopFailure LoopWorkspace::solve_loop(const LoopCode& loop, std::span<const Instruction> tape,
+                                      double* slots) {
   const auto body = tape.subspan(loop.body.begin, loop.body.end - loop.body.begin);
   if (loop.linear) {  // its one step rounds as the point does that it starts from
     for (const std::uint32_t slot : loop.unknown_slots) slots[slot] = 0;

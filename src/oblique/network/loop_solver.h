@@ -41,8 +41,9 @@ class LoopWorkspace {
   /// Overwrites `right_sides` (a column for each) with the solutions of dg/dz · X = right_sides.
   void solve(Eigen::Ref<Eigen::MatrixXd> right_sides);
 
-  /// Solves the loop by Newton's method, damped where the residual would grow, from what the unknowns' slots hold (one LU
-  /// from zero where it is linear); they then hold the solution, to rounding, and `body` has been run on it.
+  /// Solves the loop by Newton's method, damped where the residual would grow, from what the unknowns' slots
+  /// hold (one LU from zero where it is linear); they then hold the solution, to rounding, and `body` has
+  /// been run on it.
   LoopFailure solve_loop(const LoopCode& loop, std::span<const Instruction> tape, double* slots);
 
  private:
@@ -51,8 +52,8 @@ class LoopWorkspace {
 
   Eigen::MatrixXd matrix_;  ///< rows scaled by 1/scale_
   Eigen::VectorXd scale_;
-  Eigen::MatrixXd step_;      ///< one column
-  Eigen::VectorXd start_;     ///< iterate that the step starts from
+  Eigen::MatrixXd step_;   ///< one column
+  Eigen::VectorXd start_;  ///< iterate that the step starts from
   Eigen::VectorXd permuted_;
   Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
 };

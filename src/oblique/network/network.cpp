@@ -42,7 +42,8 @@ class Assembler {
   }
 
  private:
-  // --- names -------------------------------------------------------------------------------------------------
+  // --- names
+  // -------------------------------------------------------------------------------------------------
 
   const FlatBlock& block_of(const Quantity& quantity) const { return diagram_.blocks[quantity.block]; }
 
@@ -64,13 +65,15 @@ class Assembler {
     return quantity_of(signal.block, diagram_.blocks[signal.block].definition->outputs[signal.output].name);
   }
 
-  // --- quantities, states, dependencies ----------------------------------------------------------------------
+  // --- quantities, states, dependencies
+  // ----------------------------------------------------------------------
 
   void collect_quantities() {
     first_quantity_.reserve(diagram_.blocks.size() + 1);
     for (std::size_t b = 0; b < diagram_.blocks.size(); ++b) {
       first_quantity_.push_back(static_cast<std::uint32_t>(quantities_.size()));
-      for (const Equation& equation : diagram_.blocks[b].behaviour->equations) quantities_.push_back({b, &equation});
+      for (const Equation& equation : diagram_.blocks[b].behaviour->equations)
+        quantities_.push_back({b, &equation});
     }
     first_quantity_.push_back(static_cast<std::uint32_t>(quantities_.size()));
   }
@@ -93,7 +96,8 @@ class Assembler {
 
   double start_value(const Quantity& quantity, const StartRule& rule) {
     const FlatBlock& block = block_of(quantity);
-    const double value = evaluate(rule.value, [&](std::string_view name) { return constant_of(block, name); });
+    const double value =
+        evaluate(rule.value, [&](std::string_view name) { return constant_of(block, name); });
     if (!std::isfinite(value)) {
       diagnostics_.add({block.place, fmt::format("'{}' would start at {}", name_of(quantity), value),
                         "a finite start value", "give the block another 'initial'"});
@@ -107,7 +111,9 @@ class Assembler {
     return std::nullopt;
   }
 
-  bool is_algebraic(std::uint32_t q) const { return quantities_[q].equation->kind != Equation::Kind::derivative; }
+  bool is_algebraic(std::uint32_t q) const {
+    return quantities_[q].equation->kind != Equation::Kind::derivative;
+  }
 
   std::vector<bool> implicit_marks() const {
     std::vector<bool> marks(quantities_.size());
@@ -143,7 +149,8 @@ class Assembler {
     }
   }
 
-  // --- definitions, in order ---------------------------------------------------------------------------------
+  // --- definitions, in order
+  // ---------------------------------------------------------------------------------
 
   void define(const OrderStep& step) {
     if (step.tears.empty()) {
@@ -167,7 +174,8 @@ class Assembler {
       Quantity& quantity = quantities_[q];
       Unknown& unknown = network_.unknowns[quantity.variable_index];
       unknown.residual = finite(quantity, expression_of(quantity));
-      if (unknown.torn) unknown.residual = network_.graph.apply(Op::subtract, unknown.residual, quantity.node);
+      if (unknown.torn)
+        unknown.residual = network_.graph.apply(Op::subtract, unknown.residual, quantity.node);
     }
     name_members(step, loop);
   }
@@ -185,10 +193,11 @@ class Assembler {
   NodeId finite(const Quantity& quantity, NodeId node) {
     const ExpressionGraph& graph = network_.graph;
     if (graph.is_constant(node) && !std::isfinite(graph[node].value)) {
-      diagnostics_.add({block_of(quantity).place,
-                        fmt::format("'{}' is {} whatever the signals are", name_of(quantity), graph[node].value),
-                        "a finite value",
-                        fmt::format("check the parameters in '{}'", to_string(quantity.equation->expression))});
+      diagnostics_.add(
+          {block_of(quantity).place,
+           fmt::format("'{}' is {} whatever the signals are", name_of(quantity), graph[node].value),
+           "a finite value",
+           fmt::format("check the parameters in '{}'", to_string(quantity.equation->expression))});
     }
     return node;
   }
@@ -203,7 +212,8 @@ class Assembler {
     }
   }
 
-  // --- expressions -------------------------------------------------------------------------------------------
+  // --- expressions
+  // -------------------------------------------------------------------------------------------
 
   NodeId expression_of(const Quantity& quantity) {
     const Equation& equation = *quantity.equation;
@@ -244,6 +254,8 @@ class Assembler {
 
 }  // namespace
 
-Network assemble(const FlatDiagram& diagram) { return Assembler(diagram).assemble(); }
+Network assemble(const FlatDiagram& diagram) {
+  return Assembler(diagram).assemble();
+}
 
 }  // namespace oblique

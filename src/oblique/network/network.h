@@ -29,8 +29,8 @@ struct Unknown {
   std::string name;  ///< path of its signal
   double guess = 0;
   NodeId residual = 0;
-  /// The explicit output of a block cut out of an algebraic loop: its residual is (what the block gives) − (itself).
-  /// Otherwise the unknown of an implicit equation, such as an ideal servo amplifier's.
+  /// The explicit output of a block cut out of an algebraic loop: its residual is (what the block gives) −
+  /// (itself). Otherwise the unknown of an implicit equation, such as an ideal servo amplifier's.
   bool torn = false;
   Place place;
 };
@@ -50,7 +50,7 @@ struct Network {
   ExpressionGraph graph;
   std::vector<State> states;
   std::vector<Unknown> unknowns;
-  std::vector<Loop> loops;  ///< each after those it depends on
+  std::vector<Loop> loops;      ///< each after those it depends on
   std::vector<NodeId> signals;  ///< one for each output of each flat block, in their order
   std::vector<std::string> signal_names;
   std::vector<std::size_t> first_signal;  ///< of each flat block
@@ -63,8 +63,8 @@ struct Network {
   std::size_t signal_index(SignalRef signal) const { return first_signal[signal.block] + signal.output; }
 };
 
-/// Puts the equations of all blocks into one network; wires become shared sub-expressions and feedback without a
-/// state in it becomes algebraic loops. Throws NetworkError with all findings.
+/// Puts the equations of all blocks into one network; wires become shared sub-expressions and feedback
+/// without a state in it becomes algebraic loops. Throws NetworkError with all findings.
 Network assemble(const FlatDiagram& diagram);
 
 }  // namespace oblique

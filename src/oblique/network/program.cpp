@@ -7,7 +7,9 @@
 
 namespace oblique {
 
-Program::Program(Network network) { ProgramCompiler(*this, std::move(network)).compile(); }
+Program::Program(Network network) {
+  ProgramCompiler(*this, std::move(network)).compile();
+}
 
 std::vector<double> Program::start() const {
   std::vector<double> x;
@@ -28,7 +30,8 @@ bool Program::run(const std::vector<Step>& steps, Workspace& workspace) const {
     if (failure != LoopFailure::none) {
       const double slope = loop.size() == 1 && !loop.slopes.empty() ? slots[loop.slopes[0].slot] : 0;
       workspace.trouble_ = {*step.loop, failure, slope};
-      for (const std::uint32_t slot : loop.unknown_slots) slots[slot] = workspace.solved_[slot - first_unknown];
+      for (const std::uint32_t slot : loop.unknown_slots)
+        slots[slot] = workspace.solved_[slot - first_unknown];
       return false;
     }
     for (const std::uint32_t slot : loop.unknown_slots) workspace.solved_[slot - first_unknown] = slots[slot];
@@ -65,7 +68,8 @@ bool Program::differentiate_loops(Workspace& workspace) const {
       const Eigen::MatrixXd& other = workspace.dz_dx_[coupling.loop];
       for (const MatrixEntry& entry : coupling.entries) {
         for (std::size_t k = 0; k < coupling.targets.size(); ++k) {
-          dz_dx(entry.row, coupling.targets[k]) -= slots[entry.slot] * other(entry.column, static_cast<Eigen::Index>(k));
+          dz_dx(entry.row, coupling.targets[k]) -=
+              slots[entry.slot] * other(entry.column, static_cast<Eigen::Index>(k));
         }
       }
     }
@@ -81,7 +85,8 @@ bool Program::differentiate_loops(Workspace& workspace) const {
 bool Program::jacobian(double t, const double* x, double* values, Workspace& workspace) const {
   if (!load_and_run(t, x, workspace)) return false;
   double* const slots = workspace.slots_.data();
-  run_tape(std::span(tape_).subspan(jacobian_stretch_.begin, jacobian_stretch_.end - jacobian_stretch_.begin), slots);
+  run_tape(std::span(tape_).subspan(jacobian_stretch_.begin, jacobian_stretch_.end - jacobian_stretch_.begin),
+           slots);
   if (!differentiate_loops(workspace)) return false;
   std::fill(values, values + pattern_.entries(), 0.0);
   for (const DirectEntry& entry : direct_entries_) values[entry.position] += slots[entry.slot];
@@ -108,7 +113,8 @@ Workspace::Workspace(const Program& program) : program_(&program), slots_(progra
 void Workspace::reset() {
   solved_.clear();
   for (const Unknown& unknown : program_->unknowns_) solved_.push_back(unknown.guess);
-  std::copy(solved_.begin(), solved_.end(), slots_.begin() + static_cast<std::ptrdiff_t>(1 + program_->n_states()));
+  std::copy(solved_.begin(), solved_.end(),
+            slots_.begin() + static_cast<std::ptrdiff_t>(1 + program_->n_states()));
   trouble_ = {};
 }
 

@@ -12,7 +12,8 @@
 
 namespace oblique {
 
-/// Pattern of a square sparse matrix in compressed columns: rows ascending in each column, the diagonal always there.
+/// Pattern of a square sparse matrix in compressed columns: rows ascending in each column, the diagonal
+/// always there.
 struct SparsePattern {
   std::vector<std::int64_t> column_starts{0};
   std::vector<std::int64_t> rows;
@@ -23,8 +24,8 @@ struct SparsePattern {
 
 class Workspace;
 
-/// The equations of a diagram, compiled: immutable, and shared between threads as long as each has a Workspace.
-/// Nothing allocates inside `derivatives`, `jacobian` and `signals`.
+/// The equations of a diagram, compiled: immutable, and shared between threads as long as each has a
+/// Workspace. Nothing allocates inside `derivatives`, `jacobian` and `signals`.
 class Program {
  public:
   /// Compiles a network: differentiates, shares and drops expressions, lays out the tape.
@@ -42,10 +43,12 @@ class Program {
   /// Start values of the states, before servo loops are brought to rest.
   std::vector<double> start() const;
 
-  /// dx/dt at (t, x). False where an algebraic loop could not be solved; `workspace.trouble()` then says which.
+  /// dx/dt at (t, x). False where an algebraic loop could not be solved; `workspace.trouble()` then says
+  /// which.
   bool derivatives(double t, const double* x, double* dxdt, Workspace& workspace) const;
 
-  /// d(dx/dt)/dx in the order of `jacobian_pattern`, algebraic loops included: f_x − f_z g_z⁻¹ g_x. False as above.
+  /// d(dx/dt)/dx in the order of `jacobian_pattern`, algebraic loops included: f_x − f_z g_z⁻¹ g_x. False as
+  /// above.
   bool jacobian(double t, const double* x, double* values, Workspace& workspace) const;
   const SparsePattern& jacobian_pattern() const { return pattern_; }
 
@@ -65,8 +68,9 @@ class Program {
   /// A derivative of a residual or of dx/dt by an unknown of a loop: where it enters the sums over dz/dx.
   struct Coupling {
     std::uint32_t loop;
-    std::vector<MatrixEntry> entries;    ///< row of the target, unknown within `loop`, slot
-    std::vector<std::uint32_t> targets;  ///< for a residual: column of the target for each column of dz/dx of `loop`
+    std::vector<MatrixEntry> entries;  ///< row of the target, unknown within `loop`, slot
+    std::vector<std::uint32_t>
+        targets;  ///< for a residual: column of the target for each column of dz/dx of `loop`
   };
 
   /// dz/dx of a loop: on which states it depends and what that is made of.
@@ -106,14 +110,14 @@ class Program {
 
   SparsePattern pattern_;
   std::vector<DirectEntry> direct_entries_;
-  std::vector<Sensitivity> sensitivities_;       ///< of each loop; empty for those no derivative needs
-  std::vector<std::uint32_t> sensitivity_order_; ///< loops that derivatives need
+  std::vector<Sensitivity> sensitivities_;        ///< of each loop; empty for those no derivative needs
+  std::vector<std::uint32_t> sensitivity_order_;  ///< loops that derivatives need
   std::vector<RowCoupling> row_couplings_;
   std::vector<std::uint32_t> row_positions_;
 };
 
-/// The scratch memory of one run of a Program. It keeps the last solution of every algebraic loop, from which the next
-/// one is sought.
+/// The scratch memory of one run of a Program. It keeps the last solution of every algebraic loop, from which
+/// the next one is sought.
 class Workspace {
  public:
   explicit Workspace(const Program& program);

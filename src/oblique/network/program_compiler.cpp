@@ -35,7 +35,8 @@ void ProgramCompiler::compile() {
 }
 
 void ProgramCompiler::differentiate() {
-  for (const State& state : network_.states) state_gradients_.push_back(network_.graph.gradient(state.derivative));
+  for (const State& state : network_.states)
+    state_gradients_.push_back(network_.graph.gradient(state.derivative));
   for (const Unknown& unknown : network_.unknowns) {
     residual_gradients_.push_back(network_.graph.gradient(unknown.residual));
   }
@@ -197,10 +198,12 @@ std::vector<NodeId> ProgramCompiler::write_loop_body(std::size_t loop, std::vect
     code.natural_scale.push_back(network_.unknowns[u].torn ? 1.0 : 0.0);
     for (const auto& [variable, node] : residual_gradients_[u]) {
       if (!is_unknown(variable) || loop_of_unknown_[unknown_of(variable)] != loop) continue;
-      code.slopes.push_back({static_cast<std::uint32_t>(i), place_in_loop_[unknown_of(variable)], writer.slot(node)});
+      code.slopes.push_back(
+          {static_cast<std::uint32_t>(i), place_in_loop_[unknown_of(variable)], writer.slot(node)});
     }
   }
-  nodes.erase(std::remove_if(nodes.begin(), nodes.end(), [&](NodeId id) { return in_body_[id]; }), nodes.end());
+  nodes.erase(std::remove_if(nodes.begin(), nodes.end(), [&](NodeId id) { return in_body_[id]; }),
+              nodes.end());
   return nodes;
 }
 

@@ -53,8 +53,8 @@ class ProgramCompiler {
   std::vector<std::uint32_t> place_in_loop_;
   std::vector<std::uint32_t> levels_;  ///< of a node: 1 + the last loop it depends on, 0 for none
   Needs for_derivatives_, for_signals_, for_jacobian_;
-  std::vector<bool> in_body_;          ///< of a node: written as part of its loop
-  std::optional<TapeWriter> writer_;   ///< made once the graph is complete
+  std::vector<bool> in_body_;         ///< of a node: written as part of its loop
+  std::optional<TapeWriter> writer_;  ///< made once the graph is complete
 };
 
 }  // namespace oblique

@@ -12,8 +12,23 @@ namespace oblique {
 /// One instruction of a tape: slots of the operands and of the result.
 struct Instruction {
   enum class Code : std::uint32_t {
-    add, subtract, multiply, divide, power, negate,
-    sin, cos, tan, asin, acos, atan, atan2, exp, log, sqrt, hypot,
+    add,
+    subtract,
+    multiply,
+    divide,
+    power,
+    negate,
+    sin,
+    cos,
+    tan,
+    asin,
+    acos,
+    atan,
+    atan2,
+    exp,
+    log,
+    sqrt,
+    hypot,
     multiply_add,       ///< a·b + c
     multiply_subtract,  ///< c − a·b
   };
@@ -38,8 +53,9 @@ class TapeWriter {
   /// `n_variables` slots are the variables, by their number.
   TapeWriter(const ExpressionGraph& graph, std::size_t n_variables, std::vector<std::uint32_t> uses);
 
-  /// Appends the instructions of `nodes` (ascending; their operands are constants, variables, among them, or written
-  /// before). A product that nobody but one sum in the same stretch reads becomes one instruction with it.
+  /// Appends the instructions of `nodes` (ascending; their operands are constants, variables, among them, or
+  /// written before). A product that nobody but one sum in the same stretch reads becomes one instruction
+  /// with it.
   TapeRange write(std::span<const NodeId> nodes);
 
   /// The slot of a node, made on first request.

@@ -19,9 +19,12 @@ constexpr int kScalingPositions = 721;
 class TrianglePatch {
  public:
   TrianglePatch(const Mechanism& mechanism, const PatchOptions& options)
-      : mechanism_(mechanism), options_(options), structure_(decompose(mechanism)),
+      : mechanism_(mechanism),
+        options_(options),
+        structure_(decompose(mechanism)),
         scaling_(find_scaling(mechanism, structure_, scaling_motion())),
-        bandwidth_(options.bandwidth.value_or(default_bandwidth(mechanism))), signals_(mechanism.points.size()) {}
+        bandwidth_(options.bandwidth.value_or(default_bandwidth(mechanism))),
+        signals_(mechanism.points.size()) {}
 
   Diagram make() {
     describe();
@@ -44,6 +47,7 @@ class TrianglePatch {
 
   Motion scaling_motion() const {
     std::vector<double> times;
+    times.reserve(kScalingPositions);
     const double turn = period(mechanism_);
     for (int k = 0; k < kScalingPositions; ++k) times.push_back(turn * k / (kScalingPositions - 1));
     return solve_motion(mechanism_, structure_, times);
@@ -54,8 +58,10 @@ class TrianglePatch {
     diagram_.title += ", patched as servo-tracked triangles";
     diagram_.source = mechanism_.source;
     diagram_.comment = fmt::format(
-        "Coordinates: 1 machine unit = {0} {1}. Each dyad's triangle has a scale of its own (`reach`), so that its longest\n"
-        "side is about 1 machine unit. Servo amplifiers: gain {2}, bandwidth {3} Hz. Run over one turn of '{4}'.",
+        "Coordinates: 1 machine unit = {0} {1}. Each dyad's triangle has a scale of its own (`reach`), so "
+        "that its longest\n"
+        "side is about 1 machine unit. Servo amplifiers: gain {2}, bandwidth {3} Hz. Run over one turn of "
+        "'{4}'.",
         scaling_.length, mechanism_.length_unit, options_.gain, bandwidth_, mechanism_.drives.front().name);
     diagram_.run.until = period(mechanism_);
     diagram_.run.tolerance = options_.tolerance;
@@ -82,11 +88,13 @@ class TrianglePatch {
   /// weight · coordinate as a term; a fixed point is a weight on the reference.
   WeightedSignal x_of(std::size_t point, double weight) const {
     const Point& p = mechanism_.points[point];
-    return p.fixed ? WeightedSignal{weight * scaled(p.position.x()), one_} : WeightedSignal{weight, signals_[point].x};
+    return p.fixed ? WeightedSignal{weight * scaled(p.position.x()), one_}
+                   : WeightedSignal{weight, signals_[point].x};
   }
   WeightedSignal y_of(std::size_t point, double weight) const {
     const Point& p = mechanism_.points[point];
-    return p.fixed ? WeightedSignal{weight * scaled(p.position.y()), one_} : WeightedSignal{weight, signals_[point].y};
+    return p.fixed ? WeightedSignal{weight * scaled(p.position.y()), one_}
+                   : WeightedSignal{weight, signals_[point].y};
   }
 
   static Entry sum_of(const Terms& terms) {
@@ -124,7 +132,9 @@ class TrianglePatch {
     }
   }
 
-  bool is_known(std::size_t point) const { return mechanism_.points[point].fixed || !signals_[point].x.empty(); }
+  bool is_known(std::size_t point) const {
+    return mechanism_.points[point].fixed || !signals_[point].x.empty();
+  }
 
   void add_dyad(const DyadGroup& dyad, const TriangleRange& range) {
     const std::string& unit = mechanism_.length_unit;
@@ -147,7 +157,8 @@ class TrianglePatch {
     add_carried_points(mechanism_.bodies[dyad.body2], dyad.q, dyad.c);
   }
 
-  /// Points of a body of which P and C are known: M − P = (a + i b)(C − P), with a + i b from the body's own frame.
+  /// Points of a body of which P and C are known: M − P = (a + i b)(C − P), with a + i b from the body's own
+  /// frame.
   void add_carried_points(const Body& body, std::size_t p, std::size_t c) {
     const auto local = [&](std::size_t point) {
       const Eigen::Vector2d& at = body.find(point)->local;
@@ -166,7 +177,8 @@ class TrianglePatch {
   void add_outputs(std::size_t point) {
     if (mechanism_.points[point].fixed) return;
     const auto add = [&](const char* axis, const std::string& signal) {
-      diagram_.outputs.push_back({name_of(point) + axis, signal, scaling_.length, mechanism_.length_unit, {}});
+      diagram_.outputs.push_back(
+          {name_of(point) + axis, signal, scaling_.length, mechanism_.length_unit, {}});
     };
     add(".x", signals_[point].x);
     add(".y", signals_[point].y);

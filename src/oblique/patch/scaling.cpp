@@ -12,14 +12,15 @@
 namespace oblique {
 namespace {
 
-[[noreturn]] void refuse(const Mechanism& mechanism, const Structure& structure, const Motion& motion, std::size_t row) {
+[[noreturn]] void refuse(const Mechanism& mechanism, const Structure& structure, const Motion& motion,
+                         std::size_t row) {
   const Configuration& configuration = motion.configurations[row];
   const std::string group = configuration.group ? group_name(structure.groups[*configuration.group]) : "";
   const bool open = configuration.status == Status::open;
   throw PatchError(Diagnostic{
       {mechanism.file, {}},
-      fmt::format("the dyad {} {} at t = {:.6g} s, so its triangle cannot be tracked over a whole turn", group,
-                  open ? "cannot be assembled" : "is at a dead centre", motion.times[row]),
+      fmt::format("the dyad {} {} at t = {:.6g} s, so its triangle cannot be tracked over a whole turn",
+                  group, open ? "cannot be assembled" : "is at a dead centre", motion.times[row]),
       open ? "links that reach each other in every position" : "a triangle that never goes flat",
       open ? "lengthen the links of the dyad, or shorten the crank; `oblique solve` shows where it opens"
            : "change a length a little: at a dead centre the servo loop of sin γ loses its gain"});
@@ -54,8 +55,10 @@ Scaling find_scaling(const Mechanism& mechanism, const Structure& structure, con
     for (std::size_t g = 0; g < structure.groups.size(); ++g) {
       const auto* const dyad = std::get_if<DyadGroup>(&structure.groups[g]);
       if (dyad == nullptr) continue;
-      const double length = (configuration.points[dyad->q].position - configuration.points[dyad->p].position).norm();
-      const double cosine = (dyad->r1 * dyad->r1 + length * length - dyad->r2 * dyad->r2) / (2 * dyad->r1 * length);
+      const double length =
+          (configuration.points[dyad->q].position - configuration.points[dyad->p].position).norm();
+      const double cosine =
+          (dyad->r1 * dyad->r1 + length * length - dyad->r2 * dyad->r2) / (2 * dyad->r1 * length);
       TriangleRange& range = scaling.triangles[g];
       range.shortest = std::min(range.shortest, length);
       range.longest = std::max(range.longest, length);

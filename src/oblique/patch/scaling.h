@@ -10,9 +10,9 @@ namespace oblique {
 
 /// What the exact motion tells about one dyad's triangle P–Q–C over the turn.
 struct TriangleRange {
-  double shortest = 0;    ///< smallest distance P–Q [length unit]
-  double longest = 0;     ///< largest [length unit]
-  double flattest = 1;    ///< smallest sin γ at P: the second loop's gain falls to this
+  double shortest = 0;  ///< smallest distance P–Q [length unit]
+  double longest = 0;   ///< largest [length unit]
+  double flattest = 1;  ///< smallest sin γ at P: the second loop's gain falls to this
 };
 
 /// The amplitude scaling of a patch, from the exact motion.
@@ -21,14 +21,15 @@ struct Scaling {
   std::vector<TriangleRange> triangles;  ///< one for each group of the structure; unused for cranks
 };
 
-/// Smallest of 1, 2, 4, 5, 8, 10 times a power of ten that is not below `value`: lengths divided by it stay short
-/// decimal numbers.
+/// Smallest of 1, 2, 4, 5, 8, 10 times a power of ten that is not below `value`: lengths divided by it stay
+/// short decimal numbers.
 double round_scale_up(double value);
 
 /// Smallest number of three significant digits that is not below `value`.
 double round_up(double value);
 
-/// Finds the scaling. Throws PatchError where a row of the motion is not `ok`: there a triangle is flat or open.
+/// Finds the scaling. Throws PatchError where a row of the motion is not `ok`: there a triangle is flat or
+/// open.
 Scaling find_scaling(const Mechanism& mechanism, const Structure& structure, const Motion& motion);
 
 }  // namespace oblique

@@ -57,7 +57,8 @@ Handle made(Handle handle) {
 
 /// Setup calls fail only for lack of memory or for arguments that this file fixes.
 void check_setup(int code) {
-  if (code != CV_SUCCESS) throw std::logic_error("CVODES refuses its setup with code " + std::to_string(code));
+  if (code != CV_SUCCESS)
+    throw std::logic_error("CVODES refuses its setup with code " + std::to_string(code));
 }
 
 bool all_finite(const double* values, std::size_t size) {
@@ -83,8 +84,9 @@ struct CvodesSolver::Handles {
   Owned<SUNLinearSolver, LinearSolverDeleter> linear_solver;
   std::unique_ptr<void, CvodesDeleter> memory;
 
-  Handles(OdeSystem& system_, double t0, std::span<const double> x0, double end_, const SolverSettings& settings)
-      : system(&system_), t(t0), end(end_), max_steps(settings.max_steps), context(make_context()) {
+  Handles(OdeSystem& ode, double t0, std::span<const double> x0, double last_time,
+          const SolverSettings& settings)
+      : system(&ode), t(t0), end(last_time), max_steps(settings.max_steps), context(make_context()) {
     const auto n = static_cast<sunindextype>(x0.size());
     states.reset(made(N_VNew_Serial(n, context.get())));
     scratch.reset(made(N_VNew_Serial(n, context.get())));
@@ -116,11 +118,12 @@ struct CvodesSolver::Handles {
     return 1;  // recoverable: CVODES tries a shorter step
   }
 
-  static int differentiate(sunrealtype t, N_Vector x, N_Vector, SUNMatrix matrix, void* user, N_Vector, N_Vector,
-                           N_Vector) {
+  static int differentiate(sunrealtype t, N_Vector x, N_Vector, SUNMatrix matrix, void* user, N_Vector,
+                           N_Vector, N_Vector) {
     auto& self = *static_cast<Handles*>(user);
     const SparsePattern& pattern = self.system->pattern();
-    std::copy(pattern.column_starts.begin(), pattern.column_starts.end(), SUNSparseMatrix_IndexPointers(matrix));
+    std::copy(pattern.column_starts.begin(), pattern.column_starts.end(),
+              SUNSparseMatrix_IndexPointers(matrix));
     std::copy(pattern.rows.begin(), pattern.rows.end(), SUNSparseMatrix_IndexValues(matrix));
     double* const values = SUNSparseMatrix_Data(matrix);
     if (!self.system->jacobian(t, N_VGetArrayPointer(x), values)) {
@@ -133,12 +136,14 @@ struct CvodesSolver::Handles {
   /// What ended a step with this code, or the row of small steps that one of success ends.
   SolverFailure failure(int code) const {
     SolverFailure failure{SolverFailure::Kind::other, t, code};
-    const bool refused = code == CV_RHSFUNC_FAIL || code == CV_FIRST_RHSFUNC_ERR || code == CV_REPTD_RHSFUNC_ERR ||
-                         code == CV_UNREC_RHSFUNC_ERR;
+    const bool refused = code == CV_RHSFUNC_FAIL || code == CV_FIRST_RHSFUNC_ERR ||
+                         code == CV_REPTD_RHSFUNC_ERR || code == CV_UNREC_RHSFUNC_ERR;
     if (refused) failure.kind = SolverFailure::Kind::no_value;
     const bool too_short = code == CV_ERR_FAILURE || code == CV_CONV_FAILURE || code >= 0;
-    if (too_short) failure.kind = saw_refusal ? SolverFailure::Kind::no_value : SolverFailure::Kind::small_step;
-    if (saw_not_finite && failure.kind != SolverFailure::Kind::other) failure.kind = SolverFailure::Kind::not_finite;
+    if (too_short)
+      failure.kind = saw_refusal ? SolverFailure::Kind::no_value : SolverFailure::Kind::small_step;
+    if (saw_not_finite && failure.kind != SolverFailure::Kind::other)
+      failure.kind = SolverFailure::Kind::not_finite;
     return failure;
   }
 };

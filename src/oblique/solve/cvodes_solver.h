@@ -18,32 +18,34 @@ struct SolverSettings {
 
 struct SolverStatistics {
   long steps = 0;
-  long evaluations = 0;            ///< of dx/dt
-  long jacobians = 0;              ///< evaluations of the Jacobian
+  long evaluations = 0;  ///< of dx/dt
+  long jacobians = 0;    ///< evaluations of the Jacobian
   long factorizations = 0;
   long error_test_failures = 0;
-  double last_step = 0;            ///< [s]
+  double last_step = 0;  ///< [s]
 };
 
 /// Why a solver could not go on.
 struct SolverFailure {
   enum class Kind {
-    not_finite,     ///< dx/dt or a state is not a number
-    no_value,       ///< the system refused to give dx/dt, however short the step
-    small_step,     ///< the step fell below what the time can resolve
-    step_budget,    ///< `max_steps` are used up
-    other,          ///< anything else CVODES reports
+    not_finite,   ///< dx/dt or a state is not a number
+    no_value,     ///< the system refused to give dx/dt, however short the step
+    small_step,   ///< the step fell below what the time can resolve
+    step_budget,  ///< `max_steps` are used up
+    other,        ///< anything else CVODES reports
   };
   Kind kind = Kind::other;
   double time = 0;  ///< [s] reached
   int code = 0;     ///< CVODES' return value
 };
 
-/// CVODES with variable-order BDF (or Adams), Newton's method, and KLU on the analytic Jacobian. Owns all of SUNDIALS' memory.
+/// CVODES with variable-order BDF (or Adams), Newton's method, and KLU on the analytic Jacobian. Owns all of
+/// SUNDIALS' memory.
 class CvodesSolver {
  public:
   /// Starts at (t0, x0) and will not pass `end`. `system` must outlive the solver.
-  CvodesSolver(OdeSystem& system, double t0, std::span<const double> x0, double end, const SolverSettings& settings);
+  CvodesSolver(OdeSystem& system, double t0, std::span<const double> x0, double end,
+               const SolverSettings& settings);
   ~CvodesSolver();
   CvodesSolver(CvodesSolver&&) noexcept;
   CvodesSolver& operator=(CvodesSolver&&) noexcept;
@@ -59,7 +61,8 @@ class CvodesSolver {
 
   SolverStatistics statistics() const;
 
-  /// Of each state: estimated local error of the last step over its tolerance; the test is that these are below 1.
+  /// Of each state: estimated local error of the last step over its tolerance; the test is that these are
+  /// below 1.
   std::vector<double> weighted_errors() const;
 
  private:

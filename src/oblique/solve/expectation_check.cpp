@@ -52,7 +52,9 @@ std::vector<ExpectationResult> check_expectations(const Diagram& diagram, const 
   for (const Expectation& e : diagram.expectations) {
     const auto column = run.trajectory.find(e.output);
     if (!column) {
-      diagnostics.add({e.place, fmt::format("'{}': there is no output '{}'", e.text, e.output), {},
+      diagnostics.add({e.place,
+                       fmt::format("'{}': there is no output '{}'", e.text, e.output),
+                       {},
                        suggest(e.output, names)});
       continue;
     }

@@ -15,12 +15,12 @@ struct ExpectationResult {
   bool met = false;
 };
 
-/// The times that `[expect]` asks for, ascending: the `extra_times` of the run. Throws DiagramError for a time
-/// outside [0, until].
+/// The times that `[expect]` asks for, ascending: the `extra_times` of the run. Throws DiagramError for a
+/// time outside [0, until].
 std::vector<double> expectation_times(const Diagram& diagram, double until);
 
-/// Checks every expectation; `run` was made with `expectation_times`. Throws DiagramError for an output that is
-/// not among the columns.
+/// Checks every expectation; `run` was made with `expectation_times`. Throws DiagramError for an output that
+/// is not among the columns.
 std::vector<ExpectationResult> check_expectations(const Diagram& diagram, const Run& run);
 
 }  // namespace oblique

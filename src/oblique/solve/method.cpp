@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <complex>
 
-#include <Eigen/Eigenvalues>
 #include <fmt/format.h>
+#include <Eigen/Eigenvalues>
 
 #include <oblique/solve/rest.h>
 
@@ -13,9 +13,11 @@ namespace oblique {
 namespace {
 
 constexpr std::size_t kMostStatesForEigenvalues = 100;
-constexpr double kStiff = 100;  ///< ratio of the fastest rate to the slowest from which decays are left to BDF
+constexpr double kStiff =
+    100;  ///< ratio of the fastest rate to the slowest from which decays are left to BDF
 
-Eigen::VectorXcd eigenvalues_at(const Program& program, Workspace& workspace, std::span<const double> states) {
+Eigen::VectorXcd eigenvalues_at(const Program& program, Workspace& workspace,
+                                std::span<const double> states) {
   const SparsePattern& pattern = program.jacobian_pattern();
   std::vector<double> values(pattern.entries());
   if (!program.jacobian(0, states.data(), values.data(), workspace)) return {};
@@ -44,10 +46,12 @@ MethodChoice from_eigenvalues(const Eigen::VectorXcd& eigenvalues) {
     if (std::abs(value) > 0) slowest = std::min(slowest, std::abs(value));
   }
   if (std::abs(fastest.imag()) >= std::abs(fastest.real()) && std::abs(fastest) > 0) {
-    return {Method::adams, fmt::format("the fastest mode at the start oscillates, at {:.3g} rad/s", std::abs(fastest))};
+    return {Method::adams,
+            fmt::format("the fastest mode at the start oscillates, at {:.3g} rad/s", std::abs(fastest))};
   }
   if (fastest.real() < 0 && std::abs(fastest) > kStiff * slowest) {
-    return {Method::bdf, fmt::format("decays from {:.3g} to {:.3g} 1/s at the start", slowest, std::abs(fastest))};
+    return {Method::bdf,
+            fmt::format("decays from {:.3g} to {:.3g} 1/s at the start", slowest, std::abs(fastest))};
   }
   return {Method::adams, "nothing is fast at the start"};
 }
@@ -59,12 +63,14 @@ MethodChoice choose_method(IntegrationMethod asked, const Program& program, Work
   if (asked != IntegrationMethod::automatic) return {asked, "as the diagram asks"};
   const std::size_t servos = rest_states(program).size();
   if (servos > 0) {
-    return {IntegrationMethod::bdf,
-            fmt::format("{} {} faster than what {} {}", servos, servos == 1 ? "servo loop is" : "servo loops are",
-                        servos == 1 ? "it" : "they", servos == 1 ? "follows" : "follow")};
+    return {
+        IntegrationMethod::bdf,
+        fmt::format("{} {} faster than what {} {}", servos, servos == 1 ? "servo loop is" : "servo loops are",
+                    servos == 1 ? "it" : "they", servos == 1 ? "follows" : "follow")};
   }
   if (program.n_states() > kMostStatesForEigenvalues) {
-    return {IntegrationMethod::bdf, fmt::format("{} states, too many to look for fast ones", program.n_states())};
+    return {IntegrationMethod::bdf,
+            fmt::format("{} states, too many to look for fast ones", program.n_states())};
   }
   return from_eigenvalues(eigenvalues_at(program, workspace, start));
 }

@@ -19,7 +19,8 @@ using SparseMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, std::int64_t>;
 /// The diagram with its clock stopped: only some states move.
 class SettlingSystem final : public OdeSystem {
  public:
-  SettlingSystem(const Program& program, Workspace& workspace, double t, const std::vector<std::size_t>& moving)
+  SettlingSystem(const Program& program, Workspace& workspace, double t,
+                 const std::vector<std::size_t>& moving)
       : program_(program), workspace_(workspace), t_(t), moves_(program.n_states(), false) {
     for (const std::size_t i : moving) moves_[i] = true;
   }
@@ -56,8 +57,8 @@ class SettlingSystem final : public OdeSystem {
       }
     }
     const auto n = static_cast<Eigen::Index>(p.size());
-    return Eigen::Map<const SparseMatrix>(n, n, static_cast<Eigen::Index>(p.entries()), p.column_starts.data(),
-                                          p.rows.data(), values.data());
+    return Eigen::Map<const SparseMatrix>(n, n, static_cast<Eigen::Index>(p.entries()),
+                                          p.column_starts.data(), p.rows.data(), values.data());
   }
 
  private:
@@ -89,18 +90,20 @@ double fastest_time_constant(SettlingSystem& system, const std::vector<double>& 
   return rate > 0 ? 1 / rate : 1;
 }
 
-/// Lets the states in `moving` run until they rest: implicit Euler steps, short at first so that they follow the way
-/// the loops take, then ever longer until they are Newton's method (pseudo-transient continuation). A step that changes
-/// a state much, or across which 1/h − df/dx changes the sign of its determinant (there a loop is unstable), is
-/// taken again shorter. False, with `states` as they were last, where they do not settle.
+/// Lets the states in `moving` run until they rest: implicit Euler steps, short at first so that they follow
+/// the way the loops take, then ever longer until they are Newton's method (pseudo-transient continuation). A
+/// step that changes a state much, or across which 1/h − df/dx changes the sign of its determinant (there a
+/// loop is unstable), is taken again shorter. False, with `states` as they were last, where they do not
+/// settle.
 bool settle(const Program& program, Workspace& workspace, double t, const std::vector<std::size_t>& moving,
             std::vector<double>& states) {
-  constexpr double kMostChange = 0.2;   // of 1 + |x|, in a step
+  constexpr double kMostChange = 0.2;  // of 1 + |x|, in a step
   constexpr double kSmallChange = 0.02;
-  constexpr double kLongest = 1e18;     // of a step, in time constants of the fastest loop: nothing but Newton's method
+  constexpr double kLongest =
+      1e18;  // of a step, in time constants of the fastest loop: nothing but Newton's method
   constexpr double kShortest = 1e-9;
-  constexpr double kAtRest = 1e-12;     // rounding, where a loop has lost most of its gain
-  constexpr double kFarAway = 1e6;      // [machine unit]
+  constexpr double kAtRest = 1e-12;  // rounding, where a loop has lost most of its gain
+  constexpr double kFarAway = 1e6;   // [machine unit]
   constexpr int kMostSteps = 2000;
   SettlingSystem system(program, workspace, t, moving);
   const double unit = fastest_time_constant(system, states);
@@ -120,7 +123,8 @@ bool settle(const Program& program, Workspace& workspace, double t, const std::v
     if (good) {
       next = x + lu.solve(slopes);
       change = ((next - x).array() / (1 + x.array().abs())).abs().maxCoeff();
-      good = change < kMostChange && system.derivatives(0, next.data(), next_slopes.data()) && next_slopes.allFinite();
+      good = change < kMostChange && system.derivatives(0, next.data(), next_slopes.data()) &&
+             next_slopes.allFinite();
     }
     if (!good) {
       h /= 4;
@@ -182,10 +186,12 @@ void bring_to_rest(const Program& program, Workspace& workspace, double t, std::
   if (rest_states(program).empty()) return;
   SettlingSystem all(program, workspace, t, rest_states(program));
   std::vector<double> slopes(states.size());
-  if (!all.derivatives(t, states.data(), slopes.data())) throw loop_error(program, workspace.trouble(), t, file);
+  if (!all.derivatives(t, states.data(), slopes.data()))
+    throw loop_error(program, workspace.trouble(), t, file);
 
-  // All at once, as on the machine. A loop that follows others may be driven over its edge while those still move (a
-  // triangle that does not close for a moment): then one group after the other, along the flow of the signals.
+  // All at once, as on the machine. A loop that follows others may be driven over its edge while those still
+  // move (a triangle that does not close for a moment): then one group after the other, along the flow of the
+  // signals.
   std::vector<double> settled = states;
   if (settle(program, workspace, t, rest_states(program), settled)) {
     states = settled;

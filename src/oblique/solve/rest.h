@@ -14,10 +14,10 @@ std::vector<std::size_t> rest_states(const Program& program);
 /// The same in groups that act on each other, each after the groups whose signals it follows.
 std::vector<std::vector<std::size_t>> servo_groups(const Program& program);
 
-/// Brings servo loops to rest at time t while all other states are held, as an operator waits for the loops to settle
-/// before he starts the clock: the loops run with the clock stopped, then Newton's method takes them to dx/dt = 0.
-/// Changes `states` in place. Throws SolveError where a loop does not settle, would not stay at rest (an unstable loop
-/// may balance for a moment), or an algebraic loop has no solution.
+/// Brings servo loops to rest at time t while all other states are held, as an operator waits for the loops
+/// to settle before he starts the clock: the loops run with the clock stopped, then Newton's method takes
+/// them to dx/dt = 0. Changes `states` in place. Throws SolveError where a loop does not settle, would not
+/// stay at rest (an unstable loop may balance for a moment), or an algebraic loop has no solution.
 void bring_to_rest(const Program& program, Workspace& workspace, double t, std::vector<double>& states,
                    const std::string& file);
 

@@ -17,8 +17,13 @@ namespace {
 class Sampler {
  public:
   Sampler(const Program& program, const FlatDiagram& diagram, const RunOptions& options, Workspace& workspace)
-      : program_(program), diagram_(diagram), options_(options), workspace_(workspace),
-        states_(program.n_states()), signals_(program.n_signals()), row_(diagram.outputs.size() + 1) {
+      : program_(program),
+        diagram_(diagram),
+        options_(options),
+        workspace_(workspace),
+        states_(program.n_states()),
+        signals_(program.n_signals()),
+        row_(diagram.outputs.size() + 1) {
     std::vector<Trajectory::Column> columns{{"t", "s"}};
     for (const FlatOutput& output : diagram.outputs) columns.push_back({output.name, output.unit});
     result.trajectory = Trajectory(columns);

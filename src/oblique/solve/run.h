@@ -14,8 +14,9 @@
 
 namespace oblique {
 
-/// The absolute tolerance in machine units over the relative one. At 1 the zero crossings of an oscillation would be
-/// integrated more coarsely than the rest: a circle of 1000 turns then loses 60 times as much of its amplitude.
+/// The absolute tolerance in machine units over the relative one. At 1 the zero crossings of an oscillation
+/// would be integrated more coarsely than the rest: a circle of 1000 turns then loses 60 times as much of its
+/// amplitude.
 inline constexpr double kAbsoluteTolerance = 1e-3;
 
 /// How to run; `RunSettings` of the diagram are the usual source.
@@ -23,11 +24,13 @@ struct RunOptions {
   double until = 1;         ///< [s]
   double tolerance = 1e-8;  ///< relative; the absolute one is kAbsoluteTolerance of it
   IntegrationMethod method = IntegrationMethod::automatic;
-  int samples = 1001;       ///< rows, evenly spaced, both ends included
+  int samples = 1001;  ///< rows, evenly spaced, both ends included
   long max_steps = 10'000'000;
-  std::vector<double> extra_times;               ///< [s] ascending, within [0, until]: further rows, kept apart
-  std::function<void(double fraction)> progress;  ///< called now and then with the part of the run that is done
-  std::function<void(double t, std::span<const double> states)> on_sample;  ///< called at every row of the grid
+  std::vector<double> extra_times;  ///< [s] ascending, within [0, until]: further rows, kept apart
+  std::function<void(double fraction)>
+      progress;  ///< called now and then with the part of the run that is done
+  std::function<void(double t, std::span<const double> states)>
+      on_sample;  ///< called at every row of the grid
 };
 
 /// The options that a diagram states.
@@ -45,12 +48,12 @@ struct Run {
   Trajectory extra;         ///< the same columns at `extra_times`
   std::vector<Peak> peaks;  ///< of every signal of the program, in its order
   SolverStatistics statistics;
-  MethodChoice method;      ///< with which method, and why; nothing for a diagram without states
-  double seconds = 0;  ///< wall clock of the run itself, compilation apart
+  MethodChoice method;  ///< with which method, and why; nothing for a diagram without states
+  double seconds = 0;   ///< wall clock of the run itself, compilation apart
 };
 
-/// Runs a compiled diagram from t = 0: brings servo loops to rest, integrates with BDF or Adams and KLU, and samples the
-/// solver's own interpolant on an exact grid. A diagram without states is evaluated on that grid.
+/// Runs a compiled diagram from t = 0: brings servo loops to rest, integrates with BDF or Adams and KLU, and
+/// samples the solver's own interpolant on an exact grid. A diagram without states is evaluated on that grid.
 /// Throws SolveError.
 Run run(const Program& program, const FlatDiagram& diagram, const RunOptions& options);
 

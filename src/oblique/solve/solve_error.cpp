@@ -28,12 +28,13 @@ std::string worst_blocks(const Program& program, const CvodesSolver& solver) {
   const auto states = solver.states();
   std::vector<std::size_t> order(errors.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return errors[a] > errors[b]; });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return errors[a] > errors[b]; });
   if (order.size() > kMostNamed) order.resize(kMostNamed);
   std::string text = "\n  largest weighted local errors:";
   for (const std::size_t i : order) {
-    text += fmt::format("\n    {} = {:.6g}  (error {:.2g} of its tolerance)", program.states()[i].name, states[i],
-                        errors[i]);
+    text += fmt::format("\n    {} = {:.6g}  (error {:.2g} of its tolerance)", program.states()[i].name,
+                        states[i], errors[i]);
   }
   return text;
 }
@@ -47,7 +48,8 @@ std::size_t largest_state(const CvodesSolver& solver) {
 
 }  // namespace
 
-SolveError loop_error(const Program& program, const Workspace::Trouble& trouble, double t, const std::string& file) {
+SolveError loop_error(const Program& program, const Workspace::Trouble& trouble, double t,
+                      const std::string& file) {
   const Loop& loop = program.loops()[trouble.loop];
   const Unknown& unknown = program.unknowns()[loop.unknowns.front()];
   const std::string path = loop_path(loop);
@@ -58,21 +60,27 @@ SolveError loop_error(const Program& program, const Workspace::Trouble& trouble,
                        trouble.slope + 1);
     remedy = "change a weight so that the gain of the loop is not 1, or put an integrator into it";
   } else if (trouble.failure == LoopFailure::singular && loop.unknowns.size() == 1) {
-    what = fmt::format("the algebraic loop {} is singular at t = {:.6g} s: its gain is {:.6g}, "
-                       "the inputs of '{}' do not respond to its output",
-                       path, t, trouble.slope, unknown.name);
-    remedy = "wire the output back so that the residual changes with it, start it at another 'initial', or give the "
-             "amplifier a finite gain and bandwidth";
+    what = fmt::format(
+        "the algebraic loop {} is singular at t = {:.6g} s: its gain is {:.6g}, "
+        "the inputs of '{}' do not respond to its output",
+        path, t, trouble.slope, unknown.name);
+    remedy =
+        "wire the output back so that the residual changes with it, start it at another 'initial', or give "
+        "the "
+        "amplifier a finite gain and bandwidth";
   } else if (trouble.failure == LoopFailure::singular) {
-    what = fmt::format("the algebraic loop {} is singular at t = {:.6g} s: its {} equations determine no unique "
-                       "solution (a combination of its gains is 1)",
-                       path, t, loop.unknowns.size());
+    what = fmt::format(
+        "the algebraic loop {} is singular at t = {:.6g} s: its {} equations determine no unique "
+        "solution (a combination of its gains is 1)",
+        path, t, loop.unknowns.size());
     remedy = "change a weight, or put an integrator or a servo amplifier of finite bandwidth into the loop";
   } else {
-    what = fmt::format("the algebraic loop {} has no solution near {} = {:.6g} at t = {:.6g} s", path, unknown.name,
-                       unknown.guess, t);
-    remedy = "check that its equation can be satisfied (a root of a negative number, a triangle that cannot close?), "
-             "or start it from another 'initial'";
+    what = fmt::format("the algebraic loop {} has no solution near {} = {:.6g} at t = {:.6g} s", path,
+                       unknown.name, unknown.guess, t);
+    remedy =
+        "check that its equation can be satisfied (a root of a negative number, a triangle that cannot "
+        "close?), "
+        "or start it from another 'initial'";
   }
   return {SolveError::Kind::singular_loop, t, {place, what, {}, remedy}};
 }
@@ -85,29 +93,38 @@ SolveError run_error(const Program& program, const SolverFailure& failure, const
   }
   const std::size_t largest = largest_state(solver);
   const std::string where = fmt::format("the run stopped at t = {:.6g} s", failure.time);
-  const std::string value = fmt::format("'{}' = {:.4g}", program.states()[largest].name, solver.states()[largest]);
+  const std::string value =
+      fmt::format("'{}' = {:.4g}", program.states()[largest].name, solver.states()[largest]);
   const std::string details = worst_blocks(program, solver);
   switch (failure.kind) {
     case Kind::not_finite:
     case Kind::no_value:
     case Kind::small_step:
-      return {SolveError::Kind::blow_up, failure.time,
-              {{file, {}},
-               fmt::format("{}: the solution grows without bound or jumps there, {}{}", where, value, details),
-               {},
-               "look for a positive feedback, a divisor that passes zero or a servo loop whose residual falls with its "
-               "output; or end the run earlier with --until"}};
+      return {
+          SolveError::Kind::blow_up,
+          failure.time,
+          {{file, {}},
+           fmt::format("{}: the solution grows without bound or jumps there, {}{}", where, value, details),
+           {},
+           "look for a positive feedback, a divisor that passes zero or a servo loop whose residual falls "
+           "with its "
+           "output; or end the run earlier with --until"}};
     case Kind::step_budget:
-      return {SolveError::Kind::step_budget, failure.time,
+      return {SolveError::Kind::step_budget,
+              failure.time,
               {{file, {}},
                fmt::format("{}: its budget of {} steps is used up, the last step was {:.2g} s{}", where,
                            solver.statistics().steps, solver.statistics().last_step, details),
                {},
                "raise max_steps in [run], loosen the tolerance, or end the run earlier with --until"}};
-    case Kind::other: break;
+    case Kind::other:
+      break;
   }
-  return {SolveError::Kind::other, failure.time,
-          {{file, {}}, fmt::format("{}: CVODES gave up with code {}{}", where, failure.code, details), {},
+  return {SolveError::Kind::other,
+          failure.time,
+          {{file, {}},
+           fmt::format("{}: CVODES gave up with code {}{}", where, failure.code, details),
+           {},
            "loosen the tolerance in [run]"}};
 }
 
@@ -115,13 +132,17 @@ SolveError rest_error(const Program& program, const std::vector<std::size_t>& wo
                       const std::vector<double>& states, const std::string& file) {
   std::string names;
   for (std::size_t i = 0; i < std::min(worst.size(), kMostNamed); ++i) {
-    names += fmt::format("{}'{}' (at {:.4g})", i == 0 ? "" : ", ", program.states()[worst[i]].name, states[worst[i]]);
+    names += fmt::format("{}'{}' (at {:.4g})", i == 0 ? "" : ", ", program.states()[worst[i]].name,
+                         states[worst[i]]);
   }
-  return {SolveError::Kind::no_rest, 0,
-          {{file, {}},
-           fmt::format("the servo loops do not come to rest before the clock starts; still moving: {}", names),
-           "residuals that rise with the output of their amplifier",
-           "check the signs at the amplifier's inputs, that its equation has a solution at the start, and its 'initial'"}};
+  return {
+      SolveError::Kind::no_rest,
+      0,
+      {{file, {}},
+       fmt::format("the servo loops do not come to rest before the clock starts; still moving: {}", names),
+       "residuals that rise with the output of their amplifier",
+       "check the signs at the amplifier's inputs, that its equation has a solution at the start, and its "
+       "'initial'"}};
 }
 
 }  // namespace oblique

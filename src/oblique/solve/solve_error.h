@@ -26,14 +26,17 @@ class SolveError : public Error {
 };
 
 /// The error of an algebraic loop that could not be solved at time t: its members, its gain, the remedy.
-SolveError loop_error(const Program& program, const Workspace::Trouble& trouble, double t, const std::string& file);
+SolveError loop_error(const Program& program, const Workspace::Trouble& trouble, double t,
+                      const std::string& file);
 
-/// The error of a run that the solver gave up: why, where, and the signals with the largest weighted local errors.
+/// The error of a run that the solver gave up: why, where, and the signals with the largest weighted local
+/// errors.
 SolveError run_error(const Program& program, const SolverFailure& failure, const CvodesSolver& solver,
                      const Workspace& workspace, const std::string& file);
 
-/// The error of servo loops that do not settle; `worst` are states by how fast they still move, fastest first.
-SolveError rest_error(const Program& program, const std::vector<std::size_t>& worst, const std::vector<double>& states,
-                      const std::string& file);
+/// The error of servo loops that do not settle; `worst` are states by how fast they still move, fastest
+/// first.
+SolveError rest_error(const Program& program, const std::vector<std::size_t>& worst,
+                      const std::vector<double>& states, const std::string& file);
 
 }  // namespace oblique

@@ -11,7 +11,8 @@
 namespace oblique {
 namespace {
 
-/// Largest real part of the eigenvalues of a diagonal block of a sparse matrix; `place` is scratch of its size, −1 all over.
+/// Largest real part of the eigenvalues of a diagonal block of a sparse matrix; `place` is scratch of its
+/// size, −1 all over.
 double largest_real_part(const SparsePattern& pattern, const std::vector<double>& values,
                          const std::vector<std::size_t>& block, std::vector<Eigen::Index>& place) {
   const auto n = static_cast<Eigen::Index>(block.size());
@@ -29,7 +30,8 @@ double largest_real_part(const SparsePattern& pattern, const std::vector<double>
   return Eigen::EigenSolver<Eigen::MatrixXd>(dense, false).eigenvalues().real().maxCoeff();
 }
 
-/// Calls `visit(group, pole)` for each group of servo loops until it gives false; false where the Jacobian has no value.
+/// Calls `visit(group, pole)` for each group of servo loops until it gives false; false where the Jacobian
+/// has no value.
 template <class Visit>
 bool visit_groups(const Program& program, Workspace& workspace, double t, std::span<const double> states,
                   const Visit& visit) {
@@ -44,7 +46,8 @@ bool visit_groups(const Program& program, Workspace& workspace, double t, std::s
 
 }  // namespace
 
-double servo_stability(const Program& program, Workspace& workspace, double t, std::span<const double> states) {
+double servo_stability(const Program& program, Workspace& workspace, double t,
+                       std::span<const double> states) {
   double largest = -std::numeric_limits<double>::infinity();
   const bool solved = visit_groups(program, workspace, t, states, [&](const auto&, double pole) {
     largest = std::max(largest, pole);
