@@ -31,8 +31,10 @@ class AngleTracker {
   /// The configuration at time `t`, its angles continuous with those of the call before.
   Configuration advance(double t) {
     const double begin = started_ ? time_ : t;
-    const double steps = std::ceil(fastest_ * std::abs(t - begin) / kDriveStep);
-    for (double i = 1; i < steps; ++i) step_to(begin + (t - begin) * (i / steps), kMostHalvings);
+    const auto steps = static_cast<long>(std::ceil(fastest_ * std::abs(t - begin) / kDriveStep));
+    for (long i = 1; i < steps; ++i) {
+      step_to(begin + (t - begin) * (static_cast<double>(i) / static_cast<double>(steps)), kMostHalvings);
+    }
     started_ = true;
     return step_to(t, kMostHalvings);
   }
@@ -87,7 +89,7 @@ double period(const Mechanism& mechanism) {
     finding.place.file = mechanism.file;
     finding.what = "the mechanism has no drive and does not move";
     finding.expected = "[drives]";
-    finding.remedy = "turn a link: crank = { turns = \"AB\", about = \"A\", speed = \"1 rad/s\" }";
+    finding.remedy = R"(turn a link: crank = { turns = "AB", about = "A", speed = "1 rad/s" })";
     throw MechanismError(MechanismError::Kind::request, std::move(finding));
   }
   return kTurn / std::abs(mechanism.drives.front().speed);
@@ -102,6 +104,7 @@ Motion solve_motion(const Mechanism& mechanism, int positions) {
     throw MechanismError(MechanismError::Kind::request, std::move(finding));
   }
   std::vector<double> times;
+  times.reserve(static_cast<std::size_t>(positions));
   for (int k = 0; k < positions; ++k) times.push_back(turn * k / (positions - 1));
   return solve_motion(mechanism, times);
 }

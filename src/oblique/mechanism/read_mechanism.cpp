@@ -17,6 +17,7 @@ namespace {
 template <class Items>
 std::vector<std::string> names_of(const Items& items) {
   std::vector<std::string> names;
+  names.reserve(items.size());
   for (const auto& item : items) names.push_back(item.name);
   return names;
 }
@@ -93,7 +94,7 @@ class MechanismReader {
     report_slides(slides->position, "[slides] cannot be solved");
   }
 
-  void report_slides(SourcePosition position, std::string what) {
+  void report_slides(SourcePosition position, const std::string& what) {
     diagnostics_.add({reader_.place(position), what + ": slides are not handled by this version",
                       "bodies joined by hinges only",
                       "replace a slide by a long bar where that is near enough"});

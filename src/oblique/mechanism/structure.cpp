@@ -15,6 +15,7 @@ constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
 std::string quoted_names(const Mechanism& mechanism, const std::vector<std::size_t>& bodies) {
   std::vector<std::string> names;
+  names.reserve(bodies.size());
   for (const std::size_t body : bodies) names.push_back("'" + mechanism.bodies[body].name + "'");
   return fmt::format("{} {}", names.size() == 1 ? "body" : "bodies", fmt::join(names, ", "));
 }
