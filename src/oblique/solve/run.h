@@ -15,8 +15,8 @@
 namespace oblique {
 
 /// The absolute tolerance in machine units over the relative one. At 1 the zero crossings of an oscillation
-/// would be integrated more coarsely than the rest: a circle of 1000 turns then loses 100 times as much of its
-/// amplitude.
+/// would be integrated more coarsely than the rest: a circle of 1000 turns then loses 100 times as much of
+/// its amplitude.
 inline constexpr double kAbsoluteTolerance = 1e-2;
 
 /// How to run; `RunSettings` of the diagram are the usual source.
