@@ -85,6 +85,13 @@ void add_run(CLI::App& app, Chosen& chosen) {
   verb->add_option("--set", request->settings, "change a parameter: block.parameter=value; may be repeated")
       ->type_name("SETTING")
       ->allow_extra_args(false);
+  verb->add_option("--from", request->from,
+                   "go on from the state that an earlier run saved; --until is then later")
+      ->type_name("STATE");
+  verb->add_option("--save", request->save,
+                   "save the state at the end, or where Ctrl-C interrupts the run, to STATE.toml")
+      ->type_name("STATE");
+  verb->add_flag("--events", request->events, "list what switched, and when");
   verb->add_flag("--check", request->check,
                  "hold the run against the diagram's [expect]; status 1 where it fails");
   choose(verb, chosen, request, run_diagram);

@@ -27,7 +27,10 @@ struct RunRequest {
   std::string output;
   std::string until;
   std::vector<std::string> settings;
+  std::string from;  ///< a state file to go on from
+  std::string save;  ///< where the state at the end goes
   bool check = false;
+  bool events = false;
 };
 ExitStatus run_diagram(const Session& session, const RunRequest& request);
 

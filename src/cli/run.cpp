@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <csignal>
+
 #include <fmt/format.h>
 
 #include <oblique/network/program.h>
@@ -46,6 +48,30 @@ std::string table_of(const Trajectory& trajectory) {
   return text;
 }
 
+std::string table_of(const std::vector<EventRecord>& events, long count) {
+  Table table({"t [s]", "event"});
+  for (const EventRecord& event : events) table.add({fmt::format("{:.12g}", event.time), event.what});
+  std::string text = "\n" + table.text();
+  if (count > static_cast<long>(events.size()))
+    text += fmt::format("({} more)\n", count - static_cast<long>(events.size()));
+  return text;
+}
+
+/// Set by Ctrl-C while a run can be interrupted.
+volatile std::sig_atomic_t interrupt_asked = 0;
+
+/// While it lives, Ctrl-C only asks for the end of the run.
+class InterruptGuard {
+ public:
+  InterruptGuard() : before_(std::signal(SIGINT, [](int) { interrupt_asked = 1; })) { interrupt_asked = 0; }
+  ~InterruptGuard() { std::signal(SIGINT, before_); }
+  InterruptGuard(const InterruptGuard&) = delete;
+  InterruptGuard& operator=(const InterruptGuard&) = delete;
+
+ private:
+  void (*before_)(int);
+};
+
 ExitStatus report_expectations(const Diagram& diagram, const Run& run) {
   ExitStatus status = ExitStatus::done;
   print("\n");
@@ -62,6 +88,7 @@ ExitStatus report_expectations(const Diagram& diagram, const Run& run) {
 
 ExitStatus run_diagram(const Session& session, const RunRequest& request) {
   if (!request.output.empty()) check_output(request.output, ".csv");
+  if (!request.save.empty()) check_output(request.save, ".toml");
   const BlockLibrary library = session.library();
   Diagram diagram = read_diagram(request.diagram);
   if (!request.until.empty()) diagram.run.until = quantity_option("--until", request.until, "s");
@@ -84,15 +111,34 @@ ExitStatus run_diagram(const Session& session, const RunRequest& request) {
   const FlatDiagram flat = flatten(diagram, library, overrides);
   const Program program(assemble(flat));
   RunOptions options = options_of(diagram.run);
-  if (request.check) options.extra_times = expectation_times(diagram, diagram.run.until);
+  if (!request.from.empty()) {
+    options.from = parse_run_state(read_file(request.from), request.from);
+    if (!(options.until > options.from->time)) {
+      throw ReadError(Diagnostic{{request.from, {}},
+                                 fmt::format("the state is that of t = {} s, and the run ends at {} s",
+                                             options.from->time, options.until),
+                                 "a later end of the run",
+                                 "give a later --until"});
+    }
+  }
+  if (request.check) ask_for_expectations(diagram, options);
   Run result;
   {
     Progress progress("running");
+    std::optional<InterruptGuard> guard;
+    if (!request.save.empty()) {
+      guard.emplace();
+      options.interrupted = [] { return interrupt_asked != 0; };
+    }
     options.progress = [&](double fraction) { progress.show(fraction); };
     result = run(program, flat, options);
   }
   print(table_of(result.trajectory));
+  if (request.events) print(table_of(result.events, result.event_count));
   if (!request.output.empty()) save(request.output, to_csv(result.trajectory));
+  if (!request.save.empty()) save(request.save, to_text(result.state));
+  if (result.state.time < options.until)
+    note(fmt::format("interrupted at t = {:.6g} s\n", result.state.time));
   const SolverStatistics& s = result.statistics;
   note(fmt::format(
       "{}, {}; {} (relative tolerance {}), {:.3g} ms\n", count(program.n_states(), "state", "states"),
@@ -100,6 +146,10 @@ ExitStatus run_diagram(const Session& session, const RunRequest& request) {
       count(static_cast<std::size_t>(s.steps), "step", "steps"), options.tolerance, 1e3 * result.seconds));
   if (program.n_states() > 0) {
     note(fmt::format("method {}: {}\n", method_name(result.method.method), result.method.reason));
+  }
+  if (result.event_count > 0 && !request.events) {
+    note(fmt::format("{}; --events lists them\n",
+                     count(static_cast<std::size_t>(result.event_count), "event", "events")));
   }
   constexpr double kCoarseForAdams = 1e-5;
   if (result.method.method == IntegrationMethod::adams && options.tolerance > kCoarseForAdams) {

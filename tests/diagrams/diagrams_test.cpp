@@ -44,7 +44,7 @@ TEST_P(Lesson, GivesWhatItExpects) {
   ASSERT_FALSE(diagram.expectations.empty());
   const FlatDiagram flat = flatten(diagram, library);
   RunOptions options = options_of(diagram.run);
-  options.extra_times = expectation_times(diagram, options.until);
+  ask_for_expectations(diagram, options);
   const oblique::Run result = run(Program(assemble(flat)), flat, options);
   for (const ExpectationResult& expectation : check_expectations(diagram, result)) {
     EXPECT_TRUE(expectation.met) << expectation.expectation.text << " = " << expectation.actual;

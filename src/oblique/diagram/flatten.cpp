@@ -8,6 +8,7 @@
 
 #include <oblique/diagram/expectations.h>
 #include <oblique/diagram/overrides.h>
+#include <oblique/diagram/timeline.h>
 #include <oblique/diagram/wiring.h>
 
 namespace oblique {
@@ -263,6 +264,14 @@ FlatDiagram flatten(const Diagram& diagram, const BlockLibrary& library,
   const wiring::Replacements replacements = wiring::resolve_overrides(scope, overrides, diagnostics);
   const Layout layout(scope, replacements, flat, diagnostics);
   choose_outputs(diagram, scope, layout, flat, diagnostics);
+  lay_out_timeline(
+      diagram, flat,
+      [&](const std::string& path, const Place& place,
+          const std::string& subject) -> std::optional<SignalRef> {
+        const auto source = wiring::find_signal(scope, path, place.position, subject, diagnostics);
+        return source ? layout.signal(*source) : std::nullopt;
+      },
+      diagnostics);
   std::vector<std::string> names;
   for (const FlatOutput& output : flat.outputs) names.push_back(output.name);
   if (std::find(names.begin(), names.end(), "t") != names.end()) {

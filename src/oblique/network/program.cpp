@@ -139,6 +139,11 @@ Workspace::Workspace(const Program& program)
   reset_memories();
 }
 
+void Workspace::set_unknown(std::size_t u, double value) {
+  solved_[u] = value;
+  slots_[1 + program_->n_states() + u] = value;
+}
+
 void Workspace::reset_memories() {
   for (std::size_t m = 0; m < program_->memories_.size(); ++m) set_memory(m, program_->memories_[m].start);
 }

@@ -174,6 +174,10 @@ class Workspace {
   };
   const Trouble& trouble() const { return trouble_; }
 
+  /// The last solution of an unknown of an algebraic loop, from which the next is sought.
+  double unknown(std::size_t u) const { return solved_[u]; }
+  void set_unknown(std::size_t u, double value);
+
   /// The memories, between events as they are.
   double memory(std::size_t m) const { return slots_[first_memory_ + m]; }
   void set_memory(std::size_t m, double value) { slots_[first_memory_ + m] = value; }
