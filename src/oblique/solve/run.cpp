@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -12,6 +13,50 @@
 
 namespace oblique {
 namespace {
+
+/// Time of a row of the grid [s].
+double sample_time(const RunOptions& options, int k) {
+  return k + 1 == options.samples ? options.until : options.until * k / (options.samples - 1);
+}
+
+/// The watch on overloads, where there is to be one.
+class Watch {
+ public:
+  Watch(const Program& program, Workspace& workspace, const std::string& file, const RunOptions& options) {
+    if (options.watch_overloads || options.halt_on_overload) {
+      watch_.emplace(program, workspace, file, options.halt_on_overload);
+    }
+  }
+
+  void restart(double t, std::span<const double> states) {
+    if (watch_) watch_->restart(t, states);
+  }
+
+  double advance(double t, const OverloadWatch::StatesAt& states_at) {
+    return watch_ ? watch_->advance(t, states_at) : t;
+  }
+
+  /// A diagram without states has no steps: its rows stand in for them.
+  double advance_along_rows(const RunOptions& options) {
+    double reached = options.until;
+    for (int k = 1; watch_ && k < options.samples && !halted(); ++k) {
+      reached = watch_->advance(sample_time(options, k), [](double, std::span<double>) {});
+    }
+    return reached;
+  }
+
+  bool halted() const { return watch_ && watch_->halted(); }
+
+  void report(Run& run) const {
+    if (!watch_) return;
+    run.peaks = watch_->peaks();
+    run.overloads = watch_->overloads();
+    run.halted = watch_->halted();
+  }
+
+ private:
+  std::optional<OverloadWatch> watch_;
+};
 
 /// Collects rows at the sample times as the solver passes them.
 class Sampler {
@@ -37,7 +82,7 @@ class Sampler {
     while (true) {
       const bool grid_left = next_sample_ < options_.samples;
       const bool extra_left = next_extra_ < options_.extra_times.size();
-      const double grid_time = grid_left ? sample_time(next_sample_) : options_.until + 1;
+      const double grid_time = grid_left ? sample_time(options_, next_sample_) : options_.until + 1;
       const double extra_time = extra_left ? options_.extra_times[next_extra_] : options_.until + 1;
       const double time = std::min(grid_time, extra_time);
       if ((!grid_left && !extra_left) || time > t) return;
@@ -58,10 +103,6 @@ class Sampler {
   Run result;
 
  private:
-  double sample_time(int k) const {
-    return k + 1 == options_.samples ? options_.until : options_.until * k / (options_.samples - 1);
-  }
-
   void evaluate(double time) {
     if (!program_.signals(time, states_.data(), signals_.data(), workspace_)) {
       throw loop_error(program_, workspace_.trouble(), time, diagram_.file);
@@ -116,9 +157,12 @@ Run run(const Program& program, const FlatDiagram& diagram, const RunOptions& op
   std::vector<double> start = program.start();
   bring_to_rest(program, workspace, 0, start, diagram.file);
   sampler.advance(0, [&](double, std::span<double> x) { std::copy(start.begin(), start.end(), x.begin()); });
+  Watch watch(program, workspace, diagram.file, options);
+  watch.restart(0, start);
 
   if (program.n_states() == 0) {
-    sampler.advance(options.until, [](double, std::span<double>) {});
+    const double end = watch.advance_along_rows(options);
+    sampler.advance(end, [](double, std::span<double>) {});
   } else {
     OperateSystem system(program, workspace);
     const MethodChoice method = choose_method(options.method, program, workspace, start);
@@ -131,7 +175,10 @@ Run run(const Program& program, const FlatDiagram& diagram, const RunOptions& op
     try {
       for (double t = 0; t < options.until;) {
         t = solver.step();
-        sampler.advance(t, [&](double time, std::span<double> x) { solver.states_at(time, x); });
+        const auto states_at = [&](double time, std::span<double> x) { solver.states_at(time, x); };
+        const double reached = watch.advance(t, states_at);
+        sampler.advance(reached, states_at);
+        if (watch.halted()) break;
         if (options.progress && ++steps % kStepsPerReport == 0) options.progress(t / options.until);
       }
     } catch (const SolverFailure& failure) {
@@ -139,6 +186,7 @@ Run run(const Program& program, const FlatDiagram& diagram, const RunOptions& op
     }
     sampler.result.statistics = solver.statistics();
   }
+  watch.report(sampler.result);
   sampler.result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return std::move(sampler.result);
 }
