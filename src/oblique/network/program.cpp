@@ -57,6 +57,16 @@ bool Program::signals(double t, const double* x, double* values, Workspace& work
   return true;
 }
 
+Eigen::MatrixXd Program::loop_slopes(std::size_t loop, const Workspace& workspace) const {
+  const LoopCode& code = loop_codes_[loop];
+  const auto n = static_cast<Eigen::Index>(code.size());
+  Eigen::MatrixXd slopes = Eigen::MatrixXd::Zero(n, n);
+  for (const MatrixEntry& entry : code.slopes) {
+    slopes(entry.row, entry.column) = workspace.slots_[entry.slot];
+  }
+  return slopes;
+}
+
 bool Program::differentiate_loops(Workspace& workspace) const {
   const double* const slots = workspace.slots_.data();
   for (const std::uint32_t l : sensitivity_order_) {

@@ -55,6 +55,12 @@ class Program {
   /// Every signal of every block at (t, x), `n_signals` of them. False as above.
   bool signals(double t, const double* x, double* values, Workspace& workspace) const;
 
+  /// dg/dz of an algebraic loop where `signals` last evaluated it, rows and columns in the order of its
+  /// unknowns.
+  Eigen::MatrixXd loop_slopes(std::size_t loop, const Workspace& workspace) const;
+  /// Whether dg/dz of a loop does not depend on its own unknowns.
+  bool loop_is_linear(std::size_t loop) const { return loop_codes_[loop].linear; }
+
  private:
   friend class Workspace;
   friend class ProgramCompiler;
