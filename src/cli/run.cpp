@@ -4,6 +4,7 @@
 #include <oblique/network/program.h>
 #include <oblique/solve/expectation_check.h>
 #include <oblique/solve/run.h>
+#include <oblique/solve/static_test.h>
 
 #include "command.h"
 #include "terminal.h"
@@ -58,10 +59,48 @@ ExitStatus report_expectations(const Diagram& diagram, const Run& run) {
   return status;
 }
 
+std::string table_of(const std::vector<StaticReading>& readings) {
+  Table table({"element", "output", "d/dt"});
+  table.add({"", "[machine unit]", "[machine unit/s]"});
+  for (const StaticReading& reading : readings) {
+    table.add({reading.signal, short_number(reading.output),
+               reading.slope ? short_number(*reading.slope) : "", reading.at_rest ? "  at rest" : ""});
+  }
+  return table.text(1);
+}
+
+void check_request(const RunRequest& request) {
+  if (!request.output.empty()) check_output(request.output, ".csv");
+  if (!request.static_test) return;
+  const char* const other = request.check              ? "--check"
+                            : request.halt_on_overload ? "--halt-on-overload"
+                            : !request.until.empty()   ? "--until"
+                            : !request.output.empty()  ? "-o"
+                                                       : nullptr;
+  if (other == nullptr) return;
+  throw ReadError(Diagnostic{{},
+                             fmt::format("--static-test runs nothing, so {} has nothing to work on", other),
+                             "one of the two",
+                             {}});
+}
+
+void note_overloads(const Program& program, const Run& run) {
+  for (const OverloadRecord& o : run.overloads) {
+    const std::string& name = program.signal_names()[o.signal];
+    if (run.halted) {
+      note(fmt::format("overload: '{}' leaves ±1 machine unit at t = {:.10g} s; the run ends there\n", name,
+                       o.first));
+      return;
+    }
+    note(fmt::format("overload: '{}' leaves ±1 machine unit at t = {:.6g} s, peak {:.6g}, {:.6g} s in all\n",
+                     name, o.first, o.peak.value, o.duration));
+  }
+}
+
 }  // namespace
 
 ExitStatus run_diagram(const Session& session, const RunRequest& request) {
-  if (!request.output.empty()) check_output(request.output, ".csv");
+  check_request(request);
   const BlockLibrary library = session.library();
   Diagram diagram = read_diagram(request.diagram);
   if (!request.until.empty()) diagram.run.until = quantity_option("--until", request.until, "s");
@@ -83,7 +122,13 @@ ExitStatus run_diagram(const Session& session, const RunRequest& request) {
 
   const FlatDiagram flat = flatten(diagram, library, overrides);
   const Program program(assemble(flat));
+  if (request.static_test) {
+    print(table_of(static_test(program, diagram.file)));
+    return ExitStatus::done;
+  }
   RunOptions options = options_of(diagram.run);
+  options.halt_on_overload = request.halt_on_overload;
+  options.watch_overloads = diagram.machine.profile != "ideal";
   if (request.check) options.extra_times = expectation_times(diagram, diagram.run.until);
   Run result;
   {
@@ -106,6 +151,8 @@ ExitStatus run_diagram(const Session& session, const RunRequest& request) {
     note(fmt::format("warning: at a tolerance of {} Adams lets oscillations grow; 1e-5 or less is safe\n",
                      options.tolerance));
   }
+  note_overloads(program, result);
+  if (result.halted) return ExitStatus::no;
   return request.check ? report_expectations(diagram, result) : ExitStatus::done;
 }
 

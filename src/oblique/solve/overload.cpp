@@ -18,22 +18,6 @@ bool is_outside(double value) {
 
 }  // namespace
 
-double scale_for_peak(double peak) {
-  const double size = std::abs(peak) / (1 + kOverloadTolerance);
-  if (size == 0 || !std::isfinite(size)) return 1;
-  const int decade = static_cast<int>(std::floor(-std::log10(size)));
-  // The powers are whole numbers, so that factors are the nearest numbers to 0.2, 0.05, …
-  const auto step = [](int mantissa, int power) {
-    const double whole = std::pow(10.0, std::abs(power));
-    return power < 0 ? mantissa / whole : mantissa * whole;
-  };
-  double best = step(5, decade - 1);
-  for (const int mantissa : {1, 2, 5, 10}) {
-    if (step(mantissa, decade) * size <= 1) best = step(mantissa, decade);
-  }
-  return best;
-}
-
 OverloadWatch::OverloadWatch(const Program& program, Workspace& workspace, std::string file, bool halt)
     : program_(program),
       workspace_(workspace),

@@ -7,13 +7,10 @@
 #include <string>
 #include <vector>
 
+#include <oblique/diagram/rescale.h>
 #include <oblique/network/program.h>
 
 namespace oblique {
-
-/// An excess over the machine unit below this is no overload: a signal scaled to the full range reaches it,
-/// and passes it by the static error of its amplifier and the tolerance of the solver.
-inline constexpr double kOverloadTolerance = 1e-6;
 
 /// The largest magnitude that a signal had in a run.
 struct Peak {
@@ -29,10 +26,6 @@ struct OverloadRecord {
   Peak peak;
   double cure = 1;  ///< the factor that brings it back into the range: 1/2, 1/5, 1/10, …
 };
-
-/// The largest of 1, 1/2, 1/5, 1/10, 1/20, … (and 2, 5, 10 … for small ones) that brings `peak` to at most 1
-/// machine unit; an excess of kOverloadTolerance counts as none. 1 for a peak of 0.
-double scale_for_peak(double peak);
 
 /// Watches every signal of a run against the machine unit, as the overload lamps of a real machine do. Each
 /// step is looked at in its ends and its middle; an extreme between them is searched on the solver's
