@@ -114,20 +114,5 @@ TEST(Overload, WatchingDoesNotChangeTheRun) {
   EXPECT_EQ(quiet.statistics.steps, watched(made, 5).statistics.steps);
 }
 
-TEST(ScaleForPeak, GoesInStepsOfOneTwoFive) {
-  EXPECT_EQ(scale_for_peak(1), 1);
-  EXPECT_EQ(scale_for_peak(1 + 1e-7), 1);
-  EXPECT_EQ(scale_for_peak(-1.01), 0.5);
-  EXPECT_EQ(scale_for_peak(2), 0.5);
-  EXPECT_EQ(scale_for_peak(3.7), 0.2);
-  EXPECT_EQ(scale_for_peak(7), 0.1);
-  EXPECT_EQ(scale_for_peak(10), 0.1);
-  EXPECT_EQ(scale_for_peak(1999), 0.0005);
-  EXPECT_EQ(scale_for_peak(0.3), 2);
-  EXPECT_EQ(scale_for_peak(0.15), 5);
-  EXPECT_EQ(scale_for_peak(0.1), 10);
-  EXPECT_EQ(scale_for_peak(0), 1);
-}
-
 }  // namespace
 }  // namespace oblique

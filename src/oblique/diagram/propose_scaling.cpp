@@ -8,7 +8,14 @@
 namespace oblique {
 namespace {
 
-constexpr double kMostAmplification = 100;  ///< a signal far below the machine unit is noise
+/// A signal that needs more is the balance of others, such as the residual of a loop: noise, to be left
+/// alone.
+constexpr double kMostAmplification = 1000;
+
+double usable_scale(double peak) {
+  const double scale = scale_for_peak(peak);
+  return scale <= kMostAmplification ? scale : 1;
+}
 
 class Proposal {
  public:
@@ -37,7 +44,7 @@ class Proposal {
   void scale_as_a_whole(std::size_t b) {
     double factor = kMostAmplification;
     for (std::size_t o = 0; o < flat_.blocks[b].definition->outputs.size(); ++o) {
-      factor = std::min(factor, scale_for_peak(peak_of({b, o})));
+      factor = std::min(factor, usable_scale(peak_of({b, o})));
     }
     if (flat_.blocks[b].inputs.empty()) factor = std::min(factor, 1.0);
     finish(b, rules_[b].whole(factor));
@@ -49,7 +56,27 @@ class Proposal {
     marks_[b] = Mark::under_way;
     std::vector<double> inputs;
     for (const FlatInput& input : flat_.blocks[b].inputs) inputs.push_back(input_factor(input));
-    finish(b, rules_[b].from_inputs(inputs));
+    finish(b, largest_in_range(b, inputs));
+  }
+
+  /// As the inputs ask, or by a 1-2-5 step less where an output would leave the machine unit and that helps.
+  BlockScaling largest_in_range(std::size_t b, const std::vector<double>& inputs) const {
+    const BlockScaling asked = rules_[b].from_inputs(inputs);
+    if (is_in_range(b, asked)) return asked;
+    for (const double less : {0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001}) {
+      std::vector<double> smaller = inputs;
+      for (double& factor : smaller) factor *= less;
+      BlockScaling scaling = rules_[b].from_inputs(smaller);
+      if (is_in_range(b, scaling)) return scaling;
+    }
+    return asked;
+  }
+
+  bool is_in_range(std::size_t b, const BlockScaling& scaling) const {
+    for (std::size_t o = 0; o < scaling.outputs.size(); ++o) {
+      if (scaling.outputs[o] * peak_of({b, o}) > 1 + kOverloadTolerance) return false;
+    }
+    return true;
   }
 
   double input_factor(const FlatInput& input) {
@@ -64,7 +91,7 @@ class Proposal {
     }
     double peak = std::abs(input.constant);
     for (const FlatTerm& term : input.terms) peak += std::abs(term.weight) * peak_of(term.signal);
-    return std::min(scale_for_peak(peak), kMostAmplification);
+    return usable_scale(peak);
   }
 
   void finish(std::size_t b, BlockScaling scaling) {

@@ -117,7 +117,7 @@ class Writer {
       add_input(instance, definition.inputs[i], block.inputs[i], sign * scaling_[b].inputs[i]);
     }
     for (std::size_t k = 0; k < definition.parameters.size(); ++k) {
-      const double value = block.parameters[k] * scaling_[b].parameters[k];
+      const double value = scaled_number(block.parameters[k], scaling_[b].parameters[k], 1);
       if (value != definition.parameters[k].default_value) {
         instance.settings.push_back(number_setting(definition.parameters[k].name, value));
       }
@@ -147,17 +147,17 @@ class Writer {
     if (input.terms.empty() && port.default_value == input.constant && factor == 1) return;
     std::vector<WeightedSignal> terms;
     for (const FlatTerm& term : input.terms) {
-      terms.push_back({scaled_weight(term.weight, factor, factor_of(term.signal)), signal_name(term.signal)});
+      terms.push_back({scaled_number(term.weight, factor, factor_of(term.signal)), signal_name(term.signal)});
     }
     if (input.constant != 0 || terms.empty()) terms.push_back({input.constant * factor, reference()});
     if (terms.size() > 1 && !port.sum) terms = {{1, sum_of(instance.name + "_" + port.name, terms)}};
     instance.settings.push_back(wire_setting(port.name, terms));
   }
 
-  /// A weight as it is, or times a ratio, without the rounding of the ratio.
-  static double scaled_weight(double weight, double by, double over) {
-    if (by == over) return weight;
-    return std::strtod(fmt::format("{:.14g}", weight * by / over).c_str(), nullptr);
+  /// A number as it is, or times a ratio, without the rounding of the ratio.
+  static double scaled_number(double number, double by, double over) {
+    if (by == over) return number;
+    return std::strtod(fmt::format("{:.14g}", number * by / over).c_str(), nullptr);
   }
 
   /// A block of 1 machine unit, made when it is first asked for.
@@ -175,7 +175,9 @@ class Writer {
       BlockInstance one;
       one.name = reference_ = free_name("reference");
       one.type = name;
-      one.settings.push_back(number_setting(d.parameters[*parameter].name, 1));
+      if (d.parameters[*parameter].default_value != 1) {
+        one.settings.push_back(number_setting(d.parameters[*parameter].name, 1));
+      }
       helpers_.push_back(std::move(one));
       return reference_;
     }

@@ -23,10 +23,11 @@ using AmplitudeScaling = std::vector<BlockScaling>;
 
 /// Proposes an amplitude scaling from the peaks of a trial run; `peaks` are magnitudes of every output of
 /// every flat block, in their order [machine unit]. Blocks whose equations allow it are scaled as a whole, to
-/// the largest 1-2-5 step that keeps their outputs within the machine unit (up by 100 at most, and blocks
-/// without inputs never up). A multiplier and its like are fed by weights of ±1, and the factor that follows
-/// for their output goes into the weights of the wires it feeds. Blocks whose equations forbid scaling (a
-/// cosine) keep their signals.
+/// the largest 1-2-5 step that keeps their outputs within the machine unit (up by 1000 at most: what needs
+/// more is noise, and stays; blocks without inputs never up). A multiplier and its like are fed by weights of
+/// ±1, or less where their outputs would leave the machine unit, and the factor that follows for these goes
+/// into the weights of the wires they feed. Blocks whose equations forbid scaling (a cosine) keep their
+/// signals.
 AmplitudeScaling propose_scaling(const FlatDiagram& flat, std::span<const double> peaks);
 
 /// Writes a diagram in scaled signals: weights, initial values, constants and the scales of the outputs are
