@@ -47,6 +47,8 @@ std::string contents(const DiagramCheck& check) {
 
 std::string trial(const DiagramCheck& check) {
   const Analysis& analysis = check.analysis;
+  if (analysis.instants.empty())
+    return "\ntrial run: it could not start, so nothing is known about its loops\n";
   if (analysis.failure) {
     return fmt::format("\ntrial run: failed at t = {:.6g} s; what follows is about the time before\n",
                        analysis.failure->time());
@@ -194,8 +196,10 @@ std::string_view kind_name(LoopKind kind) {
 }
 
 std::string to_text(const DiagramCheck& check) {
-  std::string text = contents(check) + trial(check) + loops(check.analysis.loops) +
-                     stability(check.analysis.stability, check.program);
+  std::string text = contents(check) + trial(check);
+  if (!check.analysis.instants.empty()) {
+    text += loops(check.analysis.loops) + stability(check.analysis.stability, check.program);
+  }
   if (check.analysis.run) text += overloads(check) + scaling(check);
   return text;
 }

@@ -60,13 +60,14 @@ ExitStatus report_expectations(const Diagram& diagram, const Run& run) {
 }
 
 std::string table_of(const std::vector<StaticReading>& readings) {
-  Table table({"element", "output", "d/dt"});
-  table.add({"", "[machine unit]", "[machine unit/s]"});
+  Table table({"element", "", "output", "d/dt"});
+  table.add({"", "", "[machine unit]", "[machine unit/s]"});
   for (const StaticReading& reading : readings) {
-    table.add({reading.signal, short_number(reading.output),
-               reading.slope ? short_number(*reading.slope) : "", reading.at_rest ? "  at rest" : ""});
+    const char* const kind = !reading.slope ? "" : reading.at_rest ? "brought to rest" : "state";
+    table.add({reading.signal, kind, short_number(reading.output),
+               reading.slope ? short_number(*reading.slope) : ""});
   }
-  return table.text(1);
+  return table.text(2);
 }
 
 void check_request(const RunRequest& request) {

@@ -24,10 +24,11 @@ Analysis analyse(const Program& program, const FlatDiagram& diagram, RunOptions 
     analysis.failure = error;
   }
 
+  analysis.fastest_slopes.assign(program.n_states(), 0);
+  if (analysis.instants.empty()) return analysis;  // it did not even start
   const SignalFlow flow(diagram, program);
   analysis.stability = judge_stability(program, flow, analysis.instants);
   analysis.loops = explain_loops(program, flow, analysis.instants);
-  analysis.fastest_slopes.assign(program.n_states(), 0);
   Workspace workspace(program);
   std::vector<double> slopes(program.n_states());
   for (const Instant& instant : analysis.instants) {
