@@ -94,13 +94,23 @@ void add_run(CLI::App& app, Chosen& chosen) {
   verb->add_flag("--events", request->events, "list what switched, and when");
   verb->add_flag("--check", request->check,
                  "hold the run against the diagram's [expect]; status 1 where it fails");
+  verb->add_flag(
+      "--static-test", request->static_test,
+      "print every element's output and every integrator's input in initial condition; nothing is run");
+  verb->add_flag("--halt-on-overload", request->halt_on_overload,
+                 "end the run with status 1 where a signal first leaves ±1 machine unit");
   choose(verb, chosen, request, run_diagram);
 }
 
 void add_check(CLI::App& app, Chosen& chosen) {
   auto request = std::make_shared<CheckRequest>();
-  CLI::App* const verb = app.add_subcommand("check", "Check a diagram or a mechanism without running it");
+  CLI::App* const verb = app.add_subcommand(
+      "check",
+      "Check a diagram (wires, loops, stability, overloads, scaling, by a trial run) or a mechanism");
   verb->add_option("FILE", request->file, "diagram or mechanism file")->required();
+  verb->add_flag("--json", request->json, "print JSON instead of the tables (its keys: docs/check.md)");
+  verb->add_flag("--rescale", request->rescale, "write the diagram in scaled signals to the file of -o");
+  verb->add_option("-o,--output", request->output, "with --rescale: write NEW.toml")->type_name("NEW");
   choose(verb, chosen, request, check_file);
 }
 

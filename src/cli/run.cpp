@@ -6,6 +6,7 @@
 #include <oblique/network/program.h>
 #include <oblique/solve/expectation_check.h>
 #include <oblique/solve/run.h>
+#include <oblique/solve/static_test.h>
 
 #include "command.h"
 #include "terminal.h"
@@ -84,11 +85,53 @@ ExitStatus report_expectations(const Diagram& diagram, const Run& run) {
   return status;
 }
 
+std::string table_of(const std::vector<StaticReading>& readings) {
+  Table table({"element", "", "output", "d/dt"});
+  table.add({"", "", "[machine unit]", "[machine unit/s]"});
+  for (const StaticReading& reading : readings) {
+    const char* const kind = !reading.slope ? "" : reading.at_rest ? "brought to rest" : "state";
+    table.add({reading.signal, kind, short_number(reading.output),
+               reading.slope ? short_number(*reading.slope) : ""});
+  }
+  return table.text(2);
+}
+
+void check_request(const RunRequest& request) {
+  if (!request.output.empty()) check_output(request.output, ".csv");
+  if (!request.save.empty()) check_output(request.save, ".toml");
+  if (!request.static_test) return;
+  const char* const other = request.check              ? "--check"
+                            : request.halt_on_overload ? "--halt-on-overload"
+                            : !request.until.empty()   ? "--until"
+                            : !request.output.empty()  ? "-o"
+                            : !request.save.empty()    ? "--save"
+                            : !request.from.empty()    ? "--from"
+                            : request.events           ? "--events"
+                                                       : nullptr;
+  if (other == nullptr) return;
+  throw ReadError(Diagnostic{{},
+                             fmt::format("--static-test runs nothing, so {} has nothing to work on", other),
+                             "one of the two",
+                             {}});
+}
+
+void note_overloads(const Program& program, const Run& run) {
+  for (const OverloadRecord& o : run.overloads) {
+    const std::string& name = program.signal_names()[o.signal];
+    if (run.halted) {
+      note(fmt::format("overload: '{}' leaves ±1 machine unit at t = {:.10g} s; the run ends there\n", name,
+                       o.first));
+      return;
+    }
+    note(fmt::format("overload: '{}' leaves ±1 machine unit at t = {:.6g} s, peak {:.6g}, {:.6g} s in all\n",
+                     name, o.first, o.peak.value, o.duration));
+  }
+}
+
 }  // namespace
 
 ExitStatus run_diagram(const Session& session, const RunRequest& request) {
-  if (!request.output.empty()) check_output(request.output, ".csv");
-  if (!request.save.empty()) check_output(request.save, ".toml");
+  check_request(request);
   const BlockLibrary library = session.library();
   Diagram diagram = read_diagram(request.diagram);
   if (!request.until.empty()) diagram.run.until = quantity_option("--until", request.until, "s");
@@ -110,7 +153,13 @@ ExitStatus run_diagram(const Session& session, const RunRequest& request) {
 
   const FlatDiagram flat = flatten(diagram, library, overrides);
   const Program program(assemble(flat));
+  if (request.static_test) {
+    print(table_of(static_test(program, diagram.file)));
+    return ExitStatus::done;
+  }
   RunOptions options = options_of(diagram.run);
+  options.halt_on_overload = request.halt_on_overload;
+  options.watch_overloads = diagram.machine.profile != "ideal";
   if (!request.from.empty()) {
     options.from = parse_run_state(read_file(request.from), request.from);
     if (!(options.until > options.from->time)) {
@@ -156,6 +205,8 @@ ExitStatus run_diagram(const Session& session, const RunRequest& request) {
     note(fmt::format("warning: at a tolerance of {} Adams lets oscillations grow; 1e-5 or less is safe\n",
                      options.tolerance));
   }
+  note_overloads(program, result);
+  if (result.halted) return ExitStatus::no;
   return request.check ? report_expectations(diagram, result) : ExitStatus::done;
 }
 

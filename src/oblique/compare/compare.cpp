@@ -67,7 +67,7 @@ GainRun run_with_gain(const Mechanism& mechanism, const BlockLibrary& library, c
   std::size_t row = 0;
   RunOptions options = options_of(diagram.run);
   options.progress = progress;
-  options.on_sample = [&](double t, std::span<const double> states) {
+  options.on_sample = [&](double t, std::span<const double> states, std::span<const double>) {
     if (row++ % kRowsPerStabilityCheck == 0)
       checkpoints.emplace_back(t, std::vector(states.begin(), states.end()));
   };

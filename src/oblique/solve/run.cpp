@@ -46,7 +46,10 @@ class Runner {
         clock_(program, diagram.timeline, workspace_, begin_),
         system_(program, switching_),
         sampler_(program, diagram, options, workspace_, switching_),
-        states_(program.start()) {}
+        states_(program.start()) {
+    if (options.watch_overloads || options.halt_on_overload)
+      overloads_.emplace(program, workspace_, diagram.file, options.halt_on_overload);
+  }
 
   Run run() {
     if (options_.from) {
@@ -58,6 +61,7 @@ class Runner {
     follow_phases(begin_);
     sampler_.advance(
         begin_, [&](double, std::span<double> x) { std::copy(states_.begin(), states_.end(), x.begin()); });
+    if (overloads_) overloads_->restart(begin_, states_);
     if (program_.n_states() > 0) {
       integrate();
     } else {
@@ -66,6 +70,11 @@ class Runner {
     sampler_.result.events = switching_.records();
     sampler_.result.event_count = switching_.count();
     sampler_.result.state = state();
+    if (overloads_) {
+      sampler_.result.peaks = overloads_->peaks();
+      sampler_.result.overloads = overloads_->overloads();
+      sampler_.result.halted = overloads_->halted();
+    }
     return std::move(sampler_.result);
   }
 
@@ -131,18 +140,22 @@ class Runner {
     if (switching_.active()) event = switching_.search(from, t, states_at);
     const bool ends = event || (t >= stretch_end && t < options_.until);
     if (event) t = *event;
+    if (overloads_) t = overloads_->advance(t, states_at);
     sampler_.advance(t, states_at);
     sampler_.watch(from, t, states_at);
-    if (!ends || t >= options_.until) return false;
+    if (!ends || t >= options_.until || halted()) return false;
     states_at(t, states_);
     switching_.settle(t, states_);
     follow_phases(t);
+    if (overloads_) overloads_->restart(t, states_);
     return true;
   }
 
+  bool halted() const { return overloads_ && overloads_->halted(); }
+
   bool goes_on(double t) {
     end_ = t;
-    return t < options_.until && !(options_.interrupted && options_.interrupted());
+    return t < options_.until && !halted() && !(options_.interrupted && options_.interrupted());
   }
 
   void integrate() {
@@ -200,6 +213,7 @@ class Runner {
   PhaseClock clock_;
   SwitchedSystem system_;
   Sampler sampler_;
+  std::optional<OverloadWatch> overloads_;
   std::vector<double> states_;
 };
 

@@ -12,6 +12,7 @@
 #include <oblique/network/program.h>
 #include <oblique/solve/cvodes_solver.h>
 #include <oblique/solve/method.h>
+#include <oblique/solve/overload.h>
 #include <oblique/solve/run_state.h>
 #include <oblique/solve/switching.h>
 #include <oblique/solve/trajectory.h>
@@ -36,18 +37,14 @@ struct RunOptions {
   std::vector<double> extra_times;    ///< [s] ascending, within [0, until]: further rows, kept apart
   std::function<void(double fraction)>
       progress;  ///< called now and then with the part of the run that is done
-  std::function<void(double t, std::span<const double> states)>
-      on_sample;  ///< called at every row of the grid
+  std::function<void(double t, std::span<const double> states, std::span<const double> memories)>
+      on_sample;                  ///< called at every row of the grid
+  bool watch_overloads = false;   ///< look for overloads at every step, at the price of two evaluations each
+  bool halt_on_overload = false;  ///< end the run at the first overload; watches too
 };
 
 /// The options that a diagram states.
 RunOptions options_of(const RunSettings& settings);
-
-/// The largest magnitude that a signal had at the rows of a run.
-struct Peak {
-  double value = 0;  ///< with its sign [machine unit]
-  double time = 0;   ///< [s]
-};
 
 /// The extremes of an output over the run.
 struct Extremes {
@@ -63,7 +60,9 @@ struct Run {
   long event_count = 0;
   RunState state;                  ///< at the end: `until`, or earlier where the run was interrupted
   std::vector<Extremes> extremes;  ///< of every output, where asked for
-  std::vector<Peak> peaks;         ///< of every signal of the program, in its order
+  std::vector<Peak> peaks;         ///< of every signal of the program, in its order; at the rows, or watched
+  std::vector<OverloadRecord> overloads;  ///< the first one first, where they were watched
+  bool halted = false;                    ///< it ended at the first overload
   SolverStatistics statistics;
   MethodChoice method;  ///< with which method, and why; nothing for a diagram without states
   double seconds = 0;   ///< wall clock of the run itself, compilation apart

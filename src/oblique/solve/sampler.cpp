@@ -51,7 +51,7 @@ void Sampler::advance(double t, const StatesAt& states_at) {
     evaluate(time);
     if (grid_left && grid_time == time) {
       result.trajectory.add_row(row_);
-      if (options_.on_sample) options_.on_sample(time, states_);
+      if (options_.on_sample) options_.on_sample(time, states_, workspace_.memories());
       ++next_sample_;
     }
     if (extra_left && extra_time == time) {
