@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The chaotic diagrams, started where they do not move: at an equilibrium, which has a closed form.
+#include <array>
 #include <cmath>
 #include <ostream>
+#include <stdexcept>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -69,6 +71,60 @@ TEST_P(ChaoticDiagram, StaysAtItsEquilibrium) {
     EXPECT_NEAR(run.at(row, run.find("x").value()), e.x, allowed);
     EXPECT_NEAR(run.at(row, run.find("y").value()), e.y, allowed);
     EXPECT_NEAR(run.at(row, run.find("z").value()), e.z, allowed);
+  }
+}
+
+std::size_t state_of(const Program& program, std::string_view name) {
+  for (std::size_t i = 0; i < program.n_states(); ++i) {
+    if (program.states()[i].name == name) return i;
+  }
+  throw std::out_of_range(std::string(name));
+}
+
+class DeviationCircuit : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Chaos, DeviationCircuit,
+                         testing::Values("historical_lorenz", "historical_roessler", "historical_chua",
+                                         "lessons_aizawa"),
+                         [](const auto& tested) { return tested.param; });
+
+/// e′ = J e − (e·J e) e with the J of the Program, which is derived from the equations and not wired.
+TEST_P(DeviationCircuit, IsTheLinearisation) {
+  std::string file = GetParam();
+  file[file.find('_')] = '/';
+  const BlockLibrary library = BlockLibrary::shipped();
+  const FlatDiagram flat =
+      flatten(read_diagram(fmt::format("{}/diagrams/{}.toml", OBLIQUE_SOURCE_DIR, file)), library);
+  const Program program(assemble(flat));
+  Workspace workspace(program);
+  const std::array<std::size_t, 3> x{state_of(program, "x"), state_of(program, "y"), state_of(program, "z")};
+  const std::array<std::size_t, 3> e{state_of(program, "e1"), state_of(program, "e2"),
+                                     state_of(program, "e3")};
+  std::vector<double> states(program.n_states()), slopes(program.n_states());
+  const SparsePattern& pattern = program.jacobian_pattern();
+  std::vector<double> entries(pattern.entries());
+  for (const auto& at : {std::array{0.3, -0.5, 0.7}, std::array{-0.8, 0.2, 0.4}}) {
+    for (const auto& deviation : {std::array{0.6, -0.48, 0.64}, std::array{0.0, 0.6, 0.8}}) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        states[x[i]] = at[i];
+        states[e[i]] = deviation[i];
+      }
+      ASSERT_TRUE(program.derivatives(0, states.data(), slopes.data(), workspace));
+      ASSERT_TRUE(program.jacobian(0, states.data(), entries.data(), workspace));
+      std::array<double, 3> product{};
+      for (std::size_t j = 0; j < 3; ++j) {
+        for (auto k = pattern.column_starts[x[j]]; k < pattern.column_starts[x[j] + 1]; ++k) {
+          for (std::size_t i = 0; i < 3; ++i) {
+            const auto entry = static_cast<std::size_t>(k);
+            if (static_cast<std::size_t>(pattern.rows[entry]) == x[i])
+              product[i] += entries[entry] * deviation[j];
+          }
+        }
+      }
+      const double growth = product[0] * deviation[0] + product[1] * deviation[1] + product[2] * deviation[2];
+      for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_NEAR(slopes[e[i]], product[i] - growth * deviation[i], 1e-12) << i;  // rounding
+      }
+    }
   }
 }
 
