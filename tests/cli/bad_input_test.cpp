@@ -154,6 +154,16 @@ const std::vector<BadInput> kCases{
                "\"D\", speed = 1 }\n"),
      2,
      {"mobility", "1", "2 drives"}},
+    {"DriveAThousandMillionTimesFaster",
+     "check",
+     mechanism(
+         kCrank + "DE = { points = [\"D\", \"E\"], length = 1 }\n" +
+             "BC = { points = [\"B\", \"C\"], length = 4 }\nEC = { points = [\"E\", \"C\"], length = 4 }\n",
+         "slow = { turns = \"AB\", about = \"A\", speed = 1 }\nfast = { turns = \"DE\", about = \"D\", "
+         "speed = 1e9 }\n"),
+     2,
+     {"input.toml:12:1: drive 'fast' turns 1e+09 times in the 6.28319 s of the motion",
+      "expected 10000 turns", "remedy: a motion lasts one turn of the first drive"}},
     {"NoSketch",
      "solve",
      mechanism(kCrank + kCoupler + kRocker, "crank = { turns = \"AB\", about = \"A\", speed = 1 }\n",

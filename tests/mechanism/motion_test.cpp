@@ -62,6 +62,24 @@ TEST(Motion, NeedsADriveAndTwoPositions) {
   }
 }
 
+TEST(Motion, IsRefusedWhereADriveTurnsTooOftenToBeFollowed) {
+  const Mechanism mechanism = four_bar(1, 3.5, 3, 4, "1 rad/s", "0 deg", "[3, 3]");
+  try {
+    solve_motion(mechanism, std::array{0.0, 1e9});
+    FAIL();
+  } catch (const MechanismError& error) {
+    EXPECT_EQ(error.kind(), MechanismError::Kind::request);
+    EXPECT_THAT(error.what(),
+                HasSubstr("drive 'crank' turns 1.59e+08 times in the 1e+09 s of the motion; expected 10000 "
+                          "turns of the fastest drive at most"));
+  }
+  // seven thousand turns are followed; the closed form's phase carries a rounding of 4e4 rad
+  const double late = 7000 * 2 * kPi + 1;
+  const Motion motion = solve_motion(mechanism, std::array{1.0, late});
+  EXPECT_NEAR(motion.configurations[1].points[3].position.x(),
+              motion.configurations[0].points[3].position.x(), 1e-10);
+}
+
 // A drag link (the shortest bar is the frame): all bars turn fully with the crank.
 TEST(Motion, FollowsWholeTurnsOfAllBodiesHoweverFewThePositions) {
   const Mechanism mechanism = four_bar(3, 3.5, 3, 1, "1 rad/s", "0 deg", "[0, 2]");
