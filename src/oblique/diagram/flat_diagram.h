@@ -37,7 +37,7 @@ struct FlatBlock {
   std::vector<double> parameters;               ///< in the order of the definition
   std::vector<FlatInput> inputs;                ///< in the order of the definition
   double polarity = 1;                          ///< −1 where summers and integrators invert
-  Place place;
+  Place place;                                  ///< of the block of the diagram that it is or is a part of
 };
 
 /// A column of the trajectory.
