@@ -261,6 +261,8 @@ INSTANTIATE_TEST_SUITE_P(
                        "--until 5 mm: 'mm' is the wrong unit here; expected a quantity in 's'"},
         BadRequestCase{"UntilZero", "oblique run diagrams/lessons/circle.toml --until 0", 2,
                        "the run would end at t = 0 s"},
+        BadRequestCase{"UntilInfinity", "oblique run diagrams/lessons/circle.toml --until inf", 2,
+                       "the run would end at t = inf s; expected a finite time above 0"},
         BadRequestCase{"SetOfAnUnknownParameter",
                        "oblique run diagrams/lessons/triangle-side.toml --set c.gian=3", 2,
                        "remedy: did you mean 'gain'?"},
