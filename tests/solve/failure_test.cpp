@@ -141,6 +141,18 @@ TEST(BlowUp, OfExponentialGrowthIsFoundBeforeInfinity) {
   EXPECT_NEAR(f.time, 0.71, 0.01);  // e^(1000 t) leaves the range of a double at ln(1.8e308)/1000
 }
 
+// The decay takes steps of 1e-8 s at first, 1e-20 of the run.
+TEST(BlowUp, IsNoFastDecayAtTheHeadOfALongRun) {
+  const Compiled made(R"toml(one = { type = "constant" }
+lag = { type = "integrator", in = ["-1e6*lag", "1e6*one"], initial = 0.5 }
+slow = { type = "integrator", in = ["-1e-12*slow"], initial = 1 }
+)toml");
+  const auto result = testing::run_of(made, {.until = 1e12, .samples = 2});
+  EXPECT_NEAR(testing::row_values(result, "lag").back(), 1, 1e-7);
+  // e^−1, to the tolerance of 1e-8 in some hundred steps
+  EXPECT_NEAR(testing::row_values(result, "slow").back(), std::exp(-1), 1e-6);
+}
+
 TEST(NotFinite, SignalAtTheStart) {
   const BlockLibrary library = testing::shipped_blocks_and(
       "inverse", "[inputs]\nin = {}\n[outputs]\nout = {}\n[equations]\nout = \"1/in\"\n");
