@@ -219,7 +219,7 @@ TEST(ParseBlock, RefusesNamesThatEquationsCannotUse) {
       block_message("[inputs]\ntime = {}\n[outputs]\ny = {}\n[equations]\ny = 1\n"),
       HasSubstr(
           "b.toml:4:1: 'time' cannot be the name of an input: it is reserved; expected another name than "
-          "time, polarity, pi, inf, and, or, not"));
+          "time, polarity, in_initial, in_operate, in_hold, pi, inf, and, or, not"));
   EXPECT_THAT(
       block_message("[parameters]\nin = {}\n[outputs]\ny = {}\n[equations]\ny = 1\n"),
       HasSubstr(
@@ -285,8 +285,11 @@ TEST(ParseBlock, ChecksCasesAndStarts) {
               HasSubstr("'cases' is a number; expected [[cases]], an array of tables"));
   EXPECT_THAT(block_message(ports + "[start]\ny = 0\n"),
               HasSubstr("b.toml:12:1: [start] names 'y', which is no state and no unknown"));
-  EXPECT_THAT(block_message(ports + "\"der(z)\" = 1\n[start]\nz = \"x\"\n"),
-              HasSubstr("b.toml:13:6: start of 'z': there is no name 'x'"));
+  EXPECT_THAT(block_message(ports + "\"der(z)\" = 1\n[start]\nz = \"u\"\n"),
+              HasSubstr("b.toml:13:6: start of 'z': there is no name 'u'"));
+  EXPECT_EQ(block_message(ports + "\"der(z)\" = 1\n[start]\nz = \"x\"\n"), "") << "an input may be the start";
+  EXPECT_THAT(block_message(ports + "\"der(z)\" = 1\n[start]\nz = { guess = \"x\", at_rest = true }\n"),
+              HasSubstr("start of 'z': there is no name 'x'"));
   EXPECT_THAT(block_message(ports + "\"der(z)\" = 1\n[start]\nz = { gues = 1 }\n"),
               HasSubstr("unknown key 'gues' in start of 'z'\n  remedy: did you mean 'guess'?"));
 }

@@ -130,7 +130,7 @@ TEST(ParseDiagram, ChecksBlocks) {
       diagram_message("time = { type = \"adder\" }\n"),
       HasSubstr(
           "d.toml:4:1: 'time' cannot be the name of a block: it is reserved; expected another name than "
-          "time, polarity, pi, inf, and, or, not"));
+          "time, polarity, in_initial, in_operate, in_hold, pi, inf, and, or, not"));
   EXPECT_THAT(
       diagram_message("a-b = { type = \"adder\" }\n"),
       HasSubstr("'a-b' cannot be the name of a block; expected letters, digits and '_', with a letter or '_' "

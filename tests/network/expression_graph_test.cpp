@@ -130,7 +130,7 @@ TEST_F(ExpressionGraphTest, DifferentiatesEveryOperation) {
   const std::array point{kA, kB};
   // Each formula is a handful of roundings from the exact value.
   constexpr double kRounding = 1e-15;
-  EXPECT_EQ(kFormulas.size(), static_cast<std::size_t>(Op::hypot) - static_cast<std::size_t>(Op::variable))
+  EXPECT_EQ(kFormulas.size(), static_cast<std::size_t>(Op::hypot) - static_cast<std::size_t>(Op::memory))
       << "an operation has no formula here";
   for (const Formula& formula : kFormulas) {
     const NodeId node = g.apply(formula.op, x, y);

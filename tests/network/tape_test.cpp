@@ -50,7 +50,7 @@ class TapeTest : public ::testing::Test {
 
   /// The value of `root` by a tape on which the whole graph stands, with `roots` read from outside.
   double value(NodeId root, const std::vector<NodeId>& roots, std::size_t expected_instructions) {
-    TapeWriter writer(g, 3, uses_of(g, roots));
+    TapeWriter writer(g, 3, 0, {}, uses_of(g, roots));
     writer.write(all_of(g));
     const std::uint32_t slot = writer.slot(root);
     EXPECT_EQ(writer.instructions().size(), expected_instructions);
@@ -100,7 +100,7 @@ TEST_F(TapeTest, KeepsAProductThatOneSumReadsTwice) {
 TEST_F(TapeTest, DoesNotFuseAcrossStretches) {
   // Where the second stretch runs more often than the first, the product is there already.
   const NodeId sum = g.apply(Op::add, xy, z);
-  TapeWriter writer(g, 3, uses_of(g, {sum}));
+  TapeWriter writer(g, 3, 0, {}, uses_of(g, {sum}));
   const TapeRange first = writer.write(std::array{xy});
   const TapeRange second = writer.write(std::array{sum});
   EXPECT_EQ(first.end, 1U);
@@ -118,7 +118,7 @@ TEST(Tape, RunsEveryOperation) {
     ExpressionGraph g;
     const NodeId a = g.variable(0), b = g.variable(1);
     const NodeId root = g.apply(static_cast<Op>(code), a, b);
-    TapeWriter writer(g, 2, uses_of(g, {root}));
+    TapeWriter writer(g, 2, 0, {}, uses_of(g, {root}));
     writer.write(all_of(g));
     const std::uint32_t slot = writer.slot(root);
     EXPECT_EQ(run_all(writer, point)[slot], naive_value(g, root, point)) << code;
@@ -140,7 +140,7 @@ RC_GTEST_PROP(Tape, GivesWhatTheGraphMeans, ()) {
   std::vector<NodeId> roots{pool.back()};
   for (int i = *rc::gen::inRange(0, 3); i > 0; --i) roots.push_back(*rc::gen::elementOf(pool));
 
-  TapeWriter writer(g, 3, uses_of(g, roots));
+  TapeWriter writer(g, 3, 0, {}, uses_of(g, roots));
   const std::vector<NodeId> nodes = all_of(g);
   const auto cut = static_cast<std::ptrdiff_t>(*rc::gen::inRange<std::size_t>(0, nodes.size() + 1));
   writer.write(std::span(nodes).first(static_cast<std::size_t>(cut)));

@@ -26,11 +26,29 @@ std::string follower(double weight, double gain, const std::string& input) {
       gain, input);
 }
 
+/// The bare equations, from any start.
+class PlainSystem final : public OdeSystem {
+ public:
+  PlainSystem(const Program& program, Workspace& workspace) : program_(program), workspace_(workspace) {}
+  std::size_t size() const override { return program_.n_states(); }
+  const SparsePattern& pattern() const override { return program_.jacobian_pattern(); }
+  bool derivatives(double t, const double* x, double* dxdt) override {
+    return program_.derivatives(t, x, dxdt, workspace_);
+  }
+  bool jacobian(double t, const double* x, double* values) override {
+    return program_.jacobian(t, x, values, workspace_);
+  }
+
+ private:
+  const Program& program_;
+  Workspace& workspace_;
+};
+
 TEST(ServoAmplifier, AnswersAStepExponentially) {
   constexpr double kWeight = 10, kGain = 5, kU = 0.4, kEnd = 0.002;
   const Compiled made(follower(kWeight, kGain, "u = { type = \"constant\", value = 0.4 }"));
   Workspace workspace(made.program);
-  OperateSystem system(made.program, workspace);
+  PlainSystem system(made.program, workspace);
   const std::vector<double> zero{0};  // not at rest: the step is at t = 0
   CvodesSolver solver(system, 0, zero, kEnd, {1e-10, 1e-10, 100'000});
   constexpr double kLoop = 1 + kGain * kWeight;

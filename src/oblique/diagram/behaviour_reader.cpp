@@ -19,9 +19,16 @@ class BehaviourReader {
   }
 
   void read() {
+    read_memories();
     if (const Value* const cases = reader_.find("cases")) read_cases(*cases);
     read_behaviour(reader_, {}, "");
     read_starts();
+    if (const Value* const events = reader_.find("events")) read_events(*events);
+    if (const Value* const interval = reader_.find("check_interval")) {
+      definition_.check_interval = read_expression(*interval, "'check_interval'");
+      if (definition_.check_interval)
+        check_names(*definition_.check_interval, *interval, "'check_interval'", constants_);
+    }
   }
 
  private:
@@ -72,10 +79,7 @@ class BehaviourReader {
     }
     check_targets(written, which);
 
-    std::vector<std::string> names = constants_;
-    names.emplace_back("time");
-    for (const InputPort& input : definition_.inputs) names.push_back(input.name);
-    for (const OutputPort& output : definition_.outputs) names.push_back(output.name);
+    std::vector<std::string> names = signal_names();
     for (const Written& w : written) {
       if (std::find(names.begin(), names.end(), w.equation.target) == names.end())
         names.push_back(w.equation.target);
@@ -87,6 +91,103 @@ class BehaviourReader {
       behaviour.equations.push_back(std::move(w.equation));
     }
     definition_.behaviours.push_back(std::move(behaviour));
+  }
+
+  /// What every equation may name, apart from the targets of other equations.
+  std::vector<std::string> signal_names() const {
+    std::vector<std::string> names = constants_;
+    for (const std::string_view engine : {"time", "in_initial", "in_operate", "in_hold"})
+      names.emplace_back(engine);
+    for (const InputPort& input : definition_.inputs) names.push_back(input.name);
+    for (const OutputPort& output : definition_.outputs) names.push_back(output.name);
+    for (const MemoryRule& memory : definition_.memories) names.push_back(memory.name);
+    return names;
+  }
+
+  void read_memories() {
+    const Value* const table = reader_.table("memories");
+    if (table == nullptr) return;
+    for (const Entry& entry : table->entries) {
+      if (!check_name(entry.key, "a memory", place(entry.position), diagnostics_)) continue;
+      if (definition_.find_input(entry.key) || definition_.find_parameter(entry.key) ||
+          definition_.find_output(entry.key)) {
+        report(entry.position, fmt::format("the name '{}' is used twice", entry.key),
+               "different names for inputs, outputs, parameters and memories");
+        continue;
+      }
+      const std::string what = fmt::format("memory '{}'", entry.key);
+      auto initial = read_expression(entry.value, what);
+      if (!initial) continue;
+      check_names(*initial, entry.value, what, constants_);
+      definition_.memories.push_back({entry.key, std::move(*initial), place(entry.position)});
+    }
+  }
+
+  /// A state of every case, or a memory: what an event may change.
+  bool is_event_target(const std::string& name) const {
+    if (definition_.find_memory(name)) return true;
+    return std::all_of(
+        definition_.behaviours.begin(), definition_.behaviours.end(), [&](const Behaviour& behaviour) {
+          return std::any_of(behaviour.equations.begin(), behaviour.equations.end(),
+                             [&](const Equation& equation) {
+                               return equation.kind == Equation::Kind::derivative && equation.target == name;
+                             });
+        });
+  }
+
+  void read_events(const Value& events) {
+    if (events.kind != Value::Kind::array) {
+      report(events.position, fmt::format("'events' is {}", kind_name(events.kind)),
+             "[[events]], an array of tables");
+      return;
+    }
+    std::vector<std::string> names = signal_names();
+    for (const Behaviour& behaviour : definition_.behaviours) {
+      for (const Equation& equation : behaviour.equations) names.push_back(equation.target);
+    }
+    for (const Value& element : events.elements) {
+      TableReader reader(definition_.file, element, "[[events]]", diagnostics_);
+      if (element.kind == Value::Kind::table) read_event(reader, names);
+    }
+  }
+
+  void read_event(TableReader& reader, const std::vector<std::string>& names) {
+    EventRule rule;
+    rule.place = place(reader.table().position);
+    if (const Value* const when = reader.find("when")) {
+      if (auto condition = read_expression(*when, "'when'")) {
+        check_names(*condition, *when, "'when'", names);
+        rule.when = std::move(*condition);
+      }
+    } else {
+      reader.report("when", "[[events]] has no 'when'", "the condition that starts the event");
+    }
+    if (const Value* const where = reader.find("where")) {
+      rule.where = read_expression(*where, "'where'");
+      if (rule.where) check_names(*rule.where, *where, "'where'", constants_);
+    }
+    rule.at_start = reader.boolean("at_start").value_or(true);
+    const Value* const set = reader.table("set");
+    if (set == nullptr && reader.table().find("set") == nullptr) {
+      reader.report("set", "[[events]] has no 'set'", "what the event changes, { memory = \"value\" }");
+    }
+    for (const Entry& entry : set != nullptr ? set->entries : std::vector<Entry>{}) {
+      if (!is_event_target(entry.key)) {
+        std::vector<std::string> known;
+        for (const MemoryRule& memory : definition_.memories) known.push_back(memory.name);
+        report(entry.position,
+               fmt::format("'{}' is no memory and not in every case a state: no event can set it", entry.key),
+               {}, suggest(entry.key, known));
+        continue;
+      }
+      const std::string what = fmt::format("event's '{}'", entry.key);
+      auto value = read_expression(entry.value, what);
+      if (!value) continue;
+      check_names(*value, entry.value, what, names);
+      rule.actions.push_back({entry.key, std::move(*value), place(entry.value.position)});
+    }
+    reader.finish();
+    definition_.events.push_back(std::move(rule));
   }
 
   void read_equation(const Entry& entry, bool implicit, std::vector<Written>& written) {
@@ -116,10 +217,13 @@ class BehaviourReader {
   }
 
   bool check_target(const std::string& target, const Entry& entry) {
-    if (definition_.find_input(target) || definition_.find_parameter(target)) {
+    if (definition_.find_input(target) || definition_.find_parameter(target) ||
+        definition_.find_memory(target)) {
       report(entry.position,
              fmt::format("'{}' is {} and cannot have an equation", target,
-                         definition_.find_input(target) ? "an input" : "a parameter"),
+                         definition_.find_input(target)       ? "an input"
+                         : definition_.find_parameter(target) ? "a parameter"
+                                                              : "a memory"),
              "an output or another name");
       return false;
     }
@@ -181,6 +285,16 @@ class BehaviourReader {
     return rule;
   }
 
+  bool is_implicit(const std::string& target) const {
+    return std::any_of(
+        definition_.behaviours.begin(), definition_.behaviours.end(), [&](const Behaviour& behaviour) {
+          return std::any_of(behaviour.equations.begin(), behaviour.equations.end(),
+                             [&](const Equation& equation) {
+                               return equation.kind == Equation::Kind::implicit && equation.target == target;
+                             });
+        });
+  }
+
   StartRule read_start(const std::string& target, const Value& written) {
     StartRule rule = usual_start(target);
     const std::string what = fmt::format("start of '{}'", target);
@@ -193,7 +307,12 @@ class BehaviourReader {
     }
     if (value == nullptr) return rule;
     if (auto expression = read_expression(*value, what)) {
-      check_names(*expression, *value, what, constants_);
+      std::vector<std::string> names = constants_;
+      if (!rule.at_rest && !is_implicit(target)) {
+        for (const InputPort& input : definition_.inputs) names.push_back(input.name);
+        for (const std::string_view mode : {"in_initial", "in_operate", "in_hold"}) names.emplace_back(mode);
+      }
+      check_names(*expression, *value, what, names);
       rule.value = std::move(*expression);
     }
     return rule;

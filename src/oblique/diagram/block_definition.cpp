@@ -146,7 +146,8 @@ class BlockReader {
   }
 
   void read_composite(const Value& blocks) {
-    for (const std::string_view key : {"equations", "implicit", "cases", "start"}) {
+    for (const std::string_view key :
+         {"equations", "implicit", "cases", "start", "memories", "events", "check_interval"}) {
       if (reader_.find(key) == nullptr) continue;
       reader_.report(key, fmt::format("a block with [blocks] has '{}' too", key), "one or the other",
                      "put the equations into a block file of their own");
@@ -203,6 +204,10 @@ std::optional<std::size_t> BlockDefinition::find_output(std::string_view output)
 
 std::optional<std::size_t> BlockDefinition::find_parameter(std::string_view parameter) const {
   return find_named(parameters, parameter);
+}
+
+std::optional<std::size_t> BlockDefinition::find_memory(std::string_view memory) const {
+  return find_named(memories, memory);
 }
 
 BlockDefinition parse_block(std::string_view text, std::string file, std::string name) {

@@ -43,8 +43,9 @@ struct ParameterDefinition {
   std::string range() const;        ///< "a number above 0 [Hz]"
 };
 
-/// One equation of a primitive block; names in it are inputs, outputs, parameters, other targets, `time`, and
-/// `polarity` (−1 on a machine whose summers and integrators invert, else 1).
+/// One equation of a primitive block; names in it are inputs, outputs, parameters, other targets, memories,
+/// `time`, `polarity` (−1 on a machine whose summers and integrators invert, else 1), and the mode of
+/// operation: `in_initial`, `in_operate`, `in_hold` (one of them 1, the others 0).
 struct Equation {
   enum class Kind {
     assignment,  ///< target = expression
@@ -66,9 +67,32 @@ struct Behaviour {
 /// Where a state starts, or from where an implicit unknown is sought.
 struct StartRule {
   std::string target;
-  Expression value;  ///< of parameters
+  Expression value;  ///< of parameters and, for a state not brought to rest, of inputs
   bool at_rest =
       false;  ///< a state brought to rest (zero derivative) before the clock starts; `value` is the guess
+};
+
+/// A value that a block keeps until an event changes it.
+struct MemoryRule {
+  std::string name;
+  Expression initial;  ///< of parameters
+  Place place;
+};
+
+/// What an event does to one memory or state; the value is that of the moment before the event.
+struct EventAction {
+  std::string target;
+  Expression value;
+  Place place;
+};
+
+/// What happens when a condition becomes true.
+struct EventRule {
+  Expression when;
+  std::vector<EventAction> actions;
+  bool at_start = true;  ///< a condition that holds when the run starts counts as having become true
+  std::optional<Expression> where;  ///< of parameters: there is no such event where it is 0
+  Place place;
 };
 
 /// One block of a diagram or of a composite as its file has it. Which key of `settings` is an input and which
@@ -98,6 +122,9 @@ struct BlockDefinition {
 
   std::vector<Behaviour> behaviours;
   std::vector<StartRule> starts;
+  std::vector<MemoryRule> memories;
+  std::vector<EventRule> events;
+  std::optional<Expression> check_interval;  ///< [s] of parameters: how often at least its switches look
 
   std::vector<BlockInstance> blocks;
   bool inverting =
@@ -110,6 +137,7 @@ struct BlockDefinition {
   std::optional<std::size_t> find_input(std::string_view input) const;
   std::optional<std::size_t> find_output(std::string_view output) const;
   std::optional<std::size_t> find_parameter(std::string_view parameter) const;
+  std::optional<std::size_t> find_memory(std::string_view memory) const;
 };
 
 /// Reads one block file (oblique-block/1). Checks all that one file can tell: kinds of keys, ranges, that

@@ -12,7 +12,8 @@
 namespace oblique {
 namespace {
 
-constexpr std::array<std::string_view, 7> kReserved{"time", "polarity", "pi", "inf", "and", "or", "not"};
+constexpr std::array<std::string_view, 10> kReserved{
+    "time", "polarity", "in_initial", "in_operate", "in_hold", "pi", "inf", "and", "or", "not"};
 
 bool is_list_of_strings(const Value& value) {
   return value.kind == Value::Kind::array &&

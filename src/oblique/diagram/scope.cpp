@@ -99,6 +99,7 @@ std::optional<Source> find_signal(const Scope& scope, std::string_view path, Sou
     if (rest.empty()) {
       if (outputs.size() == 1) return source;
       std::vector<std::string> ports;
+      ports.reserve(outputs.size());
       for (const OutputPort& output : outputs) ports.push_back(fmt::format("{}.{}", path, output.name));
       return report(fmt::format("'{}' has {} outputs", path, outputs.size()),
                     fmt::format("one of {}", fmt::join(ports, ", ")), {});

@@ -96,6 +96,7 @@ std::optional<Term> read_term(const Scope& scope, const Value& value, const std:
   if (!all_known) return std::nullopt;
   if (signals.size() > 1) {
     std::vector<std::string> names;
+    names.reserve(signals.size());
     for (const Expression* const signal : signals) names.push_back(signal->name);
     return report(
         1, fmt::format("'{}' names {} signals ({})", value.text, signals.size(), fmt::join(names, ", ")),
@@ -142,7 +143,7 @@ std::optional<Constant> read_parameter(const Scope& scope, const Value& value,
       if (scope.composite != nullptr) {
         for (const ParameterDefinition& own : scope.composite->parameters) known.push_back(own.name);
       }
-      const bool signal = scope.index.count(name->name) > 0;
+      const bool signal = scope.index.contains(name->name);
       diagnostics.add(
           {{scope.file, position_in(value, name->column)},
            fmt::format("{}: '{}' is {}", subject, name->name, signal ? "a signal" : "no known constant"),

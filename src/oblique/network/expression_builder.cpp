@@ -2,6 +2,7 @@
 #include <oblique/network/expression_builder.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -36,6 +37,8 @@ std::optional<Op> smooth_operation(Function function) {
       return Op::sqrt;
     case Function::hypot:
       return Op::hypot;
+    case Function::noise:
+      return Op::noise;
     default:
       return std::nullopt;
   }
@@ -60,64 +63,200 @@ std::optional<Op> smooth_operation(Expression::Kind kind) {
   }
 }
 
+/// A tree of the operands of an n-ary function: f(a, f(b, …)).
+Expression call(Function function, std::vector<Expression> operands) {
+  Expression e;
+  e.kind = Expression::Kind::call;
+  e.function = function;
+  e.operands = std::move(operands);
+  return e;
+}
+
+Expression negative(const Expression& of) {
+  Expression e;
+  e.kind = Expression::Kind::negate;
+  e.operands = {of};
+  return e;
+}
+
 class Builder {
  public:
-  Builder(ExpressionGraph& graph, const std::function<NodeId(std::string_view)>& node_of_name)
-      : graph_(graph), node_of_name_(node_of_name) {}
+  Builder(ExpressionGraph& graph, ExpressionContext& context) : graph_(graph), context_(context) {}
 
   NodeId build(const Expression& e) {
     using Kind = Expression::Kind;
     if (e.kind == Kind::number) return graph_.constant(e.number);
     if (e.kind == Kind::name) return name(e);
-    if (e.kind == Kind::call && e.function == Function::if_) {
-      const NodeId condition = build(e.operands[0]);
-      if (!graph_.is_constant(condition)) refuse(e, "if");
-      return build(e.operands[graph_[condition].value != 0 ? 1 : 2]);
-    }
-    std::vector<NodeId> operands;
-    operands.reserve(e.operands.size());
-    for (const Expression& operand : e.operands) operands.push_back(build(operand));
-    const auto op = e.kind == Kind::call ? smooth_operation(e.function) : smooth_operation(e.kind);
-    if (op) return graph_.apply(*op, operands[0], operands.size() > 1 ? operands[1] : 0);
-    return constant_of(e, operands);
+    if (is_comparison(e.kind) || is_logical(e.kind)) return condition(e);
+    if (e.kind == Kind::call) return function(e);
+    return smooth(*smooth_operation(e.kind), e);
   }
 
  private:
+  using Change = ExpressionContext::Change;
+
+  static bool is_logical(Expression::Kind kind) {
+    return kind == Expression::Kind::logical_and || kind == Expression::Kind::logical_or ||
+           kind == Expression::Kind::logical_not;
+  }
+
   NodeId name(const Expression& e) {
     if (e.name == "pi") return graph_.constant(std::numbers::pi);
     if (e.name == "inf") return graph_.constant(std::numeric_limits<double>::infinity());
-    return node_of_name_(e.name);
+    return context_.node_of_name(e.name);
   }
 
-  /// What switches, folded to a constant; the operands must be constants.
-  NodeId constant_of(const Expression& e, const std::vector<NodeId>& operands) {
-    Expression folded = e;
-    for (std::size_t i = 0; i < operands.size(); ++i) {
-      if (!graph_.is_constant(operands[i])) {
-        refuse(e, e.kind == Expression::Kind::call ? functions()[static_cast<std::size_t>(e.function)].name
-                                                   : std::string_view("a condition"));
+  NodeId smooth(Op op, const Expression& e) {
+    const NodeId a = build(e.operands[0]);
+    return graph_.apply(op, a, e.operands.size() > 1 ? build(e.operands[1]) : 0);
+  }
+
+  NodeId function(const Expression& e) {
+    if (const auto op = smooth_operation(e.function)) return smooth(*op, e);
+    if (e.function == Function::weights) return graph_.constant(context_.weights(e));
+    if (e.function == Function::table && change_of(e.operands[0], context_) != Change::never)
+      return context_.interpolated(e);
+    if (change_of(e, context_) == Change::never && e.function != Function::if_) return constant_of(e);
+    const std::vector<Expression>& x = e.operands;
+    switch (e.function) {
+      case Function::abs:
+        return choose(greater(x[0], zero()), x[0], negative(x[0]));
+      case Function::sign:
+        return graph_.apply(Op::select, greater(x[0], zero()), graph_.constant(1), graph_.constant(-1));
+      case Function::step:
+        return greater(x[0], zero());
+      case Function::min:
+      case Function::max:
+        return extreme(e);
+      case Function::clip:
+        return graph_.apply(Op::select, greater(x[0], x[2]), build(x[2]),
+                            choose(greater(x[1], x[0]), x[1], x[0]));
+      case Function::deadzone:
+        return graph_.apply(
+            Op::select, greater(x[0], x[1]), graph_.apply(Op::subtract, build(x[0]), build(x[1])),
+            graph_.apply(Op::select, greater(negative(x[1]), x[0]),
+                         graph_.apply(Op::add, build(x[0]), build(x[1])), graph_.constant(0)));
+      case Function::if_:
+        return choose(condition(x[0]), x[1], x[2]);
+      default:
+        return constant_of(e);
+    }
+  }
+
+  NodeId choose(NodeId chosen, const Expression& a, const Expression& b) {
+    if (graph_.is_constant(chosen)) return build(graph_[chosen].value != 0 ? a : b);
+    const NodeId first = build(a);
+    return graph_.apply(Op::select, chosen, first, build(b));
+  }
+
+  NodeId extreme(const Expression& e) {
+    if (e.operands.size() == 1) return build(e.operands[0]);
+    const Expression& first = e.operands[0];
+    Expression rest = e.operands[1];
+    if (e.operands.size() > 2) rest = call(e.function, {e.operands.begin() + 1, e.operands.end()});
+    const bool largest = e.function == Function::max;
+    return choose(largest ? greater(first, rest) : greater(rest, first), first, rest);
+  }
+
+  // --- conditions: nodes that are 1 or 0 and change with events only
+  // ---------------------------------------------------------------------------------------------------------
+
+  NodeId condition(const Expression& e) {
+    using Kind = Expression::Kind;
+    const auto one = [&] { return graph_.constant(1); };
+    switch (e.kind) {
+      case Kind::logical_and:
+        return graph_.apply(Op::multiply, condition(e.operands[0]), condition(e.operands[1]));
+      case Kind::logical_or: {
+        const NodeId neither =
+            graph_.apply(Op::multiply, inverse(condition(e.operands[0])), inverse(condition(e.operands[1])));
+        return inverse(neither);
       }
+      case Kind::logical_not:
+        return inverse(condition(e.operands[0]));
+      case Kind::greater:
+        return greater(e.operands[0], e.operands[1]);
+      case Kind::less:
+        return greater(e.operands[1], e.operands[0]);
+      case Kind::greater_equal:
+        return inverse(greater(e.operands[1], e.operands[0]));
+      case Kind::less_equal:
+        return inverse(greater(e.operands[0], e.operands[1]));
+      case Kind::equal:
+      case Kind::not_equal: {
+        if (change_of(e, context_) == Change::always) refuse_equality(e);
+        const NodeId same = graph_.apply(Op::equal, build(e.operands[0]), build(e.operands[1]));
+        return e.kind == Kind::equal ? same : inverse(same);
+      }
+      default:
+        break;
+    }
+    if (change_of(e, context_) == Change::always) refuse_number(e);
+    return graph_.apply(Op::subtract, one(), graph_.apply(Op::equal, build(e), graph_.constant(0)));
+  }
+
+  NodeId inverse(NodeId condition) { return graph_.apply(Op::subtract, graph_.constant(1), condition); }
+
+  NodeId greater(const Expression& left, const Expression& right) {
+    const Change changes = std::max(change_of(left, context_), change_of(right, context_));
+    if (changes != Change::always) return graph_.apply(Op::less, build(right), build(left));
+    // Nothing that changes is beyond infinity.
+    for (const Expression* const side : {&left, &right}) {
+      if (change_of(*side, context_) != Change::never) continue;
+      const double value = graph_[build(*side)].value;
+      if (std::isinf(value)) return graph_.constant((side == &left) == (value > 0) ? 1 : 0);
+    }
+    return context_.greater(left, right);
+  }
+
+  static Expression zero() { return {}; }
+
+  /// What switches, folded to a constant; the operands must be constants.
+  NodeId constant_of(const Expression& e) {
+    Expression folded = e;
+    for (std::size_t i = 0; i < e.operands.size(); ++i) {
       folded.operands[i] = Expression{};
-      folded.operands[i].number = graph_[operands[i]].value;
+      folded.operands[i].number = graph_[build(e.operands[i])].value;
     }
     return graph_.constant(evaluate(folded));
   }
 
-  [[noreturn]] static void refuse(const Expression& e, std::string_view what) {
-    throw ExpressionError{e.column, fmt::format("{} of a varying signal switches inside a step", what),
-                          "a smooth function, or constant arguments",
-                          "this version has no events: use smooth functions of the signals"};
+  [[noreturn]] static void refuse_equality(const Expression& e) {
+    throw ExpressionError{e.column,
+                          "a varying signal equals another for no length of time",
+                          "'<' or '>' of signals; '==' of parameters and memories",
+                          {}};
+  }
+
+  [[noreturn]] static void refuse_number(const Expression& e) {
+    throw ExpressionError{e.column,
+                          fmt::format("'{}' varies and is no condition", to_string(e)),
+                          "a comparison, such as 'x > 0.5'",
+                          {}};
   }
 
   ExpressionGraph& graph_;
-  const std::function<NodeId(std::string_view)>& node_of_name_;
+  ExpressionContext& context_;
 };
 
 }  // namespace
 
-NodeId build_expression(ExpressionGraph& graph, const Expression& expression,
-                        const std::function<NodeId(std::string_view)>& node_of_name) {
-  return Builder(graph, node_of_name).build(expression);
+ExpressionContext::Change change_of(const Expression& expression, const ExpressionContext& context) {
+  using Change = ExpressionContext::Change;
+  if (expression.kind == Expression::Kind::number) return Change::never;
+  if (expression.kind == Expression::Kind::name) {
+    const bool number = expression.name == "pi" || expression.name == "inf";
+    return number ? Change::never : context.change_of(expression.name);
+  }
+  if (expression.kind == Expression::Kind::call && expression.function == Function::weights)
+    return Change::never;
+  Change most = Change::never;
+  for (const Expression& operand : expression.operands) most = std::max(most, change_of(operand, context));
+  return most;
+}
+
+NodeId build_expression(ExpressionGraph& graph, const Expression& expression, ExpressionContext& context) {
+  return Builder(graph, context).build(expression);
 }
 
 }  // namespace oblique

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <functional>
+#include <cstdint>
 #include <string_view>
 
 #include <oblique/network/expression_graph.h>
@@ -9,10 +9,35 @@
 
 namespace oblique {
 
-/// Adds an expression to a graph; `node_of_name` gives the nodes of its names (never asked for `pi` and
-/// `inf`). Conditions and switching functions (min, sign, …) must have constant arguments and vanish here: of
-/// a varying signal they would be a kink inside a step. Throws ExpressionError where one has not.
-NodeId build_expression(ExpressionGraph& graph, const Expression& expression,
-                        const std::function<NodeId(std::string_view)>& node_of_name);
+/// What the names of an expression mean: the block around it.
+class ExpressionContext {
+ public:
+  virtual ~ExpressionContext() = default;
+
+  /// The node of a name (never asked for `pi` and `inf`).
+  virtual NodeId node_of_name(std::string_view name) = 0;
+  /// When the value of a name can change: at no time, with events, at any time.
+  enum class Change { never, with_events, always };
+  virtual Change change_of(std::string_view name) const = 0;
+  /// A switch: the memory that is 1 where left > right, else 0. At least one side changes at any time.
+  virtual NodeId greater(const Expression& left, const Expression& right) = 0;
+  /// The function through points: the parameter that holds them, or numbers.
+  virtual NodeId interpolated(const Expression& call) = 0;
+  /// Sum of the magnitudes of the weights at an input.
+  virtual double weights(const Expression& call) const = 0;
+};
+
+/// How an expression changes: as the quickest of its names.
+ExpressionContext::Change change_of(const Expression& expression, const ExpressionContext& context);
+
+/// Adds an expression to a graph. What switches with a signal is put together from switches of the context
+/// and the smooth pieces on both sides, each of which goes on past the switch. Throws ExpressionError.
+NodeId build_expression(ExpressionGraph& graph, const Expression& expression, ExpressionContext& context);
+
+/// Whether an expression only decides something: a switch hides the values of its operands, so that nothing
+/// algebraic passes through it.
+inline bool is_comparison(Expression::Kind kind) {
+  return kind >= Expression::Kind::less && kind <= Expression::Kind::not_equal;
+}
 
 }  // namespace oblique

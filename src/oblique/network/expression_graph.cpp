@@ -7,12 +7,15 @@
 #include <limits>
 #include <map>
 
+#include <oblique/text/expression.h>
+
 namespace oblique {
 
 int operand_count(Op op) {
   switch (op) {
     case Op::constant:
     case Op::variable:
+    case Op::memory:
       return 0;
     case Op::add:
     case Op::subtract:
@@ -21,7 +24,20 @@ int operand_count(Op op) {
     case Op::power:
     case Op::atan2:
     case Op::hypot:
+    case Op::noise:
+    case Op::noise_slope:
+    case Op::gate:
+    case Op::less:
+    case Op::less_equal:
+    case Op::equal:
+    case Op::table_slope:
+    case Op::table_end:
+    case Op::table_begin:
+    case Op::table_segment:
       return 2;
+    case Op::select:
+    case Op::table_value:
+      return 3;
     default:
       return 1;
   }
@@ -63,23 +79,41 @@ double evaluate(Op op, double a, double b) {
       return std::sqrt(a);
     case Op::hypot:
       return std::hypot(a, b);
-    case Op::constant:
-    case Op::variable:
+    case Op::noise:
+      return noise(a, b, 0);
+    case Op::noise_slope:
+      return noise(a, b, 1);
+    case Op::gate:
+      return a == 0 ? 0 : a * b;
+    case Op::less:
+      return a < b ? 1 : 0;
+    case Op::less_equal:
+      return a <= b ? 1 : 0;
+    case Op::equal:
+      return a == b ? 1 : 0;
+    default:
       break;
   }
   return std::numeric_limits<double>::quiet_NaN();
 }
 
+double select(double chosen, double b, double c) {
+  if (chosen == 1) return b;
+  if (chosen == 0) return c;
+  return c + chosen * (b - c);
+}
+
 std::size_t ExpressionGraph::Hash::operator()(const Key& key) const {
   std::uint64_t h =
       (static_cast<std::uint64_t>(key.a) << 32) ^ key.b ^ (static_cast<std::uint64_t>(key.op) << 58);
+  h ^= static_cast<std::uint64_t>(key.c) * 0xD6E8FEB86659FD93ULL;
   h ^= key.bits * 0x9E3779B97F4A7C15ULL;
   h = (h ^ (h >> 31)) * 0xBF58476D1CE4E5B9ULL;
   return static_cast<std::size_t>(h ^ (h >> 29));
 }
 
 NodeId ExpressionGraph::intern(const Node& node) {
-  Key key{node.op, node.a, node.b, node.variable};
+  Key key{node.op, node.a, node.b, node.c, node.variable};
   if (node.op == Op::constant) key.bits = std::bit_cast<std::uint64_t>(node.value);
   const auto [found, inserted] = index_.try_emplace(key, static_cast<NodeId>(nodes_.size()));
   if (inserted) nodes_.push_back(node);
@@ -96,12 +130,28 @@ NodeId ExpressionGraph::variable(std::uint32_t number) {
   Node node;
   node.op = Op::variable;
   node.variable = number;
+  node.continuous = true;
   return intern(node);
 }
 
-NodeId ExpressionGraph::simplified(Op op, NodeId a, NodeId b, bool& done) {
+NodeId ExpressionGraph::memory(std::uint32_t number) {
+  Node node;
+  node.op = Op::memory;
+  node.variable = number;
+  return intern(node);
+}
+
+NodeId ExpressionGraph::simplified(Op op, NodeId a, NodeId b, NodeId c, bool& done) {
   done = true;
   switch (op) {
+    case Op::select:
+      if (is_constant(a)) return nodes_[a].value != 0 ? b : c;
+      if (b == c) return b;
+      break;
+    case Op::gate:
+      if (is_constant(a, 0) || is_constant(b, 0)) return constant(0);
+      if (is_constant(b)) return apply(Op::multiply, a, b);
+      break;
     case Op::add:
       if (is_constant(a, 0)) return b;
       if (is_constant(b, 0)) return a;
@@ -146,23 +196,43 @@ NodeId ExpressionGraph::simplified(Op op, NodeId a, NodeId b, bool& done) {
   return 0;
 }
 
-NodeId ExpressionGraph::apply(Op op, NodeId a, NodeId b) {
-  const bool binary = operand_count(op) == 2;
-  if (!binary) b = 0;
-  if (is_constant(a) && (!binary || is_constant(b))) {
+NodeId ExpressionGraph::apply(Op op, NodeId a, NodeId b, NodeId c) {
+  const int operands = operand_count(op);
+  if (operands < 2) b = 0;
+  if (operands < 3) c = 0;
+  const bool has_value = op < Op::table_value && op != Op::select;  // of constants; tables come with the tape
+  if (has_value && is_constant(a) && (operands < 2 || is_constant(b))) {
     return constant(evaluate(op, nodes_[a].value, nodes_[b].value));
   }
   // A product keeps its constant in front and a commutative pair has one order, so that equal ones meet.
   const bool commutative = op == Op::add || op == Op::multiply || op == Op::hypot;
   if (commutative && !is_constant(a) && (is_constant(b) || b < a)) std::swap(a, b);
   bool done = false;
-  const NodeId simple = simplified(op, a, b, done);
+  const NodeId simple = simplified(op, a, b, c, done);
   if (done) return simple;
   Node node;
   node.op = op;
   node.a = a;
   node.b = b;
+  node.c = c;
+  for (int i = 0; i < operands; ++i) node.continuous = node.continuous || nodes_[node.operand(i)].continuous;
   return intern(node);
+}
+
+/// Below a `select` that is closed the derivative is 0, even where the branch has no value there.
+NodeId ExpressionGraph::passed_on(NodeId adjoint, NodeId id, int operand) {
+  const Node node = nodes_[id];  // a copy: new nodes may move the array
+  if (node.op == Op::select && operand > 0) {
+    return operand == 1 ? apply(Op::select, node.a, adjoint, constant(0))
+                        : apply(Op::select, node.a, constant(0), adjoint);
+  }
+  const NodeId slope = partial(id, operand);
+  const Op by = nodes_[adjoint].op;
+  const bool gated = by == Op::select || by == Op::gate;
+  // What has a value everywhere needs no gate.
+  const Op op = node.op;
+  const bool safe = op == Op::add || op == Op::subtract || op == Op::negate || is_constant(slope);
+  return apply(gated && !safe ? Op::gate : Op::multiply, adjoint, slope);
 }
 
 NodeId ExpressionGraph::partial(NodeId id, int operand) {
@@ -211,8 +281,12 @@ NodeId ExpressionGraph::partial(NodeId id, int operand) {
       return apply(Op::divide, constant(0.5), id);
     case Op::hypot:
       return apply(Op::divide, first ? a : b, id);
-    case Op::constant:
-    case Op::variable:
+    case Op::noise:
+      return first ? apply(Op::noise_slope, a, b) : constant(0);
+    case Op::table_value:
+      return first ? apply(Op::table_slope, b, node.c) : constant(0);
+    default:  // switches, steps and tables: nothing but events changes them; of `noise_slope` nothing is
+              // asked
       break;
   }
   return constant(0);
@@ -232,9 +306,9 @@ std::vector<std::pair<std::uint32_t, NodeId>> ExpressionGraph::gradient(NodeId r
       continue;
     }
     for (int operand = 0; operand < operand_count(node.op); ++operand) {
-      const NodeId child = operand == 0 ? node.a : node.b;
-      if (is_constant(child)) continue;
-      const NodeId contribution = apply(Op::multiply, adjoint, partial(id, operand));
+      const NodeId child = node.operand(operand);
+      if (!nodes_[child].continuous) continue;
+      const NodeId contribution = passed_on(adjoint, id, operand);
       const auto [found, inserted] = adjoints.try_emplace(child, contribution);
       if (!inserted) found->second = apply(Op::add, found->second, contribution);
     }

@@ -14,6 +14,7 @@ using NodeId = std::uint32_t;
 enum class Op : std::uint8_t {
   constant,
   variable,
+  memory,  ///< held between events: no derivative
   add,
   subtract,
   multiply,
@@ -31,18 +32,34 @@ enum class Op : std::uint8_t {
   log,
   sqrt,
   hypot,
+  noise,
+  noise_slope,  ///< d noise/dx
+  select,       ///< a ≠ 0: b, else c; between b and c where 0 < a < 1 (a sliding switch)
+  gate,         ///< a·b, and 0 where a is, even if b is no number: the way a derivative passes `select`
+  less,         ///< 1 or 0; these three are for what changes with events only
+  less_equal,
+  equal,
+  table_value,    ///< straight line of segment b of the table c at a
+  table_slope,    ///< its slope; segment a of table b
+  table_end,      ///< where segment a of table b ends; infinite for the last
+  table_begin,    ///< where it begins; −infinite for the first
+  table_segment,  ///< which segment of table b holds a
 };
 
-/// Number of operands of an operation: 0, 1 or 2.
+/// Number of operands of an operation: 0 to 3.
 int operand_count(Op op);
 
-/// One node: an operation on up to two others, a constant, or a variable known by its number.
+/// One node: an operation on up to three others, a constant, or a variable or memory known by its number.
 struct Node {
   Op op = Op::constant;
   NodeId a = 0;
   NodeId b = 0;
+  NodeId c = 0;
   double value = 0;            ///< of a constant
-  std::uint32_t variable = 0;  ///< number of a variable
+  std::uint32_t variable = 0;  ///< number of a variable or memory
+  bool continuous = false;     ///< depends on a variable: may change between events
+
+  NodeId operand(int i) const { return i == 0 ? a : i == 1 ? b : c; }
 };
 
 /// Expressions as a directed acyclic graph in which equal sub-expressions are one node. Constants are folded
@@ -51,9 +68,11 @@ class ExpressionGraph {
  public:
   NodeId constant(double value);
   NodeId variable(std::uint32_t number);
+  NodeId memory(std::uint32_t number);
 
-  /// Applies a unary or binary operation; `b` is ignored by unary ones.
-  NodeId apply(Op op, NodeId a, NodeId b = 0);
+  /// Applies an operation; the operands beyond its number are ignored. Operands that are tables are constants
+  /// that hold the table's number.
+  NodeId apply(Op op, NodeId a, NodeId b = 0, NodeId c = 0);
 
   const Node& operator[](NodeId id) const { return nodes_[id]; }
   std::size_t size() const { return nodes_.size(); }
@@ -69,7 +88,7 @@ class ExpressionGraph {
  private:
   struct Key {
     Op op;
-    NodeId a, b;
+    NodeId a, b, c;
     std::uint64_t bits;  ///< of a constant's value or a variable's number
     bool operator==(const Key&) const = default;
   };
@@ -78,15 +97,19 @@ class ExpressionGraph {
   };
 
   NodeId intern(const Node& node);
-  NodeId simplified(Op op, NodeId a, NodeId b, bool& done);
-  /// Partial derivative of a node by its first or second operand.
+  NodeId simplified(Op op, NodeId a, NodeId b, NodeId c, bool& done);
+  /// adjoint · (partial derivative of a node by one of its operands).
+  NodeId passed_on(NodeId adjoint, NodeId id, int operand);
   NodeId partial(NodeId id, int operand);
 
   std::vector<Node> nodes_;
   std::unordered_map<Key, NodeId, Hash> index_;
 };
 
-/// The value of an operation on numbers.
+/// The value of an operation on up to two numbers; not of `select` and tables.
 double evaluate(Op op, double a, double b);
+
+/// The value of Op::select.
+double select(double chosen, double b, double c);
 
 }  // namespace oblique

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <map>
 
 #include <fmt/format.h>
 
@@ -29,6 +31,8 @@ class Assembler {
 
   Network assemble() {
     collect_quantities();
+    find_active_events();
+    make_memories();
     make_states();
     for (const OrderStep& step : dependency_order(dependencies_of_algebra(), implicit_marks())) define(step);
     for (Quantity& quantity : quantities_) {
@@ -37,6 +41,10 @@ class Assembler {
       }
     }
     collect_signals();
+    make_events();
+    make_starts();
+    define_switches();
+    define_tables();
     diagnostics_.throw_if_any<NetworkError>();
     return std::move(network_);
   }
@@ -83,7 +91,10 @@ class Assembler {
       if (quantity.equation->kind != Equation::Kind::derivative) continue;
       const StartRule& rule = start_of(quantity);
       quantity.variable_index = static_cast<std::uint32_t>(network_.states.size());
-      network_.states.push_back({name_of(quantity), start_value(quantity, rule), rule.at_rest, 0});
+      const BlockContext context(*this, quantity.block);
+      const bool fixed = change_of(rule.value, context) == ExpressionContext::Change::never;
+      const double start = fixed ? start_value(quantity, rule) : 0;
+      network_.states.push_back({name_of(quantity), start, rule.at_rest, 0, {}});
       quantity.node = network_.graph.variable(network_.state_variable(quantity.variable_index));
     }
   }
@@ -96,8 +107,7 @@ class Assembler {
 
   double start_value(const Quantity& quantity, const StartRule& rule) {
     const FlatBlock& block = block_of(quantity);
-    const double value =
-        evaluate(rule.value, [&](std::string_view name) { return constant_of(block, name); });
+    const double value = constant_value(quantity.block, rule.value).value_or(0);
     if (!std::isfinite(value)) {
       diagnostics_.add({block.place, fmt::format("'{}' would start at {}", name_of(quantity), value),
                         "a finite start value", "give the block another 'initial'"});
@@ -108,7 +118,140 @@ class Assembler {
   static std::optional<double> constant_of(const FlatBlock& block, std::string_view name) {
     if (name == "polarity") return block.polarity;
     if (const auto parameter = block.definition->find_parameter(name)) return block.parameters[*parameter];
+    if (const auto input = block.definition->find_input(name); input && block.inputs[*input].terms.empty())
+      return block.inputs[*input].constant;
+    if (name == "in_operate") return 1;  // where there is a timeline, these are asked for earlier
+    if (name == "in_initial" || name == "in_hold") return 0;
     return std::nullopt;
+  }
+
+  /// The value of an expression that never changes; nothing for another.
+  std::optional<double> constant_value(std::size_t block, const Expression& expression) {
+    BlockContext context(*this, block);
+    if (change_of(expression, context) != ExpressionContext::Change::never) return std::nullopt;
+    return network_.graph[build_expression(network_.graph, expression, context)].value;
+  }
+
+  // --- memories, events, switches
+  // ----------------------------------------------------------------------------------------------------
+
+  /// Events that can never come are left out, and memories that no event sets are constants.
+  void find_active_events() {
+    for (std::size_t b = 0; b < diagram_.blocks.size(); ++b) {
+      for (const EventRule& rule : diagram_.blocks[b].definition->events) {
+        if (rule.where && constant_value(b, *rule.where).value_or(0) == 0) continue;
+        if (constant_value(b, rule.when).value_or(1) == 0) continue;
+        active_events_.emplace_back(b, &rule);
+      }
+    }
+  }
+
+  void make_memories() {
+    first_memory_.assign(diagram_.blocks.size(), kNone);
+    std::vector<bool> set(diagram_.blocks.size(), false);
+    for (const auto& [block, rule] : active_events_) set[block] = true;
+    for (std::size_t b = 0; b < diagram_.blocks.size(); ++b) {
+      const FlatBlock& block = diagram_.blocks[b];
+      if (!set[b]) continue;
+      first_memory_[b] = static_cast<std::uint32_t>(network_.memories.size());
+      for (const MemoryRule& memory : block.definition->memories) {
+        const double start = constant_value(b, memory.initial).value_or(0);
+        if (!std::isfinite(start)) {
+          diagnostics_.add({block.place,
+                            fmt::format("'{}.{}' would start at {}", block.path, memory.name, start),
+                            "a finite start value",
+                            {}});
+        }
+        network_.memories.push_back({block.path + "." + memory.name, start});
+      }
+    }
+  }
+
+  /// A memory of a block: its node, or its initial value where nothing ever sets it.
+  NodeId memory_node(std::size_t block, std::size_t memory) {
+    if (first_memory_[block] != kNone)
+      return network_.graph.memory(first_memory_[block] + static_cast<std::uint32_t>(memory));
+    const Expression& initial = diagram_.blocks[block].definition->memories[memory].initial;
+    return network_.graph.constant(constant_value(block, initial).value_or(0));
+  }
+
+  void make_events() {
+    for (const auto& [block, rule] : active_events_) {
+      Event event;
+      event.block = diagram_.blocks[block].path;
+      event.at_start = rule->at_start;
+      event.condition = built(block, rule->when, rule->place, "an event's 'when'");
+      for (const EventAction& action : rule->actions) {
+        Event::Action done;
+        const auto memory = diagram_.blocks[block].definition->find_memory(action.target);
+        done.on_state = !memory;
+        done.index = memory ? first_memory_[block] + static_cast<std::uint32_t>(*memory)
+                            : quantities_[quantity_of(block, action.target)].variable_index;
+        done.value = built(block, action.value, action.place, "an event's '" + action.target + "'");
+        event.actions.push_back(done);
+      }
+      network_.events.push_back(std::move(event));
+    }
+  }
+
+  void make_starts() {
+    for (const Quantity& quantity : quantities_) {
+      if (quantity.equation->kind != Equation::Kind::derivative) continue;
+      const StartRule& rule = start_of(quantity);
+      const BlockContext context(*this, quantity.block);
+      if (change_of(rule.value, context) == ExpressionContext::Change::never) continue;
+      network_.states[quantity.variable_index].start_node =
+          built(quantity.block, rule.value, quantity.equation->place, "the start value");
+    }
+  }
+
+  /// The surfaces of all switches; building one may call for another.
+  void define_switches() {
+    for (std::size_t s = 0; s < pending_switches_.size(); ++s) {
+      const PendingSwitch pending = pending_switches_[s];
+      const NodeId left = built(pending.block, pending.left, pending.place, "a comparison");
+      const NodeId right = built(pending.block, pending.right, pending.place, "a comparison");
+      Switch made;
+      made.memory = pending.memory;
+      made.block = diagram_.blocks[pending.block].path;
+      made.comparison = network_.memories[pending.memory].name;
+      made.surface = network_.graph.apply(Op::subtract, left, right);
+      made.rate = rate_of(made.surface);
+      if (const auto& interval = diagram_.blocks[pending.block].definition->check_interval)
+        made.check_interval = constant_value(pending.block, *interval).value_or(made.check_interval);
+      network_.memories[pending.memory].name = made.block + ": " + made.comparison;
+      network_.switches.push_back(std::move(made));
+    }
+  }
+
+  /// d surface/dt where nothing but time enters and that rate is constant between events.
+  std::optional<NodeId> rate_of(NodeId surface) {
+    const auto gradient = network_.graph.gradient(surface);
+    if (gradient.size() != 1 || gradient[0].first != 0) return std::nullopt;
+    if (network_.graph[gradient[0].second].continuous) return std::nullopt;
+    return gradient[0].second;
+  }
+
+  NodeId switch_of(std::size_t block, const Expression& left, const Expression& right) {
+    std::string text = to_string(left) + " > " + to_string(right);
+    const auto [found, inserted] = switch_index_.try_emplace(std::pair(block, text), kNone);
+    if (inserted) {
+      found->second = static_cast<std::uint32_t>(network_.memories.size());
+      network_.memories.push_back({std::move(text), 0});
+      pending_switches_.push_back({block, left, right, found->second, diagram_.blocks[block].place});
+    }
+    return network_.graph.memory(found->second);
+  }
+
+  NodeId built(std::size_t block, const Expression& expression, const Place& place, const std::string& what) {
+    BlockContext context(*this, block);
+    try {
+      return build_expression(network_.graph, expression, context);
+    } catch (const ExpressionError& error) {
+      diagnostics_.add({place, fmt::format("{} of '{}': {}", what, diagram_.blocks[block].path, error.what),
+                        error.expected, error.remedy});
+      return network_.graph.constant(0);
+    }
   }
 
   bool is_algebraic(std::uint32_t q) const {
@@ -135,7 +278,9 @@ class Assembler {
     return dependencies;
   }
 
+  /// What is compared is not needed: a switch keeps its position until an event turns it over.
   void collect_needed(std::size_t block, const Expression& e, std::vector<std::uint32_t>& row) const {
+    if (is_comparison(e.kind)) return;
     for (const Expression& operand : e.operands) collect_needed(block, operand, row);
     if (e.kind != Expression::Kind::name) return;
     const FlatBlock& flat = diagram_.blocks[block];
@@ -217,9 +362,9 @@ class Assembler {
 
   NodeId expression_of(const Quantity& quantity) {
     const Equation& equation = *quantity.equation;
+    BlockContext context(*this, quantity.block);
     try {
-      return build_expression(network_.graph, equation.expression,
-                              [&](std::string_view name) { return node_of(quantity.block, name); });
+      return build_expression(network_.graph, equation.expression, context);
     } catch (const ExpressionError& error) {
       diagnostics_.add({equation.place, fmt::format("equation of '{}': {}", name_of(quantity), error.what),
                         error.expected, error.remedy});
@@ -232,6 +377,7 @@ class Assembler {
     if (const auto input = flat.definition->find_input(name)) return sum_of(flat.inputs[*input]);
     if (const std::uint32_t own = quantity_of(block, name); own != kNone) return quantities_[own].node;
     if (name == "time") return network_.graph.variable(0);
+    if (const auto memory = flat.definition->find_memory(name)) return memory_node(block, *memory);
     return network_.graph.constant(constant_of(flat, name).value());  // parse_block admits no other names
   }
 
@@ -245,7 +391,134 @@ class Assembler {
     return sum;
   }
 
+  /// The names of one block's equations.
+  class BlockContext final : public ExpressionContext {
+   public:
+    BlockContext(Assembler& assembler, std::size_t block) : assembler_(assembler), block_(block) {}
+
+    NodeId node_of_name(std::string_view name) override { return assembler_.node_of(block_, name); }
+
+    Change change_of(std::string_view name) const override {
+      const FlatBlock& flat = assembler_.diagram_.blocks[block_];
+      if (const auto input = flat.definition->find_input(name))
+        return flat.inputs[*input].terms.empty() ? Change::never : Change::always;
+      if (assembler_.quantity_of(block_, name) != kNone || name == "time") return Change::always;
+      if (flat.definition->find_memory(name)) {
+        const bool constant = !assembler_.first_memory_.empty() && assembler_.first_memory_[block_] == kNone;
+        return constant ? Change::never : Change::with_events;
+      }
+      return Change::never;
+    }
+
+    NodeId greater(const Expression& left, const Expression& right) override {
+      return assembler_.switch_of(block_, left, right);
+    }
+
+    NodeId interpolated(const Expression& call) override { return assembler_.interpolated(block_, call); }
+
+    double weights(const Expression& call) const override {
+      const FlatBlock& flat = assembler_.diagram_.blocks[block_];
+      const auto input = flat.definition->find_input(call.operands[0].name);
+      if (!input) throw ExpressionError{call.column, "weights() is of an input", "the name of an input", {}};
+      double sum = 0;
+      for (const FlatTerm& term : flat.inputs[*input].terms) sum += std::abs(term.weight);
+      return sum;
+    }
+
+   private:
+    Assembler& assembler_;
+    std::size_t block_;
+  };
+
+  struct PendingSwitch {
+    std::size_t block;
+    Expression left, right;
+    std::uint32_t memory;
+    Place place;
+  };
+
+  /// table(x, x1, y1, …): the segment is a memory that follows x across the ends of segments.
+  NodeId interpolated(std::size_t block, const Expression& call) {
+    PointTable table;
+    for (std::size_t i = 1; i + 1 < call.operands.size(); i += 2) {
+      table.x.push_back(constant_value(block, call.operands[i]).value_or(0));
+      table.y.push_back(constant_value(block, call.operands[i + 1]).value_or(0));
+    }
+    return interpolate(block, call, std::move(table));
+  }
+
+  NodeId interpolate(std::size_t block, const Expression& call, PointTable table) {
+    ExpressionGraph& graph = network_.graph;
+    const auto [found, inserted] = table_index_.try_emplace(std::pair(block, to_string(call)), kNone);
+    if (inserted) {
+      if (!std::is_sorted(table.x.begin(), table.x.end(), std::less_equal<>())) {
+        throw ExpressionError{
+            call.column, "the x of a table do not rise from point to point", "x1 < x2 < …", {}};
+      }
+      found->second = static_cast<std::uint32_t>(network_.tables.size());
+      network_.tables.push_back(std::move(table));
+      const auto segment = static_cast<std::uint32_t>(network_.memories.size());
+      network_.memories.push_back({diagram_.blocks[block].path + ": segment", 0});
+      pending_tables_.push_back(
+          {block, call.operands[0], found->second, segment, diagram_.blocks[block].place});
+    }
+    const NodeId number = graph.constant(found->second);
+    const NodeId x = built_operand(block, call.operands[0]);
+    const auto& pending = *std::find_if(pending_tables_.begin(), pending_tables_.end(),
+                                        [&](const PendingTable& p) { return p.table == found->second; });
+    return graph.apply(Op::table_value, x, graph.memory(pending.segment), number);
+  }
+
+  NodeId built_operand(std::size_t block, const Expression& expression) {
+    BlockContext context(*this, block);
+    return build_expression(network_.graph, expression, context);
+  }
+
+  struct PendingTable {
+    std::size_t block;
+    Expression x;
+    std::uint32_t table, segment;
+    Place place;
+  };
+
+  /// Two switches and two events move each table's segment along.
+  void define_tables() {
+    ExpressionGraph& graph = network_.graph;
+    for (std::size_t p = 0; p < pending_tables_.size(); ++p) {
+      const PendingTable pending = pending_tables_[p];
+      const NodeId x = built(pending.block, pending.x, pending.place, "a table's argument");
+      const NodeId number = graph.constant(pending.table);
+      const NodeId segment = graph.memory(pending.segment);
+      const NodeId found = graph.apply(Op::table_segment, x, number);
+      for (const bool up : {true, false}) {
+        const NodeId edge = graph.apply(up ? Op::table_end : Op::table_begin, segment, number);
+        Switch made;
+        made.memory = static_cast<std::uint32_t>(network_.memories.size());
+        made.block = diagram_.blocks[pending.block].path;
+        made.comparison = to_string(pending.x) + (up ? " after its segment" : " before its segment");
+        made.surface = up ? graph.apply(Op::subtract, x, edge) : graph.apply(Op::subtract, edge, x);
+        made.rate = rate_of(made.surface);
+        network_.memories.push_back({made.block + ": " + made.comparison, 0});
+        // At least to the next one, which rounding may hide from the search.
+        const NodeId next = graph.apply(up ? Op::add : Op::subtract, segment, graph.constant(1));
+        const NodeId farther = up ? graph.apply(Op::less, next, found) : graph.apply(Op::less, found, next);
+        Event event;
+        event.block = made.block;
+        event.condition = graph.memory(made.memory);
+        event.repeats = true;
+        event.actions.push_back({false, pending.segment, graph.apply(Op::select, farther, found, next)});
+        network_.switches.push_back(std::move(made));
+        network_.events.push_back(std::move(event));
+      }
+    }
+  }
+
   const FlatDiagram& diagram_;
+  std::vector<std::pair<std::size_t, const EventRule*>> active_events_;
+  std::vector<std::uint32_t> first_memory_;  ///< of each block with memories that events set
+  std::map<std::pair<std::size_t, std::string>, std::uint32_t> switch_index_, table_index_;
+  std::vector<PendingSwitch> pending_switches_;
+  std::vector<PendingTable> pending_tables_;
   Network network_;
   std::vector<Quantity> quantities_;
   std::vector<std::uint32_t> first_quantity_;

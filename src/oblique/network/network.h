@@ -2,11 +2,14 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <oblique/diagram/flat_diagram.h>
 #include <oblique/network/expression_graph.h>
+#include <oblique/text/point_table.h>
 
 namespace oblique {
 
@@ -22,6 +25,38 @@ struct State {
   double start = 0;      ///< [machine unit]
   bool at_rest = false;  ///< brought to rest before the clock starts; `start` is the guess
   NodeId derivative = 0;
+  std::optional<NodeId> start_node;  ///< where the start follows from signals; `start` is then no use
+};
+
+/// A value that only events change.
+struct Memory {
+  std::string name;  ///< of a block's memory its path; of a switch the comparison
+  double start = 0;
+};
+
+/// A switch: its memory is 1 where the surface is above 0, else 0.
+struct Switch {
+  std::uint32_t memory = 0;
+  std::string block;       ///< path
+  std::string comparison;  ///< "in > high", as the block's file has it
+  NodeId surface = 0;      ///< [machine unit] or whatever is compared
+  /// d surface/dt of a surface that depends on time alone, and linearly: its crossing is known beforehand.
+  std::optional<NodeId> rate;
+  double check_interval = std::numeric_limits<double>::infinity();  ///< [s] how often at least to look
+};
+
+/// What happens when a condition becomes true: all values are those of the moment before.
+struct Event {
+  struct Action {
+    bool on_state = false;  ///< else on a memory
+    std::uint32_t index = 0;
+    NodeId value = 0;
+  };
+  std::string block;  ///< path
+  NodeId condition = 0;
+  bool at_start = true;
+  bool repeats = false;  ///< comes again for as long as the condition holds
+  std::vector<Action> actions;
 };
 
 /// A quantity that is defined by an equation: residual = 0.
@@ -43,15 +78,23 @@ struct Loop {
 
 /// The flat mathematical form of a diagram:
 ///
-///     dx/dt = f(t, x, z),   0 = g(t, x, z),   signals = h(t, x, z)
+///     dx/dt = f(t, x, z; m),   0 = g(t, x, z; m),   signals = h(t, x, z; m)
 ///
-/// with states x and algebraic unknowns z. Variables of the graph are numbered: time, states, unknowns.
+/// with states x, algebraic unknowns z and memories m, which stay as they are until a switch turns over.
+/// Variables of the graph are numbered: time, states, unknowns.
 struct Network {
   ExpressionGraph graph;
   std::vector<State> states;
   std::vector<Unknown> unknowns;
-  std::vector<Loop> loops;      ///< each after those it depends on
-  std::vector<NodeId> signals;  ///< one for each output of each flat block, in their order
+  std::vector<Loop> loops;  ///< each after those it depends on
+  std::vector<Memory> memories;
+  std::vector<Switch> switches;
+  std::vector<Event> events;
+  std::vector<PointTable> tables;
+  /// Of each group of integrators: the memory that holds its mode of operation. Empty without a timeline.
+  std::vector<std::uint32_t> mode_memories;
+  std::vector<NodeId> phase_ends;  ///< conditions of the timeline's phases that end by one
+  std::vector<NodeId> signals;     ///< one for each output of each flat block, in their order
   std::vector<std::string> signal_names;
   std::vector<std::size_t> first_signal;  ///< of each flat block
 

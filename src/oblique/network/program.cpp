@@ -52,9 +52,36 @@ bool Program::derivatives(double t, const double* x, double* dxdt, Workspace& wo
 }
 
 bool Program::signals(double t, const double* x, double* values, Workspace& workspace) const {
-  if (!load_and_run(t, x, workspace) || !run(signal_steps_, workspace)) return false;
+  if (!load_and_run(t, x, workspace) || !run(surface_steps_, workspace) || !run(signal_steps_, workspace))
+    return false;
   for (std::size_t i = 0; i < signal_slots_.size(); ++i) values[i] = workspace.slots_[signal_slots_[i]];
   return true;
+}
+
+bool Program::surfaces(double t, const double* x, double* values, Workspace& workspace) const {
+  if (!load_and_run(t, x, workspace) || !run(surface_steps_, workspace)) return false;
+  for (std::size_t i = 0; i < surface_slots_.size(); ++i) values[i] = workspace.slots_[surface_slots_[i]];
+  return true;
+}
+
+std::optional<double> Program::known_rate(std::size_t s, const Workspace& workspace) const {
+  return rate_slots_[s] ? std::optional(workspace.slots_[*rate_slots_[s]]) : std::nullopt;
+}
+
+bool Program::condition(std::size_t event, const Workspace& workspace) const {
+  return workspace.slots_[event_slots_[event].condition] != 0;
+}
+
+bool Program::phase_ends(std::size_t end, const Workspace& workspace) const {
+  return workspace.slots_[phase_end_slots_[end]] != 0;
+}
+
+double Program::action_value(std::size_t event, std::size_t action, const Workspace& workspace) const {
+  return workspace.slots_[event_slots_[event].values[action]];
+}
+
+std::optional<double> Program::start_value(std::size_t state, const Workspace& workspace) const {
+  return start_slots_[state] ? std::optional(workspace.slots_[*start_slots_[state]]) : std::nullopt;
 }
 
 bool Program::differentiate_loops(Workspace& workspace) const {
@@ -100,7 +127,8 @@ bool Program::jacobian(double t, const double* x, double* values, Workspace& wor
   return true;
 }
 
-Workspace::Workspace(const Program& program) : program_(&program), slots_(program.initial_slots_) {
+Workspace::Workspace(const Program& program)
+    : program_(&program), first_memory_(program.first_memory_), slots_(program.initial_slots_) {
   for (std::size_t l = 0; l < program.loop_codes_.size(); ++l) {
     const std::size_t size = program.loop_codes_[l].size();
     loops_.emplace_back(size);
@@ -108,6 +136,11 @@ Workspace::Workspace(const Program& program) : program_(&program), slots_(progra
                         static_cast<Eigen::Index>(program.sensitivities_[l].states.size()));
   }
   reset();
+  reset_memories();
+}
+
+void Workspace::reset_memories() {
+  for (std::size_t m = 0; m < program_->memories_.size(); ++m) set_memory(m, program_->memories_[m].start);
 }
 
 void Workspace::reset() {

@@ -55,6 +55,29 @@ class Program {
   /// Every signal of every block at (t, x), `n_signals` of them. False as above.
   bool signals(double t, const double* x, double* values, Workspace& workspace) const;
 
+  // --- events: all of the above hold for the memories as they are in the workspace
+
+  const std::vector<Memory>& memories() const { return memories_; }
+  const std::vector<Switch>& switches() const { return switches_; }
+  const std::vector<Event>& events() const { return events_; }
+  /// Of each group of integrators, the memory with its mode of operation; empty without a timeline.
+  const std::vector<std::uint32_t>& mode_memories() const { return mode_memories_; }
+
+  /// The surface of every switch at (t, x). False as above.
+  bool surfaces(double t, const double* x, double* values, Workspace& workspace) const;
+  // As the last `surfaces` left them:
+  /// d surface/dt of a switch whose surface depends on time alone, linearly; nothing for another.
+  std::optional<double> known_rate(std::size_t s, const Workspace& workspace) const;
+  /// Whether the condition of an event holds.
+  bool condition(std::size_t event, const Workspace& workspace) const;
+  /// Whether the condition holds that ends phase number `end` of those with one.
+  bool phase_ends(std::size_t end, const Workspace& workspace) const;
+  // As the last `signals` left them:
+  /// What an action of an event would set.
+  double action_value(std::size_t event, std::size_t action, const Workspace& workspace) const;
+  /// Where a state starts if that follows from signals; nothing for another.
+  std::optional<double> start_value(std::size_t state, const Workspace& workspace) const;
+
  private:
   friend class Workspace;
   friend class ProgramCompiler;
@@ -103,10 +126,26 @@ class Program {
   std::vector<double> initial_slots_;
   std::vector<LoopCode> loop_codes_;
   std::vector<Step> derivative_steps_;
-  std::vector<Step> signal_steps_;  ///< after `derivative_steps_`
-  TapeRange jacobian_stretch_;      ///< after `derivative_steps_`
+  std::vector<Step> surface_steps_;  ///< after `derivative_steps_`
+  std::vector<Step> signal_steps_;   ///< after `surface_steps_`
+  TapeRange jacobian_stretch_;       ///< after `derivative_steps_`
   std::vector<std::uint32_t> derivative_slots_;
   std::vector<std::uint32_t> signal_slots_;
+
+  struct EventSlots {
+    std::uint32_t condition = 0;
+    std::vector<std::uint32_t> values;
+  };
+  std::size_t first_memory_ = 0;  ///< slot
+  std::vector<Memory> memories_;
+  std::vector<Switch> switches_;
+  std::vector<Event> events_;
+  std::vector<std::uint32_t> mode_memories_;
+  std::vector<std::uint32_t> surface_slots_;
+  std::vector<std::optional<std::uint32_t>> rate_slots_;
+  std::vector<EventSlots> event_slots_;
+  std::vector<std::optional<std::uint32_t>> start_slots_;
+  std::vector<std::uint32_t> phase_end_slots_;
 
   SparsePattern pattern_;
   std::vector<DirectEntry> direct_entries_;
@@ -124,6 +163,8 @@ class Workspace {
 
   /// Forgets the solutions of the loops: the next search starts from the guesses of the diagram.
   void reset();
+  /// The memories as they are before the run.
+  void reset_memories();
 
   /// The loop that could not be solved when an evaluation last failed.
   struct Trouble {
@@ -133,9 +174,14 @@ class Workspace {
   };
   const Trouble& trouble() const { return trouble_; }
 
+  /// The memories, between events as they are.
+  double memory(std::size_t m) const { return slots_[first_memory_ + m]; }
+  void set_memory(std::size_t m, double value) { slots_[first_memory_ + m] = value; }
+
  private:
   friend class Program;
   const Program* program_;
+  std::size_t first_memory_;
   std::vector<double> slots_;
   std::vector<double> solved_;  ///< unknowns at the last success
   std::vector<LoopWorkspace> loops_;

@@ -27,6 +27,11 @@ void ProgramCompiler::compile() {
   lay_out_jacobian();
   program_.tape_ = writer_->instructions();
   program_.initial_slots_ = writer_->initial_slots();
+  program_.first_memory_ = network_.n_variables();
+  program_.memories_ = std::move(network_.memories);
+  program_.switches_ = std::move(network_.switches);
+  program_.events_ = std::move(network_.events);
+  program_.mode_memories_ = std::move(network_.mode_memories);
   program_.states_ = std::move(network_.states);
   program_.unknowns_ = std::move(network_.unknowns);
   program_.loops_ = std::move(network_.loops);
@@ -47,9 +52,8 @@ void ProgramCompiler::find_levels() {
   levels_.assign(graph.size(), 0);
   for (NodeId id = 0; id < graph.size(); ++id) {
     const Node& node = graph[id];
-    const int operands = operand_count(node.op);
-    if (operands >= 1) levels_[id] = levels_[node.a];
-    if (operands == 2) levels_[id] = std::max(levels_[id], levels_[node.b]);
+    for (int i = 0; i < operand_count(node.op); ++i)
+      levels_[id] = std::max(levels_[id], levels_[node.operand(i)]);
     if (node.op == Op::variable && is_unknown(node.variable)) {
       levels_[id] = loop_of_unknown_[unknown_of(node.variable)] + 1;
     }
@@ -75,9 +79,7 @@ void ProgramCompiler::close_over(NodeId root, Needs& needs) const {
     if (needs.nodes[id]) continue;
     needs.nodes[id] = true;
     const Node& node = network_.graph[id];
-    const int operands = operand_count(node.op);
-    if (operands >= 1) pending.push_back(node.a);
-    if (operands == 2) pending.push_back(node.b);
+    for (int i = 0; i < operand_count(node.op); ++i) pending.push_back(node.operand(i));
     if (node.op == Op::variable && is_unknown(node.variable)) {
       require_loop(loop_of_unknown_[unknown_of(node.variable)], needs, pending);
     }
@@ -86,9 +88,10 @@ void ProgramCompiler::close_over(NodeId root, Needs& needs) const {
 
 void ProgramCompiler::find_needs() {
   const Needs none{std::vector<bool>(network_.graph.size()), std::vector<bool>(network_.loops.size())};
-  for_derivatives_ = for_jacobian_ = for_signals_ = none;
+  for_derivatives_ = for_surfaces_ = for_jacobian_ = for_signals_ = none;
   for (const State& state : network_.states) close_over(state.derivative, for_derivatives_);
-  for (const NodeId signal : network_.signals) close_over(signal, for_signals_);
+  for (const NodeId root : surface_roots()) close_over(root, for_surfaces_);
+  for (const NodeId root : signal_roots()) close_over(root, for_signals_);
   for (const Gradient& gradient : state_gradients_) {
     for (const auto& [variable, node] : gradient) close_over(node, for_jacobian_);
   }
@@ -98,17 +101,44 @@ void ProgramCompiler::find_needs() {
   }
 }
 
+/// What tells of events: surfaces, rates of known times, conditions.
+std::vector<NodeId> ProgramCompiler::surface_roots() const {
+  std::vector<NodeId> roots = network_.phase_ends;
+  for (const Switch& s : network_.switches) {
+    roots.push_back(s.surface);
+    if (s.rate) roots.push_back(*s.rate);
+  }
+  for (const Event& event : network_.events) roots.push_back(event.condition);
+  return roots;
+}
+
+/// The signals, and what events make of them.
+std::vector<NodeId> ProgramCompiler::signal_roots() const {
+  std::vector<NodeId> roots = network_.signals;
+  for (const Event& event : network_.events) {
+    for (const Event::Action& action : event.actions) roots.push_back(action.value);
+  }
+  for (const State& state : network_.states) {
+    if (state.start_node) roots.push_back(*state.start_node);
+  }
+  return roots;
+}
+
 std::vector<std::uint32_t> ProgramCompiler::count_uses() const {
   std::vector<std::uint32_t> uses(network_.graph.size(), 0);
   for (NodeId id = 0; id < network_.graph.size(); ++id) {
-    if (!for_derivatives_.nodes[id] && !for_signals_.nodes[id] && !for_jacobian_.nodes[id]) continue;
+    if (!for_derivatives_.nodes[id] && !for_surfaces_.nodes[id] && !for_signals_.nodes[id] &&
+        !for_jacobian_.nodes[id]) {
+      continue;
+    }
     const Node& node = network_.graph[id];
-    if (operand_count(node.op) >= 1) ++uses[node.a];
-    if (operand_count(node.op) == 2) ++uses[node.b];
+    for (int i = 0; i < operand_count(node.op); ++i) ++uses[node.operand(i)];
   }
   for (const State& state : network_.states) ++uses[state.derivative];
   for (const Unknown& unknown : network_.unknowns) ++uses[unknown.residual];
-  for (const NodeId signal : network_.signals) ++uses[signal];
+  for (const auto& roots : {surface_roots(), signal_roots()}) {
+    for (const NodeId root : roots) ++uses[root];
+  }
   for (const auto* gradients : {&state_gradients_, &residual_gradients_}) {
     for (const Gradient& gradient : *gradients) {
       for (const auto& [variable, node] : gradient) ++uses[node];
@@ -118,12 +148,17 @@ std::vector<std::uint32_t> ProgramCompiler::count_uses() const {
 }
 
 void ProgramCompiler::write_tapes() {
-  writer_.emplace(network_.graph, network_.n_variables(), count_uses());
+  writer_.emplace(network_.graph, network_.n_variables(), network_.memories.size(), network_.tables,
+                  count_uses());
   program_.loop_codes_.resize(network_.loops.size());
   in_body_.assign(network_.graph.size(), false);
   const Needs nothing{std::vector<bool>(network_.graph.size()), std::vector<bool>(network_.loops.size())};
   program_.derivative_steps_ = write_steps(for_derivatives_, nothing);
-  program_.signal_steps_ = write_steps(for_signals_, for_derivatives_);
+  program_.surface_steps_ = write_steps(for_surfaces_, for_derivatives_);
+  Needs done = for_derivatives_;
+  for (std::size_t i = 0; i < done.nodes.size(); ++i) done.nodes[i] = done.nodes[i] || for_surfaces_.nodes[i];
+  for (std::size_t i = 0; i < done.loops.size(); ++i) done.loops[i] = done.loops[i] || for_surfaces_.loops[i];
+  program_.signal_steps_ = write_steps(for_signals_, done);
 
   std::vector<NodeId> rest;
   for (NodeId id = 0; id < network_.graph.size(); ++id) {
@@ -134,6 +169,25 @@ void ProgramCompiler::write_tapes() {
     program_.derivative_slots_.push_back(writer_->slot(state.derivative));
   }
   for (const NodeId signal : network_.signals) program_.signal_slots_.push_back(writer_->slot(signal));
+  write_events();
+}
+
+void ProgramCompiler::write_events() {
+  TapeWriter& writer = *writer_;
+  for (const Switch& s : network_.switches) {
+    program_.surface_slots_.push_back(writer.slot(s.surface));
+    program_.rate_slots_.push_back(s.rate ? std::optional(writer.slot(*s.rate)) : std::nullopt);
+  }
+  for (const Event& event : network_.events) {
+    Program::EventSlots& slots = program_.event_slots_.emplace_back();
+    slots.condition = writer.slot(event.condition);
+    for (const Event::Action& action : event.actions) slots.values.push_back(writer.slot(action.value));
+  }
+  for (const State& state : network_.states) {
+    program_.start_slots_.push_back(state.start_node ? std::optional(writer.slot(*state.start_node))
+                                                     : std::nullopt);
+  }
+  for (const NodeId end : network_.phase_ends) program_.phase_end_slots_.push_back(writer.slot(end));
 }
 
 std::vector<Program::Step> ProgramCompiler::write_steps(const Needs& wanted, const Needs& done) {
@@ -185,8 +239,7 @@ std::vector<NodeId> ProgramCompiler::write_loop_body(std::size_t loop, std::vect
     in_body_[id] = true;
     body.push_back(id);
     const Node node = network_.graph[id];
-    if (operand_count(node.op) >= 1) roots.push_back(node.a);
-    if (operand_count(node.op) == 2) roots.push_back(node.b);
+    for (int i = 0; i < operand_count(node.op); ++i) roots.push_back(node.operand(i));
   }
   std::sort(body.begin(), body.end());
   code.body = writer.write(body);

@@ -32,7 +32,11 @@ class ProgramCompiler {
   void require_loop(std::size_t loop, Needs& needs, std::vector<NodeId>& pending) const;
   std::vector<std::uint32_t> count_uses() const;
 
+  std::vector<NodeId> surface_roots() const;
+  std::vector<NodeId> signal_roots() const;
+
   void write_tapes();
+  void write_events();
   std::vector<Program::Step> write_steps(const Needs& wanted, const Needs& done);
   std::vector<NodeId> write_loop_body(std::size_t loop, std::vector<NodeId> nodes);
 
@@ -52,7 +56,7 @@ class ProgramCompiler {
   std::vector<std::uint32_t> loop_of_unknown_;
   std::vector<std::uint32_t> place_in_loop_;
   std::vector<std::uint32_t> levels_;  ///< of a node: 1 + the last loop it depends on, 0 for none
-  Needs for_derivatives_, for_signals_, for_jacobian_;
+  Needs for_derivatives_, for_surfaces_, for_signals_, for_jacobian_;
   std::vector<bool> in_body_;         ///< of a node: written as part of its loop
   std::optional<TapeWriter> writer_;  ///< made once the graph is complete
 };

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <oblique/network/expression_graph.h>
+#include <oblique/text/point_table.h>
 
 namespace oblique {
 
@@ -29,6 +30,18 @@ struct Instruction {
     log,
     sqrt,
     hypot,
+    noise,
+    noise_slope,
+    select,  ///< a ? b : c
+    gate,
+    less,
+    less_equal,
+    equal,
+    table_value,  ///< of the tables, the last operand is the slot where the table begins
+    table_slope,
+    table_end,
+    table_begin,
+    table_segment,
     multiply_add,       ///< a·b + c
     multiply_subtract,  ///< c − a·b
   };
@@ -51,7 +64,9 @@ class TapeWriter {
  public:
   /// `uses` counts, for every node, who reads it: the nodes to be written and the world outside. The first
   /// `n_variables` slots are the variables, by their number.
-  TapeWriter(const ExpressionGraph& graph, std::size_t n_variables, std::vector<std::uint32_t> uses);
+  /// Memories have the slots after the variables.
+  TapeWriter(const ExpressionGraph& graph, std::size_t n_variables, std::size_t n_memories,
+             const std::vector<PointTable>& tables, std::vector<std::uint32_t> uses);
 
   /// Appends the instructions of `nodes` (ascending; their operands are constants, variables, among them, or
   /// written before). A product that nobody but one sum in the same stretch reads becomes one instruction
@@ -68,7 +83,11 @@ class TapeWriter {
  private:
   bool can_fuse(NodeId id) const;
 
+  std::uint32_t operand_slot(const Node& node, int operand);
+
   const ExpressionGraph* graph_;
+  std::size_t n_variables_;
+  std::vector<std::uint32_t> table_slots_;
   std::vector<std::uint32_t> uses_;
   std::vector<std::uint32_t> slots_;
   std::vector<std::uint32_t> stretch_;  ///< number of the stretch that last contained the node

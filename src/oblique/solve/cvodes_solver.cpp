@@ -76,6 +76,7 @@ struct CvodesSolver::Handles {
   double end;
   long max_steps;
   long steps = 0;
+  SolverStatistics before_restart;  ///< CVODES counts from its last start
   int small_steps = 0;
   bool saw_refusal = false;  ///< these two since the last step that was not small
   bool saw_not_finite = false;
@@ -158,6 +159,17 @@ CvodesSolver::~CvodesSolver() = default;
 CvodesSolver::CvodesSolver(CvodesSolver&&) noexcept = default;
 CvodesSolver& CvodesSolver::operator=(CvodesSolver&&) noexcept = default;
 
+void CvodesSolver::restart(double t, std::span<const double> x, double end) {
+  Handles& h = *handles_;
+  h.before_restart = statistics();
+  std::copy(x.begin(), x.end(), N_VGetArrayPointer(h.states.get()));
+  check_setup(CVodeReInit(h.memory.get(), t, h.states.get()));
+  check_setup(CVodeSetStopTime(h.memory.get(), end));
+  h.t = t;
+  h.end = end;
+  h.small_steps = 0;
+}
+
 double CvodesSolver::step() {
   Handles& h = *handles_;
   if (h.steps >= h.max_steps) throw SolverFailure{SolverFailure::Kind::step_budget, h.t, 0};
@@ -195,6 +207,12 @@ SolverStatistics CvodesSolver::statistics() const {
   CVodeGetNumLinSolvSetups(memory, &s.factorizations);
   CVodeGetNumErrTestFails(memory, &s.error_test_failures);
   CVodeGetLastStep(memory, &s.last_step);
+  const SolverStatistics& before = handles_->before_restart;
+  s.steps += before.steps;
+  s.evaluations += before.evaluations;
+  s.jacobians += before.jacobians;
+  s.factorizations += before.factorizations;
+  s.error_test_failures += before.error_test_failures;
   return s;
 }
 

@@ -50,6 +50,9 @@ class CvodesSolver {
   CvodesSolver(CvodesSolver&&) noexcept;
   CvodesSolver& operator=(CvodesSolver&&) noexcept;
 
+  /// Starts anew at (t, x), where the system has jumped, and will not pass `end`.
+  void restart(double t, std::span<const double> x, double end);
+
   /// Takes one step and returns the time reached [s], exactly `end` at last. Throws SolverFailure.
   double step();
 

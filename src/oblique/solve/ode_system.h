@@ -19,22 +19,4 @@ class OdeSystem {
   virtual bool jacobian(double t, const double* x, double* values) = 0;
 };
 
-/// A diagram in the mode "operate".
-class OperateSystem final : public OdeSystem {
- public:
-  OperateSystem(const Program& program, Workspace& workspace) : program_(program), workspace_(workspace) {}
-  std::size_t size() const override { return program_.n_states(); }
-  const SparsePattern& pattern() const override { return program_.jacobian_pattern(); }
-  bool derivatives(double t, const double* x, double* dxdt) override {
-    return program_.derivatives(t, x, dxdt, workspace_);
-  }
-  bool jacobian(double t, const double* x, double* values) override {
-    return program_.jacobian(t, x, values, workspace_);
-  }
-
- private:
-  const Program& program_;
-  Workspace& workspace_;
-};
-
 }  // namespace oblique

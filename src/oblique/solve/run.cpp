@@ -16,11 +16,13 @@ namespace {
 /// Collects rows at the sample times as the solver passes them.
 class Sampler {
  public:
-  Sampler(const Program& program, const FlatDiagram& diagram, const RunOptions& options, Workspace& workspace)
+  Sampler(const Program& program, const FlatDiagram& diagram, const RunOptions& options, Workspace& workspace,
+          Switching& switching)
       : program_(program),
         diagram_(diagram),
         options_(options),
         workspace_(workspace),
+        switching_(switching),
         states_(program.n_states()),
         signals_(program.n_signals()),
         row_(diagram.outputs.size() + 1) {
@@ -63,6 +65,7 @@ class Sampler {
   }
 
   void evaluate(double time) {
+    switching_.place_sliding(time, states_);
     if (!program_.signals(time, states_.data(), signals_.data(), workspace_)) {
       throw loop_error(program_, workspace_.trouble(), time, diagram_.file);
     }
@@ -83,6 +86,7 @@ class Sampler {
   const FlatDiagram& diagram_;
   const RunOptions& options_;
   Workspace& workspace_;
+  Switching& switching_;
   std::vector<double> states_, signals_, row_;
   int next_sample_ = 0;
   std::size_t next_extra_ = 0;
@@ -109,38 +113,140 @@ RunOptions options_of(const RunSettings& settings) {
   return options;
 }
 
-Run run(const Program& program, const FlatDiagram& diagram, const RunOptions& options) {
-  const auto begin = std::chrono::steady_clock::now();
-  Workspace workspace(program);
-  Sampler sampler(program, diagram, options, workspace);
-  std::vector<double> start = program.start();
-  bring_to_rest(program, workspace, 0, start, diagram.file);
-  sampler.advance(0, [&](double, std::span<double> x) { std::copy(start.begin(), start.end(), x.begin()); });
+namespace {
 
-  if (program.n_states() == 0) {
-    sampler.advance(options.until, [](double, std::span<double>) {});
-  } else {
-    OperateSystem system(program, workspace);
-    const MethodChoice method = choose_method(options.method, program, workspace, start);
-    sampler.result.method = method;
-    CvodesSolver solver(system, 0, start, options.until,
-                        {options.tolerance, kAbsoluteTolerance * options.tolerance, options.max_steps,
+/// A diagram in the mode "operate", with its switches.
+class OperateSystem final : public OdeSystem {
+ public:
+  OperateSystem(const Program& program, Switching& switching) : program_(program), switching_(switching) {}
+  std::size_t size() const override { return program_.n_states(); }
+  const SparsePattern& pattern() const override { return program_.jacobian_pattern(); }
+  bool derivatives(double t, const double* x, double* dxdt) override {
+    return switching_.derivatives(t, x, dxdt);
+  }
+  bool jacobian(double t, const double* x, double* values) override {
+    return switching_.jacobian(t, x, values);
+  }
+
+ private:
+  const Program& program_;
+  Switching& switching_;
+};
+
+/// One run from its start to its end: smooth stretches, and events between them.
+class Runner {
+ public:
+  Runner(const Program& program, const FlatDiagram& diagram, const RunOptions& options)
+      : program_(program),
+        diagram_(diagram),
+        options_(options),
+        workspace_(program),
+        switching_(program, workspace_, options.until, diagram.file),
+        system_(program, switching_),
+        sampler_(program, diagram, options, workspace_, switching_),
+        states_(program.start()) {}
+
+  Run run() {
+    switching_.start(0, states_, [&] { bring_to_rest(program_, workspace_, 0, states_, diagram_.file); });
+    sampler_.advance(
+        0, [&](double, std::span<double> x) { std::copy(states_.begin(), states_.end(), x.begin()); });
+    if (program_.n_states() > 0) {
+      integrate();
+    } else {
+      follow();
+    }
+    sampler_.result.events = switching_.records();
+    sampler_.result.event_count = switching_.count();
+    return std::move(sampler_.result);
+  }
+
+ private:
+  /// The end of a smooth stretch that begins at t; settles what turns over at t itself.
+  double stretch_end(double t) {
+    if (!switching_.active()) return options_.until;
+    double end = switching_.next_known_time(t, states_);
+    while (!(end > t + kShortest * t)) {
+      switching_.settle(t, states_);
+      end = switching_.next_known_time(t, states_);
+    }
+    return std::min(end, options_.until);
+  }
+
+  /// Samples the step that ends at t and settles an event in it; the time from which to go on, which is t
+  /// where the stretch goes on.
+  template <class InStep>
+  bool finish_step(double from, double& t, double stretch_end, const InStep& states_at) {
+    std::optional<double> event;
+    if (switching_.active()) event = switching_.search(from, t, states_at);
+    const bool ends = event || (t >= stretch_end && t < options_.until);
+    if (event) t = *event;
+    sampler_.advance(t, states_at);
+    if (!ends || t >= options_.until) return false;
+    states_at(t, states_);
+    switching_.settle(t, states_);
+    return true;
+  }
+
+  void integrate() {
+    const MethodChoice method = choose_method(options_.method, program_, workspace_, states_);
+    sampler_.result.method = method;
+    double t = 0;
+    double end = stretch_end(t);
+    CvodesSolver solver(system_, t, states_, end,
+                        {options_.tolerance, kAbsoluteTolerance * options_.tolerance, options_.max_steps,
                          method.method == IntegrationMethod::adams});
+    const StatesAt states_at = [&](double time, std::span<double> x) { solver.states_at(time, x); };
     constexpr long kStepsPerReport = 256;
     long steps = 0;
     try {
-      for (double t = 0; t < options.until;) {
+      while (t < options_.until) {
+        const double from = t;
         t = solver.step();
-        sampler.advance(t, [&](double time, std::span<double> x) { solver.states_at(time, x); });
-        if (options.progress && ++steps % kStepsPerReport == 0) options.progress(t / options.until);
+        if (finish_step(from, t, end, states_at)) {
+          end = stretch_end(t);
+          solver.restart(t, states_, end);
+        }
+        if (options_.progress && ++steps % kStepsPerReport == 0) options_.progress(t / options_.until);
       }
     } catch (const SolverFailure& failure) {
-      throw run_error(program, failure, solver, workspace, diagram.file);
+      throw run_error(program_, failure, solver, workspace_, diagram_.file);
     }
-    sampler.result.statistics = solver.statistics();
+    sampler_.result.statistics = solver.statistics();
   }
-  sampler.result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  return std::move(sampler.result);
+
+  /// A diagram without states follows the time alone: steps as long as the rows are apart.
+  void follow() {
+    const StatesAt no_states = [](double, std::span<double>) {};
+    const double step = options_.until / (options_.samples - 1);
+    double t = 0;
+    double end = stretch_end(t);
+    while (t < options_.until) {
+      const double from = t;
+      t = std::min(end, t + step);
+      if (end - t < kShortest * end) t = end;
+      if (finish_step(from, t, end, no_states)) end = stretch_end(t);
+    }
+  }
+
+  static constexpr double kShortest = 1e-15;  ///< of the time: the clock cannot show less
+
+  const Program& program_;
+  const FlatDiagram& diagram_;
+  const RunOptions& options_;
+  Workspace workspace_;
+  Switching switching_;
+  OperateSystem system_;
+  Sampler sampler_;
+  std::vector<double> states_;
+};
+
+}  // namespace
+
+Run run(const Program& program, const FlatDiagram& diagram, const RunOptions& options) {
+  const auto begin = std::chrono::steady_clock::now();
+  Run result = Runner(program, diagram, options).run();
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return result;
 }
 
 }  // namespace oblique

@@ -10,6 +10,7 @@
 #include <oblique/network/program.h>
 #include <oblique/solve/cvodes_solver.h>
 #include <oblique/solve/method.h>
+#include <oblique/solve/switching.h>
 #include <oblique/solve/trajectory.h>
 
 namespace oblique {
@@ -44,8 +45,10 @@ struct Peak {
 
 /// What came out of a run.
 struct Run {
-  Trajectory trajectory;    ///< `t`, then the outputs of the diagram
-  Trajectory extra;         ///< the same columns at `extra_times`
+  Trajectory trajectory;            ///< `t`, then the outputs of the diagram
+  Trajectory extra;                 ///< the same columns at `extra_times`
+  std::vector<EventRecord> events;  ///< the first thousand
+  long event_count = 0;
   std::vector<Peak> peaks;  ///< of every signal of the program, in its order
   SolverStatistics statistics;
   MethodChoice method;  ///< with which method, and why; nothing for a diagram without states

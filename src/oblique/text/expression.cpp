@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kAny = 1000;
 
-constexpr std::array<FunctionInfo, 20> kFunctions{{
+constexpr std::array<FunctionInfo, 22> kFunctions{{
     {Function::sin, "sin", 1, 1, false, "sine of an angle in radians"},
     {Function::cos, "cos", 1, 1, false, "cosine of an angle in radians"},
     {Function::tan, "tan", 1, 1, false, "tangent of an angle in radians"},
@@ -38,6 +38,8 @@ constexpr std::array<FunctionInfo, 20> kFunctions{{
     {Function::table, "table", 5, kAny, true,
      "table(x, x1, y1, x2, y2, …): straight lines through the points"},
     {Function::if_, "if", 3, 3, true, "if(condition, a, b): a where the condition holds, else b"},
+    {Function::noise, "noise", 2, 2, false, "noise(x, seed): smooth random function of x, 1 rms"},
+    {Function::weights, "weights", 1, 1, false, "weights(in): sum of the magnitudes of the weights at an input"},
 }};
 
 double interpolate(std::span<const double> table) {
@@ -116,6 +118,10 @@ double evaluate(Function function, std::span<const double> a) {
       return interpolate(a);
     case Function::if_:
       return a[0] != 0 ? a[1] : a[2];
+    case Function::noise:
+      return noise(a[0], a[1]);
+    case Function::weights:  // of an input, which only a diagram has
+      break;
   }
   return std::numeric_limits<double>::quiet_NaN();
 }

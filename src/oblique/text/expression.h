@@ -16,7 +16,7 @@ namespace oblique {
 // clang-format off
 enum class Function {
   sin, cos, tan, asin, acos, atan, atan2, exp, log, sqrt, abs, min, max, hypot,
-  sign, clip, deadzone, step, table, if_,
+  sign, clip, deadzone, step, table, if_, noise, weights,
 };
 // clang-format on
 
@@ -77,6 +77,12 @@ using NameLookup = std::function<std::optional<double>(std::string_view)>;
 
 /// Value of an expression of constants. Throws ExpressionError for a name that `lookup` does not know.
 double evaluate(const Expression& expression, const NameLookup& lookup = {});
+
+/// Smooth noise, the same at every call: of unit root mean square over x, without a repeat, correlated over a
+/// distance of about 3. The quintic B-spline through Gaussian random numbers at the whole numbers, which
+/// follow from `seed` (rounded) alone; its spectrum is that of white noise times sinc(f)¹², with the −3 dB
+/// point at f = 0.186. `derivative` 1 gives d noise/dx.
+double noise(double x, double seed, int derivative = 0);
 
 /// Value of one function; `arguments` has the number that FunctionInfo allows.
 double evaluate(Function function, std::span<const double> arguments);

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <vector>
+
+namespace oblique {
+
+/// A function given by points, joined by straight lines of which the first and the last go on: `x` ascending,
+/// at least two, and as many `y`.
+struct PointTable {
+  std::vector<double> x, y;
+  bool operator==(const PointTable&) const = default;
+};
+
+}  // namespace oblique
