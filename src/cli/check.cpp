@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <oblique/mechanism/motion.h>
+#include <oblique/mechanism/obstacle.h>
 #include <oblique/mechanism/read_mechanism.h>
 
 #include "command.h"
@@ -23,15 +23,15 @@ std::string describe(const Mechanism& mechanism, const Group& group) {
                      mechanism.points[dyad.p].name, mechanism.points[dyad.q].name);
 }
 
-/// What keeps the mechanism from turning; nothing where it turns.
-std::optional<std::string> obstacle(const Mechanism& mechanism, const Structure& structure) {
-  for (const Configuration& c : solve_motion(mechanism, 361).configurations) {
-    if (c.status == oblique::Status::ok) continue;
-    return fmt::format(
-        "over one turn the group {} {}", group_name(structure.groups[c.group.value()]),
-        c.status == oblique::Status::open ? "cannot be assembled everywhere" : "passes a dead centre");
-  }
-  return std::nullopt;
+/// What keeps the mechanism from turning; nothing where it turns, or is a structure.
+std::optional<std::string> obstacle_of(const Mechanism& mechanism, const Structure& structure) {
+  if (mechanism.drives.empty()) return std::nullopt;
+  const auto obstacle = find_obstacle(mechanism, structure);
+  if (!obstacle) return std::nullopt;
+  return fmt::format(
+      "over one turn the group {} {} at t = {:.6g} s", group_name(structure.groups[obstacle->group]),
+      obstacle->status == oblique::Status::open ? "cannot be assembled" : "passes a dead centre",
+      obstacle->time);
 }
 
 std::string mechanism_text(const std::string& path, const Mechanism& mechanism, const Structure& structure,
@@ -40,8 +40,10 @@ std::string mechanism_text(const std::string& path, const Mechanism& mechanism, 
   text += fmt::format("  {}, mobility {}, {}\n", count(mechanism.bodies.size(), "body", "bodies"),
                       mobility(mechanism), count(mechanism.drives.size(), "drive", "drives"));
   for (const Group& group : structure.groups) text += fmt::format("  {}\n", describe(mechanism, group));
-  return text + (finding ? fmt::format("no: {}\n", *finding)
-                         : "ok: it can be assembled over the whole turn, without dead centres\n");
+  if (finding) return text + fmt::format("no: {}\n", *finding);
+  return text + (mechanism.drives.empty()
+                     ? "ok: a structure, which can be assembled and does not move\n"
+                     : "ok: it can be assembled over the whole turn, without dead centres\n");
 }
 
 std::string mechanism_json(const std::string& path, const Mechanism& mechanism, const Structure& structure,
@@ -71,7 +73,7 @@ ExitStatus check_mechanism(const CheckRequest& request) {
   }
   const Mechanism mechanism = read_mechanism(request.file);
   const Structure structure = decompose(mechanism);
-  const auto finding = obstacle(mechanism, structure);
+  const auto finding = obstacle_of(mechanism, structure);
   print((request.json ? mechanism_json : mechanism_text)(request.file, mechanism, structure, finding));
   return finding ? ExitStatus::no : ExitStatus::done;
 }

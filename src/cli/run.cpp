@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <cmath>
 #include <csignal>
 
 #include <fmt/format.h>
@@ -135,10 +136,10 @@ ExitStatus run_diagram(const Session& session, const RunRequest& request) {
   const BlockLibrary library = session.library();
   Diagram diagram = read_diagram(request.diagram);
   if (!request.until.empty()) diagram.run.until = quantity_option("--until", request.until, "s");
-  if (!(diagram.run.until > 0)) {
+  if (!(diagram.run.until > 0 && std::isfinite(diagram.run.until))) {
     throw ReadError(Diagnostic{{},
                                fmt::format("the run would end at t = {} s", diagram.run.until),
-                               "a time above 0",
+                               "a finite time above 0",
                                "give --until, or 'until' in [run]"});
   }
   if (request.check && diagram.expectations.empty()) {

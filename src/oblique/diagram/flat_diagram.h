@@ -39,7 +39,7 @@ struct FlatBlock {
   std::vector<FlatInput> inputs;                ///< in the order of the definition
   double polarity = 1;                          ///< −1 where summers and integrators invert
   std::size_t group = 0;                        ///< of FlatTimeline::groups
-  Place place;
+  Place place;                                  ///< of the block of the diagram that it is or is a part of
 };
 
 /// A column of the trajectory.
