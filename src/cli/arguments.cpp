@@ -85,15 +85,32 @@ void add_run(CLI::App& app, Chosen& chosen) {
   verb->add_option("--set", request->settings, "change a parameter: block.parameter=value; may be repeated")
       ->type_name("SETTING")
       ->allow_extra_args(false);
+  verb->add_option("--from", request->from,
+                   "go on from the state that an earlier run saved; --until is then later")
+      ->type_name("STATE");
+  verb->add_option("--save", request->save,
+                   "save the state at the end, or where Ctrl-C interrupts the run, to STATE.toml")
+      ->type_name("STATE");
+  verb->add_flag("--events", request->events, "list what switched, and when");
   verb->add_flag("--check", request->check,
                  "hold the run against the diagram's [expect]; status 1 where it fails");
+  verb->add_flag(
+      "--static-test", request->static_test,
+      "print every element's output and every integrator's input in initial condition; nothing is run");
+  verb->add_flag("--halt-on-overload", request->halt_on_overload,
+                 "end the run with status 1 where a signal first leaves ±1 machine unit");
   choose(verb, chosen, request, run_diagram);
 }
 
 void add_check(CLI::App& app, Chosen& chosen) {
   auto request = std::make_shared<CheckRequest>();
-  CLI::App* const verb = app.add_subcommand("check", "Check a diagram or a mechanism without running it");
+  CLI::App* const verb = app.add_subcommand(
+      "check",
+      "Check a diagram (wires, loops, stability, overloads, scaling, by a trial run) or a mechanism");
   verb->add_option("FILE", request->file, "diagram or mechanism file")->required();
+  verb->add_flag("--json", request->json, "print JSON instead of the tables (its keys: docs/check.md)");
+  verb->add_flag("--rescale", request->rescale, "write the diagram in scaled signals to the file of -o");
+  verb->add_option("-o,--output", request->output, "with --rescale: write NEW.toml")->type_name("NEW");
   choose(verb, chosen, request, check_file);
 }
 

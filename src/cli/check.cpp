@@ -1,37 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
-#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
 
-#include <oblique/mechanism/motion.h>
+#include <oblique/mechanism/obstacle.h>
 #include <oblique/mechanism/read_mechanism.h>
-#include <oblique/network/program.h>
-#include <oblique/solve/rest.h>
 
 #include "command.h"
+#include "diagram_check.h"
 #include "terminal.h"
 
 namespace oblique::cli {
 namespace {
-
-ExitStatus check_diagram(const Session& session, const std::string& path) {
-  const BlockLibrary library = session.library();
-  const Diagram diagram = read_diagram(path);
-  const FlatDiagram flat = flatten(diagram, library);
-  const Program program(assemble(flat));
-  print(fmt::format("{}: a diagram, \"{}\"\n", path, diagram.title));
-  print(fmt::format("  {}; flattened: {}\n", count(diagram.blocks.size(), "block", "blocks"),
-                    count(flat.blocks.size(), "element", "elements")));
-  print(fmt::format("  {}, {} of them servo amplifiers brought to rest at the start\n",
-                    count(program.n_states(), "state", "states"), rest_states(program).size()));
-  for (const Loop& loop : program.loops()) {
-    print(fmt::format("  algebraic loop with {}: {}\n", count(loop.unknowns.size(), "unknown", "unknowns"),
-                      fmt::join(loop.members, ", ")));
-  }
-  if (program.loops().empty()) print("  no algebraic loops\n");
-  print(fmt::format("  {}\n", count(flat.outputs.size(), "output", "outputs")));
-  print("ok: all names, wires, units and ranges are right\n");
-  return ExitStatus::done;
-}
 
 std::string describe(const Mechanism& mechanism, const Group& group) {
   if (const auto* const crank = std::get_if<CrankGroup>(&group)) {
@@ -44,32 +23,81 @@ std::string describe(const Mechanism& mechanism, const Group& group) {
                      mechanism.points[dyad.p].name, mechanism.points[dyad.q].name);
 }
 
-ExitStatus check_mechanism(const std::string& path) {
-  const Mechanism mechanism = read_mechanism(path);
-  const Structure structure = decompose(mechanism);
-  print(fmt::format("{}: a mechanism, \"{}\"\n", path, mechanism.title));
-  print(fmt::format("  {}, mobility {}, {}\n", count(mechanism.bodies.size(), "body", "bodies"),
-                    mobility(mechanism), count(mechanism.drives.size(), "drive", "drives")));
-  for (const Group& group : structure.groups) print(fmt::format("  {}\n", describe(mechanism, group)));
-  for (const Configuration& c : solve_motion(mechanism, 361).configurations) {
-    if (c.status == oblique::Status::ok) continue;
-    print(fmt::format(
-        "no: over one turn the group {} {}\n", group_name(structure.groups[c.group.value()]),
-        c.status == oblique::Status::open ? "cannot be assembled everywhere" : "passes a dead centre"));
-    return ExitStatus::no;
+/// What keeps the mechanism from turning; nothing where it turns, or is a structure.
+std::optional<std::string> obstacle_of(const Mechanism& mechanism, const Structure& structure) {
+  if (mechanism.drives.empty()) return std::nullopt;
+  const auto obstacle = find_obstacle(mechanism, structure);
+  if (!obstacle) return std::nullopt;
+  return fmt::format(
+      "over one turn the group {} {} at t = {:.6g} s", group_name(structure.groups[obstacle->group]),
+      obstacle->status == oblique::Status::open ? "cannot be assembled" : "passes a dead centre",
+      obstacle->time);
+}
+
+std::string mechanism_text(const std::string& path, const Mechanism& mechanism, const Structure& structure,
+                           const std::optional<std::string>& finding) {
+  std::string text = fmt::format("{}: a mechanism, \"{}\"\n", path, mechanism.title);
+  text += fmt::format("  {}, mobility {}, {}\n", count(mechanism.bodies.size(), "body", "bodies"),
+                      mobility(mechanism), count(mechanism.drives.size(), "drive", "drives"));
+  for (const Group& group : structure.groups) text += fmt::format("  {}\n", describe(mechanism, group));
+  if (finding) return text + fmt::format("no: {}\n", *finding);
+  return text + (mechanism.drives.empty()
+                     ? "ok: a structure, which can be assembled and does not move\n"
+                     : "ok: it can be assembled over the whole turn, without dead centres\n");
+}
+
+std::string mechanism_json(const std::string& path, const Mechanism& mechanism, const Structure& structure,
+                           const std::optional<std::string>& finding) {
+  nlohmann::ordered_json groups = nlohmann::ordered_json::array();
+  for (const Group& group : structure.groups) {
+    groups.push_back({{"name", group_name(group)}, {"description", describe(mechanism, group)}});
   }
-  print("ok: it can be assembled over the whole turn, without dead centres\n");
-  return ExitStatus::done;
+  nlohmann::ordered_json json{{"file", path},
+                              {"kind", "mechanism"},
+                              {"title", mechanism.title},
+                              {"bodies", mechanism.bodies.size()},
+                              {"mobility", mobility(mechanism)},
+                              {"drives", mechanism.drives.size()}};
+  json["groups"] = std::move(groups);
+  json["ok"] = !finding;
+  json["finding"] = finding ? nlohmann::ordered_json(*finding) : nlohmann::ordered_json(nullptr);
+  return json.dump(2) + "\n";
+}
+
+ExitStatus check_mechanism(const CheckRequest& request) {
+  if (request.rescale) {
+    throw ReadError(Diagnostic{{request.file, {}},
+                               "a mechanism has no signals to scale",
+                               "a diagram for --rescale",
+                               "patch it first: oblique patch MECHANISM -o DIAGRAM.toml"});
+  }
+  const Mechanism mechanism = read_mechanism(request.file);
+  const Structure structure = decompose(mechanism);
+  const auto finding = obstacle_of(mechanism, structure);
+  print((request.json ? mechanism_json : mechanism_text)(request.file, mechanism, structure, finding));
+  return finding ? ExitStatus::no : ExitStatus::done;
+}
+
+void check_request(const CheckRequest& request) {
+  if (request.rescale && request.output.empty()) {
+    throw ReadError(Diagnostic{{}, "--rescale has no file to write to", "-o NEW.toml", {}});
+  }
+  if (!request.rescale && !request.output.empty()) {
+    throw ReadError(Diagnostic{
+        {}, fmt::format("there is nothing to write to {}", request.output), "--rescale beside -o", {}});
+  }
+  if (request.rescale) check_output(request.output, ".toml");
 }
 
 }  // namespace
 
 ExitStatus check_file(const Session& session, const CheckRequest& request) {
+  check_request(request);
   const Document document = read_document(request.file);
   const Value* const format = document.root.find("format");
   const std::string name = format != nullptr ? format->text : "";
-  if (name == "oblique-diagram/1") return check_diagram(session, request.file);
-  if (name == "oblique-mechanism/1") return check_mechanism(request.file);
+  if (name == "oblique-diagram/1") return check_diagram(session, request);
+  if (name == "oblique-mechanism/1") return check_mechanism(request);
   throw ReadError(
       Diagnostic{{request.file, {1, 1}},
                  "this is neither a diagram nor a mechanism",

@@ -27,12 +27,20 @@ struct RunRequest {
   std::string output;
   std::string until;
   std::vector<std::string> settings;
+  std::string from;  ///< a state file to go on from
+  std::string save;  ///< where the state at the end goes
   bool check = false;
+  bool events = false;
+  bool static_test = false;
+  bool halt_on_overload = false;
 };
 ExitStatus run_diagram(const Session& session, const RunRequest& request);
 
 struct CheckRequest {
   std::string file;
+  std::string output;
+  bool json = false;
+  bool rescale = false;
 };
 ExitStatus check_file(const Session& session, const CheckRequest& request);
 

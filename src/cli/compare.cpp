@@ -49,8 +49,9 @@ std::string to_table(const Comparison& comparison) {
                std::to_string(run.overloads.size()), run.stable ? "yes" : "NO"});
   }
   text += table.text();
-  text += fmt::format("\nlargest link {:.6g} {}; ideal amplifiers leave {:.1e} {} (the solver's tolerance)\n",
-                      comparison.size, unit, comparison.floor, unit);
+  text += fmt::format(
+      "\nlargest link {:.6g} {}; amplifiers of gain 1e12 leave {:.0e} {} (the solver's tolerance)\n",
+      comparison.size, unit, comparison.floor, unit);
   text += comparison.order
               ? fmt::format("the error falls with the gain to the power {:.3f}\n", *comparison.order)
               : std::string("no order: it takes two gains whose errors stand clear of the tolerance\n");
@@ -72,9 +73,9 @@ ExitStatus compare_mechanism(const Session& session, const CompareRequest& reque
   options.gains.clear();
   for (const std::string& gain : request.gains) {
     options.gains.push_back(quantity_option("--gain", gain, "1"));
-    if (!(options.gains.back() > 0)) {
+    if (!(options.gains.back() > 0 && std::isfinite(options.gains.back()))) {
       throw ReadError(
-          Diagnostic{{}, fmt::format("--gain {}", gain), "gains above 0, such as 1e3,1e4,1e5", {}});
+          Diagnostic{{}, fmt::format("--gain {}", gain), "finite gains above 0, such as 1e3,1e4,1e5", {}});
     }
   }
   const Mechanism mechanism = read_mechanism(request.mechanism);

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: MIT
+#include <cmath>
+#include <csignal>
+
 #include <fmt/format.h>
 
 #include <oblique/network/program.h>
 #include <oblique/solve/expectation_check.h>
 #include <oblique/solve/run.h>
+#include <oblique/solve/static_test.h>
 
 #include "command.h"
 #include "terminal.h"
@@ -46,6 +50,30 @@ std::string table_of(const Trajectory& trajectory) {
   return text;
 }
 
+std::string table_of(const std::vector<EventRecord>& events, long count) {
+  Table table({"t [s]", "event"});
+  for (const EventRecord& event : events) table.add({fmt::format("{:.12g}", event.time), event.what});
+  std::string text = "\n" + table.text();
+  if (count > static_cast<long>(events.size()))
+    text += fmt::format("({} more)\n", count - static_cast<long>(events.size()));
+  return text;
+}
+
+/// Set by Ctrl-C while a run can be interrupted.
+volatile std::sig_atomic_t interrupt_asked = 0;
+
+/// While it lives, Ctrl-C only asks for the end of the run.
+class InterruptGuard {
+ public:
+  InterruptGuard() : before_(std::signal(SIGINT, [](int) { interrupt_asked = 1; })) { interrupt_asked = 0; }
+  ~InterruptGuard() { std::signal(SIGINT, before_); }
+  InterruptGuard(const InterruptGuard&) = delete;
+  InterruptGuard& operator=(const InterruptGuard&) = delete;
+
+ private:
+  void (*before_)(int);
+};
+
 ExitStatus report_expectations(const Diagram& diagram, const Run& run) {
   ExitStatus status = ExitStatus::done;
   print("\n");
@@ -58,17 +86,60 @@ ExitStatus report_expectations(const Diagram& diagram, const Run& run) {
   return status;
 }
 
+std::string table_of(const std::vector<StaticReading>& readings) {
+  Table table({"element", "", "output", "d/dt"});
+  table.add({"", "", "[machine unit]", "[machine unit/s]"});
+  for (const StaticReading& reading : readings) {
+    const char* const kind = !reading.slope ? "" : reading.at_rest ? "brought to rest" : "state";
+    table.add({reading.signal, kind, short_number(reading.output),
+               reading.slope ? short_number(*reading.slope) : ""});
+  }
+  return table.text(2);
+}
+
+void check_request(const RunRequest& request) {
+  if (!request.output.empty()) check_output(request.output, ".csv");
+  if (!request.save.empty()) check_output(request.save, ".toml");
+  if (!request.static_test) return;
+  const char* const other = request.check              ? "--check"
+                            : request.halt_on_overload ? "--halt-on-overload"
+                            : !request.until.empty()   ? "--until"
+                            : !request.output.empty()  ? "-o"
+                            : !request.save.empty()    ? "--save"
+                            : !request.from.empty()    ? "--from"
+                            : request.events           ? "--events"
+                                                       : nullptr;
+  if (other == nullptr) return;
+  throw ReadError(Diagnostic{{},
+                             fmt::format("--static-test runs nothing, so {} has nothing to work on", other),
+                             "one of the two",
+                             {}});
+}
+
+void note_overloads(const Program& program, const Run& run) {
+  for (const OverloadRecord& o : run.overloads) {
+    const std::string& name = program.signal_names()[o.signal];
+    if (run.halted) {
+      note(fmt::format("overload: '{}' leaves ±1 machine unit at t = {:.10g} s; the run ends there\n", name,
+                       o.first));
+      return;
+    }
+    note(fmt::format("overload: '{}' leaves ±1 machine unit at t = {:.6g} s, peak {:.6g}, {:.6g} s in all\n",
+                     name, o.first, o.peak.value, o.duration));
+  }
+}
+
 }  // namespace
 
 ExitStatus run_diagram(const Session& session, const RunRequest& request) {
-  if (!request.output.empty()) check_output(request.output, ".csv");
+  check_request(request);
   const BlockLibrary library = session.library();
   Diagram diagram = read_diagram(request.diagram);
   if (!request.until.empty()) diagram.run.until = quantity_option("--until", request.until, "s");
-  if (!(diagram.run.until > 0)) {
+  if (!(diagram.run.until > 0 && std::isfinite(diagram.run.until))) {
     throw ReadError(Diagnostic{{},
                                fmt::format("the run would end at t = {} s", diagram.run.until),
-                               "a time above 0",
+                               "a finite time above 0",
                                "give --until, or 'until' in [run]"});
   }
   if (request.check && diagram.expectations.empty()) {
@@ -83,16 +154,41 @@ ExitStatus run_diagram(const Session& session, const RunRequest& request) {
 
   const FlatDiagram flat = flatten(diagram, library, overrides);
   const Program program(assemble(flat));
+  if (request.static_test) {
+    print(table_of(static_test(program, diagram.file)));
+    return ExitStatus::done;
+  }
   RunOptions options = options_of(diagram.run);
-  if (request.check) options.extra_times = expectation_times(diagram, diagram.run.until);
+  options.halt_on_overload = request.halt_on_overload;
+  options.watch_overloads = diagram.machine.profile != "ideal";
+  if (!request.from.empty()) {
+    options.from = parse_run_state(read_file(request.from), request.from);
+    if (!(options.until > options.from->time)) {
+      throw ReadError(Diagnostic{{request.from, {}},
+                                 fmt::format("the state is that of t = {} s, and the run ends at {} s",
+                                             options.from->time, options.until),
+                                 "a later end of the run",
+                                 "give a later --until"});
+    }
+  }
+  if (request.check) ask_for_expectations(diagram, options);
   Run result;
   {
     Progress progress("running");
+    std::optional<InterruptGuard> guard;
+    if (!request.save.empty()) {
+      guard.emplace();
+      options.interrupted = [] { return interrupt_asked != 0; };
+    }
     options.progress = [&](double fraction) { progress.show(fraction); };
     result = run(program, flat, options);
   }
   print(table_of(result.trajectory));
+  if (request.events) print(table_of(result.events, result.event_count));
   if (!request.output.empty()) save(request.output, to_csv(result.trajectory));
+  if (!request.save.empty()) save(request.save, to_text(result.state));
+  if (result.state.time < options.until)
+    note(fmt::format("interrupted at t = {:.6g} s\n", result.state.time));
   const SolverStatistics& s = result.statistics;
   note(fmt::format(
       "{}, {}; {} (relative tolerance {}), {:.3g} ms\n", count(program.n_states(), "state", "states"),
@@ -101,11 +197,17 @@ ExitStatus run_diagram(const Session& session, const RunRequest& request) {
   if (program.n_states() > 0) {
     note(fmt::format("method {}: {}\n", method_name(result.method.method), result.method.reason));
   }
+  if (result.event_count > 0 && !request.events) {
+    note(fmt::format("{}; --events lists them\n",
+                     count(static_cast<std::size_t>(result.event_count), "event", "events")));
+  }
   constexpr double kCoarseForAdams = 1e-5;
   if (result.method.method == IntegrationMethod::adams && options.tolerance > kCoarseForAdams) {
     note(fmt::format("warning: at a tolerance of {} Adams lets oscillations grow; 1e-5 or less is safe\n",
                      options.tolerance));
   }
+  note_overloads(program, result);
+  if (result.halted) return ExitStatus::no;
   return request.check ? report_expectations(diagram, result) : ExitStatus::done;
 }
 

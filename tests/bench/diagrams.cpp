@@ -58,7 +58,7 @@ TimedRun timed_run(const CompiledDiagram& diagram) {
   // The first row of the grid is taken when the loops have come to rest and nothing has been integrated.
   bool started = false;
   double start = 0;
-  options.on_sample = [&](double, std::span<const double>) {
+  options.on_sample = [&](double, std::span<const double>, std::span<const double>) {
     if (!started) start = cpu_seconds();
     started = true;
   };

@@ -107,9 +107,9 @@ void expect_output(const Example& example, const std::string& printed) {
 }
 
 class Page : public testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(Docs, Page, testing::Values("docs/tutorial.md", "README.md"),
+INSTANTIATE_TEST_SUITE_P(Docs, Page, testing::Values("docs/tutorial.md", "docs/check.md", "README.md"),
                          [](const auto& tested) {
-                           return std::string(tested.param).find("README") == 0 ? "Readme" : "Tutorial";
+                           return std::filesystem::path(tested.param).stem().string();
                          });
 
 // The commands of a page run in order, in a copy of the diagrams, since some write files that later ones

@@ -16,6 +16,7 @@
 namespace oblique::test {
 namespace {
 
+using testing::ContainsRegex;
 using testing::HasSubstr;
 
 class Verbs : public testing::Test {
@@ -158,8 +159,24 @@ TEST_F(Verbs, CheckDescribesDiagramsAndMechanisms) {
   EXPECT_THAT(mechanism.out, HasSubstr("13 bodies, mobility 1, 1 drive"));
 }
 
+TEST_F(Verbs, CheckTakesAMechanismWithoutDrivesForAStructure) {
+  const std::string head =
+      "format = \"oblique-mechanism/1\"\n[frame]\nA = [0, 0]\nD = [4, 0]\n[bodies]\nAC = { points = [\"A\", "
+      "\"C\"], length = ";
+  const std::string tail = " }\nDC = { points = [\"D\", \"C\"], length = 3 }\n[sketch]\nC = [2, 2]\n";
+  std::ofstream(file("truss.toml")) << head << 2 << tail;
+  const Outcome stands = oblique("check " + file("truss.toml"));
+  EXPECT_EQ(stands.status, 0) << stands.err;
+  EXPECT_THAT(stands.out, HasSubstr("2 bodies, mobility 0, 0 drives"));
+  EXPECT_THAT(stands.out, HasSubstr("ok: a structure, which can be assembled and does not move"));
+  std::ofstream(file("apart.toml")) << head << 0.5 << tail;
+  const Outcome apart = oblique("check " + file("apart.toml"));
+  EXPECT_EQ(apart.status, 1);
+  EXPECT_THAT(apart.err, HasSubstr("dyad 'AC-DC' cannot be assembled at the start"));
+}
+
 TEST_F(Verbs, BlocksListsAndTells) {
-  EXPECT_THAT(oblique("blocks").out, ::testing::ContainsRegex("servo-amplifier +Drives its output until"));
+  EXPECT_THAT(oblique("blocks").out, ContainsRegex("servo-amplifier +Drives its output until"));
   const Outcome page = oblique("blocks servo-amplifier");
   EXPECT_THAT(page.out, HasSubstr("open-loop gain μ; inf: the ideal amplifier"));
   EXPECT_THAT(page.out, HasSubstr("\"der(out)\" = \"2*pi*bandwidth*(-out - gain*in)\""));

@@ -175,7 +175,7 @@ n = { type = "inner", x = "-u", b = "4*o.i.s.out" }
   EXPECT_THAT(inputs_of(d, "q"), ElementsAre("1*o.i.t", "1*o.i.t"));
   EXPECT_THAT(inputs_of(d, "n.s"), ElementsAre("-2*u + -4*o.i.s"));
   EXPECT_THAT(block_at(d, "n.t").parameters, ElementsAre(4, 1000, 0.5, 0.5));
-  EXPECT_EQ(block_at(d, "n.t").place.file, "inner.toml");
+  EXPECT_EQ(block_at(d, "n.t").place, (Place{"d.toml", {7, 1}}));  // where "n" stands
 }
 
 /// A weighted sum may reach an inner input that takes one signal from the composite's point of view.

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Every diagram that is shipped runs and gives what its [expect] says; every mechanism can be patched and
-// agrees.
+// Every diagram that is shipped says where it comes from, runs and gives what its [expect] says; every
+// mechanism can be patched and agrees.
 #include <algorithm>
 #include <filesystem>
+#include <sstream>
 
 #include <gtest/gtest.h>
 
 #include <oblique/compare/compare.h>
 #include <oblique/mechanism/read_mechanism.h>
 #include <oblique/solve/expectation_check.h>
+#include <oblique/text/document.h>
 
 namespace oblique {
 namespace {
@@ -35,16 +37,35 @@ std::string path_of(const std::string& name) {
   return std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/" + name;
 }
 
-class Lesson : public testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(Diagrams, Lesson, testing::ValuesIn(files_in("lessons")), test_name);
+std::vector<std::string> diagrams() {
+  std::vector<std::string> names = files_in("historical");
+  const std::vector<std::string> lessons = files_in("lessons");
+  names.insert(names.end(), lessons.begin(), lessons.end());
+  return names;
+}
 
-TEST_P(Lesson, GivesWhatItExpects) {
+class ShippedDiagram : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Diagrams, ShippedDiagram, testing::ValuesIn(diagrams()), test_name);
+
+TEST_P(ShippedDiagram, BeginsWithAParagraphOfItsOrigin) {
+  std::istringstream text(read_file(path_of(GetParam())));
+  std::size_t words = 0;
+  std::string line, word;
+  while (std::getline(text, line) && line.starts_with('#')) {
+    std::istringstream comment(line);
+    while (comment >> word) ++words;
+  }
+  EXPECT_GE(words, 30u);  // fewer do not say where a problem comes from and what the machine shows
+  EXPECT_FALSE(read_diagram(path_of(GetParam())).title.empty());
+}
+
+TEST_P(ShippedDiagram, GivesWhatItExpects) {
   const BlockLibrary library = BlockLibrary::shipped();
   const Diagram diagram = read_diagram(path_of(GetParam()));
   ASSERT_FALSE(diagram.expectations.empty());
   const FlatDiagram flat = flatten(diagram, library);
   RunOptions options = options_of(diagram.run);
-  options.extra_times = expectation_times(diagram, options.until);
+  ask_for_expectations(diagram, options);
   const oblique::Run result = run(Program(assemble(flat)), flat, options);
   for (const ExpectationResult& expectation : check_expectations(diagram, result)) {
     EXPECT_TRUE(expectation.met) << expectation.expectation.text << " = " << expectation.actual;

@@ -62,6 +62,49 @@ TEST(Motion, NeedsADriveAndTwoPositions) {
   }
 }
 
+TEST(Motion, IsRefusedWhereADriveTurnsTooOftenToBeFollowed) {
+  const Mechanism mechanism = four_bar(1, 3.5, 3, 4, "1 rad/s", "0 deg", "[3, 3]");
+  try {
+    solve_motion(mechanism, std::array{0.0, 1e9});
+    FAIL();
+  } catch (const MechanismError& error) {
+    EXPECT_EQ(error.kind(), MechanismError::Kind::request);
+    EXPECT_THAT(error.what(),
+                HasSubstr("drive 'crank' turns 1.59e+08 times in the 1e+09 s of the motion; expected 10000 "
+                          "turns of the fastest drive at most"));
+  }
+  // seven thousand turns are followed; the closed form's phase carries a rounding of 4e4 rad
+  const double late = 7000 * 2 * kPi + 1;
+  const Motion motion = solve_motion(mechanism, std::array{1.0, late});
+  EXPECT_NEAR(motion.configurations[1].points[3].position.x(),
+              motion.configurations[0].points[3].position.x(), 1e-10);
+}
+
+// Similar mechanisms move alike. Factors that are powers of two change no rounding; the largest and the
+// smallest come near the lengths that a file may have, where products of four lengths are no numbers any
+// more.
+TEST(Motion, OfSimilarMechanismsIsSimilar) {
+  const Motion motion = solve_motion(four_bar(1, 3.5, 3, 4, "1 rad/s", "30 deg", "[3, 3]"), 25);
+  for (const int power : {-330, -273, -20, 20, 260, 329}) {
+    const double factor = std::ldexp(1, power);
+    const std::string sketch =
+        "[\"3*2^" + std::to_string(power) + "\", \"3*2^" + std::to_string(power) + "\"]";
+    const Motion similar =
+        solve_motion(four_bar(factor, 3.5 * factor, 3 * factor, 4 * factor, "1 rad/s", "30 deg", sketch), 25);
+    for (std::size_t row = 0; row < 25; ++row) {
+      const Configuration& here = motion.configurations[row];
+      const Configuration& there = similar.configurations[row];
+      EXPECT_EQ(there.status, Status::ok);
+      for (std::size_t point = 2; point < 4; ++point) {
+        EXPECT_EQ(here.points[point].position, there.points[point].position / factor) << power;
+        EXPECT_EQ(here.points[point].velocity, there.points[point].velocity / factor) << power;
+        EXPECT_EQ(here.points[point].acceleration, there.points[point].acceleration / factor) << power;
+      }
+      EXPECT_EQ(here.bodies[1].alpha, there.bodies[1].alpha) << power;
+    }
+  }
+}
+
 // A drag link (the shortest bar is the frame): all bars turn fully with the crank.
 TEST(Motion, FollowsWholeTurnsOfAllBodiesHoweverFewThePositions) {
   const Mechanism mechanism = four_bar(3, 3.5, 3, 1, "1 rad/s", "0 deg", "[0, 2]");

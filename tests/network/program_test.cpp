@@ -126,6 +126,41 @@ TEST(Workspace, SolvesANonLinearLoopFromFarAway) {
   }
 }
 
+/// The slope of x′ = z, where z solves `equation` (names z and x) by Newton's method from `guess`.
+double implicit_solution(const std::string& equation, double x, double guess) {
+  const BlockLibrary library = testing::shipped_blocks_and(
+      "root", "[inputs]\nx = {}\n[outputs]\nz = {}\n[implicit]\nz = \"" + equation +
+                  "\"\n[start]\nz = { guess = " + std::to_string(guess) + " }\n");
+  const Compiled made("x = { type = \"integrator\", in = [\"r\"] }\nr = { type = \"root\", x = \"x\" }\n", "",
+                      library);
+  Workspace workspace(made.program);
+  double slope = std::nan("");
+  EXPECT_TRUE(made.program.derivatives(0, &x, &slope, workspace)) << equation << " at " << x;
+  return slope;
+}
+
+// cos² + sin² = 1 leaves sin z = x, and the rounding of terms of order k, which no step makes smaller.
+TEST(LoopNearZero, IsSolvedToTheRoundingOfItsTerms) {
+  for (const double k : {1.0, 1e2, 1e4, 1e6}) {
+    const std::string terms = std::to_string(k);
+    const std::string equation =
+        "sin(z) + " + terms + "*cos(0.3 + z)^2 + " + terms + "*sin(0.3 + z)^2 - " + terms + " - x";
+    for (int power = 0; power <= 80; ++power) {
+      const double x = power == 0 ? 0 : std::pow(10.0, -0.2 * power) * (power % 2 == 0 ? 0.7 : -0.7);
+      // some roundings of k, over the slope cos z > 0.7
+      EXPECT_NEAR(implicit_solution(equation, x, 0.2), std::asin(x), 1e-15 * k + 1e-15) << x << " " << k;
+    }
+  }
+}
+
+// What is small by nature is solved to its own rounding, not to that of 1.
+TEST(LoopNearZero, KeepsTheDigitsOfSmallSolutions) {
+  for (const double x : {1e-12, 1e-18, 1e-24, 1e-30}) {
+    EXPECT_NEAR(implicit_solution("z^2 - x", x, 1), std::sqrt(x), 1e-15 * std::sqrt(x)) << x;
+    EXPECT_NEAR(implicit_solution("exp(z)*z - x", x, 0.5), x * (1 - x), 1e-15 * x) << x;
+  }
+}
+
 /// atan y = x by an ideal amplifier that starts at 3.
 class ArcTest : public ::testing::Test {
  protected:

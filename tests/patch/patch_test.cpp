@@ -174,6 +174,16 @@ TEST(Patch, RefusesADeadCentre) {
   }
 }
 
+// With a coupler and a rocker of 2.499996 + 2.5 < 5 the triangle opens for 0.18° of the crank, between the
+// positions from which the scaling is taken (every half degree, here from 0.25° on).
+TEST(Patch, RefusesATriangleThatOpensBetweenItsPositions) {
+  std::string text = replaced(kFourBar, "length = 3.5", "length = 2.5");
+  text = replaced(text, "length = 3 ", "length = 2.499996 ");
+  text = replaced(text, "speed = 1", "speed = 1, start = \"0.25 deg\"");
+  const Mechanism mechanism = parse_mechanism(text, "opens.toml");
+  EXPECT_THROW(patch_triangles(mechanism), PatchError);
+}
+
 TEST(Patch, ChoosesABandwidthAHundredTimesTheFastestDrive) {
   const auto of_speed = [](const std::string& speed) {
     return default_bandwidth(parse_mechanism(replaced(kFourBar, "speed = 1", "speed = " + speed), "m.toml"));

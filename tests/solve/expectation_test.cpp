@@ -23,7 +23,7 @@ y = { type = "integrator", in = ["x"] }
 
 std::vector<ExpectationResult> check(const Compiled& made) {
   RunOptions options = options_of(made.diagram.run);
-  options.extra_times = expectation_times(made.diagram, options.until);
+  ask_for_expectations(made.diagram, options);
   return check_expectations(made.diagram, run(made.program, made.flat, options));
 }
 

@@ -73,6 +73,20 @@ c  = {{ type = "servo-amplifier", in = ["cc", "-u"], gain = 1e5, initial = {} }}
   for (const double initial : {0.0, 0.1, 1.0, 5.0}) EXPECT_NEAR(root(initial), 0.7, 1e-5) << initial;
 }
 
+// From c = 0 the loop c² = u has no gain, and its output sets out at 2π·bandwidth·μ·u: for μ = 1e14 a step of
+// the time constant that the guess knows of goes 1e14 times too far.
+TEST(Rest, SetsOutWhereALoopHasNoGainYet) {
+  for (const double gain : {1e4, 1e7, 1e8, 1e9, 1e10, 1e12, 1e14}) {
+    const Rested at(fmt::format(R"toml(u  = {{ type = "constant", value = 0.49 }}
+cc = {{ type = "multiplier", in = ["c", "c"] }}
+c  = {{ type = "servo-amplifier", in = ["cc", "-u"], gain = {}, initial = 0 }}
+)toml",
+                                gain));
+    // c² + c/μ = u, solved for c; its rounding
+    EXPECT_NEAR(at.state("c"), -0.5 / gain + std::hypot(0.5 / gain, 0.7), 1e-15) << gain;
+  }
+}
+
 TEST(Rest, ReachesLoopsOfVeryDifferentSpeeds) {
   // A chain of divisions by 0.5 through amplifiers from 1 Hz to 1 MHz and gains from 1e2 to 1e8.
   const Rested at(R"toml(one  = { type = "constant" }

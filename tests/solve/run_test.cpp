@@ -125,7 +125,7 @@ TEST(Run, TellsItsProgressAndItsRows) {
   options.until = 200;
   options.samples = 5;
   options.progress = [&](double fraction) { fractions.push_back(fraction); };
-  options.on_sample = [&](double t, std::span<const double> states) {
+  options.on_sample = [&](double t, std::span<const double> states, std::span<const double>) {
     EXPECT_EQ(states.size(), 2U);
     EXPECT_NEAR(states[0], std::cos(t), 1e-3);
     seen.push_back(t);

@@ -5,8 +5,11 @@
 #include <cmath>
 #include <limits>
 
+#include <fmt/format.h>
+
 #include <oblique/mechanism/motion.h>
 #include <oblique/patch/patch.h>
+#include <oblique/solve/solve_error.h>
 #include <oblique/solve/stability.h>
 
 namespace oblique {
@@ -14,6 +17,10 @@ namespace {
 
 constexpr std::size_t kRowsPerStabilityCheck = 10;
 constexpr double kAboveFloor = 10;
+/// Amplifiers of this gain err by far less than what the tolerance of any run leaves. Ideal ones would not do
+/// for the floor: without the dynamics of the loops there are fewer errors to add up, ten times fewer in a
+/// Jansen leg.
+constexpr double kFloorGain = 1e12;
 
 /// The columns of a trajectory that belong to a moving point.
 struct PointColumns {
@@ -51,12 +58,24 @@ void measure_errors(const Mechanism& mechanism, const Trajectory& analog, const 
   result.rms_error = std::sqrt(sum / static_cast<double>(std::max<std::size_t>(count, 1)));
 }
 
+Run run_naming_gain(const Program& program, const FlatDiagram& flat, const RunOptions& options, double gain) {
+  try {
+    return run(program, flat, options);
+  } catch (const SolveError& error) {
+    Diagnostic finding = error.diagnostics().front();
+    finding.place = {flat.file, {}};  // the diagram has no file in which its blocks stand
+    finding.what = fmt::format("with amplifiers of gain {:.6g}: {}", gain, finding.what);
+    throw SolveError(error.kind(), error.time(), std::move(finding));
+  }
+}
+
 GainRun run_with_gain(const Mechanism& mechanism, const BlockLibrary& library, const Motion& exact,
                       double gain, const std::function<void(double)>& progress) {
   PatchOptions patch_options;
   patch_options.gain = gain;
   patch_options.samples = static_cast<int>(exact.times.size());
-  const Diagram diagram = patch_triangles(mechanism, patch_options);
+  Diagram diagram = patch_triangles(mechanism, patch_options);
+  diagram.file = mechanism.file;
   const FlatDiagram flat = flatten(diagram, library);
   const Program program(assemble(flat));
 
@@ -67,11 +86,11 @@ GainRun run_with_gain(const Mechanism& mechanism, const BlockLibrary& library, c
   std::size_t row = 0;
   RunOptions options = options_of(diagram.run);
   options.progress = progress;
-  options.on_sample = [&](double t, std::span<const double> states) {
+  options.on_sample = [&](double t, std::span<const double> states, std::span<const double>) {
     if (row++ % kRowsPerStabilityCheck == 0)
       checkpoints.emplace_back(t, std::vector(states.begin(), states.end()));
   };
-  const Run analog = run(program, flat, options);
+  const Run analog = run_naming_gain(program, flat, options, gain);
   result.steps = analog.statistics.steps;
   result.seconds = analog.seconds;
   for (std::size_t s = 0; s < analog.peaks.size(); ++s) {
@@ -126,8 +145,7 @@ Comparison compare(const Mechanism& mechanism, const BlockLibrary& library, cons
     progress(1);
     ++done;
   }
-  const double ideal = std::numeric_limits<double>::infinity();
-  comparison.floor = run_with_gain(mechanism, library, exact, ideal, progress).max_error;
+  comparison.floor = run_with_gain(mechanism, library, exact, kFloorGain, progress).max_error;
   comparison.order = fitted_order(comparison.runs, comparison.floor);
   return comparison;
 }

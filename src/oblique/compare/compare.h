@@ -44,7 +44,8 @@ struct Comparison {
   std::string unit;       ///< of lengths
   double size = 0;        ///< largest link length [length unit]
   double bandwidth = 0;   ///< of the amplifiers [Hz]
-  double floor = 0;       ///< largest error with ideal amplifiers: what tolerance alone leaves [length unit]
+  double floor =
+      0;  ///< largest error with amplifiers of gain 1e12: what tolerance alone leaves [length unit]
   std::vector<GainRun> runs;
   std::optional<double>
       order;  ///< slope of log error over log gain; none with fewer than two runs above the floor
@@ -56,7 +57,7 @@ inline constexpr double kOverloadMargin = 1e-6;
 
 /// Patches a mechanism with each gain, runs the diagrams over one turn, and measures them against the exact
 /// motion. The order is fitted where the error is at least ten times the floor. Throws as `patch_triangles`
-/// and `run`.
+/// and, with the gain in the message, as `run`.
 Comparison compare(const Mechanism& mechanism, const BlockLibrary& library,
                    const CompareOptions& options = {});
 

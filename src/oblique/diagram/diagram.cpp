@@ -57,9 +57,32 @@ bool Expectation::operator==(const Expectation& other) const {
          value == other.value && within == other.within;
 }
 
+std::string_view mode_name(OperatingMode mode) {
+  switch (mode) {
+    case OperatingMode::potset:
+      return "potset";
+    case OperatingMode::initial:
+      return "initial";
+    case OperatingMode::operate:
+      return "operate";
+    case OperatingMode::hold:
+      break;
+  }
+  return "hold";
+}
+
+bool ModeGroup::operator==(const ModeGroup& other) const {
+  return name == other.name && blocks == other.blocks && initial == other.initial && hold == other.hold;
+}
+
+bool Phase::operator==(const Phase& other) const {
+  return mode == other.mode && modes == other.modes && duration == other.duration && until == other.until;
+}
+
 bool Diagram::operator==(const Diagram& other) const {
   return title == other.title && source == other.source && machine == other.machine && run == other.run &&
-         blocks == other.blocks && outputs == other.outputs && expectations == other.expectations;
+         groups == other.groups && timeline == other.timeline && blocks == other.blocks &&
+         outputs == other.outputs && expectations == other.expectations;
 }
 
 Entry number_setting(std::string key, double value) {

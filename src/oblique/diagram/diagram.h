@@ -67,6 +67,39 @@ struct Expectation {
   bool operator==(const Expectation& other) const;  ///< without places
 };
 
+/// Mode of operation of integrators. Setting the potentiometers, the machine holds its initial condition.
+enum class OperatingMode { potset, initial, operate, hold };
+
+/// "potset", "initial", "operate", "hold".
+std::string_view mode_name(OperatingMode mode);
+
+/// Integrators (and whatever else knows modes) with a mode line of their own.
+struct ModeGroup {
+  std::string name;
+  std::vector<std::string> blocks;  ///< paths; a composite stands for all in it
+  std::string initial;              ///< a signal: above 0.5 it holds the group in initial condition
+  std::string hold;                 ///< a signal: above 0.5 it holds the group
+  Place place;
+  bool operator==(const ModeGroup& other) const;  ///< without places
+};
+
+/// A part of the run in which every group keeps its mode.
+struct Phase {
+  OperatingMode mode = OperatingMode::operate;  ///< of all that `modes` does not name
+  std::vector<std::pair<std::string, OperatingMode>> modes;
+  double duration = 0;  ///< [s] at most; infinite where only `until` ends it
+  std::string until;    ///< "signal > number" or "signal < number" that ends it earlier, or empty
+  Place place;
+  bool operator==(const Phase& other) const;  ///< without places
+};
+
+/// The phases of a run, one after the other; the last stays until the run ends.
+struct Timeline {
+  std::vector<Phase> phases;
+  double cycles = 1;  ///< how often they are gone through
+  bool operator==(const Timeline&) const = default;
+};
+
 /// A block diagram as its file has it (oblique-diagram/1).
 struct Diagram {
   std::string file;
@@ -75,6 +108,8 @@ struct Diagram {
   std::string comment;  ///< lines that `write_diagram` puts at the head
   MachineSettings machine;
   RunSettings run;
+  std::vector<ModeGroup> groups;
+  Timeline timeline;  ///< without phases: the whole run is one phase "operate"
   std::vector<BlockInstance> blocks;
   std::vector<OutputSpec> outputs;
   std::vector<Expectation> expectations;

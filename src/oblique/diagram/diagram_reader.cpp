@@ -8,6 +8,7 @@
 
 #include <oblique/diagram/expectations.h>
 #include <oblique/diagram/names.h>
+#include <oblique/diagram/timeline.h>
 #include <oblique/text/table_reader.h>
 
 namespace oblique {
@@ -31,6 +32,13 @@ class DiagramReader {
     diagram_.title = reader_.string("title").value_or("");
     diagram_.source = reader_.string("source").value_or("");
     if (const Value* const table = reader_.table("machine")) read_machine(*table);
+    if (const Value* const table = reader_.table("groups"))
+      diagram_.groups = read_groups(diagram_.file, *table, diagnostics_);
+    if (const Value* const table = reader_.table("timeline")) {
+      diagram_.timeline = read_timeline(diagram_.file, *table, diagram_.groups, diagnostics_);
+      const double whole = duration_of(diagram_.timeline);
+      if (whole > 0 && std::isfinite(whole)) diagram_.run.until = last_time_ = whole;
+    }
     if (const Value* const table = reader_.table("run")) read_run(*table);
     if (const Value* const table = reader_.table("blocks")) {
       diagram_.blocks = read_blocks(diagram_.file, *table, diagnostics_);

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <oblique/diagram/expectations.h>
+#include <oblique/diagram/timeline.h>
 
 namespace oblique {
 namespace {
@@ -122,6 +123,25 @@ std::string write_diagram(const Diagram& diagram) {
                {{}, "samples", fmt::format("{}", run.samples)},
                {{}, "max_steps", fmt::format("{}", run.max_steps)}},
               out);
+
+  std::vector<Line> groups;
+  for (const ModeGroup& group : diagram.groups) {
+    std::string value = "{ blocks = [";
+    for (const std::string& name : group.blocks)
+      value += (value.back() == '[' ? "" : ", ") + toml_string(name);
+    value += "]";
+    if (!group.initial.empty()) value += ", initial = " + toml_string(group.initial);
+    if (!group.hold.empty()) value += ", hold = " + toml_string(group.hold);
+    groups.push_back({{}, key_text(group.name), value + " }"});
+  }
+  write_table("groups", groups, out);
+  if (!diagram.timeline.phases.empty()) {
+    std::string phases = "[\n";
+    for (const Phase& phase : diagram.timeline.phases) phases += "  " + to_string(phase) + ",\n";
+    write_table("timeline",
+                {{{}, "phases", phases + "]"}, {{}, "cycles", fmt::format("{}", diagram.timeline.cycles)}},
+                out);
+  }
 
   std::vector<Line> blocks, outputs, expectations;
   for (const BlockInstance& block : diagram.blocks) {

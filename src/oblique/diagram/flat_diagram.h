@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,7 +38,8 @@ struct FlatBlock {
   std::vector<double> parameters;               ///< in the order of the definition
   std::vector<FlatInput> inputs;                ///< in the order of the definition
   double polarity = 1;                          ///< −1 where summers and integrators invert
-  Place place;
+  std::size_t group = 0;                        ///< of FlatTimeline::groups
+  Place place;                                  ///< of the block of the diagram that it is or is a part of
 };
 
 /// A column of the trajectory.
@@ -48,11 +50,39 @@ struct FlatOutput {
   std::string unit;
 };
 
+/// A comparison of a signal with a number.
+struct FlatCondition {
+  SignalRef signal;
+  bool above = true;  ///< signal > threshold, else signal < threshold
+  double threshold = 0.5;
+};
+
+/// A group of blocks with a mode line of its own.
+struct FlatGroup {
+  std::string name;
+  std::optional<SignalRef> initial, hold;
+};
+
+struct FlatPhase {
+  std::vector<OperatingMode> modes;  ///< of each group
+  double duration = 0;               ///< [s]
+  std::optional<FlatCondition> until;
+};
+
+/// Phases and groups with all names resolved. The first group holds what stands in no other; without groups
+/// and phases there is none, and everything operates all the time.
+struct FlatTimeline {
+  std::vector<FlatGroup> groups;
+  std::vector<FlatPhase> phases;
+  double cycles = 1;
+};
+
 /// A diagram of primitive blocks, all names resolved. Refers to the definitions of the library it was made
 /// with.
 struct FlatDiagram {
   std::string file;
   std::vector<FlatBlock> blocks;
+  FlatTimeline timeline;
   std::vector<FlatOutput>
       outputs;  ///< those of `[outputs]`; every signal of the top level where there are none
 

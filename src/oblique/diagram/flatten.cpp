@@ -8,6 +8,7 @@
 
 #include <oblique/diagram/expectations.h>
 #include <oblique/diagram/overrides.h>
+#include <oblique/diagram/timeline.h>
 #include <oblique/diagram/wiring.h>
 
 namespace oblique {
@@ -30,6 +31,7 @@ struct Node {
   std::size_t first_child = 0;  ///< children stand side by side, in the order of `inside->blocks`
   std::size_t flat = 0;         ///< of a primitive block: its index in the flat diagram
   std::string path;
+  Place place;  ///< of the block of the diagram that it is or is a part of
   std::vector<double> parameters;
   std::vector<FlatInput> inputs;  ///< of a composite
 };
@@ -81,6 +83,7 @@ class Layout {
       if (wired.definition == nullptr) continue;
       const std::string& around = nodes_[parent].path;
       node.path = around.empty() ? wired.instance->name : around + "." + wired.instance->name;
+      node.place = parent == 0 ? wired.instance->place : nodes_[parent].place;
       set_parameters(node, nodes_[parent]);
       if (wired.inside != nullptr) {
         expand(first + i);
@@ -128,7 +131,7 @@ class Layout {
     block.polarity = scope.inverting ? -1 : 1;
     block.behaviour = choose_behaviour(*block.definition, node.parameters, block.polarity);
     block.parameters = node.parameters;
-    block.place = node.wired->instance->place;
+    block.place = node.place;
     node.flat = flat_.blocks.size();
     flat_.blocks.push_back(std::move(block));
   }
@@ -263,6 +266,14 @@ FlatDiagram flatten(const Diagram& diagram, const BlockLibrary& library,
   const wiring::Replacements replacements = wiring::resolve_overrides(scope, overrides, diagnostics);
   const Layout layout(scope, replacements, flat, diagnostics);
   choose_outputs(diagram, scope, layout, flat, diagnostics);
+  lay_out_timeline(
+      diagram, flat,
+      [&](const std::string& path, const Place& place,
+          const std::string& subject) -> std::optional<SignalRef> {
+        const auto source = wiring::find_signal(scope, path, place.position, subject, diagnostics);
+        return source ? layout.signal(*source) : std::nullopt;
+      },
+      diagnostics);
   std::vector<std::string> names;
   for (const FlatOutput& output : flat.outputs) names.push_back(output.name);
   if (std::find(names.begin(), names.end(), "t") != names.end()) {

@@ -16,6 +16,15 @@ namespace {
 /// Sides whose triangle inequality fails by no more than this, relative to the longest, are a flat triangle.
 constexpr double kFlatWithin = 1e-12;
 
+bool is_length(double value) {
+  return value >= kShortest && value <= kLongest;
+}
+
+std::string expected_length(double value) {
+  return value > 0 && std::isfinite(value) ? fmt::format("a length from {} to {}", kShortest, kLongest)
+                                           : "a length above 0";
+}
+
 /// Reads one body; a finding leaves it out of the mechanism or leaves it incomplete, which the error hides.
 class BodyReader {
  public:
@@ -67,8 +76,9 @@ class BodyReader {
   /// A length above zero; a finding otherwise.
   std::optional<double> positive_length(const std::string& key) {
     const auto length = reader_.quantity(key, mechanism_.length_unit);
-    if (length && !(*length > 0 && std::isfinite(*length))) {
-      reader_.report(key, fmt::format("'{}' of {} is {}", key, reader_.what(), *length), "a length above 0");
+    if (length && !is_length(*length)) {
+      reader_.report(key, fmt::format("'{}' of {} is {}", key, reader_.what(), *length),
+                     expected_length(*length));
       return std::nullopt;
     }
     return length;
@@ -140,11 +150,13 @@ class BodyReader {
       const std::string what = fmt::format("side {} of {}", i + 1, reader_.what());
       const auto length = read_quantity(mechanism_.file, side, mechanism_.length_unit, what, diagnostics_);
       lengths[i] = length.value_or(0);
-      if (length && !(*length > 0 && std::isfinite(*length))) {
-        diagnostics_.add(
-            {reader_.place(side.position), fmt::format("{} is {}", what, *length), "a length above 0", {}});
+      if (length && !is_length(*length)) {
+        diagnostics_.add({reader_.place(side.position),
+                          fmt::format("{} is {}", what, *length),
+                          expected_length(*length),
+                          {}});
       }
-      good = good && lengths[i] > 0 && std::isfinite(lengths[i]);
+      good = good && is_length(lengths[i]);
     }
     return good ? std::optional(lengths) : std::nullopt;
   }
@@ -229,6 +241,13 @@ std::optional<Eigen::Vector2d> read_coordinates(const std::string& file, const V
   if (!x || !y) return std::nullopt;
   if (!std::isfinite(*x) || !std::isfinite(*y)) {
     diagnostics.add({{file, value.position}, fmt::format("{} is infinite", what), "finite coordinates", {}});
+    return std::nullopt;
+  }
+  if (std::abs(*x) > kLongest || std::abs(*y) > kLongest) {
+    diagnostics.add({{file, value.position},
+                     fmt::format("{} is at [{}, {}]", what, *x, *y),
+                     fmt::format("coordinates up to {}", kLongest),
+                     {}});
     return std::nullopt;
   }
   return Eigen::Vector2d(*x, *y);

@@ -12,6 +12,11 @@
 
 namespace oblique {
 
+/// Lengths and coordinates that are read, in the file's unit: their squares, and products with what moves at
+/// any sensible speed, stay numbers.
+inline constexpr double kShortest = 1e-100;
+inline constexpr double kLongest = 1e100;
+
 /// Reads `[x, y]` in `unit`; both may be quantities. Findings go to `diagnostics` with `what` as their
 /// subject.
 std::optional<Eigen::Vector2d> read_coordinates(const std::string& file, const Value& value,

@@ -95,6 +95,21 @@ double period(const Mechanism& mechanism) {
   return kTurn / std::abs(mechanism.drives.front().speed);
 }
 
+void check_travel(const Mechanism& mechanism, double duration) {
+  for (const Drive& drive : mechanism.drives) {
+    const double turns = std::abs(drive.speed) * duration / kTurn;
+    if (turns <= kMostTurns) continue;
+    throw MechanismError(
+        MechanismError::Kind::request,
+        Diagnostic{drive.place,
+                   fmt::format("drive '{}' turns {:.3g} times in the {:.6g} s of the motion", drive.name,
+                               turns, duration),
+                   fmt::format("{:.0f} turns of the fastest drive at most", kMostTurns),
+                   "a motion lasts one turn of the first drive: put the fastest drive first in [drives], or "
+                   "bring the speeds nearer to each other"});
+  }
+}
+
 Motion solve_motion(const Mechanism& mechanism, int positions) {
   const double turn = period(mechanism);
   if (positions < 2) {
@@ -114,6 +129,9 @@ Motion solve_motion(const Mechanism& mechanism, std::span<const double> times) {
 }
 
 Motion solve_motion(const Mechanism& mechanism, const Structure& structure, std::span<const double> times) {
+  double duration = 0;
+  for (std::size_t k = 1; k < times.size(); ++k) duration += std::abs(times[k] - times[k - 1]);
+  check_travel(mechanism, duration);
   Motion motion;
   motion.times.assign(times.begin(), times.end());
   AngleTracker tracker(mechanism, structure);

@@ -22,12 +22,18 @@ struct Motion {
 /// drive.
 double period(const Mechanism& mechanism);
 
+/// Throws MechanismError (kind `request`) where a drive turns so often in `duration` [s] that nobody would
+/// wait for a motion that follows it: more than kMostTurns times.
+void check_travel(const Mechanism& mechanism, double duration);
+inline constexpr double kMostTurns = 1e4;
+
 /// One turn of the first drive in `positions` ≥ 2 rows t_k = T·k/(positions − 1), both ends included.
 /// Assembly modes keep their side of P → Q, also through a dead centre. Throws as `decompose`, and
 /// MechanismError (kind `request`) without a drive or for fewer than two positions.
 Motion solve_motion(const Mechanism& mechanism, int positions);
 
-/// As above at any times [s] (finite, in any order).
+/// As above at any times [s] (finite, in any order). Throws as `check_travel` for the way from each time to
+/// the next, taken together.
 Motion solve_motion(const Mechanism& mechanism, std::span<const double> times);
 Motion solve_motion(const Mechanism& mechanism, const Structure& structure, std::span<const double> times);
 

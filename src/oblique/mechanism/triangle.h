@@ -29,7 +29,8 @@ inline Triangle triangle(double base, double first, double second) {
   result.slack = std::min(beyond, within);
   result.along = (base + difference * sum / base) / 2;
   if (result.slack > 0) {
-    result.four_area = std::sqrt((sum + base) * beyond * (base + std::abs(difference)) * within);
+    // two roots, since the product of four lengths leaves the range of numbers at 1e78 and at 1e-82
+    result.four_area = std::sqrt((sum + base) * (base + std::abs(difference))) * std::sqrt(beyond * within);
     result.height = result.four_area / (2 * base);
   }
   return result;

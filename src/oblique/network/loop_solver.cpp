@@ -12,10 +12,14 @@ constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr int kMostIterations = 100;
 constexpr double kSmallestFraction = 1e-9;  ///< of a Newton step, below which the search along it gives up
 
-/// Size of an unknown for relative tests; the floor keeps one that passes zero from demanding digits that its
-/// equation cannot have.
+/// A step below this, of 1 + |z|, that does not bring the residual down is led by the residual's rounding:
+/// the terms of an equation may be a hundred million times its slope. (A Newton step leads downhill, so along
+/// a longer one that does not, there is no solution.)
+constexpr double kNoise = 1e-8;
+
+/// Size of an unknown for relative tests; the floor only keeps a zero from dividing.
 double magnitude(double z) {
-  return std::abs(z) + 1e-9;
+  return std::abs(z) + std::numeric_limits<double>::min();
 }
 
 Eigen::Index index(std::size_t i) {
@@ -95,6 +99,7 @@ LoopFailure LoopWorkspace::solve_loop(const LoopCode& loop, std::span<const Inst
   }
   run_tape(body, slots);
   double last_change = std::numeric_limits<double>::infinity();
+  bool small = false;
   for (int iteration = 0; iteration < kMostIterations; ++iteration) {
     for (const std::uint32_t slot : loop.residual_slots) {
       if (!std::isfinite(slots[slot])) return LoopFailure::not_finite;
@@ -106,16 +111,23 @@ LoopFailure LoopWorkspace::solve_loop(const LoopCode& loop, std::span<const Inst
       start_[index(i)] = slots[loop.unknown_slots[i]];
     }
     const double norm = residual_norm(loop, slots);
+    if (norm == 0) return LoopFailure::none;
     solve(step_);
+    small = (step_.col(0).array().abs() < kNoise * (1 + start_.array().abs())).all();
 
     double fraction = 1;
     double change = move(loop, slots, fraction);
     run_tape(body, slots);
-    if (loop.linear) return std::isfinite(change) ? LoopFailure::none : LoopFailure::not_finite;
+    if (loop.linear) return step_.allFinite() ? LoopFailure::none : LoopFailure::not_finite;
     // Steps at the level of rounding are not judged by the residual, which is noise there.
     while (change > 1e-13 && !(residual_norm(loop, slots) < (1 - 1e-4 * fraction) * norm)) {
       fraction /= 2;
-      if (fraction < kSmallestFraction) return LoopFailure::diverged;
+      if (fraction < kSmallestFraction) {
+        if (!small) return LoopFailure::diverged;
+        move(loop, slots, 0);
+        run_tape(body, slots);
+        return LoopFailure::none;
+      }
       change = move(loop, slots, fraction);
       run_tape(body, slots);
     }
@@ -123,7 +135,8 @@ LoopFailure LoopWorkspace::solve_loop(const LoopCode& loop, std::span<const Inst
     if (change < 2 * kEpsilon || stagnates) return LoopFailure::none;
     last_change = change;
   }
-  return LoopFailure::diverged;
+  return small ? LoopFailure::none
+               : LoopFailure::diverged;  // rounding that a step now and then makes smaller
 }
 
 }  // namespace oblique

@@ -31,6 +31,7 @@ class Assembler {
 
   Network assemble() {
     collect_quantities();
+    make_modes();
     find_active_events();
     make_memories();
     make_states();
@@ -43,6 +44,8 @@ class Assembler {
     collect_signals();
     make_events();
     make_starts();
+    define_mode_lines();
+    define_phase_ends();
     define_switches();
     define_tables();
     diagnostics_.throw_if_any<NetworkError>();
@@ -132,6 +135,88 @@ class Assembler {
     return network_.graph[build_expression(network_.graph, expression, context)].value;
   }
 
+  // --- modes of operation
+  // -------------------------------------------------------------------------------------------------------------
+
+  std::uint32_t new_memory(std::string name, double start) {
+    network_.memories.push_back({std::move(name), start});
+    return static_cast<std::uint32_t>(network_.memories.size() - 1);
+  }
+
+  /// A memory for the mode of each group, and a switch for each of its mode lines.
+  void make_modes() {
+    constexpr auto kOperate = static_cast<double>(OperatingMode::operate);
+    for (const FlatGroup& group : diagram_.timeline.groups) {
+      const std::uint32_t mode = new_memory("mode of group " + group.name, kOperate);
+      network_.mode_memories.push_back(mode);
+      ModeLines lines;
+      ExpressionGraph& graph = network_.graph;
+      const auto line = [&](const std::optional<SignalRef>& signal, std::string_view name) {
+        if (!signal) return graph.constant(0);
+        const std::uint32_t memory = new_memory(fmt::format("{} line of group {}", name, group.name), 0);
+        mode_lines_.push_back({memory, *signal, group.name});
+        return graph.memory(memory);
+      };
+      const auto inverse = [&](NodeId node) { return graph.apply(Op::subtract, graph.constant(1), node); };
+      const auto is = [&](OperatingMode asked) {
+        return graph.apply(Op::equal, graph.memory(mode), graph.constant(static_cast<double>(asked)));
+      };
+      const auto either = [&](NodeId a, NodeId b) {
+        return inverse(graph.apply(Op::multiply, inverse(a), inverse(b)));
+      };
+      lines.initial = either(line(group.initial, "initial"),
+                             either(is(OperatingMode::potset), is(OperatingMode::initial)));
+      lines.hold = graph.apply(Op::multiply, inverse(lines.initial),
+                               either(line(group.hold, "hold"), is(OperatingMode::hold)));
+      lines.operate = graph.apply(Op::multiply, inverse(lines.initial), inverse(lines.hold));
+      modes_.push_back(lines);
+    }
+  }
+
+  void define_mode_lines() {
+    for (const ModeLine& line : mode_lines_) {
+      add_switch({line.memory, fmt::format("group {}", line.group),
+                  diagram_.signal_name(line.signal) + " > 0.5",
+                  network_.graph.apply(Op::subtract, quantities_[quantity_of(line.signal)].node,
+                                       network_.graph.constant(0.5))});
+    }
+  }
+
+  void define_phase_ends() {
+    for (const FlatPhase& phase : diagram_.timeline.phases) {
+      if (!phase.until) {
+        network_.phase_ends.push_back(network_.graph.constant(0));
+        continue;
+      }
+      const FlatCondition& until = *phase.until;
+      const NodeId signal = quantities_[quantity_of(until.signal)].node;
+      const NodeId threshold = network_.graph.constant(until.threshold);
+      const std::uint32_t memory = new_memory("end of a phase", 0);
+      add_switch({memory, "timeline",
+                  fmt::format("{} {} {}", diagram_.signal_name(until.signal), until.above ? ">" : "<",
+                              until.threshold),
+                  until.above ? network_.graph.apply(Op::subtract, signal, threshold)
+                              : network_.graph.apply(Op::subtract, threshold, signal)});
+      network_.phase_ends.push_back(network_.graph.memory(memory));
+    }
+  }
+
+  void add_switch(Switch made) {
+    made.rate = rate_of(made.surface);
+    network_.memories[made.memory].name = made.block + ": " + made.comparison;
+    network_.switches.push_back(std::move(made));
+  }
+
+  /// The node of a mode of operation; nothing for another name, or where there is no timeline.
+  std::optional<NodeId> mode_node(std::size_t block, std::string_view name) const {
+    if (modes_.empty()) return std::nullopt;
+    const ModeLines& lines = modes_[diagram_.blocks[block].group];
+    if (name == "in_initial") return lines.initial;
+    if (name == "in_operate") return lines.operate;
+    if (name == "in_hold") return lines.hold;
+    return std::nullopt;
+  }
+
   // --- memories, events, switches
   // ----------------------------------------------------------------------------------------------------
 
@@ -216,11 +301,9 @@ class Assembler {
       made.block = diagram_.blocks[pending.block].path;
       made.comparison = network_.memories[pending.memory].name;
       made.surface = network_.graph.apply(Op::subtract, left, right);
-      made.rate = rate_of(made.surface);
       if (const auto& interval = diagram_.blocks[pending.block].definition->check_interval)
         made.check_interval = constant_value(pending.block, *interval).value_or(made.check_interval);
-      network_.memories[pending.memory].name = made.block + ": " + made.comparison;
-      network_.switches.push_back(std::move(made));
+      add_switch(std::move(made));
     }
   }
 
@@ -378,6 +461,7 @@ class Assembler {
     if (const std::uint32_t own = quantity_of(block, name); own != kNone) return quantities_[own].node;
     if (name == "time") return network_.graph.variable(0);
     if (const auto memory = flat.definition->find_memory(name)) return memory_node(block, *memory);
+    if (const auto mode = mode_node(block, name)) return *mode;
     return network_.graph.constant(constant_of(flat, name).value());  // parse_block admits no other names
   }
 
@@ -407,6 +491,7 @@ class Assembler {
         const bool constant = !assembler_.first_memory_.empty() && assembler_.first_memory_[block_] == kNone;
         return constant ? Change::never : Change::with_events;
       }
+      if (assembler_.mode_node(block_, name)) return Change::with_events;
       return Change::never;
     }
 
@@ -493,12 +578,10 @@ class Assembler {
       for (const bool up : {true, false}) {
         const NodeId edge = graph.apply(up ? Op::table_end : Op::table_begin, segment, number);
         Switch made;
-        made.memory = static_cast<std::uint32_t>(network_.memories.size());
+        made.memory = new_memory({}, 0);
         made.block = diagram_.blocks[pending.block].path;
         made.comparison = to_string(pending.x) + (up ? " after its segment" : " before its segment");
         made.surface = up ? graph.apply(Op::subtract, x, edge) : graph.apply(Op::subtract, edge, x);
-        made.rate = rate_of(made.surface);
-        network_.memories.push_back({made.block + ": " + made.comparison, 0});
         // At least to the next one, which rounding may hide from the search.
         const NodeId next = graph.apply(up ? Op::add : Op::subtract, segment, graph.constant(1));
         const NodeId farther = up ? graph.apply(Op::less, next, found) : graph.apply(Op::less, found, next);
@@ -507,13 +590,23 @@ class Assembler {
         event.condition = graph.memory(made.memory);
         event.repeats = true;
         event.actions.push_back({false, pending.segment, graph.apply(Op::select, farther, found, next)});
-        network_.switches.push_back(std::move(made));
+        add_switch(std::move(made));
         network_.events.push_back(std::move(event));
       }
     }
   }
 
   const FlatDiagram& diagram_;
+  struct ModeLines {
+    NodeId initial, operate, hold;
+  };
+  struct ModeLine {
+    std::uint32_t memory;
+    SignalRef signal;
+    std::string group;
+  };
+  std::vector<ModeLines> modes_;  ///< of each group
+  std::vector<ModeLine> mode_lines_;
   std::vector<std::pair<std::size_t, const EventRule*>> active_events_;
   std::vector<std::uint32_t> first_memory_;  ///< of each block with memories that events set
   std::map<std::pair<std::size_t, std::string>, std::uint32_t> switch_index_, table_index_;

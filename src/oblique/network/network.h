@@ -41,7 +41,7 @@ struct Switch {
   std::string comparison;  ///< "in > high", as the block's file has it
   NodeId surface = 0;      ///< [machine unit] or whatever is compared
   /// d surface/dt of a surface that depends on time alone, and linearly: its crossing is known beforehand.
-  std::optional<NodeId> rate;
+  std::optional<NodeId> rate = std::nullopt;
   double check_interval = std::numeric_limits<double>::infinity();  ///< [s] how often at least to look
 };
 

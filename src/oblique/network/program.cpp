@@ -84,6 +84,16 @@ std::optional<double> Program::start_value(std::size_t state, const Workspace& w
   return start_slots_[state] ? std::optional(workspace.slots_[*start_slots_[state]]) : std::nullopt;
 }
 
+Eigen::MatrixXd Program::loop_slopes(std::size_t loop, const Workspace& workspace) const {
+  const LoopCode& code = loop_codes_[loop];
+  const auto n = static_cast<Eigen::Index>(code.size());
+  Eigen::MatrixXd slopes = Eigen::MatrixXd::Zero(n, n);
+  for (const MatrixEntry& entry : code.slopes) {
+    slopes(entry.row, entry.column) = workspace.slots_[entry.slot];
+  }
+  return slopes;
+}
+
 bool Program::differentiate_loops(Workspace& workspace) const {
   const double* const slots = workspace.slots_.data();
   for (const std::uint32_t l : sensitivity_order_) {
@@ -137,6 +147,19 @@ Workspace::Workspace(const Program& program)
   }
   reset();
   reset_memories();
+}
+
+void Workspace::set_unknown(std::size_t u, double value) {
+  solved_[u] = value;
+  slots_[1 + program_->n_states() + u] = value;
+}
+
+std::span<const double> Workspace::memories() const {
+  return std::span(slots_).subspan(first_memory_, program_->memories_.size());
+}
+
+void Workspace::load_memories(std::span<const double> memories) {
+  std::copy(memories.begin(), memories.end(), slots_.begin() + static_cast<std::ptrdiff_t>(first_memory_));
 }
 
 void Workspace::reset_memories() {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -77,6 +78,11 @@ class Program {
   double action_value(std::size_t event, std::size_t action, const Workspace& workspace) const;
   /// Where a state starts if that follows from signals; nothing for another.
   std::optional<double> start_value(std::size_t state, const Workspace& workspace) const;
+  /// dg/dz of an algebraic loop where `signals` last evaluated it, rows and columns in the order of its
+  /// unknowns.
+  Eigen::MatrixXd loop_slopes(std::size_t loop, const Workspace& workspace) const;
+  /// Whether dg/dz of a loop does not depend on its own unknowns.
+  bool loop_is_linear(std::size_t loop) const { return loop_codes_[loop].linear; }
 
  private:
   friend class Workspace;
@@ -174,7 +180,14 @@ class Workspace {
   };
   const Trouble& trouble() const { return trouble_; }
 
+  /// The last solution of an unknown of an algebraic loop, from which the next is sought.
+  double unknown(std::size_t u) const { return solved_[u]; }
+  void set_unknown(std::size_t u, double value);
+
   /// The memories, between events as they are.
+  std::span<const double> memories() const;
+  /// Sets all, or none where there are none.
+  void load_memories(std::span<const double> memories);
   double memory(std::size_t m) const { return slots_[first_memory_ + m]; }
   void set_memory(std::size_t m, double value) { slots_[first_memory_ + m] = value; }
 

@@ -7,20 +7,19 @@
 
 #include <fmt/format.h>
 
+#include <oblique/mechanism/obstacle.h>
 #include <oblique/patch/patch.h>
 
 namespace oblique {
 namespace {
 
-[[noreturn]] void refuse(const Mechanism& mechanism, const Structure& structure, const Motion& motion,
-                         std::size_t row) {
-  const Configuration& configuration = motion.configurations[row];
-  const std::string group = configuration.group ? group_name(structure.groups[*configuration.group]) : "";
-  const bool open = configuration.status == Status::open;
+[[noreturn]] void refuse(const Mechanism& mechanism, const Structure& structure, const Obstacle& obstacle) {
+  const bool open = obstacle.status == Status::open;
   throw PatchError(Diagnostic{
       {mechanism.file, {}},
       fmt::format("the dyad {} {} at t = {:.6g} s, so its triangle cannot be tracked over a whole turn",
-                  group, open ? "cannot be assembled" : "is at a dead centre", motion.times[row]),
+                  group_name(structure.groups[obstacle.group]),
+                  open ? "cannot be assembled" : "is at a dead centre", obstacle.time),
       open ? "links that reach each other in every position" : "a triangle that never goes flat",
       open ? "lengthen the links of the dyad, or shorten the crank; `oblique solve` shows where it opens"
            : "change a length a little: at a dead centre the servo loop of sin γ loses its gain"});
@@ -42,13 +41,12 @@ double round_up(double value) {
 }
 
 Scaling find_scaling(const Mechanism& mechanism, const Structure& structure, const Motion& motion) {
+  if (const auto obstacle = find_obstacle(mechanism, structure)) refuse(mechanism, structure, *obstacle);
   Scaling scaling;
   scaling.triangles.resize(structure.groups.size());
   for (TriangleRange& range : scaling.triangles) range.shortest = std::numeric_limits<double>::infinity();
   double farthest = 0;
-  for (std::size_t row = 0; row < motion.configurations.size(); ++row) {
-    const Configuration& configuration = motion.configurations[row];
-    if (configuration.status != Status::ok) refuse(mechanism, structure, motion, row);
+  for (const Configuration& configuration : motion.configurations) {
     for (const PointState& point : configuration.points) {
       farthest = std::max(farthest, point.position.cwiseAbs().maxCoeff());
     }

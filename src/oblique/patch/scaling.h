@@ -28,8 +28,8 @@ double round_scale_up(double value);
 /// Smallest number of three significant digits that is not below `value`.
 double round_up(double value);
 
-/// Finds the scaling. Throws PatchError where a row of the motion is not `ok`: there a triangle is flat or
-/// open.
+/// Finds the scaling from a motion over one turn. Throws PatchError where there is an obstacle on the way:
+/// there a triangle is flat or open.
 Scaling find_scaling(const Mechanism& mechanism, const Structure& structure, const Motion& motion);
 
 }  // namespace oblique

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <new>
 #include <stdexcept>
 #include <string>
@@ -17,8 +18,10 @@ namespace {
 
 static_assert(sizeof(sunindextype) == sizeof(std::int64_t), "SparsePattern shares its arrays with SUNDIALS");
 
-/// Steps shorter than this fraction of the run cannot move the clock any more.
-constexpr double kSmallestStep = 1e-15;
+/// Steps shorter than this fraction of the time reached, some roundings of it, cannot move the clock any
+/// more. (The length of the run is no measure: a fast decay at the head of a long run takes steps that are
+/// nothing beside it.)
+constexpr double kSmallestStep = 8 * std::numeric_limits<double>::epsilon();
 constexpr int kMostSmallSteps = 20;
 
 /// SUNDIALS' sentences are for its own log; ours are made from the return code.
@@ -180,7 +183,7 @@ double CvodesSolver::step() {
   if (!all_finite(N_VGetArrayPointer(h.states.get()), h.system->size())) {
     throw SolverFailure{SolverFailure::Kind::not_finite, h.t, code};
   }
-  h.small_steps = h.t - before < kSmallestStep * h.end && h.t < h.end ? h.small_steps + 1 : 0;
+  h.small_steps = h.t - before < kSmallestStep * std::abs(h.t) && h.t < h.end ? h.small_steps + 1 : 0;
   if (h.small_steps > kMostSmallSteps) throw h.failure(code);
   return h.t;
 }

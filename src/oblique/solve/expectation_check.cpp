@@ -9,14 +9,6 @@
 namespace oblique {
 namespace {
 
-double extreme(const Trajectory& trajectory, std::size_t column, bool maximum, double so_far) {
-  for (std::size_t r = 0; r < trajectory.rows(); ++r) {
-    const double value = trajectory.at(r, column);
-    so_far = maximum ? std::max(so_far, value) : std::min(so_far, value);
-  }
-  return so_far;
-}
-
 double value_at(const Trajectory& extra, double time, std::size_t column) {
   for (std::size_t row = 0; row < extra.rows(); ++row) {
     if (extra.at(row, 0) == time) return extra.at(row, column);
@@ -24,7 +16,26 @@ double value_at(const Trajectory& extra, double time, std::size_t column) {
   return std::nan("");  // the run was made without expectation_times
 }
 
+/// `column` counts the time too.
+double actual_value(const Expectation& expectation, const Run& run, std::size_t column) {
+  switch (expectation.kind) {
+    case Expectation::Kind::maximum:
+      return run.extremes.at(column - 1).maximum.value;
+    case Expectation::Kind::minimum:
+      return run.extremes.at(column - 1).minimum.value;
+    case Expectation::Kind::at_time:
+      break;
+  }
+  return value_at(run.extra, expectation.time, column);
+}
+
 }  // namespace
+
+void ask_for_expectations(const Diagram& diagram, RunOptions& options) {
+  options.extra_times = expectation_times(diagram, options.until);
+  for (const Expectation& e : diagram.expectations)
+    options.extremes = options.extremes || e.kind != Expectation::Kind::at_time;
+}
 
 std::vector<double> expectation_times(const Diagram& diagram, double until) {
   std::vector<double> times;
@@ -58,10 +69,7 @@ std::vector<ExpectationResult> check_expectations(const Diagram& diagram, const 
                        suggest(e.output, names)});
       continue;
     }
-    const bool maximum = e.kind == Expectation::Kind::maximum;
-    const double actual = e.kind == Expectation::Kind::at_time
-                              ? value_at(run.extra, e.time, *column)
-                              : extreme(run.trajectory, *column, maximum, run.trajectory.at(0, *column));
+    const double actual = actual_value(e, run, *column);
     results.push_back({e, actual, std::abs(actual - e.value) <= e.within});
   }
   diagnostics.throw_if_any<DiagramError>();

@@ -19,8 +19,11 @@ struct ExpectationResult {
 /// time outside [0, until].
 std::vector<double> expectation_times(const Diagram& diagram, double until);
 
-/// Checks every expectation; `run` was made with `expectation_times`. Throws DiagramError for an output that
-/// is not among the columns.
+/// Lets a run keep what `check_expectations` looks at. Throws DiagramError as above.
+void ask_for_expectations(const Diagram& diagram, RunOptions& options);
+
+/// Checks every expectation; `run` was made after `ask_for_expectations`. Throws DiagramError for an output
+/// that is not among the columns.
 std::vector<ExpectationResult> check_expectations(const Diagram& diagram, const Run& run);
 
 }  // namespace oblique

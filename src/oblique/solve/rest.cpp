@@ -112,9 +112,14 @@ bool settle(const Program& program, Workspace& workspace, double t, const std::v
   Eigen::VectorXd slopes(n), next(n), next_slopes(n);
   if (!system.derivatives(0, x.data(), slopes.data())) return false;
   Eigen::SparseLU<SparseMatrix> lu;
-  double h = unit;
+  // Where a loop has no gain yet, its fastest time constant says nothing about how fast it moves.
+  const auto step_of_change = [&] {
+    return kMostChange / (slopes.array().abs() / (1 + x.array().abs())).maxCoeff();
+  };
+  double h = std::min(unit, step_of_change());
+  double shortest = kShortest * h;
   double last = 1;
-  for (int step = 0; step < kMostSteps && h > kShortest * unit; ++step) {
+  for (int step = 0; step < kMostSteps && h > shortest; ++step) {
     const SparseMatrix matrix = system.step_matrix(x.data(), h);
     if (matrix.rows() != n) return false;
     lu.compute(matrix);
@@ -133,6 +138,7 @@ bool settle(const Program& program, Workspace& workspace, double t, const std::v
     if (h >= kLongest * unit && change < kAtRest && change >= last) return true;  // rounding has been reached
     x = next;
     slopes = next_slopes;
+    shortest = kShortest * std::min(unit, step_of_change());
     if (x.cwiseAbs().maxCoeff() > kFarAway) return false;
     if (h >= kLongest * unit && change == 0) return true;
     last = change;

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <functional>
+#include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -10,6 +12,8 @@
 #include <oblique/network/program.h>
 #include <oblique/solve/cvodes_solver.h>
 #include <oblique/solve/method.h>
+#include <oblique/solve/overload.h>
+#include <oblique/solve/run_state.h>
 #include <oblique/solve/switching.h>
 #include <oblique/solve/trajectory.h>
 
@@ -27,20 +31,25 @@ struct RunOptions {
   IntegrationMethod method = IntegrationMethod::automatic;
   int samples = 1001;  ///< rows, evenly spaced, both ends included
   long max_steps = 10'000'000;
-  std::vector<double> extra_times;  ///< [s] ascending, within [0, until]: further rows, kept apart
+  std::optional<RunState> from;       ///< goes on from there; `until` is then later than its time
+  std::function<bool()> interrupted;  ///< asked after every step: true ends the run there
+  bool extremes = false;              ///< look for the extremes of the outputs between the rows too
+  std::vector<double> extra_times;    ///< [s] ascending, within [0, until]: further rows, kept apart
   std::function<void(double fraction)>
       progress;  ///< called now and then with the part of the run that is done
-  std::function<void(double t, std::span<const double> states)>
-      on_sample;  ///< called at every row of the grid
+  std::function<void(double t, std::span<const double> states, std::span<const double> memories)>
+      on_sample;                  ///< called at every row of the grid
+  bool watch_overloads = false;   ///< look for overloads at every step, at the price of two evaluations each
+  bool halt_on_overload = false;  ///< end the run at the first overload; watches too
 };
 
 /// The options that a diagram states.
 RunOptions options_of(const RunSettings& settings);
 
-/// The largest magnitude that a signal had at the rows of a run.
-struct Peak {
-  double value = 0;  ///< with its sign [machine unit]
-  double time = 0;   ///< [s]
+/// The extremes of an output over the run.
+struct Extremes {
+  Peak maximum{-std::numeric_limits<double>::infinity(), 0};
+  Peak minimum{std::numeric_limits<double>::infinity(), 0};
 };
 
 /// What came out of a run.
@@ -49,7 +58,11 @@ struct Run {
   Trajectory extra;                 ///< the same columns at `extra_times`
   std::vector<EventRecord> events;  ///< the first thousand
   long event_count = 0;
-  std::vector<Peak> peaks;  ///< of every signal of the program, in its order
+  RunState state;                  ///< at the end: `until`, or earlier where the run was interrupted
+  std::vector<Extremes> extremes;  ///< of every output, where asked for
+  std::vector<Peak> peaks;         ///< of every signal of the program, in its order; at the rows, or watched
+  std::vector<OverloadRecord> overloads;  ///< the first one first, where they were watched
+  bool halted = false;                    ///< it ended at the first overload
   SolverStatistics statistics;
   MethodChoice method;  ///< with which method, and why; nothing for a diagram without states
   double seconds = 0;   ///< wall clock of the run itself, compilation apart

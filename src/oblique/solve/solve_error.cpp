@@ -53,7 +53,7 @@ SolveError loop_error(const Program& program, const Workspace::Trouble& trouble,
   const Loop& loop = program.loops()[trouble.loop];
   const Unknown& unknown = program.unknowns()[loop.unknowns.front()];
   const std::string path = loop_path(loop);
-  const Place place{file.empty() ? unknown.place.file : file, unknown.place.position};
+  const Place place{unknown.place.file.empty() ? file : unknown.place.file, unknown.place.position};
   std::string what, remedy;
   if (trouble.failure == LoopFailure::singular && loop.unknowns.size() == 1 && unknown.torn) {
     what = fmt::format("the algebraic loop {} is singular at t = {:.6g} s: its gain is {:.6g}", path, t,

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+#include "diagram_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+#include <fmt/format.h>
+
+#include "terminal.h"
+
+namespace oblique::cli {
+namespace {
+
+ScalingProposal propose(const FlatDiagram& flat, const Program& program, const Analysis& analysis) {
+  std::vector<double> peaks;
+  for (const Peak& peak : analysis.run->peaks) peaks.push_back(peak.value);
+  ScalingProposal proposal;
+  proposal.blocks = propose_scaling(flat, peaks);
+  std::unordered_map<std::string_view, double> factors;
+  for (const BlockScaling& block : proposal.blocks) {
+    for (const double factor : block.outputs) {
+      factors.emplace(program.signal_names()[proposal.signals.size()], factor);
+      proposal.signals.push_back(factor);
+    }
+  }
+  double fastest = 0;
+  for (std::size_t i = 0; i < program.n_states(); ++i) {
+    const State& state = program.states()[i];
+    const auto factor = factors.find(state.name);
+    if (state.at_rest || factor == factors.end()) continue;
+    fastest = std::max(fastest, factor->second * analysis.fastest_slopes[i]);
+  }
+  proposal.time_scale = 1 / scale_for_peak(fastest);
+  return proposal;
+}
+
+/// The largest difference between the rows of two runs of the same columns, relative to the largest value of
+/// the column.
+double largest_difference(const Trajectory& a, const Trajectory& b) {
+  double largest = 0;
+  for (std::size_t c = 1; c < a.columns().size(); ++c) {
+    double size = 0, difference = 0;
+    for (std::size_t r = 0; r < a.rows(); ++r) {
+      size = std::max(size, std::abs(a.at(r, c)));
+      difference = std::max(difference, std::abs(a.at(r, c) - b.at(r, c)));
+    }
+    if (size > 0) largest = std::max(largest, difference / size);
+  }
+  return largest;
+}
+
+/// Writes the scaled diagram after running it: it is to give what the other one gave.
+void write_rescaled(const DiagramCheck& check, const BlockLibrary& library, const std::string& path) {
+  Diagram scaled = rescale(check.diagram, check.flat, check.scaling->blocks, library);
+  scaled.comment = fmt::format(
+      "{} in scaled signals, by: oblique check --rescale\n"
+      "Time is not scaled, so that the outputs are what they were; for integrators of k0 = 1/s slow it down "
+      "{:.6g} "
+      "times.",
+      check.file, check.scaling->time_scale);
+  const FlatDiagram flat = flatten(scaled, library);
+  const Program program(assemble(flat));
+  RunOptions options = options_of(scaled.run);
+  options.watch_overloads = true;
+  const Run result = run(program, flat, options);
+  save(path, write_diagram(scaled));
+  const double difference = largest_difference(check.analysis.run->trajectory, result.trajectory);
+  note(fmt::format("its outputs differ by {:.1e} of their size, at a tolerance of {}; {}\n", difference,
+                   scaled.run.tolerance, count(result.overloads.size(), "overload", "overloads")));
+  constexpr double kSameOutputs = 1e-3;
+  if (difference > kSameOutputs) {
+    note("warning: that is more than the solver's tolerance explains, unless the diagram is chaotic\n");
+  }
+}
+
+}  // namespace
+
+ExitStatus check_diagram(const Session& session, const CheckRequest& request) {
+  const BlockLibrary library = session.library();
+  const Diagram diagram = read_diagram(request.file);
+  const FlatDiagram flat = flatten(diagram, library);
+  const Program program(assemble(flat));
+  DiagramCheck check{request.file, diagram, flat, program, {}, {}};
+  {
+    Progress progress("running on trial");
+    RunOptions options = options_of(diagram.run);
+    options.progress = [&](double fraction) { progress.show(fraction); };
+    check.analysis = analyse(program, flat, options);
+  }
+  if (check.analysis.run) check.scaling = propose(flat, program, check.analysis);
+  print(request.json ? to_json(check) : to_text(check));
+  if (check.analysis.failure) throw SolveError(*check.analysis.failure);
+  if (request.rescale) write_rescaled(check, library, request.output);
+  return ExitStatus::done;
+}
+
+}  // namespace oblique::cli

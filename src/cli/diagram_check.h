@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <oblique/diagram/rescale.h>
+#include <oblique/solve/analysis.h>
+
+#include "command.h"
+
+namespace oblique::cli {
+
+/// A proposal that needs a trial run which came to its end.
+struct ScalingProposal {
+  AmplitudeScaling blocks;
+  std::vector<double> signals;  ///< the factor of every signal of the program
+  /// By how much to slow the scaled diagram down, in 1-2-5 steps, so that no integrator of k0 = 1/s is fed
+  /// with more than 1 machine unit: 1 s of the diagram in so many seconds of the machine.
+  double time_scale = 1;
+};
+
+/// All that `oblique check` finds out about a diagram.
+struct DiagramCheck {
+  std::string file;
+  const Diagram& diagram;
+  const FlatDiagram& flat;
+  const Program& program;
+  Analysis analysis;
+  std::optional<ScalingProposal> scaling;
+};
+
+/// The report for people: what the diagram is made of, then loops, stability, overloads, scaling.
+std::string to_text(const DiagramCheck& check);
+
+/// The same as JSON, with numbers in full.
+std::string to_json(const DiagramCheck& check);
+
+/// "grows", "undamped", "badly damped", "well damped".
+std::string_view verdict_name(ModeVerdict verdict);
+/// "linear", "varying", "non-linear".
+std::string_view kind_name(LoopKind kind);
+
+ExitStatus check_diagram(const Session& session, const CheckRequest& request);
+
+}  // namespace oblique::cli

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+#include <nlohmann/json.hpp>
+
+#include <oblique/solve/rest.h>
+
+#include "diagram_check.h"
+
+namespace oblique::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+template <class T>
+Json optional_number(const std::optional<T>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+Json run_json(const DiagramCheck& check) {
+  const Analysis& analysis = check.analysis;
+  if (analysis.failure) {
+    return {{"until", check.diagram.run.until},
+            {"failed", analysis.failure->diagnostics().front().what},
+            {"time", analysis.failure->time()}};
+  }
+  return {{"until", check.diagram.run.until},
+          {"steps", analysis.run->statistics.steps},
+          {"method", method_name(analysis.run->method.method)},
+          {"reason", analysis.run->method.reason}};
+}
+
+Json loop_json(const LoopReport& loop) {
+  Json unknowns = Json::array();
+  for (const LoopUnknown& unknown : loop.unknowns) {
+    unknowns.push_back({{"signal", unknown.signal},
+                        {"least_gain", unknown.least_gain},
+                        {"least_gain_time", unknown.least_time},
+                        {"greatest_gain", unknown.greatest_gain},
+                        {"static_error", optional_number(unknown.static_error)},
+                        {"sign", unknown.sign},
+                        {"sign_changes", unknown.sign_changes}});
+  }
+  return {{"type", loop.algebraic ? "algebraic" : "servo"},
+          {"members", loop.members},
+          {"kind", kind_name(loop.kind)},
+          {"time_constant", optional_number(loop.time_constant)},
+          {"unknowns", std::move(unknowns)}};
+}
+
+Json mode_json(const std::optional<WorstMode>& worst, const Program& program) {
+  if (!worst) return nullptr;
+  const Mode& mode = worst->mode;
+  Json participants = Json::array();
+  for (const auto& [state, share] : mode.participants) {
+    participants.push_back({{"signal", program.states()[state].name}, {"share", share}});
+  }
+  return {{"pole", {mode.pole.real(), mode.pole.imag()}},
+          {"natural_frequency", mode.natural_frequency()},
+          {"damping_ratio", mode.damping_ratio()},
+          {"verdict", verdict_name(verdict_on(mode))},
+          {"time", worst->time},
+          {"participants", std::move(participants)}};
+}
+
+Json stability_json(const StabilityReport& report, const Program& program) {
+  Json margins = Json::array();
+  for (const ServoMargin& servo : report.margins) {
+    Json margin{{"signal", program.states()[servo.state].name}};
+    margin["degrees"] = servo.margin ? Json(servo.margin->degrees) : Json(nullptr);
+    margin["frequency"] = servo.margin ? Json(servo.margin->frequency) : Json(nullptr);
+    margin["time"] = servo.time;
+    margins.push_back(std::move(margin));
+  }
+  return {{"instants", report.instants},
+          {"servo_mode", mode_json(report.servo_mode, program)},
+          {"grows_from", optional_number(report.grows_from)},
+          {"problem_mode", mode_json(report.problem_mode, program)},
+          {"margins", std::move(margins)},
+          {"left_out", report.left_out}};
+}
+
+Json overloads_json(const DiagramCheck& check) {
+  if (!check.analysis.run) return nullptr;
+  Json list = Json::array();
+  for (const OverloadRecord& o : check.analysis.run->overloads) {
+    list.push_back({{"signal", check.program.signal_names()[o.signal]},
+                    {"first", o.first},
+                    {"peak", o.peak.value},
+                    {"peak_time", o.peak.time},
+                    {"duration", o.duration},
+                    {"scale", o.cure}});
+  }
+  return list;
+}
+
+Json scaling_json(const DiagramCheck& check) {
+  if (!check.scaling) return nullptr;
+  Json signals = Json::array();
+  for (std::size_t s = 0; s < check.scaling->signals.size(); ++s) {
+    const Peak& peak = check.analysis.run->peaks[s];
+    signals.push_back({{"signal", check.program.signal_names()[s]},
+                       {"peak", peak.value},
+                       {"peak_time", peak.time},
+                       {"scale", check.scaling->signals[s]}});
+  }
+  return {{"signals", std::move(signals)}, {"time_scale", check.scaling->time_scale}};
+}
+
+}  // namespace
+
+std::string to_json(const DiagramCheck& check) {
+  Json loops = Json::array();
+  for (const LoopReport& loop : check.analysis.loops) loops.push_back(loop_json(loop));
+  Json json{{"file", check.file},
+            {"kind", "diagram"},
+            {"title", check.diagram.title},
+            {"blocks", check.diagram.blocks.size()},
+            {"elements", check.flat.blocks.size()},
+            {"states", check.program.n_states()},
+            {"servo_amplifiers", rest_states(check.program).size()},
+            {"outputs", check.flat.outputs.size()}};
+  json["run"] = run_json(check);
+  json["loops"] = std::move(loops);
+  json["stability"] = stability_json(check.analysis.stability, check.program);
+  json["overloads"] = overloads_json(check);
+  json["scaling"] = scaling_json(check);
+  return json.dump(2) + "\n";
+}
+
+}  // namespace oblique::cli

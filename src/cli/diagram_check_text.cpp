@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: MIT
+#include <cmath>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <oblique/solve/rest.h>
+
+#include "diagram_check.h"
+#include "terminal.h"
+
+namespace oblique::cli {
+namespace {
+
+constexpr std::size_t kMostNamed = 6;
+constexpr std::size_t kMostRows = 40;
+
+std::string number(double value) {
+  return fmt::format("{:.3g}", value + 0.0);  // no "-0"
+}
+
+/// "a, b, c", shortened in the middle.
+std::string names(std::vector<std::string> all) {
+  if (all.size() > kMostNamed + 1) {
+    const auto half = static_cast<std::ptrdiff_t>(kMostNamed / 2);
+    all.erase(all.begin() + half, all.end() - half);
+    all.insert(all.begin() + half, "…");
+  }
+  return fmt::format("{}", fmt::join(all, ", "));
+}
+
+std::string contents(const DiagramCheck& check) {
+  const Program& program = check.program;
+  std::string text = fmt::format("{}: a diagram, \"{}\"\n", check.file, check.diagram.title);
+  text += fmt::format("  {}; flattened: {}\n", count(check.diagram.blocks.size(), "block", "blocks"),
+                      count(check.flat.blocks.size(), "element", "elements"));
+  text += fmt::format("  {}, {} of them servo amplifiers brought to rest at the start\n",
+                      count(program.n_states(), "state", "states"), rest_states(program).size());
+  for (const Loop& loop : program.loops()) {
+    text += fmt::format("  algebraic loop with {}: {}\n", count(loop.unknowns.size(), "unknown", "unknowns"),
+                        fmt::join(loop.members, ", "));
+  }
+  if (program.loops().empty()) text += "  no algebraic loops\n";
+  text += fmt::format("  {}\n", count(check.flat.outputs.size(), "output", "outputs"));
+  return text + "ok: all names, wires, units and ranges are right\n";
+}
+
+std::string trial(const DiagramCheck& check) {
+  const Analysis& analysis = check.analysis;
+  if (analysis.instants.empty())
+    return "\ntrial run: it could not start, so nothing is known about its loops\n";
+  if (analysis.failure) {
+    return fmt::format("\ntrial run: failed at t = {:.6g} s; what follows is about the time before\n",
+                       analysis.failure->time());
+  }
+  std::string text =
+      fmt::format("\ntrial run: {:.6g} s, {}", check.diagram.run.until,
+                  count(static_cast<std::size_t>(analysis.run->statistics.steps), "step", "steps"));
+  if (check.program.n_states() > 0) {
+    text +=
+        fmt::format(", method {}: {}", method_name(analysis.run->method.method), analysis.run->method.reason);
+  }
+  return text + "\n";
+}
+
+std::string sign_text(const LoopUnknown& unknown) {
+  if (unknown.sign_changes.empty()) return unknown.sign > 0 ? "keeps +" : unknown.sign < 0 ? "keeps −" : "0";
+  std::string text = "changes at t =";
+  for (std::size_t k = 0; k < std::min<std::size_t>(unknown.sign_changes.size(), 3); ++k) {
+    text += fmt::format("{} {}", k == 0 ? "" : ",", number(unknown.sign_changes[k]));
+  }
+  return text + (unknown.sign_changes.size() > 3 ? ", …" : "");
+}
+
+std::string loops(const std::vector<LoopReport>& loops) {
+  if (loops.empty()) return "\nloops: no servo loops and no algebraic ones\n";
+  Table table({"unknown", "loop", "kind", "least gain", "at t [s]", "static error", "time constant [s]",
+               "sign of slope", "members"});
+  for (const LoopReport& loop : loops) {
+    for (const LoopUnknown& unknown : loop.unknowns) {
+      const bool first = &unknown == &loop.unknowns.front();
+      table.add({unknown.signal, loop.algebraic ? "algebraic" : "servo", std::string(kind_name(loop.kind)),
+                 number(unknown.least_gain), number(unknown.least_time),
+                 unknown.static_error ? number(*unknown.static_error) : "exact",
+                 loop.time_constant ? number(*loop.time_constant) : "–", sign_text(unknown),
+                 first ? names(loop.members) : "as above"});
+    }
+  }
+  return "\nloops (gain with the rest of the loop closed; static error relative to the signal)\n" +
+         table.text(3);
+}
+
+std::string mode_text(const char* whose, const std::optional<WorstMode>& worst, const Program& program) {
+  if (!worst) return fmt::format("  no mode of {}\n", whose);
+  const Mode& mode = worst->mode;
+  std::string text =
+      fmt::format("  {}: {}, ω₀ = {} rad/s, ζ = {}, pole {}", whose, verdict_name(verdict_on(mode)),
+                  number(mode.natural_frequency()), number(mode.damping_ratio()), number(mode.pole.real()));
+  if (mode.pole.imag() != 0) text += fmt::format(" ± {}i", number(mode.pole.imag()));
+  text += fmt::format(" 1/s at t = {} s\n    elements:", number(worst->time));
+  constexpr double kLeastShare = 0.01;
+  for (std::size_t k = 0; k < std::min(mode.participants.size(), kMostNamed); ++k) {
+    const auto& [state, share] = mode.participants[k];
+    if (share < kLeastShare) break;
+    text += fmt::format("{} {} {:.0f} %", k == 0 ? "" : ",", program.states()[state].name, 100 * share);
+  }
+  return text + "\n";
+}
+
+std::string stability(const StabilityReport& report, const Program& program) {
+  std::string text = fmt::format("\nstability (worst modes of the frozen equations at {})\n",
+                                 count(report.instants, "instant", "instants"));
+  text += mode_text("the servo amplifiers", report.servo_mode, program);
+  if (report.grows_from) {
+    text +=
+        fmt::format("    no: the servo loops are unstable from t = {} s on\n", number(*report.grows_from));
+  }
+  text += mode_text("the problem itself", report.problem_mode, program);
+  if (!report.margins.empty()) {
+    Table table({"servo amplifier", "phase margin [°]", "crossover [rad/s]", "at t [s]"});
+    for (const ServoMargin& servo : report.margins) {
+      const std::string& name = program.states()[servo.state].name;
+      if (servo.margin) {
+        table.add({name, fmt::format("{:.1f}", servo.margin->degrees), number(servo.margin->frequency),
+                   number(servo.time)});
+      } else {
+        table.add({name, "∞", "–", "–"});
+      }
+    }
+    text += table.text(1);
+  }
+  for (const std::string& what : report.left_out) text += fmt::format("  left out: {}\n", what);
+  return text;
+}
+
+std::string overloads(const DiagramCheck& check) {
+  const auto& found = check.analysis.run->overloads;
+  if (found.empty()) return "\noverloads: none, every signal stays within ±1 machine unit\n";
+  Table table({"signal", "first at t [s]", "peak", "at t [s]", "duration [s]", "cured by a scale of"});
+  for (std::size_t k = 0; k < std::min(found.size(), kMostRows); ++k) {
+    const OverloadRecord& o = found[k];
+    table.add({check.program.signal_names()[o.signal], short_number(o.first), short_number(o.peak.value),
+               short_number(o.peak.time), short_number(o.duration), short_number(o.cure)});
+  }
+  std::string text = "\noverloads\n" + table.text(1);
+  if (found.size() > kMostRows)
+    text += fmt::format("({} more; --json lists all)\n", found.size() - kMostRows);
+  return text;
+}
+
+std::string scaling(const DiagramCheck& check) {
+  const ScalingProposal& proposal = *check.scaling;
+  Table table({"signal", "peak", "at t [s]", "scale", "scaled peak"});
+  std::size_t scaled = 0;
+  for (std::size_t s = 0; s < proposal.signals.size(); ++s) {
+    if (proposal.signals[s] == 1 || ++scaled > kMostRows) continue;
+    const Peak& peak = check.analysis.run->peaks[s];
+    table.add({check.program.signal_names()[s], short_number(peak.value), short_number(peak.time),
+               short_number(proposal.signals[s]), short_number(proposal.signals[s] * peak.value)});
+  }
+  std::string text = "\nproposed scaling (oblique check --rescale -o NEW.toml writes it)\n";
+  if (scaled > 0) text += table.text(1);
+  if (scaled > kMostRows) text += fmt::format("({} more; --json lists all)\n", scaled - kMostRows);
+  text += fmt::format("  {} as they are\n", count(proposal.signals.size() - scaled, "signal", "signals"));
+  text +=
+      fmt::format("  time scale: 1 s of the diagram in {} s of the machine\n", number(proposal.time_scale));
+  return text;
+}
+
+}  // namespace
+
+std::string_view verdict_name(ModeVerdict verdict) {
+  switch (verdict) {
+    case ModeVerdict::grows:
+      return "grows";
+    case ModeVerdict::undamped:
+      return "undamped";
+    case ModeVerdict::badly_damped:
+      return "badly damped";
+    case ModeVerdict::well_damped:
+      break;
+  }
+  return "well damped";
+}
+
+std::string_view kind_name(LoopKind kind) {
+  switch (kind) {
+    case LoopKind::linear:
+      return "linear";
+    case LoopKind::varying:
+      return "varying";
+    case LoopKind::non_linear:
+      break;
+  }
+  return "non-linear";
+}
+
+std::string to_text(const DiagramCheck& check) {
+  std::string text = contents(check) + trial(check);
+  if (!check.analysis.instants.empty()) {
+    text += loops(check.analysis.loops) + stability(check.analysis.stability, check.program);
+  }
+  if (check.analysis.run) text += overloads(check) + scaling(check);
+  return text;
+}
+
+}  // namespace oblique::cli

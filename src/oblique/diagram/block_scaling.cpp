@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/diagram/block_scaling.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <optional>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include <oblique/text/quantity.h>
+
+namespace oblique {
+
+/// Collects the equations between the logarithms of factors.
+class RuleReader {
+ public:
+  explicit RuleReader(BlockScalingRules& rules) : rules_(rules), block_(*rules.block_) { number_columns(); }
+
+  void read() {
+    for (const Equation& equation : block_.behaviour->equations) {
+      const auto value = scale_of(equation.expression);
+      if (equation.kind != Equation::Kind::implicit) equal(variable(column_of(equation.target)), value);
+    }
+    for (const StartRule& start : block_.definition->starts) {
+      const auto value = scale_of(start.value);
+      if (const Eigen::Index column = column_of(start.target); column >= 0) equal(variable(column), value);
+    }
+    for (const Behaviour& behaviour : block_.definition->behaviours) {  // which of them applies must stay
+      if (behaviour.when) scale_of(*behaviour.when);
+    }
+    reduce();
+  }
+
+ private:
+  /// Logarithm of the factor of a value: a combination of the unknowns. Nothing: any factor will do (a zero
+  /// or an infinity).
+  using Scale = std::optional<Eigen::VectorXd>;
+  using Kind = Expression::Kind;
+
+  /// Outputs first, so that elimination finds them from the rest; inputs last, which stay free where they
+  /// may.
+  void number_columns() {
+    const BlockDefinition& definition = *block_.definition;
+    for (std::size_t i = 0; i < definition.outputs.size(); ++i) rules_.outputs_.push_back(rules_.columns_++);
+    for (const Equation& equation : block_.behaviour->equations) {
+      if (!definition.find_output(equation.target)) hidden_.emplace_back(equation.target, rules_.columns_++);
+    }
+    for (const ParameterDefinition& parameter : definition.parameters) {
+      const auto unit = parse_unit(parameter.unit);
+      const bool signal = unit && unit->exponents[Unit::signal] != 0;
+      rules_.parameters_.push_back(signal ? rules_.columns_++ : -1);
+    }
+    for (std::size_t i = 0; i < definition.inputs.size(); ++i) rules_.inputs_.push_back(rules_.columns_++);
+  }
+
+  Eigen::Index column_of(std::string_view name) const {
+    const BlockDefinition& definition = *block_.definition;
+    if (const auto i = definition.find_output(name)) return rules_.outputs_[*i];
+    if (const auto i = definition.find_parameter(name)) return rules_.parameters_[*i];
+    if (const auto i = definition.find_input(name)) return rules_.inputs_[*i];
+    for (const auto& [hidden, column] : hidden_) {
+      if (hidden == name) return column;
+    }
+    return -1;
+  }
+
+  Scale number() const { return Eigen::VectorXd::Zero(rules_.columns_); }
+  Scale variable(Eigen::Index column) const {
+    Scale scale = number();
+    if (column >= 0) (*scale)[column] = 1;
+    return scale;
+  }
+
+  Scale equal(const Scale& a, const Scale& b) {
+    if (!a || !b) return a ? a : b;
+    const Eigen::VectorXd difference = *a - *b;
+    if (!difference.isZero(0)) rows_.push_back(difference);
+    return a;
+  }
+
+  void unscaled(const Scale& a) { equal(a, number()); }
+
+  Scale scale_of(const Expression& e) {
+    if (e.kind == Kind::number) return e.number == 0 ? Scale() : number();
+    if (e.kind == Kind::name) return e.name == "inf" ? Scale() : variable(column_of(e.name));
+    std::vector<Scale> operands;
+    for (const Expression& operand : e.operands) operands.push_back(scale_of(operand));
+    if (e.kind == Kind::call) return scale_of_call(e.function, operands);
+    const Scale a = operands[0], b = operands.size() > 1 ? operands[1] : Scale();
+    switch (e.kind) {
+      case Kind::negate:
+        return a;
+      case Kind::add:
+      case Kind::subtract:
+        return equal(a, b);
+      case Kind::multiply:
+        return a && b ? Scale(*a + *b) : Scale();
+      case Kind::divide:
+        if (!a) return {};
+        return b ? Scale(*a - *b) : a;
+      case Kind::power:
+        return scale_of_power(e, a, b);
+      case Kind::less:
+      case Kind::less_equal:
+      case Kind::greater:
+      case Kind::greater_equal:
+      case Kind::equal:
+      case Kind::not_equal:
+        equal(a, b);
+        return number();
+      default:
+        return number();
+    }
+  }
+
+  Scale scale_of_power(const Expression& e, const Scale& base, const Scale& exponent) {
+    unscaled(exponent);
+    try {
+      const double n = evaluate(e.operands[1], [&](std::string_view name) -> std::optional<double> {
+        const auto parameter = block_.definition->find_parameter(name);
+        return parameter ? std::optional(block_.parameters[*parameter]) : std::nullopt;
+      });
+      return base ? Scale(n * *base) : Scale();
+    } catch (const ExpressionError&) {  // a signal in the exponent
+      unscaled(base);
+      return number();
+    }
+  }
+
+  Scale scale_of_call(Function function, const std::vector<Scale>& operands) {
+    switch (function) {
+      case Function::abs:
+        return operands[0];
+      case Function::sqrt:
+        return operands[0] ? Scale(0.5 * *operands[0]) : Scale();
+      case Function::min:
+      case Function::max:
+      case Function::hypot:
+      case Function::clip:
+      case Function::deadzone:
+        return all_equal(operands);
+      case Function::atan2:
+        all_equal(operands);
+        return number();
+      case Function::sign:
+        return number();
+      case Function::if_:
+        return equal(operands[1], operands[2]);
+      default:  // sines, tables and all whose behaviour under scaling is not known here
+        for (const Scale& operand : operands) unscaled(operand);
+        return number();
+    }
+  }
+
+  Scale all_equal(const std::vector<Scale>& operands) {
+    Scale all;
+    for (const Scale& operand : operands) all = equal(all, operand);
+    return all;
+  }
+
+  /// Gauss and Jordan, with the leftmost columns as pivots.
+  void reduce() {
+    const auto n = static_cast<Eigen::Index>(rows_.size());
+    Eigen::MatrixXd m(n, rules_.columns_);
+    for (Eigen::Index r = 0; r < n; ++r) m.row(r) = rows_[static_cast<std::size_t>(r)].transpose();
+    Eigen::Index rank = 0;
+    for (Eigen::Index column = 0; column < m.cols() && rank < n; ++column) {
+      Eigen::Index pivot = 0;
+      if (m.col(column).tail(n - rank).cwiseAbs().maxCoeff(&pivot) < 1e-9) continue;
+      m.row(rank).swap(m.row(rank + pivot));
+      m.row(rank) /= m(rank, column);
+      for (Eigen::Index r = 0; r < n; ++r) {
+        if (r != rank) m.row(r) -= m(r, column) * m.row(rank).eval();
+      }
+      ++rank;
+    }
+    rules_.equations_ = m.topRows(rank);
+  }
+
+  BlockScalingRules& rules_;
+  const FlatBlock& block_;
+  std::vector<std::pair<std::string_view, Eigen::Index>> hidden_;
+  std::vector<Eigen::VectorXd> rows_;
+};
+
+BlockScalingRules::BlockScalingRules(const FlatBlock& block) : block_(&block) {
+  RuleReader(*this).read();
+}
+
+bool BlockScalingRules::scales_as_a_whole() const {
+  return equations_.rows() == 0 || (equations_ * Eigen::VectorXd::Ones(columns_)).isZero(1e-9);
+}
+
+BlockScaling BlockScalingRules::whole(double factor) const {
+  return scaling_of(Eigen::VectorXd::Constant(columns_, std::log(factor)));
+}
+
+BlockScaling BlockScalingRules::from_inputs(std::span<const double> inputs) const {
+  Eigen::VectorXd logarithms = Eigen::VectorXd::Zero(columns_);
+  for (std::size_t i = 0; i < inputs.size(); ++i) logarithms[inputs_[i]] = std::log(inputs[i]);
+  for (Eigen::Index r = 0; r < equations_.rows(); ++r) {
+    Eigen::Index pivot = 0;
+    while (equations_(r, pivot) == 0) ++pivot;
+    logarithms[pivot] = 0;
+  }
+  // Free columns are set, so each row gives its pivot.
+  const Eigen::VectorXd sums = equations_ * logarithms;
+  for (Eigen::Index r = 0; r < equations_.rows(); ++r) {
+    Eigen::Index pivot = 0;
+    while (equations_(r, pivot) == 0) ++pivot;
+    logarithms[pivot] = -sums[r];
+  }
+  return scaling_of(logarithms);
+}
+
+BlockScaling BlockScalingRules::scaling_of(const Eigen::VectorXd& logarithms) const {
+  // 14 digits: a factor of 0.2 comes out as 0.2, and the equations hold far below any tolerance.
+  const auto factor = [&](Eigen::Index column) {
+    if (column < 0) return 1.0;
+    return std::strtod(fmt::format("{:.14g}", std::exp(logarithms[column])).c_str(), nullptr);
+  };
+  BlockScaling scaling;
+  for (const Eigen::Index column : inputs_) scaling.inputs.push_back(factor(column));
+  for (const Eigen::Index column : outputs_) scaling.outputs.push_back(factor(column));
+  for (const Eigen::Index column : parameters_) scaling.parameters.push_back(factor(column));
+  return scaling;
+}
+
+}  // namespace oblique

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <oblique/solve/loop_report.h>
+#include <oblique/solve/run.h>
+#include <oblique/solve/solve_error.h>
+#include <oblique/solve/stability_report.h>
+
+namespace oblique {
+
+/// What a trial run tells about a diagram.
+struct Analysis {
+  std::optional<Run> run;             ///< with its overloads; nothing where the run failed
+  std::optional<SolveError> failure;  ///< why it did
+  std::vector<Instant> instants;      ///< moments evenly spread over the rows of the run
+  StabilityReport stability;
+  std::vector<LoopReport> loops;
+  /// The fastest change of every state at the instants [machine unit/s].
+  std::vector<double> fastest_slopes;
+};
+
+/// Runs a diagram on trial and judges its loops and its stability at up to `most_instants` of its rows; where
+/// the run fails, at those that it reached. Never throws SolveError.
+Analysis analyse(const Program& program, const FlatDiagram& diagram, RunOptions options,
+                 std::size_t most_instants = 61);
+
+}  // namespace oblique

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/solve/linearisation.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Eigenvalues>
+
+#include <oblique/network/dependency_order.h>
+
+namespace oblique {
+namespace {
+
+/// Below this part of the largest entry a pole is rounding.
+constexpr double kZeroPole = 1e-13;
+
+}  // namespace
+
+std::vector<std::vector<std::size_t>> coupled_groups(const Program& program) {
+  const SparsePattern& pattern = program.jacobian_pattern();
+  std::vector<std::vector<std::uint32_t>> needed(program.n_states());
+  for (std::size_t column = 0; column < pattern.size(); ++column) {
+    for (auto k = pattern.column_starts[column]; k < pattern.column_starts[column + 1]; ++k) {
+      needed[static_cast<std::size_t>(pattern.rows[static_cast<std::size_t>(k)])].push_back(
+          static_cast<std::uint32_t>(column));
+    }
+  }
+  Dependencies dependencies;
+  for (const auto& row : needed) dependencies.add_row(row);
+  std::vector<std::vector<std::size_t>> groups;
+  for (const OrderStep& step : dependency_order(dependencies, std::vector<bool>(needed.size(), true))) {
+    groups.emplace_back(step.tears.begin(), step.tears.end());
+    std::sort(groups.back().begin(), groups.back().end());
+  }
+  return groups;
+}
+
+std::optional<Linearisation> Linearisation::at(const Program& program, Workspace& workspace,
+                                               const Instant& instant) {
+  std::vector<double> values(program.jacobian_pattern().entries());
+  workspace.load_memories(instant.memories);
+  if (!program.jacobian(instant.t, instant.states.data(), values.data(), workspace)) return std::nullopt;
+  if (!std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); })) {
+    return std::nullopt;
+  }
+  return Linearisation(program, std::move(values));
+}
+
+Eigen::MatrixXd Linearisation::block(const std::vector<std::size_t>& group) const {
+  const SparsePattern& pattern = program_->jacobian_pattern();
+  const auto n = static_cast<Eigen::Index>(group.size());
+  std::vector<Eigen::Index> place(pattern.size(), -1);
+  for (Eigen::Index i = 0; i < n; ++i) place[group[static_cast<std::size_t>(i)]] = i;
+  Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(n, n);
+  for (const std::size_t column : group) {
+    for (auto k = pattern.column_starts[column]; k < pattern.column_starts[column + 1]; ++k) {
+      const auto entry = static_cast<std::size_t>(k);
+      const Eigen::Index row = place[static_cast<std::size_t>(pattern.rows[entry])];
+      if (row >= 0) dense(row, place[column]) = values_[entry];
+    }
+  }
+  return dense;
+}
+
+std::vector<Mode> modes_of(const Eigen::MatrixXd& block, const std::vector<std::size_t>& group) {
+  std::vector<Mode> modes;
+  const double size = block.cwiseAbs().maxCoeff();
+  if (!std::isfinite(size)) return modes;
+  const Eigen::EigenSolver<Eigen::MatrixXd> solver(block);
+  if (solver.info() != Eigen::Success) return modes;
+  const Eigen::MatrixXcd right = solver.eigenvectors();
+  const Eigen::MatrixXcd left = right.partialPivLu().inverse();  // a row for each mode
+  for (Eigen::Index m = 0; m < block.rows(); ++m) {
+    const std::complex<double> pole = solver.eigenvalues()[m];
+    if (pole.imag() < 0 || std::abs(pole) <= kZeroPole * size) continue;
+    Mode& mode = modes.emplace_back();
+    mode.pole = pole;
+    Eigen::VectorXd shares = (left.row(m).transpose().array() * right.col(m).array()).abs();
+    // Where eigenvectors coincide (a multiple pole without enough of them) there are no shares: all alike.
+    if (!shares.allFinite()) shares.setOnes();
+    shares /= shares.sum();
+    for (Eigen::Index k = 0; k < shares.size(); ++k) {
+      mode.participants.push_back({group[static_cast<std::size_t>(k)], shares[k]});
+    }
+    std::stable_sort(mode.participants.begin(), mode.participants.end(),
+                     [](const Participation& a, const Participation& b) { return a.share > b.share; });
+  }
+  return modes;
+}
+
+}  // namespace oblique

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <oblique/diagram/rescale.h>
+#include <oblique/network/program.h>
+
+namespace oblique {
+
+/// The largest magnitude that a signal had in a run.
+struct Peak {
+  double value = 0;  ///< with its sign [machine unit]
+  double time = 0;   ///< [s]
+};
+
+/// A signal that left the range ±1 machine unit.
+struct OverloadRecord {
+  std::size_t signal = 0;  ///< number among the signals of the program
+  double first = 0;        ///< [s] when it left the range for the first time
+  double duration = 0;     ///< [s] outside the range, all times together
+  Peak peak;
+  double cure = 1;  ///< the factor that brings it back into the range: 1/2, 1/5, 1/10, …
+};
+
+/// Watches every signal of a run against the machine unit, as the overload lamps of a real machine do. Each
+/// step is looked at in its ends and its middle; an extreme between them is searched on the solver's
+/// interpolant where the parabola through the three shows one that matters (a new peak by more than 1e-7 of
+/// it, or a side of the limit that the three do not show). Times are those at which the magnitude passes 1,
+/// to the rounding of the interpolant.
+class OverloadWatch {
+ public:
+  /// Gives the states at a time within the last step.
+  using StatesAt = std::function<void(double t, std::span<double> states)>;
+
+  /// `workspace` is that of the run. Where `halt` is set, `advance` stops at the first overload.
+  OverloadWatch(const Program& program, Workspace& workspace, std::string file, bool halt);
+
+  /// Begins at (t, states), or goes on there after a jump of the signals. Throws SolveError.
+  void restart(double t, std::span<const double> states);
+
+  /// Looks at the step from the last time to t; gives the time to which the run counts: t, or that of the
+  /// first overload where it halts there. Throws SolveError where an algebraic loop has no solution.
+  double advance(double t, const StatesAt& states_at);
+
+  bool halted() const { return halted_; }
+
+  /// The peaks of all signals so far, in the order of the program.
+  std::vector<Peak> peaks() const;
+  /// The overloads so far, the first one first.
+  std::vector<OverloadRecord> overloads() const;
+
+ private:
+  struct Record {
+    Peak peak;
+    std::optional<double> outside_since;  ///< [s] of the excursion that goes on
+    bool counts = false;                  ///< the excursion exceeds the tolerance
+    std::optional<double> first;
+    double duration = 0;
+  };
+  struct Sample {
+    double time, value;
+  };
+
+  void evaluate(double t, std::vector<double>& values);
+  double value_at(double t, std::size_t signal, const StatesAt& states_at);
+  void look_at(std::size_t signal, double t, const StatesAt& states_at);
+  bool matters(const Record& record, double extreme, double before, double after) const;
+  Sample find_extreme(std::size_t signal, double low, double high, bool maximum, const StatesAt& states_at);
+  double find_crossing(std::size_t signal, Sample inside, Sample outside, const StatesAt& states_at);
+  void leave(Record& record, double t, double value);
+  void come_back(Record& record, double t);
+
+  const Program& program_;
+  Workspace& workspace_;
+  std::string file_;
+  bool halt_;
+  bool halted_ = false;
+  double t_ = 0;
+  std::vector<Record> records_;
+  std::vector<double> states_, probe_;
+  std::vector<double> begin_, middle_, end_;  ///< signals in the three places of a step
+};
+
+}  // namespace oblique

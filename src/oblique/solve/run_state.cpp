@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/solve/run_state.h>
+
+#include <fmt/format.h>
+
+#include <oblique/solve/solve_error.h>
+#include <oblique/text/table_reader.h>
+
+namespace oblique {
+namespace {
+
+void write_numbers(std::string_view table, const RunState::Named& values, std::string& out) {
+  out += fmt::format("\n[{}]\n", table);
+  for (const auto& [name, value] : values) {
+    std::string key;
+    for (const char c : name) {
+      if (c == '"' || c == '\\') key += '\\';
+      key += c;
+    }
+    out += fmt::format("\"{}\" = {}\n", key, value);
+  }
+}
+
+RunState::Named read_numbers(TableReader& reader, std::string_view name, const std::string& file,
+                             Diagnostics& diagnostics) {
+  RunState::Named values;
+  const Value* const table = reader.table(name);
+  if (table == nullptr) {
+    if (reader.table().find(name) == nullptr) reader.report(name, fmt::format("the state has no [{}]", name));
+    return values;
+  }
+  for (const Entry& entry : table->entries) {
+    if (entry.value.kind != Value::Kind::number) {
+      diagnostics.add({{file, entry.value.position},
+                       fmt::format("'{}' is {}", entry.key, kind_name(entry.value.kind)),
+                       "a number",
+                       {}});
+    }
+    values.emplace_back(entry.key, entry.value.number);
+  }
+  return values;
+}
+
+/// The first name in which two lists differ, for a message.
+template <class Things>
+void compare_names(const RunState::Named& saved, const Things& things, std::string_view what,
+                   const std::string& file) {
+  const std::size_t common = std::min(saved.size(), things.size());
+  std::size_t i = 0;
+  while (i < common && saved[i].first == things[i].name) ++i;
+  if (i == saved.size() && i == things.size()) return;
+  std::string difference;
+  if (i < saved.size() && i < things.size()) {
+    difference = fmt::format("the {} '{}' where the diagram has '{}'", what, saved[i].first, things[i].name);
+  } else if (i < saved.size()) {
+    difference = fmt::format("a {} '{}' that the diagram has not", what, saved[i].first);
+  } else {
+    difference = fmt::format("no {} '{}'", what, things[i].name);
+  }
+  throw SolveError(SolveError::Kind::other_diagram, 0,
+                   {{file, {}},
+                    "this is the state of another diagram: it has " + difference,
+                    "the state of a run of this diagram",
+                    "parameters may change between runs, blocks and wires may not"});
+}
+
+}  // namespace
+
+std::string to_text(const RunState& state) {
+  std::string out =
+      "# Where a run stood: to go on, oblique run DIAGRAM --from THIS.\nformat = \"oblique-state/1\"\n";
+  out += fmt::format("time = {}\n", state.time);
+  out += "conditions = [";
+  for (std::size_t i = 0; i < state.conditions.size(); ++i)
+    out += fmt::format("{}{}", i ? ", " : "", state.conditions[i] ? 1 : 0);
+  out += "]\n";
+  out += fmt::format("\n[timeline]\nphase = {}\ncycle = {}\nbegin = {}\n", state.position.phase,
+                     state.position.cycle, state.position.begin);
+  write_numbers("states", state.states, out);
+  write_numbers("unknowns", state.unknowns, out);
+  write_numbers("memories", state.memories, out);
+  return out;
+}
+
+RunState parse_run_state(std::string_view text, std::string file) {
+  const Document document = parse_document(text, file);
+  Diagnostics diagnostics;
+  TableReader reader(file, document.root, "the state", diagnostics);
+  const auto format = reader.required_string("format", "format = \"oblique-state/1\"");
+  if (format && *format != "oblique-state/1")
+    reader.report("format", fmt::format("the format is '{}'", *format),
+                  "'oblique-state/1', what --save writes");
+  diagnostics.throw_if_any<ReadError>();
+  RunState state;
+  state.time = reader.required_quantity("time", "s").value_or(0);
+  if (const Value* const conditions = reader.find("conditions")) {
+    for (const Value& element : conditions->elements) state.conditions.push_back(element.number != 0);
+  }
+  if (const Value* const table = reader.table("timeline")) {
+    TableReader timeline(file, *table, "[timeline]", diagnostics);
+    state.position.phase = static_cast<std::size_t>(timeline.required_quantity("phase", "1").value_or(0));
+    state.position.cycle = timeline.required_quantity("cycle", "1").value_or(0);
+    state.position.begin = timeline.required_quantity("begin", "s").value_or(0);
+    timeline.finish();
+  }
+  state.states = read_numbers(reader, "states", file, diagnostics);
+  state.unknowns = read_numbers(reader, "unknowns", file, diagnostics);
+  state.memories = read_numbers(reader, "memories", file, diagnostics);
+  reader.finish();
+  diagnostics.throw_if_any<ReadError>();
+  return state;
+}
+
+void check_run_state(const RunState& state, const Program& program, const std::string& file) {
+  compare_names(state.states, program.states(), "state", file);
+  compare_names(state.unknowns, program.unknowns(), "unknown", file);
+  compare_names(state.memories, program.memories(), "memory", file);
+  if (state.conditions.size() == program.events().size()) return;
+  throw SolveError(
+      SolveError::Kind::other_diagram, 0,
+      {{file, {}},
+       fmt::format("this is the state of another diagram: it has {} conditions of events, the diagram {}",
+                   state.conditions.size(), program.events().size()),
+       "the state of a run of this diagram",
+       {}});
+}
+
+}  // namespace oblique

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <oblique/network/program.h>
+#include <oblique/solve/phase_clock.h>
+#include <oblique/text/diagnostic.h>
+
+namespace oblique {
+
+/// All that a run needs to be gone on with: the solver's own past is not kept, so that what follows agrees
+/// with an uninterrupted run to the solver's tolerance.
+struct RunState {
+  double time = 0;  ///< [s]
+  using Named = std::vector<std::pair<std::string, double>>;
+  Named states;
+  Named unknowns;  ///< of algebraic loops: where the next search begins
+  Named memories;
+  std::vector<bool> conditions;  ///< of events, in the program's order
+  PhaseClock::Position position;
+};
+
+/// The text of a state file (oblique-state/1); `parse_run_state` gives the same numbers back.
+std::string to_text(const RunState& state);
+
+/// Throws ReadError for what is no state file.
+RunState parse_run_state(std::string_view text, std::string file);
+
+/// Whether the state is one of this program: throws SolveError where names differ, with the first that do.
+void check_run_state(const RunState& state, const Program& program, const std::string& file);
+
+}  // namespace oblique

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <oblique/solve/run.h>
+#include <oblique/solve/switching.h>
+
+namespace oblique {
+
+/// Collects what a run gives as the solver passes it: rows at the sample times, and extremes between them.
+/// Not installed.
+class Sampler {
+ public:
+  /// All must outlive the sampler.
+  Sampler(const Program& program, const FlatDiagram& diagram, const RunOptions& options, Workspace& workspace,
+          Switching& switching);
+
+  /// Adds every row from the last one up to `t`.
+  void advance(double t, const StatesAt& states_at);
+
+  /// Looks for the extremes of the outputs in a stretch without events.
+  void watch(double from, double to, const StatesAt& states_at);
+
+  Run result;
+
+ private:
+  double sample_time(int k) const;
+  void evaluate(double time);
+  void keep_extremes(double time);
+
+  const Program& program_;
+  const FlatDiagram& diagram_;
+  const RunOptions& options_;
+  Workspace& workspace_;
+  Switching& switching_;
+  std::vector<double> states_, signals_, row_;
+  std::vector<double> begin_, middle_;  ///< rows of `watch`
+  int next_sample_ = 0;
+  std::size_t next_extra_ = 0;
+};
+
+}  // namespace oblique

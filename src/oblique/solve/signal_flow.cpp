@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/solve/signal_flow.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <oblique/network/dependency_order.h>
+
+namespace oblique {
+
+SignalFlow::SignalFlow(const FlatDiagram& diagram, const Program& program)
+    : diagram_(diagram), program_(program) {
+  std::unordered_map<std::string_view, std::size_t> states;
+  for (std::size_t i = 0; i < program.n_states(); ++i) states.emplace(program.states()[i].name, i);
+  for (std::size_t b = 0; b < diagram.blocks.size(); ++b) {
+    first_.push_back(quantities_.size());
+    const FlatBlock& block = diagram.blocks[b];
+    for (const Equation& equation : block.behaviour->equations) {
+      const auto output = block.definition->find_output(equation.target);
+      std::string name = output ? diagram.signal_name({b, *output}) : block.path + "." + equation.target;
+      Quantity quantity{b, &equation, {}};
+      if (equation.kind == Equation::Kind::derivative) {
+        if (const auto found = states.find(name); found != states.end()) quantity.state = found->second;
+      }
+      by_name_.emplace(std::move(name), quantities_.size());
+      quantities_.push_back(quantity);
+    }
+  }
+  first_.push_back(quantities_.size());
+}
+
+std::optional<std::size_t> SignalFlow::find(std::size_t block, std::string_view target) const {
+  for (std::size_t q = first_[block]; q < first_[block + 1]; ++q) {
+    if (quantities_[q].equation->target == target) return q;
+  }
+  return std::nullopt;
+}
+
+void SignalFlow::collect_read(std::size_t quantity, const Expression& expression,
+                              std::vector<std::uint32_t>& row) const {
+  for (const Expression& operand : expression.operands) collect_read(quantity, operand, row);
+  if (expression.kind != Expression::Kind::name) return;
+  const std::size_t b = quantities_[quantity].block;
+  const FlatBlock& block = diagram_.blocks[b];
+  if (const auto input = block.definition->find_input(expression.name)) {
+    for (const FlatTerm& term : block.inputs[*input].terms) {
+      const auto& outputs = diagram_.blocks[term.signal.block].definition->outputs;
+      const auto source = find(term.signal.block, outputs[term.signal.output].name);
+      if (source) row.push_back(static_cast<std::uint32_t>(*source));
+    }
+  } else if (const auto own = find(b, expression.name)) {
+    row.push_back(static_cast<std::uint32_t>(*own));
+  }
+}
+
+std::vector<std::string> SignalFlow::members_of_loop(const std::vector<std::size_t>& states) const {
+  // All other states are held: they read nothing.
+  Dependencies dependencies;
+  std::vector<std::uint32_t> row;
+  for (std::size_t q = 0; q < quantities_.size(); ++q) {
+    row.clear();
+    const Quantity& quantity = quantities_[q];
+    const bool dynamic = quantity.equation->kind == Equation::Kind::derivative;
+    const bool moves =
+        quantity.state && std::find(states.begin(), states.end(), *quantity.state) != states.end();
+    if (!dynamic || moves) collect_read(q, quantity.equation->expression, row);
+    dependencies.add_row(row);
+  }
+  std::vector<std::size_t> blocks;
+  for (const OrderStep& step : dependency_order(dependencies, std::vector<bool>(quantities_.size(), true))) {
+    const bool ours = std::any_of(step.tears.begin(), step.tears.end(), [&](std::uint32_t q) {
+      return quantities_[q].state &&
+             std::find(states.begin(), states.end(), *quantities_[q].state) != states.end();
+    });
+    if (!ours) continue;
+    for (const std::uint32_t q : step.tears) blocks.push_back(quantities_[q].block);
+  }
+  std::sort(blocks.begin(), blocks.end());
+  blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
+  std::vector<std::string> paths;
+  for (const std::size_t b : blocks) paths.push_back(diagram_.blocks[b].path);
+  return paths;
+}
+
+double SignalFlow::input_value(const FlatInput& input, std::span<const double> signals) const {
+  double sum = input.constant;
+  for (const FlatTerm& term : input.terms) sum += term.weight * signals[program_.signal_index(term.signal)];
+  return sum;
+}
+
+std::optional<double> SignalFlow::own_slope(std::string_view name, double t,
+                                            std::span<const double> signals) const {
+  const auto found = by_name_.find(std::string(name));
+  if (found == by_name_.end()) return std::nullopt;
+  const Quantity& quantity = quantities_[found->second];
+  const FlatBlock& block = diagram_.blocks[quantity.block];
+  if (quantity.equation->kind == Equation::Kind::assignment)
+    return -1;  // its residual is (what it gives) − x
+
+  const auto output_value = [&](std::string_view target) -> std::optional<double> {
+    const auto output = block.definition->find_output(target);
+    if (!output) return std::nullopt;
+    return signals[program_.signal_index({quantity.block, *output})];
+  };
+  const std::string& target = quantity.equation->target;
+  const double x = output_value(target).value_or(0);
+  const double half_step = 1e-4 * std::max(1.0, std::abs(x));
+  const auto value_at = [&](double own) {
+    return evaluate(quantity.equation->expression, [&](std::string_view symbol) -> std::optional<double> {
+      if (symbol == target) return own;
+      if (symbol == "polarity") return block.polarity;
+      if (symbol == "time") return t;
+      if (const auto p = block.definition->find_parameter(symbol)) return block.parameters[*p];
+      if (const auto i = block.definition->find_input(symbol)) return input_value(block.inputs[*i], signals);
+      return output_value(symbol);
+    });
+  };
+  try {
+    const double slope = (value_at(x + half_step) - value_at(x - half_step)) / (2 * half_step);
+    if (std::isfinite(slope)) return slope;
+  } catch (const ExpressionError&) {
+    return std::nullopt;  // it names what is no output and no signal
+  }
+  return std::nullopt;
+}
+
+}  // namespace oblique

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/solve/static_test.h>
+
+#include <string_view>
+#include <unordered_map>
+
+#include <oblique/solve/rest.h>
+#include <oblique/solve/solve_error.h>
+#include <oblique/solve/switching.h>
+
+namespace oblique {
+
+std::vector<StaticReading> static_test(const Program& program, const std::string& file) {
+  Workspace workspace(program);
+  std::vector<double> states = program.start();
+  for (const std::uint32_t mode : program.mode_memories())
+    workspace.set_memory(mode, static_cast<double>(OperatingMode::initial));
+  Switching switching(program, workspace, 1, file);
+  switching.start(0, states, [&] { bring_to_rest(program, workspace, 0, states, file); });
+  std::vector<double> outputs(program.n_signals()), slopes(program.n_states());
+  if (!program.signals(0, states.data(), outputs.data(), workspace) ||
+      !program.derivatives(0, states.data(), slopes.data(), workspace)) {
+    throw loop_error(program, workspace.trouble(), 0, file);
+  }
+
+  std::unordered_map<std::string_view, std::size_t> index;
+  std::vector<StaticReading> readings;
+  for (std::size_t s = 0; s < program.n_signals(); ++s) {
+    index.emplace(program.signal_names()[s], s);
+    readings.push_back({program.signal_names()[s], outputs[s], {}, false});
+  }
+  for (std::size_t i = 0; i < program.n_states(); ++i) {
+    const State& state = program.states()[i];
+    const auto found = index.find(state.name);
+    if (found == index.end()) readings.push_back({state.name, states[i], {}, false});
+    StaticReading& reading = found == index.end() ? readings.back() : readings[found->second];
+    reading.slope = slopes[i];
+    reading.at_rest = state.at_rest;
+  }
+  return readings;
+}
+
+}  // namespace oblique

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: MIT
+// What check and the static test print, in words and as JSON.
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <unistd.h>
+
+#include "../support/process.h"
+
+namespace oblique::test {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+class Check : public testing::Test {
+ protected:
+  Check() : folder_(std::filesystem::temp_directory_path() / ("oblique-check-" + std::to_string(getpid()))) {
+    std::filesystem::create_directories(folder_);
+  }
+  ~Check() override { std::filesystem::remove_all(folder_); }
+
+  static Outcome oblique(const std::string& arguments) {
+    return run_command("oblique " + arguments, OBLIQUE_SOURCE_DIR);
+  }
+  std::string file(const std::string& name, const std::string& blocks = "") const {
+    const std::string path = (folder_ / name).string();
+    if (!blocks.empty()) std::ofstream(path) << "format = \"oblique-diagram/1\"\n[blocks]\n" << blocks;
+    return path;
+  }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+const std::string kOscillator =
+    "x = { type = \"integrator\", in = [\"2*v\"] }\n"
+    "v = { type = \"integrator\", in = [\"-2*x\", \"-0.4*v\"], initial = 5 }\n";
+
+TEST_F(Check, PrintsLoopsStabilityOverloadsAndScaling) {
+  const Outcome outcome = oblique("check diagrams/lessons/triangle-side.toml");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.err, IsEmpty());
+  EXPECT_THAT(outcome.out,
+              HasSubstr("ok: all names, wires, units and ranges are right\n\ntrial run: 6.28319 s"));
+  EXPECT_THAT(outcome.out, HasSubstr("keeps +    c2, c\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("the servo amplifiers: well damped"));
+  EXPECT_THAT(outcome.out, HasSubstr("\noverloads\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("phi     6.28319   6.28319    0.1     0.628319\n"));
+}
+
+TEST_F(Check, JsonHasTheDocumentedKeysAlone) {
+  const Outcome outcome = oblique("check diagrams/lessons/triangle-side.toml --json");
+  EXPECT_EQ(outcome.status, 0);
+  const auto json = nlohmann::json::parse(outcome.out);
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : json.items()) keys.push_back(key);
+  EXPECT_THAT(keys, testing::UnorderedElementsAre("file", "kind", "title", "blocks", "elements", "states",
+                                                  "servo_amplifiers", "outputs", "run", "loops", "stability",
+                                                  "overloads", "scaling"));
+  const auto& unknown = json.at("loops").at(0).at("unknowns").at(0);
+  // μ ∂r/∂c = 1e5 · 2 c, with c = 0.1 − 5e-6 at the start.
+  EXPECT_NEAR(unknown.at("least_gain").get<double>(), 2e5 * (0.1 - 5e-6), 0.1);
+  EXPECT_NEAR(unknown.at("static_error").get<double>(), 5e-5, 1e-8);
+  EXPECT_THAT(json.at("loops").at(0).at("members"), ElementsAre("c2", "c"));
+  // A lone amplifier: 90° and a little.
+  EXPECT_NEAR(json.at("stability").at("margins").at(0).at("degrees").get<double>(), 90, 0.01);
+  const auto& overload = json.at("overloads").at(0);
+  EXPECT_EQ(overload.at("signal"), "phi");
+  EXPECT_NEAR(overload.at("first").get<double>(), 1, 1e-9);  // φ = t
+  EXPECT_NEAR(overload.at("duration").get<double>(), 2 * std::numbers::pi - 1, 1e-9);
+  EXPECT_EQ(overload.at("scale"), 0.1);
+  EXPECT_EQ(json.at("scaling").at("signals").size(), 11U);
+}
+
+TEST_F(Check, JsonOfADampedOscillatorHasItsMode) {
+  const Outcome outcome = oblique("check --json " + file("o.toml", kOscillator));
+  const auto mode = nlohmann::json::parse(outcome.out).at("stability").at("problem_mode");
+  // λ² + 0.4 λ + 4 = 0.
+  EXPECT_NEAR(mode.at("natural_frequency").get<double>(), 2, 1e-12);
+  EXPECT_NEAR(mode.at("damping_ratio").get<double>(), 0.1, 1e-12);
+  EXPECT_EQ(mode.at("verdict"), "badly damped");
+  EXPECT_EQ(mode.at("participants").size(), 2U);
+}
+
+TEST_F(Check, InfiniteNumbersAreNullInJson) {
+  const Outcome outcome = oblique(
+      "check --json " + file("i.toml",
+                             "z = { type = \"constant\" }\nq = { type = \"servo-amplifier\", in = [\"q\", "
+                             "\"-z\"], gain = inf }\n"));
+  const auto loop = nlohmann::json::parse(outcome.out).at("loops").at(0);
+  EXPECT_EQ(loop.at("type"), "algebraic");
+  EXPECT_TRUE(loop.at("unknowns").at(0).at("least_gain").is_null());
+  EXPECT_EQ(loop.at("unknowns").at(0).at("static_error"), 0);
+}
+
+TEST_F(Check, MechanismsHaveJsonToo) {
+  const Outcome outcome = oblique("check diagrams/mechanisms/four-bar.toml --json");
+  EXPECT_EQ(outcome.status, 0);
+  const auto json = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(json.at("kind"), "mechanism");
+  EXPECT_EQ(json.at("mobility"), 1);
+  EXPECT_EQ(json.at("groups").size(), 2U);
+  EXPECT_EQ(json.at("ok"), true);
+}
+
+TEST_F(Check, ARunThatFailsIsReportedUpToThere) {
+  // The divisor x passes zero at t = 0.5.
+  const std::string path = file("b.toml", R"toml(one = { type = "constant" }
+x  = { type = "integrator", in = ["-2*one"], initial = 1 }
+xq = { type = "multiplier", in = ["x", "q"] }
+q  = { type = "servo-amplifier", in = ["xq", "-0.01*one"], gain = 1e4 }
+)toml");
+  const Outcome text = oblique("check " + path);
+  EXPECT_EQ(text.status, 3);
+  EXPECT_THAT(text.out, HasSubstr("trial run: failed at t = 0.53"));
+  EXPECT_THAT(text.out, HasSubstr("changes at t = 0.5"));
+  EXPECT_THAT(text.out, HasSubstr("no: the servo loops are unstable from t = 0.5"));
+  EXPECT_THAT(text.err, HasSubstr("error: "));
+  const Outcome json = oblique("check --json " + path);
+  EXPECT_EQ(json.status, 3);
+  EXPECT_TRUE(nlohmann::json::parse(json.out).at("overloads").is_null());
+}
+
+TEST_F(Check, ADiagramThatCannotStartIsStillReported) {
+  const Outcome outcome = oblique(
+      "check " + file("n.toml",
+                      "one = { type = \"constant\" }\ncc = { type = \"multiplier\", in = [\"c\", \"c\"] }\n"
+                      "c = { type = \"servo-amplifier\", in = [\"cc\", \"one\"] }\n"));
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_THAT(outcome.out, HasSubstr("it could not start"));
+  EXPECT_THAT(outcome.err, HasSubstr("do not come to rest"));
+}
+
+TEST_F(Check, RescaleWritesADiagramThatGivesTheSame) {
+  const Outcome written = oblique("check " + file("o.toml", kOscillator) + " --rescale -o " + file("s.toml"));
+  EXPECT_EQ(written.status, 0);
+  EXPECT_THAT(written.err, HasSubstr("0 overloads"));
+  EXPECT_THAT(written.err, Not(HasSubstr("warning")));
+  EXPECT_THAT(oblique("check " + file("s.toml")).out, HasSubstr("overloads: none"));
+  EXPECT_EQ(oblique("run " + file("s.toml")).out, oblique("run " + file("o.toml")).out);
+}
+
+TEST_F(Check, RescaleLeavesTheFileThatItReads) {
+  const std::string path = file("o.toml", kOscillator);
+  const auto before = std::filesystem::last_write_time(path);
+  EXPECT_EQ(oblique("check " + path).status, 0);
+  EXPECT_EQ(std::filesystem::last_write_time(path), before);
+}
+
+TEST_F(Check, APatchedMechanismSurvivesRescaling) {
+  ASSERT_EQ(oblique("patch diagrams/mechanisms/six-bar.toml -o " + file("p.toml")).status, 0);
+  const Outcome written = oblique("check " + file("p.toml") + " --rescale -o " + file("s.toml"));
+  EXPECT_EQ(written.status, 0) << written.err;
+  EXPECT_THAT(written.err, HasSubstr("0 overloads"));
+  EXPECT_THAT(written.err, Not(HasSubstr("warning")));
+}
+
+TEST_F(Check, StaticTestPrintsEveryElementAndRunsNothing) {
+  const Outcome outcome = oblique("run --static-test " + file("o.toml", kOscillator));
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.err, IsEmpty());
+  EXPECT_THAT(outcome.out, HasSubstr("x        state               0                10\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("v        state               5                -2\n"));
+}
+
+TEST_F(Check, HaltOnOverloadEndsTheRunWithStatusOne) {
+  const Outcome halted = oblique("run diagrams/lessons/triangle-side.toml --halt-on-overload --check");
+  EXPECT_EQ(halted.status, 1);
+  EXPECT_THAT(halted.err,
+              HasSubstr("overload: 'phi' leaves ±1 machine unit at t = 1 s; the run ends there\n"));
+  const Outcome whole = oblique("run diagrams/lessons/triangle-side.toml");
+  EXPECT_EQ(whole.status, 0);
+  EXPECT_THAT(whole.err, Not(HasSubstr("overload")));
+  EXPECT_EQ(oblique("run diagrams/lessons/circle.toml --until 1 --halt-on-overload").status, 0);
+}
+
+}  // namespace
+}  // namespace oblique::test

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+// Poles, damping and participation of systems whose eigenvalues are known in closed form.
+#include <cmath>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <oblique/solve/linearisation.h>
+
+#include "../support/runs.h"
+
+namespace oblique {
+namespace {
+
+using testing::Compiled;
+
+double share_of(const Mode& mode, std::size_t state) {
+  for (const Participation& p : mode.participants) {
+    if (p.state == state) return p.share;
+  }
+  return 0;
+}
+
+std::vector<Mode> modes_at_start(const Compiled& made) {
+  Workspace workspace(made.program);
+  const auto linear = Linearisation::at(made.program, workspace, {0, made.program.start()});
+  std::vector<Mode> modes;
+  for (const auto& group : coupled_groups(made.program)) {
+    for (const Mode& mode : modes_of(linear->block(group), group)) modes.push_back(mode);
+  }
+  return modes;
+}
+
+// x″ + 2 ζ ω x′ + ω² x = 0.
+TEST(Modes, OfADampedOscillatorHaveItsFrequencyAndDamping) {
+  for (const double damping : {0.05, 0.5, 0.9}) {
+    constexpr double kFrequency = 7;
+    const Compiled made(
+        fmt::format("x = {{ type = \"integrator\", in = [\"v\"] }}\n"
+                    "v = {{ type = \"integrator\", in = [\"{}*v\", \"{}*x\"] }}\n",
+                    -2 * damping * kFrequency, -kFrequency * kFrequency));
+    const auto modes = modes_at_start(made);
+    ASSERT_EQ(modes.size(), 1U);
+    // Rounding of a 2 × 2 eigenvalue problem.
+    EXPECT_NEAR(modes[0].natural_frequency(), kFrequency, 1e-13 * kFrequency);
+    EXPECT_NEAR(modes[0].damping_ratio(), damping, 1e-13);
+    EXPECT_NEAR(modes[0].pole.imag(), kFrequency * std::sqrt(1 - damping * damping), 1e-12);
+  }
+}
+
+TEST(Modes, OfDecoupledSystemsShareNothing) {
+  // A fast decay and an oscillator, in one matrix.
+  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(3, 3);
+  a(0, 0) = -50;
+  a(1, 2) = 2;
+  a(2, 1) = -2;
+  const auto modes = modes_of(a, {4, 5, 6});
+  ASSERT_EQ(modes.size(), 2U);
+  for (const Mode& mode : modes) {
+    const bool decay = mode.pole.imag() == 0;
+    EXPECT_NEAR(share_of(mode, 4), decay ? 1 : 0, 1e-14);
+    // An undamped oscillator is as much in its displacement as in its speed.
+    EXPECT_NEAR(share_of(mode, 5), decay ? 0 : 0.5, 1e-14);
+    EXPECT_NEAR(share_of(mode, 6), decay ? 0 : 0.5, 1e-14);
+  }
+}
+
+TEST(Modes, ParticipationDependsOnNoScaling) {
+  // [[a, b], [c, d]] with real poles: the share of state 1 in mode p is (p − d)/(2 p − a − d).
+  Eigen::MatrixXd a(2, 2);
+  a << -3, 1e6, 2e-6, -7;
+  for (const Mode& mode : modes_of(a, {0, 1})) {
+    const double p = mode.pole.real();
+    EXPECT_NEAR(p * p + 10 * p + 19, 0, 1e-12);
+    EXPECT_NEAR(share_of(mode, 0), (p + 7) / (2 * p + 10), 1e-12);
+  }
+}
+
+TEST(Modes, LeaveOutIntegratorsWithoutFeedback) {
+  const Compiled made(R"toml(one = { type = "constant" }
+phi = { type = "integrator", in = ["one"] }
+x   = { type = "integrator", in = ["phi", "-4*x"] }
+)toml");
+  const auto modes = modes_at_start(made);
+  ASSERT_EQ(modes.size(), 1U);
+  EXPECT_EQ(modes[0].pole, -4.0);
+  EXPECT_EQ(modes[0].damping_ratio(), 1);
+}
+
+TEST(CoupledGroups, AreTheStatesThatActOnEachOther) {
+  const Compiled made(R"toml(one = { type = "constant" }
+z   = { type = "integrator", in = ["x"] }
+x   = { type = "integrator", in = ["v", "one"] }
+v   = { type = "integrator", in = ["-x"] }
+)toml");
+  const auto groups = coupled_groups(made.program);
+  ASSERT_EQ(groups.size(), 2U);
+  EXPECT_EQ(groups[0], (std::vector<std::size_t>{1, 2}));
+  EXPECT_EQ(groups[1], (std::vector<std::size_t>{0}));
+}
+
+}  // namespace
+}  // namespace oblique

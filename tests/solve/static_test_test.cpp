@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+// Static tests of diagrams small enough to be worked out by hand.
+#include <gtest/gtest.h>
+
+#include <oblique/solve/solve_error.h>
+#include <oblique/solve/static_test.h>
+
+#include "../support/runs.h"
+
+namespace oblique {
+namespace {
+
+using testing::Compiled;
+
+const StaticReading& reading(const std::vector<StaticReading>& readings, std::string_view signal) {
+  for (const StaticReading& r : readings) {
+    if (r.signal == signal) return r;
+  }
+  throw std::out_of_range(std::string(signal));
+}
+
+// x″ = −0.5 x′ − 4 x + 1 with x(0) = 0.2, x′(0) = −0.3.
+TEST(StaticTest, GivesOutputsAndInputsOfIntegrators) {
+  const Compiled made(R"toml(one = { type = "constant", value = 1 }
+x   = { type = "integrator", in = ["v"], initial = 0.2 }
+v   = { type = "integrator", in = ["-0.5*v", "-4*x", "one"], initial = -0.3 }
+xv  = { type = "multiplier", in = ["x", "v"] }
+)toml");
+  const auto readings = static_test(made.program, "d.toml");
+  ASSERT_EQ(readings.size(), 4U);
+  EXPECT_EQ(reading(readings, "x").output, 0.2);
+  EXPECT_EQ(reading(readings, "x").slope, -0.3);
+  EXPECT_DOUBLE_EQ(reading(readings, "v").slope.value(), 0.15 - 0.8 + 1);
+  EXPECT_DOUBLE_EQ(reading(readings, "xv").output, -0.06);
+  EXPECT_FALSE(reading(readings, "xv").slope);
+  EXPECT_FALSE(reading(readings, "x").at_rest);
+}
+
+TEST(StaticTest, InvertsWhereTheMachineDoes) {
+  const Compiled made("one = { type = \"constant\" }\nx = { type = \"integrator\", in = [\"3*one\"] }\n",
+                      "[machine]\ninverting = true\n");
+  EXPECT_EQ(reading(static_test(made.program, "d.toml"), "x").slope, -3);
+}
+
+// c² = 0.25 solved by an amplifier of gain 1000: c² + c/1000 = 0.25.
+TEST(StaticTest, BringsServoLoopsToRest) {
+  const Compiled made(R"toml(u  = { type = "constant", value = 0.25 }
+cc = { type = "multiplier", in = ["c", "c"] }
+c  = { type = "servo-amplifier", in = ["cc", "-u"], gain = 1000, initial = 1 }
+i  = { type = "integrator", in = ["c"] }
+)toml");
+  const auto readings = static_test(made.program, "d.toml");
+  const double c = (-1e-3 + std::sqrt(1e-6 + 1)) / 2;
+  EXPECT_NEAR(reading(readings, "c").output, c, 1e-14);  // rounding of Newton's method
+  EXPECT_TRUE(reading(readings, "c").at_rest);
+  // 2π·10 Hz times the rounding of the residual times the gain.
+  EXPECT_NEAR(reading(readings, "c").slope.value(), 0, 1e-10);
+  EXPECT_NEAR(reading(readings, "i").slope.value(), c, 1e-14);
+}
+
+TEST(StaticTest, SaysWhichLoopDoesNotSettle) {
+  const Compiled made(R"toml(one = { type = "constant" }
+cc = { type = "multiplier", in = ["c", "c"] }
+c  = { type = "servo-amplifier", in = ["cc", "one"] }
+)toml");
+  EXPECT_THROW(static_test(made.program, "d.toml"), SolveError);
+}
+
+}  // namespace
+}  // namespace oblique

@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: MIT
+// Modes of operation, phases, and runs that are gone on with.
+#include <cmath>
+#include <numbers>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "../support/runs.h"
+
+namespace oblique {
+namespace {
+
+using testing::Compiled;
+using ::testing::HasSubstr;
+using testing::message_of;
+using testing::row_values;
+using testing::run_of;
+using testing::shipped_blocks_and;
+
+/// An integrator that knows its modes, and nothing else.
+BlockLibrary library_with_modes() {
+  return shipped_blocks_and("mode-integrator", R"toml([inputs]
+in = { sum = true }
+[outputs]
+out = {}
+[parameters]
+initial = {}
+[equations]
+"der(out)" = "if(in_operate, in, 0)"
+[start]
+out = "initial"
+[[events]]
+when = "in_initial"
+set = { out = "initial" }
+)toml");
+}
+
+constexpr const char* kRamp = R"(one = { type = "constant" }
+x = { type = "mode-integrator", in = ["one"], initial = 0.25 }
+)";
+
+TEST(Timeline, LeadsThroughItsPhases) {
+  const BlockLibrary library = library_with_modes();
+  const Compiled made(kRamp, R"([timeline]
+phases = [{ mode = "potset", for = 1 }, { mode = "initial", for = 1 }, { mode = "operate", for = 2 }, { mode = "hold", for = 1 }]
+cycles = 2
+)",
+                      library);
+  EXPECT_EQ(made.diagram.run.until, 10) << "the whole timeline, where [run] does not say otherwise";
+  const auto result = run_of(made, {.until = 10, .samples = 101});
+  const auto t = row_values(result, "t"), x = row_values(result, "x");
+  for (std::size_t r = 0; r < t.size(); ++r) {
+    const double in_cycle = t[r] > 5 ? t[r] - 5 : t[r];  // a row at an event shows the side before it
+    const double ramp = std::clamp(in_cycle - 2, 0.0, 2.0);
+    EXPECT_NEAR(x[r], 0.25 + ramp, 1e-12) << t[r];  // a ramp, to rounding
+  }
+}
+
+TEST(Timeline, APhaseEndsByItsCondition) {
+  // Repetitive operation: cos t until it falls below 0, π/2 each time.
+  const BlockLibrary library = library_with_modes();
+  const Compiled made(R"(x = { type = "mode-integrator", in = ["y"], initial = 1 }
+y = { type = "mode-integrator", in = ["-x"] }
+)",
+                      R"([timeline]
+phases = [{ mode = "initial", for = 0.5 }, { mode = "operate", until = "x < 0" }]
+cycles = inf
+[run]
+until = 20
+)",
+                      library);
+  const auto result = run_of(made, {.until = 20, .tolerance = 1e-10, .samples = 2});
+  std::vector<double> ends;
+  for (const EventRecord& event : result.events) {
+    if (event.what == "timeline: x < 0 from now on") ends.push_back(event.time);
+  }
+  ASSERT_EQ(ends.size(), 9U);
+  for (std::size_t k = 0; k < ends.size(); ++k) {  // a solver's error of about 1e-9 in each of nine cycles
+    EXPECT_NEAR(ends[k], static_cast<double>(k + 1) * (0.5 + std::numbers::pi / 2), 1e-8);
+  }
+}
+
+TEST(Timeline, GroupsHaveModesOfTheirOwn) {
+  const BlockLibrary library = library_with_modes();
+  const Compiled made(R"(one = { type = "constant" }
+x = { type = "mode-integrator", in = ["one"] }
+y = { type = "mode-integrator", in = ["one"] }
+)",
+                      R"([groups]
+slow = ["y"]
+[timeline]
+phases = [{ mode = "operate", slow = "hold", for = 1 }, { mode = "hold", slow = "operate", for = 2 }]
+)",
+                      library);
+  const auto result = run_of(made, {.until = 3, .samples = 4});
+  EXPECT_NEAR(row_values(result, "x").back(), 1, 1e-12);
+  EXPECT_NEAR(row_values(result, "y").back(), 2, 1e-12);
+}
+
+TEST(Timeline, ModeLinesAreDrivenBySignals) {
+  // y is held while the wave is above 0.5, a third of each turn, and reset while the other is.
+  const BlockLibrary library = library_with_modes();
+  const Compiled made(R"(one = { type = "constant" }
+phase = { type = "integrator", in = ["one"] }
+wave = { type = "cosine", in = "phase" }
+y = { type = "mode-integrator", in = ["one"] }
+z = { type = "mode-integrator", in = ["one"], initial = 3 }
+)",
+                      "[groups]\nheld = { blocks = [\"y\"], hold = \"wave\" }\nback = { blocks = [\"z\"], "
+                      "initial = \"wave\" }\n",
+                      library);
+  const double turn = 2 * std::numbers::pi;
+  const auto result = run_of(made, {.until = 4 * turn, .samples = 5});
+  EXPECT_NEAR(row_values(result, "y").back(), 4 * turn * 2 / 3, 1e-9);
+  EXPECT_NEAR(row_values(result, "z").back(), 3, 1e-12);
+  EXPECT_EQ(result.event_count, 8 * 2 + 2 * 1 + 3)
+      << "8 crossings of two lines, two at the start; z is set 5 times";
+}
+
+TEST(Timeline, PhasesThatEndAtOnceAreRefused) {
+  const BlockLibrary library = library_with_modes();
+  const std::string message = message_of<SolveError>([&] {
+    run_of(Compiled(kRamp, "[timeline]\ncycles = inf\nphases = [{ mode = \"operate\", until = \"x > 0\" }]\n",
+                    library));
+  });
+  EXPECT_THAT(message, HasSubstr("the phases of the timeline end at once, one after the other, at t = 0 s"));
+}
+
+TEST(Timeline, ImpossibleOnesAreRefusedTogether) {
+  const auto refusal = [](const std::string& tables) {
+    return message_of<DiagramError>([&] {
+      const BlockLibrary library = library_with_modes();
+      Compiled(kRamp, tables, library);
+    });
+  };
+  const std::string message = refusal(R"([timeline]
+phases = [{ for = 1 }, { mode = "run", for = 1 }, { mode = "hold", for = -1 }, { mode = "hold" }, { mode = "hold", until = "sin(x) > 1" }]
+cycles = 0
+)");
+  EXPECT_THAT(message, HasSubstr("phase 1 has no 'mode'; expected potset, initial, operate or hold"));
+  EXPECT_THAT(message, HasSubstr("phase 2: 'run' is no mode of operation"));
+  EXPECT_THAT(message, HasSubstr("phase 3 lasts -1 s; expected a time above 0 [s]"));
+  EXPECT_THAT(message, HasSubstr("phase 4 has no end; expected 'for', a time, or 'until', a condition"));
+  EXPECT_THAT(message, HasSubstr("phase 5: 'sin(x) > 1' does not compare a signal with a number"));
+  EXPECT_THAT(message, HasSubstr("'cycles' of [timeline] is 0; expected a whole number from 1 on, or inf"));
+  EXPECT_THAT(refusal("[timeline]\n"), HasSubstr("[timeline] has no list of 'phases'"));
+  EXPECT_THAT(refusal("[groups]\nfast = [\"y\"]\n"), HasSubstr("group 'fast': there is no block 'y'"));
+  EXPECT_THAT(refusal("[groups]\na = [\"x\"]\nb = [\"x\"]\n"),
+              HasSubstr("group 'b': 'x' is in group 'a' already"));
+  EXPECT_THAT(refusal("[groups]\nmain = [\"x\"]\n"),
+              HasSubstr("group 'main': a phase has that key for itself"));
+  EXPECT_THAT(refusal("[groups]\na = { blocks = [\"x\"], hold = \"z\" }\n"),
+              HasSubstr("group 'a': there is no signal 'z'"));
+  EXPECT_THAT(refusal("[timeline]\nphases = [{ mode = \"hold\", until = \"z > 1\" }]\n"),
+              HasSubstr("phase 1: there is no signal 'z'"));
+}
+
+TEST(Timeline, IsWrittenAsItIsRead) {
+  const BlockLibrary library = library_with_modes();
+  const Compiled made(kRamp, R"([groups]
+slow = { blocks = ["x"], hold = "one" }
+[timeline]
+phases = [{ mode = "operate", slow = "hold", for = 1 }, { mode = "hold", until = "x > 0.5" }]
+cycles = 3
+)",
+                      library);
+  const Diagram again = parse_diagram(write_diagram(made.diagram), "again.toml");
+  EXPECT_EQ(again, made.diagram);
+}
+
+// --- saved and gone on with
+// --------------------------------------------------------------------------------------------
+
+constexpr const char* kVanDerPol = R"(one = { type = "constant" }
+xx   = { type = "multiplier", in = ["x", "x"] }
+damp = { type = "summer", in = ["one", "-xx"] }
+dy   = { type = "multiplier", in = ["damp", "y"] }
+x = { type = "integrator", in = ["y"], initial = 0.5 }
+y = { type = "integrator", in = ["dy", "-x"] }
+)";
+
+Run run_from(const Compiled& made, const RunState& state, double until) {
+  RunOptions options;
+  options.until = until;
+  options.samples = 2;
+  options.from = parse_run_state(to_text(state), "s.toml");
+  return run(made.program, made.flat, options);
+}
+
+TEST(RunState, GoingOnGivesWhatAnUninterruptedRunGives) {
+  const Compiled made(kVanDerPol);
+  const auto whole = run_of(made, {.until = 30, .samples = 2});
+  const auto half = run_of(made, {.until = 11.7, .samples = 2});
+  const auto rest = run_from(made, half.state, 30);
+  EXPECT_EQ(rest.trajectory.at(0, 0), 11.7);
+  for (const char* const name : {"x", "y"}) {  // tolerance 1e-8 over five periods of a stable cycle
+    EXPECT_NEAR(row_values(rest, name).back(), row_values(whole, name).back(), 1e-6) << name;
+  }
+}
+
+TEST(RunState, KeepsMemoriesAndPhases) {
+  const BlockLibrary library = library_with_modes();
+  const Compiled made(
+      kRamp,
+      "[timeline]\nphases = [{ mode = \"initial\", for = 1 }, { mode = \"operate\", for = 2 }]\ncycles = 4\n",
+      library);
+  const auto whole = run_of(made, {.until = 12, .samples = 2});
+  const auto half = run_of(made, {.until = 8, .samples = 2});
+  const auto rest = run_from(made, half.state, 12);
+  EXPECT_NEAR(row_values(rest, "x").back(), row_values(whole, "x").back(), 1e-12);
+  EXPECT_NEAR(row_values(rest, "x").front(), 0.25 + 1, 1e-12);
+}
+
+TEST(RunState, IsReadAsItWasWritten) {
+  RunState state;
+  state.time = 0.1 + 0.2;
+  state.states = {{"x", -1.0 / 3}, {"tri.\"odd\"", 1e-300}};
+  state.memories = {{"in > 0.5", 1}};
+  state.conditions = {true, false};
+  state.position = {2, 5, 0.7};
+  const RunState again = parse_run_state(to_text(state), "s.toml");
+  EXPECT_EQ(again.time, state.time);
+  EXPECT_EQ(again.states, state.states);
+  EXPECT_EQ(again.memories, state.memories);
+  EXPECT_EQ(again.conditions, state.conditions);
+  EXPECT_EQ(again.position.phase, 2U);
+  EXPECT_EQ(again.position.begin, 0.7);
+}
+
+TEST(RunState, OfAnotherDiagramIsRefused) {
+  const Compiled made(kVanDerPol);
+  const Compiled other(
+      "x = { type = \"integrator\", in = [\"z\"] }\nz = { type = \"integrator\", in = [\"-x\"] }\n");
+  const auto half = run_of(made, {.until = 1, .samples = 2});
+  EXPECT_EQ(message_of<SolveError>([&] { run_from(other, half.state, 2); }),
+            "d.toml: this is the state of another diagram: it has the state 'y' where the diagram has 'z'; "
+            "expected the state of a run of this diagram\n"
+            "  remedy: parameters may change between runs, blocks and wires may not");
+  EXPECT_THAT(
+      message_of<ReadError>([] { parse_run_state("format = \"oblique-diagram/1\"\n", "s.toml"); }),
+      HasSubstr(
+          "s.toml:1:10: the format is 'oblique-diagram/1'; expected 'oblique-state/1', what --save writes"));
+}
+
+TEST(Run, EndsWhereItIsInterrupted) {
+  const Compiled made(kVanDerPol);
+  RunOptions options;
+  options.until = 1000;
+  int steps = 0;
+  options.interrupted = [&] { return ++steps > 50; };
+  const auto result = run(made.program, made.flat, options);
+  EXPECT_GT(result.state.time, 0);
+  EXPECT_LT(result.state.time, 100);
+  EXPECT_EQ(result.state.states.size(), 2U);
+}
+
+TEST(Run, FindsExtremesBetweenItsRows) {
+  const Compiled made(
+      "x = { type = \"integrator\", in = [\"y\"], initial = 0.6 }\ny = { type = \"integrator\", in = "
+      "[\"-x\"], initial = 0.8 }");
+  RunOptions options;
+  options.until = 2 * std::numbers::pi;
+  options.samples = 2;
+  options.extremes = true;
+  const auto result = run(made.program, made.flat, options);
+  EXPECT_NEAR(result.extremes[0].maximum.value, 1, 1e-7);  // the solver's tolerance
+  EXPECT_NEAR(result.extremes[0].maximum.time, std::atan2(0.8, 0.6), 1e-3);
+  EXPECT_NEAR(result.extremes[1].minimum.value, -1, 1e-7);
+}
+
+}  // namespace
+}  // namespace oblique
