@@ -46,6 +46,7 @@ struct FlatOutput {
   SignalRef signal;
   double scale = 1;
   std::string unit;
+  double offset = 0;
 };
 
 /// A diagram of primitive blocks, all names resolved. Refers to the definitions of the library it was made

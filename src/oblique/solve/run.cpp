@@ -72,7 +72,7 @@ class Sampler {
     row_[0] = time;
     for (std::size_t i = 0; i < diagram_.outputs.size(); ++i) {
       const FlatOutput& output = diagram_.outputs[i];
-      row_[i + 1] = output.scale * signals_[program_.signal_index(output.signal)];
+      row_[i + 1] = output.scale * signals_[program_.signal_index(output.signal)] + output.offset;
     }
     for (std::size_t s = 0; s < signals_.size(); ++s) {
       if (!std::isfinite(signals_[s])) throw_not_finite(s, time);
@@ -188,7 +188,7 @@ class Runner {
   }
 
   void integrate() {
-    const MethodChoice method = choose_method(options_.method, program_, workspace_, states_);
+    const MethodChoice method = choose_method(options_.method, program_, workspace_, states_, options_.until);
     sampler_.result.method = method;
     double t = 0;
     double end = stretch_end(t);
