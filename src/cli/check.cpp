@@ -13,9 +13,9 @@
 namespace oblique::cli {
 namespace {
 
-ExitStatus check_diagram(const Session& session, const std::string& path) {
+ExitStatus check_diagram(const Session& session, const std::string& path, const std::string& text) {
   const BlockLibrary library = session.library();
-  const Diagram diagram = read_diagram(path);
+  const Diagram diagram = parse_diagram(text, path);
   const FlatDiagram flat = flatten(diagram, library);
   const Program program(assemble(flat));
   print(fmt::format("{}: a diagram, \"{}\"\n", path, diagram.title));
@@ -44,8 +44,8 @@ std::string describe(const Mechanism& mechanism, const Group& group) {
                      mechanism.points[dyad.p].name, mechanism.points[dyad.q].name);
 }
 
-ExitStatus check_mechanism(const std::string& path) {
-  const Mechanism mechanism = read_mechanism(path);
+ExitStatus check_mechanism(const std::string& path, const std::string& text) {
+  const Mechanism mechanism = parse_mechanism(text, path);
   const Structure structure = decompose(mechanism);
   const bool moves = !mechanism.drives.empty();
   const auto obstacle = moves ? find_obstacle(mechanism, structure) : std::nullopt;
@@ -68,11 +68,12 @@ ExitStatus check_mechanism(const std::string& path) {
 }  // namespace
 
 ExitStatus check_file(const Session& session, const CheckRequest& request) {
-  const Document document = read_document(request.file);
+  const std::string text = read_file(request.file);  // once: it may be a pipe
+  const Document document = parse_document(text, request.file);
   const Value* const format = document.root.find("format");
   const std::string name = format != nullptr ? format->text : "";
-  if (name == "oblique-diagram/1") return check_diagram(session, request.file);
-  if (name == "oblique-mechanism/1") return check_mechanism(request.file);
+  if (name == "oblique-diagram/1") return check_diagram(session, request.file, text);
+  if (name == "oblique-mechanism/1") return check_mechanism(request.file, text);
   throw ReadError(
       Diagnostic{{request.file, {1, 1}},
                  "this is neither a diagram nor a mechanism",
