@@ -40,20 +40,35 @@ std::vector<std::string> option_names(const CLI::App& app) {
   return names;
 }
 
+/// The first word that stands where the command should: neither an option nor the value of one.
+std::optional<std::string> first_word(const CLI::App& app, const std::vector<std::string>& arguments) {
+  bool is_value = false;
+  for (const std::string& argument : arguments) {
+    if (!is_value && !argument.starts_with("-")) return argument;
+    const CLI::Option* const option = is_value ? nullptr : app.get_option_no_throw(argument);
+    is_value = option != nullptr && option->get_items_expected_min() > 0;
+  }
+  return std::nullopt;
+}
+
 /// CLI11's finding with the nearest verb or option added, which it does not know.
 Diagnostic explain(const CLI::App& app, const CLI::ParseError& error,
                    const std::vector<std::string>& arguments) {
   const auto chosen = app.get_subcommands();
   if (chosen.empty()) {
-    for (const std::string& argument : arguments) {
-      if (argument.starts_with("-")) continue;
-      return {{}, fmt::format("there is no command '{}'", argument), {}, suggest(argument, verb_names(app))};
+    const auto word = first_word(app, arguments);
+    const std::vector<std::string> verbs = verb_names(app);
+    if (!word) return {{}, error.what(), {}, "oblique --help lists the commands"};
+    if (std::find(verbs.begin(), verbs.end(), *word) != verbs.end()) {  // hidden behind "--"
+      return {{}, fmt::format("'--' stands before the command '{}'", *word), {}, "leave '--' out there"};
     }
-    return {{}, error.what(), {}, "oblique --help lists the commands"};
+    return {{}, fmt::format("there is no command '{}'", *word), {}, suggest(*word, verbs)};
   }
-  const std::vector<std::string> names = option_names(*chosen.front());
+  std::vector<std::string> names = option_names(*chosen.front());
+  for (const std::string& name : option_names(app)) names.push_back(name);
   for (const std::string& argument : arguments) {
     const std::string name = argument.substr(0, argument.find('='));
+    if (argument == "--") break;
     if (!argument.starts_with("--") || std::find(names.begin(), names.end(), name) != names.end()) continue;
     return {{},
             fmt::format("'{}' has no option '{}'", chosen.front()->get_name(), name),

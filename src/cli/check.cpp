@@ -64,14 +64,14 @@ std::string mechanism_json(const std::string& path, const Mechanism& mechanism, 
   return json.dump(2) + "\n";
 }
 
-ExitStatus check_mechanism(const CheckRequest& request) {
+ExitStatus check_mechanism(const CheckRequest& request, const std::string& text) {
   if (request.rescale) {
     throw ReadError(Diagnostic{{request.file, {}},
                                "a mechanism has no signals to scale",
                                "a diagram for --rescale",
                                "patch it first: oblique patch MECHANISM -o DIAGRAM.toml"});
   }
-  const Mechanism mechanism = read_mechanism(request.file);
+  const Mechanism mechanism = parse_mechanism(text, request.file);
   const Structure structure = decompose(mechanism);
   const auto finding = obstacle_of(mechanism, structure);
   print((request.json ? mechanism_json : mechanism_text)(request.file, mechanism, structure, finding));
@@ -93,11 +93,12 @@ void check_request(const CheckRequest& request) {
 
 ExitStatus check_file(const Session& session, const CheckRequest& request) {
   check_request(request);
-  const Document document = read_document(request.file);
+  const std::string text = read_file(request.file);  // once: it may be a pipe
+  const Document document = parse_document(text, request.file);
   const Value* const format = document.root.find("format");
   const std::string name = format != nullptr ? format->text : "";
-  if (name == "oblique-diagram/1") return check_diagram(session, request);
-  if (name == "oblique-mechanism/1") return check_mechanism(request);
+  if (name == "oblique-diagram/1") return check_diagram(session, request, text);
+  if (name == "oblique-mechanism/1") return check_mechanism(request, text);
   throw ReadError(
       Diagnostic{{request.file, {1, 1}},
                  "this is neither a diagram nor a mechanism",

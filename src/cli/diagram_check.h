@@ -41,6 +41,7 @@ std::string_view verdict_name(ModeVerdict verdict);
 /// "linear", "varying", "non-linear".
 std::string_view kind_name(LoopKind kind);
 
-ExitStatus check_diagram(const Session& session, const CheckRequest& request);
+/// `text` is what the file holds.
+ExitStatus check_diagram(const Session& session, const CheckRequest& request, const std::string& text);
 
 }  // namespace oblique::cli

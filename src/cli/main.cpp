@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <exception>
+#include <new>
 
 #include <fmt/format.h>
 
@@ -46,10 +47,22 @@ BlockLibrary Session::library() const {
 }  // namespace oblique::cli
 
 int main(int argc, char** argv) {
+  using namespace oblique::cli;
   try {
-    return static_cast<int>(oblique::cli::run_program(argc, argv));
+    keep_stdout();
+    const ExitStatus status = run_program(argc, argv);
+    if (results_are_written()) return static_cast<int>(status);
+    print_error(
+        "the results could not be written to stdout\n"
+        "  remedy: make room where they go, or give a file with -o");
+    return static_cast<int>(ExitStatus::bad_request);
+  } catch (const std::bad_alloc&) {
+    print_error(
+        "there is not enough memory for this\n"
+        "  remedy: ask for fewer rows ('samples' in [run], --positions) or outputs, or split the diagram");
+    return static_cast<int>(ExitStatus::bad_request);
   } catch (const std::exception& error) {
-    oblique::cli::print_error(fmt::format("internal error: {}; please report it", error.what()));
-    return static_cast<int>(oblique::cli::ExitStatus::solver_failed);
+    print_error(fmt::format("internal error: {}; please report it", error.what()));
+    return static_cast<int>(ExitStatus::solver_failed);
   }
 }

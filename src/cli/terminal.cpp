@@ -2,10 +2,13 @@
 #include "terminal.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 
+#include <fcntl.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -69,6 +72,19 @@ void print(std::string_view text) {
   std::fwrite(text.data(), 1, text.size(), stdout);
 }
 
+void keep_stdout() {
+  if (fcntl(STDOUT_FILENO, F_GETFD) >= 0) return;
+  const int nothing = open("/dev/null", O_RDONLY);  // to which nothing can be written
+  if (nothing >= 0 && nothing != STDOUT_FILENO) {
+    dup2(nothing, STDOUT_FILENO);
+    close(nothing);
+  }
+}
+
+bool results_are_written() {
+  return std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+}
+
 std::string count(std::size_t n, std::string_view one, std::string_view many) {
   return fmt::format("{} {}", n, n == 1 ? one : many);
 }
@@ -118,11 +134,22 @@ void check_output(const std::filesystem::path& path, std::string_view ending) {
                                {}});
   }
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
-  if (!std::filesystem::is_directory(folder)) {
+  std::error_code unknown;
+  if (!std::filesystem::is_directory(folder, unknown)) {
     throw ReadError(Diagnostic{{path.string(), {}},
                                "the folder of this file does not exist",
                                {},
                                fmt::format("make it first: mkdir -p {}", folder.string())});
+  }
+  const std::filesystem::file_status status = std::filesystem::status(path, unknown);
+  const bool special = std::filesystem::exists(status) && !std::filesystem::is_regular_file(status);
+  int reason = access(special ? path.c_str() : folder.c_str(), W_OK) == 0 ? 0 : errno;
+  if (std::filesystem::is_directory(status)) reason = EISDIR;
+  if (reason != 0) {
+    throw ReadError(Diagnostic{{path.string(), {}},
+                               fmt::format("this file could not be written: {}", std::strerror(reason)),
+                               {},
+                               "name a file in a folder that you may write to"});
   }
 }
 

@@ -40,6 +40,12 @@ std::string count(std::size_t n, std::string_view one, std::string_view many);
 /// Writes results to stdout.
 void print(std::string_view text);
 
+/// Keeps the number of stdout taken where the caller has closed it, so that no file is opened in its place.
+void keep_stdout();
+
+/// Whether everything printed so far has reached stdout.
+bool results_are_written();
+
 /// Writes anything else to stderr.
 void note(std::string_view text);
 

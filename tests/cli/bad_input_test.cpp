@@ -243,6 +243,38 @@ INSTANTIATE_TEST_SUITE_P(
                        "there is no command 'rnu'\n  remedy: did you mean 'run'?"},
         BadRequestCase{"UnknownOption", "oblique run x --chek", 2,
                        "'run' has no option '--chek'\n  remedy: did you mean '--check'?"},
+        BadRequestCase{"UnknownVerbBehindAnOption", "oblique --blocks . rnu x", 2,
+                       "there is no command 'rnu'\n  remedy: did you mean 'run'?"},
+        BadRequestCase{"VerbBehindDashes", "oblique -- run x", 2,
+                       "'--' stands before the command 'run'\n  remedy: leave '--' out there"},
+        BadRequestCase{"ArgumentTooMany", "oblique run x extra --blocks .", 2,
+                       "extra\n  remedy: oblique run --help"},
+        BadRequestCase{"FullStdout", "oblique blocks >/dev/full", 2,
+                       "error: the results could not be written to stdout\n  remedy: make room"},
+        BadRequestCase{"FullStdoutOfARun", "oblique run diagrams/lessons/division.toml >/dev/full", 2,
+                       "error: the results could not be written to stdout"},
+        BadRequestCase{"ClosedStdout", "oblique blocks >&-", 2,
+                       "error: the results could not be written to stdout"},
+        BadRequestCase{"ClosedStdoutOfARun", "oblique run diagrams/lessons/division.toml >&-", 2,
+                       "error: the results could not be written to stdout"},
+        BadRequestCase{"TooLittleMemory",
+                       "ulimit -v 400000; oblique solve diagrams/mechanisms/jansen.toml --positions 10000000",
+                       2, "error: there is not enough memory for this\n  remedy: ask for fewer rows"},
+        BadRequestCase{
+            "MechanismReplacedByItsDiagram",
+            "cp diagrams/mechanisms/four-bar.toml /tmp/oblique-same.toml; oblique patch "
+            "/tmp/oblique-same.toml "
+            "-o /tmp/../tmp/oblique-same.toml; status=$?; grep -q mechanism/1 /tmp/oblique-same.toml || "
+            "status=99; rm /tmp/oblique-same.toml; exit $status",
+            2, "this is the mechanism itself, which the diagram would replace\n  remedy: write the diagram"},
+        BadRequestCase{"OutputIsAFolder",
+                       "mkdir /tmp/oblique-folder.csv; oblique run diagrams/lessons/circle.toml -o "
+                       "/tmp/oblique-folder.csv "
+                       "| grep -q . && touch /tmp/oblique-folder.csv/ran; ls /tmp/oblique-folder.csv >&2; "
+                       "rm -r /tmp/oblique-folder.csv; exit 2",
+                       2,
+                       "error: /tmp/oblique-folder.csv: this file could not be written: Is a directory\n"
+                       "  remedy: name a file in a folder that you may write to\n"},
         BadRequestCase{"MissingArgument", "oblique solve", 2,
                        "remedy: oblique solve --help tells how to call it"},
         BadRequestCase{"PositionsOutOfRange", "oblique solve diagrams/mechanisms/four-bar.toml --positions 1",

@@ -175,6 +175,16 @@ TEST_F(Verbs, CheckTakesAMechanismWithoutDrivesForAStructure) {
   EXPECT_THAT(apart.err, HasSubstr("dyad 'AC-DC' cannot be assembled at the start"));
 }
 
+TEST_F(Verbs, CheckReadsAPipe) {
+  const Outcome diagram =
+      run_command("cat diagrams/lessons/division.toml | oblique check /dev/stdin", OBLIQUE_SOURCE_DIR);
+  EXPECT_EQ(diagram.status, 0) << diagram.err;
+  EXPECT_THAT(diagram.out, HasSubstr("algebraic loop with 1 unknown"));
+  const Outcome mechanism =
+      run_command("cat diagrams/mechanisms/four-bar.toml | oblique check /dev/stdin", OBLIQUE_SOURCE_DIR);
+  EXPECT_EQ(mechanism.status, 0) << mechanism.err;
+}
+
 TEST_F(Verbs, BlocksListsAndTells) {
   EXPECT_THAT(oblique("blocks").out, ContainsRegex("servo-amplifier +Drives its output until"));
   const Outcome page = oblique("blocks servo-amplifier");

@@ -148,6 +148,38 @@ TEST(Patch, GivesClashingNamesANumber) {
   EXPECT_THAT(write_diagram(diagram), HasSubstr("B_x_2"));
 }
 
+// The blocks of a dyad and of a crank are called as the hinge and the drive.
+TEST(Patch, GivesBlocksOtherNamesThanThoseThatExpressionsKeep) {
+  for (const std::string name : {"time", "polarity", "in_initial", "in_operate", "in_hold", "pi", "inf",
+                                 "and", "or", "not", "one", "if", "sin"}) {
+    const std::string quoted = "\"" + name + "\"";
+    const std::string hinge = replaced(replaced(kFourBar, "\"C\"", quoted), "\"C\"", quoted);
+    const Mechanism mechanism = parse_mechanism(replaced(hinge, "\nC = ", "\n" + name + " = "), "hinge.toml");
+    const Diagram diagram = parse_diagram(write_diagram(patch_triangles(mechanism)), "patched.toml");
+    EXPECT_LT(largest_error(mechanism, PatchedRun(diagram).result), 1e-6 * mechanism.largest_length())
+        << name;
+    const Mechanism driven = parse_mechanism(replaced(kFourBar, "crank = {", name + " = {"), "drive.toml");
+    EXPECT_NO_THROW(parse_diagram(write_diagram(patch_triangles(driven)), "patched.toml")) << name;
+  }
+}
+
+// The same mechanism somewhere else is the same diagram: only the outputs tell where.
+TEST(Patch, DoesNotDependOnWhereTheMechanismStands) {
+  const Mechanism here = parse_mechanism(kFourBar, "here.toml");
+  const std::string text = replaced(replaced(replaced(kFourBar, "A = [0, 0]", "A = [65536, -131072]"),
+                                             "D = [4, 0]", "D = [65540, -131072]"),
+                                    "C = [3, 2.8]", "C = [65539, -131069]");
+  const Mechanism there = parse_mechanism(text, "there.toml");
+  const Diagram patched = patch_triangles(there);
+  EXPECT_EQ(patched.blocks, patch_triangles(here).blocks);
+  const std::string written = write_diagram(patched);
+  EXPECT_THAT(written, HasSubstr("# Coordinates: 1 machine unit = 4 m, from A."));
+  EXPECT_THAT(written, HasSubstr("\"C.x\" = { signal = \"C.x\", scale = 4, offset = 65536, unit = \"m\" }"));
+  EXPECT_TRUE(parse_diagram(written, "patched.toml") == patched);
+  // as near the origin, and the rounding of the coordinates, 1e-11
+  EXPECT_LT(largest_error(there, PatchedRun(patched).result), 1e-6 * there.largest_length());
+}
+
 TEST(Patch, RefusesATriangleThatOpensOnTheWay) {
   const Mechanism mechanism =
       parse_mechanism(replaced(kFourBar, "length = 1 ", "length = 2.7 "), "opens.toml");

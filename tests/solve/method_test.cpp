@@ -15,9 +15,10 @@ namespace {
 using testing::Compiled;
 using ::testing::HasSubstr;
 
-MethodChoice choice_for(const Compiled& made, IntegrationMethod asked = IntegrationMethod::automatic) {
+MethodChoice choice_for(const Compiled& made, IntegrationMethod asked = IntegrationMethod::automatic,
+                        double until = 1) {
   Workspace workspace(made.program);
-  return choose_method(asked, made.program, workspace, made.program.start());
+  return choose_method(asked, made.program, workspace, made.program.start(), until);
 }
 
 //      ┌──── −y ◄───┐
@@ -51,6 +52,21 @@ TEST(ChooseMethod, TakesBdfForADecayThatIsFastBesideTheRest) {
 TEST(ChooseMethod, TakesAdamsWhereNothingIsFast) {
   EXPECT_EQ(choice_for(Compiled("d = { type = \"integrator\", in = [\"-d\"], initial = 1 }\n")).method,
             IntegrationMethod::adams);
+}
+
+// The lag follows a sine of the clock: besides its own rate there is only that of the clock, zero.
+TEST(ChooseMethod, TakesBdfForALoneDecayThatIsFastBesideTheRun) {
+  const Compiled made(R"toml(one = { type = "constant" }
+phi = { type = "integrator", in = ["one"] }
+s = { type = "sine", in = "phi" }
+lag = { type = "integrator", in = ["1e5*s", "-1e5*lag"] }
+)toml");
+  const MethodChoice choice = choice_for(made, IntegrationMethod::automatic, 100);
+  EXPECT_EQ(choice.method, IntegrationMethod::bdf);
+  EXPECT_EQ(choice.reason, "a decay of 1e+05 1/s at the start of a run of 100 s");
+  EXPECT_EQ(choice_for(made, IntegrationMethod::automatic, 1e-3).method, IntegrationMethod::adams);
+  // with Adams this run takes some 1e7 steps
+  EXPECT_LT(testing::run_of(made, {.until = 100}).statistics.steps, 20'000);
 }
 
 TEST(ChooseMethod, ObeysTheDiagram) {

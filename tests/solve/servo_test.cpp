@@ -168,5 +168,43 @@ TEST(ServoStability, IsNotANumberWhereAnAlgebraicLoopHasNoSolution) {
   EXPECT_TRUE(std::isnan(servo_stability(made.program, workspace, 0, x)));
 }
 
+/// n servo amplifiers in a ring: 2π·10·(−1 − μ(own·s_i − s_{i−1} − s_{i+1} − u)).
+std::string servo_ring(int n, double own) {
+  std::string text = "one = { type = \"constant\", value = 1 }\n";
+  for (int i = 0; i < n; ++i) {
+    text += fmt::format(
+        "s{0} = {{ type = \"servo-amplifier\", in = [\"{3}*s{0}\", \"-s{1}\", \"-s{2}\", \"-one\"], "
+        "gain = 1e4 }}\n",
+        i, (i + n - 1) % n, (i + 1) % n, own);
+  }
+  return text;
+}
+
+double ring_stability(int n, double own) {
+  const Compiled made(servo_ring(n, own));
+  Workspace workspace(made.program);
+  return servo_stability(made.program, workspace, 0, made.program.start());
+}
+
+// The ring's matrix is circulant: its eigenvalues are −2π·10·(1 + μ(own − 2 cos(2πk/n))), the largest at k =
+// 0.
+TEST(ServoStability, OfARingIsThatOfItsCirculant) {
+  for (const double own : {3.0, 2.001, 1.9, -1.0}) {
+    const double largest = -2 * std::numbers::pi * 10 * (1 + 1e4 * (own - 2));
+    // the QR algorithm's rounding of the whole spectrum, 2π·10·1e4·4
+    EXPECT_NEAR(ring_stability(24, own), largest, 1e-7) << own;
+  }
+  // beyond the reach of QR the bound, which is sharp here
+  EXPECT_NEAR(ring_stability(1500, 3), -2 * std::numbers::pi * 10 * (1 + 1e4), 1e-7);
+  EXPECT_TRUE(std::isnan(ring_stability(1500, 1.9)));
+}
+
+// By dense eigenvalues, 1500³ operations a matter of minutes.
+TEST(ServoStability, OfALargeRingCostsNoCubes) {
+  const Compiled made(servo_ring(1500, 3));
+  const auto result = run_of(made, {.until = 1e-3, .samples = 2});
+  EXPECT_NEAR(row_values(result, "s7").back(), 1 / (3 - 2 + 1e-4), 1e-9);  // s(3 − 2) − 1 = −s/μ
+}
+
 }  // namespace
 }  // namespace oblique

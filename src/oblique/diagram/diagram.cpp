@@ -49,7 +49,8 @@ bool BlockInstance::operator==(const BlockInstance& other) const {
 }
 
 bool OutputSpec::operator==(const OutputSpec& other) const {
-  return name == other.name && signal == other.signal && scale == other.scale && unit == other.unit;
+  return name == other.name && signal == other.signal && scale == other.scale && unit == other.unit &&
+         offset == other.offset;
 }
 
 bool Expectation::operator==(const Expectation& other) const {

@@ -44,13 +44,14 @@ struct RunSettings {
   bool operator==(const RunSettings&) const = default;
 };
 
-/// A column of the trajectory: `scale` · signal, in `unit`.
+/// A column of the trajectory: `scale` · signal + `offset`, in `unit`.
 struct OutputSpec {
   std::string name;
   std::string signal;
   double scale = 1;
   std::string unit = "machine unit";
   Place place;
+  double offset = 0;                               ///< in `unit`
   bool operator==(const OutputSpec& other) const;  ///< without places
 };
 
@@ -116,6 +117,9 @@ struct Diagram {
 
   bool operator==(const Diagram& other) const;  ///< without file, places and comments
 };
+
+/// Whether the expressions keep this name for themselves, so that no block can have it: `time`, `pi`, `or` …
+bool is_reserved(std::string_view name);
 
 /// Reads a diagram's text. Throws DiagramError with all findings of this one file (wiring is checked by
 /// `flatten`), ReadError for broken TOML.

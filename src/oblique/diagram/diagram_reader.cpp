@@ -147,6 +147,11 @@ class DiagramReader {
     if (!std::isfinite(output.scale)) {
       reader.report("scale", fmt::format("'scale' of output '{}' is infinite", entry.key), "a finite number");
     }
+    output.offset = reader.quantity("offset", "1").value_or(0);
+    if (!std::isfinite(output.offset)) {
+      reader.report("offset", fmt::format("'offset' of output '{}' is infinite", entry.key),
+                    "a finite number");
+    }
     output.unit = reader.string("unit").value_or(output.unit);
     reader.finish();
   }

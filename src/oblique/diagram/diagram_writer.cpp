@@ -58,9 +58,11 @@ std::string block_text(const BlockInstance& block) {
 
 std::string output_text(const OutputSpec& output) {
   const OutputSpec usual;
-  if (output.scale == usual.scale && output.unit == usual.unit) return toml_string(output.signal);
-  return fmt::format("{{ signal = {}, scale = {}, unit = {} }}", toml_string(output.signal), output.scale,
-                     toml_string(output.unit));
+  if (output.scale == usual.scale && output.unit == usual.unit && output.offset == usual.offset)
+    return toml_string(output.signal);
+  const std::string offset = output.offset == 0 ? "" : fmt::format("offset = {}, ", output.offset);
+  return fmt::format("{{ signal = {}, scale = {}, {}unit = {} }}", toml_string(output.signal), output.scale,
+                     offset, toml_string(output.unit));
 }
 
 /// Width of a text on a terminal, near enough: code points.

@@ -48,6 +48,7 @@ struct FlatOutput {
   SignalRef signal;
   double scale = 1;
   std::string unit;
+  double offset = 0;
 };
 
 /// A comparison of a signal with a number.

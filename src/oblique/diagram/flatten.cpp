@@ -224,7 +224,7 @@ class Layout {
 
 void add_output(const Layout& layout, const OutputSpec& spec, const Source& source, FlatDiagram& flat) {
   if (const auto signal = layout.signal(source))
-    flat.outputs.push_back({spec.name, *signal, spec.scale, spec.unit});
+    flat.outputs.push_back({spec.name, *signal, spec.scale, spec.unit, spec.offset});
 }
 
 void choose_outputs(const Diagram& diagram, const Scope& scope, const Layout& layout, FlatDiagram& flat,

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <oblique/diagram/diagram.h>
 #include <oblique/text/table_reader.h>
 
 namespace oblique {
@@ -54,6 +55,10 @@ void collect_names(const Expression& expression, std::vector<const Expression*>&
 
 }  // namespace
 
+bool is_reserved(std::string_view name) {
+  return std::find(kReserved.begin(), kReserved.end(), name) != kReserved.end();
+}
+
 bool check_name(std::string_view name, std::string_view what, const Place& place, Diagnostics& diagnostics) {
   if (!is_identifier(name)) {
     diagnostics.add({place,
@@ -62,7 +67,7 @@ bool check_name(std::string_view name, std::string_view what, const Place& place
                      {}});
     return false;
   }
-  if (std::find(kReserved.begin(), kReserved.end(), name) != kReserved.end()) {
+  if (is_reserved(name)) {
     diagnostics.add({place,
                      fmt::format("'{}' cannot be the name of {}: it is reserved", name, what),
                      fmt::format("another name than {}", fmt::join(kReserved, ", ")),

@@ -58,11 +58,12 @@ class TrianglePatch {
     diagram_.title += ", patched as servo-tracked triangles";
     diagram_.source = mechanism_.source;
     diagram_.comment = fmt::format(
-        "Coordinates: 1 machine unit = {0} {1}. Each dyad's triangle has a scale of its own (`reach`), so "
+        "Coordinates: 1 machine unit = {0} {1}{5}. Each dyad's triangle has a scale of its own (`reach`), so "
         "that its longest\n"
         "side is about 1 machine unit. Servo amplifiers: gain {2}, bandwidth {3} Hz. Run over one turn of "
         "'{4}'.",
-        scaling_.length, mechanism_.length_unit, options_.gain, bandwidth_, mechanism_.drives.front().name);
+        scaling_.length, mechanism_.length_unit, options_.gain, bandwidth_, mechanism_.drives.front().name,
+        scaling_.origin.isZero(0) ? "" : fmt::format(", from {}", name_of(0)));
     diagram_.run.until = period(mechanism_);
     diagram_.run.tolerance = options_.tolerance;
     diagram_.run.samples = options_.samples;
@@ -71,11 +72,13 @@ class TrianglePatch {
   const std::string& name_of(std::size_t point) const { return mechanism_.points[point].name; }
   double scaled(double length) const { return length / scaling_.length; }
 
-  /// Adds a block under `wanted`, or under the next free name, and returns the name it has.
+  /// Adds a block under `wanted`, or under the next free name that a block may have, and returns the name it
+  /// has.
   std::string add_block(const std::string& wanted, std::string type, std::vector<Entry> settings,
                         std::string comment = {}) {
     std::string name = wanted;
-    for (int k = 2; !names_.insert(name).second; ++k) name = fmt::format("{}_{}", wanted, k);
+    for (int k = 2; is_reserved(name) || !names_.insert(name).second; ++k)
+      name = fmt::format("{}_{}", wanted, k);
     BlockInstance block;
     block.name = name;
     block.type = std::move(type);
@@ -88,12 +91,12 @@ class TrianglePatch {
   /// weight · coordinate as a term; a fixed point is a weight on the reference.
   WeightedSignal x_of(std::size_t point, double weight) const {
     const Point& p = mechanism_.points[point];
-    return p.fixed ? WeightedSignal{weight * scaled(p.position.x()), one_}
+    return p.fixed ? WeightedSignal{weight * scaled(p.position.x() - scaling_.origin.x()), one_}
                    : WeightedSignal{weight, signals_[point].x};
   }
   WeightedSignal y_of(std::size_t point, double weight) const {
     const Point& p = mechanism_.points[point];
-    return p.fixed ? WeightedSignal{weight * scaled(p.position.y()), one_}
+    return p.fixed ? WeightedSignal{weight * scaled(p.position.y() - scaling_.origin.y()), one_}
                    : WeightedSignal{weight, signals_[point].y};
   }
 
@@ -176,12 +179,12 @@ class TrianglePatch {
 
   void add_outputs(std::size_t point) {
     if (mechanism_.points[point].fixed) return;
-    const auto add = [&](const char* axis, const std::string& signal) {
+    const auto add = [&](const char* axis, const std::string& signal, double origin) {
       diagram_.outputs.push_back(
-          {name_of(point) + axis, signal, scaling_.length, mechanism_.length_unit, {}});
+          {name_of(point) + axis, signal, scaling_.length, mechanism_.length_unit, {}, origin});
     };
-    add(".x", signals_[point].x);
-    add(".y", signals_[point].y);
+    add(".x", signals_[point].x, scaling_.origin.x());
+    add(".y", signals_[point].y, scaling_.origin.y());
   }
 
   const Mechanism& mechanism_;

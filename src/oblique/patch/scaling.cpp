@@ -45,10 +45,11 @@ Scaling find_scaling(const Mechanism& mechanism, const Structure& structure, con
   Scaling scaling;
   scaling.triangles.resize(structure.groups.size());
   for (TriangleRange& range : scaling.triangles) range.shortest = std::numeric_limits<double>::infinity();
+  scaling.origin = mechanism.points.front().position;  // points of the frame come first
   double farthest = 0;
   for (const Configuration& configuration : motion.configurations) {
     for (const PointState& point : configuration.points) {
-      farthest = std::max(farthest, point.position.cwiseAbs().maxCoeff());
+      farthest = std::max(farthest, (point.position - scaling.origin).cwiseAbs().maxCoeff());
     }
     for (std::size_t g = 0; g < structure.groups.size(); ++g) {
       const auto* const dyad = std::get_if<DyadGroup>(&structure.groups[g]);

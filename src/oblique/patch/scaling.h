@@ -17,6 +17,9 @@ struct TriangleRange {
 
 /// The amplitude scaling of a patch, from the exact motion.
 struct Scaling {
+  /// From where coordinates count [length unit]: a point of the frame, so that a mechanism far from [0, 0]
+  /// fills the machine all the same.
+  Eigen::Vector2d origin = Eigen::Vector2d::Zero();
   double length = 1;                     ///< 1 machine unit of a coordinate [length unit]
   std::vector<TriangleRange> triangles;  ///< one for each group of the structure; unused for cranks
 };

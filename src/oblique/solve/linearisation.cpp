@@ -49,14 +49,14 @@ std::optional<Linearisation> Linearisation::at(const Program& program, Workspace
 Eigen::MatrixXd Linearisation::block(const std::vector<std::size_t>& group) const {
   const SparsePattern& pattern = program_->jacobian_pattern();
   const auto n = static_cast<Eigen::Index>(group.size());
-  std::vector<Eigen::Index> place(pattern.size(), -1);
-  for (Eigen::Index i = 0; i < n; ++i) place[group[static_cast<std::size_t>(i)]] = i;
   Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(n, n);
-  for (const std::size_t column : group) {
-    for (auto k = pattern.column_starts[column]; k < pattern.column_starts[column + 1]; ++k) {
+  for (Eigen::Index column = 0; column < n; ++column) {
+    const std::size_t state = group[static_cast<std::size_t>(column)];
+    for (auto k = pattern.column_starts[state]; k < pattern.column_starts[state + 1]; ++k) {
       const auto entry = static_cast<std::size_t>(k);
-      const Eigen::Index row = place[static_cast<std::size_t>(pattern.rows[entry])];
-      if (row >= 0) dense(row, place[column]) = values_[entry];
+      const auto wanted = static_cast<std::size_t>(pattern.rows[entry]);
+      const auto found = std::lower_bound(group.begin(), group.end(), wanted);
+      if (found != group.end() && *found == wanted) dense(found - group.begin(), column) = values_[entry];
     }
   }
   return dense;

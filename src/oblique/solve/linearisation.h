@@ -19,9 +19,9 @@ struct Instant {
   std::vector<double> memories = {};  ///< as many as the program has; none: as before the run
 };
 
-/// The states in groups that act on each other, each after the groups whose signals it follows. The matrix
-/// df/dx is block triangular in this order: its eigenvalues are those of the diagonal blocks, and no mode has
-/// a participation outside its block.
+/// The states in groups that act on each other, ascending in each; each after the groups whose signals it
+/// follows. The matrix df/dx is block triangular in this order: its eigenvalues are those of the diagonal
+/// blocks, and no mode has a participation outside its block.
 std::vector<std::vector<std::size_t>> coupled_groups(const Program& program);
 
 /// df/dx of a program at an instant, all signals frozen there; algebraic loops are closed in it.
@@ -31,7 +31,7 @@ class Linearisation {
   static std::optional<Linearisation> at(const Program& program, Workspace& workspace,
                                          const Instant& instant);
 
-  /// The rows and columns of `group`, in its order [1/s].
+  /// The rows and columns of `group`, whose states ascend [1/s].
   Eigen::MatrixXd block(const std::vector<std::size_t>& group) const;
 
  private:

@@ -14,6 +14,8 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Slopes that differ by less are the same: far above rounding, far below what a term of second order does.
 constexpr double kSameSlope = 1e-9;
+/// A slope that a move leaves the same by accident is not so at three instants.
+constexpr int kMostTrials = 3;
 
 /// The loop gain of one unknown along a run.
 struct GainHistory {
@@ -81,7 +83,10 @@ class ServoLoop {
     for (const Mode& mode : modes_of(block, group_)) {
       slowest_ = std::max(slowest_, mode.pole.real());
     }
-    linear_ = linear_ && !depends_on_itself(block, instant, workspace);
+    if (linear_ && trials_ < kMostTrials) {
+      ++trials_;
+      linear_ = !depends_on_itself(block, instant, workspace);
+    }
   }
 
   LoopReport report() const {
@@ -95,8 +100,7 @@ class ServoLoop {
   }
 
  private:
-  /// Whether the slopes change with the loop's own signals, which are moved by odd parts of a machine unit: a
-  /// slope that is the same by accident would have to be so at every instant.
+  /// Whether the slopes change with the loop's own signals, which are moved by odd parts of a machine unit.
   bool depends_on_itself(const Eigen::MatrixXd& block, const Instant& instant,
                          const Workspace& workspace) const {
     Workspace scratch = workspace;  // with the solutions of the algebraic loops here
@@ -116,6 +120,7 @@ class ServoLoop {
   std::vector<GainHistory> histories_;
   double slowest_ = -kInfinity;
   bool linear_ = true;
+  int trials_ = 0;  ///< of its linearity
 };
 
 class AlgebraicLoop {

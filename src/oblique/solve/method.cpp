@@ -16,6 +16,10 @@ constexpr std::size_t kMostStatesForEigenvalues = 100;
 constexpr double kStiff =
     100;  ///< ratio of the fastest rate to the slowest from which decays are left to BDF
 
+/// Time constants of the fastest decay in a run from which it is left to BDF: Adams takes a step or more for
+/// each.
+constexpr double kLongRun = 1e4;
+
 Eigen::VectorXcd eigenvalues_at(const Program& program, Workspace& workspace,
                                 std::span<const double> states) {
   const SparsePattern& pattern = program.jacobian_pattern();
@@ -33,7 +37,7 @@ Eigen::VectorXcd eigenvalues_at(const Program& program, Workspace& workspace,
   return Eigen::EigenSolver<Eigen::MatrixXd>(dense, false).eigenvalues();
 }
 
-MethodChoice from_eigenvalues(const Eigen::VectorXcd& eigenvalues) {
+MethodChoice from_eigenvalues(const Eigen::VectorXcd& eigenvalues, double until) {
   using Method = IntegrationMethod;
   if (eigenvalues.size() == 0) return {Method::bdf, "the equations have no linearisation at the start"};
   std::complex<double> fastest = 0;
@@ -53,13 +57,19 @@ MethodChoice from_eigenvalues(const Eigen::VectorXcd& eigenvalues) {
     return {Method::bdf,
             fmt::format("decays from {:.3g} to {:.3g} 1/s at the start", slowest, std::abs(fastest))};
   }
+  // Beside what does not move by itself (an integrator that is fed, the clock) a decay may be the only rate
+  // there is.
+  if (fastest.real() < 0 && std::abs(fastest) * until > kLongRun) {
+    return {Method::bdf,
+            fmt::format("a decay of {:.3g} 1/s at the start of a run of {:.3g} s", std::abs(fastest), until)};
+  }
   return {Method::adams, "nothing is fast at the start"};
 }
 
 }  // namespace
 
 MethodChoice choose_method(IntegrationMethod asked, const Program& program, Workspace& workspace,
-                           std::span<const double> start) {
+                           std::span<const double> start, double until) {
   if (asked != IntegrationMethod::automatic) return {asked, "as the diagram asks"};
   const std::size_t servos = rest_states(program).size();
   if (servos > 0) {
@@ -72,7 +82,7 @@ MethodChoice choose_method(IntegrationMethod asked, const Program& program, Work
     return {IntegrationMethod::bdf,
             fmt::format("{} states, too many to look for fast ones", program.n_states())};
   }
-  return from_eigenvalues(eigenvalues_at(program, workspace, start));
+  return from_eigenvalues(eigenvalues_at(program, workspace, start), until);
 }
 
 }  // namespace oblique

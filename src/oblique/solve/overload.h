@@ -28,10 +28,9 @@ struct OverloadRecord {
 };
 
 /// Watches every signal of a run against the machine unit, as the overload lamps of a real machine do. Each
-/// step is looked at in its ends and its middle; an extreme between them is searched on the solver's
-/// interpolant where the parabola through the three shows one that matters (a new peak by more than 1e-7 of
-/// it, or a side of the limit that the three do not show). Times are those at which the magnitude passes 1,
-/// to the rounding of the interpolant.
+/// step is looked at in its ends and its middle. Where the parabola through the three has an extreme between
+/// them that matters, it is sought on the solver's interpolant; below 0.99 machine units the parabola's own
+/// value is taken. Times are those at which the magnitude passes 1, to the rounding of the interpolant.
 class OverloadWatch {
  public:
   /// Gives the states at a time within the last step.
@@ -70,7 +69,7 @@ class OverloadWatch {
   double value_at(double t, std::size_t signal, const StatesAt& states_at);
   void look_at(std::size_t signal, double t, const StatesAt& states_at);
   bool matters(const Record& record, double extreme, double before, double after) const;
-  Sample find_extreme(std::size_t signal, double low, double high, bool maximum, const StatesAt& states_at);
+  Sample find_extreme(std::size_t signal, double near, double end, const StatesAt& states_at);
   double find_crossing(std::size_t signal, Sample inside, Sample outside, const StatesAt& states_at);
   void leave(Record& record, double t, double value);
   void come_back(Record& record, double t);

@@ -159,7 +159,8 @@ class Runner {
   }
 
   void integrate() {
-    const MethodChoice method = choose_method(options_.method, program_, workspace_, states_);
+    const MethodChoice method =
+        choose_method(options_.method, program_, workspace_, states_, options_.until - begin_);
     sampler_.result.method = method;
     double t = begin_;
     double end = stretch_end(t);

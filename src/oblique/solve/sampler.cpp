@@ -106,7 +106,7 @@ void Sampler::evaluate(double time) {
   row_[0] = time;
   for (std::size_t i = 0; i < diagram_.outputs.size(); ++i) {
     const FlatOutput& output = diagram_.outputs[i];
-    row_[i + 1] = output.scale * signals_[program_.signal_index(output.signal)];
+    row_[i + 1] = output.scale * signals_[program_.signal_index(output.signal)] + output.offset;
   }
   for (std::size_t s = 0; s < signals_.size(); ++s) {
     if (!std::isfinite(signals_[s])) throw_not_finite(diagram_.file, program_.signal_names()[s], time);
