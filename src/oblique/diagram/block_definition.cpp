@@ -210,6 +210,18 @@ std::optional<std::size_t> BlockDefinition::find_memory(std::string_view memory)
   return find_named(memories, memory);
 }
 
+const Behaviour* BlockDefinition::choose_behaviour(const std::vector<double>& values, double polarity) const {
+  const auto lookup = [&](std::string_view parameter) -> std::optional<double> {
+    if (parameter == "polarity") return polarity;
+    const auto index = find_parameter(parameter);
+    return index ? std::optional(values[*index]) : std::nullopt;
+  };
+  for (const Behaviour& behaviour : behaviours) {
+    if (!behaviour.when || evaluate(*behaviour.when, lookup) != 0) return &behaviour;
+  }
+  return nullptr;
+}
+
 BlockDefinition parse_block(std::string_view text, std::string file, std::string name) {
   BlockDefinition definition;
   definition.name = std::move(name);

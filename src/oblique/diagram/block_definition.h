@@ -138,6 +138,9 @@ struct BlockDefinition {
   std::optional<std::size_t> find_output(std::string_view output) const;
   std::optional<std::size_t> find_parameter(std::string_view parameter) const;
   std::optional<std::size_t> find_memory(std::string_view memory) const;
+
+  /// The first case whose condition holds, with the values of the parameters in their order.
+  const Behaviour* choose_behaviour(const std::vector<double>& values, double polarity) const;
 };
 
 /// Reads one block file (oblique-block/1). Checks all that one file can tell: kinds of keys, ranges, that

@@ -26,6 +26,16 @@ class RuleReader {
       const auto value = scale_of(start.value);
       if (const Eigen::Index column = column_of(start.target); column >= 0) equal(variable(column), value);
     }
+    for (const MemoryRule& memory : block_.definition->memories)
+      equal(variable(column_of(memory.name)), scale_of(memory.initial));
+    for (const EventRule& event : block_.definition->events) {
+      scale_of(event.when);
+      if (event.where) scale_of(*event.where);
+      for (const EventAction& action : event.actions) {
+        const auto value = scale_of(action.value);
+        if (const Eigen::Index column = column_of(action.target); column >= 0) equal(variable(column), value);
+      }
+    }
     for (const Behaviour& behaviour : block_.definition->behaviours) {  // which of them applies must stay
       if (behaviour.when) scale_of(*behaviour.when);
     }
@@ -46,6 +56,7 @@ class RuleReader {
     for (const Equation& equation : block_.behaviour->equations) {
       if (!definition.find_output(equation.target)) hidden_.emplace_back(equation.target, rules_.columns_++);
     }
+    for (const MemoryRule& memory : definition.memories) hidden_.emplace_back(memory.name, rules_.columns_++);
     for (const ParameterDefinition& parameter : definition.parameters) {
       const auto unit = parse_unit(parameter.unit);
       const bool signal = unit && unit->exponents[Unit::signal] != 0;
@@ -81,9 +92,32 @@ class RuleReader {
 
   void unscaled(const Scale& a) { equal(a, number()); }
 
+  /// The value of what the parameters alone determine; nothing for the rest.
+  std::optional<double> constant(const Expression& e) const {
+    try {
+      return evaluate(e, [&](std::string_view name) -> std::optional<double> {
+        const BlockDefinition& definition = *block_.definition;
+        if (const auto p = definition.find_parameter(name)) return block_.parameters[*p];
+        const auto i = definition.find_input(name);
+        if (i && block_.inputs[*i].terms.empty()) return block_.inputs[*i].constant;
+        return std::nullopt;
+      });
+    } catch (const ExpressionError&) {
+      return std::nullopt;
+    }
+  }
+
   Scale scale_of(const Expression& e) {
-    if (e.kind == Kind::number) return e.number == 0 ? Scale() : number();
-    if (e.kind == Kind::name) return e.name == "inf" ? Scale() : variable(column_of(e.name));
+    const std::optional<double> value = constant(e);
+    if (value && (*value == 0 || std::isinf(*value))) return {};
+    if (e.kind == Kind::number) return number();
+    if (e.kind == Kind::name) return variable(column_of(e.name));
+    if (e.kind == Kind::call && e.function == Function::weights) return number();
+    if (e.kind == Kind::call && e.function == Function::if_) {
+      scale_of(e.operands[0]);
+      if (const auto condition = constant(e.operands[0]))
+        return scale_of(e.operands[*condition != 0 ? 1 : 2]);
+    }
     std::vector<Scale> operands;
     for (const Expression& operand : e.operands) operands.push_back(scale_of(operand));
     if (e.kind == Kind::call) return scale_of_call(e.function, operands);

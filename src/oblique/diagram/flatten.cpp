@@ -129,24 +129,11 @@ class Layout {
     block.path = node.path;
     block.definition = node.wired->definition;
     block.polarity = scope.inverting ? -1 : 1;
-    block.behaviour = choose_behaviour(*block.definition, node.parameters, block.polarity);
+    block.behaviour = block.definition->choose_behaviour(node.parameters, block.polarity);
     block.parameters = node.parameters;
     block.place = node.place;
     node.flat = flat_.blocks.size();
     flat_.blocks.push_back(std::move(block));
-  }
-
-  static const Behaviour* choose_behaviour(const BlockDefinition& definition,
-                                           const std::vector<double>& parameters, double polarity) {
-    const auto lookup = [&](std::string_view name) -> std::optional<double> {
-      if (name == "polarity") return polarity;
-      const auto index = definition.find_parameter(name);
-      return index ? std::optional(parameters[*index]) : std::nullopt;
-    };
-    for (const Behaviour& behaviour : definition.behaviours) {
-      if (!behaviour.when || evaluate(*behaviour.when, lookup) != 0) return &behaviour;
-    }
-    return nullptr;
   }
 
   /// Connects the inputs of all blocks inside a composite whose own inputs are known.

@@ -149,6 +149,7 @@ class Writer {
     for (const FlatTerm& term : input.terms) {
       terms.push_back({scaled_number(term.weight, factor, factor_of(term.signal)), signal_name(term.signal)});
     }
+    if (terms.empty() && port.default_value == input.constant * factor) return;  // left open, it stays as it is
     if (input.constant != 0 || terms.empty()) terms.push_back({input.constant * factor, reference()});
     if (terms.size() > 1 && !port.sum) terms = {{1, sum_of(instance.name + "_" + port.name, terms)}};
     instance.settings.push_back(wire_setting(port.name, terms));
@@ -190,12 +191,14 @@ class Writer {
     for (const std::string& name : library_.names()) {
       const BlockDefinition& d = *library_.find(name);
       if (d.is_composite() || d.inputs.size() != 1 || !d.inputs[0].sum || d.outputs.size() != 1) continue;
-      if (d.behaviours.size() != 1 || !d.parameters.empty()) continue;
-      const auto& equations = d.behaviours[0].equations;
+      std::vector<double> defaults;
+      for (const ParameterDefinition& parameter : d.parameters) defaults.push_back(parameter.default_value);
+      const auto& equations = d.choose_behaviour(defaults, polarity_)->equations;
       if (equations.size() != 1 || equations[0].kind != Equation::Kind::assignment) continue;
       const auto at = [&](double in) {
         return evaluate(equations[0].expression, [&](std::string_view symbol) -> std::optional<double> {
           if (symbol == "polarity") return polarity_;
+          if (const auto p = d.find_parameter(symbol)) return defaults[*p];
           return symbol == d.inputs[0].name ? std::optional(in) : std::nullopt;
         });
       };

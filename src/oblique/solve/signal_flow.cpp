@@ -110,6 +110,9 @@ std::optional<double> SignalFlow::own_slope(std::string_view name, double t,
       if (symbol == target) return own;
       if (symbol == "polarity") return block.polarity;
       if (symbol == "time") return t;
+      if (symbol == "in_operate") return 1;
+      if (symbol == "in_initial" || symbol == "in_hold") return 0;
+      if (symbol == "noise") return 0;
       if (const auto p = block.definition->find_parameter(symbol)) return block.parameters[*p];
       if (const auto i = block.definition->find_input(symbol)) return input_value(block.inputs[*i], signals);
       return output_value(symbol);
