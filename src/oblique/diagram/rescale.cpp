@@ -144,7 +144,6 @@ class Writer {
   }
 
   void add_input(BlockInstance& instance, const InputPort& port, const FlatInput& input, double factor) {
-    if (input.terms.empty() && port.default_value == input.constant && factor == 1) return;
     std::vector<WeightedSignal> terms;
     for (const FlatTerm& term : input.terms) {
       terms.push_back({scaled_number(term.weight, factor, factor_of(term.signal)), signal_name(term.signal)});

@@ -27,12 +27,13 @@ struct GainHistory {
 LoopUnknown summary_of(const GainHistory& history) {
   LoopUnknown unknown;
   unknown.signal = history.signal;
+  constexpr double kSame = 1e-6;  // of two instants of the same gain the first is named
   double least = kInfinity, greatest = -1;
   const auto sign_of = [](double value) { return value > 0 ? 1 : value < 0 ? -1 : 0; };
   for (std::size_t k = 0; k < history.gains.size(); ++k) {
     const double gain = history.gains[k];
     if (k == 0) unknown.sign = sign_of(gain);
-    if (std::abs(gain) < least || k == 0) {
+    if (std::abs(gain) < (1 - kSame) * least || k == 0) {
       least = std::abs(gain);
       unknown.least_gain = gain;
       unknown.least_time = history.times[k];
