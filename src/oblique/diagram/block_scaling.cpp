@@ -210,6 +210,13 @@ class RuleReader {
       ++rank;
     }
     rules_.equations_ = m.topRows(rank);
+    rules_.whole_ = Eigen::VectorXd::Ones(rules_.columns_);
+    for (const auto& [name, column] : hidden_) {  // a count or a flag is a number whatever the signals are
+      for (Eigen::Index r = 0; r < rank; ++r) {
+        const Eigen::RowVectorXd row = rules_.equations_.row(r);
+        if (row.cwiseAbs().sum() == std::abs(row[column])) rules_.whole_[column] = 0;
+      }
+    }
   }
 
   BlockScalingRules& rules_;
@@ -223,11 +230,11 @@ BlockScalingRules::BlockScalingRules(const FlatBlock& block) : block_(&block) {
 }
 
 bool BlockScalingRules::scales_as_a_whole() const {
-  return equations_.rows() == 0 || (equations_ * Eigen::VectorXd::Ones(columns_)).isZero(1e-9);
+  return equations_.rows() == 0 || (equations_ * whole_).isZero(1e-9);
 }
 
 BlockScaling BlockScalingRules::whole(double factor) const {
-  return scaling_of(Eigen::VectorXd::Constant(columns_, std::log(factor)));
+  return scaling_of(std::log(factor) * whole_);
 }
 
 BlockScaling BlockScalingRules::from_inputs(std::span<const double> inputs) const {

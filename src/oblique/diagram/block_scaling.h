@@ -45,6 +45,7 @@ class BlockScalingRules {
       inputs_;  ///< column of each; −1: a parameter that is a number
   Eigen::Index columns_ = 0;
   Eigen::MatrixXd equations_;  ///< reduced to echelon form; a row times the logarithms of the factors is 0
+  Eigen::VectorXd whole_;      ///< a factor for all: 1 for what is scaled with the signals, 0 for numbers
 };
 
 }  // namespace oblique
