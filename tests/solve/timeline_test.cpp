@@ -118,6 +118,16 @@ z = { type = "mode-integrator", in = ["one"], initial = 3 }
       << "8 crossings of two lines, two at the start; z is set 5 times";
 }
 
+TEST(Timeline, APhaseThatEndsFirstLeavesKnownTimesAlone) {
+  const BlockLibrary library = library_with_modes();
+  const Compiled made(
+      R"(p = { type = "pulse-train", delay = 2.5, period = 10, width = 1 }
+x = { type = "mode-integrator", in = ["p"] }
+)",
+      "[timeline]\nphases = [{ mode = \"hold\", for = 2 }, { mode = \"operate\", for = 8 }]\n", library);
+  EXPECT_NEAR(row_values(run_of(made, {.until = 3, .samples = 2}), "x").back(), 0.5, 1e-9);
+}
+
 TEST(Timeline, PhasesThatEndAtOnceAreRefused) {
   const BlockLibrary library = library_with_modes();
   const std::string message = message_of<SolveError>([&] {
@@ -253,6 +263,25 @@ TEST(Run, EndsWhereItIsInterrupted) {
   EXPECT_GT(result.state.time, 0);
   EXPECT_LT(result.state.time, 100);
   EXPECT_EQ(result.state.states.size(), 2U);
+}
+
+TEST(Run, TakesTolerancesOfSingleBlocks) {
+  // Two equal decays to zero, one beside a coarse tolerance of its own: its error may grow to that.
+  const std::string blocks =
+      "a = { type = \"integrator\", in = [\"-a\"], initial = 1 }\nb = { type = \"integrator\", in = "
+      "[\"-30*b\"], initial = 1 }\n";
+  const auto steps = [&](const std::string& run) {
+    return run_of(Compiled(blocks, run), {.until = 20, .samples = 2}).statistics.steps;
+  };
+  EXPECT_LT(steps("[run]\ntolerances = { b = 0.1, a = 0.1 }\n"), steps("") / 2);
+  EXPECT_GT(steps("[run]\ntolerances = { b = 1e-14 }\n"), steps(""));
+  EXPECT_THAT(message_of<DiagramError>([&] { Compiled(blocks, "[run]\ntolerances = { c = 0 }\n"); }),
+              HasSubstr("tolerance of 'c' in [run] is 0; expected a finite number above 0 [machine unit]"));
+  EXPECT_THAT(message_of<DiagramError>([&] { Compiled(blocks, "[run]\ntolerances = { c = 1 }\n"); }),
+              HasSubstr("tolerances of [run]: there is no block 'c'"));
+  const Diagram diagram =
+      parse_diagram(testing::diagram_text(blocks, "[run]\ntolerances = { a = 0.1 }\n"), "d.toml");
+  EXPECT_EQ(parse_diagram(write_diagram(diagram), "d.toml"), diagram);
 }
 
 TEST(Run, FindsExtremesBetweenItsRows) {

@@ -165,13 +165,15 @@ TEST(ExpressionMessages, KnowTheFunctions) {
   EXPECT_EQ(message_of("min()"), "1: min was given 0 arguments; expected 1 to 1000; smallest argument");
   EXPECT_EQ(message_of("sin(1"), "6: the arguments of sin are not closed; expected ',' or ')'");
   EXPECT_EQ(message_of("table(1, 0,0, 1)"),
-            "1: table was given 4 arguments; expected 5 to 1000; table(x, x1, y1, x2, y2, …): straight lines "
-            "through the "
-            "points");
-  EXPECT_EQ(message_of("table(1, 0,0, 1,1, 2)"),
-            "1: a point of the table has no second coordinate; table(x, x1, y1, x2, y2, …): straight lines "
-            "through the "
-            "points");
+            "1: the table has no two points; table(x, x1, y1, x2, y2, …) or table(x, points): straight lines "
+            "through the points");
+  EXPECT_EQ(message_of("table(1, 2)"),
+            "1: the table has no two points; table(x, x1, y1, x2, y2, …) or table(x, points): straight lines "
+            "through the points");
+  EXPECT_EQ(
+      message_of("table(1, 0,0, 1,1, 2)"),
+      "1: a point of the table has no second coordinate; table(x, x1, y1, x2, y2, …) or table(x, points): "
+      "straight lines through the points");
 }
 
 TEST(ExpressionMessages, RefuseComparisonsThatChain) {
@@ -280,8 +282,9 @@ rc::Gen<Expression> random_expression(int depth) {
                       }),
       rc::gen::mapcat(rc::gen::inRange<std::size_t>(0, functions().size()), [=](std::size_t index) {
         const FunctionInfo& info = functions()[index];
+        const std::size_t count = info.function == Function::table ? 5 : info.min_arguments;
         return rc::gen::map(
-            rc::gen::container<std::vector<Expression>>(info.min_arguments, random_expression(depth - 1)),
+            rc::gen::container<std::vector<Expression>>(count, random_expression(depth - 1)),
             [&info](std::vector<Expression> operands) { return call(info.function, std::move(operands)); });
       }));
 }

@@ -11,6 +11,7 @@
 #include <oblique/diagram/behaviour_reader.h>
 #include <oblique/diagram/diagram.h>
 #include <oblique/diagram/names.h>
+#include <oblique/diagram/points.h>
 #include <oblique/text/table_reader.h>
 
 namespace oblique {
@@ -122,6 +123,21 @@ class BlockReader {
     TableReader reader = entry_reader(entry, "parameter");
     ParameterDefinition parameter;
     parameter.name = entry.key;
+    if (const auto kind = reader.string("kind")) {
+      if (*kind != "number" && *kind != "points")
+        reader.report("kind", fmt::format("parameter '{}' is of kind '{}'", entry.key, *kind),
+                      "number or points");
+      if (*kind == "points") {
+        parameter.points = PointTable{{0, 1}, {0, 1}};
+        const std::string subject = fmt::format("default of parameter '{}'", entry.key);
+        if (const Value* const value = reader.find("default"))
+          parameter.points = read_points(definition_.file, *value, subject, diagnostics_);
+        parameter.doc = reader.string("doc").value_or("");
+        reader.finish();
+        definition_.parameters.push_back(std::move(parameter));
+        return;
+      }
+    }
     if (auto unit = reader.string("unit")) {
       if (parse_unit(*unit)) {
         parameter.unit = std::move(*unit);

@@ -9,6 +9,7 @@
 
 #include <oblique/text/document.h>
 #include <oblique/text/expression.h>
+#include <oblique/text/point_table.h>
 
 namespace oblique {
 
@@ -38,6 +39,7 @@ struct ParameterDefinition {
   std::optional<double> above, below;       ///< exclusive limits
   std::optional<double> at_least, at_most;  ///< inclusive limits
   std::string doc;
+  std::optional<PointTable> points;  ///< the default of a parameter that is a function given by points
 
   bool allows(double value) const;  ///< within the limits; never for "not a number"
   std::string range() const;        ///< "a number above 0 [Hz]"

@@ -105,6 +105,20 @@ class DiagramReader {
       }
     }
     read_method(reader);
+    if (const Value* const own = reader.table("tolerances")) {
+      for (const Entry& entry : own->entries) {
+        const std::string subject = fmt::format("tolerance of '{}' in [run]", entry.key);
+        const auto number = read_quantity(diagram_.file, entry.value, "machine unit", subject, diagnostics_);
+        if (!number) continue;
+        if (!(*number > 0 && std::isfinite(*number))) {
+          diagnostics_.add({{diagram_.file, entry.value.position},
+                            fmt::format("{} is {}", subject, *number),
+                            "a finite number above 0 [machine unit]",
+                            {}});
+        }
+        run.tolerances.emplace_back(entry.key, *number);
+      }
+    }
     run.samples = static_cast<int>(whole(reader, "samples", 2, kMostSamples).value_or(run.samples));
     run.max_steps = whole(reader, "max_steps", 1, kLargestWhole).value_or(run.max_steps);
     reader.finish();

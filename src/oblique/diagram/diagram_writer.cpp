@@ -38,9 +38,15 @@ std::string key_text(std::string_view key) {
   return bare ? std::string(key) : toml_string(key);
 }
 
-/// The value of a setting: a number, a string or a list of strings.
+/// The value of a setting: a number, a string, or lists and tables of these.
 std::string value_text(const Value& value) {
   if (value.kind == Value::Kind::string) return toml_string(value.text);
+  if (value.kind == Value::Kind::table) {
+    std::string out = "{ ";
+    for (const Entry& entry : value.entries)
+      out += (out.size() > 2 ? ", " : "") + key_text(entry.key) + " = " + value_text(entry.value);
+    return out + " }";
+  }
   if (value.kind != Value::Kind::array) return fmt::format("{}", value.number);
   std::string out = "[";
   for (const Value& element : value.elements) out += (out.size() > 1 ? ", " : "") + value_text(element);
@@ -118,13 +124,18 @@ std::string write_diagram(const Diagram& diagram) {
               {{{}, "profile", toml_string(diagram.machine.profile)},
                {{}, "inverting", diagram.machine.inverting ? "true" : "false"}},
               out);
-  write_table("run",
-              {{{}, "until", fmt::format("{}", run.until)},
-               {{}, "tolerance", fmt::format("{}", run.tolerance)},
-               {{}, "method", toml_string(method_name(run.method))},
-               {{}, "samples", fmt::format("{}", run.samples)},
-               {{}, "max_steps", fmt::format("{}", run.max_steps)}},
-              out);
+  std::vector<Line> settings{{{}, "until", fmt::format("{}", run.until)},
+                             {{}, "tolerance", fmt::format("{}", run.tolerance)},
+                             {{}, "method", toml_string(method_name(run.method))},
+                             {{}, "samples", fmt::format("{}", run.samples)},
+                             {{}, "max_steps", fmt::format("{}", run.max_steps)}};
+  if (!run.tolerances.empty()) {
+    std::string value = "{ ";
+    for (const auto& [block, tolerance] : run.tolerances)
+      value += (value.size() > 2 ? ", " : "") + toml_string(block) + fmt::format(" = {}", tolerance);
+    settings.push_back({{}, "tolerances", value + " }"});
+  }
+  write_table("run", settings, out);
 
   std::vector<Line> groups;
   for (const ModeGroup& group : diagram.groups) {

@@ -36,10 +36,12 @@ struct FlatBlock {
   const BlockDefinition* definition = nullptr;  ///< in the library given to `flatten`
   const Behaviour* behaviour = nullptr;         ///< the case that its parameters select
   std::vector<double> parameters;               ///< in the order of the definition
+  std::vector<PointTable> points;               ///< of the parameters that are functions; else empty ones
   std::vector<FlatInput> inputs;                ///< in the order of the definition
   double polarity = 1;                          ///< −1 where summers and integrators invert
-  std::size_t group = 0;                        ///< of FlatTimeline::groups
-  Place place;                                  ///< of the block of the diagram that it is or is a part of
+  double tolerance = 0;   ///< absolute, of its states [machine unit]; 0: that of the run
+  std::size_t group = 0;  ///< of FlatTimeline::groups
+  Place place;            ///< of the block of the diagram that it is or is a part of
 };
 
 /// A column of the trajectory.

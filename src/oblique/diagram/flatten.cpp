@@ -131,6 +131,12 @@ class Layout {
     block.polarity = scope.inverting ? -1 : 1;
     block.behaviour = block.definition->choose_behaviour(node.parameters, block.polarity);
     block.parameters = node.parameters;
+    for (std::size_t k = 0; k < block.definition->parameters.size(); ++k) {
+      const auto& default_points = block.definition->parameters[k].points;
+      if (!default_points) continue;
+      block.points.resize(block.definition->parameters.size());
+      block.points[k] = node.wired->parameters[k].points.value_or(*default_points);
+    }
     block.place = node.place;
     node.flat = flat_.blocks.size();
     flat_.blocks.push_back(std::move(block));
@@ -253,6 +259,21 @@ FlatDiagram flatten(const Diagram& diagram, const BlockLibrary& library,
   const wiring::Replacements replacements = wiring::resolve_overrides(scope, overrides, diagnostics);
   const Layout layout(scope, replacements, flat, diagnostics);
   choose_outputs(diagram, scope, layout, flat, diagnostics);
+  for (const auto& [path, tolerance] : diagram.run.tolerances) {
+    bool found = false;
+    for (FlatBlock& block : flat.blocks) {
+      if (block.path != path && !block.path.starts_with(path + ".")) continue;
+      block.tolerance = tolerance;
+      found = true;
+    }
+    if (found) continue;
+    std::vector<std::string> blocks;
+    for (const BlockInstance& block : diagram.blocks) blocks.push_back(block.name);
+    diagnostics.add({{diagram.file, {}},
+                     fmt::format("tolerances of [run]: there is no block '{}'", path),
+                     {},
+                     suggest(path, blocks)});
+  }
   lay_out_timeline(
       diagram, flat,
       [&](const std::string& path, const Place& place,

@@ -16,14 +16,17 @@ namespace {
 constexpr std::array<std::string_view, 10> kReserved{
     "time", "polarity", "in_initial", "in_operate", "in_hold", "pi", "inf", "and", "or", "not"};
 
-bool is_list_of_strings(const Value& value) {
+bool is_list_of(const Value& value, Value::Kind kind) {
   return value.kind == Value::Kind::array &&
          std::all_of(value.elements.begin(), value.elements.end(),
-                     [](const Value& element) { return element.kind == Value::Kind::string; });
+                     [&](const Value& element) { return element.kind == kind; });
 }
 
+/// A number, a signal or several, or points.
 bool can_be_setting(const Value& value) {
-  return value.kind == Value::Kind::number || value.kind == Value::Kind::string || is_list_of_strings(value);
+  return value.kind == Value::Kind::number || value.kind == Value::Kind::string ||
+         value.kind == Value::Kind::table || is_list_of(value, Value::Kind::string) ||
+         is_list_of(value, Value::Kind::array);
 }
 
 BlockInstance read_block(const std::string& file, const Entry& entry, Diagnostics& diagnostics) {

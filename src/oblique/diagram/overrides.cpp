@@ -55,6 +55,11 @@ class Finder {
       return std::nullopt;
     }
     const ParameterDefinition& parameter = definition.parameters[*index];
+    if (parameter.points) {
+      report(fmt::format("'{}' is a function given by points", name), "a parameter that is a number",
+             "change the points in the diagram");
+      return std::nullopt;
+    }
     try {
       const double value = parse_quantity(override_.value, parse_unit(parameter.unit).value_or(Unit{}));
       check_range(parameter, value, subject_ + ": the value", {}, {}, diagnostics_);

@@ -148,7 +148,8 @@ class Writer {
     for (const FlatTerm& term : input.terms) {
       terms.push_back({scaled_number(term.weight, factor, factor_of(term.signal)), signal_name(term.signal)});
     }
-    if (terms.empty() && port.default_value == input.constant * factor) return;  // left open, it stays as it is
+    if (terms.empty() && port.default_value == input.constant * factor)
+      return;  // left open, it stays as it is
     if (input.constant != 0 || terms.empty()) terms.push_back({input.constant * factor, reference()});
     if (terms.size() > 1 && !port.sum) terms = {{1, sum_of(instance.name + "_" + port.name, terms)}};
     instance.settings.push_back(wire_setting(port.name, terms));

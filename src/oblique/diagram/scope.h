@@ -49,6 +49,7 @@ struct WiredInput {
 /// What a file says about one parameter; without `given` the default applies.
 struct WiredParameter {
   bool given = false;
+  std::optional<PointTable> points;  ///< of a parameter that is a function given by points
   Constant value;
   SourcePosition position;
 };

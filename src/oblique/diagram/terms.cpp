@@ -122,9 +122,9 @@ std::optional<Constant> read_parameter(const Scope& scope, const Value& value,
                                        const ParameterDefinition& parameter, const std::string& subject,
                                        Diagnostics& diagnostics) {
   const Place place{scope.file, value.position};
-  if (value.kind == Value::Kind::array) {
+  if (value.kind == Value::Kind::array || value.kind == Value::Kind::table) {
     diagnostics.add({place,
-                     fmt::format("{} is a list", subject),
+                     fmt::format("{} is a {}", subject, value.kind == Value::Kind::array ? "list" : "table"),
                      fmt::format("a number or a quantity in '{}'", parameter.unit),
                      {}});
     return std::nullopt;

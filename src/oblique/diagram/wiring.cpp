@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include <oblique/diagram/points.h>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -116,9 +118,13 @@ void Resolver::read_settings(const Scope& scope, WiredBlock& block) {
     if (const auto parameter = definition.find_parameter(entry.key)) {
       WiredParameter& wired = block.parameters[*parameter];
       const std::string subject = describe_port(scope, "parameter", block, entry.key);
+      if (definition.parameters[*parameter].points) {
+        wired.points = read_points(scope.file, entry.value, subject, *diagnostics_);
+        continue;
+      }
       const auto value =
           read_parameter(scope, entry.value, definition.parameters[*parameter], subject, *diagnostics_);
-      if (value) wired = {true, *value, entry.value.position};
+      if (value) wired = {true, {}, *value, entry.value.position};
     } else if (const auto input = definition.find_input(entry.key)) {
       connect(scope, block, *input, entry, wires_of(entry.value), drivers);
     } else if (entry.key == "in") {
@@ -164,6 +170,15 @@ void Resolver::connect(const Scope& scope, WiredBlock& block, std::size_t input,
   const InputPort& port = block.definition->inputs[input];
   WiredInput& wired = block.inputs[input];
   const std::string subject = describe_port(scope, "input", block, port.name);
+  for (const Value* const wire : wires) {
+    if (wire->kind == Value::Kind::string || wire->kind == Value::Kind::number) continue;
+    diagnostics_->add({{scope.file, wire->position},
+                       fmt::format("{} is given {}", subject, kind_name(wire->kind)),
+                       "the name of a signal, or a list of names",
+                       {}});
+    wired.connected = true;
+    return;
+  }
   if (drivers[input] != nullptr) {
     diagnostics_->add(
         {{scope.file, entry.position},

@@ -114,7 +114,7 @@ class Builder {
   NodeId function(const Expression& e) {
     if (const auto op = smooth_operation(e.function)) return smooth(*op, e);
     if (e.function == Function::weights) return graph_.constant(context_.weights(e));
-    if (e.function == Function::table && change_of(e.operands[0], context_) != Change::never)
+    if (e.function == Function::table && (e.operands.size() == 2 || change_of(e, context_) != Change::never))
       return context_.interpolated(e);
     if (change_of(e, context_) == Change::never && e.function != Function::if_) return constant_of(e);
     const std::vector<Expression>& x = e.operands;

@@ -97,7 +97,8 @@ class Assembler {
       const BlockContext context(*this, quantity.block);
       const bool fixed = change_of(rule.value, context) == ExpressionContext::Change::never;
       const double start = fixed ? start_value(quantity, rule) : 0;
-      network_.states.push_back({name_of(quantity), start, rule.at_rest, 0, {}});
+      network_.states.push_back(
+          {name_of(quantity), start, rule.at_rest, 0, block_of(quantity).tolerance, {}});
       quantity.node = network_.graph.variable(network_.state_variable(quantity.variable_index));
     }
   }
@@ -225,7 +226,8 @@ class Assembler {
     for (std::size_t b = 0; b < diagram_.blocks.size(); ++b) {
       for (const EventRule& rule : diagram_.blocks[b].definition->events) {
         if (rule.where && constant_value(b, *rule.where).value_or(0) == 0) continue;
-        if (constant_value(b, rule.when).value_or(1) == 0) continue;
+        const auto always = constant_value(b, rule.when);
+        if (always && (*always == 0 || !rule.at_start)) continue;
         active_events_.emplace_back(b, &rule);
       }
     }
@@ -525,9 +527,25 @@ class Assembler {
   /// table(x, x1, y1, …): the segment is a memory that follows x across the ends of segments.
   NodeId interpolated(std::size_t block, const Expression& call) {
     PointTable table;
+    if (call.operands.size() == 2 && call.operands[1].kind == Expression::Kind::name) {
+      const FlatBlock& flat = diagram_.blocks[block];
+      const auto parameter = flat.definition->find_parameter(call.operands[1].name);
+      if (parameter && flat.definition->parameters[*parameter].points)
+        return interpolate(block, call, flat.points[*parameter]);
+    }
+    if (call.operands.size() < 5 || call.operands.size() % 2 == 0) {
+      throw ExpressionError{
+          call.column,
+          "table() has no whole points",
+          "table(x, x1, y1, x2, y2, …), or table(x, points) with a parameter of kind points",
+          {}};
+    }
     for (std::size_t i = 1; i + 1 < call.operands.size(); i += 2) {
-      table.x.push_back(constant_value(block, call.operands[i]).value_or(0));
-      table.y.push_back(constant_value(block, call.operands[i + 1]).value_or(0));
+      const auto x = constant_value(block, call.operands[i]), y = constant_value(block, call.operands[i + 1]);
+      if (!x || !y)
+        throw ExpressionError{call.column, "a point of the table varies", "points of numbers and parameters", {}};
+      table.x.push_back(*x);
+      table.y.push_back(*y);
     }
     return interpolate(block, call, std::move(table));
   }

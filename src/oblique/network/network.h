@@ -25,6 +25,7 @@ struct State {
   double start = 0;      ///< [machine unit]
   bool at_rest = false;  ///< brought to rest before the clock starts; `start` is the guess
   NodeId derivative = 0;
+  double tolerance = 0;              ///< absolute [machine unit]; 0: that of the run
   std::optional<NodeId> start_node;  ///< where the start follows from signals; `start` is then no use
 };
 

@@ -103,7 +103,14 @@ struct CvodesSolver::Handles {
     check_setup(CVodeInit(cvodes, evaluate, t0, states.get()));
     check_setup(CVodeSetErrHandlerFn(cvodes, ignore_message, nullptr));
     check_setup(CVodeSetUserData(cvodes, this));
-    check_setup(CVodeSStolerances(cvodes, settings.relative_tolerance, settings.absolute_tolerance));
+    if (settings.own_tolerances.empty()) {
+      check_setup(CVodeSStolerances(cvodes, settings.relative_tolerance, settings.absolute_tolerance));
+    } else {
+      const Owned<N_Vector, VectorDeleter> own(made(N_VClone(states.get())));
+      std::copy(settings.own_tolerances.begin(), settings.own_tolerances.end(),
+                N_VGetArrayPointer(own.get()));
+      check_setup(CVodeSVtolerances(cvodes, settings.relative_tolerance, own.get()));
+    }
     check_setup(CVodeSetLinearSolver(cvodes, linear_solver.get(), matrix.get()));
     check_setup(CVodeSetJacFn(cvodes, differentiate));
     check_setup(CVodeSetStopTime(cvodes, end));

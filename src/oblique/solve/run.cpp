@@ -158,15 +158,28 @@ class Runner {
     return t < options_.until && !halted() && !(options_.interrupted && options_.interrupted());
   }
 
+  SolverSettings solver_settings(IntegrationMethod method) const {
+    SolverSettings settings;
+    settings.relative_tolerance = options_.tolerance;
+    settings.absolute_tolerance = kAbsoluteTolerance * options_.tolerance;
+    settings.max_steps = options_.max_steps;
+    settings.adams = method == IntegrationMethod::adams;
+    const std::vector<State>& states = program_.states();
+    if (std::any_of(states.begin(), states.end(), [](const State& s) { return s.tolerance > 0; })) {
+      for (const State& state : states)
+        settings.own_tolerances.push_back(state.tolerance > 0 ? state.tolerance
+                                                              : settings.absolute_tolerance);
+    }
+    return settings;
+  }
+
   void integrate() {
     const MethodChoice method =
         choose_method(options_.method, program_, workspace_, states_, options_.until - begin_);
     sampler_.result.method = method;
     double t = begin_;
     double end = stretch_end(t);
-    CvodesSolver solver(system_, t, states_, end,
-                        {options_.tolerance, kAbsoluteTolerance * options_.tolerance, options_.max_steps,
-                         method.method == IntegrationMethod::adams});
+    CvodesSolver solver(system_, t, states_, end, solver_settings(method.method));
     const StatesAt states_at = [&](double time, std::span<double> x) { solver.states_at(time, x); };
     constexpr long kStepsPerReport = 256;
     long steps = 0;

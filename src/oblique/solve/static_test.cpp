@@ -18,8 +18,11 @@ std::vector<StaticReading> static_test(const Program& program, const std::string
   Switching switching(program, workspace, 1, file);
   switching.start(0, states, [&] { bring_to_rest(program, workspace, 0, states, file); });
   std::vector<double> outputs(program.n_signals()), slopes(program.n_states());
-  if (!program.signals(0, states.data(), outputs.data(), workspace) ||
-      !program.derivatives(0, states.data(), slopes.data(), workspace)) {
+  const bool has_outputs = program.signals(0, states.data(), outputs.data(), workspace);
+  // What the integrators would do with their inputs: the first moment of "operate".
+  for (const std::uint32_t mode : program.mode_memories())
+    workspace.set_memory(mode, static_cast<double>(OperatingMode::operate));
+  if (!has_outputs || !program.derivatives(0, states.data(), slopes.data(), workspace)) {
     throw loop_error(program, workspace.trouble(), 0, file);
   }
 

@@ -308,6 +308,10 @@ bool Switching::serve_events(double t, std::vector<double>& x, bool starting) {
 
 void Switching::settle(double t, std::vector<double>& x) {
   std::fill(on_surface_.begin(), on_surface_.end(), false);
+  evaluate(t, x);
+  for (std::size_t s = 0; s < announced_.size(); ++s) {  // the stretch may have ended before their time
+    if (is_known(s) && std::abs(surfaces_[s]) > 4 * tiny(s, t)) announced_[s] = -1;
+  }
   std::vector<std::pair<std::size_t, double>> turned;
   for (std::size_t s = 0; s < announced_.size(); ++s) {
     if (announced_[s] >= 0) turned.emplace_back(s, announced_[s]);

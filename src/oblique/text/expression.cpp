@@ -31,20 +31,22 @@ constexpr std::array<FunctionInfo, 22> kFunctions{{
     {Function::min, "min", 1, kAny, true, "smallest argument"},
     {Function::max, "max", 1, kAny, true, "largest argument"},
     {Function::hypot, "hypot", 2, 2, false, "hypot(x, y): length of the vector (x, y)"},
-    {Function::sign, "sign", 1, 1, true, "-1, 0 or 1"},
+    {Function::sign, "sign", 1, 1, true, "1 above zero, else -1; of a constant 0 it is 0"},
     {Function::clip, "clip", 3, 3, true, "clip(x, low, high): x held between low and high"},
     {Function::deadzone, "deadzone", 2, 2, true, "deadzone(x, w): 0 within ±w, shifted by w outside"},
-    {Function::step, "step", 1, 1, true, "0 below zero, 1 from zero on"},
-    {Function::table, "table", 5, kAny, true,
-     "table(x, x1, y1, x2, y2, …): straight lines through the points"},
+    {Function::step, "step", 1, 1, true, "1 above zero, else 0; of a constant 0 it is 1"},
+    {Function::table, "table", 2, kAny, true,
+     "table(x, x1, y1, x2, y2, …) or table(x, points): straight lines through the points"},
     {Function::if_, "if", 3, 3, true, "if(condition, a, b): a where the condition holds, else b"},
     {Function::noise, "noise", 2, 2, false, "noise(x, seed): smooth random function of x, 1 rms"},
-    {Function::weights, "weights", 1, 1, false, "weights(in): sum of the magnitudes of the weights at an input"},
+    {Function::weights, "weights", 1, 1, false,
+     "weights(in): sum of the magnitudes of the weights at an input"},
 }};
 
 double interpolate(std::span<const double> table) {
   const double x = table[0];
   const std::size_t points = (table.size() - 1) / 2;
+  if (points < 2) return std::numeric_limits<double>::quiet_NaN();
   std::size_t right = 1;
   while (right + 1 < points && table[1 + 2 * right] < x) ++right;
   const double x1 = table[2 * right - 1], y1 = table[2 * right];

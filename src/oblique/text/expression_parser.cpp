@@ -207,8 +207,10 @@ class Parser {
       fail(start, fmt::format("{} was given {} argument{}", info->name, count, count == 1 ? "" : "s"),
            argument_range(*info), std::string(info->doc));
     }
-    if (info->function == Function::table && count % 2 == 0) {
-      fail(start, "a point of the table has no second coordinate", {}, std::string(info->doc));
+    const bool points = count == 2 && node.operands[1].kind == Expression::Kind::name;
+    if (info->function == Function::table && !points && (count < 5 || count % 2 == 0)) {
+      fail(start, count < 5 ? "the table has no two points" : "a point of the table has no second coordinate",
+           {}, std::string(info->doc));
     }
     return node;
   }

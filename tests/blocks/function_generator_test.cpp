@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+// Functions given by points, in the diagram or in a file.
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "../support/runs.h"
+
+namespace oblique {
+namespace {
+
+using testing::Compiled;
+using ::testing::HasSubstr;
+using testing::message_of;
+using testing::row_values;
+using testing::run_of;
+
+constexpr const char* kCircle = R"(x = { type = "integrator", in = ["y"], initial = 1 }
+y = { type = "integrator", in = ["-x"] }
+)";
+
+TEST(FunctionGenerator, JoinsItsPointsByStraightLines) {
+  const Compiled made(
+      std::string(kCircle) +
+      "f = { type = \"function-generator\", in = \"x\", points = [[-0.5, 1], [0, 0], [0.5, 0.25]] }\n");
+  const auto result = run_of(made, {.until = 20, .samples = 401});
+  const auto x = row_values(result, "x"), f = row_values(result, "f");
+  for (std::size_t r = 0; r < x.size();
+       ++r) {  // the lines go on at both ends; a switch is placed within 1e-13
+    EXPECT_NEAR(f[r], x[r] < 0 ? -2 * x[r] : 0.5 * x[r], 1e-12) << x[r];
+  }
+}
+
+TEST(FunctionGenerator, IsIntegratedExactlyAcrossItsCorners) {
+  // Over a turn ∫ |cos t| dt = 4.
+  const Compiled made(std::string(kCircle) +
+                      R"(f = { type = "function-generator", in = "x", points = [[-1, 1], [0, 0], [1, 1]] }
+sum = { type = "integrator", in = ["f"] }
+)");
+  const auto result = run_of(made, {.until = 4 * std::acos(-1.0), .tolerance = 1e-10, .samples = 2});
+  EXPECT_NEAR(row_values(result, "sum").back(), 8, 1e-7);  // tolerance 1e-10 a step, some hundred steps
+}
+
+TEST(Recording, FollowsAColumnOfAFile) {
+  const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "oblique-recording";
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "measured.csv")
+      << "# a step that takes 10 ms\n\"t\", u ,v\n0,0,9\n1,0,9\n1.01,2,9\n3,2,9\n";
+  const std::string text = testing::diagram_text(
+      "u = { type = \"recording\", data = { file = \"measured.csv\", x = \"t\", y = \"u\" }, scale = 0.5 }\n"
+      "x = { type = \"integrator\", in = [\"u\"] }\n");
+  const Diagram diagram = parse_diagram(text, (folder / "d.toml").string());
+  const FlatDiagram flat = flatten(diagram, testing::shipped_blocks());
+  RunOptions options;
+  options.until = 3;
+  options.samples = 2;
+  const auto result = run(Program(assemble(flat)), flat, options);
+  EXPECT_NEAR(row_values(result, "x").back(), 0.005 + 1.99, 1e-9);  // tolerance 1e-8 of few steps of low order
+}
+
+std::string refusal(const std::string& points) {
+  return message_of<DiagramError>(
+      [&] { Compiled("f = { type = \"function-generator\", in = \"f\", points = " + points + " }\n"); });
+}
+
+TEST(FunctionGenerator, RefusesPointsThatMakeNoFunction) {
+  EXPECT_EQ(refusal("[[0, 0]]"),
+            "d.toml:3:55: parameter 'f.points' has 1 points; expected at least two points");
+  EXPECT_THAT(refusal("[[0, 0], [0, 1]]"),
+              HasSubstr("has x = 0 after x = 0; expected points whose x rises from one to the next"));
+  EXPECT_THAT(refusal("[[0, 0], [1]]"), HasSubstr("has something else than a point; expected [x, y]"));
+  EXPECT_THAT(refusal("3"), HasSubstr("parameter 'f.points' is a number; expected [[x, y], …], or"));
+  EXPECT_THAT(refusal("{ file = \"none.csv\", x = \"a\" }"),
+              HasSubstr("parameter 'f.points' has no 'y'; expected the name of the column of the value"));
+  EXPECT_THAT(refusal("{ file = \"none.csv\", x = \"a\", y = \"b\" }"), HasSubstr("none.csv"));
+  EXPECT_THAT(message_of<DiagramError>([] { Compiled("s = { type = \"summer\", in = [[0, 1]] }\n"); }),
+              HasSubstr("input 's.in' is given an array; expected the name of a signal, or a list of names"));
+}
+
+TEST(Points, AreWrittenAsTheyAreRead) {
+  const Compiled made("f = { type = \"function-generator\", in = \"f\", points = [[-0.5, 1], [0, 0.25]] }\n");
+  EXPECT_EQ(parse_diagram(write_diagram(made.diagram), "d.toml"), made.diagram);
+  EXPECT_THAT(write_diagram(made.diagram), HasSubstr("points = [[-0.5, 1], [0, 0.25]]"));
+}
+
+}  // namespace
+}  // namespace oblique
