@@ -86,7 +86,10 @@ void check_request(const CheckRequest& request) {
     throw ReadError(Diagnostic{
         {}, fmt::format("there is nothing to write to {}", request.output), "--rescale beside -o", {}});
   }
-  if (request.rescale) check_output(request.output, ".toml");
+  if (request.rescale) {
+    check_output(request.output, ".toml");
+    check_not_input(request.output, request.file, "diagram");
+  }
 }
 
 }  // namespace

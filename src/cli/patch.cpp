@@ -22,13 +22,7 @@ double positive_option(const std::string& option, const std::string& text, std::
 
 ExitStatus patch_mechanism(const Session&, const PatchRequest& request) {
   if (!request.output.empty()) check_output(request.output, ".toml");
-  std::error_code none_yet;
-  if (!request.output.empty() && std::filesystem::equivalent(request.mechanism, request.output, none_yet)) {
-    throw ReadError(Diagnostic{{request.output, {}},
-                               "this is the mechanism itself, which the diagram would replace",
-                               {},
-                               "write the diagram to another file"});
-  }
+  if (!request.output.empty()) check_not_input(request.output, request.mechanism, "mechanism");
   PatchOptions options;
   options.gain = positive_option("--gain", request.gain, "1");
   if (!request.bandwidth.empty()) options.bandwidth = positive_option("--bandwidth", request.bandwidth, "Hz");

@@ -99,7 +99,10 @@ std::string table_of(const std::vector<StaticReading>& readings) {
 
 void check_request(const RunRequest& request) {
   if (!request.output.empty()) check_output(request.output, ".csv");
-  if (!request.save.empty()) check_output(request.save, ".toml");
+  if (!request.save.empty()) {
+    check_output(request.save, ".toml");
+    check_not_input(request.save, request.diagram, "diagram");
+  }
   if (!request.static_test) return;
   const char* const other = request.check              ? "--check"
                             : request.halt_on_overload ? "--halt-on-overload"

@@ -126,6 +126,16 @@ double quantity_option(const std::string& option, const std::string& text, std::
   }
 }
 
+void check_not_input(const std::filesystem::path& output, const std::filesystem::path& input,
+                     std::string_view kind) {
+  std::error_code none_yet;
+  if (!std::filesystem::equivalent(input, output, none_yet)) return;
+  throw ReadError(Diagnostic{{output.string(), {}},
+                             fmt::format("this is the {} itself, which would be replaced", kind),
+                             {},
+                             "write to another file"});
+}
+
 void check_output(const std::filesystem::path& path, std::string_view ending) {
   if (path.extension() != ending) {
     throw ReadError(Diagnostic{{path.string(), {}},

@@ -79,4 +79,8 @@ double quantity_option(const std::string& option, const std::string& text, std::
 /// with. Throws ReadError.
 void check_output(const std::filesystem::path& path, std::string_view ending);
 
+/// Refuses to write over the file that is read, a "mechanism" or a "diagram".
+void check_not_input(const std::filesystem::path& output, const std::filesystem::path& input,
+                     std::string_view kind);
+
 }  // namespace oblique::cli

@@ -266,7 +266,7 @@ INSTANTIATE_TEST_SUITE_P(
             "/tmp/oblique-same.toml "
             "-o /tmp/../tmp/oblique-same.toml; status=$?; grep -q mechanism/1 /tmp/oblique-same.toml || "
             "status=99; rm /tmp/oblique-same.toml; exit $status",
-            2, "this is the mechanism itself, which the diagram would replace\n  remedy: write the diagram"},
+            2, "this is the mechanism itself, which would be replaced\n  remedy: write to another file"},
         BadRequestCase{"OutputIsAFolder",
                        "mkdir /tmp/oblique-folder.csv; oblique run diagrams/lessons/circle.toml -o "
                        "/tmp/oblique-folder.csv "

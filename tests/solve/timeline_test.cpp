@@ -243,7 +243,7 @@ TEST(RunState, OfAnotherDiagramIsRefused) {
   const Compiled other(
       "x = { type = \"integrator\", in = [\"z\"] }\nz = { type = \"integrator\", in = [\"-x\"] }\n");
   const auto half = run_of(made, {.until = 1, .samples = 2});
-  EXPECT_EQ(message_of<SolveError>([&] { run_from(other, half.state, 2); }),
+  EXPECT_EQ(message_of<ReadError>([&] { run_from(other, half.state, 2); }),
             "d.toml: this is the state of another diagram: it has the state 'y' where the diagram has 'z'; "
             "expected the state of a run of this diagram\n"
             "  remedy: parameters may change between runs, blocks and wires may not");

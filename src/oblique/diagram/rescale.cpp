@@ -241,6 +241,12 @@ class Writer {
 
 Diagram rescale(const Diagram& diagram, const FlatDiagram& flat, const AmplitudeScaling& scaling,
                 const BlockLibrary& library) {
+  if (!diagram.groups.empty() || !diagram.timeline.phases.empty()) {
+    throw DiagramError(Diagnostic{{diagram.file, {}},
+                                  "a diagram with [groups] or a [timeline] cannot be rescaled",
+                                  "one run in the mode \"operate\"",
+                                  "scale it by hand: the report proposes the factors"});
+  }
   return Writer(diagram, flat, scaling, library).write();
 }
 

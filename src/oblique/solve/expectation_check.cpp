@@ -33,6 +33,13 @@ double actual_value(const Expectation& expectation, const Run& run, std::size_t 
 
 void ask_for_expectations(const Diagram& diagram, RunOptions& options) {
   options.extra_times = expectation_times(diagram, options.until);
+  if (options.from && !options.extra_times.empty() && options.extra_times.front() < options.from->time) {
+    throw DiagramError(Diagnostic{{diagram.file, {}},
+                                  fmt::format("[expect] asks for t = {} s, and the run goes on from t = {} s",
+                                              options.extra_times.front(), options.from->time),
+                                  "expectations at later times",
+                                  "check the whole run, without a saved state"});
+  }
   for (const Expectation& e : diagram.expectations)
     options.extremes = options.extremes || e.kind != Expectation::Kind::at_time;
 }

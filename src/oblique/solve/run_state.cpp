@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <oblique/solve/solve_error.h>
 #include <oblique/text/table_reader.h>
 
 namespace oblique {
@@ -57,11 +56,10 @@ void compare_names(const RunState::Named& saved, const Things& things, std::stri
   } else {
     difference = fmt::format("no {} '{}'", what, things[i].name);
   }
-  throw SolveError(SolveError::Kind::other_diagram, 0,
-                   {{file, {}},
-                    "this is the state of another diagram: it has " + difference,
-                    "the state of a run of this diagram",
-                    "parameters may change between runs, blocks and wires may not"});
+  throw ReadError(Diagnostic{{file, {}},
+                             "this is the state of another diagram: it has " + difference,
+                             "the state of a run of this diagram",
+                             "parameters may change between runs, blocks and wires may not"});
 }
 
 }  // namespace
@@ -116,13 +114,12 @@ void check_run_state(const RunState& state, const Program& program, const std::s
   compare_names(state.unknowns, program.unknowns(), "unknown", file);
   compare_names(state.memories, program.memories(), "memory", file);
   if (state.conditions.size() == program.events().size()) return;
-  throw SolveError(
-      SolveError::Kind::other_diagram, 0,
-      {{file, {}},
-       fmt::format("this is the state of another diagram: it has {} conditions of events, the diagram {}",
-                   state.conditions.size(), program.events().size()),
-       "the state of a run of this diagram",
-       {}});
+  throw ReadError(Diagnostic{
+      {file, {}},
+      fmt::format("this is the state of another diagram: it has {} conditions of events, the diagram {}",
+                  state.conditions.size(), program.events().size()),
+      "the state of a run of this diagram",
+      {}});
 }
 
 }  // namespace oblique

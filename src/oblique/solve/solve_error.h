@@ -12,7 +12,7 @@ namespace oblique {
 /// Thrown by the `solve` stage: the diagram is well formed, but its equations could not be solved.
 class SolveError : public Error {
  public:
-  enum class Kind { singular_loop, no_rest, blow_up, step_budget, chatter, other_diagram, other };
+  enum class Kind { singular_loop, no_rest, blow_up, step_budget, chatter, other };
 
   SolveError(Kind kind, double time, Diagnostic diagnostic)
       : Error(std::move(diagnostic)), kind_(kind), time_(time) {}

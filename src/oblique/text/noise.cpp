@@ -10,8 +10,8 @@
 namespace oblique {
 namespace {
 
-/// Root of ∫ (quintic B-spline)², which is the value of the B-spline of degree 11 at its centre.
-const double kRootMeanSquare = std::sqrt(655177.0 / 1663200.0);
+/// ∫ (quintic B-spline)², which is the value of the B-spline of degree 11 at its centre.
+constexpr double kMeanSquare = 655177.0 / 1663200.0;
 
 /// The finaliser of SplitMix64 (Steele, Lea, Flood 2014): every bit of the input moves every bit of the
 /// output.
@@ -67,7 +67,7 @@ double noise(double x, double seed, int derivative) {
     const double weight = derivative == 0 ? w[i] : (i > 0 ? w[i - 1] : 0) - (i < 5 ? w[i] : 0);
     sum += weight * gaussian(first + static_cast<std::int64_t>(i), chosen);
   }
-  return sum / kRootMeanSquare;
+  return sum / std::sqrt(kMeanSquare);
 }
 
 }  // namespace oblique
