@@ -121,7 +121,8 @@ class RuleReader {
     std::vector<Scale> operands;
     for (const Expression& operand : e.operands) operands.push_back(scale_of(operand));
     if (e.kind == Kind::call) return scale_of_call(e.function, operands);
-    const Scale a = operands[0], b = operands.size() > 1 ? operands[1] : Scale();
+    Scale a = operands[0];
+    const Scale b = operands.size() > 1 ? operands[1] : Scale();
     switch (e.kind) {
       case Kind::negate:
         return a;

@@ -61,7 +61,7 @@ class Proposal {
 
   /// As the inputs ask, or by a 1-2-5 step less where an output would leave the machine unit and that helps.
   BlockScaling largest_in_range(std::size_t b, const std::vector<double>& inputs) const {
-    const BlockScaling asked = rules_[b].from_inputs(inputs);
+    BlockScaling asked = rules_[b].from_inputs(inputs);
     if (is_in_range(b, asked)) return asked;
     for (const double less : {0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001}) {
       std::vector<double> smaller = inputs;

@@ -25,6 +25,7 @@ std::vector<const Value*> wires_of(const Value& value) {
 template <class Port>
 std::vector<std::string> names_of(const std::vector<Port>& ports) {
   std::vector<std::string> names;
+  names.reserve(ports.size());
   for (const Port& port : ports) names.push_back(port.name);
   return names;
 }

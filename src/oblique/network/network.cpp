@@ -294,8 +294,9 @@ class Assembler {
 
   /// The surfaces of all switches; building one may call for another.
   void define_switches() {
-    for (std::size_t s = 0; s < pending_switches_.size(); ++s) {
-      const PendingSwitch pending = pending_switches_[s];
+    std::size_t next = 0;
+    while (next < pending_switches_.size()) {
+      const PendingSwitch pending = pending_switches_[next++];
       const NodeId left = built(pending.block, pending.left, pending.place, "a comparison");
       const NodeId right = built(pending.block, pending.right, pending.place, "a comparison");
       Switch made;
@@ -543,7 +544,8 @@ class Assembler {
     for (std::size_t i = 1; i + 1 < call.operands.size(); i += 2) {
       const auto x = constant_value(block, call.operands[i]), y = constant_value(block, call.operands[i + 1]);
       if (!x || !y)
-        throw ExpressionError{call.column, "a point of the table varies", "points of numbers and parameters", {}};
+        throw ExpressionError{
+            call.column, "a point of the table varies", "points of numbers and parameters", {}};
       table.x.push_back(*x);
       table.y.push_back(*y);
     }
@@ -565,10 +567,11 @@ class Assembler {
       pending_tables_.push_back(
           {block, call.operands[0], found->second, segment, diagram_.blocks[block].place});
     }
-    const NodeId number = graph.constant(found->second);
+    const std::uint32_t chosen = found->second;
+    const NodeId number = graph.constant(chosen);
     const NodeId x = built_operand(block, call.operands[0]);
     const auto& pending = *std::find_if(pending_tables_.begin(), pending_tables_.end(),
-                                        [&](const PendingTable& p) { return p.table == found->second; });
+                                        [&](const PendingTable& p) { return p.table == chosen; });
     return graph.apply(Op::table_value, x, graph.memory(pending.segment), number);
   }
 
@@ -587,8 +590,9 @@ class Assembler {
   /// Two switches and two events move each table's segment along.
   void define_tables() {
     ExpressionGraph& graph = network_.graph;
-    for (std::size_t p = 0; p < pending_tables_.size(); ++p) {
-      const PendingTable pending = pending_tables_[p];
+    std::size_t next_table = 0;
+    while (next_table < pending_tables_.size()) {
+      const PendingTable pending = pending_tables_[next_table++];
       const NodeId x = built(pending.block, pending.x, pending.place, "a table's argument");
       const NodeId number = graph.constant(pending.table);
       const NodeId segment = graph.memory(pending.segment);
