@@ -65,7 +65,7 @@ std::size_t columns_that_fit(std::size_t column_width) {
 std::string short_number(double value, double scale) {
   constexpr double kRounding = 1e-14;
   if (std::isnan(value)) return {};
-  return fmt::format("{:.6g}", std::abs(value) < kRounding * scale ? 0.0 : value);
+  return fmt::format("{:.6g}", value == 0 || std::abs(value) < kRounding * scale ? 0.0 : value);
 }
 
 void print(std::string_view text) {

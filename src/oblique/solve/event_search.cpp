@@ -76,12 +76,12 @@ std::optional<double> Switching::search(double from, double to, const StatesAt& 
   double interval = span_ / kFewestLooks;
   for (const Switch& s : program_.switches()) interval = std::min(interval, s.check_interval);
   constexpr double kMostLooks = 1e6;
-  const double looks = std::clamp(std::ceil((to - from) / interval), 1.0, kMostLooks);
+  const auto looks = static_cast<int>(std::clamp(std::ceil((to - from) / interval), 1.0, kMostLooks));
   Look left, right;
   look(from, states_at, left);
   // Where the solver starts anew a surface may still lie within rounding of zero on the wrong side.
   for (double& value : left.overdue) value = std::min(value, 0.0);
-  for (double k = 1; k <= looks; ++k) {
+  for (int k = 1; k <= looks; ++k) {
     look(k == looks ? to : from + (to - from) * k / looks, states_at, right);
     if (const auto found = first_in(left, right, states_at)) return found;
     std::swap(left, right);

@@ -194,6 +194,7 @@ std::vector<LoopReport> explain_loops(const Program& program, const SignalFlow& 
     for (ServoLoop& loop : servos) loop.look_at(*linear, instant, signals, workspace);
   }
   std::vector<LoopReport> reports;
+  reports.reserve(servos.size() + algebraic.size());
   for (const ServoLoop& loop : servos) reports.push_back(loop.report());
   for (const AlgebraicLoop& loop : algebraic) reports.push_back(loop.report());
   return reports;

@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: MIT
+// The part of Assembler that makes modes of operation, memories, events, switches and tables.
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include <fmt/format.h>
+
+#include <oblique/network/assembler.h>
+
+namespace oblique {
+
+std::uint32_t Assembler::new_memory(std::string name, double start) {
+  network_.memories.push_back({std::move(name), start});
+  return static_cast<std::uint32_t>(network_.memories.size() - 1);
+}
+
+/// A memory for the mode of each group, and a switch for each of its mode lines.
+void Assembler::make_modes() {
+  constexpr auto kOperate = static_cast<double>(OperatingMode::operate);
+  for (const FlatGroup& group : diagram_.timeline.groups) {
+    const std::uint32_t mode = new_memory("mode of group " + group.name, kOperate);
+    network_.mode_memories.push_back(mode);
+    ModeLines lines;
+    ExpressionGraph& graph = network_.graph;
+    const auto line = [&](const std::optional<SignalRef>& signal, std::string_view name) {
+      if (!signal) return graph.constant(0);
+      const std::uint32_t memory = new_memory(fmt::format("{} line of group {}", name, group.name), 0);
+      mode_lines_.push_back({memory, *signal, group.name});
+      return graph.memory(memory);
+    };
+    const auto inverse = [&](NodeId node) { return graph.apply(Op::subtract, graph.constant(1), node); };
+    const auto is = [&](OperatingMode asked) {
+      return graph.apply(Op::equal, graph.memory(mode), graph.constant(static_cast<double>(asked)));
+    };
+    const auto either = [&](NodeId a, NodeId b) {
+      return inverse(graph.apply(Op::multiply, inverse(a), inverse(b)));
+    };
+    lines.initial =
+        either(line(group.initial, "initial"), either(is(OperatingMode::potset), is(OperatingMode::initial)));
+    lines.hold = graph.apply(Op::multiply, inverse(lines.initial),
+                             either(line(group.hold, "hold"), is(OperatingMode::hold)));
+    lines.operate = graph.apply(Op::multiply, inverse(lines.initial), inverse(lines.hold));
+    modes_.push_back(lines);
+  }
+}
+
+void Assembler::define_mode_lines() {
+  for (const ModeLine& line : mode_lines_) {
+    add_switch({line.memory, fmt::format("group {}", line.group),
+                diagram_.signal_name(line.signal) + " > 0.5",
+                network_.graph.apply(Op::subtract, quantities_[quantity_of(line.signal)].node,
+                                     network_.graph.constant(0.5))});
+  }
+}
+
+void Assembler::define_phase_ends() {
+  for (const FlatPhase& phase : diagram_.timeline.phases) {
+    if (!phase.until) {
+      network_.phase_ends.push_back(network_.graph.constant(0));
+      continue;
+    }
+    const FlatCondition& until = *phase.until;
+    const NodeId signal = quantities_[quantity_of(until.signal)].node;
+    const NodeId threshold = network_.graph.constant(until.threshold);
+    const std::uint32_t memory = new_memory("end of a phase", 0);
+    add_switch({memory, "timeline",
+                fmt::format("{} {} {}", diagram_.signal_name(until.signal), until.above ? ">" : "<",
+                            until.threshold),
+                until.above ? network_.graph.apply(Op::subtract, signal, threshold)
+                            : network_.graph.apply(Op::subtract, threshold, signal)});
+    network_.phase_ends.push_back(network_.graph.memory(memory));
+  }
+}
+
+void Assembler::add_switch(Switch made) {
+  made.rate = rate_of(made.surface);
+  network_.memories[made.memory].name = made.block + ": " + made.comparison;
+  network_.switches.push_back(std::move(made));
+}
+
+/// The node of a mode of operation; nothing for another name, or where there is no timeline.
+std::optional<NodeId> Assembler::mode_node(std::size_t block, std::string_view name) const {
+  if (modes_.empty()) return std::nullopt;
+  const ModeLines& lines = modes_[diagram_.blocks[block].group];
+  if (name == "in_initial") return lines.initial;
+  if (name == "in_operate") return lines.operate;
+  if (name == "in_hold") return lines.hold;
+  return std::nullopt;
+}
+
+/// Events that can never come are left out, and memories that no event sets are constants.
+void Assembler::find_active_events() {
+  for (std::size_t b = 0; b < diagram_.blocks.size(); ++b) {
+    for (const EventRule& rule : diagram_.blocks[b].definition->events) {
+      if (rule.where && constant_value(b, *rule.where).value_or(0) == 0) continue;
+      const auto always = constant_value(b, rule.when);
+      if (always && (*always == 0 || !rule.at_start)) continue;
+      active_events_.emplace_back(b, &rule);
+    }
+  }
+}
+
+void Assembler::make_memories() {
+  first_memory_.assign(diagram_.blocks.size(), kNone);
+  std::vector<bool> set(diagram_.blocks.size(), false);
+  for (const auto& [block, rule] : active_events_) set[block] = true;
+  for (std::size_t b = 0; b < diagram_.blocks.size(); ++b) {
+    const FlatBlock& block = diagram_.blocks[b];
+    if (!set[b]) continue;
+    first_memory_[b] = static_cast<std::uint32_t>(network_.memories.size());
+    for (const MemoryRule& memory : block.definition->memories) {
+      const double start = constant_value(b, memory.initial).value_or(0);
+      if (!std::isfinite(start)) {
+        diagnostics_.add({block.place,
+                          fmt::format("'{}.{}' would start at {}", block.path, memory.name, start),
+                          "a finite start value",
+                          {}});
+      }
+      network_.memories.push_back({block.path + "." + memory.name, start});
+    }
+  }
+}
+
+/// A memory of a block: its node, or its initial value where nothing ever sets it.
+NodeId Assembler::memory_node(std::size_t block, std::size_t memory) {
+  if (first_memory_[block] != kNone)
+    return network_.graph.memory(first_memory_[block] + static_cast<std::uint32_t>(memory));
+  const Expression& initial = diagram_.blocks[block].definition->memories[memory].initial;
+  return network_.graph.constant(constant_value(block, initial).value_or(0));
+}
+
+void Assembler::make_events() {
+  for (const auto& [block, rule] : active_events_) {
+    Event event;
+    event.block = diagram_.blocks[block].path;
+    event.at_start = rule->at_start;
+    event.condition = built(block, rule->when, rule->place, "an event's 'when'");
+    for (const EventAction& action : rule->actions) {
+      Event::Action done;
+      const auto memory = diagram_.blocks[block].definition->find_memory(action.target);
+      done.on_state = !memory;
+      done.index = memory ? first_memory_[block] + static_cast<std::uint32_t>(*memory)
+                          : quantities_[quantity_of(block, action.target)].variable_index;
+      done.value = built(block, action.value, action.place, "an event's '" + action.target + "'");
+      event.actions.push_back(done);
+    }
+    network_.events.push_back(std::move(event));
+  }
+}
+
+void Assembler::make_starts() {
+  for (const Quantity& quantity : quantities_) {
+    if (quantity.equation->kind != Equation::Kind::derivative) continue;
+    const StartRule& rule = start_of(quantity);
+    const BlockContext context(*this, quantity.block);
+    if (change_of(rule.value, context) == ExpressionContext::Change::never) continue;
+    network_.states[quantity.variable_index].start_node =
+        built(quantity.block, rule.value, quantity.equation->place, "the start value");
+  }
+}
+
+/// The surfaces of all switches; building one may call for another.
+void Assembler::define_switches() {
+  std::size_t next = 0;
+  while (next < pending_switches_.size()) {
+    const PendingSwitch pending = pending_switches_[next++];
+    const NodeId left = built(pending.block, pending.left, pending.place, "a comparison");
+    const NodeId right = built(pending.block, pending.right, pending.place, "a comparison");
+    Switch made;
+    made.memory = pending.memory;
+    made.block = diagram_.blocks[pending.block].path;
+    made.comparison = network_.memories[pending.memory].name;
+    made.surface = network_.graph.apply(Op::subtract, left, right);
+    if (const auto& interval = diagram_.blocks[pending.block].definition->check_interval)
+      made.check_interval = constant_value(pending.block, *interval).value_or(made.check_interval);
+    add_switch(std::move(made));
+  }
+}
+
+/// d surface/dt where nothing but time enters and that rate is constant between events.
+std::optional<NodeId> Assembler::rate_of(NodeId surface) {
+  const auto gradient = network_.graph.gradient(surface);
+  if (gradient.size() != 1 || gradient[0].first != 0) return std::nullopt;
+  if (network_.graph[gradient[0].second].continuous) return std::nullopt;
+  return gradient[0].second;
+}
+
+NodeId Assembler::switch_of(std::size_t block, const Expression& left, const Expression& right) {
+  std::string text = to_string(left) + " > " + to_string(right);
+  const auto [found, inserted] = switch_index_.try_emplace(std::pair(block, text), kNone);
+  if (inserted) {
+    found->second = static_cast<std::uint32_t>(network_.memories.size());
+    network_.memories.push_back({std::move(text), 0});
+    pending_switches_.push_back({block, left, right, found->second, diagram_.blocks[block].place});
+  }
+  return network_.graph.memory(found->second);
+}
+
+/// table(x, x1, y1, …): the segment is a memory that follows x across the ends of segments.
+NodeId Assembler::interpolated(std::size_t block, const Expression& call) {
+  PointTable table;
+  if (call.operands.size() == 2 && call.operands[1].kind == Expression::Kind::name) {
+    const FlatBlock& flat = diagram_.blocks[block];
+    const auto parameter = flat.definition->find_parameter(call.operands[1].name);
+    if (parameter && flat.definition->parameters[*parameter].points)
+      return interpolate(block, call, flat.points[*parameter]);
+  }
+  if (call.operands.size() < 5 || call.operands.size() % 2 == 0) {
+    throw ExpressionError{call.column,
+                          "table() has no whole points",
+                          "table(x, x1, y1, x2, y2, …), or table(x, points) with a parameter of kind points",
+                          {}};
+  }
+  for (std::size_t i = 1; i + 1 < call.operands.size(); i += 2) {
+    const auto x = constant_value(block, call.operands[i]), y = constant_value(block, call.operands[i + 1]);
+    if (!x || !y)
+      throw ExpressionError{
+          call.column, "a point of the table varies", "points of numbers and parameters", {}};
+    table.x.push_back(*x);
+    table.y.push_back(*y);
+  }
+  return interpolate(block, call, std::move(table));
+}
+
+NodeId Assembler::interpolate(std::size_t block, const Expression& call, PointTable table) {
+  ExpressionGraph& graph = network_.graph;
+  const auto [found, inserted] = table_index_.try_emplace(std::pair(block, to_string(call)), kNone);
+  if (inserted) {
+    if (!std::is_sorted(table.x.begin(), table.x.end(), std::less_equal<>())) {
+      throw ExpressionError{
+          call.column, "the x of a table do not rise from point to point", "x1 < x2 < …", {}};
+    }
+    found->second = static_cast<std::uint32_t>(network_.tables.size());
+    network_.tables.push_back(std::move(table));
+    const auto segment = static_cast<std::uint32_t>(network_.memories.size());
+    network_.memories.push_back({diagram_.blocks[block].path + ": segment", 0});
+    pending_tables_.push_back(
+        {block, call.operands[0], found->second, segment, diagram_.blocks[block].place});
+  }
+  const std::uint32_t chosen = found->second;
+  const NodeId number = graph.constant(chosen);
+  const NodeId x = built_operand(block, call.operands[0]);
+  const auto& pending = *std::find_if(pending_tables_.begin(), pending_tables_.end(),
+                                      [&](const PendingTable& p) { return p.table == chosen; });
+  return graph.apply(Op::table_value, x, graph.memory(pending.segment), number);
+}
+
+NodeId Assembler::built_operand(std::size_t block, const Expression& expression) {
+  BlockContext context(*this, block);
+  return build_expression(network_.graph, expression, context);
+}
+
+/// Two switches and two events move each table's segment along.
+void Assembler::define_tables() {
+  ExpressionGraph& graph = network_.graph;
+  std::size_t next_table = 0;
+  while (next_table < pending_tables_.size()) {
+    const PendingTable pending = pending_tables_[next_table++];
+    const NodeId x = built(pending.block, pending.x, pending.place, "a table's argument");
+    const NodeId number = graph.constant(pending.table);
+    const NodeId segment = graph.memory(pending.segment);
+    const NodeId found = graph.apply(Op::table_segment, x, number);
+    for (const bool up : {true, false}) {
+      const NodeId edge = graph.apply(up ? Op::table_end : Op::table_begin, segment, number);
+      Switch made;
+      made.memory = new_memory({}, 0);
+      made.block = diagram_.blocks[pending.block].path;
+      made.comparison = to_string(pending.x) + (up ? " after its segment" : " before its segment");
+      made.surface = up ? graph.apply(Op::subtract, x, edge) : graph.apply(Op::subtract, edge, x);
+      // At least to the next one, which rounding may hide from the search.
+      const NodeId next = graph.apply(up ? Op::add : Op::subtract, segment, graph.constant(1));
+      const NodeId farther = up ? graph.apply(Op::less, next, found) : graph.apply(Op::less, found, next);
+      Event event;
+      event.block = made.block;
+      event.condition = graph.memory(made.memory);
+      event.repeats = true;
+      event.actions.push_back({false, pending.segment, graph.apply(Op::select, farther, found, next)});
+      add_switch(std::move(made));
+      network_.events.push_back(std::move(event));
+    }
+  }
+}
+
+}  // namespace oblique
