@@ -80,7 +80,7 @@ std::string to_text(const RunState& state) {
   return out;
 }
 
-RunState parse_run_state(std::string_view text, std::string file) {
+RunState parse_run_state(std::string_view text, const std::string& file) {
   const Document document = parse_document(text, file);
   Diagnostics diagnostics;
   TableReader reader(file, document.root, "the state", diagnostics);

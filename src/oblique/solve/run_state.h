@@ -28,7 +28,7 @@ struct RunState {
 std::string to_text(const RunState& state);
 
 /// Throws ReadError for what is no state file.
-RunState parse_run_state(std::string_view text, std::string file);
+RunState parse_run_state(std::string_view text, const std::string& file);
 
 /// Whether the state is one of this program: throws ReadError where names differ, with the first that do.
 void check_run_state(const RunState& state, const Program& program, const std::string& file);
