@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include <string_view>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -333,7 +335,8 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST_P(BadRequests, EndWithTheirStatusAndAMessage) {
 #ifdef __SANITIZE_ADDRESS__
-  if (std::string_view(GetParam().name) == "TooLittleMemory") GTEST_SKIP() << "the sanitizer reserves more than the limit by itself";
+  if (std::string_view(GetParam().name) == "TooLittleMemory")
+    GTEST_SKIP() << "the sanitizer reserves more than the limit by itself";
 #endif
   const Outcome outcome = run_command(GetParam().command, OBLIQUE_SOURCE_DIR);
   EXPECT_EQ(outcome.status, GetParam().status) << outcome.err;
