@@ -64,7 +64,7 @@ std::string page_of(const BlockDefinition& block) {
 }  // namespace
 
 ExitStatus show_blocks(const Session& session, const BlocksRequest& request) {
-  const BlockLibrary library = session.library();
+  const BlockLibrary library = session.blocks();
   if (request.name.empty()) {
     print(list_of(library));
     return ExitStatus::done;

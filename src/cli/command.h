@@ -17,7 +17,7 @@ struct Session {
   std::vector<std::filesystem::path> block_directories;
 
   /// The shipped blocks and those of `--blocks`. Throws DiagramError.
-  BlockLibrary library() const;
+  BlockLibrary blocks() const;
 };
 
 // One request and one function a verb. Options are texts where they may carry units. Empty: not given.

@@ -68,7 +68,7 @@ std::string to_table(const Comparison& comparison) {
 
 ExitStatus compare_mechanism(const Session& session, const CompareRequest& request) {
   if (!request.output.empty()) check_output(request.output, ".json");
-  const BlockLibrary library = session.library();
+  const BlockLibrary library = session.blocks();
   CompareOptions options;
   options.gains.clear();
   for (const std::string& gain : request.gains) {

@@ -77,7 +77,7 @@ void write_rescaled(const DiagramCheck& check, const BlockLibrary& library, cons
 }  // namespace
 
 ExitStatus check_diagram(const Session& session, const CheckRequest& request, const std::string& text) {
-  const BlockLibrary library = session.library();
+  const BlockLibrary library = session.blocks();
   const Diagram diagram = parse_diagram(text, request.file);
   const FlatDiagram flat = flatten(diagram, library);
   const Program program(assemble(flat));

@@ -38,7 +38,7 @@ ExitStatus run_program(int argc, char** argv) {
 
 }  // namespace
 
-BlockLibrary Session::library() const {
+BlockLibrary Session::blocks() const {
   BlockLibrary library = BlockLibrary::shipped();
   for (const auto& directory : block_directories) library.add_directory(directory);
   return library;

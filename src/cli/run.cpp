@@ -136,7 +136,7 @@ void note_overloads(const Program& program, const Run& run) {
 
 ExitStatus run_diagram(const Session& session, const RunRequest& request) {
   check_request(request);
-  const BlockLibrary library = session.library();
+  const BlockLibrary library = session.blocks();
   Diagram diagram = read_diagram(request.diagram);
   if (!request.until.empty()) diagram.run.until = quantity_option("--until", request.until, "s");
   if (!(diagram.run.until > 0 && std::isfinite(diagram.run.until))) {
