@@ -259,6 +259,18 @@ sum = {{ type = "integrator", in = ["s"] }})",
   }
 }
 
+TEST(Events, TwoSlidesAtOnceAreRefusedByName) {
+  const BlockLibrary library = library_with_sign();
+  const Compiled made(R"(x = { type = "integrator", in = ["-sx"], initial = 1 }
+sx = { type = "sgn", in = "x" }
+y = { type = "integrator", in = ["-sy"], initial = 2 }
+sy = { type = "sgn", in = "y" })",
+                      "", library);
+  EXPECT_THAT(message_of<SolveError>([&] { run_of(made, {.until = 3}); }),
+              HasSubstr("'sx' and 'sy' slide along their switching surfaces at once at t = 2 s; expected one "
+                        "sliding switch at a time"));
+}
+
 TEST(Events, ASlideEndsWhereThePushBecomesTooStrong) {
   // x' = −sign x + 0.8 t: slides until t = 1.25, then x = 0.4 (t − 1.25)².
   const BlockLibrary library = library_with_sign();
@@ -272,24 +284,19 @@ x = { type = "integrator", in = ["-s", "ramp"], initial = 0.1 })",
   EXPECT_EQ(row_values(result, "s").back(), 1);
 }
 
+/// One bit of memory that conditions on `in` set and clear.
+BlockLibrary library_with_bit(const std::string& set, const std::string& clear) {
+  return shipped_blocks_and(
+      "bit",
+      "[inputs]\nin = {}\n[outputs]\nout = {}\n[memories]\nq = 0\n[equations]\nout = \"q\"\n"
+      "[[events]]\nwhen = \"" +
+          set + "\"\nset = { q = 1 }\n[[events]]\nwhen = \"" + clear + "\"\nset = { q = 0 }\n");
+}
+
 TEST(Events, AMemoryThatUndoesItselfChatters) {
-  const BlockLibrary library = shipped_blocks_and("flip", R"([inputs]
-in = {}
-[outputs]
-out = {}
-[memories]
-q = 0
-[equations]
-out = "q"
-[[events]]
-when = "in > 0"
-set = { q = 1 }
-[[events]]
-when = "in < 0"
-set = { q = 0 }
-)");
+  const BlockLibrary library = library_with_bit("in > 0", "in < 0");
   const Compiled made(R"(one = { type = "constant" }
-f = { type = "flip", in = "x" }
+f = { type = "bit", in = "x" }
 x = { type = "integrator", in = ["0.5*one", "-f"], initial = -1 })",
                       "", library);
   const std::string message = message_of<SolveError>([&] { run_of(made, {.until = 6}); });
@@ -297,23 +304,9 @@ x = { type = "integrator", in = ["0.5*one", "-f"], initial = -1 })",
 }
 
 TEST(Events, EventsThatSetEachOtherOffAreEndedByName) {
-  const BlockLibrary library = shipped_blocks_and("odd", R"([inputs]
-in = {}
-[outputs]
-out = {}
-[memories]
-q = 0
-[equations]
-out = "q"
-[[events]]
-when = "in > 0.5"
-set = { q = 0 }
-[[events]]
-when = "in < 0.5"
-set = { q = 1 }
-)");
+  const BlockLibrary library = library_with_bit("in < 0.5", "in > 0.5");
   const std::string message = message_of<SolveError>(
-      [&] { run_of(Compiled("a = { type = \"odd\", in = \"a\" }", "", library), {.until = 1}); });
+      [&] { run_of(Compiled("a = { type = \"bit\", in = \"a\" }", "", library), {.until = 1}); });
   EXPECT_THAT(message, HasSubstr("switches without end at t = 0"));
 }
 
