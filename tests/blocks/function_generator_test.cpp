@@ -58,7 +58,8 @@ TEST(Recording, FollowsAColumnOfAFile) {
   options.until = 3;
   options.samples = 2;
   const auto result = run(Program(assemble(flat)), flat, options);
-  EXPECT_NEAR(row_values(result, "x").back(), 0.005 + 1.99, 1e-9);  // tolerance 1e-8 of few steps of low order
+  EXPECT_NEAR(row_values(result, "x").back(), 0.005 + 1.99,
+              1e-9);  // tolerance 1e-8 of few steps of low order
 }
 
 std::string refusal(const std::string& points) {

@@ -76,9 +76,10 @@ TEST(Network, RefusesAStartThatIsNotFinite) {
 }
 
 TEST(Network, ReportsAllFindingsTogether) {
-  const BlockLibrary library = shipped_blocks_and(
-      "odd",
-      "[inputs]\nin = {}\n[outputs]\na = {}\nb = {}\n[equations]\na = \"if(in, 1, 2)\"\nb = \"if(in == 1, 1, 2)\"\n");
+  const BlockLibrary library =
+      shipped_blocks_and("odd",
+                         "[inputs]\nin = {}\n[outputs]\na = {}\nb = {}\n[equations]\na = \"if(in, 1, 2)\"\nb "
+                         "= \"if(in == 1, 1, 2)\"\n");
   const std::string text = testing::diagram_text(
       "o = { type = \"odd\", in = \"x\" }\nx = { type = \"integrator\", in = [\"-x\"] }\n");
   try {

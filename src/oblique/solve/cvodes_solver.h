@@ -11,9 +11,9 @@ namespace oblique {
 
 struct SolverSettings {
   double relative_tolerance = 1e-8;
-  double absolute_tolerance = 1e-8;         ///< [machine unit]
+  double absolute_tolerance = 1e-8;  ///< [machine unit]
   long max_steps = 10'000'000;
-  bool adams = false;  ///< Adams–Moulton formulas in place of BDF
+  bool adams = false;                       ///< Adams–Moulton formulas in place of BDF
   std::vector<double> own_tolerances = {};  ///< [machine unit] of each state, where not all have that one
 };
 
