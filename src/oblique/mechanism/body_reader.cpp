@@ -48,6 +48,8 @@ class BodyReader {
       read_triangle(names, sides, turn);
     }
     read_marks();
+    body_.mass = positive("mass", "kg").value_or(0);
+    body_.width = positive("width", mechanism_.length_unit).value_or(0);
     reader_.finish();
     check_distances();
     check_frame();
@@ -82,6 +84,14 @@ class BodyReader {
       return std::nullopt;
     }
     return length;
+  }
+
+  std::optional<double> positive(const std::string& key, std::string_view unit) {
+    const auto value = reader_.quantity(key, unit);
+    if (!value || (*value > 0 && std::isfinite(*value))) return value;
+    reader_.report(key, fmt::format("'{}' of {} is {}", key, reader_.what(), *value),
+                   fmt::format("a number above 0 [{}]", unit));
+    return std::nullopt;
   }
 
   void read_bar(const std::vector<std::string>& names, std::optional<double> length, bool has_triangle_keys) {

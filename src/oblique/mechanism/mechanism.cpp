@@ -29,8 +29,12 @@ std::optional<std::size_t> Mechanism::find_body(std::string_view name) const {
   return index_of(bodies, [&](const Body& b) { return b.name == name; });
 }
 
+std::optional<std::size_t> Mechanism::find_slide(std::string_view name) const {
+  return index_of(slides, [&](const Slide& s) { return s.name == name; });
+}
+
 std::optional<std::size_t> Mechanism::drive_of(std::size_t body) const {
-  return index_of(drives, [&](const Drive& d) { return d.body == body; });
+  return index_of(drives, [&](const Drive& d) { return !d.slide && d.body == body; });
 }
 
 std::vector<std::size_t> Mechanism::bodies_at(std::size_t point) const {

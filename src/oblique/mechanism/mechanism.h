@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include <oblique/text/diagnostic.h>
+#include <oblique/text/expression.h>
 
 namespace oblique {
 
@@ -17,12 +18,12 @@ namespace oblique {
 class MechanismError : public Error {
  public:
   enum class Kind {
-    file,         ///< the file contradicts itself or the format
-    request,      ///< the caller asks for something that has no answer (no drive, one position …)
-    mobility,     ///< degrees of freedom and drives do not match
-    group_class,  ///< the links form a group that is neither crank nor dyad
-    sketch,       ///< the sketch does not pick an assembly mode
-    assembly,     ///< the links do not reach each other at the start position
+    file,        ///< the file contradicts itself or the format
+    request,     ///< the caller asks for something that has no answer (no drive, one position …)
+    mobility,    ///< degrees of freedom and drives do not match
+    constraint,  ///< pairs repeat or contradict each other
+    sketch,      ///< the sketch does not pick an assembly mode
+    assembly,    ///< the links do not reach each other at the start position
   };
 
   explicit MechanismError(std::vector<Diagnostic> diagnostics)
@@ -55,19 +56,43 @@ struct Body {
   std::string name;
   std::vector<BodyPoint> points;
   Place place;
+  double mass = 0;   ///< [kg]; 0: not given
+  double width = 0;  ///< across the bar [length unit]; for its moment of inertia
 
   /// The body's point with this index in Mechanism::points, or nothing.
   const BodyPoint* find(std::size_t point) const;
 };
 
-/// Turns a body: the angle of first → second point from +x is start + speed·t.
+/// A point that stays on a line of the frame or of a body: one pair, of which the point's body may turn (a
+/// pin in a slot), or may not (`angle`: a full prismatic pair).
+///
+///            point ·
+///     - - - - - - - - - - - - -   the line, shifted by `offset` to the left of first → second
+///     first ·────────→· second    of `carrier`
+struct Slide {
+  std::string name;
+  std::size_t point = 0;              ///< that slides; index in Mechanism::points
+  std::size_t first = 0, second = 0;  ///< the points that name the line; indices in Mechanism::points
+  std::optional<std::size_t>
+      carrier;                    ///< body that carries the line, index in Mechanism::bodies; none: the frame
+  double offset = 0;              ///< of the line to the left of first → second [length unit]
+  std::optional<std::size_t> of;  ///< body that keeps `angle` to the line; none: a pin in a slot
+  double angle = 0;               ///< from first → second to the first → second point of `of` [rad]
+  Place place;
+};
+
+/// Turns a body, whose angle of first → second point from +x is then given; or moves a slide, whose distance
+/// from the first point of its line is. The given value is start + ∫ speed dt.
 struct Drive {
   std::string name;
-  std::size_t body = 0;   ///< index in Mechanism::bodies
-  std::size_t about = 0;  ///< index in Mechanism::points; a point of the body
-  double speed = 0;       ///< [rad/s], not zero
-  double start = 0;       ///< [rad]
+  std::size_t body = 0;   ///< index in Mechanism::bodies; unused with `slide`
+  std::size_t about = 0;  ///< index in Mechanism::points, a point of the body; unused with `slide`
+  double speed = 0;       ///< [rad/s] or [length unit/s]; of a drive with a law: at the start
+  double start = 0;       ///< [rad] or [length unit]
   Place place;
+  std::optional<std::size_t> slide = {};  ///< index in Mechanism::slides
+  std::optional<Expression> law = {};     ///< speed as an expression of `time`, in units of `law_scale`
+  double law_scale = 1;                   ///< [rad/s] or [length unit/s]
 };
 
 /// A rough position of a point at the start; picks assembly modes and nothing else.
@@ -84,12 +109,14 @@ struct Mechanism {
   std::string length_unit = "m";
   std::vector<Point> points;  ///< those of the frame first, then in the order in which the bodies name them
   std::vector<Body> bodies;
+  std::vector<Slide> slides;
   std::vector<Drive> drives;
   std::vector<SketchPoint> sketch;
 
   /// Indices by name, or nothing.
   std::optional<std::size_t> find_point(std::string_view name) const;
   std::optional<std::size_t> find_body(std::string_view name) const;
+  std::optional<std::size_t> find_slide(std::string_view name) const;
 
   /// The drive that turns a body, or nothing.
   std::optional<std::size_t> drive_of(std::size_t body) const;
@@ -99,6 +126,15 @@ struct Mechanism {
   /// Largest distance between two points of one body [length unit]; 0 without bodies.
   double largest_length() const;
 };
+
+/// The names of points, bodies, slides … in their order, for `suggest`.
+template <class Items>
+std::vector<std::string> names_of(const Items& items) {
+  std::vector<std::string> names;
+  names.reserve(items.size());
+  for (const auto& item : items) names.push_back(item.name);
+  return names;
+}
 
 /// Distance between two points of one body [length unit]; both must be points of it.
 double distance(const Body& body, std::size_t first, std::size_t second);

@@ -1,26 +1,21 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/mechanism/read_mechanism.h>
 
-#include <array>
-#include <cmath>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include <oblique/mechanism/body_reader.h>
+#include <oblique/mechanism/drive_reader.h>
+#include <oblique/mechanism/slide_reader.h>
 #include <oblique/text/document.h>
 #include <oblique/text/quantity.h>
 #include <oblique/text/table_reader.h>
 
 namespace oblique {
 namespace {
-
-template <class Items>
-std::vector<std::string> names_of(const Items& items) {
-  std::vector<std::string> names;
-  names.reserve(items.size());
-  for (const auto& item : items) names.push_back(item.name);
-  return names;
-}
 
 class MechanismReader {
  public:
@@ -90,72 +85,13 @@ class MechanismReader {
   void read_slides() {
     const Value* const slides = reader_.table("slides");
     if (slides == nullptr) return;
-    has_slides_ = true;
-    report_slides(slides->position, "[slides] cannot be solved");
-  }
-
-  void report_slides(SourcePosition position, const std::string& what) {
-    diagnostics_.add({reader_.place(position), what + ": slides are not handled by this version",
-                      "bodies joined by hinges only",
-                      "replace a slide by a long bar where that is near enough"});
+    for (const Entry& entry : slides->entries) read_slide(entry, mechanism_, diagnostics_);
   }
 
   void read_drives() {
     const Value* const drives = reader_.table("drives");
     if (drives == nullptr) return;
-    for (const Entry& entry : drives->entries) {
-      if (check_name("drive", entry.key, reader_.place(entry.position), diagnostics_)) read_drive(entry);
-    }
-  }
-
-  void read_drive(const Entry& entry) {
-    TableReader reader(mechanism_.file, entry.value, fmt::format("drive '{}'", entry.key), diagnostics_);
-    if (entry.value.kind != Value::Kind::table) return;  // reported by the reader
-    if (entry.value.find("slides") != nullptr) {
-      if (!has_slides_) report_slides(entry.position, reader.what() + " moves a slide");
-      return;
-    }
-    const auto turns = reader.required_string("turns", "turns = the name of a body");
-    const auto about = reader.required_string("about", "about = the point the body turns about");
-    const auto speed = reader.required_quantity("speed", "rad/s");
-    const auto start = reader.quantity("start", "rad");
-    reader.finish();
-    if (speed && *speed == 0) {
-      reader.report("speed", fmt::format("{} has speed zero and never turns", reader.what()),
-                    "a speed other than 0");
-    } else if (speed && !std::isfinite(*speed)) {
-      reader.report("speed", fmt::format("{} has speed {}", reader.what(), *speed), "a finite speed");
-    }
-    if (start && !std::isfinite(*start)) {
-      reader.report("start", fmt::format("{} starts at {}", reader.what(), *start), "a finite angle");
-    }
-    if (!turns || !about) return;
-    const auto body = mechanism_.find_body(*turns);
-    if (!body) {
-      reader.report("turns", fmt::format("{} turns '{}', which is no body", reader.what(), *turns), {},
-                    suggest(*turns, names_of(mechanism_.bodies)));
-      return;
-    }
-    const auto point = mechanism_.find_point(*about);
-    if (!point || mechanism_.bodies[*body].find(*point) == nullptr) {
-      std::vector<std::string> names;
-      for (const BodyPoint& p : mechanism_.bodies[*body].points)
-        names.push_back(mechanism_.points[p.point].name);
-      reader.report(
-          "about",
-          fmt::format("{} turns about '{}', which is no point of body '{}'", reader.what(), *about, *turns),
-          {}, suggest(*about, names));
-      return;
-    }
-    if (const auto other = mechanism_.drive_of(*body)) {
-      reader.report(
-          "turns",
-          fmt::format("body '{}' is turned by drive '{}' already", *turns, mechanism_.drives[*other].name),
-          "one drive for a body");
-      return;
-    }
-    mechanism_.drives.push_back(
-        {entry.key, *body, *point, speed.value_or(1), start.value_or(0), reader.place(entry.position)});
+    for (const Entry& entry : drives->entries) read_drive(entry, mechanism_, diagnostics_);
   }
 
   void read_sketch() {
@@ -177,21 +113,24 @@ class MechanismReader {
 
   /// A name means one thing: the columns of a motion and the blocks of a patch carry these names.
   void check_names() {
-    for (const Body& body : mechanism_.bodies) {
-      if (mechanism_.find_point(body.name)) {
-        diagnostics_.add({body.place,
-                          fmt::format("'{}' is the name of a body and of a point", body.name),
+    std::vector<std::pair<std::string_view, std::string>> seen;  // kind and name
+    for (const Point& point : mechanism_.points) seen.emplace_back("point", point.name);
+    const auto check = [&](std::string_view kind, const std::string& name, const Place& place) {
+      for (const auto& [other_kind, other] : seen) {
+        if (other != name || other_kind == kind) continue;
+        // a drive may have the name of the body that it turns
+        if (kind == "drive" && other_kind == "body") continue;
+        diagnostics_.add({place,
+                          fmt::format("'{}' is the name of a {} and of a {}", name, kind, other_kind),
                           {},
                           "rename one of them"});
       }
-    }
+      seen.emplace_back(kind, name);
+    };
+    for (const Body& body : mechanism_.bodies) check("body", body.name, body.place);
+    for (const Slide& slide : mechanism_.slides) check("slide", slide.name, slide.place);
     for (const Drive& drive : mechanism_.drives) {
-      if (mechanism_.find_point(drive.name)) {
-        diagnostics_.add({drive.place,
-                          fmt::format("'{}' is the name of a drive and of a point", drive.name),
-                          {},
-                          "rename one of them"});
-      }
+      check("drive", drive.name, drive.place);
       if (drive.name == "t" || drive.name == "status") {
         diagnostics_.add(
             {drive.place,
@@ -223,7 +162,6 @@ class MechanismReader {
   Diagnostics diagnostics_;
   TableReader reader_;
   Mechanism mechanism_;
-  bool has_slides_ = false;
 };
 
 }  // namespace

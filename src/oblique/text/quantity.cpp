@@ -121,8 +121,12 @@ std::vector<std::string> names_like(const Unit& wanted) {
 double parse_quantity(std::string_view text, const Unit& wanted, const NameLookup& lookup) {
   std::size_t rest = 0;
   const double number = evaluate(parse_expression_prefix(text, rest), lookup);
+  return number * unit_factor(text, rest, wanted, lookup);
+}
+
+double unit_factor(std::string_view text, std::size_t rest, const Unit& wanted, const NameLookup& lookup) {
   const std::string_view unit_text = trim(text.substr(rest));
-  if (unit_text.empty()) return number;
+  if (unit_text.empty()) return 1;
   const int column = static_cast<int>(rest) + 1;
   const auto unit = parse_unit(unit_text);
   if (!unit) {
@@ -138,7 +142,7 @@ double parse_quantity(std::string_view text, const Unit& wanted, const NameLooku
                           fmt::format("a quantity in '{}'", wanted.name),
                           fmt::format("give it in '{}', or as a number without a unit", wanted.name)};
   }
-  return number * (unit->scale / wanted.scale);
+  return unit->scale / wanted.scale;
 }
 
 }  // namespace oblique

@@ -29,4 +29,8 @@ std::optional<Unit> parse_unit(std::string_view text);
 /// without a unit the number is in `wanted` already. Throws ExpressionError.
 double parse_quantity(std::string_view text, const Unit& wanted, const NameLookup& lookup = {});
 
+/// What a number before the unit in `text`, from `rest` on, is multiplied by to be in `wanted`; 1 where there
+/// is none. Throws ExpressionError.
+double unit_factor(std::string_view text, std::size_t rest, const Unit& wanted, const NameLookup& lookup = {});
+
 }  // namespace oblique
