@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <array>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -13,14 +15,29 @@ namespace oblique::cli {
 namespace {
 
 std::string describe(const Mechanism& mechanism, const Group& group) {
-  if (const auto* const crank = std::get_if<CrankGroup>(&group)) {
-    return fmt::format("crank {}: turns about {} with drive '{}'", crank->name,
-                       mechanism.points[crank->pivot].name, mechanism.drives[crank->drive].name);
+  if (group.kind == GroupKind::crank) {
+    return fmt::format("crank {}: turns about {} with drive '{}'", group.name,
+                       mechanism.points[pivot_of(group)].name, mechanism.drives[group.drives.front()].name);
   }
-  const auto& dyad = std::get<DyadGroup>(group);
-  return fmt::format("dyad {} (class II, RRR): {} lies {} of {} → {}", dyad.name,
-                     mechanism.points[dyad.c].name, dyad.side > 0 ? "left" : "right",
-                     mechanism.points[dyad.p].name, mechanism.points[dyad.q].name);
+  if (group.kind == GroupKind::slider) {
+    return fmt::format("slider {}: moved along '{}' by drive '{}'", group.name,
+                       mechanism.slides[group.slides.front()].name, mechanism.drives[group.drives.front()].name);
+  }
+  constexpr std::array<const char*, 9> kRoman{"", "I", "II", "III", "IV", "V", "VI", "VII", "VIII"};
+  const auto number = static_cast<std::size_t>(group.assur_class);
+  const std::string assur_class = number < kRoman.size() ? kRoman[number] : std::to_string(number);
+  const std::string driven =
+      group.drives.empty() ? "" : fmt::format(", driven inside by '{}'", mechanism.drives[group.drives.front()].name);
+  if (const auto dyad = dyad_of(group)) {
+    return fmt::format("dyad {} (class II, RRR): {} lies {} of {} → {}", group.name, mechanism.points[dyad->c].name,
+                       dyad->side > 0 ? "left" : "right", mechanism.points[dyad->p].name,
+                       mechanism.points[dyad->q].name);
+  }
+  if (group.assur_class == 2 && group.kind != GroupKind::general) {
+    return fmt::format("dyad {} (class II, {})", group.name, kind_name(group.kind));
+  }
+  return fmt::format("group {} (class {}, order {}): {}{}", group.name, assur_class, group.order,
+                     group.kind == GroupKind::triad ? "a triad, in closed form" : "by Newton's method", driven);
 }
 
 /// What keeps the mechanism from turning; nothing where it turns, or is a structure.
@@ -29,7 +46,7 @@ std::optional<std::string> obstacle_of(const Mechanism& mechanism, const Structu
   const auto obstacle = find_obstacle(mechanism, structure);
   if (!obstacle) return std::nullopt;
   return fmt::format(
-      "over one turn the group {} {} at t = {:.6g} s", group_name(structure.groups[obstacle->group]),
+      "over one turn the group {} {} at t = {:.6g} s", structure.groups[obstacle->group].name,
       obstacle->status == oblique::Status::open ? "cannot be assembled" : "passes a dead centre",
       obstacle->time);
 }
@@ -50,7 +67,7 @@ std::string mechanism_json(const std::string& path, const Mechanism& mechanism, 
                            const std::optional<std::string>& finding) {
   nlohmann::ordered_json groups = nlohmann::ordered_json::array();
   for (const Group& group : structure.groups) {
-    groups.push_back({{"name", group_name(group)}, {"description", describe(mechanism, group)}});
+    groups.push_back({{"name", group.name}, {"description", describe(mechanism, group)}});
   }
   nlohmann::ordered_json json{{"file", path},
                               {"kind", "mechanism"},

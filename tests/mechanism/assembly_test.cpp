@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/mechanism/assembly.h>
 
+#include <array>
 #include <cmath>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <oblique/mechanism/kinematics.h>
 #include <oblique/mechanism/read_mechanism.h>
 
 namespace oblique {
@@ -30,7 +32,7 @@ Structure structure_of(const std::string& text) {
 }
 
 int side(const Structure& structure) {
-  return std::get<DyadGroup>(structure.groups.at(0)).side;
+  return structure.groups.at(0).side;
 }
 
 std::pair<MechanismError::Kind, std::string> refusal(const std::string& text) {
@@ -109,7 +111,8 @@ TEST(AssemblyModes, AreOneForACrankAndTwoForADyad) {
   const Mechanism four_bar =
       read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/four-bar.toml");
   const Structure structure = decompose(four_bar);
-  const auto groups = assembly_modes(four_bar, structure, drive_angles(four_bar, 0));
+  const auto groups = assembly_modes(four_bar, structure, std::array{DriveState{0, 1, 0}},
+                                    start_configuration(four_bar, structure));
   ASSERT_EQ(groups.size(), 2U);
   ASSERT_EQ(groups[0].modes.size(), 1U);
   EXPECT_EQ(groups[0].modes[0].positions[0], Eigen::Vector2d(1, 0));
@@ -127,7 +130,7 @@ TEST(AssemblyModes, AreNoneWhereTheLinksDoNotReach) {
   Mechanism mechanism = parse_mechanism(truss("C = [3, 1]"), "truss.toml");
   const Structure structure = decompose(mechanism);
   mechanism.points[1].position.x() = 8;
-  EXPECT_TRUE(assembly_modes(mechanism, structure, {}).at(0).modes.empty());
+  EXPECT_TRUE(assembly_modes(mechanism, structure, {}, start_configuration(mechanism, structure)).at(0).modes.empty());
 }
 
 }  // namespace

@@ -126,7 +126,7 @@ Departure departure(const std::string& file, const Oracle& oracle) {
   for (std::size_t row = 0; row < motion.times.size(); ++row) {
     const Configuration& here = motion.configurations[row];
     EXPECT_EQ(here.status, Status::ok);
-    const auto state = oracle.equations.solve(motion.drive_angles[row][0], mechanism.drives[0].speed, guess);
+    const auto state = oracle.equations.solve(motion.drives[row][0].value, mechanism.drives[0].speed, guess);
     guess = state.theta;
     for (const auto& point : oracle.equations.points) {
       const auto moving = oracle.equations.point(point, state);
@@ -186,7 +186,7 @@ TEST(ExactMotion, OfTheFourBarFulfilsFreudensteinsEquation) {
   const double a = 1, b = 3.5, c = 3, d = 4;
   const Motion motion = solve_motion(mechanism, 361);
   for (std::size_t row = 0; row < motion.times.size(); ++row) {
-    const double input = motion.drive_angles[row][0];
+    const double input = motion.drives[row][0].value;
     const double output = motion.configurations[row].bodies[2].angle + std::numbers::pi;  // of D→C
     // terms up to 4, a dozen roundings
     EXPECT_NEAR(

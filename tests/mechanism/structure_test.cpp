@@ -23,7 +23,7 @@ Mechanism shipped(const std::string& name) {
 
 std::vector<std::string> names(const Structure& structure) {
   std::vector<std::string> all;
-  for (const Group& group : structure.groups) all.push_back(group_name(group));
+  for (const Group& group : structure.groups) all.push_back(group.name);
   return all;
 }
 
@@ -71,16 +71,19 @@ TEST(Structure, TakesAFourBarApart) {
   const Mechanism four_bar = shipped("four-bar.toml");
   const Structure structure = decompose(four_bar);
   EXPECT_THAT(names(structure), ElementsAre("AB", "BCM-CD"));
-  const auto& crank = std::get<CrankGroup>(structure.groups[0]);
-  EXPECT_EQ(four_bar.points[crank.pivot].name, "A");
-  const auto& dyad = std::get<DyadGroup>(structure.groups[1]);
+  EXPECT_EQ(structure.groups[0].kind, GroupKind::crank);
+  EXPECT_EQ(structure.groups[0].assur_class, 1);
+  EXPECT_EQ(four_bar.points[pivot_of(structure.groups[0])].name, "A");
+  EXPECT_EQ(structure.groups[1].assur_class, 2);
+  EXPECT_EQ(structure.groups[1].order, 2);
+  const Dyad dyad = dyad_of(structure.groups[1]).value();
   EXPECT_EQ(four_bar.points[dyad.p].name, "B");
   EXPECT_EQ(four_bar.points[dyad.q].name, "D");
   EXPECT_EQ(four_bar.points[dyad.c].name, "C");
   EXPECT_EQ(dyad.r1, 3.5);
   EXPECT_EQ(dyad.r2, 3);
   EXPECT_EQ(dyad.side, 1);
-  EXPECT_THAT(group_bodies(structure.groups[1]), ElementsAre(1U, 2U));
+  EXPECT_THAT(structure.groups[1].bodies, ElementsAre(1U, 2U));
 }
 
 TEST(Structure, TakesAnEightBarApartWhateverTheOrderOfItsBodies) {
@@ -104,7 +107,7 @@ wrist    = { turns = "hand", about = "B", speed = 2 }
 shoulder = { turns = "arm", about = "A", speed = 1 }
 )"));
   EXPECT_THAT(names(robot), ElementsAre("arm", "hand"));
-  EXPECT_EQ(std::get<CrankGroup>(robot.groups[1]).drive, 0U);
+  EXPECT_THAT(robot.groups[1].drives, ElementsAre(0U));
 }
 
 TEST(Structure, IsRefusedWhenUnderDriven) {
@@ -162,9 +165,9 @@ crank = { turns = "AB", about = "A", speed = 1 }
             HasSubstr("test.toml:11:1: body 'CX' can move freely (mobility 1 after the drives)")));
 }
 
-// The ternary link BCD on three leads, the crank OA among them (method of 003_69ea068b7b221c3d.txt).
-TEST(Structure, NamesTheBodiesOfAClassThreeGroup) {
-  const auto [kind, text] = refusal(R"([frame]
+// The ternary link BCD on three leads, one of them from the crank OA (method of 003_69ea068b7b221c3d.txt).
+TEST(Structure, KnowsATriad) {
+  const Structure triad = find_groups(mechanism(R"([frame]
 O = [0, 0]
 P = [0, 1.2]
 E = [1.46, 0.824]
@@ -176,14 +179,16 @@ DE  = { points = ["D", "E"], length = 0.757 }
 PC  = { points = ["P", "C"], length = 1.945 }
 [drives]
 crank = { turns = "OA", about = "O", speed = 1 }
-)");
-  EXPECT_EQ(kind, MechanismError::Kind::group_class);
-  EXPECT_THAT(text, HasSubstr("bodies 'AB', 'BCD', 'DE', 'PC' form a group of class III or higher; this "
-                              "version handles cranks and dyads"));
+)"));
+  EXPECT_THAT(names(triad), ElementsAre("OA", "AB-BCD-DE-PC"));
+  EXPECT_EQ(triad.groups[1].kind, GroupKind::triad);
+  EXPECT_EQ(triad.groups[1].assur_class, 3);
+  EXPECT_EQ(triad.groups[1].order, 3);
 }
 
-TEST(Structure, ExplainsADriveWhosePivotIsNotKnown) {
-  const auto [kind, text] = refusal(R"([frame]
+// The drive gives the direction of the coupler, whose place follows only with its neighbours.
+TEST(Structure, KnowsADriveInsideAGroup) {
+  const Structure structure = find_groups(mechanism(R"([frame]
 A = [0, 0]
 D = [4, 0]
 [bodies]
@@ -192,10 +197,10 @@ BC = { points = ["B", "C"], length = 3.5 }
 CD = { points = ["C", "D"], length = 3 }
 [drives]
 push = { turns = "BC", about = "B", speed = 1 }
-)");
-  EXPECT_EQ(kind, MechanismError::Kind::group_class);
-  EXPECT_THAT(text,
-              HasSubstr("drive 'push' turns 'BC' about 'B', whose motion depends on the driven body itself"));
+)"));
+  EXPECT_THAT(names(structure), ElementsAre("AB-BC-CD"));
+  EXPECT_EQ(structure.groups[0].kind, GroupKind::general);
+  EXPECT_THAT(structure.groups[0].drives, ElementsAre(0U));
 }
 
 }  // namespace

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <span>
+
 #include <oblique/mechanism/configuration.h>
+#include <oblique/mechanism/drive_law.h>
 #include <oblique/mechanism/structure.h>
 
 namespace oblique {
 
 /// One way to put a group together.
 struct AssemblyMode {
-  int side = 0;                            ///< as in DyadGroup
+  GroupPose pose;                          ///< with its side, as in Group
   bool selected = false;                   ///< it is the one of the structure
   std::vector<std::size_t> points;         ///< the points the group places, indices in Mechanism::points
   std::vector<Eigen::Vector2d> positions;  ///< of `points` [length unit]
@@ -18,18 +21,20 @@ struct AssemblyMode {
 /// assembled.
 struct GroupModes {
   std::size_t group = 0;  ///< index in Structure::groups
+  bool complete = true;   ///< false: found by a search, so there are at least these
   std::vector<AssemblyMode> modes;
 };
 
-/// Sets the side of each dyad: of the two ways to assemble it at the start position, the one nearer to the
-/// sketched points of its bodies (root sum of squared distances). Throws MechanismError: kind `assembly`
-/// where links do not reach, kind `sketch` where no sketched point tells the two modes apart; the message
-/// lists both as lines to paste.
+/// Sets the side and the start of each group: of the ways to assemble it at the start position, the one nearest
+/// to the sketched points of its bodies (root sum of squared distances). Throws MechanismError: kind `assembly`
+/// where links do not reach, kind `sketch` where no sketched point tells the modes apart (the message lists them
+/// as lines to paste), kind `constraint` where conditions depend on each other.
 void choose_modes(const Mechanism& mechanism, Structure& structure);
 
-/// Every assembly mode of every group at the given drive angles [rad]. Groups that hang on one that cannot be
-/// assembled have no modes. Cranks have one mode, dyads two (one where the triangle is flat).
+/// Every assembly mode of every group, the groups before it as in `here`, a configuration of the structure at
+/// these states of the drives (of a Follower, or `start_configuration`). Groups that hang on one that cannot be
+/// assembled have no modes.
 std::vector<GroupModes> assembly_modes(const Mechanism& mechanism, const Structure& structure,
-                                       std::span<const double> drive_angles);
+                                       std::span<const DriveState> drives, const Configuration& here);
 
 }  // namespace oblique

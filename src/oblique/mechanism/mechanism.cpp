@@ -15,6 +15,13 @@ std::optional<std::size_t> index_of(const Items& items, Predicate predicate) {
 
 }  // namespace
 
+std::optional<AtLimit> parse_at_limit(std::string_view text) {
+  if (text == "open") return AtLimit::open;
+  if (text == "stop") return AtLimit::stop;
+  if (text == "reverse") return AtLimit::reverse;
+  return std::nullopt;
+}
+
 const BodyPoint* Body::find(std::size_t point) const {
   const auto found =
       std::find_if(points.begin(), points.end(), [&](const BodyPoint& p) { return p.point == point; });

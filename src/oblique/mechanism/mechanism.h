@@ -101,6 +101,34 @@ struct SketchPoint {
   Eigen::Vector2d position = Eigen::Vector2d::Zero();  ///< [length unit]
 };
 
+/// What a mechanism is known to do: a column of its motion at a moment, or its extreme over a turn.
+struct MechanismExpectation {
+  enum class Kind { at_time, at_value, maximum, minimum };
+  std::string text;    ///< the key as written, "P.x at 90 deg"
+  std::string column;  ///< as `motion_columns` names it
+  Kind kind = Kind::at_time;
+  double at = 0;  ///< [s]; `at_value`: of the first drive [rad] or [length unit], the first time it is there
+  double value = 0;
+  double within = 0;
+  Place place;
+};
+
+/// What happens where a mechanism can go no further.
+enum class AtLimit {
+  open,     ///< the drives go on; rows beyond have no numbers
+  stop,     ///< the motion ends
+  reverse,  ///< the drives run backwards from there, up to the other limit
+};
+
+/// "open", "stop", "reverse"; nothing for other texts.
+std::optional<AtLimit> parse_at_limit(std::string_view text);
+
+/// How long a motion lasts unless the request says otherwise.
+struct MotionSettings {
+  std::optional<double> until;        ///< [s]; none: a turn of the first drive
+  std::optional<AtLimit> at_limit;
+};
+
 /// A plane mechanism as its file has it (oblique-mechanism/1). Lengths and coordinates are in `length_unit`.
 struct Mechanism {
   std::string file;
@@ -112,6 +140,8 @@ struct Mechanism {
   std::vector<Slide> slides;
   std::vector<Drive> drives;
   std::vector<SketchPoint> sketch;
+  MotionSettings motion;
+  std::vector<MechanismExpectation> expectations;
 
   /// Indices by name, or nothing.
   std::optional<std::size_t> find_point(std::string_view name) const;

@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -11,117 +14,168 @@ namespace oblique {
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
-/// Largest turn of a drive between two positions through which the bodies' angles are followed.
-constexpr double kDriveStep = std::numbers::pi / 180;
-/// Largest turn of a body between two such positions; a larger one halves the step.
-constexpr double kBodyStep = std::numbers::pi / 6;
-/// Halvings of a step: beyond them a turn is a jump (P passing over Q), not a motion.
-constexpr int kMostHalvings = 30;
 
-/// Follows the angles of bodies from one time to the next. An angle known up to whole turns is continued by
-/// the turn nearest to the last one, which is right as long as no body turns by half a turn in a step; steps
-/// are made so small that none turns by more than kBodyStep.
-class AngleTracker {
- public:
-  AngleTracker(const Mechanism& mechanism, const Structure& structure)
-      : mechanism_(mechanism), structure_(structure) {
-    for (const Drive& drive : mechanism.drives) fastest_ = std::max(fastest_, std::abs(drive.speed));
+[[noreturn]] void refuse(const Mechanism& mechanism, std::string what, std::string expected, std::string remedy) {
+  Diagnostic finding;
+  finding.place =
+      mechanism.drives.empty() ? Place{mechanism.file, {}} : mechanism.drives.front().place;
+  finding.what = std::move(what);
+  finding.expected = std::move(expected);
+  finding.remedy = std::move(remedy);
+  throw MechanismError(MechanismError::Kind::request, std::move(finding));
+}
+
+const Drive& first_drive(const Mechanism& mechanism) {
+  if (mechanism.drives.empty()) {
+    refuse(mechanism, "the mechanism has no drive and does not move", "[drives]",
+           R"(turn a link: crank = { turns = "AB", about = "A", speed = "1 rad/s" })");
   }
+  return mechanism.drives.front();
+}
 
-  /// The configuration at time `t`, its angles continuous with those of the call before.
-  Configuration advance(double t) {
-    const double begin = started_ ? time_ : t;
-    const auto steps = static_cast<long>(std::ceil(fastest_ * std::abs(t - begin) / kDriveStep));
-    for (long i = 1; i < steps; ++i) {
-      step_to(begin + (t - begin) * (static_cast<double>(i) / static_cast<double>(steps)), kMostHalvings);
-    }
-    started_ = true;
-    return step_to(t, kMostHalvings);
+/// Longest time in which a limit is looked for: a turn, or for a slide the way of ten times the longest link.
+double search_time(const Mechanism& mechanism) {
+  const Drive& drive = first_drive(mechanism);
+  if (!drive.slide) return period(mechanism);
+  constexpr double kLongestWay = 10;
+  return kLongestWay * mechanism.largest_length() / std::abs(drive.speed);
+}
+
+/// A time that goes to and fro between two limits, and in which direction it goes.
+class Reversal {
+ public:
+  Reversal(double low, double high) : low_(low), high_(high) {}
+
+  std::pair<double, double> at(double t) const {
+    if (!std::isfinite(low_) && t <= high_) return {t, 1};
+    const double width = high_ - low_;
+    double phase = std::fmod(t - low_, 2 * width);
+    if (phase < 0) phase += 2 * width;
+    return phase <= width ? std::pair{low_ + phase, 1.0} : std::pair{high_ - (phase - width), -1.0};
   }
 
  private:
-  Configuration step_to(double t, int halvings) {
-    Configuration next = solve_configuration(mechanism_, structure_, drive_angles(mechanism_, t));
-    if (next.status != Status::open) {
-      if (!angles_.empty() && halvings > 0 && t != time_ && largest_turn(next) > kBodyStep) {
-        step_to(time_ + (t - time_) / 2, halvings - 1);
-        return step_to(t, halvings - 1);
-      }
-      unwrap(next);
-    }
-    time_ = t;
-    return next;
-  }
-
-  double largest_turn(const Configuration& next) const {
-    double largest = 0;
-    for (std::size_t i = 0; i < angles_.size(); ++i) {
-      if (!mechanism_.drive_of(i)) {
-        largest = std::max(largest, std::abs(std::remainder(next.bodies[i].angle - angles_[i], kTurn)));
-      }
-    }
-    return largest;
-  }
-
-  void unwrap(Configuration& next) {
-    const bool first = angles_.empty();
-    angles_.resize(next.bodies.size());
-    for (std::size_t i = 0; i < angles_.size(); ++i) {
-      double& angle = next.bodies[i].angle;
-      if (!first && !mechanism_.drive_of(i)) angle += kTurn * std::round((angles_[i] - angle) / kTurn);
-      angles_[i] = angle;
-    }
-  }
-
-  const Mechanism& mechanism_;
-  const Structure& structure_;
-  double fastest_ = 0;  ///< [rad/s]
-  bool started_ = false;
-  double time_ = 0;
-  std::vector<double> angles_;  ///< of the last configuration that was not open
+  double low_, high_;
 };
+
+/// The rates of a motion that goes backwards.
+void turn_back(Configuration& configuration) {
+  for (PointState& point : configuration.points) point.velocity = -point.velocity;
+  for (BodyState& body : configuration.bodies) body.omega = -body.omega;
+  for (SlideState& slide : configuration.slides) slide.velocity = -slide.velocity;
+}
+
+std::vector<double> spread(double end, int positions) {
+  std::vector<double> times;
+  times.reserve(static_cast<std::size_t>(positions));
+  for (int k = 0; k < positions; ++k) times.push_back(end * k / (positions - 1));
+  return times;
+}
 
 }  // namespace
 
 double period(const Mechanism& mechanism) {
-  if (mechanism.drives.empty()) {
-    Diagnostic finding;
-    finding.place.file = mechanism.file;
-    finding.what = "the mechanism has no drive and does not move";
-    finding.expected = "[drives]";
-    finding.remedy = R"(turn a link: crank = { turns = "AB", about = "A", speed = "1 rad/s" })";
-    throw MechanismError(MechanismError::Kind::request, std::move(finding));
+  const Drive& drive = first_drive(mechanism);
+  if (mechanism.motion.until) return *mechanism.motion.until;
+  if (drive.slide) {
+    refuse(mechanism, fmt::format("drive '{}' moves a slide and makes no turn", drive.name),
+           "a first drive that turns a body", "give the time of the motion: --until, or until in [motion]");
   }
-  return kTurn / std::abs(mechanism.drives.front().speed);
+  if (!drive.law) return kTurn / std::abs(drive.speed);
+  // as long as ten turns at the speed of the start, or at the unit of the law
+  const double speed = std::max(std::abs(drive.speed), drive.law_scale);
+  if (const auto time = DriveClock(mechanism).time_of_way(0, kTurn, 10 * kTurn / speed)) return *time;
+  refuse(mechanism, fmt::format("drive '{}' makes no full turn within {:.4g} s", drive.name, 10 * kTurn / speed),
+         "a speed that turns it once", "give the time of the motion: --until, or until in [motion]");
+}
+
+double cycle(const Mechanism& mechanism, const Structure& structure) {
+  const Drive& drive = first_drive(mechanism);
+  if (!drive.slide || mechanism.motion.until) return period(mechanism);
+  const MotionRange range = find_range(mechanism, structure);
+  if (!range.backward || !range.forward) {
+    refuse(mechanism, fmt::format("drive '{}' moves a slide that meets no limit", drive.name), "an end of the motion",
+           "give its time: --until, or until in [motion]");
+  }
+  return 2 * (range.forward->time - range.backward->time);
 }
 
 void check_travel(const Mechanism& mechanism, double duration) {
   for (const Drive& drive : mechanism.drives) {
-    const double turns = std::abs(drive.speed) * duration / kTurn;
+    const double turns = std::abs(drive.speed) * duration / (drive.slide ? mechanism.largest_length() : kTurn);
     if (turns <= kMostTurns) continue;
     throw MechanismError(
         MechanismError::Kind::request,
         Diagnostic{drive.place,
-                   fmt::format("drive '{}' turns {:.3g} times in the {:.6g} s of the motion", drive.name,
-                               turns, duration),
-                   fmt::format("{:.0f} turns of the fastest drive at most", kMostTurns),
+                   fmt::format("drive '{}' {} in the {:.6g} s of the motion", drive.name,
+                               drive.slide ? fmt::format("goes {:.3g} times the longest link", turns)
+                                           : fmt::format("turns {:.3g} times", turns),
+                               duration),
+                   drive.slide ? fmt::format("{:.0f} times at most", kMostTurns)
+                               : fmt::format("{:.0f} turns of the fastest drive at most", kMostTurns),
                    "a motion lasts one turn of the first drive: put the fastest drive first in [drives], or "
                    "bring the speeds nearer to each other"});
   }
 }
 
+MotionRange find_range(const Mechanism& mechanism, const Structure& structure) {
+  const double time = search_time(mechanism);
+  check_travel(mechanism, time);
+  MotionRange range;
+  range.forward = Follower(mechanism, structure).advance_to_limit(time);
+  range.backward = Follower(mechanism, structure).advance_to_limit(-time);
+  return range;
+}
+
 Motion solve_motion(const Mechanism& mechanism, int positions) {
-  const double turn = period(mechanism);
-  if (positions < 2) {
+  MotionOptions options;
+  options.positions = positions;
+  return solve_motion(mechanism, options);
+}
+
+Motion solve_motion(const Mechanism& mechanism, const MotionOptions& options) {
+  const Drive& drive = first_drive(mechanism);
+  if (options.positions < 2) {
     Diagnostic finding;
-    finding.what = fmt::format("a motion of {} positions", positions);
+    finding.what = fmt::format("a motion of {} positions", options.positions);
     finding.expected = "two positions or more";
     throw MechanismError(MechanismError::Kind::request, std::move(finding));
   }
-  std::vector<double> times;
-  times.reserve(static_cast<std::size_t>(positions));
-  for (int k = 0; k < positions; ++k) times.push_back(turn * k / (positions - 1));
-  return solve_motion(mechanism, times);
+  const Structure structure = decompose(mechanism);
+  const auto until = options.until ? options.until : mechanism.motion.until;
+  const AtLimit wanted = options.at_limit.value_or(mechanism.motion.at_limit.value_or(AtLimit::open));
+  const bool to_and_fro = drive.slide && !until && wanted == AtLimit::open;
+  const AtLimit at_limit = to_and_fro ? AtLimit::reverse : wanted;
+  double end = until.value_or(0);
+  if (at_limit == AtLimit::open) {
+    if (!until) end = cycle(mechanism, structure);
+    return solve_motion(mechanism, structure, spread(end, options.positions));
+  }
+  const MotionRange range = find_range(mechanism, structure);
+  constexpr double kEndless = std::numeric_limits<double>::infinity();
+  const double low = range.backward ? range.backward->time : -kEndless;
+  const double high = range.forward ? range.forward->time : kEndless;
+  if (!until) end = at_limit == AtLimit::stop && range.forward ? high
+                            : range.forward && range.backward          ? 2 * (high - low)
+                                                                       : cycle(mechanism, structure);
+  if (at_limit == AtLimit::stop) {
+    return solve_motion(mechanism, structure, spread(std::min(end, high), options.positions));
+  }
+  const Reversal reversal(low, high);
+  std::vector<double> times = spread(end, options.positions);
+  std::vector<double> directions(times.size(), 1);
+  std::vector<double> mapped = times;
+  if (range.forward) {
+    for (std::size_t k = 0; k < times.size(); ++k) std::tie(mapped[k], directions[k]) = reversal.at(times[k]);
+  }
+  Motion motion = solve_motion(mechanism, structure, mapped);
+  motion.times = std::move(times);
+  for (std::size_t k = 0; k < directions.size(); ++k) {
+    if (directions[k] > 0) continue;
+    turn_back(motion.configurations[k]);
+    for (DriveState& state : motion.drives[k]) state.rate = -state.rate;
+  }
+  return motion;
 }
 
 Motion solve_motion(const Mechanism& mechanism, std::span<const double> times) {
@@ -134,11 +188,14 @@ Motion solve_motion(const Mechanism& mechanism, const Structure& structure, std:
   check_travel(mechanism, duration);
   Motion motion;
   motion.times.assign(times.begin(), times.end());
-  AngleTracker tracker(mechanism, structure);
+  Follower follower(mechanism, structure);
+  DriveClock clock(mechanism);
   for (const double t : times) {
-    motion.drive_angles.push_back(drive_angles(mechanism, t));
-    motion.configurations.push_back(tracker.advance(t));
+    motion.configurations.push_back(follower.advance(t));
+    motion.drives.emplace_back(mechanism.drives.size());
+    clock.at(t, motion.drives.back());
   }
+  motion.events = follower.events();
   return motion;
 }
 
@@ -152,7 +209,8 @@ std::vector<MotionColumn> motion_columns(const Mechanism& mechanism, const Motio
   };
   add("t", "s", [&](std::size_t row) { return motion.times[row]; });
   for (std::size_t i = 0; i < mechanism.drives.size(); ++i) {
-    add(mechanism.drives[i].name, "rad", [&](std::size_t row) { return motion.drive_angles[row][i]; });
+    add(mechanism.drives[i].name, mechanism.drives[i].slide ? length : "rad",
+        [&](std::size_t row) { return motion.drives[row][i].value; });
   }
   for (std::size_t i = 0; i < mechanism.points.size(); ++i) {
     if (mechanism.points[i].fixed) continue;
@@ -173,6 +231,15 @@ std::vector<MotionColumn> motion_columns(const Mechanism& mechanism, const Motio
         [&](std::size_t row) { return motion.configurations[row].bodies[i].omega; });
     add(name + ".alpha", "rad/s^2",
         [&](std::size_t row) { return motion.configurations[row].bodies[i].alpha; });
+  }
+  for (std::size_t i = 0; i < mechanism.slides.size(); ++i) {
+    const std::string& name = mechanism.slides[i].name;
+    const auto add_part = [&](const char* part, const std::string& unit, double SlideState::*value) {
+      add(name + part, unit, [&, value](std::size_t row) { return motion.configurations[row].slides[i].*value; });
+    };
+    add_part(".position", length, &SlideState::position);
+    add_part(".velocity", length + "/s", &SlideState::velocity);
+    add_part(".acceleration", length + "/s^2", &SlideState::acceleration);
   }
   return columns;
 }

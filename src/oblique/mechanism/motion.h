@@ -1,35 +1,59 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include <oblique/mechanism/configuration.h>
+#include <oblique/mechanism/drive_law.h>
+#include <oblique/mechanism/follower.h>
 
 namespace oblique {
 
-/// An exact motion as a table: row k stands for times[k], drive_angles[k] and configurations[k].
-/// Angles of bodies are continuous from row to row, not wrapped; those of the first row that can be assembled
-/// are in (−π, π], except for driven bodies, which have their drive's angle.
+/// An exact motion as a table: row k stands for times[k], drives[k] and configurations[k]. Angles of bodies are
+/// continuous from row to row, not wrapped; those of the start are in (−π, π], except for driven bodies, which
+/// have their drive's angle.
 struct Motion {
-  std::vector<double> times;                      ///< [s]
-  std::vector<std::vector<double>> drive_angles;  ///< [rad], one for each drive in every row
+  std::vector<double> times;                    ///< [s]
+  std::vector<std::vector<DriveState>> drives;  ///< one for each drive in every row
   std::vector<Configuration> configurations;
+  std::vector<MotionEvent> events;
 };
 
-/// Time of one turn of the first drive, 2π/|speed| [s]. Throws MechanismError (kind `request`) without a
-/// drive.
+struct MotionOptions {
+  int positions = 361;              ///< rows, both ends included
+  std::optional<double> until;      ///< end of the motion [s]; default: that of the file, or `cycle`
+  std::optional<AtLimit> at_limit;  ///< default: that of the file, or `open`
+};
+
+/// How far a mechanism can go from its start, within one turn of its first drive each way: nothing where it meets
+/// no limit.
+struct MotionRange {
+  std::optional<MotionEvent> backward, forward;
+};
+
+/// Time of the motion [s]: that of the file, or one turn of the first drive. Throws MechanismError (kind `request`) without a drive, for one that
+/// moves a slide, and for a law that makes no full turn.
 double period(const Mechanism& mechanism);
+
+/// How long a motion lasts by itself: `period`, or for a first drive that moves a slide the way to both limits and
+/// back.
+double cycle(const Mechanism& mechanism, const Structure& structure);
 
 /// Throws MechanismError (kind `request`) where a drive turns so often in `duration` [s] that nobody would
 /// wait for a motion that follows it: more than kMostTurns times.
 void check_travel(const Mechanism& mechanism, double duration);
 inline constexpr double kMostTurns = 1e4;
 
-/// One turn of the first drive in `positions` ≥ 2 rows t_k = T·k/(positions − 1), both ends included.
-/// Assembly modes keep their side of P → Q, also through a dead centre. Throws as `decompose`, and
-/// MechanismError (kind `request`) without a drive or for fewer than two positions.
+/// The limits before and after the start.
+MotionRange find_range(const Mechanism& mechanism, const Structure& structure);
+
+/// A motion in `options.positions` ≥ 2 rows at equal distances of time, both ends included. A first drive that
+/// moves a slide is reversed at its limits unless the options say otherwise. Throws MechanismError (kind
+/// `request`) without a drive or for fewer than two positions, and as `decompose`.
+Motion solve_motion(const Mechanism& mechanism, const MotionOptions& options);
 Motion solve_motion(const Mechanism& mechanism, int positions);
 
 /// As above at any times [s] (finite, in any order). Throws as `check_travel` for the way from each time to
@@ -45,7 +69,7 @@ struct MotionColumn {
 };
 
 /// `t`; each drive; `P.x P.y P.vx P.vy P.ax P.ay` of every moving point; `b.angle b.omega b.alpha` of every
-/// body. The last column of the file, `status`, is text and not among these.
+/// body; `s.position s.velocity s.acceleration` of every slide. The last column of the file, `status`, is text and not among these.
 std::vector<MotionColumn> motion_columns(const Mechanism& mechanism, const Motion& motion);
 
 /// The columns and `status` as CSV: a header of names, then a line for each row; numbers read back to the

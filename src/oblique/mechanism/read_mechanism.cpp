@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/mechanism/read_mechanism.h>
 
+#include <cmath>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -9,6 +10,7 @@
 
 #include <oblique/mechanism/body_reader.h>
 #include <oblique/mechanism/drive_reader.h>
+#include <oblique/mechanism/expectation.h>
 #include <oblique/mechanism/slide_reader.h>
 #include <oblique/text/document.h>
 #include <oblique/text/quantity.h>
@@ -34,6 +36,10 @@ class MechanismReader {
     read_slides();
     read_drives();
     read_sketch();
+    read_motion();
+    if (const Value* const expect = reader_.table("expect")) {
+      read_mechanism_expectations(*expect, mechanism_, diagnostics_);
+    }
     reader_.finish();
     check_names();
     check_shared_points();
@@ -108,6 +114,25 @@ class MechanismReader {
       } else if (position) {
         mechanism_.sketch.push_back({*point, *position});
       }
+    }
+  }
+
+  void read_motion() {
+    const Value* const table = reader_.table("motion");
+    if (table == nullptr) return;
+    TableReader motion(mechanism_.file, *table, "[motion]", diagnostics_);
+    const auto until = motion.quantity("until", "s");
+    const auto at_limit = motion.string("at_limit");
+    motion.finish();
+    if (until && !(*until > 0 && std::isfinite(*until))) {
+      motion.report("until", fmt::format("'until' of [motion] is {}", *until), "a time above 0 [s]");
+    } else {
+      mechanism_.motion.until = until;
+    }
+    if (at_limit) mechanism_.motion.at_limit = parse_at_limit(*at_limit);
+    if (at_limit && !mechanism_.motion.at_limit) {
+      motion.report("at_limit", fmt::format("'at_limit' of [motion] is \"{}\"", *at_limit),
+                    R"("open", "stop" or "reverse")");
     }
   }
 

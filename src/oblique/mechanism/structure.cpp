@@ -2,18 +2,30 @@
 #include <oblique/mechanism/structure.h>
 
 #include <algorithm>
+#include <array>
+#include <limits>
+#include <queue>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <oblique/mechanism/assembly.h>
+#include <oblique/mechanism/constraint_graph.h>
 
 namespace oblique {
 namespace {
 
-constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+using Edge = ConstraintGraph::Edge;
 
-std::string quoted_names(const Mechanism& mechanism, const std::vector<std::size_t>& bodies) {
+bool has(const std::vector<std::size_t>& list, std::size_t item) {
+  return std::find(list.begin(), list.end(), item) != list.end();
+}
+
+void add_once(std::vector<std::size_t>& list, std::size_t item) {
+  if (!has(list, item)) list.push_back(item);
+}
+
+std::string quoted_bodies(const Mechanism& mechanism, const std::vector<std::size_t>& bodies) {
   std::vector<std::string> names;
   names.reserve(bodies.size());
   for (const std::size_t body : bodies) names.push_back("'" + mechanism.bodies[body].name + "'");
@@ -25,10 +37,24 @@ std::string loose_ends(const Mechanism& mechanism) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < mechanism.points.size(); ++i) {
     const std::size_t needed = mechanism.points[i].fixed ? 1 : 2;
-    if (mechanism.bodies_at(i).size() < needed) names.push_back(mechanism.points[i].name);
+    const bool slides = std::any_of(mechanism.slides.begin(), mechanism.slides.end(), [&](const Slide& s) {
+      return s.point == i || s.first == i || s.second == i;
+    });
+    if (mechanism.bodies_at(i).size() < needed && !slides) names.push_back(mechanism.points[i].name);
   }
   if (names.empty()) return {};
   return fmt::format("; no hinge at {}: is a name misspelt?", fmt::join(names, ", "));
+}
+
+/// "3·3 bodies − 2·3 hinges − 1 slide".
+std::string mobility_formula(const Mechanism& mechanism) {
+  int slides = 0;
+  for (const Slide& slide : mechanism.slides) slides += slide.of ? 2 : 1;
+  const int bodies = static_cast<int>(mechanism.bodies.size());
+  const int hinges = (3 * bodies - slides - mobility(mechanism)) / 2;
+  std::string text = fmt::format("3·{} bodies − 2·{} hinges", bodies, hinges);
+  if (slides > 0) text += fmt::format(" − {} for slides", slides);
+  return text;
 }
 
 void check_mobility(const Mechanism& mechanism) {
@@ -37,10 +63,8 @@ void check_mobility(const Mechanism& mechanism) {
   if (freedom == drives) return;
   Diagnostic finding;
   finding.place = drives > 0 ? mechanism.drives.back().place : mechanism.bodies.front().place;
-  finding.what =
-      fmt::format("the mechanism has mobility {} (3·{} bodies − 2·{} hinges) but {} {}", freedom,
-                  mechanism.bodies.size(), (3 * static_cast<int>(mechanism.bodies.size()) - freedom) / 2,
-                  drives, drives == 1 ? "drive" : "drives");
+  finding.what = fmt::format("the mechanism has mobility {} ({}) but {} {}", freedom, mobility_formula(mechanism),
+                             drives, drives == 1 ? "drive" : "drives");
   finding.expected = "one drive for each degree of freedom";
   if (freedom > drives) {
     finding.remedy = fmt::format("under-driven: add {} or join bodies by hinges",
@@ -53,194 +77,342 @@ void check_mobility(const Mechanism& mechanism) {
   throw MechanismError(MechanismError::Kind::mobility, std::move(finding));
 }
 
-/// Grows the set of known points group by group.
+std::vector<std::size_t> bodies_among(const ConstraintGraph& graph, const std::vector<std::size_t>& vertices) {
+  std::vector<std::size_t> bodies;
+  for (const std::size_t v : vertices) {
+    if (graph.is_body(v)) bodies.push_back(v);
+  }
+  return bodies;
+}
+
+/// One finding for each place where conditions are too many, and one for what moves freely.
+void check_parts(const Mechanism& mechanism, const ConstraintGraph& graph) {
+  std::vector<Diagnostic> findings;
+  std::vector<std::pair<Edge::Kind, std::size_t>> told;
+  for (const std::size_t index : graph.redundant()) {
+    const Edge& edge = graph.edges()[index];
+    const auto pair = std::pair(edge.kind, edge.kind == Edge::Kind::hinge ? edge.index * mechanism.points.size() + edge.point
+                                                                        : edge.index);
+    if (std::find(told.begin(), told.end(), pair) != told.end()) continue;
+    told.push_back(pair);
+    auto others = bodies_among(graph, graph.competitors(index));
+    Diagnostic finding;
+    const auto follows = [&](const std::string& what) {
+      return fmt::format("{} too much: {} fix it already", what, quoted_bodies(mechanism, others));
+    };
+    switch (edge.kind) {
+      case Edge::Kind::hinge:
+        std::erase(others, edge.index);
+        finding.place = mechanism.bodies[edge.index].place;
+        finding.what = fmt::format("body '{}' is over-constrained: its hinge at '{}' is too much, since {} fix it already",
+                                   mechanism.bodies[edge.index].name, mechanism.points[edge.point].name,
+                                   others.empty() ? "its other points" : quoted_bodies(mechanism, others));
+        finding.remedy = "leave the body out, or remove another hinge, slide or drive of these bodies";
+        break;
+      case Edge::Kind::on_line:
+      case Edge::Kind::angle:
+        finding.place = mechanism.slides[edge.index].place;
+        finding.what = follows(fmt::format("slide '{}' is", mechanism.slides[edge.index].name));
+        finding.remedy = "leave the slide out, or remove another hinge, slide or drive of these bodies";
+        break;
+      case Edge::Kind::turn:
+      case Edge::Kind::along:
+        finding.place = mechanism.drives[edge.index].place;
+        finding.what = follows(fmt::format("drive '{}' is", mechanism.drives[edge.index].name));
+        finding.remedy = "drive another body";
+        break;
+    }
+    findings.push_back(std::move(finding));
+  }
+  if (graph.freedom() > 0) {
+    const auto bodies = bodies_among(graph, graph.movable());
+    Diagnostic finding;
+    finding.place = mechanism.bodies[bodies.empty() ? 0 : bodies.front()].place;
+    finding.what = fmt::format("{} can move freely (mobility {} after the drives)", quoted_bodies(mechanism, bodies),
+                               graph.freedom());
+    finding.expected = "every body held by drives and pairs";
+    finding.remedy = "hinge to the rest, or drive" + loose_ends(mechanism);
+    findings.push_back(std::move(finding));
+  }
+  if (!findings.empty()) throw MechanismError(MechanismError::Kind::mobility, std::move(findings));
+}
+
+/// A group while it is put together.
+struct Part {
+  GroupMembers members;
+  std::vector<std::size_t> needs;    ///< parts that come before
+  std::vector<std::size_t> carried;  ///< points that its bodies carry along
+};
+
 class Decomposition {
  public:
   explicit Decomposition(const Mechanism& mechanism)
-      : mechanism_(mechanism), known_(mechanism.points.size()), placed_(mechanism.bodies.size()) {
+      : mechanism_(mechanism), graph_(mechanism), known_(mechanism.points.size()) {
     for (std::size_t i = 0; i < mechanism.points.size(); ++i) known_[i] = mechanism.points[i].fixed;
   }
 
   Structure run() {
-    while (take_overconstrained() || take_crank() || take_dyad()) {
+    check_parts(mechanism_, graph_);
+    collect();
+    std::vector<bool> done(parts_.size());
+    for (std::size_t count = 0; count < parts_.size(); ++count) {
+      const std::size_t next = first_ready(done);
+      done[next] = true;
+      add(parts_[next]);
     }
-    report_remainder();
-    if (!findings_.empty()) throw MechanismError(kind_, std::move(findings_));
     return std::move(structure_);
   }
 
  private:
-  std::vector<std::size_t> known_points(std::size_t body) const {
-    std::vector<std::size_t> points;
-    for (const BodyPoint& p : mechanism_.bodies[body].points) {
-      if (known_[p.point]) points.push_back(p.point);
-    }
-    return points;
-  }
-
-  void place(std::size_t body) {
-    placed_[body] = true;
-    for (const BodyPoint& p : mechanism_.bodies[body].points) known_[p.point] = true;
-  }
-
-  /// A body on two known points is one constraint too many; it counts as placed to find the rest.
-  bool take_overconstrained() {
-    for (std::size_t body = 0; body < placed_.size(); ++body) {
-      const auto points = placed_[body] ? std::vector<std::size_t>{} : known_points(body);
-      if (points.size() < 2) continue;
-      add(MechanismError::Kind::mobility, mechanism_.bodies[body].place,
-          fmt::format("body '{}' is over-constrained: the other bodies move its points '{}' and '{}' already",
-                      mechanism_.bodies[body].name, mechanism_.points[points[0]].name,
-                      mechanism_.points[points[1]].name),
-          "at most one such point", "leave the body out, or remove another drive or hinge");
-      place(body);
-      return true;
-    }
-    return false;
-  }
-
-  bool take_crank() {
-    for (std::size_t i = 0; i < mechanism_.drives.size(); ++i) {
-      const Drive& drive = mechanism_.drives[i];
-      if (placed_[drive.body] || !known_[drive.about]) continue;
-      structure_.groups.emplace_back(
-          CrankGroup{mechanism_.bodies[drive.body].name, drive.body, drive.about, i});
-      place(drive.body);
-      return true;
-    }
-    return false;
-  }
-
-  bool take_dyad() {
-    for (std::size_t i = 0; i < placed_.size(); ++i) {
-      if (!hangs_on_one(i)) continue;
-      for (std::size_t j = i + 1; j < placed_.size(); ++j) {
-        if (!hangs_on_one(j)) continue;
-        const std::size_t hinge = common_unknown(i, j);
-        if (hinge == kNone) continue;
-        add_dyad(i, j, hinge);
-        return true;
-      }
-    }
-    return false;
-  }
-
-  bool hangs_on_one(std::size_t body) const {
-    return !placed_[body] && !mechanism_.drive_of(body) && known_points(body).size() == 1;
-  }
-
-  std::size_t common_unknown(std::size_t first, std::size_t second) const {
-    for (const BodyPoint& p : mechanism_.bodies[first].points) {
-      if (!known_[p.point] && mechanism_.bodies[second].find(p.point) != nullptr) return p.point;
-    }
-    return kNone;
-  }
-
-  void add_dyad(std::size_t first, std::size_t second, std::size_t hinge) {
-    const Body& body1 = mechanism_.bodies[first];
-    const Body& body2 = mechanism_.bodies[second];
-    DyadGroup dyad;
-    dyad.name = body1.name + "-" + body2.name;
-    dyad.body1 = first;
-    dyad.p = known_points(first).front();
-    dyad.body2 = second;
-    dyad.q = known_points(second).front();
-    dyad.c = hinge;
-    dyad.r1 = distance(body1, dyad.p, hinge);
-    dyad.r2 = distance(body2, dyad.q, hinge);
-    structure_.groups.emplace_back(std::move(dyad));
-    place(first);
-    place(second);
-  }
-
-  /// Judges each connected part of what could not be placed.
-  void report_remainder() {
-    std::vector<bool> seen = placed_;
-    for (std::size_t body = 0; body < seen.size(); ++body) {
-      if (seen[body]) continue;
-      std::vector<std::size_t> part{body};
-      seen[body] = true;
-      for (std::size_t next = 0; next < part.size(); ++next) {
-        for (std::size_t other = 0; other < seen.size(); ++other) {
-          if (seen[other] || common_unknown(part[next], other) == kNone) continue;
-          seen[other] = true;
-          part.push_back(other);
+  void collect() {
+    std::vector<std::size_t> part_of(mechanism_.bodies.size() + mechanism_.points.size());
+    for (const auto& component : graph_.components()) {
+      Part part;
+      std::vector<std::size_t> needs;
+      for (const std::size_t v : component) {
+        if (graph_.is_body(v)) {
+          part.members.bodies.push_back(v);
+        } else {
+          part.members.points.push_back(graph_.point_of(v));
+        }
+        for (const Edge& edge : graph_.edges()) {
+          if (edge.owner != v) continue;
+          if (edge.kind == Edge::Kind::turn || edge.kind == Edge::Kind::along) {
+            add_once(part.members.drives, edge.index);
+          } else if (edge.kind != Edge::Kind::hinge) {
+            add_once(part.members.slides, edge.index);
+          }
+          const std::size_t other = edge.a == v ? edge.b : edge.a;
+          if (other != ConstraintGraph::kFrame && !is_fixed(other) && !has(component, other)) {
+            add_once(needs, part_of[other]);
+          }
         }
       }
-      std::sort(part.begin(), part.end());
-      report_part(part);
+      // a point that hangs on one body alone is that body's
+      if (part.members.bodies.empty() && part.members.slides.empty()) {
+        const std::size_t owner = needs.front();
+        for (const std::size_t v : component) {
+          part_of[v] = owner;
+          parts_[owner].carried.push_back(graph_.point_of(v));
+        }
+        continue;
+      }
+      std::sort(part.members.slides.begin(), part.members.slides.end());
+      part.needs = std::move(needs);
+      for (const std::size_t v : component) part_of[v] = parts_.size();
+      parts_.push_back(std::move(part));
     }
   }
 
-  void report_part(const std::vector<std::size_t>& part) {
-    const std::string names = quoted_names(mechanism_, part);
-    const Place& at = mechanism_.bodies[part.front()].place;
-    int freedom = 3 * static_cast<int>(part.size());
-    std::vector<std::size_t> points;
-    for (const std::size_t body : part) {
-      if (mechanism_.drive_of(body)) --freedom;
-      for (const BodyPoint& p : mechanism_.bodies[body].points) {
-        if (known_[p.point] || std::count(points.begin(), points.end(), p.point) > 0) freedom -= 2;
-        points.push_back(p.point);
+  bool is_fixed(std::size_t vertex) const {
+    return !graph_.is_body(vertex) && mechanism_.points[graph_.point_of(vertex)].fixed;
+  }
+
+  /// Of the parts that have all they need, the driven ones first, then by their first body.
+  std::size_t first_ready(const std::vector<bool>& done) const {
+    constexpr std::size_t kLast = std::numeric_limits<std::size_t>::max();
+    std::size_t best = kLast;
+    std::array<std::size_t, 3> best_key{kLast, kLast, kLast};
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      const Part& part = parts_[i];
+      const bool ready = std::all_of(part.needs.begin(), part.needs.end(), [&](std::size_t n) { return done[n]; });
+      if (done[i] || !ready) continue;
+      const std::array<std::size_t, 3> key{
+          part.members.drives.empty() ? kLast : part.members.drives.front(),
+          part.members.bodies.empty() ? kLast : part.members.bodies.front(), i};
+      if (best != kLast && key >= best_key) continue;
+      best = i;
+      best_key = key;
+    }
+    return best;
+  }
+
+  void add(const Part& part) {
+    Group group;
+    group.bodies = part.members.bodies;
+    group.slides = part.members.slides;
+    group.drives = part.members.drives;
+    std::vector<std::string> names;
+    for (const std::size_t body : group.bodies) names.push_back(mechanism_.bodies[body].name);
+    if (names.empty()) {
+      for (const std::size_t slide : group.slides) names.push_back(mechanism_.slides[slide].name);
+    }
+    group.name = fmt::format("{}", fmt::join(names, "-"));
+    group.equations = reduce(mechanism_, part.members, known_);
+    group.kind = kind_of(group);
+    group.order = order_of(part.members);
+    group.assur_class =
+        group.kind == GroupKind::crank || group.kind == GroupKind::slider ? 1 : class_of(part.members);
+    group.points = part.members.points;
+    group.points.insert(group.points.end(), part.carried.begin(), part.carried.end());
+    std::sort(group.points.begin(), group.points.end());
+    for (const std::size_t point : group.points) known_[point] = true;
+    structure_.groups.push_back(std::move(group));
+  }
+
+  static bool is_given(const PointRef& point) { return point.kind == PointRef::Kind::known; }
+  static bool is_given(const LineRef& line) { return line.kind != LineRef::Kind::carried; }
+
+  static GroupKind kind_of(const Group& group) {
+    using Kind = Condition::Kind;
+    const GroupEquations& equations = group.equations;
+    int distances = 0, on_given = 0, on_own = 0, along = 0, hinges = 0, turned = 0, angles = 0, other = 0;
+    for (const Condition& c : equations.conditions) {
+      const bool line = c.kind == Kind::on_line || c.kind == Kind::along;
+      const bool simple = c.kind == Kind::orientation ? is_given(c.line)
+                          : line                      ? is_given(c.a) != is_given(c.line)
+                                                      : is_given(c.b);
+      if (!simple) {
+        ++other;
+      } else if (c.kind == Kind::distance) {
+        ++distances;
+      } else if (c.kind == Kind::coincidence) {
+        ++hinges;
+      } else if (c.kind == Kind::on_line) {
+        ++(is_given(c.line) ? on_given : on_own);
+      } else if (c.kind == Kind::along) {
+        ++along;
+      } else {
+        ++(c.drive ? turned : angles);
       }
     }
-    if (freedom > 0) {
-      add(MechanismError::Kind::mobility, at,
-          fmt::format("{} can move freely (mobility {} after the drives)", names, freedom),
-          "every body held by drives and hinges", "hinge to the rest, or drive" + loose_ends(mechanism_));
-    } else if (freedom < 0) {
-      add(MechanismError::Kind::mobility, at,
-          fmt::format("{} are over-constrained (mobility {})", names, freedom), {},
-          "leave out a body or a drive of this part");
-    } else if (const auto driven =
-                   std::find_if(part.begin(), part.end(),
-                                [&](std::size_t b) { return mechanism_.drive_of(b).has_value(); });
-               driven != part.end()) {
-      const Drive& drive = mechanism_.drives[*mechanism_.drive_of(*driven)];
-      add(MechanismError::Kind::group_class, drive.place,
-          fmt::format("drive '{}' turns '{}' about '{}', whose motion depends on the driven body itself",
-                      drive.name, mechanism_.bodies[drive.body].name, mechanism_.points[drive.about].name),
-          "a point of the frame or of a body that is placed before",
-          "this version drives cranks; drive a body with a known pivot");
-    } else {
-      add(MechanismError::Kind::group_class, at,
-          fmt::format("{} form a group of class III or higher; this version handles cranks and dyads", names),
-          {}, "drive another body so that only dyads remain, if the task allows it");
+    const std::size_t unknowns = equations.unknowns();
+    if (other > 0 || unknowns > 3) return GroupKind::general;
+    if (along > 0 || turned > 0) {
+      if (hinges == 1 && turned == 1) return GroupKind::crank;
+      const bool led = along == 1 && on_given == 1 && hinges == 0 && turned == 0;
+      return led && (unknowns == 2 || angles == 1) ? GroupKind::slider : GroupKind::general;
     }
+    if (hinges == 1 && angles == 0) {
+      return on_own == 1 ? GroupKind::rpr : on_given == 1 ? GroupKind::rrp : GroupKind::rrr;
+    }
+    if (hinges > 0) return GroupKind::general;
+    if (unknowns == 3 && angles == 0) return GroupKind::triad;
+    if (angles > 1) return GroupKind::general;
+    if (distances == 2) return GroupKind::rrr;
+    if (distances == 1) return on_own == 1 ? GroupKind::rpr : GroupKind::rrp;
+    return on_own > 0 ? GroupKind::rpp : GroupKind::prp;
   }
 
-  void add(MechanismError::Kind kind, const Place& at, std::string what, std::string expected,
-           std::string remedy) {
-    if (findings_.empty() || kind == MechanismError::Kind::mobility) kind_ = kind;
-    findings_.push_back({at, std::move(what), std::move(expected), std::move(remedy)});
+  /// Pairs with what is placed before.
+  int order_of(const GroupMembers& members) const {
+    int pairs = 0;
+    for (const std::size_t body : members.bodies) {
+      for (const BodyPoint& p : mechanism_.bodies[body].points) pairs += known_[p.point] ? 1 : 0;
+    }
+    for (const std::size_t s : members.slides) {
+      const Slide& slide = mechanism_.slides[s];
+      if (!slide.carrier || !has(members.bodies, *slide.carrier)) ++pairs;
+      else if (!slide.of && known_[slide.point]) ++pairs;
+      else if (slide.of && !has(members.bodies, *slide.of)) ++pairs;
+    }
+    return pairs;
+  }
+
+  /// Bodies and pairs as a graph: its largest closed contour is a body with that many pairs, or the longest of
+  /// the shortest loops through a pair.
+  int class_of(const GroupMembers& members) const {
+    struct Pair {
+      std::vector<std::size_t> bodies;  ///< of the group
+      int others;                       ///< elements outside of it
+    };
+    std::vector<Pair> pairs;
+    for (std::size_t point = 0; point < mechanism_.points.size(); ++point) {
+      Pair pair{{}, known_[point] ? 1 : 0};
+      for (const std::size_t body : members.bodies) {
+        if (mechanism_.bodies[body].find(point) != nullptr) pair.bodies.push_back(body);
+      }
+      if (!pair.bodies.empty() && pair.bodies.size() + static_cast<std::size_t>(pair.others) >= 2)
+        pairs.push_back(std::move(pair));
+    }
+    for (const std::size_t s : members.slides) {
+      const Slide& slide = mechanism_.slides[s];
+      Pair pair{{}, 0};
+      if (slide.carrier && has(members.bodies, *slide.carrier)) pair.bodies.push_back(*slide.carrier);
+      for (const std::size_t body : members.bodies) {
+        const bool guided = slide.of ? *slide.of == body : mechanism_.bodies[body].find(slide.point) != nullptr;
+        if (guided) {
+          pair.bodies.push_back(body);
+          break;
+        }
+      }
+      pairs.push_back(std::move(pair));
+    }
+    int largest = 2;
+    for (const std::size_t body : members.bodies) {
+      const auto count = std::count_if(pairs.begin(), pairs.end(), [&](const Pair& p) { return has(p.bodies, body); });
+      largest = std::max(largest, static_cast<int>(count));
+    }
+    // shortest loop through body `from` and pair `cut`: a breadth-first search that does not use the pair
+    for (std::size_t cut = 0; cut < pairs.size(); ++cut) {
+      for (std::size_t i = 1; i < pairs[cut].bodies.size(); ++i) {
+        std::vector<int> steps(mechanism_.bodies.size(), 0);
+        std::queue<std::size_t> queue;
+        steps[pairs[cut].bodies[i]] = 1;
+        queue.push(pairs[cut].bodies[i]);
+        while (!queue.empty()) {
+          const std::size_t here = queue.front();
+          queue.pop();
+          for (std::size_t p = 0; p < pairs.size(); ++p) {
+            if (p == cut || !has(pairs[p].bodies, here)) continue;
+            for (const std::size_t next : pairs[p].bodies) {
+              if (steps[next] != 0) continue;
+              steps[next] = steps[here] + 1;
+              queue.push(next);
+            }
+          }
+        }
+        largest = std::max(largest, steps[pairs[cut].bodies[0]]);
+      }
+    }
+    return largest;
   }
 
   const Mechanism& mechanism_;
+  ConstraintGraph graph_;
   std::vector<bool> known_;
-  std::vector<bool> placed_;
+  std::vector<Part> parts_;
   Structure structure_;
-  std::vector<Diagnostic> findings_;
-  MechanismError::Kind kind_ = MechanismError::Kind::mobility;
 };
 
 }  // namespace
 
-const std::string& group_name(const Group& group) {
-  return std::visit([](const auto& g) -> const std::string& { return g.name; }, group);
+std::string_view kind_name(GroupKind kind) {
+  constexpr std::array<std::string_view, 9> kNames{"crank", "slider", "RRR", "RRP", "PRP",
+                                                   "RPR",   "RPP",    "triad", "general"};
+  return kNames[static_cast<std::size_t>(kind)];
 }
 
-std::vector<std::size_t> group_bodies(const Group& group) {
-  if (const auto* dyad = std::get_if<DyadGroup>(&group)) return {dyad->body1, dyad->body2};
-  return {std::get<CrankGroup>(group).body};
+std::optional<Dyad> dyad_of(const Group& group) {
+  if (group.kind != GroupKind::rrr || group.equations.links.size() != 2 || !group.equations.cores.empty()) {
+    return std::nullopt;
+  }
+  const Link* first = &group.equations.links[0];
+  const Link* second = &group.equations.links[1];
+  if (second->body < first->body) std::swap(first, second);
+  const auto length = [&](const Link& link) {
+    return std::find_if(group.equations.conditions.begin(), group.equations.conditions.end(),
+                        [&](const Condition& c) { return c.b.point == link.from && c.a.point == link.to; })
+        ->value;
+  };
+  return Dyad{first->body, first->from, second->body, second->from, first->to, length(*first), length(*second),
+              group.side};
+}
+
+std::size_t pivot_of(const Group& crank) {
+  return std::find_if(crank.equations.conditions.begin(), crank.equations.conditions.end(),
+                      [](const Condition& c) { return c.kind == Condition::Kind::coincidence; })
+      ->b.point;
 }
 
 int mobility(const Mechanism& mechanism) {
-  int hinges = 0;
+  int conditions = 0;
   for (std::size_t i = 0; i < mechanism.points.size(); ++i) {
     const int sharing = static_cast<int>(mechanism.bodies_at(i).size()) + (mechanism.points[i].fixed ? 1 : 0);
-    hinges += std::max(0, sharing - 1);
+    conditions += 2 * std::max(0, sharing - 1);
   }
-  return 3 * static_cast<int>(mechanism.bodies.size()) - 2 * hinges;
+  for (const Slide& slide : mechanism.slides) conditions += slide.of ? 2 : 1;
+  return 3 * static_cast<int>(mechanism.bodies.size()) - conditions;
 }
 
 Structure find_groups(const Mechanism& mechanism) {

@@ -30,9 +30,13 @@ class TrianglePatch {
     describe();
     one_ = add_block("one", "constant", {number_setting("value", 1)}, "the reference: 1 machine unit");
     for (std::size_t g = 0; g < structure_.groups.size(); ++g) {
-      if (const auto* const crank = std::get_if<CrankGroup>(&structure_.groups[g])) add_crank(*crank);
-      if (const auto* const dyad = std::get_if<DyadGroup>(&structure_.groups[g])) {
-        add_dyad(*dyad, scaling_.triangles[g]);
+      const Group& group = structure_.groups[g];
+      if (group.kind == GroupKind::crank) {
+        add_crank(group);
+      } else if (const auto dyad = dyad_of(group)) {
+        add_dyad(group.name, *dyad, scaling_.triangles[g]);
+      } else {
+        refuse(group);
       }
     }
     for (std::size_t p = 0; p < mechanism_.points.size(); ++p) add_outputs(p);
@@ -114,24 +118,36 @@ class TrianglePatch {
     signals_[point].y = add_block(name_of(point) + "_y", "summer", {sum_of(y)});
   }
 
-  void add_crank(const CrankGroup& crank) {
-    const Drive& drive = mechanism_.drives[crank.drive];
-    const Body& body = mechanism_.bodies[crank.body];
+  [[noreturn]] void refuse(const Group& group) const {
+    throw PatchError(Diagnostic{
+        group.bodies.empty() ? mechanism_.slides[group.slides.front()].place
+                             : mechanism_.bodies[group.bodies.front()].place,
+        fmt::format("the group {} ({}) cannot be patched as triangles by this version", group.name,
+                    kind_name(group.kind)),
+        "cranks at constant speed and RRR dyads",
+        "`oblique solve` and `oblique check` work for every group"});
+  }
+
+  void add_crank(const Group& crank) {
+    const Drive& drive = mechanism_.drives[crank.drives.front()];
+    if (drive.law) refuse(crank);
+    const Body& body = mechanism_.bodies[drive.body];
+    const std::size_t pivot = pivot_of(crank);
     const std::string comment =
-        fmt::format("crank {}: turns about {} at {:.6g} rad/s", body.name, name_of(crank.pivot), drive.speed);
+        fmt::format("crank {}: turns about {} at {:.6g} rad/s", body.name, name_of(pivot), drive.speed);
     const std::string generator =
         add_block(drive.name, "crank-generator",
                   {wire_setting("speed", {{1, one_}}), number_setting("rate", drive.speed),
                    number_setting("start", drive.start)},
                   comment);
     const std::string cosine = generator + ".cos", sine = generator + ".sin";
-    const Eigen::Vector2d origin = body.find(crank.pivot)->local;
+    const Eigen::Vector2d origin = body.find(pivot)->local;
     for (const BodyPoint& point : body.points) {
-      if (point.point == crank.pivot || is_known(point.point)) continue;
+      if (point.point == pivot || is_known(point.point)) continue;
       const double along = scaled(point.local.x() - origin.x());
       const double left = scaled(point.local.y() - origin.y());
-      add_summed_point(point.point, {x_of(crank.pivot, 1), {along, cosine}, {-left, sine}},
-                       {y_of(crank.pivot, 1), {along, sine}, {left, cosine}}, {});
+      add_summed_point(point.point, {x_of(pivot, 1), {along, cosine}, {-left, sine}},
+                       {y_of(pivot, 1), {along, sine}, {left, cosine}}, {});
     }
   }
 
@@ -139,12 +155,12 @@ class TrianglePatch {
     return mechanism_.points[point].fixed || !signals_[point].x.empty();
   }
 
-  void add_dyad(const DyadGroup& dyad, const TriangleRange& range) {
+  void add_dyad(const std::string& name, const Dyad& dyad, const TriangleRange& range) {
     const std::string& unit = mechanism_.length_unit;
     const std::string comment = fmt::format(
         "dyad {}: {} is hinged to {} ({:.6g} {}) and {} ({:.6g} {}), on the {} of {} → {}.\n"
         "{}–{} is {:.4g} … {:.4g} {} long; sin γ at {} falls to {:.2g}.",
-        dyad.name, name_of(dyad.c), name_of(dyad.p), dyad.r1, unit, name_of(dyad.q), dyad.r2, unit,
+        name, name_of(dyad.c), name_of(dyad.p), dyad.r1, unit, name_of(dyad.q), dyad.r2, unit,
         dyad.side > 0 ? "left" : "right", name_of(dyad.p), name_of(dyad.q), name_of(dyad.p), name_of(dyad.q),
         range.shortest, range.longest, unit, name_of(dyad.p), range.flattest);
     const std::string block = add_block(

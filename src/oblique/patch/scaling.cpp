@@ -17,11 +17,11 @@ namespace {
   const bool open = obstacle.status == Status::open;
   throw PatchError(Diagnostic{
       {mechanism.file, {}},
-      fmt::format("the dyad {} {} at t = {:.6g} s, so its triangle cannot be tracked over a whole turn",
-                  group_name(structure.groups[obstacle.group]),
+      fmt::format("the group {} {} at t = {:.6g} s, so its triangle cannot be tracked over a whole turn",
+                  structure.groups[obstacle.group].name,
                   open ? "cannot be assembled" : "is at a dead centre", obstacle.time),
       open ? "links that reach each other in every position" : "a triangle that never goes flat",
-      open ? "lengthen the links of the dyad, or shorten the crank; `oblique solve` shows where it opens"
+      open ? "lengthen the links of the group, or shorten the crank; `oblique solve` shows where it opens"
            : "change a length a little: at a dead centre the servo loop of sin γ loses its gain"});
 }
 
@@ -52,8 +52,8 @@ Scaling find_scaling(const Mechanism& mechanism, const Structure& structure, con
       farthest = std::max(farthest, (point.position - scaling.origin).cwiseAbs().maxCoeff());
     }
     for (std::size_t g = 0; g < structure.groups.size(); ++g) {
-      const auto* const dyad = std::get_if<DyadGroup>(&structure.groups[g]);
-      if (dyad == nullptr) continue;
+      const auto dyad = dyad_of(structure.groups[g]);
+      if (!dyad) continue;
       const double length =
           (configuration.points[dyad->q].position - configuration.points[dyad->p].position).norm();
       const double cosine =

@@ -78,6 +78,7 @@ std::vector<std::string> SignalFlow::members_of_loop(const std::vector<std::size
   std::sort(blocks.begin(), blocks.end());
   blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
   std::vector<std::string> paths;
+  paths.reserve(blocks.size());
   for (const std::size_t b : blocks) paths.push_back(diagram_.blocks[b].path);
   return paths;
 }

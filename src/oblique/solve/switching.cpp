@@ -108,11 +108,10 @@ bool Switching::decide(double t, std::span<const double> x) {
     turned = turned || position != before;
   }
   if (turned) return true;
-  for (const std::size_t s : undecided) {
+  return std::any_of(undecided.begin(), undecided.end(), [&](std::size_t s) {
     on_surface_[s] = true;
-    if (decide_on_surface(s, t, x)) return true;
-  }
-  return false;
+    return decide_on_surface(s, t, x);
+  });
 }
 
 /// All switches and the algebra between them to a fixed point; true where any turned over.

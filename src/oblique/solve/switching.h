@@ -85,7 +85,7 @@ class Switching {
   bool settle_switches(double t, std::span<const double> x);
   bool decide(double t, std::span<const double> x);
   bool decide_on_surface(std::size_t s, double t, std::span<const double> x);
-  void try_all_positions(double t, std::span<const double> x, const std::vector<std::size_t>& restless);
+  void try_all_positions(double t, std::span<const double> x, const std::vector<std::size_t>& found);
   double drift(std::size_t s, double position, double t, std::span<const double> x);
   bool serve_events(double t, std::vector<double>& x, bool starting);
   double sliding_position(double t, std::span<const double> x);

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/mechanism/expectation.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include <oblique/text/table_reader.h>
+
+namespace oblique {
+namespace {
+
+using Kind = MechanismExpectation::Kind;
+
+/// A time [s], or where it is no time, a value of the first drive; false after a finding.
+bool read_moment(const std::string& text, const Mechanism& mechanism, const Place& place,
+                 MechanismExpectation& expectation, Diagnostics& diagnostics) {
+  const bool slides = !mechanism.drives.empty() && mechanism.drives.front().slide;
+  const std::string drive_unit = slides ? mechanism.length_unit : "rad";
+  for (const auto& [kind, unit] : {std::pair{Kind::at_time, std::string("s")}, std::pair{Kind::at_value, drive_unit}}) {
+    try {
+      expectation.at = parse_quantity(text, parse_unit(unit).value());
+      expectation.kind = kind;
+      return std::isfinite(expectation.at);
+    } catch (const ExpressionError&) {
+      continue;
+    }
+  }
+  diagnostics.add({place, fmt::format("[expect] cannot read '{}' of '{}'", text, expectation.text),
+                   fmt::format(R"(a time as "0.25 s", or a value of the first drive as "{}")",
+                               slides ? "20 " + drive_unit : "90 deg"),
+                   {}});
+  return false;
+}
+
+bool read_key(const Mechanism& mechanism, MechanismExpectation& expectation, Diagnostics& diagnostics) {
+  const std::string& key = expectation.text;
+  for (const auto& [word, kind] : {std::pair{std::string_view(" maximum"), Kind::maximum},
+                                   std::pair{std::string_view(" minimum"), Kind::minimum}}) {
+    if (!key.ends_with(word)) continue;
+    expectation.kind = kind;
+    expectation.column = key.substr(0, key.size() - word.size());
+    return true;
+  }
+  constexpr std::string_view kAt = " at ";
+  const std::size_t at = key.rfind(kAt);
+  if (at == std::string::npos || at == 0) {
+    diagnostics.add({expectation.place, fmt::format("[expect] cannot read '{}'", key),
+                     R"("COLUMN at TIME", "COLUMN at ANGLE", "COLUMN maximum" or "COLUMN minimum")",
+                     {}});
+    return false;
+  }
+  expectation.column = key.substr(0, at);
+  return read_moment(key.substr(at + kAt.size()), mechanism, expectation.place, expectation, diagnostics);
+}
+
+/// The first time at which the first drive stands at `value`.
+double time_of(const Mechanism& mechanism, const MechanismExpectation& expectation) {
+  if (expectation.kind == Kind::at_time) return expectation.at;
+  const Drive& drive = mechanism.drives.front();
+  double way = expectation.at - drive.start;
+  constexpr double kTurn = 2 * std::numbers::pi;
+  constexpr double kSame = 1e-12;
+  if (std::abs(way) < kSame) return 0;
+  if (!drive.slide && way * drive.speed < 0) way += std::copysign(kTurn * std::ceil(std::abs(way) / kTurn), drive.speed);
+  constexpr double kLatest = 100;  // turns, or longest links
+  const double latest = kLatest * std::max(std::abs(way), kTurn) / std::abs(drive.speed);
+  const auto time = way * drive.speed < 0 ? std::nullopt : DriveClock(mechanism).time_of_way(0, way, latest);
+  if (time) return *time;
+  throw MechanismError(MechanismError::Kind::request,
+                       Diagnostic{expectation.place,
+                                  fmt::format("drive '{}' does not come to where '{}' is expected", drive.name,
+                                              expectation.text),
+                                  "a value that it reaches", {}});
+}
+
+const MotionColumn& column(const std::vector<MotionColumn>& columns, const MechanismExpectation& expectation) {
+  const auto found = std::find_if(columns.begin(), columns.end(),
+                                  [&](const MotionColumn& c) { return c.name == expectation.column; });
+  if (found != columns.end()) return *found;
+  throw MechanismError(MechanismError::Kind::file,
+                       Diagnostic{expectation.place,
+                                  fmt::format("[expect] names '{}', which is no column", expectation.column),
+                                  {},
+                                  suggest(expectation.column, names_of(columns))});
+}
+
+/// The largest value of a column, and of the parabola through it and its neighbours.
+double maximum_of(const std::vector<double>& values) {
+  std::size_t top = values.size();
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!std::isnan(values[i]) && (top == values.size() || values[i] > values[top])) top = i;
+  }
+  if (top == values.size()) return std::nan("");
+  if (top == 0 || top + 1 >= values.size()) return values[top];
+  const double rise = values[top] - values[top - 1], fall = values[top] - values[top + 1];
+  if (!(rise + fall > 0)) return values[top];
+  return values[top] + (rise - fall) * (rise - fall) / (8 * (rise + fall));
+}
+
+}  // namespace
+
+void read_mechanism_expectations(const Value& table, Mechanism& mechanism, Diagnostics& diagnostics) {
+  for (const Entry& entry : table.entries) {
+    MechanismExpectation expectation;
+    expectation.text = entry.key;
+    expectation.place = {mechanism.file, entry.position};
+    const bool good = read_key(mechanism, expectation, diagnostics);
+    TableReader reader(mechanism.file, entry.value, fmt::format("[expect] '{}'", entry.key), diagnostics);
+    if (entry.value.kind != Value::Kind::table) continue;
+    const auto value = reader.required_quantity("value", "1");
+    const auto within = reader.required_quantity("within", "1");
+    if (value && !std::isfinite(*value)) {
+      reader.report("value", fmt::format("'value' of {} is infinite", reader.what()), "a finite number");
+    }
+    if (within && !(*within > 0 && std::isfinite(*within))) {
+      reader.report("within", fmt::format("'within' of {} is {}", reader.what(), *within), "a finite number above 0");
+    }
+    reader.finish();
+    if (!good || !value || !within) continue;
+    expectation.value = *value;
+    expectation.within = *within;
+    mechanism.expectations.push_back(std::move(expectation));
+  }
+}
+
+std::vector<MechanismFinding> check_expectations(const Mechanism& mechanism) {
+  std::vector<MechanismFinding> findings;
+  const bool extremes = std::any_of(mechanism.expectations.begin(), mechanism.expectations.end(), [](const auto& e) {
+    return e.kind == Kind::maximum || e.kind == Kind::minimum;
+  });
+  std::vector<MotionColumn> motion;
+  constexpr int kPositions = 3601;
+  if (extremes) motion = motion_columns(mechanism, solve_motion(mechanism, kPositions));
+  for (const MechanismExpectation& expectation : mechanism.expectations) {
+    double actual = 0;
+    if (expectation.kind == Kind::at_time || expectation.kind == Kind::at_value) {
+      const std::array times{time_of(mechanism, expectation)};
+      actual = column(motion_columns(mechanism, solve_motion(mechanism, times)), expectation).values.front();
+    } else {
+      std::vector<double> values = column(motion, expectation).values;
+      const bool lowest = expectation.kind == Kind::minimum;
+      if (lowest) {
+        for (double& value : values) value = -value;
+      }
+      actual = lowest ? -maximum_of(values) : maximum_of(values);
+    }
+    findings.push_back({expectation, actual, std::abs(actual - expectation.value) <= expectation.within});
+  }
+  return findings;
+}
+
+}  // namespace oblique

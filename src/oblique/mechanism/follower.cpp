@@ -1,0 +1,440 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/mechanism/follower.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace oblique {
+namespace {
+
+using Eigen::Vector2d;
+
+constexpr double kTurn = 2 * std::numbers::pi;
+/// Largest turn of a drive in a step.
+constexpr double kDriveStep = std::numbers::pi / 180;
+/// How far the fastest drive turns while limits are still told apart [rad].
+constexpr double kSharpness = 1e-11;
+/// Cosine of the largest turn of a body in a step, 30°.
+constexpr double kBodyStep = 0.866;
+/// Above this regularity a group is far from everything.
+constexpr double kRegular = 0.25;
+/// Below this part of the regularity at the start of the approach a group is at the point where its modes meet:
+/// heights of triangles are then 1e-5 of their sides, a thousand times their rounding.
+constexpr double kSingular = 1e-5;
+/// First correction by Newton's method, over the group's size, up to which a guess is nearly right.
+constexpr double kGoodGuess = 0.02;
+
+}  // namespace
+
+std::string_view event_name(MotionEvent::Kind kind) {
+  constexpr std::array<std::string_view, 3> kNames{"limit", "return", "change point"};
+  return kNames[static_cast<std::size_t>(kind)];
+}
+
+Follower::Follower(const Mechanism& mechanism, const Structure& structure)
+    : kinematics_(mechanism, structure),
+      mechanism_(mechanism),
+      clock_(mechanism),
+      courses_(structure.groups.size()),
+      regularities_(structure.groups.size(), 1),
+      drives_(mechanism.drives.size()),
+      next_drives_(mechanism.drives.size()),
+      here_(frame_configuration(mechanism)),
+      next_(here_),
+      shown_(here_) {
+  double fastest = 0;
+  for (const Drive& drive : mechanism.drives) {
+    const double rate = std::abs(drive.speed);
+    fastest = std::max(fastest, drive.slide ? rate / mechanism.largest_length() : rate);
+  }
+  duration_of_degree_ = fastest > 0 ? kDriveStep / fastest : 1;
+  smallest_ = fastest > 0 ? kSharpness / fastest : 1;
+  for (std::size_t g = 0; g < courses_.size(); ++g) {
+    courses_[g].side = structure.groups[g].side;
+    tracks_ = tracks_ || kinematics_.solver(g).is_tracked();
+  }
+}
+
+void Follower::start() {
+  started_ = true;
+  kinematics_.load_start(next_);
+  culprit_ = 0;
+  step_ = duration_of_degree_;
+  const Verdict verdict = attempt(0);
+  std::swap(here_, next_);
+  std::swap(drives_, next_drives_);
+  next_ = here_;
+  time_ = 0;
+  open_ = verdict == Verdict::blocked;
+  for (std::size_t g = 0; g < courses_.size(); ++g) {
+    courses_[g].regularity = regularities_[g];
+    courses_[g].peak = std::abs(regularities_[g]);
+  }
+  copy_angles();
+  if (!open_) probe();
+}
+
+/// The slopes of the regularities from a small step that is not made.
+void Follower::probe() {
+  const double dt = 1e-4 * duration_of_degree_;
+  for (Course& course : courses_) course.slope = 0;
+  if (tracks_) predict(dt);
+  if (attempt(time_ + dt) == Verdict::blocked) return;
+  for (std::size_t g = 0; g < courses_.size(); ++g)
+    courses_[g].slope = (regularities_[g] - courses_[g].regularity) / dt;
+}
+
+/// Taylor's formula as a guess of the positions a time `dt` on.
+void Follower::predict(double dt) {
+  next_.points = here_.points;
+  next_.bodies = here_.bodies;
+  const auto finite = [](double v) { return std::isfinite(v) ? v : 0.0; };
+  for (PointState& point : next_.points) {
+    const Vector2d way = dt * point.velocity + dt * dt / 2 * point.acceleration;
+    if (way.allFinite()) point.position += way;
+  }
+  for (BodyState& body : next_.bodies) {
+    const double angle = finite(dt * body.omega + dt * dt / 2 * body.alpha);
+    const double c = std::cos(angle), s = std::sin(angle);
+    const double cosine = c * body.cosine - s * body.sine;
+    body.sine = s * body.cosine + c * body.sine;
+    body.cosine = cosine;
+  }
+}
+
+/// Puts the mechanism together at time `t`, in next_.
+Follower::Verdict Follower::attempt(double t) {
+  clock_.at(t, next_drives_);
+  next_.status = Status::ok;
+  next_.group.reset();
+  Verdict verdict = Verdict::good;
+  for (std::size_t g = 0; g < courses_.size(); ++g) {
+    GroupSolver& solver = kinematics_.solver(g);
+    const Status status = solver.place(next_drives_, courses_[g].side, next_);
+    regularities_[g] = solver.regularity();
+    if (status == Status::open) {
+      culprit_ = g;
+      return Verdict::blocked;
+    }
+    if (status == Status::dead_centre) {
+      if (!next_.group) next_.group = g;
+      next_.status = status;
+    }
+    if (verdict == Verdict::good && judge(g, t - time_) != Verdict::good) {
+      culprit_ = g;
+      verdict = Verdict::too_far;
+    }
+  }
+  return verdict;
+}
+
+Follower::Verdict Follower::judge(std::size_t g, double dt) const {
+  const Course& course = courses_[g];
+  const double before = std::abs(course.regularity), after = std::abs(regularities_[g]);
+  const bool same_sign = (course.regularity > 0) == (regularities_[g] > 0);
+  if (!same_sign || after < before / 2) return Verdict::too_far;
+  if (std::min(before, after) < kRegular &&
+      (after > 2 * before || std::abs(course.slope * dt) > before / 2)) {
+    return Verdict::too_far;
+  }
+  const GroupSolver& solver = kinematics_.solver(g);
+  if (solver.is_tracked() && !(solver.correction() < kGoodGuess)) return Verdict::too_far;
+  for (const std::size_t body : kinematics_.structure().groups[g].bodies) {
+    const BodyState& a = here_.bodies[body];
+    const BodyState& b = next_.bodies[body];
+    if (!(a.cosine * b.cosine + a.sine * b.sine > kBodyStep)) return Verdict::too_far;
+  }
+  return Verdict::good;
+}
+
+void Follower::accept(double t) {
+  const double dt = t - time_;
+  for (std::size_t g = 0; g < courses_.size(); ++g) {
+    Course& course = courses_[g];
+    if (dt != 0) course.slope = (regularities_[g] - course.regularity) / dt;
+    course.regularity = regularities_[g];
+    course.peak = std::max(course.peak, std::abs(course.regularity));
+  }
+  std::swap(here_, next_);
+  std::swap(drives_, next_drives_);
+  time_ = t;
+  copy_angles();
+}
+
+/// Angles of the bodies, by the whole turns that come next to the last ones.
+void Follower::copy_angles() {
+  kinematics_.finish(drives_, here_);
+  if (here_.status == Status::open) return;
+  const bool first = angles_.empty();
+  angles_.resize(here_.bodies.size());
+  for (std::size_t b = 0; b < angles_.size(); ++b) {
+    double& angle = here_.bodies[b].angle;
+    if (!first && !mechanism_.drive_of(b)) angle += kTurn * std::round((angles_[b] - angle) / kTurn);
+    angles_[b] = angle;
+  }
+}
+
+/// Whether group `g` closes at time `t` near to where it would be by its velocity; leaves the pose found in
+/// next_.
+bool Follower::closes(std::size_t g, double t) {
+  predict(t - time_);
+  clock_.at(t, next_drives_);
+  for (std::size_t before = 0; before < g; ++before) {
+    if (kinematics_.solver(before).place(next_drives_, courses_[before].side, next_) == Status::open) return false;
+  }
+  GroupSolver& solver = kinematics_.solver(g);
+  if (!solver.is_tracked()) {
+    return solver.place(next_drives_, courses_[g].side, next_) != Status::open;
+  }
+  const std::vector<PointState> guess = next_.points;
+  if (solver.place(next_drives_, 0, next_) == Status::open) return false;
+  double far = 0;
+  for (const std::size_t point : kinematics_.structure().groups[g].points)
+    far = std::max(far, (next_.points[point].position - guess[point].position).norm());
+  return far < kGoodGuess * mechanism_.largest_length();
+}
+
+/// The time of a limit between one where the group closes and one where it does not.
+double Follower::limit_between(std::size_t g, double inside, double outside) {
+  while (std::abs(outside - inside) > smallest_) {
+    const double middle = inside + (outside - inside) / 2;
+    if (middle == inside || middle == outside) break;
+    (closes(g, middle) ? inside : outside) = middle;
+  }
+  return inside;
+}
+
+/// Looks for a mode of group `g` at time `to` that goes on from here by its velocity, and takes it.
+bool Follower::passes(std::size_t g, double from, double to) {
+  predict(to - from);
+  const Configuration guess = next_;
+  clock_.at(to, next_drives_);
+  for (std::size_t before = 0; before < g; ++before) {
+    if (kinematics_.solver(before).place(next_drives_, courses_[before].side, next_) == Status::open) return false;
+  }
+  GroupSolver& solver = kinematics_.solver(g);
+  const Group& group = kinematics_.structure().groups[g];
+  const auto distance = [&](const Configuration& there) {
+    double far = 0;
+    for (const std::size_t point : group.points)
+      far = std::max(far, (there.points[point].position - guess.points[point].position).norm());
+    return far;
+  };
+  double nearest = std::numeric_limits<double>::infinity();
+  Configuration found;
+  int side = 0;
+  const auto consider = [&](Configuration there, Status status, int its_side) {
+    if (status == Status::open || distance(there) >= nearest) return;
+    nearest = distance(there);
+    found = std::move(there);
+    side = its_side;
+  };
+  if (solver.is_tracked()) {
+    Configuration there = next_;
+    const Status status = solver.place(next_drives_, 0, there);
+    consider(std::move(there), status, 0);
+  } else {
+    for (const int candidate : {+1, -1}) {
+      Configuration there = next_;
+      const Status status = solver.place(next_drives_, candidate, there);
+      consider(std::move(there), status, candidate);
+    }
+  }
+  // the two modes are as far apart as the regularity says; the right one is nearer by orders
+  const double size = mechanism_.largest_length();
+  if (!(nearest < std::abs(courses_[g].regularity) * size / 2)) return false;
+  courses_[g].side = side;
+  return true;
+}
+
+/// Passes the point ahead where the modes of group `g` meet, or ends before it.
+Follower::Crossing Follower::cross(std::size_t g, double t) {
+  const Course& course = courses_[g];
+  const double direction = t > time_ ? 1 : -1;
+  const double zero = std::abs(course.regularity / course.slope);  // of a regularity that falls in a line
+  const double from = time_, to = time_ + direction * 2 * zero;
+  bool opens = false;
+  for (const double part : {0.25, 0.5, 0.75, 0.9, 1.0, 1.1, 1.25, 1.5, 1.75}) {
+    if (kinematics_.solver(g).is_tracked()) break;
+    opens = opens || !closes(g, time_ + direction * part * zero);
+  }
+  const int side = course.side;
+  if (!opens && passes(g, from, to)) {
+    if ((t - to) * direction <= 0) {  // the time asked for lies amidst
+      const bool there = passes(g, from, t) && place_all(t);
+      courses_[g].side = side;
+      shown_ = next_;
+      return there ? Crossing::amidst : Crossing::limit;
+    }
+    events_.push_back({MotionEvent::Kind::change, time_ + direction * zero, g});
+    if (!place_all(to)) return Crossing::limit;
+    accept(to);
+    probe();
+    return Crossing::passed;
+  }
+  if (closes(g, t) && place_all(t) && std::abs(t - time_) <= 2 * zero) {  // just before a limit
+    shown_ = next_;
+    return Crossing::amidst;
+  }
+  // a limit: between here and twice as far as a root would have it
+  double outside = to;
+  for (int i = 0; i < 60 && closes(g, outside); ++i) outside = time_ + direction * zero * std::pow(1.5, i);
+  const double at = limit_between(g, time_, outside);
+  events_.push_back({MotionEvent::Kind::limit, at, g});
+  return Crossing::limit;
+}
+
+/// All groups at time `t`, in next_; false where one is open.
+bool Follower::place_all(double t) {
+  predict(t - time_);
+  clock_.at(t, next_drives_);
+  next_.status = Status::ok;
+  next_.group.reset();
+  for (std::size_t g = 0; g < courses_.size(); ++g) {
+    GroupSolver& solver = kinematics_.solver(g);
+    const Status status = solver.place(next_drives_, courses_[g].side, next_);
+    regularities_[g] = solver.regularity();
+    if (status == Status::open) return false;
+    if (status == Status::dead_centre) {
+      if (!next_.group) next_.group = g;
+      next_.status = status;
+    }
+  }
+  return true;
+}
+
+/// One step towards `t`.
+Follower::Crossing Follower::step_towards(double t) {
+  const double direction = t > time_ ? 1 : -1;
+  double dt = std::min({step_, duration_of_degree_, std::abs(t - time_)});
+  while (true) {
+    // the last step ends at t itself
+    const double target = dt == std::abs(t - time_) ? t : time_ + direction * dt;
+    if (tracks_) predict(target - time_);
+    const Verdict verdict = attempt(target);
+    if (verdict == Verdict::good) {
+      accept(target);
+      step_ = std::min(2 * dt, duration_of_degree_);
+      return Crossing::passed;
+    }
+    const std::size_t g = culprit_;
+    const Course& course = courses_[g];
+    const bool at_singularity = std::abs(course.regularity) < kSingular * course.peak && course.slope * course.regularity * direction < 0;
+    dt /= 2;
+    if (at_singularity || dt < smallest_) {
+      step_ = duration_of_degree_;
+      return cross(g, t);
+    }
+  }
+}
+
+bool Follower::try_to_return(double t) {
+  // a pose of which nothing is left as a guess but the last one before the limit
+  clock_.at(t, next_drives_);
+  predict(0);
+  next_.status = Status::ok;
+  next_.group.reset();
+  const Structure& structure = kinematics_.structure();
+  for (std::size_t g = 0; g < courses_.size(); ++g) {
+    GroupSolver& solver = kinematics_.solver(g);
+    Status status = Status::open;
+    if (!solver.is_tracked()) {
+      status = solver.place(next_drives_, courses_[g].side, next_);
+    } else {
+      const GroupPoses poses = solver.poses(next_drives_, next_);
+      double nearest = std::numeric_limits<double>::infinity();
+      Configuration found;
+      for (const GroupPose& pose : poses.poses) {
+        Configuration there = next_;
+        const Status its = solver.place(next_drives_, pose, there);
+        if (its == Status::open || (solver.regularity() > 0) != (courses_[g].regularity > 0)) continue;
+        double far = 0;
+        for (const std::size_t point : structure.groups[g].points)
+          far += (there.points[point].position - here_.points[point].position).norm();
+        if (far >= nearest) continue;
+        nearest = far;
+        status = its;
+        found = std::move(there);
+      }
+      if (status != Status::open) next_ = std::move(found);
+    }
+    regularities_[g] = solver.regularity();
+    if (status == Status::open) {
+      culprit_ = g;
+      return false;
+    }
+    if (status == Status::dead_centre) {
+      next_.group = g;
+      next_.status = status;
+    }
+  }
+  return true;
+}
+
+/// Finishes what is shown for a time at which the follower itself does not stand.
+void Follower::show(double t) {
+  clock_.at(t, next_drives_);
+  kinematics_.finish(next_drives_, shown_);
+  for (std::size_t b = 0; b < angles_.size(); ++b) {
+    double& angle = shown_.bodies[b].angle;
+    if (!mechanism_.drive_of(b)) angle += kTurn * std::round((angles_[b] - angle) / kTurn);
+  }
+}
+
+const Configuration& Follower::advance(double t) {
+  if (!started_) start();
+  while (time_ != t) {
+    if (open_) {
+      if (!try_to_return(t)) {
+        shown_ = here_;
+        clear(mechanism_, shown_);
+        shown_.status = Status::open;
+        shown_.group = culprit_;
+        clock_.at(t, drives_);
+        time_ = t;
+        return shown_;
+      }
+      const std::size_t g = culprit_;
+      double outside = time_, inside = t;
+      while (std::abs(inside - outside) > smallest_) {
+        const double middle = outside + (inside - outside) / 2;
+        if (middle == inside || middle == outside) break;
+        (try_to_return(middle) ? inside : outside) = middle;
+      }
+      events_.push_back({MotionEvent::Kind::return_, inside, g});
+      try_to_return(t);
+      accept(t);
+      open_ = false;
+      step_ = duration_of_degree_;
+      probe();
+      break;
+    }
+    const Crossing crossing = step_towards(t);
+    if (crossing == Crossing::amidst) {
+      show(t);
+      return shown_;
+    }
+    if (crossing == Crossing::limit) {
+      open_ = true;
+      culprit_ = events_.back().group;
+      if (stop_at_limit_) return here_;
+    }
+  }
+  return here_;
+}
+
+std::optional<MotionEvent> Follower::advance_to_limit(double t) {
+  stop_at_limit_ = true;
+  const std::size_t before = events_.size();
+  advance(t);
+  stop_at_limit_ = false;
+  for (std::size_t i = before; i < events_.size(); ++i) {
+    if (events_[i].kind == MotionEvent::Kind::limit) return events_[i];
+  }
+  return std::nullopt;
+}
+
+}  // namespace oblique
