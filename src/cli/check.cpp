@@ -21,23 +21,26 @@ std::string describe(const Mechanism& mechanism, const Group& group) {
   }
   if (group.kind == GroupKind::slider) {
     return fmt::format("slider {}: moved along '{}' by drive '{}'", group.name,
-                       mechanism.slides[group.slides.front()].name, mechanism.drives[group.drives.front()].name);
+                       mechanism.slides[group.slides.front()].name,
+                       mechanism.drives[group.drives.front()].name);
   }
   constexpr std::array<const char*, 9> kRoman{"", "I", "II", "III", "IV", "V", "VI", "VII", "VIII"};
   const auto number = static_cast<std::size_t>(group.assur_class);
   const std::string assur_class = number < kRoman.size() ? kRoman[number] : std::to_string(number);
-  const std::string driven =
-      group.drives.empty() ? "" : fmt::format(", driven inside by '{}'", mechanism.drives[group.drives.front()].name);
+  const std::string driven = group.drives.empty() ? ""
+                                                  : fmt::format(", driven inside by '{}'",
+                                                                mechanism.drives[group.drives.front()].name);
   if (const auto dyad = dyad_of(group)) {
-    return fmt::format("dyad {} (class II, RRR): {} lies {} of {} → {}", group.name, mechanism.points[dyad->c].name,
-                       dyad->side > 0 ? "left" : "right", mechanism.points[dyad->p].name,
-                       mechanism.points[dyad->q].name);
+    return fmt::format("dyad {} (class II, RRR): {} lies {} of {} → {}", group.name,
+                       mechanism.points[dyad->c].name, dyad->side > 0 ? "left" : "right",
+                       mechanism.points[dyad->p].name, mechanism.points[dyad->q].name);
   }
   if (group.assur_class == 2 && group.kind != GroupKind::general) {
     return fmt::format("dyad {} (class II, {})", group.name, kind_name(group.kind));
   }
   return fmt::format("group {} (class {}, order {}): {}{}", group.name, assur_class, group.order,
-                     group.kind == GroupKind::triad ? "a triad, in closed form" : "by Newton's method", driven);
+                     group.kind == GroupKind::triad ? "a triad, in closed form" : "by Newton's method",
+                     driven);
 }
 
 /// What keeps the mechanism from turning; nothing where it turns, or is a structure.

@@ -112,7 +112,7 @@ TEST(AssemblyModes, AreOneForACrankAndTwoForADyad) {
       read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/four-bar.toml");
   const Structure structure = decompose(four_bar);
   const auto groups = assembly_modes(four_bar, structure, std::array{DriveState{0, 1, 0}},
-                                    start_configuration(four_bar, structure));
+                                     start_configuration(four_bar, structure));
   ASSERT_EQ(groups.size(), 2U);
   ASSERT_EQ(groups[0].modes.size(), 1U);
   EXPECT_EQ(groups[0].modes[0].positions[0], Eigen::Vector2d(1, 0));
@@ -130,7 +130,9 @@ TEST(AssemblyModes, AreNoneWhereTheLinksDoNotReach) {
   Mechanism mechanism = parse_mechanism(truss("C = [3, 1]"), "truss.toml");
   const Structure structure = decompose(mechanism);
   mechanism.points[1].position.x() = 8;
-  EXPECT_TRUE(assembly_modes(mechanism, structure, {}, start_configuration(mechanism, structure)).at(0).modes.empty());
+  EXPECT_TRUE(assembly_modes(mechanism, structure, {}, start_configuration(mechanism, structure))
+                  .at(0)
+                  .modes.empty());
 }
 
 }  // namespace

@@ -65,14 +65,14 @@ class ModeChooser {
     const auto good = [&](const PointRef& point) {
       return point.kind != PointRef::Kind::known || is_placed(here_, point.point);
     };
-    return std::all_of(group.equations.conditions.begin(), group.equations.conditions.end(),
-                       [&](const Condition& c) {
-                         const bool two = c.kind == Condition::Kind::distance || c.kind == Condition::Kind::coincidence;
-                         const bool line = c.line.kind != LineRef::Kind::known ||
-                                           !std::isnan(here_.bodies[c.line.body].cosine);
-                         const bool first = c.kind == Condition::Kind::orientation || good(c.a);
-                         return first && line && (!two || good(c.b));
-                       });
+    return std::all_of(
+        group.equations.conditions.begin(), group.equations.conditions.end(), [&](const Condition& c) {
+          const bool two = c.kind == Condition::Kind::distance || c.kind == Condition::Kind::coincidence;
+          const bool line =
+              c.line.kind != LineRef::Kind::known || !std::isnan(here_.bodies[c.line.body].cosine);
+          const bool first = c.kind == Condition::Kind::orientation || good(c.a);
+          return first && line && (!two || good(c.b));
+        });
   }
 
   /// A guess of the group's pose from the sketched points of its bodies; the others lie among them.
@@ -154,7 +154,8 @@ class ModeChooser {
       if (!std::binary_search(group.points.begin(), group.points.end(), mark.point)) continue;
       sketched = true;
       for (std::size_t i = 0; i < all.size(); ++i) {
-        far[i] = std::hypot(far[i], (all[i].configuration.points[mark.point].position - mark.position).norm());
+        far[i] =
+            std::hypot(far[i], (all[i].configuration.points[mark.point].position - mark.position).norm());
       }
     }
     std::vector<std::size_t> order(all.size());
@@ -162,7 +163,8 @@ class ModeChooser {
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return far[a] < far[b]; });
     if (all.front().status == Status::dead_centre && all.size() == 1) {
       add(MechanismError::Kind::sketch, group,
-          fmt::format("{} '{}' is at a dead centre at the start: its assembly modes coincide", noun(group), group.name),
+          fmt::format("{} '{}' is at a dead centre at the start: its assembly modes coincide", noun(group),
+                      group.name),
           {}, "start the drive at another angle and sketch that position");
       return std::nullopt;
     }
@@ -170,21 +172,25 @@ class ModeChooser {
     if (sketched && far[order[1]] - far[order[0]] > same) return order[0];
     std::string lines;
     for (const Candidate& candidate : all) lines += "\n    " + sketch_line(group, candidate, all);
-    const std::string modes = fmt::format("{} assembly modes", all.size() == 2 ? "two" : std::to_string(all.size()));
+    const std::string modes =
+        fmt::format("{} assembly modes", all.size() == 2 ? "two" : std::to_string(all.size()));
     const char* const all_or_both = all.size() == 2 ? "both" : "two";
     add(MechanismError::Kind::sketch, group,
-        sketched ? fmt::format("the sketch is equally far from {} assembly modes of {} '{}'", all_or_both, noun(group),
-                               group.name)
+        sketched ? fmt::format("the sketch is equally far from {} assembly modes of {} '{}'", all_or_both,
+                               noun(group), group.name)
                  : fmt::format("{} '{}' has {} and no point in [sketch]", noun(group), group.name, modes),
         "a rough position at the start of a point that the modes place differently",
         "put one of these lines into [sketch]" + lines);
     return std::nullopt;
   }
 
-  static std::string noun(const Group& group) { return group.assur_class == 2 && dyad_of(group) ? "dyad" : "group"; }
+  static std::string noun(const Group& group) {
+    return group.assur_class == 2 && dyad_of(group) ? "dyad" : "group";
+  }
 
   /// A line for [sketch]: of the point that the modes place most differently.
-  std::string sketch_line(const Group& group, const Candidate& candidate, const std::vector<Candidate>& all) const {
+  std::string sketch_line(const Group& group, const Candidate& candidate,
+                          const std::vector<Candidate>& all) const {
     std::size_t telling = group.points.front();
     if (const auto dyad = dyad_of(group)) {
       telling = dyad->c;
@@ -207,8 +213,8 @@ class ModeChooser {
     const Eigen::Vector2d& at = candidate.configuration.points[telling].position;
     std::string line = fmt::format("{} = [{:.6g}, {:.6g}]", point_name(telling), at.x(), at.y());
     if (const auto dyad = dyad_of(group)) {
-      line += fmt::format("   # {} of {} → {}", candidate.pose.side > 0 ? "left" : "right", point_name(dyad->p),
-                          point_name(dyad->q));
+      line += fmt::format("   # {} of {} → {}", candidate.pose.side > 0 ? "left" : "right",
+                          point_name(dyad->p), point_name(dyad->q));
     }
     return line;
   }
@@ -222,8 +228,9 @@ class ModeChooser {
                       "apart, and '{}' "
                       "({} to {}: {:.6g} {}) and '{}' ({} to {}: {:.6g} {}) do not meet",
                       group.name, point_name(dyad->p), point_name(dyad->q), distance, unit,
-                      mechanism_.bodies[dyad->body1].name, point_name(dyad->p), point_name(dyad->c), dyad->r1, unit,
-                      mechanism_.bodies[dyad->body2].name, point_name(dyad->q), point_name(dyad->c), dyad->r2, unit),
+                      mechanism_.bodies[dyad->body1].name, point_name(dyad->p), point_name(dyad->c), dyad->r1,
+                      unit, mechanism_.bodies[dyad->body2].name, point_name(dyad->q), point_name(dyad->c),
+                      dyad->r2, unit),
           fmt::format("a distance of the pivots from {:.6g} to {:.6g} {}", std::abs(dyad->r1 - dyad->r2),
                       dyad->r1 + dyad->r2, unit),
           "change a length, or the start of the drive");
@@ -232,9 +239,9 @@ class ModeChooser {
     std::vector<std::string> known;
     for (const Condition& c : group.equations.conditions) {
       for (const PointRef* point : {&c.a, &c.b}) {
-        const bool used = c.kind != Condition::Kind::orientation &&
-                          (point == &c.a || c.kind == Condition::Kind::distance ||
-                           c.kind == Condition::Kind::coincidence);
+        const bool used =
+            c.kind != Condition::Kind::orientation &&
+            (point == &c.a || c.kind == Condition::Kind::distance || c.kind == Condition::Kind::coincidence);
         if (!used || point->kind != PointRef::Kind::known) continue;
         const Eigen::Vector2d& at = here_.points[point->point].position;
         known.push_back(fmt::format("{} at [{:.6g}, {:.6g}]", point_name(point->point), at.x(), at.y()));
@@ -242,16 +249,20 @@ class ModeChooser {
     }
     add(MechanismError::Kind::assembly, group,
         fmt::format("group '{}' cannot be assembled at the start{}{}", group.name,
-                    known.empty() ? "" : fmt::format(": its bodies do not reach each other with {}", fmt::join(known, ", ")),
+                    known.empty()
+                        ? ""
+                        : fmt::format(": its bodies do not reach each other with {}", fmt::join(known, ", ")),
                     complete ? "" : " (no pose was found by a search from many guesses)"),
-        "bodies that close", complete ? "change a length, or the start of the drive"
-                                      : "sketch its points more closely, change a length, or the start of the drive");
+        "bodies that close",
+        complete ? "change a length, or the start of the drive"
+                 : "sketch its points more closely, change a length, or the start of the drive");
   }
 
-  void add(MechanismError::Kind kind, const Group& group, std::string what, std::string expected, std::string remedy) {
+  void add(MechanismError::Kind kind, const Group& group, std::string what, std::string expected,
+           std::string remedy) {
     if (findings_.empty() || kind == MechanismError::Kind::assembly) kind_ = kind;
-    const Place& place =
-        group.bodies.empty() ? mechanism_.slides[group.slides.front()].place : mechanism_.bodies[group.bodies.front()].place;
+    const Place& place = group.bodies.empty() ? mechanism_.slides[group.slides.front()].place
+                                              : mechanism_.bodies[group.bodies.front()].place;
     findings_.push_back({place, std::move(what), std::move(expected), std::move(remedy)});
   }
 

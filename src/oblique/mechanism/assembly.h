@@ -25,15 +25,15 @@ struct GroupModes {
   std::vector<AssemblyMode> modes;
 };
 
-/// Sets the side and the start of each group: of the ways to assemble it at the start position, the one nearest
-/// to the sketched points of its bodies (root sum of squared distances). Throws MechanismError: kind `assembly`
-/// where links do not reach, kind `sketch` where no sketched point tells the modes apart (the message lists them
-/// as lines to paste), kind `constraint` where conditions depend on each other.
+/// Sets the side and the start of each group: of the ways to assemble it at the start position, the one
+/// nearest to the sketched points of its bodies (root sum of squared distances). Throws MechanismError: kind
+/// `assembly` where links do not reach, kind `sketch` where no sketched point tells the modes apart (the
+/// message lists them as lines to paste), kind `constraint` where conditions depend on each other.
 void choose_modes(const Mechanism& mechanism, Structure& structure);
 
 /// Every assembly mode of every group, the groups before it as in `here`, a configuration of the structure at
-/// these states of the drives (of a Follower, or `start_configuration`). Groups that hang on one that cannot be
-/// assembled have no modes.
+/// these states of the drives (of a Follower, or `start_configuration`). Groups that hang on one that cannot
+/// be assembled have no modes.
 std::vector<GroupModes> assembly_modes(const Mechanism& mechanism, const Structure& structure,
                                        std::span<const DriveState> drives, const Configuration& here);
 

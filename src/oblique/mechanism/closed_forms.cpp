@@ -56,7 +56,8 @@ GroupSolver::Locus GroupSolver::locus(const Condition& c, std::span<const DriveS
 }
 
 /// Two circles: the triangle over their centres, on the left of first → second for `side` +1. A circle and a
-/// line: the foot of the centre on the line, and half the chord from there, forwards for +1. Two lines: Cramer.
+/// line: the foot of the centre on the line, and half the chord from there, forwards for +1. Two lines:
+/// Cramer.
 Status GroupSolver::find_by_loci(std::span<const DriveState> drives, int side, const Configuration& here) {
   if (!cores_.empty()) {
     const Condition& c = equations_.conditions[angle_conditions_.front()];
@@ -104,15 +105,16 @@ Status GroupSolver::find_by_loci(std::span<const DriveState> drives, int side, c
   return Status::ok;
 }
 
-/// a cos θ + b sin θ = c for a body hinged to a known point P: with m from the hinge in the body's frame and w
-/// from P in the world's,
+/// a cos θ + b sin θ = c for a body hinged to a known point P: with m from the hinge in the body's frame and
+/// w from P in the world's,
 ///
 ///     distance to a known point     w·R m = (m² + w² − r²)/2
 ///     known point on its own line   w·R n = n·m
 ///     its point on a known line     n·R m = n·(A − P)
 ///
 /// θ is the direction of (a, b), ± arccos(c/√(a² + b²)), left for `side` +1.
-Status GroupSolver::find_about_pivot(std::span<const DriveState> drives, int side, const Configuration& here) {
+Status GroupSolver::find_about_pivot(std::span<const DriveState> drives, int side,
+                                     const Configuration& here) {
   const Condition& hinge = equations_.conditions[*hinge_];
   const Condition& c = equations_.conditions[scalars_.front()];
   const Vector2d p = here.points[hinge.b.point].position;
@@ -148,7 +150,8 @@ Status GroupSolver::find_about_pivot(std::span<const DriveState> drives, int sid
   return slack > rounding ? Status::ok : Status::dead_centre;
 }
 
-GroupPoses GroupSolver::poses(std::span<const DriveState> drives, const Configuration& here, const GroupPose* hint) {
+GroupPoses GroupSolver::poses(std::span<const DriveState> drives, const Configuration& here,
+                              const GroupPose* hint) {
   GroupPoses found;
   const auto given = [](const PointState& state) { return std::isfinite(state.position.x()); };
   if (form_ == Form::crank) {

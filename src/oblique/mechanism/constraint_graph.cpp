@@ -11,21 +11,10 @@ ConstraintGraph::ConstraintGraph(const Mechanism& mechanism) : bodies_(mechanism
   owned_.resize(capacity_.size());
   incident_.resize(capacity_.size());
   using Kind = Edge::Kind;
-  for (std::size_t body = 0; body < bodies_; ++body) {
-    for (const BodyPoint& p : mechanism.bodies[body].points) {
-      for (int coordinate = 0; coordinate < 2; ++coordinate) {
-        add({Kind::hinge, body, p.point, body, point_vertex(p.point)});
-      }
-    }
-  }
   const auto carrier = [](const Slide& slide) { return slide.carrier.value_or(kFrame); };
   // a body that may not turn is guided itself, not its point
   const auto guided = [&](const Slide& slide) { return slide.of ? *slide.of : point_vertex(slide.point); };
-  for (std::size_t s = 0; s < mechanism.slides.size(); ++s) {
-    const Slide& slide = mechanism.slides[s];
-    add({Kind::on_line, s, 0, guided(slide), carrier(slide)});
-    if (slide.of) add({Kind::angle, s, 0, guided(slide), carrier(slide)});
-  }
+  // drives first: what is too much then is a pair
   for (std::size_t d = 0; d < mechanism.drives.size(); ++d) {
     const Drive& drive = mechanism.drives[d];
     if (drive.slide) {
@@ -34,6 +23,18 @@ ConstraintGraph::ConstraintGraph(const Mechanism& mechanism) : bodies_(mechanism
     } else {
       add({Kind::turn, d, 0, drive.body});
     }
+  }
+  for (std::size_t body = 0; body < bodies_; ++body) {
+    for (const BodyPoint& p : mechanism.bodies[body].points) {
+      for (int coordinate = 0; coordinate < 2; ++coordinate) {
+        add({Kind::hinge, body, p.point, body, point_vertex(p.point)});
+      }
+    }
+  }
+  for (std::size_t s = 0; s < mechanism.slides.size(); ++s) {
+    const Slide& slide = mechanism.slides[s];
+    add({Kind::on_line, s, 0, guided(slide), carrier(slide)});
+    if (slide.of) add({Kind::angle, s, 0, guided(slide), carrier(slide)});
   }
 }
 
@@ -94,7 +95,8 @@ std::vector<std::size_t> ConstraintGraph::competitors(std::size_t edge) const {
 
 int ConstraintGraph::freedom() const {
   int free = 0;
-  for (std::size_t v = 0; v < capacity_.size(); ++v) free += capacity_[v] - static_cast<int>(owned_[v].size());
+  for (std::size_t v = 0; v < capacity_.size(); ++v)
+    free += capacity_[v] - static_cast<int>(owned_[v].size());
   return free;
 }
 
@@ -120,7 +122,8 @@ std::vector<std::size_t> ConstraintGraph::movable() const {
 }
 
 std::vector<std::vector<std::size_t>> ConstraintGraph::components() const {
-  // R. Tarjan's algorithm, whose components come out in the order of dependence. Depth: the number of vertices.
+  // R. Tarjan's algorithm, whose components come out in the order of dependence. Depth: the number of
+  // vertices.
   constexpr int kUnseen = -1;
   std::vector<int> order(capacity_.size(), kUnseen), lowest(capacity_.size(), 0);
   std::vector<bool> open(capacity_.size());

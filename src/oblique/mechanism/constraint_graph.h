@@ -9,8 +9,8 @@
 
 namespace oblique {
 
-/// The conditions of a mechanism as a graph. Vertices are the bodies (three unknowns each), then the points (two
-/// each, none for those of the frame); an edge is one scalar condition between two vertices, or on one.
+/// The conditions of a mechanism as a graph. Vertices are the bodies (three unknowns each), then the points
+/// (two each, none for those of the frame); an edge is one scalar condition between two vertices, or on one.
 class ConstraintGraph {
  public:
   static constexpr std::size_t kFrame = static_cast<std::size_t>(-1);
@@ -18,10 +18,10 @@ class ConstraintGraph {
   struct Edge {
     enum class Kind { hinge, on_line, angle, turn, along };
     Kind kind = Kind::hinge;
-    std::size_t index = 0;   ///< body of a hinge, slide, or drive
-    std::size_t point = 0;   ///< of a hinge, index in Mechanism::points
+    std::size_t index = 0;               ///< body of a hinge, slide, or drive
+    std::size_t point = 0;               ///< of a hinge, index in Mechanism::points
     std::size_t a = kFrame, b = kFrame;  ///< vertices
-    std::size_t owner = kFrame;          ///< the vertex that this condition determines; kFrame: it is too much
+    std::size_t owner = kFrame;  ///< the vertex that this condition determines; kFrame: it is too much
   };
 
   explicit ConstraintGraph(const Mechanism& mechanism);

@@ -21,7 +21,8 @@ bool read_moment(const std::string& text, const Mechanism& mechanism, const Plac
                  MechanismExpectation& expectation, Diagnostics& diagnostics) {
   const bool slides = !mechanism.drives.empty() && mechanism.drives.front().slide;
   const std::string drive_unit = slides ? mechanism.length_unit : "rad";
-  for (const auto& [kind, unit] : {std::pair{Kind::at_time, std::string("s")}, std::pair{Kind::at_value, drive_unit}}) {
+  for (const auto& [kind, unit] :
+       {std::pair{Kind::at_time, std::string("s")}, std::pair{Kind::at_value, drive_unit}}) {
     try {
       expectation.at = parse_quantity(text, parse_unit(unit).value());
       expectation.kind = kind;
@@ -30,7 +31,8 @@ bool read_moment(const std::string& text, const Mechanism& mechanism, const Plac
       continue;
     }
   }
-  diagnostics.add({place, fmt::format("[expect] cannot read '{}' of '{}'", text, expectation.text),
+  diagnostics.add({place,
+                   fmt::format("[expect] cannot read '{}' of '{}'", text, expectation.text),
                    fmt::format(R"(a time as "0.25 s", or a value of the first drive as "{}")",
                                slides ? "20 " + drive_unit : "90 deg"),
                    {}});
@@ -49,7 +51,8 @@ bool read_key(const Mechanism& mechanism, MechanismExpectation& expectation, Dia
   constexpr std::string_view kAt = " at ";
   const std::size_t at = key.rfind(kAt);
   if (at == std::string::npos || at == 0) {
-    diagnostics.add({expectation.place, fmt::format("[expect] cannot read '{}'", key),
+    diagnostics.add({expectation.place,
+                     fmt::format("[expect] cannot read '{}'", key),
                      R"("COLUMN at TIME", "COLUMN at ANGLE", "COLUMN maximum" or "COLUMN minimum")",
                      {}});
     return false;
@@ -66,19 +69,22 @@ double time_of(const Mechanism& mechanism, const MechanismExpectation& expectati
   constexpr double kTurn = 2 * std::numbers::pi;
   constexpr double kSame = 1e-12;
   if (std::abs(way) < kSame) return 0;
-  if (!drive.slide && way * drive.speed < 0) way += std::copysign(kTurn * std::ceil(std::abs(way) / kTurn), drive.speed);
+  if (!drive.slide && way * drive.speed < 0)
+    way += std::copysign(kTurn * std::ceil(std::abs(way) / kTurn), drive.speed);
   constexpr double kLatest = 100;  // turns, or longest links
   const double latest = kLatest * std::max(std::abs(way), kTurn) / std::abs(drive.speed);
   const auto time = way * drive.speed < 0 ? std::nullopt : DriveClock(mechanism).time_of_way(0, way, latest);
   if (time) return *time;
   throw MechanismError(MechanismError::Kind::request,
                        Diagnostic{expectation.place,
-                                  fmt::format("drive '{}' does not come to where '{}' is expected", drive.name,
-                                              expectation.text),
-                                  "a value that it reaches", {}});
+                                  fmt::format("drive '{}' does not come to where '{}' is expected",
+                                              drive.name, expectation.text),
+                                  "a value that it reaches",
+                                  {}});
 }
 
-const MotionColumn& column(const std::vector<MotionColumn>& columns, const MechanismExpectation& expectation) {
+const MotionColumn& column(const std::vector<MotionColumn>& columns,
+                           const MechanismExpectation& expectation) {
   const auto found = std::find_if(columns.begin(), columns.end(),
                                   [&](const MotionColumn& c) { return c.name == expectation.column; });
   if (found != columns.end()) return *found;
@@ -118,7 +124,8 @@ void read_mechanism_expectations(const Value& table, Mechanism& mechanism, Diagn
       reader.report("value", fmt::format("'value' of {} is infinite", reader.what()), "a finite number");
     }
     if (within && !(*within > 0 && std::isfinite(*within))) {
-      reader.report("within", fmt::format("'within' of {} is {}", reader.what(), *within), "a finite number above 0");
+      reader.report("within", fmt::format("'within' of {} is {}", reader.what(), *within),
+                    "a finite number above 0");
     }
     reader.finish();
     if (!good || !value || !within) continue;
@@ -130,9 +137,9 @@ void read_mechanism_expectations(const Value& table, Mechanism& mechanism, Diagn
 
 std::vector<MechanismFinding> check_expectations(const Mechanism& mechanism) {
   std::vector<MechanismFinding> findings;
-  const bool extremes = std::any_of(mechanism.expectations.begin(), mechanism.expectations.end(), [](const auto& e) {
-    return e.kind == Kind::maximum || e.kind == Kind::minimum;
-  });
+  const bool extremes =
+      std::any_of(mechanism.expectations.begin(), mechanism.expectations.end(),
+                  [](const auto& e) { return e.kind == Kind::maximum || e.kind == Kind::minimum; });
   std::vector<MotionColumn> motion;
   constexpr int kPositions = 3601;
   if (extremes) motion = motion_columns(mechanism, solve_motion(mechanism, kPositions));

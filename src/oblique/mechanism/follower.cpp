@@ -21,9 +21,9 @@ constexpr double kSharpness = 1e-11;
 constexpr double kBodyStep = 0.866;
 /// Above this regularity a group is far from everything.
 constexpr double kRegular = 0.25;
-/// Below this part of the regularity at the start of the approach a group is at the point where its modes meet:
-/// heights of triangles are then 1e-5 of their sides, a thousand times their rounding.
-constexpr double kSingular = 1e-5;
+/// Below this part of its largest regularity a group is at the point where its modes meet: the height of a
+/// triangle is then a few times what counts as flat, so that rates still have a value.
+constexpr double kSingular = 1e-6;
 /// First correction by Newton's method, over the group's size, up to which a guess is nearly right.
 constexpr double kGoodGuess = 0.02;
 
@@ -59,16 +59,14 @@ Follower::Follower(const Mechanism& mechanism, const Structure& structure)
 }
 
 void Follower::start() {
-  started_ = true;
   kinematics_.load_start(next_);
-  culprit_ = 0;
   step_ = duration_of_degree_;
-  const Verdict verdict = attempt(0);
+  open_ = !place_all(0);
+  started_ = true;
   std::swap(here_, next_);
   std::swap(drives_, next_drives_);
   next_ = here_;
   time_ = 0;
-  open_ = verdict == Verdict::blocked;
   for (std::size_t g = 0; g < courses_.size(); ++g) {
     courses_[g].regularity = regularities_[g];
     courses_[g].peak = std::abs(regularities_[g]);
@@ -119,9 +117,11 @@ Follower::Verdict Follower::attempt(double t) {
       culprit_ = g;
       return Verdict::blocked;
     }
-    if (status == Status::dead_centre) {
-      if (!next_.group) next_.group = g;
+    if (status == Status::dead_centre) {  // no place to stand: without rates
+      culprit_ = g;
+      next_.group = g;
       next_.status = status;
+      return Verdict::too_far;
     }
     if (verdict == Verdict::good && judge(g, t - time_) != Verdict::good) {
       culprit_ = g;
@@ -183,7 +183,8 @@ bool Follower::closes(std::size_t g, double t) {
   predict(t - time_);
   clock_.at(t, next_drives_);
   for (std::size_t before = 0; before < g; ++before) {
-    if (kinematics_.solver(before).place(next_drives_, courses_[before].side, next_) == Status::open) return false;
+    if (kinematics_.solver(before).place(next_drives_, courses_[before].side, next_) == Status::open)
+      return false;
   }
   GroupSolver& solver = kinematics_.solver(g);
   if (!solver.is_tracked()) {
@@ -213,7 +214,8 @@ bool Follower::passes(std::size_t g, double from, double to) {
   const Configuration guess = next_;
   clock_.at(to, next_drives_);
   for (std::size_t before = 0; before < g; ++before) {
-    if (kinematics_.solver(before).place(next_drives_, courses_[before].side, next_) == Status::open) return false;
+    if (kinematics_.solver(before).place(next_drives_, courses_[before].side, next_) == Status::open)
+      return false;
   }
   GroupSolver& solver = kinematics_.solver(g);
   const Group& group = kinematics_.structure().groups[g];
@@ -289,7 +291,7 @@ Follower::Crossing Follower::cross(std::size_t g, double t) {
 
 /// All groups at time `t`, in next_; false where one is open.
 bool Follower::place_all(double t) {
-  predict(t - time_);
+  if (started_) predict(t - time_);
   clock_.at(t, next_drives_);
   next_.status = Status::ok;
   next_.group.reset();
@@ -297,6 +299,7 @@ bool Follower::place_all(double t) {
     GroupSolver& solver = kinematics_.solver(g);
     const Status status = solver.place(next_drives_, courses_[g].side, next_);
     regularities_[g] = solver.regularity();
+    culprit_ = g;
     if (status == Status::open) return false;
     if (status == Status::dead_centre) {
       if (!next_.group) next_.group = g;
@@ -322,7 +325,8 @@ Follower::Crossing Follower::step_towards(double t) {
     }
     const std::size_t g = culprit_;
     const Course& course = courses_[g];
-    const bool at_singularity = std::abs(course.regularity) < kSingular * course.peak && course.slope * course.regularity * direction < 0;
+    const bool at_singularity = std::abs(course.regularity) < kSingular * course.peak &&
+                                course.slope * course.regularity * direction < 0;
     dt /= 2;
     if (at_singularity || dt < smallest_) {
       step_ = duration_of_degree_;

@@ -25,11 +25,11 @@ struct MotionEvent {
 /// "limit", "return", "change point".
 std::string_view event_name(MotionEvent::Kind kind);
 
-/// Follows a mechanism from time 0. Steps are made so small that no body turns by more than 30° in one, that no
-/// group's regularity (GroupSolver) changes sign or by more than a factor of two, and that Newton's method finds
-/// its guess nearly right; so a group never changes its mode between two steps. Where the regularity goes to
-/// zero, the steps go to zero with it; then a mode on the other side is looked for: none is a limit, one that
-/// goes on with the same velocity is a change point, through which the group passes into that mode.
+/// Follows a mechanism from time 0. Steps are made so small that no body turns by more than 30° in one, that
+/// no group's regularity (GroupSolver) changes sign or by more than a factor of two, and that Newton's method
+/// finds its guess nearly right; so a group never changes its mode between two steps. Where the regularity
+/// goes to zero, the steps go to zero with it; then a mode on the other side is looked for: none is a limit,
+/// one that goes on with the same velocity is a change point, through which the group passes into that mode.
 ///
 /// Beyond a limit the configuration is open. A group comes back from there in the mode it had.
 class Follower {
@@ -88,13 +88,13 @@ class Follower {
   std::vector<double> angles_;  ///< continuous, of the last configuration that was not open
   std::vector<MotionEvent> events_;
   bool started_ = false;
-  bool tracks_ = false;      ///< some group starts from a guess
+  bool tracks_ = false;  ///< some group starts from a guess
   bool open_ = false;
   bool stop_at_limit_ = false;
   std::size_t culprit_ = 0;  ///< the group that stopped the last attempt
   double time_ = 0;
-  double step_ = 0;          ///< longest that may be tried [s]
-  double smallest_ = 0;      ///< step that counts as none [s]
+  double step_ = 0;      ///< longest that may be tried [s]
+  double smallest_ = 0;  ///< step that counts as none [s]
   double duration_of_degree_ = 0;
 };
 

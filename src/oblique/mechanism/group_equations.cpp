@@ -85,8 +85,8 @@ class Reduction {
       bool single = true;
       for (const std::size_t s : members_.slides) {
         const Slide& slide = mechanism_.slides[s];
-        const bool takes_part = slide.carrier == body || slide.of == body ||
-                                mechanism_.bodies[body].find(slide.point) != nullptr;
+        const bool takes_part =
+            slide.carrier == body || slide.of == body || mechanism_.bodies[body].find(slide.point) != nullptr;
         if (!takes_part) continue;
         single = single && !only;
         only = s;
@@ -143,16 +143,15 @@ class Reduction {
   }
 
   PointRef carried(std::size_t core, std::size_t point) const {
-    return {PointRef::Kind::carried, point, core,
-            mechanism_.bodies[result_.cores[core]].find(point)->local};
+    return {PointRef::Kind::carried, point, core, mechanism_.bodies[result_.cores[core]].find(point)->local};
   }
 
   PointRef reference(std::size_t point) const {
     if (known_[point]) return {PointRef::Kind::known, point, 0, Vector2d::Zero()};
     if (const auto core = core_with(point)) return carried(*core, point);
     const auto found = std::find(result_.free_points.begin(), result_.free_points.end(), point);
-    return {PointRef::Kind::free, point,
-            static_cast<std::size_t>(found - result_.free_points.begin()), Vector2d::Zero()};
+    return {PointRef::Kind::free, point, static_cast<std::size_t>(found - result_.free_points.begin()),
+            Vector2d::Zero()};
   }
 
   /// A line in the frame of a body of the group or a placed one, or of the frame.
@@ -205,8 +204,8 @@ class Reduction {
     result_.links.push_back({body, from, to, bone.x() / length.value, bone.y() / length.value});
   }
 
-  /// A block on a line of `other`: its hinge H lies on that line, shifted by where H lies beside the block's own
-  /// point. A block that carries the line itself: H lies on a line of the body that slides in it.
+  /// A block on a line of `other`: its hinge H lies on that line, shifted by where H lies beside the block's
+  /// own point. A block that carries the line itself: H lies on a line of the body that slides in it.
   void add_block(std::size_t body, const Slide& slide) {
     const LineRef at = line_of(mechanism_, slide);
     const double against = slide.angle + std::atan2(at.direction.y(), at.direction.x());  // of `of` − carrier
@@ -241,7 +240,8 @@ class Reduction {
     condition.line = line(slide);
     result_.conditions.push_back(condition);
     if (!slide.of) return;
-    const double against = slide.angle + std::atan2(condition.line.direction.y(), condition.line.direction.x());
+    const double against =
+        slide.angle + std::atan2(condition.line.direction.y(), condition.line.direction.x());
     Condition orientation;
     orientation.kind = Condition::Kind::orientation;
     if (const auto core = core_index(*slide.of)) {
@@ -287,7 +287,8 @@ LineRef line_of(const Mechanism& mechanism, const Slide& slide) {
   line.kind = slide.carrier ? LineRef::Kind::known : LineRef::Kind::fixed;
   line.body = slide.carrier.value_or(0);
   const auto local = [&](std::size_t point) -> const Vector2d& {
-    return slide.carrier ? mechanism.bodies[*slide.carrier].find(point)->local : mechanism.points[point].position;
+    return slide.carrier ? mechanism.bodies[*slide.carrier].find(point)->local
+                         : mechanism.points[point].position;
   };
   const Vector2d along = local(slide.second) - local(slide.first);
   line.direction = along / std::hypot(along.x(), along.y());
@@ -295,7 +296,8 @@ LineRef line_of(const Mechanism& mechanism, const Slide& slide) {
   return line;
 }
 
-GroupEquations reduce(const Mechanism& mechanism, const GroupMembers& members, const std::vector<bool>& known) {
+GroupEquations reduce(const Mechanism& mechanism, const GroupMembers& members,
+                      const std::vector<bool>& known) {
   return Reduction(mechanism, members, known).run();
 }
 

@@ -31,13 +31,14 @@ struct LineRef {
   Kind kind = Kind::fixed;
   std::size_t body = 0;    ///< known: index in Mechanism::bodies
   std::size_t member = 0;  ///< carried: index in cores
-  /// A point of the line, beside its first named point, and the unit vector to the second: in the frame of the
-  /// body, or (fixed) of the world.
+  /// A point of the line, beside its first named point, and the unit vector to the second: in the frame of
+  /// the body, or (fixed) of the world.
   Eigen::Vector2d point = Eigen::Vector2d::Zero();
   Eigen::Vector2d direction = Eigen::Vector2d::UnitX();
 };
 
-/// One condition g = 0 on the unknowns of a group; d = a − b, or a − the line's point; u along, n to the left.
+/// One condition g = 0 on the unknowns of a group; d = a − b, or a − the line's point; u along, n to the
+/// left.
 struct Condition {
   enum class Kind : std::uint8_t {
     distance,     ///< (d·d − value²)/2·value: a and b are joined by a binary link
@@ -49,25 +50,25 @@ struct Condition {
   };
   Kind kind = Kind::distance;
   PointRef a, b;
-  LineRef line;            ///< on_line, along; of an orientation the carrier alone
-  double value = 0;        ///< [length unit], [rad]
-  std::size_t member = 0;  ///< orientation: the core body
+  LineRef line;                           ///< on_line, along; of an orientation the carrier alone
+  double value = 0;                       ///< [length unit], [rad]
+  std::size_t member = 0;                 ///< orientation: the core body
   std::optional<std::size_t> drive = {};  ///< index in Mechanism::drives
 };
 
 /// A binary link of a group: a body of which only two points matter, and which its distance stands for.
 struct Link {
-  std::size_t body = 0;            ///< index in Mechanism::bodies
-  std::size_t from = 0, to = 0;    ///< indices in Mechanism::points
-  double cosine = 1, sine = 0;     ///< of the angle from the body's x axis to from → to
+  std::size_t body = 0;          ///< index in Mechanism::bodies
+  std::size_t from = 0, to = 0;  ///< indices in Mechanism::points
+  double cosine = 1, sine = 0;   ///< of the angle from the body's x axis to from → to
 };
 
 /// A block of a group: a body that slides without turning on another and is hinged in one point.
 struct Block {
-  std::size_t body = 0;                  ///< index in Mechanism::bodies
-  std::size_t hinge = 0;                 ///< index in Mechanism::points
-  std::optional<std::size_t> on;         ///< the body it slides on; none: the frame
-  double cosine = 1, sine = 0;           ///< of its angle against that body
+  std::size_t body = 0;           ///< index in Mechanism::bodies
+  std::size_t hinge = 0;          ///< index in Mechanism::points
+  std::optional<std::size_t> on;  ///< the body it slides on; none: the frame
+  double cosine = 1, sine = 0;    ///< of its angle against that body
 };
 
 /// A group as equations for as few unknowns as it has: links and blocks are replaced by conditions between
@@ -102,8 +103,10 @@ struct GroupMembers {
   std::vector<std::size_t> drives;
 };
 
-/// Writes a group as equations; `known` says of each point of the mechanism whether the groups before give it.
-GroupEquations reduce(const Mechanism& mechanism, const GroupMembers& members, const std::vector<bool>& known);
+/// Writes a group as equations; `known` says of each point of the mechanism whether the groups before give
+/// it.
+GroupEquations reduce(const Mechanism& mechanism, const GroupMembers& members,
+                      const std::vector<bool>& known);
 
 /// The line of a slide in its carrier's frame (member and kind as for a known carrier).
 LineRef line_of(const Mechanism& mechanism, const Slide& slide);

@@ -108,7 +108,9 @@ void GroupSolver::evaluate_jacobian(const Configuration& here) {
   using Kind = Condition::Kind;
   jacobian_.setZero();
   Index row = 0;
-  const auto free_column = [&](std::size_t member) { return static_cast<Index>(3 * cores_.size() + 2 * member); };
+  const auto free_column = [&](std::size_t member) {
+    return static_cast<Index>(3 * cores_.size() + 2 * member);
+  };
   /// Adds `slope`, the derivative by the position of a point, as the chain rule has it.
   const auto add = [&](Index r, const PointRef& point, const Vector2d& slope) {
     if (point.kind == PointRef::Kind::known) return;
@@ -153,7 +155,8 @@ void GroupSolver::evaluate_jacobian(const Configuration& here) {
       }
       case Kind::orientation:
         jacobian_(row, static_cast<Index>(3 * c.member + 2)) += 1;
-        if (c.line.kind == LineRef::Kind::carried) jacobian_(row, static_cast<Index>(3 * c.line.member + 2)) -= 1;
+        if (c.line.kind == LineRef::Kind::carried)
+          jacobian_(row, static_cast<Index>(3 * c.line.member + 2)) -= 1;
         ++row;
         break;
     }
@@ -199,8 +202,8 @@ void GroupSolver::evaluate_rates(std::span<const DriveState> drives, const Confi
                                  : -(n.dot(d1) - w * u.dot(d));
         } else {
           const DriveState& drive = drives[*c.drive];
-          right_(row++) = second ? drive.acceleration -
-                                       (u.dot(d2) + 2 * w * n.dot(d1) + line.alpha * n.dot(d) - w * w * u.dot(d))
+          right_(row++) = second ? drive.acceleration - (u.dot(d2) + 2 * w * n.dot(d1) +
+                                                         line.alpha * n.dot(d) - w * w * u.dot(d))
                                  : drive.rate - (u.dot(d1) + w * n.dot(d));
         }
         break;
@@ -327,7 +330,8 @@ void GroupSolver::search(std::span<const DriveState> drives, const Configuration
   for (const Condition& c : equations_.conditions) {
     for (const PointRef* point : {&c.a, &c.b}) {
       if (point->kind != PointRef::Kind::known || c.kind == Condition::Kind::orientation) continue;
-      if (point == &c.b && c.kind != Condition::Kind::distance && c.kind != Condition::Kind::coincidence) continue;
+      if (point == &c.b && c.kind != Condition::Kind::distance && c.kind != Condition::Kind::coincidence)
+        continue;
       low = low.cwiseMin(here.points[point->point].position);
       high = high.cwiseMax(here.points[point->point].position);
     }

@@ -171,8 +171,8 @@ Status GroupSolver::place_dyad(int side, Configuration& here) {
   const Vector2d d = q.position - p.position;
   const double base = std::hypot(d.x(), d.y());
   const Triangle shape = triangle(base, dyad.r1, dyad.r2);
-  const double rounding = flat_within(std::max({dyad.r1 + dyad.r2, p.position.lpNorm<Eigen::Infinity>(),
-                                                q.position.lpNorm<Eigen::Infinity>()}));
+  const double rounding = flat_within(std::max(
+      {dyad.r1 + dyad.r2, p.position.lpNorm<Eigen::Infinity>(), q.position.lpNorm<Eigen::Infinity>()}));
   // P on Q: no C where r₁ ≠ r₂, and any direction of it where r₁ = r₂; neither gives a number. NaN ends here
   // too.
   if (!(base > rounding && shape.slack >= -rounding)) return Status::open;
@@ -219,9 +219,7 @@ Status GroupSolver::finish(std::span<const DriveState> drives, Configuration& he
     evaluate_rates(drives, here, second);
     const bool solved = solve();
     if (!second) measure_regularity();
-    const auto part = [&](std::size_t k) {
-      return solved ? solution_(static_cast<Eigen::Index>(k)) : kNaN;
-    };
+    const auto part = [&](std::size_t k) { return solved ? solution_(static_cast<Eigen::Index>(k)) : kNaN; };
     std::size_t k = 0;
     for (Core& core : cores_) {
       (second ? core.origin.acceleration : core.origin.velocity) = {part(k), part(k + 1)};
@@ -250,7 +248,8 @@ Status GroupSolver::finish(std::span<const DriveState> drives, Configuration& he
     const Core& core = cores_[i];
     const Rigid& rigid = rigid_cores_[i];
     here.bodies[rigid.body] = {kNaN, core.omega, core.alpha, core.cosine, core.sine};
-    if (std::binary_search(group_.points.begin(), group_.points.end(), rigid.base)) here.points[rigid.base] = core.origin;
+    if (std::binary_search(group_.points.begin(), group_.points.end(), rigid.base))
+      here.points[rigid.base] = core.origin;
     place_arms(rigid, core.cosine, core.sine, core.omega, core.alpha, here);
   }
   for (std::size_t i = 0; i < free_.size(); ++i) here.points[equations_.free_points[i]] = free_[i];

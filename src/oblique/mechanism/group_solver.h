@@ -19,17 +19,17 @@ struct GroupPoses {
   bool movable = false;  ///< its conditions depend on each other: it has a whole curve of poses
 };
 
-/// Puts one group together whose known elements stand in a configuration. It keeps scratch memory, so one object
-/// serves one thread; after construction nothing allocates but `poses`.
+/// Puts one group together whose known elements stand in a configuration. It keeps scratch memory, so one
+/// object serves one thread; after construction nothing allocates but `poses`.
 ///
 /// Positions: a rotation for a crank; two loci (circles, lines) that intersect for a point or a body of known
-/// direction; a cos θ + b sin θ = c for a body about a known point; otherwise Newton's method from the pose that
-/// stands in the configuration. Rates: with the conditions g(q, t) = 0 of GroupEquations,
+/// direction; a cos θ + b sin θ = c for a body about a known point; otherwise Newton's method from the pose
+/// that stands in the configuration. Rates: with the conditions g(q, t) = 0 of GroupEquations,
 ///
 ///     J q̇ = −∂g/∂t,      J q̈ = −(d²g/dt² with q̈ = 0)
 ///
-/// where the right-hand sides follow from the motion of the known elements; for an RRR dyad, with D = e₁ × e₂,
-/// e₁ = C − P, e₂ = C − Q:
+/// where the right-hand sides follow from the motion of the known elements; for an RRR dyad, with D = e₁ ×
+/// e₂, e₁ = C − P, e₂ = C − Q:
 ///
 ///     ω₁ = e₂·(Q̇ − Ṗ)/D,   ω₂ = e₁·(Q̇ − Ṗ)/D
 ///     α₁ = e₂·b/D,   α₂ = e₁·b/D,   b = Q̈ − P̈ + ω₁²e₁ − ω₂²e₂
@@ -37,15 +37,16 @@ class GroupSolver {
  public:
   GroupSolver(const Mechanism& mechanism, const Group& group);
 
-  /// Positions and rates of the group in `here`, on the given side (as Group::side; unused where a group has no
-  /// sides). Groups without closed form start from the pose in `here`. `open` leaves them as they were.
+  /// Positions and rates of the group in `here`, on the given side (as Group::side; unused where a group has
+  /// no sides). Groups without closed form start from the pose in `here`. `open` leaves them as they were.
   Status place(std::span<const DriveState> drives, int side, Configuration& here);
 
   /// The same for a pose that is known already.
   Status place(std::span<const DriveState> drives, const GroupPose& pose, Configuration& here);
 
   /// Every pose; `hint` is a guess from which the search begins where there is no closed form.
-  GroupPoses poses(std::span<const DriveState> drives, const Configuration& here, const GroupPose* hint = nullptr);
+  GroupPoses poses(std::span<const DriveState> drives, const Configuration& here,
+                   const GroupPose* hint = nullptr);
 
   /// Closes a guess by Newton's method; nothing where it does not converge.
   std::optional<GroupPose> close(std::span<const DriveState> drives, const Configuration& here,
@@ -57,8 +58,8 @@ class GroupSolver {
   /// Whether the group has one assembly mode only, for which `side` is 0.
   bool is_single() const;
 
-  /// How far the last placement is from one where its modes meet: the determinant of J over the product of the
-  /// lengths of its rows, angles counted as lengths on the group's size; in [−1, 1]. 1 for drives.
+  /// How far the last placement is from one where its modes meet: the determinant of J over the product of
+  /// the lengths of its rows, angles counted as lengths on the group's size; in [−1, 1]. 1 for drives.
   double regularity() const { return regularity_; }
 
   /// Size of the last placement's first correction by Newton's method over the group's size: how wrong the
@@ -122,7 +123,8 @@ class GroupSolver {
   void measure_regularity();
   void place_arms(const Rigid& rigid, double cosine, double sine, double omega, double alpha,
                   Configuration& here) const;
-  Locus locus(const Condition& condition, std::span<const DriveState> drives, const Configuration& here) const;
+  Locus locus(const Condition& condition, std::span<const DriveState> drives,
+              const Configuration& here) const;
 
   const Mechanism& mechanism_;
   const Group& group_;

@@ -57,8 +57,9 @@ void Kinematics::finish(std::span<const DriveState> drives, Configuration& here)
       second -= base.acceleration + alpha * arm_left - omega * omega * arm;
     }
     const Vector2d n(-u.y(), u.x());
-    here.slides[s] = {u.dot(way), u.dot(rate) + omega * n.dot(way),
-                      u.dot(second) + 2 * omega * n.dot(rate) + alpha * n.dot(way) - omega * omega * u.dot(way)};
+    here.slides[s] = {
+        u.dot(way), u.dot(rate) + omega * n.dot(way),
+        u.dot(second) + 2 * omega * n.dot(rate) + alpha * n.dot(way) - omega * omega * u.dot(way)};
   }
   for (std::size_t d = 0; d < mechanism_.drives.size(); ++d) {
     const Drive& drive = mechanism_.drives[d];

@@ -10,15 +10,15 @@
 
 namespace oblique {
 
-/// Puts a mechanism together, group after group. The mechanism and the structure have to outlive it; one object
-/// serves one thread.
+/// Puts a mechanism together, group after group. The mechanism and the structure have to outlive it; one
+/// object serves one thread.
 class Kinematics {
  public:
   Kinematics(const Mechanism& mechanism, const Structure& structure);
 
   /// Exact positions and rates of all points and bodies at given states of the drives, one for each of
-  /// Mechanism::drives. Groups without closed form start from the poses in `here`. Sets status and group; where a
-  /// group is open, nothing has a value. Angles of bodies and slides are set by `finish`.
+  /// Mechanism::drives. Groups without closed form start from the poses in `here`. Sets status and group;
+  /// where a group is open, nothing has a value. Angles of bodies and slides are set by `finish`.
   void place(std::span<const DriveState> drives, Configuration& here);
 
   /// The angles of the bodies from their cosines and sines, in (−π, π] but for driven ones, which have their

@@ -125,7 +125,7 @@ std::optional<AtLimit> parse_at_limit(std::string_view text);
 
 /// How long a motion lasts unless the request says otherwise.
 struct MotionSettings {
-  std::optional<double> until;        ///< [s]; none: a turn of the first drive
+  std::optional<double> until;  ///< [s]; none: a turn of the first drive
   std::optional<AtLimit> at_limit;
 };
 

@@ -15,10 +15,10 @@ namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
 
-[[noreturn]] void refuse(const Mechanism& mechanism, std::string what, std::string expected, std::string remedy) {
+[[noreturn]] void refuse(const Mechanism& mechanism, std::string what, std::string expected,
+                         std::string remedy) {
   Diagnostic finding;
-  finding.place =
-      mechanism.drives.empty() ? Place{mechanism.file, {}} : mechanism.drives.front().place;
+  finding.place = mechanism.drives.empty() ? Place{mechanism.file, {}} : mechanism.drives.front().place;
   finding.what = std::move(what);
   finding.expected = std::move(expected);
   finding.remedy = std::move(remedy);
@@ -85,7 +85,8 @@ double period(const Mechanism& mechanism) {
   // as long as ten turns at the speed of the start, or at the unit of the law
   const double speed = std::max(std::abs(drive.speed), drive.law_scale);
   if (const auto time = DriveClock(mechanism).time_of_way(0, kTurn, 10 * kTurn / speed)) return *time;
-  refuse(mechanism, fmt::format("drive '{}' makes no full turn within {:.4g} s", drive.name, 10 * kTurn / speed),
+  refuse(mechanism,
+         fmt::format("drive '{}' makes no full turn within {:.4g} s", drive.name, 10 * kTurn / speed),
          "a speed that turns it once", "give the time of the motion: --until, or until in [motion]");
 }
 
@@ -94,15 +95,16 @@ double cycle(const Mechanism& mechanism, const Structure& structure) {
   if (!drive.slide || mechanism.motion.until) return period(mechanism);
   const MotionRange range = find_range(mechanism, structure);
   if (!range.backward || !range.forward) {
-    refuse(mechanism, fmt::format("drive '{}' moves a slide that meets no limit", drive.name), "an end of the motion",
-           "give its time: --until, or until in [motion]");
+    refuse(mechanism, fmt::format("drive '{}' moves a slide that meets no limit", drive.name),
+           "an end of the motion", "give its time: --until, or until in [motion]");
   }
   return 2 * (range.forward->time - range.backward->time);
 }
 
 void check_travel(const Mechanism& mechanism, double duration) {
   for (const Drive& drive : mechanism.drives) {
-    const double turns = std::abs(drive.speed) * duration / (drive.slide ? mechanism.largest_length() : kTurn);
+    const double turns =
+        std::abs(drive.speed) * duration / (drive.slide ? mechanism.largest_length() : kTurn);
     if (turns <= kMostTurns) continue;
     throw MechanismError(
         MechanismError::Kind::request,
@@ -155,9 +157,10 @@ Motion solve_motion(const Mechanism& mechanism, const MotionOptions& options) {
   constexpr double kEndless = std::numeric_limits<double>::infinity();
   const double low = range.backward ? range.backward->time : -kEndless;
   const double high = range.forward ? range.forward->time : kEndless;
-  if (!until) end = at_limit == AtLimit::stop && range.forward ? high
-                            : range.forward && range.backward          ? 2 * (high - low)
-                                                                       : cycle(mechanism, structure);
+  if (!until)
+    end = at_limit == AtLimit::stop && range.forward ? high
+          : range.forward && range.backward          ? 2 * (high - low)
+                                                     : cycle(mechanism, structure);
   if (at_limit == AtLimit::stop) {
     return solve_motion(mechanism, structure, spread(std::min(end, high), options.positions));
   }
@@ -235,7 +238,8 @@ std::vector<MotionColumn> motion_columns(const Mechanism& mechanism, const Motio
   for (std::size_t i = 0; i < mechanism.slides.size(); ++i) {
     const std::string& name = mechanism.slides[i].name;
     const auto add_part = [&](const char* part, const std::string& unit, double SlideState::*value) {
-      add(name + part, unit, [&, value](std::size_t row) { return motion.configurations[row].slides[i].*value; });
+      add(name + part, unit,
+          [&, value](std::size_t row) { return motion.configurations[row].slides[i].*value; });
     };
     add_part(".position", length, &SlideState::position);
     add_part(".velocity", length + "/s", &SlideState::velocity);

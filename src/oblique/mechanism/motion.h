@@ -12,9 +12,9 @@
 
 namespace oblique {
 
-/// An exact motion as a table: row k stands for times[k], drives[k] and configurations[k]. Angles of bodies are
-/// continuous from row to row, not wrapped; those of the start are in (−π, π], except for driven bodies, which
-/// have their drive's angle.
+/// An exact motion as a table: row k stands for times[k], drives[k] and configurations[k]. Angles of bodies
+/// are continuous from row to row, not wrapped; those of the start are in (−π, π], except for driven bodies,
+/// which have their drive's angle.
 struct Motion {
   std::vector<double> times;                    ///< [s]
   std::vector<std::vector<DriveState>> drives;  ///< one for each drive in every row
@@ -28,18 +28,18 @@ struct MotionOptions {
   std::optional<AtLimit> at_limit;  ///< default: that of the file, or `open`
 };
 
-/// How far a mechanism can go from its start, within one turn of its first drive each way: nothing where it meets
-/// no limit.
+/// How far a mechanism can go from its start, within one turn of its first drive each way: nothing where it
+/// meets no limit.
 struct MotionRange {
   std::optional<MotionEvent> backward, forward;
 };
 
-/// Time of the motion [s]: that of the file, or one turn of the first drive. Throws MechanismError (kind `request`) without a drive, for one that
-/// moves a slide, and for a law that makes no full turn.
+/// Time of the motion [s]: that of the file, or one turn of the first drive. Throws MechanismError (kind
+/// `request`) without a drive, for one that moves a slide, and for a law that makes no full turn.
 double period(const Mechanism& mechanism);
 
-/// How long a motion lasts by itself: `period`, or for a first drive that moves a slide the way to both limits and
-/// back.
+/// How long a motion lasts by itself: `period`, or for a first drive that moves a slide the way to both
+/// limits and back.
 double cycle(const Mechanism& mechanism, const Structure& structure);
 
 /// Throws MechanismError (kind `request`) where a drive turns so often in `duration` [s] that nobody would
@@ -50,8 +50,8 @@ inline constexpr double kMostTurns = 1e4;
 /// The limits before and after the start.
 MotionRange find_range(const Mechanism& mechanism, const Structure& structure);
 
-/// A motion in `options.positions` ≥ 2 rows at equal distances of time, both ends included. A first drive that
-/// moves a slide is reversed at its limits unless the options say otherwise. Throws MechanismError (kind
+/// A motion in `options.positions` ≥ 2 rows at equal distances of time, both ends included. A first drive
+/// that moves a slide is reversed at its limits unless the options say otherwise. Throws MechanismError (kind
 /// `request`) without a drive or for fewer than two positions, and as `decompose`.
 Motion solve_motion(const Mechanism& mechanism, const MotionOptions& options);
 Motion solve_motion(const Mechanism& mechanism, int positions);
@@ -69,7 +69,8 @@ struct MotionColumn {
 };
 
 /// `t`; each drive; `P.x P.y P.vx P.vy P.ax P.ay` of every moving point; `b.angle b.omega b.alpha` of every
-/// body; `s.position s.velocity s.acceleration` of every slide. The last column of the file, `status`, is text and not among these.
+/// body; `s.position s.velocity s.acceleration` of every slide. The last column of the file, `status`, is
+/// text and not among these.
 std::vector<MotionColumn> motion_columns(const Mechanism& mechanism, const Motion& motion);
 
 /// The columns and `status` as CSV: a header of names, then a line for each row; numbers read back to the

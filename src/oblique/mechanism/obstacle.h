@@ -9,8 +9,8 @@
 
 namespace oblique {
 
-/// What keeps a mechanism from turning: a moment beyond which a group cannot be assembled (`open`), or at which
-/// its modes meet (`dead_centre`).
+/// What keeps a mechanism from turning: a moment beyond which a group cannot be assembled (`open`), or at
+/// which its modes meet (`dead_centre`).
 struct Obstacle {
   double time = 0;        ///< [s]
   std::size_t group = 0;  ///< index in Structure::groups

@@ -63,8 +63,8 @@ void check_mobility(const Mechanism& mechanism) {
   if (freedom == drives) return;
   Diagnostic finding;
   finding.place = drives > 0 ? mechanism.drives.back().place : mechanism.bodies.front().place;
-  finding.what = fmt::format("the mechanism has mobility {} ({}) but {} {}", freedom, mobility_formula(mechanism),
-                             drives, drives == 1 ? "drive" : "drives");
+  finding.what = fmt::format("the mechanism has mobility {} ({}) but {} {}", freedom,
+                             mobility_formula(mechanism), drives, drives == 1 ? "drive" : "drives");
   finding.expected = "one drive for each degree of freedom";
   if (freedom > drives) {
     finding.remedy = fmt::format("under-driven: add {} or join bodies by hinges",
@@ -77,7 +77,8 @@ void check_mobility(const Mechanism& mechanism) {
   throw MechanismError(MechanismError::Kind::mobility, std::move(finding));
 }
 
-std::vector<std::size_t> bodies_among(const ConstraintGraph& graph, const std::vector<std::size_t>& vertices) {
+std::vector<std::size_t> bodies_among(const ConstraintGraph& graph,
+                                      const std::vector<std::size_t>& vertices) {
   std::vector<std::size_t> bodies;
   for (const std::size_t v : vertices) {
     if (graph.is_body(v)) bodies.push_back(v);
@@ -91,8 +92,9 @@ void check_parts(const Mechanism& mechanism, const ConstraintGraph& graph) {
   std::vector<std::pair<Edge::Kind, std::size_t>> told;
   for (const std::size_t index : graph.redundant()) {
     const Edge& edge = graph.edges()[index];
-    const auto pair = std::pair(edge.kind, edge.kind == Edge::Kind::hinge ? edge.index * mechanism.points.size() + edge.point
-                                                                        : edge.index);
+    const auto pair = std::pair(edge.kind, edge.kind == Edge::Kind::hinge
+                                               ? edge.index * mechanism.points.size() + edge.point
+                                               : edge.index);
     if (std::find(told.begin(), told.end(), pair) != told.end()) continue;
     told.push_back(pair);
     auto others = bodies_among(graph, graph.competitors(index));
@@ -104,9 +106,10 @@ void check_parts(const Mechanism& mechanism, const ConstraintGraph& graph) {
       case Edge::Kind::hinge:
         std::erase(others, edge.index);
         finding.place = mechanism.bodies[edge.index].place;
-        finding.what = fmt::format("body '{}' is over-constrained: its hinge at '{}' is too much, since {} fix it already",
-                                   mechanism.bodies[edge.index].name, mechanism.points[edge.point].name,
-                                   others.empty() ? "its other points" : quoted_bodies(mechanism, others));
+        finding.what = fmt::format(
+            "body '{}' is over-constrained: its hinge at '{}' is too much, since {} fix it already",
+            mechanism.bodies[edge.index].name, mechanism.points[edge.point].name,
+            others.empty() ? "its other points" : quoted_bodies(mechanism, others));
         finding.remedy = "leave the body out, or remove another hinge, slide or drive of these bodies";
         break;
       case Edge::Kind::on_line:
@@ -128,8 +131,8 @@ void check_parts(const Mechanism& mechanism, const ConstraintGraph& graph) {
     const auto bodies = bodies_among(graph, graph.movable());
     Diagnostic finding;
     finding.place = mechanism.bodies[bodies.empty() ? 0 : bodies.front()].place;
-    finding.what = fmt::format("{} can move freely (mobility {} after the drives)", quoted_bodies(mechanism, bodies),
-                               graph.freedom());
+    finding.what = fmt::format("{} can move freely (mobility {} after the drives)",
+                               quoted_bodies(mechanism, bodies), graph.freedom());
     finding.expected = "every body held by drives and pairs";
     finding.remedy = "hinge to the rest, or drive" + loose_ends(mechanism);
     findings.push_back(std::move(finding));
@@ -215,11 +218,12 @@ class Decomposition {
     std::array<std::size_t, 3> best_key{kLast, kLast, kLast};
     for (std::size_t i = 0; i < parts_.size(); ++i) {
       const Part& part = parts_[i];
-      const bool ready = std::all_of(part.needs.begin(), part.needs.end(), [&](std::size_t n) { return done[n]; });
+      const bool ready =
+          std::all_of(part.needs.begin(), part.needs.end(), [&](std::size_t n) { return done[n]; });
       if (done[i] || !ready) continue;
-      const std::array<std::size_t, 3> key{
-          part.members.drives.empty() ? kLast : part.members.drives.front(),
-          part.members.bodies.empty() ? kLast : part.members.bodies.front(), i};
+      const std::array<std::size_t, 3> key{part.members.drives.empty() ? kLast : part.members.drives.front(),
+                                           part.members.bodies.empty() ? kLast : part.members.bodies.front(),
+                                           i};
       if (best != kLast && key >= best_key) continue;
       best = i;
       best_key = key;
@@ -302,15 +306,18 @@ class Decomposition {
     }
     for (const std::size_t s : members.slides) {
       const Slide& slide = mechanism_.slides[s];
-      if (!slide.carrier || !has(members.bodies, *slide.carrier)) ++pairs;
-      else if (!slide.of && known_[slide.point]) ++pairs;
-      else if (slide.of && !has(members.bodies, *slide.of)) ++pairs;
+      if (!slide.carrier || !has(members.bodies, *slide.carrier))
+        ++pairs;
+      else if (!slide.of && known_[slide.point])
+        ++pairs;
+      else if (slide.of && !has(members.bodies, *slide.of))
+        ++pairs;
     }
     return pairs;
   }
 
-  /// Bodies and pairs as a graph: its largest closed contour is a body with that many pairs, or the longest of
-  /// the shortest loops through a pair.
+  /// Bodies and pairs as a graph: its largest closed contour is a body with that many pairs, or the longest
+  /// of the shortest loops through a pair.
   int class_of(const GroupMembers& members) const {
     struct Pair {
       std::vector<std::size_t> bodies;  ///< of the group
@@ -330,7 +337,8 @@ class Decomposition {
       Pair pair{{}, 0};
       if (slide.carrier && has(members.bodies, *slide.carrier)) pair.bodies.push_back(*slide.carrier);
       for (const std::size_t body : members.bodies) {
-        const bool guided = slide.of ? *slide.of == body : mechanism_.bodies[body].find(slide.point) != nullptr;
+        const bool guided =
+            slide.of ? *slide.of == body : mechanism_.bodies[body].find(slide.point) != nullptr;
         if (guided) {
           pair.bodies.push_back(body);
           break;
@@ -340,7 +348,8 @@ class Decomposition {
     }
     int largest = 2;
     for (const std::size_t body : members.bodies) {
-      const auto count = std::count_if(pairs.begin(), pairs.end(), [&](const Pair& p) { return has(p.bodies, body); });
+      const auto count =
+          std::count_if(pairs.begin(), pairs.end(), [&](const Pair& p) { return has(p.bodies, body); });
       largest = std::max(largest, static_cast<int>(count));
     }
     // shortest loop through body `from` and pair `cut`: a breadth-first search that does not use the pair
@@ -378,7 +387,7 @@ class Decomposition {
 }  // namespace
 
 std::string_view kind_name(GroupKind kind) {
-  constexpr std::array<std::string_view, 9> kNames{"crank", "slider", "RRR", "RRP", "PRP",
+  constexpr std::array<std::string_view, 9> kNames{"crank", "slider", "RRR",   "RRP",    "PRP",
                                                    "RPR",   "RPP",    "triad", "general"};
   return kNames[static_cast<std::size_t>(kind)];
 }
@@ -395,8 +404,8 @@ std::optional<Dyad> dyad_of(const Group& group) {
                         [&](const Condition& c) { return c.b.point == link.from && c.a.point == link.to; })
         ->value;
   };
-  return Dyad{first->body, first->from, second->body, second->from, first->to, length(*first), length(*second),
-              group.side};
+  return Dyad{first->body, first->from,    second->body,    second->from,
+              first->to,   length(*first), length(*second), group.side};
 }
 
 std::size_t pivot_of(const Group& crank) {

@@ -13,8 +13,8 @@
 
 namespace oblique {
 
-/// What is known about putting a group together. The letters of a class II group are its pairs, from one known
-/// element to the other: R a hinge, P a slide.
+/// What is known about putting a group together. The letters of a class II group are its pairs, from one
+/// known element to the other: R a hinge, P a slide.
 enum class GroupKind : std::uint8_t {
   crank,    ///< class I: a body turned by a drive about a known point
   slider,   ///< class I: a point or a body moved by a drive along a known line
@@ -35,8 +35,8 @@ std::string_view kind_name(GroupKind kind);
 struct Group {
   std::string name;  ///< "BC-CD": of its bodies
   GroupKind kind = GroupKind::general;
-  /// Assur's and Artobolevsky's class, 1 for drives: the number of pairs in its largest closed contour, which is
-  /// a body or a loop of bodies.
+  /// Assur's and Artobolevsky's class, 1 for drives: the number of pairs in its largest closed contour, which
+  /// is a body or a loop of bodies.
   int assur_class = 2;
   int order = 2;                    ///< pairs by which it hangs on what is placed before
   std::vector<std::size_t> bodies;  ///< in file order
@@ -74,16 +74,17 @@ struct Structure {
   std::vector<Group> groups;
 };
 
-/// Degrees of freedom by Chebyshev's and Grübler's formula W = 3n − 2p − q: n moving bodies; p hinges, where a
-/// point that k bodies share (the frame is one of them) counts as k − 1; q slides, of which one that keeps an
-/// angle counts twice.
+/// Degrees of freedom by Chebyshev's and Grübler's formula W = 3n − 2p − q: n moving bodies; p hinges, where
+/// a point that k bodies share (the frame is one of them) counts as k − 1; q slides, of which one that keeps
+/// an angle counts twice.
 int mobility(const Mechanism& mechanism);
 
 /// Takes a mechanism apart into drives and Assur groups, in file order wherever there is a choice: a perfect
 /// matching of conditions with unknowns orients the graph of bodies and points, and its strongly connected
 /// components are the groups, whatever the matching (A. Shai, A. Sljoka, W. Whiteley, "Directed graphs,
-/// decompositions, and spatial linkages", 2013; A. Dulmage, N. Mendelsohn 1958). No assembly modes are chosen.
-/// Throws MechanismError: kind `mobility` where mobility and drives do not match, in the whole or in a part.
+/// decompositions, and spatial linkages", 2013; A. Dulmage, N. Mendelsohn 1958). No assembly modes are
+/// chosen. Throws MechanismError: kind `mobility` where mobility and drives do not match, in the whole or in
+/// a part.
 Structure find_groups(const Mechanism& mechanism);
 
 /// `find_groups`, and the assembly mode of each group as the sketch picks it at the start position

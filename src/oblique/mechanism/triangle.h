@@ -8,8 +8,8 @@
 namespace oblique {
 
 /// A triangle is flat where its slack is within this, for coordinates and sides up to `size`. Coordinates of
-/// known points carry a few roundings of their size each, and more behind several groups; 32 of them leave every
-/// angle between the links whose sine is above about 2e-7 to the regular case.
+/// known points carry a few roundings of their size each, and more behind several groups; 32 of them leave
+/// every angle between the links whose sine is above about 2e-7 to the regular case.
 inline double flat_within(double size) {
   return 32 * std::numeric_limits<double>::epsilon() * size;
 }

@@ -119,13 +119,13 @@ class TrianglePatch {
   }
 
   [[noreturn]] void refuse(const Group& group) const {
-    throw PatchError(Diagnostic{
-        group.bodies.empty() ? mechanism_.slides[group.slides.front()].place
-                             : mechanism_.bodies[group.bodies.front()].place,
-        fmt::format("the group {} ({}) cannot be patched as triangles by this version", group.name,
-                    kind_name(group.kind)),
-        "cranks at constant speed and RRR dyads",
-        "`oblique solve` and `oblique check` work for every group"});
+    throw PatchError(
+        Diagnostic{group.bodies.empty() ? mechanism_.slides[group.slides.front()].place
+                                        : mechanism_.bodies[group.bodies.front()].place,
+                   fmt::format("the group {} ({}) cannot be patched as triangles by this version", group.name,
+                               kind_name(group.kind)),
+                   "cranks at constant speed and RRR dyads",
+                   "`oblique solve` and `oblique check` work for every group"});
   }
 
   void add_crank(const Group& crank) {
