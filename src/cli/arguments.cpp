@@ -136,9 +136,29 @@ void add_solve(CLI::App& app, Chosen& chosen) {
   verb->add_option("--positions", request->positions, "rows over the turn, both ends included")
       ->capture_default_str()
       ->check(CLI::Range(2, 10'000'000));
+  verb->add_option("--until", request->until,
+                   "end of the motion, for example \"2 s\" (default: one turn of the first drive)")
+      ->type_name("T");
+  verb->add_option(
+          "--at-limit", request->at_limit,
+          "where the mechanism can go no further: open (rows without numbers), stop, or reverse the drives")
+      ->type_name("open|stop|reverse");
+  verb->add_flag("--check", request->check,
+                 "hold the motion against the mechanism's [expect]; status 1 where it fails");
   verb->add_option("-o,--output", request->output, "write all rows and columns to FILE.csv")
       ->type_name("FILE");
   choose(verb, chosen, request, solve_mechanism);
+}
+
+void add_modes(CLI::App& app, Chosen& chosen) {
+  auto request = std::make_shared<ModesRequest>();
+  CLI::App* const verb = app.add_subcommand("modes", "List every way to assemble each group of a mechanism");
+  verb->add_option("MECHANISM", request->mechanism, "mechanism file (oblique-mechanism/1)")->required();
+  verb->add_option("--at", request->at,
+                   "where the first drive stands, for example \"30 deg\" (default: its start)")
+      ->type_name("VALUE");
+  verb->add_flag("--json", request->json, "print JSON instead of the tables");
+  choose(verb, chosen, request, show_modes);
 }
 
 void add_patch(CLI::App& app, Chosen& chosen) {
@@ -190,6 +210,7 @@ std::optional<ExitStatus> parse_arguments(int argc, char** argv, Chosen& chosen)
   add_run(app, chosen);
   add_check(app, chosen);
   add_solve(app, chosen);
+  add_modes(app, chosen);
   add_patch(app, chosen);
   add_compare(app, chosen);
   add_blocks(app, chosen);

@@ -47,9 +47,19 @@ ExitStatus check_file(const Session& session, const CheckRequest& request);
 struct SolveRequest {
   std::string mechanism;
   std::string output;
+  std::string until;
+  std::string at_limit;
   int positions = 361;
+  bool check = false;
 };
 ExitStatus solve_mechanism(const Session& session, const SolveRequest& request);
+
+struct ModesRequest {
+  std::string mechanism;
+  std::string at;
+  bool json = false;
+};
+ExitStatus show_modes(const Session& session, const ModesRequest& request);
 
 struct PatchRequest {
   std::string mechanism;

@@ -60,6 +60,13 @@ class ModeChooser {
     if (!findings_.empty()) throw MechanismError(kind_, std::move(findings_));
   }
 
+  /// As `run`, without a finding where only the sketch is wanting.
+  std::vector<std::size_t> run_undecided() {
+    take_first_ = true;
+    run();
+    return std::move(undecided_);
+  }
+
  private:
   bool stands_on_placed(const Group& group) const {
     const auto good = [&](const PointRef& point) {
@@ -137,9 +144,14 @@ class ModeChooser {
     }
     std::size_t chosen = 0;
     if (all.size() > 1 || all.front().status == Status::dead_centre) {
+      const std::size_t before = findings_.size();
       const auto nearest = nearest_to_sketch(group, all);
-      if (!nearest) return;
-      chosen = *nearest;
+      if (!nearest && !take_first_) return;
+      if (!nearest) {
+        findings_.resize(before);
+        undecided_.push_back(g);
+      }
+      chosen = nearest.value_or(0);
     }
     group.side = all[chosen].pose.side;
     group.start = all[chosen].pose;
@@ -275,12 +287,18 @@ class ModeChooser {
   Configuration here_;
   std::vector<Diagnostic> findings_;
   MechanismError::Kind kind_ = MechanismError::Kind::sketch;
+  bool take_first_ = false;
+  std::vector<std::size_t> undecided_;
 };
 
 }  // namespace
 
 void choose_modes(const Mechanism& mechanism, Structure& structure) {
   ModeChooser(mechanism, structure).run();
+}
+
+std::vector<std::size_t> choose_some_modes(const Mechanism& mechanism, Structure& structure) {
+  return ModeChooser(mechanism, structure).run_undecided();
 }
 
 std::vector<GroupModes> assembly_modes(const Mechanism& mechanism, const Structure& structure,

@@ -31,6 +31,10 @@ struct GroupModes {
 /// message lists them as lines to paste), kind `constraint` where conditions depend on each other.
 void choose_modes(const Mechanism& mechanism, Structure& structure);
 
+/// As `choose_modes`, but a group that the sketch does not decide takes its first mode; gives these groups,
+/// indices in Structure::groups.
+std::vector<std::size_t> choose_some_modes(const Mechanism& mechanism, Structure& structure);
+
 /// Every assembly mode of every group, the groups before it as in `here`, a configuration of the structure at
 /// these states of the drives (of a Follower, or `start_configuration`). Groups that hang on one that cannot
 /// be assembled have no modes.

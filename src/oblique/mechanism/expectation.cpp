@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -64,21 +63,11 @@ bool read_key(const Mechanism& mechanism, MechanismExpectation& expectation, Dia
 /// The first time at which the first drive stands at `value`.
 double time_of(const Mechanism& mechanism, const MechanismExpectation& expectation) {
   if (expectation.kind == Kind::at_time) return expectation.at;
-  const Drive& drive = mechanism.drives.front();
-  double way = expectation.at - drive.start;
-  constexpr double kTurn = 2 * std::numbers::pi;
-  constexpr double kSame = 1e-12;
-  if (std::abs(way) < kSame) return 0;
-  if (!drive.slide && way * drive.speed < 0)
-    way += std::copysign(kTurn * std::ceil(std::abs(way) / kTurn), drive.speed);
-  constexpr double kLatest = 100;  // turns, or longest links
-  const double latest = kLatest * std::max(std::abs(way), kTurn) / std::abs(drive.speed);
-  const auto time = way * drive.speed < 0 ? std::nullopt : DriveClock(mechanism).time_of_way(0, way, latest);
-  if (time) return *time;
+  if (const auto time = time_at_value(mechanism, expectation.at)) return *time;
   throw MechanismError(MechanismError::Kind::request,
                        Diagnostic{expectation.place,
                                   fmt::format("drive '{}' does not come to where '{}' is expected",
-                                              drive.name, expectation.text),
+                                              mechanism.drives.front().name, expectation.text),
                                   "a value that it reaches",
                                   {}});
 }

@@ -65,13 +65,6 @@ void turn_back(Configuration& configuration) {
   for (SlideState& slide : configuration.slides) slide.velocity = -slide.velocity;
 }
 
-std::vector<double> spread(double end, int positions) {
-  std::vector<double> times;
-  times.reserve(static_cast<std::size_t>(positions));
-  for (int k = 0; k < positions; ++k) times.push_back(end * k / (positions - 1));
-  return times;
-}
-
 }  // namespace
 
 double period(const Mechanism& mechanism) {
@@ -129,13 +122,23 @@ MotionRange find_range(const Mechanism& mechanism, const Structure& structure) {
   return range;
 }
 
-Motion solve_motion(const Mechanism& mechanism, int positions) {
-  MotionOptions options;
-  options.positions = positions;
-  return solve_motion(mechanism, options);
+std::optional<double> time_at_value(const Mechanism& mechanism, double value) {
+  const Drive& drive = first_drive(mechanism);
+  double way = value - drive.start;
+  constexpr double kSame = 1e-12;
+  if (std::abs(way) < kSame) return 0;
+  if (!drive.slide && way * drive.speed < 0) {
+    way += std::copysign(kTurn * std::ceil(std::abs(way) / kTurn), drive.speed);
+  }
+  if (way * drive.speed < 0) return std::nullopt;
+  constexpr double kLatest = 100;
+  const double turn = drive.slide ? mechanism.largest_length() : kTurn;
+  return DriveClock(mechanism).time_of_way(0, way, kLatest * turn / std::abs(drive.speed));
 }
 
-Motion solve_motion(const Mechanism& mechanism, const MotionOptions& options) {
+std::vector<MotionEvent> visit_motion(const Mechanism& mechanism, const Structure& structure,
+                                      const MotionOptions& options,
+                                      const std::function<void(const MotionRow&)>& visit) {
   const Drive& drive = first_drive(mechanism);
   if (options.positions < 2) {
     Diagnostic finding;
@@ -143,41 +146,59 @@ Motion solve_motion(const Mechanism& mechanism, const MotionOptions& options) {
     finding.expected = "two positions or more";
     throw MechanismError(MechanismError::Kind::request, std::move(finding));
   }
-  const Structure structure = decompose(mechanism);
   const auto until = options.until ? options.until : mechanism.motion.until;
-  const AtLimit wanted = options.at_limit.value_or(mechanism.motion.at_limit.value_or(AtLimit::open));
-  const bool to_and_fro = drive.slide && !until && wanted == AtLimit::open;
-  const AtLimit at_limit = to_and_fro ? AtLimit::reverse : wanted;
-  double end = until.value_or(0);
-  if (at_limit == AtLimit::open) {
-    if (!until) end = cycle(mechanism, structure);
-    return solve_motion(mechanism, structure, spread(end, options.positions));
+  AtLimit at_limit = options.at_limit.value_or(mechanism.motion.at_limit.value_or(AtLimit::open));
+  if (drive.slide && !until && at_limit == AtLimit::open) at_limit = AtLimit::reverse;
+  MotionRange range;
+  if (at_limit != AtLimit::open) range = find_range(mechanism, structure);
+  const double high = range.forward ? range.forward->time : 0;
+  const double low = range.backward ? range.backward->time : -std::numeric_limits<double>::infinity();
+  double end = 0;
+  if (until) {
+    end = *until;
+  } else if (at_limit == AtLimit::reverse && range.forward && range.backward) {
+    end = 2 * (high - low);
+  } else if (at_limit != AtLimit::stop || !range.forward) {
+    end = cycle(mechanism, structure);
   }
-  const MotionRange range = find_range(mechanism, structure);
-  constexpr double kEndless = std::numeric_limits<double>::infinity();
-  const double low = range.backward ? range.backward->time : -kEndless;
-  const double high = range.forward ? range.forward->time : kEndless;
-  if (!until)
-    end = at_limit == AtLimit::stop && range.forward ? high
-          : range.forward && range.backward          ? 2 * (high - low)
-                                                     : cycle(mechanism, structure);
-  if (at_limit == AtLimit::stop) {
-    return solve_motion(mechanism, structure, spread(std::min(end, high), options.positions));
-  }
+  if (at_limit == AtLimit::stop && range.forward) end = until ? std::min(*until, high) : high;
+  check_travel(mechanism, end);
+
+  Follower follower(mechanism, structure);
+  DriveClock clock(mechanism);
+  std::vector<DriveState> drives(mechanism.drives.size());
+  Configuration backwards;
   const Reversal reversal(low, high);
-  std::vector<double> times = spread(end, options.positions);
-  std::vector<double> directions(times.size(), 1);
-  std::vector<double> mapped = times;
-  if (range.forward) {
-    for (std::size_t k = 0; k < times.size(); ++k) std::tie(mapped[k], directions[k]) = reversal.at(times[k]);
+  for (int k = 0; k < options.positions; ++k) {
+    const double time = end * k / (options.positions - 1);
+    double there = time, direction = 1;
+    if (at_limit == AtLimit::reverse && range.forward) std::tie(there, direction) = reversal.at(time);
+    const Configuration* here = &follower.advance(there);
+    clock.at(there, drives);
+    if (direction < 0) {
+      backwards = *here;
+      turn_back(backwards);
+      for (DriveState& state : drives) state.rate = -state.rate;
+      here = &backwards;
+    }
+    visit({time, drives, *here});
   }
-  Motion motion = solve_motion(mechanism, structure, mapped);
-  motion.times = std::move(times);
-  for (std::size_t k = 0; k < directions.size(); ++k) {
-    if (directions[k] > 0) continue;
-    turn_back(motion.configurations[k]);
-    for (DriveState& state : motion.drives[k]) state.rate = -state.rate;
-  }
+  return follower.events();
+}
+
+Motion solve_motion(const Mechanism& mechanism, int positions) {
+  MotionOptions options;
+  options.positions = positions;
+  return solve_motion(mechanism, options);
+}
+
+Motion solve_motion(const Mechanism& mechanism, const MotionOptions& options) {
+  Motion motion;
+  motion.events = visit_motion(mechanism, decompose(mechanism), options, [&](const MotionRow& row) {
+    motion.times.push_back(row.time);
+    motion.drives.emplace_back(row.drives.begin(), row.drives.end());
+    motion.configurations.push_back(row.configuration);
+  });
   return motion;
 }
 
@@ -202,48 +223,65 @@ Motion solve_motion(const Mechanism& mechanism, const Structure& structure, std:
   return motion;
 }
 
-std::vector<MotionColumn> motion_columns(const Mechanism& mechanism, const Motion& motion) {
+std::vector<MotionColumnName> motion_column_names(const Mechanism& mechanism) {
   const std::string& length = mechanism.length_unit;
-  std::vector<MotionColumn> columns;
-  const auto add = [&](std::string name, std::string unit, auto value_in_row) {
-    MotionColumn column{std::move(name), std::move(unit), {}};
-    for (std::size_t row = 0; row < motion.times.size(); ++row) column.values.push_back(value_in_row(row));
-    columns.push_back(std::move(column));
-  };
-  add("t", "s", [&](std::size_t row) { return motion.times[row]; });
-  for (std::size_t i = 0; i < mechanism.drives.size(); ++i) {
-    add(mechanism.drives[i].name, mechanism.drives[i].slide ? length : "rad",
-        [&](std::size_t row) { return motion.drives[row][i].value; });
+  std::vector<MotionColumnName> columns{{"t", "s"}};
+  for (const Drive& drive : mechanism.drives) columns.push_back({drive.name, drive.slide ? length : "rad"});
+  for (const Point& point : mechanism.points) {
+    if (point.fixed) continue;
+    for (const auto& [part, unit] : {std::pair{"", ""}, std::pair{"v", "/s"}, std::pair{"a", "/s^2"}}) {
+      columns.push_back({point.name + "." + part + "x", length + unit});
+      columns.push_back({point.name + "." + part + "y", length + unit});
+    }
   }
-  for (std::size_t i = 0; i < mechanism.points.size(); ++i) {
+  for (const Body& body : mechanism.bodies) {
+    columns.push_back({body.name + ".angle", "rad"});
+    columns.push_back({body.name + ".omega", "rad/s"});
+    columns.push_back({body.name + ".alpha", "rad/s^2"});
+  }
+  for (const Slide& slide : mechanism.slides) {
+    columns.push_back({slide.name + ".position", length});
+    columns.push_back({slide.name + ".velocity", length + "/s"});
+    columns.push_back({slide.name + ".acceleration", length + "/s^2"});
+  }
+  return columns;
+}
+
+void motion_values(const Mechanism& mechanism, const MotionRow& row, std::span<double> values) {
+  std::size_t k = 0;
+  values[k++] = row.time;
+  for (const DriveState& drive : row.drives) values[k++] = drive.value;
+  const Configuration& here = row.configuration;
+  for (std::size_t i = 0; i < here.points.size(); ++i) {
     if (mechanism.points[i].fixed) continue;
-    const std::string& name = mechanism.points[i].name;
-    const auto add_vector = [&](const char* x, const char* y, const std::string& unit,
-                                Eigen::Vector2d PointState::*part) {
-      add(name + x, unit, [&](std::size_t row) { return (motion.configurations[row].points[i].*part).x(); });
-      add(name + y, unit, [&](std::size_t row) { return (motion.configurations[row].points[i].*part).y(); });
-    };
-    add_vector(".x", ".y", length, &PointState::position);
-    add_vector(".vx", ".vy", length + "/s", &PointState::velocity);
-    add_vector(".ax", ".ay", length + "/s^2", &PointState::acceleration);
+    const PointState& point = here.points[i];
+    for (const Eigen::Vector2d* part : {&point.position, &point.velocity, &point.acceleration}) {
+      values[k++] = part->x();
+      values[k++] = part->y();
+    }
   }
-  for (std::size_t i = 0; i < mechanism.bodies.size(); ++i) {
-    const std::string& name = mechanism.bodies[i].name;
-    add(name + ".angle", "rad", [&](std::size_t row) { return motion.configurations[row].bodies[i].angle; });
-    add(name + ".omega", "rad/s",
-        [&](std::size_t row) { return motion.configurations[row].bodies[i].omega; });
-    add(name + ".alpha", "rad/s^2",
-        [&](std::size_t row) { return motion.configurations[row].bodies[i].alpha; });
+  for (const BodyState& body : here.bodies) {
+    values[k++] = body.angle;
+    values[k++] = body.omega;
+    values[k++] = body.alpha;
   }
-  for (std::size_t i = 0; i < mechanism.slides.size(); ++i) {
-    const std::string& name = mechanism.slides[i].name;
-    const auto add_part = [&](const char* part, const std::string& unit, double SlideState::*value) {
-      add(name + part, unit,
-          [&, value](std::size_t row) { return motion.configurations[row].slides[i].*value; });
-    };
-    add_part(".position", length, &SlideState::position);
-    add_part(".velocity", length + "/s", &SlideState::velocity);
-    add_part(".acceleration", length + "/s^2", &SlideState::acceleration);
+  for (const SlideState& slide : here.slides) {
+    values[k++] = slide.position;
+    values[k++] = slide.velocity;
+    values[k++] = slide.acceleration;
+  }
+}
+
+std::vector<MotionColumn> motion_columns(const Mechanism& mechanism, const Motion& motion) {
+  std::vector<MotionColumn> columns;
+  for (MotionColumnName& column : motion_column_names(mechanism)) {
+    columns.push_back({std::move(column.name), std::move(column.unit), {}});
+    columns.back().values.reserve(motion.times.size());
+  }
+  std::vector<double> values(columns.size());
+  for (std::size_t row = 0; row < motion.times.size(); ++row) {
+    motion_values(mechanism, {motion.times[row], motion.drives[row], motion.configurations[row]}, values);
+    for (std::size_t c = 0; c < columns.size(); ++c) columns[c].values.push_back(values[c]);
   }
   return columns;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -50,6 +51,23 @@ inline constexpr double kMostTurns = 1e4;
 /// The limits before and after the start.
 MotionRange find_range(const Mechanism& mechanism, const Structure& structure);
 
+/// The moment at which the first drive first stands at `value` [rad] or [length unit]: whole turns are taken
+/// off or added where it lies behind. Nothing where it does not come there within a hundred turns (or longest
+/// links).
+std::optional<double> time_at_value(const Mechanism& mechanism, double value);
+
+/// One row of a motion while it is made.
+struct MotionRow {
+  double time = 0;
+  std::span<const DriveState> drives;
+  const Configuration& configuration;
+};
+
+/// Makes a motion row by row, without keeping it; otherwise as `solve_motion`. Gives the events.
+std::vector<MotionEvent> visit_motion(const Mechanism& mechanism, const Structure& structure,
+                                      const MotionOptions& options,
+                                      const std::function<void(const MotionRow&)>& visit);
+
 /// A motion in `options.positions` ≥ 2 rows at equal distances of time, both ends included. A first drive
 /// that moves a slide is reversed at its limits unless the options say otherwise. Throws MechanismError (kind
 /// `request`) without a drive or for fewer than two positions, and as `decompose`.
@@ -61,16 +79,26 @@ Motion solve_motion(const Mechanism& mechanism, int positions);
 Motion solve_motion(const Mechanism& mechanism, std::span<const double> times);
 Motion solve_motion(const Mechanism& mechanism, const Structure& structure, std::span<const double> times);
 
-/// A named column of a motion.
-struct MotionColumn {
+/// Name and unit of a column of a motion.
+struct MotionColumnName {
   std::string name;
   std::string unit;
-  std::vector<double> values;  ///< one for each row; NaN where there is no value
 };
 
 /// `t`; each drive; `P.x P.y P.vx P.vy P.ax P.ay` of every moving point; `b.angle b.omega b.alpha` of every
 /// body; `s.position s.velocity s.acceleration` of every slide. The last column of the file, `status`, is
 /// text and not among these.
+std::vector<MotionColumnName> motion_column_names(const Mechanism& mechanism);
+
+/// The values of these columns in one row; NaN where there is no value.
+void motion_values(const Mechanism& mechanism, const MotionRow& row, std::span<double> values);
+
+/// A column of a motion with its values, one for each row.
+struct MotionColumn {
+  std::string name;
+  std::string unit;
+  std::vector<double> values;
+};
 std::vector<MotionColumn> motion_columns(const Mechanism& mechanism, const Motion& motion);
 
 /// The columns and `status` as CSV: a header of names, then a line for each row; numbers read back to the
