@@ -36,6 +36,10 @@ GroupSolver::GroupSolver(const Mechanism& mechanism, const Group& group)
   right_.setZero(n);
   solution_.setZero(n);
   size_ = size_of_group();
+  if (dyad_) {
+    inverse_r1_ = 1 / dyad_->r1;
+    inverse_r2_ = 1 / dyad_->r2;
+  }
   choose_form();
   plan_bodies();
 }
@@ -169,7 +173,7 @@ Status GroupSolver::place_dyad(int side, Configuration& here) {
   const PointState& p = here.points[dyad.p];
   const PointState& q = here.points[dyad.q];
   const Vector2d d = q.position - p.position;
-  const double base = std::hypot(d.x(), d.y());
+  const double base = std::sqrt(d.squaredNorm());  // lengths have bounds that keep their squares numbers
   const Triangle shape = triangle(base, dyad.r1, dyad.r2);
   const double rounding = flat_within(std::max(
       {dyad.r1 + dyad.r2, p.position.lpNorm<Eigen::Infinity>(), q.position.lpNorm<Eigen::Infinity>()}));
@@ -177,27 +181,29 @@ Status GroupSolver::place_dyad(int side, Configuration& here) {
   // too.
   if (!(base > rounding && shape.slack >= -rounding)) return Status::open;
   const bool flat = shape.slack <= rounding;
-  const Vector2d e1 = (shape.along / base) * d + (side * shape.height / base) * left_normal(d);
+  const Vector2d direction = d * (1 / base);
+  const Vector2d e1 = shape.along * direction + (side * shape.height) * left_normal(direction);
   PointState& c = here.points[dyad.c];
   c.position = p.position + e1;
   const Vector2d e2 = c.position - q.position;
   const double cross = side * shape.four_area / 2;
-  regularity_ = cross / (dyad.r1 * dyad.r2);
+  regularity_ = cross * inverse_r1_ * inverse_r2_;
   double omega1 = kNaN, omega2 = kNaN, alpha1 = kNaN, alpha2 = kNaN;
   if (!flat) {
+    const double inverse = 1 / cross;
     const Vector2d velocity = q.velocity - p.velocity;
-    omega1 = e2.dot(velocity) / cross;
-    omega2 = e1.dot(velocity) / cross;
+    omega1 = e2.dot(velocity) * inverse;
+    omega2 = e1.dot(velocity) * inverse;
     const Vector2d b = q.acceleration - p.acceleration + omega1 * omega1 * e1 - omega2 * omega2 * e2;
-    alpha1 = e2.dot(b) / cross;
-    alpha2 = e1.dot(b) / cross;
+    alpha1 = e2.dot(b) * inverse;
+    alpha2 = e1.dot(b) * inverse;
   }
   c.velocity = p.velocity + omega1 * left_normal(e1);
   c.acceleration = p.acceleration + alpha1 * left_normal(e1) - omega1 * omega1 * e1;
   for (std::size_t i = 0; i < 2; ++i) {
     const Link& link = equations_.links[i];
     const bool first = link.body == dyad.body1;
-    const Vector2d bone = first ? e1 / dyad.r1 : e2 / dyad.r2;
+    const Vector2d bone = first ? e1 * inverse_r1_ : e2 * inverse_r2_;
     const double cosine = link.cosine * bone.x() + link.sine * bone.y();
     const double sine = link.cosine * bone.y() - link.sine * bone.x();
     const double omega = first ? omega1 : omega2, alpha = first ? alpha1 : alpha2;

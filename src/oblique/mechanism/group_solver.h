@@ -132,6 +132,7 @@ class GroupSolver {
   Form form_ = Form::newton;
   double size_ = 1;
   std::optional<Dyad> dyad_;
+  double inverse_r1_ = 0, inverse_r2_ = 0;  ///< of the dyad's links
   std::vector<Rigid> rigid_cores_, rigid_links_, rigid_blocks_;
   std::vector<std::size_t> angle_conditions_;  ///< of a single core body: what gives its direction
   std::vector<std::size_t> scalars_;           ///< its other conditions

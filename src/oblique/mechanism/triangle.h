@@ -35,11 +35,12 @@ inline Triangle triangle(double base, double first, double second) {
   const double within = base - std::abs(difference);
   Triangle result;
   result.slack = std::min(beyond, within);
-  result.along = (base + difference * sum / base) / 2;
+  const double inverse = 1 / base;  // one division for all: divisions are what a triangle costs
+  result.along = (base + difference * sum * inverse) / 2;
   if (result.slack > 0) {
     // two roots, since the product of four lengths leaves the range of numbers at 1e78 and at 1e-82
     result.four_area = std::sqrt((sum + base) * (base + std::abs(difference))) * std::sqrt(beyond * within);
-    result.height = result.four_area / (2 * base);
+    result.height = result.four_area * inverse / 2;
   }
   return result;
 }
