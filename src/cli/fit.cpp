@@ -40,7 +40,13 @@ std::string report(const Fit& fit, const Mechanism& mechanism, const TargetPath&
                                  count(fit.mechanisms_tried, "mechanism", "mechanisms"));
   text += table_of_errors(fit, unit) + "\n" + table_of_dimensions(fit, unit) + "\n";
   if (!fit.improved) return text + "no mechanism within the bounds comes nearer than the given one\n";
-  text += fit.turns_fully ? "it turns fully, as before\n" : "it does not turn fully, nor did it before\n";
+  text +=
+      fit.turns_fully
+          ? fmt::format(
+                "it turns fully, as before; its links accelerate by up to {:.3g} ω² (before {:.3g} ω²), ω "
+                "the speed of the drive\n",
+                fit.acceleration_after, fit.acceleration_before)
+          : "it does not turn fully, nor did it before\n";
   if (fit.sketch_moved) text += "[sketch] was moved along: the old one would pick another assembly mode\n";
   return text;
 }

@@ -131,30 +131,37 @@ class Fitter {
     problem_.restart();
     auto minimum = minimise(least_squares_, start);
     if (!minimum) return false;
-    consider(*minimum);
-    if (minimum->blocked && problem_.must_turn()) along_the_edge(*minimum);
+    const bool at_edge = minimum->blocked && problem_.must_turn();
+    if (!at_edge || !behind_barriers(start, minimum->sum)) consider(*minimum);
     return true;
   }
 
-  /// Goes on where a search ran against the edge of what turns fully: behind a barrier, which is then
-  /// lowered, it follows the edge instead (the interior-point method).
-  void along_the_edge(Minimum minimum) {
+  /// Searches anew where a search ran against the edge of what turns fully, which leads to `sum`: behind a
+  /// barrier, which is then lowered, it follows the edge instead (the interior-point method). What is found
+  /// keeps a small distance from the edge unless it lies within by itself. False where nothing is found.
+  bool behind_barriers(const VectorXd& start, double sum) {
     constexpr double kFirstPart = 0.1;  // of the barrier in the sum
     constexpr double kLowering = 0.1;
     constexpr int kStages = 6;
-    const double square = problem_.mean_square_speed(minimum.x);
-    if (!(square > 0) || minimum.sum <= least_squares_.floor) return;
-    double weight = kFirstPart * minimum.sum / square;
+    if (sum <= least_squares_.floor) return false;
+    problem_.restart();
+    const VectorXd accelerations = problem_.accelerations(family_.values());
+    double weight =
+        kFirstPart * sum * static_cast<double>(accelerations.size()) / accelerations.squaredNorm();
+    Minimum minimum{start, sum, true};
     for (int stage = 0; stage < kStages; ++stage, weight *= kLowering) {
       problem_.set_barrier(weight);
       const auto next = minimise(least_squares_, minimum.x);
       problem_.set_barrier(0);
-      if (!next) return;
+      if (!next) return false;
       minimum = *next;
-      if (const auto residuals = problem_.residuals(minimum.x))
-        consider({minimum.x, residuals->squaredNorm(), true});
     }
-    if (const auto last = minimise(least_squares_, minimum.x)) consider(*last);
+    const auto residuals = problem_.residuals(minimum.x);
+    if (!residuals) return false;
+    consider({minimum.x, residuals->squaredNorm(), true});
+    const auto last = minimise(least_squares_, minimum.x);
+    if (last && !last->blocked) consider(*last);
+    return true;
   }
 
   void consider(const Minimum& minimum) {
@@ -196,6 +203,10 @@ class Fitter {
     }
     fit.text = family_.text(values);
     if (!fit.improved) return;
+    if (fit.turns_fully) {
+      fit.acceleration_before = problem_.accelerations(family_.values()).lpNorm<Eigen::Infinity>();
+      fit.acceleration_after = problem_.accelerations(values).lpNorm<Eigen::Infinity>();
+    }
     FittedText fitted = fitted_text(family_, values, best_->stance);
     fit.sketch_moved = fitted.sketch_moved;
     fit.text = with_comment(fitted.text, comment(fit));

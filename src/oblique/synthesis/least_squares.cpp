@@ -15,7 +15,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr int kMostIterations = 200;
-constexpr int kMostTrials = 40;  ///< of one iteration: each damps at least twice as much as the one before
+constexpr int kMostTrials = 40;    ///< of one iteration: each damps at least twice as much as the one before
+constexpr int kBlockedWithin = 2;  ///< iterations before the end in which a step was taken back
 constexpr double kFirstDamping = 1e-3;
 /// Cosine between the residual and what a variable can change, below which the variable is at its best.
 constexpr double kFlatWithin = 1e-9;
@@ -35,13 +36,13 @@ class Search {
     for (int k = 0; k < kMostIterations && sum_ > problem_.floor; ++k) {
       if (!improve()) break;
     }
-    return {x_, sum_, blocked_};
+    return {x_, sum_, since_blocked_ <= kBlockedWithin};
   }
 
  private:
   /// One iteration; false where x is as good as it gets.
   bool improve() {
-    blocked_ = false;
+    ++since_blocked_;
     const MatrixXd jacobian = problem_.jacobian(x_);
     const VectorXd gradient = jacobian.transpose() * residuals_;
     const std::vector<Index> free = free_variables(jacobian, gradient);
@@ -64,7 +65,7 @@ class Search {
       const auto residuals = problem_.residuals(next);
       const double predicted = sum_ - (residuals_ + jacobian * step).squaredNorm();
       const double gain = residuals ? sum_ - residuals->squaredNorm() : -1;
-      blocked_ = !residuals;
+      if (!residuals) since_blocked_ = 0;
       if (gain > 0) {
         relax(gain / predicted);
         const bool small = gain <= kSmallestGain * sum_ && predicted <= kSmallestGain * sum_;
@@ -109,7 +110,7 @@ class Search {
   double sum_;
   double damping_ = kFirstDamping;
   double growth_ = 2;
-  bool blocked_ = false;
+  int since_blocked_ = kMostIterations;
 };
 
 }  // namespace

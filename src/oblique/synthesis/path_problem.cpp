@@ -38,12 +38,12 @@ Stance stance_in(const Mechanism& mechanism, const Configuration& configuration)
   return stance;
 }
 
-VectorXd two_columns(const std::vector<PathCurve::Foot>& feet, const VectorXd& speeds) {
-  VectorXd residuals(2 * std::ssize(feet) + speeds.size());
+VectorXd two_columns(const std::vector<PathCurve::Foot>& feet, const VectorXd& accelerations) {
+  VectorXd residuals(2 * std::ssize(feet) + accelerations.size());
   for (std::size_t k = 0; k < feet.size(); ++k) {
     residuals.segment<2>(2 * static_cast<Index>(k)) = feet[k].difference;
   }
-  residuals.tail(speeds.size()) = speeds;
+  residuals.tail(accelerations.size()) = accelerations;
   return residuals;
 }
 
@@ -80,17 +80,21 @@ Motion PathProblem::turn_of(const Mechanism& mechanism) const {
   return solve_motion(mechanism, kRows);
 }
 
-VectorXd PathProblem::weighted_speeds(const Motion& turn) const {
+VectorXd PathProblem::accelerations_in(const Motion& turn) const {
   const Mechanism& mechanism = family_.original();
-  const auto bodies = std::ssize(mechanism.bodies), rows = std::ssize(turn.configurations);
-  const double weight =
-      std::sqrt(barrier_ / static_cast<double>(bodies * rows)) / mechanism.drives.front().speed;
-  VectorXd speeds(bodies * rows);
+  const double speed = mechanism.drives.front().speed;
+  VectorXd accelerations(std::ssize(mechanism.bodies) * std::ssize(turn.configurations));
   Index at = 0;
   for (const Configuration& configuration : turn.configurations) {
-    for (const BodyState& body : configuration.bodies) speeds[at++] = weight * body.omega;
+    for (const BodyState& body : configuration.bodies) {
+      accelerations[at++] = body.alpha / (speed * speed);
+    }
   }
-  return speeds;
+  return accelerations;
+}
+
+double PathProblem::weight_of_an_acceleration() const {
+  return std::sqrt(barrier_ / static_cast<double>(family_.original().bodies.size() * kRows));
 }
 
 /// The stance from which the member with these values takes its mode.
@@ -135,7 +139,7 @@ std::optional<PathProblem::Solved> PathProblem::solve(const VectorXd& values, co
     if (!turns) return std::nullopt;
   }
   Solved solved{stance_in(mechanism, turn.configurations.front()), {}, {}};
-  if (barrier_ > 0) solved.speeds = weighted_speeds(turn);
+  if (barrier_ > 0) solved.accelerations = weight_of_an_acceleration() * accelerations_in(turn);
   if (!target_.times.empty()) {
     auto feet = timed_feet(mechanism);
     if (!feet) return std::nullopt;
@@ -158,7 +162,7 @@ std::optional<VectorXd> PathProblem::residuals(const VectorXd& values) {
     auto solved = solve(values, *near);
     if (!solved) return std::nullopt;
     here_ = {values, std::move(solved->stance)};
-    return two_columns(solved->feet, solved->speeds);
+    return two_columns(solved->feet, solved->accelerations);
   } catch (const MechanismError&) {  // no such mechanism, or it cannot be assembled at the start
     return std::nullopt;
   }
@@ -180,8 +184,8 @@ std::optional<PathProblem::Perturbed> PathProblem::perturb(const VectorXd& value
       if (barrier_ == 0) return perturbed;
     }
     const Motion turn = turn_of(mechanism);
-    if (barrier_ > 0) perturbed.speeds = weighted_speeds(turn);
-    if (!perturbed.speeds.allFinite()) return std::nullopt;
+    if (barrier_ > 0) perturbed.accelerations = weight_of_an_acceleration() * accelerations_in(turn);
+    if (!perturbed.accelerations.allFinite()) return std::nullopt;
     if (!target_.times.empty()) return perturbed;
     const PathCurve curve(turn, target_.point);
     for (const PathCurve::Foot& foot : feet) {
@@ -204,9 +208,9 @@ MatrixXd PathProblem::jacobian(const VectorXd& values) {
   for (std::size_t k = 0; k < base->feet.size(); ++k) {
     middle.places.emplace_back(base->feet[k].difference + target_.positions[k]);
   }
-  middle.speeds = base->speeds;
+  middle.accelerations = base->accelerations;
   const auto n_places = 2 * std::ssize(base->feet);
-  MatrixXd jacobian = MatrixXd::Zero(n_places + base->speeds.size(), values.size());
+  MatrixXd jacobian = MatrixXd::Zero(n_places + base->accelerations.size(), values.size());
   const VectorXd steps = kDifference * (family_.upper() - family_.lower());
   for (Index i = 0; i < values.size(); ++i) {
     VectorXd moved = values;
@@ -224,16 +228,20 @@ MatrixXd PathProblem::jacobian(const VectorXd& values) {
       jacobian.block<2, 1>(2 * static_cast<Index>(k), i) =
           base->feet[k].projector * (high.places[k] - low.places[k]) / step;
     }
-    jacobian.col(i).tail(base->speeds.size()) = (high.speeds - low.speeds) / step;
+    jacobian.col(i).tail(base->accelerations.size()) = (high.accelerations - low.accelerations) / step;
   }
   return jacobian;
 }
 
-double PathProblem::mean_square_speed(const VectorXd& values) {
+VectorXd PathProblem::accelerations(const VectorXd& values) {
   const double before = std::exchange(barrier_, 1.0);
   const auto with = residuals(values);
+  const VectorXd accelerations = with
+                                     ? VectorXd(with->tail(with->size() - 2 * std::ssize(target_.positions)) /
+                                                weight_of_an_acceleration())
+                                     : VectorXd();
   barrier_ = before;
-  return with ? with->tail(with->size() - 2 * std::ssize(target_.positions)).squaredNorm() : 0;
+  return accelerations;
 }
 
 std::optional<double> PathProblem::effect_of(Index dimension) {

@@ -44,9 +44,13 @@ class PathProblem {
   Eigen::MatrixXd jacobian(const Eigen::VectorXd& values);
 
   /// Weight of a barrier that keeps the mechanism off its dead centres: adds to the sum the mean square of
-  /// the bodies' speeds ω/ω₀ over the turn, which grows without bound there. Only of use where `must_turn`.
+  /// the bodies' accelerations α/ω₀² over the turn. It grows without bound there; that of the speeds would
+  /// not, as a four-bar linkage passes its change point with a jump in them. Only of use where `must_turn`.
   void set_barrier(double weight) { barrier_ = weight; }
-  double mean_square_speed(const Eigen::VectorXd& values);
+
+  /// α/ω₀² of all bodies over the turn of a member, ω₀ the speed of the first drive; empty where it does not
+  /// turn.
+  Eigen::VectorXd accelerations(const Eigen::VectorXd& values);
 
   const Family& family() const { return family_; }
   bool must_turn() const { return must_turn_; }
@@ -68,11 +72,11 @@ class PathProblem {
   struct Solved {
     Stance stance;
     std::vector<PathCurve::Foot> feet;  ///< one for each target
-    Eigen::VectorXd speeds;             ///< weighted; empty without a barrier
+    Eigen::VectorXd accelerations;      ///< weighted; empty without a barrier
   };
   struct Perturbed {
     std::vector<Eigen::Vector2d> places;  ///< at the times of the feet
-    Eigen::VectorXd speeds;
+    Eigen::VectorXd accelerations;
   };
 
   std::optional<Stance> walk_to(const Eigen::VectorXd& values) const;
@@ -80,7 +84,8 @@ class PathProblem {
   std::optional<Perturbed> perturb(const Eigen::VectorXd& values, const std::vector<PathCurve::Foot>& feet);
   std::optional<std::vector<PathCurve::Foot>> timed_feet(const Mechanism& mechanism) const;
   Motion turn_of(const Mechanism& mechanism) const;
-  Eigen::VectorXd weighted_speeds(const Motion& turn) const;
+  Eigen::VectorXd accelerations_in(const Motion& turn) const;
+  double weight_of_an_acceleration() const;
 
   const Family& family_;
   const TargetPath& target_;
