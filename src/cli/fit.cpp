@@ -23,8 +23,10 @@ std::string table_of_dimensions(const Fit& fit, const std::string& unit) {
   Table table({fmt::format("dimension [{}]", unit), "old", "new", "lower bound", "upper bound", ""});
   for (const FittedDimension& d : fit.dimensions) {
     std::string remark = d.changed() ? "" : "unchanged";
-    if (d.changed() && d.at_bound())
-      remark = d.after <= d.lower ? "at its lower bound" : "at its upper bound";
+    if (d.at_bound()) {
+      remark += fmt::format("{}at its {} bound", remark.empty() ? "" : ", ",
+                            d.after <= d.lower ? "lower" : "upper");
+    }
     table.add({d.name, short_number(d.before), short_number(d.after), short_number(d.lower),
                short_number(d.upper), remark});
   }
