@@ -191,7 +191,7 @@ class DimensionReader {
 
   std::string example() const { return "'" + names().front() + "'"; }
 
-  void report(std::string what, std::string expected, std::string remedy) {
+  void report(const std::string& what, std::string expected, std::string remedy) {
     findings_.push_back(
         {{mechanism_.file, {}}, "free dimensions: " + what, std::move(expected), std::move(remedy)});
   }

@@ -100,10 +100,11 @@ double PathProblem::weight_of_an_acceleration() const {
 /// The stance from which the member with these values takes its mode.
 std::optional<Stance> PathProblem::walk_to(const VectorXd& values) const {
   const VectorXd way = values - here_.values;
-  const double steps = std::max(1.0, std::ceil(way.cwiseAbs().maxCoeff() / (kModeStep * size_)));
+  const auto steps = static_cast<long>(std::ceil(way.cwiseAbs().maxCoeff() / (kModeStep * size_)));
   Stance stance = here_.stance;
-  for (double k = 1; k < steps; ++k) {
-    Mechanism between = family_.mechanism(here_.values + k / steps * way);
+  for (long k = 1; k < steps; ++k) {
+    Mechanism between =
+        family_.mechanism(here_.values + static_cast<double>(k) / static_cast<double>(steps) * way);
     between.sketch = stance;
     const auto next = stance_of(between);
     if (!next) return std::nullopt;
@@ -235,11 +236,11 @@ MatrixXd PathProblem::jacobian(const VectorXd& values) {
 
 VectorXd PathProblem::accelerations(const VectorXd& values) {
   const double before = std::exchange(barrier_, 1.0);
-  const auto with = residuals(values);
-  const VectorXd accelerations = with
-                                     ? VectorXd(with->tail(with->size() - 2 * std::ssize(target_.positions)) /
-                                                weight_of_an_acceleration())
-                                     : VectorXd();
+  VectorXd accelerations;
+  if (const auto with = residuals(values)) {
+    accelerations =
+        with->tail(with->size() - 2 * std::ssize(target_.positions)) / weight_of_an_acceleration();
+  }
   barrier_ = before;
   return accelerations;
 }
