@@ -15,6 +15,7 @@ set(allowed_solve text diagram network)
 set(allowed_mechanism text)
 set(allowed_patch text diagram mechanism)
 set(allowed_compare text diagram network solve mechanism patch)
+set(allowed_synthesis text mechanism)
 set(allowed_draw text diagram mechanism)
 
 file(GLOB_RECURSE files RELATIVE ${SOURCE}/src ${SOURCE}/src/oblique/*.h ${SOURCE}/src/oblique/*.cpp)

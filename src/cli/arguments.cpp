@@ -188,6 +188,35 @@ void add_compare(CLI::App& app, Chosen& chosen) {
   choose(verb, chosen, request, compare_mechanism);
 }
 
+void add_fit(CLI::App& app, Chosen& chosen) {
+  auto request = std::make_shared<FitRequest>();
+  CLI::App* const verb = app.add_subcommand(
+      "fit", "Fit a mechanism: dimensions that bring the path of a point nearest to given points");
+  verb->add_option("MECHANISM", request->mechanism, "mechanism file (oblique-mechanism/1)")->required();
+  verb->add_option(
+          "--path", request->path,
+          "points wanted: columns P.x and P.y of a point P; with a drive's angle [rad] or t [s] each "
+          "at that moment, otherwise each to the nearest place of the path")
+      ->required()
+      ->type_name("FILE");
+  verb->add_option(
+          "--free", request->free,
+          "dimensions that may change: a body (its length), body.sides, a mark body.M, a frame point D, or "
+          "one number of these (D.x); bounds as in CD=130..150 (default: half to twice a length, "
+          "half the largest length about a coordinate)")
+      ->required()
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("NAME,…");
+  verb->add_option("--starts", request->starts,
+                   "searches begun, spread over the bounds; 1: from the file only")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 10'000));
+  verb->add_option("-o,--output", request->output, "write the fitted mechanism to NEW.toml")
+      ->type_name("NEW");
+  choose(verb, chosen, request, fit_mechanism);
+}
+
 void add_blocks(CLI::App& app, Chosen& chosen) {
   auto request = std::make_shared<BlocksRequest>();
   CLI::App* const verb = app.add_subcommand("blocks", "List the blocks, or tell all about one");
@@ -213,6 +242,7 @@ std::optional<ExitStatus> parse_arguments(int argc, char** argv, Chosen& chosen)
   add_modes(app, chosen);
   add_patch(app, chosen);
   add_compare(app, chosen);
+  add_fit(app, chosen);
   add_blocks(app, chosen);
   if (argc < 2) {
     print(app.help());

@@ -77,6 +77,15 @@ struct CompareRequest {
 };
 ExitStatus compare_mechanism(const Session& session, const CompareRequest& request);
 
+struct FitRequest {
+  std::string mechanism;
+  std::string path;
+  std::vector<std::string> free;
+  std::string output;
+  int starts = 8;
+};
+ExitStatus fit_mechanism(const Session& session, const FitRequest& request);
+
 struct BlocksRequest {
   std::string name;
 };

@@ -7,6 +7,7 @@
 #include <oblique/mechanism/mechanism.h>
 #include <oblique/patch/patch.h>
 #include <oblique/solve/solve_error.h>
+#include <oblique/synthesis/synthesis_error.h>
 
 #include "arguments.h"
 #include "terminal.h"
@@ -29,6 +30,9 @@ ExitStatus run_program(int argc, char** argv) {
   } catch (const MechanismError& error) {
     return report(error,
                   error.kind() == MechanismError::Kind::assembly ? ExitStatus::no : ExitStatus::bad_request);
+  } catch (const SynthesisError& error) {
+    return report(error,
+                  error.kind() == SynthesisError::Kind::nowhere ? ExitStatus::no : ExitStatus::bad_request);
   } catch (const PatchError& error) {
     return report(error, ExitStatus::no);
   } catch (const Error& error) {

@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/synthesis/fit.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include <oblique/synthesis/family.h>
+#include <oblique/synthesis/fitted_text.h>
+#include <oblique/synthesis/least_squares.h>
+#include <oblique/synthesis/path_problem.h>
+#include <oblique/synthesis/synthesis_error.h>
+
+namespace oblique {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+/// Distances below this part of the mechanism's size are as good as none.
+constexpr double kNothing = 1e-12;
+/// A path that moves by less than this part of the mechanism's size does not depend on a dimension.
+constexpr double kNoEffect = 1e-12;
+/// A mechanism farther from the file's is taken instead only if it is better by this factor.
+constexpr double kWorthwhile = 0.99;
+/// Points that are tried for each start before it is given up.
+constexpr int kTriesForAStart = 20;
+
+PathError error_of(const VectorXd& residuals) {
+  PathError error;
+  const Index targets = residuals.size() / 2;
+  for (Index k = 0; k < targets; ++k)
+    error.largest = std::max(error.largest, residuals.segment<2>(2 * k).norm());
+  error.rms = std::sqrt(residuals.squaredNorm() / static_cast<double>(targets));
+  return error;
+}
+
+[[noreturn]] void fail(SynthesisError::Kind kind, const std::string& file, std::string what,
+                       std::string expected, std::string remedy) {
+  throw SynthesisError(kind, Diagnostic{{file, {}}, std::move(what), std::move(expected), std::move(remedy)});
+}
+
+/// Points k = 1, 2, … of the unit cube, spread evenly however many are taken: the additive recurrence
+/// frac(½ + k/gⁱ), g the root of gⁿ⁺¹ = g + 1 (M. Roberts, "The unreasonable effectiveness of quasirandom
+/// sequences", 2018).
+VectorXd spread_point(Index dimensions, int k) {
+  double g = 2;
+  for (int i = 0; i < 60; ++i) g = std::pow(1 + g, 1 / static_cast<double>(dimensions + 1));
+  VectorXd point(dimensions);
+  for (Index i = 0; i < dimensions; ++i) {
+    const double x = 0.5 + k * std::pow(1 / g, static_cast<double>(i + 1));
+    point[i] = x - std::floor(x);
+  }
+  return point;
+}
+
+class Fitter {
+ public:
+  Fitter(const Family& family, const TargetPath& target, const FitOptions& options)
+      : family_(family), target_(target), options_(options), problem_(family, target) {
+    least_squares_.residuals = [this](const VectorXd& x) { return problem_.residuals(x); };
+    least_squares_.jacobian = [this](const VectorXd& x) { return problem_.jacobian(x); };
+    least_squares_.lower = family.lower();
+    least_squares_.upper = family.upper();
+    const double nothing = kNothing * problem_.size();
+    least_squares_.floor = nothing * nothing * static_cast<double>(problem_.targets());
+  }
+
+  Fit run() {
+    check_request();
+    Fit fit;
+    fit.before = error_of(problem_.residuals(family_.values()).value());
+    fit.turns_fully = problem_.must_turn();
+    search();
+    finish(fit);
+    fit.mechanisms_tried = problem_.members_tried();
+    return fit;
+  }
+
+ private:
+  void check_request() {
+    const std::string& point = family_.original().points[target_.point].name;
+    for (std::size_t i = 0; i < family_.dimensions().size(); ++i) {
+      const auto effect = problem_.effect_of(static_cast<Index>(i));
+      if (!effect || *effect > kNoEffect * problem_.size()) continue;
+      fail(SynthesisError::Kind::request, family_.original().file,
+           fmt::format("free dimensions: '{}' has no effect on the path of '{}'",
+                       family_.dimensions()[i].name, point),
+           "dimensions that the path depends on", "leave it out");
+    }
+    const std::size_t numbers = family_.dimensions().size();
+    // without timing a target only says how far the path is beside it, with timing where the point is
+    const std::size_t asked = target_.times.empty() ? problem_.targets() : 2 * problem_.targets();
+    if (asked >= numbers) return;
+    fail(SynthesisError::Kind::request, target_.file,
+         fmt::format("{} target{} for {} free numbers", problem_.targets(),
+                     problem_.targets() == 1 ? "" : "s", numbers),
+         fmt::format("{} or more", target_.times.empty() ? numbers : (numbers + 1) / 2),
+         "give more points of the path, or free fewer dimensions");
+  }
+
+  void search() {
+    int tried = 0;
+    for (int k = 0; k < options_.starts && !is_nothing(); ++k) {
+      if (options_.progress) options_.progress(static_cast<double>(k) / options_.starts);
+      if (k == 0) {
+        const VectorXd values = family_.values();
+        search_from(values.cwiseMax(family_.lower()).cwiseMin(family_.upper()));
+        continue;
+      }
+      for (int trial = 0; trial < kTriesForAStart; ++trial) {
+        const VectorXd point = spread_point(family_.values().size(), ++tried);
+        if (search_from(family_.lower() + point.cwiseProduct(family_.upper() - family_.lower()))) break;
+      }
+    }
+    if (best_) return;
+    fail(SynthesisError::Kind::nowhere, family_.original().file,
+         fmt::format("no mechanism was found within the bounds that {}",
+                     problem_.must_turn() ? "turns fully, as the given one does" : "can be assembled"),
+         {}, "widen the bounds, free other dimensions, or search from more starts");
+  }
+
+  bool is_nothing() const { return best_ && best_->sum <= least_squares_.floor; }
+
+  /// One search; false where there is no mechanism at `start`.
+  bool search_from(const VectorXd& start) {
+    problem_.restart();
+    auto minimum = minimise(least_squares_, start);
+    if (!minimum) return false;
+    const bool at_edge = minimum->blocked && problem_.must_turn();
+    if (!at_edge || !behind_barriers(start, minimum->sum)) consider(*minimum);
+    return true;
+  }
+
+  /// Searches anew where a search ran against the edge of what turns fully, which leads to `sum`: behind a
+  /// barrier, which is then lowered, it follows the edge instead (the interior-point method). What is found
+  /// keeps a small distance from the edge unless it lies within by itself. False where nothing is found.
+  bool behind_barriers(const VectorXd& start, double sum) {
+    constexpr double kFirstPart = 0.1;  // of the barrier in the sum
+    constexpr double kLowering = 0.1;
+    constexpr int kStages = 6;
+    if (sum <= least_squares_.floor) return false;
+    problem_.restart();
+    const VectorXd accelerations = problem_.accelerations(family_.values());
+    double weight =
+        kFirstPart * sum * static_cast<double>(accelerations.size()) / accelerations.squaredNorm();
+    Minimum minimum{start, sum, true};
+    for (int stage = 0; stage < kStages; ++stage, weight *= kLowering) {
+      problem_.set_barrier(weight);
+      const auto next = minimise(least_squares_, minimum.x);
+      problem_.set_barrier(0);
+      if (!next) return false;
+      minimum = *next;
+    }
+    const auto residuals = problem_.residuals(minimum.x);
+    if (!residuals) return false;
+    consider({minimum.x, residuals->squaredNorm(), true});
+    const auto last = minimise(least_squares_, minimum.x);
+    if (last && !last->blocked) consider(*last);
+    return true;
+  }
+
+  void consider(const Minimum& minimum) {
+    // of the stages of one search the best counts, of several searches the first unless a later one is
+    // clearly better
+    if (best_ && std::sqrt(minimum.sum) >= kWorthwhile * std::sqrt(best_->sum)) {
+      const bool same_place = (minimum.x - best_->x).norm() <= 0.01 * problem_.size();
+      if (!same_place || minimum.sum >= best_->sum) return;
+    }
+    // the numbers that will stand in the file, which is what is measured
+    const VectorXd rounded = rounded_values(minimum.x);
+    if (const auto residuals = problem_.residuals(rounded)) {
+      best_ = Best{rounded, residuals->squaredNorm(), error_of(*residuals), problem_.stance()};
+    } else if (const auto exact = problem_.residuals(minimum.x)) {
+      best_ = Best{minimum.x, exact->squaredNorm(), error_of(*exact), problem_.stance()};
+    }
+  }
+
+  /// To ten digits; a change that does not show in them is none.
+  VectorXd rounded_values(const VectorXd& values) const {
+    VectorXd rounded = values;
+    for (Index i = 0; i < values.size(); ++i) {
+      const Dimension& dimension = family_.dimensions()[static_cast<std::size_t>(i)];
+      const std::string text = fmt::format("{:.10g}", values[i]);
+      rounded[i] = std::clamp(std::strtod(text.c_str(), nullptr), dimension.lower, dimension.upper);
+      if (text == fmt::format("{:.10g}", dimension.value)) rounded[i] = dimension.value;
+    }
+    return rounded;
+  }
+
+  void finish(Fit& fit) {
+    const double gain = fit.before.rms - best_->error.rms;
+    fit.improved = gain > kNothing * problem_.size();
+    const VectorXd values = fit.improved ? best_->x : family_.values();
+    fit.after = fit.improved ? best_->error : fit.before;
+    for (std::size_t i = 0; i < family_.dimensions().size(); ++i) {
+      const Dimension& d = family_.dimensions()[i];
+      fit.dimensions.push_back({d.name, d.value, values[static_cast<Index>(i)], d.lower, d.upper});
+    }
+    fit.text = family_.text(values);
+    if (!fit.improved) return;
+    if (fit.turns_fully) {
+      fit.acceleration_before = problem_.accelerations(family_.values()).lpNorm<Eigen::Infinity>();
+      fit.acceleration_after = problem_.accelerations(values).lpNorm<Eigen::Infinity>();
+    }
+    FittedText fitted = fitted_text(family_, values, best_->stance);
+    fit.sketch_moved = fitted.sketch_moved;
+    fit.text = with_comment(fitted.text, comment(fit));
+  }
+
+  std::string comment(const Fit& fit) const {
+    const auto file_name = [](const std::string& path) {
+      return std::filesystem::path(path).filename().string();
+    };
+    std::string changed;
+    for (const FittedDimension& d : fit.dimensions) {
+      if (d.changed()) changed += fmt::format("{}{}", changed.empty() ? "" : ", ", d.name);
+    }
+    return fmt::format(
+        "Fitted from {}: {} changed so that {} follows the {} points of {}, rms {:.4g} {} (before {:.4g}).",
+        file_name(family_.original().file), changed, family_.original().points[target_.point].name,
+        problem_.targets(), file_name(target_.file), fit.after.rms, family_.original().length_unit,
+        fit.before.rms);
+  }
+
+  struct Best {
+    VectorXd x;
+    double sum;
+    PathError error;
+    Stance stance;
+  };
+
+  const Family& family_;
+  const TargetPath& target_;
+  const FitOptions& options_;
+  PathProblem problem_;
+  LeastSquares least_squares_;
+  std::optional<Best> best_;
+};
+
+}  // namespace
+
+Fit fit_path(const std::string& text, const std::string& file, std::span<const std::string> free,
+             const TargetPath& target, const FitOptions& options) {
+  const Family family(text, file, free);
+  return Fitter(family, target, options).run();
+}
+
+}  // namespace oblique

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+#include <Eigen/Core>
+
+#include <oblique/synthesis/family.h>
+#include <oblique/synthesis/path_problem.h>
+
+namespace oblique {
+
+struct FittedText {
+  std::string text;
+  bool sketch_moved = false;
+};
+
+/// The file of a family with other values. Its sketch stays as it is where it still picks the mode of
+/// `stance`; otherwise its points are put where they stand in it. Throws SynthesisError where not even that
+/// picks the mode.
+FittedText fitted_text(const Family& family, const Eigen::VectorXd& values, const Stance& stance);
+
+}  // namespace oblique
