@@ -46,8 +46,7 @@ std::string_view kind_name(Value::Kind kind);
 /// Reads a file whole. Throws ReadError where it cannot be opened.
 std::string read_file(const std::filesystem::path& path);
 
-/// Writes a file whole or not at all: the text goes to a neighbour that then takes the name.
-/// Throws ReadError where that fails; the old file is then untouched.
+/// Writes a file whole or not at all. Throws ReadError where that fails; the old file is then untouched.
 void write_file(const std::filesystem::path& path, std::string_view text);
 
 /// Parses TOML 1.0; `file` is the name that messages give. Throws ReadError.
