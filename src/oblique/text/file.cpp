@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/text/document.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -40,6 +41,20 @@ void write_file(const std::filesystem::path& path, std::string_view text) {
   NewFile file(path);
   file.append(text);
   file.commit();
+}
+
+void check_ending(const std::filesystem::path& path, std::span<const std::string_view> endings) {
+  const std::string ending = path.extension().string();
+  if (std::find(endings.begin(), endings.end(), ending) != endings.end()) return;
+  std::string expected(endings.front());
+  for (std::size_t k = 1; k < endings.size(); ++k) {
+    expected += fmt::format("{}{}", k + 1 == endings.size() ? " or " : ", ", endings[k]);
+  }
+  throw ReadError(Diagnostic{{path.string(), {}},
+                             ending.empty() ? "the name of this file has no ending"
+                                            : fmt::format("cannot write a '{}' file", ending),
+                             "a name that ends in " + expected,
+                             {}});
 }
 
 }  // namespace oblique
