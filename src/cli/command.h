@@ -25,6 +25,7 @@ struct Session {
 struct RunRequest {
   std::string diagram;
   std::string output;
+  std::vector<std::string> columns;  ///< those to write; empty: all
   std::string until;
   std::vector<std::string> settings;
   std::string from;  ///< a state file to go on from
@@ -47,6 +48,7 @@ ExitStatus check_file(const Session& session, const CheckRequest& request);
 struct SolveRequest {
   std::string mechanism;
   std::string output;
+  std::vector<std::string> columns;  ///< those to write; empty: all
   int positions = 361;
 };
 ExitStatus solve_mechanism(const Session& session, const SolveRequest& request);

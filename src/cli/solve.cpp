@@ -7,6 +7,7 @@
 #include <oblique/mechanism/read_mechanism.h>
 
 #include "command.h"
+#include "table_output.h"
 #include "terminal.h"
 
 namespace oblique::cli {
@@ -47,14 +48,43 @@ std::string table_of(const Mechanism& mechanism, const Motion& motion) {
              std::min(kMostRows, motion.times.size()), motion.times.size());
 }
 
+/// The columns of the file: those of the motion and `status`.
+std::vector<TableColumn> table_columns(const Mechanism& mechanism) {
+  std::vector<TableColumn> columns;
+  for (const MotionColumn& column : motion_columns(mechanism, {})) {
+    columns.push_back({column.name, column.unit});
+  }
+  TableColumn& status = columns.emplace_back(TableColumn{"status"});
+  using oblique::Status;
+  for (const Status value : {Status::ok, Status::dead_centre, Status::open})
+    status.labels.emplace_back(status_name(value));
+  return columns;
+}
+
+void write_motion(const std::string& path, const ColumnChoice& choice, const Mechanism& mechanism,
+                  const Motion& motion) {
+  const std::vector<MotionColumn> columns = motion_columns(mechanism, motion);
+  TableOutput table(path, choice, motion.times.size());
+  std::vector<double> row;
+  for (std::size_t k = 0; k < motion.times.size(); ++k) {
+    row.clear();
+    for (const MotionColumn& column : columns) row.push_back(column.values[k]);
+    row.push_back(static_cast<double>(motion.configurations[k].status));
+    table.add(row);
+  }
+  table.finish();
+}
+
 }  // namespace
 
 ExitStatus solve_mechanism(const Session&, const SolveRequest& request) {
-  if (!request.output.empty()) check_output(request.output, ".csv");
+  check_table_output(request.output, request.columns);
+  check_not_input(request.output, request.mechanism, "mechanism");
   const Mechanism mechanism = read_mechanism(request.mechanism);
+  const ColumnChoice choice(table_columns(mechanism), request.columns);
   const Motion motion = solve_motion(mechanism, request.positions);
   print(table_of(mechanism, motion));
-  if (!request.output.empty()) save(request.output, motion_csv(mechanism, motion));
+  if (!request.output.empty()) write_motion(request.output, choice, mechanism, motion);
   const auto count = [&](oblique::Status status) {
     return std::count_if(motion.configurations.begin(), motion.configurations.end(),
                          [&](const Configuration& c) { return c.status == status; });
