@@ -89,12 +89,24 @@ void choose(CLI::App* verb, Chosen& chosen, const std::shared_ptr<Request>& requ
   });
 }
 
+/// -o and --columns of a verb that writes a table.
+template <class Request>
+void add_table_options(CLI::App* verb, Request& request) {
+  verb->add_option("-o,--output", request.output,
+                   "write all rows and columns to FILE, which ends in .csv, .npy (NumPy), .mat (MATLAB) or "
+                   ".json")
+      ->type_name("FILE");
+  verb->add_option("--columns", request.columns, "write these columns only, in this order")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("NAME,NAME,…");
+}
+
 void add_run(CLI::App& app, Chosen& chosen) {
   auto request = std::make_shared<RunRequest>();
   CLI::App* const verb = app.add_subcommand("run", "Run a diagram: its outputs over time");
   verb->add_option("DIAGRAM", request->diagram, "diagram file (oblique-diagram/1)")->required();
-  verb->add_option("-o,--output", request->output, "write all rows and columns to FILE.csv")
-      ->type_name("FILE");
+  add_table_options(verb, *request);
   verb->add_option("--until", request->until, "end of the run, for example 2*pi or \"500 ms\"")
       ->type_name("T");
   verb->add_option("--set", request->settings, "change a parameter: block.parameter=value; may be repeated")
@@ -145,8 +157,7 @@ void add_solve(CLI::App& app, Chosen& chosen) {
       ->type_name("open|stop|reverse");
   verb->add_flag("--check", request->check,
                  "hold the motion against the mechanism's [expect]; status 1 where it fails");
-  verb->add_option("-o,--output", request->output, "write all rows and columns to FILE.csv")
-      ->type_name("FILE");
+  add_table_options(verb, *request);
   choose(verb, chosen, request, solve_mechanism);
 }
 

@@ -25,6 +25,7 @@ struct Session {
 struct RunRequest {
   std::string diagram;
   std::string output;
+  std::vector<std::string> columns;  ///< those to write; empty: all
   std::string until;
   std::vector<std::string> settings;
   std::string from;  ///< a state file to go on from
@@ -49,6 +50,7 @@ struct SolveRequest {
   std::string output;
   std::string until;
   std::string at_limit;
+  std::vector<std::string> columns;  ///< those to write; empty: all
   int positions = 361;
   bool check = false;
 };

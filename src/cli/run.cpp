@@ -10,6 +10,7 @@
 #include <oblique/solve/static_test.h>
 
 #include "command.h"
+#include "table_output.h"
 #include "terminal.h"
 
 namespace oblique::cli {
@@ -99,7 +100,8 @@ std::string table_of(const std::vector<StaticReading>& readings) {
 }
 
 void check_request(const RunRequest& request) {
-  if (!request.output.empty()) check_output(request.output, ".csv");
+  check_table_output(request.output, request.columns);
+  check_not_input(request.output, request.diagram, "diagram");
   if (!request.save.empty()) {
     check_output(request.save, ".toml");
     check_not_input(request.save, request.diagram, "diagram");
@@ -157,6 +159,7 @@ ExitStatus run_diagram(const Session& session, const RunRequest& request) {
   for (const std::string& text : request.settings) overrides.push_back(parse_override(text));
 
   const FlatDiagram flat = flatten(diagram, library, overrides);
+  const ColumnChoice choice(output_columns(flat), request.columns);
   const Program program(assemble(flat));
   if (request.static_test) {
     print(table_of(static_test(program, diagram.file)));
@@ -189,7 +192,11 @@ ExitStatus run_diagram(const Session& session, const RunRequest& request) {
   }
   print(table_of(result.trajectory));
   if (request.events) print(table_of(result.events, result.event_count));
-  if (!request.output.empty()) save(request.output, to_csv(result.trajectory));
+  if (!request.output.empty()) {
+    TableOutput table(request.output, choice, result.trajectory.rows());
+    table.add(result.trajectory.values());
+    table.finish();
+  }
   if (!request.save.empty()) save(request.save, to_text(result.state));
   if (result.state.time < options.until)
     note(fmt::format("interrupted at t = {:.6g} s\n", result.state.time));

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -10,44 +11,62 @@
 #include <oblique/mechanism/read_mechanism.h>
 
 #include "command.h"
+#include "table_output.h"
 #include "terminal.h"
 
 namespace oblique::cli {
 namespace {
 
+/// The rows of a motion that fit on a terminal, and how many stand where.
+struct Digest {
+  std::vector<std::vector<double>> rows;
+  std::vector<oblique::Status> statuses;  ///< of `rows`
+  std::size_t open = 0, dead_centres = 0;
+};
+
 /// The drives' angles and the coordinates of the moving points: what fits on a terminal.
-std::string table_of(const Mechanism& mechanism, const Motion& motion) {
-  constexpr std::size_t kMostRows = 13;
+std::string table_of(const Mechanism& mechanism, const Digest& digest, int positions) {
   constexpr std::size_t kColumnWidth = 12;
-  std::vector<MotionColumn> columns;
-  for (MotionColumn& column : motion_columns(mechanism, motion)) {
-    const bool coordinate = column.name.ends_with(".x") || column.name.ends_with(".y");
-    const bool first = columns.size() <= mechanism.drives.size();
-    if (first || coordinate) columns.push_back(std::move(column));
+  const std::vector<MotionColumnName> names = motion_column_names(mechanism);
+  std::vector<std::size_t> columns;
+  for (std::size_t c = 0; c < names.size(); ++c) {
+    const bool coordinate = names[c].name.ends_with(".x") || names[c].name.ends_with(".y");
+    if (c <= mechanism.drives.size() || coordinate) columns.push_back(c);
   }
-  const std::size_t shown = std::min(columns.size(), columns_that_fit(kColumnWidth) - 1);
+  columns.resize(std::min(columns.size(), columns_that_fit(kColumnWidth) - 1));
   std::vector<std::string> header, units;
-  for (std::size_t c = 0; c < shown; ++c) {
-    header.push_back(columns[c].name);
-    units.push_back("[" + columns[c].unit + "]");
+  for (const std::size_t c : columns) {
+    header.push_back(names[c].name);
+    units.push_back("[" + names[c].unit + "]");
   }
   header.emplace_back("status");
   units.emplace_back();
   Table table(header);
   table.add(units);
-  for (const std::size_t row : spread_rows(motion.times.size(), kMostRows)) {
+  for (std::size_t row = 0; row < digest.rows.size(); ++row) {
     std::vector<std::string> cells;
-    for (std::size_t c = 0; c < shown; ++c) {
-      cells.push_back(short_number(columns[c].values[row], mechanism.largest_length()));
-    }
-    cells.emplace_back(status_name(motion.configurations[row].status));
+    for (const std::size_t c : columns)
+      cells.push_back(short_number(digest.rows[row][c], mechanism.largest_length()));
+    cells.emplace_back(status_name(digest.statuses[row]));
     table.add(cells);
   }
   return table.text() +
          fmt::format(
              "(positions only, {} of {} rows; -o FILE.csv writes velocities, accelerations and "
              "the bodies' angles too)\n",
-             std::min(kMostRows, motion.times.size()), motion.times.size());
+             digest.rows.size(), positions);
+}
+
+/// The columns of the file: those of the motion and `status`.
+std::vector<TableColumn> table_columns(const Mechanism& mechanism) {
+  std::vector<TableColumn> columns;
+  for (const MotionColumnName& column : motion_column_names(mechanism))
+    columns.push_back({column.name, column.unit});
+  TableColumn& status = columns.emplace_back(TableColumn{"status"});
+  using oblique::Status;
+  for (const Status value : {Status::ok, Status::dead_centre, Status::open})
+    status.labels.emplace_back(status_name(value));
+  return columns;
 }
 
 /// "crank = 137.812 deg" at a moment.
@@ -116,7 +135,8 @@ MotionOptions options_of(const SolveRequest& request) {
 }  // namespace
 
 ExitStatus solve_mechanism(const Session&, const SolveRequest& request) {
-  if (!request.output.empty()) check_output(request.output, ".csv");
+  check_table_output(request.output, request.columns);
+  check_not_input(request.output, request.mechanism, "mechanism");
   const MotionOptions options = options_of(request);
   const Mechanism mechanism = read_mechanism(request.mechanism);
   if (request.check && mechanism.expectations.empty()) {
@@ -126,25 +146,44 @@ ExitStatus solve_mechanism(const Session&, const SolveRequest& request) {
                    R"([expect] with lines such as "P.x at 90 deg" = { value = 12.5, within = 1e-9 })",
                    {}});
   }
+  const std::vector<TableColumn> columns = table_columns(mechanism);
+  const ColumnChoice choice(columns, request.columns);
   const Structure structure = decompose(mechanism);
-  const Motion motion = solve_motion(mechanism, options);
-  print(table_of(mechanism, motion));
-  if (!request.output.empty()) save(request.output, motion_csv(mechanism, motion));
-  note_events(mechanism, structure, motion.events);
-  const auto count = [&](oblique::Status status) {
-    return std::count_if(motion.configurations.begin(), motion.configurations.end(),
-                         [&](const Configuration& c) { return c.status == status; });
-  };
-  const auto open = count(oblique::Status::open), flat = count(oblique::Status::dead_centre);
-  if (flat > 0) note(fmt::format("{} positions are dead centres: velocities have no value there\n", flat));
-  if (open > 0) {
+  const auto positions = static_cast<std::size_t>(options.positions);
+  std::optional<TableOutput> table;
+  if (!request.output.empty()) table.emplace(request.output, choice, positions);
+  Digest digest;
+  constexpr std::size_t kMostRows = 13;
+  const std::vector<std::size_t> shown = spread_rows(positions, kMostRows);
+  std::vector<double> values(columns.size());
+  std::size_t row = 0;
+  const auto events = visit_motion(mechanism, structure, options, [&](const MotionRow& motion) {
+    const oblique::Status status = motion.configuration.status;
+    motion_values(mechanism, motion, values);
+    values.back() = static_cast<double>(status);
+    if (table) table->add(values);
+    if (digest.rows.size() < shown.size() && shown[digest.rows.size()] == row) {
+      digest.rows.push_back(values);
+      digest.statuses.push_back(status);
+    }
+    digest.open += status == oblique::Status::open ? 1 : 0;
+    digest.dead_centres += status == oblique::Status::dead_centre ? 1 : 0;
+    ++row;
+  });
+  print(table_of(mechanism, digest, options.positions));
+  if (table) table->finish();
+  note_events(mechanism, structure, events);
+  if (digest.dead_centres > 0) {
+    note(fmt::format("{} positions are dead centres: velocities have no value there\n", digest.dead_centres));
+  }
+  if (digest.open > 0) {
     note(fmt::format(
         "{} of {} positions cannot be assembled; --at-limit stop or reverse keeps the motion within its "
         "range\n",
-        open, motion.times.size()));
+        digest.open, positions));
   }
   const ExitStatus checked = request.check ? report_expectations(mechanism) : ExitStatus::done;
-  return open > 0 ? ExitStatus::no : checked;
+  return digest.open > 0 ? ExitStatus::no : checked;
 }
 
 }  // namespace oblique::cli

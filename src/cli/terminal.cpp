@@ -137,12 +137,11 @@ void check_not_input(const std::filesystem::path& output, const std::filesystem:
 }
 
 void check_output(const std::filesystem::path& path, std::string_view ending) {
-  if (path.extension() != ending) {
-    throw ReadError(Diagnostic{{path.string(), {}},
-                               fmt::format("cannot write a '{}' file", path.extension().string()),
-                               fmt::format("a name that ends in {}", ending),
-                               {}});
-  }
+  check_output(path, std::span(&ending, 1));
+}
+
+void check_output(const std::filesystem::path& path, std::span<const std::string_view> endings) {
+  check_ending(path, endings);
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
   std::error_code unknown;
   if (!std::filesystem::is_directory(folder, unknown)) {

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -75,8 +76,9 @@ class Progress {
 /// A quantity given as an option, in `unit`. Throws ReadError that names the option.
 double quantity_option(const std::string& option, const std::string& text, std::string_view unit);
 
-/// Checks that a result can be written to `path` before the work is done; `ending` is what its name must end
-/// with. Throws ReadError.
+/// Checks that a result can be written to `path` before the work is done; its name must end with one of
+/// `endings`. Throws ReadError.
+void check_output(const std::filesystem::path& path, std::span<const std::string_view> endings);
 void check_output(const std::filesystem::path& path, std::string_view ending);
 
 /// Refuses to write over the file that is read, a "mechanism" or a "diagram".

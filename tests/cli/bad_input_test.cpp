@@ -304,8 +304,37 @@ INSTANTIATE_TEST_SUITE_P(
                        "oblique run diagrams/lessons/triangle-side.toml --set q.gain=3", 2, "'q'"},
         BadRequestCase{"SetWithoutValue", "oblique run diagrams/lessons/triangle-side.toml --set c.gain", 2,
                        "--set c.gain: this sets nothing"},
-        BadRequestCase{"OutputOfAnUnknownKind", "oblique run diagrams/lessons/triangle-side.toml -o x.xls", 2,
-                       "x.xls: cannot write a '.xls' file; expected a name that ends in .csv"},
+        BadRequestCase{
+            "OutputOfAnUnknownKind", "oblique run diagrams/lessons/triangle-side.toml -o x.xls", 2,
+            "error: x.xls: cannot write a '.xls' file; expected a name that ends in .csv, .npy, .mat or "
+            ".json\n"},
+        BadRequestCase{
+            "OutputWithoutAKind", "oblique solve diagrams/mechanisms/four-bar.toml -o motion", 2,
+            "error: motion: the name of this file has no ending; expected a name that ends in .csv, "
+            ".npy, .mat or .json\n"},
+        BadRequestCase{
+            "OutputToAFullDisk",
+            "ln -s /dev/full /tmp/oblique-full.npy; oblique solve diagrams/mechanisms/four-bar.toml "
+            "-o /tmp/oblique-full.npy; status=$?; rm /tmp/oblique-full.npy; exit $status",
+            2,
+            "error: /tmp/oblique-full.npy: cannot write the file: No space left on device\n"
+            "  remedy: make room on the disk\n"},
+        BadRequestCase{"MechanismReplacedByItsMotion",
+                       "cp diagrams/mechanisms/four-bar.toml /tmp/oblique-same.json; oblique solve "
+                       "/tmp/oblique-same.json -o /tmp/../tmp/oblique-same.json; status=$?; grep -q "
+                       "mechanism/1 /tmp/oblique-same.json || status=99; rm /tmp/oblique-same.json; exit "
+                       "$status",
+                       2, "this is the mechanism itself, which would be replaced"},
+        BadRequestCase{"UnknownColumnOfAMotion",
+                       "oblique solve diagrams/mechanisms/jansen.toml -o /tmp/x.npy --columns t,P5.z", 2,
+                       "error: --columns: there is no column 'P5.z'\n  remedy: did you mean 'P5.x'?\n"},
+        BadRequestCase{"UnknownColumnOfARun",
+                       "oblique run diagrams/lessons/triangle-side.toml -o /tmp/x.npy --columns sides", 2,
+                       "error: --columns: there is no column 'sides'\n  remedy: did you mean 'side'?\n"},
+        BadRequestCase{
+            "ColumnsWithoutAFile", "oblique run diagrams/lessons/triangle-side.toml --columns side", 2,
+            "error: --columns chooses what a file holds, and there is none; expected -o FILE beside "
+            "it\n"},
         BadRequestCase{"OutputInNoFolder",
                        "oblique run diagrams/lessons/triangle-side.toml -o no/where/x.csv", 2,
                        "the folder of this file does not exist\n  remedy: make it first: mkdir -p no/where"},

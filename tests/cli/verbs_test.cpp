@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 // What each verb prints and writes when all is well.
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <sstream>
 
 #include <gmock/gmock.h>
@@ -30,6 +32,10 @@ class Verbs : public testing::Test {
     return run_command("oblique " + arguments, OBLIQUE_SOURCE_DIR);
   }
   std::string file(const std::string& name) const { return (folder_ / name).string(); }
+  std::string bytes_of(const std::string& name) const {
+    std::ifstream stream(folder_ / name, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
 
   /// Rows of a CSV file, the header apart; empty fields are NaN.
   static std::vector<std::vector<double>> csv_rows(const std::string& path, std::string& header) {
@@ -104,6 +110,87 @@ TEST_F(Verbs, SolveWritesTheColumnsOfTheContract) {
     EXPECT_NEAR(row[2], std::cos(row[1]), 1e-12);
     EXPECT_NEAR(std::hypot(row[8] - row[2], row[9] - row[3]), 3.5, 1e-12);
   }
+}
+
+/// Holds the numbers of the other formats against those of the CSV file, column by column. All rows of a
+/// `status` are ok.
+void expect_same_numbers(const std::string& header, const std::vector<std::vector<double>>& rows,
+                         const std::string& npy, const std::string& mat, const nlohmann::json& json) {
+  std::vector<std::string> names;
+  std::istringstream fields(header);
+  for (std::string name; std::getline(fields, name, ',');) names.push_back(name);
+  const std::size_t npy_data = npy.size() - rows.size() * names.size() * sizeof(double);
+  EXPECT_EQ(npy_data % 64, 0U);
+  std::size_t mat_at = 0;
+  for (std::size_t c = 0; c < names.size(); ++c) {
+    EXPECT_THAT(npy.substr(0, npy_data), HasSubstr("('" + names[c] + "', '<f8')"));
+    EXPECT_EQ(json.at("columns").at(c).at("name"), names[c]);
+    mat_at += 20 + names[c].size() + 1;
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      double from_npy = 0, from_mat = 0;
+      std::memcpy(&from_npy, npy.data() + npy_data + (r * names.size() + c) * sizeof(double), sizeof(double));
+      std::memcpy(&from_mat, mat.data() + mat_at, sizeof(double));
+      mat_at += sizeof(double);
+      if (names[c] == "status") {
+        EXPECT_EQ(from_npy, 0);
+        EXPECT_EQ(from_mat, 0);
+        EXPECT_EQ(json.at("rows").at(r).at(c), "ok");
+        continue;
+      }
+      EXPECT_EQ(from_npy, rows[r][c]);
+      EXPECT_EQ(from_mat, rows[r][c]);
+      EXPECT_EQ(json.at("rows").at(r).at(c).get<double>(), rows[r][c]);
+    }
+  }
+  EXPECT_EQ(mat_at, mat.size());
+}
+
+TEST_F(Verbs, RunAndSolveWriteTheSameNumbersInAllFormats) {
+  for (const char* const command :
+       {"solve diagrams/mechanisms/six-bar.toml --positions 29", "run diagrams/lessons/triangle-side.toml",
+        "run diagrams/lessons/circle.toml --until 1 --columns y,t",
+        "solve diagrams/mechanisms/jansen.toml --positions 5 --columns P5.x,status,t"}) {
+    for (const char* const name : {"a.csv", "a.npy", "a.mat", "a.json"}) {
+      const Outcome outcome = oblique(command + std::string(" -o ") + file(name));
+      EXPECT_EQ(outcome.status, 0) << outcome.err;
+      EXPECT_THAT(outcome.err, HasSubstr("wrote " + file(name) + "\n"));
+    }
+    std::string header;
+    const auto rows = csv_rows(file("a.csv"), header);
+    expect_same_numbers(header, rows, bytes_of("a.npy"), bytes_of("a.mat"),
+                        nlohmann::json::parse(bytes_of("a.json")));
+  }
+}
+
+TEST_F(Verbs, SolveWritesTheColumnsThatAreAskedForInTheirOrder) {
+  ASSERT_EQ(oblique("solve diagrams/mechanisms/jansen.toml --columns status,P5.x --positions 3 -o " +
+                    file("foot.csv"))
+                .status,
+            0);
+  EXPECT_THAT(bytes_of("foot.csv"),
+              ContainsRegex("^status,P5.x\nok,-?[0-9.]+\nok,-?[0-9.]+\nok,-?[0-9.]+\n$"));
+}
+
+TEST_F(Verbs, SolveWritesWhereAMechanismCannotBeAssembledAsANumber) {
+  std::ofstream(file("open.toml")) << "format = \"oblique-mechanism/1\"\n[frame]\nA = [0, 0]\nD = [4, "
+                                      "0]\n[bodies]\nAB = { points = [\"A\", "
+                                      "\"B\"], length = 2 }\nBC = { points = [\"B\", \"C\"], length = 2 "
+                                      "}\nCD = { points = [\"C\", \"D\"], "
+                                      "length = 1.5 }\n[drives]\ncrank = { turns = \"AB\", about = \"A\", "
+                                      "speed = 1 }\n[sketch]\nC = [3.5, 1]\n";
+  const std::string solve = "solve " + file("open.toml") + " --positions 3 --columns C.x,status -o ";
+  for (const char* const name : {"a.csv", "a.npy", "a.json"}) {
+    const Outcome outcome = oblique(solve + file(name));
+    EXPECT_EQ(outcome.status, 1);
+    EXPECT_THAT(outcome.err, HasSubstr("1 of 3 positions cannot be assembled"));
+  }
+  EXPECT_THAT(bytes_of("a.csv"), HasSubstr("\n,open\n"));
+  EXPECT_THAT(bytes_of("a.json"), HasSubstr("[null, \"open\"]"));
+  const std::string npy = bytes_of("a.npy");
+  double record[2] = {};
+  std::memcpy(record, npy.data() + npy.size() - 2 * sizeof(record), sizeof(record));
+  EXPECT_TRUE(std::isnan(record[0]));
+  EXPECT_EQ(record[1], 2);
 }
 
 TEST_F(Verbs, PatchWritesADiagramThatRuns) {

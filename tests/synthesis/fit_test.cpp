@@ -303,7 +303,7 @@ TEST(Fit, FindsTheSidesOfJansensLeg) {
   std::string csv = "drive,P5.x,P5.y\n";
   for (std::size_t row = 0; row < motion.times.size(); ++row) {
     const Eigen::Vector2d& p = motion.configurations[row].points[*mechanism.find_point("P5")].position;
-    csv += fmt::format("{},{},{}\n", motion.drive_angles[row][0], p.x(), p.y());
+    csv += fmt::format("{},{},{}\n", motion.drives[row][0].value, p.x(), p.y());
   }
   const Fit found = fit_path(text, "jansen.toml", std::vector<std::string>{"lower.sides"},
                              read_target_path(csv, "foot.csv", mechanism));

@@ -233,6 +233,12 @@ class Runner {
 
 }  // namespace
 
+std::vector<TableColumn> output_columns(const FlatDiagram& diagram) {
+  std::vector<TableColumn> columns{{"t", "s"}};
+  for (const FlatOutput& output : diagram.outputs) columns.push_back({output.name, output.unit});
+  return columns;
+}
+
 RunOptions options_of(const RunSettings& settings) {
   RunOptions options;
   options.until = settings.until;

@@ -52,9 +52,12 @@ struct Extremes {
   Peak minimum{std::numeric_limits<double>::infinity(), 0};
 };
 
+/// The columns of a run: `t`, then the outputs of the diagram.
+std::vector<TableColumn> output_columns(const FlatDiagram& diagram);
+
 /// What came out of a run.
 struct Run {
-  Trajectory trajectory;            ///< `t`, then the outputs of the diagram
+  Trajectory trajectory;            ///< with `output_columns`
   Trajectory extra;                 ///< the same columns at `extra_times`
   std::vector<EventRecord> events;  ///< the first thousand
   long event_count = 0;

@@ -31,10 +31,8 @@ Sampler::Sampler(const Program& program, const FlatDiagram& diagram, const RunOp
       states_(program.n_states()),
       signals_(program.n_signals()),
       row_(diagram.outputs.size() + 1) {
-  std::vector<Trajectory::Column> columns{{"t", "s"}};
-  for (const FlatOutput& output : diagram.outputs) columns.push_back({output.name, output.unit});
-  result.trajectory = Trajectory(columns);
-  result.extra = Trajectory(columns);
+  result.trajectory = Trajectory(output_columns(diagram));
+  result.extra = result.trajectory;
   result.peaks.resize(program.n_signals());
   if (options.extremes) result.extremes.resize(diagram.outputs.size());
 }

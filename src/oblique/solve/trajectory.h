@@ -8,21 +8,22 @@
 #include <string_view>
 #include <vector>
 
+#include <oblique/text/table_file.h>
+
 namespace oblique {
 
 /// A table of numbers over time; the first column is `t` [s].
 class Trajectory {
  public:
-  struct Column {
-    std::string name;
-    std::string unit;
-  };
+  using Column = TableColumn;
 
   Trajectory() = default;
   explicit Trajectory(std::vector<Column> columns) : columns_(std::move(columns)) {}
 
   const std::vector<Column>& columns() const { return columns_; }
   std::size_t rows() const { return columns_.empty() ? 0 : values_.size() / columns_.size(); }
+  /// All of them, row by row.
+  std::span<const double> values() const { return values_; }
   double at(std::size_t row, std::size_t column) const { return values_[row * columns_.size() + column]; }
   std::span<const double> row(std::size_t r) const {
     return std::span(values_).subspan(r * columns_.size(), columns_.size());
@@ -36,8 +37,5 @@ class Trajectory {
   std::vector<Column> columns_;
   std::vector<double> values_;
 };
-
-/// Comma-separated values: a line of names, then numbers in the shortest form that reads back unchanged.
-std::string to_csv(const Trajectory& trajectory);
 
 }  // namespace oblique

@@ -1,38 +1,22 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/text/document.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <sstream>
 #include <system_error>
 
-#include <unistd.h>
-
 #include <fmt/format.h>
+
+#include <oblique/text/new_file.h>
 
 namespace oblique {
 namespace {
 
 [[noreturn]] void fail(const std::filesystem::path& path, std::string what, std::string remedy) {
   throw ReadError(Diagnostic{{path.string(), {}}, std::move(what), {}, std::move(remedy)});
-}
-
-[[noreturn]] void fail_to_write(const std::filesystem::path& path, int reason) {
-  std::string remedy = "name a file in a folder that exists and that you may write to";
-  if (reason == ENOSPC || reason == EDQUOT) remedy = "make room on the disk";
-  if (reason == EISDIR) remedy = "name a file in it";
-  fail(path, fmt::format("cannot write the file: {}", std::strerror(reason)), std::move(remedy));
-}
-
-/// Writes `text` to `path` as it stands; gives the reason of a failure, 0 where there is none.
-int write_in_place(const std::filesystem::path& path, std::string_view text) {
-  errno = 0;
-  std::ofstream stream(path, std::ios::binary);
-  stream.write(text.data(), static_cast<std::streamsize>(text.size()));
-  stream.close();
-  if (stream) return 0;
-  return errno != 0 ? errno : EIO;
 }
 
 }  // namespace
@@ -54,27 +38,23 @@ std::string read_file(const std::filesystem::path& path) {
 }
 
 void write_file(const std::filesystem::path& path, std::string_view text) {
-  std::error_code error;
-  const std::filesystem::file_status status = std::filesystem::status(path, error);
-  if (std::filesystem::is_directory(status)) fail_to_write(path, EISDIR);
-  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-    // A pipe or a device (/dev/stdout, /dev/null) is written to, never replaced.
-    if (const int reason = write_in_place(path, text); reason != 0) fail_to_write(path, reason);
-    return;
+  NewFile file(path);
+  file.append(text);
+  file.commit();
+}
+
+void check_ending(const std::filesystem::path& path, std::span<const std::string_view> endings) {
+  const std::string ending = path.extension().string();
+  if (std::find(endings.begin(), endings.end(), ending) != endings.end()) return;
+  std::string expected(endings.front());
+  for (std::size_t k = 1; k < endings.size(); ++k) {
+    expected += fmt::format("{}{}", k + 1 == endings.size() ? " or " : ", ", endings[k]);
   }
-  // A link stays a link: its target is replaced.
-  const bool through_link = std::filesystem::is_symlink(path, error) && std::filesystem::exists(status);
-  const std::filesystem::path target = through_link ? std::filesystem::canonical(path, error) : path;
-  const std::filesystem::path neighbour = target.parent_path() / fmt::format(".oblique-{}.part", getpid());
-  const auto give_up = [&](int reason) {
-    std::error_code ignored;
-    std::filesystem::remove(neighbour, ignored);
-    fail_to_write(path, reason);
-  };
-  if (const int reason = write_in_place(neighbour, text); reason != 0) give_up(reason);
-  if (std::filesystem::exists(status)) std::filesystem::permissions(neighbour, status.permissions(), error);
-  std::filesystem::rename(neighbour, target, error);
-  if (error) give_up(error.value());
+  throw ReadError(Diagnostic{{path.string(), {}},
+                             ending.empty() ? "the name of this file has no ending"
+                                            : fmt::format("cannot write a '{}' file", ending),
+                             "a name that ends in " + expected,
+                             {}});
 }
 
 }  // namespace oblique
