@@ -172,6 +172,15 @@ void add_modes(CLI::App& app, Chosen& chosen) {
   choose(verb, chosen, request, show_modes);
 }
 
+template <class Request>
+void add_method(CLI::App* verb, Request& request) {
+  verb->add_option(
+          "--method", request.method,
+          "triangles: servo-tracked oblique triangles; gradient: integrators that descend, for any group")
+      ->type_name("triangles|gradient")
+      ->capture_default_str();
+}
+
 void add_patch(CLI::App& app, Chosen& chosen) {
   auto request = std::make_shared<PatchRequest>();
   CLI::App* const verb = app.add_subcommand("patch", "Patch a mechanism: the diagram that simulates it");
@@ -181,6 +190,7 @@ void add_patch(CLI::App& app, Chosen& chosen) {
   verb->add_option("--bandwidth", request->bandwidth,
                    "bandwidth of the servo amplifiers, in Hz or with a unit; inf: algebraic loops "
                    "(default: 100 times the crank's frequency)");
+  add_method(verb, *request);
   verb->add_option("-o,--output", request->output, "write the diagram to FILE.toml")->type_name("FILE");
   choose(verb, chosen, request, patch_mechanism);
 }
@@ -194,6 +204,7 @@ void add_compare(CLI::App& app, Chosen& chosen) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("G,G,…");
+  add_method(verb, *request);
   verb->add_flag("--json", request->json, "print JSON instead of the table");
   verb->add_option("-o,--output", request->output, "write the JSON to FILE.json")->type_name("FILE");
   choose(verb, chosen, request, compare_mechanism);

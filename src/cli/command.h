@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <oblique/diagram/block_library.h>
+#include <oblique/patch/patch.h>
 
 namespace oblique::cli {
 
@@ -63,11 +64,15 @@ struct ModesRequest {
 };
 ExitStatus show_modes(const Session& session, const ModesRequest& request);
 
+/// The method of patching that --method names. Throws ReadError.
+PatchMethod method_option(const std::string& text);
+
 struct PatchRequest {
   std::string mechanism;
   std::string output;
   std::string gain = "1e6";
   std::string bandwidth;
+  std::string method = "triangles";
 };
 ExitStatus patch_mechanism(const Session& session, const PatchRequest& request);
 
@@ -75,6 +80,7 @@ struct CompareRequest {
   std::string mechanism;
   std::string output;
   std::vector<std::string> gains{"1e2", "1e3", "1e4", "1e5", "1e6"};
+  std::string method = "triangles";
   bool json = false;
 };
 ExitStatus compare_mechanism(const Session& session, const CompareRequest& request);

@@ -25,8 +25,9 @@ std::string to_json(const Comparison& comparison) {
                     {"overloads", run.overloads.size()},
                     {"stable", run.stable}});
   }
-  nlohmann::ordered_json json{
-      {"mechanism", comparison.mechanism}, {"method", "triangles"}, {"size", comparison.size}};
+  nlohmann::ordered_json json{{"mechanism", comparison.mechanism},
+                              {"method", method_name(comparison.method)},
+                              {"size", comparison.size}};
   json["runs"] = std::move(runs);
   json["order"] =
       comparison.order ? nlohmann::ordered_json(*comparison.order) : nlohmann::ordered_json(nullptr);
@@ -36,10 +37,11 @@ std::string to_json(const Comparison& comparison) {
 std::string to_table(const Comparison& comparison) {
   const std::string& unit = comparison.unit;
   std::string text = fmt::format(
-      "{}\nanalog: servo-tracked triangles, amplifiers of {:.6g} Hz; exact: closed form; errors over all "
-      "moving points "
-      "and one turn\n\n",
-      comparison.mechanism, comparison.bandwidth);
+      "{}\nanalog: {} of {:.6g} Hz; exact: closed form; errors over all moving points and one turn\n\n",
+      comparison.mechanism,
+      comparison.method == PatchMethod::gradient ? "gradient servos, bandwidth"
+                                                 : "servo-tracked triangles, amplifiers",
+      comparison.bandwidth);
   Table table({"gain", fmt::format("max error [{}]", unit), "of the largest link",
                fmt::format("rms error [{}]", unit), "worst point", "steps", "ms", "overloads", "stable"});
   for (const GainRun& run : comparison.runs) {
@@ -70,6 +72,7 @@ ExitStatus compare_mechanism(const Session& session, const CompareRequest& reque
   if (!request.output.empty()) check_output(request.output, ".json");
   const BlockLibrary library = session.blocks();
   CompareOptions options;
+  options.method = method_option(request.method);
   options.gains.clear();
   for (const std::string& gain : request.gains) {
     options.gains.push_back(quantity_option("--gain", gain, "1"));

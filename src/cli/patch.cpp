@@ -20,13 +20,22 @@ double positive_option(const std::string& option, const std::string& text, std::
 
 }  // namespace
 
+PatchMethod method_option(const std::string& text) {
+  if (const auto method = parse_patch_method(text)) return *method;
+  throw ReadError(Diagnostic{{},
+                             fmt::format("--method {}", text),
+                             "triangles or gradient",
+                             suggest(text, {"triangles", "gradient"})});
+}
+
 ExitStatus patch_mechanism(const Session&, const PatchRequest& request) {
   if (!request.output.empty()) check_output(request.output, ".toml");
   if (!request.output.empty()) check_not_input(request.output, request.mechanism, "mechanism");
   PatchOptions options;
+  options.method = method_option(request.method);
   options.gain = positive_option("--gain", request.gain, "1");
   if (!request.bandwidth.empty()) options.bandwidth = positive_option("--bandwidth", request.bandwidth, "Hz");
-  const std::string text = write_diagram(patch_triangles(read_mechanism(request.mechanism), options));
+  const std::string text = write_diagram(patch(read_mechanism(request.mechanism), options));
   if (request.output.empty()) {
     print(text);
   } else {

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <oblique/compare/compare.h>
+#include <oblique/mechanism/obstacle.h>
 #include <oblique/mechanism/read_mechanism.h>
 #include <oblique/solve/expectation_check.h>
 #include <oblique/text/document.h>
@@ -73,7 +74,23 @@ TEST_P(ShippedDiagram, GivesWhatItExpects) {
 }
 
 class PatchedMechanism : public testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(Diagrams, PatchedMechanism, testing::ValuesIn(files_in("mechanisms")), test_name);
+
+/// Those made of cranks at constant speed and RRR dyads that pass no dead centre.
+std::vector<std::string> patchable() {
+  std::vector<std::string> names;
+  for (const std::string& name : files_in("mechanisms")) {
+    const Mechanism mechanism = read_mechanism(path_of(name));
+    const Structure structure = decompose(mechanism);
+    const bool known = std::all_of(structure.groups.begin(), structure.groups.end(), [](const Group& group) {
+      return group.kind == GroupKind::crank || dyad_of(group);
+    });
+    const bool steady = std::none_of(mechanism.drives.begin(), mechanism.drives.end(),
+                                     [](const Drive& drive) { return drive.law.has_value(); });
+    if (known && steady && !find_obstacle(mechanism, structure)) names.push_back(name);
+  }
+  return names;
+}
+INSTANTIATE_TEST_SUITE_P(Diagrams, PatchedMechanism, testing::ValuesIn(patchable()), test_name);
 
 TEST_P(PatchedMechanism, AgreesWithItsExactMotion) {
   const Mechanism mechanism = read_mechanism(path_of(GetParam()));

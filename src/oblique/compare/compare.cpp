@@ -70,11 +70,12 @@ Run run_naming_gain(const Program& program, const FlatDiagram& flat, const RunOp
 }
 
 GainRun run_with_gain(const Mechanism& mechanism, const BlockLibrary& library, const Motion& exact,
-                      double gain, const std::function<void(double)>& progress) {
+                      PatchMethod method, double gain, const std::function<void(double)>& progress) {
   PatchOptions patch_options;
+  patch_options.method = method;
   patch_options.gain = gain;
   patch_options.samples = static_cast<int>(exact.times.size());
-  Diagram diagram = patch_triangles(mechanism, patch_options);
+  Diagram diagram = patch(mechanism, patch_options);
   diagram.file = mechanism.file;
   const FlatDiagram flat = flatten(diagram, library);
   const Program program(assemble(flat));
@@ -130,6 +131,7 @@ std::optional<double> fitted_order(const std::vector<GainRun>& runs, double floo
 Comparison compare(const Mechanism& mechanism, const BlockLibrary& library, const CompareOptions& options) {
   Comparison comparison;
   comparison.mechanism = mechanism.title;
+  comparison.method = options.method;
   comparison.unit = mechanism.length_unit;
   comparison.size = mechanism.largest_length();
   comparison.bandwidth = default_bandwidth(mechanism);
@@ -141,11 +143,11 @@ Comparison compare(const Mechanism& mechanism, const BlockLibrary& library, cons
     if (options.progress) options.progress((done + fraction) / total);
   };
   for (const double gain : options.gains) {
-    comparison.runs.push_back(run_with_gain(mechanism, library, exact, gain, progress));
+    comparison.runs.push_back(run_with_gain(mechanism, library, exact, options.method, gain, progress));
     progress(1);
     ++done;
   }
-  comparison.floor = run_with_gain(mechanism, library, exact, kFloorGain, progress).max_error;
+  comparison.floor = run_with_gain(mechanism, library, exact, options.method, kFloorGain, progress).max_error;
   comparison.order = fitted_order(comparison.runs, comparison.floor);
   return comparison;
 }

@@ -8,12 +8,14 @@
 
 #include <oblique/diagram/block_library.h>
 #include <oblique/mechanism/mechanism.h>
+#include <oblique/patch/patch.h>
 #include <oblique/solve/run.h>
 
 namespace oblique {
 
 /// What to compare.
 struct CompareOptions {
+  PatchMethod method = PatchMethod::triangles;
   std::vector<double> gains{1e2, 1e3, 1e4, 1e5, 1e6};
   int positions = 361;  ///< rows over one turn, both ends included
   std::function<void(double fraction)> progress;
@@ -41,9 +43,10 @@ struct GainRun {
 
 struct Comparison {
   std::string mechanism;  ///< title
-  std::string unit;       ///< of lengths
-  double size = 0;        ///< largest link length [length unit]
-  double bandwidth = 0;   ///< of the amplifiers [Hz]
+  PatchMethod method = PatchMethod::triangles;
+  std::string unit;      ///< of lengths
+  double size = 0;       ///< largest link length [length unit]
+  double bandwidth = 0;  ///< of the amplifiers [Hz]
   double floor =
       0;  ///< largest error with amplifiers of gain 1e12: what tolerance alone leaves [length unit]
   std::vector<GainRun> runs;
@@ -56,7 +59,7 @@ struct Comparison {
 inline constexpr double kOverloadMargin = 1e-6;
 
 /// Patches a mechanism with each gain, runs the diagrams over one turn, and measures them against the exact
-/// motion. The order is fitted where the error is at least ten times the floor. Throws as `patch_triangles`
+/// motion. The order is fitted where the error is at least ten times the floor. Throws as `patch`
 /// and, with the gain in the message, as `run`.
 Comparison compare(const Mechanism& mechanism, const BlockLibrary& library,
                    const CompareOptions& options = {});

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string_view>
 
 #include <oblique/diagram/diagram.h>
 #include <oblique/mechanism/mechanism.h>
@@ -14,8 +15,19 @@ class PatchError : public Error {
   using Error::Error;
 };
 
+/// How a mechanism becomes equations that amplifiers solve.
+enum class PatchMethod {
+  triangles,  ///< servo amplifiers track the sides and angles of oblique triangles
+  gradient,   ///< integrators descend along the gradient of the squared conditions
+};
+
+/// "triangles", "gradient".
+std::string_view method_name(PatchMethod method);
+std::optional<PatchMethod> parse_patch_method(std::string_view text);
+
 /// How a mechanism is patched.
 struct PatchOptions {
+  PatchMethod method = PatchMethod::triangles;
   double gain = 1e6;  ///< μ of every servo amplifier; inf: ideal amplifiers
   std::optional<double>
       bandwidth;  ///< of every servo amplifier [Hz]; inf: algebraic loops; default: `default_bandwidth`
@@ -33,5 +45,18 @@ double default_bandwidth(const Mechanism& mechanism);
 /// `[outputs]` scale back and carry the names of `solve`'s columns ("C.x"). Throws PatchError where a
 /// triangle does not close or goes flat on the way, MechanismError as `decompose`.
 Diagram patch_triangles(const Mechanism& mechanism, const PatchOptions& options = {});
+
+/// The diagram that simulates any mechanism by the gradient servo: with the unknown coordinates x of the
+/// points that a group places and its conditions g = 0 [length],
+///
+///     ẋ = −K Σ g ∂g/∂x,      K = gain · 2π · bandwidth
+///
+/// which is stable in every assembly mode, since Σ g² can only fall; its price is a lag of about |ẋ|/(K σ²),
+/// σ the least singular value of ∂g/∂x. Multipliers, summers and integrators alone. Scaled, and throws, as
+/// above.
+Diagram patch_gradient(const Mechanism& mechanism, const PatchOptions& options = {});
+
+/// By the method of the options.
+Diagram patch(const Mechanism& mechanism, const PatchOptions& options = {});
 
 }  // namespace oblique

@@ -64,6 +64,11 @@ Scaling find_scaling(const Mechanism& mechanism, const Structure& structure, con
       range.flattest = std::min(range.flattest, std::sqrt(std::max(0.0, 1 - cosine * cosine)));
     }
   }
+  scaling.slides.assign(mechanism.slides.size(), 0);
+  for (const Configuration& configuration : motion.configurations) {
+    for (std::size_t s = 0; s < scaling.slides.size(); ++s)
+      scaling.slides[s] = std::max(scaling.slides[s], std::abs(configuration.slides[s].position));
+  }
   scaling.length = round_scale_up(farthest);
   return scaling;
 }

@@ -22,6 +22,8 @@ struct Scaling {
   Eigen::Vector2d origin = Eigen::Vector2d::Zero();
   double length = 1;                     ///< 1 machine unit of a coordinate [length unit]
   std::vector<TriangleRange> triangles;  ///< one for each group of the structure; unused for cranks
+  std::vector<double>
+      slides;  ///< largest distance of each slide's point from where its line begins [length unit]
 };
 
 /// Smallest of 1, 2, 4, 5, 8, 10 times a power of ten that is not below `value`: lengths divided by it stay
