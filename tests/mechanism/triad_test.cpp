@@ -186,6 +186,28 @@ TEST(Triad, KnowsHalfATurn) {
   }
 }
 
+TEST(Triad, DoesNotMindWhichPointNamesALine) {
+  const double along = 1e4;  // costs four digits of 1e-16
+  for (int lines = 1; lines < 8; ++lines) {
+    std::array<Lead, 3> leads = {fixed_line({0.2, 0.1}, {0, 0.3}, 0.4),
+                                 platform_line({0.5, -0.2}, {1, 1}, 1.9),
+                                 fixed_line({-0.4, 0.8}, {0.3, 1}, 2.5)};
+    for (std::size_t i = 0; i < 3; ++i) {
+      if ((lines >> i & 1) == 0) leads[i] = circle(leads[i].local, leads[i].anchor, 0.9);
+    }
+    std::array<Lead, 3> slid = leads;
+    for (Lead& lead : slid) {
+      if (lead.kind == Lead::Kind::fixed_line) lead.anchor += along * lead.direction;
+      if (lead.kind == Lead::Kind::platform_line) lead.local -= along * lead.direction;
+    }
+    const PlatformModes modes = platform_modes(leads);
+    const PlatformModes same = platform_modes(slid);
+    EXPECT_EQ(modes.count, same.count) << lines;
+    for (int i = 0; i < modes.count; ++i)
+      EXPECT_LT(distance_to(same, modes.poses[static_cast<std::size_t>(i)]), 1e-10) << lines;
+  }
+}
+
 TEST(Triad, FindsTwoModesInOneDirection) {
   // At θ = 0 the places that the rods leave to the platform's origin are circles about anchor − local. With
   // these on one line, here x = y, all three may meet in two points, here (1, 3) and (3, 1). There D = N = 0:

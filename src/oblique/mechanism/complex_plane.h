@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <complex>
+
+namespace oblique {
+
+/// A vector of the plane as a complex number: a turn is a product.
+using Complex = std::complex<double>;
+
+constexpr Complex kQuarterTurn(0, 1);
+
+inline double dot(Complex a, Complex b) {
+  return a.real() * b.real() + a.imag() * b.imag();
+}
+
+inline double cross(Complex a, Complex b) {
+  return a.real() * b.imag() - a.imag() * b.real();
+}
+
+}  // namespace oblique
