@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cmath>
 #include <complex>
 
 namespace oblique {
@@ -16,6 +17,11 @@ inline double dot(Complex a, Complex b) {
 
 inline double cross(Complex a, Complex b) {
   return a.real() * b.imag() - a.imag() * b.real();
+}
+
+/// |a| where its square is a number; std::abs guards that, at four times the cost.
+inline double modulus(Complex a) {
+  return std::sqrt(std::norm(a));
 }
 
 }  // namespace oblique

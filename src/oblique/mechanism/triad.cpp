@@ -119,7 +119,7 @@ void Triad::add_line(const Condition& condition) {
     line = {0, n, -dot(n, b), std::conj(a) * n};
   } else {
     const double squares = std::norm(a) + std::norm(b) + (radius_ - length) * (radius_ + length);
-    const double size = std::abs(a) + std::abs(b);
+    const double size = modulus(a) + modulus(b);
     const double factor = size > group_.rounding ? size : 1;  // two circles that are one: 0·q = w
     smallest_factor_ = std::min(smallest_factor_, factor);
     line = {-a / factor, b / factor, -squares / (2 * factor), std::conj(a) * b / factor};
@@ -132,7 +132,7 @@ void Triad::keep(const Pose& pose) {
   for (std::size_t i = 0; i < n_found_; ++i) {
     Pose& known = found_[i];
     const double distance =
-        std::max(std::abs(pose.q - known.q) / (1 + std::abs(pose.q)), std::abs(pose.z - known.z));
+        std::max(modulus(pose.q - known.q) / (1 + modulus(pose.q)), modulus(pose.z - known.z));
     if (distance > 1e-2) continue;
     if (!closure_.are_one(pose, known) && !((pose.singular || known.singular) && distance < kNear)) continue;
     if (known.singular) known = pose;
@@ -153,7 +153,7 @@ void Triad::consider(const Pose& guess) {
 /// Where the line crosses the reference circle; where it misses it, the nearest place on the circle.
 void Triad::visit_crossing(const Line& line, Complex z) {
   const Complex u = line.u(z);
-  const double length = std::abs(u);
+  const double length = modulus(u);
   const Complex across = u / length;
   const double along = std::clamp(line.w(z) / length, -radius_, radius_);
   const double half_chord = std::sqrt((radius_ - along) * (radius_ + along));
@@ -169,12 +169,12 @@ void Triad::visit_parallel(Complex z) {
   // If they are nearly one: with z turned to where the u come nearest to 0 and by a small δ from there,
   // u ≈ δu', so u'·p = w for p = δq; |q| = l then gives δ and q.
   const Complex alike = std::conj(lines_[0].u1) * lines_[0].u0 + std::conj(lines_[1].u1) * lines_[1].u0;
-  if (std::abs(alike) == 0) return;
-  const Complex nearest = -alike / std::abs(alike);
+  if (modulus(alike) == 0) return;
+  const Complex nearest = -alike / modulus(alike);
   const Complex a = kQuarterTurn * lines_[0].u1 * nearest;
   const Complex b = kQuarterTurn * lines_[1].u1 * nearest;
   const Complex p = -kQuarterTurn * (lines_[0].w(nearest) * b - lines_[1].w(nearest) * a) / cross(a, b);
-  const double length = std::abs(p);
+  const double length = modulus(p);
   if (!(length > 0 && length < radius_)) return;
   consider({p / length * radius_, turned(nearest, length / radius_)});
   consider({-p / length * radius_, turned(nearest, -length / radius_)});
@@ -196,15 +196,15 @@ void Triad::visit(Complex z) {
     a = (i + 1) % 3;
     b = (i + 2) % 3;
   }
-  const double sine = std::abs(d) / (std::abs(u[a]) * std::abs(u[b]));
+  const double sine = std::abs(d) / (modulus(u[a]) * modulus(u[b]));
   if (sine > (group_.circular ? kWellCrossed : 16 * group_.rounding)) {
     consider({crossing(lines_[a], lines_[b], z, d), z});
   } else if (!group_.circular) {
     consider({u[0] * lines_[0].w(z) / std::norm(u[0]), z});
-  } else if (std::max(std::abs(u[0]), std::abs(u[1])) >= kShort) {
-    visit_crossing(std::abs(u[0]) > std::abs(u[1]) ? lines_[0] : lines_[1], z);
+  } else if (std::max(modulus(u[0]), modulus(u[1])) >= kShort) {
+    visit_crossing(modulus(u[0]) > modulus(u[1]) ? lines_[0] : lines_[1], z);
   }
-  if (group_.circular && std::max(std::abs(u[0]), std::abs(u[1])) < kShort) visit_parallel(z);
+  if (group_.circular && std::max(modulus(u[0]), modulus(u[1])) < kShort) visit_parallel(z);
 }
 
 PlatformModes Triad::modes() {

@@ -33,7 +33,7 @@ Vector3d shortest_step(const Matrix3d& jacobian, const Vector3d& residual, doubl
 
 Complex turned(Complex z, double delta) {
   const Complex turned = z * Complex(1, delta);
-  return turned / std::abs(turned);
+  return turned / modulus(turned);
 }
 
 Closure::Closure(const std::array<Condition, 3>& conditions, double rounding)
@@ -104,22 +104,22 @@ std::optional<Pose> Closure::polished(const Pose& guess) const {
     }
     const double longest = by.cwiseAbs().maxCoeff();
     if (!(longest < kFar)) break;
-    const double stride = 0.5 * (1 + std::abs(pose.q));
+    const double stride = 0.5 * (1 + modulus(pose.q));
     if (longest > stride) by *= stride / longest;
     move(pose, by);
   }
-  if (std::abs(best.q) > kFar || least > kClosure + rounding(best)) return std::nullopt;
+  if (modulus(best.q) > kFar || least > kClosure + rounding(best)) return std::nullopt;
   return best;
 }
 
 /// To which a pose closes whatever is done. One far out has its own.
 double Closure::rounding(const Pose& pose) const {
-  return 8 * rounding_ * (1 + std::abs(pose.q));
+  return 8 * rounding_ * (1 + modulus(pose.q));
 }
 
 bool Closure::are_one(const Pose& a, const Pose& b) const {
   const Complex between = a.z + b.z;
-  Pose midway{(a.q + b.q) / 2.0, between / std::abs(between)};
+  Pose midway{(a.q + b.q) / 2.0, between / modulus(between)};
   Vector3d residual;
   Matrix3d jacobian;
   differentiate(midway, residual, jacobian);

@@ -37,7 +37,7 @@ Wave scalar_product(const Line& a, const Line& b) {
 }
 
 bool vanishes(const Wave& wave, double rounding) {
-  return std::abs(wave.constant) + std::abs(wave.first) <= 16 * rounding;
+  return std::abs(wave.constant) + modulus(wave.first) <= 16 * rounding;
 }
 
 /// Where two lines are parallel in every direction F is a square, and this its root:
@@ -45,7 +45,7 @@ bool vanishes(const Wave& wave, double rounding) {
 Characteristic of_parallels(const Line& a, const Line& b) {
   return {sum(product(right_hand_side(a), scalar_product(a, b)),
               product(right_hand_side(b), scalar_product(a, a)), -1),
-          std::abs(a.w0) + std::abs(a.w1) + std::abs(b.w0) + std::abs(b.w1)};
+          std::abs(a.w0) + modulus(a.w1) + std::abs(b.w0) + modulus(b.w1)};
 }
 
 }  // namespace
@@ -65,8 +65,8 @@ Characteristic characteristic(const Line& a, const Line& b, double radius, doubl
     for (std::size_t i = 0; i + shift < 4; ++i)
       square.harmonics[shift - 1] += 2.0 * m[i + shift] * std::conj(m[i]);
   }
-  const double terms = (std::abs(a.w0) + std::abs(a.w1)) * (std::abs(b.u0) + std::abs(b.u1)) +
-                       (std::abs(b.w0) + std::abs(b.w1)) * (std::abs(a.u0) + std::abs(a.u1));
+  const double terms = (std::abs(a.w0) + modulus(a.w1)) * (modulus(b.u0) + modulus(b.u1)) +
+                       (std::abs(b.w0) + modulus(b.w1)) * (modulus(a.u0) + modulus(a.u1));
   return {sum(square, product(d, d), -radius * radius), terms * terms + radius * radius};
 }
 
@@ -79,7 +79,7 @@ Characteristic characteristic(const Line& a, const Line& b, const Line& c, doubl
   Characteristic result;
   result.f = sum(sum(product(right_hand_side(a), bc), product(right_hand_side(b), ca), 1),
                  product(right_hand_side(c), ab), 1);
-  for (const Line* line : {&a, &b, &c}) result.terms += std::abs(line->w0) + std::abs(line->w1);
+  for (const Line* line : {&a, &b, &c}) result.terms += std::abs(line->w0) + modulus(line->w1);
   return result;
 }
 
