@@ -148,6 +148,7 @@ ExitStatus solve_mechanism(const Session&, const SolveRequest& request) {
   }
   const std::vector<TableColumn> columns = table_columns(mechanism);
   const ColumnChoice choice(columns, request.columns);
+  if (mechanism.drives.empty()) period(mechanism);  // says so, where `decompose` would speak of its mobility
   const Structure structure = decompose(mechanism);
   const auto positions = static_cast<std::size_t>(options.positions);
   std::optional<TableOutput> table;

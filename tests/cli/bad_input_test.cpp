@@ -260,7 +260,9 @@ INSTANTIATE_TEST_SUITE_P(
         BadRequestCase{"ClosedStdoutOfARun", "oblique run diagrams/lessons/division.toml >&-", 2,
                        "error: the results could not be written to stdout"},
         BadRequestCase{"TooLittleMemory",
-                       "ulimit -v 400000; oblique solve diagrams/mechanisms/jansen.toml --positions 10000000",
+                       "sed '/^samples/d; s/^until.*/until = 1\\nsamples = 100000000/' diagrams/lessons/circle.toml > "
+                       "/tmp/oblique-long.toml; ulimit -v 400000; oblique run /tmp/oblique-long.toml; status=$?; "
+                       "rm /tmp/oblique-long.toml; exit $status",
                        2, "error: there is not enough memory for this\n  remedy: ask for fewer rows"},
         BadRequestCase{
             "MechanismReplacedByItsDiagram",

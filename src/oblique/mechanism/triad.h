@@ -49,10 +49,10 @@ struct PlatformModes {
 /// to no pose fall out here (C. Gosselin and J.-P. Merlet, "The direct kinematics of planar parallel
 /// manipulators: special architectures and number of solutions", Mechanism and Machine Theory 29, 1994).
 ///
-/// A dead centre is a double zero; rounding moves its two poses apart by some 1e-8, or makes them complex.
-/// Poses nearer than 1e-7 (of the group's size, or in angle) count as one, and a pose that closes only to
-/// rounding counts as real: a dead centre is named once or twice and never lost. Where more than two modes
-/// meet, each is found to some 1e-4 only, and may be named several times.
+/// A dead centre is a double zero; rounding moves its two poses apart by some 1e-8, or makes them complex. A
+/// pose that closes as said counts as real, and poses count as one where the pose midway closes as well. So a
+/// dead centre is not lost; it is named once, or twice from some 1e-6 (of the size, or rad) off it. Where
+/// more than two modes meet they are known, and told apart, to some 1e-4 only.
 PlatformModes platform_modes(const std::array<Lead, 3>& leads);
 
 }  // namespace oblique

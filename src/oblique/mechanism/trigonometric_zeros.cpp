@@ -6,10 +6,10 @@
 #include <numbers>
 #include <utility>
 
+#include <oblique/mechanism/complex_plane.h>
+
 namespace oblique {
 namespace {
-
-using Complex = std::complex<double>;
 
 constexpr int kHighest = 6;  // derivative that is asked whether it has a zero
 
@@ -74,8 +74,9 @@ class Arc {
 class Search {
  public:
   Search(const TrigonometricCubic& f, double negligible) : f_(f), negligible_(negligible) {
-    for (std::size_t k = 0; k < bounds_.size(); ++k) {
-      for (std::size_t j = 0; j < 3; ++j) bounds_[k] += kPowers[k][j] * std::abs(f.harmonics[j]);
+    for (std::size_t j = 0; j < 3; ++j) {
+      const double size = modulus(f.harmonics[j]);
+      for (std::size_t k = 0; k < bounds_.size(); ++k) bounds_[k] += kPowers[k][j] * size;
     }
   }
 
@@ -114,7 +115,8 @@ class Search {
   void search(Complex middle, double r, double tangent, int depth) {
     const Arc arc(f_, middle);
     if (stays_away(arc, 0, r, negligible_)) return;
-    for (int k = 1; k <= kHighest; ++k) {
+    const int highest = depth < 3 ? 2 : kHighest;  // two shorter arcs are less work than a long ladder
+    for (int k = 1; k <= highest; ++k) {
       if (!stays_away(arc, k, r, 0)) continue;
       isolate(arc, tangent, k);
       return;
@@ -137,7 +139,7 @@ class Search {
       double from = arc.derivatives(order, places[0]).first;
       for (std::size_t i = 1; i < known; ++i) {
         const double to = arc.derivatives(order, places[i]).first;
-        if ((from < 0) != (to < 0)) places[count++] = zero(arc, order, places[i - 1], places[i], from);
+        if ((from < 0) != (to < 0)) places[count++] = zero(arc, order, places[i - 1], places[i], from, to);
         from = to;
       }
       std::sort(places.begin(), places.begin() + static_cast<std::ptrdiff_t>(count));
@@ -146,7 +148,7 @@ class Search {
     if (std::abs(from) <= negligible_) report(arc, places[0]);
     for (std::size_t i = 1; i < count; ++i) {
       const double to = arc.value(places[i]);
-      if ((from < 0) != (to < 0)) report(arc, zero(arc, 0, places[i - 1], places[i], from));
+      if ((from < 0) != (to < 0)) report(arc, zero(arc, 0, places[i - 1], places[i], from, to));
       if (std::abs(to) <= negligible_) report(arc, places[i]);
       from = to;
     }
@@ -154,15 +156,16 @@ class Search {
 
   /// The zero of f⁽ᵏ⁾ between `low` and `high`, where it is monotone: Newton, with bisection where that
   /// leaves the bracket.
-  static double zero(const Arc& arc, int k, double low, double high, double value_at_low) {
-    double tau = (low + high) / 2;
+  static double zero(const Arc& arc, int k, double low, double high, double value_at_low,
+                     double value_at_high) {
+    double tau = low + (high - low) * (value_at_low / (value_at_low - value_at_high));
     for (int step = 0; step < 60; ++step) {
       const auto [value, slope] = arc.derivatives(k, tau);
       ((value < 0) == (value_at_low < 0) ? low : high) = tau;
       const double next = tau - value * (1 + tau * tau) / (2 * slope);  // dθ = 2 dτ / (1 + τ²)
       const bool inside = low <= next && next <= high;
       const double last = std::exchange(tau, inside ? next : (low + high) / 2);
-      if (std::abs(tau - last) < 1e-9) break;  // Newton squares it
+      if (inside ? std::abs(tau - last) < 1e-9 : high - low < 1e-15) break;  // Newton squares it
     }
     return tau;
   }
@@ -176,7 +179,7 @@ class Search {
 }  // namespace
 
 double TrigonometricCubic::size() const {
-  return std::abs(constant) + std::abs(harmonics[0]) + std::abs(harmonics[1]) + std::abs(harmonics[2]);
+  return std::abs(constant) + modulus(harmonics[0]) + modulus(harmonics[1]) + modulus(harmonics[2]);
 }
 
 Directions zeros(const TrigonometricCubic& f, double negligible) {

@@ -17,11 +17,11 @@ namespace {
   const bool open = obstacle.status == Status::open;
   throw PatchError(Diagnostic{
       {mechanism.file, {}},
-      fmt::format("the group {} {} at t = {:.6g} s, so its triangle cannot be tracked over a whole turn",
-                  structure.groups[obstacle.group].name, open ? "cannot be assembled" : "is at a dead centre",
+      fmt::format("the {} {} {} at t = {:.6g} s, so its triangle cannot be tracked over a whole turn",
+                  structure.groups[obstacle.group].assur_class == 2 ? "dyad" : "group", structure.groups[obstacle.group].name, open ? "cannot be assembled" : "is at a dead centre",
                   obstacle.time),
       open ? "links that reach each other in every position" : "a triangle that never goes flat",
-      open ? "lengthen the links of the group, or shorten the crank; `oblique solve` shows where it opens"
+      open ? "lengthen the links of the dyad, or shorten the crank; `oblique solve` shows where it opens"
            : "change a length a little: at a dead centre the servo loop of sin γ loses its gain"});
 }
 

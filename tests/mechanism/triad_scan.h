@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include <oblique/mechanism/triad.h>
+
+namespace oblique {
+
+/// How far a lead's condition is from holding [length unit], from the geometry alone.
+double closing_error(const Lead& lead, const PlatformPose& pose);
+
+/// The largest of the three, without its sign.
+double closing_error(const std::array<Lead, 3>& leads, const PlatformPose& pose);
+
+/// The poses of a platform, found without any characteristic equation: two leads are held, which leaves a
+/// one-dimensional motion in closed form; it is walked through in `steps` places, and the third lead's error
+/// says where it closes.
+std::vector<PlatformPose> scan_poses(const std::array<Lead, 3>& leads, int steps);
+
+}  // namespace oblique
