@@ -259,11 +259,12 @@ INSTANTIATE_TEST_SUITE_P(
                        "error: the results could not be written to stdout"},
         BadRequestCase{"ClosedStdoutOfARun", "oblique run diagrams/lessons/division.toml >&-", 2,
                        "error: the results could not be written to stdout"},
-        BadRequestCase{"TooLittleMemory",
-                       "sed '/^samples/d; s/^until.*/until = 1\\nsamples = 100000000/' diagrams/lessons/circle.toml > "
-                       "/tmp/oblique-long.toml; ulimit -v 400000; oblique run /tmp/oblique-long.toml; status=$?; "
-                       "rm /tmp/oblique-long.toml; exit $status",
-                       2, "error: there is not enough memory for this\n  remedy: ask for fewer rows"},
+        BadRequestCase{
+            "TooLittleMemory",
+            "sed 's/^samples.*/samples = 10000000/' diagrams/lessons/circle.toml > "
+            "/tmp/oblique-long.toml; ulimit -v 200000; oblique run /tmp/oblique-long.toml; status=$?; "
+            "rm /tmp/oblique-long.toml; exit $status",
+            2, "error: there is not enough memory for this\n  remedy: ask for fewer rows"},
         BadRequestCase{
             "MechanismReplacedByItsDiagram",
             "cp diagrams/mechanisms/four-bar.toml /tmp/oblique-same.toml; oblique patch "
