@@ -13,28 +13,6 @@
 namespace oblique {
 namespace {
 
-/// A weighted sum of signals and a constant [machine unit].
-struct LinearForm {
-  std::map<std::string, double> weights;
-  double constant = 0;
-
-  LinearForm& add(const LinearForm& other, double factor = 1) {
-    for (const auto& [signal, weight] : other.weights) weights[signal] += factor * weight;
-    constant += factor * other.constant;
-    return *this;
-  }
-};
-
-LinearForm combined(std::initializer_list<std::pair<double, const LinearForm*>> parts) {
-  LinearForm sum;
-  for (const auto& [factor, form] : parts) sum.add(*form, factor);
-  return sum;
-}
-
-struct VectorForm {
-  LinearForm x, y;
-};
-
 /// A condition g = Σ weight · a · b + rest = 0 [machine unit], whose forms a, b stay within ±1.
 struct Residual {
   struct Product {
@@ -50,8 +28,7 @@ struct Residual {
 
 class GradientPatch : private PatchBuilder {
  public:
-  GradientPatch(const Mechanism& mechanism, const PatchOptions& options)
-      : PatchBuilder(mechanism, options), points_(mechanism.points.size()) {
+  GradientPatch(const Mechanism& mechanism, const PatchOptions& options) : PatchBuilder(mechanism, options) {
     if (!std::isfinite(options.gain * bandwidth_)) {
       throw PatchError(Diagnostic{{mechanism.file, {}},
                                   "a gradient servo of infinite gain has no time scale",
@@ -71,9 +48,6 @@ class GradientPatch : private PatchBuilder {
             rate_, options_.gain, bandwidth_, mechanism_.drives.front().name));
     add_reference();
     start_ = start_configuration(mechanism_, structure_);
-    for (std::size_t p = 0; p < points_.size(); ++p) {
-      if (mechanism_.points[p].fixed) set_known(p);
-    }
     for (const Group& group : structure_.groups) {
       if (group.kind == GroupKind::crank) {
         add_crank(group);
@@ -87,19 +61,6 @@ class GradientPatch : private PatchBuilder {
   }
 
  private:
-  void set_known(std::size_t point) {
-    const Point& p = mechanism_.points[point];
-    VectorForm form;
-    if (p.fixed) {
-      form.x.constant = scaled(p.position.x() - scaling_.origin.x());
-      form.y.constant = scaled(p.position.y() - scaling_.origin.y());
-    } else {
-      form.x.weights[signals_[point].x] = 1;
-      form.y.weights[signals_[point].y] = 1;
-    }
-    points_[point] = form;
-  }
-
   void add_group(const Group& group) {
     residuals_.clear();
     unknowns_.clear();
@@ -200,50 +161,6 @@ class GradientPatch : private PatchBuilder {
     }
   }
 
-  /// A vector of a body's frame, per its own length, in the world.
-  VectorForm direction_of(std::size_t body, const Eigen::Vector2d& local) const {
-    const auto& [p, c] = bases_.at(body);
-    const Eigen::Vector2d base = c.local - p.local;
-    const double squared = base.squaredNorm() / scaling_.length;
-    const double a = base.dot(local) / squared, b = (base.x() * local.y() - base.y() * local.x()) / squared;
-    const VectorForm& from = *points_[p.point];
-    const VectorForm& to = *points_[c.point];
-    return {combined({{a, &to.x}, {-a, &from.x}, {-b, &to.y}, {b, &from.y}}),
-            combined({{a, &to.y}, {-a, &from.y}, {b, &to.x}, {-b, &from.x}})};
-  }
-
-  VectorForm point_of(std::size_t body, const Eigen::Vector2d& local) const {
-    const auto& [p, c] = bases_.at(body);
-    VectorForm way = direction_of(body, (local - p.local) / scaling_.length);
-    way.x.add(points_[p.point]->x);
-    way.y.add(points_[p.point]->y);
-    return way;
-  }
-
-  /// Two points of a body that was placed before give its forms as well.
-  void find_base(std::size_t body) {
-    if (bases_.contains(body)) return;
-    const auto& points = mechanism_.bodies[body].points;
-    bases_[body] = {points[0], points[1]};
-  }
-
-  struct LineForm {
-    VectorForm at, direction;
-  };
-  LineForm line_form(const Slide& slide) {
-    const LineRef line = line_of(mechanism_, slide);
-    if (!slide.carrier) {
-      LineForm form;
-      form.at.x.constant = scaled(line.point.x() - scaling_.origin.x());
-      form.at.y.constant = scaled(line.point.y() - scaling_.origin.y());
-      form.direction.x.constant = line.direction.x();
-      form.direction.y.constant = line.direction.y();
-      return form;
-    }
-    find_base(*slide.carrier);
-    return {point_of(*slide.carrier, line.point), direction_of(*slide.carrier, line.direction)};
-  }
-
   /// The largest distance of a slide's point from where its line begins, over the motion: it scales the
   /// products.
   double reach_of(const Slide& slide) const {
@@ -253,7 +170,7 @@ class GradientPatch : private PatchBuilder {
 
   /// g = n·(P − A), or along the line u·(P − A).
   Residual offset_of(const Slide& slide, const std::string& name, bool along) {
-    const LineForm line = line_form(slide);
+    const LineForm line = line_form(slide.carrier, line_of(mechanism_, slide));
     const VectorForm& point = *points_[slide.point];
     const double reach = reach_of(slide);
     const LinearForm dx = combined({{1 / reach, &point.x}, {-1 / reach, &line.at.x}});
@@ -283,10 +200,9 @@ class GradientPatch : private PatchBuilder {
     on_line.comment = fmt::format("{} stays on the line of {}", name_of(slide.point), slide.name);
     residuals_.push_back(std::move(on_line));
     if (!slide.of) return;
-    find_base(*slide.of);
     const VectorForm guided =
         direction_of(*slide.of, Eigen::Vector2d(std::cos(slide.angle), -std::sin(slide.angle)));
-    const LineForm line = line_form(slide);
+    const LineForm line = line_form(slide.carrier, line_of(mechanism_, slide));
     const double size = scaled(largest_of(*slide.of));
     Residual angle;
     angle.name = slide.name + "_angle";
@@ -342,15 +258,6 @@ class GradientPatch : private PatchBuilder {
       turned.rest.weights[generator + (is_x ? ".cos" : ".sin")] -= size;
       residuals_.push_back(std::move(turned));
     }
-  }
-
-  Terms terms_of(const LinearForm& form) const {
-    Terms terms;
-    for (const auto& [signal, weight] : form.weights) {
-      if (weight != 0) terms.push_back({weight, signal});
-    }
-    if (form.constant != 0 || terms.empty()) terms.push_back({form.constant, one_});
-    return terms;
   }
 
   static double slope(const LinearForm& form, const std::string& unknown) {
@@ -409,8 +316,6 @@ class GradientPatch : private PatchBuilder {
 
   double rate_ = 0;  ///< K [1/s]
   Configuration start_;
-  std::vector<std::optional<VectorForm>> points_;
-  std::map<std::size_t, std::pair<BodyPoint, BodyPoint>> bases_;
   std::vector<Residual> residuals_;                       ///< of the present group
   std::vector<std::pair<std::string, double>> unknowns_;  ///< its signals and where they start
 };

@@ -31,7 +31,12 @@ PatchBuilder::PatchBuilder(const Mechanism& mechanism, const PatchOptions& optio
       structure_(structure_of(mechanism)),
       scaling_(find_scaling(mechanism, structure_, scaling_motion())),
       bandwidth_(options.bandwidth.value_or(default_bandwidth(mechanism))),
-      signals_(mechanism.points.size()) {}
+      signals_(mechanism.points.size()),
+      points_(mechanism.points.size()) {
+  for (std::size_t point = 0; point < points_.size(); ++point) {
+    if (mechanism.points[point].fixed) set_known(point);
+  }
+}
 
 Motion PatchBuilder::scaling_motion() const {
   std::vector<double> times;
@@ -149,6 +154,63 @@ void PatchBuilder::add_outputs() {
     add(".x", signals_[point].x, scaling_.origin.x());
     add(".y", signals_[point].y, scaling_.origin.y());
   }
+}
+
+void PatchBuilder::set_known(std::size_t point) {
+  const Point& p = mechanism_.points[point];
+  VectorForm form;
+  if (p.fixed) {
+    form.x.constant = scaled(p.position.x() - scaling_.origin.x());
+    form.y.constant = scaled(p.position.y() - scaling_.origin.y());
+  } else {
+    form.x.weights[signals_[point].x] = 1;
+    form.y.weights[signals_[point].y] = 1;
+  }
+  points_[point] = form;
+}
+
+const std::pair<BodyPoint, BodyPoint>& PatchBuilder::base_of(std::size_t body) {
+  const auto& points = mechanism_.bodies[body].points;
+  return bases_.try_emplace(body, points[0], points[1]).first->second;
+}
+
+VectorForm PatchBuilder::direction_of(std::size_t body, const Eigen::Vector2d& local) {
+  const auto& [p, c] = base_of(body);
+  const Eigen::Vector2d base = c.local - p.local;
+  const double squared = base.squaredNorm() / scaling_.length;
+  const double a = base.dot(local) / squared, b = (base.x() * local.y() - base.y() * local.x()) / squared;
+  const VectorForm& from = *points_[p.point];
+  const VectorForm& to = *points_[c.point];
+  return {combined({{a, &to.x}, {-a, &from.x}, {-b, &to.y}, {b, &from.y}}),
+          combined({{a, &to.y}, {-a, &from.y}, {b, &to.x}, {-b, &from.x}})};
+}
+
+VectorForm PatchBuilder::point_of(std::size_t body, const Eigen::Vector2d& local) {
+  const auto& [p, c] = base_of(body);
+  VectorForm way = direction_of(body, (local - p.local) / scaling_.length);
+  way.x.add(points_[p.point]->x);
+  way.y.add(points_[p.point]->y);
+  return way;
+}
+
+PatchBuilder::LineForm PatchBuilder::line_form(const std::optional<std::size_t>& carrier,
+                                               const LineRef& line) {
+  if (carrier) return {point_of(*carrier, line.point), direction_of(*carrier, line.direction)};
+  LineForm form;
+  form.at.x.constant = scaled(line.point.x() - scaling_.origin.x());
+  form.at.y.constant = scaled(line.point.y() - scaling_.origin.y());
+  form.direction.x.constant = line.direction.x();
+  form.direction.y.constant = line.direction.y();
+  return form;
+}
+
+PatchBuilder::Terms PatchBuilder::terms_of(const LinearForm& form) const {
+  Terms terms;
+  for (const auto& [signal, weight] : form.weights) {
+    if (weight != 0) terms.push_back({weight, signal});
+  }
+  if (form.constant != 0 || terms.empty()) terms.push_back({form.constant, one_});
+  return terms;
 }
 
 void PatchBuilder::refuse(const Group& group, const std::string& why, const std::string& expected,

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -8,6 +10,7 @@
 #include <oblique/diagram/diagram.h>
 #include <oblique/mechanism/motion.h>
 #include <oblique/mechanism/structure.h>
+#include <oblique/patch/linear_form.h>
 #include <oblique/patch/patch.h>
 #include <oblique/patch/scaling.h>
 
@@ -56,6 +59,22 @@ class PatchBuilder {
   /// frame.
   void add_carried_points(const Body& body, std::size_t p, std::size_t c);
 
+  /// Takes a point's signals, or its place in the frame, as its form.
+  void set_known(std::size_t point);
+
+  /// A vector of a body's frame [length unit], per length unit, and a point of it [machine unit], in the
+  /// world: by the two points that stand for the body, its first two where nothing else is said.
+  VectorForm direction_of(std::size_t body, const Eigen::Vector2d& local);
+  VectorForm point_of(std::size_t body, const Eigen::Vector2d& local);
+
+  struct LineForm {
+    VectorForm at, direction;
+  };
+  LineForm line_form(const std::optional<std::size_t>& carrier, const LineRef& line);
+
+  /// The form as weighted signals, its constant on the reference.
+  Terms terms_of(const LinearForm& form) const;
+
   [[noreturn]] void refuse(const Group& group, const std::string& why, const std::string& expected,
                            const std::string& remedy) const;
 
@@ -65,11 +84,14 @@ class PatchBuilder {
   Scaling scaling_;
   double bandwidth_;
   std::vector<PointSignals> signals_;
+  std::vector<std::optional<VectorForm>> points_;                 ///< of those that have a place
+  std::map<std::size_t, std::pair<BodyPoint, BodyPoint>> bases_;  ///< the two points that stand for a body
   std::string one_;
   Diagram diagram_;
 
  private:
   Motion scaling_motion() const;
+  const std::pair<BodyPoint, BodyPoint>& base_of(std::size_t body);
 
   std::set<std::string> names_;
 };

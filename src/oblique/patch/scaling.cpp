@@ -18,7 +18,8 @@ namespace {
   throw PatchError(Diagnostic{
       {mechanism.file, {}},
       fmt::format("the {} {} {} at t = {:.6g} s, so its triangle cannot be tracked over a whole turn",
-                  structure.groups[obstacle.group].assur_class == 2 ? "dyad" : "group", structure.groups[obstacle.group].name, open ? "cannot be assembled" : "is at a dead centre",
+                  structure.groups[obstacle.group].assur_class == 2 ? "dyad" : "group",
+                  structure.groups[obstacle.group].name, open ? "cannot be assembled" : "is at a dead centre",
                   obstacle.time),
       open ? "links that reach each other in every position" : "a triangle that never goes flat",
       open ? "lengthen the links of the dyad, or shorten the crank; `oblique solve` shows where it opens"

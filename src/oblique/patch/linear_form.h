@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <initializer_list>
+#include <map>
+#include <string>
+#include <utility>
+
+namespace oblique {
+
+/// A weighted sum of signals and a constant [machine unit].
+struct LinearForm {
+  std::map<std::string, double> weights;
+  double constant = 0;
+
+  LinearForm& add(const LinearForm& other, double factor = 1) {
+    for (const auto& [signal, weight] : other.weights) weights[signal] += factor * weight;
+    constant += factor * other.constant;
+    return *this;
+  }
+};
+
+inline LinearForm combined(std::initializer_list<std::pair<double, const LinearForm*>> parts) {
+  LinearForm sum;
+  for (const auto& [factor, form] : parts) sum.add(*form, factor);
+  return sum;
+}
+
+struct VectorForm {
+  LinearForm x, y;
+};
+
+}  // namespace oblique
