@@ -138,6 +138,9 @@ void add_solve(CLI::App& app, Chosen& chosen) {
       ->check(CLI::Range(2, 10'000'000));
   verb->add_option("-o,--output", request->output, "write all rows and columns to FILE.csv")
       ->type_name("FILE");
+  verb->add_flag(
+      "--analysis", request->analysis,
+      "with -o: write kinematic coefficients, instant centres, transmission angles and inertia too");
   choose(verb, chosen, request, solve_mechanism);
 }
 

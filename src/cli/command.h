@@ -48,6 +48,7 @@ struct SolveRequest {
   std::string mechanism;
   std::string output;
   int positions = 361;
+  bool analysis = false;
 };
 ExitStatus solve_mechanism(const Session& session, const SolveRequest& request);
 

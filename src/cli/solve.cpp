@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <oblique/mechanism/coefficients.h>
 #include <oblique/mechanism/motion.h>
 #include <oblique/mechanism/read_mechanism.h>
 
@@ -51,10 +52,20 @@ std::string table_of(const Mechanism& mechanism, const Motion& motion) {
 
 ExitStatus solve_mechanism(const Session&, const SolveRequest& request) {
   if (!request.output.empty()) check_output(request.output, ".csv");
+  if (request.analysis && request.output.empty()) {
+    throw ReadError(Diagnostic{{}, "--analysis has no file to write its columns to", "-o FILE.csv", {}});
+  }
   const Mechanism mechanism = read_mechanism(request.mechanism);
   const Motion motion = solve_motion(mechanism, request.positions);
   print(table_of(mechanism, motion));
-  if (!request.output.empty()) save(request.output, motion_csv(mechanism, motion));
+  if (!request.output.empty()) {
+    std::vector<MotionColumn> columns = motion_columns(mechanism, motion);
+    if (request.analysis) {
+      for (MotionColumn& column : analysis_columns(mechanism, decompose(mechanism), motion))
+        columns.push_back(std::move(column));
+    }
+    save(request.output, motion_csv(columns, motion));
+  }
   const auto count = [&](oblique::Status status) {
     return std::count_if(motion.configurations.begin(), motion.configurations.end(),
                          [&](const Configuration& c) { return c.status == status; });
