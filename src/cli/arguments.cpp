@@ -157,6 +157,9 @@ void add_solve(CLI::App& app, Chosen& chosen) {
       ->type_name("open|stop|reverse");
   verb->add_flag("--check", request->check,
                  "hold the motion against the mechanism's [expect]; status 1 where it fails");
+  verb->add_flag(
+      "--analysis", request->analysis,
+      "with -o: write kinematic coefficients, instant centres, transmission angles and inertia too");
   add_table_options(verb, *request);
   choose(verb, chosen, request, solve_mechanism);
 }

@@ -54,6 +54,7 @@ struct SolveRequest {
   std::vector<std::string> columns;  ///< those to write; empty: all
   int positions = 361;
   bool check = false;
+  bool analysis = false;
 };
 ExitStatus solve_mechanism(const Session& session, const SolveRequest& request);
 

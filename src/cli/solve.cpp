@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <oblique/mechanism/coefficients.h>
 #include <oblique/mechanism/expectation.h>
 #include <oblique/mechanism/motion.h>
 #include <oblique/mechanism/read_mechanism.h>
@@ -137,6 +138,9 @@ MotionOptions options_of(const SolveRequest& request) {
 ExitStatus solve_mechanism(const Session&, const SolveRequest& request) {
   check_table_output(request.output, request.columns);
   check_not_input(request.output, request.mechanism, "mechanism");
+  if (request.analysis && request.output.empty()) {
+    throw ReadError(Diagnostic{{}, "--analysis has no file to write its columns to", "-o FILE.csv", {}});
+  }
   const MotionOptions options = options_of(request);
   const Mechanism mechanism = read_mechanism(request.mechanism);
   if (request.check && mechanism.expectations.empty()) {
@@ -146,11 +150,16 @@ ExitStatus solve_mechanism(const Session&, const SolveRequest& request) {
                    R"([expect] with lines such as "P.x at 90 deg" = { value = 12.5, within = 1e-9 })",
                    {}});
   }
-  const std::vector<TableColumn> columns = table_columns(mechanism);
-  const ColumnChoice choice(columns, request.columns);
   if (mechanism.drives.empty()) period(mechanism);  // says so, where `decompose` would speak of its mobility
   const Structure structure = decompose(mechanism);
   const auto positions = static_cast<std::size_t>(options.positions);
+  std::vector<TableColumn> columns = table_columns(mechanism);
+  std::vector<MotionColumn> analysis;
+  if (request.analysis) {
+    analysis = analysis_columns(mechanism, structure, solve_motion(mechanism, options));
+    for (const MotionColumn& column : analysis) columns.insert(columns.end() - 1, {column.name, column.unit});
+  }
+  const ColumnChoice choice(columns, request.columns);
   std::optional<TableOutput> table;
   if (!request.output.empty()) table.emplace(request.output, choice, positions);
   Digest digest;
@@ -161,6 +170,9 @@ ExitStatus solve_mechanism(const Session&, const SolveRequest& request) {
   const auto events = visit_motion(mechanism, structure, options, [&](const MotionRow& motion) {
     const oblique::Status status = motion.configuration.status;
     motion_values(mechanism, motion, values);
+    for (std::size_t c = 0; c < analysis.size(); ++c) {
+      values[values.size() - 1 - analysis.size() + c] = analysis[c].values[row];
+    }
     values.back() = static_cast<double>(status);
     if (table) table->add(values);
     if (digest.rows.size() < shown.size() && shown[digest.rows.size()] == row) {

@@ -11,6 +11,7 @@
 #include <fmt/ranges.h>
 
 #include <oblique/mechanism/kinematics.h>
+#include <oblique/mechanism/rank.h>
 
 namespace oblique {
 namespace {
@@ -158,6 +159,15 @@ class ModeChooser {
     here_ = std::move(all[chosen].configuration);
   }
 
+  /// What the rank of the conditions says of the bodies placed so far, where it differs from Grübler's
+  /// number.
+  std::string shaky_text(const Configuration& here) const {
+    const JacobianRank rank = jacobian_rank(mechanism_, poses_of(mechanism_, here));
+    if (rank.mobility() == rank.gruebler()) return {};
+    return fmt::format(", and it is shaky: by rank its mobility is {} there, by Grübler's formula {}",
+                       rank.mobility(), rank.gruebler());
+  }
+
   /// The candidate next to the sketch; nothing after a finding.
   std::optional<std::size_t> nearest_to_sketch(const Group& group, const std::vector<Candidate>& all) {
     std::vector<double> far(all.size());
@@ -175,8 +185,8 @@ class ModeChooser {
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return far[a] < far[b]; });
     if (all.front().status == Status::dead_centre && all.size() == 1) {
       add(MechanismError::Kind::sketch, group,
-          fmt::format("{} '{}' is at a dead centre at the start: its assembly modes coincide", noun(group),
-                      group.name),
+          fmt::format("{} '{}' is at a dead centre at the start: its assembly modes coincide{}", noun(group),
+                      group.name, shaky_text(all.front().configuration)),
           {}, "start the drive at another angle and sketch that position");
       return std::nullopt;
     }

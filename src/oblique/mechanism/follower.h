@@ -47,6 +47,8 @@ class Follower {
   double time() const { return time_; }
   const std::vector<DriveState>& drives() const { return drives_; }
   const std::vector<MotionEvent>& events() const { return events_; }
+  /// Of a group where the follower stands (GroupSolver::regularity).
+  double regularity(std::size_t group) const { return courses_[group].regularity; }
 
  private:
   struct Course {  ///< of one group

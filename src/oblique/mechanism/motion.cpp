@@ -287,7 +287,10 @@ std::vector<MotionColumn> motion_columns(const Mechanism& mechanism, const Motio
 }
 
 std::string motion_csv(const Mechanism& mechanism, const Motion& motion) {
-  const std::vector<MotionColumn> columns = motion_columns(mechanism, motion);
+  return motion_csv(motion_columns(mechanism, motion), motion);
+}
+
+std::string motion_csv(const std::vector<MotionColumn>& columns, const Motion& motion) {
   std::string text;
   for (const MotionColumn& column : columns) text += column.name + ",";
   text += "status\n";

@@ -11,6 +11,7 @@
 
 #include <oblique/mechanism/assembly.h>
 #include <oblique/mechanism/constraint_graph.h>
+#include <oblique/mechanism/redundancy.h>
 
 namespace oblique {
 namespace {
@@ -430,7 +431,14 @@ Structure find_groups(const Mechanism& mechanism) {
 }
 
 Structure decompose(const Mechanism& mechanism) {
-  Structure structure = find_groups(mechanism);
+  Structure structure;
+  try {
+    structure = find_groups(mechanism);
+  } catch (const MechanismError& error) {
+    auto findings = error.diagnostics();
+    for (Diagnostic& finding : redundancy_findings(mechanism)) findings.push_back(std::move(finding));
+    throw MechanismError(error.kind(), std::move(findings));
+  }
   choose_modes(mechanism, structure);
   return structure;
 }

@@ -88,7 +88,8 @@ int mobility(const Mechanism& mechanism);
 Structure find_groups(const Mechanism& mechanism);
 
 /// `find_groups`, and the assembly mode of each group as the sketch picks it at the start position
-/// (`choose_modes`). Throws MechanismError: as both.
+/// (`choose_modes`). Throws MechanismError: as both; of conditions that are too many it says whether they
+/// hold all the same (`redundancy_findings`).
 Structure decompose(const Mechanism& mechanism);
 
 }  // namespace oblique

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <oblique/mechanism/analysis.h>
+
+namespace oblique::cli {
+
+/// What `check` finds out about a mechanism.
+struct MechanismCheck {
+  std::string file;
+  Mechanism mechanism;
+  Structure structure;
+  MechanismAnalysis analysis;
+  std::optional<std::string> finding;  ///< what keeps it from moving
+};
+
+/// "dyad BC-CD (class II, RRR): C lies left of B → D".
+std::string describe(const Mechanism& mechanism, const Group& group);
+
+/// What a designer would look at again.
+std::vector<std::string> remarks(const MechanismCheck& check);
+
+/// The first drive's value as people read it: "137.87°", within a turn of a full-turn motion from 0; "12.5
+/// mm".
+std::string drive_text(const MechanismCheck& check, double value);
+
+std::string to_text(const MechanismCheck& check);
+std::string to_json(const MechanismCheck& check);
+
+}  // namespace oblique::cli

@@ -1,0 +1,411 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/mechanism/analysis.h>
+
+#include <cmath>
+#include <numbers>
+#include <tuple>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <oblique/mechanism/coefficients.h>
+#include <oblique/mechanism/inertia.h>
+#include <oblique/mechanism/read_mechanism.h>
+
+namespace oblique {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+/// Zeros of a rate are found to the last bits of the place; their times carry a few roundings more.
+constexpr double kExact = 1e-9;
+
+Mechanism mechanism(const std::string& text) {
+  return parse_mechanism("format = \"oblique-mechanism/1\"\n" + text, "test.toml");
+}
+
+MechanismAnalysis analysis_of(const Mechanism& mechanism) {
+  return analyse(mechanism, decompose(mechanism));
+}
+
+Mechanism four_bar(double crank, double coupler, double rocker, double frame,
+                   const std::string& start = "0 deg", const std::string& sketch = "[3, 3]") {
+  return mechanism(fmt::format(R"([frame]
+A = [0, 0]
+D = [{}, 0]
+[bodies]
+AB = {{ points = ["A", "B"], length = {} }}
+BC = {{ points = ["B", "C"], length = {} }}
+CD = {{ points = ["C", "D"], length = {} }}
+[drives]
+crank = {{ turns = "AB", about = "A", speed = 1, start = "{}" }}
+[sketch]
+C = {}
+)",
+                               frame, crank, coupler, rocker, start, sketch));
+}
+
+/// r = 50, l = 150; masses of crank and rod.
+Mechanism slider_crank(double offset, const std::string& speed = "1 rad/s") {
+  return mechanism(fmt::format(R"([units]
+length = "mm"
+[frame]
+A = [0, 0]
+X = [250, 0]
+[bodies]
+AB = {{ points = ["A", "B"], length = 50, mass = 0.4, width = 10 }}
+BC = {{ points = ["B", "C"], length = 150, mass = 0.9 }}
+[slides]
+piston = {{ point = "C", along = ["A", "X"], offset = {} }}
+[drives]
+crank = {{ turns = "AB", about = "A", speed = "{}" }}
+[sketch]
+C = [190, 40]
+)",
+                               offset, speed));
+}
+
+double angle_opposite(double opposite, double a, double b) {
+  return std::acos((a * a + b * b - opposite * opposite) / (2 * a * b));
+}
+
+TEST(Transmission, ExtremesOfAFourBarAreWhereCrankAndFrameLieOnALine) {
+  const MechanismAnalysis analysis = analysis_of(four_bar(1, 3.5, 3, 4, "17 deg"));
+  ASSERT_EQ(analysis.transmissions.size(), 1U);
+  const Transmission& t = analysis.transmissions.front();
+  EXPECT_EQ(t.measure, Transmission::Measure::transmission_angle);
+  EXPECT_NEAR(t.least.value, angle_opposite(4 - 1, 3.5, 3), 1e-12);
+  EXPECT_NEAR(t.greatest.value, angle_opposite(4 + 1, 3.5, 3), 1e-12);
+  EXPECT_NEAR(t.least.drive, 2 * kPi, kExact);  // from 17° on, the next time
+  EXPECT_NEAR(t.greatest.drive, kPi, kExact);
+  EXPECT_FALSE(t.is_poor());
+  EXPECT_TRUE(analysis_of(four_bar(2.3, 3.5, 3.4, 4)).transmissions.front().is_poor());
+}
+
+// The rod leans most where the pin is farthest from the guide.
+TEST(Transmission, PressureAngleOfASliderCrank) {
+  const Transmission t = analysis_of(slider_crank(40)).transmissions.front();
+  EXPECT_EQ(t.measure, Transmission::Measure::pressure_angle);
+  EXPECT_NEAR(t.greatest.value, std::asin((50.0 + 40) / 150), 1e-12);
+  EXPECT_NEAR(t.greatest.drive, 1.5 * kPi, kExact);
+  EXPECT_NEAR(t.least.value, 0, 1e-9);
+}
+
+TEST(Swing, RockerOfACrankRockerHasItsEndsWhereCrankAndCouplerLieOnALine) {
+  const MechanismAnalysis analysis = analysis_of(four_bar(1, 3.5, 3, 4));
+  const Swing& rocker = analysis.swings.at(1);
+  EXPECT_EQ(rocker.kind, Swing::Kind::swings);
+  EXPECT_EQ(rocker.reversals, 2U);
+  // |AC| = 3.5 ± 1; the angle of the rocker from D, seen from C: turned by π
+  const double out = angle_opposite(4.5, 4, 3), in = angle_opposite(2.5, 4, 3);
+  EXPECT_NEAR(rocker.greatest.value, -in, 1e-12);
+  EXPECT_NEAR(rocker.least.value, -out, 1e-12);
+  const double at_out = angle_opposite(3, 4, 4.5), at_in = angle_opposite(3, 4, 2.5) + kPi;
+  EXPECT_NEAR(rocker.least.drive, at_out, kExact);
+  EXPECT_NEAR(rocker.greatest.drive, at_in, kExact);
+  EXPECT_NEAR(rocker.rising, at_in - at_out, kExact);
+  EXPECT_NEAR(rocker.time_ratio.value(), (at_in - at_out) / (2 * kPi - at_in + at_out), kExact);
+}
+
+// (180° + 2α)/(180° − 2α) with sin α = |AB|/|AD|.
+TEST(Swing, CrankShaperReturnsQuickly) {
+  const Mechanism shaper = mechanism(R"([frame]
+A = [0, 300]
+D = [0, 0]
+[bodies]
+AB    = { points = ["A", "B"], length = 100 }
+lever = { points = ["D", "E"], length = 500 }
+[slides]
+slot = { point = "B", along = ["D", "E"] }
+[drives]
+crank = { turns = "AB", about = "A", speed = "60 rpm" }
+[sketch]
+E = [158, 474]
+)");
+  const MechanismAnalysis analysis = analysis_of(shaper);
+  const double alpha = std::asin(1.0 / 3);
+  const Swing& lever = analysis.swings.at(0);
+  EXPECT_NEAR(lever.time_ratio.value(), (kPi + 2 * alpha) / (kPi - 2 * alpha), kExact);
+  EXPECT_NEAR(lever.stroke(), 2 * alpha, 1e-12);
+  EXPECT_NEAR(lever.rising, (kPi + 2 * alpha) / (2 * kPi), kExact);
+  const Swing& slot = analysis.swings.at(1);
+  EXPECT_TRUE(slot.is_slide);
+  EXPECT_NEAR(slot.least.value, 200, 1e-9);
+  EXPECT_NEAR(slot.greatest.value, 400, 1e-9);
+  EXPECT_EQ(analysis.sliders.at(0).type, SliderLoop::Type::lever_swings);
+  EXPECT_EQ(analysis.transmissions.at(0).measure, Transmission::Measure::regularity);
+}
+
+TEST(Swing, StrokeOfAnOffsetSliderCrank) {
+  const Swing piston = analysis_of(slider_crank(40)).swings.at(1);
+  EXPECT_NEAR(piston.greatest.value, std::sqrt(200.0 * 200 - 40 * 40), 1e-10);
+  EXPECT_NEAR(piston.least.value, std::sqrt(100.0 * 100 - 40 * 40), 1e-10);
+  EXPECT_NEAR(piston.greatest.drive, std::asin(40.0 / 200), kExact);
+  EXPECT_NEAR(piston.least.drive, kPi + std::asin(40.0 / 100), kExact);
+  const double delta = std::asin(40.0 / 100) - std::asin(40.0 / 200);
+  EXPECT_NEAR(piston.time_ratio.value(), (kPi + delta) / (kPi - delta), kExact);
+}
+
+// The start is an end of the swing: there the turning point lies at both ends of the turn.
+TEST(Swing, ThatBeginsAtItsEndIsCountedOnce) {
+  const Swing piston = analysis_of(slider_crank(0)).swings.at(1);
+  EXPECT_EQ(piston.reversals, 2U);
+  EXPECT_NEAR(piston.time_ratio.value(), 1, kExact);
+  EXPECT_NEAR(piston.stroke(), 100, 1e-10);
+}
+
+TEST(Swing, TellsTurningFromSwingingAndRest) {
+  const MechanismAnalysis drag_link = analysis_of(four_bar(3, 3.5, 3, 1, "0 deg", "[0, 2]"));
+  EXPECT_EQ(drag_link.swings.at(1).kind, Swing::Kind::turns);
+  EXPECT_NEAR(drag_link.swings.at(1).gain, 2 * kPi, 1e-12);
+  const MechanismAnalysis parallel = analysis_of(four_bar(1, 3, 1, 3, "60.5 deg", "[3.5, 1]"));
+  EXPECT_EQ(parallel.swings.at(0).kind, Swing::Kind::rests);
+  EXPECT_EQ(parallel.swings.at(1).kind, Swing::Kind::turns);
+  EXPECT_EQ(parallel.tour->changes.size(), 2U);
+}
+
+// sin⁷ φ is within ±0.01, a hundredth of its stroke, while |φ| < asin(0.01^(1/7)), about 0 and about 180°;
+// about its ends it stays for 2·2·acos(0.98^(1/7)) = 17° only.
+TEST(Dwell, IsFoundWhereverItLies) {
+  const Mechanism four = four_bar(1, 3.5, 3, 4);
+  const Structure structure = decompose(four);
+  const TourWalk walk(four, structure, plan_tour(four, structure));
+  std::vector<double> values;
+  const std::size_t samples = walk.tour().samples;
+  for (std::size_t k = 0; k <= samples; ++k) {
+    values.push_back(std::pow(std::sin(2 * kPi * static_cast<double>(k) / static_cast<double>(samples)), 7));
+  }
+  const auto dwells = find_dwells(walk, {&values}, 2);
+  ASSERT_EQ(dwells.size(), 2U);
+  const double half = std::asin(std::pow(0.01, 1.0 / 7));
+  // a band that lies a little aside gives a stretch that is as long, within the samples
+  const double degree = kPi / 180;
+  for (const auto& [dwell, middle] : {std::pair{dwells[0], kPi}, std::pair{dwells[1], 2 * kPi}}) {
+    EXPECT_NEAR(dwell.end_drive - dwell.begin_drive, 2 * half, degree / 2);
+    EXPECT_NEAR((dwell.begin_drive + dwell.end_drive) / 2, middle, 1.5 * degree);
+  }
+}
+
+TEST(Dwell, HarmonicMotionHasNone) {
+  const Mechanism four = four_bar(1, 3.5, 3, 4);
+  const Structure structure = decompose(four);
+  const TourWalk walk(four, structure, plan_tour(four, structure));
+  std::vector<double> values;
+  for (std::size_t k = 0; k <= walk.tour().samples; ++k)
+    values.push_back(std::cos(2 * kPi * static_cast<double>(k) / static_cast<double>(walk.tour().samples)));
+  EXPECT_TRUE(find_dwells(walk, {&values}, 2).empty());
+}
+
+// 60 + 100 > 70 + 80: the left rocker comes to rest where |BD| = 70 + 80.
+TEST(Range, LimitsOfADoubleRockerFollowFromTheLawOfCosines) {
+  const MechanismAnalysis analysis = analysis_of(four_bar(60, 70, 80, 100, "30 deg", "[100, 80]"));
+  const double limit = angle_opposite(150, 60, 100);
+  const Tour& tour = *analysis.tour;
+  EXPECT_EQ(tour.kind, Tour::Kind::limits);
+  EXPECT_FALSE(tour.closed);
+  EXPECT_NEAR(tour.range.forward->time + kPi / 6, limit, 1e-9);
+  EXPECT_NEAR(tour.range.backward->time + kPi / 6, -limit, 1e-9);
+  // at a limit the velocities are infinite, and positions known to the root of its sharpness
+  const Swing& right = analysis.swings.at(1);
+  EXPECT_NEAR(right.greatest.value, angle_opposite(60, 100, 150), 1e-5);
+  EXPECT_EQ(right.kind, Swing::Kind::swings);
+  EXPECT_FALSE(right.time_ratio);
+  EXPECT_NEAR(analysis.paths.at(0).measure.length, 60 * 2 * limit, 1e-6);
+}
+
+// A is moved along a line, B on another square to it; driven by A it comes to rest where the bar lies on A's.
+TEST(Range, OfADriveThatMovesASlide) {
+  const MechanismAnalysis analysis = analysis_of(mechanism(R"([frame]
+O = [0, 0]
+X = [100, 0]
+Y = [0, 100]
+[bodies]
+bar = { points = ["A", "B"], length = 120 }
+[slides]
+across = { point = "A", along = ["O", "X"] }
+up     = { point = "B", along = ["O", "Y"] }
+[drives]
+block = { slides = "across", speed = 10, start = 30 }
+[sketch]
+B = [0, 110]
+)"));
+  EXPECT_NEAR(analysis.tour->range.forward->time, 9, 1e-9);
+  EXPECT_NEAR(analysis.tour->range.backward->time, -15, 1e-9);
+  EXPECT_NEAR(analysis.swings.at(1).greatest.value, 120, 1e-9);
+}
+
+/// Perimeter of an ellipse by the arithmetic-geometric mean (C. F. Gauss, A.-M. Legendre).
+double perimeter(double a, double b) {
+  double x = a, y = b, power = 1, sum = (a * a + b * b) / 2;
+  while (std::abs(x - y) > 1e-15 * a) {
+    const double c = (x - y) / 2;
+    sum -= power * c * c;
+    power *= 2;
+    std::tie(x, y) = std::pair((x + y) / 2, std::sqrt(x * y));
+  }
+  return 2 * kPi * sum / x;
+}
+
+TEST(Path, OfATrammelIsAnEllipse) {
+  const MechanismAnalysis analysis = analysis_of(mechanism(R"([frame]
+O = [0, 0]
+X = [100, 0]
+Y = [0, 100]
+[bodies]
+bar = { points = ["A", "B"], length = 120, marks = { M = [60, 0], P = [200, 0] } }
+[slides]
+across = { point = "A", along = ["O", "X"] }
+up     = { point = "B", along = ["O", "Y"] }
+[drives]
+turn = { turns = "bar", about = "A", speed = "60 rpm", start = "10 deg" }
+)"));
+  ASSERT_EQ(analysis.paths.size(), 4U);
+  const PathReport& a = analysis.paths.at(0);
+  EXPECT_NEAR(a.measure.length, 480, 1e-7);  // to and fro on a line, with two corners
+  EXPECT_NEAR(a.measure.area.value(), 0, 1e-7);
+  const PathReport& m = analysis.paths.at(2);
+  EXPECT_NEAR(m.measure.length, 2 * kPi * 60, 1e-7);
+  const PathReport& p = analysis.paths.at(3);
+  EXPECT_NEAR(p.measure.length, perimeter(200, 80), 1e-7);
+  EXPECT_NEAR(std::abs(p.measure.area.value()), kPi * 200 * 80, 1e-6);
+  EXPECT_NEAR(p.right.value, 80, 1e-10);
+  EXPECT_NEAR(p.bottom.value, -200, 1e-10);
+}
+
+TEST(Path, OfARockerIsAnArcThereAndBack) {
+  const MechanismAnalysis analysis = analysis_of(four_bar(1, 3.5, 3, 4));
+  const PathReport& b = analysis.paths.at(0);
+  EXPECT_NEAR(b.measure.length, 2 * kPi, 1e-9);
+  EXPECT_NEAR(b.measure.area.value(), kPi, 1e-9);
+  const double swing = angle_opposite(4.5, 4, 3) - angle_opposite(2.5, 4, 3);
+  EXPECT_NEAR(analysis.paths.at(1).measure.length, 2 * 3 * swing, 1e-9);
+}
+
+TEST(InstantCentre, OfACouplerIsWhereItsCranksMeet) {
+  const Mechanism four = four_bar(1, 3.5, 3, 4, "50 deg");
+  const MechanismAnalysis analysis = analysis_of(four);
+  const Configuration here = start_configuration(four, decompose(four));
+  const Eigen::Vector2d a = here.points[0].position, d = here.points[1].position;
+  const Eigen::Vector2d b = here.points[2].position, c = here.points[3].position;
+  // a + s (b − a) = d + t (c − d)
+  const auto cross = [](const Eigen::Vector2d& v, const Eigen::Vector2d& w) {
+    return v.x() * w.y() - v.y() * w.x();
+  };
+  const Eigen::Vector2d meeting = a + cross(d - a, c - d) / cross(b - a, c - d) * (b - a);
+  ASSERT_EQ(analysis.centres.size(), 6U);
+  EXPECT_LT((analysis.centres[1].position.value() - meeting).norm(), 1e-12);
+  EXPECT_EQ(analysis.centres[0].position.value(), a);
+  EXPECT_EQ(analysis.centres[3].position.value(), b);  // of AB against BC
+}
+
+// A. Kennedy's theorem holds for any three links.
+TEST(InstantCentre, OfThreeLinksLieOnALine) {
+  const Mechanism six = read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/six-bar.toml");
+  const MechanismAnalysis analysis = analysis_of(six);
+  const std::size_t n = six.bodies.size();
+  EXPECT_EQ(analysis.centres.size(), n * (n + 1) / 2);
+  const auto centre = [&](std::optional<std::size_t> first, std::size_t second) {
+    for (const InstantCentre& c : analysis.centres) {
+      if (c.first == first && c.second == second) return c.position.value();
+    }
+    return Eigen::Vector2d(0, 0);
+  };
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = i + 1; j < n; ++j) {
+      const Eigen::Vector2d one = centre(std::nullopt, i) - centre(i, j);
+      const Eigen::Vector2d other = centre(std::nullopt, j) - centre(i, j);
+      const double cross = one.x() * other.y() - one.y() * other.x();
+      EXPECT_NEAR(cross, 0, 1e-9 * (1 + one.norm() * other.norm())) << i << " " << j;
+    }
+  }
+}
+
+TEST(InstantCentre, OfTranslationIsAtInfinity) {
+  const MechanismAnalysis analysis = analysis_of(four_bar(1, 3, 1, 3, "60 deg", "[3.5, 1]"));
+  const InstantCentre& coupler = analysis.centres[1];
+  EXPECT_FALSE(coupler.position);
+  const Eigen::Vector2d along(std::cos(kPi / 3), std::sin(kPi / 3));
+  EXPECT_NEAR(std::abs(coupler.direction.value().dot(along)), 1, 1e-12);
+}
+
+/// Twice the kinetic energy at a crank speed of 1, from positions alone, differentiated by five points.
+double slider_crank_inertia(double phi, double offset) {
+  const auto rod_angle = [&](double p) { return std::asin((offset - 50 * std::sin(p)) / 150); };
+  const auto rod_middle = [&](double p) {
+    return Eigen::Vector2d(50 * std::cos(p) + 75 * std::cos(rod_angle(p)),
+                           50 * std::sin(p) + 75 * std::sin(rod_angle(p)));
+  };
+  const double h = 1e-3;
+  const auto slope = [&](const auto& f) {
+    return ((f(phi - 2 * h) - f(phi + 2 * h)) + 8 * (f(phi + h) - f(phi - h))) / (12 * h);
+  };
+  const double turn = slope(rod_angle);
+  const Eigen::Vector2d way(slope([&](double p) { return rod_middle(p).x(); }),
+                            slope([&](double p) { return rod_middle(p).y(); }));
+  const double crank = 0.4 * (50 * 50 + 10 * 10) / 12 + 0.4 * 25 * 25;
+  return 1e-6 * (crank + 0.9 * way.squaredNorm() + 0.9 * 150 * 150 / 12 * turn * turn);
+}
+
+TEST(Inertia, ReducedToTheCrankOfASliderCrank) {
+  for (const char* speed : {"1 rad/s", "-3 rad/s", "2 + sin(time) rad/s"}) {
+    const Mechanism crank = slider_crank(40, speed);
+    const Structure structure = decompose(crank);
+    const Motion motion = solve_motion(crank, 25);
+    for (const MotionColumn& column : analysis_columns(crank, structure, motion)) {
+      if (column.name != "crank.inertia") continue;
+      EXPECT_EQ(column.unit, "kg*m^2");
+      for (std::size_t row = 0; row < 25; ++row) {
+        EXPECT_NEAR(column.values[row], slider_crank_inertia(motion.drives[row][0].value, 40), 1e-13);
+      }
+    }
+  }
+  const MechanismAnalysis analysis = analysis_of(slider_crank(40, "5 rad/s"));
+  const InertiaReport& report = analysis.inertia.value();
+  EXPECT_NEAR(report.bars.at(0).inertia, 0.4 * (0.05 * 0.05 + 0.01 * 0.01) / 12, 1e-18);
+  EXPECT_NEAR(report.least.value, slider_crank_inertia(report.least.drive, 40), 1e-13);
+  for (int k = 0; k < 360; ++k) {
+    const double here = slider_crank_inertia(k * kPi / 180, 40);
+    EXPECT_GE(here, report.least.value - 1e-13);
+    EXPECT_LE(here, report.greatest.value + 1e-13);
+  }
+  EXPECT_NEAR(report.greatest_energy.value, 25 * report.greatest.value / 2, 1e-12);
+}
+
+std::vector<double> column(const std::vector<MotionColumn>& columns, const std::string& name) {
+  for (const MotionColumn& column : columns) {
+    if (column.name == name) return column.values;
+  }
+  ADD_FAILURE() << name;
+  return {};
+}
+
+// x = r cos φ + √(l² − (r sin φ − e)²), whatever the crank's speed.
+TEST(Coefficients, AreThoseOfThePositionWhateverTheSpeed) {
+  for (const char* speed : {"1 rad/s", "-20 rad/s", "2 + sin(3*time) rad/s"}) {
+    const Mechanism crank = slider_crank(40, speed);
+    const Motion motion = solve_motion(crank, 37);
+    const auto columns = analysis_columns(crank, decompose(crank), motion);
+    const auto first = column(columns, "C.dx"), second = column(columns, "C.ddx");
+    const auto slide = column(columns, "piston.ddposition"), turn = column(columns, "AB.dangle");
+    for (std::size_t row = 0; row < 37; ++row) {
+      const double phi = motion.drives[row][0].value, c = std::cos(phi), s = std::sin(phi);
+      const double y = 50 * s - 40, root = std::sqrt(150 * 150 - y * y);
+      const double x1 = -50 * s - y * 50 * c / root;
+      const double x2 =
+          -50 * c - (50 * 50 * c * c - y * 50 * s) / root - y * y * 50 * 50 * c * c / (root * root * root);
+      EXPECT_NEAR(first[row], x1, 1e-11);
+      EXPECT_NEAR(second[row], x2, 1e-10);
+      EXPECT_NEAR(slide[row], x2, 1e-10);
+      EXPECT_NEAR(turn[row], 1, 1e-14);
+    }
+  }
+}
+
+TEST(Coefficients, HaveNoValueWhereTheDriveStands) {
+  const Coefficients none = kinematic_coefficients(0, 1, {1, 0, 2});
+  EXPECT_TRUE(std::isnan(none.first));
+  EXPECT_TRUE(std::isnan(none.second));
+}
+
+}  // namespace
+}  // namespace oblique
