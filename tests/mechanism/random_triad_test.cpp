@@ -113,11 +113,18 @@ bool found_by(const PlatformModes& modes, const PlatformPose& pose) {
   });
 }
 
+/// Where nearly parallel lines meet, neither the solver nor the scan knows the place well.
+bool is_far(const PlatformPose& pose) {
+  return !(pose.position.norm() < 1e3);
+}
+
 /// Says what is wrong with the modes, "" for nothing.
 std::string complaint(const std::array<Lead, 3>& leads, const PlatformModes& modes) {
   if (modes.movable) return "movable";
   for (std::size_t i = 0; i < static_cast<std::size_t>(modes.count); ++i) {
-    if (!(closing_error(leads, modes.poses[i]) < 1e-10)) return "a mode does not close";
+    // nearly parallel lines meet far out, where coordinates round by more
+    if (!(closing_error(leads, modes.poses[i]) < 1e-10 * (1 + modes.poses[i].position.norm())))
+      return "a mode does not close";
     for (std::size_t j = 0; j < i; ++j) {
       if (distance(modes.poses[i], modes.poses[j]) < 1e-8) return "a mode is named twice";
     }
@@ -128,12 +135,14 @@ std::string complaint(const std::array<Lead, 3>& leads, const PlatformModes& mod
     wrong.clear();
     int closing = 0;
     for (const PlatformPose& pose : scanned) {
-      if (closing_error(leads, pose) > 1e-8) continue;  // lines that are parallel cross nowhere
+      if (is_far(pose) || closing_error(leads, pose) > 1e-8) continue;  // parallel lines cross nowhere
       ++closing;
       if (!found_by(modes, pose)) wrong = "a mode is missed";
     }
-    if (wrong.empty() && closing != modes.count)
-      wrong = "the scan counts " + std::to_string(closing) + ", the solver " + std::to_string(modes.count);
+    const auto found =
+        modes.count - std::count_if(modes.poses.begin(), modes.poses.begin() + modes.count, is_far);
+    if (wrong.empty() && closing != found)
+      wrong = "the scan counts " + std::to_string(closing) + ", the solver " + std::to_string(found);
     if (wrong.empty()) return "";
   }
   return wrong;
@@ -266,11 +275,36 @@ TEST(RandomTriad, OnParallelGuidesMissesNoMode) {
                    parallel);
 }
 
+// Platform and base alike and nearly parallel: the circles about anchor − R·local are nearly one, and F has
+// nearly a fourfold zero.
+TEST(RandomTriad, NearAParallelogramMissesNoMode) {
+  Dice dice(450);
+  const int number = number_of_triads(5'000);
+  for (int i = 0; i < number; ++i) {
+    Sketch sketch = random_sketch(dice, kThreeCircles);
+    sketch.locals = sketch.anchors;
+    // a thin triangle multiplies the rounding over `off` once more
+    const double area =
+        quarter_turn(sketch.locals[1] - sketch.locals[0]).dot(sketch.locals[2] - sketch.locals[0]);
+    if (std::abs(area) < 0.3) continue;
+    const double off = std::pow(10, dice.between(-7, -1));
+    const PlatformPose pose{dice.point(), std::cos(off), std::sin(off)};
+    const std::array<Lead, 3> leads = closed_in(sketch, pose);
+    const PlatformModes modes = platform_modes(leads);
+    EXPECT_FALSE(modes.movable) << off << "\n" << listing(leads);
+    EXPECT_TRUE(found_by(modes, pose)) << off << "\n" << listing(leads);
+    EXPECT_EQ(modes.count % 2, 0) << off << "\n" << listing(leads);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(modes.count); ++k)
+      EXPECT_LT(closing_error(leads, modes.poses[k]), 1e-10);
+    if (testing::Test::HasFailure()) return;
+  }
+}
+
 // All three leads let the platform turn about one point C to first order: two modes meet. It must stay in the
 // list, once or twice, although rounding decides whether its zero is double, two, or none.
 TEST(RandomTriad, KeepsItsDeadCentre) {
   Dice dice(500);
-  const int number = number_of_triads(5'000);
+  const int number = number_of_triads(50'000);
   for (int i = 0; i < number; ++i) {
     const auto kind = [](int k) { return static_cast<Kind>(k % 3); };
     Sketch sketch = random_sketch(dice, {kind(i), kind(i / 3), kind(i / 9)});

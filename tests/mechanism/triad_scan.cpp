@@ -177,7 +177,6 @@ std::vector<PlatformPose> scan_lines(const std::array<Lead, 3>& leads, int steps
   for (const double theta : periodic_zeros([&](double t) { return rows(t).determinant(); }, steps)) {
     const Eigen::Matrix3d m = rows(theta);
     const Vector2d position = m.leftCols<2>().colPivHouseholderQr().solve(m.col(2));
-    if (!(position.norm() < 1e6)) continue;  // parallel lines: the determinant vanishes, and they never cross
     poses.push_back({position, std::cos(theta), std::sin(theta)});
   }
   return poses;

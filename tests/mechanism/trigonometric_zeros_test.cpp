@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace oblique {
+namespace oblique::triad {
 namespace {
 
 using Complex = std::complex<double>;
@@ -90,4 +90,4 @@ TEST(TrigonometricZeros, AreThoseOfALowerDegree) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::triad

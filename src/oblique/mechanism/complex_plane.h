@@ -4,7 +4,7 @@
 #include <cmath>
 #include <complex>
 
-namespace oblique {
+namespace oblique::triad {
 
 /// A vector of the plane as a complex number: a turn is a product.
 using Complex = std::complex<double>;
@@ -24,4 +24,4 @@ inline double modulus(Complex a) {
   return std::sqrt(std::norm(a));
 }
 
-}  // namespace oblique
+}  // namespace oblique::triad

@@ -10,6 +10,7 @@
 #include <oblique/mechanism/triad_equation.h>
 
 namespace oblique {
+namespace triad {
 namespace {
 
 using Eigen::Vector2d;
@@ -210,8 +211,7 @@ void Triad::visit(Complex z) {
 PlatformModes Triad::modes() {
   const double rounding = group_.rounding / smallest_factor_;
   const auto& [a, b, c] = lines_;
-  const auto [f, terms] =
-      group_.circular ? characteristic(a, b, radius_, rounding) : characteristic(a, b, c, rounding);
+  const auto [f, terms] = group_.circular ? characteristic(a, b, radius_) : characteristic(a, b, c);
   const double negligible = std::min(64 * rounding / smallest_factor_, 1e-6) * terms;
   PlatformModes result;
   if (f.size() <= negligible) {  // every direction may have its pose
@@ -237,9 +237,10 @@ PlatformModes Triad::modes() {
 }
 
 }  // namespace
+}  // namespace triad
 
 PlatformModes platform_modes(const std::array<Lead, 3>& leads) {
-  return Triad(leads).modes();
+  return triad::Triad(leads).modes();
 }
 
 }  // namespace oblique

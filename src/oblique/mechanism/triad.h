@@ -31,8 +31,9 @@ struct PlatformPose {
 struct PlatformModes {
   std::array<PlatformPose, 8> poses;  ///< the first `count`, by angle in (−π, π], then by position
   int count = 0;
-  bool movable =
-      false;  ///< conditions depend on each other: a whole curve of poses, none of which is in `poses`
+  /// The conditions depend on each other: a whole curve of poses closes, to 1e-12 of the group's size along a
+  /// stretch of a tenth of it. None of these is in `poses`, which holds the isolated ones.
+  bool movable = false;
 };
 
 /// Every pose that three leads allow a platform (the assembly modes of a triad, Assur's group of class III):
@@ -50,9 +51,10 @@ struct PlatformModes {
 /// manipulators: special architectures and number of solutions", Mechanism and Machine Theory 29, 1994).
 ///
 /// A dead centre is a double zero; rounding moves its two poses apart by some 1e-8, or makes them complex. A
-/// pose that closes as said counts as real, and poses count as one where the pose midway closes as well. So a
-/// dead centre is not lost; it is named once, or twice from some 1e-6 (of the size, or rad) off it. Where
-/// more than two modes meet they are known, and told apart, to some 1e-4 only.
+/// pose that closes as said counts as real; two count as one where the pose midway closes to rounding, or
+/// where one of them is singular and within 1e-5 (of the size, or rad) of the other. So a dead centre is not
+/// lost: it is named once or twice. Where more than two modes meet they are known, and told apart, to some
+/// 1e-4 only. Poses farther out than 1e4 sizes, where lines are as good as parallel, are left out.
 PlatformModes platform_modes(const std::array<Lead, 3>& leads);
 
 }  // namespace oblique

@@ -7,14 +7,14 @@
 
 #include <Eigen/Dense>
 
-namespace oblique {
+namespace oblique::triad {
 namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr double kClosure = 1e-13;  // of the group's size
-constexpr double kFar = 1e6;        // in sizes of the group: lines that meet there are parallel
+constexpr double kFar = 1e4;        // in sizes of the group: lines that meet there are parallel
 
 void move(Pose& pose, const Vector3d& by) {
   pose.q += Complex(by[0], by[1]);
@@ -74,7 +74,9 @@ void Closure::differentiate(const Pose& pose, Vector3d& residual, Matrix3d& jaco
 
 std::optional<Pose> Closure::polished(const Pose& guess) const {
   constexpr double kNear = 10 * kClosure;
-  constexpr double kLost = 1e-4;  // a longer step from a pose that nearly closes is rounding over nothing
+  constexpr double kLost = 1e-4;      // a longer step from a pose that nearly closes is rounding over nothing
+  constexpr double kDoubtful = 1e-2;  // as is this one where the determinant is small; the shortest step then
+                                      // leads onto a curve of poses
   Pose pose = guess;
   Pose best = guess;
   double least = std::numeric_limits<double>::infinity();
@@ -94,14 +96,13 @@ std::optional<Pose> Closure::polished(const Pose& guess) const {
     const double det = first.dot(a);
     if (!better && least < kClosure && std::abs(det) > 1e-6) break;
     Vector3d by = -(a * residual[0] + b * residual[1] + c * residual[2]) / det;
-    const bool lost = error < kNear && !(by.cwiseAbs().maxCoeff() < kLost);
+    const double longest_trusted = error < kNear ? kLost : kDoubtful;
+    const bool lost = !(by.cwiseAbs().maxCoeff() < longest_trusted);
     if (lost && error < kClosure) {
       best.singular = true;
       break;
     }
-    if (lost || (error >= kNear && std::abs(det) < 1e-9)) {  // the shortest step, also onto a curve of poses
-      by = shortest_step(jacobian, residual, 1e-9);
-    }
+    if (lost && (error < kNear || std::abs(det) < 1e-9)) by = shortest_step(jacobian, residual, 1e-9);
     const double longest = by.cwiseAbs().maxCoeff();
     if (!(longest < kFar)) break;
     const double stride = 0.5 * (1 + modulus(pose.q));
@@ -165,4 +166,4 @@ bool Closure::lies_on_curve(const Pose& pose) const {
   return true;
 }
 
-}  // namespace oblique
+}  // namespace oblique::triad

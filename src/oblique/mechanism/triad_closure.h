@@ -9,7 +9,7 @@
 #include <oblique/mechanism/complex_plane.h>
 #include <oblique/mechanism/triad.h>
 
-namespace oblique {
+namespace oblique::triad {
 
 /// A lead seen from the reference point, lengths divided by the group's size.
 struct Condition {
@@ -54,4 +54,4 @@ class Closure {
   double shortest_ = 1;  ///< of the circles' lengths, and 1
 };
 
-}  // namespace oblique
+}  // namespace oblique::triad

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/mechanism/triad_equation.h>
 
-namespace oblique {
+namespace oblique::triad {
 namespace {
 
 /// Real trigonometric polynomial of degree 1: c₀ + Re(c₁z).
@@ -31,29 +31,11 @@ Wave determinant(const Line& a, const Line& b) {
           -kQuarterTurn * (std::conj(a.u0) * b.u1 - a.u1 * std::conj(b.u0))};
 }
 
-/// u_a · u_b
-Wave scalar_product(const Line& a, const Line& b) {
-  return {dot(a.u0, b.u0) + dot(a.u1, b.u1), std::conj(a.u0) * b.u1 + a.u1 * std::conj(b.u0)};
-}
-
-bool vanishes(const Wave& wave, double rounding) {
-  return std::abs(wave.constant) + modulus(wave.first) <= 16 * rounding;
-}
-
-/// Where two lines are parallel in every direction F is a square, and this its root:
-/// w_a(u_a·u_b) − w_b|u_a|².
-Characteristic of_parallels(const Line& a, const Line& b) {
-  return {sum(product(right_hand_side(a), scalar_product(a, b)),
-              product(right_hand_side(b), scalar_product(a, a)), -1),
-          std::abs(a.w0) + modulus(a.w1) + std::abs(b.w0) + modulus(b.w1)};
-}
-
 }  // namespace
 
 // |w_a u_b − w_b u_a|² − l²(u_a × u_b)²
-Characteristic characteristic(const Line& a, const Line& b, double radius, double rounding) {
+Characteristic characteristic(const Line& a, const Line& b, double radius) {
   const Wave d = determinant(a, b);
-  if (vanishes(d, rounding)) return of_parallels(a, b);
   // m₋₁z⁻¹ + m₀ + m₁z + m₂z²
   const std::array<Complex, 4> m = {
       (std::conj(a.w1) * b.u0 - std::conj(b.w1) * a.u0) / 2.0,
@@ -71,11 +53,10 @@ Characteristic characteristic(const Line& a, const Line& b, double radius, doubl
 }
 
 // The determinant of the rows [u w].
-Characteristic characteristic(const Line& a, const Line& b, const Line& c, double rounding) {
+Characteristic characteristic(const Line& a, const Line& b, const Line& c) {
   const Wave ab = determinant(a, b);
   const Wave bc = determinant(b, c);
   const Wave ca = determinant(c, a);
-  if (vanishes(ab, rounding) && vanishes(bc, rounding) && vanishes(ca, rounding)) return of_parallels(a, b);
   Characteristic result;
   result.f = sum(sum(product(right_hand_side(a), bc), product(right_hand_side(b), ca), 1),
                  product(right_hand_side(c), ab), 1);
@@ -83,4 +64,4 @@ Characteristic characteristic(const Line& a, const Line& b, const Line& c, doubl
   return result;
 }
 
-}  // namespace oblique
+}  // namespace oblique::triad

@@ -4,7 +4,7 @@
 #include <oblique/mechanism/complex_plane.h>
 #include <oblique/mechanism/trigonometric_zeros.h>
 
-namespace oblique {
+namespace oblique::triad {
 
 /// A condition linear in the position q of a platform whose direction is z = e^{iθ}: u(z)·q = w(z) with
 /// u = u₀ + u₁z and w = w₀ + Re(w₁z).
@@ -28,10 +28,10 @@ struct Characteristic {
   double terms = 0;  ///< size of what F is the difference of: its rounding is that of these
 };
 
-/// Of two lines and the circle |q| = radius. `rounding` is that of the lines, which are of size 1.
-Characteristic characteristic(const Line& a, const Line& b, double radius, double rounding);
+/// Of two lines and the circle |q| = radius.
+Characteristic characteristic(const Line& a, const Line& b, double radius);
 
 /// Of three lines.
-Characteristic characteristic(const Line& a, const Line& b, const Line& c, double rounding);
+Characteristic characteristic(const Line& a, const Line& b, const Line& c);
 
-}  // namespace oblique
+}  // namespace oblique::triad

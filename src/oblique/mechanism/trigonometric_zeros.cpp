@@ -8,7 +8,7 @@
 
 #include <oblique/mechanism/complex_plane.h>
 
-namespace oblique {
+namespace oblique::triad {
 namespace {
 
 constexpr int kHighest = 6;  // derivative that is asked whether it has a zero
@@ -186,4 +186,4 @@ Directions zeros(const TrigonometricCubic& f, double negligible) {
   return Search(f, negligible).all();
 }
 
-}  // namespace oblique
+}  // namespace oblique::triad

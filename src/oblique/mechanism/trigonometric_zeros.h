@@ -4,7 +4,7 @@
 #include <array>
 #include <complex>
 
-namespace oblique {
+namespace oblique::triad {
 
 /// Real trigonometric polynomial of degree 3: f(θ) = c₀ + Re(c₁z + c₂z² + c₃z³), z = e^{iθ}.
 struct TrigonometricCubic {
@@ -35,4 +35,4 @@ struct Directions {
 /// the derivatives up to the sixth stays away from zero on a short enough arc.
 Directions zeros(const TrigonometricCubic& f, double negligible);
 
-}  // namespace oblique
+}  // namespace oblique::triad
