@@ -23,27 +23,28 @@ Structure structure_of(const Mechanism& mechanism) {
   return structure;
 }
 
+Motion motion_of(const Mechanism& mechanism, const Structure& structure) {
+  std::vector<double> times;
+  times.reserve(kScalingPositions);
+  const double turn = period(mechanism);
+  for (int k = 0; k < kScalingPositions; ++k) times.push_back(turn * k / (kScalingPositions - 1));
+  return solve_motion(mechanism, structure, times);
+}
+
 }  // namespace
 
 PatchBuilder::PatchBuilder(const Mechanism& mechanism, const PatchOptions& options)
     : mechanism_(mechanism),
       options_(options),
       structure_(structure_of(mechanism)),
-      scaling_(find_scaling(mechanism, structure_, scaling_motion())),
+      motion_(motion_of(mechanism, structure_)),
+      scaling_(find_scaling(mechanism, structure_, motion_)),
       bandwidth_(options.bandwidth.value_or(default_bandwidth(mechanism))),
       signals_(mechanism.points.size()),
       points_(mechanism.points.size()) {
   for (std::size_t point = 0; point < points_.size(); ++point) {
     if (mechanism.points[point].fixed) set_known(point);
   }
-}
-
-Motion PatchBuilder::scaling_motion() const {
-  std::vector<double> times;
-  times.reserve(kScalingPositions);
-  const double turn = period(mechanism_);
-  for (int k = 0; k < kScalingPositions; ++k) times.push_back(turn * k / (kScalingPositions - 1));
-  return solve_motion(mechanism_, structure_, times);
 }
 
 void PatchBuilder::describe(const std::string& method, const std::string& remarks) {

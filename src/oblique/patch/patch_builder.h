@@ -81,6 +81,7 @@ class PatchBuilder {
   const Mechanism& mechanism_;
   const PatchOptions& options_;
   Structure structure_;
+  Motion motion_;  ///< exact, half a degree apart: for ranges
   Scaling scaling_;
   double bandwidth_;
   std::vector<PointSignals> signals_;
@@ -90,7 +91,6 @@ class PatchBuilder {
   Diagram diagram_;
 
  private:
-  Motion scaling_motion() const;
   const std::pair<BodyPoint, BodyPoint>& base_of(std::size_t body);
 
   std::set<std::string> names_;
