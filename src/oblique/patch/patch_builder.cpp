@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/patch/patch_builder.h>
 
+#include <algorithm>
+#include <cmath>
 #include <complex>
 
 #include <fmt/format.h>
@@ -206,11 +208,15 @@ PatchBuilder::LineForm PatchBuilder::line_form(const std::optional<std::size_t>&
 }
 
 PatchBuilder::Terms PatchBuilder::terms_of(const LinearForm& form) const {
+  double largest = std::abs(form.constant);
+  for (const auto& [signal, weight] : form.weights) largest = std::max(largest, std::abs(weight));
+  // the rounding of a cosine of 90° is no potentiometer
+  constexpr double kRounding = 1e-15;
   Terms terms;
   for (const auto& [signal, weight] : form.weights) {
-    if (weight != 0) terms.push_back({weight, signal});
+    if (std::abs(weight) > kRounding * largest) terms.push_back({weight, signal});
   }
-  if (form.constant != 0 || terms.empty()) terms.push_back({form.constant, one_});
+  if (std::abs(form.constant) > kRounding * largest || terms.empty()) terms.push_back({form.constant, one_});
   return terms;
 }
 

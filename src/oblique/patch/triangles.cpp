@@ -206,7 +206,12 @@ class TrianglePatch : private PatchBuilder {
     return settings;
   }
 
-  Entry wire(const char* port, const LinearForm& form) const { return wire_setting(port, terms_of(form)); }
+  /// A form for an input that takes one signal: a summer stands before it where it has more terms.
+  Entry wire(const std::string& block, const char* port, const LinearForm& form) {
+    const Terms terms = terms_of(form);
+    if (terms.size() == 1) return wire_setting(port, terms);
+    return wire_setting(port, {{1, add_block(block + "_" + port, "summer", {sum_of(terms)})}});
+  }
 
   /// Places the unknown point or body of a group and all that it carries.
   void add_group(const Group& group) {
@@ -274,7 +279,8 @@ class TrianglePatch : private PatchBuilder {
     });
     const std::string block = add_block(
         name + "_line", "dyad-rpr",
-        with_amplifiers({wire("px", p.x), wire("py", p.y), wire("qx", q.x), wire("qy", q.y),
+        with_amplifiers({wire(name + "_line", "px", p.x), wire(name + "_line", "py", p.y),
+                         wire(name + "_line", "qx", q.x), wire(name + "_line", "qy", q.y),
                          number_setting("offset", scaled(normal.dot(on_line.line.point - hinge.a.local))),
                          number_setting("side", group.side), number_setting("reach", reach)}),
         fmt::format("dyad {} (RPR): {} turns about {}, and its line passes through {}", group.name, name,
@@ -300,10 +306,12 @@ class TrianglePatch : private PatchBuilder {
       });
       block = add_block(
           name + "_slide", "dyad-rrp",
-          with_amplifiers({wire("px", first.at.x), wire("py", first.at.y), wire("ax", second.at.x),
-                           wire("ay", second.at.y), wire("ux", second.direction.x),
-                           wire("uy", second.direction.y), number_setting("r", scaled(first.radius)),
-                           number_setting("side", group.side), number_setting("reach", reach)}),
+          with_amplifiers({wire(name + "_slide", "px", first.at.x), wire(name + "_slide", "py", first.at.y),
+                           wire(name + "_slide", "ax", second.at.x), wire(name + "_slide", "ay", second.at.y),
+                           wire(name + "_slide", "ux", second.direction.x),
+                           wire(name + "_slide", "uy", second.direction.y),
+                           number_setting("r", scaled(first.radius)), number_setting("side", group.side),
+                           number_setting("reach", reach)}),
           fmt::format("dyad {} (RRP): at {:.6g} {} from a point, and on a line", group.name, first.radius,
                       mechanism_.length_unit));
     } else {
@@ -315,9 +323,12 @@ class TrianglePatch : private PatchBuilder {
       const Eigen::Vector2d u = first.heading(start), v = second.heading(start);
       block = add_block(
           name + "_slide", "dyad-prp",
-          with_amplifiers({wire("ax", first.at.x), wire("ay", first.at.y), wire("ux", first.direction.x),
-                           wire("uy", first.direction.y), wire("bx", second.at.x), wire("by", second.at.y),
-                           wire("vx", second.direction.x), wire("vy", second.direction.y),
+          with_amplifiers({wire(name + "_slide", "ax", first.at.x), wire(name + "_slide", "ay", first.at.y),
+                           wire(name + "_slide", "ux", first.direction.x),
+                           wire(name + "_slide", "uy", first.direction.y),
+                           wire(name + "_slide", "bx", second.at.x), wire(name + "_slide", "by", second.at.y),
+                           wire(name + "_slide", "vx", second.direction.x),
+                           wire(name + "_slide", "vy", second.direction.y),
                            number_setting("side", u.x() * v.y() - u.y() * v.x() > 0 ? 1 : -1),
                            number_setting("reach", reach)}),
           fmt::format("dyad {} ({}): where two lines meet", group.name, kind_name(group.kind)));
