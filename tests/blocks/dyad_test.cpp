@@ -67,6 +67,35 @@ TEST(DyadRpr, PointsThroughTheOtherPivot) {
   }
 }
 
+// C = (x, y) with |C − P| = 0.5 and |C − Q| = w on P = 0, Q = (0.9, 0): x = (0.81 + 0.25 − w²)/1.8.
+TEST(DyadRrrVariable, FollowsItsSide) {
+  for (const int side : {1, -1}) {
+    const auto result = on_a_crank(fmt::format(
+        R"(w = {{ type = "summer", in = ["0.7*one", "0.15*sine"] }}
+c = {{ type = "dyad-rrr-variable", px = "0*one", py = "0*one", qx = "0.9*one", qy = "0*one", r2 = "w", r1 = 0.5, side = {}, gain = inf, bandwidth = inf }})",
+        side));
+    const auto x = [](double t) {
+      const double w = 0.7 + 0.15 * std::sin(t);
+      return (0.81 + 0.25 - w * w) / 1.8;
+    };
+    expect_form(result, "c.x", kIntegrated, x);
+    expect_form(result, "c.y", kIntegrated, [&](double t) { return side * std::sqrt(0.25 - x(t) * x(t)); });
+  }
+}
+
+TEST(TriangleVariableSide, SolvesTheLawOfCosines) {
+  const auto result = on_a_crank(
+      R"(l = { type = "summer", in = ["0.8*one", "0.1*cosine"] }
+w = { type = "summer", in = ["0.7*one", "0.15*sine"] }
+t = { type = "triangle-variable-side", side = "l", opposite = "w", adjacent = 0.5, gain = inf, bandwidth = inf })");
+  const auto cosine = [](double t) {
+    const double l = 0.8 + 0.1 * std::cos(t), w = 0.7 + 0.15 * std::sin(t);
+    return (0.25 + l * l - w * w) / l;
+  };
+  expect_form(result, "t.cos", kIntegrated, cosine);
+  expect_form(result, "t.sin", kIntegrated, [&](double t) { return std::sqrt(1 - cosine(t) * cosine(t)); });
+}
+
 // The line y = 0.4 against one of the slope −4/3 through (0.2, turn), which goes up and down.
 TEST(DyadPrp, IsWhereTheLinesMeet) {
   const Compiled made(R"(one = { type = "constant", value = 1 }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/patch/patch.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include <gmock/gmock.h>
@@ -233,6 +235,54 @@ TEST(Scaling, RoundsUpToShortNumbers) {
   EXPECT_DOUBLE_EQ(round_up(1.2345), 1.24);
   EXPECT_DOUBLE_EQ(round_up(1.23), 1.23);
   EXPECT_DOUBLE_EQ(round_up(0.071501), 0.0716);
+}
+
+// The class III mechanism of 003_69ea068b7b221c3d.txt: two triangles and one outer loop for the triad.
+TEST(Patch, TakesATriadApart) {
+  const Mechanism mechanism =
+      read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/class-iii.toml");
+  const Diagram diagram = patch_triangles(mechanism);
+  const auto count = [&](const std::string& type) {
+    return std::count_if(diagram.blocks.begin(), diagram.blocks.end(),
+                         [&](const BlockInstance& block) { return block.type == type; });
+  };
+  EXPECT_EQ(count("dyad-rrr-variable"), 1);
+  EXPECT_EQ(count("dyad-rrr"), 1);
+  EXPECT_EQ(count("servo-amplifier"), 1);
+  EXPECT_THAT(write_diagram(diagram), HasSubstr("Of the six splits this one keeps farthest from flat"));
+}
+
+TEST(Patch, OffersTheGradientWhereATriadHasNoSplit) {
+  const Mechanism mechanism =
+      read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/class-iii-guided.toml");
+  try {
+    patch_triangles(mechanism);
+    FAIL();
+  } catch (const PatchError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("has no split into two triangles that never go flat"));
+    EXPECT_THAT(error.what(), HasSubstr("remedy: patch it with --method gradient"));
+  }
+}
+
+TEST(Patch, RefusesAGradientServoOfInfiniteGain) {
+  PatchOptions options;
+  options.method = PatchMethod::gradient;
+  options.gain = std::numeric_limits<double>::infinity();
+  try {
+    patch(read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/four-bar.toml"), options);
+    FAIL();
+  } catch (const PatchError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("a gradient servo of infinite gain has no time scale"));
+  }
+}
+
+TEST(Patch, RefusesASpeedThatVaries) {
+  try {
+    patch(read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/roberts.toml"));
+    FAIL();
+  } catch (const PatchError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("drive 'swing' has a speed that varies"));
+  }
 }
 
 }  // namespace
