@@ -78,12 +78,14 @@ class TrianglePatch : private SlideDyadPatch {
     const std::string length = free_name(name_of(closing.b.point) + name_of(b));
     const std::string first = add_block(
         name_of(b), "dyad-rrr-variable",
-        with_amplifiers({wire(name_of(b), "px", points_[tracked.b.point]->x),
-                         wire(name_of(b), "py", points_[tracked.b.point]->y),
-                         wire(name_of(b), "qx", points_[closing.b.point]->x),
-                         wire(name_of(b), "qy", points_[closing.b.point]->y),
-                         wire_setting("r2", {{1, length}}), number_setting("r1", scaled(tracked.value)),
-                         number_setting("side", split.first_side), number_setting("reach", reach)}),
+        with_start(
+            with_amplifiers({wire(name_of(b), "px", points_[tracked.b.point]->x),
+                             wire(name_of(b), "py", points_[tracked.b.point]->y),
+                             wire(name_of(b), "qx", points_[closing.b.point]->x),
+                             wire(name_of(b), "qy", points_[closing.b.point]->y),
+                             wire_setting("r2", {{1, length}}), number_setting("r1", scaled(tracked.value)),
+                             number_setting("side", split.first_side), number_setting("reach", reach)}),
+            tracked.b.point, closing.b.point, b, reach),
         fmt::format(
             "triad {}: the distance {}–{} is taken for known, up to {:.4g} {}; then {} is the apex of "
             "{}–{}–{},\n{} that of {}–{}–{}, and {}–{} closes the loop. Of the six splits this one keeps "
@@ -98,14 +100,17 @@ class TrianglePatch : private SlideDyadPatch {
     double longest = 0;
     for (const Configuration& here : motion_.configurations)
       longest = std::max(longest, (here.points[third.b.point].position - here.points[b].position).norm());
+    const double second_reach = round_up(scaled(longest));
     const std::string second = add_block(
         name_of(d), "dyad-rrr",
-        with_amplifiers({wire_setting("px", {x_of(b, 1)}), wire_setting("py", {y_of(b, 1)}),
-                         wire(name_of(d), "qx", points_[third.b.point]->x),
-                         wire(name_of(d), "qy", points_[third.b.point]->y),
-                         number_setting("r1", scaled((third.a.local - tracked.a.local).norm())),
-                         number_setting("r2", scaled(third.value)), number_setting("side", split.second_side),
-                         number_setting("reach", round_up(scaled(longest)))}));
+        with_start(with_amplifiers({wire_setting("px", {x_of(b, 1)}), wire_setting("py", {y_of(b, 1)}),
+                                    wire(name_of(d), "qx", points_[third.b.point]->x),
+                                    wire(name_of(d), "qy", points_[third.b.point]->y),
+                                    number_setting("r1", scaled((third.a.local - tracked.a.local).norm())),
+                                    number_setting("r2", scaled(third.value)),
+                                    number_setting("side", split.second_side),
+                                    number_setting("reach", second_reach)}),
+                   b, third.b.point, d, second_reach));
     signals_[d] = {second + ".x", second + ".y"};
     set_known(d);
     const Body& platform = mechanism_.bodies[core];
@@ -125,6 +130,24 @@ class TrianglePatch : private SlideDyadPatch {
       if (signals_[point].x.empty())
         add_summed_point(point, terms_of(points_[point]->x), terms_of(points_[point]->y), {});
     }
+  }
+
+  /// Where the loops of a dyad on P and Q with the apex C stand at the start: a group of loops that hang on
+  /// each other finds its rest from there.
+  std::vector<Entry> with_start(std::vector<Entry> settings, std::size_t p, std::size_t q, std::size_t c,
+                                double reach) const {
+    const Configuration& start = motion_.configurations.front();
+    const Eigen::Vector2d d = start.points[q].position - start.points[p].position;
+    const Eigen::Vector2d e = start.points[c].position - start.points[p].position;
+    const double lengths = d.norm() * e.norm();
+    const auto cosine = [](double value) { return std::clamp(value, -1.0, 1.0); };
+    settings.push_back(number_setting("start_length", scaled(d.norm()) / reach));
+    settings.push_back(number_setting("start_cos", cosine(d.x() / d.norm())));
+    settings.push_back(number_setting("start_sin", cosine(d.y() / d.norm())));
+    settings.push_back(number_setting("start_angle_cos", cosine(d.dot(e) / lengths)));
+    settings.push_back(
+        number_setting("start_angle_sin", cosine(std::abs(d.x() * e.y() - d.y() * e.x()) / lengths)));
+    return settings;
   }
 
   /// What |ZC|² lacks, over l², drives the variable length.
