@@ -58,12 +58,10 @@ void ConstraintGraph::add(Edge edge) {
 bool ConstraintGraph::find_unknown(std::size_t vertex, std::vector<bool>& seen) {
   seen[vertex] = true;
   if (owned_[vertex].size() < static_cast<std::size_t>(capacity_[vertex])) return true;
-  for (std::size_t i = 0; i < owned_[vertex].size(); ++i) {
-    const std::size_t index = owned_[vertex][i];
+  for (const std::size_t index : owned_[vertex]) {
     Edge& edge = edges_[index];
     const std::size_t other = edge.a == vertex ? edge.b : edge.a;
     if (!exists(other) || seen[other] || !find_unknown(other, seen)) continue;
-    // the search may have changed the list
     auto& list = owned_[vertex];
     list.erase(std::find(list.begin(), list.end(), index));
     edge.owner = other;

@@ -310,13 +310,13 @@ void GroupSolver::search(std::span<const DriveState> drives, const Configuration
     constexpr double kSame = 1e-6;
     return std::none_of(found.poses.begin(), found.poses.end(), [&](const GroupPose& other) {
       double far = 0;
-      for (std::size_t i = 0; i < pose.cores.size(); ++i) {
-        far = std::max(far, (pose.cores[i].position - other.cores[i].position).norm());
-        far = std::max(far, size_ * std::hypot(pose.cores[i].cosine - other.cores[i].cosine,
-                                               pose.cores[i].sine - other.cores[i].sine));
+      for (std::size_t i = 0; const GroupPose::Core& core : pose.cores) {
+        const GroupPose::Core& twin = other.cores[i++];
+        far = std::max(far, (core.position - twin.position).norm());
+        far = std::max(far, size_ * std::hypot(core.cosine - twin.cosine, core.sine - twin.sine));
       }
-      for (std::size_t i = 0; i < pose.points.size(); ++i)
-        far = std::max(far, (pose.points[i] - other.points[i]).norm());
+      for (std::size_t i = 0; const Vector2d& point : pose.points)
+        far = std::max(far, (point - other.points[i++]).norm());
       return far < kSame * size_;
     });
   };
@@ -347,11 +347,13 @@ void GroupSolver::search(std::span<const DriveState> drives, const Configuration
   const int starts = 60 * static_cast<int>(equations_.unknowns());
   for (int i = 0; i < starts; ++i) {
     GroupPose guess;
-    for (std::size_t core = 0; core < cores_.size(); ++core) {
+    guess.cores.resize(cores_.size());
+    for (GroupPose::Core& core : guess.cores) {
       const double angle = 2 * std::numbers::pi * fraction();
-      guess.cores.push_back({place_in_box(), std::cos(angle), std::sin(angle)});
+      core = {place_in_box(), std::cos(angle), std::sin(angle)};
     }
-    for (std::size_t point = 0; point < free_.size(); ++point) guess.points.push_back(place_in_box());
+    guess.points.resize(free_.size());
+    for (Vector2d& point : guess.points) point = place_in_box();
     attempt(guess);
   }
 }
