@@ -45,9 +45,9 @@ class DriveClock {
   /// Where a drive stands at time `t` [s].
   DriveState at(std::size_t drive, double t);
 
-  /// The first time after 0 at which a drive has gone `way` [rad or length unit] from its start, in either
+  /// The first time after 0 at which a drive has gone `wanted` [rad or length unit] from its start, in either
   /// direction; nothing within `latest` [s].
-  std::optional<double> time_of_way(std::size_t drive, double way, double latest);
+  std::optional<double> time_of_way(std::size_t drive, double wanted, double latest);
 
  private:
   double way(std::size_t drive, double t);
