@@ -31,6 +31,7 @@ double parse_quantity(std::string_view text, const Unit& wanted, const NameLooku
 
 /// What a number before the unit in `text`, from `rest` on, is multiplied by to be in `wanted`; 1 where there
 /// is none. Throws ExpressionError.
-double unit_factor(std::string_view text, std::size_t rest, const Unit& wanted, const NameLookup& lookup = {});
+double unit_factor(std::string_view text, std::size_t rest, const Unit& wanted,
+                   const NameLookup& lookup = {});
 
 }  // namespace oblique
