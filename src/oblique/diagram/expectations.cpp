@@ -65,19 +65,10 @@ std::vector<Expectation> read_expectations(const std::string& file, const Value&
     const bool good_key = split_key(entry, until, expectation, diagnostics);
     TableReader reader(file, entry.value, fmt::format("[expect] '{}'", entry.key), diagnostics);
     if (entry.value.kind != Value::Kind::table) continue;
-    const auto value = reader.required_quantity("value", "1");
-    const auto within = reader.required_quantity("within", "1");
-    if (value && !std::isfinite(*value)) {
-      reader.report("value", fmt::format("'value' of {} is infinite", reader.what()), "a finite number");
-    }
-    if (within && !(*within > 0 && std::isfinite(*within))) {
-      reader.report("within", fmt::format("'within' of {} is {}", reader.what(), *within),
-                    "a finite number above 0");
-    }
-    reader.finish();
-    if (!good_key || !value || !within) continue;
-    expectation.value = *value;
-    expectation.within = *within;
+    const auto expected = read_expected_value(reader);
+    if (!good_key || !expected) continue;
+    expectation.value = expected->value;
+    expectation.within = expected->within;
     expectations.push_back(std::move(expectation));
   }
   return expectations;

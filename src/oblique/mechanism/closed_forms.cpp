@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include <oblique/mechanism/group_solver.h>
+#include <oblique/mechanism/plane.h>
 #include <oblique/mechanism/triad.h>
 #include <oblique/mechanism/triangle.h>
 
@@ -12,18 +13,6 @@ namespace oblique {
 namespace {
 
 using Eigen::Vector2d;
-
-Vector2d left_normal(const Vector2d& v) {
-  return {-v.y(), v.x()};
-}
-
-Vector2d turned(const Vector2d& v, double cosine, double sine) {
-  return {cosine * v.x() - sine * v.y(), sine * v.x() + cosine * v.y()};
-}
-
-double cross(const Vector2d& a, const Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
 
 double largest(const Vector2d& v) {
   return v.lpNorm<Eigen::Infinity>();

@@ -33,6 +33,9 @@ class ConstraintGraph {
 
   const std::vector<Edge>& edges() const { return edges_; }
 
+  /// The edges that determine a vertex, indices in `edges`.
+  const std::vector<std::size_t>& owned(std::size_t vertex) const { return owned_[vertex]; }
+
   /// Conditions that find no unknown left to determine, in the order in which they were added.
   const std::vector<std::size_t>& redundant() const { return redundant_; }
 

@@ -22,9 +22,6 @@ struct MotionEvent {
   std::size_t group = 0;  ///< index in Structure::groups
 };
 
-/// "limit", "return", "change point".
-std::string_view event_name(MotionEvent::Kind kind);
-
 /// Follows a mechanism from time 0. Steps are made so small that no body turns by more than 30° in one, that
 /// no group's regularity (GroupSolver) changes sign or by more than a factor of two, and that Newton's method
 /// finds its guess nearly right; so a group never changes its mode between two steps. Where the regularity

@@ -4,19 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include <oblique/mechanism/plane.h>
+
 namespace oblique {
 namespace {
 
 using Eigen::Vector2d;
-
-Vector2d left_normal(const Vector2d& v) {
-  return {-v.y(), v.x()};
-}
-
-Vector2d turned(const Vector2d& v, double angle) {
-  const double c = std::cos(angle), s = std::sin(angle);
-  return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};
-}
 
 bool has(const std::vector<std::size_t>& list, std::size_t item) {
   return std::find(list.begin(), list.end(), item) != list.end();

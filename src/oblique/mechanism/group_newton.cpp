@@ -9,20 +9,13 @@
 #include <Eigen/LU>
 
 #include <oblique/mechanism/group_solver.h>
+#include <oblique/mechanism/plane.h>
 
 namespace oblique {
 namespace {
 
 using Eigen::Index;
 using Eigen::Vector2d;
-
-Vector2d left_normal(const Vector2d& v) {
-  return {-v.y(), v.x()};
-}
-
-Vector2d turned(const Vector2d& v, double cosine, double sine) {
-  return {cosine * v.x() - sine * v.y(), sine * v.x() + cosine * v.y()};
-}
 
 /// A point of a body whose base moves like this.
 PointState carried(const PointState& base, const Vector2d& way, double omega, double alpha) {
@@ -286,13 +279,6 @@ bool GroupSolver::newton(std::span<const DriveState> drives, const Configuration
   }
   evaluate(drives, here);
   return right_.lpNorm<Eigen::Infinity>() <= rounding;
-}
-
-double GroupSolver::residual(std::span<const DriveState> drives, const Configuration& here) {
-  if (form_ == Form::crank) return 0;
-  load(here);
-  evaluate(drives, here);
-  return right_.lpNorm<Eigen::Infinity>() / size_;
 }
 
 std::optional<GroupPose> GroupSolver::close(std::span<const DriveState> drives, const Configuration& here,

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include <oblique/mechanism/plane.h>
 #include <oblique/mechanism/triangle.h>
 
 namespace oblique {
@@ -15,14 +16,6 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
-Vector2d left_normal(const Vector2d& v) {
-  return {-v.y(), v.x()};
-}
-
-Vector2d turned(const Vector2d& v, double cosine, double sine) {
-  return {cosine * v.x() - sine * v.y(), sine * v.x() + cosine * v.y()};
-}
 
 }  // namespace
 

@@ -66,9 +66,6 @@ class GroupSolver {
   /// guess was.
   double correction() const { return correction_; }
 
-  /// Largest violated condition of the last placement over the group's size.
-  double residual(std::span<const DriveState> drives, const Configuration& here);
-
  private:
   enum class Form { crank, dyad, loci, pivot, newton };
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/mechanism/kinematics.h>
 
-#include <algorithm>
 #include <cmath>
+
+#include <oblique/mechanism/plane.h>
 
 namespace oblique {
 
@@ -43,20 +44,17 @@ void Kinematics::finish(std::span<const DriveState> drives, Configuration& here)
     double omega = 0, alpha = 0;
     if (line.kind != LineRef::Kind::fixed) {
       const BodyState& body = here.bodies[line.body];
-      const auto turned = [&](const Vector2d& v) {
-        return Vector2d(body.cosine * v.x() - body.sine * v.y(), body.sine * v.x() + body.cosine * v.y());
-      };
       const PointState& base = here.points[mechanism_.bodies[line.body].points.front().point];
-      const Vector2d arm = turned(line.point);
-      const Vector2d arm_left(-arm.y(), arm.x());
+      const Vector2d arm = turned(line.point, body.cosine, body.sine);
+      const Vector2d arm_left = left_normal(arm);
       omega = body.omega;
       alpha = body.alpha;
-      u = turned(line.direction);
+      u = turned(line.direction, body.cosine, body.sine);
       way = p.position - base.position - arm;
       rate -= base.velocity + omega * arm_left;
       second -= base.acceleration + alpha * arm_left - omega * omega * arm;
     }
-    const Vector2d n(-u.y(), u.x());
+    const Vector2d n = left_normal(u);
     here.slides[s] = {
         u.dot(way), u.dot(rate) + omega * n.dot(way),
         u.dot(second) + 2 * omega * n.dot(rate) + alpha * n.dot(way) - omega * omega * u.dot(way)};
@@ -81,12 +79,6 @@ void Kinematics::load_start(Configuration& here) const {
     for (std::size_t i = 0; i < group.start.points.size(); ++i)
       here.points[group.equations.free_points[i]].position = group.start.points[i];
   }
-}
-
-double Kinematics::residual(std::span<const DriveState> drives, const Configuration& here) {
-  double largest = 0;
-  for (GroupSolver& solver : solvers_) largest = std::max(largest, solver.residual(drives, here));
-  return largest;
 }
 
 Configuration start_configuration(const Mechanism& mechanism, const Structure& structure) {

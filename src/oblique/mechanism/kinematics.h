@@ -33,9 +33,6 @@ class Kinematics {
   const Mechanism& mechanism() const { return mechanism_; }
   const Structure& structure() const { return structure_; }
 
-  /// Largest violated condition of any group over the group's size, of a finished configuration.
-  double residual(std::span<const DriveState> drives, const Configuration& here);
-
  private:
   const Mechanism& mechanism_;
   const Structure& structure_;

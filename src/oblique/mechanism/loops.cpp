@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <oblique/mechanism/plane.h>
+
 namespace oblique {
 namespace {
 
@@ -98,10 +100,6 @@ std::optional<std::pair<std::size_t, std::size_t>> crank_at(const Mechanism& mec
     if (const auto foot = pivot(mechanism, body)) return std::pair{body, *foot};
   }
   return std::nullopt;
-}
-
-double cross(const Vector2d& a, const Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
 }
 
 SliderLoop::Type slider_crank_type(double r, double l, double e) {

@@ -286,23 +286,4 @@ std::vector<MotionColumn> motion_columns(const Mechanism& mechanism, const Motio
   return columns;
 }
 
-std::string motion_csv(const Mechanism& mechanism, const Motion& motion) {
-  return motion_csv(motion_columns(mechanism, motion), motion);
-}
-
-std::string motion_csv(const std::vector<MotionColumn>& columns, const Motion& motion) {
-  std::string text;
-  for (const MotionColumn& column : columns) text += column.name + ",";
-  text += "status\n";
-  for (std::size_t row = 0; row < motion.times.size(); ++row) {
-    for (const MotionColumn& column : columns) {
-      if (!std::isnan(column.values[row])) fmt::format_to(std::back_inserter(text), "{}", column.values[row]);
-      text += ",";
-    }
-    text += status_name(motion.configurations[row].status);
-    text += "\n";
-  }
-  return text;
-}
-
 }  // namespace oblique

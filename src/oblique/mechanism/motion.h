@@ -101,9 +101,4 @@ struct MotionColumn {
 };
 std::vector<MotionColumn> motion_columns(const Mechanism& mechanism, const Motion& motion);
 
-/// The columns and `status` as CSV: a header of names, then a line for each row; numbers read back to the
-/// same bits, what has no value is empty.
-std::string motion_csv(const Mechanism& mechanism, const Motion& motion);
-std::string motion_csv(const std::vector<MotionColumn>& columns, const Motion& motion);
-
 }  // namespace oblique

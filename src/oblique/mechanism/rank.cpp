@@ -8,6 +8,7 @@
 #include <Eigen/SVD>
 
 #include <oblique/mechanism/follower.h>
+#include <oblique/mechanism/plane.h>
 
 namespace oblique {
 namespace {
@@ -17,10 +18,6 @@ using Eigen::Vector2d;
 
 Vector2d turned(const BodyPose& pose, const Vector2d& v) {
   return {pose.cosine * v.x() - pose.sine * v.y(), pose.sine * v.x() + pose.cosine * v.y()};
-}
-
-Vector2d left_normal(const Vector2d& v) {
-  return {-v.y(), v.x()};
 }
 
 class Rows {

@@ -4,19 +4,18 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <queue>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <oblique/mechanism/assembly.h>
+#include <oblique/mechanism/assur_class.h>
 #include <oblique/mechanism/constraint_graph.h>
+#include <oblique/mechanism/mobility_report.h>
 #include <oblique/mechanism/redundancy.h>
 
 namespace oblique {
 namespace {
-
-using Edge = ConstraintGraph::Edge;
 
 bool has(const std::vector<std::size_t>& list, std::size_t item) {
   return std::find(list.begin(), list.end(), item) != list.end();
@@ -24,121 +23,6 @@ bool has(const std::vector<std::size_t>& list, std::size_t item) {
 
 void add_once(std::vector<std::size_t>& list, std::size_t item) {
   if (!has(list, item)) list.push_back(item);
-}
-
-std::string quoted_bodies(const Mechanism& mechanism, const std::vector<std::size_t>& bodies) {
-  std::vector<std::string> names;
-  names.reserve(bodies.size());
-  for (const std::size_t body : bodies) names.push_back("'" + mechanism.bodies[body].name + "'");
-  return fmt::format("{} {}", names.size() == 1 ? "body" : "bodies", fmt::join(names, ", "));
-}
-
-/// Points that only one body names and frame points that none names: where a hinge may have been meant.
-std::string loose_ends(const Mechanism& mechanism) {
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < mechanism.points.size(); ++i) {
-    const std::size_t needed = mechanism.points[i].fixed ? 1 : 2;
-    const bool slides = std::any_of(mechanism.slides.begin(), mechanism.slides.end(), [&](const Slide& s) {
-      return s.point == i || s.first == i || s.second == i;
-    });
-    if (mechanism.bodies_at(i).size() < needed && !slides) names.push_back(mechanism.points[i].name);
-  }
-  if (names.empty()) return {};
-  return fmt::format("; no hinge at {}: is a name misspelt?", fmt::join(names, ", "));
-}
-
-/// "3·3 bodies − 2·3 hinges − 1 slide".
-std::string mobility_formula(const Mechanism& mechanism) {
-  int slides = 0;
-  for (const Slide& slide : mechanism.slides) slides += slide.of ? 2 : 1;
-  const int bodies = static_cast<int>(mechanism.bodies.size());
-  const int hinges = (3 * bodies - slides - mobility(mechanism)) / 2;
-  std::string text = fmt::format("3·{} bodies − 2·{} hinges", bodies, hinges);
-  if (slides > 0) text += fmt::format(" − {} for slides", slides);
-  return text;
-}
-
-void check_mobility(const Mechanism& mechanism) {
-  const int freedom = mobility(mechanism);
-  const int drives = static_cast<int>(mechanism.drives.size());
-  if (freedom == drives) return;
-  Diagnostic finding;
-  finding.place = drives > 0 ? mechanism.drives.back().place : mechanism.bodies.front().place;
-  finding.what = fmt::format("the mechanism has mobility {} ({}) but {} {}", freedom,
-                             mobility_formula(mechanism), drives, drives == 1 ? "drive" : "drives");
-  finding.expected = "one drive for each degree of freedom";
-  if (freedom > drives) {
-    finding.remedy = fmt::format("under-driven: add {} or join bodies by hinges",
-                                 freedom - drives == 1 ? "a drive" : "drives") +
-                     loose_ends(mechanism);
-  } else {
-    finding.remedy = freedom < 0 ? "over-constrained: leave out bodies or hinges"
-                                 : "over-driven: leave out drives, or add bodies";
-  }
-  throw MechanismError(MechanismError::Kind::mobility, std::move(finding));
-}
-
-std::vector<std::size_t> bodies_among(const ConstraintGraph& graph,
-                                      const std::vector<std::size_t>& vertices) {
-  std::vector<std::size_t> bodies;
-  for (const std::size_t v : vertices) {
-    if (graph.is_body(v)) bodies.push_back(v);
-  }
-  return bodies;
-}
-
-/// One finding for each place where conditions are too many, and one for what moves freely.
-void check_parts(const Mechanism& mechanism, const ConstraintGraph& graph) {
-  std::vector<Diagnostic> findings;
-  std::vector<std::pair<Edge::Kind, std::size_t>> told;
-  for (const std::size_t index : graph.redundant()) {
-    const Edge& edge = graph.edges()[index];
-    const auto pair = std::pair(edge.kind, edge.kind == Edge::Kind::hinge
-                                               ? edge.index * mechanism.points.size() + edge.point
-                                               : edge.index);
-    if (std::find(told.begin(), told.end(), pair) != told.end()) continue;
-    told.push_back(pair);
-    auto others = bodies_among(graph, graph.competitors(index));
-    Diagnostic finding;
-    const auto follows = [&](const std::string& what) {
-      return fmt::format("{} too much: {} fix it already", what, quoted_bodies(mechanism, others));
-    };
-    switch (edge.kind) {
-      case Edge::Kind::hinge:
-        std::erase(others, edge.index);
-        finding.place = mechanism.bodies[edge.index].place;
-        finding.what = fmt::format(
-            "body '{}' is over-constrained: its hinge at '{}' is too much, since {} fix it already",
-            mechanism.bodies[edge.index].name, mechanism.points[edge.point].name,
-            others.empty() ? "its other points" : quoted_bodies(mechanism, others));
-        finding.remedy = "leave the body out, or remove another hinge, slide or drive of these bodies";
-        break;
-      case Edge::Kind::on_line:
-      case Edge::Kind::angle:
-        finding.place = mechanism.slides[edge.index].place;
-        finding.what = follows(fmt::format("slide '{}' is", mechanism.slides[edge.index].name));
-        finding.remedy = "leave the slide out, or remove another hinge, slide or drive of these bodies";
-        break;
-      case Edge::Kind::turn:
-      case Edge::Kind::along:
-        finding.place = mechanism.drives[edge.index].place;
-        finding.what = follows(fmt::format("drive '{}' is", mechanism.drives[edge.index].name));
-        finding.remedy = "drive another body";
-        break;
-    }
-    findings.push_back(std::move(finding));
-  }
-  if (graph.freedom() > 0) {
-    const auto bodies = bodies_among(graph, graph.movable());
-    Diagnostic finding;
-    finding.place = mechanism.bodies[bodies.empty() ? 0 : bodies.front()].place;
-    finding.what = fmt::format("{} can move freely (mobility {} after the drives)",
-                               quoted_bodies(mechanism, bodies), graph.freedom());
-    finding.expected = "every body held by drives and pairs";
-    finding.remedy = "hinge to the rest, or drive" + loose_ends(mechanism);
-    findings.push_back(std::move(finding));
-  }
-  if (!findings.empty()) throw MechanismError(MechanismError::Kind::mobility, std::move(findings));
 }
 
 /// A group while it is put together.
@@ -179,11 +63,12 @@ class Decomposition {
         } else {
           part.members.points.push_back(graph_.point_of(v));
         }
-        for (const Edge& edge : graph_.edges()) {
-          if (edge.owner != v) continue;
-          if (edge.kind == Edge::Kind::turn || edge.kind == Edge::Kind::along) {
+        for (const std::size_t owned : graph_.owned(v)) {
+          const ConstraintGraph::Edge& edge = graph_.edges()[owned];
+          if (edge.kind == ConstraintGraph::Edge::Kind::turn ||
+              edge.kind == ConstraintGraph::Edge::Kind::along) {
             add_once(part.members.drives, edge.index);
-          } else if (edge.kind != Edge::Kind::hinge) {
+          } else if (edge.kind != ConstraintGraph::Edge::Kind::hinge) {
             add_once(part.members.slides, edge.index);
           }
           const std::size_t other = edge.a == v ? edge.b : edge.a;
@@ -245,9 +130,10 @@ class Decomposition {
     group.name = fmt::format("{}", fmt::join(names, "-"));
     group.equations = reduce(mechanism_, part.members, known_);
     group.kind = kind_of(group);
-    group.order = order_of(part.members);
-    group.assur_class =
-        group.kind == GroupKind::crank || group.kind == GroupKind::slider ? 1 : class_of(part.members);
+    group.order = order_of(mechanism_, part.members, known_);
+    group.assur_class = group.kind == GroupKind::crank || group.kind == GroupKind::slider
+                            ? 1
+                            : class_of(mechanism_, part.members, known_);
     group.points = part.members.points;
     group.points.insert(group.points.end(), part.carried.begin(), part.carried.end());
     std::sort(group.points.begin(), group.points.end());
@@ -297,85 +183,6 @@ class Decomposition {
     if (distances == 2) return GroupKind::rrr;
     if (distances == 1) return on_own == 1 ? GroupKind::rpr : GroupKind::rrp;
     return on_own > 0 ? GroupKind::rpp : GroupKind::prp;
-  }
-
-  /// Pairs with what is placed before.
-  int order_of(const GroupMembers& members) const {
-    int pairs = 0;
-    for (const std::size_t body : members.bodies) {
-      for (const BodyPoint& p : mechanism_.bodies[body].points) pairs += known_[p.point] ? 1 : 0;
-    }
-    for (const std::size_t s : members.slides) {
-      const Slide& slide = mechanism_.slides[s];
-      if (!slide.carrier || !has(members.bodies, *slide.carrier))
-        ++pairs;
-      else if (!slide.of && known_[slide.point])
-        ++pairs;
-      else if (slide.of && !has(members.bodies, *slide.of))
-        ++pairs;
-    }
-    return pairs;
-  }
-
-  /// Bodies and pairs as a graph: its largest closed contour is a body with that many pairs, or the longest
-  /// of the shortest loops through a pair.
-  int class_of(const GroupMembers& members) const {
-    struct Pair {
-      std::vector<std::size_t> bodies;  ///< of the group
-      int others;                       ///< elements outside of it
-    };
-    std::vector<Pair> pairs;
-    for (std::size_t point = 0; point < mechanism_.points.size(); ++point) {
-      Pair pair{{}, known_[point] ? 1 : 0};
-      for (const std::size_t body : members.bodies) {
-        if (mechanism_.bodies[body].find(point) != nullptr) pair.bodies.push_back(body);
-      }
-      if (!pair.bodies.empty() && pair.bodies.size() + static_cast<std::size_t>(pair.others) >= 2)
-        pairs.push_back(std::move(pair));
-    }
-    for (const std::size_t s : members.slides) {
-      const Slide& slide = mechanism_.slides[s];
-      Pair pair{{}, 0};
-      if (slide.carrier && has(members.bodies, *slide.carrier)) pair.bodies.push_back(*slide.carrier);
-      for (const std::size_t body : members.bodies) {
-        const bool guided =
-            slide.of ? *slide.of == body : mechanism_.bodies[body].find(slide.point) != nullptr;
-        if (guided) {
-          pair.bodies.push_back(body);
-          break;
-        }
-      }
-      pairs.push_back(std::move(pair));
-    }
-    int largest = 2;
-    for (const std::size_t body : members.bodies) {
-      const auto count =
-          std::count_if(pairs.begin(), pairs.end(), [&](const Pair& p) { return has(p.bodies, body); });
-      largest = std::max(largest, static_cast<int>(count));
-    }
-    // shortest loop through body `from` and pair `cut`: a breadth-first search that does not use the pair
-    for (std::size_t cut = 0; cut < pairs.size(); ++cut) {
-      for (std::size_t i = 1; i < pairs[cut].bodies.size(); ++i) {
-        std::vector<int> steps(mechanism_.bodies.size(), 0);
-        std::queue<std::size_t> queue;
-        steps[pairs[cut].bodies[i]] = 1;
-        queue.push(pairs[cut].bodies[i]);
-        while (!queue.empty()) {
-          const std::size_t here = queue.front();
-          queue.pop();
-          for (std::size_t p = 0; p < pairs.size(); ++p) {
-            if (p == cut || !has(pairs[p].bodies, here)) continue;
-            for (const std::size_t next : pairs[p].bodies) {
-              if (steps[next] != 0) continue;
-              steps[next] = steps[here] + 1;
-              queue.push(next);
-            }
-          }
-        }
-        largest = std::max(largest, steps[pairs[cut].bodies[0]]);
-      }
-    }
-    return largest;
   }
 
   const Mechanism& mechanism_;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include <oblique/mechanism/plane.h>
 #include <oblique/mechanism/triangle.h>
 
 namespace oblique {
@@ -12,15 +13,11 @@ namespace {
 
 using Eigen::Vector2d;
 
-double cross(const Vector2d& a, const Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
-
 Vector2d apex(const Vector2d& from, const Vector2d& to, double first, double second, int side) {
   const Vector2d d = to - from;
   const double base = d.norm();
   const Triangle shape = triangle(base, first, second);
-  return from + shape.along / base * d + side * shape.height / base * Vector2d(-d.y(), d.x());
+  return from + shape.along / base * d + side * shape.height / base * left_normal(d);
 }
 
 /// Sine of the angle at the apex of a triangle, with its side of first → second.
@@ -59,7 +56,7 @@ std::optional<TriadSplit> measure(const Group& group, const Motion& motion,
       const Vector2d first = apex(start, anchor, tracked.value, length, side1);
       const Vector2d second = apex(first, end, platform, third.value, side2);
       const Vector2d way = second - first;
-      const Vector2d c = first + a * way + b * Vector2d(-way.y(), way.x());
+      const Vector2d c = first + a * way + b * left_normal(way);
       return (c - anchor).squaredNorm() / (closing.value * closing.value);
     };
     const double step = 1e-5 * w;

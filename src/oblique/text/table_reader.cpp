@@ -143,6 +143,21 @@ Diagnostic to_diagnostic(const ExpressionError& error, const std::string& file, 
   return {{file, at}, fmt::format("{}: {}", what, error.what), error.expected, error.remedy};
 }
 
+std::optional<ExpectedValue> read_expected_value(TableReader& reader) {
+  const auto value = reader.required_quantity("value", "1");
+  const auto within = reader.required_quantity("within", "1");
+  if (value && !std::isfinite(*value)) {
+    reader.report("value", fmt::format("'value' of {} is infinite", reader.what()), "a finite number");
+  }
+  if (within && !(*within > 0 && std::isfinite(*within))) {
+    reader.report("within", fmt::format("'within' of {} is {}", reader.what(), *within),
+                  "a finite number above 0");
+  }
+  reader.finish();
+  if (!value || !within) return std::nullopt;
+  return ExpectedValue{*value, *within};
+}
+
 void check_format(TableReader& reader, std::string_view expected) {
   const auto format = reader.required_string("format", fmt::format("format = \"{}\"", expected));
   if (format && *format != expected) {

@@ -69,6 +69,15 @@ std::optional<double> read_quantity(const std::string& file, const Value& value,
 Diagnostic to_diagnostic(const ExpressionError& error, const std::string& file, const Value& string_value,
                          const std::string& what);
 
+/// What a line of `[expect]` gives: a value and how far from it counts as met.
+struct ExpectedValue {
+  double value = 0;
+  double within = 0;
+};
+
+/// Reads `{ value = …, within = … }`, both in the unit of what is expected; nothing after a finding.
+std::optional<ExpectedValue> read_expected_value(TableReader& reader);
+
 /// Checks `format = "oblique-…/1"`; reports what else stands there.
 void check_format(TableReader& reader, std::string_view expected);
 
