@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <oblique/text/diagnostic.h>
+
+namespace oblique {
+
+/// The elements a machine is made of. An amplifier is uncommitted: with its networks it becomes a summer, an
+/// inverter, an integrator or an open amplifier.
+enum class ElementKind {
+  amplifier,
+  integrator,  ///< where amplifiers are uncommitted: the network that makes one an integrator
+  summer,
+  inverter,
+  potentiometer,
+  multiplier,
+  comparator,
+  function_generator,
+};
+
+/// "amplifier", "potentiometer" …
+std::string_view element_name(ElementKind kind);
+
+/// How many elements of a kind a machine has, nothing where that is not published.
+struct ElementCount {
+  ElementKind kind = ElementKind::amplifier;
+  std::optional<double> count;  ///< inf: as many as it takes
+  std::string note;             ///< what is published in words
+};
+
+/// A published figure, as people read it.
+struct MachineFigure {
+  std::string name;   ///< "multiplier, static error"
+  std::string value;  ///< "±0.4 % of full scale", or "unknown"
+  std::string source;
+};
+
+/// A figure as it acts in the blocks of a diagram: a value for a parameter that the diagram leaves open, or
+/// how far single elements scatter about theirs.
+struct BlockFigure {
+  std::string block, parameter;
+  double value = 0;    ///< of the parameter in its unit; of a scatter its half width
+  std::string figure;  ///< MachineFigure::name it comes from
+};
+
+/// An analog computer as far as it is published.
+struct MachineProfile {
+  std::string name;  ///< of its file: "tr-10"
+  std::string title;
+  std::string source;
+  std::string comment;
+  std::optional<double> unit;        ///< [V]
+  bool inverting = true;             ///< summers and integrators invert
+  std::vector<double> input_gains;   ///< ascending; empty: any
+  std::vector<double> rates;         ///< k0 of integrators [1/s], ascending; empty: any
+  bool signed_coefficients = false;  ///< coefficients may be negative
+  std::vector<ElementCount> elements;
+  std::vector<MachineFigure> figures;
+  std::vector<BlockFigure> errors;    ///< systematic: every element has them
+  std::vector<BlockFigure> scatters;  ///< tolerances: every element draws its own, uniform within ± value
+
+  /// Nothing where the machine has no such element; a count of nothing where it is unknown.
+  const ElementCount* find(ElementKind kind) const;
+};
+
+/// The shipped profile of that name, or nothing; all of them in alphabetical order, "ideal" first.
+const MachineProfile* find_machine(std::string_view name);
+std::vector<std::string> machine_names();
+
+}  // namespace oblique
