@@ -74,6 +74,10 @@ struct PatchRequest {
   std::string gain = "1e6";
   std::string bandwidth;
   std::string method = "triangles";
+  std::string unit;
+  std::string slower = "100";
+  std::vector<std::string> split;
+  bool force = false;
 };
 ExitStatus patch_mechanism(const Session& session, const PatchRequest& request);
 
