@@ -88,12 +88,14 @@ TEST_F(OnAMachine, WhatACompositeFixesStays) {
       "[inputs]\nin = {}\n[outputs]\nout = { wire = \"c\" }\n[parameters]\ngain = { default = 7 }\n[blocks]\n"
       "a = { type = \"inverter\", in = \"in\", gain = 20 }\n"
       "b = { type = \"inverter\", in = \"a\", gain = \"2*gain\" }\n"
-      "c = { type = \"inverter\", in = \"b\" }\n");
+      "c = { type = \"inverter\", in = \"b\" }\n"
+      "d = { type = \"inverter\", in = \"b\", gain = \"gain %\" }\n");
   const FlatDiagram made = flat("one = { type = \"constant\" }\ns = { type = \"stage\", in = \"one\" }\n");
   EXPECT_EQ(parameter(made, "s.a", "gain"), 20);
   EXPECT_EQ(parameter(made, "s.b", "gain"),
             14);  // a formula of the composite's own, not the open value as it is
   EXPECT_EQ(parameter(made, "s.c", "gain"), 1000);
+  EXPECT_DOUBLE_EQ(parameter(made, "s.d", "gain"), 0.07);
 }
 
 TEST_F(OnAMachine, ABlockOfTheUserTakesTheFiguresOfTheParametersItKeeps) {

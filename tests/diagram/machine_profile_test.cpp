@@ -192,6 +192,8 @@ TEST(UnknownMachine, NamesTheNearestOne) {
     EXPECT_EQ(remedy(name), "did you mean 'tr-10'? `oblique machines` lists all") << name;
   EXPECT_THAT(remedy("МН-14"), HasSubstr("'mn-14'"));
   EXPECT_THAT(remedy("мн-14"), HasSubstr("'mn-14'"));
+  EXPECT_THAT(remedy("МН-7"), HasSubstr("'mn-7'"));
+  EXPECT_THAT(remedy("мн-7"), HasSubstr("'mn-7'"));
   EXPECT_THAT(remedy("МПТ-9"), HasSubstr("'mpt-9'"));
   EXPECT_THAT(remedy("Heathkit"), HasSubstr("'ec-1'"));
   EXPECT_THAT(remedy("telefunken"), HasSubstr("'rat-700'"));

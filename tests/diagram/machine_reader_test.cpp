@@ -74,10 +74,12 @@ TEST(ParseMachine, ReadsWhatAMachineIs) {
 
 TEST(ParseMachine, TakesMachineUnitsToo) {
   const MachineProfile machine = machine_with(
-      "[figures.offset]\nvalue = \"?\"\nerrors = { summer.offset = 0.5, inverter.offset = \"2 machine unit\" "
+      "[figures.offset]\nvalue = \"?\"\n"
+      "errors = { summer.offset = 0.5, inverter.offset = \"2 machine unit\", multiplier.offset = \"1/4\" "
       "}\n");
   EXPECT_EQ(machine.errors[0].value, 0.5);
   EXPECT_EQ(machine.errors[1].value, 2);
+  EXPECT_EQ(machine.errors[2].value, 0.25);
 }
 
 TEST(ParseMachine, ReportsAllFindingsOfAFile) {
