@@ -19,11 +19,6 @@
 namespace oblique::cli {
 namespace {
 
-/// "8 multipliers"; the name of the row as it is where it names a single block.
-std::string amount(double n, const BillRow& row) {
-  return fmt::format("{} {}", n, row.element);
-}
-
 std::string verdict_text(const Bill& bill) {
   std::vector<std::string> named;
   switch (bill.verdict()) {
@@ -31,7 +26,7 @@ std::string verdict_text(const Bill& bill) {
       return "it fits\n";
     case Bill::Verdict::does_not_fit:
       for (const BillRow& row : bill.rows) {
-        if (row.missing() > 0) named.push_back(amount(row.missing(), row));
+        if (row.missing() > 0) named.push_back(fmt::format("{} {}", row.missing(), row.element));
       }
       return fmt::format("it does not fit; missing: {}\n", fmt::join(named, ", "));
     case Bill::Verdict::cannot_tell:
@@ -49,13 +44,13 @@ std::string available_text(const BillRow& row) {
   return std::isinf(*row.available) ? "as many as it takes" : fmt::format("{}", *row.available);
 }
 
-/// A file beside the others, with what it is to hold.
+/// A file and what it is to hold.
 struct Written {
   std::string path;
   std::string text;
 };
 
-/// Writes all files or none; a neighbour of the target takes the new text until all are complete.
+/// Writes all files or none: they take their names when all are complete.
 void save_together(const std::vector<Written>& files) {
   std::list<NewFile> open;
   for (const Written& file : files) open.emplace_back(file.path).append(file.text);

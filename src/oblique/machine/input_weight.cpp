@@ -26,10 +26,10 @@ InputWeight split_weight(double weight, std::span<const double> gains) {
 
 double choose_rate(double largest, double own, std::span<const double> rates, std::span<const double> gains) {
   const double most = gains.empty() ? 1 : gains.back();
-  for (const double rate : rates) {
-    if (largest <= rate * most * (1 + kRounding)) return rate;
-  }
-  return own;
+  const auto suffices = [&](double rate) { return largest <= rate * most * (1 + kRounding); };
+  const auto found = std::find_if(rates.begin(), rates.end(), suffices);
+  if (found != rates.end()) return *found;
+  return suffices(own) ? own : std::pow(10, std::ceil(std::log10(largest / most * (1 - kRounding))));
 }
 
 }  // namespace oblique

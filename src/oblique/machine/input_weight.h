@@ -16,8 +16,9 @@ struct InputWeight {
 /// no potentiometer is needed.
 InputWeight split_weight(double weight, std::span<const double> gains);
 
-/// The least time factor of `rates` (ascending) at which one input of the greatest gain is enough for
-/// `largest` [1/s]; `own` where there is none, or no list.
+/// The least time factor of `rates` (ascending) at which one input of the greatest gain (1, where any can be
+/// had) is enough for `largest` [1/s]. Where there is none, or no list: `own`, or else the least power of ten
+/// that is enough.
 double choose_rate(double largest, double own, std::span<const double> rates, std::span<const double> gains);
 
 }  // namespace oblique

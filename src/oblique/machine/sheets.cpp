@@ -52,21 +52,20 @@ class SheetMaker {
     for (std::size_t b = 0; b < diagram_.blocks.size(); ++b) {
       if (role_of(diagram_.blocks[b].definition->name) != Role::coefficient) continue;
       const double setting = parameter_of(diagram_.blocks[b], "setting");
-      std::vector<std::string> from, to, meaning;
-      std::string source;
-      for (const Connection& c : connections_) {
-        if (c.to != b) continue;
-        source = diagram_.signal_name(c.from);
-        from.push_back(numbers_[c.from.block]);
-      }
+      const Connection& source = *std::find_if(connections_.begin(), connections_.end(),
+                                               [&](const Connection& c) { return c.to == b; });
+      std::vector<std::string> to, meanings;
       for (const Connection& c : connections_) {
         if (c.from.block != b) continue;
         to.push_back(fmt::format("{} {}", numbers_[c.to], input_text(c)));
-        meaning.push_back(meaning_of(c, setting, source));
+        const std::string meaning = meaning_of(c, setting, source.from);
+        // a square takes the wiper twice
+        if (std::find(meanings.begin(), meanings.end(), meaning) == meanings.end())
+          meanings.push_back(meaning);
       }
-      sheet.rows.push_back({numbers_[b], fmt::format("{:.4f}", setting),
-                            fmt::format("{}", fmt::join(from, ", ")), fmt::format("{}", fmt::join(to, ", ")),
-                            fmt::format("{}", fmt::join(meaning, "; "))});
+      sheet.rows.push_back({numbers_[b], fmt::format("{:.4f}", setting), numbers_[source.from.block],
+                            fmt::format("{}", fmt::join(to, ", ")),
+                            fmt::format("{}", fmt::join(meanings, "; "))});
     }
     return sheet;
   }
@@ -114,18 +113,20 @@ class SheetMaker {
     return c.inputs == 1 ? gain : fmt::format("{} inputs {}", c.inputs, gain);
   }
 
-  std::string meaning_of(const Connection& c, double setting, const std::string& source) const {
+  /// "2.5 1/s of y in x", "−0.2 in a sum", "x starts at 0.6": what a potentiometer does at one input.
+  std::string meaning_of(const Connection& c, double setting, SignalRef source) const {
     const FlatBlock& block = diagram_.blocks[c.to];
     const InputPort& port = block.definition->inputs[c.port];
+    const FlatBlock& from = diagram_.blocks[source.block];
     const bool integrator = role_of(block.definition->name) == Role::integrator;
-    const bool reference = source == "reference" || source == "minus_reference";
-    if (integrator && port.name == "start")
-      return fmt::format("{} starts at {}{:.4g}", block.path, source == "minus_reference" ? "−" : "",
-                         setting);
-    const double rate = integrator && port.sum ? parameter_of(block, "rate") : 1;
-    const double factor = setting * c.weight * c.inputs * rate;
-    return fmt::format("{:.4g}{} of {} in {}", factor, integrator ? " 1/s" : "",
-                       reference ? (source == "reference" ? "+1" : "−1") : source, block.path);
+    const bool reference = role_of(from.definition->name) == Role::reference;
+    double factor = setting * c.weight * c.inputs;
+    if (reference) factor *= parameter_of(from, "value");
+    if (integrator && port.sum) factor *= parameter_of(block, "rate");
+    const std::string number = fmt::format("{}{:.4g}", factor < 0 ? "−" : "", std::abs(factor));
+    if (integrator && !port.sum) return fmt::format("{} starts at {}", block.path, number);
+    return fmt::format("{}{}{} in {}", number, integrator ? " 1/s" : "",
+                       reference ? "" : " of " + diagram_.signal_name(source), block.path);
   }
 
   /// Rounded, and never "-0.0000".

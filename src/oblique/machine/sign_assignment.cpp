@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <random>
 #include <utility>
 
 namespace oblique {
@@ -102,19 +103,27 @@ SignChoice signs_of(const SignProblem& problem, std::vector<bool> variables) {
 }
 
 SignChoice choose_signs(const SignProblem& problem) {
-  // Enough for the best known choice of every shipped mechanism; the bound keeps large ones within a second.
   const std::size_t n = problem.variables;
-  const std::size_t steps = n == 0 ? 0 : std::min<std::size_t>(200 * n + 1000, 20'000'000 / n);
-  const std::size_t longest_tabu = std::max<std::size_t>(n / 4, 3);
+  if (n == 0) return signs_of(problem, {});
+  // Enough for small networks to the last inverter; the bound keeps large ones within seconds.
+  const std::size_t steps = std::min<std::size_t>(300 * n + 3000, 40'000'000 / n);
+  const std::size_t patience = 20 * n;
+  std::mt19937 random(1);  // always the same: a search that goes in circles finds nothing
   Board board(problem);
   std::vector<bool> best = board.chosen();
   std::int64_t least = board.cost();
   std::vector<std::size_t> free_at(n, 0);
+  std::size_t improved = 0;
   for (std::size_t step = 1; step <= steps; ++step) {
+    if (step - improved > patience) {  // somewhere else, then
+      for (std::size_t k = 0; k <= n / 4; ++k) board.flip(random() % n);
+      improved = step;
+    }
+    const std::size_t first = random() % n;  // so that none of those of equal cost is preferred
     std::optional<std::size_t> next;
     std::int64_t next_cost = std::numeric_limits<std::int64_t>::max();
     for (std::size_t k = 0; k < n; ++k) {
-      const std::size_t variable = (k + step) % n;  // so that ties go round
+      const std::size_t variable = (k + first) % n;
       const std::int64_t cost = board.cost_after(variable);
       const bool allowed = free_at[variable] <= step || cost < least;
       if (allowed && cost < next_cost) {
@@ -124,11 +133,11 @@ SignChoice choose_signs(const SignProblem& problem) {
     }
     if (!next) continue;
     board.flip(*next);
-    // of changing length, so that the search goes round in no circle
-    free_at[*next] = step + 1 + step * 7 % longest_tabu;
+    free_at[*next] = step + 2 + random() % (n / 3 + 1);
     if (next_cost < least) {
       least = next_cost;
       best = board.chosen();
+      improved = step;
     }
   }
   return signs_of(problem, std::move(best));

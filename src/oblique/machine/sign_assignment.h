@@ -38,8 +38,8 @@ struct SignChoice {
 /// What a choice of the variables means.
 SignChoice signs_of(const SignProblem& problem, std::vector<bool> variables);
 
-/// The choice with the fewest inverters that a tabu search finds, and among those with few negatives. The
-/// search has no randomness. For small networks the minimum is found (tests hold it against all choices); the
+/// The choice with the fewest inverters that a tabu search finds, and among those with few negatives; the
+/// same at every call. For small networks the minimum is found (tests hold it against all choices); the
 /// problem itself is hard.
 SignChoice choose_signs(const SignProblem& problem);
 
