@@ -26,7 +26,7 @@ std::string verdict_text(const Bill& bill) {
       return "it fits\n";
     case Bill::Verdict::does_not_fit:
       for (const BillRow& row : bill.rows) {
-        if (row.missing() > 0) named.push_back(fmt::format("{} {}", row.missing(), row.element));
+        if (row.missing() > 0) named.push_back(fmt::format("{} ({})", row.element, row.missing()));
       }
       return fmt::format("it does not fit; missing: {}\n", fmt::join(named, ", "));
     case Bill::Verdict::cannot_tell:

@@ -17,11 +17,12 @@ using ::testing::ElementsAre;
 using testing::inverting_machine;
 using testing::shipped_blocks;
 
-// ẋ = −2.5 y + 0.2,  ẏ = 25 x
+// ẋ = −2.5 y + 0.2,  ẏ = 2.5 x, s = −25 (x·½y)
 const char* const kBlocks = R"(
 x   = { type = "integrator", in = ["-2.5*y", "0.2*one"], initial = 0.6 }
-y   = { type = "integrator", in = ["25*x"], initial = -1 }
+y   = { type = "integrator", in = ["2.5*x"], initial = -1 }
 xy  = { type = "multiplier", in = ["x", "0.5*y"] }
+s   = { type = "summer", in = ["-25*xy"] }
 one = { type = "constant" }
 )";
 
@@ -38,8 +39,8 @@ MachineProfile ten_volts() {
   return machine;
 }
 
-// By hand, with integrators that invert: x is −∫(10·¼ y − 0.2), y is −∫25 (−x), and −x takes an inverter; 25
-// is three inputs of 10 behind 25/30.
+// By hand, with integrators that invert: x is −∫(10·¼ y − 0.2), y is −∫10·¼ (−x), and −x takes an
+// inverter; 25 is three inputs of 10 behind 25/30.
 TEST(Sheets, ListEveryConnectionWithTheGainOfItsInput) {
   const Sheet list = sheets(ten_volts()).connections;
   EXPECT_THAT(list.columns, ElementsAre("from", "signal", "to", "element", "input"));
@@ -47,7 +48,8 @@ TEST(Sheets, ListEveryConnectionWithTheGainOfItsInput) {
   EXPECT_THAT(list.rows, Contains(ElementsAre("P1", "pot_1", "A1", "x", "×10")));
   EXPECT_THAT(list.rows, Contains(ElementsAre("−REF", "minus_reference", "P2", "pot_2", "in")));
   EXPECT_THAT(list.rows, Contains(ElementsAre("P3", "pot_3", "A1", "x", "initial value")));
-  EXPECT_THAT(list.rows, Contains(ElementsAre("P4", "pot_4", "A3", "y", "3 inputs ×10")));
+  EXPECT_THAT(list.rows, Contains(ElementsAre("P6", "pot_6", "A4", "s", "3 inputs ×10")));
+  EXPECT_THAT(list.rows, Contains(ElementsAre("P5", "pot_5", "M1", "xy", "y")));
   EXPECT_THAT(list.rows, Contains(ElementsAre("A1", "x", "A2", "minus_x", "in")));
 }
 
@@ -57,17 +59,16 @@ TEST(Sheets, SayWhatPotentiometersStandFor) {
   EXPECT_THAT(pots.rows, Contains(ElementsAre("P2", "0.2000", "−REF", "A1 ×1", "−0.2 1/s in x")));
   EXPECT_THAT(pots.rows,
               Contains(ElementsAre("P3", "0.6000", "+REF", "A1 initial value", "x starts at 0.6")));
-  EXPECT_THAT(pots.rows,
-              Contains(ElementsAre("P4", "0.8333", "A2", "A3 3 inputs ×10", "25 1/s of minus_x in y")));
+  EXPECT_THAT(pots.rows, Contains(ElementsAre("P6", "0.8333", "M1", "A4 3 inputs ×10", "25 of xy in s")));
 }
 
-// x = 0.6, y = −1: ẋ = 2.5 + 0.2, ẏ = 15, x·½y = −0.3 [machine unit]; 10 V each.
+// x = 0.6, y = −1: ẋ = 2.5 + 0.2, ẏ = 1.5, x·½y = −0.3 [machine unit]; 10 V each.
 TEST(Sheets, TellWhatEveryElementShowsAtTheStart) {
   const Sheet test = sheets(ten_volts()).static_test;
   EXPECT_THAT(test.columns, ElementsAre("element", "signal", "output [V]", "slope [V/s]"));
   EXPECT_THAT(test.rows, Contains(ElementsAre("A1", "x", "6.0000", "27.0000")));
   EXPECT_THAT(test.rows, Contains(ElementsAre("A2", "minus_x", "-6.0000", "")));
-  EXPECT_THAT(test.rows, Contains(ElementsAre("A3", "y", "-10.0000", "150.0000")));
+  EXPECT_THAT(test.rows, Contains(ElementsAre("A3", "y", "-10.0000", "15.0000")));
   EXPECT_THAT(test.rows, Contains(ElementsAre("M1", "xy", "-3.0000", "")));
   EXPECT_THAT(test.rows, Contains(ElementsAre("P2", "pot_2", "-2.0000", "")));
 }

@@ -55,15 +55,16 @@ std::vector<std::string> words_of(std::string_view title) {
 std::optional<std::string> nearest_machine(std::string_view name) {
   const std::string small = lower(name);
   if (auto nearest = nearest_name(small, machine_names())) return nearest;
-  for (const bool exact : {true, false}) {
-    for (const MachineProfile& machine : shipped()) {
-      const std::vector<std::string> words = words_of(machine.title);
-      const bool found = exact ? std::find(words.begin(), words.end(), small) != words.end()
-                               : nearest_name(small, words).has_value();
-      if (found) return machine.name;
+  std::vector<std::string> words, machines;
+  for (const MachineProfile& machine : shipped()) {
+    for (std::string& word : words_of(machine.title)) {
+      words.push_back(std::move(word));
+      machines.push_back(machine.name);
     }
   }
-  return std::nullopt;
+  const auto nearest = nearest_name(small, words);
+  if (!nearest) return std::nullopt;
+  return machines[static_cast<std::size_t>(std::find(words.begin(), words.end(), *nearest) - words.begin())];
 }
 
 }  // namespace
