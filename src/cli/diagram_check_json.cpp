@@ -111,6 +111,7 @@ Json bill_json(const std::optional<Bill>& bill) {
   for (const BillRow& row : bill->rows) {
     rows.push_back({{"element", row.element},
                     {"needed", row.needed},
+                    {"at_least", row.at_least},
                     {"exists", row.exists},
                     {"available", row.available ? Json(*row.available) : Json()},
                     {"missing", row.missing()}});
