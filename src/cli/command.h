@@ -77,6 +77,8 @@ struct PatchRequest {
   std::string unit;
   std::string slower = "100";
   std::vector<std::string> split;
+  std::string machine;  ///< in whose elements
+  std::string sheets;   ///< how the names of its sheets begin
   bool force = false;
 };
 ExitStatus patch_mechanism(const Session& session, const PatchRequest& request);

@@ -9,6 +9,7 @@
 #include <oblique/mechanism/read_mechanism.h>
 
 #include "command.h"
+#include "machine_patch.h"
 #include "terminal.h"
 
 namespace oblique::cli {
@@ -46,6 +47,7 @@ PatchMethod method_option(const std::string& text) {
 ExitStatus patch_mechanism(const Session& session, const PatchRequest& request) {
   if (!request.output.empty()) check_output(request.output, ".toml");
   if (!request.output.empty()) check_not_input(request.output, request.mechanism, "mechanism");
+  check_machine_request(request);
   PatchOptions options;
   options.method = method_option(request.method);
   options.gain = positive_option("--gain", request.gain, "1");
@@ -56,6 +58,10 @@ ExitStatus patch_mechanism(const Session& session, const PatchRequest& request) 
   const Mechanism mechanism = read_mechanism(request.mechanism);
   if (!request.unit.empty()) options.unit = positive_option("--unit", request.unit, mechanism.length_unit);
   const JudgedPatch patched = judged_patch(mechanism, session.blocks(), options);
+  if (!request.machine.empty()) {
+    note(judgement_text(patched.judgement));
+    return patch_for_machine(session, request, patched.diagram);
+  }
   const std::string text = write_diagram(patched.diagram);
   if (request.output.empty()) {
     print(text);
