@@ -207,7 +207,18 @@ void add_compare(CLI::App& app, Chosen& chosen) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("G,G,…");
-  add_method(verb, *request);
+  verb->add_option("--bandwidth", request->bandwidths,
+                   "bandwidths of the servo amplifiers, in Hz or with a unit; each is run with each gain "
+                   "(default: 100 times the crank's frequency)")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("B,B,…");
+  verb->add_option("--method", request->methods,
+                   "triangles: servo-tracked oblique triangles; gradient: integrators that descend, for any "
+                   "group; both: one against the other (default triangles)")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("M,M,…");
   verb->add_flag("--json", request->json, "print JSON instead of the table");
   verb->add_option("-o,--output", request->output, "write the JSON to FILE.json")->type_name("FILE");
   choose(verb, chosen, request, compare_mechanism);

@@ -81,7 +81,8 @@ struct CompareRequest {
   std::string mechanism;
   std::string output;
   std::vector<std::string> gains{"1e2", "1e3", "1e4", "1e5", "1e6"};
-  std::string method = "triangles";
+  std::vector<std::string> bandwidths;
+  std::vector<std::string> methods{"triangles"};
   bool json = false;
 };
 ExitStatus compare_mechanism(const Session& session, const CompareRequest& request);

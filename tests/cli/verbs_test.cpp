@@ -237,6 +237,32 @@ TEST_F(Verbs, CompareGivesTheJsonOfTheContract) {
   EXPECT_EQ(nlohmann::json::parse(stream).at("size"), 3.5);
 }
 
+TEST_F(Verbs, CompareHoldsMethodsAndBandwidthsAgainstEachOther) {
+  const std::string command =
+      "compare diagrams/mechanisms/six-bar.toml --method triangles,gradient --bandwidth 2000,20kHz --gain "
+      "1e3,1e4";
+  const Outcome table = oblique(command);
+  ASSERT_EQ(table.status, 0) << table.err;
+  EXPECT_THAT(table.out, HasSubstr("   method     Hz   gain  max error [mm]"));
+  EXPECT_THAT(table.out,
+              HasSubstr("worst at C, 180°: the triangle B–C–D is flattest there (sin γ = 0.27 at B)"));
+  EXPECT_THAT(table.out, HasSubstr("   method     Hz  power of the gain  left at gain 1e12 [mm]"));
+  const Outcome outcome = oblique(command + " --json");
+  const auto json = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(json.at("method"), "triangles,gradient");
+  EXPECT_TRUE(json.at("order").is_null());  // of which?
+  ASSERT_EQ(json.at("runs").size(), 8U);
+  EXPECT_EQ(json.at("runs")[7].at("method"), "gradient");
+  EXPECT_EQ(json.at("runs")[7].at("bandwidth"), 20000);
+  EXPECT_EQ(json.at("runs")[0].at("worst").at("point"), "C");
+  double sum = 0;
+  for (const char* part : {"static", "lag", "solver"})
+    sum += json.at("runs")[0].at("parts").at(part).get<double>();
+  EXPECT_NEAR(sum, json.at("runs")[0].at("max_error").get<double>(), 1e-12);  // an identity, but for rounding
+  ASSERT_EQ(json.at("series").size(), 4U);
+  EXPECT_NEAR(json.at("series")[3].at("order").get<double>(), -1, 0.05);
+}
+
 TEST_F(Verbs, CheckDescribesDiagramsAndMechanisms) {
   const Outcome diagram = oblique("check diagrams/lessons/division.toml");
   EXPECT_EQ(diagram.status, 0);
