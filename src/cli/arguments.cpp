@@ -219,6 +219,30 @@ void add_compare(CLI::App& app, Chosen& chosen) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("M,M,…");
+  CLI::Option* const monte_carlo =
+      verb->add_option("--monte-carlo", request->runs,
+                       "run it N times more, each with tolerances drawn anew; one gain (default 1e6)")
+          ->type_name("N")
+          ->check(CLI::Range(1, 10'000'000));
+  verb->add_option("--tolerance", request->tolerance,
+                   "how far the weights of summers and integrators and the errors of multipliers scatter, "
+                   "uniformly on both sides, for example 0.1%")
+      ->type_name("X")
+      ->needs(monte_carlo);
+  verb->add_option("--seed", request->seed, "chooses the draws")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber)
+      ->needs(monte_carlo);
+  verb->add_option("--first-run", request->first_run,
+                   "number of the first run; with --monte-carlo 1 it repeats one")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber)
+      ->needs(monte_carlo);
+  verb->add_option("--threads", request->threads,
+                   "runs at a time, which changes no result (default: what the processor has)")
+      ->type_name("T")
+      ->check(CLI::Range(1, 1024))
+      ->needs(monte_carlo);
   verb->add_flag("--json", request->json, "print JSON instead of the table");
   verb->add_option("-o,--output", request->output, "write the JSON to FILE.json")->type_name("FILE");
   choose(verb, chosen, request, compare_mechanism);

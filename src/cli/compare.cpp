@@ -1,236 +1,26 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/compare/compare.h>
 
-#include <algorithm>
+#include <chrono>
 #include <cmath>
-#include <numbers>
+#include <thread>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
+#include <oblique/compare/monte_carlo.h>
 #include <oblique/mechanism/read_mechanism.h>
 
 #include "command.h"
+#include "comparison_output.h"
+#include "monte_carlo_output.h"
 #include "terminal.h"
 
 namespace oblique::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-bool has_one(const Comparison& comparison) {
-  return comparison.series.size() == 1;
-}
-
-/// What was compared with what: "triangles", "triangles,gradient".
-std::string methods_of(const Comparison& comparison) {
-  std::string text;
-  std::string_view last;
-  for (const GainSeries& series : comparison.series) {
-    const std::string_view name = method_name(series.method);
-    if (name != last) text += fmt::format("{}{}", text.empty() ? "" : ",", name);
-    last = name;
-  }
-  return text;
-}
-
-Json json_of(const std::optional<double>& value) {
-  return value ? Json(*value) : Json(nullptr);
-}
-
-Json json_of(const ComparedRun& run) {
-  Json json{{"gain", run.gain},           {"max_error", run.max_error},
-            {"rms_error", run.rms_error}, {"steps", run.steps},
-            {"seconds", run.seconds},     {"overloads", run.overloads.size()},
-            {"stable", run.stable},       {"method", method_name(run.method)},
-            {"bandwidth", run.bandwidth}};
-  json["worst"] = {{"point", run.worst.point},
-                   {"time", run.worst.time},
-                   {"drive", run.worst.drive},
-                   {"reason", run.worst.reason.empty() ? Json(nullptr) : Json(run.worst.reason)}};
-  json["parts"] = nullptr;
-  if (run.parts)
-    json["parts"] = {{"static", run.parts->at_rest}, {"lag", run.parts->lag}, {"solver", run.parts->solver}};
-  return json;
-}
-
-std::string to_json(const Comparison& comparison) {
-  Json json{{"mechanism", comparison.mechanism},
-            {"method", methods_of(comparison)},
-            {"size", comparison.size},
-            {"runs", Json::array()}};
-  for (const ComparedRun& run : comparison.runs) json["runs"].push_back(json_of(run));
-  json["order"] = has_one(comparison) ? json_of(comparison.series.front().order) : Json(nullptr);
-  json["unit"] = comparison.unit;
-  json["series"] = Json::array();
-  for (const GainSeries& series : comparison.series) {
-    json["series"].push_back({{"method", method_name(series.method)},
-                              {"bandwidth", series.bandwidth},
-                              {"floor", series.floor},
-                              {"order", json_of(series.order)}});
-  }
-  return json.dump(2) + "\n";
-}
-
-std::string_view analog_of(PatchMethod method) {
-  return method == PatchMethod::gradient ? "gradient servos, bandwidth"
-                                         : "servo-tracked triangles, amplifiers";
-}
-
-/// The first columns of a row: method and bandwidth where there are several, then the gain.
-class RowHead {
- public:
-  explicit RowHead(const Comparison& comparison) {
-    for (const GainSeries& series : comparison.series) {
-      methods_ = methods_ || series.method != comparison.series.front().method;
-      bandwidths_ = bandwidths_ || series.bandwidth != comparison.series.front().bandwidth;
-    }
-  }
-
-  std::vector<std::string> series_titles() const {
-    std::vector<std::string> cells;
-    if (methods_) cells.emplace_back("method");
-    if (bandwidths_) cells.emplace_back("Hz");
-    return cells;
-  }
-
-  std::vector<std::string> titles() const {
-    std::vector<std::string> cells = series_titles();
-    cells.emplace_back("gain");
-    return cells;
-  }
-
-  std::vector<std::string> cells(const GainSeries& series) const {
-    std::vector<std::string> cells;
-    if (methods_) cells.emplace_back(method_name(series.method));
-    if (bandwidths_) cells.push_back(short_number(series.bandwidth));
-    return cells;
-  }
-
-  std::vector<std::string> cells(const ComparedRun& run) const {
-    std::vector<std::string> cells = this->cells(GainSeries{run.method, run.bandwidth, 0, {}});
-    cells.push_back(short_number(run.gain));
-    return cells;
-  }
-
-  /// "gain 1000", with what else tells the run from the others.
-  std::string run_name(const ComparedRun& run) const {
-    std::string text = fmt::format("gain {:.6g}", run.gain);
-    if (bandwidths_) text += fmt::format(", {:.6g} Hz", run.bandwidth);
-    if (methods_) text += fmt::format(", {}", method_name(run.method));
-    return text;
-  }
-
-  bool has_several_bandwidths() const { return bandwidths_; }
-
- private:
-  bool methods_ = false, bandwidths_ = false;
-};
-
-std::vector<std::string> joined(std::vector<std::string> head, std::vector<std::string> rest) {
-  head.insert(head.end(), rest.begin(), rest.end());
-  return head;
-}
-
-std::string error_table(const Comparison& comparison, const RowHead& head) {
-  const std::string& unit = comparison.unit;
-  Table table(joined(head.titles(), {fmt::format("max error [{}]", unit), "of the largest link",
-                                     fmt::format("rms error [{}]", unit), "worst point", "steps", "ms",
-                                     "overloads", "stable"}));
-  for (const ComparedRun& run : comparison.runs) {
-    table.add(joined(head.cells(run), {fmt::format("{:.3e}", run.max_error),
-                                       fmt::format("{:.3e}", run.max_error / comparison.size),
-                                       fmt::format("{:.3e}", run.rms_error), run.worst.point,
-                                       std::to_string(run.steps), fmt::format("{:.3g}", 1e3 * run.seconds),
-                                       std::to_string(run.overloads.size()), run.stable ? "yes" : "NO"}));
-  }
-  return table.text();
-}
-
-/// "172.5°" within one turn, or "12.5 mm" of a slide.
-std::string drive_text(const Comparison& comparison, double value) {
-  if (!comparison.turning) return fmt::format("{:.4g} {}", value, comparison.unit);
-  const double degrees = std::fmod(value * 180 / std::numbers::pi, 360);
-  return fmt::format("{:.4g}°", degrees < 0 ? degrees + 360 : degrees);
-}
-
-std::string parts_table(const Comparison& comparison, const RowHead& head) {
-  const std::string& unit = comparison.unit;
-  Table table(joined(head.titles(), {"worst at", "drive", fmt::format("static [{}]", unit),
-                                     fmt::format("lag [{}]", unit), fmt::format("solver [{}]", unit)}));
-  for (const ComparedRun& run : comparison.runs) {
-    const auto part = [&](double ErrorParts::*which) {
-      return run.parts ? fmt::format("{:.3e}", *run.parts.*which) : std::string("unknown");
-    };
-    table.add(joined(head.cells(run),
-                     {run.worst.point, drive_text(comparison, run.worst.drive), part(&ErrorParts::at_rest),
-                      part(&ErrorParts::lag), part(&ErrorParts::solver)}));
-  }
-  return table.text();
-}
-
-/// Each reason once, with the place in the first run that has it.
-std::string reasons_of(const Comparison& comparison) {
-  std::string text;
-  std::vector<std::string_view> told;
-  for (const ComparedRun& run : comparison.runs) {
-    const WorstPlace& worst = run.worst;
-    if (worst.reason.empty() || std::find(told.begin(), told.end(), worst.reason) != told.end()) continue;
-    told.emplace_back(worst.reason);
-    text +=
-        fmt::format("worst at {}, {}: {}\n", worst.point, drive_text(comparison, worst.drive), worst.reason);
-  }
-  return text;
-}
-
-/// Floor and order: sentences of one series, a table of several.
-std::string orders_of(const Comparison& comparison, const RowHead& head) {
-  const std::string& unit = comparison.unit;
-  if (has_one(comparison)) {
-    const GainSeries& series = comparison.series.front();
-    return fmt::format(
-               "largest link {:.6g} {}; amplifiers of gain 1e12 leave {:.0e} {} (the solver's tolerance)\n",
-               comparison.size, unit, series.floor, unit) +
-           (series.order ? fmt::format("the error falls with the gain to the power {:.3f}\n", *series.order)
-                         : "no order: it takes two gains whose errors stand clear of the tolerance\n");
-  }
-  Table table(
-      joined(head.series_titles(), {"power of the gain", fmt::format("left at gain 1e12 [{}]", unit)}));
-  for (const GainSeries& series : comparison.series) {
-    table.add(joined(head.cells(series), {series.order ? fmt::format("{:.3f}", *series.order) : "none",
-                                          fmt::format("{:.0e}", series.floor)}));
-  }
-  return fmt::format(
-      "largest link {:.6g} {}; how the error goes with the gain, and what the tolerance leaves\n\n{}",
-      comparison.size, unit, table.text());
-}
-
-std::string to_text(const Comparison& comparison) {
-  const RowHead head(comparison);
-  const GainSeries& first = comparison.series.front();
-  std::string text = comparison.mechanism + "\nanalog: ";
-  std::string_view last;
-  for (const GainSeries& series : comparison.series) {
-    const std::string_view name = analog_of(series.method);
-    if (name == last) continue;
-    text += fmt::format("{}{}{}", last.empty() ? "" : "; ", name,
-                        head.has_several_bandwidths() ? "" : fmt::format(" of {:.6g} Hz", first.bandwidth));
-    last = name;
-  }
-  text += "; exact: closed form; errors over all moving points and one turn\n\n";
-  text += error_table(comparison, head);
-  text +=
-      "\nthe largest error and its parts: static, of loops at rest; lag, of their speed; solver, of its "
-      "tolerance\n\n";
-  text += parts_table(comparison, head) + "\n" + reasons_of(comparison);
-  text += orders_of(comparison, head);
-  for (const ComparedRun& run : comparison.runs) {
-    for (const Overload& overload : run.overloads) {
-      text += fmt::format("overload at {}: {} reaches {:.6g} at t = {:.6g} s\n", head.run_name(run),
-                          overload.signal, overload.peak.value, overload.peak.time);
-    }
-  }
-  return text;
+[[noreturn]] void refuse(const std::string& what, const std::string& expected,
+                         const std::string& remedy = {}) {
+  throw ReadError(Diagnostic{{}, what, expected, remedy});
 }
 
 /// Positive finite numbers of an option that takes several.
@@ -240,7 +30,7 @@ std::vector<double> numbers_option(const std::string& option, const std::vector<
   for (const std::string& text : texts) {
     values.push_back(quantity_option(option, text, unit));
     if (!(values.back() > 0 && std::isfinite(values.back())))
-      throw ReadError(Diagnostic{{}, fmt::format("{} {}", option, text), expected, {}});
+      refuse(fmt::format("{} {}", option, text), expected);
   }
   return values;
 }
@@ -249,10 +39,68 @@ CompareOptions options_of(const CompareRequest& request) {
   CompareOptions options;
   options.methods.clear();
   for (const std::string& method : request.methods) options.methods.push_back(method_option(method));
-  options.gains = numbers_option("--gain", request.gains, "1", "finite gains above 0, such as 1e3,1e4,1e5");
+  if (!request.gains.empty())
+    options.gains = numbers_option("--gain", request.gains, "1", "finite gains above 0, such as 1e3,1e4,1e5");
   options.bandwidths = numbers_option("--bandwidth", request.bandwidths, "Hz",
                                       "finite bandwidths above 0, such as 10,100 or \"1 kHz\"");
   return options;
+}
+
+/// The patch that a single comparison is of.
+PatchOptions patch_options(const CompareRequest& request, const CompareOptions& options) {
+  const auto one_of = [](const char* option, std::size_t n) {
+    if (n > 1) refuse(fmt::format("--monte-carlo with {} of {}", count(n, "value", "values"), option), "one");
+  };
+  one_of("--gain", request.gains.size());
+  one_of("--bandwidth", options.bandwidths.size());
+  one_of("--method", options.methods.size());
+  PatchOptions patch;
+  patch.method = options.methods.front();
+  if (!request.gains.empty()) patch.gain = options.gains.front();
+  if (!options.bandwidths.empty()) patch.bandwidth = options.bandwidths.front();
+  return patch;
+}
+
+/// How far the elements scatter, at most: a factor two is no tolerance any more.
+double tolerance_option(const std::string& text) {
+  constexpr double kMost = 0.5;
+  if (text.empty()) {
+    refuse("--monte-carlo without how far the elements scatter", "--tolerance, such as 0.1%");
+  }
+  const double tolerance = quantity_option("--tolerance", text, "1");
+  if (!(tolerance > 0 && tolerance <= kMost))
+    refuse(fmt::format("--tolerance {}", text), "a number above 0 and up to 50%");
+  return tolerance;
+}
+
+MonteCarloReport draw_elements(const CompareRequest& request, const Mechanism& mechanism,
+                               const BlockLibrary& library, const PatchOptions& options) {
+  MonteCarloReport report;
+  report.tolerance = request.tolerance;
+  report.unit = mechanism.length_unit;
+  report.options.scatters = scatters_of_tolerance(library, tolerance_option(request.tolerance));
+  report.options.runs = request.runs;
+  report.options.seed = request.seed;
+  report.options.first_run = request.first_run;
+  report.options.threads = request.threads > 0
+                               ? request.threads
+                               : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  Diagram diagram = patch(mechanism, options);
+  diagram.file = mechanism.file;
+  if (report.options.runs == 1) {
+    const FlatDiagram flat = flatten(diagram, library);
+    for (const Draw& drawn : draw(flat, report.options.scatters, {request.seed, request.first_run})) {
+      const FlatBlock& block = flat.blocks[drawn.block];
+      report.draws.emplace_back(block.path + "." + block.definition->parameters[drawn.parameter].name,
+                                drawn.value);
+    }
+  }
+  Progress progress("drawing elements");
+  report.options.progress = [&](double fraction) { progress.show(fraction); };
+  const auto begin = std::chrono::steady_clock::now();
+  report.result = monte_carlo(mechanism, diagram, library, report.options);
+  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return report;
 }
 
 }  // namespace
@@ -261,6 +109,12 @@ ExitStatus compare_mechanism(const Session& session, const CompareRequest& reque
   if (!request.output.empty()) check_output(request.output, ".json");
   const BlockLibrary library = session.blocks();
   CompareOptions options = options_of(request);
+  std::optional<PatchOptions> single;
+  if (request.runs > 0) {
+    single = patch_options(request, options);
+    tolerance_option(request.tolerance);
+    options.gains = {single->gain};
+  }
   const Mechanism mechanism = read_mechanism(request.mechanism);
   Comparison comparison;
   {
@@ -268,9 +122,18 @@ ExitStatus compare_mechanism(const Session& session, const CompareRequest& reque
     options.progress = [&](double fraction) { progress.show(fraction); };
     comparison = compare(mechanism, library, options);
   }
-  print(request.json ? to_json(comparison) : to_text(comparison));
-  if (!request.output.empty()) save(request.output, to_json(comparison));
-  return ExitStatus::done;
+  std::string text = to_text(comparison);
+  nlohmann::ordered_json json = to_json(comparison);
+  bool failed = false;
+  if (single) {
+    const MonteCarloReport report = draw_elements(request, mechanism, library, *single);
+    text += to_text(report);
+    json["monte_carlo"] = to_json(report);
+    failed = !report.result.worst_run;
+  }
+  print(request.json ? json.dump(2) + "\n" : text);
+  if (!request.output.empty()) save(request.output, json.dump(2) + "\n");
+  return failed ? ExitStatus::solver_failed : ExitStatus::done;
 }
 
 }  // namespace oblique::cli

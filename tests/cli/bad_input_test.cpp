@@ -303,6 +303,24 @@ INSTANTIATE_TEST_SUITE_P(
             "BandwidthThatNoSolverTakes",
             "oblique compare diagrams/mechanisms/four-bar.toml --gain 1e9 --bandwidth 1e300", 3,
             "error: diagrams/mechanisms/four-bar.toml: with amplifiers of gain 1e+09 and 1e+300 Hz: "},
+        BadRequestCase{
+            "MonteCarloWithoutTolerance",
+            "oblique compare diagrams/mechanisms/four-bar.toml --monte-carlo 10", 2,
+            "--monte-carlo without how far the elements scatter; expected --tolerance, such as 0.1%"},
+        BadRequestCase{
+            "MonteCarloOfSeveralGains",
+            "oblique compare diagrams/mechanisms/four-bar.toml --monte-carlo 10 --tolerance 1% --gain "
+            "1e3,1e4",
+            2, "--monte-carlo with 2 values of --gain; expected one"},
+        BadRequestCase{"ToleranceOfAFactor",
+                       "oblique compare diagrams/mechanisms/four-bar.toml --monte-carlo 10 --tolerance 2", 2,
+                       "--tolerance 2; expected a number above 0 and up to 50%"},
+        BadRequestCase{"SeedWithoutMonteCarlo", "oblique compare diagrams/mechanisms/four-bar.toml --seed 3",
+                       2, "--seed requires --monte-carlo"},
+        BadRequestCase{
+            "SeedBelowZero",
+            "oblique compare diagrams/mechanisms/four-bar.toml --monte-carlo 3 --tolerance 1% --seed -3", 2,
+            "--seed: "},
         BadRequestCase{"GainThatNoSolverTakes",
                        "oblique compare diagrams/mechanisms/four-bar.toml --gain 1e300", 3,
                        "error: diagrams/mechanisms/four-bar.toml: with amplifiers of gain 1e+300: the run"},

@@ -263,6 +263,34 @@ TEST_F(Verbs, CompareHoldsMethodsAndBandwidthsAgainstEachOther) {
   EXPECT_NEAR(json.at("series")[3].at("order").get<double>(), -1, 0.05);
 }
 
+TEST_F(Verbs, MonteCarloGivesTheSameForAnyNumberOfThreadsAndRepeatsItsWorstRun) {
+  const std::string command = "compare diagrams/mechanisms/four-bar.toml --tolerance 0.1% --seed 7 --json ";
+  const auto drawn = [&](const std::string& rest) {
+    const Outcome outcome = oblique(command + rest);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    auto json = nlohmann::json::parse(outcome.out).at("monte_carlo");
+    json.erase("seconds");
+    return json;
+  };
+  const auto one = drawn("--monte-carlo 20 --threads 1");
+  EXPECT_EQ(one, drawn("--monte-carlo 20 --threads 3"));
+  EXPECT_EQ(one.at("errors").size(), 20U);
+  EXPECT_TRUE(one.at("failures").empty());
+  const auto worst = one.at("worst_run").get<int>();
+  EXPECT_EQ(one.at("errors")[static_cast<std::size_t>(worst)], one.at("percentiles").at("100"));
+  const auto again = drawn("--monte-carlo 1 --first-run " + std::to_string(worst));
+  EXPECT_EQ(again.at("errors")[0], one.at("percentiles").at("100"));
+  EXPECT_LE(std::abs(again.at("draws").at("C.cx.tolerance").get<double>()), 1e-3);
+}
+
+TEST_F(Verbs, MonteCarloTellsWhatFailed) {
+  const Outcome outcome =
+      oblique("compare diagrams/mechanisms/four-bar.toml --monte-carlo 12 --tolerance 50% --threads 1");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out,
+              ::testing::ContainsRegex("FAILED [0-9]+ of 12 runs, left out above; the first, run "));
+}
+
 TEST_F(Verbs, CheckDescribesDiagramsAndMechanisms) {
   const Outcome diagram = oblique("check diagrams/lessons/division.toml");
   EXPECT_EQ(diagram.status, 0);
