@@ -284,6 +284,15 @@ void add_blocks(CLI::App& app, Chosen& chosen) {
   choose(verb, chosen, request, show_blocks);
 }
 
+void add_machines(CLI::App& app, Chosen& chosen) {
+  auto request = std::make_shared<MachinesRequest>();
+  CLI::App* const verb =
+      app.add_subcommand("machines", "List the machines a diagram can be for, or tell all about one");
+  verb->add_option("NAME", request->name, "machine to tell about");
+  verb->add_flag("--json", request->json, "print JSON instead of the tables (its keys: docs/machines.md)");
+  choose(verb, chosen, request, show_machines);
+}
+
 }  // namespace
 
 std::optional<ExitStatus> parse_arguments(int argc, char** argv, Chosen& chosen) {
@@ -304,6 +313,7 @@ std::optional<ExitStatus> parse_arguments(int argc, char** argv, Chosen& chosen)
   add_compare(app, chosen);
   add_fit(app, chosen);
   add_blocks(app, chosen);
+  add_machines(app, chosen);
   if (argc < 2) {
     print(app.help());
     return ExitStatus::done;

@@ -107,4 +107,10 @@ struct BlocksRequest {
 };
 ExitStatus show_blocks(const Session& session, const BlocksRequest& request);
 
+struct MachinesRequest {
+  std::string name;
+  bool json = false;
+};
+ExitStatus show_machines(const Session& session, const MachinesRequest& request);
+
 }  // namespace oblique::cli

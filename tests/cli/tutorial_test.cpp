@@ -110,8 +110,8 @@ void expect_output(const Example& example, const std::string& printed) {
 class Page : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Docs, Page,
                          testing::Values("docs/tutorial.md", "docs/running.md", "docs/blocks.md",
-                                         "docs/check.md", "docs/mechanisms.md", "docs/synthesis.md",
-                                         "docs/trust.md", "README.md"),
+                                         "docs/check.md", "docs/machines.md", "docs/mechanisms.md",
+                                         "docs/synthesis.md", "docs/trust.md", "README.md"),
                          [](const auto& tested) {
                            return std::filesystem::path(tested.param).stem().string();
                          });

@@ -60,7 +60,7 @@ TEST_F(Verbs, WithoutArgumentsTheProgramIntroducesItself) {
   const Outcome outcome = oblique("");
   EXPECT_EQ(outcome.status, 0);
   EXPECT_THAT(outcome.out, HasSubstr("First steps:"));
-  for (const char* verb : {"run", "check", "solve", "patch", "compare", "fit", "blocks"})
+  for (const char* verb : {"run", "check", "solve", "patch", "compare", "fit", "blocks", "machines"})
     EXPECT_THAT(outcome.out, HasSubstr(verb));
 }
 
