@@ -195,6 +195,16 @@ void add_patch(CLI::App& app, Chosen& chosen) {
                    "(default: 100 times the crank's frequency)");
   add_method(verb, *request);
   verb->add_option("-o,--output", request->output, "write the diagram to FILE.toml")->type_name("FILE");
+  verb->add_option(
+          "--machine", request->machine,
+          "write it in the elements of this machine, with a bill of what it needs and what is missing")
+      ->type_name("NAME");
+  verb->add_option("--sheets", request->sheets,
+                   "with --machine: write PREFIX-patch.csv (connections), PREFIX-pots.csv (settings), "
+                   "PREFIX-static.csv (static test), and PREFIX.txt with all three for paper")
+      ->type_name("PREFIX");
+  verb->add_flag("--force", request->force,
+                 "write it all the same where the machine lacks a kind of element altogether");
   choose(verb, chosen, request, patch_mechanism);
 }
 

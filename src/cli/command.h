@@ -75,6 +75,9 @@ struct PatchRequest {
   std::string gain = "1e6";
   std::string bandwidth;
   std::string method = "triangles";
+  std::string machine;  ///< in whose elements
+  std::string sheets;   ///< how the names of its sheets begin
+  bool force = false;
 };
 ExitStatus patch_mechanism(const Session& session, const PatchRequest& request);
 

@@ -105,6 +105,21 @@ Json scaling_json(const DiagramCheck& check) {
   return {{"signals", std::move(signals)}, {"time_scale", check.scaling->time_scale}};
 }
 
+Json bill_json(const std::optional<Bill>& bill) {
+  if (!bill) return nullptr;
+  Json rows = Json::array();
+  for (const BillRow& row : bill->rows) {
+    rows.push_back({{"element", row.element},
+                    {"needed", row.needed},
+                    {"exists", row.exists},
+                    {"available", row.available ? Json(*row.available) : Json()},
+                    {"missing", row.missing()}});
+  }
+  const Bill::Verdict verdict = bill->verdict();
+  const Json fits = verdict == Bill::Verdict::cannot_tell ? Json() : Json(verdict == Bill::Verdict::fits);
+  return {{"machine", bill->machine}, {"rows", std::move(rows)}, {"fits", fits}};
+}
+
 }  // namespace
 
 std::string to_json(const DiagramCheck& check) {
@@ -118,6 +133,7 @@ std::string to_json(const DiagramCheck& check) {
             {"states", check.program.n_states()},
             {"servo_amplifiers", rest_states(check.program).size()},
             {"outputs", check.flat.outputs.size()}};
+  json["bill"] = bill_json(check.bill);
   json["run"] = run_json(check);
   json["loops"] = std::move(loops);
   json["stability"] = stability_json(check.analysis.stability, check.program);

@@ -7,6 +7,7 @@
 #include <oblique/solve/rest.h>
 
 #include "diagram_check.h"
+#include "machine_patch.h"
 #include "terminal.h"
 
 namespace oblique::cli {
@@ -196,7 +197,9 @@ std::string_view kind_name(LoopKind kind) {
 }
 
 std::string to_text(const DiagramCheck& check) {
-  std::string text = contents(check) + trial(check);
+  std::string text = contents(check);
+  if (check.bill) text += "\n" + to_text(*check.bill);
+  text += trial(check);
   if (!check.analysis.instants.empty()) {
     text += loops(check.analysis.loops) + stability(check.analysis.stability, check.program);
   }

@@ -6,6 +6,7 @@
 #include <oblique/mechanism/read_mechanism.h>
 
 #include "command.h"
+#include "machine_patch.h"
 #include "terminal.h"
 
 namespace oblique::cli {
@@ -28,14 +29,17 @@ PatchMethod method_option(const std::string& text) {
                              suggest(text, {"triangles", "gradient"})});
 }
 
-ExitStatus patch_mechanism(const Session&, const PatchRequest& request) {
+ExitStatus patch_mechanism(const Session& session, const PatchRequest& request) {
   if (!request.output.empty()) check_output(request.output, ".toml");
   if (!request.output.empty()) check_not_input(request.output, request.mechanism, "mechanism");
+  check_machine_request(request);
   PatchOptions options;
   options.method = method_option(request.method);
   options.gain = positive_option("--gain", request.gain, "1");
   if (!request.bandwidth.empty()) options.bandwidth = positive_option("--bandwidth", request.bandwidth, "Hz");
-  const std::string text = write_diagram(patch(read_mechanism(request.mechanism), options));
+  const Diagram diagram = patch(read_mechanism(request.mechanism), options);
+  if (!request.machine.empty()) return patch_for_machine(session, request, diagram);
+  const std::string text = write_diagram(diagram);
   if (request.output.empty()) {
     print(text);
   } else {
