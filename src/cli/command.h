@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -86,8 +87,14 @@ ExitStatus patch_mechanism(const Session& session, const PatchRequest& request);
 struct CompareRequest {
   std::string mechanism;
   std::string output;
-  std::vector<std::string> gains{"1e2", "1e3", "1e4", "1e5", "1e6"};
-  std::string method = "triangles";
+  std::vector<std::string> gains;  ///< empty: those of CompareOptions
+  std::vector<std::string> bandwidths;
+  std::vector<std::string> methods{"triangles"};
+  int runs = 0;  ///< of --monte-carlo; 0: none
+  std::uint64_t seed = 1;
+  std::uint64_t first_run = 0;
+  int threads = 0;  ///< 0: as many as the processor has
+  std::string tolerance;
   bool json = false;
 };
 ExitStatus compare_mechanism(const Session& session, const CompareRequest& request);

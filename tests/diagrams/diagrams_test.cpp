@@ -116,16 +116,16 @@ INSTANTIATE_TEST_SUITE_P(Diagrams, PatchedMechanism, testing::ValuesIn(patchable
 TEST_P(PatchedMechanism, AgreesWithItsExactMotion) {
   const Mechanism mechanism = read_mechanism(path_of(GetParam().file));
   CompareOptions options;
-  options.method = GetParam().method;
+  options.methods = {GetParam().method};
   options.gains = {1e3, 1e4};
   const Comparison comparison = compare(mechanism, BlockLibrary::shipped(), options);
-  for (const GainRun& run : comparison.runs) {
+  for (const ComparedRun& run : comparison.runs) {
     EXPECT_LT(run.max_error, 10 / run.gain * comparison.size)
         << run.gain;  // 1/gain, magnified at most ten times
     EXPECT_TRUE(run.stable);
   }
-  ASSERT_TRUE(comparison.order.has_value());
-  EXPECT_NEAR(*comparison.order, -1, 0.05);
+  ASSERT_TRUE(comparison.series.front().order.has_value());
+  EXPECT_NEAR(*comparison.series.front().order, -1, 0.05);
 }
 
 TEST(PatchedMechanism, IsMostOfTheCatalogue) {
