@@ -51,6 +51,29 @@ out = { type = "servo-amplifier", in = ["10*out", "-10*u"], gain = 500 }
   EXPECT_NEAR(analysis.run->trajectory.at(120, 2), 0.4 * (1 - 1 / (1 + kGain * kWeight)), 1e-12);
 }
 
+// What an amplifier adds to its residual, and its capacitor, are no matter of the slope.
+TEST(Loops, ARealAmplifierHasTheGainOfItsLoop) {
+  const Compiled made(R"toml(u   = { type = "constant", value = 0.4 }
+out = { type = "servo-amplifier", in = ["10*out", "-10*u"], gain = 500, offset = 1e-3 }
+)toml");
+  const Analysis analysis = analysis_of(made);
+  ASSERT_EQ(analysis.loops.size(), 1U);
+  EXPECT_NEAR(analysis.loops[0].unknowns[0].least_gain, 5000, 1e-6);
+  EXPECT_EQ(analysis.loops[0].unknowns[0].sign, 1);
+}
+
+// Its noise gain is 1 + 1.5 in the equation and in its own slope alike.
+TEST(Loops, ARealSummerIsOneWhereItFeedsItself) {
+  const Compiled made(R"toml(u    = { type = "constant", value = 0.4 }
+back = { type = "summer", in = ["u", "-0.5*back"], bandwidth = 1e4 }
+off  = { type = "summer", in = ["u", "0.1*back"], bandwidth = 1e4 }
+)toml");
+  const Analysis analysis = analysis_of(made);
+  ASSERT_EQ(analysis.loops.size(), 1U);
+  EXPECT_THAT(analysis.loops[0].members, ElementsAre("back"));
+  EXPECT_NEAR(analysis.loops[0].unknowns[0].least_gain, 0.5, 1e-9);
+}
+
 // c² = u: the slope 2 c of the residual depends on c.
 TEST(Loops, ARootIsNonLinearAndGoesThroughItsSquarer) {
   const Compiled made(R"toml(u  = { type = "constant", value = 0.25 }
