@@ -270,6 +270,26 @@ f = { type = "function-generator", in = "-x", points = [[-1, 1], [0, 0], [1, 0.5
   EXPECT_LT(difference(diagram, made), 1e-6);
 }
 
+// An offset at a summing junction turns with the output. The weights are 1, since an amplifier's noise gain
+// is a matter of its input resistors.
+TEST(Realise, TurnsImperfectionsWithTheSignal) {
+  const std::string blocks = R"(
+x = { type = "integrator", in = ["-y"], initial = 0.5, drift = 0.01 }
+y = { type = "integrator", in = ["x"], offset = 0.02 }
+s = { type = "summer", in = ["x", "y"], offset = 0.03 }
+n = { type = "inverter", in = "s", offset = 0.04, drift = 0.005 }
+m = { type = "multiplier", in = ["n", "y"], offset = 0.05 }
+c = { type = "servo-amplifier", in = ["c", "-m"], bandwidth = "1 kHz", offset = 0.06 }
+z = { type = "integrator", in = ["c", "-m", "s"] }
+)";
+  for (const char* const inverting : {"", "[machine]\ninverting = true\n"}) {
+    const Diagram diagram = parse_diagram(diagram_text(blocks, inverting), "d.toml");
+    const Diagram made = realise(diagram, shipped_blocks(), inverting_machine()).diagram;
+    EXPECT_THAT(write_diagram(made), HasSubstr("minus_"));  // or nothing is turned
+    EXPECT_LT(difference(diagram, made), 1e-6) << write_diagram(made);
+  }
+}
+
 TEST(Realise, KeepsGainsThatDriveEachOther) {
   const std::string blocks = R"(
 a = { type = "gain", in = "b", factor = 0.5 }
