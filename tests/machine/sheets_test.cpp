@@ -53,6 +53,16 @@ TEST(Sheets, ListEveryConnectionWithTheGainOfItsInput) {
   EXPECT_THAT(list.rows, Contains(ElementsAre("A1", "x", "A2", "minus_x", "in")));
 }
 
+TEST(Sheets, LeaveOutWiresThatCarryNothing) {
+  const FlatDiagram flat = flatten(
+      parse_diagram(testing::diagram_text("one = { type = \"constant\" }\nx = { type = \"integrator\", in = "
+                                          "[\"0*one\"] }\n"),
+                    "d.toml"),
+      shipped_blocks());
+  const MachineSheets made = make_sheets(flat, static_test(Program(assemble(flat)), "d.toml"), ten_volts());
+  EXPECT_TRUE(made.connections.rows.empty());
+}
+
 TEST(Sheets, SayWhatPotentiometersStandFor) {
   const Sheet pots = sheets(ten_volts()).potentiometers;
   EXPECT_THAT(pots.rows, Contains(ElementsAre("P1", "0.2500", "A3", "A1 ×10", "2.5 1/s of y in x")));
