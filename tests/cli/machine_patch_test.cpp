@@ -86,7 +86,8 @@ TEST_F(PatchForMachine, WritesSheets) {
   EXPECT_THAT(text_of("made-patch.csv"), StartsWith("from,signal,to,element,input\n"));
   EXPECT_THAT(text_of("made-pots.csv"),
               HasSubstr("\nP1,0.3142,A5,A3 ×1,157.1 1/s of crank_sine in crank_cosine\n"));
-  EXPECT_THAT(text_of("made-static.csv"), HasSubstr("\nA3,crank_cosine,10.0000,0.0000\n"));
+  EXPECT_THAT(text_of("made-static.csv"),
+              HasSubstr("\nA3,crank_cosine,\"integrator, k0 = 500 1/s\",10.0000,0.0000\n"));
   const std::string paper = text_of("made.txt");
   for (const char* const part : {"it fits\n\npatch list\n", "\n\npotentiometers\n", "\n\nstatic test\n"})
     EXPECT_THAT(paper, HasSubstr(part));

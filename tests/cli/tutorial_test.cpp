@@ -110,10 +110,12 @@ void expect_output(const Example& example, const std::string& printed) {
 class Page : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Docs, Page,
                          testing::Values("docs/tutorial.md", "docs/running.md", "docs/blocks.md",
-                                         "docs/check.md", "docs/machines.md", "docs/mechanisms.md",
-                                         "docs/synthesis.md", "docs/trust.md", "README.md"),
+                                         "docs/check.md", "docs/machines.md", "docs/patching-a-machine.md",
+                                         "docs/mechanisms.md", "docs/synthesis.md", "docs/trust.md", "README.md"),
                          [](const auto& tested) {
-                           return std::filesystem::path(tested.param).stem().string();
+                           std::string name = std::filesystem::path(tested.param).stem().string();
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
                          });
 
 // The commands of a page run in order, in a copy of the diagrams, since some write files that later ones

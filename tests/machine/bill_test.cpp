@@ -146,6 +146,14 @@ z = { type = "integrator", in = ["3*x", "-0.3*x", "10*y"], initial = -1 }
   EXPECT_EQ(row(bill(blocks, signed_machine()), "amplifiers").note, "3 integrators");
 }
 
+TEST(Bill, AsksNothingForNothing) {
+  const Bill counted = bill(
+      "zero = { type = \"constant\", value = 0 }\n"
+      "x = { type = \"integrator\", in = [\"zero\", \"0*x\"] }\n",
+      inverting_machine());
+  EXPECT_EQ(counted.rows.size(), 2U);  // an amplifier and its network
+}
+
 TEST(Bill, TakesAGainForWhatItStandsFor) {
   const Bill counted =
       bill("x = { type = \"integrator\", in = [\"g\"] }\ng = { type = \"gain\", in = \"x\", factor = -3 }\n",

@@ -176,6 +176,51 @@ y = { type = "integrator", in = ["x"], initial = -1 }
   EXPECT_THAT(line_of(realised(blocks, "", signed_machine()), "x"), HasSubstr("initial = 0.5"));
 }
 
+// Whichever way z is fed, it is carried as its negative one way, and so is what it starts from.
+TEST(Realise, CarriesInitialValuesFromSignalsWithTheSignOfTheSignal) {
+  std::string written;
+  for (const char* const inputs : {R"("x", "y")", R"("-x", "-y")"}) {
+    const Diagram diagram = parse_diagram(diagram_text(R"(
+x = { type = "integrator", in = ["-y"], initial = 0.5 }
+y = { type = "integrator", in = ["x"], initial = 0.25 }
+z = { type = "integrator", in = [)" + std::string(inputs) +
+                                                       R"(], start = "0.5*x", initial = 0.125 }
+)"),
+                                          "d.toml");
+    const Diagram made = realise(diagram, shipped_blocks(), inverting_machine()).diagram;
+    EXPECT_LT(difference(diagram, made), 1e-6) << write_diagram(made);
+    written += write_diagram(made);
+  }
+  EXPECT_THAT(written, HasSubstr("initial = 0.125"));
+  EXPECT_THAT(written, HasSubstr("initial = -0.125"));
+}
+
+TEST(Realise, LeavesInitialValuesBeyondTheReferenceToTheIntegrator) {
+  const Diagram made =
+      realised("x = { type = \"integrator\", in = [\"-x\"], initial = 2 }\n", "", inverting_machine());
+  EXPECT_THAT(line_of(made, "x"), HasSubstr("in = \"x\", initial = 2"));
+}
+
+// in.hold would become in_hold, which equations keep for themselves.
+TEST(Realise, GivesFlattenedBlocksNamesThatTheyMayHave) {
+  const BlockLibrary library =
+      testing::shipped_blocks_and("cell",
+                                  "[outputs]\nout = { wire = \"hold\" }\n[blocks]\n"
+                                  "hold = { type = \"integrator\", in = [\"-0.5*hold\"], initial = 1 }\n");
+  const Diagram diagram =
+      parse_diagram(diagram_text("in = { type = \"cell\" }\nin_hold_2 = { type = \"cell\" }\n"), "d.toml");
+  const Diagram made = realise(diagram, library, inverting_machine()).diagram;
+  EXPECT_NO_THROW(parse_diagram(write_diagram(made), "made.toml")) << write_diagram(made);
+}
+
+TEST(Realise, KeepsWhatOutputsAdd) {
+  const Diagram made = realised(
+      "x = { type = \"integrator\", in = [\"-0.5*x\"], initial = 1 }\n",
+      "[outputs]\nx = { signal = \"x\", scale = 4, offset = 65536, unit = \"m\" }\n", inverting_machine());
+  EXPECT_EQ(made.outputs[0].offset, 65536);
+  EXPECT_EQ(made.outputs[0].unit, "m");
+}
+
 TEST(Realise, LeavesOutWhatOnlyMultipliesByAConstant) {
   const Diagram made = realised(R"(
 two  = { type = "constant", value = 2 }
@@ -268,6 +313,26 @@ f = { type = "function-generator", in = "-x", points = [[-1, 1], [0, 0], [1, 0.5
   const Diagram made = realise(diagram, shipped_blocks(), inverting_machine()).diagram;
   EXPECT_EQ(block(made, "f").type, "function-generator");
   EXPECT_LT(difference(diagram, made), 1e-6);
+}
+
+// An offset at a summing junction turns with the output. The weights are 1, since an amplifier's noise gain
+// is a matter of its input resistors.
+TEST(Realise, TurnsImperfectionsWithTheSignal) {
+  const std::string blocks = R"(
+x = { type = "integrator", in = ["-y"], initial = 0.5, drift = 0.01 }
+y = { type = "integrator", in = ["x"], offset = 0.02 }
+s = { type = "summer", in = ["x", "y"], offset = 0.03 }
+n = { type = "inverter", in = "s", offset = 0.04, drift = 0.005 }
+m = { type = "multiplier", in = ["n", "y"], offset = 0.05 }
+c = { type = "servo-amplifier", in = ["c", "-m"], bandwidth = "1 kHz", offset = 0.06 }
+z = { type = "integrator", in = ["c", "-m", "s"] }
+)";
+  for (const char* const inverting : {"", "[machine]\ninverting = true\n"}) {
+    const Diagram diagram = parse_diagram(diagram_text(blocks, inverting), "d.toml");
+    const Diagram made = realise(diagram, shipped_blocks(), inverting_machine()).diagram;
+    EXPECT_THAT(write_diagram(made), HasSubstr("minus_"));  // or nothing is turned
+    EXPECT_LT(difference(diagram, made), 1e-6) << write_diagram(made);
+  }
 }
 
 TEST(Realise, KeepsGainsThatDriveEachOther) {

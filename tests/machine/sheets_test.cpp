@@ -53,6 +53,16 @@ TEST(Sheets, ListEveryConnectionWithTheGainOfItsInput) {
   EXPECT_THAT(list.rows, Contains(ElementsAre("A1", "x", "A2", "minus_x", "in")));
 }
 
+TEST(Sheets, LeaveOutWiresThatCarryNothing) {
+  const FlatDiagram flat = flatten(
+      parse_diagram(testing::diagram_text("one = { type = \"constant\" }\nx = { type = \"integrator\", in = "
+                                          "[\"0*one\"] }\n"),
+                    "d.toml"),
+      shipped_blocks());
+  const MachineSheets made = make_sheets(flat, static_test(Program(assemble(flat)), "d.toml"), ten_volts());
+  EXPECT_TRUE(made.connections.rows.empty());
+}
+
 TEST(Sheets, SayWhatPotentiometersStandFor) {
   const Sheet pots = sheets(ten_volts()).potentiometers;
   EXPECT_THAT(pots.rows, Contains(ElementsAre("P1", "0.2500", "A3", "A1 ×10", "2.5 1/s of y in x")));
@@ -65,19 +75,19 @@ TEST(Sheets, SayWhatPotentiometersStandFor) {
 // x = 0.6, y = −1: ẋ = 2.5 + 0.2, ẏ = 1.5, x·½y = −0.3 [machine unit]; 10 V each.
 TEST(Sheets, TellWhatEveryElementShowsAtTheStart) {
   const Sheet test = sheets(ten_volts()).static_test;
-  EXPECT_THAT(test.columns, ElementsAre("element", "signal", "output [V]", "slope [V/s]"));
-  EXPECT_THAT(test.rows, Contains(ElementsAre("A1", "x", "6.0000", "27.0000")));
-  EXPECT_THAT(test.rows, Contains(ElementsAre("A2", "minus_x", "-6.0000", "")));
-  EXPECT_THAT(test.rows, Contains(ElementsAre("A3", "y", "-10.0000", "15.0000")));
-  EXPECT_THAT(test.rows, Contains(ElementsAre("M1", "xy", "-3.0000", "")));
-  EXPECT_THAT(test.rows, Contains(ElementsAre("P2", "pot_2", "-2.0000", "")));
+  EXPECT_THAT(test.columns, ElementsAre("element", "signal", "kind", "output [V]", "slope [V/s]"));
+  EXPECT_THAT(test.rows, Contains(ElementsAre("A1", "x", "integrator, k0 = 1 1/s", "6.0000", "27.0000")));
+  EXPECT_THAT(test.rows, Contains(ElementsAre("A2", "minus_x", "inverter", "-6.0000", "")));
+  EXPECT_THAT(test.rows, Contains(ElementsAre("A3", "y", "integrator, k0 = 1 1/s", "-10.0000", "15.0000")));
+  EXPECT_THAT(test.rows, Contains(ElementsAre("M1", "xy", "multiplier", "-3.0000", "")));
+  EXPECT_THAT(test.rows, Contains(ElementsAre("P2", "pot_2", "potentiometer", "-2.0000", "")));
 }
 
 TEST(Sheets, ComputeInMachineUnitsWhereTheVoltageIsNotKnown) {
   const Sheet test = sheets(inverting_machine()).static_test;
   EXPECT_THAT(test.columns,
-              ElementsAre("element", "signal", "output [machine unit]", "slope [machine unit/s]"));
-  EXPECT_THAT(test.rows, Contains(ElementsAre("A1", "x", "0.6000", "2.7000")));
+              ElementsAre("element", "signal", "kind", "output [machine unit]", "slope [machine unit/s]"));
+  EXPECT_THAT(test.rows, Contains(ElementsAre("A1", "x", "integrator, k0 = 1 1/s", "0.6000", "2.7000")));
 }
 
 TEST(Sheets, AreQuotedAsCsvWhereTheyHaveTo) {

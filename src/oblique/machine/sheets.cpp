@@ -71,9 +71,10 @@ class SheetMaker {
   }
 
   Sheet static_test(const std::vector<StaticReading>& readings) const {
-    Sheet sheet{"static test",
-                {"element", "signal", fmt::format("output [{}]", unit_), fmt::format("slope [{}/s]", unit_)},
-                {}};
+    Sheet sheet{
+        "static test",
+        {"element", "signal", "kind", fmt::format("output [{}]", unit_), fmt::format("slope [{}/s]", unit_)},
+        {}};
     std::unordered_map<std::string_view, const StaticReading*> by_name;
     for (const StaticReading& reading : readings) by_name.emplace(reading.signal, &reading);
     for (std::size_t b = 0; b < diagram_.blocks.size(); ++b) {
@@ -83,8 +84,8 @@ class SheetMaker {
         const std::string signal = diagram_.signal_name({b, k});
         const StaticReading& reading = *by_name.at(signal);
         const bool integrates = role_of(definition.name) == Role::integrator && reading.slope;
-        sheet.rows.push_back(
-            {numbers_[b], signal, voltage(reading.output), integrates ? voltage(*reading.slope) : ""});
+        sheet.rows.push_back({numbers_[b], signal, kind_text(diagram_.blocks[b]), voltage(reading.output),
+                              integrates ? voltage(*reading.slope) : ""});
       }
     }
     return sheet;
@@ -100,6 +101,18 @@ class SheetMaker {
       ++same->inputs;
     } else {
       connections_.push_back({term.signal, block, port, term.weight, 1});
+    }
+  }
+
+  /// "summer", "integrator, k0 = 500 1/s", "open amplifier".
+  static std::string kind_text(const FlatBlock& block) {
+    switch (role_of(block.definition->name)) {
+      case Role::integrator:
+        return fmt::format("integrator, k0 = {:.6g} 1/s", parameter_of(block, "rate"));
+      case Role::open_amplifier:
+        return "open amplifier";
+      default:
+        return block.definition->name;
     }
   }
 
