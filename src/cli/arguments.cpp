@@ -194,6 +194,8 @@ void add_patch(CLI::App& app, Chosen& chosen) {
                    "bandwidth of the servo amplifiers, in Hz or with a unit; inf: algebraic loops "
                    "(default: 100 times the crank's frequency)");
   add_method(verb, *request);
+  verb->add_flag("--derivatives", request->derivatives,
+                 "velocities and accelerations too, as further circuits");
   verb->add_option("-o,--output", request->output, "write the diagram to FILE.toml")->type_name("FILE");
   choose(verb, chosen, request, patch_mechanism);
 }

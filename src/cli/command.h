@@ -74,6 +74,7 @@ struct PatchRequest {
   std::string gain = "1e6";
   std::string bandwidth;
   std::string method = "triangles";
+  bool derivatives = false;
 };
 ExitStatus patch_mechanism(const Session& session, const PatchRequest& request);
 

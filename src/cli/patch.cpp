@@ -35,6 +35,7 @@ ExitStatus patch_mechanism(const Session&, const PatchRequest& request) {
   options.method = method_option(request.method);
   options.gain = positive_option("--gain", request.gain, "1");
   if (!request.bandwidth.empty()) options.bandwidth = positive_option("--bandwidth", request.bandwidth, "Hz");
+  options.derivatives = request.derivatives;
   const std::string text = write_diagram(patch(read_mechanism(request.mechanism), options));
   if (request.output.empty()) {
     print(text);

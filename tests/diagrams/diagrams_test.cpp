@@ -2,6 +2,7 @@
 // Every diagram that is shipped says where it comes from, runs and gives what its [expect] says; every
 // mechanism can be patched and agrees.
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <sstream>
 
@@ -12,6 +13,8 @@
 #include <oblique/mechanism/read_mechanism.h>
 #include <oblique/solve/expectation_check.h>
 #include <oblique/text/document.h>
+
+#include "../support/rate_errors.h"
 
 namespace oblique {
 namespace {
@@ -126,6 +129,26 @@ TEST_P(PatchedMechanism, AgreesWithItsExactMotion) {
   }
   ASSERT_TRUE(comparison.order.has_value());
   EXPECT_NEAR(*comparison.order, -1, 0.05);
+}
+
+// The rates' matrix is that of the positions; its inverse enters once more with each derivative.
+TEST_P(PatchedMechanism, HasTheRatesOfItsExactMotion) {
+  const Mechanism mechanism = read_mechanism(path_of(GetParam().file));
+  const BlockLibrary library = BlockLibrary::shipped();
+  PatchOptions options;
+  options.method = GetParam().method;
+  options.derivatives = true;
+  const auto errors_at = [&](double gain) {
+    options.gain = gain;
+    const Diagram diagram = patch(mechanism, options);
+    const FlatDiagram flat = flatten(diagram, library);
+    return rate_errors(mechanism, run(Program(assemble(flat)), flat, options_of(diagram.run)).trajectory);
+  };
+  const RateErrors low = errors_at(1e4), high = errors_at(1e5);
+  EXPECT_NEAR(std::log10(high.velocity / low.velocity), -1, 0.05);
+  EXPECT_NEAR(std::log10(high.acceleration / low.acceleration), -1, 0.05);
+  EXPECT_LT(high.velocity, 20 / 1e5);  // of the largest; the leg of Theo Jansen has 10/gain and 17/gain
+  EXPECT_LT(high.acceleration, 40 / 1e5);
 }
 
 TEST(PatchedMechanism, IsMostOfTheCatalogue) {

@@ -14,6 +14,8 @@
 #include <oblique/patch/scaling.h>
 #include <oblique/solve/run.h>
 
+#include "patched_run.h"
+
 namespace oblique {
 namespace {
 
@@ -33,27 +35,6 @@ crank = { turns = "AB", about = "A", speed = 1 }
 [sketch]
 C = [3, 2.8]
 )";
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  text.replace(text.find(from), from.size(), to);
-  return text;
-}
-
-Mechanism shipped(const std::string& name) {
-  return read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/" + name + ".toml");
-}
-
-/// A patched diagram run over its turn, and the program it became.
-struct PatchedRun {
-  explicit PatchedRun(const Diagram& diagram)
-      : flat(flatten(diagram, library)),
-        program(assemble(flat)),
-        result(run(program, flat, options_of(diagram.run))) {}
-  BlockLibrary library = BlockLibrary::shipped();
-  FlatDiagram flat;
-  Program program;
-  Run result;
-};
 
 /// Largest distance of any moving point from its exact place [length unit].
 double largest_error(const Mechanism& mechanism, const Run& analog) {

@@ -41,6 +41,7 @@ class GradientPatch : private PatchBuilder {
         add_group(group);
       }
     }
+    if (options_.derivatives) add_rates();
     add_outputs();
     return std::move(diagram_);
   }

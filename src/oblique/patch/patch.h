@@ -31,6 +31,7 @@ struct PatchOptions {
   double gain = 1e6;  ///< μ of every servo amplifier; inf: ideal amplifiers
   std::optional<double>
       bandwidth;  ///< of every servo amplifier [Hz]; inf: algebraic loops; default: `default_bandwidth`
+  bool derivatives = false;  ///< velocities and accelerations too, as further circuits
   double tolerance = 1e-10;  ///< of the run that the diagram asks for
   int samples = 361;         ///< rows of that run
 };

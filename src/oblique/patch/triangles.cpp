@@ -40,6 +40,7 @@ class TrianglePatch : private SlideDyadPatch {
       }
       for (const std::size_t point : group.points) set_known(point);
     }
+    if (options_.derivatives) add_rates();
     add_outputs();
     return std::move(diagram_);
   }
