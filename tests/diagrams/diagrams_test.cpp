@@ -89,17 +89,14 @@ bool is_on_links(const Group& group) {
                      [](const Condition& c) { return c.kind == Condition::Kind::distance; });
 }
 
-/// All that move at constant speed and meet no dead centre, by gradient servos; those without groups of class
-/// IV and higher, without slides in the leads of triads, and without drives inside groups of several bodies,
-/// by triangles too.
+/// All that meet no dead centre, by gradient servos; those without groups of class IV and higher, without
+/// slides in the leads of triads, and without drives inside groups of several bodies, by triangles too.
 std::vector<Patched> patchable() {
   std::vector<Patched> all;
   for (const std::string& name : files_in("mechanisms")) {
     const Mechanism mechanism = read_mechanism(path_of(name));
     const Structure structure = decompose(mechanism);
-    const bool varies = std::any_of(mechanism.drives.begin(), mechanism.drives.end(),
-                                    [](const Drive& drive) { return drive.law.has_value(); });
-    if (varies || find_obstacle(mechanism, structure)) continue;
+    if (find_obstacle(mechanism, structure)) continue;
     all.push_back({name, PatchMethod::gradient});
     const bool dyads = std::all_of(structure.groups.begin(), structure.groups.end(), [](const Group& group) {
       if (group.kind == GroupKind::triad) return is_on_links(group);
@@ -127,7 +124,10 @@ TEST_P(PatchedMechanism, AgreesWithItsExactMotion) {
         << run.gain;  // 1/gain, magnified at most ten times
     EXPECT_TRUE(run.stable);
   }
-  ASSERT_TRUE(comparison.order.has_value());
+  if (!comparison.order) {  // the tolerance hides it: a trammel on its slide errs by 1e-8 at gain 1e4
+    EXPECT_LT(comparison.runs.back().max_error, 10 * comparison.floor);
+    return;
+  }
   EXPECT_NEAR(*comparison.order, -1, 0.05);
 }
 
@@ -155,8 +155,8 @@ TEST(PatchedMechanism, IsMostOfTheCatalogue) {
   const std::vector<Patched> all = patchable();
   const auto triangles = std::count_if(all.begin(), all.end(),
                                        [](const Patched& p) { return p.method == PatchMethod::triangles; });
-  EXPECT_GE(triangles, 25);
-  EXPECT_GE(static_cast<long>(all.size()) - triangles, 27);
+  EXPECT_GE(triangles, 30);
+  EXPECT_GE(static_cast<long>(all.size()) - triangles, 33);
 }
 
 }  // namespace

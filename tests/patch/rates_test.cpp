@@ -100,6 +100,23 @@ TEST_P(Rates, FollowACrankOnAMovingPivot) {
   EXPECT_LT(errors.acceleration, 1e-6);
 }
 
+// A drive's own acceleration enters too: φ̈ = −3 sin 3t [rad/s²] for a crank, and for a slide.
+TEST_P(Rates, FollowASpeedLaw) {
+  const std::string law =
+      replaced(kFourBar, "speed = 1", "speed = \"0.2 + cos(3*time) rad/s\"") + "[motion]\nuntil = 4\n";
+  for (const Mechanism& mechanism :
+       {parse_mechanism(law, "law.toml"), shipped("elliptical-trammel-by-slide")}) {
+    const PatchedRun patched(patch(mechanism, with_rates(GetParam())));
+    const RateErrors errors = rate_errors(mechanism, patched.result.trajectory);
+    EXPECT_LT(errors.position, 1e-6) << mechanism.title;
+    EXPECT_LT(errors.velocity, 1e-6) << mechanism.title;
+    EXPECT_LT(errors.acceleration, 1e-6) << mechanism.title;
+    for (std::size_t s = 0; s < patched.result.peaks.size(); ++s) {
+      EXPECT_LE(std::abs(patched.result.peaks[s].value), 1 + 1e-6) << patched.program.signal_names()[s];
+    }
+  }
+}
+
 TEST(RateCircuits, WithIdealAmplifiersAreExactToTheTolerance) {
   PatchOptions options = with_rates(PatchMethod::triangles, std::numeric_limits<double>::infinity());
   for (const char* const name : {"four-bar", "six-bar", "class-iii"}) {

@@ -1,17 +1,43 @@
 // SPDX-License-Identifier: MIT
 // The blocks of drives, which all methods of patching share.
+#include <algorithm>
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include <oblique/patch/patch_builder.h>
 
 namespace oblique {
 
-const VectorForm& PatchBuilder::add_generator(std::size_t d, const std::string& comment) {
+std::string PatchBuilder::speed_text(const Drive& drive) const {
+  const std::string unit = drive.slide ? mechanism_.length_unit + "/s" : "rad/s";
+  if (!drive.law) return fmt::format("{:.6g} {}", drive.speed, unit);
+  const std::string law = to_string(*drive.law);
+  return drive.law_scale == 1 ? fmt::format("{} {}", law, unit)
+                              : fmt::format("({})*{:.6g} {}", law, drive.law_scale, unit);
+}
+
+const PatchBuilder::Speed& PatchBuilder::add_speed(std::size_t d) {
   const Drive& drive = mechanism_.drives[d];
+  if (!drive.law) return speeds_[d] = {one_, drive.speed};
+  double fastest = 0;
+  for (const std::vector<DriveState>& row : motion_.drives)
+    fastest = std::max(fastest, std::abs(row[d].rate));
+  constexpr double kMargin = 1.001;  // for what lies between two positions of the motion
+  const double unit = fastest > 0 ? round_up(kMargin * fastest) : 1;
+  speeds_[d].signal = add_block(
+      drive.name + "_speed", "time-function",
+      {text_setting("formula", to_string(*drive.law)), number_setting("scale", drive.law_scale / unit)});
+  speeds_[d].unit = unit;
+  return speeds_[d];
+}
+
+const VectorForm& PatchBuilder::add_generator(std::size_t d, const std::string& comment) {
+  const Speed& speed = add_speed(d);
   const std::string generator =
-      add_block(drive.name, "crank-generator",
-                {wire_setting("speed", {{1, one_}}), number_setting("rate", drive.speed),
-                 number_setting("start", drive.start)},
+      add_block(mechanism_.drives[d].name, "crank-generator",
+                {wire_setting("speed", {{1, speed.signal}}), number_setting("rate", speed.unit),
+                 number_setting("start", mechanism_.drives[d].start)},
                 comment);
   drives_[d].axis = {weighted(generator + ".cos"), weighted(generator + ".sin")};
   return drives_[d].axis;
@@ -19,12 +45,12 @@ const VectorForm& PatchBuilder::add_generator(std::size_t d, const std::string& 
 
 std::string PatchBuilder::add_way(std::size_t d, double reach) {
   const Drive& drive = mechanism_.drives[d];
-  const std::string way =
-      add_block(drive.name, "integrator",
-                {wire_setting("in", {{scaled(drive.speed) / reach, one_}}),
-                 number_setting("initial", scaled(drive.start) / reach)},
-                fmt::format("drive {}: {:.6g} {}/s along {}", drive.name, drive.speed, mechanism_.length_unit,
-                            mechanism_.slides[*drive.slide].name));
+  const Speed& speed = add_speed(d);
+  const std::string way = add_block(drive.name, "integrator",
+                                    {wire_setting("in", {{scaled(speed.unit) / reach, speed.signal}}),
+                                     number_setting("initial", scaled(drive.start) / reach)},
+                                    fmt::format("drive {}: {} along {}", drive.name, speed_text(drive),
+                                                mechanism_.slides[*drive.slide].name));
   drives_[d].way = weighted(way, reach);
   return way;
 }

@@ -28,9 +28,8 @@ class GradientPatch : private PatchBuilder {
         "patched as gradient servos",
         fmt::format(
             "Each unknown coordinate is an integrator that runs down the gradient of the squared\n"
-            "conditions of its group, at K = {:.6g} 1/s (gain {} times the bandwidth of {} Hz). Run over "
-            "one turn of '{}'.",
-            rate_, options_.gain, bandwidth_, mechanism_.drives.front().name));
+            "conditions of its group, at K = {:.6g} 1/s (gain {} times the bandwidth of {} Hz). Run over {}.",
+            rate_, options_.gain, bandwidth_, span_text()));
     add_reference();
     start_ = start_configuration(mechanism_, structure_);
     for (const Group& group : structure_.groups) {

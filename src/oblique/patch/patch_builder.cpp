@@ -13,18 +13,6 @@ namespace {
 /// Positions over the turn from which the scaling is taken: half a degree apart.
 constexpr int kScalingPositions = 721;
 
-Structure structure_of(const Mechanism& mechanism) {
-  Structure structure = decompose(mechanism);
-  for (const Drive& drive : mechanism.drives) {
-    if (!drive.law) continue;
-    throw PatchError(Diagnostic{
-        drive.place,
-        fmt::format("drive '{}' has a speed that varies, which no block of the patch can make", drive.name),
-        "constant speeds", "give a number as its speed; `oblique solve` follows the law"});
-  }
-  return structure;
-}
-
 Motion motion_of(const Mechanism& mechanism, const Structure& structure) {
   std::vector<double> times;
   times.reserve(kScalingPositions);
@@ -38,12 +26,13 @@ Motion motion_of(const Mechanism& mechanism, const Structure& structure) {
 PatchBuilder::PatchBuilder(const Mechanism& mechanism, const PatchOptions& options)
     : PointForms(mechanism),
       options_(options),
-      structure_(structure_of(mechanism)),
+      structure_(decompose(mechanism)),
       motion_(motion_of(mechanism, structure_)),
       scaling_(find_scaling(mechanism, structure_, motion_)),
       bandwidth_(options.bandwidth.value_or(default_bandwidth(mechanism))),
       signals_(mechanism.points.size()),
-      drives_(mechanism.drives.size()) {
+      drives_(mechanism.drives.size()),
+      speeds_(mechanism.drives.size()) {
   set_scale(scaling_);
 }
 
@@ -57,6 +46,11 @@ void PatchBuilder::describe(const std::string& method, const std::string& remark
   diagram_.run.until = period(mechanism_);
   diagram_.run.tolerance = options_.tolerance;
   diagram_.run.samples = options_.samples;
+}
+
+std::string PatchBuilder::span_text() const {
+  return mechanism_.motion.until ? fmt::format("the {:.6g} s of its motion", *mechanism_.motion.until)
+                                 : fmt::format("one turn of '{}'", mechanism_.drives.front().name);
 }
 
 void PatchBuilder::add_reference() {
@@ -124,8 +118,8 @@ void PatchBuilder::add_crank(const Group& crank) {
   const Drive& drive = mechanism_.drives[d];
   const Body& body = mechanism_.bodies[drive.body];
   const std::size_t pivot = pivot_of(crank);
-  add_generator(
-      d, fmt::format("crank {}: turns about {} at {:.6g} rad/s", body.name, name_of(pivot), drive.speed));
+  add_generator(d,
+                fmt::format("crank {}: turns about {} at {}", body.name, name_of(pivot), speed_text(drive)));
   for (const BodyPoint& point : body.points) {
     if (point.point == pivot || is_known(point.point)) continue;
     const VectorForm form = crank_point(crank, point);

@@ -18,7 +18,7 @@ namespace oblique {
 /// outputs.
 class PatchBuilder : protected PointForms {
  public:
-  /// Throws as `decompose` and `find_scaling`.
+  /// Throws as `decompose`, `period` and `find_scaling`.
   PatchBuilder(const Mechanism& mechanism, const PatchOptions& options);
 
  protected:
@@ -29,6 +29,8 @@ class PatchBuilder : protected PointForms {
 
   /// Title, comment and run; `method` ends the title, `remarks` stand in the comment.
   void describe(const std::string& method, const std::string& remarks);
+  /// "one turn of 'crank'", or how long the file says: for the remarks.
+  std::string span_text() const;
   void add_reference();
   void add_outputs();
 
@@ -51,6 +53,9 @@ class PatchBuilder : protected PointForms {
   static Entry sum_of(const Terms& terms);
   void add_summed_point(std::size_t point, const Terms& x, const Terms& y, const std::string& comment);
   void add_crank(const Group& crank);
+
+  /// "2 rad/s", or the law, for comments.
+  std::string speed_text(const Drive& drive) const;
 
   /// A block that gives the direction of the body that a drive turns: its form, which `drives_` keeps.
   const VectorForm& add_generator(std::size_t drive, const std::string& comment);
@@ -96,11 +101,19 @@ class PatchBuilder : protected PointForms {
  private:
   class Rates;
 
+  /// The signal of a drive's speed and what 1 machine unit of it is [rad/s] or [length unit/s].
+  struct Speed {
+    std::string signal;
+    double unit = 1;
+  };
+  const Speed& add_speed(std::size_t drive);
+
   struct RateSignals {
     std::string vx, vy, ax, ay;
   };
   VectorForm crank_point(const Group& crank, const BodyPoint& point) const;
 
+  std::vector<Speed> speeds_;              ///< of the drives
   std::vector<RateSignals> rate_signals_;  ///< of the points, once they have rates
   double velocity_unit_ = 1;               ///< 1 machine unit of a velocity [length unit/s]
   double acceleration_unit_ = 1;           ///< of an acceleration [length unit/s²]

@@ -11,11 +11,15 @@
 // tracked; two amplifiers on a dyad's two equations would be so only with signs that follow the mode. What a
 // differentiating amplifier would make of the loops' noise does not arise.
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <tuple>
 
 #include <fmt/format.h>
 
+#include <oblique/mechanism/law_derivative.h>
 #include <oblique/patch/patch_builder.h>
+#include <oblique/patch/signal_rates.h>
 
 namespace oblique {
 namespace {
@@ -23,10 +27,8 @@ namespace {
 /// The ×10 inputs of a machine's amplifiers.
 constexpr double kInputGain = 10;
 
-/// The rates of a signal over the motion [machine unit of the signal/s, /s²].
-struct ExactRates {
-  std::vector<double> first, second;
-};
+/// Between two positions of the motion a signal may rise a little more.
+constexpr double kMargin = 1.001;
 
 }  // namespace
 
@@ -64,13 +66,8 @@ class PatchBuilder::Rates {
   }
 
  private:
-  enum Order : std::uint8_t { first, second };
-
-  /// A signal's rates as forms [machine unit of velocity, of acceleration], and as they are.
-  struct SignalRates {
-    LinearForm forms[2];
-    ExactRates exact;
-  };
+  using Order = SignalRates::Order;
+  using enum SignalRates::Order;
 
   /// A form whose rate has a block.
   struct FormRate {
@@ -81,50 +78,85 @@ class PatchBuilder::Rates {
   // --- what is known
 
   void add_drive(std::size_t d) {
-    const Drive& drive = patch_.mechanism_.drives[d];
+    const Speed& speed = patch_.speeds_[d];
     const DriveForms& forms = patch_.drives_[d];
-    std::vector<double> rate, acceleration, cosine, sine;
-    for (const std::vector<DriveState>& row : patch_.motion_.drives) {
-      rate.push_back(row[d].rate);
-      acceleration.push_back(row[d].acceleration);
-      cosine.push_back(std::cos(row[d].value));
-      sine.push_back(std::sin(row[d].value));
-    }
-    if (drive.slide) {
+    std::string acceleration;  // its signal, in its unit; none at constant speed
+    double acceleration_unit = 0;
+    if (patch_.mechanism_.drives[d].law) std::tie(acceleration, acceleration_unit) = add_acceleration(d);
+    if (patch_.mechanism_.drives[d].slide) {
       const auto& [way, reach] = *forms.way.weights.begin();
-      SignalRates& rates = rates_[way];
-      rates.forms[first].constant = patch_.scaled(drive.speed) / reach / units_[first];
-      for (std::size_t k = 0; k < rate.size(); ++k) {
-        rates.exact.first.push_back(patch_.scaled(rate[k]) / reach);
-        rates.exact.second.push_back(patch_.scaled(acceleration[k]) / reach);
+      auto& [of_way, exact] = rates_[way];
+      of_way[first] = weighted(speed.signal, patch_.scaled(speed.unit) / reach / units_[first]);
+      if (!acceleration.empty())
+        of_way[second] = weighted(acceleration, patch_.scaled(acceleration_unit) / reach / units_[second]);
+      for (const std::vector<DriveState>& row : patch_.motion_.drives) {
+        exact[first].push_back(patch_.scaled(row[d].rate) / reach);
+        exact[second].push_back(patch_.scaled(row[d].acceleration) / reach);
       }
       return;
     }
     const std::string& cos = forms.axis.x.weights.begin()->first;
     const std::string& sin = forms.axis.y.weights.begin()->first;
-    const double w = drive.speed;
-    SignalRates& of_cos = rates_[cos];
-    SignalRates& of_sin = rates_[sin];
-    of_cos.forms[first] = weighted(sin, -w / units_[first]);
-    of_sin.forms[first] = weighted(cos, w / units_[first]);
-    of_cos.forms[second] = weighted(cos, -w * w / units_[second]);
-    of_sin.forms[second] = weighted(sin, -w * w / units_[second]);
-    for (std::size_t k = 0; k < rate.size(); ++k) {
-      of_cos.exact.first.push_back(-rate[k] * sine[k]);
-      of_sin.exact.first.push_back(rate[k] * cosine[k]);
-      of_cos.exact.second.push_back(-rate[k] * rate[k] * cosine[k] - acceleration[k] * sine[k]);
-      of_sin.exact.second.push_back(-rate[k] * rate[k] * sine[k] + acceleration[k] * cosine[k]);
+    auto& [of_cos, exact_cos] = rates_[cos];
+    auto& [of_sin, exact_sin] = rates_[sin];
+    // d cos = −φ̇ sin, d² cos = −φ̇² cos − φ̈ sin, and so on
+    const std::string& u = speed.signal;
+    const std::string u_cos = by_speed(d, u, cos), u_sin = by_speed(d, u, sin);
+    const double w = speed.unit / units_[first], w2 = speed.unit * speed.unit / units_[second];
+    of_cos[first] = weighted(u_sin, -w);
+    of_sin[first] = weighted(u_cos, w);
+    of_cos[second] = weighted(by_speed(d, u, u_cos), -w2);
+    of_sin[second] = weighted(by_speed(d, u, u_sin), -w2);
+    if (!acceleration.empty()) {
+      of_cos[second].add(weighted(product(acceleration, sin), -acceleration_unit / units_[second]));
+      of_sin[second].add(weighted(product(acceleration, cos), acceleration_unit / units_[second]));
     }
+    for (const std::vector<DriveState>& row : patch_.motion_.drives) {
+      const double rate = row[d].rate, alpha = row[d].acceleration;
+      const double c = std::cos(row[d].value), s = std::sin(row[d].value);
+      exact_cos[first].push_back(-rate * s);
+      exact_sin[first].push_back(rate * c);
+      exact_cos[second].push_back(-rate * rate * c - alpha * s);
+      exact_sin[second].push_back(-rate * rate * s + alpha * c);
+    }
+  }
+
+  /// The derivative of a drive's law: its signal and what 1 machine unit of it is. No signal where it
+  /// vanishes.
+  std::pair<std::string, double> add_acceleration(std::size_t d) {
+    const Drive& drive = patch_.mechanism_.drives[d];
+    double largest = 0;
+    for (const std::vector<DriveState>& row : patch_.motion_.drives)
+      largest = std::max(largest, std::abs(row[d].acceleration));
+    if (largest == 0) return {};
+    const double unit = round_up(kMargin * largest);
+    return {patch_.add_block(drive.name + "_acceleration", "time-function",
+                             {text_setting("formula", to_string(law_derivative(*drive.law))),
+                              number_setting("scale", drive.law_scale / unit)}),
+            unit};
+  }
+
+  /// A signal times that of a drive's speed, which is 1 where the speed is constant.
+  std::string by_speed(std::size_t d, const std::string& speed, const std::string& signal) {
+    return patch_.mechanism_.drives[d].law ? product(speed, signal) : signal;
+  }
+
+  std::string product(const std::string& a, const std::string& b) {
+    std::string name = a + "_" + b;
+    std::replace(name.begin(), name.end(), '.', '_');
+    return patch_.add_block(name, "multiplier", {wire_setting("in", {{1, a}, {1, b}})});
   }
 
   void add_crank(const Group& crank) {
     const std::size_t d = crank.drives.front();
     const Body& body = patch_.mechanism_.bodies[patch_.mechanism_.drives[d].body];
+    const std::size_t begin = patch_.diagram_.blocks.size();
     for (const BodyPoint& point : body.points) {
       if (places_.points_[point.point]) continue;
       name_rates(point.point);
       add_summed_rates(point.point, patch_.crank_point(crank, point));
     }
+    comment(begin, fmt::format("rates of the crank {}", body.name));
   }
 
   /// Takes a point's signals as its place, and its rates as theirs.
@@ -142,16 +174,15 @@ class PatchBuilder::Rates {
     names = {patch_.free_name(name + "_vx"), patch_.free_name(name + "_vy"), patch_.free_name(name + "_ax"),
              patch_.free_name(name + "_ay")};
     const PointSignals& at = patch_.signals_[point];
-    SignalRates &x = rates_[at.x], &y = rates_[at.y];
-    x.forms[first] = weighted(names.vx);
-    y.forms[first] = weighted(names.vy);
-    x.forms[second] = weighted(names.ax);
-    y.forms[second] = weighted(names.ay);
+    SignalRates::Rates &x = rates_[at.x], &y = rates_[at.y];
+    x.forms = {weighted(names.vx), weighted(names.ax)};
+    y.forms = {weighted(names.vy), weighted(names.ay)};
     for (const Configuration& here : patch_.motion_.configurations) {
-      x.exact.first.push_back(patch_.scaled(here.points[point].velocity.x()));
-      y.exact.first.push_back(patch_.scaled(here.points[point].velocity.y()));
-      x.exact.second.push_back(patch_.scaled(here.points[point].acceleration.x()));
-      y.exact.second.push_back(patch_.scaled(here.points[point].acceleration.y()));
+      const PointState& exact = here.points[point];
+      x.exact[first].push_back(patch_.scaled(exact.velocity.x()));
+      y.exact[first].push_back(patch_.scaled(exact.velocity.y()));
+      x.exact[second].push_back(patch_.scaled(exact.acceleration.x()));
+      y.exact[second].push_back(patch_.scaled(exact.acceleration.y()));
     }
   }
 
@@ -165,10 +196,10 @@ class PatchBuilder::Rates {
 
   void add_summed_rates(std::size_t point, const VectorForm& at) {
     const RateSignals& names = patch_.rate_signals_[point];
-    add_named(names.vx, "summer", {sum_of(patch_.terms_of(rate_of(at.x, first)))});
-    add_named(names.vy, "summer", {sum_of(patch_.terms_of(rate_of(at.y, first)))});
-    add_named(names.ax, "summer", {sum_of(patch_.terms_of(rate_of(at.x, second)))});
-    add_named(names.ay, "summer", {sum_of(patch_.terms_of(rate_of(at.y, second)))});
+    add_named(names.vx, "summer", {sum_of(patch_.terms_of(rates_.of(at.x, first)))});
+    add_named(names.vy, "summer", {sum_of(patch_.terms_of(rates_.of(at.y, first)))});
+    add_named(names.ax, "summer", {sum_of(patch_.terms_of(rates_.of(at.x, second)))});
+    add_named(names.ay, "summer", {sum_of(patch_.terms_of(rates_.of(at.y, second)))});
   }
 
   // --- groups
@@ -203,9 +234,13 @@ class PatchBuilder::Rates {
       name_rates(point);
       add_summed_rates(point, *places_.points_[point]);
     }
-    if (begin < patch_.diagram_.blocks.size())
-      patch_.diagram_.blocks[begin].comment =
-          fmt::format("rates of the group {}: its conditions, differentiated once and twice", group.name);
+    comment(begin,
+            fmt::format("rates of the group {}: its conditions, differentiated once and twice", group.name));
+  }
+
+  /// Comments on the blocks from the one with this index on, if there are any.
+  void comment(std::size_t begin, const std::string& text) {
+    if (begin < patch_.diagram_.blocks.size()) patch_.diagram_.blocks[begin].comment = text;
   }
 
   /// The derivatives of one condition, and what they pull at.
@@ -216,11 +251,8 @@ class PatchBuilder::Rates {
       forms.push_back(form_block(name, form));
       for (const Order order : {first, second}) rates[order].push_back(add_form_rate(name, form, order));
     }
-    const auto product = [&](const std::string& a, const std::string& b) {
-      return patch_.add_block(a + "_" + b, "multiplier", {wire_setting("in", {{1, a}, {1, b}})});
-    };
     for (const Order order : {first, second}) {
-      Terms sum = patch_.terms_of(rate_of(residual.rest, order));
+      Terms sum = patch_.terms_of(rates_.of(residual.rest, order));
       if (sum.size() == 1 && sum.front().weight == 0) sum.clear();
       for (const Residual::Product& p : residual.products) {
         const FormRate &a = rates[order][p.a], &b = rates[order][p.b];
@@ -262,12 +294,11 @@ class PatchBuilder::Rates {
 
   /// The rate of a form, scaled to stay within ±1 along the exact motion.
   FormRate add_form_rate(const std::string& name, const LinearForm& form, Order order) {
-    LinearForm rate = rate_of(form, order);
+    const LinearForm rate = rates_.of(form, order);
     if (rate.weights.empty() && rate.constant == 0) return {};
-    // Beside what the motion makes of it, which may be nothing, the form has to carry the loops' errors; and
-    // between two positions it may rise a little more.
-    constexpr double kLeast = 1e-3, kMargin = 1.001;
-    const double unit = round_up(std::max(kMargin * largest_rate(form, order) / units_[order], kLeast));
+    // Beside what the motion makes of it, which may be nothing, the form has to carry the loops' errors.
+    constexpr double kLeast = 1e-3;
+    const double unit = round_up(std::max(kMargin * rates_.largest(form, order) / units_[order], kLeast));
     LinearForm scaled_rate;
     scaled_rate.add(rate, 1 / unit);
     return {patch_.add_block(name + (order == first ? "_v" : "_a"), "summer",
@@ -275,28 +306,10 @@ class PatchBuilder::Rates {
             unit};
   }
 
-  LinearForm rate_of(const LinearForm& form, Order order) const {
-    LinearForm rate;
-    for (const auto& [signal, weight] : form.weights) rate.add(rates_.at(signal).forms[order], weight);
-    return rate;
-  }
-
-  double largest_rate(const LinearForm& form, Order order) const {
-    std::vector<double> sum(patch_.motion_.configurations.size());
-    for (const auto& [signal, weight] : form.weights) {
-      const ExactRates& exact = rates_.at(signal).exact;
-      const std::vector<double>& rate = order == first ? exact.first : exact.second;
-      for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += weight * rate[k];
-    }
-    double largest = 0;
-    for (const double value : sum) largest = std::max(largest, std::abs(value));
-    return largest;
-  }
-
   PatchBuilder& patch_;
   PointForms places_;
   std::array<double, 2> units_;  ///< 1 machine unit of a rate, in machine units of a coordinate [1/s], [1/s²]
-  std::map<std::string, SignalRates> rates_;  ///< of the signals of points and drives
+  SignalRates rates_;            ///< of the signals of points and drives
 };
 
 void PatchBuilder::add_rates() {
