@@ -29,6 +29,8 @@ plant(src/oblique/text/a.h "#include <string>")
 plant(src/oblique/diagram/a.cpp "#include <oblique/text/a.h>\nstd::snprintf(text)")
 plant(blocks/CMakeLists.txt "set(blocks sine.toml)")
 plant(blocks/sine.toml "")
+plant(src/machines/CMakeLists.txt "set(machines tr-10.toml)")
+plant(src/machines/tr-10.toml "")
 expect()
 
 plant(src/oblique/text/a.h "#include <toml++/toml.h>\n#include <oblique/text/hidden.h>")
@@ -37,6 +39,7 @@ plant(src/oblique/mechanism/a.cpp "#include <oblique/diagram/a.h>\n#include \"..
 plant(src/oblique/cellar/a.cpp "")
 plant(src/oblique/solve/a.cpp "std::cerr << 1")
 plant(blocks/cosine.toml "")
+plant(src/machines/ec-1.toml "")
 plant(notes.txt "")
 plant(.hidden "")
 expect(
@@ -48,5 +51,6 @@ expect(
   "src/oblique/cellar/a.cpp: there is no stage 'cellar'"
   "src/oblique/solve/a.cpp: the library never prints and never exits"
   "blocks/cosine.toml: is not in the list of blocks/CMakeLists.txt"
+  "src/machines/ec-1.toml: is not in the list of src/machines/CMakeLists.txt"
   "notes.txt: does not belong at the top level"
   ".hidden: does not belong at the top level")

@@ -81,7 +81,8 @@ ExitStatus check_diagram(const Session& session, const CheckRequest& request, co
   const Diagram diagram = parse_diagram(text, request.file);
   const FlatDiagram flat = flatten(diagram, library);
   const Program program(assemble(flat));
-  DiagramCheck check{request.file, diagram, flat, program, {}, {}};
+  DiagramCheck check{request.file, diagram, flat, program, {}, {}, {}};
+  if (diagram.machine.profile != "ideal") check.bill = bill_of(flat, *find_machine(diagram.machine.profile));
   {
     Progress progress("running on trial");
     RunOptions options = options_of(diagram.run);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <oblique/diagram/rescale.h>
+#include <oblique/machine/bill.h>
 #include <oblique/solve/analysis.h>
 
 #include "command.h"
@@ -28,6 +29,7 @@ struct DiagramCheck {
   const Program& program;
   Analysis analysis;
   std::optional<ScalingProposal> scaling;
+  std::optional<Bill> bill;  ///< on the machine that the diagram is for; none for the ideal one
 };
 
 /// The report for people: what the diagram is made of, then loops, stability, overloads, scaling.

@@ -72,6 +72,7 @@ Json stability_json(const StabilityReport& report, const Program& program) {
   }
   return {{"instants", report.instants},
           {"servo_mode", mode_json(report.servo_mode, program)},
+          {"slowest_servo", mode_json(report.slowest_servo, program)},
           {"grows_from", optional_number(report.grows_from)},
           {"problem_mode", mode_json(report.problem_mode, program)},
           {"margins", std::move(margins)},
@@ -105,6 +106,22 @@ Json scaling_json(const DiagramCheck& check) {
   return {{"signals", std::move(signals)}, {"time_scale", check.scaling->time_scale}};
 }
 
+Json bill_json(const std::optional<Bill>& bill) {
+  if (!bill) return nullptr;
+  Json rows = Json::array();
+  for (const BillRow& row : bill->rows) {
+    rows.push_back({{"element", row.element},
+                    {"needed", row.needed},
+                    {"at_least", row.at_least},
+                    {"exists", row.exists},
+                    {"available", row.available ? Json(*row.available) : Json()},
+                    {"missing", row.missing()}});
+  }
+  const Bill::Verdict verdict = bill->verdict();
+  const Json fits = verdict == Bill::Verdict::cannot_tell ? Json() : Json(verdict == Bill::Verdict::fits);
+  return {{"machine", bill->machine}, {"rows", std::move(rows)}, {"fits", fits}};
+}
+
 }  // namespace
 
 std::string to_json(const DiagramCheck& check) {
@@ -118,6 +135,7 @@ std::string to_json(const DiagramCheck& check) {
             {"states", check.program.n_states()},
             {"servo_amplifiers", rest_states(check.program).size()},
             {"outputs", check.flat.outputs.size()}};
+  json["bill"] = bill_json(check.bill);
   json["run"] = run_json(check);
   json["loops"] = std::move(loops);
   json["stability"] = stability_json(check.analysis.stability, check.program);

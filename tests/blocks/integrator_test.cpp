@@ -41,7 +41,8 @@ x = { type = "integrator", in = ["one"], set = "p", start = "s", initial = 0.3 }
 }
 
 class LimitedIntegratorTest : public ::testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(Amplifiers, LimitedIntegratorTest, ::testing::Values("", "bandwidth = 1e6,"));
+INSTANTIATE_TEST_SUITE_P(Amplifiers, LimitedIntegratorTest,
+                         ::testing::Values("", "gain = 1e9,", "bandwidth = 1e6,"));
 
 TEST_P(LimitedIntegratorTest, StaysWithinItsLimitAndRecoversAtOnce) {
   const Compiled made(
@@ -54,6 +55,16 @@ TEST_P(LimitedIntegratorTest, StaysWithinItsLimitAndRecoversAtOnce) {
     const bool falls = phase > kPi / 2 && phase < 3 * kPi / 2;
     return falls ? std::max(-0.5, std::sin(phase) - 0.5) : std::min(0.5, std::sin(phase) + 0.5);
   });
+}
+
+TEST(Integrator, WithoutALimitSwitchesNothing) {
+  for (const char* const amplifier : {"", "gain = 1000,", "offset = 1e-3,", "bandwidth = 1e4,"}) {
+    const Compiled made(
+        fmt::format("x = {{ type = \"integrator\", in = \"-y\", {0} initial = 0.5 }}\n"
+                    "y = {{ type = \"integrator\", in = \"x\", {0} initial = 0 }}\n",
+                    amplifier));
+    EXPECT_EQ(run_of(made, {.until = 10}).event_count, 0) << amplifier;
+  }
 }
 
 TEST(Integrator, StartsWithinItsLimit) {

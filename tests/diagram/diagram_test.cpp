@@ -57,7 +57,7 @@ b = { type = "adder", in = ["a", "-2*b"] }
   EXPECT_EQ(d.title, "A title");
   EXPECT_EQ(d.source, "a book");
   EXPECT_EQ(d.machine, (MachineSettings{"ideal", true}));
-  EXPECT_EQ(d.run, (RunSettings{120, 1e-6, IntegrationMethod::adams, 11, 5000, {}}));
+  EXPECT_EQ(d.run, (RunSettings{120, 1e-6, IntegrationMethod::adams, 11, 5000, true, {}}));
 
   ASSERT_EQ(d.blocks.size(), 2U);
   EXPECT_EQ(d.blocks[0].name, "a");
@@ -138,8 +138,9 @@ TEST(ParseDiagram, ChecksBlocks) {
 }
 
 TEST(ParseDiagram, ChecksMachineAndRun) {
-  EXPECT_EQ(diagram_message("[machine]\nprofile = \"tr-10\"\n"),
-            "d.toml:5:11: there is no machine profile 'tr-10'\n  remedy: known: ideal");
+  EXPECT_EQ(diagram_message("[machine]\nprofile = \"tr-20\"\n"),
+            "d.toml:5:11: there is no machine 'tr-20'\n  remedy: did you mean 'tr-10'? `oblique machines` "
+            "lists all");
   EXPECT_THAT(diagram_message("[machine]\ninverting = 1\n"),
               HasSubstr("'inverting' of [machine] is a number"));
   EXPECT_EQ(diagram_message("[run]\nuntil = 0\n"),

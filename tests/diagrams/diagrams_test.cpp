@@ -116,19 +116,20 @@ INSTANTIATE_TEST_SUITE_P(Diagrams, PatchedMechanism, testing::ValuesIn(patchable
 TEST_P(PatchedMechanism, AgreesWithItsExactMotion) {
   const Mechanism mechanism = read_mechanism(path_of(GetParam().file));
   CompareOptions options;
-  options.method = GetParam().method;
+  options.methods = {GetParam().method};
   options.gains = {1e3, 1e4};
   const Comparison comparison = compare(mechanism, BlockLibrary::shipped(), options);
-  for (const GainRun& run : comparison.runs) {
+  for (const ComparedRun& run : comparison.runs) {
     EXPECT_LT(run.max_error, 10 / run.gain * comparison.size)
         << run.gain;  // 1/gain, magnified at most ten times
     EXPECT_TRUE(run.stable);
   }
-  if (!comparison.order) {  // the tolerance hides it: a trammel on its slide errs by 1e-8 at gain 1e4
-    EXPECT_LT(comparison.runs.back().max_error, 10 * comparison.floor);
+  const GainSeries& series = comparison.series.front();
+  if (!series.order) {  // the tolerance hides it: a trammel on its slide errs by 1e-8 at gain 1e4
+    EXPECT_LT(comparison.runs.back().max_error, 10 * series.floor);
     return;
   }
-  EXPECT_NEAR(*comparison.order, -1, 0.05);
+  EXPECT_NEAR(*series.order, -1, 0.05);
 }
 
 // The rates' matrix is that of the positions; its inverse enters once more with each derivative.

@@ -151,6 +151,16 @@ TEST(FeedThrough, EndsAtAServoAmplifierOfFiniteBandwidth) {
   EXPECT_EQ(loops("inf"), 1U);
 }
 
+// So that loops which need it can be solved before anything else is known.
+TEST(Network, TakesAnInitialValueFromTheReferenceForANumber) {
+  const Compiled made(
+      "one = { type = \"constant\" }\n"
+      "p = { type = \"potentiometer\", in = \"one\", setting = 0.25 }\n"
+      "x = { type = \"integrator\", in = [\"x\"], start = \"p\", initial = 0.125 }\n");
+  EXPECT_EQ(made.program.start()[0], 0.375);
+  EXPECT_FALSE(made.program.states()[0].start_node.has_value());
+}
+
 // Machines whose summers and integrators invert.
 
 TEST(Polarity, TurnsSummersAndIntegratorsOnly) {

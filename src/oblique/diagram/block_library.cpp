@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include <oblique/diagram/diagram.h>
-#include <oblique/diagram/shipped_blocks.h>
+#include <oblique/diagram/shipped_files.h>
 
 namespace oblique {
 namespace {
@@ -28,10 +28,13 @@ Diagnostic bad_file_name(const std::filesystem::path& file, const std::string& n
 }  // namespace
 
 BlockLibrary BlockLibrary::shipped() {
-  BlockLibrary library;
-  for (const ShippedBlock& block : shipped_blocks()) {
-    library.add(parse_block(block.text, fmt::format("blocks/{}.toml", block.name), std::string(block.name)));
-  }
+  // Parsed once: the machines are read against it too.
+  static const BlockLibrary library = [] {
+    BlockLibrary parsed;
+    for (const ShippedFile& block : shipped_blocks())
+      parsed.add(parse_block(block.text, fmt::format("blocks/{}.toml", block.name), std::string(block.name)));
+    return parsed;
+  }();
   return library;
 }
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <oblique/diagram/expectations.h>
+#include <oblique/diagram/machine_profile.h>
 #include <oblique/diagram/names.h>
 #include <oblique/diagram/timeline.h>
 #include <oblique/text/table_reader.h>
@@ -61,12 +62,12 @@ class DiagramReader {
  private:
   void read_machine(const Value& table) {
     TableReader reader(diagram_.file, table, "[machine]", diagnostics_);
-    diagram_.machine.profile = reader.string("profile").value_or("ideal");
-    if (diagram_.machine.profile != "ideal") {
-      reader.report("profile", fmt::format("there is no machine profile '{}'", diagram_.machine.profile), {},
-                    suggest(diagram_.machine.profile, {"ideal"}));
-    }
-    diagram_.machine.inverting = reader.boolean("inverting").value_or(false);
+    MachineSettings& machine = diagram_.machine;
+    machine.profile = reader.string("profile").value_or(machine.profile);
+    const MachineProfile* const profile = find_machine(machine.profile);
+    if (profile == nullptr)
+      diagnostics_.add(unknown_machine(machine.profile, reader.place(table.find("profile")->position)));
+    machine.inverting = reader.boolean("inverting").value_or(profile != nullptr && profile->inverting);
     reader.finish();
   }
 
@@ -121,6 +122,7 @@ class DiagramReader {
     }
     run.samples = static_cast<int>(whole(reader, "samples", 2, kMostSamples).value_or(run.samples));
     run.max_steps = whole(reader, "max_steps", 1, kLargestWhole).value_or(run.max_steps);
+    run.settle = reader.boolean("settle").value_or(true);
     reader.finish();
   }
 

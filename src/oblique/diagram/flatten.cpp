@@ -8,6 +8,7 @@
 
 #include <oblique/diagram/expectations.h>
 #include <oblique/diagram/formula.h>
+#include <oblique/diagram/machine_defaults.h>
 #include <oblique/diagram/overrides.h>
 #include <oblique/diagram/timeline.h>
 #include <oblique/diagram/wiring.h>
@@ -34,14 +35,15 @@ struct Node {
   std::string path;
   Place place;  ///< of the block of the diagram that it is or is a part of
   std::vector<double> parameters;
+  std::vector<bool> open;         ///< parameters that no one has given a value
   std::vector<FlatInput> inputs;  ///< of a composite
 };
 
 class Layout {
  public:
-  Layout(const Scope& diagram, const wiring::Replacements& replacements, FlatDiagram& flat,
-         Diagnostics& diagnostics)
-      : replacements_(replacements), flat_(flat), diagnostics_(diagnostics) {
+  Layout(const Scope& diagram, wiring::MachineDefaults& machine, const wiring::Replacements& replacements,
+         FlatDiagram& flat, Diagnostics& diagnostics)
+      : machine_(machine), replacements_(replacements), flat_(flat), diagnostics_(diagnostics) {
     Node root;
     root.inside = &diagram;
     nodes_.push_back(std::move(root));
@@ -96,22 +98,43 @@ class Layout {
 
   void set_parameters(Node& node, const Node& parent) {
     const BlockDefinition& definition = *node.wired->definition;
+    const auto& machine = machine_.of(definition);
     node.parameters.reserve(definition.parameters.size());
     for (std::size_t k = 0; k < definition.parameters.size(); ++k) {
+      const ParameterDefinition& parameter = definition.parameters[k];
       const wiring::WiredParameter& wired = node.wired->parameters[k];
-      const double value =
-          wired.given ? value_of(wired.value, parent) : definition.parameters[k].default_value;
-      if (wired.value.expression) {  // fixed values were checked with their file
-        wiring::check_range(definition.parameters[k], value,
-                            fmt::format("parameter '{}.{}'", node.path, definition.parameters[k].name),
-                            {parent.inside->file, wired.position}, origin(parent), diagnostics_);
+      const bool open = !wired.given || is_passed_on(wired.value, parent);
+      const bool of_machine = open && machine[k];
+      const double value = of_machine    ? *machine[k]
+                           : wired.given ? value_of(wired.value, parent)
+                                         : parameter.default_value;
+      // Other values were checked with their file; a block of the user may not allow what the shipped one
+      // does.
+      if ((of_machine || wired.value.expression) && !parameter.allows(value)) {
+        wiring::check_range(
+            parameter, value, fmt::format("parameter '{}.{}'", node.path, parameter.name),
+            of_machine ? node.place : Place{parent.inside->file, wired.position},
+            of_machine ? fmt::format("it follows from the machine '{}'", machine_.profile()) : origin(parent),
+            diagnostics_);
       }
       node.parameters.push_back(value);
+      node.open.push_back(open);
     }
     if (replacements_.empty()) return;
     const auto replaced = replacements_.find(node.path);
     if (replaced == replacements_.end()) return;
-    for (const auto& [parameter, value] : replaced->second) node.parameters[parameter] = value;
+    for (const auto& [parameter, value] : replaced->second) {
+      node.parameters[parameter] = value;
+      node.open[parameter] = false;
+    }
+  }
+
+  /// Whether a composite hands down one of its own parameters as it is, and that one is open.
+  static bool is_passed_on(const Constant& constant, const Node& composite) {
+    if (!constant.expression || constant.number != 1) return false;
+    if (constant.expression->kind != Expression::Kind::name) return false;
+    const auto own = composite.inside->composite->find_parameter(constant.expression->name);
+    return own && composite.open[*own];
   }
 
   static double value_of(const Constant& constant, const Node& composite) {
@@ -216,6 +239,7 @@ class Layout {
     return inner ? signal(at, *inner) : std::nullopt;
   }
 
+  wiring::MachineDefaults& machine_;
   const wiring::Replacements& replacements_;
   FlatDiagram& flat_;
   Diagnostics& diagnostics_;
@@ -266,7 +290,8 @@ FlatDiagram flatten(const Diagram& diagram, const BlockLibrary& library,
   wiring::Resolver resolver(library, diagnostics);
   const Scope scope = resolver.diagram(diagram);
   const wiring::Replacements replacements = wiring::resolve_overrides(scope, overrides, diagnostics);
-  const Layout layout(scope, replacements, flat, diagnostics);
+  wiring::MachineDefaults machine(diagram.machine.profile);
+  const Layout layout(scope, machine, replacements, flat, diagnostics);
   choose_outputs(diagram, scope, layout, flat, diagnostics);
   for (const auto& [path, tolerance] : diagram.run.tolerances) {
     bool found = false;

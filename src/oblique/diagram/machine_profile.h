@@ -55,10 +55,12 @@ struct MachineProfile {
   std::string title;
   std::string source;
   std::string comment;
-  std::optional<double> unit;        ///< [V]
-  bool inverting = true;             ///< summers and integrators invert
-  std::vector<double> input_gains;   ///< ascending; empty: any
-  std::vector<double> rates;         ///< k0 of integrators [1/s], ascending; empty: any
+  std::optional<double> unit;       ///< [V]
+  bool inverting = true;            ///< summers and integrators invert
+  std::vector<double> input_gains;  ///< ascending; empty: any
+  std::vector<double> rates;        ///< k0 of integrators [1/s], ascending; empty: any
+  bool input_gains_known = true;    ///< false: not published, and `input_gains` is empty
+  bool rates_known = true;
   bool signed_coefficients = false;  ///< coefficients may be negative
   std::vector<ElementCount> elements;
   std::vector<MachineFigure> figures;
@@ -72,5 +74,9 @@ struct MachineProfile {
 /// The shipped profile of that name, or nothing; all of them in alphabetical order, "ideal" first.
 const MachineProfile* find_machine(std::string_view name);
 std::vector<std::string> machine_names();
+
+/// What to say where there is no profile of that name: with the nearest one, which may also be meant by a
+/// word of its title ("МН-14", "Heathkit").
+Diagnostic unknown_machine(std::string_view name, Place place = {});
 
 }  // namespace oblique

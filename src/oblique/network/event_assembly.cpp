@@ -155,8 +155,14 @@ void Assembler::make_starts() {
     const StartRule& rule = start_of(quantity);
     const BlockContext context(*this, quantity.block);
     if (change_of(rule.value, context) == ExpressionContext::Change::never) continue;
-    network_.states[quantity.variable_index].start_node =
-        built(quantity.block, rule.value, quantity.equation->place, "the start value");
+    const NodeId value = built(quantity.block, rule.value, quantity.equation->place, "the start value");
+    State& state = network_.states[quantity.variable_index];
+    // A potentiometer at the reference gives a number: loops can be solved with it from the beginning.
+    if (network_.graph[value].op == Op::constant) {
+      state.start = network_.graph[value].value;
+    } else {
+      state.start_node = value;
+    }
   }
 }
 

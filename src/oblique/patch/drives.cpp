@@ -32,15 +32,15 @@ const PatchBuilder::Speed& PatchBuilder::add_speed(std::size_t d) {
   return speeds_[d];
 }
 
-const VectorForm& PatchBuilder::add_generator(std::size_t d, const std::string& comment) {
+std::string PatchBuilder::add_generator(std::size_t d, const std::string& comment) {
   const Speed& speed = add_speed(d);
-  const std::string generator =
+  std::string generator =
       add_block(mechanism_.drives[d].name, "crank-generator",
                 {wire_setting("speed", {{1, speed.signal}}), number_setting("rate", speed.unit),
                  number_setting("start", mechanism_.drives[d].start)},
                 comment);
   drives_[d].axis = {weighted(generator + ".cos"), weighted(generator + ".sin")};
-  return drives_[d].axis;
+  return generator;
 }
 
 std::string PatchBuilder::add_way(std::size_t d, double reach) {

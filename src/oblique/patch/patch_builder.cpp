@@ -13,7 +13,9 @@ namespace {
 /// Positions over the turn from which the scaling is taken: half a degree apart.
 constexpr int kScalingPositions = 721;
 
-Motion motion_of(const Mechanism& mechanism, const Structure& structure) {
+}  // namespace
+
+Motion patch_motion(const Mechanism& mechanism, const Structure& structure) {
   std::vector<double> times;
   times.reserve(kScalingPositions);
   const double turn = period(mechanism);
@@ -21,18 +23,17 @@ Motion motion_of(const Mechanism& mechanism, const Structure& structure) {
   return solve_motion(mechanism, structure, times);
 }
 
-}  // namespace
-
 PatchBuilder::PatchBuilder(const Mechanism& mechanism, const PatchOptions& options)
     : PointForms(mechanism),
       options_(options),
       structure_(decompose(mechanism)),
-      motion_(motion_of(mechanism, structure_)),
+      motion_(patch_motion(mechanism, structure_)),
       scaling_(find_scaling(mechanism, structure_, motion_)),
       bandwidth_(options.bandwidth.value_or(default_bandwidth(mechanism))),
       signals_(mechanism.points.size()),
       drives_(mechanism.drives.size()),
       speeds_(mechanism.drives.size()) {
+  if (options.unit) scaling_.length = *options.unit;
   set_scale(scaling_);
 }
 
@@ -113,18 +114,19 @@ VectorForm PatchBuilder::crank_point(const Group& crank, const BodyPoint& point)
           combined({{1, &at.y}, {along, &axis.y}, {left, &axis.x}})};
 }
 
-void PatchBuilder::add_crank(const Group& crank) {
+std::string PatchBuilder::add_crank(const Group& crank) {
   const std::size_t d = crank.drives.front();
   const Drive& drive = mechanism_.drives[d];
   const Body& body = mechanism_.bodies[drive.body];
   const std::size_t pivot = pivot_of(crank);
-  add_generator(d,
-                fmt::format("crank {}: turns about {} at {}", body.name, name_of(pivot), speed_text(drive)));
+  std::string generator = add_generator(
+      d, fmt::format("crank {}: turns about {} at {}", body.name, name_of(pivot), speed_text(drive)));
   for (const BodyPoint& point : body.points) {
     if (point.point == pivot || is_known(point.point)) continue;
     const VectorForm form = crank_point(crank, point);
     add_summed_point(point.point, terms_of(form.x), terms_of(form.y), {});
   }
+  return generator;
 }
 
 void PatchBuilder::add_carried_points(const Body& body, std::size_t p, std::size_t c) {

@@ -14,6 +14,9 @@
 
 namespace oblique {
 
+/// The exact motion over one turn, half a degree apart, from which a patch takes its ranges.
+Motion patch_motion(const Mechanism& mechanism, const Structure& structure);
+
 /// What all methods of patching share: scaled signals for points, drives, points that bodies carry, rates,
 /// outputs.
 class PatchBuilder : protected PointForms {
@@ -52,13 +55,14 @@ class PatchBuilder : protected PointForms {
 
   static Entry sum_of(const Terms& terms);
   void add_summed_point(std::size_t point, const Terms& x, const Terms& y, const std::string& comment);
-  void add_crank(const Group& crank);
+  /// Gives the name of its crank generator.
+  std::string add_crank(const Group& crank);
 
   /// "2 rad/s", or the law, for comments.
   std::string speed_text(const Drive& drive) const;
 
-  /// A block that gives the direction of the body that a drive turns: its form, which `drives_` keeps.
-  const VectorForm& add_generator(std::size_t drive, const std::string& comment);
+  /// A block that gives the direction of the body that a drive turns: its name; `drives_` keeps the form.
+  std::string add_generator(std::size_t drive, const std::string& comment);
 
   /// A block that gives the way of a drive along its slide, in units of `reach` [machine unit]: its signal;
   /// `drives_` keeps the form.

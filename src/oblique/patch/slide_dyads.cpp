@@ -111,8 +111,9 @@ SlideDyadPatch::Locus SlideDyadPatch::locus(const Group& group, const Condition&
 void SlideDyadPatch::set_axis(const Condition& angle) {
   if (angle.drive) {
     const Drive& drive = mechanism_.drives[*angle.drive];
-    axis_ = add_generator(*angle.drive, fmt::format("drive {}: the direction of {}", drive.name,
-                                                    mechanism_.bodies[drive.body].name));
+    add_generator(*angle.drive, fmt::format("drive {}: the direction of {}", drive.name,
+                                            mechanism_.bodies[drive.body].name));
+    axis_ = drives_[*angle.drive].axis;
     return;
   }
   const Eigen::Vector2d heading(std::cos(angle.value), std::sin(angle.value));

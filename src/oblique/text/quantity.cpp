@@ -54,6 +54,9 @@ const std::vector<Unit>& named_units() {
       base_unit("kg", 1, {{U::mass, 1}}),
       base_unit("V", 1, {{U::voltage, 1}}),
       base_unit("mV", 1e-3, {{U::voltage, 1}}),
+      base_unit("uV", 1e-6, {{U::voltage, 1}}),
+      base_unit("µV", 1e-6, {{U::voltage, 1}}),
+      base_unit("μV", 1e-6, {{U::voltage, 1}}),
       base_unit("machine unit", 1, {{U::signal, 1}}),
   };
   return units;

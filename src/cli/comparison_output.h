@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include <oblique/compare/compare.h>
+
+namespace oblique::cli {
+
+/// What `compare` prints: errors, their parts and reasons, order, overloads.
+std::string to_text(const Comparison& comparison);
+
+/// The same for `--json` (docs/trust.md).
+nlohmann::ordered_json to_json(const Comparison& comparison);
+
+}  // namespace oblique::cli

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: MIT
+#include "machine_patch.h"
+
+#include <array>
+#include <cmath>
+#include <list>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <oblique/diagram/machine_profile.h>
+#include <oblique/machine/realise.h>
+#include <oblique/machine/sheets.h>
+#include <oblique/network/network.h>
+#include <oblique/text/new_file.h>
+
+#include "terminal.h"
+
+namespace oblique::cli {
+namespace {
+
+std::string verdict_text(const Bill& bill) {
+  std::vector<std::string> named;
+  switch (bill.verdict()) {
+    case Bill::Verdict::fits:
+      return "it fits\n";
+    case Bill::Verdict::does_not_fit:
+      for (const BillRow& row : bill.rows) {
+        if (row.missing() > 0) named.push_back(fmt::format("{} ({})", row.element, row.missing()));
+      }
+      return fmt::format("it does not fit; missing: {}\n", fmt::join(named, ", "));
+    case Bill::Verdict::cannot_tell:
+      break;
+  }
+  for (const BillRow& row : bill.rows) {
+    if (row.at_least) {
+      named.push_back("what its inputs weigh");
+    } else if (!row.available) {
+      named.push_back("how many " + row.element);
+    }
+  }
+  return fmt::format("whether it fits cannot be told; not published: {}\n", fmt::join(named, ", "));
+}
+
+std::string available_text(const BillRow& row) {
+  if (!row.exists) return "none";
+  if (!row.available) return "not published";
+  return std::isinf(*row.available) ? "as many as it takes" : fmt::format("{}", *row.available);
+}
+
+/// A file and what it is to hold.
+struct Written {
+  std::string path;
+  std::string text;
+};
+
+/// Writes all files or none: they take their names when all are complete.
+void save_together(const std::vector<Written>& files) {
+  std::list<NewFile> open;
+  for (const Written& file : files) open.emplace_back(file.path).append(file.text);
+  for (NewFile& file : open) file.commit();
+  for (const Written& file : files) note(fmt::format("wrote {}\n", file.path));
+}
+
+constexpr std::array<const char*, 4> kSheetEndings{"-patch.csv", "-pots.csv", "-static.csv", ".txt"};
+
+std::string table_of(const Sheet& sheet) {
+  Table table(sheet.columns);
+  for (const auto& row : sheet.rows) table.add(row);
+  return sheet.title + "\n" + table.text(sheet.columns.size());
+}
+
+/// Readings of the ideal machine: what the elements should show.
+std::vector<StaticReading> expected_readings(Diagram diagram, const BlockLibrary& library) {
+  diagram.machine.profile = "ideal";
+  const FlatDiagram flat = flatten(diagram, library);
+  return static_test(Program(assemble(flat)), diagram.file);
+}
+
+std::vector<Written> sheet_files(const PatchRequest& request, const Diagram& diagram, const FlatDiagram& flat,
+                                 const Bill& bill, const BlockLibrary& library,
+                                 const MachineProfile& machine) {
+  const MachineSheets sheets = make_sheets(flat, expected_readings(diagram, library), machine);
+  const std::string text =
+      fmt::format("{}\n\n{}\n{}\n{}\n{}", diagram.title, cli::to_text(bill), table_of(sheets.connections),
+                  table_of(sheets.potentiometers), table_of(sheets.static_test));
+  const std::array<std::string, 4> texts{to_csv(sheets.connections), to_csv(sheets.potentiometers),
+                                         to_csv(sheets.static_test), text};
+  std::vector<Written> files;
+  for (std::size_t k = 0; k < texts.size(); ++k)
+    files.push_back({request.sheets + kSheetEndings[k], texts[k]});
+  return files;
+}
+
+}  // namespace
+
+std::string to_text(const Bill& bill) {
+  Table table({"element", "needed", "available", "missing"});
+  for (const BillRow& row : bill.rows) {
+    table.add({row.note.empty() ? row.element : fmt::format("{} ({})", row.element, row.note),
+               fmt::format("{}{}", row.at_least ? "≥ " : "", row.needed), available_text(row),
+               row.missing() > 0 ? fmt::format("{}", row.missing()) : ""});
+  }
+  return fmt::format("elements of {}\n{}{}", bill.machine, table.text(1), verdict_text(bill));
+}
+
+void check_machine_request(const PatchRequest& request) {
+  if (request.machine.empty()) {
+    if (request.sheets.empty()) return;
+    throw ReadError(Diagnostic{{}, "--sheets is for a machine", "--machine NAME beside it", {}});
+  }
+  if (find_machine(request.machine) == nullptr) throw ReadError(unknown_machine(request.machine));
+  if (request.sheets.empty()) return;
+  for (const std::string ending : kSheetEndings) {
+    const std::string path = request.sheets + ending;
+    check_output(path, ending.substr(ending.find('.')));
+    check_not_input(path, request.mechanism, "mechanism");
+  }
+}
+
+ExitStatus patch_for_machine(const Session& session, const PatchRequest& request, const Diagram& diagram) {
+  const MachineProfile& machine = *find_machine(request.machine);
+  const BlockLibrary library = session.blocks();
+  const Diagram realised = realise(diagram, library, machine).diagram;
+  const FlatDiagram flat = flatten(realised, library);
+  const Bill bill = bill_of(flat, machine);
+  note(to_text(bill));
+  if (const auto absent = bill.absent(); !absent.empty() && !request.force) {
+    print_error(to_string(Diagnostic{
+        {request.mechanism, {}},
+        fmt::format("the machine {} has no {}, so nothing is written", machine.title,
+                    fmt::join(absent, ", no ")),
+        {},
+        "choose another machine (oblique machines), or write the diagram all the same with --force"}));
+    return ExitStatus::no;
+  }
+  std::vector<Written> files;
+  if (!request.sheets.empty()) files = sheet_files(request, realised, flat, bill, library, machine);
+  const std::string text = write_diagram(realised);
+  if (!request.output.empty()) files.insert(files.begin(), {request.output, text});
+  save_together(files);
+  if (request.output.empty()) {
+    print(text);
+  } else {
+    note(fmt::format("run it with: oblique run {}\n", request.output));
+  }
+  return ExitStatus::done;
+}
+
+}  // namespace oblique::cli

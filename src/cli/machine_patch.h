@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+#include <oblique/machine/bill.h>
+
+#include "command.h"
+
+namespace oblique::cli {
+
+/// The bill as a table with its verdict, for people.
+std::string to_text(const Bill& bill);
+
+/// Whether --machine, --sheets and -o can be served, before any work is done. Throws ReadError and
+/// DiagramError.
+void check_machine_request(const PatchRequest& request);
+
+/// Puts a patched diagram into the elements of the machine of --machine and writes it, with the sheets where
+/// they are asked for; the bill goes to stderr. Where the machine has no elements of a kind that is needed
+/// nothing is written, unless forced, and the status is `no`.
+ExitStatus patch_for_machine(const Session& session, const PatchRequest& request, const Diagram& diagram);
+
+}  // namespace oblique::cli

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/diagram/machine_defaults.h>
+
+#include <oblique/diagram/diagram.h>
+#include <oblique/diagram/machine_profile.h>
+
+namespace oblique::wiring {
+
+MachineDefaults::MachineDefaults(std::string profile) : profile_(std::move(profile)) {
+  if (find_machine(profile_) == nullptr) throw DiagramError(unknown_machine(profile_));
+}
+
+const std::vector<std::optional<double>>& MachineDefaults::of(const BlockDefinition& block) {
+  const auto [at, is_new] = values_.try_emplace(&block, block.parameters.size());
+  if (!is_new) return at->second;
+  for (const BlockFigure& figure : find_machine(profile_)->errors) {
+    if (figure.block != block.name) continue;
+    if (const auto index = block.find_parameter(figure.parameter)) at->second[*index] = figure.value;
+  }
+  return at->second;
+}
+
+}  // namespace oblique::wiring

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/diagram/machine_profile.h>
+
+#include <algorithm>
+#include <sstream>
+
+#include <fmt/format.h>
+
+#include <oblique/diagram/block_library.h>
+#include <oblique/diagram/machine_reader.h>
+#include <oblique/diagram/shipped_files.h>
+
+namespace oblique {
+namespace {
+
+std::vector<MachineProfile> read_shipped() {
+  const BlockLibrary library = BlockLibrary::shipped();
+  std::vector<MachineProfile> machines;
+  for (const ShippedFile& file : shipped_machines()) {
+    machines.push_back(parse_machine(file.text, fmt::format("src/machines/{}.toml", file.name),
+                                     std::string(file.name), library));
+  }
+  const auto rank = [](const MachineProfile& m) { return std::pair(m.name != "ideal", m.name); };
+  std::sort(machines.begin(), machines.end(),
+            [&](const MachineProfile& a, const MachineProfile& b) { return rank(a) < rank(b); });
+  return machines;
+}
+
+const std::vector<MachineProfile>& shipped() {
+  static const std::vector<MachineProfile> machines = read_shipped();
+  return machines;
+}
+
+/// Latin capitals made small; other letters stay.
+std::string lower(std::string_view text) {
+  std::string small(text);
+  for (char& c : small) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return small;
+}
+
+/// The words of a title, small, without its brackets and commas.
+std::vector<std::string> words_of(std::string_view title) {
+  std::string text = lower(title);
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c == '(' || c == ')' || c == ','; }, ' ');
+  std::istringstream stream(text);
+  std::vector<std::string> words;
+  for (std::string word; stream >> word;) words.push_back(word);
+  return words;
+}
+
+/// The machine that a slip of the hand, or a word of its title, may mean.
+std::optional<std::string> nearest_machine(std::string_view name) {
+  const std::string small = lower(name);
+  if (auto nearest = nearest_name(small, machine_names())) return nearest;
+  std::vector<std::string> words, machines;
+  for (const MachineProfile& machine : shipped()) {
+    for (std::string& word : words_of(machine.title)) {
+      words.push_back(std::move(word));
+      machines.push_back(machine.name);
+    }
+  }
+  const auto nearest = nearest_name(small, words);
+  if (!nearest) return std::nullopt;
+  return machines[static_cast<std::size_t>(std::find(words.begin(), words.end(), *nearest) - words.begin())];
+}
+
+}  // namespace
+
+std::string_view element_name(ElementKind kind) {
+  switch (kind) {
+    case ElementKind::amplifier:
+      return "amplifier";
+    case ElementKind::integrator:
+      return "integrator";
+    case ElementKind::summer:
+      return "summer";
+    case ElementKind::inverter:
+      return "inverter";
+    case ElementKind::potentiometer:
+      return "potentiometer";
+    case ElementKind::multiplier:
+      return "multiplier";
+    case ElementKind::comparator:
+      return "comparator";
+    case ElementKind::function_generator:
+      break;
+  }
+  return "function generator";
+}
+
+const ElementCount* MachineProfile::find(ElementKind kind) const {
+  const auto found =
+      std::find_if(elements.begin(), elements.end(), [&](const ElementCount& e) { return e.kind == kind; });
+  return found == elements.end() ? nullptr : &*found;
+}
+
+const MachineProfile* find_machine(std::string_view name) {
+  const std::vector<MachineProfile>& machines = shipped();
+  const auto found =
+      std::find_if(machines.begin(), machines.end(), [&](const MachineProfile& m) { return m.name == name; });
+  return found == machines.end() ? nullptr : &*found;
+}
+
+std::vector<std::string> machine_names() {
+  std::vector<std::string> names;
+  for (const MachineProfile& machine : shipped()) names.push_back(machine.name);
+  return names;
+}
+
+Diagnostic unknown_machine(std::string_view name, Place place) {
+  const auto nearest = nearest_machine(name);
+  return {std::move(place),
+          fmt::format("there is no machine '{}'", name),
+          {},
+          nearest ? fmt::format("did you mean '{}'? `oblique machines` lists all", *nearest)
+                  : "`oblique machines` lists those there are"};
+}
+
+}  // namespace oblique

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/machine/bill.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <oblique/machine/carried_signals.h>
+#include <oblique/machine/input_weight.h>
+#include <oblique/machine/role.h>
+
+namespace oblique {
+namespace {
+
+std::string counted(double n, std::string_view one, std::string_view many) {
+  return fmt::format("{} {}", n, n == 1 ? one : many);
+}
+
+class Counter {
+ public:
+  Counter(const FlatDiagram& diagram, const MachineProfile& machine)
+      : diagram_(diagram), machine_(machine), signed_(has_signed_weights(machine)) {
+    for (const FlatBlock& block : diagram.blocks) count(block);
+    inverters_ += static_cast<double>(inverted_.size());
+    potentiometers_ += static_cast<double>(weighted_.size());
+  }
+
+  Bill bill() {
+    bill_.machine = machine_.title;
+    if (machine_.find(ElementKind::amplifier) != nullptr) {
+      add_uncommitted();
+    } else {
+      add_committed();
+    }
+    for (const auto& [rate, needed] : rates_) {
+      const bool lacks =
+          std::find(machine_.rates.begin(), machine_.rates.end(), rate) == machine_.rates.end();
+      if (machine_.rates.empty() || !lacks) continue;
+      bill_.rows.push_back({fmt::format("integrators with k0 = {:.4g} 1/s", rate), needed, true, 0.0,
+                            fmt::format("k0 on this machine: {:g} 1/s", fmt::join(machine_.rates, ", "))});
+    }
+    add_potentiometers();
+    add(ElementKind::multiplier, "multipliers", multipliers_);
+    add(ElementKind::comparator, "comparators", others_["comparator"]);
+    add(ElementKind::function_generator, "function generators", others_["function-generator"]);
+    for (const auto& [block, needed] : others_) {
+      if (needed > 0 && block != "comparator" && block != "function-generator")
+        bill_.rows.push_back({block, needed, false, {}, {}});
+    }
+    return std::move(bill_);
+  }
+
+ private:
+  void count(const FlatBlock& block) {
+    const Role role = role_of(block.definition->name);
+    if (role == Role::reference) {
+      const double value = std::abs(parameter_of(block, "value"));
+      if (value != 1 && value != 0) ++potentiometers_;
+    } else if (block.definition->name == "gain") {
+      count_gain(parameter_of(block, "factor"));
+    } else if (role == Role::coefficient) {
+      ++potentiometers_;
+    } else if (role == Role::inverter) {
+      ++inverters_;
+    } else if (role == Role::summer) {
+      ++summers_;
+    } else if (role == Role::integrator) {
+      ++integrators_;
+      ++rates_[std::abs(parameter_of(block, "rate"))];
+      const double initial = std::abs(parameter_of(block, "initial"));
+      if (!signed_ && initial != 0 && initial != 1) ++potentiometers_;
+    } else if (role == Role::open_amplifier) {
+      ++open_;
+    } else if (role == Role::multiplier) {
+      ++multipliers_;
+    } else {
+      ++others_[block.definition->name];
+    }
+    for (std::size_t port = 0; port < block.inputs.size(); ++port)
+      count_weights(block.inputs[port], block.definition->inputs[port].sum);
+  }
+
+  void count_gain(double factor) {
+    if (std::abs(factor) != 1) ++potentiometers_;
+    if (std::abs(factor) > 1) ++summers_;
+    if (factor < 0 && !signed_) ++inverters_;
+  }
+
+  void count_weights(const FlatInput& input, bool sum) {
+    const std::vector<double> unit{1};
+    for (const FlatTerm& term : input.terms) {
+      if (term.weight == 0) continue;
+      const FlatBlock& from = diagram_.blocks[term.signal.block];
+      const Role role = role_of(from.definition->name);
+      const auto key = std::pair(term.signal.block, term.signal.output);
+      if (term.weight < 0 && !signed_ && role != Role::reference) inverted_.insert(key);
+      if (sum && std::abs(term.weight) != 1) weights_inputs_ = true;
+      const InputWeight split =
+          split_weight(std::abs(term.weight), sum || signed_ ? machine_.input_gains : unit);
+      if (split.setting != 1)
+        weighted_.emplace(key.first, key.second, term.weight < 0, fmt::format("{:.12g}", split.setting));
+    }
+  }
+
+  void add(ElementKind kind, std::string element, double needed, std::string note = {}) {
+    if (needed == 0) return;
+    const ElementCount* const has = machine_.find(kind);
+    bill_.rows.push_back({std::move(element), needed, has != nullptr,
+                          has != nullptr ? has->count : std::optional<double>(), std::move(note), false});
+  }
+
+  void add_potentiometers() {
+    const bool at_least = weights_inputs_ && !machine_.input_gains_known;
+    if (potentiometers_ == 0 && !at_least) return;
+    const ElementCount* const has = machine_.find(ElementKind::potentiometer);
+    bill_.rows.push_back({"potentiometers", potentiometers_, has != nullptr || potentiometers_ == 0,
+                          has != nullptr ? has->count : std::optional<double>(),
+                          at_least ? "the gains of inputs are not published" : "", at_least});
+  }
+
+  void add_uncommitted() {
+    std::vector<std::string> parts;
+    const auto part = [&](double n, std::string_view one, std::string_view many) {
+      if (n > 0) parts.push_back(counted(n, one, many));
+    };
+    part(summers_, "summer", "summers");
+    part(inverters_, "inverter", "inverters");
+    part(integrators_, "integrator", "integrators");
+    part(open_, "open amplifier", "open amplifiers");
+    add(ElementKind::amplifier, "amplifiers", summers_ + inverters_ + integrators_ + open_,
+        fmt::format("{}", fmt::join(parts, ", ")));
+    if (machine_.find(ElementKind::integrator) != nullptr)
+      add(ElementKind::integrator, "integrator networks", integrators_);
+  }
+
+  void add_committed() {
+    add(ElementKind::integrator, "integrators", integrators_);
+    double inverters = inverters_, summers = summers_ + open_;
+    const ElementCount* const has = machine_.find(ElementKind::inverter);
+    const double free = has == nullptr ? 0 : has->count.value_or(inverters);
+    const double beyond = std::max(0.0, inverters - free);
+    summers += beyond;
+    inverters -= beyond;
+    std::vector<std::string> parts;
+    if (open_ > 0) parts.push_back(counted(open_, "open amplifier", "open amplifiers"));
+    if (beyond > 0) parts.push_back(counted(beyond, "inverter", "inverters"));
+    add(ElementKind::summer, "summers", summers,
+        parts.empty() ? "" : fmt::format("{} of these", fmt::join(parts, ", ")));
+    add(ElementKind::inverter, "inverters", inverters);
+  }
+
+  const FlatDiagram& diagram_;
+  const MachineProfile& machine_;
+  bool signed_;
+  bool weights_inputs_ = false;  ///< some sum has a weight other than ±1
+  Bill bill_;
+  double summers_ = 0, inverters_ = 0, integrators_ = 0, open_ = 0, multipliers_ = 0, potentiometers_ = 0;
+  std::map<double, double> rates_;                          ///< how many integrators have which [1/s]
+  std::map<std::string, double> others_;                    ///< by the names of their blocks
+  std::set<std::pair<std::size_t, std::size_t>> inverted_;  ///< signals that negative weights ask for
+  /// Potentiometers that weights ask for: signal, its sign, setting.
+  std::set<std::tuple<std::size_t, std::size_t, bool, std::string>> weighted_;
+};
+
+}  // namespace
+
+double BillRow::missing() const {
+  if (!exists) return needed;
+  return available ? std::max(0.0, needed - *available) : 0;
+}
+
+Bill::Verdict Bill::verdict() const {
+  const auto missing = [](const BillRow& row) { return row.missing() > 0; };
+  const auto unknown = [](const BillRow& row) { return row.at_least || (row.exists && !row.available); };
+  if (std::any_of(rows.begin(), rows.end(), missing)) return Verdict::does_not_fit;
+  return std::any_of(rows.begin(), rows.end(), unknown) ? Verdict::cannot_tell : Verdict::fits;
+}
+
+std::vector<std::string> Bill::absent() const {
+  std::vector<std::string> kinds;
+  for (const BillRow& row : rows) {
+    if (!row.exists) kinds.push_back(row.element);
+  }
+  return kinds;
+}
+
+Bill bill_of(const FlatDiagram& diagram, const MachineProfile& machine) {
+  return Counter(diagram, machine).bill();
+}
+
+}  // namespace oblique

@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/machine/circuit.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <tuple>
+
+#include <fmt/format.h>
+
+#include <oblique/machine/realise.h>
+
+namespace oblique {
+namespace {
+
+/// What is left of a difference of equal weights is rounding.
+constexpr double kRounding = 1e-15;
+
+/// A weight at which a passed-on signal still fits into the range, rounding allowed.
+constexpr double kUnit = 1 + 1e-12;
+
+class Reducer {
+ public:
+  Reducer(const FlatDiagram& flat, const BlockLibrary& library, double most_weight)
+      : flat_(flat),
+        summer_(library.find("summer")),
+        multiplier_(library.find("multiplier")),
+        most_weight_(most_weight),
+        blocks_(flat.blocks.size()) {}
+
+  Circuit make() {
+    for (const FlatOutput& output : flat_.outputs) circuit_.outputs.push_back(resolve(output.signal));
+    // What an element is fed with may keep further elements, behind it.
+    for (std::size_t e = 0; e < order_.size(); ++e) {
+      if (circuit_.elements[e].inputs.empty()) connect(e);
+    }
+    diagnostics_.throw_if_any<RealiseError>();
+    put_into_file_order();
+    return std::move(circuit_);
+  }
+
+ private:
+  enum class State { untouched, visiting, reduced, kept };
+  struct Block {
+    State state = State::untouched;
+    CircuitTerm value;  ///< of a reduced or kept block's first output
+  };
+  /// A product of two weighted signals, in any order.
+  using Factor = std::tuple<std::size_t, std::size_t, double>;
+
+  /// A signal as a weight of an element's output or of the reference.
+  CircuitTerm resolve(SignalRef signal) {
+    Block& block = blocks_[signal.block];
+    if (block.state == State::visiting) keep(signal.block);  // on a loop of its kind: it stays
+    if (block.state == State::untouched) {
+      block.state = State::visiting;
+      const std::optional<CircuitTerm> value = reduced(signal.block);
+      if (block.state == State::visiting && value) {
+        block.value = *value;
+        block.state = State::reduced;
+      } else if (block.state == State::visiting) {
+        keep(signal.block);
+      }
+    }
+    CircuitTerm value = block.value;
+    if (block.state == State::kept) value.signal->output = signal.output;
+    return value;
+  }
+
+  /// What a block amounts to that need not stay as an element.
+  std::optional<CircuitTerm> reduced(std::size_t index) {
+    const FlatBlock& block = flat_.blocks[index];
+    switch (role_of(block.definition->name)) {
+      case Role::reference:
+        return CircuitTerm{parameter_of(block, "value"), std::nullopt};
+      case Role::coefficient:
+        return single(gathered(block, 0), factor_of(block));
+      case Role::inverter:
+        return has_defaults(block) ? single(gathered(block, 0), -1) : std::nullopt;
+      case Role::summer:
+        return has_defaults(block) ? passed_on(gathered(block, 0), block.polarity) : std::nullopt;
+      case Role::multiplier:
+        return has_defaults(block) ? product(index) : std::nullopt;
+      default:
+        return std::nullopt;
+    }
+  }
+
+  double factor_of(const FlatBlock& block) {
+    if (block.definition->name == "gain") return parameter_of(block, "factor");
+    if (!has_defaults(block, {"setting"})) {
+      diagnostics_.add(
+          {block.place, fmt::format("potentiometer '{}' has imperfections of its own", block.path),
+           "a setting and nothing else", "leave turns, tolerance and load out: those of the machine apply"});
+    }
+    return parameter_of(block, "setting");
+  }
+
+  static std::optional<CircuitTerm> single(const CircuitInput& input, double factor) {
+    if (input.terms.size() > 1) return std::nullopt;
+    if (input.terms.empty()) return CircuitTerm{0, std::nullopt};
+    return CircuitTerm{factor * input.terms.front().weight, input.terms.front().signal};
+  }
+
+  /// A summer that adds nothing to its one signal is one amplifier too many.
+  static std::optional<CircuitTerm> passed_on(const CircuitInput& input, double polarity) {
+    const auto value = single(input, polarity);
+    return value && value->signal && std::abs(value->weight) > kUnit ? std::nullopt : value;
+  }
+
+  std::optional<CircuitTerm> product(std::size_t index) {
+    const auto [x, y] = factors(flat_.blocks[index]);
+    const auto a = single(x, 1), b = single(y, 1);
+    if (!a || !b) return std::nullopt;
+    if (!a->signal) return CircuitTerm{a->weight * b->weight, b->signal};
+    if (!b->signal) return CircuitTerm{a->weight * b->weight, a->signal};
+    const Factor one = key_of(*a), other = key_of(*b);
+    const auto [found, is_new] =
+        products_.try_emplace(one < other ? std::pair(one, other) : std::pair(other, one), index);
+    if (is_new) return std::nullopt;
+    if (blocks_[found->second].state != State::kept) keep(found->second);
+    return blocks_[found->second].value;
+  }
+
+  std::pair<CircuitInput, CircuitInput> factors(const FlatBlock& block) {
+    const CircuitInput x = gathered(block, 0);
+    return {x, block.inputs.size() > 1 ? gathered(block, 1) : x};  // a squarer has one input
+  }
+
+  static Factor key_of(const CircuitTerm& term) {
+    return {term.signal->block, term.signal->output, term.weight};
+  }
+
+  /// The terms of an input, each signal once.
+  CircuitInput gathered(const FlatBlock& block, std::size_t port) {
+    const FlatInput& input = block.inputs[port];
+    CircuitInput gathered;
+    gathered.open =
+        input.terms.empty() && block.definition->inputs[port].default_value == std::optional(input.constant);
+    if (gathered.open && role_of(block.definition->name) == Role::other) return gathered;
+    double largest = 0;
+    const auto add = [&](CircuitTerm term) {
+      if (term.weight == 0) return;
+      largest = std::max(largest, std::abs(term.weight));
+      const auto same = std::find_if(gathered.terms.begin(), gathered.terms.end(),
+                                     [&](const CircuitTerm& t) { return t.signal == term.signal; });
+      if (same == gathered.terms.end()) {
+        gathered.terms.push_back(term);
+      } else {
+        same->weight += term.weight;
+      }
+    };
+    add({input.constant, std::nullopt});
+    for (const FlatTerm& term : input.terms) {
+      CircuitTerm value = resolve(term.signal);
+      value.weight *= term.weight;
+      add(value);
+    }
+    std::erase_if(gathered.terms,
+                  [&](const CircuitTerm& t) { return std::abs(t.weight) <= kRounding * largest; });
+    return gathered;
+  }
+
+  void keep(std::size_t index) {
+    const FlatBlock& block = flat_.blocks[index];
+    CircuitElement element;
+    element.role = role_of(block.definition->name);
+    element.path = block.path;
+    element.block = &block;
+    element.definition = block.definition;
+    element.polarity = element.role == Role::summer || element.role == Role::integrator ? block.polarity : 1;
+    if (element.role == Role::coefficient) {
+      element.role = Role::summer;
+      element.block = nullptr;
+      element.definition = summer_;
+    }
+    if (element.role == Role::multiplier) element.definition = multiplier_;
+    blocks_[index].state = State::kept;
+    blocks_[index].value = {1, add(std::move(element), index)};
+  }
+
+  SignalRef add(CircuitElement element, std::size_t block) {
+    circuit_.elements.push_back(std::move(element));
+    order_.push_back(block);
+    return {circuit_.elements.size() - 1, 0};
+  }
+
+  void connect(std::size_t index) {
+    const FlatBlock& block = flat_.blocks[order_[index]];
+    std::vector<CircuitInput> inputs;
+    const Role role = role_of(block.definition->name);
+    if (role == Role::multiplier) {
+      auto [x, y] = factors(block);
+      inputs = {std::move(x), std::move(y)};
+    } else {
+      for (std::size_t k = 0; k < block.inputs.size(); ++k) inputs.push_back(gathered(block, k));
+    }
+    if (role == Role::coefficient) {
+      for (CircuitTerm& term : inputs.front().terms) term.weight *= factor_of(block);
+    }
+    const auto& ports = circuit_.elements[index].definition->inputs;
+    for (std::size_t k = 0; k < inputs.size(); ++k) {
+      if (ports[k].sum) continue;
+      const bool too_much =
+          inputs[k].terms.size() > 1 ||
+          (inputs[k].terms.size() == 1 && std::abs(inputs[k].terms.front().weight) > most_weight_ * kUnit);
+      if (too_much) scale(index, ports[k].name, inputs[k]);
+    }
+    circuit_.elements[index].inputs = std::move(inputs);
+  }
+
+  /// Puts an amplifier before an input that takes one signal of weight 1.
+  void scale(std::size_t index, const std::string& port, CircuitInput& input) {
+    double sign = 1;
+    std::optional<Factor> key;
+    if (input.terms.size() == 1 && input.terms.front().signal) {
+      sign = input.terms.front().weight < 0 ? -1 : 1;
+      input.terms.front().weight *= sign;
+      key = key_of(input.terms.front());
+    }
+    if (key) {
+      if (const auto found = scalers_.find(*key); found != scalers_.end()) {
+        input.terms = {{sign, found->second}};
+        return;
+      }
+    }
+    CircuitElement scaler;
+    scaler.path = key ? circuit_.elements[input.terms.front().signal->block].path + ".scaled"
+                      : circuit_.elements[index].path + "." + port;
+    scaler.definition = summer_;
+    scaler.inputs = {std::move(input)};
+    const SignalRef signal = add(std::move(scaler), order_[index]);
+    if (key) scalers_.emplace(*key, signal);
+    input = {false, {{sign, signal}}};
+  }
+
+  /// The elements were found from the outputs backwards.
+  void put_into_file_order() {
+    std::vector<std::size_t> sorted(order_.size());
+    std::iota(sorted.begin(), sorted.end(), std::size_t{0});
+    std::stable_sort(sorted.begin(), sorted.end(), [&](std::size_t a, std::size_t b) {
+      // a scaler stands before the element that asked for it
+      return std::pair(order_[a], circuit_.elements[a].block != nullptr) <
+             std::pair(order_[b], circuit_.elements[b].block != nullptr);
+    });
+    std::vector<std::size_t> place(sorted.size());
+    std::vector<CircuitElement> elements;
+    for (std::size_t k = 0; k < sorted.size(); ++k) {
+      place[sorted[k]] = k;
+      elements.push_back(std::move(circuit_.elements[sorted[k]]));
+    }
+    const auto move = [&](CircuitTerm& term) {
+      if (term.signal) term.signal->block = place[term.signal->block];
+    };
+    for (CircuitElement& element : elements) {
+      for (CircuitInput& input : element.inputs) std::for_each(input.terms.begin(), input.terms.end(), move);
+    }
+    std::for_each(circuit_.outputs.begin(), circuit_.outputs.end(), move);
+    circuit_.elements = std::move(elements);
+  }
+
+  const FlatDiagram& flat_;
+  const BlockDefinition* summer_;
+  const BlockDefinition* multiplier_;
+  double most_weight_;
+  std::vector<Block> blocks_;
+  Circuit circuit_;
+  std::vector<std::size_t> order_;  ///< of each element the flat block that asked for it
+  std::map<std::pair<Factor, Factor>, std::size_t> products_;  ///< with the flat blocks that form them
+  std::map<Factor, SignalRef> scalers_;
+  Diagnostics diagnostics_;
+};
+
+}  // namespace
+
+Circuit reduce(const FlatDiagram& flat, const BlockLibrary& library, double most_weight) {
+  return Reducer(flat, library, most_weight).make();
+}
+
+}  // namespace oblique

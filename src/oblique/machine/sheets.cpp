@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/machine/sheets.h>
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <oblique/machine/role.h>
+
+namespace oblique {
+namespace {
+
+/// Inputs of one block that one signal goes to with one weight.
+struct Connection {
+  SignalRef from;
+  std::size_t to = 0;    ///< block
+  std::size_t port = 0;  ///< of it
+  double weight = 1;
+  int inputs = 1;
+};
+
+class SheetMaker {
+ public:
+  SheetMaker(const FlatDiagram& diagram, const MachineProfile& machine)
+      : diagram_(diagram), volts_(machine.unit.value_or(1)), unit_(machine.unit ? "V" : "machine unit") {
+    ElementNumbers numbers;
+    for (std::size_t b = 0; b < diagram.blocks.size(); ++b) {
+      const FlatBlock& block = diagram.blocks[b];
+      const bool reference = role_of(block.definition->name) == Role::reference;
+      numbers_.push_back(reference ? (parameter_of(block, "value") < 0 ? "−REF" : "+REF")
+                                   : numbers.next(block.definition->name));
+      for (std::size_t port = 0; port < block.inputs.size(); ++port) {
+        for (const FlatTerm& term : block.inputs[port].terms) connect(b, port, term);
+      }
+    }
+  }
+
+  Sheet connections() const {
+    Sheet sheet{"patch list", {"from", "signal", "to", "element", "input"}, {}};
+    for (const Connection& c : connections_) {
+      sheet.rows.push_back({numbers_[c.from.block], diagram_.signal_name(c.from), numbers_[c.to],
+                            diagram_.blocks[c.to].path, input_text(c)});
+    }
+    return sheet;
+  }
+
+  Sheet potentiometers() const {
+    Sheet sheet{"potentiometers", {"pot", "setting", "from", "to", "stands for"}, {}};
+    for (std::size_t b = 0; b < diagram_.blocks.size(); ++b) {
+      if (role_of(diagram_.blocks[b].definition->name) != Role::coefficient) continue;
+      const double setting = parameter_of(diagram_.blocks[b], "setting");
+      const Connection& source = *std::find_if(connections_.begin(), connections_.end(),
+                                               [&](const Connection& c) { return c.to == b; });
+      std::vector<std::string> to, meanings;
+      for (const Connection& c : connections_) {
+        if (c.from.block != b) continue;
+        to.push_back(fmt::format("{} {}", numbers_[c.to], input_text(c)));
+        const std::string meaning = meaning_of(c, setting, source.from);
+        // a square takes the wiper twice
+        if (std::find(meanings.begin(), meanings.end(), meaning) == meanings.end())
+          meanings.push_back(meaning);
+      }
+      sheet.rows.push_back({numbers_[b], fmt::format("{:.4f}", setting), numbers_[source.from.block],
+                            fmt::format("{}", fmt::join(to, ", ")),
+                            fmt::format("{}", fmt::join(meanings, "; "))});
+    }
+    return sheet;
+  }
+
+  Sheet static_test(const std::vector<StaticReading>& readings) const {
+    Sheet sheet{"static test",
+                {"element", "signal", fmt::format("output [{}]", unit_), fmt::format("slope [{}/s]", unit_)},
+                {}};
+    std::unordered_map<std::string_view, const StaticReading*> by_name;
+    for (const StaticReading& reading : readings) by_name.emplace(reading.signal, &reading);
+    for (std::size_t b = 0; b < diagram_.blocks.size(); ++b) {
+      const BlockDefinition& definition = *diagram_.blocks[b].definition;
+      if (role_of(definition.name) == Role::reference) continue;
+      for (std::size_t k = 0; k < definition.outputs.size(); ++k) {
+        const std::string signal = diagram_.signal_name({b, k});
+        const StaticReading& reading = *by_name.at(signal);
+        const bool integrates = role_of(definition.name) == Role::integrator && reading.slope;
+        sheet.rows.push_back(
+            {numbers_[b], signal, voltage(reading.output), integrates ? voltage(*reading.slope) : ""});
+      }
+    }
+    return sheet;
+  }
+
+ private:
+  void connect(std::size_t block, std::size_t port, const FlatTerm& term) {
+    if (term.weight == 0) return;
+    const auto same = std::find_if(connections_.begin(), connections_.end(), [&](const Connection& c) {
+      return c.to == block && c.port == port && c.from == term.signal && c.weight == term.weight;
+    });
+    if (same != connections_.end()) {
+      ++same->inputs;
+    } else {
+      connections_.push_back({term.signal, block, port, term.weight, 1});
+    }
+  }
+
+  /// "×10", "3 inputs ×10", "x", "initial value": where a wire ends.
+  std::string input_text(const Connection& c) const {
+    const FlatBlock& block = diagram_.blocks[c.to];
+    const InputPort& port = block.definition->inputs[c.port];
+    if (role_of(block.definition->name) == Role::integrator && port.name == "start") return "initial value";
+    const std::string gain = fmt::format("{}×{:.6g}", c.weight < 0 ? "−" : "", std::abs(c.weight));
+    if (!port.sum) return c.weight == 1 ? port.name : port.name + " " + gain;
+    return c.inputs == 1 ? gain : fmt::format("{} inputs {}", c.inputs, gain);
+  }
+
+  /// "2.5 1/s of y in x", "−0.2 in a sum", "x starts at 0.6": what a potentiometer does at one input.
+  std::string meaning_of(const Connection& c, double setting, SignalRef source) const {
+    const FlatBlock& block = diagram_.blocks[c.to];
+    const InputPort& port = block.definition->inputs[c.port];
+    const FlatBlock& from = diagram_.blocks[source.block];
+    const bool integrator = role_of(block.definition->name) == Role::integrator;
+    const bool reference = role_of(from.definition->name) == Role::reference;
+    double factor = setting * c.weight * c.inputs;
+    if (reference) factor *= parameter_of(from, "value");
+    if (integrator && port.sum) factor *= parameter_of(block, "rate");
+    const std::string number = fmt::format("{}{:.4g}", factor < 0 ? "−" : "", std::abs(factor));
+    if (integrator && !port.sum) return fmt::format("{} starts at {}", block.path, number);
+    return fmt::format("{}{}{} in {}", number, integrator ? " 1/s" : "",
+                       reference ? "" : " of " + diagram_.signal_name(source), block.path);
+  }
+
+  /// Rounded, and never "-0.0000".
+  std::string voltage(double value) const {
+    constexpr double kDigits = 1e4;
+    return fmt::format("{:.4f}", std::round(value * volts_ * kDigits) / kDigits + 0.0);
+  }
+
+  const FlatDiagram& diagram_;
+  double volts_;  ///< 1 machine unit [V]
+  std::string unit_;
+  std::vector<std::string> numbers_;  ///< of each block
+  std::vector<Connection> connections_;
+};
+
+/// A field of a CSV file; quoted where it has to be.
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + "\"";
+}
+
+std::string csv_line(const std::vector<std::string>& cells) {
+  std::vector<std::string> fields;
+  for (const std::string& cell : cells) fields.push_back(csv_field(cell));
+  return fmt::format("{}\n", fmt::join(fields, ","));
+}
+
+}  // namespace
+
+std::string to_csv(const Sheet& sheet) {
+  std::string text = csv_line(sheet.columns);
+  for (const auto& row : sheet.rows) text += csv_line(row);
+  return text;
+}
+
+MachineSheets make_sheets(const FlatDiagram& diagram, const std::vector<StaticReading>& readings,
+                          const MachineProfile& machine) {
+  const SheetMaker maker(diagram, machine);
+  return {maker.connections(), maker.potentiometers(), maker.static_test(readings)};
+}
+
+}  // namespace oblique

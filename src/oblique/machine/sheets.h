@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <oblique/diagram/flat_diagram.h>
+#include <oblique/diagram/machine_profile.h>
+#include <oblique/solve/static_test.h>
+
+namespace oblique {
+
+/// A table for a machine room, of cells as they are read.
+struct Sheet {
+  std::string title;
+  std::vector<std::string> columns;
+  std::vector<std::vector<std::string>> rows;
+};
+
+/// The sheet as comma-separated values (RFC 4180), the columns' names first.
+std::string to_csv(const Sheet& sheet);
+
+/// What a machine room works from. Elements have the numbers that `realise` gives them as labels: A1 …
+/// amplifiers, P1 … potentiometers, M1 … multipliers, K1 … comparators, F1 … function generators, X1 …
+/// others; +REF and −REF are the reference.
+struct MachineSheets {
+  Sheet connections;     ///< from output to input, with the gain of the input
+  Sheet potentiometers;  ///< settings to four digits, and what they stand for
+  Sheet static_test;  ///< outputs at t = 0 [V], slopes of integrators [V/s]; machine units where 1 is unknown
+};
+
+/// `diagram` is flattened from one that `realise` has made; `readings` are its `static_test`.
+MachineSheets make_sheets(const FlatDiagram& diagram, const std::vector<StaticReading>& readings,
+                          const MachineProfile& machine);
+
+}  // namespace oblique

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/machine/bill.h>
+
+#include <algorithm>
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "../support/compiled.h"
+#include "profiles.h"
+
+namespace oblique {
+namespace {
+
+using ::testing::ElementsAre;
+using testing::inverting_machine;
+using testing::shipped_blocks;
+using testing::signed_machine;
+
+Bill bill(const std::string& blocks, const MachineProfile& machine) {
+  return bill_of(flatten(parse_diagram(testing::diagram_text(blocks), "d.toml"), shipped_blocks()), machine);
+}
+
+const BillRow& row(const Bill& bill, const std::string& element) {
+  const auto found = std::find_if(bill.rows.begin(), bill.rows.end(),
+                                  [&](const BillRow& r) { return r.element == element; });
+  if (found == bill.rows.end()) throw std::out_of_range(element);
+  return *found;
+}
+
+void set_count(MachineProfile& machine, ElementKind kind, std::optional<double> count) {
+  std::erase_if(machine.elements, [&](const ElementCount& e) { return e.kind == kind; });
+  machine.elements.push_back({kind, count, {}});
+}
+
+void remove(MachineProfile& machine, ElementKind kind) {
+  std::erase_if(machine.elements, [&](const ElementCount& e) { return e.kind == kind; });
+}
+
+// An oscillator of two integrators and an inverter, with a servo amplifier and a product besides.
+const char* const kBlocks = R"(
+x = { type = "integrator", in = ["y"], initial = 1 }
+y = { type = "integrator", in = ["n"] }
+n = { type = "inverter", in = "x" }
+s = { type = "summer", in = ["x", "10*p"] }
+p = { type = "potentiometer", in = "y", setting = 0.2 }
+q = { type = "servo-amplifier", in = ["m", "x"] }
+m = { type = "multiplier", in = ["q", "q"] }
+)";
+
+TEST(Bill, CountsEveryUncommittedAmplifierAndTheNetworksOfIntegrators) {
+  const Bill counted = bill(kBlocks, inverting_machine());
+  EXPECT_EQ(row(counted, "amplifiers").needed, 5);
+  EXPECT_EQ(row(counted, "amplifiers").note, "1 summer, 1 inverter, 2 integrators, 1 open amplifier");
+  EXPECT_EQ(row(counted, "integrator networks").needed, 2);
+  EXPECT_EQ(row(counted, "potentiometers").needed, 1);
+  EXPECT_EQ(row(counted, "multipliers").needed, 1);
+  EXPECT_EQ(counted.rows.size(), 4U);
+  EXPECT_EQ(counted.verdict(), Bill::Verdict::fits);
+}
+
+TEST(Bill, TakesSummersForOpenAmplifiersAndForInvertersBeyondThoseThereAre) {
+  MachineProfile machine = inverting_machine();
+  remove(machine, ElementKind::amplifier);
+  set_count(machine, ElementKind::integrator, 2);
+  set_count(machine, ElementKind::summer, 3);
+  Bill counted = bill(kBlocks, machine);  // without inverters of its own
+  EXPECT_EQ(row(counted, "summers").needed, 3);
+  EXPECT_EQ(row(counted, "summers").note, "1 open amplifier, 1 inverter of these");
+  EXPECT_EQ(counted.verdict(), Bill::Verdict::fits);
+  set_count(machine, ElementKind::inverter, 4);
+  counted = bill(kBlocks, machine);
+  EXPECT_EQ(row(counted, "summers").needed, 2);
+  EXPECT_EQ(row(counted, "inverters").needed, 1);
+}
+
+TEST(Bill, SaysWhatIsMissing) {
+  MachineProfile machine = inverting_machine();
+  set_count(machine, ElementKind::amplifier, 3);
+  const Bill counted = bill(kBlocks, machine);
+  EXPECT_EQ(row(counted, "amplifiers").missing(), 2);
+  EXPECT_EQ(row(counted, "multipliers").missing(), 0);
+  EXPECT_EQ(counted.verdict(), Bill::Verdict::does_not_fit);
+  EXPECT_TRUE(counted.absent().empty());
+}
+
+TEST(Bill, CannotTellWhereACountIsNotPublished) {
+  MachineProfile machine = inverting_machine();
+  set_count(machine, ElementKind::multiplier, std::nullopt);
+  EXPECT_EQ(bill(kBlocks, machine).verdict(), Bill::Verdict::cannot_tell);
+  EXPECT_EQ(row(bill(kBlocks, machine), "multipliers").missing(), 0);
+  set_count(machine, ElementKind::amplifier, 4);  // enough to know
+  EXPECT_EQ(bill(kBlocks, machine).verdict(), Bill::Verdict::does_not_fit);
+}
+
+// What is no gain of an input is a potentiometer, or not; a weight at a multiplier is one for certain.
+TEST(Bill, CannotTellWhereTheGainsOfInputsAreNotPublished) {
+  const std::string blocks =
+      "x = { type = \"integrator\", in = [\"0.3*x\"] }\nm = { type = \"multiplier\", in = [\"0.5*x\", \"x\"] "
+      "}\n";
+  MachineProfile machine = inverting_machine();
+  machine.input_gains.clear();
+  EXPECT_EQ(row(bill(blocks, machine), "potentiometers").needed, 1);
+  EXPECT_EQ(bill(blocks, machine).verdict(), Bill::Verdict::fits);
+  machine.input_gains_known = false;
+  EXPECT_TRUE(row(bill(blocks, machine), "potentiometers").at_least);
+  EXPECT_EQ(bill(blocks, machine).verdict(), Bill::Verdict::cannot_tell);
+}
+
+TEST(Bill, NamesKindsThatTheMachineHasNot) {
+  MachineProfile machine = inverting_machine();
+  remove(machine, ElementKind::multiplier);
+  const std::string blocks = std::string(kBlocks) + "c = { type = \"cosine\", in = \"x\" }\n";
+  const Bill counted = bill(blocks, machine);
+  EXPECT_THAT(counted.absent(), ElementsAre("multipliers", "cosine"));
+  EXPECT_EQ(counted.verdict(), Bill::Verdict::does_not_fit);
+}
+
+TEST(Bill, MissesTimeFactors) {
+  MachineProfile machine = inverting_machine();
+  machine.rates = {1, 500};
+  const Bill counted = bill(
+      "x = { type = \"integrator\", in = [\"y\"], rate = 6.3e7 }\ny = { type = \"integrator\", in = [\"x\"] "
+      "}\n",
+      machine);
+  EXPECT_EQ(row(counted, "integrators with k0 = 6.3e+07 1/s").missing(), 1);
+  EXPECT_EQ(row(counted, "integrators with k0 = 6.3e+07 1/s").note, "k0 on this machine: 1, 500 1/s");
+  EXPECT_TRUE(counted.absent().empty());
+}
+
+// x twice with 0.3 shares a potentiometer; −0.3 x takes an inverter and, behind it, one of its own.
+TEST(Bill, CountsPotentiometersAndInvertersThatWeightsAskFor) {
+  const std::string blocks = R"(
+one = { type = "constant", value = 0.5 }
+x = { type = "integrator", in = ["0.3*y", "-one"], initial = 0.5 }
+y = { type = "integrator", in = ["0.3*x"] }
+z = { type = "integrator", in = ["3*x", "-0.3*x", "10*y"], initial = -1 }
+)";
+  const Bill counted = bill(blocks, inverting_machine());
+  // the constant, 0.3 y, the initial value 0.5, 0.3 x, −0.3 x
+  EXPECT_EQ(row(counted, "potentiometers").needed, 5);
+  EXPECT_EQ(row(counted, "amplifiers").note, "1 inverter, 3 integrators");
+  // with signs: the constant, 0.3 y, ±0.3 x
+  EXPECT_EQ(row(bill(blocks, signed_machine()), "potentiometers").needed, 4);
+  EXPECT_EQ(row(bill(blocks, signed_machine()), "amplifiers").note, "3 integrators");
+}
+
+TEST(Bill, TakesAGainForWhatItStandsFor) {
+  const Bill counted =
+      bill("x = { type = \"integrator\", in = [\"g\"] }\ng = { type = \"gain\", in = \"x\", factor = -3 }\n",
+           inverting_machine());
+  EXPECT_EQ(row(counted, "potentiometers").needed, 1);
+  EXPECT_EQ(row(counted, "amplifiers").note, "1 summer, 1 inverter, 1 integrator");
+}
+
+}  // namespace
+}  // namespace oblique

@@ -1,0 +1,327 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/machine/realise.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/patch/patch.h>
+#include <oblique/solve/run.h>
+
+#include "../support/compiled.h"
+#include "profiles.h"
+
+namespace oblique {
+namespace {
+
+using testing::diagram_text;
+using ::testing::HasSubstr;
+using testing::inverting_machine;
+using testing::message_of;
+using testing::shipped_blocks;
+using testing::signed_machine;
+
+Trajectory trajectory_of(const Diagram& diagram) {
+  const FlatDiagram flat = flatten(diagram, shipped_blocks());
+  return run(Program(assemble(flat)), flat, options_of(diagram.run)).trajectory;
+}
+
+/// The largest difference of any output at any time, relative to the largest value of all.
+double difference(const Diagram& one, const Diagram& other) {
+  const Trajectory a = trajectory_of(one), b = trajectory_of(other);
+  EXPECT_EQ(a.rows(), b.rows());
+  EXPECT_EQ(a.columns().size(), b.columns().size());
+  double size = 0, off = 0;
+  for (std::size_t c = 1; c < a.columns().size(); ++c) {
+    EXPECT_EQ(a.columns()[c].name, b.columns()[c].name);
+    for (std::size_t r = 0; r < a.rows(); ++r) {
+      size = std::max(size, std::abs(a.at(r, c)));
+      off = std::max(off, std::abs(a.at(r, c) - b.at(r, c)));
+    }
+  }
+  return off / size;
+}
+
+const BlockInstance& block(const Diagram& diagram, const std::string& name) {
+  const auto found = std::find_if(diagram.blocks.begin(), diagram.blocks.end(),
+                                  [&](const BlockInstance& b) { return b.name == name; });
+  if (found == diagram.blocks.end()) throw std::out_of_range(name + " in\n" + write_diagram(diagram));
+  return *found;
+}
+
+Diagram realised(const std::string& blocks, const std::string& rest, const MachineProfile& machine) {
+  return realise(parse_diagram(diagram_text(blocks, rest), "d.toml"), shipped_blocks(), machine).diagram;
+}
+
+/// What no machine with inputs of 1 and 10 and potentiometers from 0 to 1 could do.
+void expect_machine_elements(const Diagram& diagram, bool with_signs) {
+  const FlatDiagram flat = flatten(diagram, shipped_blocks());
+  EXPECT_EQ(flat.blocks.size(), diagram.blocks.size()) << "composites";
+  std::set<std::pair<std::string, std::string>> settings;
+  for (const FlatBlock& b : flat.blocks) {
+    for (std::size_t port = 0; port < b.inputs.size(); ++port) {
+      const bool sum = b.definition->inputs[port].sum;
+      for (const FlatTerm& term : b.inputs[port].terms) {
+        const double weight = with_signs ? std::abs(term.weight) : term.weight;
+        EXPECT_TRUE(weight == 1 || weight == 0 || (weight == 10 && (sum || with_signs)))
+            << b.path << ": " << term.weight;
+      }
+    }
+    if (b.definition->name != "potentiometer") continue;
+    const double setting = b.parameters[b.definition->find_parameter("setting").value()];
+    EXPECT_TRUE(setting > 0 && setting <= 1) << b.path << ": " << setting;
+    const std::string from = flat.signal_name(b.inputs[0].terms.front().signal);
+    EXPECT_TRUE(settings.emplace(from, std::to_string(setting)).second)
+        << "a second potentiometer of " << setting << " at " << from;
+  }
+}
+
+struct Case {
+  std::string file;
+  PatchMethod method = PatchMethod::triangles;
+  double gain = 1e6;
+};
+
+std::string name_of(const ::testing::TestParamInfo<Case>& tested) {
+  std::string name = tested.param.file + "_" + std::string(method_name(tested.param.method));
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+}
+
+class PatchedMechanism : public ::testing::TestWithParam<Case> {};
+INSTANTIATE_TEST_SUITE_P(Realise, PatchedMechanism,
+                         ::testing::Values(Case{"four-bar"}, Case{"slider-crank-offset"}, Case{"whitworth"},
+                                           Case{"scotch-yoke"}, Case{"six-bar"}, Case{"jansen"},
+                                           Case{"class-iii"}, Case{"four-bar", PatchMethod::gradient, 1e4},
+                                           Case{"slider-crank", PatchMethod::gradient, 1e4},
+                                           Case{"class-iv", PatchMethod::gradient, 1e4}),
+                         name_of);
+
+// The frozen equations are the same with signals inverted, so that only the solver's steps differ. Its
+// tolerance of 1e-10 a step adds up over some hundred steps.
+TEST_P(PatchedMechanism, MovesAsItDidOnAMachine) {
+  PatchOptions options;
+  options.method = GetParam().method;
+  options.gain = GetParam().gain;
+  const Diagram diagram = patch(
+      read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/" + GetParam().file + ".toml"),
+      options);
+  for (const MachineProfile& machine : {inverting_machine(), signed_machine()}) {
+    const Diagram made = realise(diagram, shipped_blocks(), machine).diagram;
+    expect_machine_elements(made, machine.signed_coefficients);
+    EXPECT_LT(difference(diagram, made), 1e-7) << write_diagram(made);
+    EXPECT_TRUE(parse_diagram(write_diagram(made), "made.toml") == made);
+  }
+}
+
+class ShippedDiagram : public ::testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Realise, ShippedDiagram,
+                         ::testing::Values("lessons/circle", "lessons/damped-oscillator", "lessons/duffing",
+                                           "lessons/bessel", "lessons/legendre", "lessons/pendulum",
+                                           "lessons/division", "lessons/square-root", "lessons/triangle-sas",
+                                           "lessons/triangle-side", "lessons/projectile",
+                                           "lessons/pid-saturation", "lessons/inverse-sine",
+                                           "historical/van-der-pol", "historical/heat-rod",
+                                           "historical/lotka-volterra", "historical/nerve",
+                                           "historical/class-three-mechanism"),
+                         [](const auto& tested) {
+                           std::string name = tested.param;
+                           for (char& c : name)
+                             c = std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
+                           return name;
+                         });
+
+// Lessons have tolerances of 1e-8 and limit cycles whose phase gathers the error.
+TEST_P(ShippedDiagram, RunsAsItDidOnAMachine) {
+  const Diagram diagram = read_diagram(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/" + GetParam() + ".toml");
+  for (const MachineProfile& machine : {inverting_machine(), signed_machine()}) {
+    const Diagram made = realise(diagram, shipped_blocks(), machine).diagram;
+    expect_machine_elements(made, machine.signed_coefficients);
+    EXPECT_LT(difference(diagram, made), 1e-5) << write_diagram(made);
+  }
+}
+
+std::string line_of(const Diagram& diagram, const std::string& name) {
+  const std::string text = write_diagram(diagram);
+  const std::size_t begin = text.find("\n" + name + " ");
+  if (begin == std::string::npos) return "nothing in:\n" + text;
+  return text.substr(begin + 1, text.find('\n', begin + 1) - begin - 1);
+}
+
+TEST(Realise, SharesThePotentiometerOfOneSignalAndOneSetting) {
+  const Diagram made = realised(R"(
+a = { type = "integrator", in = ["-0.3*b"] }
+b = { type = "integrator", in = ["0.3*a", "-3*a"], initial = 1 }
+)",
+                                "", inverting_machine());
+  EXPECT_THAT(line_of(made, "pot_1"), HasSubstr("setting = 0.3"));
+  const auto potentiometers = std::count_if(made.blocks.begin(), made.blocks.end(),
+                                            [](const BlockInstance& b) { return b.type == "potentiometer"; });
+  EXPECT_EQ(potentiometers, 2);  // −0.3 b; 0.3 a − 3 a is −2.7 a
+}
+
+TEST(Realise, CarriesInitialValuesFromTheReferenceWithTheSignOfTheSignal) {
+  const std::string blocks = R"(
+x = { type = "integrator", in = ["-x"], initial = 0.5 }
+y = { type = "integrator", in = ["x"], initial = -1 }
+)";
+  const Diagram made = realised(blocks, "", inverting_machine());
+  EXPECT_THAT(line_of(made, "x"), HasSubstr("in = \"x\", start = \"pot_1\""));
+  EXPECT_THAT(line_of(made, "pot_1"), HasSubstr("in = \"reference\", setting = 0.5"));
+  EXPECT_THAT(line_of(made, "minus_y"), HasSubstr("in = \"x\", start = \"reference\""));
+  EXPECT_THAT(line_of(realised(blocks, "", signed_machine()), "x"), HasSubstr("initial = 0.5"));
+}
+
+TEST(Realise, LeavesOutWhatOnlyMultipliesByAConstant) {
+  const Diagram made = realised(R"(
+two  = { type = "constant", value = 2 }
+x    = { type = "integrator", in = ["-x"], initial = 1 }
+k    = { type = "gain", in = "x", factor = 4 }
+p    = { type = "potentiometer", in = "k", setting = 0.5 }
+m    = { type = "multiplier", in = ["p", "two"] }
+n    = { type = "inverter", in = "m" }
+s    = { type = "summer", in = ["0.25*n"] }
+out  = { type = "integrator", in = ["s", "n"] }
+)",
+                                "[outputs]\nout = \"out\"\n", inverting_machine());
+  // s = −x and n = −4x: together −5x, which an inverting integrator takes as 10 times half of x
+  EXPECT_THAT(line_of(made, "out"), HasSubstr("in = \"10*pot_1\""));
+  EXPECT_THAT(line_of(made, "pot_1"), HasSubstr("in = \"x\", setting = 0.5"));
+  EXPECT_EQ(made.blocks.size(), 4U);  // reference, x, pot_1, out
+}
+
+TEST(Realise, FormsAProductOnce) {
+  const Diagram made = realised(R"(
+x = { type = "integrator", in = ["-y"], initial = 1 }
+y = { type = "integrator", in = ["x"] }
+a = { type = "multiplier", in = ["x", "y"] }
+b = { type = "multiplier", in = ["y", "x"] }
+c = { type = "squarer", in = "x" }
+d = { type = "multiplier", in = ["x", "x"] }
+s = { type = "summer", in = ["a", "b", "c", "d"] }
+)",
+                                "[outputs]\ns = \"s\"\n", inverting_machine());
+  EXPECT_EQ(std::count_if(made.blocks.begin(), made.blocks.end(),
+                          [](const BlockInstance& b) { return b.type == "multiplier"; }),
+            2);
+}
+
+TEST(Realise, PutsAnAmplifierBeforeAFactorAboveOne) {
+  const std::string blocks = R"(
+x = { type = "integrator", in = ["-x"], initial = 0.3 }
+m = { type = "multiplier", in = ["3*x", "-3*x"] }
+)";
+  const Diagram made = realised(blocks, "", inverting_machine());
+  EXPECT_EQ(std::count_if(made.blocks.begin(), made.blocks.end(),
+                          [](const BlockInstance& b) { return b.type == "summer"; }),
+            1)
+      << write_diagram(made);
+  expect_machine_elements(made, false);
+  EXPECT_LT(difference(parse_diagram(diagram_text(blocks), "d.toml"), made), 1e-7);
+}
+
+TEST(Realise, ChoosesTheTimeFactorOfTheMachine) {
+  MachineProfile machine = inverting_machine();
+  machine.rates = {10, 1000};
+  const std::string blocks = "x = { type = \"integrator\", in = [\"-20*x\"], rate = 50, initial = 1 }\n";
+  EXPECT_THAT(line_of(realised(blocks, "", machine), "x"),
+              HasSubstr("in = \"x\", start = \"reference\", rate = 1000"));
+  machine.rates = {10};
+  EXPECT_THAT(line_of(realised(blocks, "", machine), "x"), HasSubstr("rate = 100"));
+}
+
+// A servo amplifier inverts by itself: carried as its negative it takes the negatives of all its inputs.
+TEST(Realise, TurnsServoAmplifiersRound) {
+  const std::string blocks = R"(
+x = { type = "integrator", in = ["-0.2*one"], initial = 1 }
+one = { type = "constant" }
+r = { type = "servo-amplifier", in = ["r2", "-x"], initial = 1, bandwidth = "1 kHz" }
+r2 = { type = "multiplier", in = ["r", "r"] }
+)";
+  const Diagram diagram = parse_diagram(diagram_text(blocks), "d.toml");
+  for (const MachineProfile& machine : {inverting_machine(), signed_machine()})
+    EXPECT_LT(difference(diagram, realise(diagram, shipped_blocks(), machine).diagram), 1e-6);
+}
+
+TEST(Realise, LeavesTheGainOfServoAmplifiersToAMachineThatStatesIt) {
+  const std::string blocks =
+      "x = { type = \"servo-amplifier\", in = [\"x\", \"-0.5*one\"], gain = 1e5 }\none = { type = "
+      "\"constant\" "
+      "}\n";
+  MachineProfile machine = inverting_machine();
+  EXPECT_THAT(line_of(realised(blocks, "", machine), "x"), HasSubstr("gain = 100000, bandwidth = 10 "));
+  machine.errors = {{"servo-amplifier", "gain", 1000, "amplifier, open-loop gain"}};
+  EXPECT_THAT(line_of(realised(blocks, "", machine), "x"), Not(HasSubstr("gain")));
+}
+
+TEST(Realise, KeepsOtherBlocksAsTheyAre) {
+  const std::string blocks = R"(
+x = { type = "integrator", in = ["-2*y"], initial = 1 }
+y = { type = "integrator", in = ["2*x"] }
+f = { type = "function-generator", in = "-x", points = [[-1, 1], [0, 0], [1, 0.5]] }
+)";
+  const Diagram diagram = parse_diagram(diagram_text(blocks, "[outputs]\nf = \"f\"\n"), "d.toml");
+  const Diagram made = realise(diagram, shipped_blocks(), inverting_machine()).diagram;
+  EXPECT_EQ(block(made, "f").type, "function-generator");
+  EXPECT_LT(difference(diagram, made), 1e-6);
+}
+
+TEST(Realise, KeepsGainsThatDriveEachOther) {
+  const std::string blocks = R"(
+a = { type = "gain", in = "b", factor = 0.5 }
+b = { type = "summer", in = ["-a", "one"] }
+one = { type = "constant" }
+)";
+  const Diagram diagram = parse_diagram(diagram_text(blocks), "d.toml");
+  EXPECT_LT(difference(diagram, realise(diagram, shipped_blocks(), inverting_machine()).diagram), 1e-12);
+}
+
+// A composite has its own convention: the summers in crank-generator do not invert, whatever the diagram
+// says.
+TEST(Realise, KnowsWhichSummersOfTheDiagramInvert) {
+  Diagram diagram = parse_diagram(diagram_text(R"(
+crank = { type = "crank-generator" }
+s = { type = "summer", in = ["0.5*crank.cos", "0.25*crank.sin"] }
+)"),
+                                  "d.toml");
+  diagram.machine.inverting = true;
+  for (const MachineProfile& machine : {inverting_machine(), signed_machine()})
+    EXPECT_LT(difference(diagram, realise(diagram, shipped_blocks(), machine).diagram), 1e-6);
+}
+
+TEST(Realise, GivesAbsoluteTolerancesToTheStatesTheyWereMeantFor) {
+  Diagram diagram =
+      parse_diagram(diagram_text("x = { type = \"integrator\", in = [\"x\"], initial = 0.1 }\n"), "d.toml");
+  diagram.run.tolerances = {{"x", 1e-12}};
+  const Diagram made = realise(diagram, shipped_blocks(), inverting_machine()).diagram;
+  ASSERT_EQ(made.run.tolerances.size(), 1U);
+  EXPECT_NO_THROW(flatten(made, shipped_blocks()));
+  EXPECT_EQ(made.run.tolerances[0].second, 1e-12);
+}
+
+TEST(Realise, RefusesADiagramWithATimeline) {
+  const std::string message = message_of<RealiseError>([] {
+    realise(read_diagram(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/lessons/repetitive-operation.toml"),
+            shipped_blocks(), inverting_machine());
+  });
+  EXPECT_THAT(message,
+              HasSubstr("a diagram with [groups] or a [timeline] is not put into a machine's elements"));
+}
+
+TEST(Realise, RefusesPotentiometersWithImperfectionsOfTheirOwn) {
+  const std::string message = message_of<RealiseError>([] {
+    realised(
+        "x = { type = \"integrator\", in = [\"-p\"], initial = 1 }\n"
+        "p = { type = \"potentiometer\", in = \"x\", setting = 0.5, turns = 1000 }\n",
+        "", inverting_machine());
+  });
+  EXPECT_THAT(message, HasSubstr("d.toml:4:1: potentiometer 'p' has imperfections of its own; expected a "
+                                 "setting and nothing else"));
+}
+
+}  // namespace
+}  // namespace oblique

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/machine/sheets.h>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <oblique/machine/realise.h>
+
+#include "../support/compiled.h"
+#include "profiles.h"
+
+namespace oblique {
+namespace {
+
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using testing::inverting_machine;
+using testing::shipped_blocks;
+
+// ẋ = −2.5 y + 0.2,  ẏ = 2.5 x, s = −25 (x·½y)
+const char* const kBlocks = R"(
+x   = { type = "integrator", in = ["-2.5*y", "0.2*one"], initial = 0.6 }
+y   = { type = "integrator", in = ["2.5*x"], initial = -1 }
+xy  = { type = "multiplier", in = ["x", "0.5*y"] }
+s   = { type = "summer", in = ["-25*xy"] }
+one = { type = "constant" }
+)";
+
+MachineSheets sheets(const MachineProfile& machine) {
+  const Diagram diagram = parse_diagram(testing::diagram_text(kBlocks), "d.toml");
+  const Diagram made = realise(diagram, shipped_blocks(), machine).diagram;
+  const FlatDiagram flat = flatten(made, shipped_blocks());
+  return make_sheets(flat, static_test(Program(assemble(flat)), "d.toml"), machine);
+}
+
+MachineProfile ten_volts() {
+  MachineProfile machine = inverting_machine();
+  machine.unit = 10;
+  return machine;
+}
+
+// By hand, with integrators that invert: x is −∫(10·¼ y − 0.2), y is −∫10·¼ (−x), and −x takes an
+// inverter; 25 is three inputs of 10 behind 25/30.
+TEST(Sheets, ListEveryConnectionWithTheGainOfItsInput) {
+  const Sheet list = sheets(ten_volts()).connections;
+  EXPECT_THAT(list.columns, ElementsAre("from", "signal", "to", "element", "input"));
+  EXPECT_THAT(list.rows, Contains(ElementsAre("A3", "y", "P1", "pot_1", "in")));
+  EXPECT_THAT(list.rows, Contains(ElementsAre("P1", "pot_1", "A1", "x", "×10")));
+  EXPECT_THAT(list.rows, Contains(ElementsAre("−REF", "minus_reference", "P2", "pot_2", "in")));
+  EXPECT_THAT(list.rows, Contains(ElementsAre("P3", "pot_3", "A1", "x", "initial value")));
+  EXPECT_THAT(list.rows, Contains(ElementsAre("P6", "pot_6", "A4", "s", "3 inputs ×10")));
+  EXPECT_THAT(list.rows, Contains(ElementsAre("P5", "pot_5", "M1", "xy", "y")));
+  EXPECT_THAT(list.rows, Contains(ElementsAre("A1", "x", "A2", "minus_x", "in")));
+}
+
+TEST(Sheets, SayWhatPotentiometersStandFor) {
+  const Sheet pots = sheets(ten_volts()).potentiometers;
+  EXPECT_THAT(pots.rows, Contains(ElementsAre("P1", "0.2500", "A3", "A1 ×10", "2.5 1/s of y in x")));
+  EXPECT_THAT(pots.rows, Contains(ElementsAre("P2", "0.2000", "−REF", "A1 ×1", "−0.2 1/s in x")));
+  EXPECT_THAT(pots.rows,
+              Contains(ElementsAre("P3", "0.6000", "+REF", "A1 initial value", "x starts at 0.6")));
+  EXPECT_THAT(pots.rows, Contains(ElementsAre("P6", "0.8333", "M1", "A4 3 inputs ×10", "25 of xy in s")));
+}
+
+// x = 0.6, y = −1: ẋ = 2.5 + 0.2, ẏ = 1.5, x·½y = −0.3 [machine unit]; 10 V each.
+TEST(Sheets, TellWhatEveryElementShowsAtTheStart) {
+  const Sheet test = sheets(ten_volts()).static_test;
+  EXPECT_THAT(test.columns, ElementsAre("element", "signal", "output [V]", "slope [V/s]"));
+  EXPECT_THAT(test.rows, Contains(ElementsAre("A1", "x", "6.0000", "27.0000")));
+  EXPECT_THAT(test.rows, Contains(ElementsAre("A2", "minus_x", "-6.0000", "")));
+  EXPECT_THAT(test.rows, Contains(ElementsAre("A3", "y", "-10.0000", "15.0000")));
+  EXPECT_THAT(test.rows, Contains(ElementsAre("M1", "xy", "-3.0000", "")));
+  EXPECT_THAT(test.rows, Contains(ElementsAre("P2", "pot_2", "-2.0000", "")));
+}
+
+TEST(Sheets, ComputeInMachineUnitsWhereTheVoltageIsNotKnown) {
+  const Sheet test = sheets(inverting_machine()).static_test;
+  EXPECT_THAT(test.columns,
+              ElementsAre("element", "signal", "output [machine unit]", "slope [machine unit/s]"));
+  EXPECT_THAT(test.rows, Contains(ElementsAre("A1", "x", "0.6000", "2.7000")));
+}
+
+TEST(Sheets, AreQuotedAsCsvWhereTheyHaveTo) {
+  const Sheet sheet{"title", {"a", "b"}, {{"1, 2", "say \"x\""}, {"", "plain"}}};
+  EXPECT_EQ(to_csv(sheet), "a,b\n\"1, 2\",\"say \"\"x\"\"\"\n,plain\n");
+}
+
+}  // namespace
+}  // namespace oblique

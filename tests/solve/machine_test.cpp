@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+// What the figures of real machines do to small circuits whose errors have a closed form (Dow 1957).
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "../support/runs.h"
+
+namespace oblique {
+namespace {
+
+using testing::Compiled;
+using testing::run_of;
+
+constexpr double kU = 0.4;
+
+/// The last values of a diagram's outputs on a machine.
+std::vector<double> end_on(const std::string& machine, const std::string& blocks, double until = 1) {
+  const Compiled made("u = { type = \"constant\", value = 0.4 }\n" + blocks,
+                      "[machine]\nprofile = \"" + machine + "\"\n");
+  const Trajectory trajectory = run_of(made, {.until = until, .tolerance = 1e-10}).trajectory;
+  std::vector<double> values;
+  for (std::size_t c = 0; c < trajectory.columns().size(); ++c)
+    values.push_back(trajectory.at(trajectory.rows() - 1, c));
+  return values;
+}
+
+TEST(Machine, Ec1LacksGain) {
+  constexpr double kGain = 1000;
+  const std::vector<double> end =
+      end_on("ec-1",
+             "inverted = { type = \"inverter\", in = \"u\" }\n"
+             "summed = { type = \"summer\", in = [\"u\", \"0.5*u\"] }\n"
+             "own = { type = \"summer\", in = \"u\", gain = 50 }\n"
+             "held = { type = \"servo-amplifier\", in = [\"held\", \"-u\"] }\n"
+             "[outputs]\na = \"inverted\"\nb = \"summed\"\nc = \"own\"\nd = \"held\"\n");
+  // An amplifier of gain A with the noise gain N gives 1/(1 + N/A) of the ideal output.
+  EXPECT_NEAR(end[1], -kU / (1 + 2 / kGain), 1e-12);
+  EXPECT_NEAR(end[2], -1.5 * kU / (1 + 2.5 / kGain), 1e-12);
+  EXPECT_NEAR(end[3], -kU / (1 + 2.0 / 50), 1e-12);
+  EXPECT_NEAR(end[4], kU * kGain / (1 + kGain), 1e-9);  // brought to rest by Newton's method
+}
+
+// −u is integrated as out' = −(A u + out)/(A + 1).
+TEST(Machine, Ec1IntegratesWithALeak) {
+  constexpr double kGain = 1000;
+  const std::vector<double> end =
+      end_on("ec-1", "s = { type = \"integrator\", in = \"u\" }\n[outputs]\ns = \"s\"\n", 2);
+  EXPECT_NEAR(end[1], -kGain * kU * -std::expm1(-2 / (kGain + 1)), 1e-9);  // 1e-10 a step, few steps
+}
+
+TEST(Machine, Tr10DriftsAndRounds) {
+  const std::vector<double> end = end_on(
+      "tr-10",
+      "s = { type = \"integrator\", in = \"0*u\" }\np = { type = \"potentiometer\", in = \"u\", setting = "
+      "0.12345 "
+      "}\n"
+      "m = { type = \"multiplier\", in = [\"u\", \"u\"] }\n[outputs]\ns = \"s\"\np = \"p\"\nm = \"m\"\n",
+      3);
+  EXPECT_NEAR(end[1], 3 * 50e-6 / 10, 1e-11);               // 50 µV/s for 3 s, of 10 V; to a millionth of it
+  EXPECT_NEAR(end[2], 494.0 / 4000 * kU, 1e-15);            // 493.8 turns
+  const double wave = std::sin(std::numbers::pi * 7 * kU);  // of two squarers with 7 segments
+  EXPECT_NEAR(end[3], kU * kU + 0.08 / 10 * wave * wave, 1e-15);
+}
+
+// An inverter of gain-bandwidth product f is a lag of corner f/2; at rest its offset of 20 µV is doubled.
+TEST(Machine, Tr10OffsetIsAmplifiedByTheNoiseGain) {
+  const std::vector<double> end =
+      end_on("tr-10", "i = { type = \"inverter\", in = \"u\" }\n[outputs]\ni = \"i\"\n");
+  EXPECT_NEAR(end[1], -kU + 2 * 20e-6 / 10, 1e-10);
+}
+
+}  // namespace
+}  // namespace oblique
