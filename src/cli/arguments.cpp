@@ -195,6 +195,8 @@ void add_patch(CLI::App& app, Chosen& chosen) {
                    "bandwidth of the servo amplifiers, in Hz or with a unit; inf: algebraic loops "
                    "(default: 100 times the crank's frequency)");
   add_method(verb, *request);
+  verb->add_flag("--derivatives", request->derivatives,
+                 "velocities and accelerations too, as further circuits");
   verb->add_option(
           "--split", request->split,
           "how to take a triad apart: the lead whose triangle carries the variable length, the lead that "

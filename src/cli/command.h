@@ -75,6 +75,7 @@ struct PatchRequest {
   std::string gain = "1e6";
   std::string bandwidth;
   std::string method = "triangles";
+  bool derivatives = false;
   std::string unit;
   std::string slower = "100";
   std::vector<std::string> split;

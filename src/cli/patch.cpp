@@ -52,6 +52,7 @@ ExitStatus patch_mechanism(const Session& session, const PatchRequest& request) 
   options.method = method_option(request.method);
   options.gain = positive_option("--gain", request.gain, "1");
   if (!request.bandwidth.empty()) options.bandwidth = positive_option("--bandwidth", request.bandwidth, "Hz");
+  options.derivatives = request.derivatives;
   options.slower = positive_option("--slower", request.slower, "1");
   options.split = request.split;
   options.force = request.force;

@@ -154,6 +154,19 @@ i = { type = "integrator", in = ["n"] }
   EXPECT_TRUE(result.overloads.empty());
 }
 
+// A function keeps its points, a formula its text: neither has a scale.
+TEST(Rescale, FunctionsStayWhatTheyAre) {
+  const Compiled made(R"toml(u = { type = "time-function", formula = "2 + sin(3*time)", scale = 2 }
+x = { type = "integrator", in = ["u"] }
+f = { type = "function-generator", in = "x", points = [[-1, 0.5], [2, 0], [9, 0.25]] }
+)toml");
+  const Rescaled result = rescaled(made, 2);
+  EXPECT_LT(result.difference, kSame);
+  EXPECT_TRUE(result.overloads.empty());
+  EXPECT_THAT(result.text, HasSubstr("formula = \"2 + sin(3*time)\", scale = 0.2 }"));
+  EXPECT_THAT(result.text, HasSubstr("points = [[-1, 0.5], [2, 0], [9, 0.25]]"));
+}
+
 TEST(Rescale, ARingOfProductsTakesThePeaks) {
   const Compiled made(R"toml(u = { type = "constant", value = 1 }
 a = { type = "multiplier", in = ["u", "b"] }

@@ -133,9 +133,10 @@ Diagram read_diagram(const std::filesystem::path& path);
 /// The text of a diagram, one block a line, with its comments; `parse_diagram` gives an equal diagram back.
 std::string write_diagram(const Diagram& diagram);
 
-/// Builds the value of a `settings` entry: a number, a signal, a list of weighted signals.
+/// Builds the value of a `settings` entry: a number, a signal, a list of weighted signals, points.
 Entry number_setting(std::string key, double value);
 Entry text_setting(std::string key, std::string text);
+Entry points_setting(std::string key, const PointTable& points);
 struct WeightedSignal {
   double weight = 1;
   std::string signal;

@@ -118,7 +118,13 @@ class Writer {
     for (std::size_t i = 0; i < definition.inputs.size(); ++i) {
       add_input(instance, definition.inputs[i], block.inputs[i], sign * scaling_[b].inputs[i]);
     }
+    for (const auto& [name, formula] : block.formulas)
+      instance.settings.push_back(text_setting(name, to_string(formula)));
     for (std::size_t k = 0; k < definition.parameters.size(); ++k) {
+      if (definition.parameters[k].points) {
+        instance.settings.push_back(points_setting(definition.parameters[k].name, block.points[k]));
+        continue;
+      }
       set(instance, definition, k, scaled_number(block.parameters[k], scaling_[b].parameters[k], 1));
     }
     return instance;

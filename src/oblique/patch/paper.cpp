@@ -26,8 +26,8 @@ class PaperPatch : private TriadPatch {
     choose_splits();
     describe("patched as the source draws it",
              fmt::format("Two equal four-bar circuits for each class III group, one scale for all lengths.\n"
-                         "Servo amplifiers: gain {}, bandwidth {} Hz. Run over one turn of '{}'.",
-                         options_.gain, bandwidth_, mechanism_.drives.front().name));
+                         "Servo amplifiers: gain {}, bandwidth {} Hz. Run over {}.",
+                         options_.gain, bandwidth_, span_text()));
     add_reference();
     std::size_t triad = 0;
     for (const Group& group : structure_.groups) {
@@ -40,6 +40,7 @@ class PaperPatch : private TriadPatch {
         add_circuits(group, splits_[triad++]);
       }
     }
+    if (options_.derivatives) add_rates();
     add_outputs();
     for (OutputSpec& angle : angles_) diagram_.outputs.push_back(std::move(angle));
     return std::move(diagram_);
@@ -57,9 +58,7 @@ class PaperPatch : private TriadPatch {
       longest = std::max({longest, splits_.back().reach, splits_.back().second_reach});
     }
     if (!options_.unit) scaling_.length = round_scale_up(longest);
-    for (std::size_t point = 0; point < points_.size(); ++point) {
-      if (mechanism_.points[point].fixed) set_known(point);
-    }
+    set_scale(scaling_);
   }
 
   /// The lead on a moving point carries the variable length, as AB does; of the others the last one in the

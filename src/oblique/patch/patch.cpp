@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <oblique/mechanism/motion.h>
+
 namespace oblique {
 
 std::string_view method_name(PatchMethod method) {
@@ -20,9 +22,24 @@ std::optional<PatchMethod> parse_patch_method(std::string_view text) {
   return std::nullopt;
 }
 
+namespace {
+
+/// The greatest speed of a drive over the motion [rad/s] or [length unit/s]; of a law, at a thousand moments.
+double greatest_speed(const Mechanism& mechanism, const Drive& drive) {
+  if (!drive.law) return std::abs(drive.speed);
+  constexpr int kMoments = 1000;
+  const double until = period(mechanism);
+  double fastest = 0;
+  for (int k = 0; k <= kMoments; ++k)
+    fastest = std::max(fastest, std::abs(law_at(drive, until * k / kMoments).rate));
+  return fastest;
+}
+
+}  // namespace
+
 double default_bandwidth(const Mechanism& mechanism) {
   double fastest = 0;
-  for (const Drive& drive : mechanism.drives) fastest = std::max(fastest, std::abs(drive.speed));
+  for (const Drive& drive : mechanism.drives) fastest = std::max(fastest, greatest_speed(mechanism, drive));
   const double wanted = 100 * fastest / (2 * std::numbers::pi);
   const double decade = std::pow(10, std::floor(std::log10(wanted)));
   for (const double step : {1.0, 2.0, 5.0}) {

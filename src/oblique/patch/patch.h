@@ -34,6 +34,7 @@ struct PatchOptions {
   double gain = 1e6;  ///< μ of every servo amplifier; inf: ideal amplifiers
   std::optional<double>
       bandwidth;  ///< of every servo amplifier [Hz]; inf: algebraic loops; default: `default_bandwidth`
+  bool derivatives = false;  ///< velocities and accelerations too, as further circuits
   /// How many times slower than the loops inside it an outer loop is: next to their speed several splits of a
   /// triad are unstable.
   double slower = 100;

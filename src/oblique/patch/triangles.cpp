@@ -20,11 +20,9 @@ class TrianglePatch : private TriadPatch {
     check_groups();
     describe(
         "patched as servo-tracked triangles",
-        fmt::format(
-            "Each dyad's triangle has a scale of its own (`reach`), so that its longest\n"
-            "side is about 1 machine unit. Servo amplifiers: gain {}, bandwidth {} Hz. Run over one turn "
-            "of '{}'.",
-            options_.gain, bandwidth_, mechanism_.drives.front().name));
+        fmt::format("Each dyad's triangle has a scale of its own (`reach`), so that its longest\n"
+                    "side is about 1 machine unit. Servo amplifiers: gain {}, bandwidth {} Hz. Run over {}.",
+                    options_.gain, bandwidth_, span_text()));
     add_reference();
     for (std::size_t g = 0; g < structure_.groups.size(); ++g) {
       const Group& group = structure_.groups[g];
@@ -39,6 +37,7 @@ class TrianglePatch : private TriadPatch {
       }
       for (const std::size_t point : group.points) set_known(point);
     }
+    if (options_.derivatives) add_rates();
     add_outputs();
     return std::move(diagram_);
   }
