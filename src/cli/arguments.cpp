@@ -177,10 +177,11 @@ void add_modes(CLI::App& app, Chosen& chosen) {
 
 template <class Request>
 void add_method(CLI::App* verb, Request& request) {
-  verb->add_option(
-          "--method", request.method,
-          "triangles: servo-tracked oblique triangles; gradient: integrators that descend, for any group")
-      ->type_name("triangles|gradient")
+  verb->add_option("--method", request.method,
+                   "triangles: servo-tracked oblique triangles; gradient: integrators that descend, for any "
+                   "group; paper: "
+                   "a class III group as its source draws it")
+      ->type_name("triangles|gradient|paper")
       ->capture_default_str();
 }
 
@@ -194,6 +195,21 @@ void add_patch(CLI::App& app, Chosen& chosen) {
                    "bandwidth of the servo amplifiers, in Hz or with a unit; inf: algebraic loops "
                    "(default: 100 times the crank's frequency)");
   add_method(verb, *request);
+  verb->add_option(
+          "--split", request->split,
+          "how to take a triad apart: the lead whose triangle carries the variable length, the lead that "
+          "closes the loop, the third (default: the split that is worth the most)")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("LEAD,LEAD,LEAD");
+  verb->add_option("--slower", request->slower, "how many times slower the outer loop of a triad is")
+      ->capture_default_str();
+  verb->add_option("--unit", request->unit,
+                   "1 machine unit of the coordinates, for example \"2.5 m\" (default: by the exact motion)")
+      ->type_name("LENGTH");
+  verb->add_flag("--force", request->force,
+                 "patch it even where it is unstable, flips on the way, or needs a kind of element that the "
+                 "machine has not");
   verb->add_option("-o,--output", request->output, "write the diagram to FILE.toml")->type_name("FILE");
   verb->add_option(
           "--machine", request->machine,
@@ -203,8 +219,6 @@ void add_patch(CLI::App& app, Chosen& chosen) {
                    "with --machine: write PREFIX-patch.csv (connections), PREFIX-pots.csv (settings), "
                    "PREFIX-static.csv (static test), and PREFIX.txt with all three for paper")
       ->type_name("PREFIX");
-  verb->add_flag("--force", request->force,
-                 "write it all the same where the machine lacks a kind of element altogether");
   choose(verb, chosen, request, patch_mechanism);
 }
 

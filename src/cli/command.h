@@ -75,6 +75,9 @@ struct PatchRequest {
   std::string gain = "1e6";
   std::string bandwidth;
   std::string method = "triangles";
+  std::string unit;
+  std::string slower = "100";
+  std::vector<std::string> split;
   std::string machine;  ///< in whose elements
   std::string sheets;   ///< how the names of its sheets begin
   bool force = false;

@@ -33,9 +33,13 @@ std::string verdict_text(const Bill& bill) {
       break;
   }
   for (const BillRow& row : bill.rows) {
-    if (!row.available) named.push_back(row.element);
+    if (row.at_least) {
+      named.push_back("what its inputs weigh");
+    } else if (!row.available) {
+      named.push_back("how many " + row.element);
+    }
   }
-  return fmt::format("whether it fits cannot be told; not published: how many {}\n", fmt::join(named, ", "));
+  return fmt::format("whether it fits cannot be told; not published: {}\n", fmt::join(named, ", "));
 }
 
 std::string available_text(const BillRow& row) {
@@ -94,7 +98,7 @@ std::string to_text(const Bill& bill) {
   Table table({"element", "needed", "available", "missing"});
   for (const BillRow& row : bill.rows) {
     table.add({row.note.empty() ? row.element : fmt::format("{} ({})", row.element, row.note),
-               fmt::format("{}", row.needed), available_text(row),
+               fmt::format("{}{}", row.at_least ? "≥ " : "", row.needed), available_text(row),
                row.missing() > 0 ? fmt::format("{}", row.missing()) : ""});
   }
   return fmt::format("elements of {}\n{}{}", bill.machine, table.text(1), verdict_text(bill));

@@ -94,6 +94,20 @@ TEST(Bill, CannotTellWhereACountIsNotPublished) {
   EXPECT_EQ(bill(kBlocks, machine).verdict(), Bill::Verdict::does_not_fit);
 }
 
+// What is no gain of an input is a potentiometer, or not; a weight at a multiplier is one for certain.
+TEST(Bill, CannotTellWhereTheGainsOfInputsAreNotPublished) {
+  const std::string blocks =
+      "x = { type = \"integrator\", in = [\"0.3*x\"] }\nm = { type = \"multiplier\", in = [\"0.5*x\", \"x\"] "
+      "}\n";
+  MachineProfile machine = inverting_machine();
+  machine.input_gains.clear();
+  EXPECT_EQ(row(bill(blocks, machine), "potentiometers").needed, 1);
+  EXPECT_EQ(bill(blocks, machine).verdict(), Bill::Verdict::fits);
+  machine.input_gains_known = false;
+  EXPECT_TRUE(row(bill(blocks, machine), "potentiometers").at_least);
+  EXPECT_EQ(bill(blocks, machine).verdict(), Bill::Verdict::cannot_tell);
+}
+
 TEST(Bill, NamesKindsThatTheMachineHasNot) {
   MachineProfile machine = inverting_machine();
   remove(machine, ElementKind::multiplier);

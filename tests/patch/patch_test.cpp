@@ -249,17 +249,17 @@ TEST(Patch, TakesATriadApart) {
   EXPECT_EQ(count("dyad-rrr-variable"), 1);
   EXPECT_EQ(count("dyad-rrr"), 1);
   EXPECT_EQ(count("servo-amplifier"), 1);
-  EXPECT_THAT(write_diagram(diagram), HasSubstr("Of the six splits this one keeps farthest from flat"));
+  EXPECT_THAT(write_diagram(diagram), HasSubstr("Of the six splits this one keeps\n# farthest from flat triangles"));
 }
 
-TEST(Patch, OffersTheGradientWhereATriadHasNoSplit) {
+TEST(Patch, OffersTheGradientWhereATriadHasASlide) {
   const Mechanism mechanism =
       read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/class-iii-guided.toml");
   try {
     patch_triangles(mechanism);
     FAIL();
   } catch (const PatchError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("has no split into two triangles that never go flat"));
+    EXPECT_THAT(error.what(), HasSubstr("has a slide among its leads, so that it cannot be taken apart into triangles"));
     EXPECT_THAT(error.what(), HasSubstr("remedy: patch it with --method gradient"));
   }
 }

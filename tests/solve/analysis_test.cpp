@@ -170,7 +170,7 @@ TEST(Stability, SaysWhatIsTooLarge) {
   EXPECT_FALSE(report.problem_mode);
 }
 
-TEST(Analysis, OfARunThatFailsGivesTheInstantsItReached) {
+TEST(Analysis, OfARunThatFailsTellsOfItsLoopsAtRest) {
   // x falls through 0 at t = 0.5, where the loop x q = z loses its gain and then blows up.
   const Compiled made(R"toml(one = { type = "constant" }
 x  = { type = "integrator", in = ["-2*one"], initial = 1 }
@@ -181,12 +181,26 @@ q  = { type = "servo-amplifier", in = ["xq", "-0.01*one"], gain = 1e4 }
   ASSERT_TRUE(analysis.failure);
   EXPECT_EQ(analysis.failure->kind(), SolveError::Kind::blow_up);
   EXPECT_FALSE(analysis.run);
-  EXPECT_GE(analysis.instants.size(), 30U);
-  EXPECT_LT(analysis.instants.size(), 61U);
+  EXPECT_TRUE(analysis.standing);
+  EXPECT_EQ(analysis.instants.size(), 61U);
   const LoopUnknown& q = analysis.loops.at(0).unknowns.at(0);
   ASSERT_EQ(q.sign_changes.size(), 1U);
   EXPECT_NEAR(q.sign_changes[0], 0.5, 1e-9);                          // L is linear in t here
   EXPECT_NEAR(analysis.stability.grows_from.value(), 0.5, 1.1 / 60);  // the next instant
+}
+
+TEST(Analysis, OfLoopsThatStandNowhereGivesTheInstantsOfTheRun) {
+  // q² = 0.25 − t has no root from t = 0.25 on.
+  const Compiled made(R"toml(one = { type = "constant" }
+x  = { type = "integrator", in = ["one"] }
+q2 = { type = "multiplier", in = ["q", "q"] }
+q  = { type = "servo-amplifier", in = ["q2", "x", "-0.25*one"], initial = 0.5, gain = 1e4 }
+)toml");
+  const Analysis analysis = analysis_of(made);
+  ASSERT_TRUE(analysis.failure);
+  EXPECT_FALSE(analysis.standing);
+  EXPECT_GE(analysis.instants.size(), 15U);  // a sixtieth of a second apart
+  EXPECT_LE(analysis.instants.size(), 17U);
 }
 
 }  // namespace

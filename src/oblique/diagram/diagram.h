@@ -41,6 +41,7 @@ struct RunSettings {
   IntegrationMethod method = IntegrationMethod::automatic;
   int samples = 1001;           ///< rows of the trajectory, both ends included
   long max_steps = 10'000'000;  ///< of the solver, over the whole run
+  bool settle = true;           ///< servo loops are brought to rest before the clock starts
   /// Absolute tolerances of single states [machine unit]: of a block (a composite stands for all in it) by
   /// its path.
   std::vector<std::pair<std::string, double>> tolerances;

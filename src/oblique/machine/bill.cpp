@@ -44,7 +44,7 @@ class Counter {
       bill_.rows.push_back({fmt::format("integrators with k0 = {:.4g} 1/s", rate), needed, true, 0.0,
                             fmt::format("k0 on this machine: {:g} 1/s", fmt::join(machine_.rates, ", "))});
     }
-    add(ElementKind::potentiometer, "potentiometers", potentiometers_);
+    add_potentiometers();
     add(ElementKind::multiplier, "multipliers", multipliers_);
     add(ElementKind::comparator, "comparators", others_["comparator"]);
     add(ElementKind::function_generator, "function generators", others_["function-generator"]);
@@ -99,6 +99,7 @@ class Counter {
       const Role role = role_of(from.definition->name);
       const auto key = std::pair(term.signal.block, term.signal.output);
       if (term.weight < 0 && !signed_ && role != Role::reference) inverted_.insert(key);
+      if (sum && std::abs(term.weight) != 1) weights_inputs_ = true;
       const InputWeight split =
           split_weight(std::abs(term.weight), sum || signed_ ? machine_.input_gains : unit);
       if (split.setting != 1)
@@ -110,7 +111,16 @@ class Counter {
     if (needed == 0) return;
     const ElementCount* const has = machine_.find(kind);
     bill_.rows.push_back({std::move(element), needed, has != nullptr,
-                          has != nullptr ? has->count : std::optional<double>(), std::move(note)});
+                          has != nullptr ? has->count : std::optional<double>(), std::move(note), false});
+  }
+
+  void add_potentiometers() {
+    const bool at_least = weights_inputs_ && !machine_.input_gains_known;
+    if (potentiometers_ == 0 && !at_least) return;
+    const ElementCount* const has = machine_.find(ElementKind::potentiometer);
+    bill_.rows.push_back({"potentiometers", potentiometers_, has != nullptr || potentiometers_ == 0,
+                          has != nullptr ? has->count : std::optional<double>(),
+                          at_least ? "the gains of inputs are not published" : "", at_least});
   }
 
   void add_uncommitted() {
@@ -147,6 +157,7 @@ class Counter {
   const FlatDiagram& diagram_;
   const MachineProfile& machine_;
   bool signed_;
+  bool weights_inputs_ = false;  ///< some sum has a weight other than ±1
   Bill bill_;
   double summers_ = 0, inverters_ = 0, integrators_ = 0, open_ = 0, multipliers_ = 0, potentiometers_ = 0;
   std::map<double, double> rates_;                          ///< how many integrators have which [1/s]
@@ -165,7 +176,7 @@ double BillRow::missing() const {
 
 Bill::Verdict Bill::verdict() const {
   const auto missing = [](const BillRow& row) { return row.missing() > 0; };
-  const auto unknown = [](const BillRow& row) { return row.exists && !row.available; };
+  const auto unknown = [](const BillRow& row) { return row.at_least || (row.exists && !row.available); };
   if (std::any_of(rows.begin(), rows.end(), missing)) return Verdict::does_not_fit;
   return std::any_of(rows.begin(), rows.end(), unknown) ? Verdict::cannot_tell : Verdict::fits;
 }

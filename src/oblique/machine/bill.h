@@ -17,6 +17,7 @@ struct BillRow {
   bool exists = true;               ///< whether the machine has elements of the kind at all
   std::optional<double> available;  ///< nothing: not published; inf: as many as it takes
   std::string note;                 ///< "12 summers, 2 integrators …"
+  bool at_least = false;  ///< `needed` is what is known to be: the machine's inputs are not published
 
   double missing() const;  ///< 0 where the count is unknown
 };
@@ -27,7 +28,7 @@ struct Bill {
   std::string machine;  ///< MachineProfile::title
   std::vector<BillRow> rows;
 
-  /// cannot_tell: nothing is known to be missing, but a count is not published.
+  /// cannot_tell: nothing is known to be missing, but a count or what the inputs weigh is not published.
   Verdict verdict() const;
   /// The kinds of elements that are needed and of which the machine has none.
   std::vector<std::string> absent() const;
@@ -37,6 +38,9 @@ struct Bill {
 /// as a potentiometer, once for each signal and setting; a negative one, where coefficients have no sign, as
 /// an inverter, once for each signal; so does an initial value as a potentiometer. A constant, and what has
 /// the weight 0, is for nothing but its potentiometer.
+///
+/// Where the gains of the machine's inputs are not published, its potentiometers are at least those that
+/// other connections need.
 ///
 /// Where amplifiers are uncommitted every summer, inverter, integrator and open amplifier is one, and the
 /// integrator takes a network besides. Elsewhere open amplifiers are summers, and so are inverters beyond

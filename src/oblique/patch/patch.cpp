@@ -9,12 +9,12 @@
 namespace oblique {
 
 std::string_view method_name(PatchMethod method) {
-  constexpr std::array<std::string_view, 2> kNames{"triangles", "gradient"};
+  constexpr std::array<std::string_view, 3> kNames{"triangles", "gradient", "paper"};
   return kNames[static_cast<std::size_t>(method)];
 }
 
 std::optional<PatchMethod> parse_patch_method(std::string_view text) {
-  for (const PatchMethod method : {PatchMethod::triangles, PatchMethod::gradient}) {
+  for (const PatchMethod method : {PatchMethod::triangles, PatchMethod::gradient, PatchMethod::paper}) {
     if (text == method_name(method)) return method;
   }
   return std::nullopt;
@@ -32,8 +32,15 @@ double default_bandwidth(const Mechanism& mechanism) {
 }
 
 Diagram patch(const Mechanism& mechanism, const PatchOptions& options) {
-  return options.method == PatchMethod::gradient ? patch_gradient(mechanism, options)
-                                                 : patch_triangles(mechanism, options);
+  switch (options.method) {
+    case PatchMethod::gradient:
+      return patch_gradient(mechanism, options);
+    case PatchMethod::paper:
+      return patch_paper(mechanism, options);
+    case PatchMethod::triangles:
+      break;
+  }
+  return patch_triangles(mechanism, options);
 }
 
 }  // namespace oblique

@@ -25,7 +25,9 @@ Structure structure_of(const Mechanism& mechanism) {
   return structure;
 }
 
-Motion motion_of(const Mechanism& mechanism, const Structure& structure) {
+}  // namespace
+
+Motion patch_motion(const Mechanism& mechanism, const Structure& structure) {
   std::vector<double> times;
   times.reserve(kScalingPositions);
   const double turn = period(mechanism);
@@ -33,17 +35,16 @@ Motion motion_of(const Mechanism& mechanism, const Structure& structure) {
   return solve_motion(mechanism, structure, times);
 }
 
-}  // namespace
-
 PatchBuilder::PatchBuilder(const Mechanism& mechanism, const PatchOptions& options)
     : mechanism_(mechanism),
       options_(options),
       structure_(structure_of(mechanism)),
-      motion_(motion_of(mechanism, structure_)),
+      motion_(patch_motion(mechanism, structure_)),
       scaling_(find_scaling(mechanism, structure_, motion_)),
       bandwidth_(options.bandwidth.value_or(default_bandwidth(mechanism))),
       signals_(mechanism.points.size()),
       points_(mechanism.points.size()) {
+  if (options.unit) scaling_.length = *options.unit;
   for (std::size_t point = 0; point < points_.size(); ++point) {
     if (mechanism.points[point].fixed) set_known(point);
   }
@@ -110,7 +111,7 @@ void PatchBuilder::add_summed_point(std::size_t point, const Terms& x, const Ter
   signals_[point].y = add_block(name_of(point) + "_y", "summer", {sum_of(y)});
 }
 
-void PatchBuilder::add_crank(const Group& crank) {
+std::string PatchBuilder::add_crank(const Group& crank) {
   const Drive& drive = mechanism_.drives[crank.drives.front()];
   const Body& body = mechanism_.bodies[drive.body];
   const std::size_t pivot = pivot_of(crank);
@@ -130,6 +131,7 @@ void PatchBuilder::add_crank(const Group& crank) {
     add_summed_point(point.point, {x_of(pivot, 1), {along, cosine}, {-left, sine}},
                      {y_of(pivot, 1), {along, sine}, {left, cosine}}, {});
   }
+  return generator;
 }
 
 void PatchBuilder::add_carried_points(const Body& body, std::size_t p, std::size_t c) {

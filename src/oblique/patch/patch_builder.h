@@ -16,6 +16,9 @@
 
 namespace oblique {
 
+/// The exact motion over one turn, half a degree apart, from which a patch takes its ranges.
+Motion patch_motion(const Mechanism& mechanism, const Structure& structure);
+
 /// What all methods of patching share: scaled signals for points, cranks, points that bodies carry, outputs.
 class PatchBuilder {
  public:
@@ -50,7 +53,8 @@ class PatchBuilder {
 
   static Entry sum_of(const Terms& terms);
   void add_summed_point(std::size_t point, const Terms& x, const Terms& y, const std::string& comment);
-  void add_crank(const Group& crank);
+  /// Gives the name of its crank generator.
+  std::string add_crank(const Group& crank);
   bool is_known(std::size_t point) const {
     return mechanism_.points[point].fixed || !signals_[point].x.empty();
   }

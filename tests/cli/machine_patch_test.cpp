@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+// `oblique patch --machine`: what it writes, and where it writes nothing.
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <unistd.h>
+
+#include "../support/process.h"
+
+namespace oblique::test {
+namespace {
+
+using testing::ContainsRegex;
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+/// An empty folder with the program at hand.
+class PatchForMachine : public testing::Test {
+ protected:
+  PatchForMachine()
+      : folder_(std::filesystem::temp_directory_path() / ("oblique-machine-" + std::to_string(getpid()))) {
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+  }
+  ~PatchForMachine() override { std::filesystem::remove_all(folder_); }
+  PatchForMachine(const PatchForMachine&) = delete;
+  PatchForMachine& operator=(const PatchForMachine&) = delete;
+
+  Outcome patch(const std::string& mechanism, const std::string& options) const {
+    return run_command("oblique patch " + std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/" +
+                           mechanism + ".toml " + options,
+                       folder_.string());
+  }
+  Outcome oblique(const std::string& arguments) const {
+    return run_command("oblique " + arguments, folder_.string());
+  }
+  std::string text_of(const std::string& file) const {
+    std::ostringstream text;
+    text << std::ifstream(folder_ / file).rdbuf();
+    return text.str();
+  }
+  bool is_empty() const { return std::filesystem::is_empty(folder_); }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+TEST_F(PatchForMachine, WritesADiagramThatRunsAndItsBill) {
+  const Outcome outcome = patch("slider-crank", "--machine tr-10 -o made.toml");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_THAT(outcome.err, HasSubstr("elements of EAI PACE TR-10 (1959)\n"));
+  EXPECT_THAT(outcome.err, ContainsRegex("multipliers +6 +9\n"));
+  EXPECT_THAT(outcome.err, HasSubstr("\nit fits\n"));
+  EXPECT_EQ(oblique("run made.toml").status, 0);
+  const Outcome check = oblique("check made.toml");
+  EXPECT_THAT(check.out, HasSubstr("elements of EAI PACE TR-10 (1959)\n"));
+  EXPECT_THAT(check.out, HasSubstr("\nit fits\n"));
+  const auto json = nlohmann::json::parse(oblique("check made.toml --json").out);
+  EXPECT_EQ(json["bill"]["fits"], true);
+  EXPECT_EQ(json["bill"]["rows"][0]["available"], 20);
+}
+
+TEST_F(PatchForMachine, WritesTheDiagramThatDoesNotFitAndSaysWhatIsMissing) {
+  const Outcome outcome = patch("four-bar", "--machine tr-10");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.err, HasSubstr("it does not fit; missing: multipliers (7)\n"));
+  EXPECT_THAT(outcome.out, StartsWith("# Coordinates"));
+  EXPECT_THAT(outcome.out, HasSubstr("profile   = \"tr-10\"\ninverting = true\n"));
+}
+
+TEST_F(PatchForMachine, SaysWhichTimeFactorIsMissing) {
+  const Outcome outcome = patch("four-bar", "--method gradient --machine tr-10");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.err, HasSubstr("integrators with k0 = 1.257e+08 1/s (k0 on this machine: 1, 500 1/s)"));
+}
+
+TEST_F(PatchForMachine, WritesSheets) {
+  EXPECT_EQ(patch("slider-crank", "--machine tr-10 -o made.toml --sheets made").status, 0);
+  EXPECT_THAT(text_of("made-patch.csv"), StartsWith("from,signal,to,element,input\n"));
+  EXPECT_THAT(text_of("made-pots.csv"),
+              HasSubstr("\nP1,0.3142,A5,A3 ×1,157.1 1/s of crank_sine in crank_cosine\n"));
+  EXPECT_THAT(text_of("made-static.csv"), HasSubstr("\nA3,crank_cosine,10.0000,0.0000\n"));
+  const std::string paper = text_of("made.txt");
+  for (const char* const part : {"it fits\n\npatch list\n", "\n\npotentiometers\n", "\n\nstatic test\n"})
+    EXPECT_THAT(paper, HasSubstr(part));
+}
+
+TEST_F(PatchForMachine, WritesNothingWhereTheMachineLacksAKindOfElement) {
+  const Outcome outcome = patch("four-bar", "--machine ec-1 -o made.toml --sheets made");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.err,
+              HasSubstr("the machine Heathkit EC-1 has no multipliers, so nothing is written\n"
+                        "  remedy: choose another machine (oblique machines), or write the diagram "
+                        "all the same with --force\n"));
+  EXPECT_TRUE(is_empty());
+  EXPECT_EQ(patch("four-bar", "--machine ec-1 -o made.toml --force").status, 0);
+  EXPECT_THAT(text_of("made.toml"), HasSubstr("type = \"multiplier\""));
+}
+
+TEST_F(PatchForMachine, RefusesWhatCannotBeBeforeAnythingIsWritten) {
+  const Outcome unknown = patch("four-bar", "--machine tr-11 -o made.toml");
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("there is no machine 'tr-11'"));
+  EXPECT_THAT(unknown.err, HasSubstr("did you mean 'tr-10'?"));
+  const Outcome alone = patch("four-bar", "-o made.toml --sheets made");
+  EXPECT_EQ(alone.status, 2);
+  EXPECT_THAT(alone.err, HasSubstr("--sheets is for a machine; expected --machine NAME beside it"));
+  const Outcome nowhere = patch("four-bar", "--machine tr-10 -o made.toml --sheets no/made");
+  EXPECT_EQ(nowhere.status, 2);
+  EXPECT_THAT(nowhere.err, HasSubstr("no/made-patch.csv: the folder of this file does not exist"));
+  EXPECT_TRUE(is_empty());
+}
+
+TEST_F(PatchForMachine, HasNoBillForTheIdealMachineInCheck) {
+  EXPECT_EQ(patch("slider-crank", "-o made.toml").status, 0);
+  EXPECT_THAT(oblique("check made.toml").out, Not(HasSubstr("elements of")));
+}
+
+}  // namespace
+}  // namespace oblique::test
