@@ -245,6 +245,11 @@ void add_compare(CLI::App& app, Chosen& chosen) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("M,M,…");
+  verb->add_option(
+          "--machine", request->machine,
+          "run it in this machine's elements too, and say what each published figure adds to the error "
+          "(oblique machines lists them); one gain (default 1e6)")
+      ->type_name("NAME");
   CLI::Option* const monte_carlo =
       verb->add_option("--monte-carlo", request->runs,
                        "run it N times more, each with tolerances drawn anew; one gain (default 1e6)")
@@ -252,7 +257,7 @@ void add_compare(CLI::App& app, Chosen& chosen) {
           ->check(CLI::Range(1, 10'000'000));
   verb->add_option("--tolerance", request->tolerance,
                    "how far the weights of summers and integrators and the errors of multipliers scatter, "
-                   "uniformly on both sides, for example 0.1%")
+                   "uniformly on both sides, for example 0.1% (default with --machine: as its profile says)")
       ->type_name("X")
       ->needs(monte_carlo);
   verb->add_option("--seed", request->seed, "chooses the draws")

@@ -91,7 +91,8 @@ struct CompareRequest {
   std::vector<std::string> gains;  ///< empty: those of CompareOptions
   std::vector<std::string> bandwidths;
   std::vector<std::string> methods{"triangles"};
-  int runs = 0;  ///< of --monte-carlo; 0: none
+  std::string machine;  ///< in whose elements besides
+  int runs = 0;         ///< of --monte-carlo; 0: none
   std::uint64_t seed = 1;
   std::uint64_t first_run = 0;
   int threads = 0;  ///< 0: as many as the processor has

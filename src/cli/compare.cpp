@@ -1,17 +1,21 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/compare/compare.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <thread>
 
 #include <fmt/format.h>
 
+#include <oblique/compare/machine_comparison.h>
 #include <oblique/compare/monte_carlo.h>
+#include <oblique/machine/realise.h>
 #include <oblique/mechanism/read_mechanism.h>
 
 #include "command.h"
 #include "comparison_output.h"
+#include "machine_comparison_output.h"
 #include "monte_carlo_output.h"
 #include "terminal.h"
 
@@ -46,10 +50,11 @@ CompareOptions options_of(const CompareRequest& request) {
   return options;
 }
 
-/// The patch that a single comparison is of.
-PatchOptions patch_options(const CompareRequest& request, const CompareOptions& options) {
-  const auto one_of = [](const char* option, std::size_t n) {
-    if (n > 1) refuse(fmt::format("--monte-carlo with {} of {}", count(n, "value", "values"), option), "one");
+/// The one patch that `option` is about: "--machine", "--monte-carlo".
+PatchOptions single_patch(const std::string& option, const CompareRequest& request,
+                          const CompareOptions& options) {
+  const auto one_of = [&](const char* several, std::size_t n) {
+    if (n > 1) refuse(fmt::format("{} with {} of {}", option, count(n, "value", "values"), several), "one");
   };
   one_of("--gain", request.gains.size());
   one_of("--bandwidth", options.bandwidths.size());
@@ -61,32 +66,39 @@ PatchOptions patch_options(const CompareRequest& request, const CompareOptions& 
   return patch;
 }
 
-/// How far the elements scatter, at most: a factor two is no tolerance any more.
-double tolerance_option(const std::string& text) {
-  constexpr double kMost = 0.5;
-  if (text.empty()) {
-    refuse("--monte-carlo without how far the elements scatter", "--tolerance, such as 0.1%");
+/// How the elements scatter: as --tolerance says, or the machine's profile.
+std::vector<BlockFigure> scatters_of(const CompareRequest& request, const BlockLibrary& library,
+                                     const MachineProfile* machine) {
+  constexpr double kMost = 0.5;  // a factor of two is no tolerance any more
+  if (!request.tolerance.empty()) {
+    const double tolerance = quantity_option("--tolerance", request.tolerance, "1");
+    if (!(tolerance > 0 && tolerance <= kMost))
+      refuse(fmt::format("--tolerance {}", request.tolerance), "a number above 0 and up to 50%");
+    return scatters_of_tolerance(library, tolerance);
   }
-  const double tolerance = quantity_option("--tolerance", text, "1");
-  if (!(tolerance > 0 && tolerance <= kMost))
-    refuse(fmt::format("--tolerance {}", text), "a number above 0 and up to 50%");
-  return tolerance;
+  if (machine == nullptr)
+    refuse("--monte-carlo without how far the elements scatter", "--tolerance, such as 0.1%, or a --machine");
+  if (machine->scatters.empty()) {
+    refuse(fmt::format("nothing is published of how the elements of {} scatter", machine->title),
+           "--tolerance, such as 0.1%");
+  }
+  return machine->scatters;
 }
 
 MonteCarloReport draw_elements(const CompareRequest& request, const Mechanism& mechanism,
-                               const BlockLibrary& library, const PatchOptions& options) {
+                               const Diagram& diagram, const BlockLibrary& library,
+                               const MachineProfile* machine) {
   MonteCarloReport report;
   report.tolerance = request.tolerance;
+  if (request.tolerance.empty()) report.machine = machine->title;
   report.unit = mechanism.length_unit;
-  report.options.scatters = scatters_of_tolerance(library, tolerance_option(request.tolerance));
+  report.options.scatters = scatters_of(request, library, machine);
   report.options.runs = request.runs;
   report.options.seed = request.seed;
   report.options.first_run = request.first_run;
   report.options.threads = request.threads > 0
                                ? request.threads
                                : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  Diagram diagram = patch(mechanism, options);
-  diagram.file = mechanism.file;
   if (report.options.runs == 1) {
     const FlatDiagram flat = flatten(diagram, library);
     for (const Draw& drawn : draw(flat, report.options.scatters, {request.seed, request.first_run})) {
@@ -109,12 +121,14 @@ ExitStatus compare_mechanism(const Session& session, const CompareRequest& reque
   if (!request.output.empty()) check_output(request.output, ".json");
   const BlockLibrary library = session.blocks();
   CompareOptions options = options_of(request);
-  std::optional<PatchOptions> single;
-  if (request.runs > 0) {
-    single = patch_options(request, options);
-    tolerance_option(request.tolerance);
-    options.gains = {single->gain};
+  const MachineProfile* const machine = request.machine.empty() ? nullptr : find_machine(request.machine);
+  if (machine == nullptr && !request.machine.empty()) throw ReadError(unknown_machine(request.machine));
+  PatchOptions single;
+  if (machine != nullptr || request.runs > 0) {
+    single = single_patch(machine != nullptr ? "--machine" : "--monte-carlo", request, options);
+    options.gains = {single.gain};
   }
+  if (request.runs > 0) scatters_of(request, library, machine);  // before the work, not after it
   const Mechanism mechanism = read_mechanism(request.mechanism);
   Comparison comparison;
   {
@@ -125,8 +139,18 @@ ExitStatus compare_mechanism(const Session& session, const CompareRequest& reque
   std::string text = to_text(comparison);
   nlohmann::ordered_json json = to_json(comparison);
   bool failed = false;
-  if (single) {
-    const MonteCarloReport report = draw_elements(request, mechanism, library, *single);
+  if (machine != nullptr) {
+    Progress progress("figure by figure");
+    const MachineComparison on_machine = compare_on_machine(
+        mechanism, library, *machine, single, [&](double fraction) { progress.show(fraction); });
+    text += to_text(on_machine, comparison);
+    json["machine"] = to_json(on_machine);
+  }
+  if (request.runs > 0) {
+    Diagram diagram = patch(mechanism, single);
+    diagram.file = mechanism.file;
+    if (machine != nullptr) diagram = realise(diagram, library, *machine).diagram;
+    const MonteCarloReport report = draw_elements(request, mechanism, diagram, library, machine);
     text += to_text(report);
     json["monte_carlo"] = to_json(report);
     failed = !report.result.worst_run;

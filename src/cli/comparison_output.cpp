@@ -125,13 +125,6 @@ std::string error_table(const Comparison& comparison, const RowHead& head) {
   return table.text();
 }
 
-/// "172.5°" within one turn, or "12.5 mm" of a slide.
-std::string drive_text(const Comparison& comparison, double value) {
-  if (!comparison.turning) return fmt::format("{:.4g} {}", value, comparison.unit);
-  const double degrees = std::fmod(value * 180 / std::numbers::pi, 360);
-  return fmt::format("{:.4g}°", degrees < 0 ? degrees + 360 : degrees);
-}
-
 std::string parts_table(const Comparison& comparison, const RowHead& head) {
   const std::string& unit = comparison.unit;
   Table table(joined(head.titles(), {"worst at", "drive", fmt::format("static [{}]", unit),
@@ -184,6 +177,12 @@ std::string orders_of(const Comparison& comparison, const RowHead& head) {
 }
 
 }  // namespace
+
+std::string drive_text(const Comparison& comparison, double value) {
+  if (!comparison.turning) return fmt::format("{:.4g} {}", value, comparison.unit);
+  const double degrees = std::fmod(value * 180 / std::numbers::pi, 360);
+  return fmt::format("{:.4g}°", degrees < 0 ? degrees + 360 : degrees);
+}
 
 nlohmann::ordered_json to_json(const Comparison& comparison) {
   Json json{{"mechanism", comparison.mechanism},

@@ -9,6 +9,9 @@
 
 namespace oblique::cli {
 
+/// Where the first drive stands: "172.5°" within one turn, or "12.5 mm" of a slide.
+std::string drive_text(const Comparison& comparison, double value);
+
 /// What `compare` prints: errors, their parts and reasons, order, overloads.
 std::string to_text(const Comparison& comparison);
 

@@ -306,12 +306,24 @@ INSTANTIATE_TEST_SUITE_P(
         BadRequestCase{
             "MonteCarloWithoutTolerance",
             "oblique compare diagrams/mechanisms/four-bar.toml --monte-carlo 10", 2,
-            "--monte-carlo without how far the elements scatter; expected --tolerance, such as 0.1%"},
+            "--monte-carlo without how far the elements scatter; expected --tolerance, such as 0.1%, or a "
+            "--machine"},
         BadRequestCase{
             "MonteCarloOfSeveralGains",
             "oblique compare diagrams/mechanisms/four-bar.toml --monte-carlo 10 --tolerance 1% --gain "
             "1e3,1e4",
             2, "--monte-carlo with 2 values of --gain; expected one"},
+        BadRequestCase{
+            "MonteCarloOnAMachineThatSaysNothingOfScatter",
+            "oblique compare diagrams/mechanisms/four-bar.toml --monte-carlo 10 --machine ec-1", 2,
+            "nothing is published of how the elements of Heathkit EC-1 scatter; expected --tolerance"},
+        BadRequestCase{"CompareOnAMachineOfNoName",
+                       "oblique compare diagrams/mechanisms/four-bar.toml --machine tr10", 2,
+                       "there is no machine 'tr10'\n  remedy: did you mean 'tr-10'?"},
+        BadRequestCase{"MachineWithSeveralMethods",
+                       "oblique compare diagrams/mechanisms/four-bar.toml --machine tr-10 --method "
+                       "triangles,gradient",
+                       2, "--machine with 2 values of --method; expected one"},
         BadRequestCase{"ToleranceOfAFactor",
                        "oblique compare diagrams/mechanisms/four-bar.toml --monte-carlo 10 --tolerance 2", 2,
                        "--tolerance 2; expected a number above 0 and up to 50%"},

@@ -283,6 +283,23 @@ TEST_F(Verbs, MonteCarloGivesTheSameForAnyNumberOfThreadsAndRepeatsItsWorstRun) 
   EXPECT_LE(std::abs(again.at("draws").at("C.cx.tolerance").get<double>()), 1e-3);
 }
 
+TEST_F(Verbs, CompareOnAMachineGivesTheBudgetAndItsScatter) {
+  const std::string command =
+      "compare diagrams/mechanisms/four-bar.toml --machine tr-10 --gain 1e3 --monte-carlo 5";
+  const Outcome text = oblique(command);
+  EXPECT_EQ(text.status, 0) << text.err;
+  EXPECT_THAT(text.out, HasSubstr("on EAI PACE TR-10 (1959), of as many elements as it takes"));
+  EXPECT_THAT(text.out, HasSubstr("the method and each figure alone add up to 100.0 % of it"));
+  EXPECT_THAT(text.out, HasSubstr("uniform as those of EAI PACE TR-10 (1959) scatter"));
+  const auto json = nlohmann::json::parse(oblique(command + " --json").out);
+  EXPECT_NEAR(json.at("machine").at("explained").get<double>(), 1, 0.02);
+  EXPECT_EQ(json.at("machine").at("figures").back().at("figure"), "potentiometer, resolution");
+  EXPECT_EQ(json.at("monte_carlo").at("errors").size(), 5U);
+  // about the machine's own error, by 0.2 % and less of each element
+  const double machine = json.at("machine").at("max_error");
+  EXPECT_NEAR(json.at("monte_carlo").at("percentiles").at("50").get<double>(), machine, 0.15 * machine);
+}
+
 TEST_F(Verbs, MonteCarloTellsWhatFailed) {
   const Outcome outcome =
       oblique("compare diagrams/mechanisms/four-bar.toml --monte-carlo 12 --tolerance 50% --threads 1");

@@ -9,11 +9,18 @@
 #include <oblique/mechanism/read_mechanism.h>
 
 #include "../support/compiled.h"
+#include "four_bar.h"
 
 namespace oblique {
 namespace {
 
 using std::numbers::pi;
+using testing::crank_end;
+using testing::kCoupler;
+using testing::kPivot;
+using testing::kRocker;
+using testing::rocker_end;
+using testing::rocker_end_at_rest;
 
 Mechanism shipped(const std::string& name) {
   return read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/" + name + ".toml");
@@ -25,23 +32,6 @@ ComparedRun compared(const std::string& mechanism, PatchMethod method, double ga
   options.gains = {gain};
   options.bandwidths = {bandwidth};
   return compare(shipped(mechanism), BlockLibrary::shipped(), options).runs.front();
-}
-
-// The four-bar of diagrams/mechanisms in closed form: B on the crank of 1 m about (0, 0), D = (4, 0), |BC| =
-// 3.5 m, |CD| = 3 m, C to the left of B → D.
-constexpr double kCoupler = 3.5, kRocker = 3;
-const Eigen::Vector2d kPivot(4, 0);
-
-Eigen::Vector2d crank_end(double angle) {
-  return {std::cos(angle), std::sin(angle)};
-}
-
-Eigen::Vector2d rocker_end(double angle) {
-  const Eigen::Vector2d d = kPivot - crank_end(angle);
-  const double length = d.norm();
-  const double along = (kCoupler * kCoupler - kRocker * kRocker + length * length) / (2 * length);
-  const double across = std::sqrt(kCoupler * kCoupler - along * along);
-  return crank_end(angle) + (along * d + across * Eigen::Vector2d(-d.y(), d.x())) / length;
 }
 
 // One loop, r = c − φ, on a ramp φ = t: τ ċ = −c − μ (c − t). With T = τ/(1 + μ) it follows
@@ -91,25 +81,11 @@ x   = { type = "integrator", in = ["-x2", "-one"], initial = 0.01 }
   EXPECT_FALSE(at_rest(made.program, {0}, {0, made.program.start(), {}}));
 }
 
-// At rest each amplifier stands where its own equation with the finite gain says (docs/method.md), in units
-// of reach = 5 m, the longest |BD|, with w = 10 and m = 1/(w μ):
-//
-//     L² + m L = d²,   c (L + m) = dx,   s (L + m) = dy,
-//     cos γ (L + m) = L²/(2a) + (a² − b²)/(2a),   sin²γ + m sin γ = 1 − cos²γ
 TEST(ErrorParts, StaticPartOfTheFourBarIsThatOfItsEquations) {
   const double gain = 100;
   const ComparedRun run = compared("four-bar", PatchMethod::triangles, gain, 20);
   ASSERT_EQ(run.worst.point, "C");
-  const double reach = 5, m = 1 / (10 * gain), a = kCoupler / reach, b = kRocker / reach;
-  const Eigen::Vector2d d = (kPivot - crank_end(run.worst.drive)) / reach;
-  const auto root = [](double half, double square) { return -half + std::sqrt(half * half + square); };
-  const double length = root(m / 2, d.squaredNorm());
-  const double c = d.x() / (length + m), s = d.y() / (length + m);
-  const double cosine = (length * length / (2 * a) + (a * a - b * b) / (2 * a)) / (length + m);
-  const double sine = root(m / 2, 1 - cosine * cosine);
-  const Eigen::Vector2d at_rest =
-      crank_end(run.worst.drive) + kCoupler * Eigen::Vector2d(c * cosine - s * sine, s * cosine + c * sine);
-  const double expected = (at_rest - rocker_end(run.worst.drive)).norm();
+  const double expected = (rocker_end_at_rest(run.worst.drive, gain) - rocker_end(run.worst.drive)).norm();
   ASSERT_TRUE(run.parts);
   // The lag turns the whole error away from the static one by 1e-5/6e-3 at most: 2e-6 in its cosine.
   EXPECT_NEAR(run.parts->at_rest, expected, 3e-6 * expected);

@@ -3,31 +3,26 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include <fmt/format.h>
 
 #include <oblique/compare/error_parts.h>
 #include <oblique/compare/patched_run.h>
 #include <oblique/compare/worst_reason.h>
-#include <oblique/solve/stability.h>
 
 namespace oblique {
 namespace {
 
-constexpr std::size_t kRowsPerStabilityCheck = 10;
 constexpr double kAboveFloor = 10;
 /// Amplifiers of this gain err by far less than what the tolerance of any run leaves. Ideal ones would not do
 /// for the floor: without the dynamics of the loops there are fewer errors to add up, ten times fewer in a
 /// Jansen leg.
 constexpr double kFloorGain = 1e12;
 
-void judge_stability(const Program& program, const std::vector<Instant>& instants, ComparedRun& result) {
-  result.slowest_pole = -std::numeric_limits<double>::infinity();
-  Workspace workspace(program);
-  for (std::size_t row = 0; row < instants.size(); row += kRowsPerStabilityCheck) {
-    const double pole = servo_stability(program, workspace, instants[row].t, instants[row].states);
-    result.slowest_pole = std::max(result.slowest_pole, pole);
-    result.stable = result.stable && pole < 0;
-  }
+/// "amplifiers of gain 1000 and 20 Hz": the bandwidth where it was chosen.
+std::string name_of(const PatchOptions& options) {
+  return fmt::format("amplifiers of gain {:.6g}{}", options.gain,
+                     options.bandwidth ? fmt::format(" and {:.6g} Hz", *options.bandwidth) : "");
 }
 
 /// The runs of a comparison, one after the other.
@@ -41,8 +36,8 @@ class Comparer {
         reasons_(mechanism, exact_) {}
 
   ComparedRun compared(const PatchOptions& options) {
-    const PatchedMechanism patched(mechanism_, library_, options);
-    const RecordedRun recorded = run_recorded(patched, options.tolerance, progress());
+    const PatchedMechanism patched(patch_named(mechanism_, options), library_);
+    const RecordedRun recorded = run_recorded(patched, name_of(options), options.tolerance, progress());
     finish_run();
     const Run& analog = recorded.run;
     ComparedRun result;
@@ -51,16 +46,15 @@ class Comparer {
     result.bandwidth = options.bandwidth.value_or(default_bandwidth(mechanism_));
     result.steps = analog.statistics.steps;
     result.seconds = analog.seconds;
-    for (std::size_t s = 0; s < analog.peaks.size(); ++s) {
-      if (std::abs(analog.peaks[s].value) > 1 + kOverloadMargin)
-        result.overloads.push_back({patched.program.signal_names()[s], analog.peaks[s]});
-    }
-    judge_stability(patched.program, recorded.instants, result);
+    result.overloads = overloads_of(patched.program, analog);
+    result.slowest_pole = slowest_pole_of(patched.program, recorded.instants);
+    result.stable = result.slowest_pole < 0;
     const Distances error = distances(mechanism_, patched.flat, analog.trajectory, exact_);
     result.max_error = error.largest;
     result.rms_error = error.rms;
     result.worst = {mechanism_.points[error.worst.point].name, exact_.times[error.row],
-                    exact_.drives[error.row].front().value, reasons_.reason(patched, recorded, error)};
+                    exact_.drives[error.row].front().value,
+                    reasons_.reason(patched, options, recorded, error)};
     result.parts = error_parts(patched, exact_, analog.trajectory, error, progress());
     finish_run();
     return result;
@@ -68,8 +62,8 @@ class Comparer {
 
   double floor(PatchOptions options) {
     options.gain = kFloorGain;
-    const PatchedMechanism patched(mechanism_, library_, options);
-    const RecordedRun recorded = run_recorded(patched, options.tolerance, progress());
+    const PatchedMechanism patched(patch_named(mechanism_, options), library_);
+    const RecordedRun recorded = run_recorded(patched, name_of(options), options.tolerance, progress());
     finish_run();
     return distances(mechanism_, patched.flat, recorded.run.trajectory, exact_).largest;
   }

@@ -78,7 +78,7 @@ std::optional<ErrorParts> error_parts(const PatchedMechanism& patched, const Mot
                                       const std::function<void(double)>& progress) {
   RecordedRun tight;
   try {
-    tight = run_recorded(patched, kTighter * patched.diagram.run.tolerance, progress);
+    tight = run_recorded(patched, "a tighter tolerance", kTighter * patched.diagram.run.tolerance, progress);
   } catch (const SolveError&) {
     return std::nullopt;
   }

@@ -3,30 +3,51 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
 #include <oblique/solve/solve_error.h>
+#include <oblique/solve/stability.h>
 
 namespace oblique {
 namespace {
 
-Diagram patch_of(const Mechanism& mechanism, const PatchOptions& options) {
+constexpr std::size_t kRowsPerStabilityCheck = 10;
+
+}  // namespace
+
+Diagram patch_named(const Mechanism& mechanism, const PatchOptions& options) {
   Diagram diagram = patch(mechanism, options);
   diagram.file = mechanism.file;
   return diagram;
 }
 
-}  // namespace
+PatchedMechanism::PatchedMechanism(Diagram patched, const BlockLibrary& library)
+    : diagram(std::move(patched)), flat(flatten(diagram, library)), program(assemble(flat)) {}
 
-PatchedMechanism::PatchedMechanism(const Mechanism& mechanism, const BlockLibrary& library,
-                                   const PatchOptions& patch_options)
-    : options(patch_options),
-      diagram(patch_of(mechanism, patch_options)),
-      flat(flatten(diagram, library)),
-      program(assemble(flat)) {}
+std::vector<Overload> overloads_of(const Program& program, const Run& run) {
+  std::vector<Overload> overloads;
+  for (std::size_t s = 0; s < run.peaks.size(); ++s) {
+    if (std::abs(run.peaks[s].value) > 1 + kOverloadMargin)
+      overloads.push_back({program.signal_names()[s], run.peaks[s]});
+  }
+  return overloads;
+}
 
-RecordedRun run_recorded(const PatchedMechanism& patched, double tolerance,
+double slowest_pole_of(const Program& program, const std::vector<Instant>& instants) {
+  double slowest = -std::numeric_limits<double>::infinity();
+  Workspace workspace(program);
+  for (std::size_t row = 0; row < instants.size(); row += kRowsPerStabilityCheck) {
+    workspace.load_memories(instants[row].memories);
+    const double pole = servo_stability(program, workspace, instants[row].t, instants[row].states);
+    if (std::isnan(pole)) return pole;
+    slowest = std::max(slowest, pole);
+  }
+  return slowest;
+}
+
+RecordedRun run_recorded(const PatchedMechanism& patched, const std::string& what, double tolerance,
                          const std::function<void(double)>& progress) {
   RecordedRun recorded;
   RunOptions how = options_of(patched.diagram.run);
@@ -40,10 +61,7 @@ RecordedRun run_recorded(const PatchedMechanism& patched, double tolerance,
   } catch (const SolveError& error) {
     Diagnostic finding = error.diagnostics().front();
     finding.place = {patched.flat.file, {}};  // the diagram has no file in which its blocks stand
-    const PatchOptions& options = patched.options;
-    finding.what =
-        fmt::format("with amplifiers of gain {:.6g}{}: {}", options.gain,
-                    options.bandwidth ? fmt::format(" and {:.6g} Hz", *options.bandwidth) : "", finding.what);
+    finding.what = fmt::format("with {}: {}", what, finding.what);
     throw SolveError(error.kind(), error.time(), std::move(finding));
   }
   return recorded;

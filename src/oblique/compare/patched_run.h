@@ -2,8 +2,10 @@
 #pragma once
 
 #include <functional>
+#include <string>
 #include <vector>
 
+#include <oblique/compare/compare.h>
 #include <oblique/diagram/block_library.h>
 #include <oblique/mechanism/motion.h>
 #include <oblique/network/program.h>
@@ -16,13 +18,15 @@ namespace oblique {
 
 /// A mechanism's diagram with all that running it takes. The library must outlive it.
 struct PatchedMechanism {
-  PatchedMechanism(const Mechanism& mechanism, const BlockLibrary& library, const PatchOptions& options);
+  PatchedMechanism(Diagram patched, const BlockLibrary& library);
 
-  PatchOptions options;
   Diagram diagram;
   FlatDiagram flat;
   Program program;
 };
+
+/// The diagram of a mechanism under the mechanism's own file name: the diagram has none.
+Diagram patch_named(const Mechanism& mechanism, const PatchOptions& options);
 
 /// A run with the states at its rows.
 struct RecordedRun {
@@ -30,10 +34,16 @@ struct RecordedRun {
   std::vector<Instant> instants;
 };
 
-/// Runs as the diagram asks, but with its own relative tolerance. What is thrown tells the gain, and the
-/// bandwidth where that was chosen.
-RecordedRun run_recorded(const PatchedMechanism& patched, double tolerance,
+/// Runs as the diagram asks, but with another relative tolerance. What is thrown begins with "with `what`: ".
+RecordedRun run_recorded(const PatchedMechanism& patched, const std::string& what, double tolerance,
                          const std::function<void(double)>& progress = {});
+
+/// The signals that left ±1 machine unit.
+std::vector<Overload> overloads_of(const Program& program, const Run& run);
+
+/// The largest real part of the servo loops' eigenvalues at every tenth of the instants [1/s]; NaN where one
+/// of them has none.
+double slowest_pole_of(const Program& program, const std::vector<Instant>& instants);
 
 /// The outputs that are the coordinates of a moving point.
 struct PointOutputs {

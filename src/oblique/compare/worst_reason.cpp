@@ -135,7 +135,7 @@ std::string WorstReasons::flat_group(std::size_t point, std::size_t row, PatchMe
   return {};
 }
 
-std::string WorstReasons::weak_loop(const PatchedMechanism& patched, const RecordedRun& recorded,
+std::string WorstReasons::weak_loop(const PatchedMechanism& patched, double gain, const RecordedRun& recorded,
                                     const Distances& error) const {
   std::vector<Instant> instants;
   for (std::size_t row = 0; row < recorded.instants.size(); row += kRowsPerInstant)
@@ -159,13 +159,13 @@ std::string WorstReasons::weak_loop(const PatchedMechanism& patched, const Recor
     return {};
   }
   return fmt::format("the loop of '{}' has the least gain of all there ({:.2g} times the amplifier's)",
-                     weakest->signal, weakest->least_gain / patched.options.gain);
+                     weakest->signal, weakest->least_gain / gain);
 }
 
-std::string WorstReasons::reason(const PatchedMechanism& patched, const RecordedRun& recorded,
-                                 const Distances& error) const {
-  std::string found = flat_group(error.worst.point, error.row, patched.options.method);
-  return found.empty() ? weak_loop(patched, recorded, error) : found;
+std::string WorstReasons::reason(const PatchedMechanism& patched, const PatchOptions& options,
+                                 const RecordedRun& recorded, const Distances& error) const {
+  std::string found = flat_group(error.worst.point, error.row, options.method);
+  return found.empty() ? weak_loop(patched, options.gain, recorded, error) : found;
 }
 
 }  // namespace oblique

@@ -21,12 +21,12 @@ class WorstReasons {
   /// near the error's, in words: "the triangle B–C–D is flattest there (sin γ = 0.19)". A group nearest to
   /// its dead centre goes before a loop of the least gain, and the point's own group before others. Empty
   /// where none is near, or changes little along the turn.
-  std::string reason(const PatchedMechanism& patched, const RecordedRun& recorded,
-                     const Distances& error) const;
+  std::string reason(const PatchedMechanism& patched, const PatchOptions& options,
+                     const RecordedRun& recorded, const Distances& error) const;
 
  private:
   std::string flat_group(std::size_t point, std::size_t row, PatchMethod method) const;
-  std::string weak_loop(const PatchedMechanism& patched, const RecordedRun& recorded,
+  std::string weak_loop(const PatchedMechanism& patched, double gain, const RecordedRun& recorded,
                         const Distances& error) const;
   bool is_near(double a, double b) const;
   std::vector<double> flatness(std::size_t group, PatchMethod method) const;
