@@ -15,7 +15,7 @@ set(allowed_solve text diagram network)
 set(allowed_machine text diagram network solve)
 set(allowed_mechanism text)
 set(allowed_patch text diagram mechanism)
-set(allowed_compare text diagram network solve mechanism patch)
+set(allowed_compare text diagram network solve mechanism patch machine)
 set(allowed_synthesis text mechanism)
 set(allowed_draw text diagram mechanism)
 

@@ -177,10 +177,11 @@ void add_modes(CLI::App& app, Chosen& chosen) {
 
 template <class Request>
 void add_method(CLI::App* verb, Request& request) {
-  verb->add_option(
-          "--method", request.method,
-          "triangles: servo-tracked oblique triangles; gradient: integrators that descend, for any group")
-      ->type_name("triangles|gradient")
+  verb->add_option("--method", request.method,
+                   "triangles: servo-tracked oblique triangles; gradient: integrators that descend, for any "
+                   "group; paper: "
+                   "a class III group as its source draws it")
+      ->type_name("triangles|gradient|paper")
       ->capture_default_str();
 }
 
@@ -194,6 +195,23 @@ void add_patch(CLI::App& app, Chosen& chosen) {
                    "bandwidth of the servo amplifiers, in Hz or with a unit; inf: algebraic loops "
                    "(default: 100 times the crank's frequency)");
   add_method(verb, *request);
+  verb->add_flag("--derivatives", request->derivatives,
+                 "velocities and accelerations too, as further circuits");
+  verb->add_option(
+          "--split", request->split,
+          "how to take a triad apart: the lead whose triangle carries the variable length, the lead that "
+          "closes the loop, the third (default: the split that is worth the most)")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("LEAD,LEAD,LEAD");
+  verb->add_option("--slower", request->slower, "how many times slower the outer loop of a triad is")
+      ->capture_default_str();
+  verb->add_option("--unit", request->unit,
+                   "1 machine unit of the coordinates, for example \"2.5 m\" (default: by the exact motion)")
+      ->type_name("LENGTH");
+  verb->add_flag("--force", request->force,
+                 "patch it even where it is unstable, flips on the way, or needs a kind of element that the "
+                 "machine has not");
   verb->add_option("-o,--output", request->output, "write the diagram to FILE.toml")->type_name("FILE");
   verb->add_option(
           "--machine", request->machine,
@@ -203,8 +221,6 @@ void add_patch(CLI::App& app, Chosen& chosen) {
                    "with --machine: write PREFIX-patch.csv (connections), PREFIX-pots.csv (settings), "
                    "PREFIX-static.csv (static test), and PREFIX.txt with all three for paper")
       ->type_name("PREFIX");
-  verb->add_flag("--force", request->force,
-                 "write it all the same where the machine lacks a kind of element altogether");
   choose(verb, chosen, request, patch_mechanism);
 }
 
@@ -217,7 +233,47 @@ void add_compare(CLI::App& app, Chosen& chosen) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("G,G,…");
-  add_method(verb, *request);
+  verb->add_option("--bandwidth", request->bandwidths,
+                   "bandwidths of the servo amplifiers, in Hz or with a unit; each is run with each gain "
+                   "(default: 100 times the crank's frequency)")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("B,B,…");
+  verb->add_option("--method", request->methods,
+                   "triangles: servo-tracked oblique triangles; gradient: integrators that descend, for any "
+                   "group; both: one against the other (default triangles)")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("M,M,…");
+  verb->add_option(
+          "--machine", request->machine,
+          "run it in this machine's elements too, and say what each published figure adds to the error "
+          "(oblique machines lists them); one gain (default 1e6)")
+      ->type_name("NAME");
+  CLI::Option* const monte_carlo =
+      verb->add_option("--monte-carlo", request->runs,
+                       "run it N times more, each with tolerances drawn anew; one gain (default 1e6)")
+          ->type_name("N")
+          ->check(CLI::Range(1, 10'000'000));
+  verb->add_option("--tolerance", request->tolerance,
+                   "how far the weights of summers and integrators and the errors of multipliers scatter, "
+                   "uniformly on both sides, for example 0.1% (default with --machine: as its profile says)")
+      ->type_name("X")
+      ->needs(monte_carlo);
+  verb->add_option("--seed", request->seed, "chooses the draws")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber)
+      ->needs(monte_carlo);
+  verb->add_option("--first-run", request->first_run,
+                   "number of the first run; with --monte-carlo 1 it repeats one")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber)
+      ->needs(monte_carlo);
+  verb->add_option("--threads", request->threads,
+                   "runs at a time, which changes no result (default: what the processor has)")
+      ->type_name("T")
+      ->check(CLI::Range(1, 1024))
+      ->needs(monte_carlo);
   verb->add_flag("--json", request->json, "print JSON instead of the table");
   verb->add_option("-o,--output", request->output, "write the JSON to FILE.json")->type_name("FILE");
   choose(verb, chosen, request, compare_mechanism);

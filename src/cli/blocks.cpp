@@ -53,7 +53,8 @@ std::string page_of(const BlockDefinition& block) {
   if (!block.parameters.empty()) {
     Table table({"parameter", "default", "unit", "range", "meaning"});
     for (const ParameterDefinition& p : block.parameters) {
-      table.add({p.name, short_number(p.default_value), p.unit, range_of(p), p.doc});
+      table.add({p.name, p.formula ? to_string(*p.formula) : short_number(p.default_value), p.unit,
+                 range_of(p), p.doc});
     }
     text += "\n" + table.text(5);
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -74,6 +75,10 @@ struct PatchRequest {
   std::string gain = "1e6";
   std::string bandwidth;
   std::string method = "triangles";
+  bool derivatives = false;
+  std::string unit;
+  std::string slower = "100";
+  std::vector<std::string> split;
   std::string machine;  ///< in whose elements
   std::string sheets;   ///< how the names of its sheets begin
   bool force = false;
@@ -83,8 +88,15 @@ ExitStatus patch_mechanism(const Session& session, const PatchRequest& request);
 struct CompareRequest {
   std::string mechanism;
   std::string output;
-  std::vector<std::string> gains{"1e2", "1e3", "1e4", "1e5", "1e6"};
-  std::string method = "triangles";
+  std::vector<std::string> gains;  ///< empty: those of CompareOptions
+  std::vector<std::string> bandwidths;
+  std::vector<std::string> methods{"triangles"};
+  std::string machine;  ///< in whose elements besides
+  int runs = 0;         ///< of --monte-carlo; 0: none
+  std::uint64_t seed = 1;
+  std::uint64_t first_run = 0;
+  int threads = 0;  ///< 0: as many as the processor has
+  std::string tolerance;
   bool json = false;
 };
 ExitStatus compare_mechanism(const Session& session, const CompareRequest& request);

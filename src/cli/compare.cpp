@@ -1,69 +1,118 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/compare/compare.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
+#include <oblique/compare/machine_comparison.h>
+#include <oblique/compare/monte_carlo.h>
+#include <oblique/machine/realise.h>
 #include <oblique/mechanism/read_mechanism.h>
 
 #include "command.h"
+#include "comparison_output.h"
+#include "machine_comparison_output.h"
+#include "monte_carlo_output.h"
 #include "terminal.h"
 
 namespace oblique::cli {
 namespace {
 
-std::string to_json(const Comparison& comparison) {
-  nlohmann::ordered_json runs = nlohmann::ordered_json::array();
-  for (const GainRun& run : comparison.runs) {
-    runs.push_back({{"gain", run.gain},
-                    {"max_error", run.max_error},
-                    {"rms_error", run.rms_error},
-                    {"steps", run.steps},
-                    {"seconds", run.seconds},
-                    {"overloads", run.overloads.size()},
-                    {"stable", run.stable}});
-  }
-  nlohmann::ordered_json json{{"mechanism", comparison.mechanism},
-                              {"method", method_name(comparison.method)},
-                              {"size", comparison.size}};
-  json["runs"] = std::move(runs);
-  json["order"] =
-      comparison.order ? nlohmann::ordered_json(*comparison.order) : nlohmann::ordered_json(nullptr);
-  return json.dump(2) + "\n";
+[[noreturn]] void refuse(const std::string& what, const std::string& expected,
+                         const std::string& remedy = {}) {
+  throw ReadError(Diagnostic{{}, what, expected, remedy});
 }
 
-std::string to_table(const Comparison& comparison) {
-  const std::string& unit = comparison.unit;
-  std::string text = fmt::format(
-      "{}\nanalog: {} of {:.6g} Hz; exact: closed form; errors over all moving points and one turn\n\n",
-      comparison.mechanism,
-      comparison.method == PatchMethod::gradient ? "gradient servos, bandwidth"
-                                                 : "servo-tracked triangles, amplifiers",
-      comparison.bandwidth);
-  Table table({"gain", fmt::format("max error [{}]", unit), "of the largest link",
-               fmt::format("rms error [{}]", unit), "worst point", "steps", "ms", "overloads", "stable"});
-  for (const GainRun& run : comparison.runs) {
-    table.add({short_number(run.gain), fmt::format("{:.3e}", run.max_error),
-               fmt::format("{:.3e}", run.max_error / comparison.size), fmt::format("{:.3e}", run.rms_error),
-               run.worst_point, std::to_string(run.steps), fmt::format("{:.3g}", 1e3 * run.seconds),
-               std::to_string(run.overloads.size()), run.stable ? "yes" : "NO"});
+/// Positive finite numbers of an option that takes several.
+std::vector<double> numbers_option(const std::string& option, const std::vector<std::string>& texts,
+                                   std::string_view unit, const std::string& expected) {
+  std::vector<double> values;
+  for (const std::string& text : texts) {
+    values.push_back(quantity_option(option, text, unit));
+    if (!(values.back() > 0 && std::isfinite(values.back())))
+      refuse(fmt::format("{} {}", option, text), expected);
   }
-  text += table.text();
-  text += fmt::format(
-      "\nlargest link {:.6g} {}; amplifiers of gain 1e12 leave {:.0e} {} (the solver's tolerance)\n",
-      comparison.size, unit, comparison.floor, unit);
-  text += comparison.order
-              ? fmt::format("the error falls with the gain to the power {:.3f}\n", *comparison.order)
-              : std::string("no order: it takes two gains whose errors stand clear of the tolerance\n");
-  for (const GainRun& run : comparison.runs) {
-    for (const Overload& overload : run.overloads) {
-      text += fmt::format("overload at gain {:.6g}: {} reaches {:.6g} at t = {:.6g} s\n", run.gain,
-                          overload.signal, overload.peak.value, overload.peak.time);
+  return values;
+}
+
+CompareOptions options_of(const CompareRequest& request) {
+  CompareOptions options;
+  options.methods.clear();
+  for (const std::string& method : request.methods) options.methods.push_back(method_option(method));
+  if (!request.gains.empty())
+    options.gains = numbers_option("--gain", request.gains, "1", "finite gains above 0, such as 1e3,1e4,1e5");
+  options.bandwidths = numbers_option("--bandwidth", request.bandwidths, "Hz",
+                                      "finite bandwidths above 0, such as 10,100 or \"1 kHz\"");
+  return options;
+}
+
+/// The one patch that `option` is about: "--machine", "--monte-carlo".
+PatchOptions single_patch(const std::string& option, const CompareRequest& request,
+                          const CompareOptions& options) {
+  const auto one_of = [&](const char* several, std::size_t n) {
+    if (n > 1) refuse(fmt::format("{} with {} of {}", option, count(n, "value", "values"), several), "one");
+  };
+  one_of("--gain", request.gains.size());
+  one_of("--bandwidth", options.bandwidths.size());
+  one_of("--method", options.methods.size());
+  PatchOptions patch;
+  patch.method = options.methods.front();
+  if (!request.gains.empty()) patch.gain = options.gains.front();
+  if (!options.bandwidths.empty()) patch.bandwidth = options.bandwidths.front();
+  return patch;
+}
+
+/// How the elements scatter: as --tolerance says, or the machine's profile.
+std::vector<BlockFigure> scatters_of(const CompareRequest& request, const BlockLibrary& library,
+                                     const MachineProfile* machine) {
+  constexpr double kMost = 0.5;  // a factor of two is no tolerance any more
+  if (!request.tolerance.empty()) {
+    const double tolerance = quantity_option("--tolerance", request.tolerance, "1");
+    if (!(tolerance > 0 && tolerance <= kMost))
+      refuse(fmt::format("--tolerance {}", request.tolerance), "a number above 0 and up to 50%");
+    return scatters_of_tolerance(library, tolerance);
+  }
+  if (machine == nullptr)
+    refuse("--monte-carlo without how far the elements scatter", "--tolerance, such as 0.1%, or a --machine");
+  if (machine->scatters.empty()) {
+    refuse(fmt::format("nothing is published of how the elements of {} scatter", machine->title),
+           "--tolerance, such as 0.1%");
+  }
+  return machine->scatters;
+}
+
+MonteCarloReport draw_elements(const CompareRequest& request, const Mechanism& mechanism,
+                               const Diagram& diagram, const BlockLibrary& library,
+                               const MachineProfile* machine) {
+  MonteCarloReport report;
+  report.tolerance = request.tolerance;
+  if (request.tolerance.empty()) report.machine = machine->title;
+  report.unit = mechanism.length_unit;
+  report.options.scatters = scatters_of(request, library, machine);
+  report.options.runs = request.runs;
+  report.options.seed = request.seed;
+  report.options.first_run = request.first_run;
+  report.options.threads = request.threads > 0
+                               ? request.threads
+                               : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  if (report.options.runs == 1) {
+    const FlatDiagram flat = flatten(diagram, library);
+    for (const Draw& drawn : draw(flat, report.options.scatters, {request.seed, request.first_run})) {
+      const FlatBlock& block = flat.blocks[drawn.block];
+      report.draws.emplace_back(block.path + "." + block.definition->parameters[drawn.parameter].name,
+                                drawn.value);
     }
   }
-  return text;
+  Progress progress("drawing elements");
+  report.options.progress = [&](double fraction) { progress.show(fraction); };
+  const auto begin = std::chrono::steady_clock::now();
+  report.result = monte_carlo(mechanism, diagram, library, report.options);
+  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return report;
 }
 
 }  // namespace
@@ -71,16 +120,15 @@ std::string to_table(const Comparison& comparison) {
 ExitStatus compare_mechanism(const Session& session, const CompareRequest& request) {
   if (!request.output.empty()) check_output(request.output, ".json");
   const BlockLibrary library = session.blocks();
-  CompareOptions options;
-  options.method = method_option(request.method);
-  options.gains.clear();
-  for (const std::string& gain : request.gains) {
-    options.gains.push_back(quantity_option("--gain", gain, "1"));
-    if (!(options.gains.back() > 0 && std::isfinite(options.gains.back()))) {
-      throw ReadError(
-          Diagnostic{{}, fmt::format("--gain {}", gain), "finite gains above 0, such as 1e3,1e4,1e5", {}});
-    }
+  CompareOptions options = options_of(request);
+  const MachineProfile* const machine = request.machine.empty() ? nullptr : find_machine(request.machine);
+  if (machine == nullptr && !request.machine.empty()) throw ReadError(unknown_machine(request.machine));
+  PatchOptions single;
+  if (machine != nullptr || request.runs > 0) {
+    single = single_patch(machine != nullptr ? "--machine" : "--monte-carlo", request, options);
+    options.gains = {single.gain};
   }
+  if (request.runs > 0) scatters_of(request, library, machine);  // before the work, not after it
   const Mechanism mechanism = read_mechanism(request.mechanism);
   Comparison comparison;
   {
@@ -88,9 +136,28 @@ ExitStatus compare_mechanism(const Session& session, const CompareRequest& reque
     options.progress = [&](double fraction) { progress.show(fraction); };
     comparison = compare(mechanism, library, options);
   }
-  print(request.json ? to_json(comparison) : to_table(comparison));
-  if (!request.output.empty()) save(request.output, to_json(comparison));
-  return ExitStatus::done;
+  std::string text = to_text(comparison);
+  nlohmann::ordered_json json = to_json(comparison);
+  bool failed = false;
+  if (machine != nullptr) {
+    Progress progress("figure by figure");
+    const MachineComparison on_machine = compare_on_machine(
+        mechanism, library, *machine, single, [&](double fraction) { progress.show(fraction); });
+    text += to_text(on_machine, comparison);
+    json["machine"] = to_json(on_machine);
+  }
+  if (request.runs > 0) {
+    Diagram diagram = patch(mechanism, single);
+    diagram.file = mechanism.file;
+    if (machine != nullptr) diagram = realise(diagram, library, *machine).diagram;
+    const MonteCarloReport report = draw_elements(request, mechanism, diagram, library, machine);
+    text += to_text(report);
+    json["monte_carlo"] = to_json(report);
+    failed = !report.result.worst_run;
+  }
+  print(request.json ? json.dump(2) + "\n" : text);
+  if (!request.output.empty()) save(request.output, json.dump(2) + "\n");
+  return failed ? ExitStatus::solver_failed : ExitStatus::done;
 }
 
 }  // namespace oblique::cli

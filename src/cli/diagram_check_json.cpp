@@ -72,6 +72,7 @@ Json stability_json(const StabilityReport& report, const Program& program) {
   }
   return {{"instants", report.instants},
           {"servo_mode", mode_json(report.servo_mode, program)},
+          {"slowest_servo", mode_json(report.slowest_servo, program)},
           {"grows_from", optional_number(report.grows_from)},
           {"problem_mode", mode_json(report.problem_mode, program)},
           {"margins", std::move(margins)},

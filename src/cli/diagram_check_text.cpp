@@ -51,8 +51,10 @@ std::string trial(const DiagramCheck& check) {
   if (analysis.instants.empty())
     return "\ntrial run: it could not start, so nothing is known about its loops\n";
   if (analysis.failure) {
-    return fmt::format("\ntrial run: failed at t = {:.6g} s; what follows is about the time before\n",
-                       analysis.failure->time());
+    return fmt::format("\ntrial run: failed at t = {:.6g} s; what follows is about {}\n",
+                       analysis.failure->time(),
+                       analysis.standing ? "the servo loops standing at rest, where they would not stay"
+                                         : "the time before");
   }
   std::string text =
       fmt::format("\ntrial run: {:.6g} s, {}", check.diagram.run.until,
@@ -112,6 +114,10 @@ std::string stability(const StabilityReport& report, const Program& program) {
   std::string text = fmt::format("\nstability (worst modes of the frozen equations at {})\n",
                                  count(report.instants, "instant", "instants"));
   text += mode_text("the servo amplifiers", report.servo_mode, program);
+  if (report.slowest_servo) {
+    text += fmt::format("    largest real part of their eigenvalues: {:+.3g} 1/s at t = {} s\n",
+                        report.slowest_servo->mode.pole.real(), number(report.slowest_servo->time));
+  }
   if (report.grows_from) {
     text +=
         fmt::format("    no: the servo loops are unstable from t = {} s on\n", number(*report.grows_from));

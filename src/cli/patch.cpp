@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/patch/patch.h>
+#include <oblique/compare/compare.h>
+#include <oblique/compare/judge.h>
+
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -19,14 +22,26 @@ double positive_option(const std::string& option, const std::string& text, std::
   return value;
 }
 
+std::string judgement_text(const Judgement& judgement) {
+  if (!judgement.good()) return fmt::format("warning: {}\n", fault_of(judgement));
+  std::string text = std::isfinite(judgement.slowest_pole)
+                         ? fmt::format("its servo loops come to rest everywhere: slowest pole {:.3g} 1/s; ",
+                                       judgement.slowest_pole)
+                         : std::string("no servo loops; ");
+  text += fmt::format("largest signal {:.3g} ({})\n", judgement.largest, judgement.largest_signal);
+  if (judgement.largest > 1 + kOverloadMargin)
+    text += "warning: it overloads the machine; choose a larger --unit\n";
+  return text;
+}
+
 }  // namespace
 
 PatchMethod method_option(const std::string& text) {
   if (const auto method = parse_patch_method(text)) return *method;
   throw ReadError(Diagnostic{{},
                              fmt::format("--method {}", text),
-                             "triangles or gradient",
-                             suggest(text, {"triangles", "gradient"})});
+                             "triangles, gradient or paper",
+                             suggest(text, {"triangles", "gradient", "paper"})});
 }
 
 ExitStatus patch_mechanism(const Session& session, const PatchRequest& request) {
@@ -37,13 +52,23 @@ ExitStatus patch_mechanism(const Session& session, const PatchRequest& request) 
   options.method = method_option(request.method);
   options.gain = positive_option("--gain", request.gain, "1");
   if (!request.bandwidth.empty()) options.bandwidth = positive_option("--bandwidth", request.bandwidth, "Hz");
-  const Diagram diagram = patch(read_mechanism(request.mechanism), options);
-  if (!request.machine.empty()) return patch_for_machine(session, request, diagram);
-  const std::string text = write_diagram(diagram);
+  options.derivatives = request.derivatives;
+  options.slower = positive_option("--slower", request.slower, "1");
+  options.split = request.split;
+  options.force = request.force;
+  const Mechanism mechanism = read_mechanism(request.mechanism);
+  if (!request.unit.empty()) options.unit = positive_option("--unit", request.unit, mechanism.length_unit);
+  const JudgedPatch patched = judged_patch(mechanism, session.blocks(), options);
+  if (!request.machine.empty()) {
+    note(judgement_text(patched.judgement));
+    return patch_for_machine(session, request, patched.diagram);
+  }
+  const std::string text = write_diagram(patched.diagram);
   if (request.output.empty()) {
     print(text);
   } else {
     save(request.output, text);
+    note(judgement_text(patched.judgement));
     note(fmt::format("run it with: oblique run {}\n", request.output));
   }
   return ExitStatus::done;

@@ -83,6 +83,30 @@ c = {{ type = "dyad-rrr-variable", px = "0*one", py = "0*one", qx = "0.9*one", q
   }
 }
 
+// The same triangle with the source's formulas: the angles ψ of Q → P clockwise, γ at P and α of P → C.
+TEST(FourBarCircuit, HasTheAnglesOfItsTriangle) {
+  for (const int side : {1, -1}) {
+    const auto result = on_a_crank(fmt::format(
+        R"(w = {{ type = "summer", in = ["0.7*one", "0.15*sine"] }}
+c = {{ type = "four-bar-circuit", qx = "0.72*one", qy = "0.54*one", rocker = "w", coupler = 0.5, side = {}, gain = inf, bandwidth = inf }})",
+        side));
+    const auto gamma = [](double t) {
+      const double w = 0.7 + 0.15 * std::sin(t);
+      return std::acos((0.81 + 0.25 - w * w) / (2 * 0.9 * 0.5));
+    };
+    const auto alpha = [&](double t) { return std::atan2(0.6, 0.8) + side * gamma(t); };
+    expect_form(result, "c.diagonal", kIntegrated, [](double) { return 0.9; });
+    expect_form(result, "c.cos_psi", kIntegrated, [](double) { return -0.8; });
+    expect_form(result, "c.sin_psi", kIntegrated, [](double) { return 0.6; });
+    expect_form(result, "c.cos_gamma", kIntegrated, [&](double t) { return std::cos(gamma(t)); });
+    expect_form(result, "c.sin_gamma", kIntegrated, [&](double t) { return std::sin(gamma(t)); });
+    expect_form(result, "c.cos_alpha", kIntegrated, [&](double t) { return std::cos(alpha(t)); });
+    expect_form(result, "c.sin_alpha", kIntegrated, [&](double t) { return std::sin(alpha(t)); });
+    expect_form(result, "c.x", kIntegrated, [&](double t) { return 0.5 * std::cos(alpha(t)); });
+    expect_form(result, "c.y", kIntegrated, [&](double t) { return 0.5 * std::sin(alpha(t)); });
+  }
+}
+
 TEST(TriangleVariableSide, SolvesTheLawOfCosines) {
   const auto result = on_a_crank(
       R"(l = { type = "summer", in = ["0.8*one", "0.1*cosine"] }

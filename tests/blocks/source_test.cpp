@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// ramp, step, pulse-train, noise-source.
+// ramp, step, pulse-train, noise-source, time-function.
 #include <cmath>
 
 #include "closed_form.h"
@@ -30,6 +30,54 @@ x = { type = "integrator", in = ["s"] })");
   expect_form(result, "s", 0, [](double t) { return t < 0.3 ? -1 : 2; });
   expect_form(result, "zero", 0, [](double) { return 1; });
   EXPECT_NEAR(last(result, "x"), -0.3 + 2 * 1.7, kRounding);  // straight lines, and the corner is met
+}
+
+TEST(TimeFunction, GivesItsFormula) {
+  const Compiled made(
+      R"toml(u = { type = "time-function", formula = "2 + sin(3*time)^2*exp(-time)", scale = 0.4 }
+plain = { type = "time-function" }
+x = { type = "integrator", in = ["u"] })toml");
+  const auto result = run_of(made, {.until = 3, .samples = 101});
+  const auto u = [](double t) { return 0.4 * (2 + std::pow(std::sin(3 * t), 2) * std::exp(-t)); };
+  expect_form(result, "u", kRounding, u);
+  expect_form(result, "plain", kRounding, [](double t) { return std::sin(t); });
+  // ∫ sin²(3t) e⁻ᵗ = (1 − e⁻ᵗ)/2 − (1 + e⁻ᵗ (6 sin 6t − cos 6t))/74
+  expect_form(result, "x", kIntegrated, [](double t) {
+    const double decay = std::exp(-t);
+    return 0.4 * (2 * t + (1 - decay) / 2 - (1 + decay * (6 * std::sin(6 * t) - std::cos(6 * t))) / 74);
+  });
+}
+
+// |t − 1| has a kink, which is an event.
+TEST(TimeFunction, SwitchesAtEvents) {
+  const Compiled made(R"toml(u = { type = "time-function", formula = "abs(time - 1)" }
+x = { type = "integrator", in = ["u"] })toml");
+  EXPECT_EQ(made.program.switches().size(), 1U);
+  EXPECT_NEAR(last(run_of(made, {.until = 3, .samples = 18}), "x"), 0.5 + 2, kIntegrated);
+}
+
+TEST(TimeFunction, RefusesWhatIsNoFormulaOfTime) {
+  const auto refusal = [](const std::string& formula) {
+    return testing::message_of<DiagramError>(
+        [&] { Compiled("u = { type = \"time-function\", formula = " + formula + " }\n"); });
+  };
+  EXPECT_EQ(
+      refusal("\"2*x + t\""),
+      "d.toml:3:44: parameter 'u.formula': there is no 'x' in a formula; expected numbers, pi, time and "
+      "functions of them\n"
+      "d.toml:3:48: parameter 'u.formula': there is no 't' in a formula; expected numbers, pi, time and "
+      "functions of them");
+  EXPECT_EQ(refusal("[\"time\"]"),
+            "d.toml:3:41: parameter 'u.formula' is an array; expected an expression of time, such as \"2 + "
+            "sin(3*time)\"");
+  EXPECT_EQ(refusal("\"2 +\"").substr(0, 14), "d.toml:3:45: p");
+  const Diagram diagram =
+      parse_diagram(testing::diagram_text("u = { type = \"time-function\" }\n"), "d.toml");
+  EXPECT_EQ(testing::message_of<DiagramError>([&] {
+              flatten(diagram, testing::shipped_blocks(), {{"u.formula", "time"}});
+            }),
+            "--set u.formula=time: 'formula' is a formula; expected a parameter that is a number\n  remedy: "
+            "change the formula in the diagram");
 }
 
 TEST(PulseTrain, HasItsTimesAndLevels) {

@@ -291,6 +291,48 @@ INSTANTIATE_TEST_SUITE_P(
         BadRequestCase{"GainWithoutEnd",
                        "oblique compare diagrams/mechanisms/four-bar.toml --json --gain 1e3,inf", 2,
                        "--gain inf; expected finite gains above 0"},
+        BadRequestCase{"BandwidthZero", "oblique compare diagrams/mechanisms/four-bar.toml --bandwidth 20,0",
+                       2, "--bandwidth 0; expected finite bandwidths above 0, such as 10,100 or \"1 kHz\""},
+        BadRequestCase{"BandwidthInSeconds",
+                       "oblique compare diagrams/mechanisms/four-bar.toml --bandwidth '5 s'", 2,
+                       "--bandwidth 5 s: 's' is the wrong unit here"},
+        BadRequestCase{"MethodOfNoName",
+                       "oblique compare diagrams/mechanisms/four-bar.toml --method triangles,gradiant", 2,
+                       "--method gradiant; expected triangles or gradient"},
+        BadRequestCase{
+            "BandwidthThatNoSolverTakes",
+            "oblique compare diagrams/mechanisms/four-bar.toml --gain 1e9 --bandwidth 1e300", 3,
+            "error: diagrams/mechanisms/four-bar.toml: with amplifiers of gain 1e+09 and 1e+300 Hz: "},
+        BadRequestCase{
+            "MonteCarloWithoutTolerance",
+            "oblique compare diagrams/mechanisms/four-bar.toml --monte-carlo 10", 2,
+            "--monte-carlo without how far the elements scatter; expected --tolerance, such as 0.1%, or a "
+            "--machine"},
+        BadRequestCase{
+            "MonteCarloOfSeveralGains",
+            "oblique compare diagrams/mechanisms/four-bar.toml --monte-carlo 10 --tolerance 1% --gain "
+            "1e3,1e4",
+            2, "--monte-carlo with 2 values of --gain; expected one"},
+        BadRequestCase{
+            "MonteCarloOnAMachineThatSaysNothingOfScatter",
+            "oblique compare diagrams/mechanisms/four-bar.toml --monte-carlo 10 --machine ec-1", 2,
+            "nothing is published of how the elements of Heathkit EC-1 scatter; expected --tolerance"},
+        BadRequestCase{"CompareOnAMachineOfNoName",
+                       "oblique compare diagrams/mechanisms/four-bar.toml --machine tr10", 2,
+                       "there is no machine 'tr10'\n  remedy: did you mean 'tr-10'?"},
+        BadRequestCase{"MachineWithSeveralMethods",
+                       "oblique compare diagrams/mechanisms/four-bar.toml --machine tr-10 --method "
+                       "triangles,gradient",
+                       2, "--machine with 2 values of --method; expected one"},
+        BadRequestCase{"ToleranceOfAFactor",
+                       "oblique compare diagrams/mechanisms/four-bar.toml --monte-carlo 10 --tolerance 2", 2,
+                       "--tolerance 2; expected a number above 0 and up to 50%"},
+        BadRequestCase{"SeedWithoutMonteCarlo", "oblique compare diagrams/mechanisms/four-bar.toml --seed 3",
+                       2, "--seed requires --monte-carlo"},
+        BadRequestCase{
+            "SeedBelowZero",
+            "oblique compare diagrams/mechanisms/four-bar.toml --monte-carlo 3 --tolerance 1% --seed -3", 2,
+            "--seed: "},
         BadRequestCase{"GainThatNoSolverTakes",
                        "oblique compare diagrams/mechanisms/four-bar.toml --gain 1e300", 3,
                        "error: diagrams/mechanisms/four-bar.toml: with amplifiers of gain 1e+300: the run"},

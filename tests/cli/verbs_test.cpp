@@ -237,6 +237,77 @@ TEST_F(Verbs, CompareGivesTheJsonOfTheContract) {
   EXPECT_EQ(nlohmann::json::parse(stream).at("size"), 3.5);
 }
 
+TEST_F(Verbs, CompareHoldsMethodsAndBandwidthsAgainstEachOther) {
+  const std::string command =
+      "compare diagrams/mechanisms/six-bar.toml --method triangles,gradient --bandwidth 2000,20kHz --gain "
+      "1e3,1e4";
+  const Outcome table = oblique(command);
+  ASSERT_EQ(table.status, 0) << table.err;
+  EXPECT_THAT(table.out, HasSubstr("   method     Hz   gain  max error [mm]"));
+  EXPECT_THAT(table.out,
+              HasSubstr("worst at C, 180°: the triangle B–C–D is flattest there (sin γ = 0.27 at B)"));
+  EXPECT_THAT(table.out, HasSubstr("   method     Hz  power of the gain  left at gain 1e12 [mm]"));
+  const Outcome outcome = oblique(command + " --json");
+  const auto json = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(json.at("method"), "triangles,gradient");
+  EXPECT_TRUE(json.at("order").is_null());  // of which?
+  ASSERT_EQ(json.at("runs").size(), 8U);
+  EXPECT_EQ(json.at("runs")[7].at("method"), "gradient");
+  EXPECT_EQ(json.at("runs")[7].at("bandwidth"), 20000);
+  EXPECT_EQ(json.at("runs")[0].at("worst").at("point"), "C");
+  double sum = 0;
+  for (const char* part : {"static", "lag", "solver"})
+    sum += json.at("runs")[0].at("parts").at(part).get<double>();
+  EXPECT_NEAR(sum, json.at("runs")[0].at("max_error").get<double>(), 1e-12);  // an identity, but for rounding
+  ASSERT_EQ(json.at("series").size(), 4U);
+  EXPECT_NEAR(json.at("series")[3].at("order").get<double>(), -1, 0.05);
+}
+
+TEST_F(Verbs, MonteCarloGivesTheSameForAnyNumberOfThreadsAndRepeatsItsWorstRun) {
+  const std::string command = "compare diagrams/mechanisms/four-bar.toml --tolerance 0.1% --seed 7 --json ";
+  const auto drawn = [&](const std::string& rest) {
+    const Outcome outcome = oblique(command + rest);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    auto json = nlohmann::json::parse(outcome.out).at("monte_carlo");
+    json.erase("seconds");
+    return json;
+  };
+  const auto one = drawn("--monte-carlo 20 --threads 1");
+  EXPECT_EQ(one, drawn("--monte-carlo 20 --threads 3"));
+  EXPECT_EQ(one.at("errors").size(), 20U);
+  EXPECT_TRUE(one.at("failures").empty());
+  const auto worst = one.at("worst_run").get<int>();
+  EXPECT_EQ(one.at("errors")[static_cast<std::size_t>(worst)], one.at("percentiles").at("100"));
+  const auto again = drawn("--monte-carlo 1 --first-run " + std::to_string(worst));
+  EXPECT_EQ(again.at("errors")[0], one.at("percentiles").at("100"));
+  EXPECT_LE(std::abs(again.at("draws").at("C.cx.tolerance").get<double>()), 1e-3);
+}
+
+TEST_F(Verbs, CompareOnAMachineGivesTheBudgetAndItsScatter) {
+  const std::string command =
+      "compare diagrams/mechanisms/four-bar.toml --machine tr-10 --gain 1e3 --monte-carlo 5";
+  const Outcome text = oblique(command);
+  EXPECT_EQ(text.status, 0) << text.err;
+  EXPECT_THAT(text.out, HasSubstr("on EAI PACE TR-10 (1959), of as many elements as it takes"));
+  EXPECT_THAT(text.out, HasSubstr("the method and each figure alone add up to 100.0 % of it"));
+  EXPECT_THAT(text.out, HasSubstr("uniform as those of EAI PACE TR-10 (1959) scatter"));
+  const auto json = nlohmann::json::parse(oblique(command + " --json").out);
+  EXPECT_NEAR(json.at("machine").at("explained").get<double>(), 1, 0.02);
+  EXPECT_EQ(json.at("machine").at("figures").back().at("figure"), "potentiometer, resolution");
+  EXPECT_EQ(json.at("monte_carlo").at("errors").size(), 5U);
+  // about the machine's own error, by 0.2 % and less of each element
+  const double machine = json.at("machine").at("max_error");
+  EXPECT_NEAR(json.at("monte_carlo").at("percentiles").at("50").get<double>(), machine, 0.15 * machine);
+}
+
+TEST_F(Verbs, MonteCarloTellsWhatFailed) {
+  const Outcome outcome =
+      oblique("compare diagrams/mechanisms/four-bar.toml --monte-carlo 12 --tolerance 50% --threads 1");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out,
+              ::testing::ContainsRegex("FAILED [0-9]+ of 12 runs, left out above; the first, run "));
+}
+
 TEST_F(Verbs, CheckDescribesDiagramsAndMechanisms) {
   const Outcome diagram = oblique("check diagrams/lessons/division.toml");
   EXPECT_EQ(diagram.status, 0);

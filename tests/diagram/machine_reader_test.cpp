@@ -86,15 +86,14 @@ TEST(ParseMachine, ReportsAllFindingsOfAFile) {
   const std::string message =
       message_of([] { parse_machine("title = 3\nunits = \"1 V\"\n", "m.toml", "m", library()); });
   for (const char* const part :
-       {"m.toml:1:1: the machine file has no 'format'; expected format = \"oblique-machine/1\"",
+       {R"(m.toml:1:1: the machine file has no 'format'; expected format = "oblique-machine/1")",
         "m.toml:1:9: 'title' of the machine file is a number; expected a string",
         "m.toml:1:1: the machine file has no 'source'; expected where its figures are from",
-        "m.toml:1:1: the machine file has no 'unit'; expected a voltage such as \"10 V\", or \"unknown\"",
+        R"(m.toml:1:1: the machine file has no 'unit'; expected a voltage such as "10 V", or "unknown")",
         "m.toml:2:1: unknown key 'units' in the machine file\n  remedy: did you mean 'unit'?",
         "the machine file has no 'input_gains'; expected a list of numbers above 0, each above the one "
-        "before; "
-        "\"any\" or \"unknown\"",
-        "the machine file has no 'rates'",
+        "before;",
+        "the machine file has no 'rates'; expected a list",
         "m.toml:1:1: the machine has no [elements]; expected at least one kind of element"}) {
     EXPECT_THAT(message, HasSubstr(part));
   }

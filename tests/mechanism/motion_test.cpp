@@ -46,6 +46,29 @@ TEST(Motion, SpansOneTurnWithBothEnds) {
   }
 }
 
+// ∫ sin²(t/4) dt = t/2 − sin(t/2): a whole turn in 4π s. A law has no speed at the start by which steps could
+// be measured; backwards it is the mirror image.
+TEST(Motion, StartsFromRest) {
+  for (const std::string sign : {"", "-"}) {
+    const Mechanism mechanism = four_bar(1, 3.5, 3, 4, sign + "sin(time/4)^2 rad/s", "0 deg", "[3, 3]");
+    const double direction = sign.empty() ? 1 : -1;
+    // there it stands still again: the last 1e-15 of the way take (48e-15)^(1/3) s
+    EXPECT_NEAR(period(mechanism), 4 * kPi, 1e-4);
+    const Motion motion = solve_motion(mechanism, 9);
+    for (std::size_t k = 0; k < 9; ++k) {
+      const double t = motion.times[k], angle = direction * (t / 2 - std::sin(t / 2));
+      const Eigen::Vector2d& b = motion.configurations[k].points[*mechanism.find_point("B")].position;
+      EXPECT_NEAR(b.x(), std::cos(angle), 1e-12);
+      EXPECT_NEAR(b.y(), std::sin(angle), 1e-12);
+      EXPECT_EQ(motion.configurations[k].status, Status::ok);
+    }
+    // a quarter of the turn, ahead: t/2 − sin(t/2) = π/2
+    const auto quarter = time_at_value(mechanism, direction * kPi / 2);
+    ASSERT_TRUE(quarter);
+    EXPECT_NEAR(*quarter / 2 - std::sin(*quarter / 2), kPi / 2, 1e-12);
+  }
+}
+
 TEST(Motion, NeedsADriveAndTwoPositions) {
   Mechanism mechanism = four_bar(1, 3.5, 3, 4, "1 rad/s", "0 deg", "[3, 3]");
   EXPECT_THROW(solve_motion(mechanism, 1), MechanismError);

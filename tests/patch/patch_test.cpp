@@ -14,6 +14,8 @@
 #include <oblique/patch/scaling.h>
 #include <oblique/solve/run.h>
 
+#include "patched_run.h"
+
 namespace oblique {
 namespace {
 
@@ -33,27 +35,6 @@ crank = { turns = "AB", about = "A", speed = 1 }
 [sketch]
 C = [3, 2.8]
 )";
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  text.replace(text.find(from), from.size(), to);
-  return text;
-}
-
-Mechanism shipped(const std::string& name) {
-  return read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/" + name + ".toml");
-}
-
-/// A patched diagram run over its turn, and the program it became.
-struct PatchedRun {
-  explicit PatchedRun(const Diagram& diagram)
-      : flat(flatten(diagram, library)),
-        program(assemble(flat)),
-        result(run(program, flat, options_of(diagram.run))) {}
-  BlockLibrary library = BlockLibrary::shipped();
-  FlatDiagram flat;
-  Program program;
-  Run result;
-};
 
 /// Largest distance of any moving point from its exact place [length unit].
 double largest_error(const Mechanism& mechanism, const Run& analog) {
@@ -249,17 +230,17 @@ TEST(Patch, TakesATriadApart) {
   EXPECT_EQ(count("dyad-rrr-variable"), 1);
   EXPECT_EQ(count("dyad-rrr"), 1);
   EXPECT_EQ(count("servo-amplifier"), 1);
-  EXPECT_THAT(write_diagram(diagram), HasSubstr("Of the six splits this one keeps farthest from flat"));
+  EXPECT_THAT(write_diagram(diagram), HasSubstr("Of the six splits this one keeps\n# farthest from flat triangles"));
 }
 
-TEST(Patch, OffersTheGradientWhereATriadHasNoSplit) {
+TEST(Patch, OffersTheGradientWhereATriadHasASlide) {
   const Mechanism mechanism =
       read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/class-iii-guided.toml");
   try {
     patch_triangles(mechanism);
     FAIL();
   } catch (const PatchError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("has no split into two triangles that never go flat"));
+    EXPECT_THAT(error.what(), HasSubstr("has a slide among its leads, so that it cannot be taken apart into triangles"));
     EXPECT_THAT(error.what(), HasSubstr("remedy: patch it with --method gradient"));
   }
 }
@@ -276,13 +257,34 @@ TEST(Patch, RefusesAGradientServoOfInfiniteGain) {
   }
 }
 
-TEST(Patch, RefusesASpeedThatVaries) {
-  try {
-    patch(read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/roberts.toml"));
-    FAIL();
-  } catch (const PatchError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("drive 'swing' has a speed that varies"));
-  }
+// Slow at the start and the end, backwards in between, and at a standstill twice: the exact motion has the
+// law's integral.
+TEST(Patch, FollowsASpeedLaw) {
+  const std::string text =
+      replaced(kFourBar, "speed = 1", "speed = \"0.2 + cos(3*time)*30 rpm\"") + "[motion]\nuntil = 4\n";
+  const Mechanism mechanism = parse_mechanism(text, "law.toml");
+  const Diagram diagram = patch_triangles(mechanism);
+  EXPECT_EQ(diagram.run.until, 4);
+  EXPECT_LT(largest_error(mechanism, PatchedRun(diagram).result), 1e-6 * mechanism.largest_length());
+  const std::string written = write_diagram(diagram);
+  EXPECT_THAT(written, HasSubstr("Run over the 4 s of its motion."));
+  EXPECT_THAT(written, HasSubstr("# crank AB: turns about A at (0.2 + cos(3*time)*30)*0.10472 rad/s"));
+  EXPECT_TRUE(parse_diagram(written, "patched.toml") == diagram);
+}
+
+TEST(Patch, FollowsALawThatStartsFromRest) {
+  const Mechanism mechanism =
+      parse_mechanism(replaced(kFourBar, "speed = 1", "speed = \"sin(time/4)^2 rad/s\""), "law.toml");
+  const Diagram diagram = patch_triangles(mechanism);
+  EXPECT_NEAR(diagram.run.until, period(mechanism), 1e-12);  // a whole turn
+  EXPECT_LT(largest_error(mechanism, PatchedRun(diagram).result), 1e-6 * mechanism.largest_length());
+}
+
+// roberts.toml swings by 17° · 2π cos 2πt: 1.86 rad/s at most.
+TEST(Patch, ChoosesTheBandwidthOfALawByItsGreatestSpeed) {
+  EXPECT_EQ(default_bandwidth(shipped("roberts")), 50);
+  const std::string from_rest = replaced(kFourBar, "speed = 1", "speed = \"10*sin(time) rad/s\"");
+  EXPECT_EQ(default_bandwidth(parse_mechanism(from_rest, "m.toml")), 200);  // 1000/(2π) = 159
 }
 
 }  // namespace

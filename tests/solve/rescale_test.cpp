@@ -104,6 +104,26 @@ v     = { type = "vector-direction", x = "2*m", y = "p" }
   EXPECT_THAT(result.text, HasSubstr("reference"));  // the default speed of the crank
 }
 
+// What the file leaves open, the machine decides anew: the sum that feeds a multiplier and `exact` must not
+// become real.
+TEST(Rescale, AmplifiersOfAMachineStayAsTheyAre) {
+  const BlockLibrary library =
+      testing::shipped_blocks_and("squared-sum",
+                                  "summary = \"x\"\n[inputs]\nin = { sum = true, doc = \"x\" "
+                                  "}\n[outputs]\nout = { wire = \"m\", doc = \"x\" }\n"
+                                  "[blocks]\nm = { type = \"multiplier\", x = \"in\", y = \"in\" }\n");
+  const Compiled made(R"toml(u = { type = "constant", value = 3 }
+real  = { type = "inverter", in = "u" }
+exact = { type = "inverter", in = "u", gain = inf }
+p     = { type = "squared-sum", in = ["u", "-2*exact"] }
+)toml",
+                      "[machine]\nprofile = \"ec-1\"\n", library);
+  const Rescaled result = rescaled(made, 1, library);
+  EXPECT_LT(result.difference, kSame);
+  EXPECT_THAT(result.text, HasSubstr("real  = { type = \"inverter\", in = \"u\" }"));
+  EXPECT_THAT(result.text, HasSubstr("exact = { type = \"inverter\", in = \"u\", gain = inf }"));
+}
+
 TEST(Rescale, BlocksThatCannotBeScaledKeepTheirSignals) {
   const Compiled made(R"toml(one = { type = "constant", value = 1 }
 phi = { type = "integrator", in = ["one"] }
@@ -132,6 +152,19 @@ i = { type = "integrator", in = ["n"] }
   const Rescaled result = rescaled(made, 1, library);
   EXPECT_LT(result.difference, kSame);
   EXPECT_TRUE(result.overloads.empty());
+}
+
+// A function keeps its points, a formula its text: neither has a scale.
+TEST(Rescale, FunctionsStayWhatTheyAre) {
+  const Compiled made(R"toml(u = { type = "time-function", formula = "2 + sin(3*time)", scale = 2 }
+x = { type = "integrator", in = ["u"] }
+f = { type = "function-generator", in = "x", points = [[-1, 0.5], [2, 0], [9, 0.25]] }
+)toml");
+  const Rescaled result = rescaled(made, 2);
+  EXPECT_LT(result.difference, kSame);
+  EXPECT_TRUE(result.overloads.empty());
+  EXPECT_THAT(result.text, HasSubstr("formula = \"2 + sin(3*time)\", scale = 0.2 }"));
+  EXPECT_THAT(result.text, HasSubstr("points = [[-1, 0.5], [2, 0], [9, 0.25]]"));
 }
 
 TEST(Rescale, ARingOfProductsTakesThePeaks) {

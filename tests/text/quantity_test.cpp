@@ -54,6 +54,10 @@ TEST(Unit, ReadsBothLettersForMicro) {
   EXPECT_DOUBLE_EQ(unit("\u03BCs").scale, 1e-6);  // Greek mu
   EXPECT_DOUBLE_EQ(unit("\u00B5m").scale, 1e-6);
   EXPECT_DOUBLE_EQ(unit("\u03BCm").scale, 1e-6);
+  for (const char* const microvolt : {"uV", "\u00B5V", "\u03BCV"}) {
+    EXPECT_DOUBLE_EQ(unit(microvolt).scale, 1e-6) << microvolt;
+    EXPECT_TRUE(unit(microvolt).same_dimension(unit("V"))) << microvolt;
+  }
 }
 
 TEST(Unit, IsEmptyWhereTheTextIsNone) {

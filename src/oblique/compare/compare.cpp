@@ -3,116 +3,97 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <fmt/format.h>
 
-#include <oblique/mechanism/motion.h>
-#include <oblique/patch/patch.h>
-#include <oblique/solve/solve_error.h>
-#include <oblique/solve/stability.h>
+#include <oblique/compare/error_parts.h>
+#include <oblique/compare/patched_run.h>
+#include <oblique/compare/worst_reason.h>
 
 namespace oblique {
 namespace {
 
-constexpr std::size_t kRowsPerStabilityCheck = 10;
 constexpr double kAboveFloor = 10;
 /// Amplifiers of this gain err by far less than what the tolerance of any run leaves. Ideal ones would not do
 /// for the floor: without the dynamics of the loops there are fewer errors to add up, ten times fewer in a
 /// Jansen leg.
 constexpr double kFloorGain = 1e12;
 
-/// The columns of a trajectory that belong to a moving point.
-struct PointColumns {
-  std::size_t point;
-  std::size_t x, y;
+/// "amplifiers of gain 1000 and 20 Hz": the bandwidth where it was chosen.
+std::string name_of(const PatchOptions& options) {
+  return fmt::format("amplifiers of gain {:.6g}{}", options.gain,
+                     options.bandwidth ? fmt::format(" and {:.6g} Hz", *options.bandwidth) : "");
+}
+
+/// The runs of a comparison, one after the other.
+class Comparer {
+ public:
+  Comparer(const Mechanism& mechanism, const BlockLibrary& library, const CompareOptions& options)
+      : mechanism_(mechanism),
+        library_(library),
+        options_(options),
+        exact_(solve_motion(mechanism, options.positions)),
+        reasons_(mechanism, exact_) {}
+
+  ComparedRun compared(const PatchOptions& options) {
+    const PatchedMechanism patched(patch_named(mechanism_, options), library_);
+    const RecordedRun recorded = run_recorded(patched, name_of(options), options.tolerance, progress());
+    finish_run();
+    const Run& analog = recorded.run;
+    ComparedRun result;
+    result.method = options.method;
+    result.gain = options.gain;
+    result.bandwidth = options.bandwidth.value_or(default_bandwidth(mechanism_));
+    result.steps = analog.statistics.steps;
+    result.seconds = analog.seconds;
+    result.overloads = overloads_of(patched.program, analog);
+    result.slowest_pole = slowest_pole_of(patched.program, recorded.instants);
+    result.stable = result.slowest_pole < 0;
+    const Distances error = distances(mechanism_, patched.flat, analog.trajectory, exact_);
+    result.max_error = error.largest;
+    result.rms_error = error.rms;
+    result.worst = {mechanism_.points[error.worst.point].name, exact_.times[error.row],
+                    exact_.drives[error.row].front().value,
+                    reasons_.reason(patched, options, recorded, error)};
+    result.parts = error_parts(patched, exact_, analog.trajectory, error, progress());
+    finish_run();
+    return result;
+  }
+
+  double floor(PatchOptions options) {
+    options.gain = kFloorGain;
+    const PatchedMechanism patched(patch_named(mechanism_, options), library_);
+    const RecordedRun recorded = run_recorded(patched, name_of(options), options.tolerance, progress());
+    finish_run();
+    return distances(mechanism_, patched.flat, recorded.run.trajectory, exact_).largest;
+  }
+
+ private:
+  void finish_run() {
+    ++done_;
+    if (options_.progress) progress()(0);
+  }
+
+  std::function<void(double)> progress() const {
+    if (!options_.progress) return {};
+    const auto bandwidths = std::max<std::size_t>(options_.bandwidths.size(), 1);
+    const auto total =
+        static_cast<double>(options_.methods.size() * bandwidths * (2 * options_.gains.size() + 1));
+    return [this, total](double fraction) { options_.progress((done_ + fraction) / total); };
+  }
+
+  const Mechanism& mechanism_;
+  const BlockLibrary& library_;
+  const CompareOptions& options_;
+  Motion exact_;
+  WorstReasons reasons_;
+  double done_ = 0;  ///< runs
 };
 
-std::vector<PointColumns> point_columns(const Mechanism& mechanism, const Trajectory& trajectory) {
-  std::vector<PointColumns> columns;
-  for (std::size_t p = 0; p < mechanism.points.size(); ++p) {
-    const Point& point = mechanism.points[p];
-    if (point.fixed) continue;
-    columns.push_back(
-        {p, trajectory.find(point.name + ".x").value(), trajectory.find(point.name + ".y").value()});
-  }
-  return columns;
-}
-
-void measure_errors(const Mechanism& mechanism, const Trajectory& analog, const Motion& exact,
-                    GainRun& result) {
-  double sum = 0;
-  std::size_t count = 0;
-  for (const PointColumns& columns : point_columns(mechanism, analog)) {
-    for (std::size_t row = 0; row < analog.rows(); ++row, ++count) {
-      const Eigen::Vector2d& place = exact.configurations[row].points[columns.point].position;
-      const double error =
-          std::hypot(analog.at(row, columns.x) - place.x(), analog.at(row, columns.y) - place.y());
-      sum += error * error;
-      if (error <= result.max_error) continue;
-      result.max_error = error;
-      result.worst_point = mechanism.points[columns.point].name;
-      result.worst_time = analog.at(row, 0);
-    }
-  }
-  result.rms_error = std::sqrt(sum / static_cast<double>(std::max<std::size_t>(count, 1)));
-}
-
-Run run_naming_gain(const Program& program, const FlatDiagram& flat, const RunOptions& options, double gain) {
-  try {
-    return run(program, flat, options);
-  } catch (const SolveError& error) {
-    Diagnostic finding = error.diagnostics().front();
-    finding.place = {flat.file, {}};  // the diagram has no file in which its blocks stand
-    finding.what = fmt::format("with amplifiers of gain {:.6g}: {}", gain, finding.what);
-    throw SolveError(error.kind(), error.time(), std::move(finding));
-  }
-}
-
-GainRun run_with_gain(const Mechanism& mechanism, const BlockLibrary& library, const Motion& exact,
-                      PatchMethod method, double gain, const std::function<void(double)>& progress) {
-  PatchOptions patch_options;
-  patch_options.method = method;
-  patch_options.gain = gain;
-  patch_options.samples = static_cast<int>(exact.times.size());
-  Diagram diagram = patch(mechanism, patch_options);
-  diagram.file = mechanism.file;
-  const FlatDiagram flat = flatten(diagram, library);
-  const Program program(assemble(flat));
-
-  GainRun result;
-  result.gain = gain;
-  result.slowest_pole = -std::numeric_limits<double>::infinity();
-  std::vector<std::pair<double, std::vector<double>>> checkpoints;
-  std::size_t row = 0;
-  RunOptions options = options_of(diagram.run);
-  options.progress = progress;
-  options.on_sample = [&](double t, std::span<const double> states, std::span<const double>) {
-    if (row++ % kRowsPerStabilityCheck == 0)
-      checkpoints.emplace_back(t, std::vector(states.begin(), states.end()));
-  };
-  const Run analog = run_naming_gain(program, flat, options, gain);
-  result.steps = analog.statistics.steps;
-  result.seconds = analog.seconds;
-  for (std::size_t s = 0; s < analog.peaks.size(); ++s) {
-    if (std::abs(analog.peaks[s].value) > 1 + kOverloadMargin) {
-      result.overloads.push_back({program.signal_names()[s], analog.peaks[s]});
-    }
-  }
-  Workspace frozen(program);
-  for (const auto& [t, states] : checkpoints) {
-    const double pole = servo_stability(program, frozen, t, states);
-    result.slowest_pole = std::max(result.slowest_pole, pole);
-    result.stable = result.stable && pole < 0;
-  }
-  measure_errors(mechanism, analog.trajectory, exact, result);
-  return result;
-}
-
 /// Least-squares slope of log error over log gain among the runs that the floor does not hide.
-std::optional<double> fitted_order(const std::vector<GainRun>& runs, double floor) {
+std::optional<double> fitted_order(std::span<const ComparedRun> runs, double floor) {
   double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
-  for (const GainRun& run : runs) {
+  for (const ComparedRun& run : runs) {
     if (run.max_error < kAboveFloor * floor || !std::isfinite(run.gain)) continue;
     const double x = std::log10(run.gain), y = std::log10(run.max_error);
     n += 1;
@@ -131,24 +112,29 @@ std::optional<double> fitted_order(const std::vector<GainRun>& runs, double floo
 Comparison compare(const Mechanism& mechanism, const BlockLibrary& library, const CompareOptions& options) {
   Comparison comparison;
   comparison.mechanism = mechanism.title;
-  comparison.method = options.method;
   comparison.unit = mechanism.length_unit;
   comparison.size = mechanism.largest_length();
-  comparison.bandwidth = default_bandwidth(mechanism);
-  const Motion exact = solve_motion(mechanism, options.positions);
-
-  const auto total = static_cast<double>(options.gains.size() + 1);
-  double done = 0;
-  const auto progress = [&](double fraction) {
-    if (options.progress) options.progress((done + fraction) / total);
-  };
-  for (const double gain : options.gains) {
-    comparison.runs.push_back(run_with_gain(mechanism, library, exact, options.method, gain, progress));
-    progress(1);
-    ++done;
+  comparison.turning = mechanism.drives.empty() || !mechanism.drives.front().slide;
+  Comparer comparer(mechanism, library, options);
+  std::vector<std::optional<double>> bandwidths(options.bandwidths.begin(), options.bandwidths.end());
+  if (bandwidths.empty()) bandwidths.emplace_back();
+  for (const PatchMethod method : options.methods) {
+    for (const std::optional<double>& bandwidth : bandwidths) {
+      PatchOptions patch_options;
+      patch_options.method = method;
+      patch_options.bandwidth = bandwidth;
+      patch_options.samples = options.positions;
+      const std::size_t first = comparison.runs.size();
+      for (const double gain : options.gains) {
+        patch_options.gain = gain;
+        comparison.runs.push_back(comparer.compared(patch_options));
+      }
+      GainSeries series{
+          method, bandwidth.value_or(default_bandwidth(mechanism)), comparer.floor(patch_options), {}};
+      series.order = fitted_order(std::span(comparison.runs).subspan(first), series.floor);
+      comparison.series.push_back(series);
+    }
   }
-  comparison.floor = run_with_gain(mechanism, library, exact, options.method, kFloorGain, progress).max_error;
-  comparison.order = fitted_order(comparison.runs, comparison.floor);
   return comparison;
 }
 

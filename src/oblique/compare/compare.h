@@ -13,11 +13,12 @@
 
 namespace oblique {
 
-/// What to compare.
+/// What to compare: every method with every bandwidth and every gain.
 struct CompareOptions {
-  PatchMethod method = PatchMethod::triangles;
+  std::vector<PatchMethod> methods{PatchMethod::triangles};
   std::vector<double> gains{1e2, 1e3, 1e4, 1e5, 1e6};
-  int positions = 361;  ///< rows over one turn, both ends included
+  std::vector<double> bandwidths;  ///< [Hz]; none: the `default_bandwidth` of the mechanism alone
+  int positions = 361;             ///< rows over one turn, both ends included
   std::function<void(double fraction)> progress;
 };
 
@@ -27,13 +28,38 @@ struct Overload {
   Peak peak;
 };
 
+/// The row and the point at which a run errs most.
+struct WorstPlace {
+  std::string point;
+  double time = 0;     ///< [s]
+  double drive = 0;    ///< value of the first drive there [rad] or [length unit]
+  std::string reason;  ///< what is the worst of the turn there as well; empty: nothing that was measured
+};
+
+/// Where the largest error of a run comes from. With q_run, q_tight and q_rest where the worst point stands
+/// in the run, in a run of a hundredth of its tolerance, and with the cranks stopped there and all loops at
+/// rest:
+///
+///     q_run − q_exact = (q_rest − q_exact) + (q_tight − q_rest) + (q_run − q_tight)
+///
+/// Each part is taken along the whole error, so that together they are its magnitude; a part against it is
+/// negative [length unit].
+struct ErrorParts {
+  double at_rest = 0;  ///< static: what the finite gain leaves
+  double lag = 0;      ///< what the loops are behind for their finite speed
+  double solver = 0;   ///< what the tolerance of the run leaves
+};
+
 /// One patched diagram held against the exact motion.
-struct GainRun {
+struct ComparedRun {
+  PatchMethod method = PatchMethod::triangles;
   double gain = 0;
+  double bandwidth = 0;  ///< of the amplifiers [Hz]
   double max_error = 0;  ///< largest distance of any moving point from its exact place [length unit]
   double rms_error = 0;  ///< root of the mean square of these distances, all points and rows [length unit]
-  std::string worst_point;
-  double worst_time = 0;  ///< [s]
+  WorstPlace worst;
+  std::optional<ErrorParts> parts;  ///< of max_error; nothing where the loops do not rest, or the run of
+                                    ///< tighter tolerance fails
   long steps = 0;
   double seconds = 0;  ///< of the run, wall clock
   std::vector<Overload> overloads;
@@ -41,26 +67,32 @@ struct GainRun {
   double slowest_pole = 0;  ///< largest real part of the servo loops' eigenvalues over these rows [1/s]
 };
 
-struct Comparison {
-  std::string mechanism;  ///< title
+/// What the runs of one method and one bandwidth tell together.
+struct GainSeries {
   PatchMethod method = PatchMethod::triangles;
-  std::string unit;      ///< of lengths
-  double size = 0;       ///< largest link length [length unit]
-  double bandwidth = 0;  ///< of the amplifiers [Hz]
-  double floor =
-      0;  ///< largest error with amplifiers of gain 1e12: what tolerance alone leaves [length unit]
-  std::vector<GainRun> runs;
-  std::optional<double>
-      order;  ///< slope of log error over log gain; none with fewer than two runs above the floor
+  double bandwidth = 0;         ///< [Hz]
+  double floor = 0;             ///< largest error with amplifiers of gain 1e12: what tolerance alone leaves
+                                ///< [length unit]
+  std::optional<double> order;  ///< slope of log error over log gain; none with fewer than two runs above the
+                                ///< floor
+};
+
+struct Comparison {
+  std::string mechanism;           ///< title
+  std::string unit;                ///< of lengths
+  double size = 0;                 ///< largest link length [length unit]
+  bool turning = true;             ///< the first drive turns a body: it is told by its angle
+  std::vector<ComparedRun> runs;   ///< method by method, bandwidth by bandwidth, in the order of the gains
+  std::vector<GainSeries> series;  ///< in the order of the runs
 };
 
 /// A signal may pass 1 machine unit by this much before it counts as an overload: cosines that stand at 1
 /// overshoot by the tolerance of the run.
 inline constexpr double kOverloadMargin = 1e-6;
 
-/// Patches a mechanism with each gain, runs the diagrams over one turn, and measures them against the exact
-/// motion. The order is fitted where the error is at least ten times the floor. Throws as `patch`
-/// and, with the gain in the message, as `run`.
+/// Patches a mechanism with each method, bandwidth and gain, runs the diagrams over one turn, and measures
+/// them against the exact motion. The order is fitted where the error is at least ten times the floor. Throws
+/// as `patch` and, with the gain in the message, as `run`.
 Comparison compare(const Mechanism& mechanism, const BlockLibrary& library,
                    const CompareOptions& options = {});
 

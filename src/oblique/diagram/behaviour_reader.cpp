@@ -14,7 +14,9 @@ class BehaviourReader {
  public:
   BehaviourReader(TableReader& reader, BlockDefinition& definition, Diagnostics& diagnostics)
       : reader_(reader), definition_(definition), diagnostics_(diagnostics) {
-    for (const ParameterDefinition& parameter : definition_.parameters) constants_.push_back(parameter.name);
+    for (const ParameterDefinition& parameter : definition_.parameters) {
+      if (!parameter.formula) constants_.push_back(parameter.name);
+    }
     constants_.emplace_back("polarity");
   }
 
@@ -83,6 +85,9 @@ class BehaviourReader {
     for (const Written& w : written) {
       if (std::find(names.begin(), names.end(), w.equation.target) == names.end())
         names.push_back(w.equation.target);
+    }
+    for (const ParameterDefinition& parameter : definition_.parameters) {
+      if (parameter.formula) names.push_back(parameter.name);
     }
     Behaviour behaviour;
     behaviour.when = std::move(when);

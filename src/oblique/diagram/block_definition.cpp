@@ -10,6 +10,7 @@
 
 #include <oblique/diagram/behaviour_reader.h>
 #include <oblique/diagram/diagram.h>
+#include <oblique/diagram/formula.h>
 #include <oblique/diagram/names.h>
 #include <oblique/diagram/points.h>
 #include <oblique/text/table_reader.h>
@@ -124,9 +125,20 @@ class BlockReader {
     ParameterDefinition parameter;
     parameter.name = entry.key;
     if (const auto kind = reader.string("kind")) {
-      if (*kind != "number" && *kind != "points")
+      if (*kind != "number" && *kind != "points" && *kind != "formula")
         reader.report("kind", fmt::format("parameter '{}' is of kind '{}'", entry.key, *kind),
-                      "number or points");
+                      "number, points or formula");
+      if (*kind == "formula") {
+        parameter.formula = Expression{};
+        const std::string subject = fmt::format("default of parameter '{}'", entry.key);
+        if (const Value* const value = reader.find("default"))
+          parameter.formula =
+              read_formula(definition_.file, *value, subject, diagnostics_).value_or(Expression{});
+        parameter.doc = reader.string("doc").value_or("");
+        reader.finish();
+        definition_.parameters.push_back(std::move(parameter));
+        return;
+      }
       if (*kind == "points") {
         parameter.points = PointTable{{0, 1}, {0, 1}};
         const std::string subject = fmt::format("default of parameter '{}'", entry.key);

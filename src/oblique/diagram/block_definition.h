@@ -39,7 +39,8 @@ struct ParameterDefinition {
   std::optional<double> above, below;       ///< exclusive limits
   std::optional<double> at_least, at_most;  ///< inclusive limits
   std::string doc;
-  std::optional<PointTable> points;  ///< the default of a parameter that is a function given by points
+  std::optional<PointTable> points;   ///< the default of a parameter that is a function given by points
+  std::optional<Expression> formula;  ///< the default of a parameter that is an expression of time
 
   bool allows(double value) const;  ///< within the limits; never for "not a number"
   std::string range() const;        ///< "a number above 0 [Hz]"

@@ -98,6 +98,19 @@ Entry text_setting(std::string key, std::string text) {
   return {std::move(key), {}, text_value(std::move(text))};
 }
 
+Entry points_setting(std::string key, const PointTable& points) {
+  const auto list = [](std::vector<Value> elements) {
+    Value value;
+    value.kind = Value::Kind::array;
+    value.elements = std::move(elements);
+    return value;
+  };
+  std::vector<Value> all;
+  for (std::size_t i = 0; i < points.x.size(); ++i)
+    all.push_back(list({number_setting({}, points.x[i]).value, number_setting({}, points.y[i]).value}));
+  return {std::move(key), {}, list(std::move(all))};
+}
+
 std::string to_string(const WeightedSignal& term) {
   if (term.weight == 1) return term.signal;
   if (term.weight == -1) return "-" + term.signal;

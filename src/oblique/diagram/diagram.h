@@ -41,6 +41,7 @@ struct RunSettings {
   IntegrationMethod method = IntegrationMethod::automatic;
   int samples = 1001;           ///< rows of the trajectory, both ends included
   long max_steps = 10'000'000;  ///< of the solver, over the whole run
+  bool settle = true;           ///< servo loops are brought to rest before the clock starts
   /// Absolute tolerances of single states [machine unit]: of a block (a composite stands for all in it) by
   /// its path.
   std::vector<std::pair<std::string, double>> tolerances;
@@ -132,9 +133,10 @@ Diagram read_diagram(const std::filesystem::path& path);
 /// The text of a diagram, one block a line, with its comments; `parse_diagram` gives an equal diagram back.
 std::string write_diagram(const Diagram& diagram);
 
-/// Builds the value of a `settings` entry: a number, a signal, a list of weighted signals.
+/// Builds the value of a `settings` entry: a number, a signal, a list of weighted signals, points.
 Entry number_setting(std::string key, double value);
 Entry text_setting(std::string key, std::string text);
+Entry points_setting(std::string key, const PointTable& points);
 struct WeightedSignal {
   double weight = 1;
   std::string signal;

@@ -122,6 +122,7 @@ class DiagramReader {
     }
     run.samples = static_cast<int>(whole(reader, "samples", 2, kMostSamples).value_or(run.samples));
     run.max_steps = whole(reader, "max_steps", 1, kLargestWhole).value_or(run.max_steps);
+    run.settle = reader.boolean("settle").value_or(true);
     reader.finish();
   }
 

@@ -129,6 +129,7 @@ std::string write_diagram(const Diagram& diagram) {
                              {{}, "method", toml_string(method_name(run.method))},
                              {{}, "samples", fmt::format("{}", run.samples)},
                              {{}, "max_steps", fmt::format("{}", run.max_steps)}};
+  if (!run.settle) settings.push_back({{}, "settle", "false"});
   if (!run.tolerances.empty()) {
     std::string value = "{ ";
     for (const auto& [block, tolerance] : run.tolerances)

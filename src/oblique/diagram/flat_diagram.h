@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -35,13 +37,17 @@ struct FlatBlock {
   std::string path;  ///< "C.direction.length": the names of the composites around it
   const BlockDefinition* definition = nullptr;  ///< in the library given to `flatten`
   const Behaviour* behaviour = nullptr;         ///< the case that its parameters select
-  std::vector<double> parameters;               ///< in the order of the definition
-  std::vector<PointTable> points;               ///< of the parameters that are functions; else empty ones
-  std::vector<FlatInput> inputs;                ///< in the order of the definition
-  double polarity = 1;                          ///< −1 where summers and integrators invert
-  double tolerance = 0;   ///< absolute, of its states [machine unit]; 0: that of the run
-  std::size_t group = 0;  ///< of FlatTimeline::groups
-  Place place;            ///< of the block of the diagram that it is or is a part of
+  /// That case with the block's formulas in it, where it has some: `behaviour` points to it. It never
+  /// changes, so copies of the block share it.
+  std::shared_ptr<const Behaviour> own_behaviour;
+  std::vector<double> parameters;              ///< in the order of the definition
+  std::vector<PointTable> points;              ///< of the parameters that are functions; else empty ones
+  std::map<std::string, Expression> formulas;  ///< of the parameters that are expressions of time
+  std::vector<FlatInput> inputs;               ///< in the order of the definition
+  double polarity = 1;                         ///< −1 where summers and integrators invert
+  double tolerance = 0;                        ///< absolute, of its states [machine unit]; 0: that of the run
+  std::size_t group = 0;                       ///< of FlatTimeline::groups
+  Place place;                                 ///< of the block of the diagram that it is or is a part of
 };
 
 /// A column of the trajectory.

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <oblique/diagram/expectations.h>
+#include <oblique/diagram/formula.h>
 #include <oblique/diagram/machine_defaults.h>
 #include <oblique/diagram/overrides.h>
 #include <oblique/diagram/timeline.h>
@@ -155,10 +156,18 @@ class Layout {
     block.behaviour = block.definition->choose_behaviour(node.parameters, block.polarity);
     block.parameters = node.parameters;
     for (std::size_t k = 0; k < block.definition->parameters.size(); ++k) {
-      const auto& default_points = block.definition->parameters[k].points;
+      const ParameterDefinition& parameter = block.definition->parameters[k];
+      if (parameter.formula)
+        block.formulas[parameter.name] = node.wired->parameters[k].formula.value_or(*parameter.formula);
+      const auto& default_points = parameter.points;
       if (!default_points) continue;
       block.points.resize(block.definition->parameters.size());
       block.points[k] = node.wired->parameters[k].points.value_or(*default_points);
+    }
+    if (!block.formulas.empty()) {
+      block.own_behaviour =
+          std::make_shared<const Behaviour>(with_formulas(*block.behaviour, block.formulas));
+      block.behaviour = block.own_behaviour.get();
     }
     block.place = node.place;
     node.flat = flat_.blocks.size();

@@ -96,6 +96,7 @@ class MachineReader {
           expected);
       return true;
     }
+    steps.reserve(value->elements.size());
     for (const Value& element : value->elements) {
       const auto step = read_quantity(file_, element, unit, fmt::format("'{}'", key), diagnostics_);
       if (!step) continue;

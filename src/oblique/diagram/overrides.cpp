@@ -60,6 +60,11 @@ class Finder {
              "change the points in the diagram");
       return std::nullopt;
     }
+    if (parameter.formula) {
+      report(fmt::format("'{}' is a formula", name), "a parameter that is a number",
+             "change the formula in the diagram");
+      return std::nullopt;
+    }
     try {
       const double value = parse_quantity(override_.value, parse_unit(parameter.unit).value_or(Unit{}));
       check_range(parameter, value, subject_ + ": the value", {}, {}, diagnostics_);

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include <oblique/diagram/machine_defaults.h>
 #include <oblique/diagram/names.h>
 
 namespace oblique {
@@ -59,6 +60,7 @@ class Writer {
         flat_(flat),
         scaling_(scaling),
         library_(library),
+        machine_(diagram.machine.profile),
         polarity_(diagram.machine.inverting ? -1 : 1) {
     for (const BlockInstance& block : diagram.blocks) labels_.emplace(block.name, block.label);
     for (const FlatBlock& block : flat.blocks) names_.push_back(free_name(block.path));
@@ -116,13 +118,23 @@ class Writer {
     for (std::size_t i = 0; i < definition.inputs.size(); ++i) {
       add_input(instance, definition.inputs[i], block.inputs[i], sign * scaling_[b].inputs[i]);
     }
+    for (const auto& [name, formula] : block.formulas)
+      instance.settings.push_back(text_setting(name, to_string(formula)));
     for (std::size_t k = 0; k < definition.parameters.size(); ++k) {
-      const double value = scaled_number(block.parameters[k], scaling_[b].parameters[k], 1);
-      if (value != definition.parameters[k].default_value) {
-        instance.settings.push_back(number_setting(definition.parameters[k].name, value));
+      if (definition.parameters[k].points) {
+        instance.settings.push_back(points_setting(definition.parameters[k].name, block.points[k]));
+        continue;
       }
+      set(instance, definition, k, scaled_number(block.parameters[k], scaling_[b].parameters[k], 1));
     }
     return instance;
+  }
+
+  /// Writes a parameter, unless it would have that value left open.
+  void set(BlockInstance& instance, const BlockDefinition& definition, std::size_t k, double value) {
+    const ParameterDefinition& parameter = definition.parameters[k];
+    if (value != machine_.of(definition)[k].value_or(parameter.default_value))
+      instance.settings.push_back(number_setting(parameter.name, value));
   }
 
   /// −1 where the block comes from a composite of another convention than the file's.
@@ -176,9 +188,7 @@ class Writer {
       BlockInstance one;
       one.name = reference_ = free_name("reference");
       one.type = name;
-      if (d.parameters[*parameter].default_value != 1) {
-        one.settings.push_back(number_setting(d.parameters[*parameter].name, 1));
-      }
+      set(one, d, *parameter, 1);
       helpers_.push_back(std::move(one));
       return reference_;
     }
@@ -209,6 +219,7 @@ class Writer {
       sum.name = free_name(wish);
       sum.type = name;
       sum.settings.push_back(wire_setting(d.inputs[0].name, terms));
+      for (std::size_t k = 0; k < defaults.size(); ++k) set(sum, d, k, defaults[k]);
       helpers_.push_back(sum);
       return sum.name;
     }
@@ -228,6 +239,7 @@ class Writer {
   const FlatDiagram& flat_;
   const AmplitudeScaling& scaling_;
   const BlockLibrary& library_;
+  wiring::MachineDefaults machine_;
   double polarity_;
   std::unordered_map<std::string, std::string> labels_;
   std::unordered_set<std::string> taken_;

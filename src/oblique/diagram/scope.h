@@ -49,7 +49,8 @@ struct WiredInput {
 /// What a file says about one parameter; without `given` the default applies.
 struct WiredParameter {
   bool given = false;
-  std::optional<PointTable> points;  ///< of a parameter that is a function given by points
+  std::optional<PointTable> points;   ///< of a parameter that is a function given by points
+  std::optional<Expression> formula;  ///< of a parameter that is an expression of time
   Constant value;
   SourcePosition position;
 };

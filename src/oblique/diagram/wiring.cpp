@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include <oblique/diagram/formula.h>
 #include <oblique/diagram/points.h>
 
 #include <fmt/format.h>
@@ -123,9 +124,13 @@ void Resolver::read_settings(const Scope& scope, WiredBlock& block) {
         wired.points = read_points(scope.file, entry.value, subject, *diagnostics_);
         continue;
       }
+      if (definition.parameters[*parameter].formula) {
+        wired.formula = read_formula(scope.file, entry.value, subject, *diagnostics_);
+        continue;
+      }
       const auto value =
           read_parameter(scope, entry.value, definition.parameters[*parameter], subject, *diagnostics_);
-      if (value) wired = {true, {}, *value, entry.value.position};
+      if (value) wired = {true, {}, {}, *value, entry.value.position};
     } else if (const auto input = definition.find_input(entry.key)) {
       connect(scope, block, *input, entry, wires_of(entry.value), drivers);
     } else if (entry.key == "in") {

@@ -27,20 +27,6 @@ std::vector<double> gains_of_one(const MachineProfile& machine) {
   return has_signed_weights(machine) ? machine.input_gains : std::vector<double>{1};
 }
 
-Entry points_setting(const std::string& name, const PointTable& points) {
-  Entry entry;
-  entry.key = name;
-  entry.value.kind = Value::Kind::array;
-  for (std::size_t k = 0; k < points.x.size(); ++k) {
-    Value pair;
-    pair.kind = Value::Kind::array;
-    for (const double number : {points.x[k], points.y[k]})
-      pair.elements.push_back(number_setting({}, number).value);
-    entry.value.elements.push_back(std::move(pair));
-  }
-  return entry;
-}
-
 class Writer {
  public:
   Writer(const Diagram& diagram, const FlatDiagram& flat, const MachineProfile& machine,
@@ -163,6 +149,10 @@ class Writer {
       if (parameter.points) {
         if (block.points[k] != *parameter.points)
           settings.push_back(points_setting(parameter.name, block.points[k]));
+        continue;
+      }
+      if (parameter.formula) {
+        settings.push_back(text_setting(parameter.name, to_string(block.formulas.at(parameter.name))));
         continue;
       }
       if (element.role == Role::integrator && parameter.name == "rate") continue;

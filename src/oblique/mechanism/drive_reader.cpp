@@ -108,6 +108,9 @@ class DriveReader {
           drive_.law = std::move(law->speed);
           drive_.law_scale = law->scale;
           drive_.speed = law_at(drive_, 0).rate;
+          constexpr double kSoonAfter = 1e-6;  // s
+          if (drive_.speed == 0)
+            drive_.speed = std::copysign(drive_.law_scale, law_at(drive_, kSoonAfter).rate);
           return;
         }
       } catch (const ExpressionError& error) {

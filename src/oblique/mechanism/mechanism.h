@@ -87,8 +87,9 @@ struct Drive {
   std::string name;
   std::size_t body = 0;   ///< index in Mechanism::bodies; unused with `slide`
   std::size_t about = 0;  ///< index in Mechanism::points, a point of the body; unused with `slide`
-  double speed = 0;       ///< [rad/s] or [length unit/s]; of a drive with a law: at the start
-  double start = 0;       ///< [rad] or [length unit]
+  /// [rad/s] or [length unit/s]; with a law: at the start, or from rest its unit, in the way it sets off.
+  double speed = 0;
+  double start = 0;  ///< [rad] or [length unit]
   Place place;
   std::optional<std::size_t> slide = {};  ///< index in Mechanism::slides
   std::optional<Expression> law = {};     ///< speed as an expression of `time`, in units of `law_scale`

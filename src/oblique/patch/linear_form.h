@@ -18,7 +18,14 @@ struct LinearForm {
     constant += factor * other.constant;
     return *this;
   }
+  bool operator==(const LinearForm&) const = default;
 };
+
+inline LinearForm weighted(const std::string& signal, double weight = 1) {
+  LinearForm form;
+  form.weights[signal] = weight;
+  return form;
+}
 
 inline LinearForm combined(std::initializer_list<std::pair<double, const LinearForm*>> parts) {
   LinearForm sum;

@@ -6,23 +6,40 @@
 #include <cmath>
 #include <numbers>
 
+#include <oblique/mechanism/motion.h>
+
 namespace oblique {
 
 std::string_view method_name(PatchMethod method) {
-  constexpr std::array<std::string_view, 2> kNames{"triangles", "gradient"};
+  constexpr std::array<std::string_view, 3> kNames{"triangles", "gradient", "paper"};
   return kNames[static_cast<std::size_t>(method)];
 }
 
 std::optional<PatchMethod> parse_patch_method(std::string_view text) {
-  for (const PatchMethod method : {PatchMethod::triangles, PatchMethod::gradient}) {
+  for (const PatchMethod method : {PatchMethod::triangles, PatchMethod::gradient, PatchMethod::paper}) {
     if (text == method_name(method)) return method;
   }
   return std::nullopt;
 }
 
+namespace {
+
+/// The greatest speed of a drive over the motion [rad/s] or [length unit/s]; of a law, at a thousand moments.
+double greatest_speed(const Mechanism& mechanism, const Drive& drive) {
+  if (!drive.law) return std::abs(drive.speed);
+  constexpr int kMoments = 1000;
+  const double until = period(mechanism);
+  double fastest = 0;
+  for (int k = 0; k <= kMoments; ++k)
+    fastest = std::max(fastest, std::abs(law_at(drive, until * k / kMoments).rate));
+  return fastest;
+}
+
+}  // namespace
+
 double default_bandwidth(const Mechanism& mechanism) {
   double fastest = 0;
-  for (const Drive& drive : mechanism.drives) fastest = std::max(fastest, std::abs(drive.speed));
+  for (const Drive& drive : mechanism.drives) fastest = std::max(fastest, greatest_speed(mechanism, drive));
   const double wanted = 100 * fastest / (2 * std::numbers::pi);
   const double decade = std::pow(10, std::floor(std::log10(wanted)));
   for (const double step : {1.0, 2.0, 5.0}) {
@@ -32,8 +49,15 @@ double default_bandwidth(const Mechanism& mechanism) {
 }
 
 Diagram patch(const Mechanism& mechanism, const PatchOptions& options) {
-  return options.method == PatchMethod::gradient ? patch_gradient(mechanism, options)
-                                                 : patch_triangles(mechanism, options);
+  switch (options.method) {
+    case PatchMethod::gradient:
+      return patch_gradient(mechanism, options);
+    case PatchMethod::paper:
+      return patch_paper(mechanism, options);
+    case PatchMethod::triangles:
+      break;
+  }
+  return patch_triangles(mechanism, options);
 }
 
 }  // namespace oblique

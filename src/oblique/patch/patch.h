@@ -2,7 +2,9 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include <oblique/diagram/diagram.h>
 #include <oblique/mechanism/mechanism.h>
@@ -19,9 +21,10 @@ class PatchError : public Error {
 enum class PatchMethod {
   triangles,  ///< servo amplifiers track the sides and angles of oblique triangles
   gradient,   ///< integrators descend along the gradient of the squared conditions
+  paper,      ///< a class III group as its first source drew it: two equal four-bar circuits and a loop
 };
 
-/// "triangles", "gradient".
+/// "triangles", "gradient", "paper".
 std::string_view method_name(PatchMethod method);
 std::optional<PatchMethod> parse_patch_method(std::string_view text);
 
@@ -31,8 +34,17 @@ struct PatchOptions {
   double gain = 1e6;  ///< μ of every servo amplifier; inf: ideal amplifiers
   std::optional<double>
       bandwidth;  ///< of every servo amplifier [Hz]; inf: algebraic loops; default: `default_bandwidth`
-  double tolerance = 1e-10;  ///< of the run that the diagram asks for
-  int samples = 361;         ///< rows of that run
+  bool derivatives = false;  ///< velocities and accelerations too, as further circuits
+  /// How many times slower than the loops inside it an outer loop is: next to their speed several splits of a
+  /// triad are unstable.
+  double slower = 100;
+  /// Names of the three leads of a triad: the one whose triangle carries the variable length, the one that
+  /// closes the loop, the third; empty: the split that is worth the most.
+  std::vector<std::string> split = {};
+  std::optional<double> unit;  ///< 1 machine unit of a coordinate [length unit]; default: by the exact motion
+  bool force = false;          ///< patch what flips on the way, too
+  double tolerance = 1e-10;    ///< of the run that the diagram asks for
+  int samples = 361;           ///< rows of that run
 };
 
 /// A hundred times the frequency of the fastest drive, rounded up to 1, 2 or 5 times a power of ten [Hz]: the
@@ -55,6 +67,17 @@ Diagram patch_triangles(const Mechanism& mechanism, const PatchOptions& options 
 /// σ the least singular value of ∂g/∂x. Multipliers, summers and integrators alone. Scaled, and throws, as
 /// above.
 Diagram patch_gradient(const Mechanism& mechanism, const PatchOptions& options = {});
+
+/// The diagram of 003_69ea068b7b221c3d.txt for a mechanism of cranks and triads on three links, so that it
+/// can be read beside the source: two equal circuits `four-bar-circuit` with one scale for all lengths, an
+/// outer loop that tracks the variable length, and the source's angles among the outputs. The split is the
+/// source's unless the options name one: the first lead, that hangs on a crank, carries the variable length,
+/// the second one in the file closes the loop. Scaled, and throws, as above.
+Diagram patch_paper(const Mechanism& mechanism, const PatchOptions& options = {});
+
+/// The splits of a mechanism's triad that never flip and keep their gain, the most worth first, as
+/// PatchOptions::split names them; none where it has no triad on three links, or several.
+std::vector<std::vector<std::string>> useful_splits(const Mechanism& mechanism);
 
 /// By the method of the options.
 Diagram patch(const Mechanism& mechanism, const PatchOptions& options = {});

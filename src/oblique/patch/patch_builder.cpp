@@ -13,19 +13,9 @@ namespace {
 /// Positions over the turn from which the scaling is taken: half a degree apart.
 constexpr int kScalingPositions = 721;
 
-Structure structure_of(const Mechanism& mechanism) {
-  Structure structure = decompose(mechanism);
-  for (const Drive& drive : mechanism.drives) {
-    if (!drive.law) continue;
-    throw PatchError(Diagnostic{
-        drive.place,
-        fmt::format("drive '{}' has a speed that varies, which no block of the patch can make", drive.name),
-        "constant speeds", "give a number as its speed; `oblique solve` follows the law"});
-  }
-  return structure;
-}
+}  // namespace
 
-Motion motion_of(const Mechanism& mechanism, const Structure& structure) {
+Motion patch_motion(const Mechanism& mechanism, const Structure& structure) {
   std::vector<double> times;
   times.reserve(kScalingPositions);
   const double turn = period(mechanism);
@@ -33,20 +23,18 @@ Motion motion_of(const Mechanism& mechanism, const Structure& structure) {
   return solve_motion(mechanism, structure, times);
 }
 
-}  // namespace
-
 PatchBuilder::PatchBuilder(const Mechanism& mechanism, const PatchOptions& options)
-    : mechanism_(mechanism),
+    : PointForms(mechanism),
       options_(options),
-      structure_(structure_of(mechanism)),
-      motion_(motion_of(mechanism, structure_)),
+      structure_(decompose(mechanism)),
+      motion_(patch_motion(mechanism, structure_)),
       scaling_(find_scaling(mechanism, structure_, motion_)),
       bandwidth_(options.bandwidth.value_or(default_bandwidth(mechanism))),
       signals_(mechanism.points.size()),
-      points_(mechanism.points.size()) {
-  for (std::size_t point = 0; point < points_.size(); ++point) {
-    if (mechanism.points[point].fixed) set_known(point);
-  }
+      drives_(mechanism.drives.size()),
+      speeds_(mechanism.drives.size()) {
+  if (options.unit) scaling_.length = *options.unit;
+  set_scale(scaling_);
 }
 
 void PatchBuilder::describe(const std::string& method, const std::string& remarks) {
@@ -59,6 +47,11 @@ void PatchBuilder::describe(const std::string& method, const std::string& remark
   diagram_.run.until = period(mechanism_);
   diagram_.run.tolerance = options_.tolerance;
   diagram_.run.samples = options_.samples;
+}
+
+std::string PatchBuilder::span_text() const {
+  return mechanism_.motion.until ? fmt::format("the {:.6g} s of its motion", *mechanism_.motion.until)
+                                 : fmt::format("one turn of '{}'", mechanism_.drives.front().name);
 }
 
 void PatchBuilder::add_reference() {
@@ -110,26 +103,30 @@ void PatchBuilder::add_summed_point(std::size_t point, const Terms& x, const Ter
   signals_[point].y = add_block(name_of(point) + "_y", "summer", {sum_of(y)});
 }
 
-void PatchBuilder::add_crank(const Group& crank) {
-  const Drive& drive = mechanism_.drives[crank.drives.front()];
+VectorForm PatchBuilder::crank_point(const Group& crank, const BodyPoint& point) const {
+  const std::size_t d = crank.drives.front();
+  const std::size_t pivot = pivot_of(crank);
+  const Eigen::Vector2d arm = point.local - mechanism_.bodies[mechanism_.drives[d].body].find(pivot)->local;
+  const double along = scaled(arm.x()), left = scaled(arm.y());
+  const VectorForm& at = *points_[pivot];
+  const VectorForm& axis = drives_[d].axis;
+  return {combined({{1, &at.x}, {along, &axis.x}, {-left, &axis.y}}),
+          combined({{1, &at.y}, {along, &axis.y}, {left, &axis.x}})};
+}
+
+std::string PatchBuilder::add_crank(const Group& crank) {
+  const std::size_t d = crank.drives.front();
+  const Drive& drive = mechanism_.drives[d];
   const Body& body = mechanism_.bodies[drive.body];
   const std::size_t pivot = pivot_of(crank);
-  const std::string comment =
-      fmt::format("crank {}: turns about {} at {:.6g} rad/s", body.name, name_of(pivot), drive.speed);
-  const std::string generator =
-      add_block(drive.name, "crank-generator",
-                {wire_setting("speed", {{1, one_}}), number_setting("rate", drive.speed),
-                 number_setting("start", drive.start)},
-                comment);
-  const std::string cosine = generator + ".cos", sine = generator + ".sin";
-  const Eigen::Vector2d origin = body.find(pivot)->local;
+  std::string generator = add_generator(
+      d, fmt::format("crank {}: turns about {} at {}", body.name, name_of(pivot), speed_text(drive)));
   for (const BodyPoint& point : body.points) {
     if (point.point == pivot || is_known(point.point)) continue;
-    const double along = scaled(point.local.x() - origin.x());
-    const double left = scaled(point.local.y() - origin.y());
-    add_summed_point(point.point, {x_of(pivot, 1), {along, cosine}, {-left, sine}},
-                     {y_of(pivot, 1), {along, sine}, {left, cosine}}, {});
+    const VectorForm form = crank_point(crank, point);
+    add_summed_point(point.point, terms_of(form.x), terms_of(form.y), {});
   }
+  return generator;
 }
 
 void PatchBuilder::add_carried_points(const Body& body, std::size_t p, std::size_t c) {
@@ -156,55 +153,21 @@ void PatchBuilder::add_outputs() {
     };
     add(".x", signals_[point].x, scaling_.origin.x());
     add(".y", signals_[point].y, scaling_.origin.y());
+    if (rate_signals_.empty()) continue;
+    const std::string& length = mechanism_.length_unit;
+    const auto add_rate = [&](const char* axis, const std::string& signal, double unit, const char* per) {
+      diagram_.outputs.push_back({name_of(point) + axis, signal, unit, length + per, {}});
+    };
+    const RateSignals& rates = rate_signals_[point];
+    add_rate(".vx", rates.vx, velocity_unit_, "/s");
+    add_rate(".vy", rates.vy, velocity_unit_, "/s");
+    add_rate(".ax", rates.ax, acceleration_unit_, "/s^2");
+    add_rate(".ay", rates.ay, acceleration_unit_, "/s^2");
   }
 }
 
 void PatchBuilder::set_known(std::size_t point) {
-  const Point& p = mechanism_.points[point];
-  VectorForm form;
-  if (p.fixed) {
-    form.x.constant = scaled(p.position.x() - scaling_.origin.x());
-    form.y.constant = scaled(p.position.y() - scaling_.origin.y());
-  } else {
-    form.x.weights[signals_[point].x] = 1;
-    form.y.weights[signals_[point].y] = 1;
-  }
-  points_[point] = form;
-}
-
-const std::pair<BodyPoint, BodyPoint>& PatchBuilder::base_of(std::size_t body) {
-  const auto& points = mechanism_.bodies[body].points;
-  return bases_.try_emplace(body, points[0], points[1]).first->second;
-}
-
-VectorForm PatchBuilder::direction_of(std::size_t body, const Eigen::Vector2d& local) {
-  const auto& [p, c] = base_of(body);
-  const Eigen::Vector2d base = c.local - p.local;
-  const double squared = base.squaredNorm() / scaling_.length;
-  const double a = base.dot(local) / squared, b = (base.x() * local.y() - base.y() * local.x()) / squared;
-  const VectorForm& from = *points_[p.point];
-  const VectorForm& to = *points_[c.point];
-  return {combined({{a, &to.x}, {-a, &from.x}, {-b, &to.y}, {b, &from.y}}),
-          combined({{a, &to.y}, {-a, &from.y}, {b, &to.x}, {-b, &from.x}})};
-}
-
-VectorForm PatchBuilder::point_of(std::size_t body, const Eigen::Vector2d& local) {
-  const auto& [p, c] = base_of(body);
-  VectorForm way = direction_of(body, (local - p.local) / scaling_.length);
-  way.x.add(points_[p.point]->x);
-  way.y.add(points_[p.point]->y);
-  return way;
-}
-
-PatchBuilder::LineForm PatchBuilder::line_form(const std::optional<std::size_t>& carrier,
-                                               const LineRef& line) {
-  if (carrier) return {point_of(*carrier, line.point), direction_of(*carrier, line.direction)};
-  LineForm form;
-  form.at.x.constant = scaled(line.point.x() - scaling_.origin.x());
-  form.at.y.constant = scaled(line.point.y() - scaling_.origin.y());
-  form.direction.x.constant = line.direction.x();
-  form.direction.y.constant = line.direction.y();
-  return form;
+  set_signals(point, signals_[point].x, signals_[point].y);
 }
 
 PatchBuilder::Terms PatchBuilder::terms_of(const LinearForm& form) const {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <map>
-#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -10,16 +9,19 @@
 #include <oblique/diagram/diagram.h>
 #include <oblique/mechanism/motion.h>
 #include <oblique/mechanism/structure.h>
-#include <oblique/patch/linear_form.h>
+#include <oblique/patch/group_residuals.h>
 #include <oblique/patch/patch.h>
-#include <oblique/patch/scaling.h>
 
 namespace oblique {
 
-/// What all methods of patching share: scaled signals for points, cranks, points that bodies carry, outputs.
-class PatchBuilder {
+/// The exact motion over one turn, half a degree apart, from which a patch takes its ranges.
+Motion patch_motion(const Mechanism& mechanism, const Structure& structure);
+
+/// What all methods of patching share: scaled signals for points, drives, points that bodies carry, rates,
+/// outputs.
+class PatchBuilder : protected PointForms {
  public:
-  /// Throws as `decompose` and `find_scaling`, and PatchError for drives with a law.
+  /// Throws as `decompose`, `period` and `find_scaling`.
   PatchBuilder(const Mechanism& mechanism, const PatchOptions& options);
 
  protected:
@@ -30,11 +32,14 @@ class PatchBuilder {
 
   /// Title, comment and run; `method` ends the title, `remarks` stand in the comment.
   void describe(const std::string& method, const std::string& remarks);
+  /// "one turn of 'crank'", or how long the file says: for the remarks.
+  std::string span_text() const;
   void add_reference();
   void add_outputs();
 
-  const std::string& name_of(std::size_t point) const { return mechanism_.points[point].name; }
-  double scaled(double length) const { return length / scaling_.length; }
+  /// Velocities and accelerations of all points: the differentiated conditions of each group, solved by servo
+  /// amplifiers. After the positions.
+  void add_rates();
 
   /// `wanted`, or the next free name that a block may have, which is then taken.
   std::string free_name(const std::string& wanted);
@@ -50,7 +55,19 @@ class PatchBuilder {
 
   static Entry sum_of(const Terms& terms);
   void add_summed_point(std::size_t point, const Terms& x, const Terms& y, const std::string& comment);
-  void add_crank(const Group& crank);
+  /// Gives the name of its crank generator.
+  std::string add_crank(const Group& crank);
+
+  /// "2 rad/s", or the law, for comments.
+  std::string speed_text(const Drive& drive) const;
+
+  /// A block that gives the direction of the body that a drive turns: its name; `drives_` keeps the form.
+  std::string add_generator(std::size_t drive, const std::string& comment);
+
+  /// A block that gives the way of a drive along its slide, in units of `reach` [machine unit]: its signal;
+  /// `drives_` keeps the form.
+  std::string add_way(std::size_t drive, double reach);
+
   bool is_known(std::size_t point) const {
     return mechanism_.points[point].fixed || !signals_[point].x.empty();
   }
@@ -62,37 +79,48 @@ class PatchBuilder {
   /// Takes a point's signals, or its place in the frame, as its form.
   void set_known(std::size_t point);
 
-  /// A vector of a body's frame [length unit], per length unit, and a point of it [machine unit], in the
-  /// world: by the two points that stand for the body, its first two where nothing else is said.
-  VectorForm direction_of(std::size_t body, const Eigen::Vector2d& local);
-  VectorForm point_of(std::size_t body, const Eigen::Vector2d& local);
-
-  struct LineForm {
-    VectorForm at, direction;
-  };
-  LineForm line_form(const std::optional<std::size_t>& carrier, const LineRef& line);
-
   /// The form as weighted signals, its constant on the reference.
   Terms terms_of(const LinearForm& form) const;
+
+  /// Adds Σ g ∂g/∂x to the terms of each unknown signal x: `forms` and `gap` are the blocks of the residual's
+  /// forms and of g.
+  using Gradients = std::map<std::string, Terms>;
+  void add_gradients(const Residual& residual, const std::vector<std::string>& forms, const std::string& gap,
+                     Gradients& gradients);
 
   [[noreturn]] void refuse(const Group& group, const std::string& why, const std::string& expected,
                            const std::string& remedy) const;
 
-  const Mechanism& mechanism_;
   const PatchOptions& options_;
   Structure structure_;
   Motion motion_;  ///< exact, half a degree apart: for ranges
   Scaling scaling_;
   double bandwidth_;
   std::vector<PointSignals> signals_;
-  std::vector<std::optional<VectorForm>> points_;                 ///< of those that have a place
-  std::map<std::size_t, std::pair<BodyPoint, BodyPoint>> bases_;  ///< the two points that stand for a body
+  std::vector<DriveForms> drives_;
+  std::vector<std::pair<LinearForm, std::string>> form_blocks_;  ///< forms that have a block
   std::string one_;
   Diagram diagram_;
 
  private:
-  const std::pair<BodyPoint, BodyPoint>& base_of(std::size_t body);
+  class Rates;
 
+  /// The signal of a drive's speed and what 1 machine unit of it is [rad/s] or [length unit/s].
+  struct Speed {
+    std::string signal;
+    double unit = 1;
+  };
+  const Speed& add_speed(std::size_t drive);
+
+  struct RateSignals {
+    std::string vx, vy, ax, ay;
+  };
+  VectorForm crank_point(const Group& crank, const BodyPoint& point) const;
+
+  std::vector<Speed> speeds_;              ///< of the drives
+  std::vector<RateSignals> rate_signals_;  ///< of the points, once they have rates
+  double velocity_unit_ = 1;               ///< 1 machine unit of a velocity [length unit/s]
+  double acceleration_unit_ = 1;           ///< of an acceleration [length unit/s²]
   std::set<std::string> names_;
 };
 

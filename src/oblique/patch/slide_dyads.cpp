@@ -111,14 +111,9 @@ SlideDyadPatch::Locus SlideDyadPatch::locus(const Group& group, const Condition&
 void SlideDyadPatch::set_axis(const Condition& angle) {
   if (angle.drive) {
     const Drive& drive = mechanism_.drives[*angle.drive];
-    const std::string generator = add_block(
-        drive.name, "crank-generator",
-        {wire_setting("speed", {{1, one_}}), number_setting("rate", drive.speed),
-         number_setting("start", drive.start)},
-        fmt::format("drive {}: the direction of {}", drive.name, mechanism_.bodies[drive.body].name));
-    axis_ = {};
-    axis_.x.weights[generator + ".cos"] = 1;
-    axis_.y.weights[generator + ".sin"] = 1;
+    add_generator(*angle.drive, fmt::format("drive {}: the direction of {}", drive.name,
+                                            mechanism_.bodies[drive.body].name));
+    axis_ = drives_[*angle.drive].axis;
     return;
   }
   const Eigen::Vector2d heading(std::cos(angle.value), std::sin(angle.value));
@@ -266,12 +261,7 @@ VectorForm SlideDyadPatch::add_slider(const Group& group, const Condition& along
   const Drive& drive = mechanism_.drives[*along.drive];
   const double reach = largest_over_motion(
       [&](const Configuration& here) { return std::abs(here.slides[*drive.slide].position); });
-  const std::string way =
-      add_block(drive.name, "integrator",
-                {wire_setting("in", {{scaled(drive.speed) / reach, one_}}),
-                 number_setting("initial", scaled(drive.start) / reach)},
-                fmt::format("drive {}: {:.6g} {}/s along {}", drive.name, drive.speed, mechanism_.length_unit,
-                            mechanism_.slides[*drive.slide].name));
+  const std::string way = add_way(*along.drive, reach);
   const Locus line = locus(group, along);
   VectorForm unknown = line.at;
   const auto add = [&](LinearForm& to, const LinearForm& direction, const char* axis) {

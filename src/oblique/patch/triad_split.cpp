@@ -2,11 +2,17 @@
 #include <oblique/patch/triad_split.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <oblique/mechanism/plane.h>
 #include <oblique/mechanism/triangle.h>
+#include <oblique/patch/patch_builder.h>
 
 namespace oblique {
 namespace {
@@ -26,15 +32,13 @@ double apex_sine(const Vector2d& first, const Vector2d& apex, const Vector2d& se
   return cross(a, b) / (a.norm() * b.norm());
 }
 
-/// Measures one split along the motion; nothing where a sign changes.
-std::optional<TriadSplit> measure(const Group& group, const Motion& motion,
-                                  std::array<std::size_t, 3> order) {
+/// Measures one split along the motion.
+TriadSplit measure(const Group& group, const Motion& motion, std::array<std::size_t, 3> order) {
   const auto& conditions = group.equations.conditions;
   const Condition &tracked = conditions[order[0]], &closing = conditions[order[1]],
                   &third = conditions[order[2]];
   const Vector2d bone = third.a.local - tracked.a.local;
   const double platform = bone.norm();
-  if (!(platform > 0)) return std::nullopt;
   const Vector2d arm = closing.a.local - tracked.a.local;
   // C − B = (a + i b)(D − B)
   const double a = bone.dot(arm) / bone.squaredNorm(), b = cross(bone, arm) / bone.squaredNorm();
@@ -43,9 +47,10 @@ std::optional<TriadSplit> measure(const Group& group, const Motion& motion,
   split.tracked = order[0];
   split.closing = order[1];
   split.third = order[2];
-  split.flattest = split.least_gain = std::numeric_limits<double>::infinity();
-  double least_slope = split.least_gain;
-  for (const Configuration& here : motion.configurations) {
+  split.flattest = std::numeric_limits<double>::infinity();
+  double least_slope = split.flattest;
+  for (std::size_t row = 0; row < motion.times.size(); ++row) {
+    const Configuration& here = motion.configurations[row];
     const auto at = [&](const PointRef& point) { return here.points[point.point].position; };
     const Vector2d start = at(tracked.b), anchor = at(closing.b), end = at(third.b);
     const Vector2d apex1 = at(tracked.a), apex2 = at(third.a);
@@ -62,42 +67,141 @@ std::optional<TriadSplit> measure(const Group& group, const Motion& motion,
     const double step = 1e-5 * w;
     const double slope = (closed(w + step) - closed(w - step)) / (2 * step);
     const int sign = slope > 0 ? 1 : -1;
-    if (split.sign == 0) {
+    if (row == 0) {
       split.first_side = side1;
       split.second_side = side2;
       split.sign = sign;
       split.first_w = w;
     }
-    if (side1 != split.first_side || side2 != split.second_side || sign != split.sign) return std::nullopt;
+    if (split.flip == TriadSplit::Flip::none) {
+      split.flip = side1 != split.first_side    ? TriadSplit::Flip::first_triangle
+                   : side2 != split.second_side ? TriadSplit::Flip::second_triangle
+                   : sign != split.sign         ? TriadSplit::Flip::loop
+                                                : TriadSplit::Flip::none;
+      split.flip_time = motion.times[row];
+    }
     split.flattest = std::min({split.flattest, std::abs(sine1), std::abs(sine2)});
     split.longest = std::max(split.longest, w);
     split.reach = std::max({split.reach, w, (anchor - start).norm()});
+    split.second_reach = std::max(split.second_reach, (end - apex1).norm());
     least_slope = std::min(least_slope, std::abs(slope));
   }
   split.least_gain = least_slope * split.reach;
   return split;
 }
 
+std::vector<std::string> leads_of(const Mechanism& mechanism, const Group& triad, const TriadSplit& split) {
+  std::vector<std::string> names;
+  for (const std::size_t lead : {split.tracked, split.closing, split.third})
+    names.push_back(mechanism.bodies[lead_of(triad, lead)].name);
+  return names;
+}
+
+std::string joined(const std::vector<std::string>& leads) {
+  return fmt::format("{}", fmt::join(leads, ","));
+}
+
 }  // namespace
 
-std::optional<TriadSplit> choose_split(const Group& group, const Motion& motion) {
+double TriadSplit::worth() const {
+  return flip == Flip::none ? std::min(flattest, least_gain) : 0;
+}
+
+bool can_be_split(const Group& group) {
   const auto& conditions = group.equations.conditions;
-  if (group.kind != GroupKind::triad ||
-      std::any_of(conditions.begin(), conditions.end(),
-                  [](const Condition& c) { return c.kind != Condition::Kind::distance; })) {
-    return std::nullopt;
-  }
-  // below this a triangle is as good as flat, or a loop without gain, at some position
-  constexpr double kLeast = 0.02;
-  std::optional<TriadSplit> best;
+  return group.kind == GroupKind::triad &&
+         std::all_of(conditions.begin(), conditions.end(),
+                     [](const Condition& c) { return c.kind == Condition::Kind::distance; });
+}
+
+std::vector<TriadSplit> splits_of(const Group& group, const Motion& motion) {
+  std::vector<TriadSplit> splits;
   std::array<std::size_t, 3> order{0, 1, 2};
   do {
-    const auto split = measure(group, motion, order);
-    if (!split) continue;
-    const double worth = std::min(split->flattest, split->least_gain);
-    if (worth > kLeast && (!best || worth > std::min(best->flattest, best->least_gain))) best = split;
+    splits.push_back(measure(group, motion, order));
   } while (std::next_permutation(order.begin(), order.end()));
-  return best;
+  std::stable_sort(splits.begin(), splits.end(),
+                   [](const TriadSplit& a, const TriadSplit& b) { return a.worth() > b.worth(); });
+  return splits;
+}
+
+std::size_t lead_of(const Group& triad, std::size_t condition) {
+  const Condition& c = triad.equations.conditions[condition];
+  for (const Link& link : triad.equations.links) {
+    const bool forwards = link.from == c.a.point && link.to == c.b.point;
+    const bool backwards = link.from == c.b.point && link.to == c.a.point;
+    if (forwards || backwards) return link.body;
+  }
+  throw std::logic_error("a distance condition without its link");
+}
+
+std::string split_name(const Mechanism& mechanism, const Group& triad, const TriadSplit& split) {
+  return fmt::format("{}", fmt::join(leads_of(mechanism, triad, split), ", "));
+}
+
+TriadSplit choose_split(const Mechanism& mechanism, const Group& triad, const Motion& motion,
+                        const PatchOptions& options) {
+  const std::vector<TriadSplit> splits = splits_of(triad, motion);
+  const Place& place = mechanism.bodies[triad.equations.cores.front()].place;
+  const auto named = std::find_if(splits.begin(), splits.end(), [&](const TriadSplit& split) {
+    return leads_of(mechanism, triad, split) == options.split;
+  });
+  if (named == splits.end()) {
+    if (splits.front().worth() > kLeastWorth || options.force) return splits.front();
+    throw PatchError(Diagnostic{
+        place,
+        fmt::format("the group {} ({}) has no split into two triangles that never go flat and a loop that "
+                    "keeps its gain on the way",
+                    triad.name, kind_name(triad.kind)),
+        "a triad on three links with such a split",
+        "patch it with --method gradient, which takes any group"});
+  }
+  if (named->flip != TriadSplit::Flip::none && !options.force) {
+    throw PatchError(Diagnostic{
+        place,
+        fmt::format("with the split {} of the triad {}, {} at t = {:.6g} s",
+                    split_name(mechanism, triad, *named), triad.name,
+                    named->flip == TriadSplit::Flip::loop
+                        ? fmt::format("the loop that tracks the variable length changes the sign of its gain")
+                        : fmt::format("the {} triangle goes flat and turns over",
+                                      named->flip == TriadSplit::Flip::first_triangle ? "first" : "second"),
+                    named->flip_time),
+        "triangles that never go flat and a loop that keeps its sign",
+        splits.front().worth() > kLeastWorth
+            ? fmt::format("--split {} never flips; --force patches it all the same",
+                          joined(leads_of(mechanism, triad, splits.front())))
+            : "patch it with --method gradient, which takes any group"});
+  }
+  return *named;
+}
+
+void check_split_names(const Mechanism& mechanism, const Structure& structure, const PatchOptions& options) {
+  if (options.split.empty()) return;
+  std::vector<std::string> triads;
+  for (const Group& group : structure.groups) {
+    if (!can_be_split(group)) continue;
+    std::vector<std::string> leads = leads_of(mechanism, group, TriadSplit{});
+    triads.push_back(joined(leads));
+    if (std::is_permutation(leads.begin(), leads.end(), options.split.begin(), options.split.end())) return;
+  }
+  throw PatchError(Diagnostic{
+      {mechanism.file, {}},
+      fmt::format("--split {}: no triad has these leads", joined(options.split)),
+      triads.empty() ? "a triad on three links, which this mechanism has not"
+                     : fmt::format("the three leads of a triad in any order: {}", fmt::join(triads, "; ")),
+      {}});
+}
+
+std::vector<std::vector<std::string>> useful_splits(const Mechanism& mechanism) {
+  const Structure structure = decompose(mechanism);
+  const auto is_triad = [](const Group& group) { return can_be_split(group); };
+  const auto triad = std::find_if(structure.groups.begin(), structure.groups.end(), is_triad);
+  if (triad == structure.groups.end() || std::any_of(triad + 1, structure.groups.end(), is_triad)) return {};
+  std::vector<std::vector<std::string>> names;
+  for (const TriadSplit& split : splits_of(*triad, patch_motion(mechanism, structure))) {
+    if (split.worth() > kLeastWorth) names.push_back(leads_of(mechanism, *triad, split));
+  }
+  return names;
 }
 
 }  // namespace oblique

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
-#include <optional>
 #include <string>
+#include <vector>
 
 #include <oblique/mechanism/motion.h>
 #include <oblique/mechanism/structure.h>
+#include <oblique/patch/patch.h>
 
 namespace oblique {
 
@@ -16,19 +16,48 @@ namespace oblique {
 /// follows rigidly, and what |ZC|² lacks drives w.
 struct TriadSplit {
   std::size_t tracked = 0, closing = 1, third = 2;  ///< indices of Group::equations.conditions
-  int first_side = 0;                               ///< of B over A → Z, +1: left
+  int first_side = 0;                               ///< of B over A → Z at the start, +1: left
   int second_side = 0;                              ///< of D over B → E
   int sign = 0;                                     ///< of d|ZC|²/dw
   double flattest = 0;                              ///< smallest sine of the apex's angle in either triangle
   double least_gain = 0;                            ///< smallest |d(|ZC|/l)²/d(w/reach)|
   double longest = 0;                               ///< largest w [length unit]
   double reach = 0;                                 ///< largest of |AZ| and w [length unit]
+  double second_reach = 0;                          ///< largest |BE| [length unit]
   double first_w = 0;                               ///< w at the start [length unit]
+
+  /// A moment at which a triangle goes flat or the loop loses its gain, so that the analog does not come past
+  /// it.
+  enum class Flip { none, first_triangle, second_triangle, loop };
+  Flip flip = Flip::none;
+  double flip_time = 0;  ///< [s]
+
+  /// What it is worth: the smaller of `flattest` and `least_gain`; 0 where it flips.
+  double worth() const;
 };
 
-/// The split whose triangles never go flat and whose loop never loses its sign along the motion; of several,
-/// the one with the largest smallest value of sines and gain. Nothing where there is none, or where a lead is
-/// no link.
-std::optional<TriadSplit> choose_split(const Group& group, const Motion& motion);
+/// Whether a group is a triad on three links, which can be split.
+bool can_be_split(const Group& group);
+
+/// The six splits of such a triad, the most worth first.
+std::vector<TriadSplit> splits_of(const Group& group, const Motion& motion);
+
+/// A split of less worth is as good as flat, or without gain, at some position.
+inline constexpr double kLeastWorth = 0.02;
+
+/// The body of a lead, by its condition: its index in Mechanism::bodies.
+std::size_t lead_of(const Group& triad, std::size_t condition);
+
+/// "AB, O1C, DE": the leads of a split, the one that carries the variable length first, then the one that
+/// closes the loop.
+std::string split_name(const Mechanism& mechanism, const Group& triad, const TriadSplit& split);
+
+/// The split that the options name for this triad, otherwise the one that is worth the most. Throws
+/// PatchError where that one flips, or none is worth kLeastWorth, unless the options force it.
+TriadSplit choose_split(const Mechanism& mechanism, const Group& triad, const Motion& motion,
+                        const PatchOptions& options);
+
+/// Throws PatchError where the options name a split and no triad of the structure has these three leads.
+void check_split_names(const Mechanism& mechanism, const Structure& structure, const PatchOptions& options);
 
 }  // namespace oblique

@@ -4,31 +4,43 @@
 #include <algorithm>
 #include <cmath>
 
+#include <oblique/solve/standing.h>
+
 namespace oblique {
+namespace {
+
+/// Takes the instants at which the servo loops stand at rest in place of those of the run, where there are
+/// any.
+void stand(Analysis& analysis, const Program& program, const SignalFlow& flow, const FlatDiagram& diagram,
+           const RunOptions& options, std::size_t most_instants) {
+  try {
+    analysis.instants = standing_instants(program, diagram, options, most_instants);
+    analysis.stability = judge_stability(program, flow, analysis.instants);
+    analysis.standing = true;
+  } catch (const SolveError&) {  // they stand nowhere: the run's own instants remain
+  }
+}
+
+}  // namespace
 
 Analysis analyse(const Program& program, const FlatDiagram& diagram, RunOptions options,
                  std::size_t most_instants) {
   Analysis analysis;
-  const auto rows = static_cast<std::size_t>(options.samples);
-  const std::size_t shown = std::min(rows, most_instants);
-  std::size_t row = 0;
   options.watch_overloads = true;
-  options.on_sample = [&](double t, std::span<const double> states, std::span<const double> memories) {
-    const std::size_t taken = analysis.instants.size();
-    const std::size_t wanted = shown < 2 ? 0 : taken * (rows - 1) / (shown - 1);
-    if (row++ == wanted && taken < shown)
-      analysis.instants.push_back({t, {states.begin(), states.end()}, {memories.begin(), memories.end()}});
-  };
+  RunOptions trial = options;
+  collect_instants(trial, most_instants, analysis.instants);
   try {
-    analysis.run = run(program, diagram, options);
+    analysis.run = run(program, diagram, trial);
   } catch (const SolveError& error) {
     analysis.failure = error;
   }
 
   analysis.fastest_slopes.assign(program.n_states(), 0);
-  if (analysis.instants.empty()) return analysis;  // it did not even start
   const SignalFlow flow(diagram, program);
   analysis.stability = judge_stability(program, flow, analysis.instants);
+  if (analysis.failure || analysis.stability.grows_from)
+    stand(analysis, program, flow, diagram, options, most_instants);
+  if (analysis.instants.empty()) return analysis;  // it did not even start
   analysis.loops = explain_loops(program, flow, analysis.instants);
   Workspace workspace(program);
   std::vector<double> slopes(program.n_states());

@@ -15,7 +15,10 @@ namespace oblique {
 struct Analysis {
   std::optional<Run> run;             ///< with its overloads; nothing where the run failed
   std::optional<SolveError> failure;  ///< why it did
-  std::vector<Instant> instants;      ///< moments evenly spread over the rows of the run
+  /// Moments evenly spread over the rows of the run; where the run failed, or servo loops grow on it, those
+  /// at which the loops stand at rest, as far as they can.
+  std::vector<Instant> instants;
+  bool standing = false;  ///< whether the instants are of the latter kind
   StabilityReport stability;
   std::vector<LoopReport> loops;
   /// The fastest change of every state at the instants [machine unit/s].

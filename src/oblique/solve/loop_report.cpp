@@ -90,6 +90,15 @@ class ServoLoop {
     }
   }
 
+  /// Whether its one output came back to it at no instant: a summer with a bandwidth, for one, which is
+  /// brought to rest as servo amplifiers are. The gain is then zero to the rounding of differences.
+  bool is_open() const {
+    constexpr double kRounding = 1e-9;
+    const std::vector<double>& gains = histories_.front().gains;
+    return group_.size() == 1 && !gains.empty() &&
+           std::all_of(gains.begin(), gains.end(), [](double gain) { return std::abs(gain) < kRounding; });
+  }
+
   LoopReport report() const {
     LoopReport loop;
     loop.members = flow_.members_of_loop(group_);
@@ -195,7 +204,9 @@ std::vector<LoopReport> explain_loops(const Program& program, const SignalFlow& 
   }
   std::vector<LoopReport> reports;
   reports.reserve(servos.size() + algebraic.size());
-  for (const ServoLoop& loop : servos) reports.push_back(loop.report());
+  for (const ServoLoop& loop : servos) {
+    if (!loop.is_open()) reports.push_back(loop.report());
+  }
   for (const AlgebraicLoop& loop : algebraic) reports.push_back(loop.report());
   return reports;
 }

@@ -45,7 +45,7 @@ struct LoopReport {
 };
 
 /// Explains every loop by its slopes at the instants of a run: servo loops in the order of the signals, then
-/// algebraic ones.
+/// algebraic ones. An amplifier that is brought to rest and has no feedback around it is no loop.
 std::vector<LoopReport> explain_loops(const Program& program, const SignalFlow& flow,
                                       const std::vector<Instant>& instants);
 

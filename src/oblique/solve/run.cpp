@@ -55,8 +55,9 @@ class Runner {
     if (options_.from) {
       resume(*options_.from);
     } else {
-      switching_.start(begin_, states_,
-                       [&] { bring_to_rest(program_, workspace_, begin_, states_, diagram_.file); });
+      switching_.start(begin_, states_, [&] {
+        if (options_.settle) bring_to_rest(program_, workspace_, begin_, states_, diagram_.file);
+      });
     }
     follow_phases(begin_);
     sampler_.advance(
@@ -246,6 +247,7 @@ RunOptions options_of(const RunSettings& settings) {
   options.method = settings.method;
   options.samples = settings.samples;
   options.max_steps = settings.max_steps;
+  options.settle = settings.settle;
   return options;
 }
 

@@ -31,6 +31,7 @@ struct RunOptions {
   IntegrationMethod method = IntegrationMethod::automatic;
   int samples = 1001;  ///< rows, evenly spaced, both ends included
   long max_steps = 10'000'000;
+  bool settle = true;                 ///< bring servo loops to rest before the clock starts
   std::optional<RunState> from;       ///< goes on from there; `until` is then later than its time
   std::function<bool()> interrupted;  ///< asked after every step: true ends the run there
   bool extremes = false;              ///< look for the extremes of the outputs between the rows too

@@ -7,6 +7,21 @@
 #include <oblique/network/dependency_order.h>
 
 namespace oblique {
+namespace {
+
+/// An expression of a block with the sums of its inputs' weights as numbers.
+Expression with_weights(Expression expression, const FlatBlock& block) {
+  for (Expression& operand : expression.operands) operand = with_weights(std::move(operand), block);
+  if (expression.kind != Expression::Kind::call || expression.function != Function::weights)
+    return expression;
+  Expression sum;
+  if (const auto input = block.definition->find_input(expression.operands.front().name)) {
+    for (const FlatTerm& term : block.inputs[*input].terms) sum.number += std::abs(term.weight);
+  }
+  return sum;
+}
+
+}  // namespace
 
 SignalFlow::SignalFlow(const FlatDiagram& diagram, const Program& program)
     : diagram_(diagram), program_(program) {
@@ -106,8 +121,9 @@ std::optional<double> SignalFlow::own_slope(std::string_view name, double t,
   const std::string& target = quantity.equation->target;
   const double x = output_value(target).value_or(0);
   const double half_step = 1e-4 * std::max(1.0, std::abs(x));
+  const Expression equation = with_weights(quantity.equation->expression, block);
   const auto value_at = [&](double own) {
-    return evaluate(quantity.equation->expression, [&](std::string_view symbol) -> std::optional<double> {
+    const NameLookup lookup = [&](std::string_view symbol) -> std::optional<double> {
       if (symbol == target) return own;
       if (symbol == "polarity") return block.polarity;
       if (symbol == "time") return t;
@@ -116,8 +132,12 @@ std::optional<double> SignalFlow::own_slope(std::string_view name, double t,
       if (symbol == "noise") return 0;
       if (const auto p = block.definition->find_parameter(symbol)) return block.parameters[*p];
       if (const auto i = block.definition->find_input(symbol)) return input_value(block.inputs[*i], signals);
-      return output_value(symbol);
-    });
+      if (const auto output = output_value(symbol)) return output;
+      const auto inner = find(quantity.block, symbol);
+      if (!inner || quantities_[*inner].equation->kind != Equation::Kind::assignment) return std::nullopt;
+      return evaluate(with_weights(quantities_[*inner].equation->expression, block), lookup);
+    };
+    return evaluate(equation, lookup);
   };
   try {
     const double slope = (value_at(x + half_step) - value_at(x - half_step)) / (2 * half_step);

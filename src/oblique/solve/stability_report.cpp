@@ -76,6 +76,8 @@ class Judge {
     const bool servo = servo_share >= 0.5;
     std::optional<WorstMode>& worst = servo ? report_.servo_mode : report_.problem_mode;
     if (!worst || is_worse(mode, worst->mode)) worst = {mode, t};
+    if (servo && (!report_.slowest_servo || mode.pole.real() > report_.slowest_servo->mode.pole.real()))
+      report_.slowest_servo = {mode, t};
     if (servo && verdict_on(mode) == ModeVerdict::grows && !report_.grows_from) report_.grows_from = t;
   }
 

@@ -45,9 +45,10 @@ struct StabilityReport {
   /// Of the modes in which servo amplifiers have the greater share, which is the machine's business, and of
   /// the others, which is the problem's own: the one with the least damping ratio.
   std::optional<WorstMode> servo_mode, problem_mode;
-  std::optional<double> grows_from;   ///< [s] first instant at which a servo mode grows
-  std::vector<ServoMargin> margins;   ///< of every servo amplifier, in the order of the states
-  std::vector<std::string> left_out;  ///< what was not looked at and why
+  std::optional<WorstMode> slowest_servo;  ///< the servo mode with the largest real part
+  std::optional<double> grows_from;        ///< [s] first instant at which a servo mode grows
+  std::vector<ServoMargin> margins;        ///< of every servo amplifier, in the order of the states
+  std::vector<std::string> left_out;       ///< what was not looked at and why
 };
 
 /// Judges a run by its instants. Groups of more than 200 states that act on each other are left out, and of

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include <oblique/compare/machine_comparison.h>
+
+namespace oblique::cli {
+
+/// What `compare --machine` prints below the comparison; lengths are in the comparison's unit.
+std::string to_text(const MachineComparison& machine, const Comparison& comparison);
+
+/// The same for `--json` (docs/trust.md).
+nlohmann::ordered_json to_json(const MachineComparison& machine);
+
+}  // namespace oblique::cli

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+#include "monte_carlo_output.h"
+
+#include <fmt/format.h>
+
+#include "terminal.h"
+
+namespace oblique::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kPercents[] = {5, 25, 50, 75, 95, 100};
+
+std::string percentiles(const MonteCarloReport& report) {
+  Table table({"of the runs", fmt::format("largest error up to [{}]", report.unit)});
+  for (const double percent : kPercents) {
+    if (const auto error = report.result.percentile(percent))
+      table.add({fmt::format("{:.0f} %", percent), fmt::format("{:.3e}", *error)});
+  }
+  return table.text();
+}
+
+/// How many failed, and the first of them; the others are in the JSON.
+std::string failures(const MonteCarlo& result) {
+  if (result.failures.empty()) return {};
+  const FailedRun& first = result.failures.front();
+  return fmt::format("FAILED {} of {}, left out above; the first, run {}: {}\n", result.failures.size(),
+                     count(result.errors.size(), "run", "runs"), first.number, first.message);
+}
+
+std::string what_scatters(const MonteCarloReport& report) {
+  return report.machine.empty() ? fmt::format("within ±{}", report.tolerance)
+                                : fmt::format("as those of {} scatter", report.machine);
+}
+
+}  // namespace
+
+std::string to_text(const MonteCarloReport& report) {
+  const MonteCarlo& result = report.result;
+  std::string text =
+      fmt::format("\nMonte Carlo: {}, {} drawn in each, uniform {}; seed {}, from run {}; {:.3g} s\n\n",
+                  count(result.errors.size(), "run", "runs"), count(result.drawn, "tolerance", "tolerances"),
+                  what_scatters(report), report.options.seed, report.options.first_run, report.seconds);
+  if (result.errors.size() > 1) text += percentiles(report) + "\n";
+  if (result.worst_run && result.errors.size() > 1) {
+    text += fmt::format("worst: run {}, which --monte-carlo 1 --first-run {} --seed {} repeats and lists\n",
+                        *result.worst_run, *result.worst_run, report.options.seed);
+  }
+  if (result.errors.size() == 1 && result.errors.front()) {
+    Table table({"drawn", "value"});
+    for (const auto& [name, value] : report.draws) table.add({name, fmt::format("{:.6g}", value)});
+    text += table.text(1);
+    text += fmt::format("\nlargest error with these {:.3e} {}\n", *result.errors.front(), report.unit);
+  }
+  return text + failures(result);
+}
+
+Json to_json(const MonteCarloReport& report) {
+  const MonteCarlo& result = report.result;
+  Json json{{"seed", report.options.seed},
+            {"first_run", report.options.first_run},
+            {"runs", result.errors.size()},
+            {"drawn", result.drawn},
+            {"seconds", report.seconds}};
+  json["percentiles"] = Json::object();
+  for (const double percent : kPercents) {
+    const auto error = result.percentile(percent);
+    json["percentiles"][fmt::format("{:.0f}", percent)] = error ? Json(*error) : Json(nullptr);
+  }
+  json["worst_run"] = result.worst_run ? Json(*result.worst_run) : Json(nullptr);
+  json["errors"] = Json::array();
+  for (const auto& error : result.errors) json["errors"].push_back(error ? Json(*error) : Json(nullptr));
+  json["failures"] = Json::array();
+  for (const FailedRun& run : result.failures)
+    json["failures"].push_back({{"run", run.number}, {"message", run.message}});
+  if (result.errors.size() == 1) {
+    json["draws"] = Json::object();
+    for (const auto& [name, value] : report.draws) json["draws"][name] = value;
+  }
+  return json;
+}
+
+}  // namespace oblique::cli

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include <oblique/compare/monte_carlo.h>
+
+namespace oblique::cli {
+
+/// What was drawn, for people and with its words.
+struct MonteCarloReport {
+  MonteCarloOptions options;
+  MonteCarlo result;
+  std::string unit;                                   ///< of lengths
+  std::string machine;                                ///< whose elements scatter; empty: by --tolerance
+  std::string tolerance;                              ///< as --tolerance has it
+  std::vector<std::pair<std::string, double>> draws;  ///< "C.cx.tolerance" and its value, of a single run
+  double seconds = 0;
+};
+
+std::string to_text(const MonteCarloReport& report);
+
+/// The same for `--json` (docs/trust.md).
+nlohmann::ordered_json to_json(const MonteCarloReport& report);
+
+}  // namespace oblique::cli

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/compare/error_parts.h>
+
+#include <algorithm>
+
+#include <Eigen/LU>
+
+#include <oblique/solve/solve_error.h>
+
+namespace oblique {
+namespace {
+
+/// How much tighter the run is against which the solver is judged: its errors are then a few hundredths.
+constexpr double kTighter = 1e-2;
+/// Farther from the run [machine unit] it would be another solution.
+constexpr double kFarthest = 0.1;
+constexpr int kMostSteps = 30;
+
+/// Where the signals put a point [length unit]; nothing where a loop has no solution.
+std::optional<Eigen::Vector2d> place_in(const PatchedMechanism& patched, const PointOutputs& point,
+                                        const Instant& instant) {
+  Workspace workspace(patched.program);
+  std::vector<double> signals(patched.program.n_signals());
+  workspace.load_memories(instant.memories);
+  if (!patched.program.signals(instant.t, instant.states.data(), signals.data(), workspace))
+    return std::nullopt;
+  const auto value = [&](std::size_t column) {
+    const FlatOutput& output = patched.flat.outputs[column];
+    return output.scale * signals[patched.program.signal_index(output.signal)] + output.offset;
+  };
+  return Eigen::Vector2d(value(point.x), value(point.y));
+}
+
+}  // namespace
+
+std::vector<std::size_t> tracking_states(const Program& program, const FlatDiagram& flat) {
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < program.n_states(); ++i) {
+    const State& state = program.states()[i];
+    const bool is_coordinate =
+        std::any_of(flat.outputs.begin(), flat.outputs.end(), [&](const FlatOutput& output) {
+          return program.signal_names()[program.signal_index(output.signal)] == state.name;
+        });
+    if (state.at_rest || is_coordinate) found.push_back(i);
+  }
+  return found;
+}
+
+std::optional<Instant> at_rest(const Program& program, const std::vector<std::size_t>& moving,
+                               Instant instant) {
+  if (moving.empty()) return instant;
+  Workspace workspace(program);
+  std::vector<double> slopes(program.n_states());
+  const auto n = static_cast<Eigen::Index>(moving.size());
+  Eigen::VectorXd right(n), away = Eigen::VectorXd::Zero(n);
+  double last = kFarthest;
+  for (int step = 0; step < kMostSteps; ++step) {
+    const auto linear = Linearisation::at(program, workspace, instant);
+    if (!linear || !program.derivatives(instant.t, instant.states.data(), slopes.data(), workspace))
+      return std::nullopt;
+    for (Eigen::Index k = 0; k < n; ++k) right[k] = slopes[moving[static_cast<std::size_t>(k)]];
+    const Eigen::VectorXd change = linear->block(moving).partialPivLu().solve(right);
+    if (!change.allFinite()) return std::nullopt;
+    const double size = change.cwiseAbs().maxCoeff();
+    constexpr double kRounding = 1e-12;
+    if (size < kRounding && size >= last / 2) return instant;  // no better for another step
+    last = size;
+    away -= change;
+    if (away.cwiseAbs().maxCoeff() > kFarthest) return std::nullopt;
+    for (Eigen::Index k = 0; k < n; ++k) instant.states[moving[static_cast<std::size_t>(k)]] -= change[k];
+    if (size == 0) return instant;
+  }
+  return std::nullopt;
+}
+
+std::optional<ErrorParts> error_parts(const PatchedMechanism& patched, const Motion& exact,
+                                      const Trajectory& analog, const Distances& error,
+                                      const std::function<void(double)>& progress) {
+  RecordedRun tight;
+  try {
+    tight = run_recorded(patched, "a tighter tolerance", kTighter * patched.diagram.run.tolerance, progress);
+  } catch (const SolveError&) {
+    return std::nullopt;
+  }
+  const auto rest =
+      at_rest(patched.program, tracking_states(patched.program, patched.flat), tight.instants[error.row]);
+  const auto standing = rest ? place_in(patched, error.worst, *rest) : std::nullopt;
+  if (!standing) return std::nullopt;
+  const Eigen::Vector2d& there = exact.configurations[error.row].points[error.worst.point].position;
+  const Eigen::Vector2d moving = place_of(error.worst, tight.run.trajectory, error.row);
+  const Eigen::Vector2d found = place_of(error.worst, analog, error.row);
+  const Eigen::Vector2d along = (found - there).normalized();
+  return ErrorParts{along.dot(*standing - there), along.dot(moving - *standing), along.dot(found - moving)};
+}
+
+}  // namespace oblique

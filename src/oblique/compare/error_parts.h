@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <oblique/compare/compare.h>
+#include <oblique/compare/patched_run.h>
+
+// Not installed.
+namespace oblique {
+
+/// The states that come to rest once the cranks stop: those of servo amplifiers, and the integrators whose
+/// output is itself the coordinate of a point, as the gradient servo has them.
+std::vector<std::size_t> tracking_states(const Program& program, const FlatDiagram& flat);
+
+/// The instant with the states `moving` (ascending) at rest and all others held. Nothing where Newton's
+/// method finds no rest within a tenth of a machine unit.
+std::optional<Instant> at_rest(const Program& program, const std::vector<std::size_t>& moving,
+                               Instant instant);
+
+/// Takes the largest error of a run apart, as ErrorParts says. Nothing where the loops have no rest or the
+/// run of tighter tolerance fails.
+std::optional<ErrorParts> error_parts(const PatchedMechanism& patched, const Motion& exact,
+                                      const Trajectory& analog, const Distances& error,
+                                      const std::function<void(double)>& progress);
+
+}  // namespace oblique

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/compare/judge.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <oblique/solve/loop_report.h>
+#include <oblique/solve/solve_error.h>
+#include <oblique/solve/stability_report.h>
+#include <oblique/solve/standing.h>
+
+namespace oblique {
+namespace {
+
+/// Four degrees of a crank's turn apart.
+constexpr std::size_t kInstants = 91;
+constexpr double kLeastShare = 0.05;  ///< of a servo amplifier in a mode that is worth a name
+
+void find_largest_signal(const Program& program, const std::vector<Instant>& instants, Judgement& judgement) {
+  Workspace workspace(program);
+  std::vector<double> values(program.n_signals());
+  for (const Instant& instant : instants) {
+    if (!program.signals(instant.t, instant.states.data(), values.data(), workspace)) continue;
+    for (std::size_t s = 0; s < values.size(); ++s) {
+      if (std::abs(values[s]) <= judgement.largest) continue;
+      judgement.largest = std::abs(values[s]);
+      judgement.largest_signal = program.signal_names()[s];
+    }
+  }
+}
+
+std::string name_some(const std::vector<std::string>& names) {
+  constexpr std::size_t kMost = 3;
+  const std::vector<std::string> shown(
+      names.begin(), names.begin() + static_cast<std::ptrdiff_t>(std::min(kMost, names.size())));
+  return fmt::format("'{}'{}", fmt::join(shown, "', '"), names.size() > kMost ? " …" : "");
+}
+
+/// "--split AB,O1C,DE --slower 100", as far as the two differ.
+std::string difference(const PatchOptions& from, const PatchOptions& to) {
+  std::vector<std::string> words;
+  if (to.split != from.split) words.push_back(fmt::format("--split {}", fmt::join(to.split, ",")));
+  if (to.slower != from.slower) words.push_back(fmt::format("--slower {:g}", to.slower));
+  return fmt::format("{}", fmt::join(words, " "));
+}
+
+/// Other ways to patch the same triad, in the order in which they are worth a trial: slower outer loops with
+/// the split that is there, then other splits.
+std::vector<PatchOptions> other_ways(const Mechanism& mechanism, const PatchOptions& options) {
+  std::vector<PatchOptions> ways;
+  const auto add = [&](const std::vector<std::string>& split, double slower) {
+    PatchOptions& way = ways.emplace_back(options);
+    way.split = split;
+    way.slower = slower;
+  };
+  const std::vector<std::vector<std::string>> splits = useful_splits(mechanism);
+  if (splits.empty()) return ways;
+  const double usual = std::max(options.slower, PatchOptions{}.slower);
+  if (options.method == PatchMethod::paper) {
+    for (const double slower : {1.0, 10.0, 100.0}) add(options.split, slower * usual);
+  }
+  for (const double slower : {1.0, 10.0}) {
+    for (const std::vector<std::string>& split : splits) add(split, slower * usual);
+  }
+  return ways;
+}
+
+/// Whether nobody asked for another way: the split of a triangle patch is free, and so is the speed of an
+/// outer loop that nobody made faster.
+bool may_choose(const PatchOptions& options, const PatchOptions& way) {
+  if (!options.split.empty() || options.slower != PatchOptions{}.slower) return false;
+  return options.method == PatchMethod::triangles || way.split.empty();
+}
+
+/// Lets the diagram start where the exact motion has it, and end about when what grows from the static error
+/// of 1/μ fills the machine.
+void show_the_fault(JudgedPatch& patched) {
+  RunSettings& run = patched.diagram.run;
+  const Judgement& judgement = patched.judgement;
+  run.settle = false;
+  if (!judgement.grows_from || !std::isfinite(patched.options.gain)) return;
+  run.until = std::min(run.until, *judgement.grows_from + std::log(patched.options.gain) / judgement.growth);
+}
+
+}  // namespace
+
+std::string fault_of(const Judgement& judgement) {
+  if (!judgement.no_rest.empty()) return fmt::format("its loops cannot follow: {}", judgement.no_rest);
+  std::string text = fmt::format("it is unstable: the loops {} swing up, at {:.3g} 1/s at t = {:.6g} s",
+                                 name_some(judgement.growing), judgement.slowest_pole, judgement.pole_time);
+  if (!judgement.flips.empty()) {
+    text += fmt::format("; the gain of '{}' changes its sign at t = {:.6g} s", judgement.flips.front().loop,
+                        judgement.flips.front().time);
+  }
+  return text;
+}
+
+Judgement judge(const Diagram& diagram, const BlockLibrary& library) {
+  const FlatDiagram flat = flatten(diagram, library);
+  const Program program(assemble(flat));
+  Judgement judgement;
+  judgement.slowest_pole = -std::numeric_limits<double>::infinity();
+  std::vector<Instant> instants;
+  try {
+    instants = standing_instants(program, flat, options_of(diagram.run), kInstants);
+  } catch (const SolveError& error) {
+    judgement.no_rest = error.diagnostics().front().what;
+    return judgement;
+  }
+  const SignalFlow flow(flat, program);
+  const StabilityReport stability = judge_stability(program, flow, instants);
+  if (stability.slowest_servo) {
+    judgement.slowest_pole = stability.slowest_servo->mode.pole.real();
+    judgement.pole_time = stability.slowest_servo->time;
+  }
+  judgement.grows_from = stability.grows_from;
+  if (stability.grows_from) {
+    const auto first = std::find_if(instants.begin(), instants.end(), [&](const Instant& instant) {
+      return instant.t == *stability.grows_from;
+    });
+    judgement.growth = judge_stability(program, flow, {*first}).slowest_servo->mode.pole.real();
+    for (const Participation& part : stability.slowest_servo->mode.participants) {
+      if (part.share > kLeastShare) judgement.growing.push_back(program.states()[part.state].name);
+    }
+  }
+  for (const LoopReport& loop : explain_loops(program, flow, instants)) {
+    for (const LoopUnknown& unknown : loop.unknowns) {
+      if (!unknown.sign_changes.empty())
+        judgement.flips.push_back({unknown.signal, unknown.sign_changes.front()});
+    }
+  }
+  find_largest_signal(program, instants, judgement);
+  return judgement;
+}
+
+JudgedPatch judged_patch(const Mechanism& mechanism, const BlockLibrary& library,
+                         const PatchOptions& options) {
+  const auto attempt = [&](const PatchOptions& way) {
+    JudgedPatch result{patch(mechanism, way), way, {}};
+    result.diagram.file = mechanism.file;
+    result.judgement = judge(result.diagram, library);
+    return result;
+  };
+  JudgedPatch first = attempt(options);
+  if (first.judgement.good()) return first;
+  if (options.force) {
+    show_the_fault(first);
+    return first;
+  }
+  std::string help;
+  if (options.method != PatchMethod::gradient) {
+    for (const PatchOptions& way : other_ways(mechanism, options)) {
+      JudgedPatch other = attempt(way);
+      if (!other.judgement.good()) continue;
+      if (may_choose(options, way)) return other;
+      help = fmt::format("{} is stable; ", difference(options, way));
+      break;
+    }
+  }
+  throw PatchError(
+      Diagnostic{{mechanism.file, {}},
+                 fmt::format("this patch would not run: {}", fault_of(first.judgement)),
+                 "servo loops that return to rest everywhere on the way",
+                 help + "--method gradient patches any mechanism; --force writes this one all the same"});
+}
+
+}  // namespace oblique

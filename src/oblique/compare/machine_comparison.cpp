@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/compare/machine_comparison.h>
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include <oblique/compare/patched_run.h>
+#include <oblique/machine/bill.h>
+#include <oblique/machine/realise.h>
+#include <oblique/machine/role.h>
+#include <oblique/solve/solve_error.h>
+
+namespace oblique {
+namespace {
+
+/// Times the steps on ideal elements.
+constexpr long kStepsOfAFailure = 100;
+
+bool has_setting(const BlockInstance& block, const std::string& key) {
+  return std::any_of(block.settings.begin(), block.settings.end(),
+                     [&](const Entry& entry) { return entry.key == key; });
+}
+
+void set(BlockInstance& block, const std::string& key, double value) {
+  std::erase_if(block.settings, [&](const Entry& entry) { return entry.key == key; });
+  block.settings.push_back(number_setting(key, value));
+}
+
+/// The same elements without errors; amplifiers that take their gain from the machine get that of the patch.
+Diagram on_ideal_elements(Diagram diagram, double gain) {
+  diagram.machine.profile = "ideal";
+  for (BlockInstance& block : diagram.blocks) {
+    if (role_of(block.type) == Role::open_amplifier && !has_setting(block, "gain")) set(block, "gain", gain);
+  }
+  return diagram;
+}
+
+/// A figure and a kind of block on which it acts.
+struct Acting {
+  std::string figure, block;
+  bool operator==(const Acting&) const = default;
+};
+
+/// Ideal elements but for one figure on one kind of block, where the diagram itself does not say otherwise.
+Diagram with_figure(const Diagram& realised, Diagram ideal, const MachineProfile& machine,
+                    const Acting& acting) {
+  for (const BlockFigure& error : machine.errors) {
+    if (Acting{error.figure, error.block} != acting) continue;
+    for (std::size_t b = 0; b < ideal.blocks.size(); ++b) {
+      const bool acts =
+          ideal.blocks[b].type == error.block && !has_setting(realised.blocks[b], error.parameter);
+      if (acts) set(ideal.blocks[b], error.parameter, error.value);
+    }
+  }
+  return ideal;
+}
+
+/// What acts on blocks of the diagram, each once.
+std::vector<Acting> acting_figures(const MachineProfile& machine, const Diagram& diagram) {
+  std::vector<Acting> found;
+  for (const BlockFigure& error : machine.errors) {
+    const Acting acting{error.figure, error.block};
+    const bool used = std::any_of(diagram.blocks.begin(), diagram.blocks.end(),
+                                  [&](const BlockInstance& block) { return block.type == error.block; });
+    if (used && std::find(found.begin(), found.end(), acting) == found.end()) found.push_back(acting);
+  }
+  return found;
+}
+
+std::vector<std::string> scatter_figures(const MachineProfile& machine) {
+  std::vector<std::string> names;
+  for (const BlockFigure& scatter : machine.scatters) {
+    if (std::find(names.begin(), names.end(), scatter.figure) == names.end()) names.push_back(scatter.figure);
+  }
+  return names;
+}
+
+/// Where `points` of two runs are farthest from each other [length unit].
+double largest_distance(const Mechanism& mechanism, const PatchedMechanism& patched, const Trajectory& a,
+                        const Trajectory& b) {
+  double largest = 0;
+  for (const PointOutputs& point : point_outputs(mechanism, patched.flat)) {
+    for (std::size_t row = 0; row < a.rows(); ++row)
+      largest = std::max(largest, (place_of(point, a, row) - place_of(point, b, row)).norm());
+  }
+  return largest;
+}
+
+}  // namespace
+
+double MachineComparison::explained() const {
+  double sum = ideal_share;
+  for (const FigureError& figure : figures) sum += figure.share;
+  return sum / max_error;
+}
+
+MachineComparison compare_on_machine(const Mechanism& mechanism, const BlockLibrary& library,
+                                     const MachineProfile& machine, const PatchOptions& options,
+                                     const std::function<void(double)>& progress) {
+  Diagram realised = realise(patch_named(mechanism, options), library, machine).diagram;
+  const Motion exact = solve_motion(mechanism, options.samples);
+  const std::vector<Acting> figures = acting_figures(machine, realised);
+  double done = 0;
+  const auto run_of = [&](const PatchedMechanism& diagram, const std::string& name) {
+    const auto total = static_cast<double>(figures.size() + 2);
+    RecordedRun recorded = run_recorded(diagram, name, options.tolerance, [&](double fraction) {
+      if (progress) progress((done + fraction) / total);
+    });
+    ++done;
+    return recorded;
+  };
+
+  const PatchedMechanism none(on_ideal_elements(realised, options.gain), library);
+  const Run ideal_run = run_of(none, "ideal elements").run;
+  const Trajectory& on_ideal = ideal_run.trajectory;
+  realised.run.max_steps = kStepsOfAFailure * ideal_run.statistics.steps;
+  const Diagram ideal = on_ideal_elements(realised, options.gain);
+  const PatchedMechanism all(realised, library);
+  const RecordedRun on_machine = run_of(all, "all figures of " + machine.title);
+  const Trajectory& analog = on_machine.run.trajectory;
+  const Distances error = distances(mechanism, all.flat, analog, exact);
+  const Eigen::Vector2d& there = exact.configurations[error.row].points[error.worst.point].position;
+  const Eigen::Vector2d along = (place_of(error.worst, analog, error.row) - there).normalized();
+  const Eigen::Vector2d by_ideal = place_of(error.worst, on_ideal, error.row);
+
+  MachineComparison result;
+  result.machine = machine.title;
+  result.absent = bill_of(all.flat, machine).absent();
+  result.scatter = scatter_figures(machine);
+  result.max_error = error.largest;
+  result.rms_error = error.rms;
+  result.from_ideal = largest_distance(mechanism, all, analog, on_ideal);
+  result.ideal_error = distances(mechanism, none.flat, on_ideal, exact).largest;
+  result.worst = {mechanism.points[error.worst.point].name,
+                  exact.times[error.row],
+                  exact.drives[error.row].front().value,
+                  {}};
+  result.ideal_share = along.dot(by_ideal - there);
+  for (const Acting& acting : figures) {
+    const PatchedMechanism one(with_figure(realised, ideal, machine, acting), library);
+    const Trajectory alone =
+        run_of(one, fmt::format("nothing but '{}' of each {}", acting.figure, acting.block)).run.trajectory;
+    result.figures.push_back({acting.figure, acting.block, largest_distance(mechanism, one, alone, on_ideal),
+                              along.dot(place_of(error.worst, alone, error.row) - by_ideal) + 0.0});  // no −0
+  }
+  result.overloads = overloads_of(all.program, on_machine.run);
+  result.stable = slowest_pole_of(all.program, on_machine.instants) < 0;
+  return result;
+}
+
+}  // namespace oblique

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/compare/monte_carlo.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <exception>
+#include <thread>
+
+#include <oblique/compare/patched_run.h>
+
+namespace oblique {
+namespace {
+
+constexpr double kFinerThanScatter = 1e-3;
+constexpr double kCoarsest = 1e-6, kFinest = 1e-10;  ///< of the solver's tolerance
+constexpr long kStepsOfAFailure = 100;               ///< times those of the undisturbed run
+
+double tolerance_for(const std::vector<BlockFigure>& scatters) {
+  double narrowest = 1;
+  for (const BlockFigure& scatter : scatters) {
+    if (scatter.value > 0) narrowest = std::min(narrowest, scatter.value);
+  }
+  return std::clamp(kFinerThanScatter * narrowest, kFinest, kCoarsest);
+}
+
+/// What the runs have in common; nothing in it changes while they go on.
+struct Experiment {
+  const Mechanism& mechanism;
+  const MonteCarloOptions& options;
+  FlatDiagram flat;
+  Motion exact;
+  RunOptions how;
+
+  /// Largest error of a diagram [length unit].
+  double largest_error(const FlatDiagram& diagram) const {
+    return distances(mechanism, diagram, run(Program(assemble(diagram)), diagram, how).trajectory, exact)
+        .largest;
+  }
+};
+
+/// One run after the other until none is left, in as many threads as call this.
+class Queue {
+ public:
+  Queue(const Experiment& experiment, MonteCarlo& result)
+      : experiment_(experiment), result_(result), messages_(result.errors.size()) {}
+
+  /// `watch` is called after every run with the part that is done.
+  void work(const std::function<void(double)>& watch) {
+    const std::size_t runs = result_.errors.size();
+    for (std::size_t k = next_++; k < runs; k = next_++) {
+      try {
+        serve(k);
+      } catch (...) {  // no finding about this run: out of memory, a fault of the program
+        if (!broken_.exchange(true)) exception_ = std::current_exception();
+        next_ = runs;
+      }
+      if (watch) watch(static_cast<double>(std::min(next_.load(), runs)) / static_cast<double>(runs));
+    }
+  }
+
+  /// Call it when all threads have come back.
+  void finish() {
+    if (exception_) std::rethrow_exception(exception_);
+    for (std::size_t k = 0; k < messages_.size(); ++k) {
+      const std::uint64_t number = experiment_.options.first_run + k;
+      if (!result_.errors[k]) result_.failures.push_back({number, messages_[k]});
+    }
+  }
+
+ private:
+  void serve(std::size_t k) {
+    const MonteCarloOptions& options = experiment_.options;
+    FlatDiagram diagram = experiment_.flat;
+    apply_draws(draw(diagram, options.scatters, {options.seed, options.first_run + k}), diagram);
+    try {
+      result_.errors[k] = experiment_.largest_error(diagram);
+    } catch (const Error& error) {
+      const std::string& what = error.diagnostics().front().what;
+      messages_[k] = what.substr(0, what.find('\n'));
+    }
+  }
+
+  const Experiment& experiment_;
+  MonteCarlo& result_;
+  std::vector<std::string> messages_;  ///< of failed runs
+  std::atomic<std::size_t> next_ = 0;
+  std::atomic<bool> broken_ = false;
+  std::exception_ptr exception_;
+};
+
+}  // namespace
+
+std::optional<double> MonteCarlo::percentile(double percent) const {
+  std::vector<double> sorted;
+  for (const std::optional<double>& error : errors) {
+    if (error) sorted.push_back(*error);
+  }
+  if (sorted.empty()) return std::nullopt;
+  const double rank = std::ceil(percent / 100 * static_cast<double>(sorted.size()));
+  const auto place = std::clamp<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(rank) - 1, 0,
+                                                static_cast<std::ptrdiff_t>(sorted.size()) - 1);
+  std::nth_element(sorted.begin(), sorted.begin() + place, sorted.end());
+  return sorted[static_cast<std::size_t>(place)];
+}
+
+MonteCarlo monte_carlo(const Mechanism& mechanism, const Diagram& diagram, const BlockLibrary& library,
+                       const MonteCarloOptions& options) {
+  Experiment experiment{mechanism, options, flatten(diagram, library),
+                        solve_motion(mechanism, options.positions), options_of(diagram.run)};
+  experiment.how.samples = options.positions;
+  experiment.how.tolerance = tolerance_for(options.scatters);
+  const Run undisturbed = run(Program(assemble(experiment.flat)), experiment.flat, experiment.how);
+  experiment.how.max_steps = kStepsOfAFailure * std::max(undisturbed.statistics.steps, 1L);
+
+  MonteCarlo result;
+  result.drawn = draw(experiment.flat, options.scatters, {}).size();
+  result.tolerance = experiment.how.tolerance;
+  result.errors.resize(static_cast<std::size_t>(options.runs));
+  Queue queue(experiment, result);
+  {
+    std::vector<std::jthread> others;
+    for (int t = 1; t < std::min(options.threads, options.runs); ++t)
+      others.emplace_back([&queue] { queue.work({}); });
+    queue.work(options.progress);
+  }
+  queue.finish();
+  const auto worst =
+      std::max_element(result.errors.begin(), result.errors.end());  // nothing is below all values
+  if (worst != result.errors.end() && *worst)
+    result.worst_run = options.first_run + static_cast<std::uint64_t>(worst - result.errors.begin());
+  return result;
+}
+
+}  // namespace oblique

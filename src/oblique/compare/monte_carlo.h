@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <oblique/compare/scatter.h>
+#include <oblique/mechanism/mechanism.h>
+
+namespace oblique {
+
+/// How often, and how, the elements of a diagram are drawn anew.
+struct MonteCarloOptions {
+  std::vector<BlockFigure> scatters;
+  int runs = 1000;
+  std::uint64_t seed = 1;
+  std::uint64_t first_run = 0;  ///< number of the first run: with `runs` = 1 it repeats one
+  int threads = 1;              ///< at most as many as there are runs; the result does not depend on it
+  int positions = 73;           ///< rows over the turn, both ends included
+  std::function<void(double fraction)> progress;  ///< called from the calling thread
+};
+
+/// A run that gave no error.
+struct FailedRun {
+  std::uint64_t number = 0;
+  std::string message;  ///< the first line of what was thrown
+};
+
+/// The largest errors over the turn of many machines that differ in the tolerances of their elements.
+struct MonteCarlo {
+  std::size_t drawn = 0;  ///< parameters that every run draws
+  double tolerance = 0;   ///< relative, of the solver in these runs
+  std::vector<std::optional<double>>
+      errors;                              ///< of each run from the first on [length unit]; none: it failed
+  std::vector<FailedRun> failures;         ///< in the order of their numbers
+  std::optional<std::uint64_t> worst_run;  ///< number of the one with the largest error
+
+  /// The error that this part [%] of the runs does not exceed, failed ones left out: that of a run, by the
+  /// nearest rank. Nothing where all failed.
+  std::optional<double> percentile(double percent) const;
+};
+
+/// Runs the diagram of a mechanism (as `patch` gives it) with elements drawn anew for each run, and measures
+/// the largest distance of any moving point from its exact place. Each run is compiled by itself: the cases
+/// of a block's equations may change with what it draws. The solver is a thousand times finer than the
+/// narrowest scatter, 1e-6 at the most; a run that takes a hundred times the steps of the undisturbed one
+/// has failed. Throws as `flatten`, `solve_motion`, and as `run` where the undisturbed run fails.
+MonteCarlo monte_carlo(const Mechanism& mechanism, const Diagram& diagram, const BlockLibrary& library,
+                       const MonteCarloOptions& options);
+
+}  // namespace oblique

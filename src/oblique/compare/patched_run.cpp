@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/compare/patched_run.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include <oblique/solve/solve_error.h>
+#include <oblique/solve/stability.h>
+
+namespace oblique {
+namespace {
+
+constexpr std::size_t kRowsPerStabilityCheck = 10;
+
+}  // namespace
+
+Diagram patch_named(const Mechanism& mechanism, const PatchOptions& options) {
+  Diagram diagram = patch(mechanism, options);
+  diagram.file = mechanism.file;
+  return diagram;
+}
+
+PatchedMechanism::PatchedMechanism(Diagram patched, const BlockLibrary& library)
+    : diagram(std::move(patched)), flat(flatten(diagram, library)), program(assemble(flat)) {}
+
+std::vector<Overload> overloads_of(const Program& program, const Run& run) {
+  std::vector<Overload> overloads;
+  for (std::size_t s = 0; s < run.peaks.size(); ++s) {
+    if (std::abs(run.peaks[s].value) > 1 + kOverloadMargin)
+      overloads.push_back({program.signal_names()[s], run.peaks[s]});
+  }
+  return overloads;
+}
+
+double slowest_pole_of(const Program& program, const std::vector<Instant>& instants) {
+  double slowest = -std::numeric_limits<double>::infinity();
+  Workspace workspace(program);
+  for (std::size_t row = 0; row < instants.size(); row += kRowsPerStabilityCheck) {
+    workspace.load_memories(instants[row].memories);
+    const double pole = servo_stability(program, workspace, instants[row].t, instants[row].states);
+    if (std::isnan(pole)) return pole;
+    slowest = std::max(slowest, pole);
+  }
+  return slowest;
+}
+
+RecordedRun run_recorded(const PatchedMechanism& patched, const std::string& what, double tolerance,
+                         const std::function<void(double)>& progress) {
+  RecordedRun recorded;
+  RunOptions how = options_of(patched.diagram.run);
+  how.tolerance = tolerance;
+  how.progress = progress;
+  how.on_sample = [&](double t, std::span<const double> states, std::span<const double> memories) {
+    recorded.instants.push_back({t, {states.begin(), states.end()}, {memories.begin(), memories.end()}});
+  };
+  try {
+    recorded.run = run(patched.program, patched.flat, how);
+  } catch (const SolveError& error) {
+    Diagnostic finding = error.diagnostics().front();
+    finding.place = {patched.flat.file, {}};  // the diagram has no file in which its blocks stand
+    finding.what = fmt::format("with {}: {}", what, finding.what);
+    throw SolveError(error.kind(), error.time(), std::move(finding));
+  }
+  return recorded;
+}
+
+std::vector<PointOutputs> point_outputs(const Mechanism& mechanism, const FlatDiagram& flat) {
+  const auto column = [&](const std::string& name) {
+    const auto found = std::find_if(flat.outputs.begin(), flat.outputs.end(),
+                                    [&](const FlatOutput& output) { return output.name == name; });
+    return static_cast<std::size_t>(found - flat.outputs.begin());
+  };
+  std::vector<PointOutputs> outputs;
+  for (std::size_t p = 0; p < mechanism.points.size(); ++p) {
+    const Point& point = mechanism.points[p];
+    if (!point.fixed) outputs.push_back({p, column(point.name + ".x"), column(point.name + ".y")});
+  }
+  return outputs;
+}
+
+Eigen::Vector2d place_of(const PointOutputs& point, const Trajectory& analog, std::size_t row) {
+  return {analog.at(row, 1 + point.x), analog.at(row, 1 + point.y)};  // the first column is the time
+}
+
+Distances distances(const Mechanism& mechanism, const FlatDiagram& flat, const Trajectory& analog,
+                    const Motion& exact) {
+  Distances found;
+  double sum = 0;
+  std::size_t count = 0;
+  for (const PointOutputs& point : point_outputs(mechanism, flat)) {
+    for (std::size_t row = 0; row < analog.rows(); ++row, ++count) {
+      const Eigen::Vector2d& place = exact.configurations[row].points[point.point].position;
+      const double error = (place_of(point, analog, row) - place).norm();
+      sum += error * error;
+      if (count > 0 && error <= found.largest) continue;
+      found.largest = error;
+      found.worst = point;
+      found.row = row;
+    }
+  }
+  found.rms = std::sqrt(sum / static_cast<double>(std::max<std::size_t>(count, 1)));
+  return found;
+}
+
+}  // namespace oblique

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <oblique/compare/compare.h>
+#include <oblique/diagram/block_library.h>
+#include <oblique/mechanism/motion.h>
+#include <oblique/network/program.h>
+#include <oblique/patch/patch.h>
+#include <oblique/solve/linearisation.h>
+#include <oblique/solve/run.h>
+
+// What comparisons share; not installed.
+namespace oblique {
+
+/// A mechanism's diagram with all that running it takes. The library must outlive it.
+struct PatchedMechanism {
+  PatchedMechanism(Diagram patched, const BlockLibrary& library);
+
+  Diagram diagram;
+  FlatDiagram flat;
+  Program program;
+};
+
+/// The diagram of a mechanism under the mechanism's own file name: the diagram has none.
+Diagram patch_named(const Mechanism& mechanism, const PatchOptions& options);
+
+/// A run with the states at its rows.
+struct RecordedRun {
+  Run run;
+  std::vector<Instant> instants;
+};
+
+/// Runs as the diagram asks, but with another relative tolerance. What is thrown begins with "with `what`: ".
+RecordedRun run_recorded(const PatchedMechanism& patched, const std::string& what, double tolerance,
+                         const std::function<void(double)>& progress = {});
+
+/// The signals that left ±1 machine unit.
+std::vector<Overload> overloads_of(const Program& program, const Run& run);
+
+/// The largest real part of the servo loops' eigenvalues at every tenth of the instants [1/s]; NaN where one
+/// of them has none.
+double slowest_pole_of(const Program& program, const std::vector<Instant>& instants);
+
+/// The outputs that are the coordinates of a moving point.
+struct PointOutputs {
+  std::size_t point = 0;  ///< index in Mechanism::points
+  std::size_t x = 0, y = 0;
+};
+std::vector<PointOutputs> point_outputs(const Mechanism& mechanism, const FlatDiagram& flat);
+
+/// How far the moving points of a run are from their exact places.
+struct Distances {
+  double largest = 0;  ///< [length unit]
+  double rms = 0;      ///< root of the mean square, all points and rows [length unit]
+  PointOutputs worst;  ///< the point of the largest
+  std::size_t row = 0;
+};
+Distances distances(const Mechanism& mechanism, const FlatDiagram& flat, const Trajectory& analog,
+                    const Motion& exact);
+
+/// Where a point stands in a row of a run [length unit].
+Eigen::Vector2d place_of(const PointOutputs& point, const Trajectory& analog, std::size_t row);
+
+}  // namespace oblique

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/compare/worst_reason.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include <oblique/mechanism/follower.h>
+#include <oblique/solve/loop_report.h>
+
+namespace oblique {
+namespace {
+
+/// Part of the turn within which two positions count as the same.
+constexpr double kNear = 0.05;
+/// What falls by less than a quarter along the turn explains nothing.
+constexpr double kDip = 0.75;
+/// Every so many rows the gains of the loops are looked at.
+constexpr std::size_t kRowsPerInstant = 5;
+
+/// sin γ at P of a dyad's triangle.
+double sine_at_pivot(const Dyad& dyad, const Configuration& here) {
+  const Eigen::Vector2d d = here.points[dyad.q].position - here.points[dyad.p].position;
+  const Eigen::Vector2d e = here.points[dyad.c].position - here.points[dyad.p].position;
+  return std::abs(d.x() * e.y() - d.y() * e.x()) / (d.norm() * e.norm());
+}
+
+/// Whether states act on an output: directly, or through other states.
+std::vector<bool> states_behind(const PatchedMechanism& patched, const Instant& instant,
+                                const PointOutputs& point) {
+  const Program& program = patched.program;
+  Workspace workspace(program);
+  std::vector<double> signals(program.n_signals());
+  workspace.load_memories(instant.memories);
+  std::vector<bool> behind(program.n_states(), false);
+  const auto place = [&](std::vector<double> states) {
+    program.signals(instant.t, states.data(), signals.data(), workspace);
+    return Eigen::Vector2d(signals[program.signal_index(patched.flat.outputs[point.x].signal)],
+                           signals[program.signal_index(patched.flat.outputs[point.y].signal)]);
+  };
+  const Eigen::Vector2d here = place(instant.states);
+  std::vector<std::size_t> pending;
+  for (std::size_t i = 0; i < program.n_states(); ++i) {
+    std::vector<double> moved = instant.states;
+    moved[i] += 0.0371;  // an odd part of a machine unit
+    if (place(std::move(moved)) == here) continue;
+    behind[i] = true;
+    pending.push_back(i);
+  }
+  const SparsePattern& pattern = program.jacobian_pattern();
+  while (!pending.empty()) {
+    const auto row = static_cast<std::int64_t>(pending.back());
+    pending.pop_back();
+    for (std::size_t column = 0; column < pattern.size(); ++column) {
+      const auto begin = pattern.rows.begin() + pattern.column_starts[column];
+      const auto end = pattern.rows.begin() + pattern.column_starts[column + 1];
+      if (behind[column] || !std::binary_search(begin, end, row)) continue;
+      behind[column] = true;
+      pending.push_back(column);
+    }
+  }
+  return behind;
+}
+
+}  // namespace
+
+WorstReasons::WorstReasons(const Mechanism& mechanism, const Motion& exact)
+    : mechanism_(mechanism),
+      exact_(exact),
+      structure_(decompose(mechanism)),
+      regularities_(structure_.groups.size()) {
+  Follower follower(mechanism, structure_);
+  for (const double t : exact.times) {
+    follower.advance(t);
+    for (std::size_t g = 0; g < regularities_.size(); ++g)
+      regularities_[g].push_back(std::abs(follower.regularity(g)));
+  }
+}
+
+bool WorstReasons::is_near(double a, double b) const {
+  const double turn = exact_.times.back() - exact_.times.front();
+  const double apart = std::abs(a - b);
+  return std::min(apart, turn - apart) <= kNear * turn;
+}
+
+std::vector<double> WorstReasons::flatness(std::size_t group, PatchMethod method) const {
+  const auto dyad = dyad_of(structure_.groups[group]);
+  if (!dyad || method == PatchMethod::gradient) return regularities_[group];
+  std::vector<double> sines;
+  for (const Configuration& here : exact_.configurations) sines.push_back(sine_at_pivot(*dyad, here));
+  return sines;
+}
+
+/// The group that places a point, then those that it hangs on, the nearest first; without drives.
+std::vector<std::size_t> WorstReasons::groups_behind(std::size_t point) const {
+  std::vector<std::size_t> behind, points{point};
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    for (std::size_t g = 0; g < structure_.groups.size(); ++g) {
+      const Group& group = structure_.groups[g];
+      const bool places =
+          std::find(group.points.begin(), group.points.end(), points[k]) != group.points.end();
+      if (!places || group.assur_class == 1 || std::find(behind.begin(), behind.end(), g) != behind.end())
+        continue;
+      behind.push_back(g);
+      for (const std::size_t body : group.bodies) {
+        for (const BodyPoint& p : mechanism_.bodies[body].points) points.push_back(p.point);
+      }
+      for (const std::size_t s : group.slides) {
+        const Slide& slide = mechanism_.slides[s];
+        points.insert(points.end(), {slide.point, slide.first, slide.second});
+      }
+    }
+  }
+  return behind;
+}
+
+std::string WorstReasons::flat_group(std::size_t point, std::size_t row, PatchMethod method) const {
+  for (const std::size_t g : groups_behind(point)) {
+    const std::vector<double> values = flatness(g, method);
+    const auto [least, greatest] = std::minmax_element(values.begin(), values.end());
+    const auto where = static_cast<std::size_t>(least - values.begin());
+    if (!is_near(exact_.times[row], exact_.times[where]) || *least > kDip * *greatest) continue;
+    const Group& group = structure_.groups[g];
+    const auto dyad = dyad_of(group);
+    if (!dyad || method == PatchMethod::gradient) {
+      return fmt::format("the group {} is nearest to a dead centre there (regularity {:.2g})", group.name,
+                         *least);
+    }
+    const auto name = [&](std::size_t p) { return mechanism_.points[p].name; };
+    return fmt::format("the triangle {}–{}–{} is flattest there (sin γ = {:.2g} at {})", name(dyad->p),
+                       name(dyad->c), name(dyad->q), *least, name(dyad->p));
+  }
+  return {};
+}
+
+std::string WorstReasons::weak_loop(const PatchedMechanism& patched, double gain, const RecordedRun& recorded,
+                                    const Distances& error) const {
+  std::vector<Instant> instants;
+  for (std::size_t row = 0; row < recorded.instants.size(); row += kRowsPerInstant)
+    instants.push_back(recorded.instants[row]);
+  const std::vector<bool> behind = states_behind(patched, recorded.instants[error.row], error.worst);
+  const SignalFlow flow(patched.flat, patched.program);
+  const LoopUnknown* weakest = nullptr;
+  const std::vector<LoopReport> loops = explain_loops(patched.program, flow, instants);
+  for (const LoopReport& loop : loops) {
+    for (const LoopUnknown& unknown : loop.unknowns) {
+      const auto& states = patched.program.states();
+      const auto state = std::find_if(states.begin(), states.end(),
+                                      [&](const State& s) { return s.name == unknown.signal; });
+      if (state == states.end() || !behind[static_cast<std::size_t>(state - states.begin())]) continue;
+      if (weakest == nullptr || std::abs(unknown.least_gain) < std::abs(weakest->least_gain))
+        weakest = &unknown;
+    }
+  }
+  if (weakest == nullptr || !is_near(weakest->least_time, exact_.times[error.row]) ||
+      std::abs(weakest->least_gain) > kDip * std::abs(weakest->greatest_gain)) {
+    return {};
+  }
+  return fmt::format("the loop of '{}' has the least gain of all there ({:.2g} times the amplifier's)",
+                     weakest->signal, weakest->least_gain / gain);
+}
+
+std::string WorstReasons::reason(const PatchedMechanism& patched, const PatchOptions& options,
+                                 const RecordedRun& recorded, const Distances& error) const {
+  std::string found = flat_group(error.worst.point, error.row, options.method);
+  return found.empty() ? weak_loop(patched, options.gain, recorded, error) : found;
+}
+
+}  // namespace oblique

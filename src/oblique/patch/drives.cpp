@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+// The blocks of drives, which all methods of patching share.
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <oblique/patch/patch_builder.h>
+
+namespace oblique {
+
+std::string PatchBuilder::speed_text(const Drive& drive) const {
+  const std::string unit = drive.slide ? mechanism_.length_unit + "/s" : "rad/s";
+  if (!drive.law) return fmt::format("{:.6g} {}", drive.speed, unit);
+  const std::string law = to_string(*drive.law);
+  return drive.law_scale == 1 ? fmt::format("{} {}", law, unit)
+                              : fmt::format("({})*{:.6g} {}", law, drive.law_scale, unit);
+}
+
+const PatchBuilder::Speed& PatchBuilder::add_speed(std::size_t d) {
+  const Drive& drive = mechanism_.drives[d];
+  if (!drive.law) return speeds_[d] = {one_, drive.speed};
+  double fastest = 0;
+  for (const std::vector<DriveState>& row : motion_.drives)
+    fastest = std::max(fastest, std::abs(row[d].rate));
+  constexpr double kMargin = 1.001;  // for what lies between two positions of the motion
+  const double unit = fastest > 0 ? round_up(kMargin * fastest) : 1;
+  speeds_[d].signal = add_block(
+      drive.name + "_speed", "time-function",
+      {text_setting("formula", to_string(*drive.law)), number_setting("scale", drive.law_scale / unit)});
+  speeds_[d].unit = unit;
+  return speeds_[d];
+}
+
+std::string PatchBuilder::add_generator(std::size_t d, const std::string& comment) {
+  const Speed& speed = add_speed(d);
+  std::string generator =
+      add_block(mechanism_.drives[d].name, "crank-generator",
+                {wire_setting("speed", {{1, speed.signal}}), number_setting("rate", speed.unit),
+                 number_setting("start", mechanism_.drives[d].start)},
+                comment);
+  drives_[d].axis = {weighted(generator + ".cos"), weighted(generator + ".sin")};
+  return generator;
+}
+
+std::string PatchBuilder::add_way(std::size_t d, double reach) {
+  const Drive& drive = mechanism_.drives[d];
+  const Speed& speed = add_speed(d);
+  const std::string way = add_block(drive.name, "integrator",
+                                    {wire_setting("in", {{scaled(speed.unit) / reach, speed.signal}}),
+                                     number_setting("initial", scaled(drive.start) / reach)},
+                                    fmt::format("drive {}: {} along {}", drive.name, speed_text(drive),
+                                                mechanism_.slides[*drive.slide].name));
+  drives_[d].way = weighted(way, reach);
+  return way;
+}
+
+}  // namespace oblique

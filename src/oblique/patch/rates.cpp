@@ -1,0 +1,319 @@
+// SPDX-License-Identifier: MIT
+// Velocities and accelerations as circuits of their own.
+//
+// The conditions g = Σ w·a·b + r of a group hold at every moment, so their derivatives vanish too,
+//
+//     ġ = Σ w (ȧ b + a ḃ) + ṙ = 0,      g̈ = Σ w (ä b + 2 ȧ ḃ + a b̈) + r̈ = 0,
+//
+// linear in the unknown velocities v and accelerations with the same matrix J = ∂g/∂x: ġ = J v + c. A servo
+// amplifier for each unknown is fed with Jᵀ ġ: τ v̇ = −v − μ Jᵀ (J v + c). Since Jᵀ J has no negative
+// eigenvalue that is stable in every assembly mode, for groups of any class and however the positions are
+// tracked; two amplifiers on a dyad's two equations would be so only with signs that follow the mode. What a
+// differentiating amplifier would make of the loops' noise does not arise.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <tuple>
+
+#include <fmt/format.h>
+
+#include <oblique/mechanism/law_derivative.h>
+#include <oblique/patch/patch_builder.h>
+#include <oblique/patch/signal_rates.h>
+
+namespace oblique {
+namespace {
+
+/// The ×10 inputs of a machine's amplifiers.
+constexpr double kInputGain = 10;
+
+/// Between two positions of the motion a signal may rise a little more.
+constexpr double kMargin = 1.001;
+
+}  // namespace
+
+class PatchBuilder::Rates {
+ public:
+  explicit Rates(PatchBuilder& patch) : patch_(patch), places_(patch.mechanism_) {
+    places_.set_scale(patch.scaling_);
+    const Scaling& scaling = patch.scaling_;
+    double fastest = 0, largest = 0;
+    for (const Configuration& here : patch.motion_.configurations) {
+      for (const PointState& point : here.points) {
+        fastest = std::max(fastest, point.velocity.cwiseAbs().maxCoeff());
+        largest = std::max(largest, point.acceleration.cwiseAbs().maxCoeff());
+      }
+    }
+    patch.velocity_unit_ = fastest > 0 ? round_scale_up(fastest) : 1;
+    patch.acceleration_unit_ = largest > 0 ? round_scale_up(largest) : 1;
+    units_ = {patch.velocity_unit_ / scaling.length, patch.acceleration_unit_ / scaling.length};
+  }
+
+  void add() {
+    patch_.rate_signals_.resize(patch_.mechanism_.points.size());
+    const std::string& length = patch_.mechanism_.length_unit;
+    patch_.diagram_.comment += fmt::format("\nRates: 1 machine unit = {} {}/s and {} {}/s^2.",
+                                           patch_.velocity_unit_, length, patch_.acceleration_unit_, length);
+    for (std::size_t d = 0; d < patch_.drives_.size(); ++d) add_drive(d);
+    for (const Group& group : patch_.structure_.groups) {
+      if (group.kind == GroupKind::crank) {
+        add_crank(group);
+      } else {
+        add_group(group);
+      }
+      for (const std::size_t point : group.points) set_known(point);
+    }
+  }
+
+ private:
+  using Order = SignalRates::Order;
+  using enum SignalRates::Order;
+
+  /// A form whose rate has a block.
+  struct FormRate {
+    std::string signal;  ///< empty where the form never changes
+    double unit = 0;     ///< 1 machine unit of the signal, in the units of rates
+  };
+
+  // --- what is known
+
+  void add_drive(std::size_t d) {
+    const Speed& speed = patch_.speeds_[d];
+    const DriveForms& forms = patch_.drives_[d];
+    std::string acceleration;  // its signal, in its unit; none at constant speed
+    double acceleration_unit = 0;
+    if (patch_.mechanism_.drives[d].law) std::tie(acceleration, acceleration_unit) = add_acceleration(d);
+    if (patch_.mechanism_.drives[d].slide) {
+      const auto& [way, reach] = *forms.way.weights.begin();
+      auto& [of_way, exact] = rates_[way];
+      of_way[first] = weighted(speed.signal, patch_.scaled(speed.unit) / reach / units_[first]);
+      if (!acceleration.empty())
+        of_way[second] = weighted(acceleration, patch_.scaled(acceleration_unit) / reach / units_[second]);
+      for (const std::vector<DriveState>& row : patch_.motion_.drives) {
+        exact[first].push_back(patch_.scaled(row[d].rate) / reach);
+        exact[second].push_back(patch_.scaled(row[d].acceleration) / reach);
+      }
+      return;
+    }
+    const std::string& cos = forms.axis.x.weights.begin()->first;
+    const std::string& sin = forms.axis.y.weights.begin()->first;
+    auto& [of_cos, exact_cos] = rates_[cos];
+    auto& [of_sin, exact_sin] = rates_[sin];
+    // d cos = −φ̇ sin, d² cos = −φ̇² cos − φ̈ sin, and so on
+    const std::string& u = speed.signal;
+    const std::string u_cos = by_speed(d, u, cos), u_sin = by_speed(d, u, sin);
+    const double w = speed.unit / units_[first], w2 = speed.unit * speed.unit / units_[second];
+    of_cos[first] = weighted(u_sin, -w);
+    of_sin[first] = weighted(u_cos, w);
+    of_cos[second] = weighted(by_speed(d, u, u_cos), -w2);
+    of_sin[second] = weighted(by_speed(d, u, u_sin), -w2);
+    if (!acceleration.empty()) {
+      of_cos[second].add(weighted(product(acceleration, sin), -acceleration_unit / units_[second]));
+      of_sin[second].add(weighted(product(acceleration, cos), acceleration_unit / units_[second]));
+    }
+    for (const std::vector<DriveState>& row : patch_.motion_.drives) {
+      const double rate = row[d].rate, alpha = row[d].acceleration;
+      const double c = std::cos(row[d].value), s = std::sin(row[d].value);
+      exact_cos[first].push_back(-rate * s);
+      exact_sin[first].push_back(rate * c);
+      exact_cos[second].push_back(-rate * rate * c - alpha * s);
+      exact_sin[second].push_back(-rate * rate * s + alpha * c);
+    }
+  }
+
+  /// The derivative of a drive's law: its signal and what 1 machine unit of it is. No signal where it
+  /// vanishes.
+  std::pair<std::string, double> add_acceleration(std::size_t d) {
+    const Drive& drive = patch_.mechanism_.drives[d];
+    double largest = 0;
+    for (const std::vector<DriveState>& row : patch_.motion_.drives)
+      largest = std::max(largest, std::abs(row[d].acceleration));
+    if (largest == 0) return {};
+    const double unit = round_up(kMargin * largest);
+    return {patch_.add_block(drive.name + "_acceleration", "time-function",
+                             {text_setting("formula", to_string(law_derivative(*drive.law))),
+                              number_setting("scale", drive.law_scale / unit)}),
+            unit};
+  }
+
+  /// A signal times that of a drive's speed, which is 1 where the speed is constant.
+  std::string by_speed(std::size_t d, const std::string& speed, const std::string& signal) {
+    return patch_.mechanism_.drives[d].law ? product(speed, signal) : signal;
+  }
+
+  std::string product(const std::string& a, const std::string& b) {
+    std::string name = a + "_" + b;
+    std::replace(name.begin(), name.end(), '.', '_');
+    return patch_.add_block(name, "multiplier", {wire_setting("in", {{1, a}, {1, b}})});
+  }
+
+  void add_crank(const Group& crank) {
+    const std::size_t d = crank.drives.front();
+    const Body& body = patch_.mechanism_.bodies[patch_.mechanism_.drives[d].body];
+    const std::size_t begin = patch_.diagram_.blocks.size();
+    for (const BodyPoint& point : body.points) {
+      if (places_.points_[point.point]) continue;
+      name_rates(point.point);
+      add_summed_rates(point.point, patch_.crank_point(crank, point));
+    }
+    comment(begin, fmt::format("rates of the crank {}", body.name));
+  }
+
+  /// Takes a point's signals as its place, and its rates as theirs.
+  void set_known(std::size_t point) {
+    const PointSignals& at = patch_.signals_[point];
+    places_.set_signals(point, at.x, at.y);
+  }
+
+  // --- the rates of points
+
+  /// Names the signals of a point's rates, and says what they will be.
+  void name_rates(std::size_t point) {
+    RateSignals& names = patch_.rate_signals_[point];
+    const std::string& name = patch_.name_of(point);
+    names = {patch_.free_name(name + "_vx"), patch_.free_name(name + "_vy"), patch_.free_name(name + "_ax"),
+             patch_.free_name(name + "_ay")};
+    const PointSignals& at = patch_.signals_[point];
+    SignalRates::Rates &x = rates_[at.x], &y = rates_[at.y];
+    x.forms = {weighted(names.vx), weighted(names.ax)};
+    y.forms = {weighted(names.vy), weighted(names.ay)};
+    for (const Configuration& here : patch_.motion_.configurations) {
+      const PointState& exact = here.points[point];
+      x.exact[first].push_back(patch_.scaled(exact.velocity.x()));
+      y.exact[first].push_back(patch_.scaled(exact.velocity.y()));
+      x.exact[second].push_back(patch_.scaled(exact.acceleration.x()));
+      y.exact[second].push_back(patch_.scaled(exact.acceleration.y()));
+    }
+  }
+
+  void add_named(const std::string& name, std::string type, std::vector<Entry> settings) {
+    BlockInstance block;
+    block.name = name;
+    block.type = std::move(type);
+    block.settings = std::move(settings);
+    patch_.diagram_.blocks.push_back(std::move(block));
+  }
+
+  void add_summed_rates(std::size_t point, const VectorForm& at) {
+    const RateSignals& names = patch_.rate_signals_[point];
+    add_named(names.vx, "summer", {sum_of(patch_.terms_of(rates_.of(at.x, first)))});
+    add_named(names.vy, "summer", {sum_of(patch_.terms_of(rates_.of(at.y, first)))});
+    add_named(names.ax, "summer", {sum_of(patch_.terms_of(rates_.of(at.x, second)))});
+    add_named(names.ay, "summer", {sum_of(patch_.terms_of(rates_.of(at.y, second)))});
+  }
+
+  // --- groups
+
+  void add_group(const Group& group) {
+    std::vector<std::size_t> unknowns;
+    GroupResiduals residuals(places_, patch_.scaling_, patch_.drives_, [&](std::size_t point) {
+      unknowns.push_back(point);
+      name_rates(point);
+      return VectorForm{weighted(patch_.signals_[point].x), weighted(patch_.signals_[point].y)};
+    });
+    const std::vector<Residual> conditions = residuals.of(group);
+    const std::size_t begin = patch_.diagram_.blocks.size();
+    Gradients gradients[2];
+    for (Gradients& gradient : gradients) {
+      for (const std::size_t point : unknowns) {
+        gradient[patch_.signals_[point].x];
+        gradient[patch_.signals_[point].y];
+      }
+    }
+    for (const Residual& residual : conditions) add_residual(residual, gradients);
+    for (const std::size_t point : unknowns) {
+      const RateSignals& names = patch_.rate_signals_[point];
+      const PointSignals& at = patch_.signals_[point];
+      add_servo(names.vx, gradients[first][at.x]);
+      add_servo(names.vy, gradients[first][at.y]);
+      add_servo(names.ax, gradients[second][at.x]);
+      add_servo(names.ay, gradients[second][at.y]);
+    }
+    for (const std::size_t point : group.points) {
+      if (!patch_.rate_signals_[point].vx.empty()) continue;
+      name_rates(point);
+      add_summed_rates(point, *places_.points_[point]);
+    }
+    comment(begin,
+            fmt::format("rates of the group {}: its conditions, differentiated once and twice", group.name));
+  }
+
+  /// Comments on the blocks from the one with this index on, if there are any.
+  void comment(std::size_t begin, const std::string& text) {
+    if (begin < patch_.diagram_.blocks.size()) patch_.diagram_.blocks[begin].comment = text;
+  }
+
+  /// The derivatives of one condition, and what they pull at.
+  void add_residual(const Residual& residual, Gradients (&gradients)[2]) {
+    std::vector<std::string> forms;
+    std::vector<FormRate> rates[2];
+    for (const auto& [name, form] : residual.forms) {
+      forms.push_back(form_block(name, form));
+      for (const Order order : {first, second}) rates[order].push_back(add_form_rate(name, form, order));
+    }
+    for (const Order order : {first, second}) {
+      Terms sum = patch_.terms_of(rates_.of(residual.rest, order));
+      if (sum.size() == 1 && sum.front().weight == 0) sum.clear();
+      for (const Residual::Product& p : residual.products) {
+        const FormRate &a = rates[order][p.a], &b = rates[order][p.b];
+        const double twice = p.a == p.b ? 2 : 1;
+        if (!a.signal.empty()) sum.push_back({twice * p.weight * a.unit, product(a.signal, forms[p.b])});
+        if (p.a != p.b && !b.signal.empty())
+          sum.push_back({p.weight * b.unit, product(forms[p.a], b.signal)});
+        if (order == first) continue;
+        const FormRate &va = rates[first][p.a], &vb = rates[first][p.b];
+        if (va.signal.empty() || vb.signal.empty()) continue;
+        const double unit = va.unit * vb.unit * units_[first] * units_[first] / units_[second];
+        sum.push_back({2 * p.weight * unit, product(va.signal, vb.signal)});
+      }
+      const std::string gap = patch_.add_block(residual.name + (order == first ? "_v_gap" : "_a_gap"),
+                                               "summer", {wire_setting("in", sum)});
+      patch_.add_gradients(residual, forms, gap, gradients[order]);
+    }
+  }
+
+  void add_servo(const std::string& name, const Terms& gradient) {
+    Terms in = gradient;
+    for (WeightedSignal& term : in) term.weight *= kInputGain;
+    add_named(name, "servo-amplifier",
+              {wire_setting("in", in), number_setting("gain", patch_.options_.gain),
+               number_setting("bandwidth", patch_.bandwidth_)});
+  }
+
+  // --- forms
+
+  /// The block of a form, which the positions may have already.
+  std::string form_block(const std::string& name, const LinearForm& form) {
+    for (const auto& [known, block] : patch_.form_blocks_) {
+      if (known == form) return block;
+    }
+    std::string block = patch_.add_block(name, "summer", {sum_of(patch_.terms_of(form))});
+    patch_.form_blocks_.emplace_back(form, block);
+    return block;
+  }
+
+  /// The rate of a form, scaled to stay within ±1 along the exact motion.
+  FormRate add_form_rate(const std::string& name, const LinearForm& form, Order order) {
+    const LinearForm rate = rates_.of(form, order);
+    if (rate.weights.empty() && rate.constant == 0) return {};
+    // Beside what the motion makes of it, which may be nothing, the form has to carry the loops' errors.
+    constexpr double kLeast = 1e-3;
+    const double unit = round_up(std::max(kMargin * rates_.largest(form, order) / units_[order], kLeast));
+    LinearForm scaled_rate;
+    scaled_rate.add(rate, 1 / unit);
+    return {patch_.add_block(name + (order == first ? "_v" : "_a"), "summer",
+                             {sum_of(patch_.terms_of(scaled_rate))}),
+            unit};
+  }
+
+  PatchBuilder& patch_;
+  PointForms places_;
+  std::array<double, 2> units_;  ///< 1 machine unit of a rate, in machine units of a coordinate [1/s], [1/s²]
+  SignalRates rates_;            ///< of the signals of points and drives
+};
+
+void PatchBuilder::add_rates() {
+  Rates(*this).add();
+}
+
+}  // namespace oblique

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/solve/standing.h>
+
+#include <algorithm>
+#include <limits>
+#include <unordered_map>
+
+#include <oblique/network/network.h>
+
+namespace oblique {
+namespace {
+
+bool is_brought_to_rest(const BlockDefinition& definition) {
+  return std::any_of(definition.starts.begin(), definition.starts.end(),
+                     [](const auto& start) { return start.at_rest; });
+}
+
+}  // namespace
+
+FlatDiagram with_instant_servos(FlatDiagram diagram) {
+  for (FlatBlock& block : diagram.blocks) {
+    const auto bandwidth = block.definition->find_parameter("bandwidth");
+    if (!bandwidth || !is_brought_to_rest(*block.definition)) continue;
+    block.parameters[*bandwidth] = std::numeric_limits<double>::infinity();
+    block.behaviour = block.definition->choose_behaviour(block.parameters, block.polarity);
+  }
+  return diagram;
+}
+
+std::vector<Instant> standing_instants(const Program& program, const FlatDiagram& diagram, RunOptions options,
+                                       std::size_t most) {
+  const FlatDiagram instant_servos = with_instant_servos(diagram);
+  const Program standing(assemble(instant_servos));
+  std::vector<Instant> instants;
+  collect_instants(options, most, instants);
+  run(standing, instant_servos, options);
+
+  std::unordered_map<std::string_view, std::size_t> signals;
+  for (std::size_t s = 0; s < standing.n_signals(); ++s) signals.emplace(standing.signal_names()[s], s);
+  Workspace workspace(standing);
+  std::vector<double> values(standing.n_signals());
+  for (Instant& instant : instants) {
+    workspace.load_memories(instant.memories);
+    standing.signals(instant.t, instant.states.data(), values.data(), workspace);
+    std::unordered_map<std::string_view, double> held;
+    for (std::size_t i = 0; i < standing.n_states(); ++i)
+      held.emplace(standing.states()[i].name, instant.states[i]);
+    std::vector<double> states(program.n_states());
+    for (std::size_t i = 0; i < states.size(); ++i) {
+      const std::string& name = program.states()[i].name;
+      const auto state = held.find(name);
+      states[i] = state != held.end() ? state->second : values[signals.at(name)];
+    }
+    instant.states = std::move(states);
+  }
+  return instants;
+}
+
+void collect_instants(RunOptions& options, std::size_t most, std::vector<Instant>& instants) {
+  const auto rows = static_cast<std::size_t>(options.samples);
+  const std::size_t shown = std::min(rows, most);
+  options.on_sample = [&instants, rows, shown, row = std::size_t{0}](
+                          double t, std::span<const double> states,
+                          std::span<const double> memories) mutable {
+    const std::size_t taken = instants.size();
+    const std::size_t wanted = shown < 2 ? 0 : taken * (rows - 1) / (shown - 1);
+    if (row++ == wanted && taken < shown)
+      instants.push_back({t, {states.begin(), states.end()}, {memories.begin(), memories.end()}});
+  };
+}
+
+}  // namespace oblique

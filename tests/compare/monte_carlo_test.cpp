@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/compare/monte_carlo.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+
+#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/patch/patch.h>
+
+namespace oblique {
+namespace {
+
+using std::numbers::pi;
+
+Mechanism four_bar() {
+  return read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/four-bar.toml");
+}
+
+MonteCarlo drawn(const Mechanism& mechanism, const MonteCarloOptions& options) {
+  PatchOptions patch_options;
+  patch_options.gain = 1e6;
+  return monte_carlo(mechanism, patch(mechanism, patch_options), BlockLibrary::shipped(), options);
+}
+
+// A crank alone: B = r ((1 + e) cos φ, (1 + f) sin φ), each coordinate a summer, errs most on an axis, by
+// r max(|e|, |f|): of two uniform variables on [0, 1] the larger has the mean 2/3, the variance 1/18, and is
+// below q with the probability q².
+TEST(MonteCarlo, OfACrankIsTheLargerOfTwoTolerances) {
+  const Mechanism crank = parse_mechanism(R"(
+format = "oblique-mechanism/1"
+[frame]
+A = [0, 0]
+[bodies]
+AB = { points = ["A", "B"], length = 2 }
+[drives]
+crank = { turns = "AB", about = "A", speed = "1 rad/s" }
+)",
+                                          "crank.toml");
+  MonteCarloOptions options;
+  options.scatters = {{"summer", "tolerance", 0.01, ""}};
+  options.runs = 4000;
+  options.threads = 2;
+  const MonteCarlo result = drawn(crank, options);
+  double sum = 0, squares = 0;
+  for (const auto& error : result.errors) {
+    const double part = error.value() / (2 * 0.01);
+    sum += part;
+    squares += part * part;
+  }
+  const double mean = sum / 4000, deviation = std::sqrt(squares / 4000 - mean * mean);
+  // Four standard deviations of the sample's mean, and of its standard deviation, which for this density has
+  // the relative deviation √((κ − 1)/4n) with the kurtosis κ = 2.4. The solver adds 1e-5 of 2e-2.
+  EXPECT_NEAR(mean, 2.0 / 3, 4 * std::sqrt(1.0 / 18 / 4000) + 1e-3);
+  EXPECT_NEAR(deviation, std::sqrt(1.0 / 18), 4 * std::sqrt(1.0 / 18) * std::sqrt(1.4 / 4 / 4000) + 1e-3);
+  EXPECT_NEAR(result.percentile(25).value() / 0.02, 0.5, 0.03);  // 4 √(0.25·0.75/n)/(2 · 0.5)
+}
+
+/// The largest error of the four-bar over 73 positions when the summers of its patch err in their ratio:
+/// those of B, of the vector B → D, of C and of M, each for x and y; exact triangles, in closed form.
+double four_bar_error(const std::array<double, 8>& e) {
+  constexpr double kCoupler = 3.5, kRocker = 3, kFrame = 4;
+  using Vector = Eigen::Vector2d;
+  const auto scaled = [&](const Vector& v, std::size_t k) {
+    return Vector((1 + e[k]) * v.x(), (1 + e[k + 1]) * v.y());
+  };
+  struct Points {
+    Vector b, c, m;
+  };
+  const auto place = [&](double angle, auto&& summed) {
+    Points p;
+    p.b = summed(Vector(std::cos(angle), std::sin(angle)), 0);
+    const Vector d = summed(Vector(kFrame, 0) - p.b, 2);
+    const double length = d.norm();
+    const double cosine =
+        (kCoupler * kCoupler + length * length - kRocker * kRocker) / (2 * kCoupler * length);
+    const double sine = std::sqrt(1 - cosine * cosine);
+    const Vector along = d / length, across(-along.y(), along.x());
+    p.c = summed(p.b + kCoupler * (cosine * along + sine * across), 4);
+    const Vector bc = p.c - p.b;
+    p.m = summed(p.b + 0.5 * bc + Vector(-bc.y(), bc.x()) / kCoupler, 6);
+    return p;
+  };
+  double largest = 0;
+  for (int row = 0; row < 73; ++row) {
+    const double angle = 2 * pi * row / 72;
+    const Points exact = place(angle, [](const Vector& v, std::size_t) { return v; });
+    const Points here = place(angle, scaled);
+    largest =
+        std::max({largest, (here.b - exact.b).norm(), (here.c - exact.c).norm(), (here.m - exact.m).norm()});
+  }
+  return largest;
+}
+
+// Of 1500 machines, the part below each percentile of 20 000 closed-form four-bars, drawn by another
+// generator, lies within four standard deviations √(p (1 − p)/n) of p. The amplifiers of gain 1e6 and the
+// solver add 1e-4 of such an error at the most.
+TEST(MonteCarlo, OfTheFourBarIsThatOfItsClosedForm) {
+  MonteCarloOptions options;
+  options.scatters = {{"summer", "tolerance", 0.01, ""}};
+  options.runs = 1500;
+  options.threads = 2;
+  const MonteCarlo result = drawn(four_bar(), options);
+  std::mt19937_64 generator(99);
+  std::uniform_real_distribution<double> uniform(-0.01, 0.01);
+  std::vector<double> expected(20'000);
+  for (double& error : expected) {
+    std::array<double, 8> e{};
+    std::generate(e.begin(), e.end(), [&] { return uniform(generator); });
+    error = four_bar_error(e);
+  }
+  std::sort(expected.begin(), expected.end());
+  for (const double percent : {5.0, 25.0, 50.0, 75.0, 95.0}) {
+    const double p = percent / 100;
+    const double bound = expected[static_cast<std::size_t>(p * 20'000)];
+    const auto below = std::count_if(result.errors.begin(), result.errors.end(),
+                                     [&](const auto& error) { return error.value() < bound; });
+    EXPECT_NEAR(static_cast<double>(below) / 1500, p, 4 * std::sqrt(p * (1 - p) / 1500)) << percent;
+  }
+}
+
+TEST(MonteCarlo, IsTheSameForAnyNumberOfThreads) {
+  MonteCarloOptions options;
+  options.scatters = scatters_of_tolerance(BlockLibrary::shipped(), 1e-3);
+  options.runs = 40;
+  const MonteCarlo one = drawn(four_bar(), options);
+  for (const int threads : {2, 3, 100}) {
+    options.threads = threads;
+    const MonteCarlo other = drawn(four_bar(), options);
+    EXPECT_EQ(one.errors, other.errors) << threads;  // to the last bit
+    EXPECT_EQ(one.worst_run, other.worst_run);
+  }
+}
+
+TEST(MonteCarlo, GoesOnFromAnyRun) {
+  MonteCarloOptions options;
+  options.scatters = scatters_of_tolerance(BlockLibrary::shipped(), 1e-3);
+  options.runs = 10;
+  const MonteCarlo all = drawn(four_bar(), options);
+  options.runs = 3;
+  options.first_run = 6;
+  const MonteCarlo some = drawn(four_bar(), options);
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(some.errors[k], all.errors[6 + k]);
+}
+
+// Half as large again, |BD| is longer than both links together: the triangle does not close.
+TEST(MonteCarlo, CountsWhatFails) {
+  MonteCarloOptions options;
+  options.scatters = {{"summer", "tolerance", 0.5, ""}};
+  options.runs = 30;
+  const MonteCarlo result = drawn(four_bar(), options);
+  const auto missing = std::count(result.errors.begin(), result.errors.end(), std::nullopt);
+  EXPECT_GT(missing, 0);
+  EXPECT_LT(missing, 30);
+  ASSERT_EQ(result.failures.size(), static_cast<std::size_t>(missing));
+  for (const FailedRun& run : result.failures) {
+    EXPECT_FALSE(result.errors[run.number]);
+    EXPECT_FALSE(run.message.empty());
+    EXPECT_EQ(run.message.find('\n'), std::string::npos);
+  }
+  ASSERT_TRUE(result.worst_run);
+  EXPECT_EQ(result.errors[*result.worst_run], result.percentile(100));
+}
+
+TEST(MonteCarlo, IsAsFineAsItsScatter) {
+  MonteCarloOptions options;
+  options.runs = 1;
+  options.scatters = {{"summer", "tolerance", 0.01, ""}};
+  EXPECT_EQ(drawn(four_bar(), options).tolerance, 1e-6);
+  options.scatters.push_back({"integrator", "tolerance", 1e-5, ""});
+  EXPECT_DOUBLE_EQ(drawn(four_bar(), options).tolerance, 1e-8);
+}
+
+TEST(MonteCarlo, PercentilesAreRunsByTheNearestRank) {
+  MonteCarlo result;
+  EXPECT_FALSE(result.percentile(50));
+  result.errors = {4.0, std::nullopt, 1.0, 3.0, 2.0};
+  EXPECT_EQ(result.percentile(0), 1);
+  EXPECT_EQ(result.percentile(25), 1);
+  EXPECT_EQ(result.percentile(26), 2);
+  EXPECT_EQ(result.percentile(50), 2);
+  EXPECT_EQ(result.percentile(95), 4);
+  EXPECT_EQ(result.percentile(100), 4);
+}
+
+}  // namespace
+}  // namespace oblique

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/compare/compare.h>
+
+#include <cmath>
+#include <numbers>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <oblique/mechanism/read_mechanism.h>
+
+namespace oblique {
+namespace {
+
+using std::numbers::pi;
+using ::testing::StartsWith;
+
+ComparedRun compared(const std::string& mechanism, PatchMethod method) {
+  CompareOptions options;
+  options.methods = {method};
+  options.gains = {1e3};
+  return compare(
+             read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/" + mechanism + ".toml"),
+             BlockLibrary::shipped(), options)
+      .runs.front();
+}
+
+// The six-bar's crank of 80 mm lies opposite to D, 200 mm away, at 180°: |BD| = 280 mm is then the longest,
+// and with |BC| = 140 mm, |CD| = 150 mm, cos γ = (140² + 280² − 150²)/(2·140·280) = 0.963, sin γ = 0.27.
+TEST(WorstReason, IsAFlatTriangle) {
+  const ComparedRun run = compared("six-bar", PatchMethod::triangles);
+  EXPECT_EQ(run.worst.point, "C");
+  EXPECT_NEAR(run.worst.drive, pi, 2 * pi / 360);  // a row
+  EXPECT_EQ(run.worst.reason, "the triangle B–C–D is flattest there (sin γ = 0.27 at B)");
+}
+
+// The triangle at fault need not be the point's own: the foot Q5 hangs on Q6.
+TEST(WorstReason, IsATriangleThatThePointHangsOn) {
+  const ComparedRun run = compared("jansen", PatchMethod::triangles);
+  EXPECT_EQ(run.worst.point, "Q5");
+  EXPECT_THAT(run.worst.reason, StartsWith("the triangle Q1–Q6–O2 is flattest there (sin γ = "));
+}
+
+TEST(WorstReason, IsAGroupNearADeadCentre) {
+  const ComparedRun run = compared("whitworth", PatchMethod::gradient);
+  EXPECT_THAT(run.worst.reason, StartsWith("the group lever is nearest to a dead centre there (regularity "));
+}
+
+// The gains of the four-bar's loops go with |BD| over its longest, 3/5 at 0°; weight 10: L = 10 · 0.6.
+TEST(WorstReason, IsALoopOfTheLeastGain) {
+  const ComparedRun run = compared("four-bar", PatchMethod::triangles);
+  EXPECT_NEAR(std::remainder(run.worst.drive, 2 * pi), 0, 4 * pi / 360);
+  EXPECT_THAT(run.worst.reason, StartsWith("the loop of 'C.direction."));
+  EXPECT_THAT(run.worst.reason,
+              ::testing::EndsWith("has the least gain of all there (6 times the amplifier's)"));
+}
+
+// The static error of the centred slider-crank's root is the same all along the turn, so nothing explains
+// where rounding puts the largest.
+TEST(WorstReason, IsNotMadeUp) {
+  EXPECT_EQ(compared("slider-crank", PatchMethod::triangles).worst.reason, "");
+}
+
+}  // namespace
+}  // namespace oblique
