@@ -34,7 +34,7 @@ std::string verdict_text(const Bill& bill) {
   }
   for (const BillRow& row : bill.rows) {
     if (row.at_least) {
-      named.push_back("what its inputs weigh");
+      named.emplace_back("what its inputs weigh");
     } else if (!row.available) {
       named.push_back("how many " + row.element);
     }

@@ -76,8 +76,8 @@ SignProblem CarriedSignals::problem() {
   return problem;
 }
 
-double CarriedSignals::input_factor(std::size_t element, std::size_t port) const {
-  const auto [factor, variable] = orientation(element, port);
+double CarriedSignals::input_factor(std::size_t index, std::size_t port) const {
+  const auto [factor, variable] = orientation(index, port);
   return variable && signs_.variables[*variable] ? -factor : factor;
 }
 

@@ -26,7 +26,7 @@ class CarriedSignals {
 
   /// What the weights of an input are to be multiplied by: for the sign of what the element gives and
   /// whether it inverts on the machine, and, of what an integrator adds up, its rate [1/s].
-  double input_factor(std::size_t element, std::size_t port) const;
+  double input_factor(std::size_t index, std::size_t port) const;
 
   /// Whether the element itself gives the negative of its signal.
   bool is_negative(std::size_t element) const { return signs_.negative[first_signal_[element]]; }
@@ -52,7 +52,7 @@ class CarriedSignals {
     double factor = 1;
     std::optional<std::size_t> variable;
   };
-  Orientation orientation(std::size_t element, std::size_t port) const;
+  Orientation orientation(std::size_t index, std::size_t port) const;
   SignProblem problem();
   void choose_names();
   std::string output_name(SignalRef signal) const;

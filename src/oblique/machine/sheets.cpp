@@ -165,6 +165,7 @@ std::string csv_field(const std::string& text) {
 
 std::string csv_line(const std::vector<std::string>& cells) {
   std::vector<std::string> fields;
+  fields.reserve(cells.size());
   for (const std::string& cell : cells) fields.push_back(csv_field(cell));
   return fmt::format("{}\n", fmt::join(fields, ","));
 }
