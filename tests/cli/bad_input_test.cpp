@@ -298,7 +298,7 @@ INSTANTIATE_TEST_SUITE_P(
                        "--bandwidth 5 s: 's' is the wrong unit here"},
         BadRequestCase{"MethodOfNoName",
                        "oblique compare diagrams/mechanisms/four-bar.toml --method triangles,gradiant", 2,
-                       "--method gradiant; expected triangles or gradient"},
+                       "--method gradiant; expected triangles, gradient or paper"},
         BadRequestCase{
             "BandwidthThatNoSolverTakes",
             "oblique compare diagrams/mechanisms/four-bar.toml --gain 1e9 --bandwidth 1e300", 3,
