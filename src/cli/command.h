@@ -77,6 +77,7 @@ struct PatchRequest {
   std::string method = "triangles";
   bool derivatives = false;
   std::string unit;
+  std::string period;
   std::string slower = "100";
   std::vector<std::string> split;
   std::string machine;  ///< in whose elements

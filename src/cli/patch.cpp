@@ -58,6 +58,7 @@ ExitStatus patch_mechanism(const Session& session, const PatchRequest& request) 
   options.force = request.force;
   const Mechanism mechanism = read_mechanism(request.mechanism);
   if (!request.unit.empty()) options.unit = positive_option("--unit", request.unit, mechanism.length_unit);
+  if (!request.period.empty()) options.period = positive_option("--period", request.period, "s");
   const JudgedPatch patched = judged_patch(mechanism, session.blocks(), options);
   if (!request.machine.empty()) {
     note(judgement_text(patched.judgement));

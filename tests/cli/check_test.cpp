@@ -65,7 +65,7 @@ TEST_F(Check, JsonHasTheDocumentedKeysAlone) {
   for (const auto& [key, value] : json.items()) keys.push_back(key);
   EXPECT_THAT(keys, testing::UnorderedElementsAre("file", "kind", "title", "blocks", "elements", "states",
                                                   "servo_amplifiers", "outputs", "run", "loops", "stability",
-                                                  "overloads", "scaling"));
+                                                  "overloads", "scaling", "bill"));
   const auto& unknown = json.at("loops").at(0).at("unknowns").at(0);
   // μ ∂r/∂c = 1e5 · 2 c, with c = 0.1 − 5e-6 at the start.
   EXPECT_NEAR(unknown.at("least_gain").get<double>(), 2e5 * (0.1 - 5e-6), 0.1);

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <oblique/compare/error_parts.h>
+#include <oblique/compare/judge.h>
 #include <oblique/compare/patched_run.h>
 #include <oblique/compare/worst_reason.h>
 
@@ -108,7 +109,8 @@ std::optional<double> fitted_order(std::span<const ComparedRun> runs, double flo
 
 }  // namespace
 
-Comparison compare(const Mechanism& mechanism, const BlockLibrary& library, const CompareOptions& options) {
+Comparison compare(const Mechanism& any, const BlockLibrary& library, const CompareOptions& options) {
+  const Mechanism mechanism = within_range(any);
   Comparison comparison;
   comparison.mechanism = mechanism.title;
   comparison.unit = mechanism.length_unit;
@@ -125,6 +127,8 @@ Comparison compare(const Mechanism& mechanism, const BlockLibrary& library, cons
       patch_options.method = method;
       patch_options.bandwidth = bandwidth;
       patch_options.samples = options.positions;
+      patch_options.gain = *std::max_element(options.gains.begin(), options.gains.end());
+      patch_options = judged_patch(mechanism, library, patch_options).options;
       const std::size_t first = comparison.runs.size();
       for (const double gain : options.gains) {
         patch_options.gain = gain;

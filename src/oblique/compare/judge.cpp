@@ -153,7 +153,7 @@ JudgedPatch judged_patch(const Mechanism& mechanism, const BlockLibrary& library
   }
   std::string help;
   if (options.method != PatchMethod::gradient) {
-    for (const PatchOptions& way : other_ways(mechanism, options)) {
+    for (const PatchOptions& way : other_ways(within_range(mechanism), options)) {
       JudgedPatch other = attempt(way);
       if (!other.judgement.good()) continue;
       if (may_choose(options, way)) return other;

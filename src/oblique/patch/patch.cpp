@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <fmt/format.h>
+
 #include <oblique/mechanism/motion.h>
 
 namespace oblique {
@@ -35,6 +37,34 @@ double greatest_speed(const Mechanism& mechanism, const Drive& drive) {
   return fastest;
 }
 
+/// The mechanism with its drives slowed down, so that its motion takes the time of the options.
+Diagram patch_slowed(const Mechanism& mechanism, PatchOptions options) {
+  Mechanism slowed = mechanism;
+  const double factor =
+      period(within_range(mechanism)) / *options.period;  // seconds of motion in one of the machine
+  for (Drive& drive : slowed.drives) {
+    if (drive.law) {
+      throw PatchError(Diagnostic{
+          drive.place,
+          fmt::format("drive '{}' has a speed that varies with time, which --period cannot "
+                      "stretch",
+                      drive.name),
+          "drives of constant speed", "leave --period out, or write the law for the machine's time"});
+    }
+    drive.speed *= factor;
+  }
+  if (slowed.motion.until) *slowed.motion.until /= factor;
+  options.period.reset();
+  Diagram diagram = patch(slowed, options);
+  diagram.comment += fmt::format("\nTime: 1 s of the machine is {:.6g} s of the mechanism.", factor);
+  for (OutputSpec& output : diagram.outputs) {
+    const std::string_view name = output.name;
+    if (name.ends_with(".vx") || name.ends_with(".vy")) output.scale /= factor;
+    if (name.ends_with(".ax") || name.ends_with(".ay")) output.scale /= factor * factor;
+  }
+  return diagram;
+}
+
 }  // namespace
 
 double default_bandwidth(const Mechanism& mechanism) {
@@ -49,15 +79,17 @@ double default_bandwidth(const Mechanism& mechanism) {
 }
 
 Diagram patch(const Mechanism& mechanism, const PatchOptions& options) {
+  if (options.period) return patch_slowed(mechanism, options);
+  const Mechanism ranged = within_range(mechanism);
   switch (options.method) {
     case PatchMethod::gradient:
-      return patch_gradient(mechanism, options);
+      return patch_gradient(ranged, options);
     case PatchMethod::paper:
-      return patch_paper(mechanism, options);
+      return patch_paper(ranged, options);
     case PatchMethod::triangles:
       break;
   }
-  return patch_triangles(mechanism, options);
+  return patch_triangles(ranged, options);
 }
 
 }  // namespace oblique

@@ -43,8 +43,11 @@ struct PatchOptions {
   std::vector<std::string> split = {};
   std::optional<double> unit;  ///< 1 machine unit of a coordinate [length unit]; default: by the exact motion
   bool force = false;          ///< patch what flips on the way, too
-  double tolerance = 1e-10;    ///< of the run that the diagram asks for
-  int samples = 361;           ///< rows of that run
+  /// Seconds of machine time that the motion takes; default: as the mechanism's own. Rates stay those of the
+  /// mechanism.
+  std::optional<double> period = {};
+  double tolerance = 1e-10;  ///< of the run that the diagram asks for
+  int samples = 361;         ///< rows of that run
 };
 
 /// A hundred times the frequency of the fastest drive, rounded up to 1, 2 or 5 times a power of ten [Hz]: the
@@ -79,7 +82,13 @@ Diagram patch_paper(const Mechanism& mechanism, const PatchOptions& options = {}
 /// PatchOptions::split names them; none where it has no triad on three links, or several.
 std::vector<std::vector<std::string>> useful_splits(const Mechanism& mechanism);
 
-/// By the method of the options.
+/// The mechanism as it is patched: one that can turn is left as it is, and so is one with several drives, a
+/// drive with a law, or a duration in its file. Any other with a range is swung over nine tenths of it: its
+/// drive gets the law of a sine, with the speed of the file in the middle, for one swing there and back.
+Mechanism within_range(const Mechanism& mechanism);
+
+/// By the method of the options, of the mechanism within its range. Throws PatchError for a period where a
+/// drive has a law of its own.
 Diagram patch(const Mechanism& mechanism, const PatchOptions& options = {});
 
 }  // namespace oblique

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/patch/patch.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include <oblique/mechanism/drive_law.h>
+#include <oblique/mechanism/motion.h>
+
+namespace oblique {
+namespace {
+
+/// How much of its range a mechanism is swung over: at the ends a triangle goes flat, and the loop that
+/// tracks its angle loses its gain.
+constexpr double kPartOfRange = 0.9;
+
+}  // namespace
+
+Mechanism within_range(const Mechanism& mechanism) {
+  if (mechanism.drives.size() != 1 || mechanism.drives.front().law || mechanism.motion.until)
+    return mechanism;
+  const Drive& drive = mechanism.drives.front();
+  const MotionRange range = find_range(mechanism, decompose(mechanism));
+  const auto is_limit = [](const std::optional<MotionEvent>& event) {
+    return event && event->kind == MotionEvent::Kind::limit;
+  };
+  if (!is_limit(range.forward) || !is_limit(range.backward)) return mechanism;
+  const double first = range.backward->time * drive.speed, last = range.forward->time * drive.speed;
+  const double middle = (first + last) / 2;  // from the start
+  const double amplitude = std::max(kPartOfRange * std::abs(last - first) / 2, std::abs(middle));
+  const double rate = std::abs(drive.speed) / amplitude;
+  // value − start = middle + amplitude · sin(rate t + phase)
+  double phase = std::asin(std::clamp(-middle / amplitude, -1.0, 1.0));
+  if (drive.speed < 0) phase = std::numbers::pi - phase;
+
+  Mechanism swung = mechanism;
+  Drive& swing = swung.drives.front();
+  SpeedLaw law =
+      parse_law(fmt::format("{:.17g}*cos({:.17g}*time + {:.17g})", std::abs(drive.speed), rate, phase),
+                Unit{})
+          .value();
+  swing.law = std::move(law.speed);
+  swing.law_scale = law.scale;
+  swing.speed = law_at(swing, 0).rate;
+  swung.motion.until = 2 * std::numbers::pi / rate;
+  return swung;
+}
+
+}  // namespace oblique

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: MIT
+// Mechanisms that cannot turn, and machine time.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <oblique/mechanism/motion.h>
+#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/patch/patch.h>
+#include <oblique/solve/run.h>
+
+namespace oblique {
+namespace {
+
+using testing::HasSubstr;
+
+Mechanism shipped(const std::string& name) {
+  return read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/" + name + ".toml");
+}
+
+/// A slide-crank whose slide is driven: between its two dead centres, |x| < 1.5 − 0.5 … 1.5 + 0.5.
+const char* const kPump = R"(
+format = "oblique-mechanism/1"
+[frame]
+O = [0, 0]
+X = [1, 0]
+[bodies]
+OA = { points = ["O", "A"], length = 0.5 }
+AB = { points = ["A", "B"], length = 1.5 }
+[slides]
+rod = { point = "B", along = ["O", "X"] }
+[drives]
+pump = { slides = "rod", speed = 0.3, start = 1.4 }
+[sketch]
+A = [0.1, 0.5]
+)";
+
+/// The first and last value of the first drive over a motion.
+std::pair<double, double> span_of(const Motion& motion) {
+  double least = motion.drives.front().front().value, most = least;
+  for (const auto& row : motion.drives) {
+    least = std::min(least, row.front().value);
+    most = std::max(most, row.front().value);
+  }
+  return {least, most};
+}
+
+TEST(WithinRange, LeavesWhatTurnsAsItIs) {
+  for (const char* name : {"four-bar", "jansen", "whitworth", "five-bar"}) {
+    const Mechanism ranged = within_range(shipped(name));
+    EXPECT_FALSE(ranged.drives.front().law) << name;
+    EXPECT_FALSE(ranged.motion.until) << name;
+  }
+}
+
+// The crank of a double rocker: both limits from the law of cosines.
+TEST(WithinRange, SwingsOverNineTenthsOfTheRange) {
+  const Mechanism mechanism = shipped("double-rocker");
+  const MotionRange range = find_range(mechanism, decompose(mechanism));
+  ASSERT_TRUE(range.forward && range.backward);
+  const Drive& drive = mechanism.drives.front();
+  const double first = drive.start + drive.speed * range.backward->time;
+  const double last = drive.start + drive.speed * range.forward->time;
+  const Mechanism ranged = within_range(mechanism);
+  ASSERT_TRUE(ranged.drives.front().law);
+  const Motion motion = solve_motion(ranged, 1001);
+  EXPECT_TRUE(motion.events.empty());
+  const auto [least, most] = span_of(motion);
+  // a thousand positions find the ends of a sine to 1e-5
+  EXPECT_NEAR(most - least, 0.9 * std::abs(last - first), 1e-4 * std::abs(last - first));
+  EXPECT_NEAR((most + least) / 2, (first + last) / 2, 1e-4);
+  EXPECT_NEAR(motion.drives.front().front().value, drive.start, 1e-12);
+  EXPECT_NEAR(motion.drives.back().front().value, drive.start, 1e-9);  // there and back
+}
+
+TEST(WithinRange, SwingsADrivenSlideToo) {
+  const Mechanism ranged = within_range(parse_mechanism(kPump, "pump.toml"));
+  const Motion motion = solve_motion(ranged, 1001);
+  const auto [least, most] = span_of(motion);
+  EXPECT_NEAR(least, 1.5 - 0.45, 1e-4);
+  EXPECT_NEAR(most, 1.5 + 0.45, 1e-4);
+}
+
+class Ranged : public testing::TestWithParam<PatchMethod> {};
+INSTANTIATE_TEST_SUITE_P(Patch, Ranged, testing::Values(PatchMethod::triangles, PatchMethod::gradient));
+
+TEST_P(Ranged, IsPatchedOverItsRange) {
+  for (const Mechanism& mechanism : {shipped("double-rocker"), parse_mechanism(kPump, "pump.toml")}) {
+    PatchOptions options;
+    options.method = GetParam();
+    const Diagram diagram = patch(mechanism, options);
+    const BlockLibrary library = BlockLibrary::shipped();
+    const FlatDiagram flat = flatten(diagram, library);
+    const Program program(assemble(flat));
+    const auto result = run(program, flat, options_of(diagram.run));
+    const Trajectory& table = result.trajectory;
+    const Motion exact = solve_motion(within_range(mechanism), options.samples);
+    for (std::size_t p = 0; p < mechanism.points.size(); ++p) {
+      if (mechanism.points[p].fixed) continue;
+      const std::size_t x = table.find(mechanism.points[p].name + ".x").value();
+      for (std::size_t row = 0; row < table.rows(); ++row) {
+        const Eigen::Vector2d place(table.at(row, x), table.at(row, x + 1));
+        // 10/μ of the largest link
+        EXPECT_LT((place - exact.configurations[row].points[p].position).norm(),
+                  1e-5 * mechanism.largest_length());
+      }
+    }
+  }
+}
+
+// A period of machine time changes when a point is where, not where it is nor how fast the mechanism's own
+// motion is.
+TEST(Period, StretchesTimeAndKeepsRates) {
+  const Mechanism mechanism = shipped("four-bar");
+  PatchOptions options;
+  options.derivatives = true;
+  options.samples = 37;
+  const auto table_of = [&](const PatchOptions& how) {
+    const Diagram diagram = patch(mechanism, how);
+    const BlockLibrary library = BlockLibrary::shipped();
+    const FlatDiagram flat = flatten(diagram, library);
+    return run(Program(assemble(flat)), flat, options_of(diagram.run)).trajectory;
+  };
+  const Trajectory usual = table_of(options);
+  options.period = 20;
+  const Trajectory stretched = table_of(options);
+  ASSERT_EQ(usual.rows(), stretched.rows());
+  EXPECT_DOUBLE_EQ(stretched.at(stretched.rows() - 1, 0), 20);
+  for (const char* column : {"C.x", "C.y", "M.vx", "M.ay"}) {
+    const std::size_t c = usual.find(column).value();
+    for (std::size_t row = 0; row < usual.rows(); ++row) {
+      // both err by the gain's 1e-6, of rates in units of the crank's 1 rad/s
+      EXPECT_NEAR(stretched.at(row, c), usual.at(row, c), 2e-4) << column << row;
+    }
+  }
+}
+
+TEST(Period, CannotStretchALaw) {
+  PatchOptions options;
+  options.period = 20;
+  try {
+    patch(shipped("hydraulic-tipper"), options);
+    FAIL();
+  } catch (const PatchError& error) {
+    EXPECT_THAT(error.what(),
+                HasSubstr("drive 'pump' has a speed that varies with time, which --period cannot stretch"));
+  }
+}
+
+}  // namespace
+}  // namespace oblique
