@@ -240,8 +240,8 @@ void add_compare(CLI::App& app, Chosen& chosen) {
       ->allow_extra_args(false)
       ->type_name("B,B,…");
   verb->add_option("--method", request->methods,
-                   "triangles: servo-tracked oblique triangles; gradient: integrators that descend, for any "
-                   "group; both: one against the other (default triangles)")
+                   "of triangles, gradient and paper those to hold against each other, as `patch` has them "
+                   "(default triangles)")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("M,M,…");

@@ -298,7 +298,7 @@ INSTANTIATE_TEST_SUITE_P(
                        "--bandwidth 5 s: 's' is the wrong unit here"},
         BadRequestCase{"MethodOfNoName",
                        "oblique compare diagrams/mechanisms/four-bar.toml --method triangles,gradiant", 2,
-                       "--method gradiant; expected triangles or gradient"},
+                       "--method gradiant; expected triangles, gradient or paper"},
         BadRequestCase{
             "BandwidthThatNoSolverTakes",
             "oblique compare diagrams/mechanisms/four-bar.toml --gain 1e9 --bandwidth 1e300", 3,
@@ -333,6 +333,10 @@ INSTANTIATE_TEST_SUITE_P(
             "SeedBelowZero",
             "oblique compare diagrams/mechanisms/four-bar.toml --monte-carlo 3 --tolerance 1% --seed -3", 2,
             "--seed: "},
+        BadRequestCase{
+            "MethodThatFailsAmongSeveral",
+            "oblique compare diagrams/mechanisms/class-iii.toml --method triangles,paper --gain 1e3", 3,
+            "class-iii.toml: with amplifiers of gain 1000, method paper: the run stopped at t = "},
         BadRequestCase{"GainThatNoSolverTakes",
                        "oblique compare diagrams/mechanisms/four-bar.toml --gain 1e300", 3,
                        "error: diagrams/mechanisms/four-bar.toml: with amplifiers of gain 1e+300: the run"},

@@ -89,6 +89,8 @@ TEST(MachineComparison, TellsWhatTheMachineHasNotAndWhatItLeavesOut) {
   EXPECT_EQ(without.machine, "Heathkit EC-1");
   EXPECT_THAT(without.absent, ElementsAre("multipliers"));
   EXPECT_THAT(without.scatter, IsEmpty());
+  EXPECT_NEAR(without.ideal_error, 6.015e-4,
+              1e-6);  // ideal elements have the gain of the patch, not their default
   const MachineComparison with = compared("four-bar", "tr-10", 1e3);
   EXPECT_THAT(with.absent, IsEmpty());
   EXPECT_THAT(with.scatter, ElementsAre("resistors, tolerance", "capacitors, tolerance"));

@@ -197,8 +197,10 @@ TEST(Realise, KeepsOtherBlocksAsTheyAre) {
 x = { type = "integrator", in = ["-2*y"], initial = 1 }
 y = { type = "integrator", in = ["2*x"] }
 f = { type = "function-generator", in = "-x", points = [[-1, 1], [0, 0], [1, 0.5]] }
+u = { type = "time-function", formula = "cos(2*time)^2", scale = 0.5 }
+v = { type = "integrator", in = ["-0.5*u", "0.1*f"] }
 )";
-  const Diagram diagram = parse_diagram(diagram_text(blocks, "[outputs]\nf = \"f\"\n"), "d.toml");
+  const Diagram diagram = parse_diagram(diagram_text(blocks, "[outputs]\nf = \"f\"\nv = \"v\"\n"), "d.toml");
   const Diagram made = realise(diagram, shipped_blocks(), inverting_machine()).diagram;
   EXPECT_EQ(block(made, "f").type, "function-generator");
   EXPECT_LT(difference(diagram, made), 1e-6);

@@ -117,6 +117,15 @@ TEST_P(Rates, FollowASpeedLaw) {
   }
 }
 
+// The source has no rates; they hang on the places of its points as on those of any other patch.
+TEST(RateCircuits, HangOnThePatchOfTheSource) {
+  PatchOptions options = with_rates(PatchMethod::paper, 1e5);
+  options.slower = 1000;  // with the source's split the outer loop has to be
+  const RateErrors errors = errors_of(shipped("class-iii"), options);
+  EXPECT_LT(errors.velocity, 1e-3);  // 10/μ and more: one scale for all lengths costs gain
+  EXPECT_LT(errors.acceleration, 1e-3);
+}
+
 TEST(RateCircuits, WithIdealAmplifiersAreExactToTheTolerance) {
   PatchOptions options = with_rates(PatchMethod::triangles, std::numeric_limits<double>::infinity());
   for (const char* const name : {"four-bar", "six-bar", "class-iii"}) {

@@ -19,21 +19,12 @@ constexpr double kAboveFloor = 10;
 /// Jansen leg.
 constexpr double kFloorGain = 1e12;
 
-/// "amplifiers of gain 1000 and 20 Hz": the bandwidth where it was chosen.
-std::string name_of(const PatchOptions& options) {
-  return fmt::format("amplifiers of gain {:.6g}{}", options.gain,
-                     options.bandwidth ? fmt::format(" and {:.6g} Hz", *options.bandwidth) : "");
-}
-
 /// The runs of a comparison, one after the other.
 class Comparer {
  public:
-  Comparer(const Mechanism& mechanism, const BlockLibrary& library, const CompareOptions& options)
-      : mechanism_(mechanism),
-        library_(library),
-        options_(options),
-        exact_(solve_motion(mechanism, options.positions)),
-        reasons_(mechanism, exact_) {}
+  Comparer(const Mechanism& mechanism, const BlockLibrary& library, const CompareOptions& options,
+           const Motion& exact, const WorstReasons& reasons)
+      : mechanism_(mechanism), library_(library), options_(options), exact_(exact), reasons_(reasons) {}
 
   ComparedRun compared(const PatchOptions& options) {
     const PatchedMechanism patched(patch_named(mechanism_, options), library_);
@@ -69,6 +60,14 @@ class Comparer {
   }
 
  private:
+  /// "amplifiers of gain 1000 and 20 Hz, method gradient": bandwidth and method where there was a choice.
+  std::string name_of(const PatchOptions& options) const {
+    std::string name = fmt::format("amplifiers of gain {:.6g}", options.gain);
+    if (options.bandwidth) name += fmt::format(" and {:.6g} Hz", *options.bandwidth);
+    if (options_.methods.size() > 1) name += fmt::format(", method {}", method_name(options.method));
+    return name;
+  }
+
   void finish_run() {
     ++done_;
     if (options_.progress) progress()(0);
@@ -85,8 +84,8 @@ class Comparer {
   const Mechanism& mechanism_;
   const BlockLibrary& library_;
   const CompareOptions& options_;
-  Motion exact_;
-  WorstReasons reasons_;
+  const Motion& exact_;
+  const WorstReasons& reasons_;
   double done_ = 0;  ///< runs
 };
 
@@ -115,7 +114,9 @@ Comparison compare(const Mechanism& mechanism, const BlockLibrary& library, cons
   comparison.unit = mechanism.length_unit;
   comparison.size = mechanism.largest_length();
   comparison.turning = mechanism.drives.empty() || !mechanism.drives.front().slide;
-  Comparer comparer(mechanism, library, options);
+  const Motion exact = solve_motion(mechanism, options.positions);
+  const WorstReasons reasons(mechanism, exact);
+  Comparer comparer(mechanism, library, options, exact, reasons);
   std::vector<std::optional<double>> bandwidths(options.bandwidths.begin(), options.bandwidths.end());
   if (bandwidths.empty()) bandwidths.emplace_back();
   for (const PatchMethod method : options.methods) {
