@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <oblique/compare/judge.h>
 #include <oblique/diagram/block_library.h>
 #include <oblique/patch/patch.h>
 
@@ -68,6 +69,9 @@ ExitStatus show_modes(const Session& session, const ModesRequest& request);
 
 /// The method of patching that --method names. Throws ReadError.
 PatchMethod method_option(const std::string& text);
+
+/// What was found about a patch that is written, for people.
+std::string judgement_text(const Judgement& judgement);
 
 struct PatchRequest {
   std::string mechanism;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/compare/compare.h>
+#include <oblique/compare/judge.h>
 
 #include <algorithm>
 #include <chrono>
@@ -129,7 +130,8 @@ ExitStatus compare_mechanism(const Session& session, const CompareRequest& reque
     options.gains = {single.gain};
   }
   if (request.runs > 0) scatters_of(request, library, machine);  // before the work, not after it
-  const Mechanism mechanism = read_mechanism(request.mechanism);
+  const Mechanism mechanism = within_range(read_mechanism(request.mechanism));
+  if (machine != nullptr || request.runs > 0) single = judged_patch(mechanism, library, single).options;
   Comparison comparison;
   {
     Progress progress("comparing");

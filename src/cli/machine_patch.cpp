@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <oblique/compare/judge.h>
 #include <oblique/diagram/machine_profile.h>
 #include <oblique/machine/realise.h>
 #include <oblique/machine/sheets.h>
@@ -134,6 +135,18 @@ ExitStatus patch_for_machine(const Session& session, const PatchRequest& request
         "choose another machine (oblique machines), or write the diagram all the same with --force"}));
     return ExitStatus::no;
   }
+  const Judgement judgement = judge(realised, library);
+  if (!judgement.good() && !request.force) {
+    print_error(to_string(Diagnostic{
+        {request.mechanism, {}},
+        fmt::format("on the machine {} this patch would not run: {}", machine.title, fault_of(judgement)),
+        "servo loops that return to rest everywhere on the way",
+        "a lower --gain or --bandwidth may do where the machine's own elements are slow; --force writes it "
+        "all the "
+        "same"}));
+    return ExitStatus::no;
+  }
+  note(judgement_text(judgement));
   std::vector<Written> files;
   if (!request.sheets.empty()) files = sheet_files(request, realised, flat, bill, library, machine);
   const std::string text = write_diagram(realised);

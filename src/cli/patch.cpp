@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/compare/compare.h>
 #include <oblique/compare/judge.h>
 
 #include <cmath>
@@ -22,6 +21,8 @@ double positive_option(const std::string& option, const std::string& text, std::
   return value;
 }
 
+}  // namespace
+
 std::string judgement_text(const Judgement& judgement) {
   if (!judgement.good()) return fmt::format("warning: {}\n", fault_of(judgement));
   std::string text = std::isfinite(judgement.slowest_pole)
@@ -29,12 +30,11 @@ std::string judgement_text(const Judgement& judgement) {
                                        judgement.slowest_pole)
                          : std::string("no servo loops; ");
   text += fmt::format("largest signal {:.3g} ({})\n", judgement.largest, judgement.largest_signal);
-  if (judgement.largest > 1 + kOverloadMargin)
+  constexpr double kErrors = 0.02;  // of real elements, by which a cosine of 1 may be passed
+  if (judgement.largest > 1 + kErrors)
     text += "warning: it overloads the machine; choose a larger --unit\n";
   return text;
 }
-
-}  // namespace
 
 PatchMethod method_option(const std::string& text) {
   if (const auto method = parse_patch_method(text)) return *method;
@@ -60,10 +60,7 @@ ExitStatus patch_mechanism(const Session& session, const PatchRequest& request) 
   if (!request.unit.empty()) options.unit = positive_option("--unit", request.unit, mechanism.length_unit);
   if (!request.period.empty()) options.period = positive_option("--period", request.period, "s");
   const JudgedPatch patched = judged_patch(mechanism, session.blocks(), options);
-  if (!request.machine.empty()) {
-    note(judgement_text(patched.judgement));
-    return patch_for_machine(session, request, patched.diagram);
-  }
+  if (!request.machine.empty()) return patch_for_machine(session, request, patched.diagram);
   const std::string text = write_diagram(patched.diagram);
   if (request.output.empty()) {
     print(text);

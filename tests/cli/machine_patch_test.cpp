@@ -16,7 +16,9 @@ namespace oblique::test {
 namespace {
 
 using testing::ContainsRegex;
+using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 using testing::Not;
 using testing::StartsWith;
 
@@ -77,8 +79,20 @@ TEST_F(PatchForMachine, WritesTheDiagramThatDoesNotFitAndSaysWhatIsMissing) {
 
 TEST_F(PatchForMachine, SaysWhichTimeFactorIsMissing) {
   const Outcome outcome = patch("four-bar", "--method gradient --machine tr-10");
-  EXPECT_EQ(outcome.status, 0);
   EXPECT_THAT(outcome.err, HasSubstr("integrators with k0 = 1.257e+08 1/s (k0 on this machine: 1, 500 1/s)"));
+}
+
+// Its summers of 200 kHz stand in loops of 20 MHz.
+TEST_F(PatchForMachine, IsJudgedOnTheMachinesOwnElements) {
+  const Outcome refused = patch("four-bar", "--method gradient --machine tr-10 -o made.toml");
+  EXPECT_EQ(refused.status, 1);
+  EXPECT_THAT(refused.err,
+              HasSubstr("on the machine EAI PACE TR-10 (1959) this patch would not run: it is unstable"));
+  EXPECT_THAT(refused.err, HasSubstr("a lower --gain or --bandwidth may do"));
+  EXPECT_EQ(patch("four-bar", "--method gradient --machine tr-10 --force -o made.toml").status, 0);
+  const Outcome slower = patch("four-bar", "--method gradient --machine tr-10 --gain 1e3 -o made.toml");
+  EXPECT_EQ(slower.status, 0);
+  EXPECT_THAT(slower.err, AllOf(HasSubstr("its servo loops come to rest everywhere"), Not(HasSubstr("warning"))));
 }
 
 TEST_F(PatchForMachine, WritesSheets) {
