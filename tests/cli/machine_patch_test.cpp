@@ -15,10 +15,9 @@
 namespace oblique::test {
 namespace {
 
-using testing::ContainsRegex;
 using testing::AllOf;
+using testing::ContainsRegex;
 using testing::HasSubstr;
-using testing::Not;
 using testing::Not;
 using testing::StartsWith;
 
@@ -92,7 +91,8 @@ TEST_F(PatchForMachine, IsJudgedOnTheMachinesOwnElements) {
   EXPECT_EQ(patch("four-bar", "--method gradient --machine tr-10 --force -o made.toml").status, 0);
   const Outcome slower = patch("four-bar", "--method gradient --machine tr-10 --gain 1e3 -o made.toml");
   EXPECT_EQ(slower.status, 0);
-  EXPECT_THAT(slower.err, AllOf(HasSubstr("its servo loops come to rest everywhere"), Not(HasSubstr("warning"))));
+  EXPECT_THAT(slower.err,
+              AllOf(HasSubstr("its servo loops come to rest everywhere"), Not(HasSubstr("warning"))));
 }
 
 TEST_F(PatchForMachine, WritesSheets) {
