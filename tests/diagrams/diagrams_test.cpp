@@ -89,12 +89,13 @@ bool is_on_links(const Group& group) {
                      [](const Condition& c) { return c.kind == Condition::Kind::distance; });
 }
 
-/// All that meet no dead centre, by gradient servos; those without groups of class IV and higher, without
-/// slides in the leads of triads, and without drives inside groups of several bodies, by triangles too.
+/// All that meet no dead centre, or are swung over their range, by gradient servos; those without groups of
+/// class IV and higher, without slides in the leads of triads, and without drives inside groups of several
+/// bodies, by triangles too.
 std::vector<Patched> patchable() {
   std::vector<Patched> all;
   for (const std::string& name : files_in("mechanisms")) {
-    const Mechanism mechanism = read_mechanism(path_of(name));
+    const Mechanism mechanism = within_range(read_mechanism(path_of(name)));
     const Structure structure = decompose(mechanism);
     if (find_obstacle(mechanism, structure)) continue;
     all.push_back({name, PatchMethod::gradient});
@@ -134,7 +135,7 @@ TEST_P(PatchedMechanism, AgreesWithItsExactMotion) {
 
 // The rates' matrix is that of the positions; its inverse enters once more with each derivative.
 TEST_P(PatchedMechanism, HasTheRatesOfItsExactMotion) {
-  const Mechanism mechanism = read_mechanism(path_of(GetParam().file));
+  const Mechanism mechanism = within_range(read_mechanism(path_of(GetParam().file)));
   const BlockLibrary library = BlockLibrary::shipped();
   PatchOptions options;
   options.method = GetParam().method;

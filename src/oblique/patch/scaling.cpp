@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include <fmt/format.h>
 
+#include <oblique/mechanism/drive_law.h>
 #include <oblique/mechanism/obstacle.h>
 #include <oblique/patch/patch.h>
 
@@ -15,12 +17,17 @@ namespace {
 
 [[noreturn]] void refuse(const Mechanism& mechanism, const Structure& structure, const Obstacle& obstacle) {
   const bool open = obstacle.status == Status::open;
+  const Drive& drive = mechanism.drives.front();
+  const double value = DriveClock(mechanism).at(0, obstacle.time).value;
+  const std::string stand = drive.slide ? fmt::format("{:.6g} {}", value, mechanism.length_unit)
+                                        : fmt::format("{:.6g}°", value * 180 / std::numbers::pi);
   throw PatchError(Diagnostic{
       {mechanism.file, {}},
-      fmt::format("the {} {} {} at t = {:.6g} s, so its triangle cannot be tracked over a whole turn",
-                  structure.groups[obstacle.group].assur_class == 2 ? "dyad" : "group",
-                  structure.groups[obstacle.group].name, open ? "cannot be assembled" : "is at a dead centre",
-                  obstacle.time),
+      fmt::format(
+          "the {} {} {} at t = {:.6g} s, where drive '{}' stands at {}, so its triangle cannot be tracked",
+          structure.groups[obstacle.group].assur_class == 2 ? "dyad" : "group",
+          structure.groups[obstacle.group].name, open ? "cannot be assembled" : "is at a dead centre",
+          obstacle.time, drive.name, stand),
       open ? "links that reach each other in every position" : "a triangle that never goes flat",
       open ? "lengthen the links of the dyad, or shorten the crank; `oblique solve` shows where it opens"
            : "change a length a little: at a dead centre the servo loop of sin γ loses its gain"});
