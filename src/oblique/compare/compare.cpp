@@ -107,10 +107,8 @@ std::optional<double> fitted_order(std::span<const ComparedRun> runs, double flo
   return (n * sxy - sx * sy) / spread;
 }
 
-}  // namespace
-
-Comparison compare(const Mechanism& any, const BlockLibrary& library, const CompareOptions& options) {
-  const Mechanism mechanism = within_range(any);
+Comparison compare_within_range(const Mechanism& mechanism, const BlockLibrary& library,
+                                const CompareOptions& options) {
   Comparison comparison;
   comparison.mechanism = mechanism.title;
   comparison.unit = mechanism.length_unit;
@@ -141,6 +139,12 @@ Comparison compare(const Mechanism& any, const BlockLibrary& library, const Comp
     }
   }
   return comparison;
+}
+
+}  // namespace
+
+Comparison compare(const Mechanism& mechanism, const BlockLibrary& library, const CompareOptions& options) {
+  return compare_within_range(within_range(mechanism), library, options);
 }
 
 }  // namespace oblique

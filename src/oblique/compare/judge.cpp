@@ -57,12 +57,12 @@ std::vector<PatchOptions> other_ways(const Mechanism& mechanism, const PatchOpti
     way.split = split;
     way.slower = slower;
   };
-  const std::vector<std::vector<std::string>> splits = useful_splits(mechanism);
-  if (splits.empty()) return ways;
   const double usual = std::max(options.slower, PatchOptions{}.slower);
   if (options.method == PatchMethod::paper) {
     for (const double slower : {1.0, 10.0, 100.0}) add(options.split, slower * usual);
   }
+  std::vector<std::vector<std::string>> splits = useful_splits(mechanism);
+  if (splits.empty()) splits.push_back(options.split);
   for (const double slower : {1.0, 10.0}) {
     for (const std::vector<std::string>& split : splits) add(split, slower * usual);
   }

@@ -28,9 +28,10 @@ void TriadPatch::add_triad(const Group& group, const TriadSplit& split) {
       group.name, name_of(z), name_of(b), split.longest, mechanism_.length_unit, name_of(b), name_of(a),
       name_of(b), name_of(z), name_of(d), name_of(b), name_of(d), name_of(e), name_of(z), name_of(c),
       split_name(mechanism_, group, split),
-      options_.split.empty()
+      split.best
           ? "Of the six splits this one keeps\nfarthest from flat triangles and from a loop without gain."
-          : "This split was asked for.",
+          : "Another split keeps farther from\nflat triangles; this one was asked for, or is stable "
+            "where that one is not.",
       split.flattest, split.least_gain, split.flip == TriadSplit::Flip::none ? "" : ", and it flips");
   const std::string& first_name = name_of(b);
   const std::string first = add_block(

@@ -122,6 +122,7 @@ std::vector<TriadSplit> splits_of(const Group& group, const Motion& motion) {
   } while (std::next_permutation(order.begin(), order.end()));
   std::stable_sort(splits.begin(), splits.end(),
                    [](const TriadSplit& a, const TriadSplit& b) { return a.worth() > b.worth(); });
+  splits.front().best = true;
   return splits;
 }
 

@@ -32,6 +32,8 @@ struct TriadSplit {
   Flip flip = Flip::none;
   double flip_time = 0;  ///< [s]
 
+  bool best = false;  ///< whether none of the six is worth more
+
   /// What it is worth: the smaller of `flattest` and `least_gain`; 0 where it flips.
   double worth() const;
 };
