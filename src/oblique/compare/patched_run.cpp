@@ -26,10 +26,10 @@ Diagram patch_named(const Mechanism& mechanism, const PatchOptions& options) {
 PatchedMechanism::PatchedMechanism(Diagram patched, const BlockLibrary& library)
     : diagram(std::move(patched)), flat(flatten(diagram, library)), program(assemble(flat)) {}
 
-std::vector<Overload> overloads_of(const Program& program, const Run& run) {
+std::vector<Overload> overloads_of(const Program& program, const Run& run, double margin) {
   std::vector<Overload> overloads;
   for (std::size_t s = 0; s < run.peaks.size(); ++s) {
-    if (std::abs(run.peaks[s].value) > 1 + kOverloadMargin)
+    if (std::abs(run.peaks[s].value) > 1 + margin)
       overloads.push_back({program.signal_names()[s], run.peaks[s]});
   }
   return overloads;

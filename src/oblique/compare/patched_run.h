@@ -38,8 +38,8 @@ struct RecordedRun {
 RecordedRun run_recorded(const PatchedMechanism& patched, const std::string& what, double tolerance,
                          const std::function<void(double)>& progress = {});
 
-/// The signals that left ±1 machine unit.
-std::vector<Overload> overloads_of(const Program& program, const Run& run);
+/// The signals that left ±1 machine unit by more than the margin.
+std::vector<Overload> overloads_of(const Program& program, const Run& run, double margin = kOverloadMargin);
 
 /// The largest real part of the servo loops' eigenvalues at every tenth of the instants [1/s]; NaN where one
 /// of them has none.
