@@ -111,8 +111,8 @@ class MachineReader {
     const auto kind = std::find_if(kElementKinds.begin(), kElementKinds.end(),
                                    [&](ElementKind k) { return key_of(k) == entry.key; });
     if (kind == kElementKinds.end()) {
-      std::vector<std::string> known;
-      for (const ElementKind k : kElementKinds) known.push_back(key_of(k));
+      std::vector<std::string> known(kElementKinds.size());
+      std::transform(kElementKinds.begin(), kElementKinds.end(), known.begin(), key_of);
       report(entry.position, fmt::format("there is no kind of element '{}'", entry.key), {},
              suggest(entry.key, known));
       return;
