@@ -66,8 +66,8 @@ std::vector<double> ticks_between(double least, double greatest, double step) {
 
 std::string tick_text(double value, double step) {
   const double order = std::floor(std::log10(step) + 1e-9);
-  if (order < -6 || std::abs(value) >= 1e7) return fmt::format("{:.3g}", value);
   const double rounded = std::abs(value) < step / 1e6 ? 0 : value;
+  if (order < -3 || std::abs(value) >= 1e6) return fmt::format("{:.4g}", rounded);
   const int digits = std::max(0, static_cast<int>(-order));
   return (rounded < 0 ? "−" : "") + fmt::format("{:.{}f}", std::abs(rounded), digits);
 }
@@ -79,11 +79,12 @@ Axes::Axes(const Extent& place, Axis x, Axis y, Shape shape, std::string title)
   const bool x_given = x_.step > 0, y_given = y_.step > 0;
   const double top = place.min().y() + (title_.empty() ? 8 : 26);
   const double bottom = place.max().y() - (x_.label.empty() ? 22 : 42);
-  const double right = place.max().x() - 14;
+  choose_step(x_, place.sizes().x(), x_given);
   choose_step(y_, bottom - top, y_given);
   // The numbers' width depends on the range, which with equal axes depends on the frame: twice is enough.
   for (int round = 0; round < 2; ++round) {
     const double left = place.min().x() + widest_number(y_) + (y_.label.empty() ? 12 : 32);
+    const double right = place.max().x() - std::max(14.0, widest_number(x_) / 2 + 2);
     frame_ = Extent(Vector2d(left, top), Vector2d(right, bottom));
     const Vector2d size = frame_.sizes();
     if (shape == Shape::equal) {
