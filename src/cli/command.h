@@ -126,6 +126,16 @@ struct DrawRequest {
 };
 ExitStatus draw_file(const Session& session, const DrawRequest& request);
 
+struct AnimateRequest {
+  std::string mechanism;
+  std::string output;
+  std::string theme = "auto";
+  std::vector<std::string> trace;
+  int frames = 90;
+  std::string duration = "4 s";
+};
+ExitStatus animate_mechanism(const Session& session, const AnimateRequest& request);
+
 struct BlocksRequest {
   std::string name;
 };

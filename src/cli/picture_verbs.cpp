@@ -45,4 +45,23 @@ void add_draw(CLI::App& app, Chosen& chosen) {
   choose(verb, chosen, request, draw_file);
 }
 
+void add_animate(CLI::App& app, Chosen& chosen) {
+  auto request = std::make_shared<AnimateRequest>();
+  CLI::App* const verb =
+      app.add_subcommand("animate", "Animate a mechanism over its motion, again and again");
+  verb->add_option("MECHANISM", request->mechanism, "mechanism file (oblique-mechanism/1)")->required();
+  verb->add_option("-o,--output", request->output,
+                   "write to FILE.svg, which moves by itself, or FILE.html with play, pause and slider")
+      ->required()
+      ->type_name("FILE");
+  verb->add_option("--frames", request->frames, "positions computed for a round; between them it is smooth")
+      ->capture_default_str()
+      ->check(CLI::Range(2, 3600));
+  verb->add_option("--duration", request->duration, "how long a round lasts on the screen")
+      ->capture_default_str()
+      ->type_name("T");
+  add_looks(verb, *request);
+  choose(verb, chosen, request, animate_mechanism);
+}
+
 }  // namespace oblique::cli

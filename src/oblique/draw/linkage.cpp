@@ -25,13 +25,17 @@ bool is_led_by_frame(const Mechanism& mechanism, std::size_t body) {
 /// A position drawn as thin lines and pale plates.
 void add_faint(std::vector<Mark>& marks, const Mechanism& mechanism, const Axes& axes,
                const Configuration& here, double strength) {
-  constexpr double kHalfWidth = 0.9, kOfBars = 0.75, kOfPlates = 0.3;
+  constexpr double kHalfWidth = 0.8, kOfBars = 0.7, kOfPlates = 0.06, kOfEdges = 0.4;
   for (const Body& body : mechanism.bodies) {
     std::vector<Vector2d> points;
     for (const BodyPoint& point : body.points) points.push_back(axes.at(here.points[point.point].position));
-    const bool bar = points.size() == 2;
     Mark mark{rounded_hull(std::move(points), kHalfWidth), {Ink::none, 0}, Ink::blue};
-    mark.opacity = strength * (bar ? kOfBars : kOfPlates);
+    mark.opacity = strength * (body.points.size() == 2 ? kOfBars : kOfPlates);
+    marks.push_back(mark);
+    if (body.points.size() == 2) continue;
+    mark.fill = Ink::none;
+    mark.pen = {Ink::blue, 1};
+    mark.opacity = strength * kOfEdges;
     marks.push_back(std::move(mark));
   }
 }
@@ -64,8 +68,12 @@ Picture draw_linkage(const Mechanism& mechanism, const LinkageScene& scene) {
     add_faint(picture.marks, mechanism, layout.axes, scene.others[k],
               kFaintest + (kStrongest - kFaintest) * along);
   }
-  picture.marks.insert(picture.marks.end(), layout.paths.begin(), layout.paths.end());
+  bool paths_drawn = false;
   for (const LinkagePart& part : layout.parts) {
+    if (!paths_drawn && lies_over_paths(part)) {
+      picture.marks.insert(picture.marks.end(), layout.paths.begin(), layout.paths.end());
+      paths_drawn = true;
+    }
     const PartPose pose = pose_of(part, mechanism, scene.shown);
     for (const Mark& mark : part.marks) picture.marks.push_back(placed(mark, layout.place(pose), pose.angle));
   }

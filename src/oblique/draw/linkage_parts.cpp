@@ -154,6 +154,10 @@ bool is_drawn(const Mechanism& mechanism, std::size_t point) {
   return !mechanism.bodies_at(point).empty() || slides_along(mechanism, point);
 }
 
+bool lies_over_paths(const LinkagePart& part) {
+  return part.carrier == Carrier::slide || part.carrier == Carrier::point;
+}
+
 PartPose pose_of(const LinkagePart& part, const Mechanism& mechanism, const Configuration& here) {
   switch (part.carrier) {
     case Carrier::frame:

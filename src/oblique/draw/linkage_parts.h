@@ -45,6 +45,9 @@ Mark placed(const Mark& mark, const Eigen::Vector2d& at, double angle);
 std::vector<LinkagePart> linkage_parts(const Mechanism& mechanism, const std::vector<Configuration>& motion,
                                        double scale);
 
+/// Whether a part is a block or a pin, which paths go under; the paths go over all others.
+bool lies_over_paths(const LinkagePart& part);
+
 /// Whether a point is drawn: points that only name a line of the frame are not.
 bool is_drawn(const Mechanism& mechanism, std::size_t point);
 
