@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/draw/svg.h>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace oblique {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(Svg, EscapesWhatXmlReserves) {
+  EXPECT_EQ(escape_xml("a<b & \"c\" > 'd'\x01"), "a&lt;b &amp; &quot;c&quot; &gt; &#39;d&#39;");
+}
+
+TEST(Svg, WritesShortNumbers) {
+  EXPECT_EQ(svg_number(0.125), "0.13");
+  EXPECT_EQ(svg_number(-0.001), "0");
+  EXPECT_EQ(svg_number(10), "10");
+  EXPECT_EQ(svg_number(-2.5), "-2.5");
+}
+
+TEST(Svg, WritesEachKindOfMark) {
+  Picture picture{100, 50, "A <title>", {}};
+  picture.marks.push_back(line_mark({0, 0}, {10, 20.5}, {Ink::blue, 2, {4, 2}}));
+  picture.marks.push_back(disc_mark({5, 6}, 3, Ink::paper));
+  picture.marks.push_back(box_mark({1, 2}, {3, 4}, Ink::none));
+  picture.marks.push_back(label_mark({7, 8}, "A & B", Anchor::middle));
+  picture.marks.back().id = "name";
+  const std::string svg = to_svg(picture);
+  EXPECT_THAT(svg, HasSubstr("viewBox=\"0 0 100 50\""));
+  EXPECT_THAT(svg, HasSubstr("<title>A &lt;title&gt;</title>"));
+  EXPECT_THAT(
+      svg, HasSubstr(
+               R"(<path class="f-none s-blue" stroke-width="2" stroke-dasharray="4 2" d="M0 0 L10 20.5"/>)"));
+  EXPECT_THAT(svg, HasSubstr(R"(<circle class="f-paper s-line" stroke-width="1.5" cx="5" cy="6" r="3"/>)"));
+  EXPECT_THAT(
+      svg, HasSubstr(R"(<rect class="f-none s-line" stroke-width="1.5" x="1" y="2" width="3" height="4"/>)"));
+  EXPECT_THAT(
+      svg,
+      HasSubstr(
+          R"(<text id="name" class="f-line s-none" x="7" y="8" font-size="12" text-anchor="middle">A &amp; B</text>)"));
+  EXPECT_EQ(svg, to_svg(picture));
+}
+
+// Helvetica's widths: A and V 667, space 278 thousandths.
+TEST(Picture, MeasuresTexts) {
+  EXPECT_DOUBLE_EQ(text_width("A V", 10), 16.12);
+  const auto extent = extent_of(label_mark({100, 100}, "A V", Anchor::end, 10));
+  EXPECT_DOUBLE_EQ(extent.max().x(), 100);
+  EXPECT_DOUBLE_EQ(extent.min().x(), 100 - 16.12);
+}
+
+}  // namespace
+}  // namespace oblique
