@@ -4,13 +4,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include <fmt/format.h>
 
+#include <oblique/draw/scale.h>
+
 namespace oblique::cli {
 namespace {
 
+constexpr double kBelowFloor = 0.1;
 constexpr double kHeight = 220, kHistogramHeight = 160;  // [px]
 
 /// "triangles", "20 Hz", "triangles, 20 Hz": what tells a series from the others; nothing of a single one.
@@ -29,6 +33,14 @@ std::string name_of(const Comparison& comparison, const GainSeries& series) {
 /// "−0.998".
 std::string signed_text(double value) {
   return fmt::format("{}{:.3f}", value < 0 ? "−" : "", std::abs(value));
+}
+
+/// "250", "10⁶".
+std::string gain_text(double gain) {
+  const double exponent = std::round(std::log10(gain));
+  return exponent >= 3 && std::abs(gain / std::pow(10, exponent) - 1) < 1e-12
+             ? power_of_ten(static_cast<int>(exponent))
+             : fmt::format("{:.6g}", gain);
 }
 
 std::size_t runs_per_series(const Comparison& comparison) {
@@ -67,14 +79,14 @@ Panel convergence_of(const Comparison& comparison) {
       errors.points.emplace_back(comparison.runs[k].gain, comparison.runs[k].max_error);
     std::sort(errors.points.begin(), errors.points.end(),
               [](const auto& a, const auto& b) { return a.x() < b.x(); });
-    if (series.order) panel.curves.push_back(slope_of(errors, series));
     panel.curves.push_back(std::move(errors));
+    if (series.order) panel.curves.push_back(slope_of(panel.curves.back(), series));
   }
   return panel;
 }
 
 Panel error_along(const Comparison& comparison) {
-  Panel panel{{"crank", "°"}, {"error", comparison.unit, true}, {}, kHeight};
+  Panel panel{{"crank", "°"}, {"error", comparison.unit, comparison.runs.size() > 1}, {}, kHeight};
   double unit = std::numbers::pi / 180;
   if (!comparison.turning) {
     panel.x = {"drive", comparison.unit};
@@ -83,10 +95,15 @@ Panel error_along(const Comparison& comparison) {
   const std::size_t per_series = runs_per_series(comparison);
   for (std::size_t k = 0; k < comparison.runs.size(); ++k) {
     const ComparedRun& run = comparison.runs[k];
-    const std::string series = name_of(comparison, comparison.series[k / per_series]);
-    Curve curve{fmt::format("gain {:.6g}{}{}", run.gain, series.empty() ? "" : ", ", series), {}, k};
-    for (std::size_t row = 0; row < run.error_along.size(); ++row)
-      curve.points.emplace_back(comparison.drive[row] / unit, run.error_along[row]);
+    const GainSeries& series = comparison.series[k / per_series];
+    const std::string name = name_of(comparison, series);
+    Curve curve{fmt::format("gain {}{}{}", gain_text(run.gain), name.empty() ? "" : ", ", name), {}, k};
+    for (std::size_t row = 0; row < run.error_along.size(); ++row) {
+      // what is far below that which the tolerance leaves tells nothing, and would stretch the axis
+      const bool tells = run.error_along[row] > kBelowFloor * series.floor;
+      curve.points.emplace_back(comparison.drive[row] / unit,
+                                tells ? run.error_along[row] : std::numeric_limits<double>::quiet_NaN());
+    }
     panel.curves.push_back(std::move(curve));
   }
   return panel;

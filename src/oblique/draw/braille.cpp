@@ -39,7 +39,7 @@ std::string right_aligned(const std::string& text, std::size_t width) {
 std::string coloured(const std::string& text, std::optional<std::size_t> number) {
   constexpr std::array<const char*, 6> kColours{"34", "31", "32", "33", "36", "35"};
   static_assert(kColours.size() == std::size(kAccents));
-  if (!number) return text;
+  if (!number || *number == Curve::kPlain) return text;
   return std::string("\033[") + kColours[*number % kColours.size()] + "m" + text + "\033[0m";
 }
 

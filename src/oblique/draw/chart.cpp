@@ -21,11 +21,20 @@ constexpr double kLeastWidth = 300, kLeastHeight = 100;              ///< of a p
 constexpr double kTickGap = 6;                                       ///< between a plot and its numbers
 constexpr Pen kGrid{Ink::faint, 0.75}, kFineGrid{Ink::faint, 0.35}, kFrame{Ink::line, 1};
 
+/// How much wider than text_width a text may be on paper: where there is no Helvetica or Arial, the font is
+/// as wide as DejaVu Sans.
+constexpr double kWideFont = 1.16;
+
+/// A line that crosses itself this often would be a blot if it were as thick as others.
+constexpr std::size_t kPointsOfThinLine = 4000;
+constexpr double kThinLine = 0.6;  // [px]
+
 Pen pen_of(const Curve& curve) {
   const std::size_t accents = std::size(kAccents);
   Pen pen{kAccents[curve.number % accents], 1.75};
   if (curve.number / accents % 3 == 1) pen.dashes = {7, 4};
   if (curve.number / accents % 3 == 2) pen.dashes = {1.5, 4};
+  if (curve.number == Curve::kPlain) pen = {Ink::line, 1.25};
   if (curve.style == Curve::Style::guide) {
     pen.width = 1.25;
     pen.dashes = {5, 4};
@@ -48,7 +57,7 @@ class PanelPainter {
 
   double label_width() const {
     double width = 0;
-    for (const Tick& tick : y_ticks()) width = std::max(width, text_width(tick.label, kText));
+    for (const Tick& tick : y_ticks()) width = std::max(width, kWideFont * text_width(tick.label, kText));
     return width;
   }
 
@@ -103,11 +112,11 @@ class PanelPainter {
   int place_legend() {
     legend_.clear();
     const std::string title = y_.title();
-    double x = title.empty() ? 0 : text_width(title, kText) + kEntryGap;
+    double x = title.empty() ? 0 : kWideFont * text_width(title, kText) + kEntryGap;
     int row = 0;
     for (const Curve& curve : panel_.curves) {
       if (curve.name.empty()) continue;
-      const double width = kSample + 6 + text_width(curve.name, kText);
+      const double width = kSample + 6 + kWideFont * text_width(curve.name, kText);
       if (x > 0 && x + width > right_ - left_) {
         x = 0;
         ++row;
@@ -148,7 +157,7 @@ class PanelPainter {
   }
 
   void paint(const Curve& curve, std::size_t number, std::vector<Mark>& marks) const {
-    const Pen pen = pen_of(curve);
+    Pen pen = pen_of(curve);
     const auto runs = runs_of(curve);
     if (curve.style == Curve::Style::marks) {
       for (const auto& run : runs) {
@@ -170,6 +179,7 @@ class PanelPainter {
     }
     if (line.segments.empty()) return;
     if (!area.segments.empty()) marks.push_back({std::move(area), {Ink::none, 0}, pen.ink, 0.2});
+    if (line.segments.size() > kPointsOfThinLine) pen.width = kThinLine;
     marks.push_back({std::move(line), pen});
     marks.back().id = fmt::format("curve-{}-{}", index_, number);
     marks.back().tooltip = curve.name;
@@ -213,7 +223,7 @@ Picture draw_chart(const Chart& chart) {
   }
   Picture picture{chart.width, 0, chart.title, {}};
   const double left = kMargin + label_width + kTickGap, right = chart.width - kMargin - 6;
-  const std::vector<std::string> title = wrapped(chart.title, kTitle, true, right - kMargin);
+  const std::vector<std::string> title = wrapped(chart.title, kWideFont * kTitle, true, right - kMargin);
   double y = kMargin;
   for (const std::string& line : title) {
     picture.marks.push_back(label_mark({kMargin, y + kTitle}, line, Anchor::start, kTitle));

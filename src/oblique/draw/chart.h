@@ -27,9 +27,11 @@ struct Curve {
     area,         ///< filled down to the axis
     marks,        ///< small rings, no line
   };
+  static constexpr std::size_t kPlain = static_cast<std::size_t>(-1);
   std::string name;                     ///< in the legend; empty: not told there
   std::vector<Eigen::Vector2d> points;  ///< a coordinate that is not finite interrupts the line
-  std::size_t number = 0;               ///< curves of one number look alike, up to kMostCurves of them
+  /// Which colour and dashes: kMostCurves of them, then again from the first; kPlain: the colour of texts.
+  std::size_t number = 0;
   Style style = Style::line;
 };
 
