@@ -15,6 +15,7 @@ constexpr std::string_view kStyle = R"(  :root { color-scheme: light dark }
          font: 15px/1.5 Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif }
   h1 { font-size: 1.7rem; line-height: 1.2 }
   h2 { font-size: 1.2rem; margin-top: 2.2rem; border-bottom: 1px solid #b4b4b4 }
+  h3 { font-size: 1rem; margin-top: 1.6rem }
   figure { margin: 1rem 0; break-inside: avoid }
   figure svg { max-width: 100%; height: auto }
   .scroll { overflow-x: auto }
@@ -30,23 +31,26 @@ constexpr std::string_view kStyle = R"(  :root { color-scheme: light dark }
   }
   @media print {
     body { margin: 0; max-width: none; font-size: 10.5pt }
-    h2 { break-after: avoid }
+    h2, h3 { break-after: avoid }
     table { font-size: 9pt }
     pre { white-space: pre-wrap; font-size: 7.5pt }
     .scroll { overflow: visible }
   }
 )";
 
-/// "12.5", "−3e-4", "80°", and cells without a word in them.
+/// "12.5", "−3e-4", "80°", and cells without anything in them.
 bool is_number(std::string_view cell) {
-  return cell.empty() || cell.find_first_of("0123456789") <= cell.find_first_not_of("+-−≥± ") ||
-         cell == "inf";
+  return cell.find_first_not_of("0123456789+-.e °−≥±") == std::string_view::npos || cell == "inf";
 }
 
 }  // namespace
 
 void HtmlPage::heading(std::string_view text) {
   body_ += fmt::format("<h2>{}</h2>\n", escape_xml(text));
+}
+
+void HtmlPage::subheading(std::string_view text) {
+  body_ += fmt::format("<h3>{}</h3>\n", escape_xml(text));
 }
 
 void HtmlPage::paragraph(std::string_view text) {

@@ -16,6 +16,7 @@ class HtmlPage {
   explicit HtmlPage(std::string title) : title_(std::move(title)) {}
 
   void heading(std::string_view text);
+  void subheading(std::string_view text);
   void paragraph(std::string_view text);
   void list(const std::vector<std::string>& items);
   /// Columns of numbers are aligned to the right, those of words to the left.

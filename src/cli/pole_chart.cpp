@@ -43,7 +43,7 @@ Chart pole_chart(const Program& program, const std::vector<Instant>& instants, c
     if (kinds[kind].points.empty()) continue;
     double highest = 0;
     for (const Eigen::Vector2d& point : kinds[kind].points) highest = std::max(highest, point.y());
-    Curve limit{"limit of stability", {{0, -highest}, {0, highest}}, 2, Curve::Style::guide};
+    Curve limit{"limit of stability", {{0, -highest}, {0, highest}}, Curve::kPlain, Curve::Style::guide};
     if (highest == 0) limit.points = {{0, -1}, {0, 1}};
     chart.panels.push_back({{kNames[kind], "1/s"}, {"imaginary part", "1/s"}, {limit, kinds[kind]}, kHeight});
   }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The page that tells all about a mechanism and its patch.
+#include <algorithm>
 #include <cmath>
 #include <map>
-#include <sstream>
 
 #include <fmt/format.h>
 
@@ -60,17 +60,16 @@ class MechanismReport {
   void patch() {
     const Diagram& diagram = patched_.diagram;
     page_.heading("Patch");
-    std::istringstream comment(diagram.comment);
-    for (std::string line; std::getline(comment, line);) {
-      if (!line.empty()) page_.paragraph(line);
-    }
+    std::string comment = diagram.comment;  // its lines are broken where a file's are
+    std::replace(comment.begin(), comment.end(), '\n', ' ');
+    if (!comment.empty()) page_.paragraph(comment);
     std::map<std::string, std::size_t> counts;
     for (const BlockInstance& block : diagram.blocks) ++counts[block.type];
     std::vector<std::vector<std::string>> rows;
     for (const auto& [type, n] : counts) rows.push_back({type, std::to_string(n)});
     rows.push_back({"in all", std::to_string(diagram.blocks.size())});
     page_.table({"block", "count"}, rows);
-    page_.paragraph(judgement_text(patched_.judgement));
+    page_.paragraph("Judged before it runs: " + judgement_text(patched_.judgement));
   }
 
   void convergence(const Comparison& comparison) {
@@ -138,7 +137,7 @@ class MechanismReport {
     page_.preformatted(to_text(bill_of(flat, profile)));
     const MachineSheets sheets = sheets_of(diagram, flat, library_, profile);
     for (const Sheet* sheet : {&sheets.potentiometers, &sheets.connections, &sheets.static_test}) {
-      page_.heading(sheet->title);
+      page_.subheading("Sheet: " + sheet->title);
       page_.table(sheet->columns, sheet->rows);
     }
   }

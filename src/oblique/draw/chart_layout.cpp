@@ -14,6 +14,10 @@ bool same_axis(const ChartAxis& a, const ChartAxis& b) {
   return a.name == b.name && a.unit == b.unit && a.logarithmic == b.logarithmic;
 }
 
+bool shown(const Panel& panel, const Vector2d& point) {
+  return Scale::can_show(panel.x, point.x()) && Scale::can_show(panel.y, point.y());
+}
+
 /// Dots at the ends would lie half outside.
 constexpr double kRoomForDots = 0.03;
 
@@ -41,14 +45,18 @@ std::vector<PanelScales> scales_of(const Chart& chart) {
     for (std::size_t p = first; p < end; ++p) {
       dots = dots || has_dots(chart.panels[p]);
       for (const Curve& curve : chart.panels[p].curves) {
-        for (const Vector2d& point : curve.points) xs.push_back(point.x());
+        for (const Vector2d& point : curve.points) {
+          if (shown(chart.panels[p], point)) xs.push_back(point.x());
+        }
       }
     }
     for (std::size_t p = first; p < end; ++p) {
       const Panel& panel = chart.panels[p];
       std::vector<double> ys;
       for (const Curve& curve : panel.curves) {
-        for (const Vector2d& point : curve.points) ys.push_back(point.y());
+        for (const Vector2d& point : curve.points) {
+          if (shown(panel, point)) ys.push_back(point.y());
+        }
         if (curve.style == Curve::Style::area) ys.push_back(0);
       }
       PanelScales both{Scale(panel.x, xs, panel.equal), Scale(panel.y, ys, true)};

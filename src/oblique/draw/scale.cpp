@@ -64,8 +64,8 @@ Scale::Scale(const ChartAxis& axis, const std::vector<double>& values, bool roun
   high_ = step_ * std::ceil(high_ / step_ - kRounding);
 }
 
-bool Scale::shows(double value) const {
-  return std::isfinite(value) && (!axis_.logarithmic || value > 0);
+bool Scale::can_show(const ChartAxis& axis, double value) {
+  return std::isfinite(value) && (!axis.logarithmic || value > 0);
 }
 
 double Scale::position(double value) const {

@@ -21,7 +21,8 @@ class Scale {
   /// with `round` up to round numbers, otherwise exactly. At least something where there is nothing to show.
   Scale(const ChartAxis& axis, const std::vector<double>& values, bool round);
 
-  bool shows(double value) const;
+  static bool can_show(const ChartAxis& axis, double value);
+  bool shows(double value) const { return can_show(axis_, value); }
   /// 0 at the low end, 1 at the high end.
   double fraction(double value) const;
   double low() const { return low_; }
