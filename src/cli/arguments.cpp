@@ -102,6 +102,8 @@ std::optional<ExitStatus> parse_arguments(int argc, char** argv, Chosen& chosen)
   add_compare(app, chosen);
   add_report(app, chosen);
   add_fit(app, chosen);
+  add_draw(app, chosen);
+  add_animate(app, chosen);
   add_blocks(app, chosen);
   add_machines(app, chosen);
   if (argc < 2) {

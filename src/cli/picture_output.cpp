@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "picture_output.h"
 
+#include <array>
+#include <cstdio>
 #include <cstdlib>
-#include <filesystem>
-#include <string>
 
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <fmt/format.h>
 
-#include <oblique/draw/svg.h>
-#include <oblique/text/diagnostic.h>
 #include <oblique/text/document.h>
 
 #include "terminal.h"
@@ -19,79 +16,90 @@
 namespace oblique::cli {
 namespace {
 
-constexpr const char* kPainter = "rsvg-convert";
+constexpr std::array<std::string_view, 2> kEndings{".svg", ".png"};
 
-/// The painter's file in the search path, or nothing.
-std::filesystem::path painter() {
-  const char* const search_path = std::getenv("PATH");
-  std::string_view rest = search_path == nullptr ? "" : search_path;
-  while (!rest.empty()) {
-    const std::size_t end = std::min(rest.find(':'), rest.size());
-    const std::filesystem::path file = std::filesystem::path(rest.substr(0, end)) / kPainter;
-    if (access(file.c_str(), X_OK) == 0) return file;
-    rest.remove_prefix(std::min(end + 1, rest.size()));
-  }
-  return {};
+bool is_png(const std::string& path) {
+  return std::filesystem::path(path).extension() == ".png";
 }
 
-bool is_png(const std::filesystem::path& path) {
-  return path.extension() == ".png";
-}
-
-/// A folder of our own among the temporary files, gone with this.
-class TemporaryFolder {
+/// A folder of our own for what goes between two programs.
+class ScratchFolder {
  public:
-  TemporaryFolder() {
+  ScratchFolder() {
     std::string name = (std::filesystem::temp_directory_path() / "oblique-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr)
-      throw ReadError(
-          Diagnostic{{name, {}}, "no folder for temporary files could be made", {}, "set TMPDIR"});
+    if (mkdtemp(name.data()) == nullptr) {
+      throw ReadError(Diagnostic{{name, {}},
+                                 "no folder could be made for the conversion to PNG",
+                                 {},
+                                 "set TMPDIR to a folder that you may write to"});
+    }
     path_ = name;
   }
-  ~TemporaryFolder() {
-    std::error_code gone;
-    std::filesystem::remove_all(path_, gone);
+  ~ScratchFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
   }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  std::filesystem::path file(const char* name) const { return path_ / name; }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  std::filesystem::path operator/(const char* name) const { return path_ / name; }
 
  private:
   std::filesystem::path path_;
 };
 
-std::string painted(const std::string& svg, const std::string& path) {
-  const TemporaryFolder folder;
-  const std::string source = folder.file("picture.svg"), target = folder.file("picture.png");
-  write_file(source, svg);
-  const std::string program = painter();
-  const pid_t child = fork();
-  if (child == 0) {
-    execl(program.c_str(), kPainter, "--zoom=2", "--output", target.c_str(), source.c_str(), nullptr);
-    _exit(127);
-  }
-  int status = -1;
-  if (child < 0 || waitpid(child, &status, 0) != child || !WIFEXITED(status) || WEXITSTATUS(status) != 0) {
-    throw ReadError(
-        Diagnostic{{path, {}}, fmt::format("{} could not paint this picture", kPainter), {}, "write .svg"});
-  }
-  return read_file(target);
+/// A word for the shell as it stands.
+std::string quoted(const std::filesystem::path& path) {
+  std::string text = "'";
+  for (const char c : path.string()) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+bool converter_is_installed() {
+  return std::system("command -v rsvg-convert >/dev/null 2>&1") == 0;
+}
+
+void require_converter(const std::string& path) {
+  if (converter_is_installed()) return;
+  throw ReadError(Diagnostic{{path, {}},
+                             "a PNG is made by rsvg-convert, which is not installed",
+                             {},
+                             "install the Debian package librsvg2-bin, or write an .svg"});
 }
 
 }  // namespace
 
 void check_picture_output(const std::string& path) {
-  check_output(path, kPictureEndings);
-  if (!is_png(path) || !painter().empty()) return;
-  throw ReadError(Diagnostic{{path, {}},
-                             fmt::format(".png is painted by {}, which is not installed", kPainter),
-                             {},
-                             "install the package librsvg2-bin, or write .svg"});
+  check_output(path, kEndings);
+  if (is_png(path)) require_converter(path);
+}
+
+std::string png_of(std::string_view svg, const std::string& path) {
+  require_converter(path);
+  const ScratchFolder folder;
+  const auto from = folder / "picture.svg", to = folder / "picture.png";
+  write_file(from, svg);
+  if (std::system(fmt::format("rsvg-convert {} -o {}", quoted(from), quoted(to)).c_str()) != 0) {
+    throw ReadError(Diagnostic{{path, {}}, "rsvg-convert could not make the PNG", {}, "write an .svg"});
+  }
+  return read_file(to);
+}
+
+void save_picture(const Picture& picture, const std::string& path, Theme theme) {
+  check_picture_output(path);
+  const std::string svg = to_svg(picture, theme);
+  save(path, is_png(path) ? png_of(svg, path) : svg);
 }
 
 void save_picture(const Picture& picture, const std::string& path) {
-  check_picture_output(path);
-  save(path, is_png(path) ? painted(to_svg(picture, Theme::light), path) : to_svg(picture));
+  save_picture(picture, path, Theme::automatic);
+}
+
+Theme theme_option(const std::string& text) {
+  if (text == "auto") return Theme::automatic;
+  if (text == "light") return Theme::light;
+  if (text == "dark") return Theme::dark;
+  throw ReadError(Diagnostic{
+      {}, fmt::format("--theme {}", text), "auto, light or dark", suggest(text, {"auto", "light", "dark"})});
 }
 
 }  // namespace oblique::cli

@@ -17,6 +17,7 @@
 #include "comparison_chart.h"
 #include "comparison_output.h"
 #include "html_page.h"
+#include "linkage_scene.h"
 #include "machine_patch.h"
 #include "mechanism_check.h"
 #include "pole_chart.h"
@@ -39,6 +40,13 @@ class MechanismReport {
     page_.paragraph(mechanism.source.empty()
                         ? fmt::format("Mechanism: {}", mechanism.file)
                         : fmt::format("Mechanism: {}. Source: {}", mechanism.file, mechanism.source));
+  }
+
+  /// The mechanism at its start, with the paths that are worth a look.
+  void drawing() {
+    LinkageScene scene = linkage_scene(mechanism_, "", 1);
+    scene.traces = points_to_trace(mechanism_);
+    page_.picture(draw_linkage(mechanism_, scene));
   }
 
   /// Groups, and what `check` tells of them.
@@ -175,6 +183,7 @@ ExitStatus report_mechanism(const Session& session, const ReportRequest& request
   const BlockLibrary library = session.blocks();
   const Mechanism mechanism = read_mechanism(request.mechanism);
   MechanismReport report(mechanism, library, options);
+  report.drawing();
   report.structure();
   report.patch();
   {

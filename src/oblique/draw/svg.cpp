@@ -121,6 +121,11 @@ struct Element {
 
 }  // namespace
 
+const char* colour_of(Ink ink, bool dark) {
+  const Colour& colour = kColours[static_cast<std::size_t>(ink)];
+  return dark ? colour.dark : colour.light;
+}
+
 std::string svg_number(double value) {
   std::string text = fmt::format("{:.2f}", std::round(value * 100) / 100 + 0.0);
   text.erase(text.find_last_not_of('0') + 1);

@@ -23,6 +23,9 @@ std::string to_svg(const Picture& picture, Theme theme = Theme::automatic);
 /// `svg_style` must be there.
 std::string svg_element(const Mark& mark);
 
+/// The colour of an ink, "#0072b2", on a light or a dark ground; "none" for none.
+const char* colour_of(Ink ink, bool dark);
+
 /// The style sheet that the classes of the elements refer to.
 std::string svg_style(Theme theme);
 

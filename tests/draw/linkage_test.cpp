@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+// Pictures of mechanisms, measured: what a reader would read off at the axes is what the exact motion says.
+#include <oblique/draw/linkage.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <oblique/draw/label_placer.h>
+#include <oblique/draw/rounded_hull.h>
+#include <oblique/mechanism/follower.h>
+#include <oblique/mechanism/motion.h>
+#include <oblique/mechanism/read_mechanism.h>
+
+#include "reading.h"
+
+namespace oblique::test {
+namespace {
+
+using Eigen::Vector2d;
+using Extent = Eigen::AlignedBox<double, 2>;
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+Mechanism shipped(const std::string& name) {
+  return read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/" + name + ".toml");
+}
+
+std::vector<std::string> shipped_names() {
+  std::vector<std::string> names;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms"))
+    names.push_back(entry.path().stem().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+LinkageScene scene_at(const Mechanism& mechanism, double time) {
+  LinkageScene scene;
+  const Structure structure = decompose(mechanism);
+  Follower follower(mechanism, structure);
+  scene.shown = follower.advance(time);
+  scene.motion = mechanism.drives.empty() ? std::vector<Configuration>{scene.shown}
+                                          : solve_motion(mechanism, 121).configurations;
+  scene.traces = points_to_trace(mechanism);
+  scene.caption = "crank = 0°";
+  return scene;
+}
+
+std::vector<std::string> names_of_traces(const std::string& name) {
+  const Mechanism mechanism = shipped(name);
+  std::vector<std::string> names;
+  for (const std::size_t point : points_to_trace(mechanism)) names.push_back(mechanism.points[point].name);
+  return names;
+}
+
+class Shipped : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Mechanisms, Shipped, testing::ValuesIn(shipped_names()), [](const auto& tested) {
+  std::string name = tested.param;
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+});
+
+// Numbers at the axes are read as they stand; their labels lie at their ticks to rounding.
+TEST_P(Shipped, PinsLieWhereTheMotionSays) {
+  const Mechanism mechanism = shipped(GetParam());
+  for (const double time : {0.0, 0.02}) {
+    const LinkageScene scene = scene_at(mechanism, time);
+    if (scene.shown.status == Status::open) continue;
+    const Picture picture = draw_linkage(mechanism, scene);
+    const Reading reading(picture.marks);
+    std::size_t found = 0;
+    for (std::size_t p = 0; p < mechanism.points.size(); ++p) {
+      const Mark* const pin = find_mark(picture, "pin-" + mechanism.points[p].name);
+      if (pin == nullptr) continue;
+      ++found;
+      const Vector2d at = std::get<Disc>(pin->shape).centre;
+      EXPECT_LT((at - reading.pixel(scene.shown.points[p].position)).norm(), 0.01)
+          << mechanism.points[p].name;
+    }
+    EXPECT_GE(found, 2U);
+  }
+}
+
+TEST_P(Shipped, EverythingLiesWithinThePicture) {
+  const Mechanism mechanism = shipped(GetParam());
+  const Picture picture = draw_linkage(mechanism, scene_at(mechanism, 0));
+  const Extent paper(Vector2d(0, 0), Vector2d(picture.width, picture.height));
+  for (const Mark& mark : picture.marks) {
+    const Extent extent = extent_of(mark);
+    EXPECT_TRUE(paper.contains(extent))
+        << mark.id << " " << extent.min().transpose() << " to " << extent.max().transpose();
+  }
+}
+
+TEST_P(Shipped, NamesLieOnNothing) {
+  const Mechanism mechanism = shipped(GetParam());
+  const Picture picture = draw_linkage(mechanism, scene_at(mechanism, 0));
+  std::vector<const Mark*> names, things;
+  for (const Mark& mark : picture.marks) {
+    if (mark.id.starts_with("name-")) names.push_back(&mark);
+    if (mark.id.starts_with("pin-") || mark.id.starts_with("body-") || mark.id.starts_with("slide-"))
+      things.push_back(&mark);
+  }
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const Extent extent = extent_of(*names[k]);
+    for (std::size_t j = 0; j < k; ++j)
+      EXPECT_TRUE(extent.intersection(extent_of(*names[j])).isEmpty()) << names[k]->id << names[j]->id;
+    for (const Mark* const thing : things)
+      EXPECT_FALSE(line_meets(*thing, extent)) << names[k]->id << " on " << thing->id;
+  }
+}
+
+// The paths of the crank's pin and of the bar's end, the crank at 79°: the closed form of the source.
+TEST(Linkage, ThreeBarPathsAreThoseOfItsFormulas) {
+  const Mechanism mechanism = shipped("three-bar");
+  LinkageScene scene = scene_at(mechanism, 79.0 / 360);
+  scene.traces = {*mechanism.find_point("B"), *mechanism.find_point("P")};
+  const Picture picture = draw_linkage(mechanism, scene);
+  const Reading reading(picture.marks);
+  const auto& of_b = std::get<Outline>(find_mark(picture, "path-B")->shape).segments;
+  const auto& of_p = std::get<Outline>(find_mark(picture, "path-P")->shape).segments;
+  ASSERT_EQ(of_b.size(), 121U);
+  ASSERT_EQ(of_p.size(), 121U);
+  for (std::size_t k = 0; k < 121; ++k) {
+    const double crank = 2 * M_PI * static_cast<double>(k) / 120;
+    const Vector2d b(100 * std::cos(crank), 100 * std::sin(crank));
+    const double bar = std::atan2(-b.y(), 150 - b.x());
+    const Vector2d p = b + 300 * Vector2d(std::cos(bar), std::sin(bar));
+    EXPECT_LT((of_b[k].to - reading.pixel(b)).norm(), 0.01);
+    EXPECT_LT((of_p[k].to - reading.pixel(p)).norm(), 0.01);
+  }
+}
+
+TEST(Linkage, TracesWhatIsWorthIt) {
+  EXPECT_THAT(names_of_traces("jansen"), ElementsAre("P5", "Q5"));
+  EXPECT_THAT(names_of_traces("three-bar"), ElementsAre("P"));
+  EXPECT_THAT(names_of_traces("six-bar"), ElementsAre("E", "F"));
+  EXPECT_THAT(names_of_traces("scotch-yoke"), IsEmpty());
+}
+
+TEST(Linkage, OtherPositionsAreDrawnFainterTheFartherTheyAre) {
+  const Mechanism mechanism = shipped("jansen");
+  LinkageScene scene = scene_at(mechanism, 0);
+  const std::size_t alone = draw_linkage(mechanism, scene).marks.size();
+  scene.others = solve_motion(mechanism, 25).configurations;
+  const Picture picture = draw_linkage(mechanism, scene);
+  // A bar is one mark, a plate two; 13 bodies, of which the crank with its two pins and four others are
+  // plates.
+  EXPECT_EQ(picture.marks.size() - alone, 25U * (13 + 5));
+  std::vector<double> bars;
+  for (const Mark& mark : picture.marks) {
+    if (mark.fill == Ink::blue && mark.opacity > 0.1) bars.push_back(mark.opacity);
+  }
+  EXPECT_EQ(bars.size(), 25U * 8);
+  EXPECT_TRUE(std::is_sorted(bars.begin(), bars.end()));
+}
+
+TEST(RoundedHull, KeepsItsDistance) {
+  const std::vector<Vector2d> corners{{0, 0}, {40, 0}, {10, 30}, {15, 10}};  // the last one lies inside
+  const Outline outline = rounded_hull(corners, 5);
+  ASSERT_FALSE(outline.segments.empty());
+  for (const Segment& segment : outline.segments) {
+    if (segment.kind == Segment::Kind::close) continue;
+    double nearest = INFINITY;
+    for (const Vector2d& corner : corners) nearest = std::min(nearest, (segment.to - corner).norm());
+    EXPECT_NEAR(nearest, 5, 1e-9);
+  }
+  const Extent bar = extent_of({rounded_hull({{0, 0}, {20, 0}}, 3), {Ink::none, 0}});
+  EXPECT_NEAR(bar.min().x(), -3, 1e-9);
+  EXPECT_NEAR(bar.max().x(), 23, 1e-9);
+  EXPECT_NEAR(bar.sizes().y(), 6, 1e-9);
+}
+
+TEST(LabelPlacer, GivesEachOfManyAPlaceOfItsOwn) {
+  LabelPlacer placer(Extent(Vector2d(0, 0), Vector2d(200, 200)));
+  std::vector<Extent> places;
+  for (int k = 0; k < 8; ++k) {
+    const Extent place = extent_of(placer.place({100, 100}, "B", 13));
+    EXPECT_TRUE(Extent(Vector2d(0, 0), Vector2d(200, 200)).contains(place));
+    for (const Extent& other : places) EXPECT_TRUE(place.intersection(other).isEmpty());
+    places.push_back(place);
+  }
+}
+
+}  // namespace
+}  // namespace oblique::test
