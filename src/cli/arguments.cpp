@@ -100,6 +100,7 @@ std::optional<ExitStatus> parse_arguments(int argc, char** argv, Chosen& chosen)
   add_modes(app, chosen);
   add_patch(app, chosen);
   add_compare(app, chosen);
+  add_report(app, chosen);
   add_fit(app, chosen);
   add_draw(app, chosen);
   add_animate(app, chosen);

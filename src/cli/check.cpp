@@ -1,48 +1,41 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
-#include <oblique/mechanism/obstacle.h>
 #include <oblique/mechanism/read_mechanism.h>
 
 #include "command.h"
 #include "diagram_check.h"
 #include "mechanism_check.h"
+#include "plot_output.h"
 #include "terminal.h"
 
 namespace oblique::cli {
 namespace {
 
-/// What keeps the mechanism from turning; nothing where it turns, or is a structure.
-std::optional<std::string> obstacle_of(const Mechanism& mechanism, const Structure& structure) {
-  if (mechanism.drives.empty()) return std::nullopt;
-  // one that moves a slide goes to and fro between its limits
-  if (mechanism.drives.front().slide && !mechanism.motion.until) return std::nullopt;
-  const auto obstacle = find_obstacle(mechanism, structure);
-  if (!obstacle) return std::nullopt;
-  return fmt::format(
-      "over one turn the group {} {} at t = {:.6g} s", structure.groups[obstacle->group].name,
-      obstacle->status == oblique::Status::open ? "cannot be assembled" : "passes a dead centre",
-      obstacle->time);
-}
-
 ExitStatus check_mechanism(const CheckRequest& request, const std::string& text) {
+  if (!request.plot.empty()) {
+    throw ReadError(Diagnostic{{request.file, {}},
+                               "a mechanism has no eigenvalues to plot",
+                               "a diagram for --plot",
+                               "patch it first: oblique patch MECHANISM -o DIAGRAM.toml"});
+  }
   if (request.rescale) {
     throw ReadError(Diagnostic{{request.file, {}},
                                "a mechanism has no signals to scale",
                                "a diagram for --rescale",
                                "patch it first: oblique patch MECHANISM -o DIAGRAM.toml"});
   }
-  MechanismCheck check;
-  check.file = request.file;
-  check.mechanism = parse_mechanism(text, request.file);
-  check.structure = decompose(check.mechanism);
-  check.finding = obstacle_of(check.mechanism, check.structure);
-  check.analysis = analyse(check.mechanism, check.structure);
+  const MechanismCheck check = examine(parse_mechanism(text, request.file), request.file);
   print(request.json ? to_json(check) : to_text(check));
   return check.finding ? ExitStatus::no : ExitStatus::done;
 }
 
 void check_request(const CheckRequest& request) {
+  check_plot(request.plot);
+  if (request.json && plots_in_terminal(request.plot)) {
+    throw ReadError(Diagnostic{
+        {}, "--json and --plot - would both print", "one of the two", "--plot FILE.svg beside --json"});
+  }
   if (request.rescale && request.output.empty()) {
     throw ReadError(Diagnostic{{}, "--rescale has no file to write to", "-o NEW.toml", {}});
   }

@@ -28,7 +28,9 @@ struct Session {
 struct RunRequest {
   std::string diagram;
   std::string output;
-  std::vector<std::string> columns;  ///< those to write; empty: all
+  std::vector<std::string> columns;  ///< those to write and to draw; empty: all
+  std::string plot;                  ///< where the curves go; "-": the terminal
+  std::string against;               ///< the column that the others are drawn against; empty: `t`
   std::string until;
   std::vector<std::string> settings;
   std::string from;  ///< a state file to go on from
@@ -45,6 +47,7 @@ struct CheckRequest {
   std::string output;
   bool json = false;
   bool rescale = false;
+  std::string plot;  ///< where the eigenvalues go; "-": the terminal
 };
 ExitStatus check_file(const Session& session, const CheckRequest& request);
 
@@ -103,8 +106,19 @@ struct CompareRequest {
   int threads = 0;  ///< 0: as many as the processor has
   std::string tolerance;
   bool json = false;
+  std::string plot;  ///< where the curves go; "-": the terminal
 };
 ExitStatus compare_mechanism(const Session& session, const CompareRequest& request);
+
+struct ReportRequest {
+  std::string mechanism;
+  std::string output;
+  std::string gain = "1e6";
+  std::string bandwidth;
+  std::string method = "triangles";
+  std::string machine;  ///< whose pot sheet stands in it
+};
+ExitStatus report_mechanism(const Session& session, const ReportRequest& request);
 
 struct FitRequest {
   std::string mechanism;

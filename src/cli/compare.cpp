@@ -15,9 +15,11 @@
 #include <oblique/mechanism/read_mechanism.h>
 
 #include "command.h"
+#include "comparison_chart.h"
 #include "comparison_output.h"
 #include "machine_comparison_output.h"
 #include "monte_carlo_output.h"
+#include "plot_output.h"
 #include "terminal.h"
 
 namespace oblique::cli {
@@ -120,6 +122,9 @@ MonteCarloReport draw_elements(const CompareRequest& request, const Mechanism& m
 
 ExitStatus compare_mechanism(const Session& session, const CompareRequest& request) {
   if (!request.output.empty()) check_output(request.output, ".json");
+  check_plot(request.plot);
+  if (request.json && plots_in_terminal(request.plot))
+    refuse("--json and --plot - would both print", "one of the two", "--plot FILE.svg beside --json");
   const BlockLibrary library = session.blocks();
   CompareOptions options = options_of(request);
   const MachineProfile* const machine = request.machine.empty() ? nullptr : find_machine(request.machine);
@@ -140,6 +145,7 @@ ExitStatus compare_mechanism(const Session& session, const CompareRequest& reque
   }
   std::string text = to_text(comparison);
   nlohmann::ordered_json json = to_json(comparison);
+  Chart chart = chart_of(comparison);
   bool failed = false;
   if (machine != nullptr) {
     Progress progress("figure by figure");
@@ -155,9 +161,11 @@ ExitStatus compare_mechanism(const Session& session, const CompareRequest& reque
     const MonteCarloReport report = draw_elements(request, mechanism, diagram, library, machine);
     text += to_text(report);
     json["monte_carlo"] = to_json(report);
+    chart.panels.push_back(panel_of(report));
     failed = !report.result.worst_run;
   }
-  print(request.json ? json.dump(2) + "\n" : text);
+  if (!plots_in_terminal(request.plot)) print(request.json ? json.dump(2) + "\n" : text);
+  if (!request.plot.empty()) plot(chart, request.plot);
   if (!request.output.empty()) save(request.output, json.dump(2) + "\n");
   return failed ? ExitStatus::solver_failed : ExitStatus::done;
 }

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "plot_output.h"
+#include "pole_chart.h"
 #include "terminal.h"
 
 namespace oblique::cli {
@@ -90,7 +92,10 @@ ExitStatus check_diagram(const Session& session, const CheckRequest& request, co
     check.analysis = analyse(program, flat, options);
   }
   if (check.analysis.run) check.scaling = propose(flat, program, check.analysis);
-  print(request.json ? to_json(check) : to_text(check));
+  if (!plots_in_terminal(request.plot)) print(request.json ? to_json(check) : to_text(check));
+  if (!request.plot.empty())
+    plot(pole_chart(program, check.analysis.instants, "Eigenvalues along the run: " + diagram.title),
+         request.plot);
   if (check.analysis.failure) throw SolveError(*check.analysis.failure);
   if (request.rescale) write_rescaled(check, library, request.output);
   return ExitStatus::done;

@@ -9,6 +9,10 @@ void add_run(CLI::App& app, Chosen& chosen) {
   CLI::App* const verb = app.add_subcommand("run", "Run a diagram: its outputs over time");
   verb->add_option("DIAGRAM", request->diagram, "diagram file (oblique-diagram/1)")->required();
   add_table_options(verb, *request);
+  add_plot_option(verb, *request, "draw the curves of all columns, or of those of --columns");
+  verb->add_option("--against", request->against,
+                   "with --plot: draw against this column in place of t, as a machine's plotter does")
+      ->type_name("NAME");
   verb->add_option("--until", request->until, "end of the run, for example 2*pi or \"500 ms\"")
       ->type_name("T");
   verb->add_option("--set", request->settings, "change a parameter: block.parameter=value; may be repeated")
@@ -38,6 +42,7 @@ void add_check(CLI::App& app, Chosen& chosen) {
       "Check a diagram (wires, loops, stability, overloads, scaling, by a trial run) or a mechanism");
   verb->add_option("FILE", request->file, "diagram or mechanism file")->required();
   verb->add_flag("--json", request->json, "print JSON instead of the tables (its keys: docs/check.md)");
+  add_plot_option(verb, *request, "draw the eigenvalues of a diagram along its run in the complex plane");
   verb->add_flag("--rescale", request->rescale, "write the diagram in scaled signals to the file of -o");
   verb->add_option("-o,--output", request->output, "with --rescale: write NEW.toml")->type_name("NEW");
   choose(verb, chosen, request, check_file);

@@ -11,7 +11,6 @@
 #include <oblique/compare/judge.h>
 #include <oblique/diagram/machine_profile.h>
 #include <oblique/machine/realise.h>
-#include <oblique/machine/sheets.h>
 #include <oblique/network/network.h>
 #include <oblique/text/new_file.h>
 
@@ -81,7 +80,7 @@ std::vector<StaticReading> expected_readings(Diagram diagram, const BlockLibrary
 std::vector<Written> sheet_files(const PatchRequest& request, const Diagram& diagram, const FlatDiagram& flat,
                                  const Bill& bill, const BlockLibrary& library,
                                  const MachineProfile& machine) {
-  const MachineSheets sheets = make_sheets(flat, expected_readings(diagram, library), machine);
+  const MachineSheets sheets = sheets_of(diagram, flat, library, machine);
   const std::string text =
       fmt::format("{}\n\n{}\n{}\n{}\n{}", diagram.title, cli::to_text(bill), table_of(sheets.connections),
                   table_of(sheets.potentiometers), table_of(sheets.static_test));
@@ -103,6 +102,11 @@ std::string to_text(const Bill& bill) {
                row.missing() > 0 ? fmt::format("{}", row.missing()) : ""});
   }
   return fmt::format("elements of {}\n{}{}", bill.machine, table.text(1), verdict_text(bill));
+}
+
+MachineSheets sheets_of(const Diagram& diagram, const FlatDiagram& flat, const BlockLibrary& library,
+                        const MachineProfile& machine) {
+  return make_sheets(flat, expected_readings(diagram, library), machine);
 }
 
 void check_machine_request(const PatchRequest& request) {

@@ -4,6 +4,7 @@
 #include <string>
 
 #include <oblique/machine/bill.h>
+#include <oblique/machine/sheets.h>
 
 #include "command.h"
 
@@ -11,6 +12,10 @@ namespace oblique::cli {
 
 /// The bill as a table with its verdict, for people.
 std::string to_text(const Bill& bill);
+
+/// The sheets of a diagram that is in the machine's elements; `flat` is flattened from it.
+MachineSheets sheets_of(const Diagram& diagram, const FlatDiagram& flat, const BlockLibrary& library,
+                        const MachineProfile& machine);
 
 /// Whether --machine, --sheets and -o can be served, before any work is done. Throws ReadError and
 /// DiagramError.

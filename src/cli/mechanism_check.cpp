@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <oblique/mechanism/obstacle.h>
+
 namespace oblique::cli {
 namespace {
 
@@ -35,7 +37,30 @@ std::string poor_transmission(const MechanismCheck& check, const Transmission& t
   return {};
 }
 
+/// What keeps the mechanism from turning; nothing where it turns, or is a structure.
+std::optional<std::string> obstacle_of(const Mechanism& mechanism, const Structure& structure) {
+  if (mechanism.drives.empty()) return std::nullopt;
+  // one that moves a slide goes to and fro between its limits
+  if (mechanism.drives.front().slide && !mechanism.motion.until) return std::nullopt;
+  const auto obstacle = find_obstacle(mechanism, structure);
+  if (!obstacle) return std::nullopt;
+  return fmt::format(
+      "over one turn the group {} {} at t = {:.6g} s", structure.groups[obstacle->group].name,
+      obstacle->status == oblique::Status::open ? "cannot be assembled" : "passes a dead centre",
+      obstacle->time);
+}
+
 }  // namespace
+
+MechanismCheck examine(Mechanism mechanism, const std::string& file) {
+  MechanismCheck check;
+  check.file = file;
+  check.mechanism = std::move(mechanism);
+  check.structure = decompose(check.mechanism);
+  check.finding = obstacle_of(check.mechanism, check.structure);
+  check.analysis = analyse(check.mechanism, check.structure);
+  return check;
+}
 
 std::string describe(const Mechanism& mechanism, const Group& group) {
   if (group.kind == GroupKind::crank) {

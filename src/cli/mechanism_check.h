@@ -18,6 +18,9 @@ struct MechanismCheck {
   std::optional<std::string> finding;  ///< what keeps it from moving
 };
 
+/// Looks at a mechanism from the file `file`. Throws as `decompose` and `analyse`.
+MechanismCheck examine(Mechanism mechanism, const std::string& file);
+
 /// "dyad BC-CD (class II, RRR): C lies left of B → D".
 std::string describe(const Mechanism& mechanism, const Group& group);
 

@@ -145,9 +145,33 @@ void add_compare(CLI::App& app, Chosen& chosen) {
       ->type_name("T")
       ->check(CLI::Range(1, 1024))
       ->needs(monte_carlo);
+  add_plot_option(verb, *request,
+                  "draw the error over the gain with its slope, the error along the turn, and how often "
+                  "--monte-carlo errs how much");
   verb->add_flag("--json", request->json, "print JSON instead of the table");
   verb->add_option("-o,--output", request->output, "write the JSON to FILE.json")->type_name("FILE");
   choose(verb, chosen, request, compare_mechanism);
+}
+
+void add_report(CLI::App& app, Chosen& chosen) {
+  auto request = std::make_shared<ReportRequest>();
+  CLI::App* const verb = app.add_subcommand(
+      "report", "Report on a mechanism in one page: its groups, its patch, convergence, stability");
+  verb->add_option("MECHANISM", request->mechanism, "mechanism file (oblique-mechanism/1)")->required();
+  verb->add_option("-o,--output", request->output, "write the page to FILE.html")
+      ->required()
+      ->type_name("FILE");
+  verb->add_option("--gain", request->gain, "gain of the servo amplifiers in the patch")
+      ->capture_default_str();
+  verb->add_option("--bandwidth", request->bandwidth,
+                   "bandwidth of the servo amplifiers, in Hz or with a unit (default: 100 times the crank's "
+                   "frequency)");
+  add_method(verb, *request);
+  verb->add_option("--machine", request->machine,
+                   "add what the patch needs of this machine, and its sheets: settings of potentiometers, "
+                   "connections, static test")
+      ->type_name("NAME");
+  choose(verb, chosen, request, report_mechanism);
 }
 
 void add_fit(CLI::App& app, Chosen& chosen) {

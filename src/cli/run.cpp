@@ -10,6 +10,8 @@
 #include <oblique/solve/static_test.h>
 
 #include "command.h"
+#include "plot_output.h"
+#include "run_chart.h"
 #include "table_output.h"
 #include "terminal.h"
 
@@ -100,7 +102,13 @@ std::string table_of(const std::vector<StaticReading>& readings) {
 }
 
 void check_request(const RunRequest& request) {
-  check_table_output(request.output, request.columns);
+  if (request.plot.empty()) {
+    check_table_output(request.output, request.columns);
+    if (!request.against.empty())
+      throw ReadError(Diagnostic{{}, "--against is about a drawing", "--plot beside it", {}});
+  }
+  check_plot(request.plot);
+  if (!request.output.empty()) check_table_output(request.output, request.columns);
   check_not_input(request.output, request.diagram, "diagram");
   if (!request.save.empty()) {
     check_output(request.save, ".toml");
@@ -114,6 +122,7 @@ void check_request(const RunRequest& request) {
                             : !request.save.empty()    ? "--save"
                             : !request.from.empty()    ? "--from"
                             : request.events           ? "--events"
+                            : !request.plot.empty()    ? "--plot"
                                                        : nullptr;
   if (other == nullptr) return;
   throw ReadError(Diagnostic{{},
@@ -160,6 +169,8 @@ ExitStatus run_diagram(const Session& session, const RunRequest& request) {
 
   const FlatDiagram flat = flatten(diagram, library, overrides);
   const ColumnChoice choice(output_columns(flat), request.columns);
+  std::optional<DrawnColumns> drawn;
+  if (!request.plot.empty()) drawn = drawn_columns(output_columns(flat), {request.columns, request.against});
   const Program program(assemble(flat));
   if (request.static_test) {
     print(table_of(static_test(program, diagram.file)));
@@ -179,6 +190,7 @@ ExitStatus run_diagram(const Session& session, const RunRequest& request) {
     }
   }
   if (request.check) ask_for_expectations(diagram, options);
+  if (drawn) ask_for_curves(options, output_columns(flat).size());
   Run result;
   {
     Progress progress("running");
@@ -190,7 +202,14 @@ ExitStatus run_diagram(const Session& session, const RunRequest& request) {
     options.progress = [&](double fraction) { progress.show(fraction); };
     result = run(program, flat, options);
   }
-  print(table_of(result.trajectory));
+  if (!plots_in_terminal(request.plot)) print(table_of(result.trajectory));
+  if (drawn) {
+    plot(chart_of(result, *drawn, diagram.title), request.plot);
+    if (drawn->left_out > 0) {
+      note(fmt::format("drawn are the first {} columns; --columns names others of the {} more\n",
+                       drawn->drawn.size(), drawn->left_out));
+    }
+  }
   if (request.events) print(table_of(result.events, result.event_count));
   if (!request.output.empty()) {
     TableOutput table(request.output, choice, result.trajectory.rows());

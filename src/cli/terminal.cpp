@@ -26,6 +26,10 @@ std::size_t width(std::string_view text) {
       text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
 }
 
+bool has_colours(int descriptor) {
+  return isatty(descriptor) != 0 && std::getenv("NO_COLOR") == nullptr;
+}
+
 }  // namespace
 
 std::string Table::text(std::size_t left_columns) const {
@@ -54,12 +58,19 @@ std::vector<std::size_t> spread_rows(std::size_t rows, std::size_t most) {
   return chosen;
 }
 
-std::size_t columns_that_fit(std::size_t column_width) {
+std::size_t terminal_width(std::size_t otherwise) {
   winsize size{};
   const bool known =
       isatty(STDOUT_FILENO) != 0 && ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
-  const std::size_t terminal = known ? size.ws_col : 110;
-  return std::max<std::size_t>(2, terminal / column_width);
+  return known ? size.ws_col : otherwise;
+}
+
+std::size_t columns_that_fit(std::size_t column_width) {
+  return std::max<std::size_t>(2, terminal_width(110) / column_width);
+}
+
+bool stdout_has_colours() {
+  return has_colours(STDOUT_FILENO);
 }
 
 std::string short_number(double value, double scale) {
@@ -95,7 +106,7 @@ void note(std::string_view text) {
 }
 
 void print_error(std::string_view text) {
-  const bool colours = isatty(STDERR_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr;
+  const bool colours = has_colours(STDERR_FILENO);
   note(fmt::format("{}error:{} {}\n", colours ? "\033[1;31m" : "", colours ? "\033[0m" : "", text));
 }
 

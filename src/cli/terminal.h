@@ -31,6 +31,12 @@ std::vector<std::size_t> spread_rows(std::size_t rows, std::size_t most);
 /// none).
 std::size_t columns_that_fit(std::size_t width);
 
+/// Characters in a line of this terminal, or `otherwise` where stdout is none.
+std::size_t terminal_width(std::size_t otherwise);
+
+/// Whether stdout is a terminal that wants colours (NO_COLOR).
+bool stdout_has_colours();
+
 /// "0.0125", "1.2e-07": six significant digits; empty for what is not a number. A value that is rounding
 /// beside `scale`, the size of its neighbours, is shown as 0.
 std::string short_number(double value, double scale = 0);

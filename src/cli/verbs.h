@@ -32,6 +32,14 @@ void add_table_options(CLI::App* verb, Request& request) {
       ->type_name("NAME,NAME,…");
 }
 
+/// --plot of a verb that draws curves; `what` begins its description.
+template <class Request>
+void add_plot_option(CLI::App* verb, Request& request, const std::string& what) {
+  verb->add_option("--plot", request.plot,
+                   what + ": to FILE.svg or FILE.png, or with - in the terminal in place of the tables")
+      ->type_name("FILE");
+}
+
 // Each adds a verb with its options.
 void add_run(CLI::App& app, Chosen& chosen);
 void add_check(CLI::App& app, Chosen& chosen);
@@ -39,6 +47,7 @@ void add_solve(CLI::App& app, Chosen& chosen);
 void add_modes(CLI::App& app, Chosen& chosen);
 void add_patch(CLI::App& app, Chosen& chosen);
 void add_compare(CLI::App& app, Chosen& chosen);
+void add_report(CLI::App& app, Chosen& chosen);
 void add_fit(CLI::App& app, Chosen& chosen);
 void add_draw(CLI::App& app, Chosen& chosen);
 void add_animate(CLI::App& app, Chosen& chosen);

@@ -14,7 +14,6 @@
 namespace oblique {
 namespace {
 
-constexpr double kAboveFloor = 10;
 /// Amplifiers of this gain err by far less than what the tolerance of any run leaves. Ideal ones would not do
 /// for the floor: without the dynamics of the loops there are fewer errors to add up, ten times fewer in a
 /// Jansen leg.
@@ -44,6 +43,7 @@ class Comparer {
     const Distances error = distances(mechanism_, patched.flat, analog.trajectory, exact_);
     result.max_error = error.largest;
     result.rms_error = error.rms;
+    result.error_along = error.along;
     result.worst = {mechanism_.points[error.worst.point].name, exact_.times[error.row],
                     exact_.drives[error.row].front().value,
                     reasons_.reason(patched, options, recorded, error)};
@@ -94,7 +94,7 @@ class Comparer {
 std::optional<double> fitted_order(std::span<const ComparedRun> runs, double floor) {
   double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
   for (const ComparedRun& run : runs) {
-    if (run.max_error < kAboveFloor * floor || !std::isfinite(run.gain)) continue;
+    if (!stands_clear(run.max_error, floor) || !std::isfinite(run.gain)) continue;
     const double x = std::log10(run.gain), y = std::log10(run.max_error);
     n += 1;
     sx += x;
@@ -115,6 +115,7 @@ Comparison compare_within_range(const Mechanism& mechanism, const BlockLibrary& 
   comparison.size = mechanism.largest_length();
   comparison.turning = mechanism.drives.empty() || !mechanism.drives.front().slide;
   const Motion exact = solve_motion(mechanism, options.positions);
+  for (const auto& drives : exact.drives) comparison.drive.push_back(drives.front().value);
   const WorstReasons reasons(mechanism, exact);
   Comparer comparer(mechanism, library, options, exact, reasons);
   std::vector<std::optional<double>> bandwidths(options.bandwidths.begin(), options.bandwidths.end());
@@ -142,6 +143,11 @@ Comparison compare_within_range(const Mechanism& mechanism, const BlockLibrary& 
 }
 
 }  // namespace
+
+bool stands_clear(double error, double floor) {
+  constexpr double kAboveFloor = 10;
+  return error >= kAboveFloor * floor;
+}
 
 Comparison compare(const Mechanism& mechanism, const BlockLibrary& library, const CompareOptions& options) {
   return compare_within_range(within_range(mechanism), library, options);

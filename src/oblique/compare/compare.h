@@ -58,6 +58,7 @@ struct ComparedRun {
   double max_error = 0;  ///< largest distance of any moving point from its exact place [length unit]
   double rms_error = 0;  ///< root of the mean square of these distances, all points and rows [length unit]
   WorstPlace worst;
+  std::vector<double> error_along;  ///< largest distance in each row [length unit]
   std::optional<ErrorParts> parts;  ///< of max_error; nothing where the loops do not rest, or the run of
                                     ///< tighter tolerance fails
   long steps = 0;
@@ -77,11 +78,16 @@ struct GainSeries {
                                 ///< floor
 };
 
+/// Whether an error tells of the gain and not of the tolerance: it is at least ten times the floor of its
+/// series. The order is fitted to such errors.
+bool stands_clear(double error, double floor);
+
 struct Comparison {
   std::string mechanism;           ///< title
   std::string unit;                ///< of lengths
   double size = 0;                 ///< largest link length [length unit]
   bool turning = true;             ///< the first drive turns a body: it is told by its angle
+  std::vector<double> drive;       ///< value of the first drive in each row [rad] or [length unit]
   std::vector<ComparedRun> runs;   ///< method by method, bandwidth by bandwidth, in the order of the gains
   std::vector<GainSeries> series;  ///< in the order of the runs
 };
@@ -91,7 +97,7 @@ struct Comparison {
 inline constexpr double kOverloadMargin = 1e-6;
 
 /// Patches a mechanism with each method, bandwidth and gain, runs the diagrams over one turn, and measures
-/// them against the exact motion. The order is fitted where the error is at least ten times the floor. Throws
+/// them against the exact motion. Throws
 /// as `patch` and, with the gain in the message, as `run`.
 Comparison compare(const Mechanism& mechanism, const BlockLibrary& library,
                    const CompareOptions& options = {});

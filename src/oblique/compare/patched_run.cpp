@@ -88,6 +88,7 @@ Eigen::Vector2d place_of(const PointOutputs& point, const Trajectory& analog, st
 Distances distances(const Mechanism& mechanism, const FlatDiagram& flat, const Trajectory& analog,
                     const Motion& exact) {
   Distances found;
+  found.along.assign(analog.rows(), 0);
   double sum = 0;
   std::size_t count = 0;
   for (const PointOutputs& point : point_outputs(mechanism, flat)) {
@@ -95,6 +96,7 @@ Distances distances(const Mechanism& mechanism, const FlatDiagram& flat, const T
       const Eigen::Vector2d& place = exact.configurations[row].points[point.point].position;
       const double error = (place_of(point, analog, row) - place).norm();
       sum += error * error;
+      found.along[row] = std::max(found.along[row], error);
       if (count > 0 && error <= found.largest) continue;
       found.largest = error;
       found.worst = point;

@@ -58,6 +58,7 @@ struct Distances {
   double rms = 0;      ///< root of the mean square, all points and rows [length unit]
   PointOutputs worst;  ///< the point of the largest
   std::size_t row = 0;
+  std::vector<double> along;  ///< the largest of each row [length unit]
 };
 Distances distances(const Mechanism& mechanism, const FlatDiagram& flat, const Trajectory& analog,
                     const Motion& exact);

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+#include "comparison_chart.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include <oblique/draw/scale.h>
+
+namespace oblique::cli {
+namespace {
+
+constexpr double kBelowFloor = 0.1;
+constexpr double kHeight = 220, kHistogramHeight = 160;  // [px]
+
+/// "triangles", "20 Hz", "triangles, 20 Hz": what tells a series from the others; nothing of a single one.
+std::string name_of(const Comparison& comparison, const GainSeries& series) {
+  const auto differs = [&](const auto& what) {
+    return std::any_of(comparison.series.begin(), comparison.series.end(), what);
+  };
+  std::string name;
+  if (differs([&](const GainSeries& other) { return other.method != series.method; }))
+    name = method_name(series.method);
+  if (differs([&](const GainSeries& other) { return other.bandwidth != series.bandwidth; }))
+    name += fmt::format("{}{:.6g} Hz", name.empty() ? "" : ", ", series.bandwidth);
+  return name;
+}
+
+/// "−0.998".
+std::string signed_text(double value) {
+  return fmt::format("{}{:.3f}", value < 0 ? "−" : "", std::abs(value));
+}
+
+/// "250", "10⁶".
+std::string gain_text(double gain) {
+  const double exponent = std::round(std::log10(gain));
+  return exponent >= 3 && std::abs(gain / std::pow(10, exponent) - 1) < 1e-12
+             ? power_of_ten(static_cast<int>(exponent))
+             : fmt::format("{:.6g}", gain);
+}
+
+std::size_t runs_per_series(const Comparison& comparison) {
+  return comparison.runs.size() / comparison.series.size();
+}
+
+/// The line of the fitted order, through the middle of the runs that it was fitted to.
+Curve slope_of(const Curve& errors, const GainSeries& series) {
+  Curve slope{fmt::format("gain to the power {}", signed_text(*series.order)),
+              {},
+              errors.number,
+              Curve::Style::guide};
+  double n = 0, x = 0, y = 0;
+  for (const Eigen::Vector2d& point : errors.points) {
+    if (!stands_clear(point.y(), series.floor)) continue;
+    n += 1;
+    x += std::log10(point.x());
+    y += std::log10(point.y());
+  }
+  for (const Eigen::Vector2d& point : errors.points) {
+    const double exponent = y / n + *series.order * (std::log10(point.x()) - x / n);
+    const double error = std::pow(10, exponent);
+    if (error >= series.floor) slope.points.emplace_back(point.x(), error);
+  }
+  return slope;
+}
+
+Panel convergence_of(const Comparison& comparison) {
+  Panel panel{{"gain", "", true}, {"largest error", comparison.unit, true}, {}, kHeight};
+  const std::size_t per_series = runs_per_series(comparison);
+  for (std::size_t s = 0; s < comparison.series.size(); ++s) {
+    const GainSeries& series = comparison.series[s];
+    const std::string name = name_of(comparison, series);
+    Curve errors{name.empty() ? "measured" : name, {}, s, Curve::Style::dotted_line};
+    for (std::size_t k = s * per_series; k < (s + 1) * per_series; ++k)
+      errors.points.emplace_back(comparison.runs[k].gain, comparison.runs[k].max_error);
+    std::sort(errors.points.begin(), errors.points.end(),
+              [](const auto& a, const auto& b) { return a.x() < b.x(); });
+    panel.curves.push_back(std::move(errors));
+    if (series.order) panel.curves.push_back(slope_of(panel.curves.back(), series));
+  }
+  return panel;
+}
+
+Panel error_along(const Comparison& comparison) {
+  Panel panel{{"crank", "°"}, {"error", comparison.unit, comparison.runs.size() > 1}, {}, kHeight};
+  double unit = std::numbers::pi / 180;
+  if (!comparison.turning) {
+    panel.x = {"drive", comparison.unit};
+    unit = 1;
+  }
+  const std::size_t per_series = runs_per_series(comparison);
+  for (std::size_t k = 0; k < comparison.runs.size(); ++k) {
+    const ComparedRun& run = comparison.runs[k];
+    const GainSeries& series = comparison.series[k / per_series];
+    const std::string name = name_of(comparison, series);
+    Curve curve{fmt::format("gain {}{}{}", gain_text(run.gain), name.empty() ? "" : ", ", name), {}, k};
+    for (std::size_t row = 0; row < run.error_along.size(); ++row) {
+      // what is far below that which the tolerance leaves tells nothing, and would stretch the axis
+      const bool tells = run.error_along[row] > kBelowFloor * series.floor;
+      curve.points.emplace_back(comparison.drive[row] / unit,
+                                tells ? run.error_along[row] : std::numeric_limits<double>::quiet_NaN());
+    }
+    panel.curves.push_back(std::move(curve));
+  }
+  return panel;
+}
+
+}  // namespace
+
+Chart chart_of(const Comparison& comparison) {
+  Chart chart;
+  chart.title = comparison.mechanism + ": patched against exact";
+  if (runs_per_series(comparison) > 1) chart.panels.push_back(convergence_of(comparison));
+  chart.panels.push_back(error_along(comparison));
+  return chart;
+}
+
+Panel panel_of(const MonteCarloReport& report) {
+  std::vector<double> errors;
+  for (const std::optional<double>& error : report.result.errors) {
+    if (error) errors.push_back(*error);
+  }
+  Panel panel{{"largest error of a run", report.unit}, {"runs"}, {}, kHistogramHeight};
+  if (errors.empty()) return panel;
+  const auto [least, greatest] = std::minmax_element(errors.begin(), errors.end());
+  const double low = *least, span = *greatest > low ? *greatest - low : std::max(std::abs(low), 1e-300);
+  // as many classes as make the shape stand out of the noise of counting (Rice's rule)
+  const auto classes = static_cast<std::size_t>(std::ceil(2 * std::cbrt(static_cast<double>(errors.size()))));
+  std::vector<double> counts(classes, 0);
+  for (const double error : errors) {
+    const auto place = static_cast<std::size_t>((error - low) / span * static_cast<double>(classes));
+    counts[std::min(place, classes - 1)] += 1;
+  }
+  Curve histogram{fmt::format("{} runs", errors.size()), {}, 0, Curve::Style::area};
+  histogram.points.emplace_back(low, 0);
+  for (std::size_t k = 0; k < classes; ++k) {
+    const double width = span / static_cast<double>(classes);
+    histogram.points.emplace_back(low + static_cast<double>(k) * width, counts[k]);
+    histogram.points.emplace_back(low + static_cast<double>(k + 1) * width, counts[k]);
+  }
+  histogram.points.emplace_back(low + span, 0);
+  const double most = *std::max_element(counts.begin(), counts.end());
+  panel.curves.push_back(std::move(histogram));
+  for (const double percent : {50, 95}) {
+    const double error = *report.result.percentile(percent);
+    Curve line{fmt::format("{:.0f} % up to {:.3g} {}", percent, error, report.unit),
+               {},
+               panel.curves.size(),
+               Curve::Style::guide};
+    line.points = {{error, 0}, {error, most}};
+    panel.curves.push_back(std::move(line));
+  }
+  return panel;
+}
+
+}  // namespace oblique::cli

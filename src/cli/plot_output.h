@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+#include <oblique/draw/chart.h>
+
+namespace oblique::cli {
+
+/// What --plot asks for: "-" is the terminal, anything else a picture's file.
+bool plots_in_terminal(const std::string& target);
+
+/// Checks --plot before the work is done; empty: not given. Throws ReadError.
+void check_plot(const std::string& target);
+
+/// Prints the chart in Braille, as wide as the terminal, or writes it as a picture.
+void plot(const Chart& chart, const std::string& target);
+
+}  // namespace oblique::cli

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+#include "pole_chart.h"
+
+#include <algorithm>
+#include <array>
+
+namespace oblique::cli {
+namespace {
+
+constexpr std::size_t kMostStates = 200;
+constexpr double kHeight = 220;  // [px]
+
+bool is_servo_mode(const Mode& mode, const Program& program) {
+  double share = 0;
+  for (const Participation& participant : mode.participants) {
+    if (program.states()[participant.state].at_rest) share += participant.share;
+  }
+  return share > 0.5;
+}
+
+}  // namespace
+
+Chart pole_chart(const Program& program, const std::vector<Instant>& instants, const std::string& title) {
+  std::array<Curve, 2> kinds{Curve{"", {}, 0, Curve::Style::marks}, Curve{"", {}, 1, Curve::Style::marks}};
+  const auto groups = coupled_groups(program);
+  Workspace workspace(program);
+  for (const Instant& instant : instants) {
+    const auto linear = Linearisation::at(program, workspace, instant);
+    if (!linear) continue;
+    for (const auto& group : groups) {
+      if (group.size() > kMostStates) continue;
+      for (const Mode& mode : modes_of(linear->block(group), group)) {
+        Curve& curve = kinds[is_servo_mode(mode, program) ? 0 : 1];
+        curve.points.emplace_back(mode.pole.real(), mode.pole.imag());
+        if (mode.pole.imag() != 0) curve.points.emplace_back(mode.pole.real(), -mode.pole.imag());
+      }
+    }
+  }
+  Chart chart;
+  chart.title = title;
+  constexpr std::array<const char*, 2> kNames{"real part, servo loops", "real part, the problem itself"};
+  for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
+    if (kinds[kind].points.empty()) continue;
+    double highest = 0;
+    for (const Eigen::Vector2d& point : kinds[kind].points) highest = std::max(highest, point.y());
+    Curve limit{"limit of stability", {{0, -highest}, {0, highest}}, Curve::kPlain, Curve::Style::guide};
+    if (highest == 0) limit.points = {{0, -1}, {0, 1}};
+    chart.panels.push_back({{kNames[kind], "1/s"}, {"imaginary part", "1/s"}, {limit, kinds[kind]}, kHeight});
+  }
+  return chart;
+}
+
+}  // namespace oblique::cli

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+#include "run_chart.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include <oblique/text/diagnostic.h>
+
+namespace oblique::cli {
+namespace {
+
+std::size_t column_named(const std::vector<TableColumn>& columns, const char* option,
+                         const std::string& name) {
+  const auto found =
+      std::find_if(columns.begin(), columns.end(), [&](const TableColumn& c) { return c.name == name; });
+  if (found != columns.end()) return static_cast<std::size_t>(found - columns.begin());
+  std::vector<std::string> known;
+  for (const TableColumn& column : columns) known.push_back(column.name);
+  throw ReadError(
+      Diagnostic{{}, fmt::format("{}: there is no column '{}'", option, name), {}, suggest(name, known)});
+}
+
+ChartAxis axis_of(const TableColumn& column) {
+  return {column.name, column.unit == "1" ? "" : column.unit};
+}
+
+/// A path is as wide as it is high on paper that is twice as wide as high: it gets more height.
+constexpr double kPathHeight = 480;
+
+}  // namespace
+
+DrawnColumns drawn_columns(const std::vector<TableColumn>& columns, const RunChartRequest& request) {
+  DrawnColumns chosen;
+  if (!request.against.empty()) chosen.against = column_named(columns, "--against", request.against);
+  for (const std::string& name : request.columns) {
+    const std::size_t column = column_named(columns, "--columns", name);
+    if (column != chosen.against && column != 0) chosen.drawn.push_back(column);
+  }
+  if (chosen.drawn.size() > kMostCurves) {
+    throw ReadError(Diagnostic{{},
+                               fmt::format("{} curves cannot be told apart", chosen.drawn.size()),
+                               fmt::format("at most {} in --columns", kMostCurves),
+                               {}});
+  }
+  if (request.columns.empty()) {
+    for (std::size_t c = 1; c < columns.size(); ++c) {
+      if (c == chosen.against) continue;
+      if (chosen.drawn.size() < kMostCurves) {
+        chosen.drawn.push_back(c);
+      } else {
+        ++chosen.left_out;
+      }
+    }
+  }
+  if (chosen.drawn.empty()) {
+    throw ReadError(
+        Diagnostic{{},
+                   fmt::format("nothing is left to draw against '{}'", columns[chosen.against].name),
+                   "other columns in --columns",
+                   {}});
+  }
+  return chosen;
+}
+
+void ask_for_curves(RunOptions& options, std::size_t n_columns) {
+  constexpr std::size_t kMostRows = 20'000, kMostNumbers = 4'000'000;
+  const std::size_t rows = std::min(kMostRows, kMostNumbers / n_columns);
+  if (rows <= static_cast<std::size_t>(options.samples)) return;
+  const double begin = options.from ? options.from->time : 0;
+  for (std::size_t row = 0; row <= rows; ++row) {
+    const double part = static_cast<double>(row) / static_cast<double>(rows);
+    options.extra_times.push_back(row == rows ? options.until : begin + part * (options.until - begin));
+  }
+  std::sort(options.extra_times.begin(), options.extra_times.end());
+  options.extra_times.erase(std::unique(options.extra_times.begin(), options.extra_times.end()),
+                            options.extra_times.end());
+}
+
+Chart chart_of(const Run& run, const DrawnColumns& columns, const std::string& title) {
+  const Trajectory& trajectory = run.extra.rows() > run.trajectory.rows() ? run.extra : run.trajectory;
+  Chart chart;
+  chart.title = title;
+  const TableColumn& x = trajectory.columns()[columns.against];
+  for (const std::size_t c : columns.drawn) {
+    const ChartAxis axis = axis_of(trajectory.columns()[c]);
+    auto panel = std::find_if(chart.panels.begin(), chart.panels.end(),
+                              [&](const Panel& other) { return other.y.unit == axis.unit; });
+    if (panel == chart.panels.end()) {
+      chart.panels.push_back({axis_of(x), {"", axis.unit}, {}});
+      panel = chart.panels.end() - 1;
+    }
+    Curve curve{axis.name, {}, panel->curves.size()};
+    for (std::size_t row = 0; row < trajectory.rows(); ++row)
+      curve.points.emplace_back(trajectory.at(row, columns.against), trajectory.at(row, c));
+    panel->curves.push_back(std::move(curve));
+  }
+  for (Panel& panel : chart.panels) {
+    if (panel.curves.size() == 1) {  // the axis has its name
+      panel.y.name = panel.curves.front().name;
+      panel.curves.front().name.clear();
+    }
+    if (columns.against == 0) continue;
+    panel.height = kPathHeight;
+    panel.equal = panel.y.unit == panel.x.unit;
+  }
+  return chart;
+}
+
+}  // namespace oblique::cli

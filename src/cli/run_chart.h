@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <oblique/draw/chart.h>
+#include <oblique/solve/run.h>
+
+namespace oblique::cli {
+
+/// What of a run is drawn.
+struct RunChartRequest {
+  std::vector<std::string> columns;  ///< empty: all
+  std::string against;               ///< the column along the other axis; empty: `t`
+};
+
+/// The columns that a request draws, by their numbers, without the one that they are drawn against; where it
+/// names none, no more than can be told apart.
+struct DrawnColumns {
+  std::size_t against = 0;
+  std::vector<std::size_t> drawn;
+  std::size_t left_out = 0;
+};
+
+/// Throws ReadError for a name that is no column, for too many, and where nothing is left to draw.
+DrawnColumns drawn_columns(const std::vector<TableColumn>& columns, const RunChartRequest& request);
+
+/// Asks a run for as many further rows as make its curves smooth, where its own would be too few.
+void ask_for_curves(RunOptions& options, std::size_t n_columns);
+
+/// A panel for each unit, one above the other. Drawn against another column than the time one panel has equal
+/// scales where both axes have one unit.
+Chart chart_of(const Run& run, const DrawnColumns& columns, const std::string& title);
+
+}  // namespace oblique::cli

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/draw/chart_layout.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace oblique {
+namespace {
+
+using Eigen::Vector2d;
+
+bool same_axis(const ChartAxis& a, const ChartAxis& b) {
+  return a.name == b.name && a.unit == b.unit && a.logarithmic == b.logarithmic;
+}
+
+bool shown(const Panel& panel, const Vector2d& point) {
+  return Scale::can_show(panel.x, point.x()) && Scale::can_show(panel.y, point.y());
+}
+
+/// Dots at the ends would lie half outside.
+constexpr double kRoomForDots = 0.03;
+
+bool has_dots(const Panel& panel) {
+  return std::any_of(panel.curves.begin(), panel.curves.end(), [](const Curve& curve) {
+    return curve.style == Curve::Style::dotted_line || curve.style == Curve::Style::marks;
+  });
+}
+
+}  // namespace
+
+bool shows_x_numbers(const Chart& chart, std::size_t panel) {
+  const bool shared = panel + 1 < chart.panels.size() && !chart.panels[panel].equal &&
+                      same_axis(chart.panels[panel].x, chart.panels[panel + 1].x);
+  return !shared;
+}
+
+std::vector<PanelScales> scales_of(const Chart& chart) {
+  std::vector<PanelScales> scales;
+  for (std::size_t first = 0; first < chart.panels.size();) {
+    std::size_t end = first + 1;
+    while (!shows_x_numbers(chart, end - 1)) ++end;
+    std::vector<double> xs;
+    bool dots = false;
+    for (std::size_t p = first; p < end; ++p) {
+      dots = dots || has_dots(chart.panels[p]);
+      for (const Curve& curve : chart.panels[p].curves) {
+        for (const Vector2d& point : curve.points) {
+          if (shown(chart.panels[p], point)) xs.push_back(point.x());
+        }
+      }
+    }
+    for (std::size_t p = first; p < end; ++p) {
+      const Panel& panel = chart.panels[p];
+      std::vector<double> ys;
+      for (const Curve& curve : panel.curves) {
+        for (const Vector2d& point : curve.points) {
+          if (shown(panel, point)) ys.push_back(point.y());
+        }
+        if (curve.style == Curve::Style::area) ys.push_back(0);
+      }
+      PanelScales both{Scale(panel.x, xs, panel.equal), Scale(panel.y, ys, true)};
+      if (dots) both.x.pad(kRoomForDots);
+      scales.push_back(both);
+    }
+    first = end;
+  }
+  return scales;
+}
+
+std::vector<std::string> wrapped(const std::string& text, double size, bool bold, double width) {
+  std::vector<std::string> lines;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    const std::string longer = lines.empty() ? word : lines.back() + " " + word;
+    if (lines.empty() || text_width(longer, size, bold) > width) {
+      lines.push_back(word);
+    } else {
+      lines.back() = longer;
+    }
+  }
+  return lines;
+}
+
+std::vector<Vector2d> thinned(const std::vector<Vector2d>& points) {
+  std::vector<Vector2d> kept;
+  for (std::size_t first = 0; first < points.size();) {
+    const double column = std::floor(2 * points[first].x());
+    std::size_t end = first;
+    std::size_t extremes[4] = {first, first, first, first};  // least and greatest x, least and greatest y
+    for (; end < points.size() && std::floor(2 * points[end].x()) == column; ++end) {
+      const Vector2d& point = points[end];
+      if (point.x() < points[extremes[0]].x()) extremes[0] = end;
+      if (point.x() > points[extremes[1]].x()) extremes[1] = end;
+      if (point.y() < points[extremes[2]].y()) extremes[2] = end;
+      if (point.y() > points[extremes[3]].y()) extremes[3] = end;
+    }
+    std::vector<std::size_t> keep{first, end - 1};
+    keep.insert(keep.end(), std::begin(extremes), std::end(extremes));
+    std::sort(keep.begin(), keep.end());
+    keep.erase(std::unique(keep.begin(), keep.end()), keep.end());
+    for (const std::size_t k : keep) kept.push_back(points[k]);
+    first = end;
+  }
+  return kept;
+}
+
+}  // namespace oblique

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <vector>
+
+#include <oblique/draw/chart.h>
+#include <oblique/draw/scale.h>
+
+// What charts on paper and in the terminal share; not installed.
+namespace oblique {
+
+struct PanelScales {
+  Scale x, y;
+};
+
+/// The scales of each panel; neighbours whose x axes are the same share the range of x.
+std::vector<PanelScales> scales_of(const Chart& chart);
+
+/// Whether the numbers of x stand under a panel: the next one does not show them.
+bool shows_x_numbers(const Chart& chart, std::size_t panel);
+
+/// A text in lines of at most `width` [px], broken between words.
+std::vector<std::string> wrapped(const std::string& text, double size, bool bold, double width);
+
+/// A line of the same look with fewer points: of those in a row that share a half of a pixel column the
+/// first, the last and the extreme ones are kept.
+std::vector<Eigen::Vector2d> thinned(const std::vector<Eigen::Vector2d>& points);
+
+}  // namespace oblique

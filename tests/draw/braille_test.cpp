@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/draw/braille.h>
+
+#include <algorithm>
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace oblique {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+std::vector<std::u32string> lines_of(const std::string& text) {
+  std::vector<std::u32string> lines(1);
+  for (std::size_t k = 0; k < text.size();) {
+    const auto byte = static_cast<unsigned char>(text[k]);
+    const std::size_t length = byte < 0x80 ? 1 : byte < 0xE0 ? 2 : byte < 0xF0 ? 3 : 4;
+    char32_t letter = length == 1 ? byte : byte & (0xFFU >> (length + 1));
+    for (std::size_t more = 1; more < length; ++more)
+      letter = letter << 6U | (static_cast<unsigned char>(text[k + more]) & 0x3FU);
+    if (letter == U'\n') {
+      lines.emplace_back();
+    } else {
+      lines.back() += letter;
+    }
+    k += length;
+  }
+  return lines;
+}
+
+bool is_dots(char32_t letter) {
+  return letter >= 0x2800 && letter <= 0x28FF;
+}
+
+Chart ramp() {
+  return {"", {{{"t", "s"}, {"", "m"}, {{"up", {{0, 0}, {1, 1}}}, {"down", {{0, 1}, {1, 0}}, 1}}}}};
+}
+
+// A line from corner to corner has as many dots to the left of every row as to the right of the row that lies
+// as far from the other end.
+TEST(Braille, DrawsALineFromCornerToCorner) {
+  Chart chart = ramp();
+  chart.panels[0].curves.pop_back();
+  const auto lines = lines_of(to_braille(chart, 60, false));
+  std::vector<std::size_t> first;
+  for (const auto& line : lines) {
+    const auto found = std::find_if(line.begin(), line.end(), is_dots);
+    if (found != line.end()) first.push_back(static_cast<std::size_t>(found - line.begin()));
+  }
+  ASSERT_EQ(first.size(), 13U);  // rows of a panel of 220 px
+  EXPECT_TRUE(std::is_sorted(first.rbegin(), first.rend()));
+  for (std::size_t r = 1; r < first.size(); ++r) EXPECT_NEAR(first[r - 1] - first[r], 51.0 / 13, 1.1);
+}
+
+TEST(Braille, NamesCurvesAtTheirEndsAndNumbersTheAxes) {
+  const std::string text = to_braille(ramp(), 70, false);
+  EXPECT_THAT(text, HasSubstr("[m]\n"));
+  EXPECT_THAT(text, HasSubstr("1.0 ┤"));
+  EXPECT_THAT(text, HasSubstr("t [s]\n"));
+  EXPECT_THAT(text, Not(HasSubstr("\033")));
+  std::istringstream stream(text);
+  std::string line;
+  std::getline(stream, line);  // [m]
+  std::getline(stream, line);  // the uppermost row, where `up` ends
+  EXPECT_TRUE(line.ends_with(" up")) << line;
+}
+
+TEST(Braille, KeepsToTheWidth) {
+  Chart chart = ramp();
+  chart.title = std::string(200, 'x');
+  chart.panels[0].curves[0].name = std::string(100, 'n');
+  for (const std::size_t columns : {40U, 61U, 80U, 133U}) {
+    for (const auto& line : lines_of(to_braille(chart, columns, false))) EXPECT_LE(line.size(), columns);
+  }
+}
+
+TEST(Braille, ColoursCurvesWhereAsked) {
+  EXPECT_THAT(to_braille(ramp(), 70, true), HasSubstr("\033[34mup\033[0m"));
+}
+
+TEST(Braille, DrawsNothingAsEmptyAxes) {
+  const std::string text = to_braille({"Nothing", {{{"t", "s"}, {"y"}, {{"y", {}}}}}}, 50, false);
+  EXPECT_THAT(text, HasSubstr("└"));
+}
+
+}  // namespace
+}  // namespace oblique
