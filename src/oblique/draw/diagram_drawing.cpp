@@ -16,6 +16,7 @@ using schematic::Shape;
 
 constexpr int kLoopWeight = 3;  // servo loops stay together
 constexpr double kMargin = 24;
+constexpr double kBoldSlack = 1.25;  // bold fonts wider than Helvetica
 
 /// A schematic with its layout, and those of its open composites.
 struct Sheet {
@@ -71,12 +72,12 @@ Sheet make_sheet(const Schematic& schematic, SymbolStyle style) {
   return sheet;
 }
 
-/// The colour of a net: that of the servo loop that it carries.
+/// The colour of a net: that of the servo loop that it is a part of.
 Ink net_ink(const Schematic& schematic, std::size_t from, std::size_t output) {
-  for (std::size_t b = 0; b < schematic.blocks.size(); ++b) {
-    for (const schematic::Input& input : schematic.blocks[b].inputs) {
-      if (input.in_loop && input.signal->block == from && input.signal->output == output)
-        return schematic::loop_ink(*schematic.blocks[from].loop);
+  for (const Block& block : schematic.blocks) {
+    for (const schematic::Input& input : block.inputs) {
+      if (input.loop && input.signal->block == from && input.signal->output == output)
+        return schematic::loop_ink(*input.loop);
     }
   }
   return Ink::line;
@@ -133,7 +134,7 @@ Picture draw_diagram(const Diagram& diagram, const BlockLibrary& library, const 
   const double heading = diagram.title.empty() ? 0 : 32;
   Picture picture;
   picture.title = diagram.title;
-  const double title_width = 1.15 * text_width(diagram.title, kTitleSize, true);
+  const double title_width = kBoldSlack * text_width(diagram.title, kTitleSize, true);
   picture.width = std::max(sheet.layout.size.x(), title_width) + 2 * kMargin;
   picture.height = sheet.layout.size.y() + heading + 2 * kMargin;
   if (!diagram.title.empty()) {

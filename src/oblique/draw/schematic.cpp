@@ -261,9 +261,19 @@ void find_servo_loops(Schematic& schematic) {
       if (k == b || (on_the_way && !schematic.blocks[k].loop)) schematic.blocks[k].loop = loop;
     }
   }
+  std::map<std::pair<std::size_t, std::size_t>, std::size_t> nets;
   for (Block& block : schematic.blocks) {
-    for (Input& input : block.inputs)
+    for (Input& input : block.inputs) {
       input.in_loop = input.signal && block.loop && schematic.blocks[input.signal->block].loop == block.loop;
+      if (input.in_loop) nets[{input.signal->block, input.signal->output}] = *block.loop;
+    }
+  }
+  for (Block& block : schematic.blocks) {
+    for (Input& input : block.inputs) {
+      if (!input.signal) continue;
+      const auto net = nets.find({input.signal->block, input.signal->output});
+      if (net != nets.end()) input.loop = net->second;
+    }
   }
 }
 

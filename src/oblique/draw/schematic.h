@@ -24,9 +24,10 @@ struct Input {
   std::string port;  ///< its name in the block's file
   std::size_t port_index = 0;
   double weight = 1;
-  std::optional<Signal> signal;  ///< none where a constant feeds it
-  std::string constant;          ///< what stands at the wire's end then: "+1", "a = 0.3"
-  bool in_loop = false;          ///< the wire closes the servo loop that the block is a part of
+  std::optional<Signal> signal;     ///< none where a constant feeds it
+  std::string constant;             ///< what stands at the wire's end then: "+1", "a = 0.3"
+  bool in_loop = false;             ///< the wire is a part of the servo loop that the block is in
+  std::optional<std::size_t> loop;  ///< that the wire's net is a part of
 };
 
 struct Schematic;

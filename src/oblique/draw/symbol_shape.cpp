@@ -10,8 +10,6 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double kPitch = 2 * kLayoutGrid;  // between pins
-constexpr double kSmall = 9.5, kText = 12, kCaption = 10.5;
-constexpr double kSlack = 1.15;  // fonts wider than Helvetica
 
 double width_of(const std::string& text, double size) {
   return kSlack * text_width(text, size);
@@ -107,12 +105,15 @@ void write_caption(const Block& block, Shape& shape) {
   if (is_amplifier) shape.text = block.label;
 }
 
-/// What is written left of the body at an input, and how wide that is.
-double beside_width(const Input& input) {
-  double width = 0;
-  if (input.weight != 1) width += width_of(number_text(input.weight), kSmall) + 6;
-  if (!input.constant.empty()) width += 8 + width_of(input.constant, kSmall) + 10;
-  return width;
+/// How wide what is written left of the body is.
+double beside_width(const Block& block) {
+  double weights = 0, constants = 0;
+  for (const Input& input : block.inputs) {
+    const std::string text = lead_text(block, input);
+    if (!text.empty()) weights = std::max(weights, width_of(text, kSmall) + 6);
+    if (!input.constant.empty()) constants = std::max(constants, width_of(input.constant, kSmall) + 14);
+  }
+  return weights + constants;
 }
 
 double widest(const std::vector<std::string>& texts, double size) {
@@ -160,6 +161,17 @@ std::vector<double> pins_of(std::size_t n, const Shape& shape) {
 
 }  // namespace
 
+std::string lead_text(const Block& block, const Input& input) {
+  if (block.kind != Block::Kind::block) return {};
+  std::string text = input.weight == 1 ? "" : number_text(input.weight);
+  const SymbolEntry* const entry = find_symbol(block.definition->symbol);
+  const bool named_inside = entry == nullptr || block.outputs.size() > 1;
+  const bool first_of_sums = input.port_index == 0 && block.definition->inputs.front().sum;
+  if (named_inside || entry->inputs_alike || block.definition->inputs.size() == 1 || first_of_sums)
+    return text;
+  return text + (text.empty() ? "" : " ") + input.port;
+}
+
 Shape shape_of(const Block& block, SymbolStyle style) {
   Shape shape;
   if (block.kind != Block::Kind::block) {
@@ -176,7 +188,7 @@ Shape shape_of(const Block& block, SymbolStyle style) {
   write_caption(block, shape);
   shape.body = body_size(block, shape);
   double left = 6;
-  for (const Input& input : block.inputs) left = std::max(left, beside_width(input) + 4);
+  left = std::max(left, beside_width(block) + 4);
   const double caption = widest(shape.caption, kCaption) / 2 - shape.body.x() / 2;
   left = on_grid(std::max(left, caption + 2));
   const double right = on_grid(std::max(8.0, caption + 2));
@@ -195,7 +207,7 @@ Shape frame_shape(const Block& block, const Vector2d& inside, const std::vector<
   shape.outline = Outline::ports;
   shape.text = block.definition->name;
   double left = kLayoutGrid;
-  for (const Input& input : block.inputs) left = std::max(left, beside_width(input) + 4);
+  left = std::max(left, beside_width(block) + 4);
   shape.corner = {on_grid(left), 0};
   const std::string title = block.label.empty() ? block.name : block.label;
   shape.caption = {title};

@@ -11,7 +11,6 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kSmall = 9.5, kText = 12, kCaption = 10.5;
 constexpr double kBar = 12;    // width of an integrator's bar
 constexpr double kBubble = 3;  // radius of the circle that marks inversion
 
@@ -69,7 +68,7 @@ class Artist {
     const double edge = input ? at_.x() : at_.x() + width();
     write({input ? edge + 4 : edge - 4, y + 3.5}, shape_.text, input ? Anchor::start : Anchor::end, kSmall);
     const double end = input ? at_.x() + width() : at_.x();
-    const double text = 1.15 * text_width(shape_.text, kSmall) + 8;
+    const double text = kSlack * text_width(shape_.text, kSmall) + 8;
     put(line_mark({input ? edge + text : edge - text, y}, {end, y}, {Ink::line, 1.2, {}}));
   }
 
@@ -124,21 +123,21 @@ class Artist {
 
   void draw_leads() {
     const Pen wire{Ink::line, 1.2, {}};
+    double widest = 0;  // constants stand one below the other
+    for (const Input& input : block_.inputs) {
+      if (!input.constant.empty())
+        widest = std::max(widest, kSlack * text_width(lead_text(block_, input), kSmall));
+    }
     for (std::size_t k = 0; k < block_.inputs.size(); ++k) {
       const Input& input = block_.inputs[k];
       const double y = shape_.node.inputs[k];
       const double edge = shape_.corner.x() + edge_at(y - shape_.corner.y());
-      double x = shape_.corner.x() - 3;
-      if (input.weight != 1) {
-        const std::string text = number_text(input.weight);
-        write(at_ + Vector2d(x, y - 3), text, Anchor::end, kSmall);
-        x -= 1.15 * text_width(text, kSmall) + 2;
-      }
+      write(at_ + Vector2d(shape_.corner.x() - 3, y - 3), lead_text(block_, input), Anchor::end, kSmall);
       if (input.constant.empty()) {
         put(line_mark(at_ + Vector2d(0, y), at_ + Vector2d(edge, y), lead_pen(input)));
         continue;
       }
-      x -= 6;
+      const double x = shape_.corner.x() - 3 - widest - 8;
       put(line_mark(at_ + Vector2d(x, y), at_ + Vector2d(edge, y), wire));
       put(disc_mark(at_ + Vector2d(x, y), 2, Ink::paper, wire));
       write(at_ + Vector2d(x - 5, y + 3.5), input.constant, Anchor::end, kSmall);
@@ -153,7 +152,9 @@ class Artist {
     }
   }
 
-  Pen lead_pen(const Input& input) const { return {input.in_loop ? pen_.ink : Ink::line, 1.2, {}}; }
+  static Pen lead_pen(const Input& input) {
+    return {input.loop ? loop_ink(*input.loop) : Ink::line, 1.2, {}};
+  }
   Pen output_pen() const { return {block_.loop ? pen_.ink : Ink::line, 1.2, {}}; }
 
   void draw_texts() {
@@ -184,7 +185,7 @@ class Artist {
     if (!block_.inside.empty()) {
       put(label_mark(body(10, 18), shape_.caption.front(), Anchor::start, kText));
       std::get<Label>(picture_.marks.back().shape).bold = true;
-      const double x = 18 + 1.15 * text_width(shape_.caption.front(), kText, true);
+      const double x = 18 + kSlack * text_width(shape_.caption.front(), kText, true);
       write(body(x, 18), shape_.text, Anchor::start, kSmall);
       return;
     }

@@ -12,6 +12,9 @@ namespace oblique::schematic {
 
 enum class Outline { triangle, integrator, open_amplifier, circle, box, ports, terminal };
 
+/// Sizes of the fonts [px], and how much wider than Helvetica another font may be.
+inline constexpr double kSmall = 9.5, kText = 12, kCaption = 10.5, kSlack = 1.15;
+
 /// What a block looks like, apart from where it stands.
 struct Shape {
   Outline outline = Outline::box;
@@ -24,6 +27,9 @@ struct Shape {
   Eigen::Vector2d body = Eigen::Vector2d::Zero();    ///< size
   LayoutNode node;                                   ///< with all that is written beside the body
 };
+
+/// What stands above the end of a wire: its weight, and the name of the port where one must know it.
+std::string lead_text(const Block& block, const Input& input);
 
 /// The shape of a block that is not open; all lengths fit the layout's grid.
 Shape shape_of(const Block& block, SymbolStyle style);
@@ -48,6 +54,7 @@ struct SymbolEntry {
   const char* classic_text;
   const char* din_text;
   const char* icon;
+  bool inputs_alike = false;  ///< which signal comes where makes no difference
 };
 /// The entry of a block's `symbol`; none where boxes with port names do.
 const SymbolEntry* find_symbol(const std::string& symbol);
