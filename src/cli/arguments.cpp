@@ -101,6 +101,7 @@ std::optional<ExitStatus> parse_arguments(int argc, char** argv, Chosen& chosen)
   add_patch(app, chosen);
   add_compare(app, chosen);
   add_fit(app, chosen);
+  add_draw(app, chosen);
   add_blocks(app, chosen);
   add_machines(app, chosen);
   if (argc < 2) {

@@ -115,6 +115,17 @@ struct FitRequest {
 };
 ExitStatus fit_mechanism(const Session& session, const FitRequest& request);
 
+struct DrawRequest {
+  std::string file;
+  std::string output;
+  std::string theme = "auto";
+  std::string at;
+  std::vector<std::string> trace;  ///< points; empty: those worth it; "none"
+  int positions = 1;
+  std::string plots;  ///< the point that is plotted instead
+};
+ExitStatus draw_file(const Session& session, const DrawRequest& request);
+
 struct BlocksRequest {
   std::string name;
 };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <numbers>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,6 +12,7 @@
 #include <oblique/mechanism/read_mechanism.h>
 
 #include "command.h"
+#include "drive_place.h"
 #include "terminal.h"
 
 namespace oblique::cli {
@@ -27,24 +29,7 @@ struct Position {
 Position position_of(const Mechanism& mechanism, Structure& structure, const ModesRequest& request) {
   Position position;
   position.undecided = choose_some_modes(mechanism, structure);
-  double time = 0;
-  if (!request.at.empty()) {
-    if (mechanism.drives.empty()) {
-      throw ReadError(
-          Diagnostic{{mechanism.file, {}}, "--at: the mechanism has no drive", "a file with [drives]", {}});
-    }
-    const double value =
-        quantity_option("--at", request.at, mechanism.drives.front().slide ? mechanism.length_unit : "rad");
-    const auto there = time_at_value(mechanism, value);
-    if (!there) {
-      throw ReadError(Diagnostic{
-          {},
-          fmt::format("--at {}: drive '{}' does not come there", request.at, mechanism.drives.front().name),
-          "a value that it reaches",
-          {}});
-    }
-    time = *there;
-  }
+  const double time = time_option_at(mechanism, request.at);
   Follower follower(mechanism, structure);
   const Configuration here = follower.advance(time);
   DriveClock clock(mechanism);

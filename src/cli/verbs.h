@@ -40,6 +40,7 @@ void add_modes(CLI::App& app, Chosen& chosen);
 void add_patch(CLI::App& app, Chosen& chosen);
 void add_compare(CLI::App& app, Chosen& chosen);
 void add_fit(CLI::App& app, Chosen& chosen);
+void add_draw(CLI::App& app, Chosen& chosen);
 void add_blocks(CLI::App& app, Chosen& chosen);
 void add_machines(CLI::App& app, Chosen& chosen);
 

@@ -76,19 +76,19 @@ void choose(const Block& block, SymbolStyle style, Shape& shape) {
   const SymbolEntry* const entry = find_symbol(definition.symbol);
   const bool plain_ports = definition.outputs.size() == 1 && block.outputs.size() == 1;
   if (entry == nullptr || !plain_ports) {
-    shape.outline = Outline::ports;
+    shape.form = Form::ports;
     shape.text = definition.name;
     return;
   }
   const bool classic = style == SymbolStyle::classic;
-  shape.outline = classic ? entry->classic : Outline::box;
+  shape.form = classic ? entry->classic : Form::box;
   shape.text = classic ? entry->classic_text : entry->din_text;
   shape.icon = entry->icon;
   if (definition.symbol == "function") shape.text = function_text(definition);
   if (definition.symbol == "potentiometer" || definition.symbol == "gain" || definition.symbol == "constant")
     shape.text = value_text(block, definition.symbol);
   shape.inverts = block.inverts || definition.symbol == "inverter";
-  if (entry->classic == Outline::integrator) {
+  if (entry->classic == Form::integrator) {
     if (const auto initial = parameter(block, "initial")) shape.initial = number_text(*initial);
     const auto rate = parameter(block, "rate");
     if (rate && *rate != 1) shape.text += (shape.text.empty() ? "" : " ") + number_text(*rate);
@@ -100,7 +100,7 @@ void write_caption(const Block& block, Shape& shape) {
     shape.caption = lines_of(block.label.empty() ? block.name : block.label);
     return;
   }
-  const bool is_amplifier = shape.outline == Outline::triangle || shape.outline == Outline::open_amplifier;
+  const bool is_amplifier = shape.form == Form::triangle || shape.form == Form::open_amplifier;
   shape.caption = lines_of(is_amplifier ? block.name : block.label + " " + block.name);
   if (is_amplifier) shape.text = block.label;
 }
@@ -126,24 +126,24 @@ Vector2d body_size(const Block& block, const Shape& shape) {
   const double pins = static_cast<double>(std::max(block.inputs.size(), block.outputs.size()));
   const double tall = std::max(3 * kPitch, kPitch * (pins + 1));
   const double text = width_of(shape.text, kText);
-  switch (shape.outline) {
-    case Outline::triangle:
+  switch (shape.form) {
+    case Form::triangle:
       return {std::clamp(0.9 * tall, 44.0, 64.0), tall};
-    case Outline::open_amplifier:
+    case Form::open_amplifier:
       return {std::clamp(0.9 * tall, 52.0, 64.0), tall};
-    case Outline::integrator:
+    case Form::integrator:
       return {std::clamp(0.9 * tall, 44.0, 64.0) + 12, tall};
-    case Outline::circle:
+    case Form::circle:
       return {3 * kPitch, 3 * kPitch};
-    case Outline::ports: {
+    case Form::ports: {
       std::vector<std::string> ports;
       for (const Input& input : block.inputs) ports.push_back(input.port);
       const double inner = widest(ports, kSmall) + widest(block.outputs, kSmall) + 28;
       return {on_grid(std::max(inner, text + 16)), kPitch * (pins + 1) + kPitch};
     }
-    case Outline::terminal:
+    case Form::terminal:
       return {on_grid(width_of(block.name, kSmall) + 14), kPitch * std::max(pins, 1.0)};
-    case Outline::box:
+    case Form::box:
       break;
   }
   return {on_grid(std::max(40.0, text + 12)), tall};
@@ -152,7 +152,7 @@ Vector2d body_size(const Block& block, const Shape& shape) {
 std::vector<double> pins_of(std::size_t n, const Shape& shape) {
   std::vector<double> pins;
   const double middle =
-      shape.corner.y() + shape.body.y() / 2 + (shape.outline == Outline::ports ? kLayoutGrid : 0);
+      shape.corner.y() + shape.body.y() / 2 + (shape.form == Form::ports ? kLayoutGrid : 0);
   const double first =
       std::round((middle - kPitch * (static_cast<double>(n) - 1) / 2) / kLayoutGrid) * kLayoutGrid;
   for (std::size_t k = 0; k < n; ++k) pins.push_back(first + kPitch * static_cast<double>(k));
@@ -175,7 +175,7 @@ std::string lead_text(const Block& block, const Input& input) {
 Shape shape_of(const Block& block, SymbolStyle style) {
   Shape shape;
   if (block.kind != Block::Kind::block) {
-    shape.outline = Outline::terminal;
+    shape.form = Form::terminal;
     shape.text = block.name;
     shape.body = body_size(block, shape);
     shape.node.size = shape.body;
@@ -204,7 +204,7 @@ Shape shape_of(const Block& block, SymbolStyle style) {
 Shape frame_shape(const Block& block, const Vector2d& inside, const std::vector<double>& inputs,
                   const std::vector<double>& outputs) {
   Shape shape;
-  shape.outline = Outline::ports;
+  shape.form = Form::ports;
   shape.text = block.definition->name;
   double left = kLayoutGrid;
   left = std::max(left, beside_width(block) + 4);

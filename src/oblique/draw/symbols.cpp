@@ -36,7 +36,7 @@ class Artist {
         corner_(at + shape.corner) {}
 
   void draw() {
-    if (shape_.outline == Outline::terminal) {
+    if (shape_.form == Form::terminal) {
       draw_terminal();
       return;
     }
@@ -74,23 +74,23 @@ class Artist {
 
   void draw_body() {
     const double w = width(), h = height();
-    switch (shape_.outline) {
-      case Outline::triangle:
+    switch (shape_.form) {
+      case Form::triangle:
         add_body(polyline_mark({body(0, 0), body(w, h / 2), body(0, h)}, pen_, true));
         break;
-      case Outline::integrator:
+      case Form::integrator:
         add_body(polyline_mark({body(kBar, 0), body(w, h / 2), body(kBar, h)}, pen_, true));
         put({Box{corner_, {kBar, h}}, pen_, Ink::paper});
         break;
-      case Outline::open_amplifier:
+      case Form::open_amplifier:
         add_body(open_amplifier());
         break;
-      case Outline::circle:
+      case Form::circle:
         add_body(disc_mark(body(w / 2, h / 2), w / 2, Ink::paper, pen_));
         break;
       default: {
         Mark mark = box_mark(corner_, shape_.body, Ink::paper, pen_);
-        std::get<Box>(mark.shape).rounding = shape_.outline == Outline::ports ? 4 : 0;
+        std::get<Box>(mark.shape).rounding = shape_.form == Form::ports ? 4 : 0;
         add_body(std::move(mark));
       }
     }
@@ -99,7 +99,7 @@ class Artist {
   /// A triangle with a round back.
   Mark open_amplifier() const {
     const double w = width(), h = height();
-    oblique::Outline outline;
+    Outline outline;
     outline.segments = {{Segment::Kind::move, body(8, 0), {}, {}},
                         {Segment::Kind::line, body(w, h / 2), {}, {}},
                         {Segment::Kind::line, body(8, h), {}, {}},
@@ -110,11 +110,11 @@ class Artist {
 
   /// x of the body's left edge at a height, from the body's corner.
   double edge_at(double y) const {
-    if (shape_.outline == Outline::open_amplifier) {
+    if (shape_.form == Form::open_amplifier) {
       const double t = y / height();
       return 8 - 33 * t * (1 - t);
     }
-    if (shape_.outline == Outline::circle) {
+    if (shape_.form == Form::circle) {
       const double r = width() / 2, d = y - r;
       return r - std::sqrt(std::max(0.0, r * r - d * d));
     }
@@ -159,20 +159,20 @@ class Artist {
 
   void draw_texts() {
     const double w = width(), h = height();
-    if (shape_.outline == Outline::ports) {
+    if (shape_.form == Form::ports) {
       draw_port_names();
     } else {
-      const double middle = shape_.outline == Outline::triangle         ? 0.36 * w
-                            : shape_.outline == Outline::open_amplifier ? 0.4 * w
-                            : shape_.outline == Outline::integrator     ? kBar + 0.33 * (w - kBar)
+      const double middle = shape_.form == Form::triangle         ? 0.36 * w
+                            : shape_.form == Form::open_amplifier ? 0.4 * w
+                            : shape_.form == Form::integrator     ? kBar + 0.33 * (w - kBar)
                                                                         : w / 2;
-      const bool small = shape_.outline == Outline::circle || shape_.outline == Outline::integrator;
+      const bool small = shape_.form == Form::circle || shape_.form == Form::integrator;
       const double size = small ? kSmall : shape_.text == "×" || shape_.text == "÷" ? 18 : kText;
       write(body(middle, h / 2 + 0.36 * size), shape_.text, Anchor::middle, size);
       draw_icon();
     }
     if (!shape_.initial.empty()) {
-      const double x = shape_.outline == Outline::integrator ? kBar / 2 : w / 2;
+      const double x = shape_.form == Form::integrator ? kBar / 2 : w / 2;
       put(line_mark(body(x, -4), body(x, 0), {Ink::line, 1.2, {}}));
       write(body(x, -6), shape_.initial, Anchor::middle, kSmall);
     }

@@ -10,14 +10,15 @@
 /// The shapes of blocks. Not installed.
 namespace oblique::schematic {
 
-enum class Outline { triangle, integrator, open_amplifier, circle, box, ports, terminal };
+/// The line around a symbol.
+enum class Form { triangle, integrator, open_amplifier, circle, box, ports, terminal };
 
 /// Sizes of the fonts [px], and how much wider than Helvetica another font may be.
 inline constexpr double kSmall = 9.5, kText = 12, kCaption = 10.5, kSlack = 1.15;
 
 /// What a block looks like, apart from where it stands.
 struct Shape {
-  Outline outline = Outline::box;
+  Form form = Form::box;
   std::string text;                  ///< inside
   std::string icon;                  ///< name of a small curve inside, for `icon_outline`
   std::vector<std::string> caption;  ///< lines below
@@ -50,7 +51,7 @@ void draw_symbol(const Block& block, const Shape& shape, const std::string& path
 /// What a symbol is made of: its classic outline, the texts in it, and its curve.
 struct SymbolEntry {
   const char* symbol;
-  Outline classic;
+  Form classic;
   const char* classic_text;
   const char* din_text;
   const char* icon;

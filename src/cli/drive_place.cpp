@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+#include "drive_place.h"
+
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include <oblique/mechanism/drive_law.h>
+#include <oblique/mechanism/motion.h>
+
+#include "terminal.h"
+
+namespace oblique::cli {
+
+double time_option_at(const Mechanism& mechanism, const std::string& at) {
+  if (at.empty()) return 0;
+  if (mechanism.drives.empty()) {
+    throw ReadError(
+        Diagnostic{{mechanism.file, {}}, "--at: the mechanism has no drive", "a file with [drives]", {}});
+  }
+  const Drive& drive = mechanism.drives.front();
+  const double value = quantity_option("--at", at, drive.slide ? mechanism.length_unit : "rad");
+  const auto there = time_at_value(mechanism, value);
+  if (!there) {
+    throw ReadError(Diagnostic{{},
+                               fmt::format("--at {}: drive '{}' does not come there", at, drive.name),
+                               "a value that it reaches",
+                               {}});
+  }
+  return *there;
+}
+
+std::string drive_caption(const Mechanism& mechanism, double time) {
+  const Drive& drive = mechanism.drives.front();
+  const double value = DriveClock(mechanism).at(0, time).value;
+  if (drive.slide) return fmt::format("{} = {:.6g} {}", drive.name, value, mechanism.length_unit);
+  const double degrees = std::round(value * 180 / std::numbers::pi * 1e4) / 1e4;
+  return fmt::format("{} = {:.6g}°", drive.name, degrees == 0 ? 0.0 : degrees);
+}
+
+}  // namespace oblique::cli

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <oblique/draw/linkage.h>
+#include <oblique/draw/point_plots.h>
+#include <oblique/mechanism/tour.h>
+
+namespace oblique::cli {
+
+/// A mechanism's motion as pictures need it: `rows` moments at even places of its tour, both ends included.
+struct DrawnMotion {
+  std::vector<Configuration> rows;
+  std::vector<double> times;  ///< [s]
+  bool closed = false;        ///< it ends as it begins
+};
+DrawnMotion drawn_motion(const Mechanism& mechanism, const Structure& structure, int rows);
+
+/// The points that --trace names; "none" for none, nothing for those worth it. Throws ReadError.
+std::vector<std::size_t> trace_option(const Mechanism& mechanism, const std::vector<std::string>& names);
+
+/// The mechanism where the first drive stands at `at`, with `positions` − 1 further positions of its motion.
+/// Throws ReadError, and MechanismError (kind `assembly`) where it cannot be assembled there.
+LinkageScene linkage_scene(const Mechanism& mechanism, const std::string& at, int positions);
+
+/// A point along the motion for its six plots. Throws ReadError where there is no such point or no drive.
+PointHistory point_history(const Mechanism& mechanism, const std::string& point);
+
+}  // namespace oblique::cli

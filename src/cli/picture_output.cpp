@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+#include "picture_output.h"
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+
+#include <unistd.h>
+
+#include <fmt/format.h>
+
+#include <oblique/text/document.h>
+
+#include "terminal.h"
+
+namespace oblique::cli {
+namespace {
+
+constexpr std::array<std::string_view, 2> kEndings{".svg", ".png"};
+
+bool is_png(const std::string& path) {
+  return std::filesystem::path(path).extension() == ".png";
+}
+
+/// A folder of our own for what goes between two programs.
+class ScratchFolder {
+ public:
+  ScratchFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "oblique-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) {
+      throw ReadError(Diagnostic{{name, {}},
+                                 "no folder could be made for the conversion to PNG",
+                                 {},
+                                 "set TMPDIR to a folder that you may write to"});
+    }
+    path_ = name;
+  }
+  ~ScratchFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  std::filesystem::path operator/(const char* name) const { return path_ / name; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// A word for the shell as it stands.
+std::string quoted(const std::filesystem::path& path) {
+  std::string text = "'";
+  for (const char c : path.string()) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+bool converter_is_installed() {
+  return std::system("command -v rsvg-convert >/dev/null 2>&1") == 0;
+}
+
+void require_converter(const std::string& path) {
+  if (converter_is_installed()) return;
+  throw ReadError(Diagnostic{{path, {}},
+                             "a PNG is made by rsvg-convert, which is not installed",
+                             {},
+                             "install the Debian package librsvg2-bin, or write an .svg"});
+}
+
+}  // namespace
+
+void check_picture_output(const std::string& path) {
+  check_output(path, kEndings);
+  if (is_png(path)) require_converter(path);
+}
+
+std::string png_of(std::string_view svg, const std::string& path) {
+  require_converter(path);
+  const ScratchFolder folder;
+  const auto from = folder / "picture.svg", to = folder / "picture.png";
+  write_file(from, svg);
+  if (std::system(fmt::format("rsvg-convert {} -o {}", quoted(from), quoted(to)).c_str()) != 0) {
+    throw ReadError(Diagnostic{{path, {}}, "rsvg-convert could not make the PNG", {}, "write an .svg"});
+  }
+  return read_file(to);
+}
+
+void save_picture(const Picture& picture, const std::string& path, Theme theme) {
+  check_picture_output(path);
+  const std::string svg = to_svg(picture, theme);
+  save(path, is_png(path) ? png_of(svg, path) : svg);
+}
+
+void save_picture(const Picture& picture, const std::string& path) {
+  save_picture(picture, path, Theme::automatic);
+}
+
+Theme theme_option(const std::string& text) {
+  if (text == "auto") return Theme::automatic;
+  if (text == "light") return Theme::light;
+  if (text == "dark") return Theme::dark;
+  throw ReadError(Diagnostic{
+      {}, fmt::format("--theme {}", text), "auto, light or dark", suggest(text, {"auto", "light", "dark"})});
+}
+
+}  // namespace oblique::cli

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include <oblique/draw/picture.h>
+#include <oblique/draw/svg.h>
+
+namespace oblique::cli {
+
+/// Checks before the work is done that a picture can be written to `path`, which ends in .svg or .png. Throws
+/// ReadError.
+void check_picture_output(const std::string& path);
+
+/// Writes a picture and says so on stderr: .svg itself, .png through rsvg-convert. Throws ReadError, also
+/// where rsvg-convert is not installed or fails; nothing is then written.
+void save_picture(const Picture& picture, const std::string& path, Theme theme);
+void save_picture(const Picture& picture, const std::string& path);
+
+/// The theme that --theme names: auto, light or dark. Throws ReadError.
+Theme theme_option(const std::string& text);
+
+/// An SVG text as PNG, by rsvg-convert. Throws ReadError.
+std::string png_of(std::string_view svg, const std::string& path);
+
+}  // namespace oblique::cli

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+// The verbs that make pictures.
+#include "verbs.h"
+
+namespace oblique::cli {
+namespace {
+
+template <class Request>
+void add_looks(CLI::App* verb, Request& request) {
+  verb->add_option("--trace", request.trace,
+                   "points whose paths are drawn, or none (default: the points of couplers)")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("POINT,…");
+  verb->add_option("--theme", request.theme, "auto: light or dark as the reader's screen")
+      ->capture_default_str()
+      ->type_name("auto|light|dark");
+}
+
+}  // namespace
+
+void add_draw(CLI::App& app, Chosen& chosen) {
+  auto request = std::make_shared<DrawRequest>();
+  CLI::App* const verb =
+      app.add_subcommand("draw", "Draw a mechanism, or the six plots of one of its points");
+  verb->add_option("FILE", request->file, "mechanism file (oblique-mechanism/1)")->required();
+  verb->add_option("-o,--output", request->output, "write to PICTURE.svg or PICTURE.png")
+      ->required()
+      ->type_name("PICTURE");
+  CLI::Option* const at =
+      verb->add_option("--at", request->at,
+                       "where the first drive stands, for example \"80 deg\" (default: its start)")
+          ->type_name("VALUE");
+  CLI::Option* const positions =
+      verb->add_option("--positions", request->positions, "positions over the motion, one over the other")
+          ->capture_default_str()
+          ->check(CLI::Range(1, 1000));
+  add_looks(verb, *request);
+  verb->add_option("--plots", request->plots,
+                   "instead of the mechanism, the path, coordinates, velocity and acceleration of a point")
+      ->type_name("POINT")
+      ->excludes(at)
+      ->excludes(positions)
+      ->excludes(verb->get_option("--trace"));
+  choose(verb, chosen, request, draw_file);
+}
+
+}  // namespace oblique::cli

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include <oblique/draw/picture.h>
+#include <oblique/mechanism/configuration.h>
+#include <oblique/mechanism/mechanism.h>
+
+namespace oblique {
+
+/// What a picture of a mechanism shows. Configurations that are open are passed over.
+struct LinkageScene {
+  std::vector<Configuration> motion;  ///< the whole way, in order: for traces, and for what has to fit
+  std::vector<Configuration> others;  ///< further positions, faint ones first
+  Configuration shown;                ///< the position that is drawn in full
+  std::vector<std::size_t> traces;    ///< points whose paths are drawn, indices in Mechanism::points
+  std::string caption;                ///< where it stands: "crank = 80°"
+};
+
+/// The points whose paths are worth a look: marks of bodies that are not hinged to the frame; without such
+/// marks the hinges between such bodies. Points that only go round, or to and fro on a guide, are none.
+std::vector<std::size_t> points_to_trace(const Mechanism& mechanism);
+
+/// A mechanism as a picture to scale: links, hinges, supports, guides and blocks, with names, paths and a
+/// grid. The centre of the mark "pin-B" is the point B, as the axes' numbers tell.
+Picture draw_linkage(const Mechanism& mechanism, const LinkageScene& scene);
+
+}  // namespace oblique

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/draw/linkage_parts.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <oblique/draw/rounded_hull.h>
+#include <oblique/mechanism/plane.h>
+
+namespace oblique {
+namespace {
+
+using Eigen::Vector2d;
+using Carrier = LinkagePart::Carrier;
+
+constexpr double kLinkRadius = 6, kPinRadius = 4.5, kMarkRadius = 3;  // [px]
+constexpr double kBlockLength = 30, kBlockHeight = 18;                // [px]
+constexpr double kOverhang = 26;  // of a guide beyond the way of its block [px]
+const Pen kThin{Ink::line, 1.3};
+
+/// From what the distance of a slide's point from its line's first point is measured.
+Vector2d line_direction(const Mechanism& mechanism, const Slide& slide) {
+  if (!slide.carrier) {
+    return (mechanism.points[slide.second].position - mechanism.points[slide.first].position).normalized();
+  }
+  const Body& carrier = mechanism.bodies[*slide.carrier];
+  return (carrier.find(slide.second)->local - carrier.find(slide.first)->local).normalized();
+}
+
+double angle_of(const Vector2d& v) {
+  return std::atan2(v.y(), v.x());
+}
+
+struct Range {
+  double least = 0, greatest = 0;
+};
+
+/// Where a slide's point goes along its line [length unit].
+Range range_of(const std::vector<Configuration>& motion, std::size_t slide) {
+  bool any = false;
+  Range range;
+  for (const Configuration& here : motion) {
+    const double position = here.slides[slide].position;
+    if (!std::isfinite(position)) continue;
+    range.least = any ? std::min(range.least, position) : position;
+    range.greatest = any ? std::max(range.greatest, position) : position;
+    any = true;
+  }
+  return range;
+}
+
+bool slides_along(const Mechanism& mechanism, std::size_t point) {
+  return std::any_of(mechanism.slides.begin(), mechanism.slides.end(),
+                     [&](const Slide& slide) { return slide.point == point; });
+}
+
+/// The sign of the frame: a line with strokes on its lower side.
+void add_ground(std::vector<Mark>& marks, double from, double to, double y) {
+  constexpr double kPitch = 6, kDepth = 6;
+  marks.push_back(line_mark({from, y}, {to, y}, {Ink::line, 1.5}));
+  Outline strokes;
+  for (double x = from + kPitch; x <= to + 1e-9; x += kPitch) {
+    strokes.segments.push_back({Segment::Kind::move, {x, y}});
+    strokes.segments.push_back({Segment::Kind::line, {x - kDepth, y + kDepth}});
+  }
+  marks.push_back({strokes, {Ink::line, 1}});
+}
+
+LinkagePart support(std::size_t point) {
+  constexpr double kHalf = 10, kHeight = 18, kBase = 15;
+  LinkagePart part{Carrier::frame, point};
+  part.marks.push_back(polyline_mark({{0, 0}, {-kHalf, kHeight}, {kHalf, kHeight}}, kThin, true));
+  part.marks.back().fill = Ink::paper;
+  add_ground(part.marks, -kBase, kBase, kHeight);
+  return part;
+}
+
+/// The guide of a slide in the frame: its centre line, and the ground under the block.
+LinkagePart frame_guide(const Mechanism& mechanism, const std::vector<Configuration>& motion,
+                        std::size_t index, double scale) {
+  const Range range = range_of(motion, index);
+  const double from = range.least * scale - kOverhang, to = range.greatest * scale + kOverhang;
+  const double y = -mechanism.slides[index].offset * scale;
+  LinkagePart part{Carrier::guide, index};
+  part.marks.push_back(line_mark({from, y}, {to, y}, {Ink::line, 1, {8, 3, 2, 3}}));
+  add_ground(part.marks, from, to, y + kBlockHeight / 2 + 1);
+  return part;
+}
+
+/// The line of a slide on a body, where it goes beyond the body itself.
+void add_body_guide(LinkagePart& part, const Mechanism& mechanism, const std::vector<Configuration>& motion,
+                    std::size_t index, double scale) {
+  const Slide& slide = mechanism.slides[index];
+  const Body& body = mechanism.bodies[*slide.carrier];
+  const Vector2d first = body.find(slide.first)->local, second = body.find(slide.second)->local;
+  const double length = (second - first).norm();
+  const Range range = range_of(motion, index);
+  if (slide.offset == 0 && range.least >= 0 && range.greatest <= length) return;
+  const Vector2d along = (second - first) / length, left = left_normal(along);
+  const auto pixel = [&](double position) -> Vector2d {
+    const Vector2d local = first + position * along + slide.offset * left;
+    return {local.x() * scale, -local.y() * scale};
+  };
+  const double overhang = kOverhang / scale;
+  part.marks.push_back(line_mark(pixel(std::min(0.0, range.least - overhang)),
+                                 pixel(std::max(length, range.greatest + overhang)), {Ink::line, 2.5}));
+}
+
+LinkagePart body_part(const Mechanism& mechanism, const std::vector<Configuration>& motion, std::size_t index,
+                      double scale) {
+  const Body& body = mechanism.bodies[index];
+  LinkagePart part{Carrier::body, index};
+  for (std::size_t s = 0; s < mechanism.slides.size(); ++s) {
+    if (mechanism.slides[s].carrier == index) add_body_guide(part, mechanism, motion, s, scale);
+  }
+  std::vector<Vector2d> points;
+  for (const BodyPoint& point : body.points)
+    points.emplace_back(point.local.x() * scale, -point.local.y() * scale);
+  const Outline hull = rounded_hull(points, kLinkRadius);
+  constexpr double kOpacity = 0.6;
+  Mark inside{hull, {Ink::none, 0}, mechanism.drive_of(index) ? Ink::orange : Ink::faint};
+  inside.opacity = kOpacity;
+  part.marks.push_back(inside);
+  Mark edge{hull, kThin};
+  edge.id = "body-" + body.name;
+  part.marks.push_back(edge);
+  return part;
+}
+
+LinkagePart block_part(const Mechanism& mechanism, std::size_t index) {
+  const Vector2d half(kBlockLength / 2, kBlockHeight / 2);
+  LinkagePart part{Carrier::slide, index};
+  Mark block =
+      polyline_mark({-half, {half.x(), -half.y()}, half, {-half.x(), half.y()}}, {Ink::line, 1.5}, true);
+  block.fill = Ink::paper;
+  block.id = "slide-" + mechanism.slides[index].name;
+  part.marks.push_back(block);
+  return part;
+}
+
+LinkagePart pin_part(const Mechanism& mechanism, std::size_t index) {
+  const Point& point = mechanism.points[index];
+  const bool hinge = point.fixed || mechanism.bodies_at(index).size() > 1 || slides_along(mechanism, index);
+  LinkagePart part{Carrier::point, index};
+  part.marks.push_back(hinge ? disc_mark({0, 0}, kPinRadius, Ink::paper, {Ink::line, 1.8})
+                             : disc_mark({0, 0}, kMarkRadius, Ink::line, {Ink::none, 0}));
+  part.marks.back().id = "pin-" + point.name;
+  return part;
+}
+
+}  // namespace
+
+bool is_drawn(const Mechanism& mechanism, std::size_t point) {
+  return !mechanism.bodies_at(point).empty() || slides_along(mechanism, point);
+}
+
+PartPose pose_of(const LinkagePart& part, const Mechanism& mechanism, const Configuration& here) {
+  switch (part.carrier) {
+    case Carrier::frame:
+    case Carrier::point:
+      return {here.points[part.index].position};
+    case Carrier::body:
+      return {here.points[mechanism.bodies[part.index].points.front().point].position,
+              here.bodies[part.index].angle};
+    case Carrier::guide: {
+      const Slide& slide = mechanism.slides[part.index];
+      return {mechanism.points[slide.first].position, angle_of(line_direction(mechanism, slide))};
+    }
+    case Carrier::slide:
+      break;
+  }
+  const Slide& slide = mechanism.slides[part.index];
+  const double turned_by = slide.carrier ? here.bodies[*slide.carrier].angle : 0;
+  return {here.points[slide.point].position, turned_by + angle_of(line_direction(mechanism, slide))};
+}
+
+Mark placed(const Mark& mark, const Vector2d& at, double angle) {
+  Mark moved = mark;
+  const auto move = [&](Vector2d& p) { p = at + turned(p, -angle); };  // y goes down
+  if (auto* const outline = std::get_if<Outline>(&moved.shape)) {
+    for (Segment& segment : outline->segments) {
+      move(segment.to);
+      move(segment.control1);
+      move(segment.control2);
+    }
+  } else if (auto* const disc = std::get_if<Disc>(&moved.shape)) {
+    move(disc->centre);
+  } else if (auto* const box = std::get_if<Box>(&moved.shape)) {
+    box->corner += at;
+  } else {
+    std::get<Label>(moved.shape).at += at;
+  }
+  return moved;
+}
+
+std::vector<LinkagePart> linkage_parts(const Mechanism& mechanism, const std::vector<Configuration>& motion,
+                                       double scale) {
+  std::vector<LinkagePart> parts;
+  for (std::size_t s = 0; s < mechanism.slides.size(); ++s) {
+    if (!mechanism.slides[s].carrier) parts.push_back(frame_guide(mechanism, motion, s, scale));
+  }
+  for (std::size_t p = 0; p < mechanism.points.size(); ++p) {
+    if (mechanism.points[p].fixed && is_drawn(mechanism, p)) parts.push_back(support(p));
+  }
+  for (std::size_t b = 0; b < mechanism.bodies.size(); ++b)
+    parts.push_back(body_part(mechanism, motion, b, scale));
+  for (std::size_t s = 0; s < mechanism.slides.size(); ++s) parts.push_back(block_part(mechanism, s));
+  for (std::size_t p = 0; p < mechanism.points.size(); ++p) {
+    if (is_drawn(mechanism, p)) parts.push_back(pin_part(mechanism, p));
+  }
+  return parts;
+}
+
+}  // namespace oblique
