@@ -89,8 +89,8 @@ void draw_net(const Sheet& sheet, const RoutedNet& net, const std::string& prefi
   const Ink ink = net_ink(*sheet.schematic, net.from, net.output);
   Outline outline;
   for (const WirePiece& piece : net.pieces) {
-    outline.segments.push_back({Segment::Kind::move, at + piece.from, {}, {}});
-    outline.segments.push_back({Segment::Kind::line, at + piece.to, {}, {}});
+    outline.segments.push_back({Segment::Kind::move, at + piece.from});
+    outline.segments.push_back({Segment::Kind::line, at + piece.to});
   }
   Mark mark{std::move(outline), {ink, 1.2, {}}};
   mark.id = "net-" + prefix + block.name + "." + block.outputs[net.output];

@@ -52,8 +52,26 @@ Plan make_plan(const LayoutGraph& graph, const std::vector<std::size_t>& layers)
 /// Orders the slots of each layer so that few wires cross.
 void reduce_crossings(Plan& plan);
 
+/// A wire between two slots of neighbouring layers, seen from one of them.
+struct SlotLink {
+  std::size_t other = 0;
+  double shift = 0;  ///< the wire is straight where the slot is at the other's y plus this
+  double weight = 1;
+  bool before = false;     ///< the other stands in the layer before
+  bool same_side = false;  ///< both stand in one layer: the wire turns back
+};
+/// Those of each slot.
+std::vector<std::vector<SlotLink>> links_of(const Plan& plan);
+
+/// From the upper edge of a slot to that of the one below it, at least [px].
+double distance(const Plan& plan, std::size_t upper, std::size_t lower);
+
 /// Gives every slot its y so that wires run straight where they can.
 void place_slots(Plan& plan);
+
+/// Moves boxes and long wires one by one where that takes bends away; their order stays. Part of
+/// `place_slots`.
+void straighten(Plan& plan);
 
 /// Where the vertical pieces of the wires of one channel stand.
 struct Track {

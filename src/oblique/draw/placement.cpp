@@ -8,8 +8,6 @@
 namespace oblique::layered {
 namespace {
 
-constexpr double kBoxGap = 2 * kLayoutGrid;  // between boxes, and between a box and a wire
-constexpr double kWireGap = kLayoutGrid;
 constexpr int kMeanSweeps = 12;
 constexpr int kMedianSweeps = 24;
 
@@ -69,19 +67,13 @@ std::vector<double> rising(std::vector<std::vector<Wish>> wishes, const Centre& 
 
 class Placement {
  public:
-  explicit Placement(Plan& plan) : plan_(plan), links_(plan.slots.size()) {
-    for (const auto& channel : plan.channels) {
-      for (const Branch& branch : channel) {
-        for (std::size_t k = 1; k < branch.pins.size(); ++k) add_link(branch, branch.pins[0], branch.pins[k]);
-      }
-    }
-  }
+  explicit Placement(Plan& plan) : plan_(plan), links_(links_of(plan)) {}
 
   void run() {
     for (const auto& layer : plan_.layers) {
       double y = 0;
       for (std::size_t k = 0; k < layer.size(); ++k) {
-        if (k > 0) y += distance(layer[k - 1], layer[k]);
+        if (k > 0) y += distance(plan_, layer[k - 1], layer[k]);
         plan_.slots[layer[k]].y = y;
       }
     }
@@ -89,40 +81,13 @@ class Placement {
       sweep_layers(sweep % 2 == 0, sweep < kMeanSweeps / 2, &mean);
     for (Slot& slot : plan_.slots) slot.y = std::round(slot.y / kLayoutGrid) * kLayoutGrid;
     for (int sweep = 0; sweep < kMedianSweeps; ++sweep) sweep_layers(sweep % 2 == 0, false, &median);
+    straighten(plan_);
     double least = std::numeric_limits<double>::max();
     for (const Slot& slot : plan_.slots) least = std::min(least, slot.y);
     for (Slot& slot : plan_.slots) slot.y -= least;
   }
 
  private:
-  struct Link {
-    std::size_t other;
-    double shift;  ///< y of the other's upper edge plus this: the wire is straight
-    double weight;
-    bool before;  ///< the other stands in the layer before
-  };
-
-  void add_link(const Branch& branch, const Pin& a, const Pin& b) {
-    if (a.slot == b.slot) return;
-    const Slot& first = plan_.slots[a.slot];
-    const Slot& second = plan_.slots[b.slot];
-    // A long wire is to be straight above all, then a way that no other wire shares.
-    double weight = first.passes() && second.passes() ? 8 : first.passes() || second.passes() ? 2 : 3;
-    weight *= branch.weight;
-    const bool same_side = a.left == b.left;
-    if (same_side)
-      weight = 0.25;  // near, but it has to turn anyway
-    else if (branch.pins.size() == 2)
-      weight *= 1.5;
-    links_[a.slot].push_back({b.slot, b.offset - a.offset, weight, !same_side && b.left});
-    links_[b.slot].push_back({a.slot, a.offset - b.offset, weight, !same_side && a.left});
-  }
-
-  double distance(std::size_t upper, std::size_t lower) const {
-    const Slot& a = plan_.slots[upper];
-    return a.height + (a.passes() && plan_.slots[lower].passes() ? kWireGap : kBoxGap);
-  }
-
   /// Moves the slots of every layer to where their wires are shortest; with `one_side` only those to the
   /// layer that the sweep comes from.
   template <class Centre>
@@ -133,9 +98,9 @@ class Placement {
       std::vector<double> stacked;  // where the slots are when they stand as close as they may
       std::vector<std::vector<Wish>> wishes;
       for (std::size_t k = 0; k < layer.size(); ++k) {
-        stacked.push_back(k == 0 ? 0 : stacked.back() + distance(layer[k - 1], layer[k]));
+        stacked.push_back(k == 0 ? 0 : stacked.back() + distance(plan_, layer[k - 1], layer[k]));
         std::vector<Wish> own;
-        for (const Link& link : links_[layer[k]]) {
+        for (const SlotLink& link : links_[layer[k]]) {
           if (one_side && link.before != to_the_right) continue;
           own.push_back({plan_.slots[link.other].y + link.shift - stacked.back(), link.weight});
         }
@@ -148,10 +113,44 @@ class Placement {
   }
 
   Plan& plan_;
-  std::vector<std::vector<Link>> links_;  ///< of each slot
+  std::vector<std::vector<SlotLink>> links_;  ///< of each slot
 };
 
+void add_link(const Plan& plan, const Branch& branch, const Pin& a, const Pin& b,
+              std::vector<std::vector<SlotLink>>& links) {
+  if (a.slot == b.slot) return;
+  const bool a_passes = plan.slots[a.slot].passes(), b_passes = plan.slots[b.slot].passes();
+  // A long wire is to be straight above all, then a way that no other wire shares.
+  double weight = a_passes && b_passes ? 8 : a_passes || b_passes ? 2 : 3;
+  weight *= branch.weight;
+  const bool same_side = a.left == b.left;
+  if (same_side) {
+    weight = 0.25;  // near, but it has to turn anyway
+  } else if (branch.pins.size() == 2) {
+    weight *= 1.5;
+  }
+  links[a.slot].push_back({b.slot, b.offset - a.offset, weight, !same_side && b.left, same_side});
+  links[b.slot].push_back({a.slot, a.offset - b.offset, weight, !same_side && a.left, same_side});
+}
+
 }  // namespace
+
+std::vector<std::vector<SlotLink>> links_of(const Plan& plan) {
+  std::vector<std::vector<SlotLink>> links(plan.slots.size());
+  for (const auto& channel : plan.channels) {
+    for (const Branch& branch : channel) {
+      for (std::size_t k = 1; k < branch.pins.size(); ++k)
+        add_link(plan, branch, branch.pins[0], branch.pins[k], links);
+    }
+  }
+  return links;
+}
+
+double distance(const Plan& plan, std::size_t upper, std::size_t lower) {
+  constexpr double kBoxGap = 2 * kLayoutGrid;  // between boxes, and between a box and a wire
+  const Slot& above = plan.slots[upper];
+  return above.height + (above.passes() && plan.slots[lower].passes() ? kLayoutGrid : kBoxGap);
+}
 
 void place_slots(Plan& plan) {
   Placement(plan).run();

@@ -151,8 +151,7 @@ Vector2d body_size(const Block& block, const Shape& shape) {
 
 std::vector<double> pins_of(std::size_t n, const Shape& shape) {
   std::vector<double> pins;
-  const double middle =
-      shape.corner.y() + shape.body.y() / 2 + (shape.form == Form::ports ? kLayoutGrid : 0);
+  const double middle = shape.corner.y() + shape.body.y() / 2 + (shape.form == Form::ports ? kLayoutGrid : 0);
   const double first =
       std::round((middle - kPitch * (static_cast<double>(n) - 1) / 2) / kLayoutGrid) * kLayoutGrid;
   for (std::size_t k = 0; k < n; ++k) pins.push_back(first + kPitch * static_cast<double>(k));

@@ -100,11 +100,11 @@ class Artist {
   Mark open_amplifier() const {
     const double w = width(), h = height();
     Outline outline;
-    outline.segments = {{Segment::Kind::move, body(8, 0), {}, {}},
-                        {Segment::Kind::line, body(w, h / 2), {}, {}},
-                        {Segment::Kind::line, body(8, h), {}, {}},
+    outline.segments = {{Segment::Kind::move, body(8, 0)},
+                        {Segment::Kind::line, body(w, h / 2)},
+                        {Segment::Kind::line, body(8, h)},
                         {Segment::Kind::cubic, body(8, 0), body(-3, 0.7 * h), body(-3, 0.3 * h)},
-                        {Segment::Kind::close, {}, {}, {}}};
+                        {Segment::Kind::close}};
     return {std::move(outline), pen_};
   }
 
@@ -165,7 +165,7 @@ class Artist {
       const double middle = shape_.form == Form::triangle         ? 0.36 * w
                             : shape_.form == Form::open_amplifier ? 0.4 * w
                             : shape_.form == Form::integrator     ? kBar + 0.33 * (w - kBar)
-                                                                        : w / 2;
+                                                                  : w / 2;
       const bool small = shape_.form == Form::circle || shape_.form == Form::integrator;
       const double size = small ? kSmall : shape_.text == "×" || shape_.text == "÷" ? 18 : kText;
       write(body(middle, h / 2 + 0.36 * size), shape_.text, Anchor::middle, size);
