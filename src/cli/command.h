@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -136,8 +137,13 @@ struct DrawRequest {
   std::string at;
   std::vector<std::string> trace;  ///< points; empty: those worth it; "none"
   int positions = 1;
-  std::string plots;  ///< the point that is plotted instead
+  std::string plots;         ///< the point that is plotted instead
+  std::string symbols;       ///< of a diagram: classic or din
+  std::optional<int> depth;  ///< of a diagram: levels of composites shown open
 };
+/// Draws a diagram; `text` is that of the request's file.
+ExitStatus draw_diagram_file(const Session& session, const DrawRequest& request, const std::string& text);
+/// Draws a mechanism or a diagram.
 ExitStatus draw_file(const Session& session, const DrawRequest& request);
 
 struct AnimateRequest {

@@ -20,20 +20,48 @@ Picture mechanism_picture(const Mechanism& mechanism, const DrawRequest& request
   return draw_linkage(mechanism, scene);
 }
 
+void refuse(bool given, const std::string& option, const std::string& file, const char* kind,
+            const char* other) {
+  if (!given) return;
+  throw ReadError(Diagnostic{
+      {file, {}}, fmt::format("{} is for {}s, and this is a {}", option, other, kind), {}, "leave it out"});
+}
+
+void check_options_of_diagram(const DrawRequest& request) {
+  const auto refuse_option = [&](bool given, const char* option) {
+    refuse(given, option, request.file, "diagram", "mechanism");
+  };
+  refuse_option(!request.at.empty(), "--at");
+  refuse_option(request.positions != 1, "--positions");
+  refuse_option(!request.trace.empty(), "--trace");
+  refuse_option(!request.plots.empty(), "--plots");
+}
+
+void check_options_of_mechanism(const DrawRequest& request) {
+  refuse(!request.symbols.empty(), "--symbols", request.file, "mechanism", "diagram");
+  refuse(request.depth.has_value(), "--depth", request.file, "mechanism", "diagram");
+}
+
 }  // namespace
 
-ExitStatus draw_file(const Session&, const DrawRequest& request) {
+ExitStatus draw_file(const Session& session, const DrawRequest& request) {
   check_picture_output(request.output);
   const Theme theme = theme_option(request.theme);
   const std::string text = read_file(request.file);  // once: it may be a pipe
   const Document document = parse_document(text, request.file);
   const Value* const format = document.root.find("format");
   const std::string name = format != nullptr ? format->text : "";
+  if (name == "oblique-diagram/1") {
+    check_options_of_diagram(request);
+    return draw_diagram_file(session, request, text);
+  }
+  check_options_of_mechanism(request);
   if (name != "oblique-mechanism/1") {
-    throw ReadError(Diagnostic{{request.file, {1, 1}},
-                               "this is no mechanism",
-                               R"(format = "oblique-mechanism/1" at the head of the file)",
-                               {}});
+    throw ReadError(
+        Diagnostic{{request.file, {1, 1}},
+                   "this is neither a mechanism nor a diagram",
+                   R"(format = "oblique-mechanism/1" or "oblique-diagram/1" at the head of the file)",
+                   {}});
   }
   save_picture(mechanism_picture(parse_mechanism(text, request.file), request), request.output, theme);
   return ExitStatus::done;

@@ -22,8 +22,9 @@ void add_looks(CLI::App* verb, Request& request) {
 void add_draw(CLI::App& app, Chosen& chosen) {
   auto request = std::make_shared<DrawRequest>();
   CLI::App* const verb =
-      app.add_subcommand("draw", "Draw a mechanism, or the six plots of one of its points");
-  verb->add_option("FILE", request->file, "mechanism file (oblique-mechanism/1)")->required();
+      app.add_subcommand("draw", "Draw a mechanism, the six plots of one of its points, or a block diagram");
+  verb->add_option("FILE", request->file, "mechanism or diagram (oblique-mechanism/1, oblique-diagram/1)")
+      ->required();
   verb->add_option("-o,--output", request->output, "write to PICTURE.svg or PICTURE.png")
       ->required()
       ->type_name("PICTURE");
@@ -42,6 +43,13 @@ void add_draw(CLI::App& app, Chosen& chosen) {
       ->excludes(at)
       ->excludes(positions)
       ->excludes(verb->get_option("--trace"));
+  verb->add_option("--symbols", request->symbols,
+                   "of a diagram: classic, triangles and circles (default), or din, boxes")
+      ->type_name("classic|din");
+  verb->add_option("--depth", request->depth,
+                   "of a diagram: levels of composite blocks that are shown open (default 0)")
+      ->type_name("N")
+      ->check(CLI::Range(0, 100));
   choose(verb, chosen, request, draw_file);
 }
 

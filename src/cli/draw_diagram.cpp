@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <oblique/diagram/diagram.h>
+#include <oblique/draw/diagram_drawing.h>
+
+#include "command.h"
+#include "picture_output.h"
+
+namespace oblique::cli {
+namespace {
+
+SymbolStyle symbols_option(const std::string& text) {
+  if (text.empty() || text == "classic") return SymbolStyle::classic;
+  if (text == "din") return SymbolStyle::din;
+  throw ReadError(
+      Diagnostic{{}, fmt::format("--symbols {}", text), "classic or din", suggest(text, {"classic", "din"})});
+}
+
+}  // namespace
+
+ExitStatus draw_diagram_file(const Session& session, const DrawRequest& request, const std::string& text) {
+  check_picture_output(request.output);
+  const Theme theme = theme_option(request.theme);
+  DiagramDrawing drawing;
+  drawing.symbols = symbols_option(request.symbols);
+  drawing.depth = request.depth.value_or(0);
+  const Diagram diagram = parse_diagram(text, request.file);
+  const BlockLibrary library = session.blocks();
+  save_picture(draw_diagram(diagram, library, drawing), request.output, theme);
+  return ExitStatus::done;
+}
+
+}  // namespace oblique::cli

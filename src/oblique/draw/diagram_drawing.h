@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <oblique/diagram/block_library.h>
+#include <oblique/diagram/diagram.h>
+#include <oblique/draw/layout.h>
+#include <oblique/draw/picture.h>
+
+namespace oblique {
+
+/// The shapes of the blocks.
+enum class SymbolStyle {
+  classic,  ///< triangles, circles and boxes, as on the plans of analog computers
+  din,      ///< boxes with a sign in them, after DIN 40900 part 13
+};
+
+/// How a block diagram is drawn.
+struct DiagramDrawing {
+  SymbolStyle symbols = SymbolStyle::classic;
+  int depth = 0;  ///< levels of composites that are shown open, as frames; the others are boxes
+};
+
+/// A block diagram in the notation of analog computers: signals run from left to right, what is fed back runs
+/// around; weights stand at the inputs, a small circle marks what inverts, every servo loop has a colour. A
+/// constant stands at each input that it feeds. The symbol is that of the block's file; a box with the names
+/// of its ports where there is none. Marks carry the ids "block-PATH" and "net-PATH.OUTPUT". Throws
+/// DiagramError with all findings about the wiring.
+Picture draw_diagram(const Diagram& diagram, const BlockLibrary& library, const DiagramDrawing& options = {});
+
+/// How easily that picture reads: crossings and bends of its wires, those in open composites included. Throws
+/// like `draw_diagram`.
+LayoutQuality drawing_quality(const Diagram& diagram, const BlockLibrary& library,
+                              const DiagramDrawing& options = {});
+
+}  // namespace oblique

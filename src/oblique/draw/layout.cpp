@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/draw/layout.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+
+#include <oblique/draw/layers.h>
+
+namespace oblique {
+namespace {
+
+using Eigen::Vector2d;
+using layered::Branch;
+using layered::Pin;
+using layered::Plan;
+using layered::RoutedChannel;
+using layered::Slot;
+
+constexpr double kChannelMargin = 1.5 * kLayoutGrid;
+
+/// x of the layers' columns and of the channels between them.
+struct Columns {
+  std::vector<double> left, right;  ///< of each layer
+  std::vector<double> channel;      ///< left side of each channel
+  double width = 0;
+};
+
+Columns columns_of(const LayoutGraph& graph, const Plan& plan, const std::vector<RoutedChannel>& channels) {
+  Columns columns;
+  double x = 0;
+  const auto add_channel = [&](std::size_t c) {
+    columns.channel.push_back(x);
+    const bool outside = c == 0 || c + 1 == channels.size();
+    if (outside && channels[c].columns == 0) return;
+    x += 2 * kChannelMargin +
+         static_cast<double>(std::max<std::size_t>(channels[c].columns, 1) - 1) * kLayoutGrid;
+  };
+  for (std::size_t l = 0; l < plan.layers.size(); ++l) {
+    add_channel(l);
+    double width = 0;
+    for (const std::size_t s : plan.layers[l]) {
+      if (!plan.slots[s].passes()) width = std::max(width, graph.nodes[plan.slots[s].node].size.x());
+    }
+    columns.left.push_back(x);
+    columns.right.push_back(x += width);
+  }
+  add_channel(plan.layers.size());
+  columns.width = x;
+  return columns;
+}
+
+/// Joins pieces that touch or overlap in one line.
+std::vector<WirePiece> merged(std::vector<WirePiece> pieces) {
+  const auto along = [](const WirePiece& p) {
+    return p.horizontal() ? std::array{p.from.x(), p.to.x()} : std::array{p.from.y(), p.to.y()};
+  };
+  const auto across = [](const WirePiece& p) { return p.horizontal() ? p.from.y() : p.from.x(); };
+  std::erase_if(pieces, [](const WirePiece& p) { return p.from == p.to; });
+  std::sort(pieces.begin(), pieces.end(), [&](const WirePiece& a, const WirePiece& b) {
+    if (a.horizontal() != b.horizontal()) return a.horizontal();
+    return across(a) != across(b) ? across(a) < across(b) : along(a) < along(b);
+  });
+  std::vector<WirePiece> result;
+  for (const WirePiece& piece : pieces) {
+    if (!result.empty() && result.back().horizontal() == piece.horizontal() &&
+        across(result.back()) == across(piece) && along(piece)[0] <= along(result.back())[1]) {
+      if (along(piece)[1] > along(result.back())[1]) result.back().to = piece.to;
+    } else {
+      result.push_back(piece);
+    }
+  }
+  return result;
+}
+
+/// The wires of all nets as pieces, from the columns that the channels were given.
+class Drafter {
+ public:
+  Drafter(const LayoutGraph& graph, const Plan& plan, const std::vector<RoutedChannel>& channels,
+          const Columns& columns, DiagramLayout& layout)
+      : graph_(graph), plan_(plan), columns_(columns), layout_(layout) {
+    for (const auto& [node, output] : plan.nets) layout.nets.push_back({node, output, {}, {}});
+    for (std::size_t s = 0; s < plan.slots.size(); ++s) {
+      const Slot& slot = plan.slots[s];
+      if (slot.passes())
+        add(slot.net, {columns.left[slot.layer], slot.y}, {columns.right[slot.layer], slot.y});
+    }
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+      std::vector<const layered::Track*> tracks(plan.channels[c].size());
+      for (const layered::Track& track : channels[c].tracks) tracks[track.branch] = &track;
+      for (std::size_t b = 0; b < tracks.size(); ++b) add_branch(c, plan.channels[c][b], tracks[b]);
+    }
+    for (RoutedNet& net : layout.nets) net.pieces = merged(std::move(net.pieces));
+  }
+
+ private:
+  void add(std::size_t net, const Vector2d& a, const Vector2d& b) {
+    const bool swap = a.x() > b.x() || a.y() > b.y();
+    layout_.nets[net].pieces.push_back(swap ? WirePiece{b, a} : WirePiece{a, b});
+  }
+
+  Vector2d end(const Pin& pin) const {
+    const Slot& slot = plan_.slots[pin.slot];
+    const double y = y_of(plan_, pin);
+    if (slot.passes()) return {pin.left ? columns_.right[slot.layer] : columns_.left[slot.layer], y};
+    const double left = layout_.corners[slot.node].x();
+    return {pin.left ? left + graph_.nodes[slot.node].size.x() : left, y};
+  }
+
+  double x_of(std::size_t channel, std::size_t column) const {
+    return columns_.channel[channel] + kChannelMargin + static_cast<double>(column) * kLayoutGrid;
+  }
+
+  void add_branch(std::size_t channel, const Branch& branch, const layered::Track* track) {
+    if (track == nullptr) {
+      add(branch.net, end(branch.pins.front()), end(branch.pins.back()));
+      for (const Pin& pin : branch.pins) add(branch.net, end(branch.pins.front()), end(pin));
+      return;
+    }
+    const double first = x_of(channel, track->column);
+    const double second = track->split ? x_of(channel, track->second) : first;
+    std::map<double, std::array<double, 2>> spans;  // of y by x
+    const auto reach = [&](double x, double y) {
+      const auto [at, is_new] = spans.try_emplace(x, std::array{y, y});
+      at->second = {std::min(at->second[0], y), std::max(at->second[1], y)};
+    };
+    if (track->split) {
+      reach(first, track->link);
+      reach(second, track->link);
+      add(branch.net, {first, track->link}, {second, track->link});
+    }
+    for (const Pin& pin : branch.pins) {
+      const Vector2d at = end(pin);
+      const double x = pin.left ? first : second;
+      reach(x, at.y());
+      add(branch.net, at, {x, at.y()});
+    }
+    for (const auto& [x, span] : spans) add(branch.net, {x, span[0]}, {x, span[1]});
+  }
+
+  const LayoutGraph& graph_;
+  const Plan& plan_;
+  const Columns& columns_;
+  DiagramLayout& layout_;
+};
+
+/// Finds the junctions of a net, and counts its corners.
+std::size_t mark_junctions(RoutedNet& net) {
+  std::size_t bends = 0;
+  for (const WirePiece& vertical : net.pieces) {
+    if (vertical.horizontal()) continue;
+    for (const WirePiece& piece : net.pieces) {
+      if (!piece.horizontal()) continue;
+      const Vector2d at(vertical.from.x(), piece.from.y());
+      if (at.x() < piece.from.x() || at.x() > piece.to.x() || at.y() < vertical.from.y() ||
+          at.y() > vertical.to.y())
+        continue;
+      const int arms = (at.x() > piece.from.x()) + (at.x() < piece.to.x()) + (at.y() > vertical.from.y()) +
+                       (at.y() < vertical.to.y());
+      if (arms > 2) net.junctions.push_back(at);
+      if (arms == 2) ++bends;
+    }
+  }
+  return bends;
+}
+
+std::size_t count_crossings(const std::vector<RoutedNet>& nets) {
+  std::vector<std::pair<const WirePiece*, std::size_t>> horizontal, vertical;
+  for (std::size_t n = 0; n < nets.size(); ++n) {
+    for (const WirePiece& piece : nets[n].pieces)
+      (piece.horizontal() ? horizontal : vertical).push_back({&piece, n});
+  }
+  std::sort(horizontal.begin(), horizontal.end(),
+            [](const auto& a, const auto& b) { return a.first->from.y() < b.first->from.y(); });
+  std::size_t crossings = 0;
+  for (const auto& [v, net] : vertical) {
+    auto at = std::upper_bound(horizontal.begin(), horizontal.end(), v->from.y(),
+                               [](double y, const auto& h) { return y < h.first->from.y(); });
+    for (; at != horizontal.end() && at->first->from.y() < v->to.y(); ++at) {
+      if (at->second != net && at->first->from.x() < v->from.x() && v->from.x() < at->first->to.x())
+        ++crossings;
+    }
+  }
+  return crossings;
+}
+
+}  // namespace
+
+DiagramLayout lay_out(const LayoutGraph& graph) {
+  DiagramLayout layout;
+  if (graph.nodes.empty()) return layout;
+  Plan plan = layered::make_plan(graph, layered::assign_layers(graph));
+  layered::reduce_crossings(plan);
+  layered::place_slots(plan);
+  std::vector<RoutedChannel> channels;
+  for (const auto& branches : plan.channels) channels.push_back(layered::route_channel(plan, branches));
+  const Columns columns = columns_of(graph, plan, channels);
+  double height = 0;
+  for (std::size_t v = 0; v < graph.nodes.size(); ++v) {
+    const Slot& slot = plan.slots[v];
+    const double spare = columns.right[slot.layer] - columns.left[slot.layer] - graph.nodes[v].size.x();
+    const double share = graph.nodes[v].rank == LayoutRank::first  ? 0
+                         : graph.nodes[v].rank == LayoutRank::last ? 1
+                                                                   : 0.5;
+    layout.corners.push_back({columns.left[slot.layer] + share * spare, slot.y});
+    height = std::max(height, slot.y + slot.height);
+  }
+  Drafter(graph, plan, channels, columns, layout);
+  for (RoutedNet& net : layout.nets) {
+    layout.quality.bends += mark_junctions(net);
+    for (const WirePiece& piece : net.pieces) {
+      layout.quality.wire_length += (piece.to - piece.from).norm();
+      height = std::max(height, piece.to.y());
+    }
+  }
+  layout.quality.crossings = count_crossings(layout.nets);
+  layout.quality.feedbacks = plan.feedbacks;
+  layout.size = {columns.width, height};
+  return layout;
+}
+
+}  // namespace oblique

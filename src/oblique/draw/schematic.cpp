@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/draw/schematic.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <fmt/format.h>
+
+#include <oblique/diagram/names.h>
+#include <oblique/diagram/wiring.h>
+
+namespace oblique::schematic {
+namespace {
+
+using wiring::Scope;
+using wiring::Source;
+using wiring::WiredBlock;
+
+/// A composite around the blocks: none for the diagram itself.
+struct Around {
+  const Scope* scope = nullptr;
+  std::vector<double> parameters;
+  std::vector<bool> connected;         ///< inputs
+  std::vector<std::string> outputs;    ///< as on its frame
+  std::vector<Source> signals_inside;  ///< those of the outputs beyond the definition's
+};
+
+/// Whether a block's equations change their sign on a machine whose amplifiers invert.
+bool follows_polarity(const BlockDefinition& definition) {
+  for (const Behaviour& behaviour : definition.behaviours) {
+    for (const Equation& equation : behaviour.equations) {
+      for (const Expression* const name : names_in(equation.expression)) {
+        if (name->name == "polarity") return true;
+      }
+    }
+  }
+  return false;
+}
+
+class Builder {
+ public:
+  Builder(const Around& around, int depth) : around_(around), scope_(*around.scope), depth_(depth) {}
+
+  Schematic build() {
+    stand_for_constants();
+    for (std::size_t i = 0; i < scope_.blocks.size(); ++i) add_block(i);
+    if (scope_.composite != nullptr) add_inputs();
+    for (std::size_t i = 0; i < scope_.blocks.size(); ++i) connect(i);
+    if (scope_.composite != nullptr) add_outputs();
+    for (std::size_t i = 0; i < scope_.blocks.size(); ++i) open(i);
+    find_servo_loops(schematic_);
+    return std::move(schematic_);
+  }
+
+ private:
+  static bool is_constant(const WiredBlock& block) {
+    return block.definition->symbol == "constant" && block.definition->inputs.empty() &&
+           !block.definition->parameters.empty();
+  }
+
+  /// A constant that only feeds inputs is drawn there: the reference of a machine is everywhere.
+  void stand_for_constants() {
+    std::vector<bool> used(scope_.blocks.size());
+    for (const WiredBlock& block : scope_.blocks) {
+      for (const auto& input : block.inputs) {
+        for (const auto& term : input.terms) {
+          if (!term.source.own_input) used[term.source.blocks.front()] = true;
+        }
+      }
+    }
+    std::vector<bool> shown(scope_.blocks.size());
+    for (const auto& output : scope_.outputs) {
+      if (output && !output->own_input) shown[output->blocks.front()] = true;
+    }
+    for (const Source& source : around_.signals_inside) shown[source.blocks.front()] = true;
+    for (std::size_t i = 0; i < scope_.blocks.size(); ++i)
+      stands_at_inputs_.push_back(is_constant(scope_.blocks[i]) && used[i] && !shown[i]);
+  }
+
+  double value_of(const wiring::Constant& constant) const {
+    return constant.value(scope_.composite, around_.parameters);
+  }
+
+  std::vector<double> parameters_of(const WiredBlock& wired) const {
+    std::vector<double> values;
+    for (std::size_t k = 0; k < wired.parameters.size(); ++k) {
+      const auto& parameter = wired.parameters[k];
+      const bool is_number = parameter.given && !parameter.points && !parameter.formula;
+      values.push_back(is_number ? value_of(parameter.value) : wired.definition->parameters[k].default_value);
+    }
+    return values;
+  }
+
+  void add_block(std::size_t i) {
+    const WiredBlock& wired = scope_.blocks[i];
+    index_.push_back(schematic_.blocks.size());
+    if (stands_at_inputs_[i]) return;
+    Block block;
+    block.name = wired.instance->name;
+    block.label = wired.instance->label;
+    block.definition = wired.definition;
+    block.parameters = parameters_of(wired);
+    for (const auto& parameter : wired.parameters) block.given.push_back(parameter.given);
+    for (const OutputPort& output : wired.definition->outputs) block.outputs.push_back(output.name);
+    block.inverts = scope_.inverting && follows_polarity(*wired.definition);
+    schematic_.blocks.push_back(std::move(block));
+  }
+
+  void add_inputs() {
+    for (std::size_t k = 0; k < scope_.composite->inputs.size(); ++k) {
+      inputs_.push_back(schematic_.blocks.size());
+      if (!around_.connected[k]) continue;
+      Block port;
+      port.kind = Block::Kind::input;
+      port.name = scope_.composite->inputs[k].name;
+      port.outputs = {port.name};
+      schematic_.blocks.push_back(std::move(port));
+    }
+  }
+
+  std::string constant_text(std::size_t i) const {
+    const WiredBlock& wired = scope_.blocks[i];
+    const double value = parameters_of(wired).front();
+    if (std::abs(value) == 1) return (value > 0 ? "+" : "") + number_text(value);
+    const std::string& name = wired.instance->label.empty() ? wired.instance->name : wired.instance->label;
+    constexpr std::size_t kLongest = 12;
+    return name.size() > kLongest ? number_text(value) : fmt::format("{} = {}", name, number_text(value));
+  }
+
+  /// The signal that a source means; on a composite it gets an output for a signal inside.
+  Signal signal_of(const Source& source) {
+    if (source.own_input) return {inputs_[*source.own_input], 0};
+    const std::size_t first = source.blocks.front();
+    if (source.blocks.size() == 1) return {index_[first], source.output};
+    std::string name;
+    const WiredBlock* at = &scope_.blocks[first];
+    for (std::size_t k = 1; k < source.blocks.size(); ++k) {
+      at = &at->inside->blocks[source.blocks[k]];
+      name += (k > 1 ? "." : "") + at->instance->name;
+    }
+    if (at->definition->outputs.size() > 1) name += "." + at->definition->outputs[source.output].name;
+    Block& block = schematic_.blocks[index_[first]];
+    const auto known =
+        std::find(block.outputs.begin() + static_cast<std::ptrdiff_t>(block.definition->outputs.size()),
+                  block.outputs.end(), name);
+    const auto output = static_cast<std::size_t>(known - block.outputs.begin());
+    if (known == block.outputs.end()) {
+      block.outputs.push_back(name);
+      inside_[first].push_back({{}, {source.blocks.begin() + 1, source.blocks.end()}, source.output});
+    }
+    return {index_[first], output};
+  }
+
+  void connect(std::size_t i) {
+    if (stands_at_inputs_[i]) return;
+    const WiredBlock& wired = scope_.blocks[i];
+    std::vector<Input> inputs;
+    for (std::size_t k = 0; k < wired.inputs.size(); ++k) {
+      for (const auto& term : wired.inputs[k].terms) {
+        if (term.source.own_input && !around_.connected[*term.source.own_input]) continue;
+        Input input;
+        input.port = wired.definition->inputs[k].name;
+        input.port_index = k;
+        input.weight = value_of(term.weight);
+        if (!term.source.own_input && stands_at_inputs_[term.source.blocks.front()]) {
+          input.constant = constant_text(term.source.blocks.front());
+        } else {
+          input.signal = signal_of(term.source);
+        }
+        inputs.push_back(std::move(input));
+      }
+    }
+    schematic_.blocks[index_[i]].inputs = std::move(inputs);
+  }
+
+  void add_outputs() {
+    const std::size_t own = scope_.composite->outputs.size();
+    for (std::size_t k = 0; k < around_.outputs.size(); ++k) {
+      Block port;
+      port.kind = Block::Kind::output;
+      port.name = around_.outputs[k];
+      Input input;
+      input.signal = signal_of(k < own ? *scope_.outputs[k] : around_.signals_inside[k - own]);
+      port.inputs.push_back(std::move(input));
+      schematic_.blocks.push_back(std::move(port));
+    }
+  }
+
+  void open(std::size_t i) {
+    const WiredBlock& wired = scope_.blocks[i];
+    if (depth_ <= 0 || wired.inside == nullptr) return;
+    Block& block = schematic_.blocks[index_[i]];
+    Around around;
+    around.scope = wired.inside;
+    around.parameters = block.parameters;
+    around.connected.resize(wired.inputs.size());
+    for (const Input& input : block.inputs) around.connected[input.port_index] = true;
+    around.outputs = block.outputs;
+    around.signals_inside = inside_[i];
+    block.inside.push_back(Builder(around, depth_ - 1).build());
+  }
+
+  const Around& around_;
+  const Scope& scope_;
+  int depth_;
+  Schematic schematic_;
+  std::vector<bool> stands_at_inputs_;
+  std::vector<std::size_t> index_;                     ///< in the schematic, of each block of the scope
+  std::vector<std::size_t> inputs_;                    ///< of each input of the composite
+  std::map<std::size_t, std::vector<Source>> inside_;  ///< signals inside a composite that are used outside
+};
+
+/// What is reached from `start` along `next` without going through what `ends` marks.
+std::vector<bool> reached(std::size_t start, const std::vector<std::vector<std::size_t>>& next,
+                          const std::vector<bool>& ends) {
+  std::vector<bool> seen(next.size());
+  std::vector<std::size_t> stack{start};
+  while (!stack.empty()) {
+    const std::size_t at = stack.back();
+    stack.pop_back();
+    for (const std::size_t to : next[at]) {
+      if (seen[to]) continue;
+      seen[to] = true;
+      if (!ends[to]) stack.push_back(to);
+    }
+  }
+  return seen;
+}
+
+}  // namespace
+
+std::string number_text(double value) {
+  if (!std::isfinite(value)) return value > 0 ? "∞" : value < 0 ? "−∞" : "?";
+  const std::string text = fmt::format("{:.4g}", std::abs(value));
+  return (value < 0 ? "−" : "") + text;
+}
+
+void find_servo_loops(Schematic& schematic) {
+  const std::size_t n = schematic.blocks.size();
+  std::vector<std::vector<std::size_t>> next(n), before(n);
+  std::vector<bool> ends(n);
+  for (std::size_t b = 0; b < n; ++b) {
+    const BlockDefinition* const definition = schematic.blocks[b].definition;
+    ends[b] = definition != nullptr &&
+              (definition->symbol == "open-amplifier" || definition->symbol == "integrator");
+    for (const Input& input : schematic.blocks[b].inputs) {
+      if (!input.signal) continue;
+      next[input.signal->block].push_back(b);
+      before[b].push_back(input.signal->block);
+    }
+  }
+  for (std::size_t b = 0; b < n; ++b) {
+    const BlockDefinition* const definition = schematic.blocks[b].definition;
+    if (definition == nullptr || definition->symbol != "open-amplifier") continue;
+    const std::vector<bool> after = reached(b, next, ends), ahead = reached(b, before, ends);
+    if (!after[b]) continue;
+    const std::size_t loop = schematic.loops++;
+    for (std::size_t k = 0; k < n; ++k) {
+      const bool on_the_way = after[k] && ahead[k] && !ends[k];
+      if (k == b || (on_the_way && !schematic.blocks[k].loop)) schematic.blocks[k].loop = loop;
+    }
+  }
+  std::map<std::pair<std::size_t, std::size_t>, std::size_t> nets;
+  for (Block& block : schematic.blocks) {
+    for (Input& input : block.inputs) {
+      input.in_loop = input.signal && block.loop && schematic.blocks[input.signal->block].loop == block.loop;
+      if (input.in_loop) nets[{input.signal->block, input.signal->output}] = *block.loop;
+    }
+  }
+  for (Block& block : schematic.blocks) {
+    for (Input& input : block.inputs) {
+      if (!input.signal) continue;
+      const auto net = nets.find({input.signal->block, input.signal->output});
+      if (net != nets.end()) input.loop = net->second;
+    }
+  }
+}
+
+Schematic make_schematic(const Diagram& diagram, const BlockLibrary& library, int depth) {
+  Diagnostics diagnostics;
+  wiring::Resolver resolver(library, diagnostics);
+  const Scope scope = resolver.diagram(diagram);
+  diagnostics.throw_if_any<DiagramError>();
+  Around around;
+  around.scope = &scope;
+  return Builder(around, depth).build();
+}
+
+}  // namespace oblique::schematic

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <oblique/draw/layout.h>
+
+namespace oblique {
+
+/// Checks a layout by its geometry alone: no two boxes overlap, all wires are orthogonal, none crosses a box,
+/// wires of different nets never lie on each other, and every wire connects its two pins.
+void expect_sound(const LayoutGraph& graph, const DiagramLayout& layout);
+
+}  // namespace oblique

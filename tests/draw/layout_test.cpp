@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/draw/layout.h>
+
+#include <random>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "layout_check.h"
+
+namespace oblique {
+namespace {
+
+LayoutNode box(std::size_t inputs, std::size_t outputs) {
+  LayoutNode node;
+  const double rows = static_cast<double>(std::max(inputs, outputs)) + 1;
+  node.size = {64, 2 * kLayoutGrid * rows};
+  for (std::size_t k = 0; k < inputs; ++k)
+    node.inputs.push_back(2 * kLayoutGrid * static_cast<double>(k + 1));
+  for (std::size_t k = 0; k < outputs; ++k)
+    node.outputs.push_back(2 * kLayoutGrid * static_cast<double>(k + 1));
+  return node;
+}
+
+//   a ──► b ──► c
+TEST(Layout, AChainIsOneStraightLine) {
+  const LayoutGraph graph{{box(1, 1), box(1, 1), box(1, 1)}, {{0, 0, 1, 0}, {1, 0, 2, 0}}};
+  const DiagramLayout layout = lay_out(graph);
+  expect_sound(graph, layout);
+  EXPECT_EQ(layout.quality.bends, 0U);
+  EXPECT_EQ(layout.quality.crossings, 0U);
+  EXPECT_LT(layout.corners[0].x(), layout.corners[1].x());
+  EXPECT_LT(layout.corners[1].x(), layout.corners[2].x());
+  EXPECT_EQ(layout.corners[0].y(), layout.corners[2].y());
+}
+
+//   ┌──────────────┐
+//   └─► a ──► b ──►┘      what is fed back runs around
+TEST(Layout, ALoopGoesBackOnce) {
+  const LayoutGraph graph{{box(1, 1), box(1, 1)}, {{0, 0, 1, 0}, {1, 0, 0, 0}}};
+  const DiagramLayout layout = lay_out(graph);
+  expect_sound(graph, layout);
+  EXPECT_EQ(layout.quality.feedbacks, 1U);
+  EXPECT_EQ(layout.quality.bends, 4U);
+  EXPECT_EQ(layout.quality.crossings, 0U);
+}
+
+TEST(Layout, ABlockMayFeedItself) {
+  const LayoutGraph graph{{box(2, 1)}, {{0, 0, 0, 1}}};
+  const DiagramLayout layout = lay_out(graph);
+  expect_sound(graph, layout);
+  EXPECT_EQ(layout.quality.feedbacks, 1U);
+}
+
+//   a ─┬─► b
+//      └─► c      one junction, one wire up to it
+TEST(Layout, WiresFromOneOutputShareTheirWay) {
+  const LayoutGraph graph{{box(0, 1), box(1, 0), box(1, 0)}, {{0, 0, 1, 0}, {0, 0, 2, 0}}};
+  const DiagramLayout layout = lay_out(graph);
+  expect_sound(graph, layout);
+  ASSERT_EQ(layout.nets.size(), 1U);
+  EXPECT_EQ(layout.nets[0].junctions.size(), 1U);
+}
+
+// Inputs in the opposite order of the sources: the sources are turned round, so nothing crosses.
+TEST(Layout, SourcesStandInTheOrderOfThePins) {
+  const LayoutGraph graph{{box(0, 1), box(0, 1), box(0, 1), box(3, 0)},
+                          {{0, 0, 3, 2}, {1, 0, 3, 1}, {2, 0, 3, 0}}};
+  const DiagramLayout layout = lay_out(graph);
+  expect_sound(graph, layout);
+  EXPECT_EQ(layout.quality.crossings, 0U);
+  EXPECT_GT(layout.corners[0].y(), layout.corners[1].y());
+}
+
+// Two boxes exchange their signals crosswise: a circle of constraints in the channel.
+TEST(Layout, CrossedPairsFindTheirWay) {
+  const LayoutGraph graph{{box(0, 2), box(2, 0)}, {{0, 0, 1, 1}, {0, 1, 1, 0}}};
+  const DiagramLayout layout = lay_out(graph);
+  expect_sound(graph, layout);
+  EXPECT_EQ(layout.quality.crossings, 1U);
+}
+
+TEST(Layout, TerminalsStandAtTheEdges) {
+  LayoutGraph graph{{box(0, 1), box(1, 1), box(1, 1), box(1, 0)}, {{0, 0, 2, 0}, {1, 0, 2, 0}, {2, 0, 3, 0}}};
+  graph.wires[1] = {2, 0, 1, 0};
+  graph.nodes[0].rank = LayoutRank::first;
+  graph.nodes[3].rank = LayoutRank::last;
+  const DiagramLayout layout = lay_out(graph);
+  expect_sound(graph, layout);
+  for (const std::size_t v : {1U, 2U}) {
+    EXPECT_LT(layout.corners[0].x() + 64, layout.corners[v].x());
+    EXPECT_GT(layout.corners[3].x(), layout.corners[v].x() + 64);
+  }
+}
+
+TEST(Layout, NothingGivesNothing) {
+  EXPECT_TRUE(lay_out({}).corners.empty());
+}
+
+// Any wiring at all: boxes apart, wires orthogonal, beside the boxes and never on each other, ends connected.
+TEST(Layout, RandomGraphsAreSound) {
+  std::mt19937 random(7);
+  const auto draw = [&](std::size_t n) { return static_cast<std::size_t>(random() % n); };
+  for (int round = 0; round < 300; ++round) {
+    LayoutGraph graph;
+    const std::size_t n = 2 + draw(25);
+    for (std::size_t v = 0; v < n; ++v) graph.nodes.push_back(box(1 + draw(4), 1 + draw(2)));
+    for (std::size_t v = 0; v < n; ++v) {
+      for (std::size_t k = 0; k < graph.nodes[v].inputs.size(); ++k) {
+        if (draw(5) == 0) continue;
+        const std::size_t from = draw(n);
+        graph.wires.push_back({from, draw(graph.nodes[from].outputs.size()), v, k});
+      }
+    }
+    const DiagramLayout layout = lay_out(graph);
+    expect_sound(graph, layout);
+    if (HasFailure()) FAIL() << "round " << round;
+  }
+}
+
+TEST(Layout, IsTheSameEveryTime) {
+  LayoutGraph graph;
+  for (int v = 0; v < 30; ++v) graph.nodes.push_back(box(2, 1));
+  for (std::size_t v = 0; v < 30; ++v) graph.wires.push_back({(7 * v + 3) % 30, 0, v, v % 2});
+  const DiagramLayout one = lay_out(graph), two = lay_out(graph);
+  EXPECT_EQ(one.corners, two.corners);
+}
+
+}  // namespace
+}  // namespace oblique
