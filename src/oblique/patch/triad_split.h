@@ -25,6 +25,7 @@ struct TriadSplit {
   double reach = 0;                                 ///< largest of |AZ| and w [length unit]
   double second_reach = 0;                          ///< largest |BE| [length unit]
   double first_w = 0;                               ///< w at the start [length unit]
+  bool asked_for = false;                           ///< by the options, for this triad
 
   /// A moment at which a triangle goes flat or the loop loses its gain, so that the analog does not come past
   /// it.
