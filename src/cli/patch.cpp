@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <oblique/mechanism/read_mechanism.h>
 
@@ -21,6 +22,13 @@ double positive_option(const std::string& option, const std::string& text, std::
   return value;
 }
 
+double finite_option(const std::string& option, const std::string& text, std::string_view unit) {
+  const double value = positive_option(option, text, unit);
+  if (!std::isfinite(value))
+    throw ReadError(Diagnostic{{}, fmt::format("{} {}", option, text), "a finite number above 0", {}});
+  return value;
+}
+
 }  // namespace
 
 std::string judgement_text(const Judgement& judgement) {
@@ -31,8 +39,7 @@ std::string judgement_text(const Judgement& judgement) {
                          : std::string("no servo loops; ");
   text += fmt::format("largest signal {:.3g} ({})\n", judgement.largest, judgement.largest_signal);
   constexpr double kErrors = 0.02;  // of real elements, by which a cosine of 1 may be passed
-  if (judgement.largest > 1 + kErrors)
-    text += "warning: it overloads the machine; choose a larger --unit\n";
+  if (judgement.largest > 1 + kErrors) text += "warning: it overloads the machine; choose a larger --unit\n";
   return text;
 }
 
@@ -53,16 +60,24 @@ ExitStatus patch_mechanism(const Session& session, const PatchRequest& request) 
   options.gain = positive_option("--gain", request.gain, "1");
   if (!request.bandwidth.empty()) options.bandwidth = positive_option("--bandwidth", request.bandwidth, "Hz");
   options.derivatives = request.derivatives;
-  options.slower = positive_option("--slower", request.slower, "1");
+  options.slower = finite_option("--slower", request.slower, "1");
   options.split = request.split;
+  if (!options.split.empty() && options.method == PatchMethod::gradient) {
+    throw ReadError(Diagnostic{{},
+                               fmt::format("--split {} with --method gradient, which takes no group apart",
+                                           fmt::join(options.split, ",")),
+                               "--method triangles or paper beside it",
+                               {}});
+  }
   options.force = request.force;
   const Mechanism mechanism = read_mechanism(request.mechanism);
-  if (!request.unit.empty()) options.unit = positive_option("--unit", request.unit, mechanism.length_unit);
-  if (!request.period.empty()) options.period = positive_option("--period", request.period, "s");
+  if (!request.unit.empty()) options.unit = finite_option("--unit", request.unit, mechanism.length_unit);
+  if (!request.period.empty()) options.period = finite_option("--period", request.period, "s");
   const JudgedPatch patched = judged_patch(mechanism, session.blocks(), options);
   if (!request.machine.empty()) return patch_for_machine(session, request, patched.diagram);
   const std::string text = write_diagram(patched.diagram);
   if (request.output.empty()) {
+    note(judgement_text(patched.judgement));
     print(text);
   } else {
     save(request.output, text);

@@ -215,6 +215,9 @@ TEST_F(Verbs, PatchPrintsToStdoutWithoutAFile) {
   const Outcome outcome = oblique("patch diagrams/mechanisms/four-bar.toml --bandwidth '1 kHz'");
   EXPECT_EQ(outcome.status, 0);
   EXPECT_THAT(outcome.out, HasSubstr("bandwidth = 1000 }"));
+  EXPECT_THAT(outcome.err, HasSubstr("its servo loops come to rest everywhere"));
+  EXPECT_THAT(oblique("patch diagrams/mechanisms/four-bar.toml --unit '0.1 m'").err,
+              HasSubstr("warning: it overloads the machine"));
 }
 
 TEST_F(Verbs, CompareGivesTheJsonOfTheContract) {

@@ -119,12 +119,12 @@ TEST(Split, WorthTheMostIsWhatIsChosen) {
   ASSERT_FALSE(splits.empty());
   PatchOptions options;
   options.split = splits.front();
-  const std::string chosen = write_diagram(patch(shipped("class-iii")));
-  EXPECT_EQ(write_diagram(patch(shipped("class-iii"), options)), chosen);
-  EXPECT_THAT(chosen, HasSubstr("Of the six splits this one keeps\n# farthest from flat triangles"));
-  options.split = splits.back();
-  EXPECT_THAT(write_diagram(patch(shipped("class-iii"), options)),
-              HasSubstr("Another split keeps farther from\n# flat triangles; this one was asked for"));
+  std::string named = write_diagram(patch(shipped("class-iii"), options));
+  const std::string
+      asked = "This split was asked for.",
+      best = "Of the six splits this one keeps\n# farthest from flat triangles and from a loop without gain.";
+  named.replace(named.find(asked), asked.size(), best);
+  EXPECT_EQ(named, write_diagram(patch(shipped("class-iii"))));
 }
 
 // The same mechanism with DE a little longer: in some splits a triangle goes flat on the way.

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -231,6 +232,54 @@ TEST(Patch, TakesATriadApart) {
   EXPECT_EQ(count("dyad-rrr"), 1);
   EXPECT_EQ(count("servo-amplifier"), 1);
   EXPECT_THAT(write_diagram(diagram), HasSubstr("Of the six splits this one keeps\n# farthest from flat triangles"));
+}
+
+/// class-iii.toml and the same once more, 4 to its right, with a P before each name.
+Mechanism two_triads() {
+  std::string frame, bodies, drives, sketch;
+  for (const std::string p : {"", "P"}) {
+    const double x = p.empty() ? 0 : 4;
+    frame += fmt::format("{0}O = [{1}, 0]\n{0}O1 = [{1}, 1.2]\n{0}E = [{2}, 0.824]\n", p, x, x + 1.46);
+    bodies += fmt::format(
+        "{0}OA = {{ points = [\"{0}O\", \"{0}A\"], length = 0.3 }}\n"
+        "{0}AB = {{ points = [\"{0}A\", \"{0}B\"], length = 1.07 }}\n"
+        "{0}BDC = {{ points = [\"{0}B\", \"{0}D\"], length = 0.665, "
+        "marks = {{ {0}C = [0.825, -0.581] }} }}\n"
+        "{0}DE = {{ points = [\"{0}D\", \"{0}E\"], length = 0.757 }}\n"
+        "{0}O1C = {{ points = [\"{0}O1\", \"{0}C\"], length = 1.945 }}\n",
+        p);
+    drives += fmt::format("{0}crank = {{ turns = \"{0}OA\", about = \"{0}O\", speed = 1 }}\n", p);
+    sketch += fmt::format("{0}B = [{1}, -0.54]\n{0}D = [{2}, 0.12]\n{0}C = [{3}, 0.33]\n", p, x + 1.22,
+                          x + 1.17, x + 1.74);
+  }
+  return parse_mechanism(fmt::format("format = \"oblique-mechanism/1\"\n[frame]\n{}[bodies]\n{}[drives]\n{}"
+                                     "[sketch]\n{}",
+                                     frame, bodies, drives, sketch),
+                         "two-triads.toml");
+}
+
+// The same split may be asked for, found among those that are stable, or be worth the most.
+TEST(Patch, SaysOfEachTriadWhyItHasItsSplit) {
+  const std::string best =
+      "Of the six splits this one keeps\n# farthest from flat triangles and from a loop without gain";
+  PatchOptions options;
+  options.split = {"AB", "DE", "O1C"};
+  std::string text = write_diagram(patch_triangles(two_triads(), options));
+  EXPECT_THAT(text, HasSubstr("(split AB, DE, O1C). This split was asked for."));
+  EXPECT_THAT(text, HasSubstr("(split PAB, PDE, PO1C). " + best + "."));
+  options.split_by_trial = true;
+  text = write_diagram(patch_triangles(two_triads(), options));
+  EXPECT_THAT(text, HasSubstr("(split AB, DE, O1C). " + best + ", among those that are stable."));
+}
+
+// The split that is named for one triad leaves the other one the source's.
+TEST(Patch, NamesASplitOfOneTriadOnly) {
+  PatchOptions options;
+  options.method = PatchMethod::paper;
+  const char* const second = "triad PAB-PBDC-PDE-PO1C, split PAB, PO1C, PDE.";
+  EXPECT_THAT(write_diagram(patch(two_triads(), options)), HasSubstr(second));
+  options.split = {"O1C", "DE", "AB"};
+  EXPECT_THAT(write_diagram(patch(two_triads(), options)), HasSubstr(second));
 }
 
 TEST(Patch, OffersTheGradientWhereATriadHasASlide) {

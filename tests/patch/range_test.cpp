@@ -84,6 +84,21 @@ TEST(WithinRange, SwingsADrivenSlideToo) {
   EXPECT_NEAR(most, 1.5 + 0.45, 1e-4);
 }
 
+// The start lies at 98 % of the range, where the swing turns round: its law starts with a speed of 0, or of
+// what rounding leaves of it, by which no step can be measured.
+TEST(WithinRange, MayStartNextToALimit) {
+  std::string text = kPump;
+  text.replace(text.find("start = 1.4"), 11, "start = 1.99");
+  text.replace(text.find("[0.1, 0.5]"), 10, "[0.49, 0.1]");
+  const Mechanism ranged = within_range(parse_mechanism(text, "pump.toml"));
+  ASSERT_DOUBLE_EQ(ranged.drives.front().speed, 0.3);
+  const Motion motion = solve_motion(ranged, 1001);
+  EXPECT_TRUE(motion.events.empty());
+  const auto [least, most] = span_of(motion);
+  EXPECT_NEAR(least, 1.01, 1e-4);
+  EXPECT_NEAR(most, 1.99, 1e-4);
+}
+
 class Ranged : public testing::TestWithParam<PatchMethod> {};
 INSTANTIATE_TEST_SUITE_P(Patch, Ranged, testing::Values(PatchMethod::triangles, PatchMethod::gradient));
 

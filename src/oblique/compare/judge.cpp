@@ -55,6 +55,7 @@ std::vector<PatchOptions> other_ways(const Mechanism& mechanism, const PatchOpti
   const auto add = [&](const std::vector<std::string>& split, double slower) {
     PatchOptions& way = ways.emplace_back(options);
     way.split = split;
+    way.split_by_trial = options.split.empty();
     way.slower = slower;
   };
   const double usual = std::max(options.slower, PatchOptions{}.slower);

@@ -109,7 +109,8 @@ class DriveReader {
           drive_.law_scale = law->scale;
           drive_.speed = law_at(drive_, 0).rate;
           constexpr double kSoonAfter = 1e-6;  // s
-          if (drive_.speed == 0)
+          constexpr double kRest = 1e-9;       // of the law's unit: cos(pi/2) is not quite 0
+          if (std::abs(drive_.speed) < kRest * std::abs(drive_.law_scale))
             drive_.speed = std::copysign(drive_.law_scale, law_at(drive_, kSoonAfter).rate);
           return;
         }

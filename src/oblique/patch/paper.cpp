@@ -53,12 +53,19 @@ class PaperPatch : private TriadPatch {
     for (const Group& group : structure_.groups) {
       if (!can_be_split(group)) continue;
       PatchOptions options = options_;
-      if (options.split.empty()) options.split = split_of_the_source(group);
+      if (!names_leads_of(group)) options.split = split_of_the_source(group);
       splits_.push_back(choose_split(mechanism_, group, motion_, options));
       longest = std::max({longest, splits_.back().reach, splits_.back().second_reach});
     }
     if (!options_.unit) scaling_.length = round_scale_up(longest);
     set_scale(scaling_);
+  }
+
+  bool names_leads_of(const Group& group) const {
+    std::vector<std::string> leads;
+    for (std::size_t k = 0; k < group.equations.conditions.size(); ++k)
+      leads.push_back(mechanism_.bodies[lead_of(group, k)].name);
+    return std::is_permutation(leads.begin(), leads.end(), options_.split.begin(), options_.split.end());
   }
 
   /// The lead on a moving point carries the variable length, as AB does; of the others the last one in the

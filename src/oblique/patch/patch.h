@@ -41,6 +41,7 @@ struct PatchOptions {
   /// Names of the three leads of a triad: the one whose triangle carries the variable length, the one that
   /// closes the loop, the third; empty: the split that is worth the most.
   std::vector<std::string> split = {};
+  bool split_by_trial = false;  ///< nobody asked for `split`: those that are worth more were unstable
   std::optional<double> unit;  ///< 1 machine unit of a coordinate [length unit]; default: by the exact motion
   bool force = false;          ///< patch what flips on the way, too
   /// Seconds of machine time that the motion takes; default: as the mechanism's own. Rates stay those of the

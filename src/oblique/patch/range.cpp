@@ -44,7 +44,7 @@ Mechanism within_range(const Mechanism& mechanism) {
           .value();
   swing.law = std::move(law.speed);
   swing.law_scale = law.scale;
-  swing.speed = law_at(swing, 0).rate;
+  // its `speed` stays the greatest of the law: from the end of its way a swing sets off with none
   swung.motion.until = 2 * std::numbers::pi / rate;
   return swung;
 }

@@ -9,6 +9,16 @@
 #include <oblique/mechanism/plane.h>
 
 namespace oblique {
+namespace {
+
+std::string reason_of(const TriadSplit& split, const PatchOptions& options) {
+  if (split.asked_for && !options.split_by_trial) return "This split was asked for.";
+  return fmt::format(
+      "Of the six splits this one keeps\nfarthest from flat triangles and from a loop without gain{}.",
+      split.asked_for ? ", among those that are stable" : "");
+}
+
+}  // namespace
 
 void TriadPatch::add_triad(const Group& group, const TriadSplit& split) {
   const auto& conditions = group.equations.conditions;
@@ -27,12 +37,8 @@ void TriadPatch::add_triad(const Group& group, const TriadSplit& split) {
       "Its triangles have sines down to {:.2g}, its loop a gain down to {:.2g}{}.",
       group.name, name_of(z), name_of(b), split.longest, mechanism_.length_unit, name_of(b), name_of(a),
       name_of(b), name_of(z), name_of(d), name_of(b), name_of(d), name_of(e), name_of(z), name_of(c),
-      split_name(mechanism_, group, split),
-      split.best
-          ? "Of the six splits this one keeps\nfarthest from flat triangles and from a loop without gain."
-          : "Another split keeps farther from\nflat triangles; this one was asked for, or is stable "
-            "where that one is not.",
-      split.flattest, split.least_gain, split.flip == TriadSplit::Flip::none ? "" : ", and it flips");
+      split_name(mechanism_, group, split), reason_of(split, options_), split.flattest, split.least_gain,
+      split.flip == TriadSplit::Flip::none ? "" : ", and it flips");
   const std::string& first_name = name_of(b);
   const std::string first = add_block(
       first_name, "dyad-rrr-variable",

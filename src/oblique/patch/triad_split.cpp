@@ -122,7 +122,6 @@ std::vector<TriadSplit> splits_of(const Group& group, const Motion& motion) {
   } while (std::next_permutation(order.begin(), order.end()));
   std::stable_sort(splits.begin(), splits.end(),
                    [](const TriadSplit& a, const TriadSplit& b) { return a.worth() > b.worth(); });
-  splits.front().best = true;
   return splits;
 }
 
@@ -142,7 +141,7 @@ std::string split_name(const Mechanism& mechanism, const Group& triad, const Tri
 
 TriadSplit choose_split(const Mechanism& mechanism, const Group& triad, const Motion& motion,
                         const PatchOptions& options) {
-  const std::vector<TriadSplit> splits = splits_of(triad, motion);
+  std::vector<TriadSplit> splits = splits_of(triad, motion);
   const Place& place = mechanism.bodies[triad.equations.cores.front()].place;
   const auto named = std::find_if(splits.begin(), splits.end(), [&](const TriadSplit& split) {
     return leads_of(mechanism, triad, split) == options.split;
@@ -173,6 +172,7 @@ TriadSplit choose_split(const Mechanism& mechanism, const Group& triad, const Mo
                           joined(leads_of(mechanism, triad, splits.front())))
             : "patch it with --method gradient, which takes any group"});
   }
+  named->asked_for = true;
   return *named;
 }
 

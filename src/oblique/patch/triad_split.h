@@ -25,14 +25,13 @@ struct TriadSplit {
   double reach = 0;                                 ///< largest of |AZ| and w [length unit]
   double second_reach = 0;                          ///< largest |BE| [length unit]
   double first_w = 0;                               ///< w at the start [length unit]
+  bool asked_for = false;                           ///< by the options, for this triad
 
   /// A moment at which a triangle goes flat or the loop loses its gain, so that the analog does not come past
   /// it.
   enum class Flip { none, first_triangle, second_triangle, loop };
   Flip flip = Flip::none;
   double flip_time = 0;  ///< [s]
-
-  bool best = false;  ///< whether none of the six is worth more
 
   /// What it is worth: the smaller of `flattest` and `least_gain`; 0 where it flips.
   double worth() const;
