@@ -21,8 +21,9 @@ namespace {
 /// The frames of a round: a closed motion once, another one to its end and back.
 void add_frames(LinkageAnimation& animation, const Mechanism& mechanism, int frames) {
   const Structure structure = decompose(mechanism);
-  const bool closed = plan_tour(mechanism, structure).closed;
-  const DrawnMotion motion = drawn_motion(mechanism, structure, closed ? frames + 1 : frames / 2 + 1);
+  DrawnMotion motion = drawn_motion(mechanism, structure, frames + 1);
+  const bool closed = motion.closed;
+  if (!closed) motion = drawn_motion(mechanism, structure, frames / 2 + 1);
   const auto add = [&](std::size_t k) {
     if (motion.rows[k].status == oblique::Status::open) return;
     animation.frames.push_back(motion.rows[k]);
