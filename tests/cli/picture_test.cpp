@@ -82,6 +82,22 @@ TEST_F(Pictures, AnimateWritesSvgAndAPage) {
   EXPECT_THAT(bytes_of("rocker.html"), Not(HasSubstr("nan")));
 }
 
+// Among them mechanisms with change points, with limits, without a full turn, with driven slides.
+TEST_F(Pictures, AllShippedMechanismsAreDrawnAndAnimated) {
+  for (const auto& entry :
+       std::filesystem::directory_iterator(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms")) {
+    SCOPED_TRACE(entry.path().filename().string());
+    const std::string mechanism = "'" + entry.path().string() + "'";
+    const Outcome drawn =
+        run("timeout 20 oblique draw " + mechanism + " --positions 7 -o " + file("all.svg"));
+    EXPECT_EQ(drawn.status, 0) << drawn.err;
+    EXPECT_THAT(bytes_of("all.svg"), Not(HasSubstr("nan")));
+    const Outcome animated = run("timeout 20 oblique animate " + mechanism + " -o " + file("all.html"));
+    EXPECT_EQ(animated.status, 0) << animated.err;
+    EXPECT_THAT(bytes_of("all.html"), Not(HasSubstr("nan,")));
+  }
+}
+
 TEST_F(Pictures, PngNeedsItsConverter) {
   const std::string draw = "oblique draw diagrams/mechanisms/four-bar.toml -o " + file("four-bar.png");
   const Outcome without = run("PATH=$(dirname $(command -v oblique)); " + draw);
