@@ -45,6 +45,7 @@ double duration_of(const AnimateRequest& request) {
 ExitStatus animate_mechanism(const Session&, const AnimateRequest& request) {
   constexpr std::array<std::string_view, 2> kEndings{".svg", ".html"};
   check_output(request.output, kEndings);
+  check_not_input(request.output, request.mechanism, "mechanism");
   const Theme theme = theme_option(request.theme);
   LinkageAnimation animation;
   animation.duration = duration_of(request);

@@ -110,6 +110,17 @@ TEST_F(Pictures, PngNeedsItsConverter) {
   EXPECT_THAT(bytes_of("four-bar.png"), StartsWith("\x89PNG"));
 }
 
+TEST_F(Pictures, AreNotWrittenOverTheMechanism) {
+  run("cp diagrams/mechanisms/four-bar.toml " + file("four-bar.svg"));
+  for (const std::string verb : {"draw", "animate"}) {
+    const Outcome outcome =
+        run("oblique " + verb + " " + file("four-bar.svg") + " -o " + file("four-bar.svg"));
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("this is the mechanism itself, which would be replaced"));
+  }
+  EXPECT_THAT(bytes_of("four-bar.svg"), HasSubstr("oblique-mechanism/1"));
+}
+
 struct RefusedPicture {
   const char* name;
   const char* arguments;
