@@ -34,6 +34,15 @@ bool same_place(const Configuration& one, const Configuration& other, double siz
   return true;
 }
 
+/// Whether a motion meets a limit at which its drives do not turn back, be it between two of its rows.
+bool ends_at_limit(const Mechanism& mechanism, const Motion& motion) {
+  const AtLimit way_on =
+      mechanism.motion.at_limit.value_or(mechanism.drives.front().slide ? AtLimit::reverse : AtLimit::open);
+  return way_on == AtLimit::open &&
+         std::any_of(motion.events.begin(), motion.events.end(),
+                     [](const MotionEvent& event) { return event.kind == MotionEvent::Kind::limit; });
+}
+
 /// The positions beside the one that is shown, the last one just before it.
 std::vector<Configuration> other_positions(const Mechanism& mechanism, const Structure& structure,
                                            const DrawnMotion& motion, double shown, int positions) {
@@ -55,8 +64,7 @@ DrawnMotion drawn_motion(const Mechanism& mechanism, const Structure& structure,
   MotionOptions options;
   options.positions = std::max(2, rows);
   Motion whole = solve_motion(mechanism, options);
-  const auto is_open = [](const Configuration& here) { return here.status == oblique::Status::open; };
-  if (std::none_of(whole.configurations.begin(), whole.configurations.end(), is_open)) {
+  if (!ends_at_limit(mechanism, whole)) {
     const bool closed =
         same_place(whole.configurations.front(), whole.configurations.back(), mechanism.largest_length());
     return {std::move(whole.configurations), std::move(whole.times), closed};

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The verbs that make pictures: the files they write, and what they refuse.
+#include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -119,6 +122,19 @@ TEST_F(Pictures, AreNotWrittenOverTheMechanism) {
     EXPECT_THAT(outcome.err, HasSubstr("this is the mechanism itself, which would be replaced"));
   }
   EXPECT_THAT(bytes_of("four-bar.svg"), HasSubstr("oblique-mechanism/1"));
+}
+
+// The rocker turns from 137.87° to −137.87° and no farther, however few the frames: its angle never jumps.
+TEST_F(Pictures, AnimationsStayWithinTheLimits) {
+  run("oblique animate diagrams/mechanisms/double-rocker.toml --frames 8 -o " + file("rocker.svg"));
+  const std::string svg = bytes_of("rocker.svg");
+  std::size_t at = svg.rfind("values=\"", svg.find("id=\"body-AB\""));
+  ASSERT_NE(at, std::string::npos);
+  std::istringstream values(svg.substr(at + 8, svg.find('"', at + 8) - at - 8));
+  int frames = 0;
+  for (std::string value; std::getline(values, value, ';'); ++frames)
+    EXPECT_LT(std::abs(std::strtod(value.c_str(), nullptr)), 140);
+  EXPECT_EQ(frames, 9);
 }
 
 struct RefusedPicture {
