@@ -21,8 +21,9 @@ namespace {
 /// The frames of a round: a closed motion once, another one to its end and back.
 void add_frames(LinkageAnimation& animation, const Mechanism& mechanism, int frames) {
   const Structure structure = decompose(mechanism);
-  const bool closed = plan_tour(mechanism, structure).closed;
-  const DrawnMotion motion = drawn_motion(mechanism, structure, closed ? frames + 1 : frames / 2 + 1);
+  DrawnMotion motion = drawn_motion(mechanism, structure, frames + 1);
+  const bool closed = motion.closed;
+  if (!closed) motion = drawn_motion(mechanism, structure, frames / 2 + 1);
   const auto add = [&](std::size_t k) {
     if (motion.rows[k].status == oblique::Status::open) return;
     animation.frames.push_back(motion.rows[k]);
@@ -44,6 +45,7 @@ double duration_of(const AnimateRequest& request) {
 ExitStatus animate_mechanism(const Session&, const AnimateRequest& request) {
   constexpr std::array<std::string_view, 2> kEndings{".svg", ".html"};
   check_output(request.output, kEndings);
+  check_not_input(request.output, request.mechanism, "mechanism");
   const Theme theme = theme_option(request.theme);
   LinkageAnimation animation;
   animation.duration = duration_of(request);

@@ -46,6 +46,7 @@ void check_options_of_mechanism(const DrawRequest& request) {
 
 ExitStatus draw_file(const Session& session, const DrawRequest& request) {
   check_picture_output(request.output);
+  check_not_input(request.output, request.file, "mechanism");
   const Theme theme = theme_option(request.theme);
   const std::string text = read_file(request.file);  // once: it may be a pipe
   const Document document = parse_document(text, request.file);

@@ -13,6 +13,15 @@
 
 namespace oblique::cli {
 
+namespace {
+
+/// With a true minus sign, as the axes have it.
+std::string shown_number(double value) {
+  return (value < 0 ? "−" : "") + fmt::format("{:.6g}", std::abs(value));
+}
+
+}  // namespace
+
 double time_option_at(const Mechanism& mechanism, const std::string& at) {
   if (at.empty()) return 0;
   if (mechanism.drives.empty()) {
@@ -34,9 +43,9 @@ double time_option_at(const Mechanism& mechanism, const std::string& at) {
 std::string drive_caption(const Mechanism& mechanism, double time) {
   const Drive& drive = mechanism.drives.front();
   const double value = DriveClock(mechanism).at(0, time).value;
-  if (drive.slide) return fmt::format("{} = {:.6g} {}", drive.name, value, mechanism.length_unit);
+  if (drive.slide) return fmt::format("{} = {} {}", drive.name, shown_number(value), mechanism.length_unit);
   const double degrees = std::round(value * 180 / std::numbers::pi * 1e4) / 1e4;
-  return fmt::format("{} = {:.6g}°", drive.name, degrees == 0 ? 0.0 : degrees);
+  return fmt::format("{} = {}°", drive.name, shown_number(degrees));
 }
 
 }  // namespace oblique::cli

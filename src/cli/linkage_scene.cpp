@@ -8,6 +8,7 @@
 
 #include <oblique/mechanism/follower.h>
 #include <oblique/mechanism/motion.h>
+#include <oblique/mechanism/tour.h>
 
 #include "drive_place.h"
 
@@ -24,11 +25,33 @@ std::size_t point_named(const Mechanism& mechanism, const std::string& option, c
                              suggest(name, names_of(mechanism.points))});
 }
 
+/// Whether all points lie where they lay, to what can be seen.
+bool same_place(const Configuration& one, const Configuration& other, double size) {
+  constexpr double kSeen = 1e-6;
+  for (std::size_t p = 0; p < one.points.size(); ++p) {
+    if (!((one.points[p].position - other.points[p].position).norm() <= kSeen * size)) return false;
+  }
+  return true;
+}
+
+/// Whether a motion meets a limit at which its drives do not turn back, be it between two of its rows.
+bool ends_at_limit(const Mechanism& mechanism, const Motion& motion) {
+  const AtLimit way_on =
+      mechanism.motion.at_limit.value_or(mechanism.drives.front().slide ? AtLimit::reverse : AtLimit::open);
+  return way_on == AtLimit::open &&
+         std::any_of(motion.events.begin(), motion.events.end(),
+                     [](const MotionEvent& event) { return event.kind == MotionEvent::Kind::limit; });
+}
+
 /// The positions beside the one that is shown, the last one just before it.
 std::vector<Configuration> other_positions(const Mechanism& mechanism, const Structure& structure,
                                            const DrawnMotion& motion, double shown, int positions) {
   if (positions < 2) return {};
-  if (!motion.closed) return drawn_motion(mechanism, structure, positions - 1).rows;
+  if (!motion.closed) {
+    std::vector<Configuration> rows = drawn_motion(mechanism, structure, positions - 1).rows;
+    rows.resize(static_cast<std::size_t>(positions - 1));
+    return rows;
+  }
   const double turn = motion.times.back() - motion.times.front();
   std::vector<double> times;
   for (int k = 1; k < positions; ++k) times.push_back(shown + turn * k / positions);
@@ -38,13 +61,21 @@ std::vector<Configuration> other_positions(const Mechanism& mechanism, const Str
 }  // namespace
 
 DrawnMotion drawn_motion(const Mechanism& mechanism, const Structure& structure, int rows) {
-  DrawnMotion motion;
-  TourWalk walk(mechanism, structure, plan_tour(mechanism, structure));
-  motion.closed = walk.tour().closed;
-  for (int k = 0; k < rows; ++k) {
-    motion.rows.push_back(walk.go(rows == 1 ? 0.0 : static_cast<double>(k) / (rows - 1)));
-    motion.times.push_back(walk.time());
+  MotionOptions options;
+  options.positions = std::max(2, rows);
+  Motion whole = solve_motion(mechanism, options);
+  if (!ends_at_limit(mechanism, whole)) {
+    const bool closed =
+        same_place(whole.configurations.front(), whole.configurations.back(), mechanism.largest_length());
+    return {std::move(whole.configurations), std::move(whole.times), closed};
   }
+  const Tour tour = plan_tour(mechanism, structure);
+  constexpr double kBesideLimit = 1e-5;  // where the mechanism can surely be assembled
+  const double first = tour.from_limit ? kBesideLimit : 0, last = tour.at_limit ? 1 - kBesideLimit : 1;
+  DrawnMotion motion;
+  for (int k = 0; k < options.positions; ++k)
+    motion.times.push_back(tour.time(first + (last - first) * k / (options.positions - 1)));
+  motion.rows = solve_motion(mechanism, structure, motion.times).configurations;
   return motion;
 }
 

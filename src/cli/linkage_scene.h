@@ -6,11 +6,12 @@
 
 #include <oblique/draw/linkage.h>
 #include <oblique/draw/point_plots.h>
-#include <oblique/mechanism/tour.h>
+#include <oblique/mechanism/structure.h>
 
 namespace oblique::cli {
 
-/// A mechanism's motion as pictures need it: `rows` moments at even places of its tour, both ends included.
+/// A mechanism's motion as pictures need it: at least two moments, both ends included. Where limits forbid
+/// the whole motion, it is the way between them.
 struct DrawnMotion {
   std::vector<Configuration> rows;
   std::vector<double> times;  ///< [s]

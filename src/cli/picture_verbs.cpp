@@ -64,7 +64,7 @@ void add_animate(CLI::App& app, Chosen& chosen) {
       ->type_name("FILE");
   verb->add_option("--frames", request->frames, "positions computed for a round; between them it is smooth")
       ->capture_default_str()
-      ->check(CLI::Range(2, 3600));
+      ->check(CLI::Range(8, 3600));
   verb->add_option("--duration", request->duration, "how long a round lasts on the screen")
       ->capture_default_str()
       ->type_name("T");

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The verbs that make pictures: the files they write, and what they refuse.
+#include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -82,6 +85,22 @@ TEST_F(Pictures, AnimateWritesSvgAndAPage) {
   EXPECT_THAT(bytes_of("rocker.html"), Not(HasSubstr("nan")));
 }
 
+// Among them mechanisms with change points, with limits, without a full turn, with driven slides.
+TEST_F(Pictures, AllShippedMechanismsAreDrawnAndAnimated) {
+  for (const auto& entry :
+       std::filesystem::directory_iterator(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms")) {
+    SCOPED_TRACE(entry.path().filename().string());
+    const std::string mechanism = "'" + entry.path().string() + "'";
+    const Outcome drawn =
+        run("timeout 20 oblique draw " + mechanism + " --positions 7 -o " + file("all.svg"));
+    EXPECT_EQ(drawn.status, 0) << drawn.err;
+    EXPECT_THAT(bytes_of("all.svg"), Not(HasSubstr("nan")));
+    const Outcome animated = run("timeout 20 oblique animate " + mechanism + " -o " + file("all.html"));
+    EXPECT_EQ(animated.status, 0) << animated.err;
+    EXPECT_THAT(bytes_of("all.html"), Not(HasSubstr("nan,")));
+  }
+}
+
 TEST_F(Pictures, PngNeedsItsConverter) {
   const std::string draw = "oblique draw diagrams/mechanisms/four-bar.toml -o " + file("four-bar.png");
   const Outcome without = run("PATH=$(dirname $(command -v oblique)); " + draw);
@@ -92,6 +111,30 @@ TEST_F(Pictures, PngNeedsItsConverter) {
   if (run("command -v rsvg-convert").status != 0) GTEST_SKIP() << "rsvg-convert is not installed";
   EXPECT_EQ(run(draw).status, 0);
   EXPECT_THAT(bytes_of("four-bar.png"), StartsWith("\x89PNG"));
+}
+
+TEST_F(Pictures, AreNotWrittenOverTheMechanism) {
+  run("cp diagrams/mechanisms/four-bar.toml " + file("four-bar.svg"));
+  for (const std::string verb : {"draw", "animate"}) {
+    const Outcome outcome =
+        run("oblique " + verb + " " + file("four-bar.svg") + " -o " + file("four-bar.svg"));
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("this is the mechanism itself, which would be replaced"));
+  }
+  EXPECT_THAT(bytes_of("four-bar.svg"), HasSubstr("oblique-mechanism/1"));
+}
+
+// The rocker turns from 137.87° to −137.87° and no farther, however few the frames: its angle never jumps.
+TEST_F(Pictures, AnimationsStayWithinTheLimits) {
+  run("oblique animate diagrams/mechanisms/double-rocker.toml --frames 8 -o " + file("rocker.svg"));
+  const std::string svg = bytes_of("rocker.svg");
+  std::size_t at = svg.rfind("values=\"", svg.find("id=\"body-AB\""));
+  ASSERT_NE(at, std::string::npos);
+  std::istringstream values(svg.substr(at + 8, svg.find('"', at + 8) - at - 8));
+  int frames = 0;
+  for (std::string value; std::getline(values, value, ';'); ++frames)
+    EXPECT_LT(std::abs(std::strtod(value.c_str(), nullptr)), 140);
+  EXPECT_EQ(frames, 9);
 }
 
 struct RefusedPicture {
