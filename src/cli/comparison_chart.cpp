@@ -86,7 +86,7 @@ Panel convergence_of(const Comparison& comparison) {
 }
 
 Panel error_along(const Comparison& comparison) {
-  Panel panel{{"crank", "°"}, {"error", comparison.unit, comparison.runs.size() > 1}, {}, kHeight};
+  Panel panel{{"drive", "°"}, {"error", comparison.unit, comparison.runs.size() > 1}, {}, kHeight};
   double unit = std::numbers::pi / 180;
   if (!comparison.turning) {
     panel.x = {"drive", comparison.unit};
