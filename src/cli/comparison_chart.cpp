@@ -49,10 +49,7 @@ std::size_t runs_per_series(const Comparison& comparison) {
 
 /// The line of the fitted order, through the middle of the runs that it was fitted to.
 Curve slope_of(const Curve& errors, const GainSeries& series) {
-  Curve slope{fmt::format("gain to the power {}", signed_text(*series.order)),
-              {},
-              errors.number,
-              Curve::Style::guide};
+  Curve slope{fmt::format("slope {}", signed_text(*series.order)), {}, Curve::kPlain, Curve::Style::guide};
   double n = 0, x = 0, y = 0;
   for (const Eigen::Vector2d& point : errors.points) {
     if (!stands_clear(point.y(), series.floor)) continue;
