@@ -49,10 +49,7 @@ std::size_t runs_per_series(const Comparison& comparison) {
 
 /// The line of the fitted order, through the middle of the runs that it was fitted to.
 Curve slope_of(const Curve& errors, const GainSeries& series) {
-  Curve slope{fmt::format("gain to the power {}", signed_text(*series.order)),
-              {},
-              errors.number,
-              Curve::Style::guide};
+  Curve slope{fmt::format("slope {}", signed_text(*series.order)), {}, Curve::kPlain, Curve::Style::guide};
   double n = 0, x = 0, y = 0;
   for (const Eigen::Vector2d& point : errors.points) {
     if (!stands_clear(point.y(), series.floor)) continue;
@@ -86,7 +83,7 @@ Panel convergence_of(const Comparison& comparison) {
 }
 
 Panel error_along(const Comparison& comparison) {
-  Panel panel{{"crank", "°"}, {"error", comparison.unit, comparison.runs.size() > 1}, {}, kHeight};
+  Panel panel{{"drive", "°"}, {"error", comparison.unit, comparison.runs.size() > 1}, {}, kHeight};
   double unit = std::numbers::pi / 180;
   if (!comparison.turning) {
     panel.x = {"drive", comparison.unit};

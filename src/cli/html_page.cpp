@@ -11,7 +11,7 @@ namespace oblique::cli {
 namespace {
 
 constexpr std::string_view kStyle = R"(  :root { color-scheme: light dark }
-  body { margin: 2rem auto; max-width: 46rem; padding: 0 1rem; background: #fff; color: #1a1a1a;
+  body { margin: 2rem auto; max-width: 52rem; padding: 0 1rem; background: #fff; color: #1a1a1a;
          font: 15px/1.5 Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif }
   h1 { font-size: 1.7rem; line-height: 1.2 }
   h2 { font-size: 1.2rem; margin-top: 2.2rem; border-bottom: 1px solid #b4b4b4 }
@@ -20,9 +20,10 @@ constexpr std::string_view kStyle = R"(  :root { color-scheme: light dark }
   figure svg { max-width: 100%; height: auto }
   .scroll { overflow-x: auto }
   table { border-collapse: collapse; font-size: 13px; font-variant-numeric: tabular-nums }
-  th, td { padding: .15rem .9rem .15rem 0; text-align: left; vertical-align: top }
+  th, td { padding: .15rem .8rem .15rem 0; text-align: left; vertical-align: top }
   th { border-bottom: 1px solid #b4b4b4; font-weight: 600 }
   .n { text-align: right }
+  td.n { white-space: nowrap }
   tr { break-inside: avoid }
   pre { font: 12px/1.4 'DejaVu Sans Mono', 'Liberation Mono', Menlo, Consolas, monospace; overflow-x: auto }
   @media screen and (prefers-color-scheme: dark) {
@@ -32,7 +33,7 @@ constexpr std::string_view kStyle = R"(  :root { color-scheme: light dark }
   @media print {
     body { margin: 0; max-width: none; font-size: 10.5pt }
     h2, h3 { break-after: avoid }
-    table { font-size: 9pt }
+    table { font-size: 8pt }
     pre { white-space: pre-wrap; font-size: 7.5pt }
     .scroll { overflow: visible }
   }

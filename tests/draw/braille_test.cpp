@@ -52,7 +52,8 @@ TEST(Braille, DrawsALineFromCornerToCorner) {
   }
   ASSERT_EQ(first.size(), 13U);  // rows of a panel of 220 px
   EXPECT_TRUE(std::is_sorted(first.rbegin(), first.rend()));
-  for (std::size_t r = 1; r < first.size(); ++r) EXPECT_NEAR(first[r - 1] - first[r], 51.0 / 13, 1.1);
+  for (std::size_t r = 1; r < first.size(); ++r)
+    EXPECT_NEAR(static_cast<double>(first[r - 1] - first[r]), 51.0 / 13, 1.1);
 }
 
 TEST(Braille, NamesCurvesAtTheirEndsAndNumbersTheAxes) {

@@ -2,7 +2,9 @@
 #include <oblique/draw/chart_layout.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 namespace oblique {
@@ -82,26 +84,42 @@ std::vector<std::string> wrapped(const std::string& text, double size, bool bold
   return lines;
 }
 
-std::vector<Vector2d> thinned(const std::vector<Vector2d>& points) {
+namespace {
+
+/// Points in a row of one half pixel column, and no farther than `reach` [px] above or below the first of
+/// them, as the first, the last and the extreme ones.
+std::vector<Vector2d> merged(const std::vector<Vector2d>& points, double reach) {
   std::vector<Vector2d> kept;
   for (std::size_t first = 0; first < points.size();) {
     const double column = std::floor(2 * points[first].x());
     std::size_t end = first;
-    std::size_t extremes[4] = {first, first, first, first};  // least and greatest x, least and greatest y
-    for (; end < points.size() && std::floor(2 * points[end].x()) == column; ++end) {
+    std::array<std::size_t, 6> keep{};  // first, last, least and greatest x, least and greatest y
+    keep.fill(first);
+    for (; end < points.size(); ++end) {
       const Vector2d& point = points[end];
-      if (point.x() < points[extremes[0]].x()) extremes[0] = end;
-      if (point.x() > points[extremes[1]].x()) extremes[1] = end;
-      if (point.y() < points[extremes[2]].y()) extremes[2] = end;
-      if (point.y() > points[extremes[3]].y()) extremes[3] = end;
+      if (std::floor(2 * point.x()) != column || std::abs(point.y() - points[first].y()) > reach) break;
+      keep[1] = end;
+      if (point.x() < points[keep[2]].x()) keep[2] = end;
+      if (point.x() > points[keep[3]].x()) keep[3] = end;
+      if (point.y() < points[keep[4]].y()) keep[4] = end;
+      if (point.y() > points[keep[5]].y()) keep[5] = end;
     }
-    std::vector<std::size_t> keep{first, end - 1};
-    keep.insert(keep.end(), std::begin(extremes), std::end(extremes));
     std::sort(keep.begin(), keep.end());
-    keep.erase(std::unique(keep.begin(), keep.end()), keep.end());
-    for (const std::size_t k : keep) kept.push_back(points[k]);
+    const auto unique_end = std::unique(keep.begin(), keep.end());
+    for (auto k = keep.begin(); k != unique_end; ++k) kept.push_back(points[*k]);
     first = end;
   }
+  return kept;
+}
+
+}  // namespace
+
+std::vector<Vector2d> thinned(const std::vector<Vector2d>& points) {
+  // within this a bow of 100 px radius is off its chord by less than a hundredth of a pixel
+  constexpr double kReach = 2;
+  constexpr std::size_t kMost = 10'000;
+  std::vector<Vector2d> kept = merged(points, kReach);
+  if (kept.size() > kMost) kept = merged(points, std::numeric_limits<double>::infinity());
   return kept;
 }
 

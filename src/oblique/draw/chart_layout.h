@@ -22,8 +22,10 @@ bool shows_x_numbers(const Chart& chart, std::size_t panel);
 /// A text in lines of at most `width` [px], broken between words.
 std::vector<std::string> wrapped(const std::string& text, double size, bool bold, double width);
 
-/// A line of the same look with fewer points: of those in a row that share a half of a pixel column the
-/// first, the last and the extreme ones are kept.
+/// A line with fewer points that lies on the same one to a hundredth of a pixel where it is smooth: of those
+/// in a row that share half a pixel column and two pixels of height the first, the last and the extreme ones
+/// are kept. Where that leaves too many, of a dense oscillation, the height does not count; extremes are kept
+/// all the same.
 std::vector<Eigen::Vector2d> thinned(const std::vector<Eigen::Vector2d>& points);
 
 }  // namespace oblique
