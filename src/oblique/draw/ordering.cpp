@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <cmath>
+#include <map>
 #include <numeric>
+#include <optional>
 
 #include <oblique/draw/layers.h>
 
@@ -39,6 +42,7 @@ class Ordering {
       for (int sweep = 0; sweep < kSweeps; ++sweep) {
         sweep_layers(sweep % 2 == 0);
         transpose();
+        if (sweep + 2 >= kSweeps) exchange_nets();
         const std::size_t crossings = count();
         if (!best.empty() && crossings >= least) continue;
         best = plan_.layers;
@@ -180,6 +184,63 @@ class Ordering {
         }
       }
     }
+  }
+
+  /// Where two nets pass several layers side by side, gives them one order all the way if that takes
+  /// crossings away: single swaps cannot undo a twist.
+  void exchange_nets() {
+    std::vector<std::map<std::size_t, std::size_t>> passing(plan_.nets.size());  // slot by layer
+    for (std::size_t s = 0; s < plan_.slots.size(); ++s) {
+      if (plan_.slots[s].passes()) passing[plan_.slots[s].net][plan_.slots[s].layer] = s;
+    }
+    const auto side_by_side = [&](std::size_t a, std::size_t b, std::size_t layer) {
+      const auto of_a = passing[a].find(layer), of_b = passing[b].find(layer);
+      return of_a != passing[a].end() && of_b != passing[b].end() &&
+             std::abs(position_[of_a->second] - position_[of_b->second]) == 1;
+    };
+    for (std::size_t l = 0; l < plan_.layers.size(); ++l) {
+      for (std::size_t k = 0; k + 1 < plan_.layers[l].size(); ++k) {
+        const Slot& upper = plan_.slots[plan_.layers[l][k]];
+        const Slot& lower = plan_.slots[plan_.layers[l][k + 1]];
+        if (!upper.passes() || !lower.passes()) continue;
+        const std::size_t a = upper.net, b = lower.net;
+        if (l > 0 && side_by_side(a, b, l - 1)) continue;  // seen there
+        std::size_t end = l + 1;
+        while (end < plan_.layers.size() && side_by_side(a, b, end)) ++end;
+        if (end > l + 1) untwist(passing[a], passing[b], l, end);
+      }
+    }
+  }
+
+  /// Tries both orders of two nets in the layers from `begin` to before `end`.
+  void untwist(const std::map<std::size_t, std::size_t>& a, const std::map<std::size_t, std::size_t>& b,
+               std::size_t begin, std::size_t end) {
+    const auto crossings = [&] {
+      std::size_t sum = 0;
+      for (std::size_t c = begin; c <= end; ++c) sum += count(links_[c]);
+      return sum;
+    };
+    const auto is_above = [&](std::size_t layer) { return position_[a.at(layer)] < position_[b.at(layer)]; };
+    std::vector<bool> old;
+    for (std::size_t layer = begin; layer < end; ++layer) old.push_back(is_above(layer));
+    const auto order = [&](const auto& a_above) {
+      for (std::size_t layer = begin; layer < end; ++layer) {
+        if (is_above(layer) == a_above(layer)) continue;
+        std::swap(position_[a.at(layer)], position_[b.at(layer)]);
+        for (const std::size_t slot : {a.at(layer), b.at(layer)})
+          plan_.layers[layer][static_cast<std::size_t>(position_[slot])] = slot;
+      }
+    };
+    std::size_t least = crossings();
+    std::optional<bool> best;
+    for (const bool above : {true, false}) {
+      order([&](std::size_t) { return above; });
+      const std::size_t here = crossings();
+      if (here >= least) continue;
+      least = here;
+      best = above;
+    }
+    order([&](std::size_t layer) { return best ? *best : static_cast<bool>(old[layer - begin]); });
   }
 
   std::size_t count() const {

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+// `oblique draw` on block diagrams: what it writes, and what it refuses.
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include "../support/process.h"
+
+namespace oblique::test {
+namespace {
+
+using testing::HasSubstr;
+
+const std::string kDiagrams = std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/";
+
+class DrawDiagram : public testing::Test {
+ protected:
+  DrawDiagram()
+      : folder_(std::filesystem::temp_directory_path() / ("oblique-draw-" + std::to_string(getpid()))) {
+    std::filesystem::create_directories(folder_);
+  }
+  ~DrawDiagram() override { std::filesystem::remove_all(folder_); }
+
+  Outcome run(const std::string& command) const { return run_command(command, folder_.string()); }
+
+  std::string text_of(const std::string& name) const {
+    std::ifstream stream(folder_ / name);
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+
+  void expect_refusal(const std::string& command, const std::string& message) const {
+    const Outcome outcome = run(command + " -o x.svg");
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_THAT(outcome.err, HasSubstr(message));
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "x.svg"));
+  }
+
+  std::filesystem::path folder_;
+};
+
+TEST_F(DrawDiagram, WritesTheSameSvgEveryTime) {
+  const std::string command = "oblique draw " + kDiagrams + "lessons/triangle-side.toml -o ";
+  ASSERT_EQ(run(command + "a.svg").status, 0);
+  ASSERT_EQ(run(command + "b.svg").status, 0);
+  const std::string svg = text_of("a.svg");
+  EXPECT_THAT(svg, HasSubstr("id=\"block-c\""));
+  EXPECT_THAT(svg, HasSubstr("id=\"net-c.out\""));
+  EXPECT_EQ(svg, text_of("b.svg"));
+}
+
+TEST_F(DrawDiagram, OpensCompositesAndChangesSymbols) {
+  const std::string command = "oblique draw " + kDiagrams + "historical/class-three-mechanism.toml -o ";
+  ASSERT_EQ(run(command + "folded.svg").status, 0);
+  ASSERT_EQ(run(command + "open.svg --depth 1").status, 0);
+  ASSERT_EQ(run(command + "din.svg --depth 1 --symbols din").status, 0);
+  EXPECT_LT(text_of("folded.svg").size(), text_of("open.svg").size());
+  EXPECT_NE(text_of("open.svg"), text_of("din.svg"));
+}
+
+TEST_F(DrawDiagram, RefusesWhatIsWrong) {
+  const std::string diagram = "oblique draw " + kDiagrams + "lessons/circle.toml ";
+  const std::string mechanism = "oblique draw " + kDiagrams + "mechanisms/four-bar.toml ";
+  expect_refusal(diagram + "--symbols dinn", "--symbols dinn; expected classic or din");
+  expect_refusal(diagram + "--symbols dinn", "did you mean 'din'?");
+  expect_refusal(diagram + "--at 1", "--at is for mechanisms, and this is a diagram");
+  expect_refusal(diagram + "--positions 3", "--positions is for mechanisms, and this is a diagram");
+  expect_refusal(diagram + "--trace B", "--trace is for mechanisms, and this is a diagram");
+  expect_refusal(diagram + "--plots B", "--plots is for mechanisms, and this is a diagram");
+  expect_refusal(mechanism + "--symbols din", "--symbols is for diagrams, and this is a mechanism");
+  expect_refusal(mechanism + "--depth 1", "--depth is for diagrams, and this is a mechanism");
+  std::ofstream(folder_ / "block.toml") << "format = \"oblique-block/1\"\n";
+  expect_refusal("oblique draw block.toml", "this is neither a mechanism nor a diagram");
+  std::ofstream(folder_ / "wires.toml")
+      << "format = \"oblique-diagram/1\"\n[blocks]\na = { type = \"summer\", in = [\"bb\"] }\n";
+  expect_refusal("oblique draw wires.toml", "there is no signal 'bb'");
+}
+
+}  // namespace
+}  // namespace oblique::test
