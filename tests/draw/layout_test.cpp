@@ -118,6 +118,27 @@ TEST(Layout, RandomGraphsAreSound) {
   }
 }
 
+// So many crossing wires that channels hold several circles of constraints at once, beside wires that merely
+// wait.
+TEST(Layout, DenseGraphsAreSound) {
+  std::mt19937 random(7);
+  const auto draw = [&](std::size_t n) { return static_cast<std::size_t>(random() % n); };
+  for (int round = 0; round < 100; ++round) {
+    LayoutGraph graph;
+    const std::size_t n = 2 + draw(60);
+    for (std::size_t v = 0; v < n; ++v) graph.nodes.push_back(box(1 + draw(5), 1 + draw(3)));
+    for (std::size_t v = 0; v < n; ++v) {
+      for (std::size_t k = 0; k < graph.nodes[v].inputs.size(); ++k) {
+        const std::size_t from = draw(n);
+        graph.wires.push_back({from, draw(graph.nodes[from].outputs.size()), v, k});
+      }
+    }
+    const DiagramLayout layout = lay_out(graph);
+    expect_sound(graph, layout);
+    if (HasFailure()) FAIL() << "round " << round;
+  }
+}
+
 TEST(Layout, IsTheSameEveryTime) {
   LayoutGraph graph;
   for (int v = 0; v < 30; ++v) graph.nodes.push_back(box(2, 1));

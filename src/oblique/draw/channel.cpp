@@ -102,11 +102,13 @@ class Router {
     }
   }
 
-  /// Splits the waiting vertical with the fewest wires: the half with the pins on the left waits for nothing.
+  /// Splits the waiting vertical with the fewest wires: the half with the pins on the left waits for nothing,
+  /// and nothing waits for the other, so that no circle needs it split again.
   void split(const std::set<std::size_t>& placed) {
     std::size_t best = verticals_.size();
     for (std::size_t v = 0; v < verticals_.size(); ++v) {
-      if (placed.contains(v) || verticals_[v].left.empty() || verticals_[v].right.empty()) continue;
+      const Vertical& waiting = verticals_[v];
+      if (placed.contains(v) || waiting.second || waiting.left.empty() || waiting.right.empty()) continue;
       if (best == verticals_.size() || size(v) < size(best)) best = v;
     }
     Vertical second;
