@@ -81,8 +81,14 @@ TEST_P(Split, IsRefusedWhereItIsUnstable) {
   }
 }
 
-TEST_P(Split, SwingsUpWhereItIsForced) {
-  if (GetParam().pole < 0) GTEST_SKIP() << "stable";
+class UnstableSplit : public testing::TestWithParam<SplitPole> {};
+INSTANTIATE_TEST_SUITE_P(Paper, UnstableSplit,
+                         testing::Values(SplitPole{"AB", "O1C", "DE", 1, 6.3e5},
+                                         SplitPole{"AB", "O1C", "DE", 10, 2.7e5},
+                                         SplitPole{"DE", "AB", "O1C", 1, 2.0e5},
+                                         SplitPole{"O1C", "AB", "DE", 1, 1.0e6}));
+
+TEST_P(UnstableSplit, SwingsUpWhereItIsForced) {
   PatchOptions options = options_of(GetParam());
   options.force = true;
   const BlockLibrary library = BlockLibrary::shipped();

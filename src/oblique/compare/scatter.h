@@ -33,8 +33,8 @@ struct Draw {
 
 /// Draws a value for each parameter of each block that a scatter names: uniform within ± half width about the
 /// one that it has, which depends on the key, the place of the block in the diagram, and the place of the
-/// scatter in the list, on nothing else. A value that the parameter may not have (a negative error of a
-/// multiplier) is mirrored at the one that it has.
+/// scatter in the list, on nothing else. A value that the parameter may not have is mirrored at the one
+/// that it has.
 std::vector<Draw> draw(const FlatDiagram& diagram, const std::vector<BlockFigure>& scatters, DrawKey key);
 
 /// Gives the blocks what they drew; a block's equations may become another case of its definition.
