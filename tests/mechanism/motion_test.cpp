@@ -300,5 +300,14 @@ TEST(MotionColumns, HaveNoRatesAtADeadCentre) {
   EXPECT_TRUE(std::isnan(columns[12].values[1]));  // C.ax
 }
 
+// It passes its change points either way; one passed badly was once taken for a limit days away.
+TEST(FindRange, OfAParallelogramHasNoLimits) {
+  const Mechanism mechanism =
+      read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/parallelogram.toml");
+  const MotionRange range = find_range(mechanism, decompose(mechanism));
+  EXPECT_FALSE(range.forward);
+  EXPECT_FALSE(range.backward);
+}
+
 }  // namespace
 }  // namespace oblique

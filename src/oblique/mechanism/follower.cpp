@@ -256,7 +256,9 @@ std::optional<MotionEvent> Follower::advance_to_limit(double t) {
   advance(t);
   stop_at_limit_ = false;
   for (std::size_t i = before; i < events_.size(); ++i) {
-    if (events_[i].kind == MotionEvent::Kind::limit) return events_[i];
+    // one beyond t is where a change point was not passed, and no end of the way to t
+    const bool on_the_way = std::abs(events_[i].time) <= std::abs(t);
+    if (events_[i].kind == MotionEvent::Kind::limit && on_the_way) return events_[i];
   }
   return std::nullopt;
 }
