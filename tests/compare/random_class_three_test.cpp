@@ -13,7 +13,8 @@ TEST(RandomClassThree, IsTrackedByBothMethods) {
     const Mechanism mechanism = testing::random_class_three(seed);
     for (const PatchMethod method : {PatchMethod::triangles, PatchMethod::gradient}) {
       const testing::Tracking result = testing::track(mechanism, method, library);
-      EXPECT_TRUE(result.tracks) << "seed " << seed << ", " << method_name(method) << ": " << result.explanation;
+      EXPECT_TRUE(result.tracks) << "seed " << seed << ", " << method_name(method) << ": "
+                                 << result.explanation;
     }
   }
 }

@@ -231,7 +231,8 @@ TEST(Patch, TakesATriadApart) {
   EXPECT_EQ(count("dyad-rrr-variable"), 1);
   EXPECT_EQ(count("dyad-rrr"), 1);
   EXPECT_EQ(count("servo-amplifier"), 1);
-  EXPECT_THAT(write_diagram(diagram), HasSubstr("Of the six splits this one keeps\n# farthest from flat triangles"));
+  EXPECT_THAT(write_diagram(diagram),
+              HasSubstr("Of the six splits this one keeps\n# farthest from flat triangles"));
 }
 
 /// class-iii.toml and the same once more, 4 to its right, with a P before each name.
@@ -289,7 +290,8 @@ TEST(Patch, OffersTheGradientWhereATriadHasASlide) {
     patch_triangles(mechanism);
     FAIL();
   } catch (const PatchError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("has a slide among its leads, so that it cannot be taken apart into triangles"));
+    EXPECT_THAT(error.what(),
+                HasSubstr("has a slide among its leads, so that it cannot be taken apart into triangles"));
     EXPECT_THAT(error.what(), HasSubstr("remedy: patch it with --method gradient"));
   }
 }
