@@ -43,12 +43,14 @@ TEST(Svg, WritesEachKindOfMark) {
   EXPECT_EQ(svg, to_svg(picture));
 }
 
-// Helvetica's widths: A and V 667, space 278 thousandths.
+// DejaVu Sans's widths: A and V 684, space 318 thousandths.
 TEST(Picture, MeasuresTexts) {
-  EXPECT_DOUBLE_EQ(text_width("A V", 10), 16.12);
+  EXPECT_DOUBLE_EQ(text_width("A V", 10), 16.86);
   const auto extent = extent_of(label_mark({100, 100}, "A V", Anchor::end, 10));
   EXPECT_DOUBLE_EQ(extent.max().x(), 100);
-  EXPECT_DOUBLE_EQ(extent.min().x(), 100 - 16.12);
+  EXPECT_DOUBLE_EQ(extent.min().x(), 100 - 16.86);
+  EXPECT_DOUBLE_EQ(text_width("°ωЖ", 10), 4.01 + 8.37 + 10.77);
+  EXPECT_DOUBLE_EQ(text_width("\xC3", 10), 10);  // half a letter: the replacement character
 }
 
 }  // namespace

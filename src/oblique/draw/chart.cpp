@@ -21,10 +21,6 @@ constexpr double kLeastWidth = 300, kLeastHeight = 100;              ///< of a p
 constexpr double kTickGap = 6;                                       ///< between a plot and its numbers
 constexpr Pen kGrid{Ink::faint, 0.75}, kFineGrid{Ink::faint, 0.35}, kFrame{Ink::line, 1};
 
-/// How much wider than text_width a text may be on paper: where there is no Helvetica or Arial, the font is
-/// as wide as DejaVu Sans.
-constexpr double kWideFont = 1.16;
-
 /// A line that crosses itself this often would be a blot if it were as thick as others.
 constexpr std::size_t kPointsOfThinLine = 4000;
 constexpr double kThinLine = 0.6;  // [px]
@@ -57,7 +53,7 @@ class PanelPainter {
 
   double label_width() const {
     double width = 0;
-    for (const Tick& tick : y_ticks()) width = std::max(width, kWideFont * text_width(tick.label, kText));
+    for (const Tick& tick : y_ticks()) width = std::max(width, text_width(tick.label, kText));
     return width;
   }
 
@@ -112,11 +108,11 @@ class PanelPainter {
   int place_legend() {
     legend_.clear();
     const std::string title = y_.title();
-    double x = title.empty() ? 0 : kWideFont * text_width(title, kText) + kEntryGap;
+    double x = title.empty() ? 0 : text_width(title, kText) + kEntryGap;
     int row = 0;
     for (const Curve& curve : panel_.curves) {
       if (curve.name.empty()) continue;
-      const double width = kSample + 6 + kWideFont * text_width(curve.name, kText);
+      const double width = kSample + 6 + text_width(curve.name, kText);
       if (x > 0 && x + width > right_ - left_) {
         x = 0;
         ++row;
@@ -223,7 +219,7 @@ Picture draw_chart(const Chart& chart) {
   }
   Picture picture{chart.width, 0, chart.title, {}};
   const double left = kMargin + label_width + kTickGap, right = chart.width - kMargin - 6;
-  const std::vector<std::string> title = wrapped(chart.title, kWideFont * kTitle, true, right - kMargin);
+  const std::vector<std::string> title = wrapped(chart.title, kTitle, true, right - kMargin);
   double y = kMargin;
   for (const std::string& line : title) {
     picture.marks.push_back(label_mark({kMargin, y + kTitle}, line, Anchor::start, kTitle));

@@ -16,7 +16,6 @@ using schematic::Shape;
 
 constexpr int kLoopWeight = 3;  // servo loops stay together
 constexpr double kMargin = 24;
-constexpr double kBoldSlack = 1.25;  // bold fonts wider than Helvetica
 
 /// A schematic with its layout, and those of its open composites.
 struct Sheet {
@@ -134,7 +133,7 @@ Picture draw_diagram(const Diagram& diagram, const BlockLibrary& library, const 
   const double heading = diagram.title.empty() ? 0 : 32;
   Picture picture;
   picture.title = diagram.title;
-  const double title_width = kBoldSlack * text_width(diagram.title, kTitleSize, true);
+  const double title_width = text_width(diagram.title, kTitleSize, true);
   picture.width = std::max(sheet.layout.size.x(), title_width) + 2 * kMargin;
   picture.height = sheet.layout.size.y() + heading + 2 * kMargin;
   if (!diagram.title.empty()) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/draw/picture.h>
 
-#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -10,16 +9,6 @@ namespace {
 
 using Eigen::Vector2d;
 using Extent = Eigen::AlignedBox<double, 2>;
-
-/// Advance widths of Helvetica from ' ' to '~' in thousandths of the font's size (Adobe's font metrics).
-constexpr std::array<short, 95> kAdvances{
-    278, 278, 355, 556, 556, 889, 667, 191, 333, 333, 389, 584, 278, 333,  278, 278, 556, 556, 556,
-    556, 556, 556, 556, 556, 556, 556, 278, 278, 584, 584, 584, 556, 1015, 667, 667, 722, 722, 667,
-    611, 778, 722, 278, 500, 667, 556, 833, 722, 778, 667, 778, 722, 667,  611, 722, 667, 944, 667,
-    667, 611, 278, 278, 278, 469, 556, 333, 556, 556, 500, 556, 556, 278,  556, 556, 222, 222, 500,
-    222, 833, 556, 556, 556, 556, 333, 500, 278, 556, 500, 722, 500, 500,  500, 334, 260, 334, 584};
-constexpr double kOtherAdvance = 600;  // letters beyond ASCII: Greek and Cyrillic ones are about as wide
-constexpr double kBold = 1.06;
 
 Extent extent_of_label(const Label& label) {
   const double width = text_width(label.text, label.size, label.bold);
@@ -85,19 +74,6 @@ Mark box_mark(const Vector2d& corner, const Vector2d& size, Ink fill, const Pen&
 
 Mark label_mark(const Vector2d& at, std::string text, Anchor anchor, double size) {
   return {Label{at, std::move(text), anchor, size}, {Ink::none, 0}, Ink::line};
-}
-
-double text_width(const std::string& text, double size, bool bold) {
-  double thousandths = 0;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte >= 0x20 && byte < 0x7F) {
-      thousandths += kAdvances[byte - 0x20U];
-    } else if (byte >= 0xC0) {  // the first byte of a letter beyond ASCII in UTF-8
-      thousandths += kOtherAdvance;
-    }
-  }
-  return thousandths / 1000 * size * (bold ? kBold : 1);
 }
 
 Extent extent_of(const Mark& mark) {

@@ -94,8 +94,7 @@ Mark disc_mark(const Eigen::Vector2d& centre, double radius, Ink fill, const Pen
 Mark box_mark(const Eigen::Vector2d& corner, const Eigen::Vector2d& size, Ink fill, const Pen& pen = {});
 Mark label_mark(const Eigen::Vector2d& at, std::string text, Anchor anchor = Anchor::start, double size = 12);
 
-/// Width of a text in the pictures' font [px], from the advance widths of Helvetica; other sans-serif fonts
-/// are within a tenth.
+/// Width of a text in the widest of the pictures' fonts [px]; in others it takes up to a sixth less.
 double text_width(const std::string& text, double size, bool bold = false);
 
 /// The rectangle that a mark covers, its pen included.

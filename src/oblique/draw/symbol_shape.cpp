@@ -11,10 +11,6 @@ using Eigen::Vector2d;
 
 constexpr double kPitch = 2 * kLayoutGrid;  // between pins
 
-double width_of(const std::string& text, double size) {
-  return kSlack * text_width(text, size);
-}
-
 double on_grid(double length) {
   return std::ceil(length / kLayoutGrid) * kLayoutGrid;
 }
@@ -25,7 +21,7 @@ std::vector<std::string> lines_of(const std::string& name) {
   std::vector<std::string> lines{""};
   std::string word;
   const auto put = [&] {
-    if (!lines.back().empty() && width_of(lines.back() + word, kCaption) > kWidest) lines.emplace_back();
+    if (!lines.back().empty() && text_width(lines.back() + word, kCaption) > kWidest) lines.emplace_back();
     lines.back() += word;
     word.clear();
   };
@@ -110,22 +106,22 @@ double beside_width(const Block& block) {
   double weights = 0, constants = 0;
   for (const Input& input : block.inputs) {
     const std::string text = lead_text(block, input);
-    if (!text.empty()) weights = std::max(weights, width_of(text, kSmall) + 6);
-    if (!input.constant.empty()) constants = std::max(constants, width_of(input.constant, kSmall) + 14);
+    if (!text.empty()) weights = std::max(weights, text_width(text, kSmall) + 6);
+    if (!input.constant.empty()) constants = std::max(constants, text_width(input.constant, kSmall) + 14);
   }
   return weights + constants;
 }
 
 double widest(const std::vector<std::string>& texts, double size) {
   double width = 0;
-  for (const std::string& text : texts) width = std::max(width, width_of(text, size));
+  for (const std::string& text : texts) width = std::max(width, text_width(text, size));
   return width;
 }
 
 Vector2d body_size(const Block& block, const Shape& shape) {
   const double pins = static_cast<double>(std::max(block.inputs.size(), block.outputs.size()));
   const double tall = std::max(3 * kPitch, kPitch * (pins + 1));
-  const double text = width_of(shape.text, kText);
+  const double text = text_width(shape.text, kText);
   switch (shape.form) {
     case Form::triangle:
       return {std::clamp(0.9 * tall, 44.0, 64.0), tall};
@@ -142,7 +138,7 @@ Vector2d body_size(const Block& block, const Shape& shape) {
       return {on_grid(std::max(inner, text + 16)), kPitch * (pins + 1) + kPitch};
     }
     case Form::terminal:
-      return {on_grid(width_of(block.name, kSmall) + 14), kPitch * std::max(pins, 1.0)};
+      return {on_grid(text_width(block.name, kSmall) + 14), kPitch * std::max(pins, 1.0)};
     case Form::box:
       break;
   }
@@ -210,7 +206,7 @@ Shape frame_shape(const Block& block, const Vector2d& inside, const std::vector<
   shape.corner = {on_grid(left), 0};
   const std::string title = block.label.empty() ? block.name : block.label;
   shape.caption = {title};
-  const double heading = width_of(title, kText) * 1.1 + width_of(shape.text, kSmall) + 40;
+  const double heading = text_width(title, kText) * 1.1 + text_width(shape.text, kSmall) + 40;
   shape.body = {std::max(on_grid(inside.x()), on_grid(heading)),
                 on_grid(inside.y()) + kFrameTop + kFrameMargin};
   shape.node.size = {shape.corner.x() + shape.body.x() + kLayoutGrid, shape.body.y()};

@@ -68,7 +68,7 @@ class Artist {
     const double edge = input ? at_.x() : at_.x() + width();
     write({input ? edge + 4 : edge - 4, y + 3.5}, shape_.text, input ? Anchor::start : Anchor::end, kSmall);
     const double end = input ? at_.x() + width() : at_.x();
-    const double text = kSlack * text_width(shape_.text, kSmall) + 8;
+    const double text = text_width(shape_.text, kSmall) + 8;
     put(line_mark({input ? edge + text : edge - text, y}, {end, y}, {Ink::line, 1.2, {}}));
   }
 
@@ -125,8 +125,7 @@ class Artist {
     const Pen wire{Ink::line, 1.2, {}};
     double widest = 0;  // constants stand one below the other
     for (const Input& input : block_.inputs) {
-      if (!input.constant.empty())
-        widest = std::max(widest, kSlack * text_width(lead_text(block_, input), kSmall));
+      if (!input.constant.empty()) widest = std::max(widest, text_width(lead_text(block_, input), kSmall));
     }
     for (std::size_t k = 0; k < block_.inputs.size(); ++k) {
       const Input& input = block_.inputs[k];
@@ -185,7 +184,7 @@ class Artist {
     if (!block_.inside.empty()) {
       put(label_mark(body(10, 18), shape_.caption.front(), Anchor::start, kText));
       std::get<Label>(picture_.marks.back().shape).bold = true;
-      const double x = 18 + kSlack * text_width(shape_.caption.front(), kText, true);
+      const double x = 18 + text_width(shape_.caption.front(), kText, true);
       write(body(x, 18), shape_.text, Anchor::start, kSmall);
       return;
     }

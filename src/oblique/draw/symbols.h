@@ -14,7 +14,7 @@ namespace oblique::schematic {
 enum class Form { triangle, integrator, open_amplifier, circle, box, ports, terminal };
 
 /// Sizes of the fonts [px], and how much wider than Helvetica another font may be.
-inline constexpr double kSmall = 9.5, kText = 12, kCaption = 10.5, kSlack = 1.15;
+inline constexpr double kSmall = 9.5, kText = 12, kCaption = 10.5;
 
 /// What a block looks like, apart from where it stands.
 struct Shape {
