@@ -86,7 +86,7 @@ struct PatchRequest {
   bool derivatives = false;
   std::string unit;
   std::string period;
-  std::string slower = "100";
+  std::string slower;  ///< empty: as it takes
   std::vector<std::string> split;
   std::string machine;  ///< in whose elements
   std::string sheets;   ///< how the names of its sheets begin

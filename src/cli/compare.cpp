@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/compare/compare.h>
-#include <oblique/compare/judge.h>
 
 #include <algorithm>
 #include <chrono>
@@ -11,13 +10,14 @@
 
 #include <oblique/compare/machine_comparison.h>
 #include <oblique/compare/monte_carlo.h>
-#include <oblique/machine/realise.h>
+#include <oblique/compare/on_machine.h>
 #include <oblique/mechanism/read_mechanism.h>
 
 #include "command.h"
 #include "comparison_chart.h"
 #include "comparison_output.h"
 #include "machine_comparison_output.h"
+#include "machine_patch.h"
 #include "monte_carlo_output.h"
 #include "plot_output.h"
 #include "terminal.h"
@@ -30,7 +30,7 @@ namespace {
   throw ReadError(Diagnostic{{}, what, expected, remedy});
 }
 
-/// Positive finite numbers of an option that takes several.
+/// Positive finite numbers of an option that takes several, each once.
 std::vector<double> numbers_option(const std::string& option, const std::vector<std::string>& texts,
                                    std::string_view unit, const std::string& expected) {
   std::vector<double> values;
@@ -38,6 +38,7 @@ std::vector<double> numbers_option(const std::string& option, const std::vector<
     values.push_back(quantity_option(option, text, unit));
     if (!(values.back() > 0 && std::isfinite(values.back())))
       refuse(fmt::format("{} {}", option, text), expected);
+    if (std::find(values.begin(), values.end() - 1, values.back()) != values.end() - 1) values.pop_back();
   }
   return values;
 }
@@ -45,7 +46,11 @@ std::vector<double> numbers_option(const std::string& option, const std::vector<
 CompareOptions options_of(const CompareRequest& request) {
   CompareOptions options;
   options.methods.clear();
-  for (const std::string& method : request.methods) options.methods.push_back(method_option(method));
+  for (const std::string& name : request.methods) {
+    const PatchMethod method = method_option(name);
+    if (std::find(options.methods.begin(), options.methods.end(), method) == options.methods.end())
+      options.methods.push_back(method);
+  }
   if (!request.gains.empty())
     options.gains = numbers_option("--gain", request.gains, "1", "finite gains above 0, such as 1e3,1e4,1e5");
   options.bandwidths = numbers_option("--bandwidth", request.bandwidths, "Hz",
@@ -136,7 +141,19 @@ ExitStatus compare_mechanism(const Session& session, const CompareRequest& reque
   }
   if (request.runs > 0) scatters_of(request, library, machine);  // before the work, not after it
   const Mechanism mechanism = within_range(read_mechanism(request.mechanism));
-  if (machine != nullptr || request.runs > 0) single = judged_patch(mechanism, library, single).options;
+  std::optional<MachinePatch> on_elements;
+  Diagram drawn;  // whose elements scatter
+  if (machine != nullptr || request.runs > 0) {
+    JudgedPatch patched = judged_patch(mechanism, library, single);
+    single = patched.options;
+    drawn = patched.diagram;
+    if (machine != nullptr) {
+      on_elements = put_on_machine(mechanism, library, *machine, std::move(patched));
+      single = on_elements->options;
+      drawn = on_elements->realised;
+      if (single.bandwidth) options.bandwidths = {*single.bandwidth};
+    }
+  }
   Comparison comparison;
   {
     Progress progress("comparing");
@@ -151,14 +168,11 @@ ExitStatus compare_mechanism(const Session& session, const CompareRequest& reque
     Progress progress("figure by figure");
     const MachineComparison on_machine = compare_on_machine(
         mechanism, library, *machine, single, [&](double fraction) { progress.show(fraction); });
-    text += to_text(on_machine, comparison);
+    text += to_text(on_machine, comparison) + bandwidth_text(*on_elements, *machine);
     json["machine"] = to_json(on_machine);
   }
   if (request.runs > 0) {
-    Diagram diagram = patch(mechanism, single);
-    diagram.file = mechanism.file;
-    if (machine != nullptr) diagram = realise(diagram, library, *machine).diagram;
-    const MonteCarloReport report = draw_elements(request, mechanism, diagram, library, machine);
+    const MonteCarloReport report = draw_elements(request, mechanism, drawn, library, machine);
     text += to_text(report);
     json["monte_carlo"] = to_json(report);
     chart.panels.push_back(panel_of(report));

@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <oblique/compare/judge.h>
 #include <oblique/diagram/machine_profile.h>
 #include <oblique/machine/realise.h>
 #include <oblique/network/network.h>
@@ -123,14 +122,18 @@ void check_machine_request(const PatchRequest& request) {
   }
 }
 
-ExitStatus patch_for_machine(const Session& session, const PatchRequest& request, const Diagram& diagram) {
+std::string bandwidth_text(const MachinePatch& patch, const MachineProfile& machine) {
+  if (!patch.usual) return "";
+  return fmt::format("servo amplifiers of {:g} Hz here: with {:g} Hz on the elements of {}, {}\n",
+                     *patch.options.bandwidth, patch.usual->bandwidth, machine.title, patch.usual->fault);
+}
+
+ExitStatus patch_for_machine(const BlockLibrary& library, const PatchRequest& request,
+                             const Mechanism& mechanism, const JudgedPatch& patched) {
   const MachineProfile& machine = *find_machine(request.machine);
-  const BlockLibrary library = session.blocks();
-  const Diagram realised = realise(diagram, library, machine).diagram;
-  const FlatDiagram flat = flatten(realised, library);
-  const Bill bill = bill_of(flat, machine);
-  note(to_text(bill));
-  if (const auto absent = bill.absent(); !absent.empty() && !request.force) {
+  const Bill needed = bill_of(flatten(realise(patched.diagram, library, machine).diagram, library), machine);
+  if (const auto absent = needed.absent(); !absent.empty() && !request.force) {
+    note(to_text(needed));
     print_error(to_string(Diagnostic{
         {request.mechanism, {}},
         fmt::format("the machine {} has no {}, so nothing is written", machine.title,
@@ -139,18 +142,13 @@ ExitStatus patch_for_machine(const Session& session, const PatchRequest& request
         "choose another machine (oblique machines), or write the diagram all the same with --force"}));
     return ExitStatus::no;
   }
-  const Judgement judgement = judge(realised, library);
-  if (!judgement.good() && !request.force) {
-    print_error(to_string(Diagnostic{
-        {request.mechanism, {}},
-        fmt::format("on the machine {} this patch would not run: {}", machine.title, fault_of(judgement)),
-        "servo loops that return to rest everywhere on the way",
-        "a lower --gain or --bandwidth may do where the machine's own elements are slow; --force writes it "
-        "all the "
-        "same"}));
-    return ExitStatus::no;
-  }
-  note(judgement_text(judgement));
+  const MachinePatch on_machine = put_on_machine(mechanism, library, machine, patched);
+  const Diagram& realised = on_machine.realised;
+  const FlatDiagram flat = flatten(realised, library);
+  const Bill bill = bill_of(flat, machine);
+  note(to_text(bill));
+  note(bandwidth_text(on_machine, machine));
+  note(judgement_text(on_machine.judgement));
   std::vector<Written> files;
   if (!request.sheets.empty()) files = sheet_files(request, realised, flat, bill, library, machine);
   const std::string text = write_diagram(realised);

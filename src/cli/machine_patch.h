@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include <oblique/compare/on_machine.h>
 #include <oblique/machine/bill.h>
 #include <oblique/machine/sheets.h>
 
@@ -21,9 +22,13 @@ MachineSheets sheets_of(const Diagram& diagram, const FlatDiagram& flat, const B
 /// DiagramError.
 void check_machine_request(const PatchRequest& request);
 
-/// Puts a patched diagram into the elements of the machine of --machine and writes it, with the sheets where
-/// they are asked for; the bill goes to stderr. Where the machine has no elements of a kind that is needed
-/// nothing is written, unless forced, and the status is `no`.
-ExitStatus patch_for_machine(const Session& session, const PatchRequest& request, const Diagram& diagram);
+/// Puts a patch into the elements of the machine of --machine and writes it, with the sheets where they are
+/// asked for; the bill goes to stderr. Where the machine has no elements of a kind that is needed nothing is
+/// written, unless forced, and the status is `no`.
+ExitStatus patch_for_machine(const BlockLibrary& library, const PatchRequest& request,
+                             const Mechanism& mechanism, const JudgedPatch& patched);
+
+/// Says that a patch on a machine has other amplifiers than it would by itself; empty where it has not.
+std::string bandwidth_text(const MachinePatch& patch, const MachineProfile& machine);
 
 }  // namespace oblique::cli

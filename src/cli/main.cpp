@@ -34,7 +34,8 @@ ExitStatus run_program(int argc, char** argv) {
     return report(error,
                   error.kind() == SynthesisError::Kind::nowhere ? ExitStatus::no : ExitStatus::bad_request);
   } catch (const PatchError& error) {
-    return report(error, ExitStatus::no);
+    return report(error,
+                  error.kind() == PatchError::Kind::obstacle ? ExitStatus::no : ExitStatus::bad_request);
   } catch (const Error& error) {
     return report(error, ExitStatus::bad_request);
   }

@@ -58,9 +58,10 @@ void add_patch(CLI::App& app, Chosen& chosen) {
   verb->add_option("MECHANISM", request->mechanism, "mechanism file (oblique-mechanism/1)")->required();
   verb->add_option("--gain", request->gain, "gain of the servo amplifiers; inf: ideal")
       ->capture_default_str();
-  verb->add_option("--bandwidth", request->bandwidth,
-                   "bandwidth of the servo amplifiers, in Hz or with a unit; inf: algebraic loops "
-                   "(default: 100 times the crank's frequency)");
+  verb->add_option(
+      "--bandwidth", request->bandwidth,
+      "bandwidth of the servo amplifiers, in Hz or with a unit; inf: algebraic loops "
+      "(default: 100 times the crank's frequency; with --machine less where its elements take it)");
   add_method(verb, *request);
   verb->add_flag("--derivatives", request->derivatives,
                  "velocities and accelerations too, as further circuits");
@@ -71,8 +72,9 @@ void add_patch(CLI::App& app, Chosen& chosen) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("LEAD,LEAD,LEAD");
-  verb->add_option("--slower", request->slower, "how many times slower the outer loop of a triad is")
-      ->capture_default_str();
+  verb->add_option(
+      "--slower", request->slower,
+      "how many times slower the outer loop of a triad is (default: 100, or more where it takes it)");
   verb->add_option("--unit", request->unit,
                    "1 machine unit of the coordinates, for example \"2.5 m\" (default: by the exact motion)")
       ->type_name("LENGTH");
@@ -104,9 +106,10 @@ void add_compare(CLI::App& app, Chosen& chosen) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("G,G,…");
-  verb->add_option("--bandwidth", request->bandwidths,
-                   "bandwidths of the servo amplifiers, in Hz or with a unit; each is run with each gain "
-                   "(default: 100 times the crank's frequency)")
+  verb->add_option(
+          "--bandwidth", request->bandwidths,
+          "bandwidths of the servo amplifiers, in Hz or with a unit; each is run with each gain "
+          "(default: 100 times the crank's frequency; with --machine less where its elements take it)")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("B,B,…");

@@ -33,11 +33,15 @@ double finite_option(const std::string& option, const std::string& text, std::st
 
 std::string judgement_text(const Judgement& judgement) {
   if (!judgement.good()) return fmt::format("warning: {}\n", fault_of(judgement));
-  std::string text = std::isfinite(judgement.slowest_pole)
-                         ? fmt::format("its servo loops come to rest everywhere: slowest pole {:.3g} 1/s; ",
-                                       judgement.slowest_pole)
-                         : std::string("no servo loops; ");
+  std::string text =
+      std::isfinite(judgement.slowest_pole)
+          ? fmt::format(
+                "its servo loops come to rest everywhere: slowest pole {:.3g} 1/s, damping ζ ≥ {:.2g}; ",
+                judgement.slowest_pole, judgement.damping)
+          : std::string("no servo loops; ");
   text += fmt::format("largest signal {:.3g} ({})\n", judgement.largest, judgement.largest_signal);
+  if (!judgement.well_damped())
+    text += fmt::format("warning: {}; a run takes many steps\n", fault_of(judgement));
   constexpr double kErrors = 0.02;  // of real elements, by which a cosine of 1 may be passed
   if (judgement.largest > 1 + kErrors) text += "warning: it overloads the machine; choose a larger --unit\n";
   return text;
@@ -60,12 +64,14 @@ ExitStatus patch_mechanism(const Session& session, const PatchRequest& request) 
   options.gain = positive_option("--gain", request.gain, "1");
   if (!request.bandwidth.empty()) options.bandwidth = positive_option("--bandwidth", request.bandwidth, "Hz");
   options.derivatives = request.derivatives;
-  options.slower = finite_option("--slower", request.slower, "1");
+  if (!request.slower.empty()) options.slower = finite_option("--slower", request.slower, "1");
   options.split = request.split;
-  if (!options.split.empty() && options.method == PatchMethod::gradient) {
+  if (options.method == PatchMethod::gradient && !(options.split.empty() && request.slower.empty())) {
+    const std::string option = options.split.empty()
+                                   ? fmt::format("--slower {}", request.slower)
+                                   : fmt::format("--split {}", fmt::join(options.split, ","));
     throw ReadError(Diagnostic{{},
-                               fmt::format("--split {} with --method gradient, which takes no group apart",
-                                           fmt::join(options.split, ",")),
+                               fmt::format("{} with --method gradient, which takes no group apart", option),
                                "--method triangles or paper beside it",
                                {}});
   }
@@ -73,8 +79,9 @@ ExitStatus patch_mechanism(const Session& session, const PatchRequest& request) 
   const Mechanism mechanism = read_mechanism(request.mechanism);
   if (!request.unit.empty()) options.unit = finite_option("--unit", request.unit, mechanism.length_unit);
   if (!request.period.empty()) options.period = finite_option("--period", request.period, "s");
-  const JudgedPatch patched = judged_patch(mechanism, session.blocks(), options);
-  if (!request.machine.empty()) return patch_for_machine(session, request, patched.diagram);
+  const BlockLibrary library = session.blocks();
+  const JudgedPatch patched = judged_patch(mechanism, library, options);
+  if (!request.machine.empty()) return patch_for_machine(library, request, mechanism, patched);
   const std::string text = write_diagram(patched.diagram);
   if (request.output.empty()) {
     note(judgement_text(patched.judgement));

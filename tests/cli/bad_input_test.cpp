@@ -303,6 +303,21 @@ INSTANTIATE_TEST_SUITE_P(
             "BandwidthThatNoSolverTakes",
             "oblique compare diagrams/mechanisms/four-bar.toml --gain 1e9 --bandwidth 1e300", 3,
             "error: diagrams/mechanisms/four-bar.toml: with amplifiers of gain 1e+09 and 1e+300 Hz: "},
+        BadRequestCase{
+            "SlowerWithoutAnOuterLoop", "oblique patch diagrams/mechanisms/four-bar.toml --slower 10", 2,
+            "four-bar.toml: --slower 10: this patch has no outer loop; expected a mechanism with a "
+            "triad on three links\n  remedy: leave it out"},
+        BadRequestCase{
+            "SlowerWithGradient",
+            "oblique patch diagrams/mechanisms/class-iii.toml --method gradient --slower 10", 2,
+            "error: --slower 10 with --method gradient, which takes no group apart; expected --method "
+            "triangles or paper beside it"},
+        BadRequestCase{"SplitOfOtherLeads",
+                       "oblique patch diagrams/mechanisms/class-iii.toml --split AB,DE,XY", 2,
+                       "--split AB,DE,XY: no triad has these leads; expected the three leads of a triad"},
+        BadRequestCase{"GradientOfInfiniteGain",
+                       "oblique patch diagrams/mechanisms/four-bar.toml --method gradient --gain inf", 2,
+                       "a gradient servo of infinite gain has no time scale; expected a finite --gain and"},
         BadRequestCase{"SlowerWithoutEnd", "oblique patch diagrams/mechanisms/class-iii.toml --slower inf", 2,
                        "error: --slower inf; expected a finite number above 0"},
         BadRequestCase{"UnitWithoutEnd", "oblique patch diagrams/mechanisms/four-bar.toml --unit inf", 2,

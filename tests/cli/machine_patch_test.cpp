@@ -77,22 +77,39 @@ TEST_F(PatchForMachine, WritesTheDiagramThatDoesNotFitAndSaysWhatIsMissing) {
 }
 
 TEST_F(PatchForMachine, SaysWhichTimeFactorIsMissing) {
-  const Outcome outcome = patch("four-bar", "--method gradient --machine tr-10");
+  const Outcome outcome = patch("four-bar", "--method gradient --machine tr-10 --bandwidth 20 --force");
   EXPECT_THAT(outcome.err, HasSubstr("integrators with k0 = 1.257e+08 1/s (k0 on this machine: 1, 500 1/s)"));
 }
 
 // Its summers of 200 kHz stand in loops of 20 MHz.
 TEST_F(PatchForMachine, IsJudgedOnTheMachinesOwnElements) {
-  const Outcome refused = patch("four-bar", "--method gradient --machine tr-10 -o made.toml");
+  const Outcome refused = patch("four-bar", "--method gradient --machine tr-10 --bandwidth 20 -o made.toml");
   EXPECT_EQ(refused.status, 1);
   EXPECT_THAT(refused.err,
               HasSubstr("on the machine EAI PACE TR-10 (1959) this patch would not run: it is unstable"));
-  EXPECT_THAT(refused.err, HasSubstr("a lower --gain or --bandwidth may do"));
-  EXPECT_EQ(patch("four-bar", "--method gradient --machine tr-10 --force -o made.toml").status, 0);
-  const Outcome slower = patch("four-bar", "--method gradient --machine tr-10 --gain 1e3 -o made.toml");
+  EXPECT_THAT(refused.err, HasSubstr("remedy: --bandwidth \"0.02 Hz\" is stable; --force writes this one"));
+  EXPECT_TRUE(is_empty());
+  EXPECT_EQ(
+      patch("four-bar", "--method gradient --machine tr-10 --bandwidth 0.02 --force -o made.toml").status, 0);
+  const Outcome slower = patch("four-bar", "--method gradient --machine tr-10 -o made.toml");
   EXPECT_EQ(slower.status, 0);
   EXPECT_THAT(slower.err,
-              AllOf(HasSubstr("its servo loops come to rest everywhere"), Not(HasSubstr("warning"))));
+              AllOf(HasSubstr("servo amplifiers of 0.01 Hz here: with 20 Hz on the elements of EAI "
+                              "PACE TR-10 (1959), it is unstable: the loops '"),
+                    HasSubstr("its servo loops come to rest everywhere"), Not(HasSubstr("warning"))));
+}
+
+// Servo amplifiers of 50 MHz around multipliers of 1 MHz.
+TEST_F(PatchForMachine, WarnsOfBadDamping) {
+  const Outcome asked =
+      patch("slider-crank", "--machine the-analog-thing --gain 1e4 --bandwidth 5000 -o made.toml");
+  EXPECT_EQ(asked.status, 0);
+  EXPECT_THAT(asked.err,
+              HasSubstr("warning: it is badly damped: the loops 'C_slide_half2', 'C_slide_half' swing "
+                        "long before they rest (ζ = 0.016); a run takes many steps\n"));
+  const Outcome chosen = patch("slider-crank", "--machine the-analog-thing --gain 1e4 -o made.toml");
+  EXPECT_THAT(chosen.err,
+              AllOf(HasSubstr("servo amplifiers of 10 Hz here: with 5000 Hz"), Not(HasSubstr("warning"))));
 }
 
 TEST_F(PatchForMachine, WritesSheets) {

@@ -240,6 +240,14 @@ TEST_F(Verbs, CompareGivesTheJsonOfTheContract) {
   EXPECT_EQ(nlohmann::json::parse(stream).at("size"), 3.5);
 }
 
+TEST_F(Verbs, CompareRunsWhatIsAskedForTwiceOnce) {
+  const std::string command = "compare diagrams/mechanisms/four-bar.toml --json ";
+  const auto twice =
+      nlohmann::json::parse(oblique(command + "--gain 1e3,1e4,1000 --method triangles,triangles").out);
+  EXPECT_EQ(twice["runs"].size(), 2U);
+  EXPECT_EQ(twice["series"].size(), 1U);
+}
+
 TEST_F(Verbs, CompareHoldsMethodsAndBandwidthsAgainstEachOther) {
   const std::string command =
       "compare diagrams/mechanisms/six-bar.toml --method triangles,gradient --bandwidth 2000,20kHz --gain "

@@ -130,6 +130,31 @@ TEST(Judge, NamesTheLoopsOfAnUnstablePatch) {
   EXPECT_GT(judgement.largest, 1);  // a metre a machine unit
 }
 
+// A servo amplifier of gain μ and time constant T around a follower of time constant τ, both followers of 1:
+// T s + 1 + μ/(1 + τ s) = 0, so that 2ζ ω₀ = 1/T + 1/τ and ω₀² = (1 + μ)/(T τ).
+TEST(Judge, TellsTheLeastDamping) {
+  const Diagram diagram = parse_diagram(R"(
+format = "oblique-diagram/1"
+[run]
+until = 1
+[blocks]
+one  = { type = "constant", value = 1 }
+a    = { type = "servo-amplifier", in = ["lag", "-one"], gain = 1e4, bandwidth = "100 Hz" }
+lag  = { type = "multiplier", in = ["one", "a"], bandwidth = "20 kHz" }
+[outputs]
+a = "a"
+)",
+                                        "damped.toml");
+  const double slow = 1 / (2 * std::numbers::pi * 100), fast = 1 / (2 * std::numbers::pi * 20e3);
+  const double damping = (1 / slow + 1 / fast) / (2 * std::sqrt((1 + 1e4) / (slow * fast)));
+  const Judgement judgement = judge(diagram, BlockLibrary::shipped());
+  EXPECT_NEAR(judgement.damping, damping, 1e-6 * damping);  // of the eigenvalues' rounding
+  EXPECT_TRUE(judgement.good());
+  EXPECT_FALSE(judgement.well_damped());
+  EXPECT_THAT(judgement.swinging, Contains("a"));
+  EXPECT_THAT(fault_of(judgement), HasSubstr("it is badly damped: the loops 'a'"));
+}
+
 TEST(Judge, SaysWhereTheLoopsOfADiagramStandNowhere) {
   // x² + t = 0 has no root once the clock runs past −x₀² … from t = 0.25 on
   const Diagram diagram = parse_diagram(R"(

@@ -186,7 +186,7 @@ TEST(Patch, RefusesADeadCentre) {
     FAIL();
   } catch (const PatchError& error) {
     EXPECT_THAT(error.what(), HasSubstr("the dyad BC-CD is at a dead centre at t = 3.14159 s"));
-    EXPECT_THAT(error.what(), HasSubstr("expected a triangle that never goes flat"));
+    EXPECT_THAT(error.what(), HasSubstr("expected a group that never comes to a dead centre"));
   }
 }
 

@@ -98,7 +98,8 @@ Tracking track(const Mechanism& mechanism, PatchMethod method, const BlockLibrar
   Tracking result;
   try {
     const JudgedPatch patched = judged_patch(mechanism, library, options);
-    result.split = fmt::format("{} /{:g}", fmt::join(patched.options.split, ","), patched.options.slower);
+    result.split = fmt::format("{} /{:g}", fmt::join(patched.options.split, ","),
+                               patched.options.slower.value_or(kUsualSlower));
     const FlatDiagram flat = flatten(patched.diagram, library);
     const Program program(assemble(flat));
     const Run analog = run(program, flat, options_of(patched.diagram.run));

@@ -10,7 +10,6 @@
 
 #include <oblique/solve/loop_report.h>
 #include <oblique/solve/solve_error.h>
-#include <oblique/solve/stability_report.h>
 #include <oblique/solve/standing.h>
 
 namespace oblique {
@@ -33,6 +32,14 @@ void find_largest_signal(const Program& program, const std::vector<Instant>& ins
   }
 }
 
+std::vector<std::string> main_participants(const Program& program, const Mode& mode) {
+  std::vector<std::string> names;
+  for (const Participation& part : mode.participants) {
+    if (part.share > kLeastShare) names.push_back(program.states()[part.state].name);
+  }
+  return names;
+}
+
 std::string name_some(const std::vector<std::string>& names) {
   constexpr std::size_t kMost = 3;
   const std::vector<std::string> shown(
@@ -44,7 +51,8 @@ std::string name_some(const std::vector<std::string>& names) {
 std::string difference(const PatchOptions& from, const PatchOptions& to) {
   std::vector<std::string> words;
   if (to.split != from.split) words.push_back(fmt::format("--split {}", fmt::join(to.split, ",")));
-  if (to.slower != from.slower) words.push_back(fmt::format("--slower {:g}", to.slower));
+  if (to.slower != from.slower)
+    words.push_back(fmt::format("--slower {:g}", to.slower.value_or(kUsualSlower)));
   return fmt::format("{}", fmt::join(words, " "));
 }
 
@@ -58,7 +66,7 @@ std::vector<PatchOptions> other_ways(const Mechanism& mechanism, const PatchOpti
     way.split_by_trial = options.split.empty();
     way.slower = slower;
   };
-  const double usual = std::max(options.slower, PatchOptions{}.slower);
+  const double usual = std::max(options.slower.value_or(0), kUsualSlower);
   if (options.method == PatchMethod::paper) {
     for (const double slower : {1.0, 10.0, 100.0}) add(options.split, slower * usual);
   }
@@ -71,9 +79,9 @@ std::vector<PatchOptions> other_ways(const Mechanism& mechanism, const PatchOpti
 }
 
 /// Whether nobody asked for another way: the split of a triangle patch is free, and so is the speed of an
-/// outer loop that nobody made faster.
+/// outer loop.
 bool may_choose(const PatchOptions& options, const PatchOptions& way) {
-  if (!options.split.empty() || options.slower != PatchOptions{}.slower) return false;
+  if (!options.split.empty() || options.slower) return false;
   return options.method == PatchMethod::triangles || way.split.empty();
 }
 
@@ -91,6 +99,10 @@ void show_the_fault(JudgedPatch& patched) {
 
 std::string fault_of(const Judgement& judgement) {
   if (!judgement.no_rest.empty()) return fmt::format("its loops cannot follow: {}", judgement.no_rest);
+  if (judgement.good()) {
+    return fmt::format("it is badly damped: the loops {} swing long before they rest (ζ = {:.2g})",
+                       name_some(judgement.swinging), judgement.damping);
+  }
   std::string text = fmt::format("it is unstable: the loops {} swing up, at {:.3g} 1/s at t = {:.6g} s",
                                  name_some(judgement.growing), judgement.slowest_pole, judgement.pole_time);
   if (!judgement.flips.empty()) {
@@ -118,15 +130,17 @@ Judgement judge(const Diagram& diagram, const BlockLibrary& library) {
     judgement.slowest_pole = stability.slowest_servo->mode.pole.real();
     judgement.pole_time = stability.slowest_servo->time;
   }
+  if (stability.servo_mode) {
+    judgement.damping = stability.servo_mode->mode.damping_ratio();
+    judgement.swinging = main_participants(program, stability.servo_mode->mode);
+  }
   judgement.grows_from = stability.grows_from;
   if (stability.grows_from) {
     const auto first = std::find_if(instants.begin(), instants.end(), [&](const Instant& instant) {
       return instant.t == *stability.grows_from;
     });
     judgement.growth = judge_stability(program, flow, {*first}).slowest_servo->mode.pole.real();
-    for (const Participation& part : stability.slowest_servo->mode.participants) {
-      if (part.share > kLeastShare) judgement.growing.push_back(program.states()[part.state].name);
-    }
+    judgement.growing = main_participants(program, stability.slowest_servo->mode);
   }
   for (const LoopReport& loop : explain_loops(program, flow, instants)) {
     for (const LoopUnknown& unknown : loop.unknowns) {

@@ -8,6 +8,7 @@
 #include <oblique/diagram/block_library.h>
 #include <oblique/mechanism/mechanism.h>
 #include <oblique/patch/patch.h>
+#include <oblique/solve/stability_report.h>
 
 namespace oblique {
 
@@ -20,6 +21,9 @@ struct Judgement {
   std::optional<double> grows_from;  ///< [s] the first moment at which a mode of them grows
   double growth = 0;                 ///< of that mode [1/s]
   std::vector<std::string> growing;  ///< servo amplifiers of the fastest one, the greatest share first
+
+  double damping = 1;                 ///< ζ of the servo loops' mode that has the least of it
+  std::vector<std::string> swinging;  ///< its servo amplifiers, the greatest share first
 
   struct Flip {
     std::string loop;  ///< servo amplifier
@@ -35,9 +39,11 @@ struct Judgement {
 
   /// Whether it tracks: its loops stand at rest everywhere and come back to rest.
   bool good() const { return no_rest.empty() && !grows_from; }
+  /// Whether errors die within about two swings, too.
+  bool well_damped() const { return good() && damping >= kBadDamping; }
 };
 
-/// What is wrong with a patch that is not good, in words.
+/// What is wrong with a patch that is not good or not well damped, in words.
 std::string fault_of(const Judgement& judgement);
 
 /// Judges a diagram. Throws DiagramError where it is not one.

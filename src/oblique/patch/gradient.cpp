@@ -18,7 +18,8 @@ class GradientPatch : private PatchBuilder {
       throw PatchError(Diagnostic{{mechanism.file, {}},
                                   "a gradient servo of infinite gain has no time scale",
                                   "a finite --gain and --bandwidth",
-                                  {}});
+                                  {}},
+                       PatchError::Kind::request);
     }
     rate_ = options.gain * 2 * std::numbers::pi * bandwidth_;
   }

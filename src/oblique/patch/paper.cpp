@@ -17,11 +17,12 @@ class PaperPatch : private TriadPatch {
   using TriadPatch::TriadPatch;
 
   Diagram make() {
-    check_split_names(mechanism_, structure_, options_);
+    check_split_options(mechanism_, structure_, options_);
     for (const Group& group : structure_.groups) {
       if (group.kind == GroupKind::crank || can_be_split(group)) continue;
       refuse(group, "is not of the source's kind", "cranks and triads on three links, as the source has them",
-             "patch it with --method triangles");
+             group.assur_class == 2 ? "patch it with --method triangles"
+                                    : "patch it with --method gradient, which takes any group");
     }
     choose_splits();
     describe("patched as the source draws it",

@@ -37,11 +37,14 @@ double greatest_speed(const Mechanism& mechanism, const Drive& drive) {
   return fastest;
 }
 
-/// The mechanism with its drives slowed down, so that its motion takes the time of the options.
-Diagram patch_slowed(const Mechanism& mechanism, PatchOptions options) {
+/// Seconds of the motion in one of the machine.
+double time_factor(const Mechanism& mechanism, double machine_period) {
+  return period(within_range(mechanism)) / machine_period;
+}
+
+/// The mechanism with its drives slowed down, so that its motion takes `factor` times less time.
+Mechanism slowed_by(double factor, const Mechanism& mechanism) {
   Mechanism slowed = mechanism;
-  const double factor =
-      period(within_range(mechanism)) / *options.period;  // seconds of motion in one of the machine
   for (Drive& drive : slowed.drives) {
     if (drive.law) {
       throw PatchError(Diagnostic{
@@ -54,8 +57,13 @@ Diagram patch_slowed(const Mechanism& mechanism, PatchOptions options) {
     drive.speed *= factor;
   }
   if (slowed.motion.until) *slowed.motion.until /= factor;
+  return slowed;
+}
+
+Diagram patch_slowed(const Mechanism& mechanism, PatchOptions options) {
+  const double factor = time_factor(mechanism, *options.period);
   options.period.reset();
-  Diagram diagram = patch(slowed, options);
+  Diagram diagram = patch(slowed_by(factor, mechanism), options);
   diagram.comment += fmt::format("\nTime: 1 s of the machine is {:.6g} s of the mechanism.", factor);
   for (OutputSpec& output : diagram.outputs) {
     const std::string_view name = output.name;
@@ -76,6 +84,12 @@ double default_bandwidth(const Mechanism& mechanism) {
     if (step * decade >= wanted) return step * decade;
   }
   return 10 * decade;
+}
+
+double bandwidth_of(const Mechanism& mechanism, const PatchOptions& options) {
+  if (options.bandwidth) return *options.bandwidth;
+  if (!options.period) return default_bandwidth(mechanism);
+  return default_bandwidth(slowed_by(time_factor(mechanism, *options.period), mechanism));
 }
 
 Diagram patch(const Mechanism& mechanism, const PatchOptions& options) {

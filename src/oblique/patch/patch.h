@@ -14,7 +14,18 @@ namespace oblique {
 /// Thrown by the `patch` stage: a mechanism that cannot be turned into a diagram.
 class PatchError : public Error {
  public:
-  using Error::Error;
+  enum class Kind {
+    obstacle,  ///< the mechanism, or what its patch would do, stands in the way
+    request,   ///< the options contradict the mechanism or each other
+  };
+
+  explicit PatchError(Diagnostic diagnostic, Kind kind = Kind::obstacle)
+      : Error(std::move(diagnostic)), kind_(kind) {}
+
+  Kind kind() const { return kind_; }
+
+ private:
+  Kind kind_;
 };
 
 /// How a mechanism becomes equations that amplifiers solve.
@@ -28,6 +39,8 @@ enum class PatchMethod {
 std::string_view method_name(PatchMethod method);
 std::optional<PatchMethod> parse_patch_method(std::string_view text);
 
+inline constexpr double kUsualSlower = 100;
+
 /// How a mechanism is patched.
 struct PatchOptions {
   PatchMethod method = PatchMethod::triangles;
@@ -36,8 +49,8 @@ struct PatchOptions {
       bandwidth;  ///< of every servo amplifier [Hz]; inf: algebraic loops; default: `default_bandwidth`
   bool derivatives = false;  ///< velocities and accelerations too, as further circuits
   /// How many times slower than the loops inside it an outer loop is: next to their speed several splits of a
-  /// triad are unstable.
-  double slower = 100;
+  /// triad are unstable. Default: kUsualSlower, or what a stable patch takes (`judged_patch`).
+  std::optional<double> slower = {};
   /// Names of the three leads of a triad: the one whose triangle carries the variable length, the one that
   /// closes the loop, the third; empty: the split that is worth the most.
   std::vector<std::string> split = {};
@@ -54,6 +67,9 @@ struct PatchOptions {
 /// A hundred times the frequency of the fastest drive, rounded up to 1, 2 or 5 times a power of ten [Hz]: the
 /// pole of the open loop then turns the phase of a signal at crank frequency by half a degree.
 double default_bandwidth(const Mechanism& mechanism);
+
+/// The bandwidth of the servo amplifiers of `patch` with these options [Hz of machine time].
+double bandwidth_of(const Mechanism& mechanism, const PatchOptions& options);
 
 /// The diagram that simulates a mechanism by servo-tracked triangles over one turn of its first drive: a
 /// crank generator for each drive and a dyad of oblique triangles for each pair of links (method:

@@ -29,7 +29,7 @@ PatchBuilder::PatchBuilder(const Mechanism& mechanism, const PatchOptions& optio
       structure_(decompose(mechanism)),
       motion_(patch_motion(mechanism, structure_)),
       scaling_(find_scaling(mechanism, structure_, motion_)),
-      bandwidth_(options.bandwidth.value_or(default_bandwidth(mechanism))),
+      bandwidth_(bandwidth_of(mechanism, options)),
       signals_(mechanism.points.size()),
       drives_(mechanism.drives.size()),
       speeds_(mechanism.drives.size()) {

@@ -24,13 +24,13 @@ namespace {
   throw PatchError(Diagnostic{
       {mechanism.file, {}},
       fmt::format(
-          "the {} {} {} at t = {:.6g} s, where drive '{}' stands at {}, so its triangle cannot be tracked",
+          "the {} {} {} at t = {:.6g} s, where drive '{}' stands at {}, so no servo loop can track it",
           structure.groups[obstacle.group].assur_class == 2 ? "dyad" : "group",
           structure.groups[obstacle.group].name, open ? "cannot be assembled" : "is at a dead centre",
           obstacle.time, drive.name, stand),
-      open ? "links that reach each other in every position" : "a triangle that never goes flat",
+      open ? "links that reach each other in every position" : "a group that never comes to a dead centre",
       open ? "lengthen the links of the dyad, or shorten the crank; `oblique solve` shows where it opens"
-           : "change a length a little: at a dead centre the servo loop of sin γ loses its gain"});
+           : "change a length a little: at a dead centre the servo loops lose their gain"});
 }
 
 }  // namespace

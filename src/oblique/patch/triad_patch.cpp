@@ -108,14 +108,13 @@ std::vector<Entry> TriadPatch::with_start(std::vector<Entry> settings, const Tri
 }
 
 void TriadPatch::add_outer_loop(const std::string& length, Terms residual, double initial) {
+  const double slower = options_.slower.value_or(kUsualSlower);
   BlockInstance loop;
   loop.name = length;
   loop.type = "servo-amplifier";
   loop.settings = {wire_setting("in", residual), number_setting("gain", options_.gain),
-                   number_setting("bandwidth", bandwidth_ / options_.slower),
-                   number_setting("initial", initial)};
-  loop.comment = options_.slower == 1 ? "the outer loop"
-                                      : fmt::format("the outer loop, {:g} times slower", options_.slower);
+                   number_setting("bandwidth", bandwidth_ / slower), number_setting("initial", initial)};
+  loop.comment = slower == 1 ? "the outer loop" : fmt::format("the outer loop, {:g} times slower", slower);
   diagram_.blocks.push_back(std::move(loop));
 }
 

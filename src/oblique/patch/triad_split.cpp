@@ -176,7 +176,16 @@ TriadSplit choose_split(const Mechanism& mechanism, const Group& triad, const Mo
   return *named;
 }
 
-void check_split_names(const Mechanism& mechanism, const Structure& structure, const PatchOptions& options) {
+void check_split_options(const Mechanism& mechanism, const Structure& structure,
+                         const PatchOptions& options) {
+  const bool splits = std::any_of(structure.groups.begin(), structure.groups.end(), can_be_split);
+  if (options.slower && !splits) {
+    throw PatchError(Diagnostic{{mechanism.file, {}},
+                                fmt::format("--slower {:g}: this patch has no outer loop", *options.slower),
+                                "a mechanism with a triad on three links",
+                                "leave it out"},
+                     PatchError::Kind::request);
+  }
   if (options.split.empty()) return;
   std::vector<std::string> triads;
   for (const Group& group : structure.groups) {
@@ -185,12 +194,13 @@ void check_split_names(const Mechanism& mechanism, const Structure& structure, c
     triads.push_back(joined(leads));
     if (std::is_permutation(leads.begin(), leads.end(), options.split.begin(), options.split.end())) return;
   }
-  throw PatchError(Diagnostic{
-      {mechanism.file, {}},
-      fmt::format("--split {}: no triad has these leads", joined(options.split)),
-      triads.empty() ? "a triad on three links, which this mechanism has not"
-                     : fmt::format("the three leads of a triad in any order: {}", fmt::join(triads, "; ")),
-      {}});
+  throw PatchError(Diagnostic{{mechanism.file, {}},
+                              fmt::format("--split {}: no triad has these leads", joined(options.split)),
+                              triads.empty() ? "a triad on three links, which this mechanism has not"
+                                             : fmt::format("the three leads of a triad in any order: {}",
+                                                           fmt::join(triads, "; ")),
+                              {}},
+                   PatchError::Kind::request);
 }
 
 std::vector<std::vector<std::string>> useful_splits(const Mechanism& mechanism) {

@@ -58,7 +58,8 @@ std::string split_name(const Mechanism& mechanism, const Group& triad, const Tri
 TriadSplit choose_split(const Mechanism& mechanism, const Group& triad, const Motion& motion,
                         const PatchOptions& options);
 
-/// Throws PatchError where the options name a split and no triad of the structure has these three leads.
-void check_split_names(const Mechanism& mechanism, const Structure& structure, const PatchOptions& options);
+/// Throws PatchError where the options name a split and no triad of the structure has these three leads, or
+/// an outer loop's speed and there is no triad.
+void check_split_options(const Mechanism& mechanism, const Structure& structure, const PatchOptions& options);
 
 }  // namespace oblique

@@ -44,7 +44,7 @@ class TrianglePatch : private TriadPatch {
 
  private:
   void check_groups() const {
-    check_split_names(mechanism_, structure_, options_);
+    check_split_options(mechanism_, structure_, options_);
     for (const Group& group : structure_.groups) {
       if (group.kind == GroupKind::crank || dyad_of(group) || can_be_split(group) ||
           parts_of(group.equations))

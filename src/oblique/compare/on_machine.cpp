@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/compare/on_machine.h>
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <oblique/machine/realise.h>
+
+namespace oblique {
+namespace {
+
+constexpr double kLeastPart = 1e-5;  ///< of the usual bandwidth; below it nothing would track any more
+
+/// The next smaller of 1, 2 and 5 times a power of ten.
+double step_down(double value) {
+  constexpr double kRounding = 1 - 1e-9;
+  const double decade = std::pow(10, std::floor(std::log10(value * kRounding)));
+  for (const double step : {5.0, 2.0}) {
+    if (step * decade < value * kRounding) return step * decade;
+  }
+  return decade;
+}
+
+/// The patch with the greatest bandwidth, smaller than that of `patched`, with which it `is_fine` on the
+/// machine, by bisection.
+std::optional<MachinePatch> slower_patch(const Mechanism& mechanism, const BlockLibrary& library,
+                                         const MachineProfile& machine, const MachinePatch& patched,
+                                         bool (Judgement::*is_fine)() const) {
+  PatchOptions options = patched.options;
+  const double usual = bandwidth_of(mechanism, options);
+  std::optional<MachinePatch> found;
+  if (!std::isfinite(usual)) return found;
+  std::vector<double> bandwidths;
+  for (double bandwidth = step_down(usual); bandwidth > kLeastPart * usual; bandwidth = step_down(bandwidth))
+    bandwidths.push_back(bandwidth);
+  for (auto from = bandwidths.begin(), to = bandwidths.end(); from != to;) {
+    const auto middle = from + (to - from) / 2;
+    options.bandwidth = *middle;
+    MachinePatch slower{patch(mechanism, options), {}, options, {}, {}};
+    slower.ideal.file = patched.ideal.file;
+    slower.realised = realise(slower.ideal, library, machine).diagram;
+    slower.judgement = judge(slower.realised, library);
+    slower.usual = {usual, fault_of(patched.judgement)};
+    if ((slower.judgement.*is_fine)()) {
+      found = std::move(slower);
+      to = middle;
+    } else {
+      from = middle + 1;
+    }
+  }
+  return found;
+}
+
+}  // namespace
+
+MachinePatch put_on_machine(const Mechanism& mechanism, const BlockLibrary& library,
+                            const MachineProfile& machine, JudgedPatch patched) {
+  MachinePatch usual{std::move(patched.diagram), {}, std::move(patched.options), {}, {}};
+  usual.realised = realise(usual.ideal, library, machine).diagram;
+  usual.judgement = judge(usual.realised, library);
+  if (usual.judgement.well_damped() || usual.options.force) return usual;
+  const auto slower = [&](bool (Judgement::*is_fine)() const) {
+    return slower_patch(mechanism, library, machine, usual, is_fine);
+  };
+  if (!usual.options.bandwidth) {
+    if (auto damped = slower(&Judgement::well_damped)) return *damped;
+  }
+  if (usual.judgement.good()) return usual;
+  const auto stable = slower(&Judgement::good);
+  if (stable && !usual.options.bandwidth) return *stable;
+  throw PatchError(Diagnostic{
+      {mechanism.file, {}},
+      fmt::format("on the machine {} this patch would not run: {}", machine.title, fault_of(usual.judgement)),
+      "servo loops that return to rest everywhere on the way",
+      stable ? fmt::format("--bandwidth \"{:g} Hz\" is stable; --force writes this one all the same",
+                           *stable->options.bandwidth)
+             : std::string("choose a machine of faster elements (oblique machines), or a lower --gain; "
+                           "--force writes it all the "
+                           "same")});
+}
+
+}  // namespace oblique
