@@ -386,6 +386,11 @@ INSTANTIATE_TEST_SUITE_P(
             "error: motion: the name of this file has no ending; expected a name that ends in .csv, "
             ".npy, .mat or .json\n"},
         BadRequestCase{
+            "MechanismForADiagram", "oblique run diagrams/mechanisms/jansen.toml", 2,
+            "jansen.toml:18:10: the format is 'oblique-mechanism/1'; expected 'oblique-diagram/1'\n"
+            "  remedy: this is a mechanism: `oblique solve`, `compare` and `draw` take it, `patch` makes a "
+            "diagram of it\n"},
+        BadRequestCase{
             "OutputToAFullDisk",
             "ln -s /dev/full /tmp/oblique-full.npy; oblique solve diagrams/mechanisms/four-bar.toml "
             "-o /tmp/oblique-full.npy; status=$?; rm /tmp/oblique-full.npy; exit $status",

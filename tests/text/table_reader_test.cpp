@@ -167,17 +167,26 @@ TEST_F(TableReaderTest, ReportsAtTheValueOrAtTheTable) {
 }
 
 TEST_F(TableReaderTest, ChecksTheFormat) {
-  check_format(read("format = \"oblique-diagram/1\"\n"), "oblique-diagram/1");
+  EXPECT_TRUE(check_format(read("format = \"oblique-diagram/1\"\n"), "oblique-diagram/1"));
   EXPECT_EQ(findings(), "");
-  check_format(read("format = \"oblique-mechanism/1\"\n"), "oblique-diagram/1");
+  EXPECT_TRUE(check_format(read("format = \"oblique-diagram/2\"\n"), "oblique-diagram/1"));
   EXPECT_EQ(
       findings(),
-      "t.toml:1:10: the format is 'oblique-mechanism/1'; expected 'oblique-diagram/1'\n"
+      "t.toml:1:10: the format is 'oblique-diagram/2'; expected 'oblique-diagram/1'\n"
       "  remedy: a diagram is oblique-diagram/1, a mechanism oblique-mechanism/1, a block oblique-block/1");
 }
 
+TEST_F(TableReaderTest, TellsWhatAFileOfAnotherKindIsFor) {
+  EXPECT_FALSE(check_format(read("format = \"oblique-mechanism/1\"\n"), "oblique-diagram/1"));
+  EXPECT_EQ(
+      findings(),
+      "t.toml:1:10: the format is 'oblique-mechanism/1'; expected 'oblique-diagram/1'\n"
+      "  remedy: this is a mechanism: `oblique solve`, `compare` and `draw` take it, `patch` makes a diagram "
+      "of it");
+}
+
 TEST_F(TableReaderTest, MissesTheFormat) {
-  check_format(read(""), "oblique-block/1");
+  EXPECT_TRUE(check_format(read(""), "oblique-block/1"));
   EXPECT_EQ(findings(), "t.toml:1:1: [run] has no 'format'; expected format = \"oblique-block/1\"");
 }
 

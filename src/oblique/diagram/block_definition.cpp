@@ -32,7 +32,7 @@ class BlockReader {
       : reader_(document.file, document.root, "the block file", diagnostics_), definition_(definition) {}
 
   void read() {
-    check_format(reader_, "oblique-block/1");
+    if (!check_format(reader_, "oblique-block/1")) diagnostics_.throw_if_any<DiagramError>();
     definition_.title = reader_.required_string("title", "what people call the block").value_or("");
     definition_.summary = reader_.string("summary").value_or("");
     definition_.source = reader_.string("source").value_or("");

@@ -29,7 +29,7 @@ class DiagramReader {
       : reader_(document.file, document.root, "the diagram", diagnostics_), diagram_(diagram) {}
 
   void read() {
-    check_format(reader_, "oblique-diagram/1");
+    if (!check_format(reader_, "oblique-diagram/1")) diagnostics_.throw_if_any<DiagramError>();
     diagram_.title = reader_.string("title").value_or("");
     diagram_.source = reader_.string("source").value_or("");
     if (const Value* const table = reader_.table("machine")) read_machine(*table);

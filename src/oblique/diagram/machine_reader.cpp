@@ -40,7 +40,7 @@ class MachineReader {
         machine_(machine) {}
 
   void read() {
-    check_format(reader_, "oblique-machine/1");
+    if (!check_format(reader_, "oblique-machine/1")) diagnostics_.throw_if_any<DiagramError>();
     machine_.title = reader_.required_string("title", "what people call the machine").value_or("");
     machine_.source = reader_.required_string("source", "where its figures are from").value_or("");
     machine_.comment = reader_.string("comment").value_or("");

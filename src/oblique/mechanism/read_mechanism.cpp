@@ -27,7 +27,7 @@ class MechanismReader {
   }
 
   Mechanism read() {
-    check_format(reader_, "oblique-mechanism/1");
+    if (!check_format(reader_, "oblique-mechanism/1")) diagnostics_.throw_if_any<MechanismError>();
     mechanism_.title = reader_.string("title").value_or("");
     mechanism_.source = reader_.string("source").value_or("");
     read_units();

@@ -2,6 +2,7 @@
 #include <oblique/text/table_reader.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -158,12 +159,27 @@ std::optional<ExpectedValue> read_expected_value(TableReader& reader) {
   return ExpectedValue{*value, *within};
 }
 
-void check_format(TableReader& reader, std::string_view expected) {
+bool check_format(TableReader& reader, std::string_view expected) {
+  struct Kind {
+    std::string_view format, remedy;
+  };
+  constexpr std::array<Kind, 5> kKinds{
+      {{"oblique-diagram/1", "this is a diagram: `oblique run`, `check` and `draw` take it"},
+       {"oblique-mechanism/1",
+        "this is a mechanism: `oblique solve`, `compare` and `draw` take it, `patch` makes a diagram of it"},
+       {"oblique-block/1", "this is a block: put its folder behind --blocks"},
+       {"oblique-machine/1", "this is a machine's profile"},
+       {"oblique-state/1", "this is a state that `oblique run --save` wrote: a run goes on with --from"}}};
   const auto format = reader.required_string("format", fmt::format("format = \"{}\"", expected));
-  if (format && *format != expected) {
-    reader.report("format", fmt::format("the format is '{}'", *format), fmt::format("'{}'", expected),
-                  "a diagram is oblique-diagram/1, a mechanism oblique-mechanism/1, a block oblique-block/1");
-  }
+  if (!format || *format == expected) return true;
+  const auto* const kind =
+      std::find_if(kKinds.begin(), kKinds.end(), [&](const Kind& known) { return known.format == *format; });
+  reader.report(
+      "format", fmt::format("the format is '{}'", *format), fmt::format("'{}'", expected),
+      kind != kKinds.end()
+          ? std::string(kind->remedy)
+          : "a diagram is oblique-diagram/1, a mechanism oblique-mechanism/1, a block oblique-block/1");
+  return kind == kKinds.end();
 }
 
 }  // namespace oblique
