@@ -16,6 +16,7 @@
 #include "command.h"
 #include "comparison_chart.h"
 #include "comparison_output.h"
+#include "json_text.h"
 #include "machine_comparison_output.h"
 #include "machine_patch.h"
 #include "monte_carlo_output.h"
@@ -178,9 +179,9 @@ ExitStatus compare_mechanism(const Session& session, const CompareRequest& reque
     chart.panels.push_back(panel_of(report));
     failed = !report.result.worst_run;
   }
-  if (!plots_in_terminal(request.plot)) print(request.json ? json.dump(2) + "\n" : text);
+  if (!plots_in_terminal(request.plot)) print(request.json ? json_text(json) : text);
   if (!request.plot.empty()) plot(chart, request.plot);
-  if (!request.output.empty()) save(request.output, json.dump(2) + "\n");
+  if (!request.output.empty()) save(request.output, json_text(json));
   return failed ? ExitStatus::solver_failed : ExitStatus::done;
 }
 

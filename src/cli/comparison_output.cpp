@@ -214,7 +214,8 @@ std::string to_text(const Comparison& comparison) {
                         head.has_several_bandwidths() ? "" : fmt::format(" of {:.6g} Hz", first.bandwidth));
     last = name;
   }
-  text += "; exact: closed form; errors over all moving points and the whole motion\n\n";
+  text += comparison.closed_form ? "; exact: closed form" : "; exact: closed form and Newton's method";
+  text += "; errors over all moving points and the whole motion\n\n";
   text += error_table(comparison, head);
   text +=
       "\nthe largest error and its parts: static, of loops at rest; lag, of their speed; solver, of its "

@@ -4,6 +4,7 @@
 #include <oblique/solve/rest.h>
 
 #include "diagram_check.h"
+#include "json_text.h"
 
 namespace oblique::cli {
 namespace {
@@ -141,7 +142,7 @@ std::string to_json(const DiagramCheck& check) {
   json["stability"] = stability_json(check.analysis.stability, check.program);
   json["overloads"] = overloads_json(check);
   json["scaling"] = scaling_json(check);
-  return json.dump(2) + "\n";
+  return json_text(json);
 }
 
 }  // namespace oblique::cli

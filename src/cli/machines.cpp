@@ -9,6 +9,7 @@
 #include <oblique/diagram/machine_profile.h>
 
 #include "command.h"
+#include "json_text.h"
 #include "terminal.h"
 
 namespace oblique::cli {
@@ -130,7 +131,7 @@ ExitStatus show_machines(const Session&, const MachinesRequest& request) {
     if (request.json) {
       Json all = Json::array();
       for (const std::string& name : machine_names()) all.push_back(json_of(*find_machine(name)));
-      print(all.dump(2) + "\n");
+      print(json_text(all));
     } else {
       print(list_of_machines());
     }
@@ -138,7 +139,7 @@ ExitStatus show_machines(const Session&, const MachinesRequest& request) {
   }
   const MachineProfile* const machine = find_machine(request.name);
   if (machine == nullptr) throw DiagramError(unknown_machine(request.name));
-  print(request.json ? json_of(*machine).dump(2) + "\n" : page_of(*machine, BlockLibrary::shipped()));
+  print(request.json ? json_text(json_of(*machine)) : page_of(*machine, BlockLibrary::shipped()));
   return ExitStatus::done;
 }
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "json_text.h"
 #include "mechanism_check.h"
 
 namespace oblique::cli {
@@ -218,7 +219,7 @@ class JsonReport {
 }  // namespace
 
 std::string to_json(const MechanismCheck& check) {
-  return JsonReport(check).write().dump(2) + "\n";
+  return json_text(JsonReport(check).write());
 }
 
 }  // namespace oblique::cli

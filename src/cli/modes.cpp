@@ -13,6 +13,7 @@
 
 #include "command.h"
 #include "drive_place.h"
+#include "json_text.h"
 #include "terminal.h"
 
 namespace oblique::cli {
@@ -98,7 +99,7 @@ std::string json_of(const Mechanism& mechanism, const Structure& structure, cons
                       {"complete", group.complete},
                       {"modes", modes}});
   }
-  return nlohmann::ordered_json{{"drives", drives}, {"groups", groups}}.dump(2) + "\n";
+  return json_text({{"drives", drives}, {"groups", groups}});
 }
 
 }  // namespace

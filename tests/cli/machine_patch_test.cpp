@@ -46,6 +46,11 @@ class PatchForMachine : public testing::Test {
     text << std::ifstream(folder_ / file).rdbuf();
     return text.str();
   }
+  /// Makes the folders of `file` too.
+  void write(const std::string& file, const std::string& text) const {
+    std::filesystem::create_directories((folder_ / file).parent_path());
+    std::ofstream(folder_ / file) << text;
+  }
   bool is_empty() const { return std::filesystem::is_empty(folder_); }
 
  private:
@@ -153,6 +158,53 @@ TEST_F(PatchForMachine, RefusesWhatCannotBeBeforeAnythingIsWritten) {
 TEST_F(PatchForMachine, HasNoBillForTheIdealMachineInCheck) {
   EXPECT_EQ(patch("slider-crank", "-o made.toml").status, 0);
   EXPECT_THAT(oblique("check made.toml").out, Not(HasSubstr("elements of")));
+}
+
+// An integrator of one's own, without a time factor, in the place of the shipped one: no element of a
+// machine.
+TEST_F(PatchForMachine, TakesAUsersBlockOfAShippedNameForWhatItIs) {
+  write("own/integrator.toml", R"toml(format = "oblique-block/1"
+title = "Own integrator"
+[inputs]
+in = { sum = true }
+[outputs]
+out = {}
+[parameters]
+initial = { default = 0, unit = "machine unit" }
+[equations]
+"der(out)" = "in"
+[start]
+out = "initial"
+)toml");
+  write("own.toml", R"toml(format = "oblique-diagram/1"
+[machine]
+profile = "tr-10"
+[run]
+until = 1
+[blocks]
+x = { type = "integrator", in = "-x", initial = 1 }
+)toml");
+  const Outcome checked = oblique("check own.toml --blocks own");
+  EXPECT_EQ(checked.status, 0) << checked.err;
+  EXPECT_THAT(checked.out, HasSubstr("missing: integrator (1)"));
+}
+
+// One without a bandwidth, on which the machine's figure for it cannot act.
+TEST_F(PatchForMachine, ComparesWithAUsersBlockThatLacksAParameter) {
+  write("own/summer.toml", R"(format = "oblique-block/1"
+title = "Own summer"
+[inputs]
+in = { sum = true }
+[outputs]
+out = {}
+[equations]
+out = "polarity*in"
+)");
+  const Outcome compared =
+      oblique("compare " + std::string(OBLIQUE_SOURCE_DIR) +
+              "/diagrams/mechanisms/four-bar.toml --machine tr-10 --gain 1e3 --blocks own");
+  EXPECT_EQ(compared.status, 0) << compared.err;
+  EXPECT_THAT(compared.out, Not(HasSubstr(" summer ")));
 }
 
 }  // namespace

@@ -74,6 +74,16 @@ crank = { turns = "AB", about = "A", speed = "1500 rpm" }
 C = [190, 40]
 )";
 
+TEST_F(MechanismCheck, WritesJsonOfFilesWhoseNamesAreNotUtf8) {
+  const std::filesystem::path copy = std::filesystem::temp_directory_path() / "oblique-caf\xe9.toml";
+  std::filesystem::copy_file(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/four-bar.toml", copy,
+                             std::filesystem::copy_options::overwrite_existing);
+  const Outcome outcome = oblique("check --json '" + copy.string() + "'");
+  std::filesystem::remove(copy);
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("oblique-caf\uFFFD.toml\""));
+}
+
 TEST_F(MechanismCheck, PrintsATableForEachSubject) {
   const Outcome outcome = oblique("check diagrams/mechanisms/four-bar.toml");
   EXPECT_EQ(outcome.status, 0);

@@ -156,7 +156,7 @@ a = "a"
 }
 
 TEST(Judge, SaysWhereTheLoopsOfADiagramStandNowhere) {
-  // x² + t = 0 has no root once the clock runs past −x₀² … from t = 0.25 on
+  // x² + t − 0.25 = 0 has no root from t = 0.25 on
   const Diagram diagram = parse_diagram(R"(
 format = "oblique-diagram/1"
 [run]

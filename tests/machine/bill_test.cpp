@@ -162,5 +162,15 @@ TEST(Bill, TakesAGainForWhatItStandsFor) {
   EXPECT_EQ(row(counted, "amplifiers").note, "1 summer, 1 inverter, 1 integrator");
 }
 
+TEST(Bill, CannotTellWhereTimeFactorsAreNotPublished) {
+  MachineProfile machine = inverting_machine();
+  machine.rates.clear();
+  machine.rates_known = false;
+  const Bill fast = bill("x = { type = \"integrator\", in = \"x\", rate = 12345 }\n", machine);
+  EXPECT_EQ(row(fast, "integrators with k0 = 1.234e+04 1/s").available, std::nullopt);
+  EXPECT_EQ(fast.verdict(), Bill::Verdict::cannot_tell);
+  EXPECT_EQ(bill("x = { type = \"integrator\", in = \"x\" }\n", machine).verdict(), Bill::Verdict::fits);
+}
+
 }  // namespace
 }  // namespace oblique

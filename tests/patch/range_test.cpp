@@ -142,6 +142,17 @@ TEST(Period, StretchesTimeAndKeepsRates) {
   const Trajectory usual = table_of(options);
   options.period = 20;
   const Trajectory stretched = table_of(options);
+  // 0.4 m/s and 0.2 m/s² of machine time hold the rates; the mechanism goes 20/2π times as fast
+  const Diagram diagram = patch(mechanism, options);
+  EXPECT_THAT(diagram.comment, HasSubstr("Rates: 1 machine unit = 1.27324 m/s and 2.02642 m/s^2."));
+  const double faster = 20 / (2 * std::numbers::pi);
+  for (const OutputSpec& output : diagram.outputs) {
+    if (output.name == "C.vx") {
+      EXPECT_NEAR(output.scale, 0.4 * faster, 1e-12);
+    } else if (output.name == "C.ax") {
+      EXPECT_NEAR(output.scale, 0.2 * faster * faster, 1e-12);
+    }
+  }
   ASSERT_EQ(usual.rows(), stretched.rows());
   EXPECT_DOUBLE_EQ(stretched.at(stretched.rows() - 1, 0), 20);
   for (const char* column : {"C.x", "C.y", "M.vx", "M.ay"}) {

@@ -113,6 +113,9 @@ Comparison compare_within_range(const Mechanism& mechanism, const BlockLibrary& 
   comparison.mechanism = mechanism.title;
   comparison.unit = mechanism.length_unit;
   comparison.size = mechanism.largest_length();
+  const std::vector<Group> groups = decompose(mechanism).groups;
+  comparison.closed_form = std::none_of(groups.begin(), groups.end(),
+                                        [](const Group& group) { return group.kind == GroupKind::general; });
   comparison.turning = mechanism.drives.empty() || !mechanism.drives.front().slide;
   const Motion exact = solve_motion(mechanism, options.positions);
   for (const auto& drives : exact.drives) comparison.drive.push_back(drives.front().value);

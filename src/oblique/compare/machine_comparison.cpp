@@ -42,11 +42,17 @@ struct Acting {
   bool operator==(const Acting&) const = default;
 };
 
+/// Whether blocks of the library have the parameter of an error: a user's own one need not.
+bool has_parameter(const BlockLibrary& library, const BlockFigure& error) {
+  const BlockDefinition* const definition = library.find(error.block);
+  return definition != nullptr && definition->find_parameter(error.parameter).has_value();
+}
+
 /// Ideal elements but for one figure on one kind of block, where the diagram itself does not say otherwise.
-Diagram with_figure(const Diagram& realised, Diagram ideal, const MachineProfile& machine,
-                    const Acting& acting) {
+Diagram with_figure(const Diagram& realised, Diagram ideal, const BlockLibrary& library,
+                    const MachineProfile& machine, const Acting& acting) {
   for (const BlockFigure& error : machine.errors) {
-    if (Acting{error.figure, error.block} != acting) continue;
+    if (Acting{error.figure, error.block} != acting || !has_parameter(library, error)) continue;
     for (std::size_t b = 0; b < ideal.blocks.size(); ++b) {
       const bool acts =
           ideal.blocks[b].type == error.block && !has_setting(realised.blocks[b], error.parameter);
@@ -57,13 +63,15 @@ Diagram with_figure(const Diagram& realised, Diagram ideal, const MachineProfile
 }
 
 /// What acts on blocks of the diagram, each once.
-std::vector<Acting> acting_figures(const MachineProfile& machine, const Diagram& diagram) {
+std::vector<Acting> acting_figures(const MachineProfile& machine, const BlockLibrary& library,
+                                   const Diagram& diagram) {
   std::vector<Acting> found;
   for (const BlockFigure& error : machine.errors) {
     const Acting acting{error.figure, error.block};
     const bool used = std::any_of(diagram.blocks.begin(), diagram.blocks.end(),
                                   [&](const BlockInstance& block) { return block.type == error.block; });
-    if (used && std::find(found.begin(), found.end(), acting) == found.end()) found.push_back(acting);
+    if (used && has_parameter(library, error) && std::find(found.begin(), found.end(), acting) == found.end())
+      found.push_back(acting);
   }
   return found;
 }
@@ -98,12 +106,13 @@ double MachineComparison::explained() const {
   return sum / max_error;
 }
 
-MachineComparison compare_on_machine(const Mechanism& mechanism, const BlockLibrary& library,
+MachineComparison compare_on_machine(const Mechanism& whole, const BlockLibrary& library,
                                      const MachineProfile& machine, const PatchOptions& options,
                                      const std::function<void(double)>& progress) {
+  const Mechanism mechanism = within_range(whole);
   Diagram realised = realise(patch_named(mechanism, options), library, machine).diagram;
   const Motion exact = solve_motion(mechanism, options.samples);
-  const std::vector<Acting> figures = acting_figures(machine, realised);
+  const std::vector<Acting> figures = acting_figures(machine, library, realised);
   double done = 0;
   const auto run_of = [&](const PatchedMechanism& diagram, const std::string& name) {
     const auto total = static_cast<double>(figures.size() + 2);
@@ -141,7 +150,7 @@ MachineComparison compare_on_machine(const Mechanism& mechanism, const BlockLibr
                   {}};
   result.ideal_share = along.dot(by_ideal - there);
   for (const Acting& acting : figures) {
-    const PatchedMechanism one(with_figure(realised, ideal, machine, acting), library);
+    const PatchedMechanism one(with_figure(realised, ideal, library, machine, acting), library);
     const Trajectory alone =
         run_of(one, fmt::format("nothing but '{}' of each {}", acting.figure, acting.block)).run.trajectory;
     result.figures.push_back({acting.figure, acting.block, largest_distance(mechanism, one, alone, on_ideal),

@@ -32,8 +32,11 @@ std::optional<MachinePatch> slower_patch(const Mechanism& mechanism, const Block
   std::optional<MachinePatch> found;
   if (!std::isfinite(usual)) return found;
   std::vector<double> bandwidths;
-  for (double bandwidth = step_down(usual); bandwidth > kLeastPart * usual; bandwidth = step_down(bandwidth))
+  double bandwidth = step_down(usual);
+  while (bandwidth > kLeastPart * usual) {
     bandwidths.push_back(bandwidth);
+    bandwidth = step_down(bandwidth);
+  }
   for (auto from = bandwidths.begin(), to = bandwidths.end(); from != to;) {
     const auto middle = from + (to - from) / 2;
     options.bandwidth = *middle;

@@ -38,10 +38,12 @@ class Counter {
       add_committed();
     }
     for (const auto& [rate, needed] : rates_) {
+      const std::string element = fmt::format("integrators with k0 = {:.4g} 1/s", rate);
+      if (!machine_.rates_known && rate != 1) bill_.rows.push_back({element, needed, true, {}, {}});
       const bool lacks =
           std::find(machine_.rates.begin(), machine_.rates.end(), rate) == machine_.rates.end();
       if (machine_.rates.empty() || !lacks) continue;
-      bill_.rows.push_back({fmt::format("integrators with k0 = {:.4g} 1/s", rate), needed, true, 0.0,
+      bill_.rows.push_back({element, needed, true, 0.0,
                             fmt::format("k0 on this machine: {:g} 1/s", fmt::join(machine_.rates, ", "))});
     }
     add_potentiometers();
@@ -57,7 +59,7 @@ class Counter {
 
  private:
   void count(const FlatBlock& block) {
-    const Role role = role_of(block.definition->name);
+    const Role role = role_of(*block.definition);
     if (role == Role::reference) {
       const double value = std::abs(parameter_of(block, "value"));
       if (value != 1 && value != 0) ++potentiometers_;
@@ -96,7 +98,7 @@ class Counter {
     for (const FlatTerm& term : input.terms) {
       if (term.weight == 0) continue;
       const FlatBlock& from = diagram_.blocks[term.signal.block];
-      const Role role = role_of(from.definition->name);
+      const Role role = role_of(*from.definition);
       const auto key = std::pair(term.signal.block, term.signal.output);
       if (term.weight < 0 && !signed_ && role != Role::reference) inverted_.insert(key);
       if (sum && std::abs(term.weight) != 1) weights_inputs_ = true;

@@ -71,7 +71,7 @@ class Reducer {
   /// What a block amounts to that need not stay as an element.
   std::optional<CircuitTerm> reduced(std::size_t index) {
     const FlatBlock& block = flat_.blocks[index];
-    switch (role_of(block.definition->name)) {
+    switch (role_of(*block.definition)) {
       case Role::reference:
         return CircuitTerm{parameter_of(block, "value"), std::nullopt};
       case Role::coefficient:
@@ -138,7 +138,7 @@ class Reducer {
     CircuitInput gathered;
     gathered.open =
         input.terms.empty() && block.definition->inputs[port].default_value == std::optional(input.constant);
-    if (gathered.open && role_of(block.definition->name) == Role::other) return gathered;
+    if (gathered.open && role_of(*block.definition) == Role::other) return gathered;
     double largest = 0;
     const auto add = [&](CircuitTerm term) {
       if (term.weight == 0) return;
@@ -165,7 +165,7 @@ class Reducer {
   void keep(std::size_t index) {
     const FlatBlock& block = flat_.blocks[index];
     CircuitElement element;
-    element.role = role_of(block.definition->name);
+    element.role = role_of(*block.definition);
     element.path = block.path;
     element.block = &block;
     element.definition = block.definition;
@@ -189,7 +189,7 @@ class Reducer {
   void connect(std::size_t index) {
     const FlatBlock& block = flat_.blocks[order_[index]];
     std::vector<CircuitInput> inputs;
-    const Role role = role_of(block.definition->name);
+    const Role role = role_of(*block.definition);
     if (role == Role::multiplier) {
       auto [x, y] = factors(block);
       inputs = {std::move(x), std::move(y)};

@@ -25,6 +25,24 @@ Role role_of(std::string_view block) {
   return found == kRoles.end() ? Role::other : found->second;
 }
 
+Role role_of(const BlockDefinition& definition) {
+  const Role role = role_of(definition.name);
+  const auto has = [&](std::initializer_list<std::string_view> names) {
+    return std::all_of(names.begin(), names.end(),
+                       [&](std::string_view name) { return definition.find_parameter(name).has_value(); });
+  };
+  switch (role) {
+    case Role::reference:
+      return has({"value"}) ? role : Role::other;
+    case Role::coefficient:
+      return has({definition.name == "gain" ? "factor" : "setting"}) ? role : Role::other;
+    case Role::integrator:
+      return has({"rate", "initial"}) ? role : Role::other;
+    default:
+      return role;
+  }
+}
+
 bool has_defaults(const FlatBlock& block, std::initializer_list<std::string_view> but) {
   const auto& parameters = block.definition->parameters;
   for (std::size_t k = 0; k < parameters.size(); ++k) {

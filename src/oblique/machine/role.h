@@ -22,7 +22,11 @@ enum class Role {
   other,  ///< comparators, function generators, and what no machine has
 };
 
-/// What blocks of the name are.
+/// What blocks of a definition are. One of a user's own under a shipped name is `other` where it has not the
+/// parameters of the role.
+Role role_of(const BlockDefinition& definition);
+
+/// What the shipped blocks of the name are.
 Role role_of(std::string_view block);
 
 /// Whether the block's parameters, but those of the names given, have their defaults: whether it is free of

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -17,13 +18,13 @@ class PaperPatch : private TriadPatch {
   using TriadPatch::TriadPatch;
 
   Diagram make() {
-    check_split_options(mechanism_, structure_, options_);
     for (const Group& group : structure_.groups) {
       if (group.kind == GroupKind::crank || can_be_split(group)) continue;
       refuse(group, "is not of the source's kind", "cranks and triads on three links, as the source has them",
              group.assur_class == 2 ? "patch it with --method triangles"
                                     : "patch it with --method gradient, which takes any group");
     }
+    check_split_options(mechanism_, structure_, options_);
     choose_splits();
     describe("patched as the source draws it",
              fmt::format("Two equal four-bar circuits for each class III group, one scale for all lengths.\n"
@@ -157,9 +158,11 @@ class PaperPatch : private TriadPatch {
 
   /// Outputs for the cosine and sine of an angle.
   void add_output(const std::string& angle, const std::string& cosine, const std::string& sine) {
+    std::string name = angle + suffix_;  // a drive may be called like an angle
+    for (int k = 2; !angle_names_.insert(name).second; ++k) name = fmt::format("{}{}_{}", angle, suffix_, k);
     for (const auto& [function, signal] : {std::pair("cos", cosine), std::pair("sin", sine)}) {
       OutputSpec output;
-      output.name = fmt::format("{} {}{}", function, angle, suffix_);
+      output.name = fmt::format("{} {}", function, name);
       output.signal = signal;
       output.unit = "1";
       angles_.push_back(output);
@@ -194,6 +197,7 @@ class PaperPatch : private TriadPatch {
 
   std::vector<TriadSplit> splits_;  ///< of the triads, in the order of the groups
   std::vector<OutputSpec> angles_;
+  std::set<std::string> angle_names_;
   std::string suffix_;  ///< of the names of angles, from the second triad on
 };
 

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <oblique/mechanism/motion.h>
+#include <oblique/patch/machine_time.h>
 
 namespace oblique {
 
@@ -37,42 +38,6 @@ double greatest_speed(const Mechanism& mechanism, const Drive& drive) {
   return fastest;
 }
 
-/// Seconds of the motion in one of the machine.
-double time_factor(const Mechanism& mechanism, double machine_period) {
-  return period(within_range(mechanism)) / machine_period;
-}
-
-/// The mechanism with its drives slowed down, so that its motion takes `factor` times less time.
-Mechanism slowed_by(double factor, const Mechanism& mechanism) {
-  Mechanism slowed = mechanism;
-  for (Drive& drive : slowed.drives) {
-    if (drive.law) {
-      throw PatchError(Diagnostic{
-          drive.place,
-          fmt::format("drive '{}' has a speed that varies with time, which --period cannot "
-                      "stretch",
-                      drive.name),
-          "drives of constant speed", "leave --period out, or write the law for the machine's time"});
-    }
-    drive.speed *= factor;
-  }
-  if (slowed.motion.until) *slowed.motion.until /= factor;
-  return slowed;
-}
-
-Diagram patch_slowed(const Mechanism& mechanism, PatchOptions options) {
-  const double factor = time_factor(mechanism, *options.period);
-  options.period.reset();
-  Diagram diagram = patch(slowed_by(factor, mechanism), options);
-  diagram.comment += fmt::format("\nTime: 1 s of the machine is {:.6g} s of the mechanism.", factor);
-  for (OutputSpec& output : diagram.outputs) {
-    const std::string_view name = output.name;
-    if (name.ends_with(".vx") || name.ends_with(".vy")) output.scale /= factor;
-    if (name.ends_with(".ax") || name.ends_with(".ay")) output.scale /= factor * factor;
-  }
-  return diagram;
-}
-
 }  // namespace
 
 double default_bandwidth(const Mechanism& mechanism) {
@@ -88,12 +53,10 @@ double default_bandwidth(const Mechanism& mechanism) {
 
 double bandwidth_of(const Mechanism& mechanism, const PatchOptions& options) {
   if (options.bandwidth) return *options.bandwidth;
-  if (!options.period) return default_bandwidth(mechanism);
-  return default_bandwidth(slowed_by(time_factor(mechanism, *options.period), mechanism));
+  return default_bandwidth(MachineTime(mechanism, options).slowed);
 }
 
 Diagram patch(const Mechanism& mechanism, const PatchOptions& options) {
-  if (options.period) return patch_slowed(mechanism, options);
   const Mechanism ranged = within_range(mechanism);
   switch (options.method) {
     case PatchMethod::gradient:

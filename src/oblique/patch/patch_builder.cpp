@@ -24,12 +24,13 @@ Motion patch_motion(const Mechanism& mechanism, const Structure& structure) {
 }
 
 PatchBuilder::PatchBuilder(const Mechanism& mechanism, const PatchOptions& options)
-    : PointForms(mechanism),
+    : MachineTime(mechanism, options),
+      PointForms(slowed),
       options_(options),
-      structure_(decompose(mechanism)),
-      motion_(patch_motion(mechanism, structure_)),
-      scaling_(find_scaling(mechanism, structure_, motion_)),
-      bandwidth_(bandwidth_of(mechanism, options)),
+      structure_(decompose(mechanism_)),
+      motion_(patch_motion(mechanism_, structure_)),
+      scaling_(find_scaling(mechanism_, structure_, motion_)),
+      bandwidth_(options.bandwidth.value_or(default_bandwidth(mechanism_))),
       signals_(mechanism.points.size()),
       drives_(mechanism.drives.size()),
       speeds_(mechanism.drives.size()) {
@@ -44,6 +45,8 @@ void PatchBuilder::describe(const std::string& method, const std::string& remark
   diagram_.comment =
       fmt::format("Coordinates: 1 machine unit = {} {}{}. {}", scaling_.length, mechanism_.length_unit,
                   scaling_.origin.isZero(0) ? "" : fmt::format(", from {}", name_of(0)), remarks);
+  if (options_.period)
+    diagram_.comment += fmt::format("\nTime: 1 s of the machine is {:.6g} s of the mechanism.", factor);
   diagram_.run.until = period(mechanism_);
   diagram_.run.tolerance = options_.tolerance;
   diagram_.run.samples = options_.samples;
@@ -159,10 +162,12 @@ void PatchBuilder::add_outputs() {
       diagram_.outputs.push_back({name_of(point) + axis, signal, unit, length + per, {}});
     };
     const RateSignals& rates = rate_signals_[point];
-    add_rate(".vx", rates.vx, velocity_unit_, "/s");
-    add_rate(".vy", rates.vy, velocity_unit_, "/s");
-    add_rate(".ax", rates.ax, acceleration_unit_, "/s^2");
-    add_rate(".ay", rates.ay, acceleration_unit_, "/s^2");
+    const double velocity_unit = velocity_unit_ / factor;  // rates stay those of the mechanism
+    const double acceleration_unit = acceleration_unit_ / (factor * factor);
+    add_rate(".vx", rates.vx, velocity_unit, "/s");
+    add_rate(".vy", rates.vy, velocity_unit, "/s");
+    add_rate(".ax", rates.ax, acceleration_unit, "/s^2");
+    add_rate(".ay", rates.ay, acceleration_unit, "/s^2");
   }
 }
 

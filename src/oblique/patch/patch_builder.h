@@ -10,6 +10,7 @@
 #include <oblique/mechanism/motion.h>
 #include <oblique/mechanism/structure.h>
 #include <oblique/patch/group_residuals.h>
+#include <oblique/patch/machine_time.h>
 #include <oblique/patch/patch.h>
 
 namespace oblique {
@@ -19,9 +20,9 @@ Motion patch_motion(const Mechanism& mechanism, const Structure& structure);
 
 /// What all methods of patching share: scaled signals for points, drives, points that bodies carry, rates,
 /// outputs.
-class PatchBuilder : protected PointForms {
+class PatchBuilder : private MachineTime, protected PointForms {
  public:
-  /// Throws as `decompose`, `period` and `find_scaling`.
+  /// Throws as `MachineTime`, `decompose`, `period` and `find_scaling`.
   PatchBuilder(const Mechanism& mechanism, const PatchOptions& options);
 
  protected:
@@ -119,8 +120,8 @@ class PatchBuilder : protected PointForms {
 
   std::vector<Speed> speeds_;              ///< of the drives
   std::vector<RateSignals> rate_signals_;  ///< of the points, once they have rates
-  double velocity_unit_ = 1;               ///< 1 machine unit of a velocity [length unit/s]
-  double acceleration_unit_ = 1;           ///< of an acceleration [length unit/s²]
+  double velocity_unit_ = 1;               ///< 1 machine unit of a velocity [length unit/s of machine time]
+  double acceleration_unit_ = 1;           ///< of an acceleration [length unit/s² of machine time]
   std::set<std::string> names_;
 };
 

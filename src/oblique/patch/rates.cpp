@@ -52,8 +52,9 @@ class PatchBuilder::Rates {
   void add() {
     patch_.rate_signals_.resize(patch_.mechanism_.points.size());
     const std::string& length = patch_.mechanism_.length_unit;
-    patch_.diagram_.comment += fmt::format("\nRates: 1 machine unit = {} {}/s and {} {}/s^2.",
-                                           patch_.velocity_unit_, length, patch_.acceleration_unit_, length);
+    patch_.diagram_.comment += fmt::format(
+        "\nRates: 1 machine unit = {:.6g} {}/s and {:.6g} {}/s^2.", patch_.velocity_unit_ / patch_.factor,
+        length, patch_.acceleration_unit_ / (patch_.factor * patch_.factor), length);
     for (std::size_t d = 0; d < patch_.drives_.size(); ++d) add_drive(d);
     for (const Group& group : patch_.structure_.groups) {
       if (group.kind == GroupKind::crank) {

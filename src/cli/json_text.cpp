@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: MIT
+#include "json_text.h"
+
+namespace oblique::cli {
+
+std::string json_text(const nlohmann::ordered_json& json) {
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace oblique::cli

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/patch/machine_time.h>
+
+#include <fmt/format.h>
+
+#include <oblique/mechanism/motion.h>
+
+namespace oblique {
+
+MachineTime::MachineTime(const Mechanism& mechanism, const PatchOptions& options) : slowed(mechanism) {
+  if (!options.period) return;
+  factor = period(within_range(mechanism)) / *options.period;
+  for (Drive& drive : slowed.drives) {
+    if (drive.law) {
+      throw PatchError(Diagnostic{
+          drive.place,
+          fmt::format("drive '{}' has a speed that varies with time, which --period cannot stretch",
+                      drive.name),
+          "drives of constant speed", "leave --period out, or write the law for the machine's time"});
+    }
+    drive.speed *= factor;
+  }
+  if (slowed.motion.until) *slowed.motion.until /= factor;
+}
+
+}  // namespace oblique
