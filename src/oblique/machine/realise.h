@@ -34,9 +34,8 @@ struct Realisation {
 /// - Integrators take the least time factor k0 of the machine at which one input for each term suffices;
 ///   where there is none (`choose_rate`) the bill misses the one they get. Their initial value is
 ///   a potentiometer at `start`, unless the machine's coefficients have signs (those are set digitally).
-/// - Servo amplifiers are open amplifiers and keep their gain, bandwidth and capacitor, but for the gain
-/// where
-///   the machine's is known.
+/// - Servo amplifiers are open amplifiers and keep their bandwidth and capacitor, and their gain where the
+///   machine's is not known.
 ///
 /// `[expect]` is kept. Throws DiagramError as `flatten`; RealiseError for [groups], a [timeline], and
 /// potentiometers with imperfections of their own.
