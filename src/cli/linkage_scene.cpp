@@ -74,6 +74,7 @@ DrawnMotion drawn_motion(const Mechanism& mechanism, const Structure& structure,
   const double first = tour.from_limit ? kBesideLimit : 0, last = tour.at_limit ? 1 - kBesideLimit : 1;
   DrawnMotion motion;
   motion.ends_at_limit = true;
+  motion.times.reserve(static_cast<std::size_t>(options.positions));
   for (int k = 0; k < options.positions; ++k)
     motion.times.push_back(tour.time(first + (last - first) * k / (options.positions - 1)));
   motion.rows = solve_motion(mechanism, structure, motion.times).configurations;

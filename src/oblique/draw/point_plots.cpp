@@ -22,7 +22,7 @@ class OverDrive {
 
   Curve curve(std::string name, Vector2d PointState::*vector, std::size_t axis) const {
     Curve curve{std::move(name), {}, axis};
-    const double least = kRounding * largest(vector);
+    const double least = kRounding * typical(vector);
     for (std::size_t k = 0; k < history_.states.size(); ++k) {
       const double value = (history_.states[k].*vector)[static_cast<Eigen::Index>(axis)];
       curve.points.emplace_back(history_.drives[k], std::abs(value) < least ? 0 : value);
@@ -41,26 +41,30 @@ class OverDrive {
  private:
   static constexpr double kRounding = 1e-9;
 
-  double largest(Vector2d PointState::*vector) const {
-    double largest = 0;
-    for (const PointState& state : history_.states) {
-      if ((state.*vector).allFinite()) largest = std::max(largest, (state.*vector).norm());
-    }
-    return largest;
+  /// The length of the vector that it exceeds a fifth of the time: at a limit it rises beyond all bounds.
+  double typical(Vector2d PointState::*vector) const {
+    std::vector<double> lengths;
+    for (const PointState& state : history_.states) lengths.push_back((state.*vector).norm());
+    return exceeded_by_a_fifth(std::move(lengths));
+  }
+
+  /// Of those that are finite; 0 where none is.
+  static double exceeded_by_a_fifth(std::vector<double> sizes) {
+    std::erase_if(sizes, [](double size) { return !std::isfinite(size); });
+    if (sizes.empty()) return 0;
+    const auto place = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() * 4 / 5);
+    std::nth_element(sizes.begin(), place, sizes.end());
+    return *place;
   }
 
   /// Four times what a fifth of the values exceed is the most that is drawn.
   static void leave_out_extremes(Curve& curve) {
     constexpr double kTimes = 4;
     std::vector<double> sizes;
-    for (const Vector2d& point : curve.points) {
-      if (std::isfinite(point.y())) sizes.push_back(std::abs(point.y()));
-    }
-    if (sizes.empty()) return;
-    const auto place = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() * 4 / 5);
-    std::nth_element(sizes.begin(), place, sizes.end());
+    for (const Vector2d& point : curve.points) sizes.push_back(std::abs(point.y()));
+    const double most = kTimes * exceeded_by_a_fifth(std::move(sizes));
     for (Vector2d& point : curve.points) {
-      if (std::abs(point.y()) > kTimes * *place) point.y() = std::numeric_limits<double>::quiet_NaN();
+      if (std::abs(point.y()) > most) point.y() = std::numeric_limits<double>::quiet_NaN();
     }
   }
 
