@@ -31,7 +31,7 @@ ExitStatus check_mechanism(const CheckRequest& request, const std::string& text)
 }
 
 void check_request(const CheckRequest& request) {
-  check_plot(request.plot);
+  check_plot(request);
   if (request.json && plots_in_terminal(request.plot)) {
     throw ReadError(Diagnostic{
         {}, "--json and --plot - would both print", "one of the two", "--plot FILE.svg beside --json"});

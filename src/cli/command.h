@@ -31,6 +31,7 @@ struct RunRequest {
   std::string output;
   std::vector<std::string> columns;  ///< those to write and to draw; empty: all
   std::string plot;                  ///< where the curves go; "-": the terminal
+  std::string theme;                 ///< of the drawing; empty: auto
   std::string against;               ///< the column that the others are drawn against; empty: `t`
   std::string until;
   std::vector<std::string> settings;
@@ -48,7 +49,8 @@ struct CheckRequest {
   std::string output;
   bool json = false;
   bool rescale = false;
-  std::string plot;  ///< where the eigenvalues go; "-": the terminal
+  std::string plot;   ///< where the eigenvalues go; "-": the terminal
+  std::string theme;  ///< of the drawing; empty: auto
 };
 ExitStatus check_file(const Session& session, const CheckRequest& request);
 
@@ -107,7 +109,8 @@ struct CompareRequest {
   int threads = 0;  ///< 0: as many as the processor has
   std::string tolerance;
   bool json = false;
-  std::string plot;  ///< where the curves go; "-": the terminal
+  std::string plot;   ///< where the curves go; "-": the terminal
+  std::string theme;  ///< of the drawing; empty: auto
 };
 ExitStatus compare_mechanism(const Session& session, const CompareRequest& request);
 
@@ -118,6 +121,7 @@ struct ReportRequest {
   std::string bandwidth;
   std::string method = "triangles";
   std::string machine;  ///< whose pot sheet stands in it
+  std::string theme = "auto";
 };
 ExitStatus report_mechanism(const Session& session, const ReportRequest& request);
 

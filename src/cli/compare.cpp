@@ -128,7 +128,7 @@ MonteCarloReport draw_elements(const CompareRequest& request, const Mechanism& m
 
 ExitStatus compare_mechanism(const Session& session, const CompareRequest& request) {
   if (!request.output.empty()) check_output(request.output, ".json");
-  check_plot(request.plot);
+  const Theme theme = check_plot(request);
   if (request.json && plots_in_terminal(request.plot))
     refuse("--json and --plot - would both print", "one of the two", "--plot FILE.svg beside --json");
   const BlockLibrary library = session.blocks();
@@ -176,11 +176,11 @@ ExitStatus compare_mechanism(const Session& session, const CompareRequest& reque
     const MonteCarloReport report = draw_elements(request, mechanism, drawn, library, machine);
     text += to_text(report);
     json["monte_carlo"] = to_json(report);
-    chart.panels.push_back(panel_of(report));
+    for (Panel& panel : panels_of(comparison, report)) chart.panels.push_back(std::move(panel));
     failed = !report.result.worst_run;
   }
   if (!plots_in_terminal(request.plot)) print(request.json ? json_text(json) : text);
-  if (!request.plot.empty()) plot(chart, request.plot);
+  if (!request.plot.empty()) plot(chart, request.plot, theme);
   if (!request.output.empty()) save(request.output, json_text(json));
   return failed ? ExitStatus::solver_failed : ExitStatus::done;
 }

@@ -15,7 +15,7 @@ namespace oblique::cli {
 namespace {
 
 constexpr double kBelowFloor = 0.1;
-constexpr double kHeight = 220, kHistogramHeight = 160;  // [px]
+constexpr double kHeight = 220, kLowHeight = 160;  // [px]
 
 /// "triangles", "20 Hz", "triangles, 20 Hz": what tells a series from the others; nothing of a single one.
 std::string name_of(const Comparison& comparison, const GainSeries& series) {
@@ -47,9 +47,9 @@ std::size_t runs_per_series(const Comparison& comparison) {
   return comparison.runs.size() / comparison.series.size();
 }
 
-/// The line of the fitted order, through the middle of the runs that it was fitted to.
+/// The line of the fitted order, through the middle of the runs that it was fitted to, in their colour.
 Curve slope_of(const Curve& errors, const GainSeries& series) {
-  Curve slope{fmt::format("slope {}", signed_text(*series.order)), {}, Curve::kPlain, Curve::Style::guide};
+  Curve slope{fmt::format("slope {}", signed_text(*series.order)), {}, errors.number, Curve::Style::guide};
   double n = 0, x = 0, y = 0;
   for (const Eigen::Vector2d& point : errors.points) {
     if (!stands_clear(point.y(), series.floor)) continue;
@@ -82,19 +82,25 @@ Panel convergence_of(const Comparison& comparison) {
   return panel;
 }
 
-Panel error_along(const Comparison& comparison) {
-  Panel panel{{"drive", "°"}, {"error", comparison.unit, comparison.runs.size() > 1}, {}, kHeight};
-  double unit = std::numbers::pi / 180;
-  if (!comparison.turning) {
-    panel.x = {"drive", comparison.unit};
-    unit = 1;
-  }
+/// The axis of the drive, and what one of its units is in those of the numbers.
+std::pair<Axis, double> drive_axis(const Comparison& comparison) {
+  if (comparison.turning) return {{"drive", "°"}, std::numbers::pi / 180};
+  return {{"drive", comparison.unit}, 1};
+}
+
+/// The errors of a method and bandwidth along the way, a curve for each gain.
+Panel error_along(const Comparison& comparison, std::size_t s) {
+  const auto [drive, unit] = drive_axis(comparison);
+  const GainSeries& series = comparison.series[s];
   const std::size_t per_series = runs_per_series(comparison);
-  for (std::size_t k = 0; k < comparison.runs.size(); ++k) {
-    const ComparedRun& run = comparison.runs[k];
-    const GainSeries& series = comparison.series[k / per_series];
-    const std::string name = name_of(comparison, series);
-    Curve curve{fmt::format("gain {}{}{}", gain_text(run.gain), name.empty() ? "" : ", ", name), {}, k};
+  const std::string name = name_of(comparison, series);
+  Panel panel{drive,
+              {name.empty() ? "error" : "error, " + name, comparison.unit, per_series > 1},
+              {},
+              comparison.series.size() > 1 ? kLowHeight : kHeight};
+  for (std::size_t k = 0; k < per_series; ++k) {
+    const ComparedRun& run = comparison.runs[s * per_series + k];
+    Curve curve{fmt::format("gain {}", gain_text(run.gain)), {}, k};
     for (std::size_t row = 0; row < run.error_along.size(); ++row) {
       // what is far below that which the tolerance leaves tells nothing, and would stretch the axis
       const bool tells = run.error_along[row] > kBelowFloor * series.floor;
@@ -106,23 +112,43 @@ Panel error_along(const Comparison& comparison) {
   return panel;
 }
 
-}  // namespace
-
-Chart chart_of(const Comparison& comparison) {
-  Chart chart;
-  chart.title = comparison.mechanism + ": patched against exact";
-  if (runs_per_series(comparison) > 1) chart.panels.push_back(convergence_of(comparison));
-  chart.panels.push_back(error_along(comparison));
-  return chart;
+/// Whether `error_along` leaves points out.
+bool leaves_out(const Comparison& comparison) {
+  for (std::size_t k = 0; k < comparison.runs.size(); ++k) {
+    const double least = kBelowFloor * comparison.series[k / runs_per_series(comparison)].floor;
+    const auto& errors = comparison.runs[k].error_along;
+    if (std::any_of(errors.begin(), errors.end(), [&](double error) { return error <= least; })) return true;
+  }
+  return false;
 }
 
-Panel panel_of(const MonteCarloReport& report) {
+Panel bands_of(const Comparison& comparison, const MonteCarloReport& report) {
+  const auto [drive, unit] = drive_axis(comparison);
+  Panel panel{drive, {"error with elements drawn", report.unit}, {}, kLowHeight};
+  const auto percentile = [&, unit = unit](double percent) {
+    std::vector<Eigen::Vector2d> points;
+    const std::vector<double> errors = report.result.percentile_along(percent);
+    for (std::size_t row = 0; row < errors.size(); ++row)
+      points.emplace_back(report.result.drive[row] / unit, errors[row]);
+    return points;
+  };
+  constexpr std::size_t kWide = 4, kNarrow = 0;  // sky under blue
+  const bool several = report.result.errors.size() > 1;
+  if (several) {
+    panel.curves.push_back(
+        {"95 % of the runs", percentile(97.5), kWide, Curve::Style::band, percentile(2.5)});
+    panel.curves.push_back({"half of them", percentile(75), kNarrow, Curve::Style::band, percentile(25)});
+  }
+  panel.curves.push_back({several ? "median" : "the run", percentile(50), Curve::kPlain});
+  return panel;
+}
+
+Panel histogram_of(const MonteCarloReport& report) {
   std::vector<double> errors;
   for (const std::optional<double>& error : report.result.errors) {
     if (error) errors.push_back(*error);
   }
-  Panel panel{{"largest error of a run", report.unit}, {"runs"}, {}, kHistogramHeight};
-  if (errors.empty()) return panel;
+  Panel panel{{"largest error of a run", report.unit}, {"runs"}, {}, kLowHeight};
   const auto [least, greatest] = std::minmax_element(errors.begin(), errors.end());
   const double low = *least, span = *greatest > low ? *greatest - low : std::max(std::abs(low), 1e-300);
   // as many classes as make the shape stand out of the noise of counting (Rice's rule)
@@ -152,6 +178,28 @@ Panel panel_of(const MonteCarloReport& report) {
     panel.curves.push_back(std::move(line));
   }
   return panel;
+}
+
+}  // namespace
+
+Chart chart_of(const Comparison& comparison) {
+  Chart chart;
+  chart.title = comparison.mechanism + ": patched against exact";
+  if (runs_per_series(comparison) > 1) chart.panels.push_back(convergence_of(comparison));
+  for (std::size_t s = 0; s < comparison.series.size(); ++s)
+    chart.panels.push_back(error_along(comparison, s));
+  if (leaves_out(comparison)) {
+    chart.note =
+        "Errors along the way that are less than a tenth of what the solver's tolerance leaves are not "
+        "drawn: "
+        "they tell nothing of the machine.";
+  }
+  return chart;
+}
+
+std::vector<Panel> panels_of(const Comparison& comparison, const MonteCarloReport& report) {
+  if (!report.result.worst_run) return {};  // all failed
+  return {bands_of(comparison, report), histogram_of(report)};
 }
 
 }  // namespace oblique::cli

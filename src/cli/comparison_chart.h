@@ -8,11 +8,13 @@
 
 namespace oblique::cli {
 
-/// The largest error over the gain with the fitted slopes, where there is more than one gain, and the error
-/// along the way of each run.
+/// The largest error over the gain with the fitted slopes, where there is more than one gain, and for each
+/// method and bandwidth the error along the way at each gain.
 Chart chart_of(const Comparison& comparison);
 
-/// How often runs of Monte Carlo err how much, with the percentiles that half and 95 % of them do not exceed.
-Panel panel_of(const MonteCarloReport& report);
+/// What the runs of Monte Carlo tell: their errors along the way, as the bands of half and of 95 % of them
+/// about the median, and how often they err how much, with the errors that half and 95 % of them do not
+/// exceed.
+std::vector<Panel> panels_of(const Comparison& comparison, const MonteCarloReport& report);
 
 }  // namespace oblique::cli

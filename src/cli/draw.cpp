@@ -13,7 +13,7 @@ namespace oblique::cli {
 namespace {
 
 Picture mechanism_picture(const Mechanism& mechanism, const DrawRequest& request) {
-  if (!request.plots.empty()) return draw_point_plots(point_history(mechanism, request.plots));
+  if (!request.plots.empty()) return draw_chart(point_plots(point_history(mechanism, request.plots)));
   const std::vector<std::size_t> traces = trace_option(mechanism, request.trace);
   LinkageScene scene = linkage_scene(mechanism, request.at, request.positions);
   if (!scene.motion.empty()) scene.traces = traces;

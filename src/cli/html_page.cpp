@@ -10,44 +10,74 @@
 namespace oblique::cli {
 namespace {
 
-constexpr std::string_view kStyle = R"(  :root { color-scheme: light dark }
-  body { margin: 2rem auto; max-width: 52rem; padding: 0 1rem; background: #fff; color: #1a1a1a;
+constexpr std::string_view kStyle = R"(  body { margin: 2rem auto; max-width: 54rem; padding: 0 1rem;
          font: 15px/1.5 Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif }
-  h1 { font-size: 1.7rem; line-height: 1.2 }
-  h2 { font-size: 1.2rem; margin-top: 2.2rem; border-bottom: 1px solid #b4b4b4 }
-  h3 { font-size: 1rem; margin-top: 1.6rem }
-  figure { margin: 1rem 0; break-inside: avoid }
+  h1 { font-size: 1.7rem; line-height: 1.2; margin-bottom: .5rem }
+  h2 { font-size: 1.25rem; margin-top: 2.4rem; border-bottom: 1px solid #8886; padding-bottom: .15rem }
+  h3 { font-size: 1rem; margin: 1.5rem 0 .3rem }
+  h3::first-letter { text-transform: uppercase }
+  p { max-width: 46rem; margin: .6rem 0 }
+  nav ul { list-style: none; padding: 0; margin: 1rem 0 }
+  nav li { display: inline-block; margin-right: 1.4rem }
+  nav a { color: inherit; text-underline-offset: .2em }
+  figure { margin: 1rem 0; overflow-x: auto }
   figure svg { max-width: 100%; height: auto }
-  .scroll { overflow-x: auto }
+  figure.broad svg { max-width: none }
+  .scroll { overflow-x: auto; margin: .6rem 0 }
   table { border-collapse: collapse; font-size: 13px; font-variant-numeric: tabular-nums }
   th, td { padding: .15rem .8rem .15rem 0; text-align: left; vertical-align: top }
-  th { border-bottom: 1px solid #b4b4b4; font-weight: 600 }
+  th { border-bottom: 1px solid #8886; font-weight: 600; vertical-align: bottom }
   .n { text-align: right }
   td.n { white-space: nowrap }
-  tr { break-inside: avoid }
-  pre { font: 12px/1.4 'DejaVu Sans Mono', 'Liberation Mono', Menlo, Consolas, monospace; overflow-x: auto }
-  @media screen and (prefers-color-scheme: dark) {
-    body { background: #16181c; color: #ececec }
-    h2, th { border-color: #5c5c5c }
-  }
-  @media print {
-    body { margin: 0; max-width: none; font-size: 10.5pt }
-    h2, h3 { break-after: avoid }
-    table { font-size: 8pt }
-    pre { white-space: pre-wrap; font-size: 7.5pt }
-    .scroll { overflow: visible }
-  }
 )";
+constexpr std::string_view kPrint = R"(  @page { margin: 16mm }
+  @page across { size: landscape; margin: 12mm }
+  @media print {
+    body { margin: 0; padding: 0; max-width: none; font-size: 10pt }
+    h2, h3, .lead { break-after: avoid }
+    p { orphans: 3; widows: 3; max-width: none }
+    figure { break-inside: avoid; overflow: visible }
+    figure svg { max-height: 235mm }
+    figure.broad { page: across; margin: 0 }
+    figure.broad svg { max-width: 100%; max-height: 180mm }
+    .scroll { overflow: visible }
+    .short, tr, li { break-inside: avoid }
+    table { font-size: 8pt }
+    td, th { padding-right: .5rem }
+    nav a { text-decoration: none }
+)";
+
+/// Wider pictures would be too small on a sheet upright [px].
+constexpr double kBroad = 900;
+/// Rows of a table that is not divided between sheets.
+constexpr std::size_t kShort = 32;
+
+std::string ground(bool dark) {
+  return fmt::format("body {{ background: {}; color: {} }}\n", colour_of(Ink::paper, dark),
+                     colour_of(Ink::line, dark));
+}
+
+/// The colours of the page on the screen.
+std::string colours(Theme theme) {
+  if (theme != Theme::automatic) {
+    const bool dark = theme == Theme::dark;
+    return fmt::format("  :root {{ color-scheme: {} }}\n  ", dark ? "dark" : "light") + ground(dark);
+  }
+  return "  :root { color-scheme: light dark }\n  " + ground(false) +
+         "  @media (prefers-color-scheme: dark) { " + ground(true) + "  }\n";
+}
 
 /// "12.5", "−3e-4", "80°", and cells without anything in them.
 bool is_number(std::string_view cell) {
-  return cell.find_first_not_of("0123456789+-.e °−≥±") == std::string_view::npos || cell == "inf";
+  return cell.find_first_not_of("0123456789+-.e °%−≥±–∞·⁰¹²³⁴⁵⁶⁷⁸⁹⁻") == std::string_view::npos ||
+         cell == "inf";
 }
 
 }  // namespace
 
 void HtmlPage::heading(std::string_view text) {
-  body_ += fmt::format("<h2>{}</h2>\n", escape_xml(text));
+  sections_.push_back(escape_xml(text));
+  body_ += fmt::format("<h2 id=\"section-{}\">{}</h2>\n", sections_.size(), sections_.back());
 }
 
 void HtmlPage::subheading(std::string_view text) {
@@ -56,6 +86,10 @@ void HtmlPage::subheading(std::string_view text) {
 
 void HtmlPage::paragraph(std::string_view text) {
   body_ += fmt::format("<p>{}</p>\n", escape_xml(text));
+}
+
+void HtmlPage::introduction(std::string_view text) {
+  body_ += fmt::format("<p class=\"lead\">{}</p>\n", escape_xml(text));
 }
 
 void HtmlPage::list(const std::vector<std::string>& items) {
@@ -78,23 +112,24 @@ void HtmlPage::table(const std::vector<std::string>& header,
       body_ += fmt::format("<{0}{1}>{2}</{0}>", tag, marks[c], escape_xml(cells[c]));
     body_ += "</tr>\n";
   };
-  body_ += "<div class=\"scroll\"><table>\n<thead>";
+  body_ += fmt::format("<div class=\"scroll{}\"><table>\n<thead>", rows.size() <= kShort ? " short" : "");
   line(header, "th");
   body_ += "</thead>\n<tbody>\n";
   for (const auto& row : rows) line(row, "td");
   body_ += "</tbody>\n</table></div>\n";
 }
 
-void HtmlPage::preformatted(std::string_view text) {
-  body_ += fmt::format("<pre>{}</pre>\n", escape_xml(text));
+void HtmlPage::table(const std::vector<std::vector<std::string>>& rows) {
+  table(rows.front(), {rows.begin() + 1, rows.end()});
 }
 
 void HtmlPage::picture(const Picture& picture) {
   const std::string width = svg_number(picture.width), height = svg_number(picture.height);
   body_ += fmt::format(
-      "<figure><svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{}\" viewBox=\"0 0 {} {}\" "
+      "<figure{}><svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{}\" viewBox=\"0 0 {} {}\" "
       "role=\"img\">\n<title>{}</title>\n",
-      width, height, width, height, escape_xml(picture.title));
+      picture.width > kBroad ? " class=\"broad\"" : "", width, height, width, height,
+      escape_xml(picture.title));
   for (Mark mark : picture.marks) {
     mark.id.clear();  // several pictures of a page would share them
     body_ += svg_element(mark) + "\n";
@@ -102,13 +137,18 @@ void HtmlPage::picture(const Picture& picture) {
   body_ += "</svg></figure>\n";
 }
 
-std::string HtmlPage::text() const {
+std::string HtmlPage::text(Theme theme) const {
   const std::string title = escape_xml(title_);
+  std::string contents;
+  for (std::size_t k = 0; k < sections_.size(); ++k)
+    contents += fmt::format("<li><a href=\"#section-{}\">{}</a></li>\n", k + 1, sections_[k]);
+  const std::string style = fmt::format("{}{}{}{}    {}{}  }}\n", kStyle, colours(theme), svg_style(theme),
+                                        kPrint, ground(false), svg_style(Theme::light));
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{}</title>\n"
-      "<style>\n{}{}  @media print {{\n{}  }}\n</style>\n</head>\n<body>\n<h1>{}</h1>\n{}</body>\n</html>\n",
-      title, kStyle, svg_style(Theme::automatic), svg_style(Theme::light), title, body_);
+      "<style>\n{}</style>\n</head>\n<body>\n<h1>{}</h1>\n<nav><ul>\n{}</ul></nav>\n{}</body>\n</html>\n",
+      title, style, title, contents, body_);
 }
 
 }  // namespace oblique::cli

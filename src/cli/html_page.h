@@ -6,30 +6,36 @@
 #include <vector>
 
 #include <oblique/draw/picture.h>
+#include <oblique/draw/svg.h>
 
 namespace oblique::cli {
 
-/// A page in one file: text, tables and pictures inside it, no scripts; light or dark as the reader's screen,
-/// always light on paper. All texts are escaped.
+/// A page in one file: contents, text, tables and pictures inside it, no scripts. On paper it is always
+/// light; headings and introductions stay with what follows them, pictures and short tables are not divided,
+/// and pictures that are broad have a sheet across. All texts are escaped.
 class HtmlPage {
  public:
   explicit HtmlPage(std::string title) : title_(std::move(title)) {}
 
+  /// Begins a section, which the contents list.
   void heading(std::string_view text);
   void subheading(std::string_view text);
   void paragraph(std::string_view text);
+  /// A paragraph that belongs to what follows it.
+  void introduction(std::string_view text);
   void list(const std::vector<std::string>& items);
   /// Columns of numbers are aligned to the right, those of words to the left.
   void table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows);
-  /// Lines as they stand, in a font of even width.
-  void preformatted(std::string_view text);
+  /// The same, with the header as the first of `rows`.
+  void table(const std::vector<std::vector<std::string>>& rows);
   void picture(const Picture& picture);
 
-  std::string text() const;
+  std::string text(Theme theme) const;
 
  private:
   std::string title_;
   std::string body_;
+  std::vector<std::string> sections_;
 };
 
 }  // namespace oblique::cli

@@ -67,12 +67,14 @@ DrawnMotion drawn_motion(const Mechanism& mechanism, const Structure& structure,
   if (!ends_at_limit(mechanism, whole)) {
     const bool closed =
         same_place(whole.configurations.front(), whole.configurations.back(), mechanism.largest_length());
-    return {std::move(whole.configurations), std::move(whole.times), closed};
+    return {std::move(whole.configurations), std::move(whole.times), closed, false};
   }
   const Tour tour = plan_tour(mechanism, structure);
   constexpr double kBesideLimit = 1e-5;  // where the mechanism can surely be assembled
   const double first = tour.from_limit ? kBesideLimit : 0, last = tour.at_limit ? 1 - kBesideLimit : 1;
   DrawnMotion motion;
+  motion.ends_at_limit = true;
+  motion.times.reserve(static_cast<std::size_t>(options.positions));
   for (int k = 0; k < options.positions; ++k)
     motion.times.push_back(tour.time(first + (last - first) * k / (options.positions - 1)));
   motion.rows = solve_motion(mechanism, structure, motion.times).configurations;
@@ -120,6 +122,7 @@ PointHistory point_history(const Mechanism& mechanism, const std::string& point)
   history.point = point;
   history.length_unit = mechanism.length_unit;
   history.drive = drive.name;
+  history.ends_at_limit = motion.ends_at_limit;
   history.drive_unit = drive.slide ? mechanism.length_unit : "°";
   DriveClock clock(mechanism);
   for (std::size_t k = 0; k < motion.rows.size(); ++k) {

@@ -16,6 +16,7 @@ struct DrawnMotion {
   std::vector<Configuration> rows;
   std::vector<double> times;  ///< [s]
   bool closed = false;        ///< it ends as it begins
+  bool ends_at_limit = false;
 };
 DrawnMotion drawn_motion(const Mechanism& mechanism, const Structure& structure, int rows);
 

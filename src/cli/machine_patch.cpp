@@ -18,29 +18,6 @@
 namespace oblique::cli {
 namespace {
 
-std::string verdict_text(const Bill& bill) {
-  std::vector<std::string> named;
-  switch (bill.verdict()) {
-    case Bill::Verdict::fits:
-      return "it fits\n";
-    case Bill::Verdict::does_not_fit:
-      for (const BillRow& row : bill.rows) {
-        if (row.missing() > 0) named.push_back(fmt::format("{} ({})", row.element, row.missing()));
-      }
-      return fmt::format("it does not fit; missing: {}\n", fmt::join(named, ", "));
-    case Bill::Verdict::cannot_tell:
-      break;
-  }
-  for (const BillRow& row : bill.rows) {
-    if (row.at_least) {
-      named.emplace_back("what its inputs weigh");
-    } else if (!row.available) {
-      named.push_back("how many " + row.element);
-    }
-  }
-  return fmt::format("whether it fits cannot be told; not published: {}\n", fmt::join(named, ", "));
-}
-
 std::string available_text(const BillRow& row) {
   if (!row.exists) return "none";
   if (!row.available) return "not published";
@@ -93,14 +70,41 @@ std::vector<Written> sheet_files(const PatchRequest& request, const Diagram& dia
 
 }  // namespace
 
-std::string to_text(const Bill& bill) {
+std::string verdict_text(const Bill& bill) {
+  std::vector<std::string> named;
+  switch (bill.verdict()) {
+    case Bill::Verdict::fits:
+      return "it fits";
+    case Bill::Verdict::does_not_fit:
+      for (const BillRow& row : bill.rows) {
+        if (row.missing() > 0) named.push_back(fmt::format("{} ({})", row.element, row.missing()));
+      }
+      return fmt::format("it does not fit; missing: {}", fmt::join(named, ", "));
+    case Bill::Verdict::cannot_tell:
+      break;
+  }
+  for (const BillRow& row : bill.rows) {
+    if (row.at_least) {
+      named.emplace_back("what its inputs weigh");
+    } else if (!row.available) {
+      named.push_back("how many " + row.element);
+    }
+  }
+  return fmt::format("whether it fits cannot be told; not published: {}", fmt::join(named, ", "));
+}
+
+Table bill_table(const Bill& bill) {
   Table table({"element", "needed", "available", "missing"});
   for (const BillRow& row : bill.rows) {
     table.add({row.note.empty() ? row.element : fmt::format("{} ({})", row.element, row.note),
                fmt::format("{}{}", row.at_least ? "≥ " : "", row.needed), available_text(row),
                row.missing() > 0 ? fmt::format("{}", row.missing()) : ""});
   }
-  return fmt::format("elements of {}\n{}{}", bill.machine, table.text(1), verdict_text(bill));
+  return table;
+}
+
+std::string to_text(const Bill& bill) {
+  return fmt::format("elements of {}\n{}{}\n", bill.machine, bill_table(bill).text(1), verdict_text(bill));
 }
 
 MachineSheets sheets_of(const Diagram& diagram, const FlatDiagram& flat, const BlockLibrary& library,

@@ -8,11 +8,14 @@
 #include <oblique/machine/sheets.h>
 
 #include "command.h"
+#include "terminal.h"
 
 namespace oblique::cli {
 
 /// The bill as a table with its verdict, for people.
 std::string to_text(const Bill& bill);
+Table bill_table(const Bill& bill);
+std::string verdict_text(const Bill& bill);  ///< "it fits"
 
 /// The sheets of a diagram that is in the machine's elements; `flat` is flattened from it.
 MachineSheets sheets_of(const Diagram& diagram, const FlatDiagram& flat, const BlockLibrary& library,

@@ -7,6 +7,8 @@
 
 #include <oblique/mechanism/analysis.h>
 
+#include "terminal.h"
+
 namespace oblique::cli {
 
 /// What `check` finds out about a mechanism.
@@ -30,6 +32,15 @@ std::vector<std::string> remarks(const MechanismCheck& check);
 /// The first drive's value as people read it: "137.87°", within a turn of a full-turn motion from 0; "12.5
 /// mm".
 std::string drive_text(const MechanismCheck& check, double value);
+
+/// A table of what was found.
+struct CheckTable {
+  std::string title;
+  Table table;
+  std::size_t left_columns = 0;  ///< the first columns, which hold words
+  std::string explanation;       ///< of its numbers, a sentence
+};
+std::vector<CheckTable> tables_of(const MechanismCheck& check);
 
 std::string to_text(const MechanismCheck& check);
 std::string to_json(const MechanismCheck& check);

@@ -1,9 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <cmath>
-#include <numbers>
-
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "mechanism_check.h"
 #include "terminal.h"
@@ -11,51 +7,24 @@
 namespace oblique::cli {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
-
 class Report {
  public:
   explicit Report(const MechanismCheck& check)
-      : check_(check),
-        mechanism_(check.mechanism),
-        analysis_(check.analysis),
-        unit_(check.mechanism.length_unit) {}
+      : check_(check), mechanism_(check.mechanism), analysis_(check.analysis) {}
 
   std::string write() {
     contents();
     if (analysis_.tour) limits();
-    four_bars();
-    sliders();
+    for (const CheckTable& table : tables_of(check_))
+      text_ += "\n" + table.title + "\n" + table.table.text(table.left_columns);
     if (!analysis_.tour) return text_;
-    transmissions();
-    bodies();
-    slides();
-    paths();
-    centres();
-    inertia();
-    for (const std::string& remark : remarks(check_)) remark_lines_ += fmt::format("  {}\n", remark);
-    if (!remark_lines_.empty()) text_ += "\nremarks\n" + remark_lines_;
+    std::string lines;
+    for (const std::string& remark : remarks(check_)) lines += fmt::format("  {}\n", remark);
+    if (!lines.empty()) text_ += "\nremarks\n" + lines;
     return text_;
   }
 
  private:
-  std::string length(double value) const {
-    constexpr double kRounding = 1e-9;
-    return fmt::format("{:.5g}", std::abs(value) < kRounding * mechanism_.largest_length() ? 0.0 : value);
-  }
-  static std::string degrees(double value) {
-    const double shown = std::round(value / kDegree * 100) / 100;
-    return fmt::format("{:.2f}", shown + 0.0);
-  }
-  static std::string number(double value) { return fmt::format("{:.4g}", value + 0.0); }
-  std::string at(const Reading& reading) const { return bare(drive_text(check_, reading.drive)); }
-  /// Without its unit, which stands in the header.
-  static std::string bare(const std::string& text) { return text.substr(0, text.find_first_of(" \xC2")); }
-  const Drive& drive() const { return mechanism_.drives.front(); }
-  std::string at_header() const {
-    return fmt::format("at {} [{}]", drive().name, drive().slide ? unit_ : "°");
-  }
-
   void contents() {
     text_ += fmt::format("{}: a mechanism, \"{}\"\n", check_.file, mechanism_.title);
     text_ += fmt::format("  {}, mobility {}, {}\n", count(mechanism_.bodies.size(), "body", "bodies"),
@@ -91,209 +60,21 @@ class Report {
                    : std::string();
     };
     if (tour.range.backward || tour.range.forward) {
-      text_ += fmt::format("  range of '{}':{}{}; what follows is about that range\n", drive().name,
-                           limit("from", tour.range.backward), limit("to", tour.range.forward));
+      text_ += fmt::format("  range of '{}':{}{}; what follows is about that range\n",
+                           mechanism_.drives.front().name, limit("from", tour.range.backward),
+                           limit("to", tour.range.forward));
     }
     for (const MotionEvent& change : tour.changes) {
-      text_ += fmt::format("  change point of {} at {} = {}\n", check_.structure.groups[change.group].name,
-                           drive().name, drive_text(check_, clock.at(0, change.time).value));
+      text_ +=
+          fmt::format("  change point of {} at {} = {}\n", check_.structure.groups[change.group].name,
+                      mechanism_.drives.front().name, drive_text(check_, clock.at(0, change.time).value));
     }
-  }
-
-  std::string name_of(const LoopLink& link) const {
-    return link.body ? mechanism_.bodies[*link.body].name : "frame";
-  }
-
-  void four_bars() {
-    if (analysis_.four_bars.empty()) return;
-    Table table({"loop", "class", "shortest link", fmt::format("s + l [{}]", unit_),
-                 fmt::format("p + q [{}]", unit_)});
-    for (const FourBarLoop& loop : analysis_.four_bars) {
-      std::vector<std::string> links, shortest;
-      for (const LoopLink& link : loop.links) links.push_back(name_of(link));
-      for (const std::size_t i : loop.shortest) shortest.push_back(name_of(loop.links[i]));
-      table.add({fmt::format("{}", fmt::join(links, "-")), std::string(grashof_name(loop.type)),
-                 fmt::format("{}", fmt::join(shortest, ", ")), length(loop.shortest_and_longest),
-                 length(loop.others)});
-    }
-    text_ += "\nfour-bar loops (shortest and longest link against the two others)\n" + table.text(3);
-  }
-
-  void sliders() {
-    if (analysis_.sliders.empty()) return;
-    Table table({"loop", "kind", "rotation", fmt::format("r [{}]", unit_), fmt::format("l or d [{}]", unit_),
-                 fmt::format("e [{}]", unit_)});
-    for (const SliderLoop& loop : analysis_.sliders) {
-      table.add({fmt::format("{}-{}", mechanism_.bodies[loop.crank].name, mechanism_.bodies[loop.rod].name),
-                 loop.is_lever ? "slotted lever" : "slider-crank", std::string(slider_loop_name(loop.type)),
-                 length(loop.radius), length(loop.length), length(loop.offset)});
-    }
-    text_ += "\ncranks with slides (crank r, rod l or distance d of the pivots, offset e)\n" + table.text(3);
-  }
-
-  void transmissions() {
-    if (analysis_.transmissions.empty()) return;
-    Table table({"group", "measure", "least", at_header(), "greatest", at_header(), ""});
-    for (const Transmission& t : analysis_.transmissions) {
-      const bool angle = t.measure != Transmission::Measure::regularity;
-      const auto shown = [&](double value) {
-        return angle ? degrees(value) + "°" : fmt::format("{:.4f}", value);
-      };
-      table.add({check_.structure.groups[t.group].name, std::string(measure_name(t.measure)),
-                 shown(t.least.value), at(t.least), shown(t.greatest.value), at(t.greatest),
-                 t.is_poor() ? "poor" : ""});
-    }
-    text_ += "\ntransmission (best: angle 90°, pressure angle 0°, regularity 1)\n" + table.text(2);
-  }
-
-  std::string dwells_of(const std::vector<Dwell>& dwells) const {
-    std::vector<std::string> texts;
-    texts.reserve(dwells.size());
-    for (const Dwell& dwell : dwells) {
-      texts.push_back(fmt::format("{}–{}", bare(drive_text(check_, dwell.begin_drive)),
-                                  bare(drive_text(check_, dwell.end_drive))));
-    }
-    return fmt::format("{}", fmt::join(texts, ", "));
-  }
-
-  std::string dwell_header() const {
-    return fmt::format("dwell, {} [{}]", drive().name, drive().slide ? unit_ : "°");
-  }
-
-  static std::string motion_of(const Swing& swing) {
-    switch (swing.kind) {
-      case Swing::Kind::turns:
-      case Swing::Kind::wavers: {
-        const auto turns = std::lround(std::abs(swing.gain) / (360 * kDegree));
-        return fmt::format("turns{}{}{}", turns == 1 ? "" : fmt::format(" {} times", turns),
-                           swing.gain > 0 ? " left" : " right",
-                           swing.kind == Swing::Kind::wavers ? ", and back on the way" : "");
-      }
-      case Swing::Kind::progresses:
-        return swing.gain > 0 ? "rises" : "falls";
-      case Swing::Kind::rests:
-        return "rests";
-      case Swing::Kind::swings:
-        break;
-    }
-    return swing.reversals > 2 ? fmt::format("swings, {} reversals", swing.reversals) : "swings";
-  }
-
-  void add_swing(Table& table, const Swing& swing, const std::string& name, bool dwells) const {
-    const auto shown = [&](double value) { return swing.is_slide ? length(value) : degrees(value); };
-    std::vector<std::string> row{name, motion_of(swing)};
-    if (swing.kind == Swing::Kind::swings || swing.kind == Swing::Kind::progresses) {
-      row.insert(row.end(), {shown(swing.least.value), at(swing.least), shown(swing.greatest.value),
-                             at(swing.greatest), shown(swing.stroke())});
-    } else {  // a place only where it rests
-      row.insert(row.end(),
-                 {swing.kind == Swing::Kind::rests ? shown(swing.least.value) : "", "", "", "", ""});
-    }
-    const bool times = swing.time_ratio.has_value();
-    row.insert(row.end(), {times ? number(swing.rising) : "", times ? number(swing.falling) : "",
-                           times ? fmt::format("{:.4f}", *swing.time_ratio) : ""});
-    if (dwells) row.push_back(dwells_of(swing.dwells));
-    table.add(row);
-  }
-
-  void swings(bool slides, const std::string& title, const std::string& unit) {
-    bool any = false, dwells = false;
-    for (const Swing& swing : analysis_.swings) {
-      if (swing.is_slide != slides) continue;
-      any = true;
-      dwells = dwells || !swing.dwells.empty();
-    }
-    if (!any) return;
-    std::vector<std::string> header{slides ? "slide" : "body",
-                                    "motion",
-                                    fmt::format("least [{}]", unit),
-                                    at_header(),
-                                    fmt::format("greatest [{}]", unit),
-                                    at_header(),
-                                    fmt::format("stroke [{}]", unit),
-                                    "rises [s]",
-                                    "falls [s]",
-                                    "time ratio"};
-    if (dwells) header.push_back(dwell_header());
-    Table table(header);
-    for (const Swing& swing : analysis_.swings) {
-      if (swing.is_slide != slides) continue;
-      const auto& name = slides ? mechanism_.slides[swing.index].name : mechanism_.bodies[swing.index].name;
-      add_swing(table, swing, name, dwells);
-    }
-    text_ += "\n" + title + "\n" + table.text(2);
-  }
-
-  void bodies() { swings(false, "bodies (angle of first → second point)", "°"); }
-  void slides() { swings(true, "slides", unit_); }
-
-  void paths() {
-    if (analysis_.paths.empty()) return;
-    bool dwells = false, areas = false;
-    for (const PathReport& path : analysis_.paths) {
-      dwells = dwells || !path.dwells.empty();
-      areas = areas || path.measure.area;
-    }
-    std::vector<std::string> header{"point", fmt::format("length [{}]", unit_)};
-    if (areas) header.push_back(fmt::format("area [{}²]", unit_));
-    for (const char* side : {"x from", "to", "y from", "to"}) header.emplace_back(side);
-    if (dwells) header.push_back(dwell_header());
-    Table table(header);
-    for (const PathReport& path : analysis_.paths) {
-      std::vector<std::string> row{mechanism_.points[path.measure.point].name, length(path.measure.length)};
-      if (areas) row.push_back(path.measure.area ? area(*path.measure.area) : "");
-      for (const Reading* side : {&path.left, &path.right, &path.bottom, &path.top})
-        row.push_back(length(side->value));
-      if (dwells) row.push_back(dwells_of(path.dwells));
-      table.add(row);
-    }
-    text_ += "\npaths (area: positive where the path runs counter-clockwise)\n" + table.text(1);
-  }
-
-  std::string area(double value) const {
-    constexpr double kRounding = 1e-9;
-    const double size = mechanism_.largest_length();
-    return fmt::format("{:.5g}", std::abs(value) < kRounding * size * size ? 0.0 : value);
-  }
-
-  void centres() {
-    Table table({"body", fmt::format("x [{}]", unit_), fmt::format("y [{}]", unit_), ""});
-    for (const InstantCentre& centre : analysis_.centres) {
-      if (centre.first) continue;
-      const std::string& name = mechanism_.bodies[centre.second].name;
-      if (centre.position) {
-        table.add({name, length(centre.position->x()), length(centre.position->y()), ""});
-      } else if (centre.direction) {
-        const double angle = std::atan2(centre.direction->y(), centre.direction->x());
-        table.add({name, "∞", "∞", fmt::format("in the direction {}°", degrees(angle))});
-      } else {
-        table.add({name, "–", "–", "it has no velocity"});
-      }
-    }
-    text_ += "\ninstant centres against the frame, at the start (all of them: --json)\n" + table.text(1);
-  }
-
-  void inertia() {
-    if (!analysis_.inertia) return;
-    const InertiaReport& report = *analysis_.inertia;
-    Table bars({"body", "mass [kg]", "J [kg m²]"});
-    for (const auto& bar : report.bars)
-      bars.add({mechanism_.bodies[bar.body].name, number(bar.mass), number(bar.inertia)});
-    text_ += "\nmasses, as uniform bars from first to second point (J about the middle)\n" + bars.text(1);
-    Table table({"", "least", at_header(), "greatest", at_header()});
-    table.add({drive().slide ? "reduced mass [kg]" : "reduced moment of inertia [kg m²]",
-               number(report.least.value), at(report.least), number(report.greatest.value),
-               at(report.greatest)});
-    table.add({"kinetic energy [J]", number(report.least_energy.value), at(report.least_energy),
-               number(report.greatest_energy.value), at(report.greatest_energy)});
-    text_ += fmt::format("reduced to '{}'\n", drive().name) + table.text(1);
   }
 
   const MechanismCheck& check_;
   const Mechanism& mechanism_;
   const MechanismAnalysis& analysis_;
-  std::string unit_;
-  std::string text_, remark_lines_;
+  std::string text_;
 };
 
 }  // namespace

@@ -149,8 +149,8 @@ void add_compare(CLI::App& app, Chosen& chosen) {
       ->check(CLI::Range(1, 1024))
       ->needs(monte_carlo);
   add_plot_option(verb, *request,
-                  "draw the error over the gain with its slope, the error along the turn, and how often "
-                  "--monte-carlo errs how much");
+                  "draw the error over the gain with its slope, the error along the turn, and of "
+                  "--monte-carlo the bands of the error along the turn and how often it errs how much");
   verb->add_flag("--json", request->json, "print JSON instead of the table");
   verb->add_option("-o,--output", request->output, "write the JSON to FILE.json")->type_name("FILE");
   choose(verb, chosen, request, compare_mechanism);
@@ -159,7 +159,7 @@ void add_compare(CLI::App& app, Chosen& chosen) {
 void add_report(CLI::App& app, Chosen& chosen) {
   auto request = std::make_shared<ReportRequest>();
   CLI::App* const verb = app.add_subcommand(
-      "report", "Report on a mechanism in one page: its groups, its patch, convergence, stability");
+      "report", "Report on a mechanism in one page: its groups, motion, patch, convergence, stability");
   verb->add_option("MECHANISM", request->mechanism, "mechanism file (oblique-mechanism/1)")->required();
   verb->add_option("-o,--output", request->output, "write the page to FILE.html")
       ->required()
@@ -174,6 +174,10 @@ void add_report(CLI::App& app, Chosen& chosen) {
                    "add what the patch needs of this machine, and its sheets: settings of potentiometers, "
                    "connections, static test")
       ->type_name("NAME");
+  verb->add_option("--theme", request->theme,
+                   "auto: light or dark as the reader's screen; on paper always light")
+      ->capture_default_str()
+      ->type_name("auto|light|dark");
   choose(verb, chosen, request, report_mechanism);
 }
 

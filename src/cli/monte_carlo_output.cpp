@@ -12,6 +12,9 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kPercents[] = {5, 25, 50, 75, 95, 100};
 
+/// The edges of the bands that hold 95 % and half of the runs, and the median.
+constexpr double kPercentsAlong[] = {2.5, 25, 50, 75, 97.5};
+
 std::string percentiles(const MonteCarloReport& report) {
   Table table({"of the runs", fmt::format("largest error up to [{}]", report.unit)});
   for (const double percent : kPercents) {
@@ -68,6 +71,9 @@ Json to_json(const MonteCarloReport& report) {
     const auto error = result.percentile(percent);
     json["percentiles"][fmt::format("{:.0f}", percent)] = error ? Json(*error) : Json(nullptr);
   }
+  json["along"] = {{"drive", result.drive}};
+  for (const double percent : kPercentsAlong)
+    json["along"][fmt::format("{}", percent)] = result.percentile_along(percent);
   json["worst_run"] = result.worst_run ? Json(*result.worst_run) : Json(nullptr);
   json["errors"] = Json::array();
   for (const auto& error : result.errors) json["errors"].push_back(error ? Json(*error) : Json(nullptr));

@@ -90,10 +90,6 @@ void save_picture(const Picture& picture, const std::string& path, Theme theme) 
   save(path, is_png(path) ? png_of(svg, path) : svg);
 }
 
-void save_picture(const Picture& picture, const std::string& path) {
-  save_picture(picture, path, Theme::automatic);
-}
-
 Theme theme_option(const std::string& text) {
   if (text == "auto") return Theme::automatic;
   if (text == "light") return Theme::light;

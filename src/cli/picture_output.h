@@ -17,7 +17,6 @@ void check_picture_output(const std::string& path);
 /// Writes a picture and says so on stderr: .svg itself, .png through rsvg-convert. Throws ReadError, also
 /// where rsvg-convert is not installed or fails; nothing is then written.
 void save_picture(const Picture& picture, const std::string& path, Theme theme);
-void save_picture(const Picture& picture, const std::string& path);
 
 /// The theme that --theme names: auto, light or dark. Throws ReadError.
 Theme theme_option(const std::string& text);

@@ -2,6 +2,7 @@
 #include "plot_output.h"
 
 #include <oblique/draw/braille.h>
+#include <oblique/text/diagnostic.h>
 
 #include "picture_output.h"
 #include "terminal.h"
@@ -12,16 +13,25 @@ bool plots_in_terminal(const std::string& target) {
   return target == "-";
 }
 
-void check_plot(const std::string& target) {
+Theme check_plot(const std::string& target, const std::string& theme) {
+  if (!theme.empty() && (target.empty() || plots_in_terminal(target))) {
+    throw ReadError(Diagnostic{{},
+                               target.empty()
+                                   ? "--theme is about a drawing"
+                                   : "--theme is about a picture, and the terminal has its own colours",
+                               "--plot FILE.svg beside it",
+                               {}});
+  }
   if (!target.empty() && !plots_in_terminal(target)) check_picture_output(target);
+  return theme.empty() ? Theme::automatic : theme_option(theme);
 }
 
-void plot(const Chart& chart, const std::string& target) {
+void plot(const Chart& chart, const std::string& target, Theme theme) {
   constexpr std::size_t kWidthElsewhere = 80;
   if (plots_in_terminal(target)) {
     print(to_braille(chart, terminal_width(kWidthElsewhere), stdout_has_colours()));
   } else {
-    save_picture(draw_chart(chart), target);
+    save_picture(draw_chart(chart), target, theme);
   }
 }
 

@@ -47,6 +47,8 @@ Chart pole_chart(const Program& program, const std::vector<Instant>& instants, c
     if (highest == 0) limit.points = {{0, -1}, {0, 1}};
     chart.panels.push_back({{kNames[kind], "1/s"}, {"imaginary part", "1/s"}, {limit, kinds[kind]}, kHeight});
   }
+  if (chart.panels.empty())
+    chart.note = "There is nothing to draw: no state acts back on itself, so that all eigenvalues are 0.";
   return chart;
 }
 

@@ -107,7 +107,7 @@ void check_request(const RunRequest& request) {
     if (!request.against.empty())
       throw ReadError(Diagnostic{{}, "--against is about a drawing", "--plot beside it", {}});
   }
-  check_plot(request.plot);
+  check_plot(request);
   if (!request.output.empty()) check_table_output(request.output, request.columns);
   check_not_input(request.output, request.diagram, "diagram");
   if (!request.save.empty()) {
@@ -204,7 +204,7 @@ ExitStatus run_diagram(const Session& session, const RunRequest& request) {
   }
   if (!plots_in_terminal(request.plot)) print(table_of(result.trajectory));
   if (drawn) {
-    plot(chart_of(result, *drawn, diagram.title), request.plot);
+    plot(chart_of(result, *drawn, diagram.title), request.plot, check_plot(request));
     if (drawn->left_out > 0) {
       note(fmt::format("drawn are the first {} columns; --columns names others of the {} more\n",
                        drawn->drawn.size(), drawn->left_out));

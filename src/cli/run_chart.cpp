@@ -21,7 +21,7 @@ std::size_t column_named(const std::vector<TableColumn>& columns, const char* op
       Diagnostic{{}, fmt::format("{}: there is no column '{}'", option, name), {}, suggest(name, known)});
 }
 
-ChartAxis axis_of(const TableColumn& column) {
+Axis axis_of(const TableColumn& column) {
   return {column.name, column.unit == "1" ? "" : column.unit};
 }
 
@@ -83,7 +83,7 @@ Chart chart_of(const Run& run, const DrawnColumns& columns, const std::string& t
   chart.title = title;
   const TableColumn& x = trajectory.columns()[columns.against];
   for (const std::size_t c : columns.drawn) {
-    const ChartAxis axis = axis_of(trajectory.columns()[c]);
+    const Axis axis = axis_of(trajectory.columns()[c]);
     auto panel = std::find_if(chart.panels.begin(), chart.panels.end(),
                               [&](const Panel& other) { return other.y.unit == axis.unit; });
     if (panel == chart.panels.end()) {

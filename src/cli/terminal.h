@@ -20,6 +20,9 @@ class Table {
   /// Lines with two blanks between columns; cells of `left_columns` first columns are aligned to the left.
   std::string text(std::size_t left_columns = 0) const;
 
+  /// The header and the other rows.
+  const std::vector<std::vector<std::string>>& rows() const { return rows_; }
+
  private:
   std::vector<std::vector<std::string>> rows_;
 };

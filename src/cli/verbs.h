@@ -38,6 +38,9 @@ void add_plot_option(CLI::App* verb, Request& request, const std::string& what) 
   verb->add_option("--plot", request.plot,
                    what + ": to FILE.svg or FILE.png, or with - in the terminal in place of the tables")
       ->type_name("FILE");
+  verb->add_option("--theme", request.theme,
+                   "of the picture of --plot (default auto: light or dark as the reader's screen)")
+      ->type_name("auto|light|dark");
 }
 
 // Each adds a verb with its options.

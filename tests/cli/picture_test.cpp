@@ -63,7 +63,7 @@ TEST_F(Pictures, DrawDrawsNoPathsWhereNoneAreWanted) {
 
 TEST_F(Pictures, DrawPlotsAPoint) {
   EXPECT_EQ(run("oblique draw diagrams/mechanisms/six-bar.toml --plots F -o " + file("plots.svg")).status, 0);
-  for (const char* part : {"id=\"path\"", "id=\"vx\"", "id=\"ay\"", "crank [°]"})
+  for (const char* part : {"id=\"curve-0-0\"", "velocity in x", "id=\"curve-5-0\"", "crank [°]"})
     EXPECT_THAT(bytes_of("plots.svg"), HasSubstr(part));
 }
 

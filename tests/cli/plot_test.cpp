@@ -1,134 +1,20 @@
 // SPDX-License-Identifier: MIT
-// What --plot and report draw: read back from the files and held against numbers that come another way.
+// What --plot of run and check draws: read back from the files and held against numbers that come another
+// way.
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <numbers>
-#include <sstream>
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
-
-#include <oblique/draw/picture.h>
-
-#include <unistd.h>
-
-#include "../support/process.h"
+#include "plot_reading.h"
 
 namespace oblique::test {
 namespace {
 
-using Eigen::AlignedBox2d;
-using Eigen::Vector2d;
 using testing::HasSubstr;
 using testing::Not;
 
-/// A picture as it was written. (std::regex would recurse as deep as a path is long.)
-class Svg {
- public:
-  explicit Svg(std::string text) : text_(std::move(text)) {}
-
-  AlignedBox2d plot(int panel) const {
-    const std::string element = with_id("plot-" + std::to_string(panel));
-    const Vector2d corner(number(element, "x"), number(element, "y"));
-    return {corner, Vector2d(corner + Vector2d(number(element, "width"), number(element, "height")))};
-  }
-
-  std::vector<Vector2d> curve(int panel, int index) const {
-    std::string path =
-        attribute(with_id("curve-" + std::to_string(panel) + "-" + std::to_string(index)), "d");
-    for (char& c : path) {
-      if (c == 'M' || c == 'L') c = ' ';
-    }
-    std::istringstream numbers(path);
-    std::vector<Vector2d> points;
-    for (double x = 0, y = 0; numbers >> x >> y;) points.emplace_back(x, y);
-    return points;
-  }
-
-  std::vector<Label> labels() const {
-    std::vector<Label> labels;
-    for (const std::string& element : elements("<text ")) {
-      const std::size_t end = element.find('>');
-      Label label{{number(element, "x"), number(element, "y")},
-                  element.substr(end + 1, element.find('<', end) - end - 1),
-                  Anchor::start,
-                  number(element, "font-size")};
-      if (element.find("\"middle\"") != std::string::npos) label.anchor = Anchor::middle;
-      if (element.find("\"end\"") != std::string::npos) label.anchor = Anchor::end;
-      label.bold = element.find("\"bold\"") != std::string::npos;
-      labels.push_back(label);
-    }
-    return labels;
-  }
-
-  std::vector<Vector2d> discs() const {
-    std::vector<Vector2d> centres;
-    for (const std::string& element : elements("<circle "))
-      centres.emplace_back(number(element, "cx"), number(element, "cy"));
-    return centres;
-  }
-
-  Vector2d size() const { return {number(text_, "width"), number(text_, "height")}; }
-
- private:
-  /// The lines that begin so: the writer puts an element on each.
-  std::vector<std::string> elements(const std::string& head) const {
-    std::vector<std::string> found;
-    std::istringstream stream(text_);
-    for (std::string line; std::getline(stream, line);) {
-      if (line.starts_with(head)) found.push_back(line);
-    }
-    return found;
-  }
-  std::string with_id(const std::string& id) const {
-    for (const char* head : {"<path ", "<rect "}) {
-      for (const std::string& element : elements(head)) {
-        if (element.find(" id=\"" + id + "\"") != std::string::npos) return element;
-      }
-    }
-    throw std::runtime_error("there is no " + id);
-  }
-  static std::string attribute(const std::string& element, const std::string& name) {
-    const std::size_t begin = element.find(" " + name + "=\"") + name.size() + 3;
-    return element.substr(begin, element.find('"', begin) - begin);
-  }
-  static double number(const std::string& element, const std::string& name) {
-    return std::stod(attribute(element, name));
-  }
-
-  std::string text_;
-};
-
-class Plot : public testing::Test {
- protected:
-  Plot() : folder_(std::filesystem::temp_directory_path() / ("oblique-plot-" + std::to_string(getpid()))) {
-    std::filesystem::create_directories(folder_);
-  }
-  ~Plot() override { std::filesystem::remove_all(folder_); }
-
-  static Outcome oblique(const std::string& arguments) {
-    return run_command("oblique " + arguments, OBLIQUE_SOURCE_DIR);
-  }
-  std::string file(const std::string& name) const { return (folder_ / name).string(); }
-  bool exists(const std::string& name) const { return std::filesystem::exists(folder_ / name); }
-  std::string bytes_of(const std::string& name) const {
-    std::ifstream stream(folder_ / name, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-  }
-  Svg drawn(const std::string& arguments) const {
-    const Outcome outcome = oblique(arguments + " --plot " + file("plot.svg"));
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
-    return Svg(bytes_of("plot.svg"));
-  }
-
- private:
-  std::filesystem::path folder_;
-};
+class Plot : public PlotTest {};
 
 // The side of the triangle by the law of cosines; time runs from 0 to 2π, the axis of the side from 0 to 0.8.
 // Coordinates are rounded to 0.005 px in x and y, which the slope of the curve adds up to less than 0.01 px;
@@ -173,7 +59,7 @@ TEST_F(Plot, ThePlottersPathGoesThroughTheExactPlaces) {
     if (end == text.c_str() || *end != '\0') continue;
     // numbers of y stand a little under their lines, so that they are in the middle of them
     if (label.anchor == Anchor::middle) x_numbers[value] = label.at.x();
-    if (label.anchor == Anchor::end) y_numbers[value] = label.at.y() - 0.35 * label.size;
+    if (label.anchor == Anchor::end) y_numbers[value] = label.at.y() - 4;
   }
   ASSERT_GE(x_numbers.size(), 2U);
   ASSERT_GE(y_numbers.size(), 2U);
@@ -195,60 +81,6 @@ TEST_F(Plot, ThePlottersPathGoesThroughTheExactPlaces) {
   EXPECT_EQ(rows, 361);
 }
 
-TEST_F(Plot, CompareDrawsErrorsAndTheirSlope) {
-  const Svg svg = drawn("compare diagrams/mechanisms/four-bar.toml -o " + file("errors.json"));
-  const auto json = nlohmann::json::parse(bytes_of("errors.json"));
-  const AlignedBox2d plot = svg.plot(0);
-  const auto measured = svg.curve(0, 0), slope = svg.curve(0, 1);
-  ASSERT_EQ(measured.size(), json["runs"].size());
-  double least = 1e300, greatest = 0;
-  for (const auto& run : json["runs"]) {
-    least = std::min(least, run["max_error"].get<double>());
-    greatest = std::max(greatest, run["max_error"].get<double>());
-  }
-  const double low = std::floor(std::log10(least)), high = std::ceil(std::log10(greatest));
-  for (std::size_t k = 0; k < measured.size(); ++k) {
-    const double exponent = std::log10(json["runs"][k]["max_error"].get<double>());
-    EXPECT_NEAR(measured[k].y(), plot.max().y() - (exponent - low) / (high - low) * plot.sizes().y(), 0.01);
-  }
-  // one decade of the gain against one of the error
-  const double decade_x = (measured[4].x() - measured[0].x()) / 4;
-  const double decade_y = plot.sizes().y() / (high - low);
-  const Vector2d fall = slope.back() - slope.front();
-  EXPECT_NEAR(-fall.y() / decade_y / (fall.x() / decade_x), json["order"].get<double>(), 1e-3);
-  bool named = false;
-  for (const Label& label : svg.labels()) named = named || label.text == "slope −1.000";
-  EXPECT_TRUE(named);
-  // the largest error along the turn is the largest error
-  double top = 1e300;
-  for (const Vector2d& point : svg.curve(1, 0)) top = std::min(top, point.y());
-  const AlignedBox2d along = svg.plot(1);
-  EXPECT_NEAR((top - along.min().y()) / along.sizes().y() * (high - low), high - std::log10(greatest), 1e-3);
-}
-
-TEST_F(Plot, MonteCarloIsAHistogram) {
-  const Svg svg =
-      drawn("compare diagrams/mechanisms/four-bar.toml --monte-carlo 30 --tolerance 0.1% --threads 2 -o " +
-            file("runs.json"));
-  const auto errors = nlohmann::json::parse(bytes_of("runs.json"))["monte_carlo"]["errors"];
-  const auto steps = svg.curve(1, 0);
-  // the area under the steps, in runs: each of the 7 classes has as many as fall into it
-  const AlignedBox2d plot = svg.plot(1);
-  const double width = plot.sizes().x() / 7;
-  double area = 0;
-  for (std::size_t k = 1; k < steps.size(); ++k)
-    area += (steps[k].x() - steps[k - 1].x()) / width * (plot.max().y() - steps[k].y());
-  std::vector<double> counts(7, 0);
-  double least = 1e300, greatest = 0;
-  for (const double error : errors) least = std::min(least, error), greatest = std::max(greatest, error);
-  for (const double error : errors)
-    counts[std::min<std::size_t>(6, static_cast<std::size_t>((error - least) / (greatest - least) * 7))] += 1;
-  const double most = *std::max_element(counts.begin(), counts.end());
-  double highest = 1e300;
-  for (const Vector2d& point : steps) highest = std::min(highest, point.y());
-  EXPECT_NEAR(area / ((plot.max().y() - highest) / most), 30, 0.1);
-}
-
 // λ = −0.4/2 ± i √(5² − 0.2²) all the time. The real axis goes from there to 0, with room for dots, the
 // imaginary one from −6 to 6.
 TEST_F(Plot, CheckDrawsEigenvalues) {
@@ -262,26 +94,31 @@ TEST_F(Plot, CheckDrawsEigenvalues) {
   }
 }
 
-TEST_F(Plot, TextsOfShippedExamplesCoverNothing) {
-  for (const char* arguments :
-       {"run diagrams/historical/lotka-volterra.toml", "run diagrams/lessons/double-pendulum.toml",
-        "compare diagrams/mechanisms/four-bar.toml --method triangles,gradient",
-        "compare diagrams/mechanisms/slider-crank.toml --monte-carlo 20 --tolerance 1%",
-        "check diagrams/lessons/damped-oscillator.toml"}) {
-    SCOPED_TRACE(arguments);
-    const Svg svg = drawn(arguments);
-    const auto labels = svg.labels();
-    const AlignedBox2d paper(Vector2d(0, 0), svg.size());
-    EXPECT_GT(labels.size(), 5U);
-    for (std::size_t a = 0; a < labels.size(); ++a) {
-      const AlignedBox2d extent = extent_of(Mark{labels[a]});
-      EXPECT_TRUE(paper.contains(extent)) << labels[a].text;
-      EXPECT_FALSE(svg.plot(0).intersects(extent)) << labels[a].text;
-      for (std::size_t b = 0; b < a; ++b)
-        EXPECT_FALSE(extent.intersects(extent_of(Mark{labels[b]})))
-            << labels[a].text << " and " << labels[b].text;
-    }
+TEST_F(Plot, ThemesChooseTheColours) {
+  const std::string side = "run diagrams/lessons/triangle-side.toml --plot " + file("x.svg");
+  const auto with = [&](const std::string& theme) {
+    EXPECT_EQ(oblique(side + theme).status, 0);
+    return bytes_of("x.svg");
+  };
+  const std::string light = with(" --theme light"), dark = with(" --theme dark");
+  EXPECT_THAT(light, HasSubstr(".f-paper { fill: #ffffff }"));
+  EXPECT_THAT(light, Not(HasSubstr("#16181c")));
+  EXPECT_THAT(dark, HasSubstr(".f-paper { fill: #16181c }"));
+  EXPECT_THAT(dark, Not(HasSubstr("#ffffff")));
+  EXPECT_THAT(with(""), HasSubstr("prefers-color-scheme: dark"));
+  EXPECT_EQ(with(""), with(" --theme auto"));
+  for (const char* verb :
+       {"check diagrams/lessons/triangle-side.toml", "compare diagrams/mechanisms/four-bar.toml"}) {
+    EXPECT_EQ(oblique(std::string(verb) + " --theme dark --plot " + file("x.svg")).status, 0);
+    EXPECT_THAT(bytes_of("x.svg"), Not(HasSubstr("#ffffff")));
   }
+  // a page is light on paper, whatever it is on the screen
+  EXPECT_EQ(oblique("report diagrams/mechanisms/four-bar.toml --theme dark -o " + file("x.html")).status, 0);
+  const std::string page = bytes_of("x.html");
+  const std::size_t print = page.find("@media print");
+  EXPECT_THAT(page.substr(0, print), HasSubstr("body { background: #16181c"));
+  EXPECT_THAT(page.substr(0, print), Not(HasSubstr("#ffffff")));
+  EXPECT_THAT(page.substr(print), HasSubstr("body { background: #ffffff"));
 }
 
 TEST_F(Plot, TheTerminalGetsBrailleInPlaceOfTheTable) {
@@ -317,6 +154,13 @@ TEST_F(Plot, BadRequestsAreRefusedBeforeTheWork) {
         Bad{"compare " + four_bar + " --json --plot -", "--json and --plot - would both print"},
         Bad{"check " + side + " --json --plot -", "--json and --plot - would both print"},
         Bad{"check " + four_bar + " --plot -", "a mechanism has no eigenvalues to plot"},
+        Bad{"run " + side + " --theme dark",
+            "--theme is about a drawing; expected --plot FILE.svg beside it"},
+        Bad{"run " + side + " --plot - --theme dark",
+            "--theme is about a picture, and the terminal has its own colours"},
+        Bad{"check " + side + " --plot x.svg --theme drak", "--theme drak; expected auto, light or dark"},
+        Bad{"compare " + four_bar + " --theme dark", "--theme is about a drawing"},
+        Bad{"report " + four_bar + " -o " + file("x.html") + " --theme paper", "auto, light or dark"},
         Bad{"report " + four_bar + " -o x.pdf", "cannot write a '.pdf' file"},
         Bad{"report " + four_bar + " -o " + file("x.html") + " --machine nosuch", "nosuch"},
         Bad{"report " + four_bar + " -o " + file("x.html") + " --gain 0", "a finite number above 0"}}) {
@@ -343,27 +187,6 @@ TEST_F(Plot, MoreCurvesThanCanBeToldApartAreRefusedOrLeftOut) {
   const Outcome refused = oblique("run " + file("many.toml") + " --plot - --columns " + all);
   EXPECT_EQ(refused.status, 2);
   EXPECT_THAT(refused.err, HasSubstr("20 curves cannot be told apart; expected at most 18 in --columns"));
-}
-
-TEST_F(Plot, TheReportIsOnePageWithAllOfIt) {
-  const std::string four_bar = "diagrams/mechanisms/four-bar.toml";
-  const Outcome outcome = oblique("report " + four_bar + " --machine tr-10 -o " + file("page.html"));
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  const std::string page = bytes_of("page.html");
-  for (const char* part :
-       {"<!DOCTYPE html>", "<h2>Structure</h2>", "C lies left of B → D", "<h2>Patch</h2>",
-        "its servo loops come to rest everywhere", "<h2>Convergence</h2>", "falls with the gain to the power",
-        "<h2>Stability</h2>", "least damped mode", "@media print", "prefers-color-scheme: dark", "</html>"})
-    EXPECT_THAT(page, HasSubstr(part));
-  for (const char* outside : {"<script", "src=", "href=", "url(", "id=\"curve"})
-    EXPECT_THAT(page, Not(HasSubstr(outside)));
-  // the errors are those of `compare`
-  const auto json = nlohmann::json::parse(oblique("compare " + four_bar + " --json").out);
-  std::ostringstream error;
-  error << std::scientific;
-  error.precision(3);
-  error << json["runs"][2]["max_error"].get<double>();
-  EXPECT_THAT(page, HasSubstr(error.str()));
 }
 
 }  // namespace

@@ -29,11 +29,8 @@ MonteCarlo drawn(const Mechanism& mechanism, const MonteCarloOptions& options) {
   return monte_carlo(mechanism, patch(mechanism, patch_options), BlockLibrary::shipped(), options);
 }
 
-// A crank alone: B = r ((1 + e) cos φ, (1 + f) sin φ), each coordinate a summer, errs most on an axis, by
-// r max(|e|, |f|): of two uniform variables on [0, 1] the larger has the mean 2/3, the variance 1/18, and is
-// below q with the probability q².
-TEST(MonteCarlo, OfACrankIsTheLargerOfTwoTolerances) {
-  const Mechanism crank = parse_mechanism(R"(
+Mechanism crank() {
+  return parse_mechanism(R"(
 format = "oblique-mechanism/1"
 [frame]
 A = [0, 0]
@@ -42,12 +39,19 @@ AB = { points = ["A", "B"], length = 2 }
 [drives]
 crank = { turns = "AB", about = "A", speed = "1 rad/s" }
 )",
-                                          "crank.toml");
+                         "crank.toml");
+}
+
+// A crank alone: B = r ((1 + e) cos φ, (1 + f) sin φ), each coordinate a summer, errs most on an axis, by
+// r max(|e|, |f|): of two uniform variables on [0, 1] the larger has the mean 2/3, the variance 1/18, and is
+// below q with the probability q².
+TEST(MonteCarlo, OfACrankIsTheLargerOfTwoTolerances) {
+  const Mechanism mechanism = crank();
   MonteCarloOptions options;
   options.scatters = {{"summer", "tolerance", 0.01, ""}};
   options.runs = 4000;
   options.threads = 2;
-  const MonteCarlo result = drawn(crank, options);
+  const MonteCarlo result = drawn(mechanism, options);
   double sum = 0, squares = 0;
   for (const auto& error : result.errors) {
     const double part = error.value() / (2 * 0.01);
@@ -60,6 +64,41 @@ crank = { turns = "AB", about = "A", speed = "1 rad/s" }
   EXPECT_NEAR(mean, 2.0 / 3, 4 * std::sqrt(1.0 / 18 / 4000) + 1e-3);
   EXPECT_NEAR(deviation, std::sqrt(1.0 / 18), 4 * std::sqrt(1.0 / 18) * std::sqrt(1.4 / 4 / 4000) + 1e-3);
   EXPECT_NEAR(result.percentile(25).value() / 0.02, 0.5, 0.03);  // 4 √(0.25·0.75/n)/(2 · 0.5)
+}
+
+// The same crank errs by r √(e² cos² φ + f² sin² φ) at φ, with the e and f that `draw` tells of each run. Of
+// 200 runs the k-th smallest is the percentile 100 k/200. The solver adds 1e-5 of 2e-2.
+TEST(MonteCarlo, PercentilesAlongTheTurnAreThoseOfTheSortedRuns) {
+  const Mechanism mechanism = crank();
+  MonteCarloOptions options;
+  options.scatters = {{"summer", "tolerance", 0.01, ""}};
+  options.runs = 200;
+  options.threads = 2;
+  const MonteCarlo result = drawn(mechanism, options);
+  const FlatDiagram flat = flatten(patch(mechanism, {}), BlockLibrary::shipped());
+  ASSERT_EQ(result.drive.size(), 73U);
+  ASSERT_EQ(result.along.size(), 200U);
+  std::vector<std::array<double, 2>> scatter;
+  for (std::uint64_t run = 0; run < 200; ++run) {
+    std::array<double, 2> e{};
+    for (const Draw& draw : draw(flat, options.scatters, {options.seed, run}))
+      e.at(flat.blocks[draw.block].path.ends_with("x") ? 0 : 1) = draw.value;
+    scatter.push_back(e);
+  }
+  for (const int percent : {1, 25, 50, 97, 100}) {
+    const std::vector<double> found = result.percentile_along(percent);
+    ASSERT_EQ(found.size(), 73U);
+    for (std::size_t row = 0; row < 73; ++row) {
+      const double angle = 2 * pi * static_cast<double>(row) / 72;
+      EXPECT_NEAR(result.drive[row], angle, 1e-9);
+      std::vector<double> sorted;
+      for (const auto& [e, f] : scatter)
+        sorted.push_back(2 * std::hypot(e * std::cos(angle), f * std::sin(angle)));
+      std::sort(sorted.begin(), sorted.end());
+      EXPECT_NEAR(found[row], sorted[static_cast<std::size_t>(2 * percent - 1)], 2e-5)
+          << percent << " " << row;
+    }
+  }
 }
 
 /// The largest error of the four-bar over 73 positions when the summers of its patch err in their ratio:
@@ -134,6 +173,7 @@ TEST(MonteCarlo, IsTheSameForAnyNumberOfThreads) {
     options.threads = threads;
     const MonteCarlo other = drawn(four_bar(), options);
     EXPECT_EQ(one.errors, other.errors) << threads;  // to the last bit
+    EXPECT_EQ(one.along, other.along) << threads;
     EXPECT_EQ(one.worst_run, other.worst_run);
   }
 }
@@ -180,6 +220,7 @@ TEST(MonteCarlo, IsAsFineAsItsScatter) {
 TEST(MonteCarlo, PercentilesAreRunsByTheNearestRank) {
   MonteCarlo result;
   EXPECT_FALSE(result.percentile(50));
+  EXPECT_TRUE(result.percentile_along(50).empty());
   result.errors = {4.0, std::nullopt, 1.0, 3.0, 2.0};
   EXPECT_EQ(result.percentile(0), 1);
   EXPECT_EQ(result.percentile(25), 1);

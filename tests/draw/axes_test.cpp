@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace oblique {
@@ -12,7 +11,6 @@ namespace {
 
 using Eigen::Vector2d;
 using Extent = Eigen::AlignedBox<double, 2>;
-using testing::ElementsAre;
 
 const Extent kPlace{Vector2d(10, 20), Vector2d(610, 420)};
 
@@ -24,22 +22,16 @@ const Label* find_label(const std::vector<Mark>& marks, const std::string& text)
   return nullptr;
 }
 
-TEST(Ticks, AreRound) {
-  EXPECT_DOUBLE_EQ(round_step(10, 10), 1);
-  EXPECT_DOUBLE_EQ(round_step(1, 4), 0.2);
-  EXPECT_DOUBLE_EQ(round_step(7000, 10), 500);
-  EXPECT_THAT(ticks_between(-0.3, 1.0, 0.5), ElementsAre(0, 0.5, 1));
+Scale range(const std::string& name, const std::string& unit, double least, double greatest) {
+  return {{name, unit}, {least, greatest}, false};
 }
 
-TEST(Ticks, AreWrittenWithTheDigitsOfTheirStep) {
-  EXPECT_EQ(tick_text(0.25, 0.05), "0.25");
-  EXPECT_EQ(tick_text(-200, 50), "−200");
-  EXPECT_EQ(tick_text(-1e-17, 0.1), "0.0");
-  EXPECT_EQ(tick_text(2e-9, 1e-9), "2e-09");
+Axes stretched(const Scale& x, const Scale& y) {
+  return Axes::within(kPlace, x, y, Axes::Shape::stretched);
 }
 
 TEST(Axes, StandNumbersWhereTheirValuesLie) {
-  const Axes axes(kPlace, {"x [m]", 0, 3}, {"y [m]", -1, 1}, Axes::Shape::stretched, "A title");
+  const Axes axes = stretched(range("x", "m", 0, 3), range("y", "m", -1, 1));
   const std::vector<Mark> marks = axes.marks();
   const Label* const two = find_label(marks, "2.0");
   ASSERT_NE(two, nullptr);
@@ -47,40 +39,55 @@ TEST(Axes, StandNumbersWhereTheirValuesLie) {
   EXPECT_NEAR(axes.at({0, -1}).x(), axes.frame().min().x(), 1e-9);
   EXPECT_NEAR(axes.at({0, -1}).y(), axes.frame().max().y(), 1e-9);
   EXPECT_NEAR(axes.at({3, 1}).x(), axes.frame().max().x(), 1e-9);
-  EXPECT_NE(find_label(marks, "A title"), nullptr);
+  EXPECT_NE(find_label(marks, "x [m]"), nullptr);
+  EXPECT_NE(find_label(marks, "y [m]"), nullptr);
 }
 
 TEST(Axes, EqualOnesShowAllAndScaleAlike) {
-  const Axes axes(kPlace, {"x", 0, 1}, {"y", 0, 5}, Axes::Shape::equal);
-  EXPECT_DOUBLE_EQ(axes.scale().x(), axes.scale().y());
-  for (const Vector2d& corner : {Vector2d(0, 0), Vector2d(1, 5)}) {
+  const Axes axes =
+      Axes::within(kPlace, range("x", "m", 0, 900), range("y", "m", 0, 50'000), Axes::Shape::equal);
+  EXPECT_NEAR(axes.scale().x(), axes.scale().y(), 1e-12 * axes.scale().x());
+  for (const Vector2d& corner : {Vector2d(0, 0), Vector2d(900, 50'000)}) {
     const Vector2d at = axes.at(corner);
     EXPECT_GE(axes.frame().exteriorDistance(at), 0);
     EXPECT_LT(axes.frame().exteriorDistance(at), 1e-9);
   }
+  // and count alike: with one power of ten, in squares
+  const std::vector<Mark> marks = axes.marks();
+  EXPECT_NE(find_label(marks, "x [10³ m]"), nullptr);
+  EXPECT_NE(find_label(marks, "y [10³ m]"), nullptr);
 }
 
+// Numbers short and long, of every order of magnitude, in a wide frame and in a narrow one.
 TEST(Axes, KeepWithinTheirPlaceAndApartFromEachOther) {
-  for (const double size : {1e-5, 1.0, 3e4}) {
-    const Axes axes(kPlace, {"x [mm]", -size, size}, {"y [mm]", -size, 2 * size}, Axes::Shape::stretched);
-    std::vector<Extent> labels;
-    for (const Mark& mark : axes.marks()) {
-      const Extent extent = extent_of(mark);
-      EXPECT_TRUE(kPlace.contains(extent)) << extent.min().transpose() << " " << extent.max().transpose();
-      if (!std::holds_alternative<Label>(mark.shape)) continue;
-      for (const Extent& other : labels) EXPECT_TRUE(extent.intersection(other).isEmpty());
-      labels.push_back(extent);
+  const Extent narrow(Vector2d(10, 20), Vector2d(230, 420));
+  for (const Extent& place : {kPlace, narrow}) {
+    for (const double offset : {0.0, 1.0, 12'345.6}) {
+      for (const double size : {1e-5, 0.013, 1.0, 77.0, 3e4, 2e11}) {
+        const Axes axes = Axes::within(place, range("x", "mm", offset - size, offset + size),
+                                       range("y", "mm", -size, 2 * size), Axes::Shape::stretched);
+        std::vector<Extent> labels;
+        for (const Mark& mark : axes.marks()) {
+          const Extent extent = extent_of(mark);
+          EXPECT_TRUE(place.contains(extent)) << extent.min().transpose() << " " << extent.max().transpose();
+          if (!std::holds_alternative<Label>(mark.shape)) continue;
+          for (const Extent& other : labels)
+            EXPECT_TRUE(extent.intersection(other).isEmpty()) << std::get<Label>(mark.shape).text;
+          labels.push_back(extent);
+        }
+        EXPECT_GE(labels.size(), 5U) << offset << " " << size;
+      }
     }
   }
 }
 
 TEST(Axes, ShowWhatHasOneValue) {
-  const Axes axes(kPlace, {"x", 0, 1}, {"y", 4, 4}, Axes::Shape::stretched);
+  const Axes axes = stretched(range("x", "", 0, 1), range("y", "", 4, 4));
   EXPECT_NEAR(axes.at({0, 4}).y(), axes.frame().center().y(), 1e-9);
 }
 
 TEST(Curve, HasGapsWhereThereIsNoValue) {
-  const Axes axes(kPlace, {"x", 0, 4}, {"y", 0, 1}, Axes::Shape::stretched);
+  const Axes axes = stretched(range("x", "", 0, 4), range("y", "", 0, 1));
   const Mark mark = curve_mark(axes, {{0, 0}, {1, 1}, {2, std::nan("")}, {3, 0}, {4, 1}}, {});
   const auto& segments = std::get<Outline>(mark.shape).segments;
   ASSERT_EQ(segments.size(), 4U);

@@ -82,6 +82,31 @@ TEST(Braille, ColoursCurvesWhereAsked) {
   EXPECT_THAT(to_braille(ramp(), 70, true), HasSubstr("\033[34mup\033[0m"));
 }
 
+TEST(Braille, DrawsTheEdgesOfTheWidestBandOnly) {
+  Curve wide{"most", {}, 0, Curve::Style::band, {}}, narrow{"half", {}, 1, Curve::Style::band, {}};
+  for (double x = 0; x <= 10; ++x) {
+    wide.points.emplace_back(x, 10);
+    wide.other_edge.emplace_back(x, 0);
+    narrow.points.emplace_back(x, 6);
+    narrow.other_edge.emplace_back(x, 4);
+  }
+  const std::string text = to_braille({"", {{{"x"}, {"y"}, {wide, narrow}}}}, 60, false);
+  std::istringstream stream(text);
+  std::vector<std::string> rows;
+  for (std::string line; std::getline(stream, line);) {
+    if (line.find("│") != std::string::npos || line.find("┤") != std::string::npos) rows.push_back(line);
+  }
+  ASSERT_GT(rows.size(), 5U);
+  const auto has_dots = [](const std::string& row) {
+    return row.find("\xE2\xA0") != std::string::npos || row.find("\xE2\xA1") != std::string::npos ||
+           row.find("\xE2\xA2") != std::string::npos;
+  };
+  for (std::size_t r = 0; r < rows.size(); ++r)
+    EXPECT_EQ(has_dots(rows[r]), r == 0 || r + 1 == rows.size()) << rows[r];
+  EXPECT_NE(text.find("most"), std::string::npos);
+  EXPECT_EQ(text.find("half"), std::string::npos);
+}
+
 TEST(Braille, DrawsNothingAsEmptyAxes) {
   const std::string text = to_braille({"Nothing", {{{"t", "s"}, {"y"}, {{"y", {}}}}}}, 50, false);
   EXPECT_THAT(text, HasSubstr("└"));

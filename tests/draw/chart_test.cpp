@@ -186,6 +186,56 @@ TEST(Chart, SharedAxesShowTheirNumbersOnce) {
             1);
 }
 
+TEST(Chart, FillsABandBetweenItsEdges) {
+  Curve band{"half of them", {{0, 3}, {1, 4}, {2, 3}}, 0, Curve::Style::band, {{0, 1}, {1, 2}, {2, 0}}};
+  const Picture picture = draw_chart({"", {{{"x"}, {"y"}, {band}}}});
+  const Box& plot = plot_of(picture);
+  const auto& segments = segments_of(picture, "curve-0-0");
+  const std::vector<Vector2d> round{{0, 3}, {1, 4}, {2, 3}, {2, 0}, {1, 2}, {0, 1}};  // once about it
+  ASSERT_EQ(segments.size(), round.size() + 1);
+  for (std::size_t k = 0; k < round.size(); ++k) {
+    EXPECT_NEAR(segments[k].to.x(), plot.corner.x() + round[k].x() / 2 * plot.size.x(), kHundredth);
+    EXPECT_NEAR(segments[k].to.y(), plot.corner.y() + (4 - round[k].y()) / 4 * plot.size.y(), kHundredth);
+  }
+  EXPECT_EQ(segments.back().kind, Segment::Kind::close);
+  const Mark& mark = mark_of(picture, "curve-0-0");
+  EXPECT_EQ(mark.fill, Ink::blue);
+  EXPECT_EQ(mark.pen.ink, Ink::none);
+  EXPECT_LT(mark.opacity, 0.5);  // what lies under it is seen
+}
+
+TEST(Chart, StandsPanelsInColumns) {
+  Chart chart = sine(11);
+  for (int k = 0; k < 5; ++k) chart.panels.push_back(chart.panels.front());
+  chart.columns = 3;
+  const Picture picture = draw_chart(chart);
+  for (int p = 0; p < 6; ++p) {  // the second under the first, the third to the right of the first
+    EXPECT_NEAR(plot_of(picture, p).corner.x(), plot_of(picture, p / 2 * 2).corner.x(), kHundredth);
+    EXPECT_NEAR(plot_of(picture, p).corner.y(), plot_of(picture, p % 2).corner.y(), kHundredth);
+    if (p >= 2) {
+      EXPECT_GT(plot_of(picture, p).corner.x(),
+                plot_of(picture, p - 2).corner.x() + plot_of(picture, p - 2).size.x());
+    }
+  }
+  EXPECT_GT(plot_of(picture, 1).corner.y(), plot_of(picture, 0).corner.y() + plot_of(picture, 0).size.y());
+  const auto labels = labels_of(picture);  // the x axis of each column once
+  EXPECT_EQ(std::count_if(labels.begin(), labels.end(), [](const Label& l) { return l.text == "t [s]"; }), 3);
+}
+
+TEST(Chart, NotesStandUnderIt) {
+  Chart chart = sine(11);
+  const double height = draw_chart(chart).height;
+  chart.note =
+      "A note that goes on and on, so that it does not fit into one line of the picture but has to be "
+      "broken between its words, and stands under the panels in two";
+  const Picture picture = draw_chart(chart);
+  const auto labels = labels_of(picture);
+  const std::string last = "stands under the panels in two";
+  ASSERT_TRUE(labels.back().text.ends_with(last));
+  EXPECT_GT(labels.back().at.y(), height - 20);
+  EXPECT_LT(extent_of(Mark{labels.back()}).max().y(), picture.height);
+}
+
 TEST(Scale, PutsTicksAtRoundNumbers) {
   EXPECT_THAT(labelled(Scale({"angle", "°"}, {0, 360}, false).ticks(8)),
               ElementsAre("0", "45", "90", "135", "180", "225", "270", "315", "360"));

@@ -25,18 +25,27 @@ PointHistory crank_history() {
   return history;
 }
 
-/// The numbers that belong to a curve stand in its third of the picture and its half.
-Extent cell_of(const Picture& picture, const std::string& id) {
-  const Vector2d middle = extent_of(*find_mark(picture, id)).center();
-  const double column = std::floor(middle.x() / (picture.width / 3)),
-               row = middle.y() > picture.height / 2 ? 1 : 0;
-  const Vector2d corner(column * picture.width / 3, row * picture.height * 0.54);
-  return {corner, Vector2d(corner + Vector2d(picture.width / 3, picture.height * 0.53))};
+/// Where the numbers of a plot stand: beside its frame, and under it or under the next one in its column.
+Extent cell_of(const Picture& picture, int panel) {
+  const auto frame_of = [&](int p) { return extent_of(*find_mark(picture, "plot-" + std::to_string(p))); };
+  const int below = panel == 0 ? 0 : panel / 2 * 2 + 1;
+  constexpr double kAround = 20, kToTheLeft = 10;
+  return {Vector2d(frame_of(panel).min() - Vector2d(kToTheLeft, kAround)),
+          Vector2d(frame_of(below).max() + Vector2d(kAround, kAround))};
 }
 
 void expect_curve(const Picture& picture, const std::string& id, const std::vector<Vector2d>& expected) {
   SCOPED_TRACE(id);
-  const Reading reading(picture.marks, cell_of(picture, id));
+  const int panel = id[6] - '0';
+  std::vector<Mark> numbers;  // those of y beside this plot, those of x under it or under the next one
+  const Extent frame = extent_of(*find_mark(picture, "plot-" + std::to_string(panel)));
+  for (const Mark& mark : picture.marks) {
+    const auto* const label = std::get_if<Label>(&mark.shape);
+    if (label == nullptr) continue;
+    const bool beside = std::abs(label->at.y() - 4 - frame.center().y()) < frame.sizes().y() / 2 + 3;
+    if (label->anchor == Anchor::middle || beside) numbers.push_back(mark);
+  }
+  const Reading reading(numbers, cell_of(picture, panel));
   const auto& segments = std::get<Outline>(find_mark(picture, id)->shape).segments;
   ASSERT_EQ(segments.size(), expected.size());
   for (std::size_t k = 0; k < expected.size(); ++k)
@@ -45,7 +54,7 @@ void expect_curve(const Picture& picture, const std::string& id, const std::vect
 
 TEST(PointPlots, CurvesLieWhereTheirValuesAre) {
   const PointHistory history = crank_history();
-  const Picture picture = draw_point_plots(history);
+  const Picture picture = draw_chart(point_plots(history));
   std::vector<Vector2d> path, x, y, vx, vy, ax, ay;
   for (std::size_t k = 0; k < history.drives.size(); ++k) {
     const double drive = history.drives[k];
@@ -53,22 +62,22 @@ TEST(PointPlots, CurvesLieWhereTheirValuesAre) {
     path.push_back(s.position);
     x.emplace_back(drive, s.position.x());
     y.emplace_back(drive, s.position.y());
-    vx.emplace_back(drive, s.velocity.x());
-    vy.emplace_back(drive, s.velocity.y());
-    ax.emplace_back(drive, s.acceleration.x() / 1000);  // the axis says 10³
-    ay.emplace_back(drive, s.acceleration.y() / 1000);
+    vx.emplace_back(drive, s.velocity.x() / 1e3);  // the axis says 10³
+    vy.emplace_back(drive, s.velocity.y() / 1e3);
+    ax.emplace_back(drive, s.acceleration.x() / 1e6);  // and 10⁶
+    ay.emplace_back(drive, s.acceleration.y() / 1e6);
   }
-  expect_curve(picture, "path", path);
-  expect_curve(picture, "x", x);
-  expect_curve(picture, "y", y);
-  expect_curve(picture, "vx", vx);
-  expect_curve(picture, "vy", vy);
-  expect_curve(picture, "ax", ax);
-  expect_curve(picture, "ay", ay);
+  expect_curve(picture, "curve-0-0", path);
+  expect_curve(picture, "curve-1-0", x);
+  expect_curve(picture, "curve-1-1", y);
+  expect_curve(picture, "curve-2-0", vx);
+  expect_curve(picture, "curve-3-0", vy);
+  expect_curve(picture, "curve-4-0", ax);
+  expect_curve(picture, "curve-5-0", ay);
 }
 
 TEST(PointPlots, TextsLieWithinThePictureAndApart) {
-  const Picture picture = draw_point_plots(crank_history());
+  const Picture picture = draw_chart(point_plots(crank_history()));
   const Extent paper(Vector2d(0, 0), Vector2d(picture.width, picture.height));
   std::vector<Extent> labels;
   for (const Mark& mark : picture.marks) {
@@ -81,13 +90,42 @@ TEST(PointPlots, TextsLieWithinThePictureAndApart) {
   }
 }
 
+// A guided point: what rounding leaves of its other coordinate is no motion.
+TEST(PointPlots, DrawRoundingAsNothing) {
+  PointHistory history = crank_history();
+  for (PointState& state : history.states) {
+    state.velocity.x() = 1e-12 * std::sin(state.velocity.y());
+    state.acceleration.x() = 0;
+  }
+  const Chart chart = point_plots(history);
+  for (const Vector2d& point : chart.panels[2].curves[0].points) EXPECT_EQ(point.y(), 0);
+}
+
+// v = 1/√(s + 10⁻⁵) along the way s from a limit: what is drawn is what can be seen beside the rest.
+TEST(PointPlots, LeaveOutWhatRisesOutOfSightAtALimit) {
+  PointHistory history = crank_history();
+  for (std::size_t k = 0; k < history.states.size(); ++k)
+    history.states[k].velocity = Vector2d(1 / std::sqrt(static_cast<double>(k) / 360 + 1e-5), 1);
+  history.states[0].acceleration *= 1e12;  // beside which all else would be rounding
+  const auto greatest = [](const Chart& chart) {
+    double most = 0;
+    for (const Vector2d& point : chart.panels[2].curves[0].points) most = std::fmax(most, point.y());
+    return most;
+  };
+  EXPECT_GT(greatest(point_plots(history)), 300);
+  history.ends_at_limit = true;
+  EXPECT_LT(greatest(point_plots(history)), 10);  // 4 times that of a fifth of the way
+  EXPECT_GT(greatest(point_plots(history)), 5);
+  EXPECT_NE(point_plots(history).panels[4].curves[0].points[100].y(), 0);
+}
+
 TEST(PointPlots, SayTheirUnits) {
-  const Picture picture = draw_point_plots(crank_history());
+  const Picture picture = draw_chart(point_plots(crank_history()));
   std::string texts;
   for (const Mark& mark : picture.marks) {
     if (const auto* const label = std::get_if<Label>(&mark.shape)) texts += label->text + "\n";
   }
-  for (const char* text : {"crank [°]", "[mm/s]", "[10³ mm/s²]", "x [mm]", "Crank: point B"})
+  for (const char* text : {"crank [°]", "[10³ mm/s]", "[10⁶ mm/s²]", "x [mm]", "Crank: point B"})
     EXPECT_NE(texts.find(text), std::string::npos) << text;
 }
 

@@ -32,10 +32,8 @@ struct Experiment {
   Motion exact;
   RunOptions how;
 
-  /// Largest error of a diagram [length unit].
-  double largest_error(const FlatDiagram& diagram) const {
-    return distances(mechanism, diagram, run(Program(assemble(diagram)), diagram, how).trajectory, exact)
-        .largest;
+  Distances errors_of(const FlatDiagram& diagram) const {
+    return distances(mechanism, diagram, run(Program(assemble(diagram)), diagram, how).trajectory, exact);
   }
 };
 
@@ -74,7 +72,9 @@ class Queue {
     FlatDiagram diagram = experiment_.flat;
     apply_draws(draw(diagram, options.scatters, {options.seed, options.first_run + k}), diagram);
     try {
-      result_.errors[k] = experiment_.largest_error(diagram);
+      Distances found = experiment_.errors_of(diagram);
+      result_.errors[k] = found.largest;
+      if (k < result_.along.size()) result_.along[k] = std::move(found.along);
     } catch (const Error& error) {
       const std::string& what = error.diagnostics().front().what;
       messages_[k] = what.substr(0, what.find('\n'));
@@ -89,19 +89,37 @@ class Queue {
   std::exception_ptr exception_;
 };
 
+/// The one of `values`, of which there is at least one, that `percent` of them do not exceed.
+double nearest_rank(std::vector<double> values, double percent) {
+  const double rank = std::ceil(percent / 100 * static_cast<double>(values.size()));
+  const auto place = std::clamp<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(rank) - 1, 0,
+                                                static_cast<std::ptrdiff_t>(values.size()) - 1);
+  std::nth_element(values.begin(), values.begin() + place, values.end());
+  return values[static_cast<std::size_t>(place)];
+}
+
 }  // namespace
 
 std::optional<double> MonteCarlo::percentile(double percent) const {
-  std::vector<double> sorted;
+  std::vector<double> known;
   for (const std::optional<double>& error : errors) {
-    if (error) sorted.push_back(*error);
+    if (error) known.push_back(*error);
   }
-  if (sorted.empty()) return std::nullopt;
-  const double rank = std::ceil(percent / 100 * static_cast<double>(sorted.size()));
-  const auto place = std::clamp<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(rank) - 1, 0,
-                                                static_cast<std::ptrdiff_t>(sorted.size()) - 1);
-  std::nth_element(sorted.begin(), sorted.begin() + place, sorted.end());
-  return sorted[static_cast<std::size_t>(place)];
+  if (known.empty()) return std::nullopt;
+  return nearest_rank(std::move(known), percent);
+}
+
+std::vector<double> MonteCarlo::percentile_along(double percent) const {
+  std::vector<double> percentiles;
+  for (std::size_t row = 0; row < drive.size(); ++row) {
+    std::vector<double> known;
+    for (const std::vector<double>& run : along) {
+      if (!run.empty()) known.push_back(run[row]);
+    }
+    if (known.empty()) return {};
+    percentiles.push_back(nearest_rank(std::move(known), percent));
+  }
+  return percentiles;
 }
 
 MonteCarlo monte_carlo(const Mechanism& mechanism, const Diagram& diagram, const BlockLibrary& library,
@@ -117,6 +135,8 @@ MonteCarlo monte_carlo(const Mechanism& mechanism, const Diagram& diagram, const
   result.drawn = draw(experiment.flat, options.scatters, {}).size();
   result.tolerance = experiment.how.tolerance;
   result.errors.resize(static_cast<std::size_t>(options.runs));
+  result.along.resize(std::min(result.errors.size(), MonteCarlo::kMostAlong));
+  for (const auto& drives : experiment.exact.drives) result.drive.push_back(drives.front().value);
   Queue queue(experiment, result);
   {
     std::vector<std::jthread> others;

@@ -37,10 +37,17 @@ struct MonteCarlo {
       errors;                              ///< of each run from the first on [length unit]; none: it failed
   std::vector<FailedRun> failures;         ///< in the order of their numbers
   std::optional<std::uint64_t> worst_run;  ///< number of the one with the largest error
+  std::vector<double> drive;               ///< value of the first drive in each row [rad] or [length unit]
+  /// The largest distance of any moving point in each row, of each of the first kMostAlong runs [length
+  /// unit]; no rows: it failed. The draws of runs are independent: the first ones stand for all.
+  std::vector<std::vector<double>> along;
+  static constexpr std::size_t kMostAlong = 10'000;
 
   /// The error that this part [%] of the runs does not exceed, failed ones left out: that of a run, by the
   /// nearest rank. Nothing where all failed.
   std::optional<double> percentile(double percent) const;
+  /// The same for each row by itself, of the runs in `along`; nothing where all of these failed.
+  std::vector<double> percentile_along(double percent) const;
 };
 
 /// Runs the diagram of a mechanism (as `patch` gives it) with elements drawn anew for each run, and measures

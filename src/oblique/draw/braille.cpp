@@ -92,13 +92,18 @@ class PanelText {
         plot_rows_(static_cast<std::size_t>(std::max(6.0, panel.height / kPixelsPerRow))),
         dots_(plot_columns_, plot_rows_) {
     if (panel.equal) equalise();
-    for (const Curve& curve : panel.curves) draw(curve);
+    for (const Curve& curve : panel.curves) {
+      if (!is_drawn(curve)) continue;
+      const auto style = curve.style == Curve::Style::band ? Curve::Style::guide : curve.style;
+      draw(curve.points, style, curve.number);
+      draw(curve.other_edge, style, curve.number);
+    }
   }
 
   std::string text(bool shows_x, bool colours) const {
     std::string text = y_.title() + "\n";
     std::vector<std::string> labels(plot_rows_);
-    for (const Tick& tick : y_.ticks(static_cast<int>(plot_rows_ / 3))) {
+    for (const Tick& tick : y_.ticks(std::floor(static_cast<double>(plot_rows_) / 3))) {
       if (!tick.label.empty()) labels[row_of(tick.value)] = tick.label;
     }
     const std::vector<const Curve*> names = names_by_row();
@@ -138,24 +143,31 @@ class PanelText {
     return static_cast<std::size_t>(std::lround(dot_of({x_.low(), y}).y())) / 4;
   }
 
-  void draw(const Curve& curve) {
+  /// There is no room for bands within bands: the first is drawn, by its edges.
+  bool is_drawn(const Curve& curve) const {
+    return curve.style != Curve::Style::band ||
+           &curve == &*std::find_if(panel_.curves.begin(), panel_.curves.end(),
+                                    [](const Curve& c) { return c.style == Curve::Style::band; });
+  }
+
+  void draw(const std::vector<Vector2d>& points, Curve::Style style, std::size_t number) {
     std::optional<Vector2d> last;
     std::size_t drawn = 0;
-    for (const Vector2d& point : curve.points) {
+    for (const Vector2d& point : points) {
       if (!x_.shows(point.x()) || !y_.shows(point.y())) {
         last.reset();
         continue;
       }
       const Vector2d here = dot_of(point);
-      if (!last || curve.style == Curve::Style::marks) last = here;
+      if (!last || style == Curve::Style::marks) last = here;
       const Vector2d way = here - *last;
       const int steps = std::max(1, static_cast<int>(std::ceil(way.cwiseAbs().maxCoeff())));
       for (int k = 1; k <= steps; ++k) {
         const Vector2d dot = *last + way * (static_cast<double>(k) / steps);
-        const bool left_out = curve.style == Curve::Style::guide && drawn++ % 4 >= 2;
+        const bool left_out = style == Curve::Style::guide && drawn++ % 4 >= 2;
         if (left_out) continue;
         dots_.set(static_cast<std::size_t>(std::lround(dot.x())),
-                  static_cast<std::size_t>(std::lround(dot.y())), curve.number);
+                  static_cast<std::size_t>(std::lround(dot.y())), number);
       }
       last = here;
     }
@@ -167,7 +179,7 @@ class PanelText {
     for (const Curve& curve : panel_.curves) {
       const auto last = std::find_if(curve.points.rbegin(), curve.points.rend(),
                                      [&](const Vector2d& p) { return x_.shows(p.x()) && y_.shows(p.y()); });
-      if (curve.name.empty() || last == curve.points.rend()) continue;
+      if (curve.name.empty() || !is_drawn(curve) || last == curve.points.rend()) continue;
       const std::size_t wanted = row_of(last->y());
       for (std::size_t off = 0; off < plot_rows_; ++off) {
         if (wanted + off < plot_rows_ && names[wanted + off] == nullptr) {
@@ -188,7 +200,7 @@ class PanelText {
     std::vector<std::string> line(plot_columns_, "─");
     std::string numbers(label_width_ + 1, ' ');
     std::size_t used = numbers.size();
-    for (const Tick& tick : x_.ticks(static_cast<int>(plot_columns_ / 10))) {
+    for (const Tick& tick : x_.ticks(std::floor(static_cast<double>(plot_columns_) / 10))) {
       if (tick.label.empty()) continue;
       const auto column = static_cast<std::size_t>(std::lround(dot_of({tick.value, y_.low()}).x())) / 2;
       line[column] = "┬";
@@ -225,12 +237,20 @@ std::string to_braille(const Chart& chart, std::size_t columns, bool colours) {
   for (const PanelScales& both : scales) {
     for (const Tick& tick : both.y.ticks(8)) label_width = std::max(label_width, length_of(tick.label));
   }
-  std::string text = chart.title.empty() ? std::string() : cut(chart.title, columns) + "\n";
+  const auto in_lines = [&](const std::string& words) {
+    std::string lines;
+    for (const std::string& line :
+         wrapped(words, [&](const auto& part) { return length_of(part) <= columns; }))
+      lines += cut(line, columns) + "\n";
+    return lines;
+  };
+  std::string text = in_lines(chart.title);
   for (std::size_t p = 0; p < chart.panels.size(); ++p) {
     if (!text.empty()) text += "\n";
     text +=
         PanelText(chart.panels[p], scales[p], label_width, columns).text(shows_x_numbers(chart, p), colours);
   }
+  if (!chart.note.empty()) text += "\n" + in_lines(chart.note);
   return text;
 }
 

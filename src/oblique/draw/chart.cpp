@@ -6,23 +6,24 @@
 
 #include <fmt/format.h>
 
+#include <oblique/draw/axes.h>
 #include <oblique/draw/chart_layout.h>
-#include <oblique/draw/scale.h>
 
 namespace oblique {
 namespace {
 
 using Eigen::Vector2d;
+using Extent = Eigen::AlignedBox<double, 2>;
 
-constexpr double kMargin = 20, kText = 12, kTitle = 15, kLine = 18;  // [px]
-constexpr double kSample = 22;                                       ///< of a line in a legend
-constexpr double kEntryGap = 18;                                     ///< between the names of a legend
-constexpr double kLeastWidth = 300, kLeastHeight = 100;              ///< of a plot with equal scales
-constexpr double kTickGap = 6;                                       ///< between a plot and its numbers
-constexpr Pen kGrid{Ink::faint, 0.75}, kFineGrid{Ink::faint, 0.35}, kFrame{Ink::line, 1};
+constexpr double kMargin = 20, kText = 12, kTitle = 15, kNote = 11, kLine = 18;  // [px]
+constexpr double kBetweenPanels = 16, kBetweenColumns = 22;                      // [px]
+constexpr double kSample = 22;                                                   ///< of a line in a legend
+constexpr double kEntryGap = 18;                         ///< between the names of a legend
+constexpr double kLeastWidth = 300, kLeastHeight = 100;  ///< of a plot with equal scales
+constexpr double kFilled = 0.3;                          ///< opacity of areas and bands
 
-/// A line that crosses itself this often would be a blot if it were as thick as others.
-constexpr std::size_t kPointsOfThinLine = 4000;
+/// A line as long as this on one plot would be a blot if it were as thick as others [px].
+constexpr double kLengthOfThinLine = 20'000;
 constexpr double kThinLine = 0.6;  // [px]
 
 Pen pen_of(const Curve& curve) {
@@ -49,112 +50,99 @@ struct LegendEntry {
 class PanelPainter {
  public:
   PanelPainter(const Panel& panel, std::size_t index, const PanelScales& scales, bool shows_x)
-      : panel_(panel), index_(index), x_(scales.x), y_(scales.y), shows_x_(shows_x) {}
+      : panel_(panel),
+        index_(index),
+        scales_(scales),
+        shows_x_(shows_x),
+        axes_(Extent(Vector2d(0, 0), Vector2d(kLeastWidth, panel.height)), scales.x, scales.y,
+              Axes::Shape::stretched) {}
 
-  double label_width() const {
-    double width = 0;
-    for (const Tick& tick : y_ticks()) width = std::max(width, text_width(tick.label, kText));
-    return width;
-  }
+  double number_width() const { return axes_.number_width(); }
 
   /// Gives the parts their places: the plot from `left` to `right`, its head from `top` on. Gives where the
   /// panel ends.
   double place(double left, double right, double top) {
-    left_ = left;
-    right_ = right;
     double height = panel_.height;
     if (panel_.equal) {
-      const double ratio = (x_.high() - x_.low()) / (y_.high() - y_.low());
-      right_ = std::min(right, left + std::max(kLeastWidth, height * ratio));
-      height = std::clamp((right_ - left_) / ratio, kLeastHeight, height);
+      const Scale &x = scales_.x, &y = scales_.y;
+      const double ratio = (x.high() - x.low()) / (y.high() - y.low());
+      right = std::min(right, left + std::max(kLeastWidth, height * ratio));
+      height = std::clamp((right - left) / ratio, kLeastHeight, height);
     }
-    head_ = top + kText;
-    top_ = head_ + kLine * place_legend() + 10;
-    bottom_ = top_ + height;
-    if (panel_.equal) equalise();
-    return bottom_ + (shows_x_ ? kTickGap + kText + kLine + 6 : 0);
+    head_ = kLine * place_legend(right - left) + Axes::kHead;
+    const double frame_top = top + kText + head_, bottom = frame_top + height;
+    axes_ = Axes(Extent(Vector2d(left, frame_top), Vector2d(right, bottom)), scales_.x, scales_.y,
+                 panel_.equal ? Axes::Shape::equal : Axes::Shape::stretched);
+    return bottom + (shows_x_ ? Axes::kFoot + 6 : 0);
   }
 
-  double right() const { return right_; }
-
   void paint(std::vector<Mark>& marks) const {
-    paint_grid(marks);
-    for (std::size_t c = 0; c < panel_.curves.size(); ++c) paint(panel_.curves[c], c, marks);
-    marks.push_back(label_mark({left_, head_}, y_.title()));
-    for (const LegendEntry& entry : legend_) paint(entry, marks);
-    if (shows_x_) {
-      marks.push_back(
-          label_mark({(left_ + right_) / 2, bottom_ + kTickGap + kText + kLine}, x_.title(), Anchor::middle));
+    for (Mark& mark : shows_x_ ? axes_.marks(head_) : axes_.marks_without_x(head_)) {
+      if (std::holds_alternative<Box>(mark.shape)) mark.id = fmt::format("plot-{}", index_);
+      marks.push_back(std::move(mark));
     }
+    for (std::size_t c = 0; c < panel_.curves.size(); ++c) paint(panel_.curves[c], c, marks);
+    for (const LegendEntry& entry : legend_) paint(entry, marks);
   }
 
  private:
-  void equalise() {
-    const double x_unit = (x_.high() - x_.low()) / (right_ - left_);
-    const double y_unit = (y_.high() - y_.low()) / (bottom_ - top_);
-    const double unit = std::max(x_unit, y_unit);
-    x_.widen(unit * (right_ - left_));
-    y_.widen(unit * (bottom_ - top_));
-  }
-
-  std::vector<Tick> x_ticks() const {
-    return x_.ticks(std::clamp(static_cast<int>((right_ - left_) / 75), 2, 8));
-  }
-  std::vector<Tick> y_ticks() const { return y_.ticks(std::max(2, static_cast<int>(panel_.height / 40))); }
-  double x_of(double value) const { return left_ + x_.fraction(value) * (right_ - left_); }
-  double y_of(double value) const { return bottom_ - y_.fraction(value) * (bottom_ - top_); }
-
   /// Beside the title, and in as many rows under it as is given.
-  int place_legend() {
+  int place_legend(double width) {
     legend_.clear();
-    const std::string title = y_.title();
+    const std::string title = axes_.y_title();
     double x = title.empty() ? 0 : text_width(title, kText) + kEntryGap;
     int row = 0;
     for (const Curve& curve : panel_.curves) {
       if (curve.name.empty()) continue;
-      const double width = kSample + 6 + text_width(curve.name, kText);
-      if (x > 0 && x + width > right_ - left_) {
+      const double entry = kSample + 6 + text_width(curve.name, kText);
+      if (x > 0 && x + entry > width) {
         x = 0;
         ++row;
       }
       legend_.push_back({&curve, x, row});
-      x += width + kEntryGap;
+      x += entry + kEntryGap;
     }
     return row;
   }
 
-  void paint_grid(std::vector<Mark>& marks) const {
-    for (const Tick& tick : x_ticks()) {
-      const double x = x_of(tick.value);
-      marks.push_back(line_mark({x, top_}, {x, bottom_}, tick.label.empty() ? kFineGrid : kGrid));
-      if (shows_x_ && !tick.label.empty())
-        marks.push_back(label_mark({x, bottom_ + kTickGap + kText}, tick.label, Anchor::middle));
-    }
-    for (const Tick& tick : y_ticks()) {
-      const double y = y_of(tick.value);
-      marks.push_back(line_mark({left_, y}, {right_, y}, tick.label.empty() ? kFineGrid : kGrid));
-      if (!tick.label.empty())
-        marks.push_back(label_mark({left_ - kTickGap, y + 0.35 * kText}, tick.label, Anchor::end));
-    }
-    marks.push_back(box_mark({left_, top_}, {right_ - left_, bottom_ - top_}, Ink::none, kFrame));
-    marks.back().id = fmt::format("plot-{}", index_);
-  }
-
-  std::vector<std::vector<Vector2d>> runs_of(const Curve& curve) const {
+  /// Where the points lie, each piece of the line by itself.
+  std::vector<std::vector<Vector2d>> runs_of(const std::vector<Vector2d>& points) const {
     std::vector<std::vector<Vector2d>> runs;
     bool open = false;
-    for (const Vector2d& point : curve.points) {
-      const bool shown = x_.shows(point.x()) && y_.shows(point.y());
+    for (const Vector2d& point : points) {
+      const bool shown = axes_.shows(point);
       if (shown && !open) runs.emplace_back();
-      if (shown) runs.back().emplace_back(x_of(point.x()), y_of(point.y()));
+      if (shown) runs.back().push_back(axes_.at(point));
       open = shown;
     }
     return runs;
   }
 
+  void paint_band(const Curve& curve, const std::string& id, std::vector<Mark>& marks) const {
+    std::vector<Vector2d> border;
+    for (const Vector2d& point : curve.points) {
+      if (axes_.shows(point)) border.push_back(axes_.at(point));
+    }
+    for (auto point = curve.other_edge.rbegin(); point != curve.other_edge.rend(); ++point) {
+      if (axes_.shows(*point)) border.push_back(axes_.at(*point));
+    }
+    if (border.empty()) return;
+    Mark band = polyline_mark(border, {Ink::none, 0}, true);
+    band.fill = pen_of(curve).ink;
+    band.opacity = kFilled;
+    band.id = id;
+    band.tooltip = curve.name;
+    marks.push_back(std::move(band));
+  }
+
   void paint(const Curve& curve, std::size_t number, std::vector<Mark>& marks) const {
+    const std::string id = fmt::format("curve-{}-{}", index_, number);
+    if (curve.style == Curve::Style::band) {
+      paint_band(curve, id, marks);
+      return;
+    }
     Pen pen = pen_of(curve);
-    const auto runs = runs_of(curve);
+    const auto runs = runs_of(curve.points);
     if (curve.style == Curve::Style::marks) {
       for (const auto& run : runs) {
         for (const Vector2d& at : run) marks.push_back(disc_mark(at, 2.5, Ink::none, {pen.ink, 1.25}));
@@ -162,22 +150,25 @@ class PanelPainter {
       return;
     }
     Outline line, area;
+    double length = 0;  // [px]
     for (const auto& run : runs) {
       const auto points = thinned(run);
+      for (std::size_t k = 1; k < points.size(); ++k) length += (points[k] - points[k - 1]).norm();
       const Outline part = std::get<Outline>(polyline_mark(points).shape);
       line.segments.insert(line.segments.end(), part.segments.begin(), part.segments.end());
       if (curve.style != Curve::Style::area) continue;
-      std::vector<Vector2d> border{{points.front().x(), bottom_}};
+      const double bottom = axes_.frame().max().y();
+      std::vector<Vector2d> border{{points.front().x(), bottom}};
       border.insert(border.end(), points.begin(), points.end());
-      border.emplace_back(points.back().x(), bottom_);
+      border.emplace_back(points.back().x(), bottom);
       const Outline under = std::get<Outline>(polyline_mark(border, {}, true).shape);
       area.segments.insert(area.segments.end(), under.segments.begin(), under.segments.end());
     }
     if (line.segments.empty()) return;
-    if (!area.segments.empty()) marks.push_back({std::move(area), {Ink::none, 0}, pen.ink, 0.2});
-    if (line.segments.size() > kPointsOfThinLine) pen.width = kThinLine;
+    if (!area.segments.empty()) marks.push_back({std::move(area), {Ink::none, 0}, pen.ink, kFilled});
+    if (length > kLengthOfThinLine) pen.width = kThinLine;
     marks.push_back({std::move(line), pen});
-    marks.back().id = fmt::format("curve-{}-{}", index_, number);
+    marks.back().id = id;
     marks.back().tooltip = curve.name;
     if (curve.style != Curve::Style::dotted_line) return;
     for (const auto& run : runs) {
@@ -186,11 +177,15 @@ class PanelPainter {
   }
 
   void paint(const LegendEntry& entry, std::vector<Mark>& marks) const {
-    const Vector2d at(left_ + entry.left, head_ + kLine * entry.row);
+    const Vector2d at =
+        axes_.frame().min() + Vector2d(entry.left, kLine * static_cast<double>(entry.row) - head_);
     const Pen pen = pen_of(*entry.curve);
     const Vector2d middle = at - Vector2d(0, 0.35 * kText);
     if (entry.curve->style == Curve::Style::marks) {
       marks.push_back(disc_mark(middle + Vector2d(kSample / 2, 0), 2.5, Ink::none, {pen.ink, 1.25}));
+    } else if (entry.curve->style == Curve::Style::band) {
+      marks.push_back(box_mark(at - Vector2d(0, 0.8 * kText), {kSample, kText}, pen.ink, {Ink::none, 0}));
+      marks.back().opacity = kFilled;
     } else {
       marks.push_back(line_mark(middle, middle + Vector2d(kSample, 0), pen));
     }
@@ -201,9 +196,10 @@ class PanelPainter {
 
   const Panel& panel_;
   std::size_t index_;
-  Scale x_, y_;
+  PanelScales scales_;
   bool shows_x_;
-  double left_ = 0, right_ = 0, head_ = 0, top_ = 0, bottom_ = 0;
+  Axes axes_;
+  double head_ = 0;  ///< from the frame up to the title of y [px]
   std::vector<LegendEntry> legend_;
 };
 
@@ -211,31 +207,48 @@ class PanelPainter {
 
 Picture draw_chart(const Chart& chart) {
   const std::vector<PanelScales> scales = scales_of(chart);
+  const std::size_t rows = chart.rows();
   std::vector<PanelPainter> painters;
-  double label_width = 0;
+  std::vector<double> number_widths(chart.columns, 0);
   for (std::size_t p = 0; p < chart.panels.size(); ++p) {
     painters.emplace_back(chart.panels[p], p, scales[p], shows_x_numbers(chart, p));
-    label_width = std::max(label_width, painters.back().label_width());
+    double& width = number_widths[p / rows];
+    width = std::max(width, painters.back().number_width());
   }
   Picture picture{chart.width, 0, chart.title, {}};
-  const double left = kMargin + label_width + kTickGap, right = chart.width - kMargin - 6;
-  const std::vector<std::string> title = wrapped(chart.title, kTitle, true, right - kMargin);
+  const double right = chart.width - kMargin - 6;
   double y = kMargin;
-  for (const std::string& line : title) {
-    picture.marks.push_back(label_mark({kMargin, y + kTitle}, line, Anchor::start, kTitle));
-    std::get<Label>(picture.marks.back().shape).bold = true;
-    y += kTitle + 5;
+  const auto add_text = [&](const std::string& text, double size, bool bold) {
+    const auto fits = [&](const std::string& line) {
+      return text_width(line, size, bold) <= right - kMargin;
+    };
+    for (const std::string& line : wrapped(text, fits)) {
+      picture.marks.push_back(label_mark({kMargin, y + size}, line, Anchor::start, size));
+      std::get<Label>(picture.marks.back().shape).bold = bold;
+      y += size + 5;
+    }
+  };
+  add_text(chart.title, kTitle, true);
+  if (!chart.title.empty()) y += 9;
+  const auto columns = static_cast<double>(chart.columns);
+  const double width = (right - kMargin - (columns - 1) * kBetweenColumns) / columns;
+  for (std::size_t row = 0; row < rows; ++row) {
+    double below = y;
+    for (std::size_t p = row; p < painters.size(); p += rows) {
+      const double begin = kMargin + static_cast<double>(p / rows) * (width + kBetweenColumns);
+      below = std::max(below,
+                       painters[p].place(begin + number_widths[p / rows] + Axes::kTickGap, begin + width, y));
+      painters[p].paint(picture.marks);
+    }
+    y = below + kBetweenPanels;
   }
-  if (!title.empty()) y += 9;
+  if (!chart.note.empty()) y += 2;
+  add_text(chart.note, kNote, false);
+  if (!chart.note.empty()) y += kBetweenPanels - 5;
   double end = 0;
-  for (PanelPainter& painter : painters) {
-    y = painter.place(left, right, y) + 16;
-    painter.paint(picture.marks);
-    end = std::max(end, painter.right());
-  }
   for (const Mark& mark : picture.marks) end = std::max(end, extent_of(mark).max().x());
-  picture.width = end + kMargin + 6;
-  picture.height = y - 16 + kMargin;
+  picture.width = end + kMargin;
+  picture.height = y - kBetweenPanels + kMargin;
   return picture;
 }
 

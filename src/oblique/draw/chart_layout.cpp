@@ -12,12 +12,18 @@ namespace {
 
 using Eigen::Vector2d;
 
-bool same_axis(const ChartAxis& a, const ChartAxis& b) {
+bool same_axis(const Axis& a, const Axis& b) {
   return a.name == b.name && a.unit == b.unit && a.logarithmic == b.logarithmic;
 }
 
-bool shown(const Panel& panel, const Vector2d& point) {
-  return Scale::can_show(panel.x, point.x()) && Scale::can_show(panel.y, point.y());
+/// All points of a curve that the axes can show.
+template <class Use>
+void for_points(const Panel& panel, const Curve& curve, const Use& use) {
+  for (const auto* points : {&curve.points, &curve.other_edge}) {
+    for (const Vector2d& point : *points) {
+      if (Scale::can_show(panel.x, point.x()) && Scale::can_show(panel.y, point.y())) use(point);
+    }
+  }
 }
 
 /// Dots at the ends would lie half outside.
@@ -32,8 +38,9 @@ bool has_dots(const Panel& panel) {
 }  // namespace
 
 bool shows_x_numbers(const Chart& chart, std::size_t panel) {
-  const bool shared = panel + 1 < chart.panels.size() && !chart.panels[panel].equal &&
-                      same_axis(chart.panels[panel].x, chart.panels[panel + 1].x);
+  const bool last = panel + 1 == chart.panels.size() || (panel + 1) % chart.rows() == 0;
+  const bool shared =
+      !last && !chart.panels[panel].equal && same_axis(chart.panels[panel].x, chart.panels[panel + 1].x);
   return !shared;
 }
 
@@ -47,18 +54,14 @@ std::vector<PanelScales> scales_of(const Chart& chart) {
     for (std::size_t p = first; p < end; ++p) {
       dots = dots || has_dots(chart.panels[p]);
       for (const Curve& curve : chart.panels[p].curves) {
-        for (const Vector2d& point : curve.points) {
-          if (shown(chart.panels[p], point)) xs.push_back(point.x());
-        }
+        for_points(chart.panels[p], curve, [&](const Vector2d& point) { xs.push_back(point.x()); });
       }
     }
     for (std::size_t p = first; p < end; ++p) {
       const Panel& panel = chart.panels[p];
       std::vector<double> ys;
       for (const Curve& curve : panel.curves) {
-        for (const Vector2d& point : curve.points) {
-          if (shown(panel, point)) ys.push_back(point.y());
-        }
+        for_points(panel, curve, [&](const Vector2d& point) { ys.push_back(point.y()); });
         if (curve.style == Curve::Style::area) ys.push_back(0);
       }
       PanelScales both{Scale(panel.x, xs, panel.equal), Scale(panel.y, ys, true)};
@@ -70,12 +73,13 @@ std::vector<PanelScales> scales_of(const Chart& chart) {
   return scales;
 }
 
-std::vector<std::string> wrapped(const std::string& text, double size, bool bold, double width) {
+std::vector<std::string> wrapped(const std::string& text,
+                                 const std::function<bool(const std::string& line)>& fits) {
   std::vector<std::string> lines;
   std::istringstream words(text);
   for (std::string word; words >> word;) {
     const std::string longer = lines.empty() ? word : lines.back() + " " + word;
-    if (lines.empty() || text_width(longer, size, bold) > width) {
+    if (lines.empty() || !fits(longer)) {
       lines.push_back(word);
     } else {
       lines.back() = longer;

@@ -128,12 +128,12 @@ LinkageLayout lay_out(const Mechanism& mechanism, const LinkageScene& scene) {
   const Vector2d margin = Vector2d::Constant(kRoomForNames);
   const Vector2d low = (covered.min() - margin) / scale, high = (covered.max() + margin) / scale;
   const double height = std::clamp((high - low).y() * scale, kLeast, kTallest);
-  constexpr double kAroundFrame = 50;  // the numbers under the axis, and above it a little
+  constexpr double kAroundFrame = 72;  // numbers and titles of the axes
   background.height = std::ceil(head + height + kAroundFrame + kMargin);
-  const Extent place(Vector2d(kMargin - 4, head), Vector2d(kWidth - 4, background.height - 12));
-  const std::string unit = " [" + mechanism.length_unit + "]";
-  const Axes axes(place, {"x" + unit, low.x(), high.x()}, {"y" + unit, -high.y(), -low.y()},
-                  Axes::Shape::equal);
+  const Extent place(Vector2d(kMargin - 4, head + 6), Vector2d(kWidth - 4, background.height - 12));
+  const Axes axes =
+      Axes::within(place, Scale({"x", mechanism.length_unit}, {low.x(), high.x()}, false),
+                   Scale({"y", mechanism.length_unit}, {-high.y(), -low.y()}, false), Axes::Shape::equal);
   for (Mark& mark : axes.marks()) background.marks.push_back(std::move(mark));
   LinkageLayout layout{std::move(background), axes, linkage_parts(mechanism, samples, axes.scale().x()), {}};
   for (std::size_t k = 0; k < scene.traces.size(); ++k) {

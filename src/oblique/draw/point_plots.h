@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <oblique/draw/picture.h>
+#include <oblique/draw/chart.h>
 #include <oblique/mechanism/configuration.h>
 
 namespace oblique {
@@ -18,10 +18,12 @@ struct PointHistory {
   std::string drive_unit;          ///< "°" or a length unit
   std::vector<double> drives;      ///< [drive_unit]
   std::vector<PointState> states;  ///< what has no value is NaN
+  bool ends_at_limit = false;      ///< velocities grow beyond all bounds there
 };
 
-/// Six plots in one picture: the path, the coordinates, and the components of velocity and acceleration over
-/// the drive. The curves have the ids "path", "x", "y", "vx", "vy", "ax", "ay".
-Picture draw_point_plots(const PointHistory& history);
+/// Six plots in one chart, in three columns: the path and the coordinates, the components of the velocity,
+/// those of the acceleration; all but the path over the drive. What rounding leaves of a component is drawn
+/// as 0, and of velocities and accelerations what rises out of sight at a limit is left out.
+Chart point_plots(const PointHistory& history);
 
 }  // namespace oblique

@@ -12,7 +12,7 @@ namespace oblique {
 namespace {
 
 /// Ranges are rounded to the ticks of about this many.
-constexpr int kTicksOfRange = 5;
+constexpr double kTicksOfRange = 5;
 /// Errors that rounding leaves would stretch a logarithmic axis over dozens of empty decades.
 constexpr double kMostDecades = 12;
 /// What a division by the step may be off a whole number.
@@ -35,7 +35,7 @@ std::string power_of_ten(int exponent) {
   return text;
 }
 
-Scale::Scale(const ChartAxis& axis, const std::vector<double>& values, bool round) : axis_(axis) {
+Scale::Scale(const Axis& axis, const std::vector<double>& values, bool round) : axis_(axis) {
   bool any = false;
   for (const double value : values) {
     if (!shows(value)) continue;
@@ -64,7 +64,7 @@ Scale::Scale(const ChartAxis& axis, const std::vector<double>& values, bool roun
   high_ = step_ * std::ceil(high_ / step_ - kRounding);
 }
 
-bool Scale::can_show(const ChartAxis& axis, double value) {
+bool Scale::can_show(const Axis& axis, double value) {
   return std::isfinite(value) && (!axis.logarithmic || value > 0);
 }
 
@@ -94,7 +94,7 @@ void Scale::widen(double length) {
   step_ = 0;
 }
 
-double Scale::step(int most) const {
+double Scale::step(double most) const {
   const double least = (high_ - low_) / most;
   if (axis_.unit == "°") {  // parts of a turn are rounder than decimal numbers
     for (const double step : {1, 2, 5, 10, 15, 30, 45, 60, 90, 180, 360}) {
@@ -108,20 +108,27 @@ double Scale::step(int most) const {
   return 10 * decade;
 }
 
+void Scale::count_like(const Scale& other) {
+  size_of_other_ = std::max(size_of_other_, other.size());
+}
+
+double Scale::size() const {
+  return std::max({std::abs(low_), std::abs(high_), size_of_other_});
+}
+
 int Scale::power() const {
   if (axis_.logarithmic) return 0;
-  const double size = std::max(std::abs(low_), std::abs(high_));
-  const int exponent = static_cast<int>(std::floor(std::log10(size) + kRounding));
+  const int exponent = static_cast<int>(std::floor(std::log10(size()) + kRounding));
   const bool short_enough = exponent >= -2 && exponent <= 3;
   return short_enough ? 0 : 3 * static_cast<int>(std::floor(exponent / 3.0));
 }
 
-std::vector<Tick> Scale::ticks(int most) const {
+std::vector<Tick> Scale::ticks(double most) const {
   std::vector<Tick> ticks;
   if (axis_.logarithmic) {
     const int first = static_cast<int>(std::ceil(std::log10(low_) - kRounding));
     const int last = static_cast<int>(std::floor(std::log10(high_) + kRounding));
-    const int each = std::max(1, (last - first + most) / most);
+    const int each = std::max(1, static_cast<int>(std::ceil((last - first + 1) / most)));
     for (int exponent = first; exponent <= last; ++exponent) {
       const double decade = std::pow(10, exponent);
       ticks.push_back({decade, (exponent - first) % each == 0 ? power_of_ten(exponent) : std::string()});

@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: MIT
+#include "mechanism_report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <fmt/format.h>
+
+#include <oblique/compare/compare.h>
+#include <oblique/draw/chart.h>
+#include <oblique/draw/diagram_drawing.h>
+#include <oblique/machine/realise.h>
+#include <oblique/solve/analysis.h>
+#include <oblique/solve/solve_error.h>
+
+#include "command.h"
+#include "comparison_chart.h"
+#include "comparison_output.h"
+#include "linkage_scene.h"
+#include "machine_patch.h"
+#include "mechanism_check.h"
+#include "pole_chart.h"
+
+namespace oblique::cli {
+namespace {
+
+constexpr double kPageWidth = 860;  // of pictures that may be as wide as the page [px]
+
+/// "0.0125", "−4.44·10¹¹": four digits, as people write them.
+std::string readable(double value) {
+  const double size = std::abs(value);
+  const char* const sign = value < 0 ? "−" : "";
+  if (size == 0 || (size >= 1e-3 && size < 9999)) return sign + fmt::format("{:.4g}", size);
+  if (size >= 9999 && size < 1e5) return sign + fmt::format("{:.0f}", size);
+  if (!std::isfinite(value)) return std::isnan(value) ? "unknown" : sign + std::string("∞");
+  auto exponent = static_cast<int>(std::floor(std::log10(size)));
+  std::string digits = fmt::format("{:.4g}", size / std::pow(10, exponent));
+  if (digits == "10") digits = "1", ++exponent;  // rounded up
+  return digits == "1" ? sign + power_of_ten(exponent) : sign + digits + "·" + power_of_ten(exponent);
+}
+
+/// What a failure says, for a page: "…; expected …. Remedy: …".
+std::string words_of(const Error& error) {
+  const Diagnostic& finding = error.diagnostics().front();
+  std::string text = finding.what;
+  if (!finding.expected.empty()) text += "; expected " + finding.expected;
+  if (!finding.remedy.empty()) text += ". Remedy: " + finding.remedy;
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text + ".";
+}
+
+std::string capitalised(std::string text) {
+  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  return text;
+}
+
+class Writer {
+ public:
+  explicit Writer(const MechanismReport& report)
+      : report_(report),
+        mechanism_(report.mechanism),
+        page_(mechanism_.title.empty() ? mechanism_.file : mechanism_.title) {}
+
+  HtmlPage write() {
+    drawing();
+    structure();
+    motion();
+    try {
+      patched_ = judged_patch(mechanism_, report_.library, report_.options);
+    } catch (const Error& error) {
+      page_.heading("Patch");
+      page_.paragraph("There is no patch of this mechanism. " + capitalised(words_of(error)));
+      return std::move(page_);
+    }
+    patch();
+    convergence();
+    stability();
+    if (report_.machine != nullptr) machine(*report_.machine);
+    return std::move(page_);
+  }
+
+ private:
+  /// The mechanism at its start, with the paths that are worth a look.
+  void drawing() {
+    page_.heading("The mechanism");
+    page_.introduction(fmt::format("{}, {}, drawn to scale at the start of the motion. File: {}.{}",
+                                   count(mechanism_.bodies.size(), "body", "bodies"),
+                                   count(mechanism_.drives.size(), "drive", "drives"), mechanism_.file,
+                                   mechanism_.source.empty() ? "" : " Source: " + mechanism_.source + "."));
+    Mechanism untitled = mechanism_;
+    untitled.title.clear();  // the page has it
+    LinkageScene scene = linkage_scene(untitled, "", 1);
+    if (!scene.motion.empty()) scene.traces = points_to_trace(mechanism_);
+    page_.picture(draw_linkage(untitled, scene));
+  }
+
+  /// Groups, and what `check` tells of them.
+  void structure() {
+    const MechanismCheck check = examine(mechanism_, mechanism_.file);
+    page_.heading("Structure");
+    page_.introduction(
+        fmt::format("Mobility {}: so many drives it takes. A mechanism consists of its drives and of groups "
+                    "that add none; each group can be solved by itself, in this order:",
+                    check.analysis.mobility.gruebler));
+    std::vector<std::string> groups;
+    for (const Group& group : check.structure.groups) groups.push_back(describe(mechanism_, group));
+    page_.list(groups);
+    if (check.finding)
+      page_.paragraph(fmt::format("What keeps it from moving all the way: {}.", *check.finding));
+    for (const CheckTable& table : tables_of(check)) {
+      page_.subheading(table.title);
+      page_.introduction(table.explanation);
+      page_.table(table.table.rows());
+    }
+    if (!check.analysis.tour) return;
+    const std::vector<std::string> found = remarks(check);
+    if (found.empty()) return;
+    page_.subheading("What a designer would look at again");
+    page_.list(found);
+  }
+
+  /// A point of the coupler, or the first one that moves.
+  void motion() {
+    if (mechanism_.drives.empty()) return;
+    std::vector<std::size_t> points = points_to_trace(mechanism_);
+    for (std::size_t p = 0; points.empty() && p < mechanism_.points.size(); ++p) {
+      if (!mechanism_.points[p].fixed && !mechanism_.bodies_at(p).empty()) points.push_back(p);
+    }
+    if (points.empty()) return;
+    page_.heading("Motion");
+    const std::string& name = mechanism_.points[points.front()].name;
+    page_.introduction(
+        fmt::format("Where point {} is, how fast it moves, and how its velocity changes, over {}: exact, "
+                    "from the geometry.",
+                    name, mechanism_.drives.front().name));
+    Chart plots = point_plots(point_history(mechanism_, name));
+    plots.title.clear();
+    plots.width = kPageWidth;
+    page_.picture(draw_chart(plots));
+  }
+
+  void patch() {
+    const Diagram& diagram = patched_.diagram;
+    page_.heading("Patch");
+    page_.paragraph(
+        "The patch is the diagram that makes an analog computer move as the mechanism does: servo amplifiers "
+        "drive the unknowns of each group until its triangles close.");
+    std::string comment = diagram.comment;  // its lines are broken where a file's are
+    std::replace(comment.begin(), comment.end(), '\n', ' ');
+    if (!comment.empty()) page_.paragraph(comment);
+    page_.paragraph("Judged before it runs: " + judgement_text(patched_.judgement));
+    page_.picture(draw_diagram(diagram, report_.library));
+    std::map<std::string, std::size_t> counts;
+    for (const BlockInstance& block : diagram.blocks) ++counts[block.type];
+    std::vector<std::vector<std::string>> rows;
+    for (const auto& [type, n] : counts) rows.push_back({type, std::to_string(n)});
+    rows.push_back({"in all", std::to_string(diagram.blocks.size())});
+    page_.introduction("Its blocks:");
+    page_.table({"block", "count"}, rows);
+  }
+
+  void convergence() {
+    page_.heading("Convergence");
+    page_.paragraph(
+        "The patch runs over the motion with servo amplifiers of each gain; its moving points are held "
+        "against "
+        "the exact motion. The error falls as the gain grows.");
+    CompareOptions sweep;
+    sweep.methods = {report_.options.method};
+    if (report_.options.bandwidth) sweep.bandwidths = {*report_.options.bandwidth};
+    sweep.progress = report_.progress;
+    try {
+      errors_of(compare(mechanism_, report_.library, sweep));
+    } catch (const SolveError& error) {
+      page_.paragraph("A run fails: " + words_of(error));
+    }
+  }
+
+  void errors_of(const Comparison& comparison) {
+    const std::string unit = " [" + comparison.unit + "]";
+    std::vector<std::vector<std::string>> rows;
+    for (const ComparedRun& run : comparison.runs) {
+      const auto part = [&](double ErrorParts::*which) {
+        return run.parts ? readable(*run.parts.*which) : std::string("unknown");
+      };
+      rows.push_back({readable(run.gain), readable(run.max_error), readable(run.max_error / comparison.size),
+                      readable(run.rms_error), run.worst.point, drive_text(comparison, run.worst.drive),
+                      part(&ErrorParts::at_rest), part(&ErrorParts::lag), part(&ErrorParts::solver),
+                      run.stable ? "yes" : "NO"});
+    }
+    page_.introduction(
+        "Largest error of any point, also as a part of the largest link; root mean square of all errors; the "
+        "point that errs most, and where the drive then stands. Static is what the finite gain leaves at "
+        "rest, "
+        "lag what the loops are behind for their speed, solver what the tolerance of the run leaves.");
+    page_.table({"gain", "largest error" + unit, "of the largest link", "r.m.s." + unit, "worst", "at",
+                 "static" + unit, "lag" + unit, "solver" + unit, "stable"},
+                rows);
+    const GainSeries& series = comparison.series.front();
+    page_.introduction(series.order
+                           ? fmt::format("The error falls with the gain to the power {}; −1 is what "
+                                         "amplifiers of finite gain should give.",
+                                         readable(*series.order))
+                           : "No order of convergence: it takes two gains whose errors stand clear of "
+                             "the tolerance.");
+    Chart chart = chart_of(comparison);
+    chart.title.clear();  // the heading tells it
+    page_.picture(draw_chart(chart));
+  }
+
+  void stability() {
+    const FlatDiagram flat = flatten(patched_.diagram, report_.library);
+    const Program program(assemble(flat));
+    const Analysis analysis = analyse(program, flat, oblique::options_of(patched_.diagram.run));
+    const StabilityReport& found = analysis.stability;
+    page_.heading("Stability");
+    page_.introduction(fmt::format(
+        "The eigenvalues of the patch, linearised at {} of its motion: one with a positive real part grows. "
+        "The servo loops have to be much faster than the problem that they solve; a damping ratio of 1 or "
+        "more "
+        "means that they do not overshoot.",
+        count(found.instants, "moment", "moments")));
+    std::vector<std::vector<std::string>> rows;
+    const auto tell = [&](const char* whose, const std::optional<WorstMode>& worst) {
+      if (!worst) return;
+      rows.push_back({whose, readable(worst->mode.damping_ratio()), readable(worst->mode.natural_frequency()),
+                      readable(worst->mode.pole.real()), readable(worst->time)});
+    };
+    tell("servo loops, least damped", found.servo_mode);
+    tell("servo loops, slowest", found.slowest_servo);
+    tell("the problem itself, least damped", found.problem_mode);
+    if (!rows.empty())
+      page_.table({"mode", "damping ratio", "natural frequency [rad/s]", "real part [1/s]", "at t [s]"},
+                  rows);
+    if (found.grows_from)
+      page_.paragraph(fmt::format("A servo loop grows from t = {} s on.", readable(*found.grows_from)));
+    if (analysis.failure) page_.paragraph("The run fails: " + words_of(SolveError(*analysis.failure)));
+    for (const std::string& what : found.left_out) page_.paragraph("Left out: " + what + ".");
+    const Chart poles = pole_chart(program, analysis.instants, "");
+    page_.picture(draw_chart(poles));
+  }
+
+  void machine(const MachineProfile& profile) {
+    const Diagram diagram = realise(patched_.diagram, report_.library, profile).diagram;
+    const FlatDiagram flat = flatten(diagram, report_.library);
+    const Bill bill = bill_of(flat, profile);
+    page_.heading("On the " + profile.title);
+    page_.introduction(
+        "The same patch in this machine's own elements. What it takes of them, and what there is:");
+    page_.table(bill_table(bill).rows());
+    page_.paragraph(capitalised(verdict_text(bill)) + ".");
+    const MachineSheets sheets = sheets_of(diagram, flat, report_.library, profile);
+    const auto add = [&](const Sheet& sheet, const char* explanation) {
+      page_.subheading("Sheet: " + sheet.title);
+      page_.introduction(explanation);
+      page_.table(sheet.columns, sheet.rows);
+    };
+    add(sheets.potentiometers, "To what each potentiometer is set, and between which elements it stands.");
+    add(sheets.connections, "Every cord of the patch: from an output to an input with its weight.");
+    add(sheets.static_test,
+        "What each output shows, and how fast each integrator begins to run, before the clock starts: the "
+        "test "
+        "that all is patched as it should be.");
+  }
+
+  const MechanismReport& report_;
+  const Mechanism& mechanism_;
+  JudgedPatch patched_;
+  HtmlPage page_;
+};
+
+}  // namespace
+
+HtmlPage MechanismReport::page() const {
+  return Writer(*this).write();
+}
+
+}  // namespace oblique::cli
