@@ -20,6 +20,7 @@
 #include "linkage_scene.h"
 #include "machine_patch.h"
 #include "mechanism_check.h"
+#include "patch_choice.h"
 #include "pole_chart.h"
 #include "terminal.h"
 
@@ -44,7 +45,7 @@ class MechanismReport {
 
   /// The mechanism at its start, with the paths that are worth a look.
   void drawing() {
-    LinkageScene scene = linkage_scene(mechanism_, "", 1);
+    LinkageScene scene = linkage_scene(mechanism_, "", 1).scene;
     scene.traces = points_to_trace(mechanism_);
     page_.picture(draw_linkage(mechanism_, scene));
   }
@@ -159,12 +160,6 @@ class MechanismReport {
   HtmlPage page_;
 };
 
-double positive(const std::string& option, const std::string& text, std::string_view unit) {
-  const double value = quantity_option(option, text, unit);
-  if (value > 0 && std::isfinite(value)) return value;
-  throw ReadError(Diagnostic{{}, fmt::format("{} {}", option, text), "a finite number above 0", {}});
-}
-
 }  // namespace
 
 ExitStatus report_mechanism(const Session& session, const ReportRequest& request) {
@@ -172,10 +167,7 @@ ExitStatus report_mechanism(const Session& session, const ReportRequest& request
   check_not_input(request.output, request.mechanism, "mechanism");
   const MachineProfile* const machine = request.machine.empty() ? nullptr : find_machine(request.machine);
   if (machine == nullptr && !request.machine.empty()) throw ReadError(unknown_machine(request.machine));
-  PatchOptions options;
-  options.method = method_option(request.method);
-  options.gain = positive("--gain", request.gain, "1");
-  if (!request.bandwidth.empty()) options.bandwidth = positive("--bandwidth", request.bandwidth, "Hz");
+  const PatchOptions options = patch_options(request.patch);
   CompareOptions sweep;
   sweep.methods = {options.method};
   if (options.bandwidth) sweep.bandwidths = {*options.bandwidth};
