@@ -38,6 +38,12 @@ std::string factor_text(double factor) {
   return plain ? fmt::format("{:.0f}", factor) : fmt::format("{:.6g}", factor);
 }
 
+/// "3e5": one digit and a power of ten, the next smaller one.
+std::string rough_number(double value) {
+  const double power = std::floor(std::log10(value));
+  return fmt::format("{:.0f}e{:.0f}", std::floor(value / std::pow(10, power)), power);
+}
+
 }  // namespace
 
 std::optional<double> magnify_option(const std::string& text) {
@@ -94,8 +100,9 @@ std::string MagnifiedAnalog::remark() const {
   if (largest_ == 0 || (shown >= kSeen * size && shown <= kTooMuch * size)) return {};
   const char* const how = shown < kSeen * size ? "still too small to be seen" : "larger than the mechanism";
   return fmt::format(
-      "note: the largest error, {:.3g} {}, is {} at {} times its size; --magnify {:.0e} shows it well\n",
-      largest_, mechanism_.length_unit, how, factor_text(magnification_), kGood * size / largest_);
+      "note: the largest error, {:.3g} {}, is {} at {} times its size; --magnify {} shows it well\n",
+      largest_, mechanism_.length_unit, how, factor_text(magnification_),
+      rough_number(kGood * size / largest_));
 }
 
 }  // namespace oblique::cli
