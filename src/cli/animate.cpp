@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include <array>
-#include <cmath>
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -9,55 +8,88 @@
 #include <oblique/mechanism/motion.h>
 #include <oblique/mechanism/read_mechanism.h>
 
+#include "animation_timing.h"
 #include "command.h"
 #include "drive_place.h"
+#include "gif_output.h"
 #include "linkage_scene.h"
+#include "magnified.h"
+#include "patch_choice.h"
 #include "picture_output.h"
 #include "terminal.h"
 
 namespace oblique::cli {
 namespace {
 
-/// The frames of a round: a closed motion once, another one to its end and back.
-void add_frames(LinkageAnimation& animation, const Mechanism& mechanism, int frames) {
+/// The moments of a round and its frames: a closed motion once, another one to its end and back.
+struct Round {
+  std::vector<Configuration> frames;
+  std::vector<double> times;  ///< [s]
+};
+
+Round round_of(const Mechanism& mechanism, int frames) {
   const Structure structure = decompose(mechanism);
   DrawnMotion motion = drawn_motion(mechanism, structure, frames + 1);
   const bool closed = motion.closed;
-  if (!closed) motion = drawn_motion(mechanism, structure, frames / 2 + 1);
+  if (!closed) motion = drawn_motion(mechanism, structure, (frames + 1) / 2 + 1);
+  Round round;
   const auto add = [&](std::size_t k) {
     if (motion.rows[k].status == oblique::Status::open) return;
-    animation.frames.push_back(motion.rows[k]);
-    animation.captions.push_back(drive_caption(mechanism, motion.times[k]));
+    round.frames.push_back(motion.rows[k]);
+    round.times.push_back(motion.times[k]);
   };
   for (std::size_t k = 0; k < motion.rows.size(); ++k) add(k);
-  if (closed) return;
+  if (closed) return round;
   for (std::size_t k = motion.rows.size() - 1; k-- > 0;) add(k);
-}
-
-double duration_of(const AnimateRequest& request) {
-  const double duration = quantity_option("--duration", request.duration, "s");
-  if (duration > 0 && std::isfinite(duration)) return duration;
-  throw ReadError(Diagnostic{{}, fmt::format("--duration {}", request.duration), "a time above 0", {}});
+  return round;
 }
 
 }  // namespace
 
-ExitStatus animate_mechanism(const Session&, const AnimateRequest& request) {
-  constexpr std::array<std::string_view, 2> kEndings{".svg", ".html"};
+ExitStatus animate_mechanism(const Session& session, const AnimateRequest& request) {
+  constexpr std::array<std::string_view, 3> kEndings{".svg", ".html", ".gif"};
   check_output(request.output, kEndings);
   check_not_input(request.output, request.mechanism, "mechanism");
+  const std::string ending = std::filesystem::path(request.output).extension().string();
+  const bool gif = ending == ".gif";
+  const AnimationTiming timing = timing_of(request, gif);
   const Theme theme = theme_option(request.theme);
-  LinkageAnimation animation;
-  animation.duration = duration_of(request);
-  const Mechanism mechanism = read_mechanism(request.mechanism);
+  const std::optional<double> magnification = magnify_option(request.magnify);
+  if (gif) require_converter(request.output);
+  Mechanism mechanism = read_mechanism(request.mechanism);
   if (mechanism.drives.empty()) period(mechanism);  // says that there is no drive
+  if (magnification) mechanism = within_range(mechanism);
   const std::vector<std::size_t> traces = trace_option(mechanism, request.trace);
-  animation.scene = linkage_scene(mechanism, "", 1);
+  const TimedScene timed = linkage_scene(mechanism, "", 1);
+  const Round round = round_of(mechanism, timing.frames);
+
+  LinkageAnimation animation;
+  animation.duration = timing.duration;
+  animation.width = request.size.value_or(0);
+  animation.scene = timed.scene;
   animation.scene.traces = traces;
   animation.scene.caption.clear();
-  add_frames(animation, mechanism, request.frames);
-  const bool page = std::filesystem::path(request.output).extension() == ".html";
-  save(request.output, (page ? animated_page : animated_svg)(mechanism, animation, theme));
+  animation.frames = round.frames;
+  for (const double time : round.times) animation.captions.push_back(drive_caption(mechanism, time));
+  if (magnification) {
+    const MagnifiedAnalog analog(mechanism, session.blocks(), patch_options(request.patch), *magnification,
+                                 timed, round.times);
+    animation.scene.analog = analog.overlay(timed);
+    for (std::size_t k = 0; k < round.times.size(); ++k)
+      animation.analog_frames.push_back(analog.points(round.times[k], round.frames[k]));
+    note(analog.remark());
+  }
+
+  if (!gif) {
+    save(request.output, (ending == ".html" ? animated_page : animated_svg)(mechanism, animation, theme));
+    return ExitStatus::done;
+  }
+  save(request.output, gif_of(mechanism, animation, theme, timing.delay, request.output));
+  const int frames = static_cast<int>(animation.frames.size()) - 1;
+  if (!keeps_pace(request, frames, timing.delay)) {
+    note(fmt::format("note: a GIF shows a frame for whole hundredths of a second: {} frames, {}\n", frames,
+                     pace_text(frames, timing.delay)));
+  }
   return ExitStatus::done;
 }
 

@@ -114,12 +114,17 @@ struct CompareRequest {
 };
 ExitStatus compare_mechanism(const Session& session, const CompareRequest& request);
 
-struct ReportRequest {
-  std::string mechanism;
-  std::string output;
+/// One patch that is run beside other work.
+struct PatchChoice {
   std::string gain = "1e6";
   std::string bandwidth;
   std::string method = "triangles";
+};
+
+struct ReportRequest {
+  std::string mechanism;
+  std::string output;
+  PatchChoice patch;
   std::string machine;  ///< whose pot sheet stands in it
   std::string theme = "auto";
 };
@@ -141,7 +146,9 @@ struct DrawRequest {
   std::string at;
   std::vector<std::string> trace;  ///< points; empty: those worth it; "none"
   int positions = 1;
-  std::string plots;         ///< the point that is plotted instead
+  std::string plots;    ///< the point that is plotted instead
+  std::string magnify;  ///< how many times the errors of the patch are enlarged; empty: it is not drawn
+  PatchChoice patch;
   std::string symbols;       ///< of a diagram: classic or din
   std::optional<int> depth;  ///< of a diagram: levels of composites shown open
 };
@@ -150,13 +157,20 @@ ExitStatus draw_diagram_file(const Session& session, const DrawRequest& request,
 /// Draws a mechanism or a diagram.
 ExitStatus draw_file(const Session& session, const DrawRequest& request);
 
+/// Positions in a round of an animation.
+inline constexpr int kLeastFrames = 8, kMostFrames = 3600;
+
 struct AnimateRequest {
   std::string mechanism;
   std::string output;
   std::string theme = "auto";
   std::vector<std::string> trace;
-  int frames = 90;
-  std::string duration = "4 s";
+  std::optional<int> frames;
+  std::string duration;
+  std::string rate;         ///< frames a second, of a GIF
+  std::optional<int> size;  ///< width [px]
+  std::string magnify;      ///< as in DrawRequest
+  PatchChoice patch;
 };
 ExitStatus animate_mechanism(const Session& session, const AnimateRequest& request);
 

@@ -6,18 +6,28 @@
 
 #include "command.h"
 #include "linkage_scene.h"
+#include "magnified.h"
+#include "patch_choice.h"
 #include "picture_output.h"
 #include "terminal.h"
 
 namespace oblique::cli {
 namespace {
 
-Picture mechanism_picture(const Mechanism& mechanism, const DrawRequest& request) {
-  if (!request.plots.empty()) return draw_chart(point_plots(point_history(mechanism, request.plots)));
+Picture mechanism_picture(const Session& session, const Mechanism& read, const DrawRequest& request) {
+  if (!request.plots.empty()) return draw_chart(point_plots(point_history(read, request.plots)));
+  const std::optional<double> magnification = magnify_option(request.magnify);
+  const Mechanism mechanism = magnification ? within_range(read) : read;
   const std::vector<std::size_t> traces = trace_option(mechanism, request.trace);
-  LinkageScene scene = linkage_scene(mechanism, request.at, request.positions);
-  if (!scene.motion.empty()) scene.traces = traces;
-  return draw_linkage(mechanism, scene);
+  TimedScene timed = linkage_scene(mechanism, request.at, request.positions);
+  if (!timed.scene.motion.empty()) timed.scene.traces = traces;
+  if (magnification) {
+    const MagnifiedAnalog analog(mechanism, session.blocks(), patch_options(request.patch), *magnification,
+                                 timed);
+    timed.scene.analog = analog.overlay(timed);
+    note(analog.remark());
+  }
+  return draw_linkage(mechanism, timed.scene);
 }
 
 void refuse(bool given, const std::string& option, const std::string& file, const char* kind,
@@ -35,6 +45,7 @@ void check_options_of_diagram(const DrawRequest& request) {
   refuse_option(request.positions != 1, "--positions");
   refuse_option(!request.trace.empty(), "--trace");
   refuse_option(!request.plots.empty(), "--plots");
+  refuse_option(!request.magnify.empty(), "--magnify");
 }
 
 void check_options_of_mechanism(const DrawRequest& request) {
@@ -64,7 +75,8 @@ ExitStatus draw_file(const Session& session, const DrawRequest& request) {
                    R"(format = "oblique-mechanism/1" or "oblique-diagram/1" at the head of the file)",
                    {}});
   }
-  save_picture(mechanism_picture(parse_mechanism(text, request.file), request), request.output, theme);
+  save_picture(mechanism_picture(session, parse_mechanism(text, request.file), request), request.output,
+               theme);
   return ExitStatus::done;
 }
 

@@ -89,9 +89,10 @@ std::vector<std::size_t> trace_option(const Mechanism& mechanism, const std::vec
   return points;
 }
 
-LinkageScene linkage_scene(const Mechanism& mechanism, const std::string& at, int positions) {
-  LinkageScene scene;
-  const double time = time_option_at(mechanism, at);
+TimedScene linkage_scene(const Mechanism& mechanism, const std::string& at, int positions) {
+  TimedScene timed;
+  LinkageScene& scene = timed.scene;
+  const double time = timed.time = time_option_at(mechanism, at);
   const Structure structure = decompose(mechanism);
   Follower follower(mechanism, structure);
   scene.shown = follower.advance(time);
@@ -104,11 +105,12 @@ LinkageScene linkage_scene(const Mechanism& mechanism, const std::string& at, in
                    {},
                    fmt::format("'oblique check {}' says how far it can go", mechanism.file)});
   }
-  if (mechanism.drives.empty()) return scene;
+  if (mechanism.drives.empty()) return timed;
   DrawnMotion motion = drawn_motion(mechanism, structure, kRows);
   scene.others = other_positions(mechanism, structure, motion, time, positions);
   scene.motion = std::move(motion.rows);
-  return scene;
+  timed.times = std::move(motion.times);
+  return timed;
 }
 
 PointHistory point_history(const Mechanism& mechanism, const std::string& point) {

@@ -23,9 +23,16 @@ DrawnMotion drawn_motion(const Mechanism& mechanism, const Structure& structure,
 /// The points that --trace names; "none" for none, nothing for those worth it. Throws ReadError.
 std::vector<std::size_t> trace_option(const Mechanism& mechanism, const std::vector<std::string>& names);
 
+/// A scene and when it happens.
+struct TimedScene {
+  LinkageScene scene;
+  double time = 0;            ///< of the position shown [s]
+  std::vector<double> times;  ///< of `scene.motion` [s]
+};
+
 /// The mechanism where the first drive stands at `at`, with `positions` − 1 further positions of its motion.
 /// Throws ReadError, and MechanismError (kind `assembly`) where it cannot be assembled there.
-LinkageScene linkage_scene(const Mechanism& mechanism, const std::string& at, int positions);
+TimedScene linkage_scene(const Mechanism& mechanism, const std::string& at, int positions);
 
 /// A point along the motion for its six plots. Throws ReadError where there is no such point or no drive.
 PointHistory point_history(const Mechanism& mechanism, const std::string& point);

@@ -10,7 +10,6 @@
 #include <oblique/compare/compare.h>
 #include <oblique/draw/chart.h>
 #include <oblique/draw/diagram_drawing.h>
-#include <oblique/machine/realise.h>
 #include <oblique/solve/analysis.h>
 #include <oblique/solve/solve_error.h>
 
@@ -90,7 +89,7 @@ class Writer {
                                    mechanism_.source.empty() ? "" : " Source: " + mechanism_.source + "."));
     Mechanism untitled = mechanism_;
     untitled.title.clear();  // the page has it
-    LinkageScene scene = linkage_scene(untitled, "", 1);
+    LinkageScene scene = linkage_scene(untitled, "", 1).scene;
     if (!scene.motion.empty()) scene.traces = points_to_trace(mechanism_);
     page_.picture(draw_linkage(untitled, scene));
   }
@@ -242,14 +241,24 @@ class Writer {
   }
 
   void machine(const MachineProfile& profile) {
-    const Diagram diagram = realise(patched_.diagram, report_.library, profile).diagram;
+    page_.heading("On the " + profile.title);
+    MachinePatch patch;
+    try {
+      patch = put_on_machine(mechanism_, report_.library, profile, patched_);
+    } catch (const Error& error) {
+      page_.paragraph("It does not run there. " + capitalised(words_of(error)));
+      return;
+    }
+    const Diagram& diagram = patch.realised;
     const FlatDiagram flat = flatten(diagram, report_.library);
     const Bill bill = bill_of(flat, profile);
-    page_.heading("On the " + profile.title);
     page_.introduction(
         "The same patch in this machine's own elements. What it takes of them, and what there is:");
     page_.table(bill_table(bill).rows());
     page_.paragraph(capitalised(verdict_text(bill)) + ".");
+    if (const std::string text = bandwidth_text(patch, profile); !text.empty())
+      page_.paragraph(capitalised(text));
+    page_.paragraph("Judged on these elements: " + judgement_text(patch.judgement));
     const MachineSheets sheets = sheets_of(diagram, flat, report_.library, profile);
     const auto add = [&](const Sheet& sheet, const char* explanation) {
       page_.subheading("Sheet: " + sheet.title);

@@ -23,7 +23,7 @@ struct MechanismReport {
   std::function<void(double fraction)> progress;
 
   /// Writes the page. What keeps the mechanism from being patched, and what a run of the patch fails at, is
-  /// told in it. Throws as `examine` and `realise`.
+  /// told in it. Throws as `examine`.
   HtmlPage page() const;
 };
 

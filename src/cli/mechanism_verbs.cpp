@@ -38,20 +38,6 @@ void add_modes(CLI::App& app, Chosen& chosen) {
   choose(verb, chosen, request, show_modes);
 }
 
-namespace {
-
-template <class Request>
-void add_method(CLI::App* verb, Request& request) {
-  verb->add_option("--method", request.method,
-                   "triangles: servo-tracked oblique triangles; gradient: integrators that descend, for any "
-                   "group; paper: "
-                   "a class III group as its source draws it")
-      ->type_name("triangles|gradient|paper")
-      ->capture_default_str();
-}
-
-}  // namespace
-
 void add_patch(CLI::App& app, Chosen& chosen) {
   auto request = std::make_shared<PatchRequest>();
   CLI::App* const verb = app.add_subcommand("patch", "Patch a mechanism: the diagram that simulates it");
@@ -164,12 +150,7 @@ void add_report(CLI::App& app, Chosen& chosen) {
   verb->add_option("-o,--output", request->output, "write the page to FILE.html")
       ->required()
       ->type_name("FILE");
-  verb->add_option("--gain", request->gain, "gain of the servo amplifiers in the patch")
-      ->capture_default_str();
-  verb->add_option("--bandwidth", request->bandwidth,
-                   "bandwidth of the servo amplifiers, in Hz or with a unit (default: 100 times the crank's "
-                   "frequency)");
-  add_method(verb, *request);
+  add_patch_choice(verb, request->patch);
   verb->add_option("--machine", request->machine,
                    "add what the patch needs of this machine, and its sheets: settings of potentiometers, "
                    "connections, static test")

@@ -10,22 +10,16 @@
 
 #include "command.h"
 #include "machine_patch.h"
+#include "patch_choice.h"
 #include "terminal.h"
 
 namespace oblique::cli {
 namespace {
 
-double positive_option(const std::string& option, const std::string& text, std::string_view unit) {
+double gain_option(const std::string& option, const std::string& text, std::string_view unit) {
   const double value = quantity_option(option, text, unit);
   if (!(value > 0))
     throw ReadError(Diagnostic{{}, fmt::format("{} {}", option, text), "a number above 0", {}});
-  return value;
-}
-
-double finite_option(const std::string& option, const std::string& text, std::string_view unit) {
-  const double value = positive_option(option, text, unit);
-  if (!std::isfinite(value))
-    throw ReadError(Diagnostic{{}, fmt::format("{} {}", option, text), "a finite number above 0", {}});
   return value;
 }
 
@@ -61,10 +55,10 @@ ExitStatus patch_mechanism(const Session& session, const PatchRequest& request) 
   check_machine_request(request);
   PatchOptions options;
   options.method = method_option(request.method);
-  options.gain = positive_option("--gain", request.gain, "1");
-  if (!request.bandwidth.empty()) options.bandwidth = positive_option("--bandwidth", request.bandwidth, "Hz");
+  options.gain = gain_option("--gain", request.gain, "1");
+  if (!request.bandwidth.empty()) options.bandwidth = gain_option("--bandwidth", request.bandwidth, "Hz");
   options.derivatives = request.derivatives;
-  if (!request.slower.empty()) options.slower = finite_option("--slower", request.slower, "1");
+  if (!request.slower.empty()) options.slower = positive_option("--slower", request.slower, "1");
   options.split = request.split;
   if (options.method == PatchMethod::gradient && !(options.split.empty() && request.slower.empty())) {
     const std::string option = options.split.empty()
@@ -77,8 +71,8 @@ ExitStatus patch_mechanism(const Session& session, const PatchRequest& request) 
   }
   options.force = request.force;
   const Mechanism mechanism = read_mechanism(request.mechanism);
-  if (!request.unit.empty()) options.unit = finite_option("--unit", request.unit, mechanism.length_unit);
-  if (!request.period.empty()) options.period = finite_option("--period", request.period, "s");
+  if (!request.unit.empty()) options.unit = positive_option("--unit", request.unit, mechanism.length_unit);
+  if (!request.period.empty()) options.period = positive_option("--period", request.period, "s");
   const BlockLibrary library = session.blocks();
   const JudgedPatch patched = judged_patch(mechanism, library, options);
   if (!request.machine.empty()) return patch_for_machine(library, request, mechanism, patched);

@@ -58,14 +58,6 @@ bool converter_is_installed() {
   return std::system("command -v rsvg-convert >/dev/null 2>&1") == 0;
 }
 
-void require_converter(const std::string& path) {
-  if (converter_is_installed()) return;
-  throw ReadError(Diagnostic{{path, {}},
-                             "a PNG is made by rsvg-convert, which is not installed",
-                             {},
-                             "install the Debian package librsvg2-bin, or write an .svg"});
-}
-
 }  // namespace
 
 void check_picture_output(const std::string& path) {
@@ -73,13 +65,21 @@ void check_picture_output(const std::string& path) {
   if (is_png(path)) require_converter(path);
 }
 
+void require_converter(const std::string& path) {
+  if (converter_is_installed()) return;
+  throw ReadError(Diagnostic{
+      {path, {}},
+      fmt::format("a {} is made by rsvg-convert, which is not installed", is_png(path) ? "PNG" : "GIF"),
+      {},
+      "install the Debian package librsvg2-bin, or write an .svg"});
+}
+
 std::string png_of(std::string_view svg, const std::string& path) {
-  require_converter(path);
   const ScratchFolder folder;
   const auto from = folder / "picture.svg", to = folder / "picture.png";
   write_file(from, svg);
   if (std::system(fmt::format("rsvg-convert {} -o {}", quoted(from), quoted(to)).c_str()) != 0) {
-    throw ReadError(Diagnostic{{path, {}}, "rsvg-convert could not make the PNG", {}, "write an .svg"});
+    throw ReadError(Diagnostic{{path, {}}, "rsvg-convert could not draw this", {}, "write an .svg"});
   }
   return read_file(to);
 }

@@ -18,10 +18,13 @@ void check_picture_output(const std::string& path);
 /// where rsvg-convert is not installed or fails; nothing is then written.
 void save_picture(const Picture& picture, const std::string& path, Theme theme);
 
+/// Throws ReadError where the program is missing that makes `path`, a .png or a .gif.
+void require_converter(const std::string& path);
+
 /// The theme that --theme names: auto, light or dark. Throws ReadError.
 Theme theme_option(const std::string& text);
 
-/// An SVG text as PNG, by rsvg-convert. Throws ReadError.
+/// An SVG text as PNG, by rsvg-convert, which is there. Throws ReadError that names `path`, what it is for.
 std::string png_of(std::string_view svg, const std::string& path);
 
 }  // namespace oblique::cli

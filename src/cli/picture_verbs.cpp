@@ -17,6 +17,17 @@ void add_looks(CLI::App* verb, Request& request) {
       ->type_name("auto|light|dark");
 }
 
+/// --magnify, and how the patch is made that it is about.
+template <class Request>
+void add_magnify(CLI::App* verb, Request& request) {
+  CLI::Option* const magnify =
+      verb->add_option("--magnify", request.magnify,
+                       "patch the mechanism, run it, and draw it over the exact one with its errors N times "
+                       "as large")
+          ->type_name("N");
+  add_patch_choice(verb, request.patch, magnify);
+}
+
 }  // namespace
 
 void add_draw(CLI::App& app, Chosen& chosen) {
@@ -37,12 +48,14 @@ void add_draw(CLI::App& app, Chosen& chosen) {
           ->capture_default_str()
           ->check(CLI::Range(1, 1000));
   add_looks(verb, *request);
+  add_magnify(verb, *request);
   verb->add_option("--plots", request->plots,
                    "instead of the mechanism, the path, coordinates, velocity and acceleration of a point")
       ->type_name("POINT")
       ->excludes(at)
       ->excludes(positions)
-      ->excludes(verb->get_option("--trace"));
+      ->excludes(verb->get_option("--trace"))
+      ->excludes(verb->get_option("--magnify"));
   verb->add_option("--symbols", request->symbols,
                    "of a diagram: classic, triangles and circles (default), or din, boxes")
       ->type_name("classic|din");
@@ -59,15 +72,24 @@ void add_animate(CLI::App& app, Chosen& chosen) {
       app.add_subcommand("animate", "Animate a mechanism over its motion, again and again");
   verb->add_option("MECHANISM", request->mechanism, "mechanism file (oblique-mechanism/1)")->required();
   verb->add_option("-o,--output", request->output,
-                   "write to FILE.svg, which moves by itself, or FILE.html with play, pause and slider")
+                   "write to FILE.svg, which moves by itself, FILE.html with play, pause and slider, or "
+                   "FILE.gif")
       ->required()
       ->type_name("FILE");
-  verb->add_option("--frames", request->frames, "positions computed for a round; between them it is smooth")
-      ->capture_default_str()
-      ->check(CLI::Range(8, 3600));
-  verb->add_option("--duration", request->duration, "how long a round lasts on the screen")
-      ->capture_default_str()
+  verb->add_option("--frames", request->frames,
+                   "positions computed for a round (default 90, of a GIF what duration and rate make)")
+      ->check(CLI::Range(kLeastFrames, kMostFrames))
+      ->type_name("N");
+  verb->add_option("--duration", request->duration, "how long a round lasts on the screen (default 4 s)")
       ->type_name("T");
+  verb->add_option("--rate", request->rate,
+                   "of a GIF: frames a second, the next of 50, 33.3, 25, 20 … (default 25, or --frames in "
+                   "--duration)")
+      ->type_name("R");
+  verb->add_option("--size", request->size, "width on the screen in pixels (default 760)")
+      ->check(CLI::Range(100, 4000))
+      ->type_name("W");
+  add_magnify(verb, *request);
   add_looks(verb, *request);
   choose(verb, chosen, request, animate_mechanism);
 }

@@ -43,6 +43,29 @@ void add_plot_option(CLI::App* verb, Request& request, const std::string& what) 
       ->type_name("auto|light|dark");
 }
 
+/// --method of a verb that patches.
+template <class Request>
+void add_method(CLI::App* verb, Request& request) {
+  verb->add_option("--method", request.method,
+                   "triangles: servo-tracked oblique triangles; gradient: integrators that descend, for any "
+                   "group; paper: "
+                   "a class III group as its source draws it")
+      ->type_name("triangles|gradient|paper")
+      ->capture_default_str();
+}
+
+/// --gain, --bandwidth and --method of a verb that runs one patch beside other work; where that is to be
+/// asked for, `needed` asks for it.
+inline void add_patch_choice(CLI::App* verb, PatchChoice& choice, CLI::Option* needed = nullptr) {
+  verb->add_option("--gain", choice.gain, "gain of the servo amplifiers in the patch")->capture_default_str();
+  verb->add_option("--bandwidth", choice.bandwidth,
+                   "bandwidth of the servo amplifiers, in Hz or with a unit (default: 100 times the crank's "
+                   "frequency)");
+  add_method(verb, choice);
+  if (needed == nullptr) return;
+  for (const char* option : {"--gain", "--bandwidth", "--method"}) verb->get_option(option)->needs(needed);
+}
+
 // Each adds a verb with its options.
 void add_run(CLI::App& app, Chosen& chosen);
 void add_check(CLI::App& app, Chosen& chosen);

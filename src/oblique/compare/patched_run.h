@@ -34,9 +34,11 @@ struct RecordedRun {
   std::vector<Instant> instants;
 };
 
-/// Runs as the diagram asks, but with another relative tolerance. What is thrown begins with "with `what`: ".
+/// Runs as the diagram asks, but with another relative tolerance; with the outputs at further `moments` [s],
+/// ascending, as long as these go. What is thrown begins with "with `what`: ".
 RecordedRun run_recorded(const PatchedMechanism& patched, const std::string& what, double tolerance,
-                         const std::function<void(double)>& progress = {});
+                         const std::function<void(double)>& progress = {},
+                         const std::vector<double>& moments = {});
 
 /// The signals that left ±1 machine unit by more than the margin.
 std::vector<Overload> overloads_of(const Program& program, const Run& run, double margin = kOverloadMargin);

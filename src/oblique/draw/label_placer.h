@@ -22,6 +22,9 @@ class LabelPlacer {
   /// `weight`.
   void avoid(const Mark& mark, double weight);
 
+  /// The weights of all that a label at `place` [px] would touch, and far more where it leaves the frame.
+  double cost(const Eigen::AlignedBox<double, 2>& place) const;
+
   /// A label for the point `at` [px], which later ones then avoid.
   Mark place(const Eigen::Vector2d& at, const std::string& text, double size);
 
@@ -33,8 +36,6 @@ class LabelPlacer {
     double weight = 1;
     Eigen::AlignedBox<double, 2> extent;
   };
-
-  double cost(const Eigen::AlignedBox<double, 2>& place) const;
 
   Eigen::AlignedBox<double, 2> frame_;
   std::vector<Obstacle> obstacles_;

@@ -68,6 +68,7 @@ Picture draw_linkage(const Mechanism& mechanism, const LinkageScene& scene) {
     add_faint(picture.marks, mechanism, layout.axes, scene.others[k],
               kFaintest + (kStrongest - kFaintest) * along);
   }
+  const auto add = [&](Mark mark) { picture.marks.push_back(std::move(mark)); };
   bool paths_drawn = false;
   for (const LinkagePart& part : layout.parts) {
     if (!paths_drawn && lies_over_paths(part)) {
@@ -75,9 +76,11 @@ Picture draw_linkage(const Mechanism& mechanism, const LinkageScene& scene) {
       paths_drawn = true;
     }
     const PartPose pose = pose_of(part, mechanism, scene.shown);
-    for (const Mark& mark : part.marks) picture.marks.push_back(placed(mark, layout.place(pose), pose.angle));
+    for (const Mark& mark : part.marks) add(placed(mark, layout.place(pose), pose.angle));
   }
-  for (Mark& name : name_marks(mechanism, layout, scene.shown)) picture.marks.push_back(std::move(name));
+  const std::vector<Vector2d> analog = scene.analog ? scene.analog->shown : std::vector<Vector2d>();
+  for (const AnalogShape& shape : layout.analog) add(analog_mark(shape, layout.axes, analog));
+  for (Mark& name : name_marks(mechanism, layout, scene.shown, analog)) add(std::move(name));
   return picture;
 }
 

@@ -2,14 +2,26 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include <oblique/draw/picture.h>
 #include <oblique/mechanism/configuration.h>
 #include <oblique/mechanism/mechanism.h>
 
 namespace oblique {
+
+/// The patched mechanism as it is drawn over the exact one: all points of it, where their errors are to be
+/// seen [length unit].
+struct AnalogOverlay {
+  std::vector<std::vector<Eigen::Vector2d>> motion;  ///< at the moments of LinkageScene::motion
+  std::vector<Eigen::Vector2d> shown;                ///< with LinkageScene::shown
+  std::string legend;                                ///< "analog, error ×1000"
+  std::string caption;                               ///< "largest error 0.02 mm at C"
+};
 
 /// What a picture of a mechanism shows. Configurations that are open are passed over.
 struct LinkageScene {
@@ -18,6 +30,7 @@ struct LinkageScene {
   Configuration shown;                ///< the position that is drawn in full
   std::vector<std::size_t> traces;    ///< points whose paths are drawn, indices in Mechanism::points
   std::string caption;                ///< where it stands: "crank = 80°"
+  std::optional<AnalogOverlay> analog{};
 };
 
 /// The points whose paths are worth a look: marks of bodies that are not hinged to the frame; without such
@@ -25,7 +38,8 @@ struct LinkageScene {
 std::vector<std::size_t> points_to_trace(const Mechanism& mechanism);
 
 /// A mechanism as a picture to scale: links, hinges, supports, guides and blocks, with names, paths and a
-/// grid. The centre of the mark "pin-B" is the point B, as the axes' numbers tell.
+/// grid. The centre of the mark "pin-B" is the point B, as the axes' numbers tell; "analog-pin-B" is that of
+/// the analog mechanism.
 Picture draw_linkage(const Mechanism& mechanism, const LinkageScene& scene);
 
 }  // namespace oblique

@@ -3,9 +3,8 @@
 
 #include <algorithm>
 
-#include <fmt/format.h>
-
-#include <oblique/draw/label_placer.h>
+#include <oblique/draw/analog_overlay.h>
+#include <oblique/draw/linkage_head.h>
 
 namespace oblique {
 namespace {
@@ -13,11 +12,10 @@ namespace {
 using Eigen::Vector2d;
 using Extent = Eigen::AlignedBox<double, 2>;
 
-constexpr double kWidth = 760, kMargin = 16;      // [px]
-constexpr double kWidest = 690, kTallest = 560;   // of what is drawn [px]
-constexpr double kLeast = 200;                    // height of the frame [px]
-constexpr double kRoomForNames = 26;              // around what is drawn [px]
-constexpr double kNameSize = 13, kTextSize = 12;  // [px]
+constexpr double kWidth = 760, kMargin = 16;     // [px]
+constexpr double kWidest = 690, kTallest = 560;  // of what is drawn [px]
+constexpr double kLeast = 200;                   // height of the frame [px]
+constexpr double kRoomForNames = 26;             // around what is drawn [px]
 
 /// All positions that have to be seen; a few of the motion's are enough between those.
 std::vector<Configuration> samples_of(const LinkageScene& scene) {
@@ -41,6 +39,14 @@ Extent extent_of_points(const Mechanism& mechanism, const LinkageScene& scene) {
   };
   add(scene.shown);
   for (const Configuration& here : scene.motion) add(here);
+  if (!scene.analog) return extent;
+  const auto add_analog = [&](const std::vector<Vector2d>& places) {
+    for (std::size_t p = 0; p < places.size(); ++p) {
+      if (is_drawn(mechanism, p) && places[p].allFinite()) extent.extend(places[p]);
+    }
+  };
+  add_analog(scene.analog->shown);
+  for (const auto& places : scene.analog->motion) add_analog(places);
   return extent;
 }
 
@@ -51,10 +57,14 @@ double fitting_scale(const Vector2d& size, const Vector2d& room) {
   return std::isfinite(std::min(x, y)) ? std::min(x, y) : 1;
 }
 
-/// What the parts cover in all positions, in pixels from the origin of the data.
-Extent extent_of_parts(const Mechanism& mechanism, const std::vector<LinkagePart>& parts,
-                       const std::vector<Configuration>& samples, double scale) {
+/// What the parts and the points cover in all positions, in pixels from the origin of the data.
+Extent covered_by(const Mechanism& mechanism, const Extent& points, const std::vector<LinkagePart>& parts,
+                  const std::vector<Configuration>& samples, double scale) {
   Extent extent;
+  if (!points.isEmpty()) {
+    extent.extend(Vector2d(points.min().x(), -points.min().y()) * scale);
+    extent.extend(Vector2d(points.max().x(), -points.max().y()) * scale);
+  }
   for (const Configuration& here : samples) {
     for (const LinkagePart& part : parts) {
       const PartPose pose = pose_of(part, mechanism, here);
@@ -65,49 +75,6 @@ Extent extent_of_parts(const Mechanism& mechanism, const std::vector<LinkagePart
   return extent;
 }
 
-Pen trace_pen(std::size_t k) {
-  const std::vector<std::vector<double>> dashes{{}, {9, 4}, {2, 4}, {12, 3, 2, 3}};
-  return {kAccents[k % std::size(kAccents)], 2, dashes[k % dashes.size()]};
-}
-
-/// The title, and under it the caption and the legend from left to right in as many lines as they need. Gives
-/// where they end [px].
-double add_head(Picture& picture, const Mechanism& mechanism, const LinkageScene& scene) {
-  constexpr double kTitleSize = 17, kTitleBase = 30, kLine = 20, kSwatch = 26, kGap = 22;
-  double bottom = 12;
-  if (!picture.title.empty()) {
-    Label title{{kMargin, kTitleBase}, picture.title, Anchor::start, kTitleSize, true};
-    title.size =
-        std::min(kTitleSize, kTitleSize * (kWidth - 2 * kMargin) / text_width(title.text, kTitleSize, true));
-    picture.marks.push_back({title, {Ink::none, 0}, Ink::line});
-    bottom = kTitleBase + 6;
-  }
-  double x = kMargin, y = bottom + kLine - 4;
-  bool any = false;
-  const auto room_for = [&](double width) {
-    if (any && x + width > kWidth - kMargin) {
-      x = kMargin;
-      y += kLine;
-    }
-    any = true;
-  };
-  if (!scene.caption.empty()) {
-    room_for(0);
-    picture.marks.push_back(label_mark({x, y}, scene.caption, Anchor::start, kTextSize));
-    picture.marks.back().id = "caption";
-    x += text_width(scene.caption, kTextSize) + kGap;
-  }
-  for (std::size_t k = 0; k < scene.traces.size(); ++k) {
-    const std::string text = "path of " + mechanism.points[scene.traces[k]].name;
-    const double width = kSwatch + 6 + text_width(text, kTextSize);
-    room_for(width);
-    picture.marks.push_back(line_mark({x, y - 4}, {x + kSwatch, y - 4}, trace_pen(k)));
-    picture.marks.push_back(label_mark({x + kSwatch + 6, y}, text, Anchor::start, kTextSize));
-    x += width + kGap;
-  }
-  return any ? y + 4 : bottom;
-}
-
 }  // namespace
 
 LinkageLayout lay_out(const Mechanism& mechanism, const LinkageScene& scene) {
@@ -116,15 +83,15 @@ LinkageLayout lay_out(const Mechanism& mechanism, const LinkageScene& scene) {
   const Vector2d size = points.isEmpty() ? Vector2d(0, 0) : Vector2d(points.sizes());
   // What surrounds the points is as large as it is at any scale: measured at one, allowed for at the next.
   double scale = fitting_scale(size, Vector2d::Constant(2 * kRoomForNames));
-  Extent covered = extent_of_parts(mechanism, linkage_parts(mechanism, samples, scale), samples, scale);
+  Extent covered = covered_by(mechanism, points, linkage_parts(mechanism, samples, scale), samples, scale);
   const Vector2d room = (covered.sizes() - size * scale).cwiseMax(0) + Vector2d::Constant(2 * kRoomForNames);
   scale = fitting_scale(size, room);
-  covered = extent_of_parts(mechanism, linkage_parts(mechanism, samples, scale), samples, scale);
+  covered = covered_by(mechanism, points, linkage_parts(mechanism, samples, scale), samples, scale);
 
   Picture background;
   background.width = kWidth;
   background.title = mechanism.title;
-  const double head = add_head(background, mechanism, scene);
+  const double head = add_linkage_head(background, mechanism, scene);
   const Vector2d margin = Vector2d::Constant(kRoomForNames);
   const Vector2d low = (covered.min() - margin) / scale, high = (covered.max() + margin) / scale;
   const double height = std::clamp((high - low).y() * scale, kLeast, kTallest);
@@ -135,26 +102,42 @@ LinkageLayout lay_out(const Mechanism& mechanism, const LinkageScene& scene) {
       Axes::within(place, Scale({"x", mechanism.length_unit}, {low.x(), high.x()}, false),
                    Scale({"y", mechanism.length_unit}, {-high.y(), -low.y()}, false), Axes::Shape::equal);
   for (Mark& mark : axes.marks()) background.marks.push_back(std::move(mark));
-  LinkageLayout layout{std::move(background), axes, linkage_parts(mechanism, samples, axes.scale().x()), {}};
+  LinkageLayout layout{
+      std::move(background), axes, linkage_parts(mechanism, samples, axes.scale().x()), {}, {}};
   for (std::size_t k = 0; k < scene.traces.size(); ++k) {
     std::vector<Vector2d> path;
     for (const Configuration& here : scene.motion) path.push_back(here.points[scene.traces[k]].position);
-    Mark curve = curve_mark(axes, path, trace_pen(k));
-    curve.id = "path-" + mechanism.points[scene.traces[k]].name;
-    layout.paths.push_back(std::move(curve));
+    layout.paths.push_back(curve_mark(axes, path, trace_pen(scene, k)));
+    layout.paths.back().id = "path-" + mechanism.points[scene.traces[k]].name;
+    if (!scene.analog) continue;
+    path.clear();
+    for (const auto& places : scene.analog->motion) path.push_back(places[scene.traces[k]]);
+    layout.paths.push_back(curve_mark(axes, path, analog_trace_pen(k)));
+    layout.paths.back().id = "analog-path-" + mechanism.points[scene.traces[k]].name;
   }
+  if (scene.analog) layout.analog = analog_shapes(mechanism);
   return layout;
 }
 
-std::vector<Mark> name_marks(const Mechanism& mechanism, const LinkageLayout& layout,
-                             const Configuration& here) {
-  constexpr double kOfPath = 8, kOfPart = 50;  // weights: a name may rather lie on a path than on a link
+LabelPlacer placer_among(const Mechanism& mechanism, const LinkageLayout& layout, const Configuration& here,
+                         const std::vector<Vector2d>& analog) {
+  constexpr double kOfPath = 8, kOfAnalog = 20,
+                   kOfPart = 50;  // a name may rather lie on a path than on a link
   LabelPlacer placer(layout.axes.frame());
   for (const Mark& path : layout.paths) placer.avoid(path, kOfPath);
   for (const LinkagePart& part : layout.parts) {
     const PartPose pose = pose_of(part, mechanism, here);
     for (const Mark& mark : part.marks) placer.avoid(placed(mark, layout.place(pose), pose.angle), kOfPart);
   }
+  if (analog.empty()) return placer;
+  for (const AnalogShape& shape : layout.analog)
+    placer.avoid(analog_mark(shape, layout.axes, analog), kOfAnalog);
+  return placer;
+}
+
+std::vector<Mark> name_marks(const Mechanism& mechanism, const LinkageLayout& layout,
+                             const Configuration& here, const std::vector<Vector2d>& analog) {
+  LabelPlacer placer = placer_among(mechanism, layout, here, analog);
   std::vector<Mark> names;
   for (std::size_t p = 0; p < mechanism.points.size(); ++p) {
     if (!is_drawn(mechanism, p)) continue;

@@ -3,7 +3,9 @@
 
 #include <vector>
 
+#include <oblique/draw/analog_overlay.h>
 #include <oblique/draw/axes.h>
+#include <oblique/draw/label_placer.h>
 #include <oblique/draw/linkage.h>
 #include <oblique/draw/linkage_parts.h>
 
@@ -11,10 +13,11 @@ namespace oblique {
 
 /// What a picture of a mechanism and an animation share.
 struct LinkageLayout {
-  Picture background;  ///< title, legend, axes and paths
+  Picture background;  ///< title, legend and axes
   Axes axes;
   std::vector<LinkagePart> parts;
-  std::vector<Mark> paths;  ///< those of the background that names should keep off
+  std::vector<Mark> paths;  ///< under blocks and pins
+  std::vector<AnalogShape> analog;
 
   /// Where a part stands in the picture.
   Eigen::Vector2d place(const PartPose& pose) const { return axes.at(pose.at); }
@@ -22,8 +25,14 @@ struct LinkageLayout {
 
 LinkageLayout lay_out(const Mechanism& mechanism, const LinkageScene& scene);
 
+inline constexpr double kNameSize = 13;  ///< [px]
+
+/// What names have to keep off in a position; `analog`: where the analog mechanism is drawn there, if it is.
+LabelPlacer placer_among(const Mechanism& mechanism, const LinkageLayout& layout, const Configuration& here,
+                         const std::vector<Eigen::Vector2d>& analog);
+
 /// The names of the drawn points beside their pins, one for each point drawn, in order of the points.
 std::vector<Mark> name_marks(const Mechanism& mechanism, const LinkageLayout& layout,
-                             const Configuration& here);
+                             const Configuration& here, const std::vector<Eigen::Vector2d>& analog);
 
 }  // namespace oblique

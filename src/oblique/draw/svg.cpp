@@ -51,7 +51,11 @@ std::string attributes(const Mark& mark, bool is_text) {
       text += (k == 0 ? " stroke-dasharray=\"" : " ") + svg_number(mark.pen.dashes[k]);
     if (!mark.pen.dashes.empty()) text += "\"";
   }
-  if (mark.opacity != 1) text += fmt::format(" opacity=\"{}\"", svg_number(mark.opacity));
+  // What has a line or a filling alone needs no layer of its own: a converter draws it twice as fast.
+  const char* const whose = mark.fill == Ink::none                 ? "stroke-"
+                            : mark.pen.ink == Ink::none || is_text ? "fill-"
+                                                                   : "";
+  if (mark.opacity != 1) text += fmt::format(" {}opacity=\"{}\"", whose, svg_number(mark.opacity));
   return text;
 }
 
@@ -177,14 +181,15 @@ std::string svg_style(Theme theme) {
   return text;
 }
 
-std::string to_svg(const Picture& picture, Theme theme) {
+std::string to_svg(const Picture& picture, Theme theme, double zoom) {
   const std::string width = svg_number(picture.width), height = svg_number(picture.height);
   std::string text = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{}\" viewBox=\"0 0 {} {}\" "
       "role=\"img\">\n"
       "<title>{}</title>\n<style>\n{}</style>\n"
       "<rect class=\"f-paper s-none\" width=\"{}\" height=\"{}\"/>\n",
-      width, height, width, height, escape_xml(picture.title), svg_style(theme), width, height);
+      svg_number(picture.width * zoom), svg_number(picture.height * zoom), width, height,
+      escape_xml(picture.title), svg_style(theme), width, height);
   for (const Mark& mark : picture.marks) text += svg_element(mark) + "\n";
   return text + "</svg>\n";
 }

@@ -16,8 +16,8 @@ enum class Theme {
 };
 
 /// The picture as SVG 1.1: the same picture gives the same bytes. Coordinates are rounded to a hundredth of a
-/// pixel.
-std::string to_svg(const Picture& picture, Theme theme = Theme::automatic);
+/// pixel. It is shown `zoom` times as large as it is at 100 %.
+std::string to_svg(const Picture& picture, Theme theme = Theme::automatic, double zoom = 1);
 
 /// The element of one mark alone, for animations and pages that hold several pictures; the style sheet of
 /// `svg_style` must be there.

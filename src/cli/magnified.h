@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <oblique/compare/analog_motion.h>
+#include <oblique/draw/linkage.h>
+
+#include "command.h"
+#include "linkage_scene.h"
+
+namespace oblique::cli {
+
+/// How many times --magnify enlarges the errors; nothing where it is not given. Throws ReadError.
+std::optional<double> magnify_option(const std::string& text);
+
+/// The patched mechanism as pictures show it over the exact one, its errors magnified.
+class MagnifiedAnalog {
+ public:
+  /// Patches and runs it for a scene; `moments` [s], in any order, are further ones for which it will be
+  /// asked. Throws as `analog_places`.
+  MagnifiedAnalog(const Mechanism& mechanism, const BlockLibrary& library, const PatchOptions& options,
+                  double magnification, const TimedScene& timed, const std::vector<double>& moments = {});
+
+  /// exact + magnification · (analog − exact) of all points at a moment [length unit].
+  std::vector<Eigen::Vector2d> points(double time, const Configuration& exact) const;
+
+  /// What is drawn over the scene, with the largest error of its motion in the caption.
+  AnalogOverlay overlay(const TimedScene& timed) const;
+
+  /// A remark where the magnified errors are too small to be seen, or larger than the mechanism; or nothing.
+  std::string remark() const;
+
+ private:
+  void measure(double time, const Configuration& exact);
+
+  const Mechanism& mechanism_;
+  double magnification_;
+  std::vector<double> moments_;
+  AnalogPlaces places_;
+  double largest_ = 0;  ///< error [length unit]
+  double worst_time_ = 0;
+  std::size_t worst_point_ = 0;
+};
+
+}  // namespace oblique::cli
