@@ -63,8 +63,8 @@ std::string table_of(const std::vector<EventRecord>& events, long count) {
 }
 
 /// Set by Ctrl-C while a run can be interrupted.
-volatile std::sig_atomic_t interrupt_asked =
-    0;  // NOLINT(*-avoid-non-const-global-variables): a signal reaches no other
+// NOLINTNEXTLINE(*-avoid-non-const-global-variables): a signal reaches no other
+volatile std::sig_atomic_t interrupt_asked = 0;
 
 /// While it lives, Ctrl-C only asks for the end of the run.
 class InterruptGuard {
