@@ -153,6 +153,7 @@ class Writer {
     std::map<std::string, std::size_t> counts;
     for (const BlockInstance& block : diagram.blocks) ++counts[block.type];
     std::vector<std::vector<std::string>> rows;
+    rows.reserve(counts.size() + 1);
     for (const auto& [type, n] : counts) rows.push_back({type, std::to_string(n)});
     rows.push_back({"in all", std::to_string(diagram.blocks.size())});
     page_.introduction("Its blocks:");

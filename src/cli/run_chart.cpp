@@ -16,6 +16,7 @@ std::size_t column_named(const std::vector<TableColumn>& columns, const char* op
       std::find_if(columns.begin(), columns.end(), [&](const TableColumn& c) { return c.name == name; });
   if (found != columns.end()) return static_cast<std::size_t>(found - columns.begin());
   std::vector<std::string> known;
+  known.reserve(columns.size());
   for (const TableColumn& column : columns) known.push_back(column.name);
   throw ReadError(
       Diagnostic{{}, fmt::format("{}: there is no column '{}'", option, name), {}, suggest(name, known)});

@@ -62,8 +62,8 @@ TEST(Axes, EqualOnesShowAllAndScaleAlike) {
 TEST(Axes, KeepWithinTheirPlaceAndApartFromEachOther) {
   const Extent narrow(Vector2d(10, 20), Vector2d(230, 420));
   for (const Extent& place : {kPlace, narrow}) {
-    for (const double offset : {0.0, 1.0, 12'345.6}) {
-      for (const double size : {1e-5, 0.013, 1.0, 77.0, 3e4, 2e11}) {
+    for (const double offset : {0.0, 1.0, 9876.5, 12'345.6}) {
+      for (const double size : {7e-6, 1e-5, 0.013, 1.0, 77.0, 3e4, 2e11}) {
         const Axes axes = Axes::within(place, range("x", "mm", offset - size, offset + size),
                                        range("y", "mm", -size, 2 * size), Axes::Shape::stretched);
         std::vector<Extent> labels;

@@ -27,10 +27,12 @@ double width_of(const std::vector<Tick>& ticks) {
 std::vector<Tick> ticks_along_x(const Scale& scale, double length, double between) {
   constexpr double kFewer = 0.8;
   std::vector<Tick> ticks;
-  for (double most = std::max(2.0, length / between); most >= 1; most *= kFewer) {
+  bool apart = false;
+  double most = std::max(2.0, length / between);
+  while (!apart && most >= 1) {
     ticks = scale.ticks(most);
     double end = -INFINITY;
-    bool apart = true;
+    apart = true;
     for (const Tick& tick : ticks) {
       if (tick.label.empty()) continue;
       const double middle = scale.fraction(tick.value) * length;
@@ -38,7 +40,7 @@ std::vector<Tick> ticks_along_x(const Scale& scale, double length, double betwee
       apart = apart && middle - half >= end;
       end = middle + half + kBetweenNumbers;
     }
-    if (apart) break;
+    most *= kFewer;
   }
   return ticks;
 }

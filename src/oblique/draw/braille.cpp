@@ -83,7 +83,7 @@ class Dots {
 
 class PanelText {
  public:
-  PanelText(const Panel& panel, PanelScales scales, std::size_t label_width, std::size_t columns)
+  PanelText(const Panel& panel, const PanelScales& scales, std::size_t label_width, std::size_t columns)
       : panel_(panel),
         x_(scales.x),
         y_(scales.y),

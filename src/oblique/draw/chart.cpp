@@ -119,13 +119,14 @@ class PanelPainter {
   }
 
   void paint_band(const Curve& curve, const std::string& id, std::vector<Mark>& marks) const {
-    std::vector<Vector2d> border;
+    std::vector<Vector2d> border, back;
     for (const Vector2d& point : curve.points) {
       if (axes_.shows(point)) border.push_back(axes_.at(point));
     }
-    for (auto point = curve.other_edge.rbegin(); point != curve.other_edge.rend(); ++point) {
-      if (axes_.shows(*point)) border.push_back(axes_.at(*point));
+    for (const Vector2d& point : curve.other_edge) {
+      if (axes_.shows(point)) back.push_back(axes_.at(point));
     }
+    border.insert(border.end(), back.rbegin(), back.rend());
     if (border.empty()) return;
     Mark band = polyline_mark(border, {Ink::none, 0}, true);
     band.fill = pen_of(curve).ink;
@@ -235,9 +236,10 @@ Picture draw_chart(const Chart& chart) {
   for (std::size_t row = 0; row < rows; ++row) {
     double below = y;
     for (std::size_t p = row; p < painters.size(); p += rows) {
-      const double begin = kMargin + static_cast<double>(p / rows) * (width + kBetweenColumns);
+      const std::size_t column = p / rows;
+      const double begin = kMargin + static_cast<double>(column) * (width + kBetweenColumns);
       below = std::max(below,
-                       painters[p].place(begin + number_widths[p / rows] + Axes::kTickGap, begin + width, y));
+                       painters[p].place(begin + number_widths[column] + Axes::kTickGap, begin + width, y));
       painters[p].paint(picture.marks);
     }
     y = below + kBetweenPanels;
