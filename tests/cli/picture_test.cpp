@@ -154,8 +154,9 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         RefusedPicture{"UnknownEnding", "draw diagrams/mechanisms/four-bar.toml -o x.bmp", 2,
                        "x.bmp: cannot write a '.bmp' file; expected a name that ends in .svg or .png"},
-        RefusedPicture{"NoEnding", "animate diagrams/mechanisms/four-bar.toml -o x", 2,
-                       "x: the name of this file has no ending; expected a name that ends in .svg, .html or .gif"},
+        RefusedPicture{
+            "NoEnding", "animate diagrams/mechanisms/four-bar.toml -o x", 2,
+            "x: the name of this file has no ending; expected a name that ends in .svg, .html or .gif"},
         RefusedPicture{"NoFolder", "draw diagrams/mechanisms/four-bar.toml -o nowhere/x.svg", 2,
                        "nowhere/x.svg: the folder of this file does not exist"},
         RefusedPicture{"NoOutput", "draw diagrams/mechanisms/four-bar.toml", 2, "--output is required"},
