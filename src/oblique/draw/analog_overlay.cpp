@@ -26,6 +26,7 @@ std::vector<std::size_t> around(const Body& body) {
   std::stable_sort(points.begin(), points.end(),
                    [&](const BodyPoint& a, const BodyPoint& b) { return direction(a) < direction(b); });
   std::vector<std::size_t> order;
+  order.reserve(points.size());
   for (const BodyPoint& point : points) order.push_back(point.point);
   return order;
 }

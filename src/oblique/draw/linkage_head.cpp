@@ -45,7 +45,7 @@ class Legend {
  private:
   static constexpr double kLine = 20, kSwatch = 26, kGap = 22, kAfterSwatch = 6;
 
-  void swatch(const std::string& text, Mark mark) {
+  void swatch(const std::string& text, const Mark& mark) {
     room_for(kSwatch + kAfterSwatch + text_width(text, kTextSize));
     picture_.marks.push_back(placed(mark, {x_, y_ - 4}, 0));
     x_ += kSwatch + kAfterSwatch;

@@ -100,6 +100,7 @@ std::vector<MovingName> moving_names(const Mechanism& mechanism, const LinkageLa
   constexpr double kOfDistance = 0.05, kOfName = 100;
   const std::vector<std::size_t> moments = moments_of(frames.size(), kMoments);
   std::vector<LabelPlacer> placers;
+  placers.reserve(moments.size());
   for (const std::size_t k : moments) {
     placers.push_back(
         placer_among(mechanism, layout, frames[k], analog.empty() ? std::vector<Vector2d>() : analog[k]));

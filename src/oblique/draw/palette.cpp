@@ -94,8 +94,8 @@ std::vector<Rgb> ColourCount::palette(std::size_t most) const {
     *worst = part_of(std::move(low));
     parts.push_back(part_of(std::move(high)));
   }
-  std::vector<Rgb> palette;
-  for (const Part& part : parts) palette.push_back(most_frequent(part));
+  std::vector<Rgb> palette(parts.size());
+  std::transform(parts.begin(), parts.end(), palette.begin(), most_frequent);
   return palette;
 }
 
