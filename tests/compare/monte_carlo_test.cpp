@@ -230,5 +230,18 @@ TEST(MonteCarlo, PercentilesAreRunsByTheNearestRank) {
   EXPECT_EQ(result.percentile(100), 4);
 }
 
+// A rocker that cannot turn swings over its range, of which both the patch and the exact motion are.
+TEST(MonteCarlo, SwingsWhatCannotTurn) {
+  const Mechanism mechanism =
+      read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/double-rocker.toml");
+  MonteCarloOptions options;
+  options.scatters = {{"summer", "tolerance", 1e-6, ""}};
+  options.runs = 2;
+  const MonteCarlo result = drawn(mechanism, options);
+  ASSERT_TRUE(result.errors[0].has_value());
+  // tolerances of 1e-6, magnified where the triangles are flat near the ends of the range
+  EXPECT_LT(*result.errors[0], 1e-3 * mechanism.largest_length());
+}
+
 }  // namespace
 }  // namespace oblique

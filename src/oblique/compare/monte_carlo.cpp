@@ -122,8 +122,9 @@ std::vector<double> MonteCarlo::percentile_along(double percent) const {
   return percentiles;
 }
 
-MonteCarlo monte_carlo(const Mechanism& mechanism, const Diagram& diagram, const BlockLibrary& library,
+MonteCarlo monte_carlo(const Mechanism& whole, const Diagram& diagram, const BlockLibrary& library,
                        const MonteCarloOptions& options) {
+  const Mechanism mechanism = within_range(whole);
   Experiment experiment{mechanism, options, flatten(diagram, library),
                         solve_motion(mechanism, options.positions), options_of(diagram.run)};
   experiment.how.samples = options.positions;

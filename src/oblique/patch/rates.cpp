@@ -24,9 +24,6 @@
 namespace oblique {
 namespace {
 
-/// The ×10 inputs of a machine's amplifiers.
-constexpr double kInputGain = 10;
-
 /// Between two positions of the motion a signal may rise a little more.
 constexpr double kMargin = 1.001;
 

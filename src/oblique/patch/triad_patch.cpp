@@ -130,7 +130,6 @@ void TriadPatch::add_closing_loop(const Condition& closing, const TriadSplit& sp
       add_block(length + "_dy", "summer", {sum_of(terms_of(combined({{1 / l, &c.y}, {-1 / l, &z.y}})))});
   const std::string dx2 = add_block(length + "_dx2", "multiplier", {wire_setting("in", {{1, dx}, {1, dx}})});
   const std::string dy2 = add_block(length + "_dy2", "multiplier", {wire_setting("in", {{1, dy}, {1, dy}})});
-  constexpr double kInputGain = 10;
   const double weight = split.sign * kInputGain;
   add_outer_loop(length, {{weight, dx2}, {weight, dy2}, {-weight, one_}}, scaled(split.first_w) / reach);
 }
