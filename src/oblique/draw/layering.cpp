@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <set>
 
 #include <oblique/draw/layers.h>
 
@@ -162,6 +163,53 @@ std::vector<std::size_t> layers_of(std::size_t n, const std::vector<Arc>& forwar
   return layer;
 }
 
+/// Moves wide boxes that have a choice into layers that are wide already: the picture becomes narrower.
+void share_widths(const LayoutGraph& graph, const std::vector<Arc>& forward,
+                  std::vector<std::size_t>& layer) {
+  constexpr double kWire = 24;  // a wire longer by a layer is as bad as a picture wider by this [px]
+  const std::size_t n = graph.nodes.size();
+  std::vector<std::multiset<double>> widths(*std::max_element(layer.begin(), layer.end()) + 1);
+  std::vector<std::vector<const Arc*>> arcs(n);
+  for (const Arc& arc : forward) {
+    arcs[arc.from].push_back(&arc);
+    arcs[arc.to].push_back(&arc);
+  }
+  std::vector<std::size_t> order;
+  for (std::size_t v = 0; v < n; ++v) {
+    widths[layer[v]].insert(graph.nodes[v].size.x());
+    if (graph.nodes[v].rank == LayoutRank::free) order.push_back(v);
+  }
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return graph.nodes[a].size.x() > graph.nodes[b].size.x();
+  });
+  for (const std::size_t v : order) {
+    std::size_t low = 0, high = widths.size() - 1;
+    int pull = 0;
+    for (const Arc* const arc : arcs[v]) {
+      if (arc->from == v) {
+        high = std::min(high, layer[arc->to] - 1);
+        pull -= arc->weight;
+      } else {
+        low = std::max(low, layer[arc->from] + 1);
+        pull += arc->weight;
+      }
+    }
+    if (arcs[v].empty() || low >= high) continue;
+    const double width = graph.nodes[v].size.x();
+    widths[layer[v]].erase(widths[layer[v]].find(width));
+    const auto cost = [&](std::size_t l) {
+      const double widest = widths[l].empty() ? 0 : *widths[l].rbegin();
+      return std::max(0.0, width - widest) + kWire * pull * static_cast<double>(l);
+    };
+    std::size_t best = layer[v];
+    for (std::size_t l = low; l <= high; ++l) {
+      if (cost(l) < cost(best)) best = l;
+    }
+    layer[v] = best;
+    widths[best].insert(width);
+  }
+}
+
 }  // namespace
 
 std::vector<std::size_t> assign_layers(const LayoutGraph& graph) {
@@ -177,6 +225,7 @@ std::vector<std::size_t> assign_layers(const LayoutGraph& graph) {
     if (position[arc.from] < position[arc.to]) forward.push_back(arc);
   }
   std::vector<std::size_t> layer = layers_of(n, forward, order);
+  share_widths(graph, forward, layer);
   const bool has_first = std::any_of(graph.nodes.begin(), graph.nodes.end(),
                                      [](const LayoutNode& node) { return node.rank == LayoutRank::first; });
   std::size_t least = std::numeric_limits<std::size_t>::max(), most = 0;
