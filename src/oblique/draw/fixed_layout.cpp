@@ -18,6 +18,10 @@ bool is_free(const LayoutNode& node) {
   return node.rank == LayoutRank::free && !node.place;
 }
 
+double padding(const LayoutNode& node) {
+  return kLayoutGrid * static_cast<double>(std::max(node.inputs.size(), node.outputs.size()));
+}
+
 /// Boxes without a place, laid out by themselves below the others.
 void add_free_boxes(const LayoutGraph& graph, std::vector<Vector2d>& corners, const Vector2d& low,
                     const Vector2d& high) {
@@ -27,6 +31,11 @@ void add_free_boxes(const LayoutGraph& graph, std::vector<Vector2d>& corners, co
     if (!is_free(graph.nodes[v])) continue;
     index[v] = rest.nodes.size();
     rest.nodes.push_back(graph.nodes[v]);
+    LayoutNode& node = rest.nodes.back();  // with room for the wires to boxes that have places
+    const double around = padding(graph.nodes[v]);
+    node.size += 2 * Vector2d(around, around);
+    for (double& pin : node.inputs) pin += around;
+    for (double& pin : node.outputs) pin += around;
   }
   if (rest.nodes.empty()) return;
   for (const LayoutWire& wire : graph.wires) {
@@ -37,7 +46,7 @@ void add_free_boxes(const LayoutGraph& graph, std::vector<Vector2d>& corners, co
   for (const auto& [v, k] : index)
     corners[v] =
         Vector2d(low.x(), high.y() + kGap + kLayoutGrid * static_cast<double>(graph.wires.size() / 8)) +
-        below.corners[k];
+        below.corners[k] + Vector2d::Constant(padding(graph.nodes[v]));
 }
 
 /// Terminals of one side, at the heights of what they are wired to, apart from each other.

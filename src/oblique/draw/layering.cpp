@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
-#include <set>
 
 #include <oblique/draw/layers.h>
 
@@ -163,50 +162,50 @@ std::vector<std::size_t> layers_of(std::size_t n, const std::vector<Arc>& forwar
   return layer;
 }
 
-/// Moves wide boxes that have a choice into layers that are wide already: the picture becomes narrower.
+/// Moves wide boxes, which are open composites, into layers that are wide already where they have the choice:
+/// the picture becomes narrower.
 void share_widths(const LayoutGraph& graph, const std::vector<Arc>& forward,
                   std::vector<std::size_t>& layer) {
-  constexpr double kWire = 24;  // a wire longer by a layer is as bad as a picture wider by this [px]
-  const std::size_t n = graph.nodes.size();
-  std::vector<std::multiset<double>> widths(*std::max_element(layer.begin(), layer.end()) + 1);
-  std::vector<std::vector<const Arc*>> arcs(n);
-  for (const Arc& arc : forward) {
-    arcs[arc.from].push_back(&arc);
-    arcs[arc.to].push_back(&arc);
-  }
-  std::vector<std::size_t> order;
+  constexpr double kWide = 320;  // [px]
+  constexpr double kWire = 24;   // a wire longer by a layer is as bad as a picture wider by this [px]
+  struct Wide {
+    std::size_t node, low, high;
+    int pull = 0;  // to the left
+  };
+  const std::size_t n = graph.nodes.size(), layers = *std::max_element(layer.begin(), layer.end()) + 1;
+  std::vector<double> widths(layers);
+  std::vector<Wide> wide;
   for (std::size_t v = 0; v < n; ++v) {
-    widths[layer[v]].insert(graph.nodes[v].size.x());
-    if (graph.nodes[v].rank == LayoutRank::free) order.push_back(v);
-  }
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return graph.nodes[a].size.x() > graph.nodes[b].size.x();
-  });
-  for (const std::size_t v : order) {
-    std::size_t low = 0, high = widths.size() - 1;
-    int pull = 0;
-    for (const Arc* const arc : arcs[v]) {
-      if (arc->from == v) {
-        high = std::min(high, layer[arc->to] - 1);
-        pull -= arc->weight;
-      } else {
-        low = std::max(low, layer[arc->from] + 1);
-        pull += arc->weight;
-      }
+    const LayoutNode& node = graph.nodes[v];
+    Wide w{v, 0, layers - 1};
+    for (const Arc& arc : forward) {
+      if (arc.from == v) w.high = std::min(w.high, layer[arc.to] - 1);
+      if (arc.to == v) w.low = std::max(w.low, layer[arc.from] + 1);
+      if (arc.from == v || arc.to == v) w.pull += arc.from == v ? -arc.weight : arc.weight;
     }
-    if (arcs[v].empty() || low >= high) continue;
-    const double width = graph.nodes[v].size.x();
-    widths[layer[v]].erase(widths[layer[v]].find(width));
+    if (node.rank == LayoutRank::free && node.size.x() > kWide && w.low < w.high) {
+      wide.push_back(w);
+    } else {
+      widths[layer[v]] = std::max(widths[layer[v]], node.size.x());
+    }
+  }
+  std::stable_sort(wide.begin(), wide.end(), [&](const Wide& a, const Wide& b) {
+    return graph.nodes[a.node].size.x() > graph.nodes[b.node].size.x();
+  });
+  for (Wide& w : wide) {
+    for (const Arc& arc : forward) {  // others may have moved
+      if (arc.from == w.node) w.high = std::min(w.high, layer[arc.to] - 1);
+      if (arc.to == w.node) w.low = std::max(w.low, layer[arc.from] + 1);
+    }
+    const double width = graph.nodes[w.node].size.x();
     const auto cost = [&](std::size_t l) {
-      const double widest = widths[l].empty() ? 0 : *widths[l].rbegin();
-      return std::max(0.0, width - widest) + kWire * pull * static_cast<double>(l);
+      return std::max(0.0, width - widths[l]) + kWire * w.pull * static_cast<double>(l);
     };
-    std::size_t best = layer[v];
-    for (std::size_t l = low; l <= high; ++l) {
+    std::size_t& best = layer[w.node];
+    for (std::size_t l = w.low; l <= w.high; ++l) {
       if (cost(l) < cost(best)) best = l;
     }
-    layer[v] = best;
-    widths[best].insert(width);
+    widths[best] = std::max(widths[best], width);
   }
 }
 

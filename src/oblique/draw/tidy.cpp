@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <set>
 
 #include <oblique/draw/layout_steps.h>
@@ -12,9 +13,8 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// Points of the grid times wires up to which wires are laid anew: some tenths of a second.
-constexpr double kMostWork = 6e6;
-constexpr int kRounds = 4;
+/// Points of the grid up to which wires are laid anew: the grid of 1000 blocks would fill the memory.
+constexpr double kMostPoints = 1e6;
 
 Vector2d extent(const LayoutGraph& graph, const DiagramLayout& layout) {
   Vector2d size(0, 0);
@@ -28,15 +28,12 @@ Vector2d extent(const LayoutGraph& graph, const DiagramLayout& layout) {
 
 void route_anew(const LayoutGraph& graph, DiagramLayout& layout) {
   const Vector2d size = extent(graph, layout);
-  const double points = size.x() / kLayoutGrid * size.y() / kLayoutGrid;
-  if (points * static_cast<double>(graph.wires.size()) > kMostWork) return;
+  if (size.x() / kLayoutGrid * size.y() / kLayoutGrid > kMostPoints) return;
   WireRouter router(graph, layout.corners, nets_of(graph, layout.corners, layout.nets),
                     {Vector2d::Zero(), size});
-  bool better = true;
-  for (int round = 0; better && round < kRounds; ++round) {
-    better = false;
-    for (std::size_t k = 0; k < layout.nets.size(); ++k) better = router.route(k) || better;
-  }
+  std::vector<std::size_t> order(layout.nets.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  improve(router, order);
   for (std::size_t k = 0; k < layout.nets.size(); ++k) layout.nets[k].pieces = router.net(k).pieces;
 }
 

@@ -18,6 +18,8 @@ using Eigen::Vector2d;
 /// What is as bad as a way of this length [px].
 constexpr int kBend = 48, kCrossing = 72, kJunction = 12;
 constexpr int kRounds = 4;
+/// Points to look at in order to improve a layout: some tenths of a second.
+constexpr long kMostWork = 2'000'000;
 /// Where boxes are farther apart than twice this, the grid between them has a gap [lines].
 constexpr int kDense = 40;
 
@@ -148,16 +150,19 @@ int WireRouter::cost(std::size_t net) const {
 /// below the budget.
 bool WireRouter::find_way(std::int32_t net, Point target, int budget, std::vector<Point>& way, int& used) {
   ++search_;
-  const Vector2d goal = place(target);
+  const auto width = static_cast<Point>(xs_.size());
+  const double goal_x = xs_[static_cast<std::size_t>(target % width)];
+  const double goal_y = ys_[static_cast<std::size_t>(target / width)];
   using Entry = std::tuple<int, int, std::int32_t>;  // estimate of the whole, way so far, state
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
-  const auto enter = [&](Point p, int direction, int so_far, std::int32_t from) {
+  const auto enter = [&](Point p, Point column, Point row, int direction, int so_far, std::int32_t from) {
     const auto state = static_cast<std::size_t>(2 * p + direction);
     if (stamp_[state] == search_ && reached_[state] <= so_far) return;
-    const Vector2d rest = (place(p) - goal).cwiseAbs();
-    const bool must_turn = direction == 1 || rest.y() > 0;
+    const double below = std::abs(ys_[static_cast<std::size_t>(row)] - goal_y);
+    const double beside = std::abs(xs_[static_cast<std::size_t>(column)] - goal_x);
+    const bool must_turn = direction == 1 || below > 0;
     const int whole =
-        so_far + static_cast<int>(rest.sum()) + (must_turn ? (direction == 1 ? kBend : 2 * kBend) : 0);
+        so_far + static_cast<int>(below + beside) + (must_turn ? (direction == 1 ? kBend : 2 * kBend) : 0);
     if (whole >= budget) return;
     stamp_[state] = search_;
     reached_[state] = so_far;
@@ -170,18 +175,21 @@ bool WireRouter::find_way(std::int32_t net, Point target, int budget, std::vecto
     return is_free(across_[index(p)]) && is_free(down_[index(p)]) && is_free(reserved_[index(p)]) &&
            !odd_row_[index(p) / xs_.size()] && !odd_column_[index(p) % xs_.size()];
   };
+  const auto start = [&](Point p, int direction, int so_far) {
+    enter(p, p % width, p / width, direction, so_far, kNone);
+  };
   const auto& pieces = nets_[static_cast<std::size_t>(net)].pieces;
-  if (pieces.empty()) enter(point(nets_[static_cast<std::size_t>(net)].source), 0, 0, kNone);
+  if (pieces.empty()) start(point(nets_[static_cast<std::size_t>(net)].source), 0, 0);
   for (const WirePiece& piece : pieces) {
     visit(piece, [&](std::size_t k) {
       const auto p = static_cast<Point>(k);
       if (blocked_[k] || !may_turn(p)) return;
-      enter(p, 0, kJunction, kNone);
-      enter(p, 1, kJunction, kNone);
+      start(p, 0, kJunction);
+      start(p, 1, kJunction);
     });
   }
-  const auto width = static_cast<Point>(xs_.size());
   while (!open.empty()) {
+    ++work_;
     const auto [whole, so_far, state] = open.top();
     open.pop();
     if (so_far > reached_[static_cast<std::size_t>(state)]) continue;
@@ -194,9 +202,10 @@ bool WireRouter::find_way(std::int32_t net, Point target, int budget, std::vecto
       return true;
     }
     const int direction = state % 2;
+    const Point column = p % width, row = p / width;
     for (const int next : {0, 1}) {
       if (next != direction && !may_turn(p)) continue;
-      const auto column = p % width, row = p / width;
+
       if (next == 0 ? odd_row_[static_cast<std::size_t>(row)] : odd_column_[static_cast<std::size_t>(column)])
         continue;
       for (const int side : {-1, 1}) {
@@ -209,9 +218,14 @@ bool WireRouter::find_way(std::int32_t net, Point target, int budget, std::vecto
         if (along != kNone || crossed == net) continue;
         const std::int32_t pin = reserved_[index(q)];
         if (next == 0 && !is_free(pin)) continue;
-        const int step = static_cast<int>((place(q) - place(p)).cwiseAbs().sum());
+        const auto& lines = next == 0 ? xs_ : ys_;
+        const auto at = static_cast<std::size_t>(next == 0 ? column : row);
+        const auto to = static_cast<std::size_t>((next == 0 ? column : row) + side);
+        if (to >= lines.size()) continue;
+        const int step = static_cast<int>(std::abs(lines[to] - lines[at]));
         const bool crosses = crossed != kNone || !is_free(pin);
-        enter(q, next, so_far + step + (next != direction ? kBend : 0) + (crosses ? kCrossing : 0), state);
+        enter(q, next == 0 ? column + side : column, next == 0 ? row : row + side, next,
+              so_far + step + (next != direction ? kBend : 0) + (crosses ? kCrossing : 0), state);
       }
     }
   }
@@ -278,6 +292,18 @@ std::vector<NetToRoute> nets_of(const LayoutGraph& graph, const std::vector<Vect
   return nets;
 }
 
+void improve(WireRouter& router, const std::vector<std::size_t>& order) {
+  const long most = router.work() + kMostWork;
+  bool better = true;
+  for (int round = 0; better && round < kRounds; ++round) {
+    better = false;
+    for (const std::size_t k : order) {
+      if (router.work() > most) return;
+      better = (!router.net(k).pieces.empty() && router.route(k)) || better;
+    }
+  }
+}
+
 std::vector<std::size_t> route_all(const LayoutGraph& graph, const std::vector<Vector2d>& corners,
                                    const RoutingArea& area, std::vector<NetToRoute>& nets) {
   // short nets first: they have the least choice
@@ -305,11 +331,7 @@ std::vector<std::size_t> route_all(const LayoutGraph& graph, const std::vector<V
       });
       continue;
     }
-    bool better = true;
-    for (int round = 0; better && round < kRounds; ++round) {
-      better = false;
-      for (const std::size_t k : order) better = (!router.net(k).pieces.empty() && router.route(k)) || better;
-    }
+    improve(router, order);
     for (std::size_t k = 0; k < nets.size(); ++k) nets[k].pieces = router.net(k).pieces;
     break;
   }

@@ -35,8 +35,8 @@ class WireRouter {
   bool route(std::size_t net);
 
   const NetToRoute& net(std::size_t k) const { return nets_[k]; }
-  /// How many points the grid has.
-  std::size_t points() const { return blocked_.size(); }
+  /// How many points all searches together have looked at.
+  long work() const { return work_; }
   /// Takes the wires of a net away.
   void take_up(std::size_t net);
 
@@ -65,10 +65,13 @@ class WireRouter {
   std::vector<int> reached_;
   std::vector<std::int32_t> stamp_, from_;
   std::int32_t search_ = 0;
+  long work_ = 0;
 };
 
-/// Lays the nets that have no wires, then every net anew as long as that makes the whole better. Gives the
-/// nets that found no way.
+/// Lays every net anew as long as that makes the whole better, and is worth the work.
+void improve(WireRouter& router, const std::vector<std::size_t>& order);
+
+/// Lays the nets that have no wires, then improves all. Gives the nets that found no way.
 std::vector<std::size_t> route_all(const LayoutGraph& graph, const std::vector<Eigen::Vector2d>& corners,
                                    const RoutingArea& area, std::vector<NetToRoute>& nets);
 

@@ -14,7 +14,7 @@ using Eigen::Vector2d;
 
 constexpr double kWidest = 2400;   // layouts up to this stay in one row [px]
 constexpr double kLongest = 2.2;   // and those whose width is up to this many heights
-constexpr double kMostWork = 1e7;  // points of the grid times wires
+constexpr double kMostWork = 4e6;  // points of the grid times wires
 
 /// The layers of a layout with the row that each is in.
 struct Rows {
