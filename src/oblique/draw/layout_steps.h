@@ -10,6 +10,9 @@ namespace oblique {
 /// that nothing stands on. Wires of very large layouts stay.
 void tidy(const LayoutGraph& graph, DiagramLayout& layout);
 
+/// Moves boxes up or down by little where their wires become better by it; `size` is the room [px].
+void nudge(const LayoutGraph& graph, DiagramLayout& layout, const Eigen::Vector2d& size);
+
 /// Breaks a long layout into rows, one below the other; where that is no better it stays.
 void wrap(const LayoutGraph& graph, DiagramLayout& layout);
 

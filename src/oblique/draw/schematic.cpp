@@ -83,9 +83,10 @@ class Builder {
       if (output && !output->own_input) shown[output->blocks.front()] = true;
     }
     for (const Source& source : around_.signals_inside) shown[source.blocks.front()] = true;
-    for (const Record& record : around_.records) shown[record.source.blocks.front()] = true;
     for (std::size_t i = 0; i < scope_.blocks.size(); ++i)
       stands_at_inputs_.push_back(is_constant(scope_.blocks[i]) && used[i] && !shown[i]);
+    hidden_ = stands_at_inputs_;
+    for (const Record& record : around_.records) hidden_[record.source.blocks.front()] = false;
   }
 
   double value_of(const wiring::Constant& constant) const {
@@ -105,7 +106,7 @@ class Builder {
   void add_block(std::size_t i) {
     const WiredBlock& wired = scope_.blocks[i];
     index_.push_back(schematic_.blocks.size());
-    if (stands_at_inputs_[i]) return;
+    if (hidden_[i]) return;
     Block block;
     block.name = wired.instance->name;
     block.label = wired.instance->label;
@@ -128,10 +129,13 @@ class Builder {
     }
   }
 
+  /// "+1": the reference of the machine has a sign.
+  static std::string reference_text(double value) { return (value == 1 ? "+" : "") + number_text(value); }
+
   std::string constant_text(std::size_t i) const {
     const WiredBlock& wired = scope_.blocks[i];
     const double value = parameters_of(wired).front();
-    if (std::abs(value) == 1) return (value > 0 ? "+" : "") + number_text(value);
+    if (std::abs(value) == 1) return reference_text(value);
     const std::string& name = wired.instance->label.empty() ? wired.instance->name : wired.instance->label;
     constexpr std::size_t kLongest = 12;
     return name.size() > kLongest ? number_text(value) : fmt::format("{} = {}", name, number_text(value));
@@ -181,7 +185,7 @@ class Builder {
       // so that composites of one kind look alike whichever of their inputs are used
       const InputPort& port = wired.definition->inputs[k];
       if (wired.inside != nullptr && !wired.inputs[k].connected && port.default_value)
-        inputs.push_back({port.name, k, 1, {}, number_text(*port.default_value), false, {}});
+        inputs.push_back({port.name, k, 1, {}, reference_text(*port.default_value), false, {}});
     }
     schematic_.blocks[index_[i]].inputs = std::move(inputs);
   }
@@ -225,6 +229,7 @@ class Builder {
   int depth_;
   Schematic schematic_;
   std::vector<bool> stands_at_inputs_;
+  std::vector<bool> hidden_;                           ///< those of them that have no symbol of their own
   std::vector<std::size_t> index_;                     ///< in the schematic, of each block of the scope
   std::vector<std::size_t> inputs_;                    ///< of each input of the composite
   std::map<std::size_t, std::vector<Source>> inside_;  ///< signals inside a composite that are used outside

@@ -14,7 +14,7 @@ namespace {
 using Eigen::Vector2d;
 
 /// Points of the grid up to which wires are laid anew: the grid of 1000 blocks would fill the memory.
-constexpr double kMostPoints = 1e6;
+constexpr double kMostPoints = 3e5;
 
 Vector2d extent(const LayoutGraph& graph, const DiagramLayout& layout) {
   Vector2d size(0, 0);
@@ -26,9 +26,7 @@ Vector2d extent(const LayoutGraph& graph, const DiagramLayout& layout) {
   return size;
 }
 
-void route_anew(const LayoutGraph& graph, DiagramLayout& layout) {
-  const Vector2d size = extent(graph, layout);
-  if (size.x() / kLayoutGrid * size.y() / kLayoutGrid > kMostPoints) return;
+void route_anew(const LayoutGraph& graph, DiagramLayout& layout, const Vector2d& size) {
   WireRouter router(graph, layout.corners, nets_of(graph, layout.corners, layout.nets),
                     {Vector2d::Zero(), size});
   std::vector<std::size_t> order(layout.nets.size());
@@ -89,7 +87,12 @@ void squeeze(const LayoutGraph& graph, DiagramLayout& layout) {
 }  // namespace
 
 void tidy(const LayoutGraph& graph, DiagramLayout& layout) {
-  route_anew(graph, layout);
+  const Vector2d size = extent(graph, layout);
+  if (size.x() / kLayoutGrid * size.y() / kLayoutGrid <= kMostPoints) {
+    route_anew(graph, layout, size);
+    nudge(graph, layout, size);
+    route_anew(graph, layout, size);
+  }
   squeeze(graph, layout);
 }
 

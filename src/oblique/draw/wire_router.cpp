@@ -18,8 +18,8 @@ using Eigen::Vector2d;
 /// What is as bad as a way of this length [px].
 constexpr int kBend = 48, kCrossing = 72, kJunction = 12;
 constexpr int kRounds = 4;
-/// Points to look at in order to improve a layout: some tenths of a second.
-constexpr long kMostWork = 2'000'000;
+/// Points to look at in order to improve a layout: about a tenth of a second.
+constexpr long kMostWork = 300'000;
 /// Where boxes are farther apart than twice this, the grid between them has a gap [lines].
 constexpr int kDense = 40;
 
@@ -130,7 +130,6 @@ void WireRouter::take_up(std::size_t net) {
   nets_[net].pieces.clear();
 }
 
-/// How bad the wires of a net are.
 int WireRouter::cost(std::size_t net) const {
   double length = 0;
   int crossings = 0;

@@ -37,6 +37,8 @@ class WireRouter {
   const NetToRoute& net(std::size_t k) const { return nets_[k]; }
   /// How many points all searches together have looked at.
   long work() const { return work_; }
+  /// How bad the wires of a net are.
+  int cost(std::size_t net) const;
   /// Takes the wires of a net away.
   void take_up(std::size_t net);
 
@@ -49,7 +51,7 @@ class WireRouter {
   void lay(std::size_t net);
   template <class Visit>
   void visit(const WirePiece& piece, const Visit& visit_point) const;
-  int cost(std::size_t net) const;
+
   bool find_way(std::int32_t net, Point target, int budget, std::vector<Point>& way, int& used);
   std::vector<WirePiece> pieces_of(const std::vector<Point>& way) const;
 
