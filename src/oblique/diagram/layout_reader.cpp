@@ -44,6 +44,7 @@ std::optional<BlockPlace> read_place(const std::string& file, const Entry& entry
 std::vector<BlockPlace> read_layout(const std::string& file, const Value& table,
                                     const std::vector<BlockInstance>& blocks, Diagnostics& diagnostics) {
   std::vector<std::string> names;
+  names.reserve(blocks.size());
   for (const BlockInstance& block : blocks) names.push_back(block.name);
   std::vector<BlockPlace> places;
   for (const Entry& entry : table.entries) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 
@@ -45,7 +46,8 @@ void add_free_boxes(const LayoutGraph& graph, std::vector<Vector2d>& corners, co
   const DiagramLayout below = layered::lay_out_in_layers(rest);
   for (const auto& [v, k] : index)
     corners[v] =
-        Vector2d(low.x(), high.y() + kGap + kLayoutGrid * static_cast<double>(graph.wires.size() / 8)) +
+        Vector2d(low.x(),
+                 high.y() + kGap + kLayoutGrid * std::floor(static_cast<double>(graph.wires.size()) / 8)) +
         below.corners[k] + Vector2d::Constant(padding(graph.nodes[v]));
 }
 
@@ -64,7 +66,7 @@ void add_terminals(const LayoutGraph& graph, LayoutRank rank, double edge, std::
                              : graph.nodes[other].outputs[wire.output] - graph.nodes[v].inputs[wire.input];
       height = std::min(height, corners[other].y() + pin);
     }
-    heights.push_back({height == std::numeric_limits<double>::max() ? 0 : height, v});
+    heights.emplace_back(height == std::numeric_limits<double>::max() ? 0 : height, v);
   }
   std::sort(heights.begin(), heights.end());
   const double room = 2 * kLayoutGrid + kLayoutGrid * static_cast<double>(heights.size());

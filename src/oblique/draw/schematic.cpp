@@ -56,6 +56,7 @@ class Builder {
     for (std::size_t i = 0; i < scope_.blocks.size(); ++i) connect(i);
     if (scope_.composite != nullptr) add_outputs();
     for (const Record& record : around_.records) write_record(record);
+    mark_wired();
     for (std::size_t i = 0; i < scope_.blocks.size(); ++i) open(i);
     schematic_.layout = around_.layout;
     find_servo_loops(schematic_);
@@ -200,6 +201,15 @@ class Builder {
       input.signal = signal_of(k < own ? *scope_.outputs[k] : around_.signals_inside[k - own]);
       port.inputs.push_back(std::move(input));
       schematic_.blocks.push_back(std::move(port));
+    }
+  }
+
+  void mark_wired() {
+    for (Block& block : schematic_.blocks) block.wired.resize(block.outputs.size());
+    for (const Block& block : schematic_.blocks) {
+      for (const Input& input : block.inputs) {
+        if (input.signal) schematic_.blocks[input.signal->block].wired[input.signal->output] = true;
+      }
     }
   }
 

@@ -43,6 +43,7 @@ struct Block {
   std::vector<bool> given;                      ///< whether the file gives it
   std::vector<Input> inputs;
   std::vector<std::string> outputs;  ///< names: those of the definition, then signals inside that are used
+  std::vector<bool> wired;           ///< whether a wire starts at an output
   std::vector<std::string> records;  ///< of each output, where it is measured: under what name, in what unit
   bool inverts = false;
   std::optional<std::size_t> loop;  ///< the servo loop that it is a part of

@@ -147,7 +147,9 @@ class Artist {
     const bool inverts =
         shape_.inverts || (block_.inside.empty() && port_sign(block_, block_.outputs[k]).inverted);
     const double bubble = inverts ? 2 * kBubble : 0;
-    put(line_mark(at_ + Vector2d(right + bubble, y), at_ + Vector2d(shape_.node.size.x(), y), output_pen()));
+    const bool is_used = block_.wired[k] || (k < block_.records.size() && !block_.records[k].empty());
+    const double end = is_used ? shape_.node.size.x() : right + kLayoutGrid;
+    put(line_mark(at_ + Vector2d(right + bubble, y), at_ + Vector2d(end, y), output_pen()));
     if (inverts) put(disc_mark(at_ + Vector2d(right + kBubble, y), kBubble, Ink::paper, {pen_.ink, 1.2, {}}));
     if (k >= block_.records.size() || block_.records[k].empty()) return;
     const Vector2d tip = at_ + Vector2d(right + bubble + kRecordIndent - 4, y);

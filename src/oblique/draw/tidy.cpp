@@ -40,8 +40,8 @@ void route_anew(const LayoutGraph& graph, DiagramLayout& layout, const Vector2d&
 class Squeeze {
  public:
   void occupy(double from, double to) {
-    for (double at = std::floor(from / kLayoutGrid); at <= std::ceil(to / kLayoutGrid); ++at)
-      occupied_.insert(static_cast<long>(at));
+    const auto last = static_cast<long>(std::ceil(to / kLayoutGrid));
+    for (auto at = static_cast<long>(std::floor(from / kLayoutGrid)); at <= last; ++at) occupied_.insert(at);
   }
 
   double shifted(double at) const {

@@ -53,7 +53,7 @@ std::size_t count_crossings(const std::vector<RoutedNet>& nets) {
   std::vector<std::pair<const WirePiece*, std::size_t>> horizontal, vertical;
   for (std::size_t n = 0; n < nets.size(); ++n) {
     for (const WirePiece& piece : nets[n].pieces)
-      (piece.horizontal() ? horizontal : vertical).push_back({&piece, n});
+      (piece.horizontal() ? horizontal : vertical).emplace_back(&piece, n);
   }
   std::sort(horizontal.begin(), horizontal.end(),
             [](const auto& a, const auto& b) { return a.first->from.y() < b.first->from.y(); });

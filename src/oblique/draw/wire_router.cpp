@@ -29,12 +29,16 @@ std::vector<double> lines(const std::vector<std::pair<double, double>>& edges,
   std::vector<double> result(wires);
   std::vector<std::pair<double, double>> spans{{low, low + kDense * kLayoutGrid}};
   for (const auto& [begin, end] : edges)
-    spans.push_back({begin - kDense * kLayoutGrid, end + kDense * kLayoutGrid});
+    spans.emplace_back(begin - kDense * kLayoutGrid, end + kDense * kLayoutGrid);
   std::sort(spans.begin(), spans.end());
   double next = low;
   for (const auto& [begin, end] : spans) {
     next = std::max(next, std::floor(begin / kLayoutGrid) * kLayoutGrid);
-    for (; next <= std::min(end, high); next += kLayoutGrid) result.push_back(next);
+    const double last = std::min(end, high);
+    while (next <= last) {
+      result.push_back(next);
+      next += kLayoutGrid;
+    }
   }
   std::sort(result.begin(), result.end());
   result.erase(std::unique(result.begin(), result.end()), result.end());
@@ -57,8 +61,8 @@ WireRouter::WireRouter(const LayoutGraph& graph, const std::vector<Vector2d>& co
   std::vector<std::pair<double, double>> x_edges, y_edges;
   for (std::size_t v = 0; v < corners.size(); ++v) {
     const Vector2d end = corners[v] + graph.nodes[v].size;
-    x_edges.push_back({corners[v].x(), end.x()});
-    y_edges.push_back({corners[v].y(), end.y()});
+    x_edges.emplace_back(corners[v].x(), end.x());
+    y_edges.emplace_back(corners[v].y(), end.y());
   }
   std::vector<double> x_wires, y_wires;
   for (const NetToRoute& net : nets) {
@@ -90,7 +94,8 @@ WireRouter::WireRouter(const LayoutGraph& graph, const std::vector<Vector2d>& co
   }
   for (std::size_t k = 0; k < nets_.size(); ++k) {
     const auto reserve = [&](const Vector2d& pin, int step) {
-      const auto beside = static_cast<std::size_t>(point(pin) + step);
+      const Point at = point(pin) + step;
+      const auto beside = static_cast<std::size_t>(at);
       if (beside < n) reserved_[beside] = static_cast<std::int32_t>(k);
     };
     reserve(nets_[k].source, 1);
@@ -155,7 +160,7 @@ bool WireRouter::find_way(std::int32_t net, Point target, int budget, std::vecto
   using Entry = std::tuple<int, int, std::int32_t>;  // estimate of the whole, way so far, state
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
   const auto enter = [&](Point p, Point column, Point row, int direction, int so_far, std::int32_t from) {
-    const auto state = static_cast<std::size_t>(2 * p + direction);
+    const auto state = 2 * static_cast<std::size_t>(p) + static_cast<std::size_t>(direction);
     if (stamp_[state] == search_ && reached_[state] <= so_far) return;
     const double below = std::abs(ys_[static_cast<std::size_t>(row)] - goal_y);
     const double beside = std::abs(xs_[static_cast<std::size_t>(column)] - goal_x);
@@ -219,7 +224,8 @@ bool WireRouter::find_way(std::int32_t net, Point target, int budget, std::vecto
         if (next == 0 && !is_free(pin)) continue;
         const auto& lines = next == 0 ? xs_ : ys_;
         const auto at = static_cast<std::size_t>(next == 0 ? column : row);
-        const auto to = static_cast<std::size_t>((next == 0 ? column : row) + side);
+        const Point line = (next == 0 ? column : row) + side;
+        const auto to = static_cast<std::size_t>(line);
         if (to >= lines.size()) continue;
         const int step = static_cast<int>(std::abs(lines[to] - lines[at]));
         const bool crosses = crossed != kNone || !is_free(pin);
