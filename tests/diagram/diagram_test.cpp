@@ -177,7 +177,7 @@ TEST(ParseDiagram, ReadsPlacesOfBlocks) {
 TEST(ParseDiagram, ChecksPlacesOfBlocks) {
   EXPECT_EQ(diagram_message("[layout]\nA = [1, 2]\n"),
             "d.toml:5:1: [layout] gives a place to 'A', and there is no such block; expected the name of a "
-            "block of this file\n  remedy: did you mean 'a'?");
+            "block of this file\n  remedy: known: a");
   EXPECT_EQ(diagram_message("[layout]\na = 3\n"),
             "d.toml:5:5: place of 'a' in [layout] is a number; expected [x, y], two numbers from -10000 to "
             "10000");
@@ -186,7 +186,7 @@ TEST(ParseDiagram, ChecksPlacesOfBlocks) {
   EXPECT_THAT(diagram_message("[layout]\na = [1, inf]\n"),
               HasSubstr("d.toml:5:9: place of 'a' in [layout] has inf; expected [x, y]"));
   EXPECT_THAT(diagram_message("[layout]\na = [1, \"2 m\"]\n"),
-              HasSubstr("d.toml:5:9: place of 'a' in [layout]"));
+              HasSubstr("d.toml:5:12: place of 'a' in [layout]: 'm' is the wrong unit here"));
 }
 
 TEST(ParseDiagram, ChecksExpectations) {
