@@ -151,8 +151,9 @@ struct DrawRequest {
   PatchChoice patch;
   std::string symbols;       ///< of a diagram: classic or din
   std::optional<int> depth;  ///< of a diagram: levels of composites shown open
+  bool layout = false;       ///< of a diagram: its [layout] is printed in place of a picture
 };
-/// Draws a diagram; `text` is that of the request's file.
+/// Draws a diagram, or prints its layout; `text` is that of the request's file.
 ExitStatus draw_diagram_file(const Session& session, const DrawRequest& request, const std::string& text);
 /// Draws a mechanism or a diagram.
 ExitStatus draw_file(const Session& session, const DrawRequest& request);

@@ -51,13 +51,19 @@ void check_options_of_diagram(const DrawRequest& request) {
 void check_options_of_mechanism(const DrawRequest& request) {
   refuse(!request.symbols.empty(), "--symbols", request.file, "mechanism", "diagram");
   refuse(request.depth.has_value(), "--depth", request.file, "mechanism", "diagram");
+  refuse(request.layout, "--layout", request.file, "mechanism", "diagram");
 }
 
 }  // namespace
 
 ExitStatus draw_file(const Session& session, const DrawRequest& request) {
-  check_picture_output(request.output);
-  check_not_input(request.output, request.file, "mechanism");
+  if (!request.layout) {
+    if (request.output.empty())
+      throw ReadError(
+          Diagnostic{{}, "--output is required", "-o PICTURE.svg or PICTURE.png, or --layout", {}});
+    check_picture_output(request.output);
+    check_not_input(request.output, request.file, "mechanism");
+  }
   const Theme theme = theme_option(request.theme);
   const std::string text = read_file(request.file);  // once: it may be a pipe
   const Document document = parse_document(text, request.file);

@@ -6,6 +6,7 @@
 
 #include "command.h"
 #include "picture_output.h"
+#include "terminal.h"
 
 namespace oblique::cli {
 namespace {
@@ -20,13 +21,17 @@ SymbolStyle symbols_option(const std::string& text) {
 }  // namespace
 
 ExitStatus draw_diagram_file(const Session& session, const DrawRequest& request, const std::string& text) {
-  check_picture_output(request.output);
   const Theme theme = theme_option(request.theme);
   DiagramDrawing drawing;
   drawing.symbols = symbols_option(request.symbols);
   drawing.depth = request.depth.value_or(0);
   const Diagram diagram = parse_diagram(text, request.file);
   const BlockLibrary library = session.blocks();
+  if (request.layout) {
+    const std::string table = write_layout(drawn_places(diagram, library, drawing.symbols));
+    print(std::string_view(table).substr(1));  // without the empty line above it
+    return ExitStatus::done;
+  }
   save_picture(draw_diagram(diagram, library, drawing), request.output, theme);
   return ExitStatus::done;
 }

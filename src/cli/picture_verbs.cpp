@@ -36,9 +36,9 @@ void add_draw(CLI::App& app, Chosen& chosen) {
       app.add_subcommand("draw", "Draw a mechanism, the six plots of one of its points, or a block diagram");
   verb->add_option("FILE", request->file, "mechanism or diagram (oblique-mechanism/1, oblique-diagram/1)")
       ->required();
-  verb->add_option("-o,--output", request->output, "write to PICTURE.svg or PICTURE.png")
-      ->required()
-      ->type_name("PICTURE");
+  CLI::Option* const output =
+      verb->add_option("-o,--output", request->output, "write to PICTURE.svg or PICTURE.png")
+          ->type_name("PICTURE");
   CLI::Option* const at =
       verb->add_option("--at", request->at,
                        "where the first drive stands, for example \"80 deg\" (default: its start)")
@@ -59,10 +59,17 @@ void add_draw(CLI::App& app, Chosen& chosen) {
   verb->add_option("--symbols", request->symbols,
                    "of a diagram: classic, triangles and circles (default), or din, boxes")
       ->type_name("classic|din");
-  verb->add_option("--depth", request->depth,
-                   "of a diagram: levels of composite blocks that are shown open (default 0)")
-      ->type_name("N")
-      ->check(CLI::Range(0, 100));
+  CLI::Option* const depth =
+      verb->add_option("--depth", request->depth,
+                       "of a diagram: levels of composite blocks that are shown open (default 0)")
+          ->type_name("N")
+          ->check(CLI::Range(0, 100));
+  verb->add_flag(
+          "--layout", request->layout,
+          "of a diagram: print where its blocks stand, as the [layout] of its file, in place of a picture")
+      ->excludes(output)
+      ->excludes(depth)
+      ->excludes(verb->get_option("--theme"));
   choose(verb, chosen, request, draw_file);
 }
 

@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
+#include <regex>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -78,6 +80,51 @@ TEST_F(DrawDiagram, RefusesWhatIsWrong) {
   std::ofstream(folder_ / "wires.toml")
       << "format = \"oblique-diagram/1\"\n[blocks]\na = { type = \"summer\", in = [\"bb\"] }\n";
   expect_refusal("oblique draw wires.toml", "there is no signal 'bb'");
+}
+
+/// Where the shapes of blocks begin in an SVG, by their ids.
+std::map<std::string, std::string> shapes_in(const std::string& svg) {
+  std::map<std::string, std::string> shapes;
+  const std::regex block("<[a-z]+ [^>]*id=\"(block-[^\"]+)\"[^>]*>");
+  for (std::sregex_iterator at(svg.begin(), svg.end(), block), end; at != end; ++at)
+    shapes[(*at)[1]] = at->str();
+  return shapes;
+}
+
+// The printed table, put into the file, gives the same picture of the blocks; a number changed in it moves
+// one.
+TEST_F(DrawDiagram, PrintsItsLayoutForTheFile) {
+  const std::string diagram = kDiagrams + "lessons/triangle-side.toml";
+  const Outcome printed = run("oblique draw " + diagram + " --layout");
+  ASSERT_EQ(printed.status, 0);
+  EXPECT_TRUE(printed.out.starts_with("[layout]\nphi  = [")) << printed.out;
+  EXPECT_EQ(printed.err, "");
+  std::ifstream shipped(diagram);
+  const std::string text{std::istreambuf_iterator<char>(shipped), {}};
+  std::ofstream(folder_ / "placed.toml") << text << "\n" << printed.out;
+  ASSERT_EQ(run("oblique draw " + diagram + " -o free.svg").status, 0);
+  ASSERT_EQ(run("oblique draw placed.toml -o placed.svg").status, 0);
+  EXPECT_EQ(shapes_in(text_of("free.svg")), shapes_in(text_of("placed.svg")));
+  EXPECT_EQ(run("oblique draw placed.toml --layout").out, printed.out);
+  std::ofstream(folder_ / "moved.toml") << text << "\n[layout]\nb2 = [4, 4]\na2 = [4, 14]\n";
+  ASSERT_EQ(run("oblique draw moved.toml -o moved.svg").status, 0);
+  EXPECT_NE(shapes_in(text_of("free.svg")), shapes_in(text_of("moved.svg")));
+}
+
+TEST_F(DrawDiagram, RefusesLayoutsThatDoNotFit) {
+  const std::string head =
+      "format = \"oblique-diagram/1\"\n[blocks]\na = { type = \"sine-source\" }\nb = { type = \"sine\", in = "
+      "\"a\" }\n";
+  std::ofstream(folder_ / "close.toml") << head << "[layout]\na = [3, 3]\nb = [4, 3]\n";
+  expect_refusal("oblique draw close.toml",
+                 "close.toml:7:1: 'b' stands over 'a' or too close to it in [layout]");
+  std::ofstream(folder_ / "unknown.toml") << head << "[layout]\nbb = [3, 3]\n";
+  expect_refusal("oblique draw unknown.toml", "unknown.toml:6:1: [layout] gives a place to 'bb'");
+  const Outcome mechanism = run("oblique draw " + kDiagrams + "mechanisms/four-bar.toml --layout");
+  EXPECT_EQ(mechanism.status, 2);
+  EXPECT_THAT(mechanism.err, HasSubstr("--layout is for diagrams, and this is a mechanism"));
+  EXPECT_EQ(run("oblique draw close.toml --layout -o x.svg").status, 2);
+  EXPECT_EQ(run("oblique draw close.toml --layout --depth 1").status, 2);
 }
 
 }  // namespace

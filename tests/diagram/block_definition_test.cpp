@@ -302,6 +302,19 @@ TEST(ParseBlock, RefusesMixedPrimitiveAndComposite) {
               HasSubstr("output 'y' of a block without [blocks] has a 'wire'"));
 }
 
+TEST(ParseBlock, ReadsPlacesOfInnerBlocks) {
+  const BlockDefinition block = parse_block(
+      "format = \"oblique-block/1\"\ntitle = \"b\"\n[outputs]\ny = { wire = \"a\" }\n[blocks]\n"
+      "a = { type = \"t\" }\n[layout]\na = [2, 3]\n",
+      "b.toml", "b");
+  EXPECT_EQ(block.layout, (std::vector<BlockPlace>{{"a", 2, 3, {}}}));
+  EXPECT_THAT(block_message(
+                  "[outputs]\ny = { wire = \"a\" }\n[blocks]\na = { type = \"t\" }\n[layout]\ny = [1, 2]\n"),
+              HasSubstr("[layout] gives a place to 'y', and there is no such block"));
+  EXPECT_THAT(block_message("[outputs]\ny = {}\n[equations]\ny = \"1\"\n[layout]\n"),
+              HasSubstr("a block without [blocks] has a [layout]\n  remedy: leave it out"));
+}
+
 TEST(ParseBlock, RefusesInnerBlocksThatHideANameOfTheComposite) {
   const std::string text =
       "[inputs]\nx = {}\n[parameters]\nk = {}\n[outputs]\ny = { wire = \"k\" }\n[blocks]\n";

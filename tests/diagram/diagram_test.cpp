@@ -168,6 +168,27 @@ TEST(ParseDiagram, ChecksOutputs) {
               HasSubstr("'scale' of output 'x' is infinite; expected a finite number"));
 }
 
+TEST(ParseDiagram, ReadsPlacesOfBlocks) {
+  const Diagram d = parse_diagram(diagram_text(kBlock, "[layout]\na = [\"3/2\", -4]\n"), "d.toml");
+  EXPECT_EQ(d.layout, (std::vector<BlockPlace>{{"a", 1.5, -4, {}}}));
+  EXPECT_EQ(d.layout.front().place.position.line, 5);
+}
+
+TEST(ParseDiagram, ChecksPlacesOfBlocks) {
+  EXPECT_EQ(diagram_message("[layout]\nA = [1, 2]\n"),
+            "d.toml:5:1: [layout] gives a place to 'A', and there is no such block; expected the name of a "
+            "block of this file\n  remedy: known: a");
+  EXPECT_EQ(diagram_message("[layout]\na = 3\n"),
+            "d.toml:5:5: place of 'a' in [layout] is a number; expected [x, y], two numbers from -10000 to "
+            "10000");
+  EXPECT_THAT(diagram_message("[layout]\na = [1, 2, 3]\n"),
+              HasSubstr("d.toml:5:5: place of 'a' in [layout] is a list of 3; expected [x, y]"));
+  EXPECT_THAT(diagram_message("[layout]\na = [1, inf]\n"),
+              HasSubstr("d.toml:5:9: place of 'a' in [layout] has inf; expected [x, y]"));
+  EXPECT_THAT(diagram_message("[layout]\na = [1, \"2 m\"]\n"),
+              HasSubstr("d.toml:5:12: place of 'a' in [layout]: 'm' is the wrong unit here"));
+}
+
 TEST(ParseDiagram, ChecksExpectations) {
   EXPECT_EQ(expect_message("a = { value = 1, within = 1 }"),
             "d.toml:7:1: [expect] cannot read 'a'; expected \"OUTPUT at TIME\", \"OUTPUT maximum\" or "

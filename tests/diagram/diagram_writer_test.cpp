@@ -28,6 +28,7 @@ TEST(WriteDiagram, IsReadable) {
   d.outputs = {{"c", "c", 1, "machine unit", {}}, {"C.x", "a", 2.5, "m", {}}};
   d.expectations = {{"", "C.x", Expectation::Kind::at_time, 0.0005, 0.25, 1e-3, {}},
                     {"c  maximum", "c ", Expectation::Kind::maximum, 0, 1, 0.5, {}}};
+  d.layout = {{"long_one", 12.5, -3, {}}, {"c", 0, 1, {}}};
   EXPECT_EQ(write_diagram(d), R"toml(# made by hand
 #
 # for a test
@@ -62,6 +63,10 @@ c     = "c"
 [expect]
 "C.x at 0.0005" = { value = 0.25, within = 0.001 }
 "c  maximum"    = { value = 1, within = 0.5 }
+
+[layout]
+long_one = [12.5, -3]
+c        = [0, 1]
 )toml");
 }
 
@@ -156,6 +161,9 @@ Diagram any_diagram() {
   for (const std::string& name :
        *small(rc::gen::nonEmpty(rc::gen::container<std::set<std::string>>(identifier())))) {
     d.blocks.push_back(any_block(name));
+    if (*rc::gen::arbitrary<bool>())
+      d.layout.push_back(
+          {name, *rc::gen::inRange(-9000, 9000) / 7.0, *rc::gen::inRange(-9000, 9000) / 7.0, {}});
   }
   for (const std::string& name :
        *small(rc::gen::container<std::set<std::string>>(rc::gen::nonEmpty(any_text())))) {
@@ -205,6 +213,7 @@ TEST(WriteDiagram, DiagramsThatDifferAnywhereAreNotEqual) {
   EXPECT_TRUE(differs([](Diagram& o) { o.blocks[0].settings.clear(); }));
   EXPECT_TRUE(differs([](Diagram& o) { o.outputs[0].scale = 2; }));
   EXPECT_TRUE(differs([](Diagram& o) { o.expectations[0].within = 2; }));
+  EXPECT_TRUE(differs([](Diagram& o) { o.layout = {{"a", 1, 2, {}}}; }));
 }
 
 }  // namespace

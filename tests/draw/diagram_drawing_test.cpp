@@ -2,12 +2,12 @@
 #include <oblique/draw/diagram_drawing.h>
 
 #include <algorithm>
-#include <filesystem>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <oblique/draw/schematic.h>
+#include <oblique/draw/symbols.h>
 
 namespace oblique {
 namespace {
@@ -38,67 +38,6 @@ std::vector<std::string> texts(const Picture& picture) {
     if (const auto* const label = std::get_if<Label>(&mark.shape)) result.push_back(label->text);
   }
   return result;
-}
-
-std::vector<std::filesystem::path> shipped_diagrams() {
-  std::vector<std::filesystem::path> paths;
-  for (const char* const folder : {"lessons", "historical"}) {
-    for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(OBLIQUE_SOURCE_DIR) /
-                                                                 "diagrams" / folder)) {
-      if (entry.path().extension() == ".toml") paths.push_back(entry.path());
-    }
-  }
-  std::sort(paths.begin(), paths.end());
-  return paths;
-}
-
-/// The straight lines of a mark that is no text; curves as the box around them is left out.
-std::vector<Extent> lines_of(const Mark& mark) {
-  std::vector<Extent> lines;
-  const auto add = [&](const Vector2d& a, const Vector2d& b) {
-    Extent extent(a);
-    extent.extend(b);
-    lines.push_back(extent);
-  };
-  if (mark.pen.ink == Ink::none) return lines;
-  if (const auto* const outline = std::get_if<Outline>(&mark.shape)) {
-    Vector2d at(0, 0);
-    for (const Segment& s : outline->segments) {
-      const bool straight = s.kind == Segment::Kind::line && (at.x() == s.to.x() || at.y() == s.to.y());
-      if (straight) add(at, s.to);
-      if (s.kind != Segment::Kind::close) at = s.to;
-    }
-  } else if (const auto* const box = std::get_if<Box>(&mark.shape)) {
-    const Vector2d low = box->corner, high = box->corner + box->size;
-    add(low, {high.x(), low.y()});
-    add(low, {low.x(), high.y()});
-    add({high.x(), low.y()}, high);
-    add({low.x(), high.y()}, high);
-  }
-  return lines;
-}
-
-/// Texts that lie on a line or on another text.
-std::vector<std::string> overlaps(const Picture& picture) {
-  std::vector<std::string> found;
-  constexpr double kTouch = 0.2;  // [px] that no one sees
-  for (std::size_t i = 0; i < picture.marks.size(); ++i) {
-    const auto* const label = std::get_if<Label>(&picture.marks[i].shape);
-    if (label == nullptr) continue;
-    Extent own = extent_of(picture.marks[i]);
-    own.min() += Vector2d(kTouch, kTouch);
-    own.max() -= Vector2d(kTouch, kTouch);
-    for (std::size_t k = 0; k < picture.marks.size(); ++k) {
-      if (k == i) continue;
-      const auto* const other = std::get_if<Label>(&picture.marks[k].shape);
-      if (other != nullptr && k < i && own.intersects(extent_of(picture.marks[k])))
-        found.push_back(label->text + " on " + other->text);
-      for (const Extent& line : lines_of(picture.marks[k])) {
-        if (own.intersects(line)) found.push_back(label->text + " on a line of " + picture.marks[k].id);
-      }
-    }
-  }
-  return found;
 }
 
 // A circle of two integrators: initial values at the bars, the change of sign at the input.
@@ -212,22 +151,73 @@ TEST(DiagramDrawing, ReportsWhatIsWrongWithTheWiring) {
   }
 }
 
-TEST(DiagramDrawing, TextsAreClearOfMarksInTheShippedDiagrams) {
-  for (const auto& path : shipped_diagrams()) {
-    const Diagram shipped = read_diagram(path);
-    for (const auto style : {SymbolStyle::classic, SymbolStyle::din}) {
-      for (const int depth : {0, 1}) {
-        const Picture picture = draw_diagram(shipped, library(), {style, depth});
-        EXPECT_THAT(overlaps(picture), testing::IsEmpty()) << path << ", depth " << depth;
-        for (const Mark& mark : picture.marks) {
-          const Extent extent = extent_of(mark);
-          EXPECT_TRUE(extent.min().minCoeff() >= 0 && extent.max().x() <= picture.width &&
-                      extent.max().y() <= picture.height)
-              << path << " " << mark.id;
-        }
-      }
-    }
+// What is measured is written at its signal, once for each, with its unit; the constant is not hidden at
+// inputs.
+TEST(DiagramDrawing, WritesWhatIsMeasured) {
+  const Picture picture = draw_diagram(diagram(R"(
+one = { type = "constant", value = 1 }
+g   = { type = "crank-generator", speed = "one" }
+s   = { type = "summer", in = ["g.cos", "g.sin", "one"] }
+[outputs]
+sum         = { signal = "s", scale = 2, unit = "m" }
+"twice sum" = { signal = "s", scale = 4, unit = "cm" }
+cosine      = "g.cos"
+ratio       = { signal = "g.sin", unit = "1" }
+reference   = "one"
+surplus     = "g.excess"
+)"),
+                                       library());
+  EXPECT_THAT(texts(picture),
+              testing::IsSupersetOf({"sum [m], twice sum [cm]", "cosine", "ratio", "reference", "surplus"}));
+  for (const char* const id : {"record-s", "record-g.cos", "record-g.sin", "record-one", "record-g.excess"})
+    EXPECT_NE(find_mark(picture, id), nullptr) << id;
+  const Extent arrow = extent_of(*find_mark(picture, "record-s")),
+               block = extent_of(*find_mark(picture, "block-s"));
+  EXPECT_GT(arrow.min().x(), block.max().x() - 1);
+  EXPECT_NEAR(arrow.center().y(), block.center().y(), 1e-9);
+  EXPECT_EQ(find_mark(picture, "record-g.cos")->fill, Ink::line);
+}
+
+TEST(DiagramDrawing, ReportsOutputsOfUnknownSignals) {
+  try {
+    draw_diagram(diagram("a = { type = \"sine-source\" }\n[outputs]\nx = \"b\"\n"), library());
+    FAIL();
+  } catch (const DiagramError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("output 'x': there is no signal 'b'"));
   }
+}
+
+// Circuits of one kind look alike, whichever of their inputs are used.
+TEST(DiagramDrawing, OpenInputsOfCompositesShowTheirDefault) {
+  const Picture picture = draw_diagram(
+      diagram("a = { type = \"sine-source\" }\nd = { type = \"four-bar-circuit\", rocker = \"a\" }\n"),
+      library());
+  const auto written = texts(picture);
+  EXPECT_EQ(std::count(written.begin(), written.end(), "0"), 4) << "px, py, qx and qy";
+}
+
+// Every kind of block has the sign of its kind: a curve, a text, or ports that mean something.
+TEST(DiagramDrawing, EveryShippedBlockHasASymbol) {
+  for (const std::string& name : library().names())
+    EXPECT_NE(schematic::find_symbol(library().find(name)->symbol), nullptr) << name;
+}
+
+// S, R, Q and the inverted Q with its circle, after IEC 60617-12; J, K and the clock's wedge.
+TEST(DiagramDrawing, FlipFlopsHaveTheSignsOfLogic) {
+  const Picture picture = draw_diagram(diagram(R"(
+s = { type = "sine-source" }
+f = { type = "flip-flop", set = "s", reset = "s" }
+j = { type = "jk-flip-flop", clock = "s", j = "s", k = "s", reset = "s" }
+)"),
+                                       library());
+  const auto written = texts(picture);
+  for (const auto& [sign, count] : {std::pair{"S", 1}, {"R", 2}, {"Q", 4}, {"J", 1}, {"K", 1}, {"C", 1}})
+    EXPECT_EQ(std::count(written.begin(), written.end(), sign), count) << sign;
+  const auto circles = std::count_if(picture.marks.begin(), picture.marks.end(), [](const Mark& mark) {
+    const auto* const disc = std::get_if<Disc>(&mark.shape);
+    return disc != nullptr && disc->radius == 3;
+  });
+  EXPECT_EQ(circles, 2);
 }
 
 }  // namespace

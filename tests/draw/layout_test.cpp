@@ -101,7 +101,7 @@ TEST(Layout, NothingGivesNothing) {
 TEST(Layout, RandomGraphsAreSound) {
   std::mt19937 random(7);
   const auto draw = [&](std::size_t n) { return static_cast<std::size_t>(random() % n); };
-  for (int round = 0; round < 300; ++round) {
+  for (int round = 0; round < 150; ++round) {
     LayoutGraph graph;
     const std::size_t n = 2 + draw(25);
     for (std::size_t v = 0; v < n; ++v) graph.nodes.push_back(box(1 + draw(4), 1 + draw(2)));
@@ -123,7 +123,7 @@ TEST(Layout, RandomGraphsAreSound) {
 TEST(Layout, DenseGraphsAreSound) {
   std::mt19937 random(7);
   const auto draw = [&](std::size_t n) { return static_cast<std::size_t>(random() % n); };
-  for (int round = 0; round < 100; ++round) {
+  for (int round = 0; round < 40; ++round) {
     LayoutGraph graph;
     const std::size_t n = 2 + draw(60);
     for (std::size_t v = 0; v < n; ++v) graph.nodes.push_back(box(1 + draw(5), 1 + draw(3)));

@@ -55,6 +55,24 @@ Rescaled rescaled(const Compiled& made, double until, const BlockLibrary& librar
   return result;
 }
 
+// Blocks keep their names and places; where a composite had a place, its parts have none.
+TEST(Rescale, KeepsPlacesOfBlocks) {
+  const auto layout_after = [](const std::string& blocks, const std::vector<BlockPlace>& layout) {
+    Diagram diagram = parse_diagram(
+        "format = \"oblique-diagram/1\"\n[blocks]\none = { type = \"constant\" }\n" + blocks, "d");
+    diagram.layout = layout;
+    const FlatDiagram flat = flatten(diagram, shipped_blocks());
+    std::size_t signals = 0;
+    for (const FlatBlock& block : flat.blocks) signals += block.definition->outputs.size();
+    const std::vector<double> peaks(signals, 0.5);
+    return rescale(diagram, flat, propose_scaling(flat, peaks), shipped_blocks()).layout;
+  };
+  const std::vector<BlockPlace> sum{{"a", 3, 4, {}}};
+  EXPECT_EQ(layout_after("a = { type = \"summer\", in = \"one\" }\n", sum), sum);
+  EXPECT_EQ(layout_after("a = { type = \"divider\", numerator = \"one\", denominator = \"one\" }\n", sum),
+            std::vector<BlockPlace>{});
+}
+
 // A solver's tolerance of 1e-10 a step over some thousand steps.
 constexpr double kSame = 1e-7;
 

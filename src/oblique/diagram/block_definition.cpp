@@ -11,6 +11,7 @@
 #include <oblique/diagram/behaviour_reader.h>
 #include <oblique/diagram/diagram.h>
 #include <oblique/diagram/formula.h>
+#include <oblique/diagram/layout_reader.h>
 #include <oblique/diagram/names.h>
 #include <oblique/diagram/points.h>
 #include <oblique/text/table_reader.h>
@@ -49,6 +50,8 @@ class BlockReader {
       read_composite(*blocks);
     } else {
       read_behaviours(reader_, definition_, diagnostics_);
+      if (reader_.find("layout") != nullptr)
+        reader_.report("layout", "a block without [blocks] has a [layout]", {}, "leave it out");
     }
     reader_.finish();
     diagnostics_.throw_if_any<DiagramError>();
@@ -181,6 +184,8 @@ class BlockReader {
                      "put the equations into a block file of their own");
     }
     definition_.blocks = read_blocks(definition_.file, blocks, diagnostics_);
+    if (const Value* const layout = reader_.table("layout"))
+      definition_.layout = read_layout(definition_.file, *layout, definition_.blocks, diagnostics_);
     if (const Value* const machine = reader_.table("machine")) {
       TableReader reader(definition_.file, *machine, "[machine]", diagnostics_);
       definition_.inverting = reader.boolean("inverting").value_or(false);

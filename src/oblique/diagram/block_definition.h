@@ -111,6 +111,16 @@ struct BlockInstance {
   bool operator==(const BlockInstance& other) const;  ///< without places and comments
 };
 
+/// Where the drawing of a diagram has a block: the middle of its outline, x to the right and y down. The unit
+/// is the distance between two inputs of a block, 16 px; the origin is anywhere.
+struct BlockPlace {
+  std::string name;
+  double x = 0, y = 0;
+  Place place;
+
+  bool operator==(const BlockPlace& other) const;  ///< without places in the file
+};
+
 /// A kind of block: `blocks/<name>.toml`. Primitive ones have behaviours, composite ones have inner blocks.
 struct BlockDefinition {
   std::string name;
@@ -130,6 +140,7 @@ struct BlockDefinition {
   std::optional<Expression> check_interval;  ///< [s] of parameters: how often at least its switches look
 
   std::vector<BlockInstance> blocks;
+  std::vector<BlockPlace> layout;  ///< of the inner blocks, where an open composite is drawn
   bool inverting =
       false;  ///< whether the inner summers and integrators invert (the composite's own convention)
 

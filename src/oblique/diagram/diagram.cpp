@@ -48,6 +48,10 @@ bool BlockInstance::operator==(const BlockInstance& other) const {
                     same_entry);
 }
 
+bool BlockPlace::operator==(const BlockPlace& other) const {
+  return name == other.name && x == other.x && y == other.y;
+}
+
 bool OutputSpec::operator==(const OutputSpec& other) const {
   return name == other.name && signal == other.signal && scale == other.scale && unit == other.unit &&
          offset == other.offset;
@@ -83,7 +87,7 @@ bool Phase::operator==(const Phase& other) const {
 bool Diagram::operator==(const Diagram& other) const {
   return title == other.title && source == other.source && machine == other.machine && run == other.run &&
          groups == other.groups && timeline == other.timeline && blocks == other.blocks &&
-         outputs == other.outputs && expectations == other.expectations;
+         outputs == other.outputs && expectations == other.expectations && layout == other.layout;
 }
 
 Entry number_setting(std::string key, double value) {

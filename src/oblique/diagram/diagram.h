@@ -118,6 +118,7 @@ struct Diagram {
   std::vector<BlockInstance> blocks;
   std::vector<OutputSpec> outputs;
   std::vector<Expectation> expectations;
+  std::vector<BlockPlace> layout;  ///< of the blocks whose place the drawing is not to choose
 
   bool operator==(const Diagram& other) const;  ///< without file, places and comments
 };
@@ -132,6 +133,9 @@ Diagram read_diagram(const std::filesystem::path& path);
 
 /// The text of a diagram, one block a line, with its comments; `parse_diagram` gives an equal diagram back.
 std::string write_diagram(const Diagram& diagram);
+
+/// The text of a `[layout]` table, after an empty line; nothing where there are no places.
+std::string write_layout(const std::vector<BlockPlace>& layout);
 
 /// Builds the value of a `settings` entry: a number, a signal, a list of weighted signals, points.
 Entry number_setting(std::string key, double value);

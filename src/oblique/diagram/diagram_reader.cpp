@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <oblique/diagram/expectations.h>
+#include <oblique/diagram/layout_reader.h>
 #include <oblique/diagram/machine_profile.h>
 #include <oblique/diagram/names.h>
 #include <oblique/diagram/timeline.h>
@@ -55,6 +56,8 @@ class DiagramReader {
       for (const OutputSpec& output : diagram_.outputs) names.push_back(output.name);
       check_expected_outputs(diagram_.expectations, names, diagnostics_);
     }
+    if (const Value* const table = reader_.table("layout"))
+      diagram_.layout = read_layout(diagram_.file, *table, diagram_.blocks, diagnostics_);
     reader_.finish();
     diagnostics_.throw_if_any<DiagramError>();
   }

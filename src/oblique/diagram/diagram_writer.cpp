@@ -111,6 +111,15 @@ void write_table(std::string_view name, const std::vector<Line>& lines, std::str
 
 }  // namespace
 
+std::string write_layout(const std::vector<BlockPlace>& layout) {
+  std::vector<Line> lines;
+  for (const BlockPlace& place : layout)
+    lines.push_back({{}, key_text(place.name), fmt::format("[{}, {}]", place.x, place.y)});
+  std::string out;
+  write_table("layout", lines, out);
+  return out;
+}
+
 std::string write_diagram(const Diagram& diagram) {
   std::string out;
   write_comment(diagram.comment, out);
@@ -173,6 +182,7 @@ std::string write_diagram(const Diagram& diagram) {
   write_table("blocks", blocks, out);
   write_table("outputs", outputs, out);
   write_table("expect", expectations, out);
+  out += write_layout(diagram.layout);
   return out;
 }
 

@@ -87,11 +87,25 @@ class Writer {
                                 output.unit,
                                 {}});
     }
+    scaled.layout = layout();
     diagnostics_.throw_if_any<DiagramError>();
     return scaled;
   }
 
  private:
+  /// The places of the blocks; none where a composite had one, since its parts have none in its stead.
+  std::vector<BlockPlace> layout() const {
+    std::vector<BlockPlace> places;
+    for (BlockPlace place : diagram_.layout) {
+      const auto block = std::find_if(flat_.blocks.begin(), flat_.blocks.end(),
+                                      [&](const FlatBlock& b) { return b.path == place.name; });
+      if (block == flat_.blocks.end()) return {};
+      place.name = names_[static_cast<std::size_t>(block - flat_.blocks.begin())];
+      places.push_back(std::move(place));
+    }
+    return places;
+  }
+
   std::string free_name(std::string path) {
     std::replace(path.begin(), path.end(), '.', '_');
     std::string name = path;

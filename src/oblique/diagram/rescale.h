@@ -34,7 +34,7 @@ AmplitudeScaling propose_scaling(const FlatDiagram& flat, std::span<const double
 /// adapted, so that every output is what it was. The result is flat: composites are laid out, since their
 /// inner signals are scaled too ("C.cosine" becomes C_cosine). `diagram` is that of `flat`; constants and
 /// sums that only an input of a composite could hold become blocks of the library. Throws DiagramError where
-/// a block cannot stand in the flat file.
+/// a block cannot stand in the flat file. A `[layout]` is kept where no composite has a place in it.
 Diagram rescale(const Diagram& diagram, const FlatDiagram& flat, const AmplitudeScaling& scaling,
                 const BlockLibrary& library);
 

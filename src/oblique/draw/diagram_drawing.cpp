@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include <oblique/draw/schematic.h>
+#include <oblique/draw/sheet.h>
 #include <oblique/draw/symbols.h>
 
 namespace oblique {
@@ -12,64 +13,9 @@ namespace {
 using Eigen::Vector2d;
 using schematic::Block;
 using schematic::Schematic;
-using schematic::Shape;
+using schematic::Sheet;
 
-constexpr int kLoopWeight = 3;  // servo loops stay together
 constexpr double kMargin = 24;
-
-/// A schematic with its layout, and those of its open composites.
-struct Sheet {
-  const Schematic* schematic = nullptr;
-  std::vector<Shape> shapes;  ///< of each block
-  std::vector<Sheet> inside;  ///< of each block; without layout where it is not open
-  DiagramLayout layout;
-};
-
-LayoutGraph graph_of(const Schematic& schematic, const std::vector<Shape>& shapes) {
-  LayoutGraph graph;
-  for (const Shape& shape : shapes) graph.nodes.push_back(shape.node);
-  for (std::size_t b = 0; b < schematic.blocks.size(); ++b) {
-    const auto& inputs = schematic.blocks[b].inputs;
-    for (std::size_t k = 0; k < inputs.size(); ++k) {
-      if (!inputs[k].signal) continue;
-      const std::size_t from = inputs[k].signal->block;
-      graph.wires.push_back({from, inputs[k].signal->output, b, k, inputs[k].in_loop ? kLoopWeight : 1});
-    }
-  }
-  return graph;
-}
-
-/// The frame of an open composite: its pins are where the terminals stand inside.
-Shape open_shape(const Block& block, const Sheet& inside) {
-  std::vector<double> inputs, outputs;
-  const auto& blocks = inside.schematic->blocks;
-  for (const schematic::Input& input : block.inputs) {
-    for (std::size_t b = 0; b < blocks.size(); ++b) {
-      if (blocks[b].kind == Block::Kind::input && blocks[b].name == input.port)
-        inputs.push_back(inside.layout.corners[b].y() + inside.shapes[b].node.outputs[0]);
-    }
-  }
-  for (const std::string& output : block.outputs) {
-    for (std::size_t b = 0; b < blocks.size(); ++b) {
-      if (blocks[b].kind == Block::Kind::output && blocks[b].name == output)
-        outputs.push_back(inside.layout.corners[b].y() + inside.shapes[b].node.inputs[0]);
-    }
-  }
-  return schematic::frame_shape(block, inside.layout.size, inputs, outputs);
-}
-
-Sheet make_sheet(const Schematic& schematic, SymbolStyle style) {
-  Sheet sheet;
-  sheet.schematic = &schematic;
-  for (const Block& block : schematic.blocks) {
-    sheet.inside.emplace_back();
-    if (!block.inside.empty()) sheet.inside.back() = make_sheet(block.inside.front(), style);
-    sheet.shapes.push_back(block.inside.empty() ? schematic::shape_of(block, style)
-                                                : open_shape(block, sheet.inside.back()));
-  }
-  sheet.layout = lay_out(graph_of(schematic, sheet.shapes));
-  return sheet;
-}
 
 /// The colour of a net: that of the servo loop that it is a part of.
 Ink net_ink(const Schematic& schematic, std::size_t from, std::size_t output) {
@@ -128,7 +74,7 @@ LayoutQuality quality_of(const Sheet& sheet) {
 
 Picture draw_diagram(const Diagram& diagram, const BlockLibrary& library, const DiagramDrawing& options) {
   const Schematic schematic = schematic::make_schematic(diagram, library, options.depth);
-  const Sheet sheet = make_sheet(schematic, options.symbols);
+  const Sheet sheet = schematic::make_sheet(schematic, options.symbols);
   constexpr double kTitleSize = 14;
   const double heading = diagram.title.empty() ? 0 : 32;
   Picture picture;
@@ -148,7 +94,13 @@ Picture draw_diagram(const Diagram& diagram, const BlockLibrary& library, const 
 LayoutQuality drawing_quality(const Diagram& diagram, const BlockLibrary& library,
                               const DiagramDrawing& options) {
   const Schematic schematic = schematic::make_schematic(diagram, library, options.depth);
-  return quality_of(make_sheet(schematic, options.symbols));
+  return quality_of(schematic::make_sheet(schematic, options.symbols));
+}
+
+std::vector<BlockPlace> drawn_places(const Diagram& diagram, const BlockLibrary& library,
+                                     SymbolStyle symbols) {
+  const Schematic schematic = schematic::make_schematic(diagram, library, 0);
+  return schematic::places_of(schematic::make_sheet(schematic, symbols));
 }
 
 }  // namespace oblique

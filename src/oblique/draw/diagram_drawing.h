@@ -22,10 +22,16 @@ struct DiagramDrawing {
 
 /// A block diagram in the notation of analog computers: signals run from left to right, what is fed back runs
 /// around; weights stand at the inputs, a small circle marks what inverts, every servo loop has a colour. A
-/// constant stands at each input that it feeds. The symbol is that of the block's file; a box with the names
-/// of its ports where there is none. Marks carry the ids "block-PATH" and "net-PATH.OUTPUT". Throws
-/// DiagramError with all findings about the wiring.
+/// constant stands at each input that it feeds, what the diagram's outputs measure is written at the signal.
+/// The symbol is that of the block's file; a box with the names of its ports where there is none. Places of
+/// the diagram's `[layout]` win over the automatic ones. Marks carry the ids "block-PATH" and
+/// "net-PATH.OUTPUT". Throws DiagramError with all findings about the wiring and the layout.
 Picture draw_diagram(const Diagram& diagram, const BlockLibrary& library, const DiagramDrawing& options = {});
+
+/// Where that picture has the blocks while composites are closed: as a `[layout]` in the diagram's file, it
+/// gives these places. Throws like `draw_diagram`.
+std::vector<BlockPlace> drawn_places(const Diagram& diagram, const BlockLibrary& library,
+                                     SymbolStyle symbols = SymbolStyle::classic);
 
 /// How easily that picture reads: crossings and bends of its wires, those in open composites included. Throws
 /// like `draw_diagram`.

@@ -162,6 +162,53 @@ std::vector<std::size_t> layers_of(std::size_t n, const std::vector<Arc>& forwar
   return layer;
 }
 
+/// Moves wide boxes, which are open composites, into layers that are wide already where they have the choice:
+/// the picture becomes narrower.
+void share_widths(const LayoutGraph& graph, const std::vector<Arc>& forward,
+                  std::vector<std::size_t>& layer) {
+  constexpr double kWide = 320;  // [px]
+  constexpr double kWire = 24;   // a wire longer by a layer is as bad as a picture wider by this [px]
+  struct Wide {
+    std::size_t node, low, high;
+    int pull = 0;  // to the left
+  };
+  const std::size_t n = graph.nodes.size(), layers = *std::max_element(layer.begin(), layer.end()) + 1;
+  std::vector<double> widths(layers);
+  std::vector<Wide> wide;
+  for (std::size_t v = 0; v < n; ++v) {
+    const LayoutNode& node = graph.nodes[v];
+    Wide w{v, 0, layers - 1};
+    for (const Arc& arc : forward) {
+      if (arc.from == v) w.high = std::min(w.high, layer[arc.to] - 1);
+      if (arc.to == v) w.low = std::max(w.low, layer[arc.from] + 1);
+      if (arc.from == v || arc.to == v) w.pull += arc.from == v ? -arc.weight : arc.weight;
+    }
+    if (node.rank == LayoutRank::free && node.size.x() > kWide && w.low < w.high) {
+      wide.push_back(w);
+    } else {
+      widths[layer[v]] = std::max(widths[layer[v]], node.size.x());
+    }
+  }
+  std::stable_sort(wide.begin(), wide.end(), [&](const Wide& a, const Wide& b) {
+    return graph.nodes[a.node].size.x() > graph.nodes[b.node].size.x();
+  });
+  for (Wide& w : wide) {
+    for (const Arc& arc : forward) {  // others may have moved
+      if (arc.from == w.node) w.high = std::min(w.high, layer[arc.to] - 1);
+      if (arc.to == w.node) w.low = std::max(w.low, layer[arc.from] + 1);
+    }
+    const double width = graph.nodes[w.node].size.x();
+    const auto cost = [&](std::size_t l) {
+      return std::max(0.0, width - widths[l]) + kWire * w.pull * static_cast<double>(l);
+    };
+    std::size_t& best = layer[w.node];
+    for (std::size_t l = w.low; l <= w.high; ++l) {
+      if (cost(l) < cost(best)) best = l;
+    }
+    widths[best] = std::max(widths[best], width);
+  }
+}
+
 }  // namespace
 
 std::vector<std::size_t> assign_layers(const LayoutGraph& graph) {
@@ -177,6 +224,7 @@ std::vector<std::size_t> assign_layers(const LayoutGraph& graph) {
     if (position[arc.from] < position[arc.to]) forward.push_back(arc);
   }
   std::vector<std::size_t> layer = layers_of(n, forward, order);
+  share_widths(graph, forward, layer);
   const bool has_first = std::any_of(graph.nodes.begin(), graph.nodes.end(),
                                      [](const LayoutNode& node) { return node.rank == LayoutRank::first; });
   std::size_t least = std::numeric_limits<std::size_t>::max(), most = 0;

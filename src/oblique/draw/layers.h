@@ -88,6 +88,9 @@ struct RoutedChannel {
 };
 RoutedChannel route_channel(const Plan& plan, const std::vector<Branch>& branches);
 
+/// All these steps, one after the other; nothing of the result's quality is measured yet.
+DiagramLayout lay_out_in_layers(const LayoutGraph& graph);
+
 /// y of a pin.
 inline double y_of(const Plan& plan, const Pin& pin) {
   return plan.slots[pin.slot].y + pin.offset;

@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 
 #include <oblique/draw/layers.h>
+#include <oblique/draw/layout_steps.h>
+#include <oblique/draw/wire_pieces.h>
 
 namespace oblique {
 namespace {
@@ -17,7 +20,7 @@ using layered::Plan;
 using layered::RoutedChannel;
 using layered::Slot;
 
-constexpr double kChannelMargin = 1.5 * kLayoutGrid;
+constexpr double kChannelMargin = kLayoutGrid;
 
 /// x of the layers' columns and of the channels between them.
 struct Columns {
@@ -48,29 +51,6 @@ Columns columns_of(const LayoutGraph& graph, const Plan& plan, const std::vector
   add_channel(plan.layers.size());
   columns.width = x;
   return columns;
-}
-
-/// Joins pieces that touch or overlap in one line.
-std::vector<WirePiece> merged(std::vector<WirePiece> pieces) {
-  const auto along = [](const WirePiece& p) {
-    return p.horizontal() ? std::array{p.from.x(), p.to.x()} : std::array{p.from.y(), p.to.y()};
-  };
-  const auto across = [](const WirePiece& p) { return p.horizontal() ? p.from.y() : p.from.x(); };
-  std::erase_if(pieces, [](const WirePiece& p) { return p.from == p.to; });
-  std::sort(pieces.begin(), pieces.end(), [&](const WirePiece& a, const WirePiece& b) {
-    if (a.horizontal() != b.horizontal()) return a.horizontal();
-    return across(a) != across(b) ? across(a) < across(b) : along(a) < along(b);
-  });
-  std::vector<WirePiece> result;
-  for (const WirePiece& piece : pieces) {
-    if (!result.empty() && result.back().horizontal() == piece.horizontal() &&
-        across(result.back()) == across(piece) && along(piece)[0] <= along(result.back())[1]) {
-      if (along(piece)[1] > along(result.back())[1]) result.back().to = piece.to;
-    } else {
-      result.push_back(piece);
-    }
-  }
-  return result;
 }
 
 /// The wires of all nets as pieces, from the columns that the channels were given.
@@ -144,78 +124,42 @@ class Drafter {
   DiagramLayout& layout_;
 };
 
-/// Finds the junctions of a net, and counts its corners.
-std::size_t mark_junctions(RoutedNet& net) {
-  std::size_t bends = 0;
-  for (const WirePiece& vertical : net.pieces) {
-    if (vertical.horizontal()) continue;
-    for (const WirePiece& piece : net.pieces) {
-      if (!piece.horizontal()) continue;
-      const Vector2d at(vertical.from.x(), piece.from.y());
-      if (at.x() < piece.from.x() || at.x() > piece.to.x() || at.y() < vertical.from.y() ||
-          at.y() > vertical.to.y())
-        continue;
-      const int arms = (at.x() > piece.from.x()) + (at.x() < piece.to.x()) + (at.y() > vertical.from.y()) +
-                       (at.y() < vertical.to.y());
-      if (arms > 2) net.junctions.push_back(at);
-      if (arms == 2) ++bends;
-    }
-  }
-  return bends;
-}
-
-std::size_t count_crossings(const std::vector<RoutedNet>& nets) {
-  std::vector<std::pair<const WirePiece*, std::size_t>> horizontal, vertical;
-  for (std::size_t n = 0; n < nets.size(); ++n) {
-    for (const WirePiece& piece : nets[n].pieces)
-      (piece.horizontal() ? horizontal : vertical).push_back({&piece, n});
-  }
-  std::sort(horizontal.begin(), horizontal.end(),
-            [](const auto& a, const auto& b) { return a.first->from.y() < b.first->from.y(); });
-  std::size_t crossings = 0;
-  for (const auto& [v, net] : vertical) {
-    auto at = std::upper_bound(horizontal.begin(), horizontal.end(), v->from.y(),
-                               [](double y, const auto& h) { return y < h.first->from.y(); });
-    for (; at != horizontal.end() && at->first->from.y() < v->to.y(); ++at) {
-      if (at->second != net && at->first->from.x() < v->from.x() && v->from.x() < at->first->to.x())
-        ++crossings;
-    }
-  }
-  return crossings;
-}
-
 }  // namespace
 
-DiagramLayout lay_out(const LayoutGraph& graph) {
+DiagramLayout layered::lay_out_in_layers(const LayoutGraph& graph) {
   DiagramLayout layout;
-  if (graph.nodes.empty()) return layout;
   Plan plan = layered::make_plan(graph, layered::assign_layers(graph));
   layered::reduce_crossings(plan);
   layered::place_slots(plan);
   std::vector<RoutedChannel> channels;
   for (const auto& branches : plan.channels) channels.push_back(layered::route_channel(plan, branches));
   const Columns columns = columns_of(graph, plan, channels);
-  double height = 0;
   for (std::size_t v = 0; v < graph.nodes.size(); ++v) {
     const Slot& slot = plan.slots[v];
     const double spare = columns.right[slot.layer] - columns.left[slot.layer] - graph.nodes[v].size.x();
     const double share = graph.nodes[v].rank == LayoutRank::first  ? 0
                          : graph.nodes[v].rank == LayoutRank::last ? 1
                                                                    : 0.5;
-    layout.corners.push_back({columns.left[slot.layer] + share * spare, slot.y});
-    height = std::max(height, slot.y + slot.height);
+    const double indent = std::floor(share * spare / kLayoutGrid) * kLayoutGrid;
+    layout.corners.push_back({columns.left[slot.layer] + indent, slot.y});
   }
   Drafter(graph, plan, channels, columns, layout);
-  for (RoutedNet& net : layout.nets) {
-    layout.quality.bends += mark_junctions(net);
-    for (const WirePiece& piece : net.pieces) {
-      layout.quality.wire_length += (piece.to - piece.from).norm();
-      height = std::max(height, piece.to.y());
-    }
+  return layout;
+}
+
+DiagramLayout lay_out(const LayoutGraph& graph) {
+  DiagramLayout layout;
+  if (graph.nodes.empty()) return layout;
+  const bool is_given = std::any_of(graph.nodes.begin(), graph.nodes.end(),
+                                    [](const LayoutNode& node) { return node.place.has_value(); });
+  if (is_given) {
+    layout = lay_out_around(graph);
+  } else {
+    layout = layered::lay_out_in_layers(graph);
+    wrap(graph, layout);
+    tidy(graph, layout);
   }
-  layout.quality.crossings = count_crossings(layout.nets);
-  layout.quality.feedbacks = plan.feedbacks;
-  layout.size = {columns.width, height};
+  measure(graph, layout);
   return layout;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -21,6 +22,7 @@ struct LayoutNode {
   Eigen::Vector2d size = Eigen::Vector2d::Zero();  ///< [px]
   std::vector<double> inputs, outputs;             ///< below the upper edge [px]
   LayoutRank rank = LayoutRank::free;
+  std::optional<Eigen::Vector2d> place;  ///< of the upper left corner, on the grid [px]; none: chosen
 };
 
 /// A wire from an output to an input.
@@ -62,12 +64,17 @@ struct DiagramLayout {
   std::vector<RoutedNet> nets;
   Eigen::Vector2d size = Eigen::Vector2d::Zero();
   LayoutQuality quality;
+  std::vector<std::size_t> lost;  ///< nets that found no way among boxes whose places are given
 };
 
 /// A layered layout (K. Sugiyama, S. Tagawa, M. Toda, "Methods for visual understanding of hierarchical
 /// system structures", 1981): signals go from left to right, as few as can be back; boxes do not overlap and
 /// no wire crosses a box. Wires from one output share their way. Sizes and pins must lie on the grid. The
 /// same graph gives the same layout.
+///
+/// Boxes with a `place` stand there, apart from a shift of the whole that leaves no coordinate below 0; they
+/// must be apart by more than the grid. The others are laid out by themselves below them, and terminals
+/// (`first`, `last`) at the sides.
 DiagramLayout lay_out(const LayoutGraph& graph);
 
 }  // namespace oblique

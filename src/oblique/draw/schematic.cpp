@@ -17,11 +17,18 @@ using wiring::Scope;
 using wiring::Source;
 using wiring::WiredBlock;
 
-/// A composite around the blocks: none for the diagram itself.
+/// An output of the diagram: its signal, and what is written there.
+struct Record {
+  Source source;
+  std::string text;
+};
+
+/// What is around the blocks: a composite, or the diagram itself.
 struct Around {
   const Scope* scope = nullptr;
+  const std::vector<BlockPlace>* layout = nullptr;
+  std::vector<Record> records;  ///< of the diagram
   std::vector<double> parameters;
-  std::vector<bool> connected;         ///< inputs
   std::vector<std::string> outputs;    ///< as on its frame
   std::vector<Source> signals_inside;  ///< those of the outputs beyond the definition's
 };
@@ -48,7 +55,10 @@ class Builder {
     if (scope_.composite != nullptr) add_inputs();
     for (std::size_t i = 0; i < scope_.blocks.size(); ++i) connect(i);
     if (scope_.composite != nullptr) add_outputs();
+    for (const Record& record : around_.records) write_record(record);
+    mark_wired();
     for (std::size_t i = 0; i < scope_.blocks.size(); ++i) open(i);
+    schematic_.layout = around_.layout;
     find_servo_loops(schematic_);
     return std::move(schematic_);
   }
@@ -76,6 +86,8 @@ class Builder {
     for (const Source& source : around_.signals_inside) shown[source.blocks.front()] = true;
     for (std::size_t i = 0; i < scope_.blocks.size(); ++i)
       stands_at_inputs_.push_back(is_constant(scope_.blocks[i]) && used[i] && !shown[i]);
+    hidden_ = stands_at_inputs_;
+    for (const Record& record : around_.records) hidden_[record.source.blocks.front()] = false;
   }
 
   double value_of(const wiring::Constant& constant) const {
@@ -95,7 +107,7 @@ class Builder {
   void add_block(std::size_t i) {
     const WiredBlock& wired = scope_.blocks[i];
     index_.push_back(schematic_.blocks.size());
-    if (stands_at_inputs_[i]) return;
+    if (hidden_[i]) return;
     Block block;
     block.name = wired.instance->name;
     block.label = wired.instance->label;
@@ -110,7 +122,6 @@ class Builder {
   void add_inputs() {
     for (std::size_t k = 0; k < scope_.composite->inputs.size(); ++k) {
       inputs_.push_back(schematic_.blocks.size());
-      if (!around_.connected[k]) continue;
       Block port;
       port.kind = Block::Kind::input;
       port.name = scope_.composite->inputs[k].name;
@@ -119,10 +130,13 @@ class Builder {
     }
   }
 
+  /// "+1": the reference of the machine has a sign.
+  static std::string reference_text(double value) { return (value == 1 ? "+" : "") + number_text(value); }
+
   std::string constant_text(std::size_t i) const {
     const WiredBlock& wired = scope_.blocks[i];
     const double value = parameters_of(wired).front();
-    if (std::abs(value) == 1) return (value > 0 ? "+" : "") + number_text(value);
+    if (std::abs(value) == 1) return reference_text(value);
     const std::string& name = wired.instance->label.empty() ? wired.instance->name : wired.instance->label;
     constexpr std::size_t kLongest = 12;
     return name.size() > kLongest ? number_text(value) : fmt::format("{} = {}", name, number_text(value));
@@ -158,7 +172,6 @@ class Builder {
     std::vector<Input> inputs;
     for (std::size_t k = 0; k < wired.inputs.size(); ++k) {
       for (const auto& term : wired.inputs[k].terms) {
-        if (term.source.own_input && !around_.connected[*term.source.own_input]) continue;
         Input input;
         input.port = wired.definition->inputs[k].name;
         input.port_index = k;
@@ -170,6 +183,10 @@ class Builder {
         }
         inputs.push_back(std::move(input));
       }
+      // so that composites of one kind look alike whichever of their inputs are used
+      const InputPort& port = wired.definition->inputs[k];
+      if (wired.inside != nullptr && !wired.inputs[k].connected && port.default_value)
+        inputs.push_back({port.name, k, 1, {}, reference_text(*port.default_value), false, {}});
     }
     schematic_.blocks[index_[i]].inputs = std::move(inputs);
   }
@@ -187,6 +204,23 @@ class Builder {
     }
   }
 
+  void mark_wired() {
+    for (Block& block : schematic_.blocks) block.wired.resize(block.outputs.size());
+    for (const Block& block : schematic_.blocks) {
+      for (const Input& input : block.inputs) {
+        if (input.signal) schematic_.blocks[input.signal->block].wired[input.signal->output] = true;
+      }
+    }
+  }
+
+  void write_record(const Record& record) {
+    const Signal signal = signal_of(record.source);
+    Block& block = schematic_.blocks[signal.block];
+    block.records.resize(block.outputs.size());
+    std::string& text = block.records[signal.output];
+    text += (text.empty() ? "" : ", ") + record.text;
+  }
+
   void open(std::size_t i) {
     const WiredBlock& wired = scope_.blocks[i];
     if (depth_ <= 0 || wired.inside == nullptr) return;
@@ -194,8 +228,7 @@ class Builder {
     Around around;
     around.scope = wired.inside;
     around.parameters = block.parameters;
-    around.connected.resize(wired.inputs.size());
-    for (const Input& input : block.inputs) around.connected[input.port_index] = true;
+    around.layout = &wired.definition->layout;
     around.outputs = block.outputs;
     around.signals_inside = inside_[i];
     block.inside.push_back(Builder(around, depth_ - 1).build());
@@ -206,26 +239,26 @@ class Builder {
   int depth_;
   Schematic schematic_;
   std::vector<bool> stands_at_inputs_;
+  std::vector<bool> hidden_;                           ///< those of them that have no symbol of their own
   std::vector<std::size_t> index_;                     ///< in the schematic, of each block of the scope
   std::vector<std::size_t> inputs_;                    ///< of each input of the composite
   std::map<std::size_t, std::vector<Source>> inside_;  ///< signals inside a composite that are used outside
 };
 
-/// What is reached from `start` along `next` without going through what `ends` marks.
-std::vector<bool> reached(std::size_t start, const std::vector<std::vector<std::size_t>>& next,
-                          const std::vector<bool>& ends) {
-  std::vector<bool> seen(next.size());
-  std::vector<std::size_t> stack{start};
-  while (!stack.empty()) {
-    const std::size_t at = stack.back();
-    stack.pop_back();
-    for (const std::size_t to : next[at]) {
-      if (seen[to]) continue;
-      seen[to] = true;
-      if (!ends[to]) stack.push_back(to);
-    }
+/// "side [m]".
+std::string record_text(const OutputSpec& output) {
+  const bool has_unit = output.unit != OutputSpec{}.unit && output.unit != "1" && !output.unit.empty();
+  return has_unit ? fmt::format("{} [{}]", output.name, output.unit) : output.name;
+}
+
+std::vector<Record> records_of(const Diagram& diagram, const Scope& scope, Diagnostics& diagnostics) {
+  std::vector<Record> records;
+  for (const OutputSpec& output : diagram.outputs) {
+    const std::string subject = fmt::format("output '{}'", output.name);
+    if (auto source = find_signal(scope, output.signal, output.place.position, subject, diagnostics))
+      records.push_back({std::move(*source), record_text(output)});
   }
-  return seen;
+  return records;
 }
 
 }  // namespace
@@ -236,54 +269,15 @@ std::string number_text(double value) {
   return (value < 0 ? "−" : "") + text;
 }
 
-void find_servo_loops(Schematic& schematic) {
-  const std::size_t n = schematic.blocks.size();
-  std::vector<std::vector<std::size_t>> next(n), before(n);
-  std::vector<bool> ends(n);
-  for (std::size_t b = 0; b < n; ++b) {
-    const BlockDefinition* const definition = schematic.blocks[b].definition;
-    ends[b] = definition != nullptr &&
-              (definition->symbol == "open-amplifier" || definition->symbol == "integrator");
-    for (const Input& input : schematic.blocks[b].inputs) {
-      if (!input.signal) continue;
-      next[input.signal->block].push_back(b);
-      before[b].push_back(input.signal->block);
-    }
-  }
-  for (std::size_t b = 0; b < n; ++b) {
-    const BlockDefinition* const definition = schematic.blocks[b].definition;
-    if (definition == nullptr || definition->symbol != "open-amplifier") continue;
-    const std::vector<bool> after = reached(b, next, ends), ahead = reached(b, before, ends);
-    if (!after[b]) continue;
-    const std::size_t loop = schematic.loops++;
-    for (std::size_t k = 0; k < n; ++k) {
-      const bool on_the_way = after[k] && ahead[k] && !ends[k];
-      if (k == b || (on_the_way && !schematic.blocks[k].loop)) schematic.blocks[k].loop = loop;
-    }
-  }
-  std::map<std::pair<std::size_t, std::size_t>, std::size_t> nets;
-  for (Block& block : schematic.blocks) {
-    for (Input& input : block.inputs) {
-      input.in_loop = input.signal && block.loop && schematic.blocks[input.signal->block].loop == block.loop;
-      if (input.in_loop) nets[{input.signal->block, input.signal->output}] = *block.loop;
-    }
-  }
-  for (Block& block : schematic.blocks) {
-    for (Input& input : block.inputs) {
-      if (!input.signal) continue;
-      const auto net = nets.find({input.signal->block, input.signal->output});
-      if (net != nets.end()) input.loop = net->second;
-    }
-  }
-}
-
 Schematic make_schematic(const Diagram& diagram, const BlockLibrary& library, int depth) {
   Diagnostics diagnostics;
   wiring::Resolver resolver(library, diagnostics);
   const Scope scope = resolver.diagram(diagram);
-  diagnostics.throw_if_any<DiagramError>();
   Around around;
   around.scope = &scope;
+  around.layout = &diagram.layout;
+  around.records = records_of(diagram, scope, diagnostics);
+  diagnostics.throw_if_any<DiagramError>();
   return Builder(around, depth).build();
 }
 

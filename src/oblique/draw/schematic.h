@@ -43,6 +43,8 @@ struct Block {
   std::vector<bool> given;                      ///< whether the file gives it
   std::vector<Input> inputs;
   std::vector<std::string> outputs;  ///< names: those of the definition, then signals inside that are used
+  std::vector<bool> wired;           ///< whether a wire starts at an output
+  std::vector<std::string> records;  ///< of each output, where it is measured: under what name, in what unit
   bool inverts = false;
   std::optional<std::size_t> loop;  ///< the servo loop that it is a part of
   std::vector<Schematic> inside;    ///< of an open composite: one
@@ -51,11 +53,12 @@ struct Block {
 /// The blocks of a diagram or of an open composite.
 struct Schematic {
   std::vector<Block> blocks;
-  std::size_t loops = 0;  ///< servo loops
+  std::size_t loops = 0;                            ///< servo loops
+  const std::vector<BlockPlace>* layout = nullptr;  ///< as the file has it
 };
 
 /// Resolves the names of a diagram; composites are open `depth` levels deep. Throws DiagramError with all
-/// findings about its wiring. `library` must outlive the result.
+/// findings about its wiring and outputs. `diagram` and `library` must outlive the result.
 Schematic make_schematic(const Diagram& diagram, const BlockLibrary& library, int depth);
 
 /// Gives every servo loop a number: a block with an open amplifier, and what lies on a way from its output

@@ -71,15 +71,18 @@ void choose(const Block& block, SymbolStyle style, Shape& shape) {
   const BlockDefinition& definition = *block.definition;
   const SymbolEntry* const entry = find_symbol(definition.symbol);
   const bool plain_ports = definition.outputs.size() == 1 && block.outputs.size() == 1;
-  if (entry == nullptr || !plain_ports) {
+  if (entry == nullptr || entry->classic == Form::ports || !plain_ports) {
     shape.form = Form::ports;
     shape.text = definition.name;
+    if (entry == nullptr) return;
+    shape.icon = entry->icon;
+    shape.sign = style == SymbolStyle::classic ? entry->classic_text : entry->din_text;
     return;
   }
   const bool classic = style == SymbolStyle::classic;
   shape.form = classic ? entry->classic : Form::box;
   shape.text = classic ? entry->classic_text : entry->din_text;
-  shape.icon = entry->icon;
+  if (shape.form == Form::box && entry->classic == Form::box) shape.icon = entry->icon;
   if (definition.symbol == "function") shape.text = function_text(definition);
   if (definition.symbol == "potentiometer" || definition.symbol == "gain" || definition.symbol == "constant")
     shape.text = value_text(block, definition.symbol);
@@ -118,24 +121,39 @@ double widest(const std::vector<std::string>& texts, double size) {
   return width;
 }
 
+/// Room on the right for what is written at the outputs.
+double records_width(const Block& block) {
+  const double text = widest(block.records, kSmall);
+  return text == 0 ? 0 : text + kRecordIndent + 2 * kBubble + 4;
+}
+
+/// How long a triangle of this height must be to hold a text at its back.
+double triangle_length(double text, double size, double height) {
+  return (text + 6) / (1 - (size + 2) / height);
+}
+
 Vector2d body_size(const Block& block, const Shape& shape) {
   const double pins = static_cast<double>(std::max(block.inputs.size(), block.outputs.size()));
   const double tall = std::max(3 * kPitch, kPitch * (pins + 1));
-  const double text = text_width(shape.text, kText);
+  const double text = text_width(shape.text, text_size(shape));
+  const double length = triangle_length(text, text_size(shape), tall);
   switch (shape.form) {
     case Form::triangle:
-      return {std::clamp(0.9 * tall, 44.0, 64.0), tall};
+      return {on_grid(std::max(std::clamp(0.9 * tall, 44.0, 64.0), length)), tall};
     case Form::open_amplifier:
-      return {std::clamp(0.9 * tall, 52.0, 64.0), tall};
+      return {on_grid(std::max(std::clamp(0.9 * tall, 52.0, 64.0), length)), tall};
     case Form::integrator:
-      return {std::clamp(0.9 * tall, 44.0, 64.0) + 12, tall};
+      return {on_grid(kBar + std::max(std::clamp(0.9 * tall, 44.0, 64.0), length)), tall};
     case Form::circle:
       return {3 * kPitch, 3 * kPitch};
     case Form::ports: {
-      std::vector<std::string> ports;
-      for (const Input& input : block.inputs) ports.push_back(input.port);
-      const double inner = widest(ports, kSmall) + widest(block.outputs, kSmall) + 28;
-      return {on_grid(std::max(inner, text + 16)), kPitch * (pins + 1) + kPitch};
+      std::vector<std::string> inputs, outputs;
+      for (const Input& input : block.inputs) inputs.push_back(port_sign(block, input.port).text);
+      for (const std::string& output : block.outputs) outputs.push_back(port_sign(block, output).text);
+      const double between = (shape.icon.empty() && shape.sign.empty() ? 28 : 32 + 2 * kIcon);
+      const double heading = text_width(shape.text, kSmall, true);
+      return {on_grid(std::max(widest(inputs, kSmall) + widest(outputs, kSmall) + between, heading + 16)),
+              kPitch * (pins + 1) + kPitch};
     }
     case Form::terminal:
       return {on_grid(text_width(block.name, kSmall) + 14), kPitch * std::max(pins, 1.0)};
@@ -154,13 +172,33 @@ std::vector<double> pins_of(std::size_t n, const Shape& shape) {
   return pins;
 }
 
+/// The middle of the text inside.
+double text_centre(const Shape& shape) {
+  const double w = shape.body.x(), half = text_width(shape.text, text_size(shape)) / 2;
+  switch (shape.form) {
+    case Form::triangle:
+      return std::max(0.36 * w, half + 3);
+    case Form::open_amplifier:
+      return std::max(0.4 * w, half + 3);
+    case Form::integrator:
+      return kBar + std::max(0.33 * (w - kBar), half + 3);
+    default:
+      return w / 2;
+  }
+}
+
 }  // namespace
+
+double text_size(const Shape& shape) {
+  if (shape.form == Form::circle || shape.form == Form::integrator) return kSmall;
+  return shape.text == "×" || shape.text == "÷" ? 18 : kText;
+}
 
 std::string lead_text(const Block& block, const Input& input) {
   if (block.kind != Block::Kind::block) return {};
   std::string text = input.weight == 1 ? "" : number_text(input.weight);
   const SymbolEntry* const entry = find_symbol(block.definition->symbol);
-  const bool named_inside = entry == nullptr || block.outputs.size() > 1;
+  const bool named_inside = entry == nullptr || entry->classic == Form::ports || block.outputs.size() > 1;
   const bool first_of_sums = input.port_index == 0 && block.definition->inputs.front().sum;
   if (named_inside || entry->inputs_alike || block.definition->inputs.size() == 1 || first_of_sums)
     return text;
@@ -182,11 +220,12 @@ Shape shape_of(const Block& block, SymbolStyle style) {
   choose(block, style, shape);
   write_caption(block, shape);
   shape.body = body_size(block, shape);
+  shape.text_centre = text_centre(shape);
   double left = 6;
   left = std::max(left, beside_width(block) + 4);
   const double caption = widest(shape.caption, kCaption) / 2 - shape.body.x() / 2;
   left = on_grid(std::max(left, caption + 2));
-  const double right = on_grid(std::max(8.0, caption + 2));
+  const double right = on_grid(std::max({8.0, caption + 2, records_width(block)}));
   const double above = shape.initial.empty() ? 0 : kPitch;
   shape.corner = {left, above};
   const double below = on_grid(2 + kCaption * 1.15 * static_cast<double>(shape.caption.size()));
@@ -209,7 +248,8 @@ Shape frame_shape(const Block& block, const Vector2d& inside, const std::vector<
   const double heading = text_width(title, kText) * 1.1 + text_width(shape.text, kSmall) + 40;
   shape.body = {std::max(on_grid(inside.x()), on_grid(heading)),
                 on_grid(inside.y()) + kFrameTop + kFrameMargin};
-  shape.node.size = {shape.corner.x() + shape.body.x() + kLayoutGrid, shape.body.y()};
+  const double right = on_grid(std::max(kLayoutGrid, records_width(block)));
+  shape.node.size = {shape.corner.x() + shape.body.x() + right, shape.body.y()};
   for (const double y : inputs) shape.node.inputs.push_back(y + kFrameTop);
   for (const double y : outputs) shape.node.outputs.push_back(y + kFrameTop);
   return shape;

@@ -18,7 +18,7 @@ constexpr std::array kSymbols{
     SymbolEntry{"integrator", Form::integrator, "", "∫", ""},
     SymbolEntry{"inverter", Form::triangle, "", "1", ""},
     SymbolEntry{"open-amplifier", Form::open_amplifier, "∞", "∞", ""},
-    SymbolEntry{"potentiometer", Form::circle, "", "", ""},
+    SymbolEntry{"potentiometer", Form::circle, "", "", "potentiometer"},
     SymbolEntry{"gain", Form::box, "", "", ""},
     SymbolEntry{"constant", Form::circle, "", "", ""},
     SymbolEntry{"multiplier", Form::box, "×", "×", "", true},
@@ -44,6 +44,16 @@ constexpr std::array kSymbols{
     SymbolEntry{"relay", Form::box, "", "", "contact"},
     SymbolEntry{"noise", Form::box, "", "", "noise"},
     SymbolEntry{"source", Form::box, "", "", "source"},
+    SymbolEntry{"monostable", Form::box, "", "", "monostable"},
+    SymbolEntry{"track-and-store", Form::box, "", "", "track-and-store"},
+    SymbolEntry{"flip-flop", Form::ports, "", "", ""},
+    SymbolEntry{"jk-flip-flop", Form::ports, "", "", ""},
+    SymbolEntry{"counter", Form::ports, "", "", "counter"},
+    SymbolEntry{"resolver", Form::ports, "", "", "resolver"},
+    SymbolEntry{"sine-cosine-generator", Form::ports, "", "", "source"},
+    SymbolEntry{"crank", Form::ports, "", "", "crank"},
+    SymbolEntry{"dyad", Form::ports, "", "", "dyad"},
+    SymbolEntry{"triangle", Form::ports, "", "", "triangle"},
 };
 // clang-format on
 
@@ -51,6 +61,45 @@ struct IconEntry {
   const char* name;
   Lines lines;
 };
+
+/// A circle, or the arc of one, between two angles.
+std::vector<Vector2d> arc(const Vector2d& centre, double radius, double from, double to) {
+  std::vector<Vector2d> line;
+  constexpr int kPoints = 24;
+  for (int k = 0; k <= kPoints; ++k) {
+    const double angle = from + (to - from) * k / kPoints;
+    line.push_back(centre + radius * Vector2d(std::cos(angle), std::sin(angle)));
+  }
+  return line;
+}
+
+Lines dyad() {
+  const double turn = 2 * std::numbers::pi;
+  return {{{-0.75, -0.65}, {-0.15, 0.6}},
+          {{0.02, 0.55}, {0.75, -0.65}},
+          arc({-0.06, 0.75}, 0.18, 0, turn),
+          arc({-0.82, -0.8}, 0.18, 0, turn),
+          arc({0.82, -0.8}, 0.18, 0, turn)};
+}
+
+Lines crank() {
+  return {arc({0, 0}, 0.95, 0, 2 * std::numbers::pi), {{0, 0}, {0.67, 0.67}}, {{-0.3, 0}, {0.3, 0}}};
+}
+
+/// A tap that goes round.
+Lines potentiometer() {
+  return {arc({0, 0}, 0.7, 0, 2 * std::numbers::pi),
+          {{-0.95, -0.95}, {0.95, 0.95}},
+          {{0.5, 0.9}, {0.95, 0.95}, {0.9, 0.5}}};
+}
+
+/// A vector over an axis, with its angle.
+Lines resolver() {
+  return {{{-0.9, -0.7}, {1, -0.7}},
+          {{-0.9, -0.7}, {0.8, 0.8}},
+          {{0.35, 0.68}, {0.8, 0.8}, {0.72, 0.34}},
+          arc({-0.9, -0.7}, 1.1, 0, 0.72)};
+}
 
 Lines wave() {
   std::vector<Vector2d> line;
@@ -98,6 +147,17 @@ const std::vector<IconEntry>& icons() {
          {1, -0.1}}}},
       {"contact", {{{-1, 0.7}, {-0.4, 0.7}}, {{-1, -0.7}, {-0.4, -0.7}}, {{1, 0}, {0.5, 0}, {-0.5, 0.6}}}},
       {"source", wave()},
+      {"monostable", {{{-1, -0.7}, {-0.4, -0.7}, {-0.4, 0.7}, {0.4, 0.7}, {0.4, -0.7}, {1, -0.7}}}},
+      {"track-and-store",
+       {{{-1, -0.7}, {-0.7, -0.3}, {-0.45, 0.3}, {-0.2, 0.55}, {0.3, 0.55}},
+        {{0.3, 0.55}, {0.3, -0.1}, {0.6, -0.3}, {1, -0.3}}}},
+      {"counter",
+       {{{-1, -0.8}, {-0.5, -0.8}, {-0.5, -0.3}, {0, -0.3}, {0, 0.2}, {0.5, 0.2}, {0.5, 0.7}, {1, 0.7}}}},
+      {"resolver", resolver()},
+      {"crank", crank()},
+      {"potentiometer", potentiometer()},
+      {"dyad", dyad()},
+      {"triangle", {{{-0.95, -0.6}, {0.35, 0.75}, {0.95, -0.6}, {-0.95, -0.6}}}},
   };
   return entries;
 }
@@ -108,6 +168,33 @@ const SymbolEntry* find_symbol(const std::string& symbol) {
   const auto found = std::find_if(kSymbols.begin(), kSymbols.end(),
                                   [&](const SymbolEntry& e) { return symbol == e.symbol; });
   return found == kSymbols.end() ? nullptr : &*found;
+}
+
+PortSign port_sign(const Block& block, const std::string& port) {
+  struct Entry {
+    const char* symbol;
+    const char* port;
+    PortSign sign;
+  };
+  static const std::vector<Entry> entries{
+      {"flip-flop", "set", {"S"}},
+      {"flip-flop", "reset", {"R"}},
+      {"flip-flop", "out", {"Q"}},
+      {"flip-flop", "inverse", {"Q", false, true}},
+      {"jk-flip-flop", "clock", {"C", true}},
+      {"jk-flip-flop", "j", {"J"}},
+      {"jk-flip-flop", "k", {"K"}},
+      {"jk-flip-flop", "reset", {"R"}},
+      {"jk-flip-flop", "out", {"Q"}},
+      {"jk-flip-flop", "inverse", {"Q", false, true}},
+      {"counter", "clock", {"C", true}},
+      {"counter", "reset", {"R"}},
+  };
+  for (const Entry& entry : entries) {
+    if (block.definition != nullptr && block.definition->symbol == entry.symbol && port == entry.port)
+      return entry.sign;
+  }
+  return {port};
 }
 
 Lines icon_lines(const std::string& icon) {

@@ -11,9 +11,6 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kBar = 12;    // width of an integrator's bar
-constexpr double kBubble = 3;  // radius of the circle that marks inversion
-
 std::string tooltip_of(const Block& block, const std::string& path) {
   if (block.definition == nullptr) return path;
   std::string text = fmt::format("{}: {}", path, block.definition->title);
@@ -141,14 +138,27 @@ class Artist {
       put(disc_mark(at_ + Vector2d(x, y), 2, Ink::paper, wire));
       write(at_ + Vector2d(x - 5, y + 3.5), input.constant, Anchor::end, kSmall);
     }
-    for (const double y : shape_.node.outputs) {
-      const double right = shape_.corner.x() + width();
-      const double bubble = shape_.inverts ? 2 * kBubble : 0;
-      put(line_mark(at_ + Vector2d(right + bubble, y), at_ + Vector2d(shape_.node.size.x(), y),
-                    output_pen()));
-      if (shape_.inverts)
-        put(disc_mark(at_ + Vector2d(right + kBubble, y), kBubble, Ink::paper, {pen_.ink, 1.2, {}}));
-    }
+    for (std::size_t k = 0; k < block_.outputs.size(); ++k) draw_output(k);
+  }
+
+  void draw_output(std::size_t k) {
+    const double y = shape_.node.outputs[k];
+    const double right = shape_.corner.x() + width();
+    const bool inverts =
+        shape_.inverts || (block_.inside.empty() && port_sign(block_, block_.outputs[k]).inverted);
+    const double bubble = inverts ? 2 * kBubble : 0;
+    const bool is_used = block_.wired[k] || (k < block_.records.size() && !block_.records[k].empty());
+    const double end = is_used ? shape_.node.size.x() : right + kLayoutGrid;
+    put(line_mark(at_ + Vector2d(right + bubble, y), at_ + Vector2d(end, y), output_pen()));
+    if (inverts) put(disc_mark(at_ + Vector2d(right + kBubble, y), kBubble, Ink::paper, {pen_.ink, 1.2, {}}));
+    if (k >= block_.records.size() || block_.records[k].empty()) return;
+    const Vector2d tip = at_ + Vector2d(right + bubble + kRecordIndent - 4, y);
+    Mark arrow =
+        polyline_mark({tip, tip - Vector2d(7, 3.5), tip - Vector2d(7, -3.5)}, {Ink::none, 0, {}}, true);
+    arrow.fill = output_pen().ink;
+    arrow.id = "record-" + path_ + (block_.outputs.size() > 1 ? "." + block_.outputs[k] : "");
+    put(std::move(arrow));
+    write(tip + Vector2d(4, -3), block_.records[k], Anchor::start, kSmall);
   }
 
   static Pen lead_pen(const Input& input) {
@@ -161,14 +171,9 @@ class Artist {
     if (shape_.form == Form::ports) {
       draw_port_names();
     } else {
-      const double middle = shape_.form == Form::triangle         ? 0.36 * w
-                            : shape_.form == Form::open_amplifier ? 0.4 * w
-                            : shape_.form == Form::integrator     ? kBar + 0.33 * (w - kBar)
-                                                                  : w / 2;
-      const bool small = shape_.form == Form::circle || shape_.form == Form::integrator;
-      const double size = small ? kSmall : shape_.text == "×" || shape_.text == "÷" ? 18 : kText;
-      write(body(middle, h / 2 + 0.36 * size), shape_.text, Anchor::middle, size);
-      draw_icon();
+      const double size = text_size(shape_);
+      write(body(shape_.text_centre, h / 2 + 0.36 * size), shape_.text, Anchor::middle, size);
+      draw_icon(body(w / 2, h / 2));
     }
     if (!shape_.initial.empty()) {
       const double x = shape_.form == Form::integrator ? kBar / 2 : w / 2;
@@ -190,20 +195,32 @@ class Artist {
     }
     write(body(width() / 2, 13), shape_.text, Anchor::middle, kSmall);
     std::get<Label>(picture_.marks.back().shape).bold = true;
-    for (std::size_t k = 0; k < block_.inputs.size(); ++k)
-      write(at_ + Vector2d(shape_.corner.x() + 5, shape_.node.inputs[k] + 3.5), block_.inputs[k].port,
-            Anchor::start, kSmall);
-    for (std::size_t k = 0; k < block_.outputs.size(); ++k)
-      write(at_ + Vector2d(shape_.corner.x() + width() - 5, shape_.node.outputs[k] + 3.5), block_.outputs[k],
-            Anchor::end, kSmall);
+    double left = 0, right = 0;  // widths of the names
+    for (std::size_t k = 0; k < block_.inputs.size(); ++k) {
+      const PortSign sign = port_sign(block_, block_.inputs[k].port);
+      const Vector2d pin = at_ + Vector2d(shape_.corner.x(), shape_.node.inputs[k]);
+      if (sign.edge)
+        put(polyline_mark({pin - Vector2d(0, 4), pin + Vector2d(7, 0), pin + Vector2d(0, 4)}, thin()));
+      write(pin + Vector2d(sign.edge ? 10 : 5, 3.5), sign.text, Anchor::start, kSmall);
+      left = std::max(left, text_width(sign.text, kSmall) + (sign.edge ? 5 : 0));
+    }
+    for (std::size_t k = 0; k < block_.outputs.size(); ++k) {
+      const std::string text = port_sign(block_, block_.outputs[k]).text;
+      write(at_ + Vector2d(shape_.corner.x() + width() - 5, shape_.node.outputs[k] + 3.5), text, Anchor::end,
+            kSmall);
+      right = std::max(right, text_width(text, kSmall));
+    }
+    const Vector2d middle = body((width() + left - right) / 2, height() / 2 + kLayoutGrid);
+    draw_icon(middle);
+    write(middle + Vector2d(0, 0.36 * kText), shape_.sign, Anchor::middle, kText);
   }
 
-  void draw_icon() {
-    const Vector2d middle = body(width() / 2, height() / 2);
-    constexpr double kHalf = 12;
+  Pen thin() const { return {pen_.ink, 1.2, {}}; }
+
+  void draw_icon(const Vector2d& middle) {
     for (const auto& line : icon_lines(shape_.icon)) {
       std::vector<Vector2d> points;
-      for (const Vector2d& p : line) points.push_back(middle + kHalf * Vector2d(p.x(), -p.y()));
+      for (const Vector2d& p : line) points.push_back(middle + kIcon * Vector2d(p.x(), -p.y()));
       put(polyline_mark(points, {pen_.ink, 1.4, {}}));
     }
   }

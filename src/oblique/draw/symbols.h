@@ -13,8 +13,11 @@ namespace oblique::schematic {
 /// The line around a symbol.
 enum class Form { triangle, integrator, open_amplifier, circle, box, ports, terminal };
 
-/// Sizes of the fonts [px], and how much wider than Helvetica another font may be.
+/// Sizes of the fonts [px].
 inline constexpr double kSmall = 9.5, kText = 12, kCaption = 10.5;
+
+inline constexpr double kBar = 12;    ///< width of an integrator's bar [px]
+inline constexpr double kBubble = 3;  ///< radius of the circle that marks inversion [px]
 
 /// What a block looks like, apart from where it stands.
 struct Shape {
@@ -22,12 +25,23 @@ struct Shape {
   std::string text;                  ///< inside
   std::string icon;                  ///< name of a small curve inside, for `icon_outline`
   std::vector<std::string> caption;  ///< lines below
+  std::string sign;                  ///< in place of a curve, in a box that has its type's name as `text`
+  double text_centre = 0;            ///< of `text`, from the left edge of the body
   std::string initial;               ///< the value that an integrator starts from, above its bar
   bool inverts = false;              ///< a small circle at the output
   Eigen::Vector2d corner = Eigen::Vector2d::Zero();  ///< upper left of the body, from that of the node
   Eigen::Vector2d body = Eigen::Vector2d::Zero();    ///< size
   LayoutNode node;                                   ///< with all that is written beside the body
 };
+
+/// The font of the text inside a symbol [px].
+double text_size(const Shape& shape);
+
+/// Half the side of the square for the icon [px].
+inline constexpr double kIcon = 12;
+
+/// From an output's edge (or the circle there) to the text of what is measured [px].
+inline constexpr double kRecordIndent = 14;
 
 /// What stands above the end of a wire: its weight, and the name of the port where one must know it.
 std::string lead_text(const Block& block, const Input& input);
@@ -59,6 +73,14 @@ struct SymbolEntry {
 };
 /// The entry of a block's `symbol`; none where boxes with port names do.
 const SymbolEntry* find_symbol(const std::string& symbol);
+
+/// How a port of a block with this symbol is written inside its box.
+struct PortSign {
+  std::string text;
+  bool edge = false;      ///< it acts when its signal rises: a wedge
+  bool inverted = false;  ///< a small circle at an output
+};
+PortSign port_sign(const Block& block, const std::string& port);
 
 /// The lines of a small curve within −1 … 1 in both directions, y upwards.
 std::vector<std::vector<Eigen::Vector2d>> icon_lines(const std::string& icon);
