@@ -10,7 +10,11 @@
 namespace oblique {
 namespace {
 
-constexpr double kLeastPart = 1e-5;  ///< of the usual bandwidth; below it nothing would track any more
+/// A closed loop of `gain` times the bandwidth is to be ten times as fast as the drive, and the usual
+/// bandwidth is a hundred times that.
+double least_bandwidth(double usual, double gain) {
+  return usual / 10 / std::min(gain, 1e9);
+}
 
 /// The next smaller of 1, 2 and 5 times a power of ten.
 double step_down(double value) {
@@ -33,7 +37,7 @@ std::optional<MachinePatch> slower_patch(const Mechanism& mechanism, const Block
   if (!std::isfinite(usual)) return found;
   std::vector<double> bandwidths;
   double bandwidth = step_down(usual);
-  while (bandwidth > kLeastPart * usual) {
+  while (bandwidth > least_bandwidth(usual, options.gain)) {
     bandwidths.push_back(bandwidth);
     bandwidth = step_down(bandwidth);
   }
