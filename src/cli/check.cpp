@@ -5,6 +5,7 @@
 
 #include "command.h"
 #include "diagram_check.h"
+#include "file_kind.h"
 #include "mechanism_check.h"
 #include "plot_output.h"
 #include "terminal.h"
@@ -54,16 +55,8 @@ void check_request(const CheckRequest& request) {
 ExitStatus check_file(const Session& session, const CheckRequest& request) {
   check_request(request);
   const std::string text = read_file(request.file);  // once: it may be a pipe
-  const Document document = parse_document(text, request.file);
-  const Value* const format = document.root.find("format");
-  const std::string name = format != nullptr ? format->text : "";
-  if (name == "oblique-diagram/1") return check_diagram(session, request, text);
-  if (name == "oblique-mechanism/1") return check_mechanism(request, text);
-  throw ReadError(
-      Diagnostic{{request.file, {1, 1}},
-                 "this is neither a diagram nor a mechanism",
-                 R"(format = "oblique-diagram/1" or "oblique-mechanism/1" at the head of the file)",
-                 {}});
+  if (kind_of_file(text, request.file) == FileKind::diagram) return check_diagram(session, request, text);
+  return check_mechanism(request, text);
 }
 
 }  // namespace oblique::cli

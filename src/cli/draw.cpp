@@ -5,6 +5,7 @@
 #include <oblique/text/document.h>
 
 #include "command.h"
+#include "file_kind.h"
 #include "linkage_scene.h"
 #include "magnified.h"
 #include "patch_choice.h"
@@ -62,25 +63,16 @@ ExitStatus draw_file(const Session& session, const DrawRequest& request) {
       throw ReadError(
           Diagnostic{{}, "--output is required", "-o PICTURE.svg or PICTURE.png, or --layout", {}});
     check_picture_output(request.output);
-    check_not_input(request.output, request.file, "mechanism");
   }
   const Theme theme = theme_option(request.theme);
   const std::string text = read_file(request.file);  // once: it may be a pipe
-  const Document document = parse_document(text, request.file);
-  const Value* const format = document.root.find("format");
-  const std::string name = format != nullptr ? format->text : "";
-  if (name == "oblique-diagram/1") {
+  const bool is_diagram = kind_of_file(text, request.file) == FileKind::diagram;
+  if (!request.layout) check_not_input(request.output, request.file, is_diagram ? "diagram" : "mechanism");
+  if (is_diagram) {
     check_options_of_diagram(request);
     return draw_diagram_file(session, request, text);
   }
   check_options_of_mechanism(request);
-  if (name != "oblique-mechanism/1") {
-    throw ReadError(
-        Diagnostic{{request.file, {1, 1}},
-                   "this is neither a mechanism nor a diagram",
-                   R"(format = "oblique-mechanism/1" or "oblique-diagram/1" at the head of the file)",
-                   {}});
-  }
   save_picture(mechanism_picture(session, parse_mechanism(text, request.file), request), request.output,
                theme);
   return ExitStatus::done;

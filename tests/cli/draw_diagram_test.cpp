@@ -76,7 +76,7 @@ TEST_F(DrawDiagram, RefusesWhatIsWrong) {
   expect_refusal(mechanism + "--symbols din", "--symbols is for diagrams, and this is a mechanism");
   expect_refusal(mechanism + "--depth 1", "--depth is for diagrams, and this is a mechanism");
   std::ofstream(folder_ / "block.toml") << "format = \"oblique-block/1\"\n";
-  expect_refusal("oblique draw block.toml", "this is neither a mechanism nor a diagram");
+  expect_refusal("oblique draw block.toml", "this is neither a diagram nor a mechanism");
   std::ofstream(folder_ / "wires.toml")
       << "format = \"oblique-diagram/1\"\n[blocks]\na = { type = \"summer\", in = [\"bb\"] }\n";
   expect_refusal("oblique draw wires.toml", "there is no signal 'bb'");
