@@ -85,6 +85,7 @@ std::vector<std::size_t> trace_option(const Mechanism& mechanism, const std::vec
   if (names.empty()) return points_to_trace(mechanism);
   if (names.size() == 1 && names.front() == "none" && !mechanism.find_point("none")) return {};
   std::vector<std::size_t> points;
+  points.reserve(names.size());
   for (const std::string& name : names) points.push_back(point_named(mechanism, "--trace", name));
   return points;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Tables are read back by small readers of their own, written from the published formats.
+// What files of tables have in common, whatever their format.
 #include <oblique/text/table_file.h>
 
 #include <algorithm>
@@ -26,136 +26,24 @@
 #include <oblique/text/csv.h>
 #include <oblique/text/document.h>
 
+#include "table_reading.h"
+
 namespace oblique {
 namespace {
 
+using test::Folder;
+using test::kInfinity;
+using test::kNan;
+using test::named;
+using test::read_csv;
+using test::read_json;
+using test::read_mat;
+using test::read_npy;
+using test::ReadTable;
+using test::written;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
-using testing::StartsWith;
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-/// What a reader found: the names and the values of each column.
-struct ReadTable {
-  std::vector<std::string> names;
-  std::vector<std::vector<double>> columns;
-};
-
-template <class Number>
-Number number_at(const std::string& bytes, std::size_t at) {
-  Number number{};
-  if (at + sizeof(number) > bytes.size()) throw std::runtime_error("the file ends in a number");
-  std::memcpy(&number, bytes.data() + at, sizeof(number));
-  return number;
-}
-
-/// Reads a file of NumPy with fields of doubles, as numpy.lib.format describes it.
-ReadTable read_npy(const std::string& bytes) {
-  EXPECT_EQ(bytes.substr(0, 6), "\x93NUMPY");
-  const int version = bytes.at(6);
-  EXPECT_EQ(bytes.at(7), '\0');
-  const std::size_t length_size = version == 1 ? 2 : 4;
-  const std::size_t length =
-      version == 1 ? number_at<std::uint16_t>(bytes, 8) : number_at<std::uint32_t>(bytes, 8);
-  const std::size_t data = 8 + length_size + length;
-  EXPECT_EQ(data % 64, 0U);
-  EXPECT_EQ(bytes.at(data - 1), '\n');
-  const std::string header = bytes.substr(8 + length_size, length);
-  EXPECT_THAT(header, StartsWith("{'descr': [('"));
-  EXPECT_THAT(header, HasSubstr("], 'fortran_order': False, 'shape': ("));
-  ReadTable table;
-  const std::string separator = ", '<f8')";
-  for (std::size_t at = header.find("('"); at != std::string::npos && at < header.find("], 'fortran");) {
-    std::string name;  // of a string of Python
-    for (at += 2; header.at(at) != '\''; ++at) {
-      if (header[at] == '\\' && header.at(++at) == 'x') {
-        name += static_cast<char>(std::stoi(header.substr(at + 1, 2), nullptr, 16));
-        at += 2;
-      } else {
-        name += header[at];
-      }
-    }
-    EXPECT_EQ(header.substr(at + 1, separator.size()), separator);
-    table.names.push_back(name);
-    at = header.find("('", at);
-  }
-  const std::size_t rows = std::stoul(header.substr(header.find("'shape': (") + 10));
-  table.columns.assign(table.names.size(), std::vector<double>(rows));
-  EXPECT_EQ(bytes.size(), data + rows * table.names.size() * 8);
-  std::size_t at = data;
-  for (std::size_t r = 0; r < rows; ++r) {
-    for (auto& column : table.columns) {
-      column[r] = number_at<double>(bytes, at);
-      at += 8;
-    }
-  }
-  return table;
-}
-
-/// Reads a MAT-file of level 4 with full real matrices of doubles.
-ReadTable read_mat(const std::string& bytes) {
-  ReadTable table;
-  std::size_t at = 0;
-  while (at < bytes.size()) {
-    EXPECT_EQ(number_at<std::int32_t>(bytes, at), 0) << "little endian, double, full matrix";
-    const auto rows = static_cast<std::size_t>(number_at<std::int32_t>(bytes, at + 4));
-    EXPECT_EQ(number_at<std::int32_t>(bytes, at + 8), 1) << "columns";
-    EXPECT_EQ(number_at<std::int32_t>(bytes, at + 12), 0) << "no imaginary part";
-    const auto length = static_cast<std::size_t>(number_at<std::int32_t>(bytes, at + 16));
-    table.names.push_back(bytes.substr(at + 20, length - 1));
-    EXPECT_EQ(bytes.at(at + 20 + length - 1), '\0');
-    at += 20 + length;
-    auto& column = table.columns.emplace_back(rows);
-    for (double& value : column) {
-      value = number_at<double>(bytes, at);
-      at += 8;
-    }
-  }
-  return table;
-}
-
-ReadTable read_json(const std::string& bytes) {
-  const auto json = nlohmann::json::parse(bytes);
-  EXPECT_EQ(json.size(), 2U);
-  ReadTable table;
-  for (const auto& column : json.at("columns")) table.names.push_back(column.at("name"));
-  table.columns.resize(table.names.size());
-  for (const auto& row : json.at("rows")) {
-    EXPECT_EQ(row.size(), table.names.size());
-    for (std::size_t c = 0; c < row.size(); ++c)
-      table.columns[c].push_back(row[c].is_null() ? kNan : row[c].get<double>());
-  }
-  return table;
-}
-
-/// Cells of a CSV file without quotes; an empty one is NaN.
-ReadTable read_csv(const std::string& bytes) {
-  ReadTable table;
-  std::istringstream lines(bytes);
-  std::string line;
-  const auto cells = [&] {
-    std::vector<std::string> found(1);
-    for (const char c : line) {
-      if (c == ',')
-        found.emplace_back();
-      else
-        found.back() += c;
-    }
-    return found;
-  };
-  std::getline(lines, line);
-  table.names = cells();
-  table.columns.resize(table.names.size());
-  while (std::getline(lines, line)) {
-    const auto row = cells();
-    EXPECT_EQ(row.size(), table.names.size());
-    for (std::size_t c = 0; c < row.size(); ++c)
-      table.columns[c].push_back(row[c].empty() ? kNan : std::strtod(row[c].c_str(), nullptr));
-  }
-  return table;
-}
 
 struct Format {
   const char* ending;
@@ -171,51 +59,6 @@ const std::vector<Format> kFormats{{".csv", read_csv, true},
                                    {".npy", read_npy, true},
                                    {".mat", read_mat, true},
                                    {".json", read_json, false}};
-
-/// A folder of its own, empty at the start and gone at the end.
-class Folder {
- public:
-  Folder() {
-    std::string name = testing::TempDir() + "oblique-table-XXXXXX";
-    path_ = mkdtemp(name.data());
-  }
-  ~Folder() { std::filesystem::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-  std::vector<std::string> files() const {
-    std::vector<std::string> names;
-    for (const auto& entry : std::filesystem::directory_iterator(path_))
-      names.push_back(entry.path().filename().string());
-    return names;
-  }
-
- private:
-  std::filesystem::path path_;
-};
-
-std::vector<TableColumn> named(const std::vector<std::string>& names) {
-  std::vector<TableColumn> columns;
-  for (const std::string& name : names) columns.push_back({name});
-  return columns;
-}
-
-/// The bytes of the file of a table, its rows added in blocks of `block_rows`.
-std::string written(const std::string& ending, const std::vector<TableColumn>& columns,
-                    const std::vector<double>& values, std::size_t block_rows = 1) {
-  const Folder folder;
-  const auto path = folder / ("table" + ending);
-  TableFile file(path, columns, values.size() / columns.size());
-  for (std::span<const double> left(values); !left.empty();) {
-    const std::size_t taken = std::min(left.size(), block_rows * columns.size());
-    file.add(left.first(taken));
-    left = left.subspan(taken);
-  }
-  file.finish();
-  EXPECT_THAT(folder.files(), ElementsAre("table" + ending));
-  return read_file(path);
-}
 
 std::vector<std::uint64_t> bits_of(const std::vector<double>& values) {
   std::vector<std::uint64_t> bits;
@@ -417,94 +260,6 @@ TEST(TableFile, MayBeAPipeButForMat) {
     }
     close(reader);
   }
-}
-
-TEST(CsvFile, HasALineOfNamesAndALineARow) {
-  EXPECT_EQ(written(".csv", {{"t", "s"}, {"C.x", "mm"}}, {0.0, 1.5, 0.1, -2e-300}),
-            "t,C.x\n0,1.5\n0.1,-2e-300\n");
-}
-
-TEST(CsvFile, QuotesNamesAsRfc4180Says) {
-  EXPECT_EQ(written(".csv", named({"a,b", "say \"x\"", "two\nlines", "plain name"}), {}),
-            "\"a,b\",\"say \"\"x\"\"\",\"two\nlines\",plain name\n");
-}
-
-TEST(CsvFile, LeavesCellsEmptyAndWritesWords) {
-  EXPECT_EQ(written(".csv", {{"x"}, {"status", "", {"ok", "dead-centre", "open"}}},
-                    {1, 0, 2, 1, kNan, 2, kNan, kNan, 3, 7, 4, 0.5, 5, -1}),
-            "x,status\n1,ok\n2,dead-centre\n,open\n,\n3,7\n4,0.5\n5,-1\n");
-}
-
-TEST(CsvFile, IsReadByOurOwnReader) {
-  const CsvTable table = parse_csv(written(".csv", named({"t", "P.x"}), {0.1, 1e300, 0.2, -5e-324}), "t.csv");
-  EXPECT_THAT(table.names, ElementsAre("t", "P.x"));
-  EXPECT_THAT(table.columns[1], ElementsAre(1e300, -5e-324));
-}
-
-TEST(JsonFile, NamesColumnsWithUnitsAndThenRows) {
-  EXPECT_EQ(written(".json", {{"t", "s"}, {"a\"\\\n", "mm"}, {"status", "", {"ok", "open"}}},
-                    {0, 1.5, 0, -0.0, kNan, 1}),
-            "{\"columns\": [{\"name\": \"t\", \"unit\": \"s\"}, {\"name\": \"a\\\"\\\\\\u000a\", \"unit\": "
-            "\"mm\"}, {\"name\": \"status\", \"unit\": \"\"}],\n"
-            "\"rows\": [\n[0, 1.5, \"ok\"],\n[-0.0, null, \"open\"]\n]}\n");
-  EXPECT_EQ(nlohmann::json::parse(written(".json", named({"φ"}), {}))["columns"][0]["name"], "φ");
-}
-
-// The first 80 bytes of what numpy.save wrote for a table of these two fields and three rows (NumPy 1.24).
-TEST(NpyFile, BeginsAsNumPyItselfWritesIt) {
-  const std::string bytes = written(".npy", named({"t", "P5.x"}), {0, 1, 2, 3, 4, 5});
-  const std::string header =
-      "{'descr': [('t', '<f8'), ('P5.x', '<f8')], 'fortran_order': False, 'shape': (3,), }";
-  EXPECT_EQ(bytes.substr(0, 10), std::string("\x93NUMPY\x01\x00\x76\x00", 10));
-  EXPECT_EQ(bytes.substr(10, 0x76), header + std::string(0x76 - 1 - header.size(), ' ') + "\n");
-  EXPECT_EQ(bytes.size(), 128U + 6 * 8);
-}
-
-TEST(NpyFile, KeepsAnyNameAndTellsEqualOnesApart) {
-  const std::string bytes = written(".npy", named({"it's", "a\\b", "tab\t", "x", "x", "x_1", "class"}), {});
-  EXPECT_EQ(bytes.at(6), 1);
-  EXPECT_THAT(read_npy(bytes).names, ElementsAre("it's", "a\\b", "tab\t", "x", "x_1", "x_1_1", "class"));
-}
-
-TEST(NpyFile, TakesANewerVersionForOtherLettersAndManyColumns) {
-  const std::string greek = written(".npy", named({"φ", "t"}), {1, 2});
-  EXPECT_EQ(greek.at(6), 3);
-  EXPECT_THAT(read_npy(greek).names, ElementsAre("φ", "t"));
-  std::vector<std::string> names;
-  for (int k = 0; k < 5000; ++k) names.push_back("column" + std::to_string(k));
-  const std::string wide = written(".npy", named(names), std::vector<double>(5000, 1.5));
-  EXPECT_EQ(wide.at(6), 2);
-  EXPECT_EQ(read_npy(wide).names, names);
-}
-
-TEST(MatFile, HasTheBytesOfTheFormat) {
-  using namespace std::string_literals;
-  const std::string header = "\0\0\0\0\x02\0\0\0\x01\0\0\0\0\0\0\0"s;
-  EXPECT_EQ(written(".mat", named({"t", "P.x"}), {1, -2, 0.5, kInfinity}),
-            header + "\x02\0\0\0t\0"s + "\0\0\0\0\0\0\xF0\x3F\0\0\0\0\0\0\xE0\x3F"s + header +
-                "\x04\0\0\0P_x\0"s + "\0\0\0\0\0\0\0\xC0\0\0\0\0\0\0\xF0\x7F"s);
-}
-
-TEST(MatFile, NamesVariablesAsMatlabAllows) {
-  const auto names = [](const std::vector<std::string>& all) {
-    return read_mat(written(".mat", named(all), {})).names;
-  };
-  EXPECT_THAT(names({"P5.x", "end", "2nd", "_a", "until", "φ̇", "", "a b"}),
-              ElementsAre("P5_x", "xEnd", "x2nd", "x_a", "xUntil", "x__", "x", "a_b"));
-  EXPECT_THAT(names({"P.x", "P_x", "P:x", "P_x_1"}), ElementsAre("P_x_2", "P_x", "P_x_3", "P_x_1"))
-      << "good names stay";
-  const std::string sixty(60, 'a');
-  EXPECT_THAT(names({sixty + ".bcd", sixty + ".bce", sixty + "_bc"}),
-              ElementsAre(sixty + "__1", sixty + "__2", sixty + "_bc"));
-}
-
-TEST(MatFile, SaysThatItCanHoldNoMore) {
-  const Folder folder;
-  EXPECT_THAT([&] { TableFile(folder / "a.mat", named({"t"}), 3'000'000'000); },
-              testing::ThrowsMessage<ReadError>(
-                  "the table is too long for a .mat file; expected 2147483647 rows at most\n  remedy: write "
-                  ".npy"));
-  EXPECT_THAT(folder.files(), IsEmpty());
 }
 
 }  // namespace

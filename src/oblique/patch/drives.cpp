@@ -46,11 +46,11 @@ std::string PatchBuilder::add_generator(std::size_t d, const std::string& commen
 std::string PatchBuilder::add_way(std::size_t d, double reach) {
   const Drive& drive = mechanism_.drives[d];
   const Speed& speed = add_speed(d);
-  const std::string way = add_block(drive.name, "integrator",
-                                    {wire_setting("in", {{scaled(speed.unit) / reach, speed.signal}}),
-                                     number_setting("initial", scaled(drive.start) / reach)},
-                                    fmt::format("drive {}: {} along {}", drive.name, speed_text(drive),
-                                                mechanism_.slides[*drive.slide].name));
+  std::string way = add_block(drive.name, "integrator",
+                              {wire_setting("in", {{scaled(speed.unit) / reach, speed.signal}}),
+                               number_setting("initial", scaled(drive.start) / reach)},
+                              fmt::format("drive {}: {} along {}", drive.name, speed_text(drive),
+                                          mechanism_.slides[*drive.slide].name));
   drives_[d].way = weighted(way, reach);
   return way;
 }

@@ -73,8 +73,10 @@ class GradientPatch : private PatchBuilder {
 
   void add_unknown(std::size_t point) {
     signals_[point] = {free_name(name_of(point) + "_x"), free_name(name_of(point) + "_y")};
-    unknowns_.push_back({signals_[point].x, scaled(start_.points[point].position.x() - scaling_.origin.x())});
-    unknowns_.push_back({signals_[point].y, scaled(start_.points[point].position.y() - scaling_.origin.y())});
+    unknowns_.emplace_back(signals_[point].x,
+                           scaled(start_.points[point].position.x() - scaling_.origin.x()));
+    unknowns_.emplace_back(signals_[point].y,
+                           scaled(start_.points[point].position.y() - scaling_.origin.y()));
   }
 
   void add_drive(const Group& group, std::size_t d) {

@@ -97,7 +97,7 @@ void GroupResiduals::add_body(const Group& group, std::size_t index) {
 /// The largest distance of a slide's point from where its line begins, over the motion: it scales the
 /// products.
 double GroupResiduals::reach_of(const Slide& slide) const {
-  const std::size_t s = static_cast<std::size_t>(&slide - mechanism_.slides.data());
+  const auto s = static_cast<std::size_t>(&slide - mechanism_.slides.data());
   return round_up(
       places_.scaled(std::max(scaling_.slides[s] + std::abs(slide.offset), scaling_.length / 1000)));
 }

@@ -15,7 +15,8 @@
 
 namespace oblique {
 
-/// The weight of a residual at the inputs of its servo amplifier: that of the greater inputs of most machines.
+/// The weight of a residual at the inputs of its servo amplifier: that of the greater inputs of most
+/// machines.
 inline constexpr double kInputGain = 10;
 
 /// The exact motion over one turn, half a degree apart, from which a patch takes its ranges.

@@ -107,7 +107,7 @@ std::vector<Entry> TriadPatch::with_start(std::vector<Entry> settings, const Tri
   return settings;
 }
 
-void TriadPatch::add_outer_loop(const std::string& length, Terms residual, double initial) {
+void TriadPatch::add_outer_loop(const std::string& length, const Terms& residual, double initial) {
   const double slower = options_.slower.value_or(kUsualSlower);
   BlockInstance loop;
   loop.name = length;

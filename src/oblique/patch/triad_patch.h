@@ -30,7 +30,7 @@ class TriadPatch : protected SlideDyadPatch {
   TriangleStart triangle_start(std::size_t p, std::size_t q, std::size_t c) const;
 
   /// The servo amplifier named `length` that drives the variable length, from what is summed in `residual`.
-  void add_outer_loop(const std::string& length, Terms residual, double initial);
+  void add_outer_loop(const std::string& length, const Terms& residual, double initial);
 
  private:
   std::vector<Entry> with_start(std::vector<Entry> settings, const TriangleStart& start, double reach) const;
