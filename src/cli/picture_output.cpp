@@ -26,10 +26,11 @@ bool is_png(const std::string& path) {
 class ScratchFolder {
  public:
   ScratchFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "oblique-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) {
-      throw ReadError(Diagnostic{{name, {}},
-                                 "no folder could be made for the conversion to PNG",
+    std::error_code trouble;
+    std::string name = (std::filesystem::temp_directory_path(trouble) / "oblique-XXXXXX").string();
+    if (trouble || mkdtemp(name.data()) == nullptr) {
+      throw ReadError(Diagnostic{{},
+                                 "no temporary folder could be made for the conversion to pixels",
                                  {},
                                  "set TMPDIR to a folder that you may write to"});
     }

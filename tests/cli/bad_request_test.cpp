@@ -219,6 +219,13 @@ INSTANTIATE_TEST_SUITE_P(
             "ColumnsWithoutAFile", "oblique run diagrams/lessons/triangle-side.toml --columns side", 2,
             "error: --columns chooses what a file holds, and there is none; expected -o FILE beside "
             "it\n"},
+        BadRequestCase{
+            "NoTemporaryFolder",
+            "TMPDIR=/nowhere oblique draw diagrams/mechanisms/four-bar.toml -o /tmp/oblique-never.png; "
+            "status=$?; test ! -e /tmp/oblique-never.png || status=99; exit $status",
+            2,
+            "error: no temporary folder could be made for the conversion to pixels\n  remedy: set TMPDIR "
+            "to a folder that you may write to\n"},
         BadRequestCase{"OutputInNoFolder",
                        "oblique run diagrams/lessons/triangle-side.toml -o no/where/x.csv", 2,
                        "the folder of this file does not exist\n  remedy: make it first: mkdir -p no/where"},
