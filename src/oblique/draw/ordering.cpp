@@ -269,7 +269,7 @@ class Ordering {
     for (const Link& link : links) {
       if (link.from.left != link.to.left) continue;
       const auto& pins = link.from.left ? left : right;
-      const auto [low, high] = std::minmax(place(link.from), place(link.to));
+      const auto [low, high] = std::minmax({place(link.from), place(link.to)});
       crossings += static_cast<std::size_t>(std::lower_bound(pins.begin(), pins.end(), high) -
                                             std::upper_bound(pins.begin(), pins.end(), low));
     }
