@@ -46,7 +46,7 @@ struct MachineComparison {
 /// Scatter is not in it (see `monte_carlo`). `options.gain` is that of ideal servo amplifiers. A run that
 /// takes a hundred times the steps of the one on ideal elements has failed. Throws as `patch`, `realise`, and
 /// as `run` with the figure in the message.
-MachineComparison compare_on_machine(const Mechanism& mechanism, const BlockLibrary& library,
+MachineComparison compare_on_machine(const Mechanism& whole, const BlockLibrary& library,
                                      const MachineProfile& machine, const PatchOptions& options,
                                      const std::function<void(double)>& progress = {});
 

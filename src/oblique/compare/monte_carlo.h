@@ -55,7 +55,7 @@ struct MonteCarlo {
 /// of a block's equations may change with what it draws. The solver is a thousand times finer than the
 /// narrowest scatter, 1e-6 at the most; a run that takes a hundred times the steps of the undisturbed one
 /// has failed. Throws as `flatten`, `solve_motion`, and as `run` where the undisturbed run fails.
-MonteCarlo monte_carlo(const Mechanism& mechanism, const Diagram& diagram, const BlockLibrary& library,
+MonteCarlo monte_carlo(const Mechanism& whole, const Diagram& diagram, const BlockLibrary& library,
                        const MonteCarloOptions& options);
 
 }  // namespace oblique

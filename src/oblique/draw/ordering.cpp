@@ -118,7 +118,7 @@ class Ordering {
           sum += place(other) - (place(own) - position_[s] - 0.5);
           ++count;
         }
-        keys.push_back({count > 0 ? sum / count : position_[s] + 0.5, s});
+        keys.emplace_back(count > 0 ? sum / count : position_[s] + 0.5, s);
       }
       std::stable_sort(keys.begin(), keys.end(),
                        [](const auto& a, const auto& b) { return a.first < b.first; });

@@ -120,11 +120,11 @@ class Builder {
   }
 
   void add_inputs() {
-    for (std::size_t k = 0; k < scope_.composite->inputs.size(); ++k) {
+    for (const auto& input : scope_.composite->inputs) {
       inputs_.push_back(schematic_.blocks.size());
       Block port;
       port.kind = Block::Kind::input;
-      port.name = scope_.composite->inputs[k].name;
+      port.name = input.name;
       port.outputs = {port.name};
       schematic_.blocks.push_back(std::move(port));
     }

@@ -220,7 +220,8 @@ class Artist {
   void draw_icon(const Vector2d& middle) {
     for (const auto& line : icon_lines(shape_.icon)) {
       std::vector<Vector2d> points;
-      for (const Vector2d& p : line) points.push_back(middle + kIcon * Vector2d(p.x(), -p.y()));
+      points.reserve(line.size());
+      for (const Vector2d& p : line) points.emplace_back(middle + kIcon * Vector2d(p.x(), -p.y()));
       put(polyline_mark(points, {pen_.ink, 1.4, {}}));
     }
   }
