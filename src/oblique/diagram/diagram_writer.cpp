@@ -113,6 +113,7 @@ void write_table(std::string_view name, const std::vector<Line>& lines, std::str
 
 std::string write_layout(const std::vector<BlockPlace>& layout) {
   std::vector<Line> lines;
+  lines.reserve(layout.size());
   for (const BlockPlace& place : layout)
     lines.push_back({{}, key_text(place.name), fmt::format("[{}, {}]", place.x, place.y)});
   std::string out;

@@ -60,8 +60,7 @@ class Drafter {
           const Columns& columns, DiagramLayout& layout)
       : graph_(graph), plan_(plan), columns_(columns), layout_(layout) {
     for (const auto& [node, output] : plan.nets) layout.nets.push_back({node, output, {}, {}});
-    for (std::size_t s = 0; s < plan.slots.size(); ++s) {
-      const Slot& slot = plan.slots[s];
+    for (const Slot& slot : plan.slots) {
       if (slot.passes())
         add(slot.net, {columns.left[slot.layer], slot.y}, {columns.right[slot.layer], slot.y});
     }
@@ -141,7 +140,7 @@ DiagramLayout layered::lay_out_in_layers(const LayoutGraph& graph) {
                          : graph.nodes[v].rank == LayoutRank::last ? 1
                                                                    : 0.5;
     const double indent = std::floor(share * spare / kLayoutGrid) * kLayoutGrid;
-    layout.corners.push_back({columns.left[slot.layer] + indent, slot.y});
+    layout.corners.emplace_back(columns.left[slot.layer] + indent, slot.y);
   }
   Drafter(graph, plan, channels, columns, layout);
   return layout;

@@ -95,16 +95,15 @@ struct Element {
 
   std::string operator()(const Disc& disc) const {
     return close(
-        fmt::format("<circle{} cx=\"{}\" cy=\"{}\" r=\"{}\"", attributes(mark, false),
+        fmt::format(R"(<circle{} cx="{}" cy="{}" r="{}")", attributes(mark, false),
                     svg_number(disc.centre.x()), svg_number(disc.centre.y()), svg_number(disc.radius)),
         "circle");
   }
 
   std::string operator()(const Box& box) const {
-    std::string head =
-        fmt::format("<rect{} x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"", attributes(mark, false),
-                    svg_number(box.corner.x()), svg_number(box.corner.y()), svg_number(box.size.x()),
-                    svg_number(box.size.y()));
+    std::string head = fmt::format(R"(<rect{} x="{}" y="{}" width="{}" height="{}")", attributes(mark, false),
+                                   svg_number(box.corner.x()), svg_number(box.corner.y()),
+                                   svg_number(box.size.x()), svg_number(box.size.y()));
     if (box.rounding > 0) head += fmt::format(" rx=\"{}\"", svg_number(box.rounding));
     return close(head, "rect");
   }
@@ -112,7 +111,7 @@ struct Element {
   std::string operator()(const Label& label) const {
     constexpr std::array<const char*, 3> kAnchors{"start", "middle", "end"};
     std::string head =
-        fmt::format("<text{} x=\"{}\" y=\"{}\" font-size=\"{}\"", attributes(mark, true),
+        fmt::format(R"(<text{} x="{}" y="{}" font-size="{}")", attributes(mark, true),
                     svg_number(label.at.x()), svg_number(label.at.y()), svg_number(label.size));
     if (label.anchor != Anchor::start)
       head += fmt::format(" text-anchor=\"{}\"", kAnchors[static_cast<std::size_t>(label.anchor)]);
