@@ -8,6 +8,7 @@
 #include <thread>
 
 #include <oblique/compare/patched_run.h>
+#include <oblique/solve/solve_error.h>
 
 namespace oblique {
 namespace {
@@ -32,8 +33,19 @@ struct Experiment {
   Motion exact;
   RunOptions how;
 
+  /// At a coarse tolerance the solver may find no step in a stiff loop that a finer one passes: such a run is
+  /// tried again, ten and a hundred times finer.
   Distances errors_of(const FlatDiagram& diagram) const {
-    return distances(mechanism, diagram, run(Program(assemble(diagram)), diagram, how).trajectory, exact);
+    const Program program(assemble(diagram));
+    RunOptions finer = how;
+    for (int attempt = 0; attempt < 2; ++attempt) {
+      try {
+        return distances(mechanism, diagram, run(program, diagram, finer).trajectory, exact);
+      } catch (const SolveError&) {
+        finer.tolerance /= 10;
+      }
+    }
+    return distances(mechanism, diagram, run(program, diagram, finer).trajectory, exact);
   }
 };
 

@@ -53,8 +53,9 @@ struct MonteCarlo {
 /// Runs the diagram of a mechanism (as `patch` gives it) with elements drawn anew for each run, and measures
 /// the largest distance of any moving point from its exact place. Each run is compiled by itself: the cases
 /// of a block's equations may change with what it draws. The solver is a thousand times finer than the
-/// narrowest scatter, 1e-6 at the most; a run that takes a hundred times the steps of the undisturbed one
-/// has failed. Throws as `flatten`, `solve_motion`, and as `run` where the undisturbed run fails.
+/// narrowest scatter, 1e-6 at the most, and up to a hundred times finer where it finds no step; a run that
+/// takes a hundred times the steps of the undisturbed one has failed. Throws as `flatten`, `solve_motion`,
+/// and as `run` where the undisturbed run fails.
 MonteCarlo monte_carlo(const Mechanism& whole, const Diagram& diagram, const BlockLibrary& library,
                        const MonteCarloOptions& options);
 
