@@ -66,7 +66,7 @@ class Writer {
     structure();
     motion();
     try {
-      patched_ = judged_patch(mechanism_, report_.library, report_.options);
+      patched_ = judged_patch(mechanism_, report_.blocks, report_.options);
     } catch (const Error& error) {
       page_.heading("Patch");
       page_.paragraph("There is no patch of this mechanism. " + capitalised(words_of(error)));
@@ -149,7 +149,7 @@ class Writer {
     std::replace(comment.begin(), comment.end(), '\n', ' ');
     if (!comment.empty()) page_.paragraph(comment);
     page_.paragraph("Judged before it runs: " + judgement_text(patched_.judgement));
-    page_.picture(draw_diagram(diagram, report_.library));
+    page_.picture(draw_diagram(diagram, report_.blocks));
     std::map<std::string, std::size_t> counts;
     for (const BlockInstance& block : diagram.blocks) ++counts[block.type];
     std::vector<std::vector<std::string>> rows;
@@ -171,7 +171,7 @@ class Writer {
     if (report_.options.bandwidth) sweep.bandwidths = {*report_.options.bandwidth};
     sweep.progress = report_.progress;
     try {
-      errors_of(compare(mechanism_, report_.library, sweep));
+      errors_of(compare(mechanism_, report_.blocks, sweep));
     } catch (const SolveError& error) {
       page_.paragraph("A run fails: " + words_of(error));
     }
@@ -210,7 +210,7 @@ class Writer {
   }
 
   void stability() {
-    const FlatDiagram flat = flatten(patched_.diagram, report_.library);
+    const FlatDiagram flat = flatten(patched_.diagram, report_.blocks);
     const Program program(assemble(flat));
     const Analysis analysis = analyse(program, flat, oblique::options_of(patched_.diagram.run));
     const StabilityReport& found = analysis.stability;
@@ -245,13 +245,13 @@ class Writer {
     page_.heading("On the " + profile.title);
     MachinePatch patch;
     try {
-      patch = put_on_machine(mechanism_, report_.library, profile, patched_);
+      patch = put_on_machine(mechanism_, report_.blocks, profile, patched_);
     } catch (const Error& error) {
       page_.paragraph("It does not run there. " + capitalised(words_of(error)));
       return;
     }
     const Diagram& diagram = patch.realised;
-    const FlatDiagram flat = flatten(diagram, report_.library);
+    const FlatDiagram flat = flatten(diagram, report_.blocks);
     const Bill bill = bill_of(flat, profile);
     page_.introduction(
         "The same patch in this machine's own elements. What it takes of them, and what there is:");
@@ -260,7 +260,7 @@ class Writer {
     if (const std::string text = bandwidth_text(patch, profile); !text.empty())
       page_.paragraph(capitalised(text));
     page_.paragraph("Judged on these elements: " + judgement_text(patch.judgement));
-    const MachineSheets sheets = sheets_of(diagram, flat, report_.library, profile);
+    const MachineSheets sheets = sheets_of(diagram, flat, report_.blocks, profile);
     const auto add = [&](const Sheet& sheet, const char* explanation) {
       page_.subheading("Sheet: " + sheet.title);
       page_.introduction(explanation);

@@ -17,7 +17,7 @@ namespace oblique::cli {
 /// patch, the convergence, the stability of the loops, and with a machine what that needs of it.
 struct MechanismReport {
   const Mechanism& mechanism;
-  const BlockLibrary& library;
+  const BlockLibrary& blocks;
   PatchOptions options;                     ///< of the patch
   const MachineProfile* machine = nullptr;  ///< none: the page says nothing of machines
   std::function<void(double fraction)> progress;
