@@ -78,8 +78,8 @@ struct ExpectedValue {
 /// Reads `{ value = …, within = … }`, both in the unit of what is expected; nothing after a finding.
 std::optional<ExpectedValue> read_expected_value(TableReader& reader);
 
-/// Checks `format = "oblique-…/1"`; reports what else stands there. False where that is a file of another kind,
-/// of which nothing else is worth a finding.
+/// Checks `format = "oblique-…/1"`; reports what else stands there. False where that is a file of another
+/// kind, of which nothing else is worth a finding.
 [[nodiscard]] bool check_format(TableReader& reader, std::string_view expected);
 
 }  // namespace oblique
