@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/compare/on_machine.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include <fmt/format.h>
 
