@@ -236,6 +236,7 @@ ExitStatus run_diagram(const Session& session, const RunRequest& request) {
     note(fmt::format("warning: at a tolerance of {} Adams lets oscillations grow; 1e-5 or less is safe\n",
                      options.tolerance));
   }
+  for (const Diagnostic& warning : result.warnings) note("warning: " + to_string(warning) + "\n");
   note_overloads(program, result);
   if (result.halted) return ExitStatus::no;
   return request.check ? report_expectations(diagram, result) : ExitStatus::done;

@@ -67,6 +67,7 @@ struct Run {
   std::vector<Peak> peaks;         ///< of every signal of the program, in its order; at the rows, or watched
   std::vector<OverloadRecord> overloads;  ///< the first one first, where they were watched
   bool halted = false;                    ///< it ended at the first overload
+  std::vector<Diagnostic> warnings;       ///< what the run may not have seen, or did in another way than asked
   SolverStatistics statistics;
   MethodChoice method;  ///< with which method, and why; nothing for a diagram without states
   double seconds = 0;   ///< wall clock of the run itself, compilation apart

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+// Diagrams that others have composed, with truths that share no code with Oblique: those of `findings` were
+// once answered wrongly, those of `literature` are problems from books, solved by another program.
+#include <algorithm>
+#include <filesystem>
+
+#include <gtest/gtest.h>
+
+#include <oblique/solve/expectation_check.h>
+
+namespace oblique {
+namespace {
+
+std::vector<std::string> foreign_diagrams() {
+  std::vector<std::string> paths;
+  for (const char* const folder : {"findings", "literature"}) {
+    const std::filesystem::path path = std::filesystem::path(OBLIQUE_SOURCE_DIR) / "tests/diagrams" / folder;
+    if (!std::filesystem::exists(path)) continue;
+    for (const auto& entry : std::filesystem::directory_iterator(path)) {
+      if (entry.path().extension() == ".toml") paths.push_back(entry.path().string());
+    }
+  }
+  std::sort(paths.begin(), paths.end());
+  return paths;
+}
+
+std::string test_name(const testing::TestParamInfo<std::string>& tested) {
+  std::string name;
+  for (const char c : std::filesystem::path(tested.param).stem().string()) {
+    name += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : 'x';
+  }
+  return name;
+}
+
+class ForeignDiagram : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Diagrams, ForeignDiagram, testing::ValuesIn(foreign_diagrams()), test_name);
+
+TEST_P(ForeignDiagram, GivesTheTruth) {
+  const BlockLibrary library = BlockLibrary::shipped();
+  const Diagram diagram = read_diagram(GetParam());
+  ASSERT_FALSE(diagram.expectations.empty());
+  const FlatDiagram flat = flatten(diagram, library);
+  RunOptions options = options_of(diagram.run);
+  ask_for_expectations(diagram, options);
+  const Run result = run(Program(assemble(flat)), flat, options);
+  for (const ExpectationResult& expectation : check_expectations(diagram, result)) {
+    EXPECT_TRUE(expectation.met) << expectation.expectation.text << " = " << expectation.actual;
+  }
+}
+
+}  // namespace
+}  // namespace oblique
