@@ -50,7 +50,7 @@ TEST(ServoAmplifier, AnswersAStepExponentially) {
   Workspace workspace(made.program);
   PlainSystem system(made.program, workspace);
   const std::vector<double> zero{0};  // not at rest: the step is at t = 0
-  CvodesSolver solver(system, 0, zero, kEnd, {1e-10, 1e-10, 100'000});
+  CvodesSolver solver(system, 0, zero, kEnd, kEnd, {1e-10, 1e-10, 100'000});
   constexpr double kLoop = 1 + kGain * kWeight;
   while (true) {
     const double t = solver.step();

@@ -41,6 +41,7 @@ class Assembler {
     Expression left, right;
     std::uint32_t memory;
     Place place;
+    bool jumps;
   };
   struct PendingTable {
     std::size_t block;
@@ -81,7 +82,7 @@ class Assembler {
   void make_starts();
   void define_switches();
   std::optional<NodeId> rate_of(NodeId surface);
-  NodeId switch_of(std::size_t block, const Expression& left, const Expression& right);
+  NodeId switch_of(std::size_t block, const Expression& left, const Expression& right, bool jumps);
   NodeId built(std::size_t block, const Expression& expression, const Place& place, const std::string& what);
   bool is_algebraic(std::uint32_t q) const;
   std::vector<bool> implicit_marks() const;
@@ -133,8 +134,8 @@ class Assembler::BlockContext final : public ExpressionContext {
     return Change::never;
   }
 
-  NodeId greater(const Expression& left, const Expression& right) override {
-    return assembler_.switch_of(block_, left, right);
+  NodeId greater(const Expression& left, const Expression& right, bool jumps) override {
+    return assembler_.switch_of(block_, left, right, jumps);
   }
 
   NodeId interpolated(const Expression& call) override { return assembler_.interpolated(block_, call); }

@@ -120,7 +120,7 @@ class Builder {
     const std::vector<Expression>& x = e.operands;
     switch (e.function) {
       case Function::abs:
-        return choose(greater(x[0], zero()), x[0], negative(x[0]));
+        return choose(bend(x[0], zero()), x[0], negative(x[0]));
       case Function::sign:
         return graph_.apply(Op::select, greater(x[0], zero()), graph_.constant(1), graph_.constant(-1));
       case Function::step:
@@ -129,12 +129,11 @@ class Builder {
       case Function::max:
         return extreme(e);
       case Function::clip:
-        return graph_.apply(Op::select, greater(x[0], x[2]), build(x[2]),
-                            choose(greater(x[1], x[0]), x[1], x[0]));
+        return graph_.apply(Op::select, bend(x[0], x[2]), build(x[2]), choose(bend(x[1], x[0]), x[1], x[0]));
       case Function::deadzone:
         return graph_.apply(
-            Op::select, greater(x[0], x[1]), graph_.apply(Op::subtract, build(x[0]), build(x[1])),
-            graph_.apply(Op::select, greater(negative(x[1]), x[0]),
+            Op::select, bend(x[0], x[1]), graph_.apply(Op::subtract, build(x[0]), build(x[1])),
+            graph_.apply(Op::select, bend(negative(x[1]), x[0]),
                          graph_.apply(Op::add, build(x[0]), build(x[1])), graph_.constant(0)));
       case Function::if_:
         return choose(condition(x[0]), x[1], x[2]);
@@ -155,7 +154,7 @@ class Builder {
     Expression rest = e.operands[1];
     if (e.operands.size() > 2) rest = call(e.function, {e.operands.begin() + 1, e.operands.end()});
     const bool largest = e.function == Function::max;
-    return choose(largest ? greater(first, rest) : greater(rest, first), first, rest);
+    return choose(largest ? bend(first, rest) : bend(rest, first), first, rest);
   }
 
   // --- conditions: nodes that are 1 or 0 and change with events only
@@ -197,7 +196,10 @@ class Builder {
 
   NodeId inverse(NodeId condition) { return graph_.apply(Op::subtract, graph_.constant(1), condition); }
 
-  NodeId greater(const Expression& left, const Expression& right) {
+  /// A switch between two pieces that meet where it turns over.
+  NodeId bend(const Expression& left, const Expression& right) { return greater(left, right, false); }
+
+  NodeId greater(const Expression& left, const Expression& right, bool jumps = true) {
     const Change changes = std::max(change_of(left, context_), change_of(right, context_));
     if (changes != Change::always) return graph_.apply(Op::less, build(right), build(left));
     // Nothing that changes is beyond infinity.
@@ -206,7 +208,7 @@ class Builder {
       const double value = graph_[build(*side)].value;
       if (std::isinf(value)) return graph_.constant((side == &left) == (value > 0) ? 1 : 0);
     }
-    return context_.greater(left, right);
+    return context_.greater(left, right, jumps);
   }
 
   static Expression zero() { return {}; }

@@ -44,6 +44,9 @@ struct Switch {
   /// d surface/dt of a surface that depends on time alone, and linearly: its crossing is known beforehand.
   std::optional<NodeId> rate = std::nullopt;
   double check_interval = std::numeric_limits<double>::infinity();  ///< [s] how often at least to look
+  /// Whether the equations may jump where it turns over, or only bend: the pieces of abs, min, max, clip and
+  /// deadzone meet.
+  bool jumps = true;
 };
 
 /// What happens when a condition becomes true: all values are those of the moment before.

@@ -2,6 +2,8 @@
 #include <oblique/network/program.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include <oblique/network/program_compiler.h>
 
@@ -47,7 +49,7 @@ bool Program::load_and_run(double t, const double* x, Workspace& workspace) cons
 
 bool Program::derivatives(double t, const double* x, double* dxdt, Workspace& workspace) const {
   if (!load_and_run(t, x, workspace)) return false;
-  for (std::size_t i = 0; i < derivative_slots_.size(); ++i) dxdt[i] = workspace.slots_[derivative_slots_[i]];
+  last_derivatives(dxdt, workspace);
   return true;
 }
 
@@ -64,8 +66,61 @@ bool Program::surfaces(double t, const double* x, double* values, Workspace& wor
   return true;
 }
 
+void Program::last_derivatives(double* dxdt, const Workspace& workspace) const {
+  for (std::size_t i = 0; i < derivative_slots_.size(); ++i) dxdt[i] = workspace.slots_[derivative_slots_[i]];
+}
+
+double Program::compared_size(std::size_t s, const Workspace& workspace) const {
+  return std::abs(workspace.slots_[compared_slots_[s]]);
+}
+
 std::optional<double> Program::known_rate(std::size_t s, const Workspace& workspace) const {
   return rate_slots_[s] ? std::optional(workspace.slots_[*rate_slots_[s]]) : std::nullopt;
+}
+
+void Program::surface_rates(const double* dxdt, double* values, Workspace& workspace) const {
+  if (switches_.empty()) return;
+  double* const slots = workspace.slots_.data();
+  std::copy(dxdt, dxdt + states_.size(), slots + first_rate_);
+  for (const RateStep& step : rate_steps_) {
+    run_tape(std::span(tape_).subspan(step.stretch.begin, step.stretch.end - step.stretch.begin), slots);
+    if (!step.loop) continue;
+    LoopWorkspace& loop = workspace.loops_[*step.loop];
+    Eigen::MatrixXd& rates = workspace.dz_dt_[*step.loop];
+    const bool regular = loop.factor(loop_codes_[*step.loop], slots);
+    for (std::size_t i = 0; i < step.right_sides.size(); ++i) {
+      rates(static_cast<Eigen::Index>(i), 0) =
+          regular ? -slots[step.right_sides[i]] : std::numeric_limits<double>::quiet_NaN();
+    }
+    if (regular) loop.solve(rates);
+    for (std::size_t i = 0; i < step.rates.size(); ++i)
+      slots[step.rates[i]] = rates(static_cast<Eigen::Index>(i), 0);
+  }
+  for (std::size_t s = 0; s < surface_rate_slots_.size(); ++s) values[s] = slots[surface_rate_slots_[s]];
+}
+
+double Program::fastest_phase(const Workspace& workspace) const {
+  double fastest = 0;
+  for (const std::uint32_t slot : phase_rate_slots_)
+    fastest = std::max(fastest, std::abs(workspace.slots_[slot]));
+  return fastest;
+}
+
+std::vector<Interval> Program::source_slots() const {
+  std::vector<Interval> slots;
+  if (sources_.empty()) return slots;
+  slots.reserve(initial_slots_.size());
+  for (const double value : initial_slots_) slots.push_back({value, value});
+  return slots;
+}
+
+void Program::source_ranges(const Interval& time, const Workspace& workspace,
+                            std::span<Interval> slots) const {
+  slots[0] = time;
+  for (std::size_t m = first_memory_; m < first_memory_ + memories_.size(); ++m)
+    slots[m] = {workspace.slots_[m], workspace.slots_[m]};
+  run_tape(std::span(tape_).subspan(source_stretch_.begin, source_stretch_.end - source_stretch_.begin),
+           slots);
 }
 
 bool Program::condition(std::size_t event, const Workspace& workspace) const {
@@ -144,6 +199,7 @@ Workspace::Workspace(const Program& program)
     loops_.emplace_back(size);
     dz_dx_.emplace_back(static_cast<Eigen::Index>(size),
                         static_cast<Eigen::Index>(program.sensitivities_[l].states.size()));
+    dz_dt_.emplace_back(static_cast<Eigen::Index>(size), 1);
   }
   reset();
   reset_memories();

@@ -8,8 +8,10 @@
 #include <string>
 #include <vector>
 
+#include <oblique/network/interval.h>
 #include <oblique/network/loop_solver.h>
 #include <oblique/network/network.h>
+#include <oblique/network/switch_structure.h>
 
 namespace oblique {
 
@@ -24,6 +26,13 @@ struct SparsePattern {
 };
 
 class Workspace;
+
+/// A part of the equations that follows the time alone, and not along a straight line.
+struct Source {
+  std::uint32_t slot = 0, slope_slot = 0;     ///< its value, and d value/dt
+  bool acts = false;                          ///< on dx/dt, or on the surface of a switch
+  std::optional<std::uint32_t> switch_index;  ///< the switch whose whole surface it is
+};
 
 /// The equations of a diagram, compiled: immutable, and shared between threads as long as each has a
 /// Workspace. Nothing allocates inside `derivatives`, `jacobian` and `signals`.
@@ -67,12 +76,30 @@ class Program {
   /// The surface of every switch at (t, x). False as above.
   bool surfaces(double t, const double* x, double* values, Workspace& workspace) const;
   // As the last `surfaces` left them:
+  /// dx/dt.
+  void last_derivatives(double* dxdt, const Workspace& workspace) const;
+  /// The magnitude of what the surface of a switch compares.
+  double compared_size(std::size_t s, const Workspace& workspace) const;
   /// d surface/dt of a switch whose surface depends on time alone, linearly; nothing for another.
   std::optional<double> known_rate(std::size_t s, const Workspace& workspace) const;
   /// Whether the condition of an event holds.
   bool condition(std::size_t event, const Workspace& workspace) const;
   /// Whether the condition holds that ends phase number `end` of those with one.
   bool phase_ends(std::size_t end, const Workspace& workspace) const;
+  /// d surface/dt of every switch where the states move with `dxdt`, `n_states` of them; not a number where
+  /// an algebraic loop is singular.
+  void surface_rates(const double* dxdt, double* values, Workspace& workspace) const;
+  /// How quickly the argument of a periodic function that a surface contains turns [rad/s]: the largest, as
+  /// the last `surface_rates` left it.
+  double fastest_phase(const Workspace& workspace) const;
+  const SwitchStructure& switch_structure() const { return switch_structure_; }
+
+  const std::vector<Source>& sources() const { return sources_; }
+  /// The values of all sources, and their slopes, for times within `time`, on slots of the kind that
+  /// `source_slots` gives, with the memories as they are in the workspace.
+  void source_ranges(const Interval& time, const Workspace& workspace, std::span<Interval> slots) const;
+  std::vector<Interval> source_slots() const;
+
   // As the last `signals` left them:
   /// What an action of an event would set.
   double action_value(std::size_t event, std::size_t action, const Workspace& workspace) const;
@@ -118,6 +145,14 @@ class Program {
     std::uint32_t first_position;  ///< in `row_positions_`
   };
 
+  /// A stretch of the tape, then perhaps d unknowns/dt of a loop, from right sides that the stretch has
+  /// computed.
+  struct RateStep {
+    TapeRange stretch;
+    std::optional<std::uint32_t> loop;
+    std::vector<std::uint32_t> right_sides, rates;  ///< slots
+  };
+
   bool run(const std::vector<Step>& steps, Workspace& workspace) const;
   bool load_and_run(double t, const double* x, Workspace& workspace) const;
   bool differentiate_loops(Workspace& workspace) const;
@@ -148,10 +183,18 @@ class Program {
   std::vector<Event> events_;
   std::vector<std::uint32_t> mode_memories_;
   std::vector<std::uint32_t> surface_slots_;
+  std::vector<std::uint32_t> compared_slots_;  ///< one side of what the surface of each switch compares
   std::vector<std::optional<std::uint32_t>> rate_slots_;
   std::vector<EventSlots> event_slots_;
   std::vector<std::optional<std::uint32_t>> start_slots_;
   std::vector<std::uint32_t> phase_end_slots_;
+
+  SwitchStructure switch_structure_;
+  std::size_t first_rate_ = 0;        ///< slot of d states/dt, then of d unknowns/dt
+  std::vector<RateStep> rate_steps_;  ///< after `surface_steps_`
+  std::vector<std::uint32_t> surface_rate_slots_, phase_rate_slots_;
+  std::vector<Source> sources_;
+  TapeRange source_stretch_;
 
   SparsePattern pattern_;
   std::vector<DirectEntry> direct_entries_;
@@ -198,7 +241,7 @@ class Workspace {
   std::vector<double> slots_;
   std::vector<double> solved_;  ///< unknowns at the last success
   std::vector<LoopWorkspace> loops_;
-  std::vector<Eigen::MatrixXd> dz_dx_;
+  std::vector<Eigen::MatrixXd> dz_dx_, dz_dt_;
   Trouble trouble_;
 };
 

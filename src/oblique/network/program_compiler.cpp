@@ -19,7 +19,10 @@ ProgramCompiler::ProgramCompiler(Program& program, Network network)
 }
 
 void ProgramCompiler::compile() {
+  program_.switch_structure_ = find_switch_structure(network_);
   differentiate();
+  differentiate_surfaces();
+  find_sources();
   find_levels();
   find_needs();
   write_tapes();
@@ -28,6 +31,7 @@ void ProgramCompiler::compile() {
   program_.tape_ = writer_->instructions();
   program_.initial_slots_ = writer_->initial_slots();
   program_.first_memory_ = network_.n_variables();
+  program_.first_rate_ = program_.first_memory_ + network_.memories.size();
   program_.memories_ = std::move(network_.memories);
   program_.switches_ = std::move(network_.switches);
   program_.events_ = std::move(network_.events);
@@ -88,10 +92,12 @@ void ProgramCompiler::close_over(NodeId root, Needs& needs) const {
 
 void ProgramCompiler::find_needs() {
   const Needs none{std::vector<bool>(network_.graph.size()), std::vector<bool>(network_.loops.size())};
-  for_derivatives_ = for_surfaces_ = for_jacobian_ = for_signals_ = none;
+  for_derivatives_ = for_surfaces_ = for_jacobian_ = for_signals_ = for_rates_ = for_sources_ = none;
   for (const State& state : network_.states) close_over(state.derivative, for_derivatives_);
   for (const NodeId root : surface_roots()) close_over(root, for_surfaces_);
   for (const NodeId root : signal_roots()) close_over(root, for_signals_);
+  for (const NodeId root : rate_roots()) close_over(root, for_rates_);
+  for (const NodeId root : source_roots()) close_over(root, for_sources_);
   for (const Gradient& gradient : state_gradients_) {
     for (const auto& [variable, node] : gradient) close_over(node, for_jacobian_);
   }
@@ -101,11 +107,18 @@ void ProgramCompiler::find_needs() {
   }
 }
 
+/// One side of the comparison: where the two are equal, the magnitude of both.
+NodeId ProgramCompiler::compared_side(const Switch& s) const {
+  const Node& node = network_.graph[s.surface];
+  return node.op == Op::subtract || node.op == Op::add ? node.b : s.surface;
+}
+
 /// What tells of events: surfaces, rates of known times, conditions.
 std::vector<NodeId> ProgramCompiler::surface_roots() const {
   std::vector<NodeId> roots = network_.phase_ends;
   for (const Switch& s : network_.switches) {
     roots.push_back(s.surface);
+    roots.push_back(compared_side(s));
     if (s.rate) roots.push_back(*s.rate);
   }
   for (const Event& event : network_.events) roots.push_back(event.condition);
@@ -128,7 +141,7 @@ std::vector<std::uint32_t> ProgramCompiler::count_uses() const {
   std::vector<std::uint32_t> uses(network_.graph.size(), 0);
   for (NodeId id = 0; id < network_.graph.size(); ++id) {
     if (!for_derivatives_.nodes[id] && !for_surfaces_.nodes[id] && !for_signals_.nodes[id] &&
-        !for_jacobian_.nodes[id]) {
+        !for_jacobian_.nodes[id] && !for_rates_.nodes[id] && !for_sources_.nodes[id]) {
       continue;
     }
     const Node& node = network_.graph[id];
@@ -136,7 +149,7 @@ std::vector<std::uint32_t> ProgramCompiler::count_uses() const {
   }
   for (const State& state : network_.states) ++uses[state.derivative];
   for (const Unknown& unknown : network_.unknowns) ++uses[unknown.residual];
-  for (const auto& roots : {surface_roots(), signal_roots()}) {
+  for (const auto& roots : {surface_roots(), signal_roots(), rate_roots(), source_roots()}) {
     for (const NodeId root : roots) ++uses[root];
   }
   for (const auto* gradients : {&state_gradients_, &residual_gradients_}) {
@@ -148,7 +161,9 @@ std::vector<std::uint32_t> ProgramCompiler::count_uses() const {
 }
 
 void ProgramCompiler::write_tapes() {
-  writer_.emplace(network_.graph, network_.n_variables(), network_.memories.size(), network_.tables,
+  const bool with_rates = !network_.switches.empty();
+  const std::size_t n_rates = with_rates ? network_.states.size() + network_.unknowns.size() : 0;
+  writer_.emplace(network_.graph, network_.n_variables(), network_.memories.size() + n_rates, network_.tables,
                   count_uses());
   program_.loop_codes_.resize(network_.loops.size());
   in_body_.assign(network_.graph.size(), false);
@@ -170,12 +185,15 @@ void ProgramCompiler::write_tapes() {
   }
   for (const NodeId signal : network_.signals) program_.signal_slots_.push_back(writer_->slot(signal));
   write_events();
+  write_rates();
+  write_sources();
 }
 
 void ProgramCompiler::write_events() {
   TapeWriter& writer = *writer_;
   for (const Switch& s : network_.switches) {
     program_.surface_slots_.push_back(writer.slot(s.surface));
+    program_.compared_slots_.push_back(writer.slot(compared_side(s)));
     program_.rate_slots_.push_back(s.rate ? std::optional(writer.slot(*s.rate)) : std::nullopt);
   }
   for (const Event& event : network_.events) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -26,17 +27,26 @@ class ProgramCompiler {
   };
 
   void differentiate();
+  void differentiate_surfaces();
+  NodeId total_derivative(const Gradient& gradient, std::size_t without_loop);
+  void find_phases();
+  void find_sources();
   void find_levels();
   void find_needs();
   void close_over(NodeId root, Needs& needs) const;
   void require_loop(std::size_t loop, Needs& needs, std::vector<NodeId>& pending) const;
   std::vector<std::uint32_t> count_uses() const;
 
+  NodeId compared_side(const Switch& s) const;
   std::vector<NodeId> surface_roots() const;
   std::vector<NodeId> signal_roots() const;
 
   void write_tapes();
   void write_events();
+  void write_rates();
+  void write_sources();
+  std::vector<NodeId> rate_roots() const;
+  std::vector<NodeId> source_roots() const;
   std::vector<Program::Step> write_steps(const Needs& wanted, const Needs& done);
   std::vector<NodeId> write_loop_body(std::size_t loop, std::vector<NodeId> nodes);
 
@@ -56,7 +66,19 @@ class ProgramCompiler {
   std::vector<std::uint32_t> loop_of_unknown_;
   std::vector<std::uint32_t> place_in_loop_;
   std::vector<std::uint32_t> levels_;  ///< of a node: 1 + the last loop it depends on, 0 for none
-  Needs for_derivatives_, for_surfaces_, for_signals_, for_jacobian_;
+  Needs for_derivatives_, for_surfaces_, for_signals_, for_jacobian_, for_rates_, for_sources_;
+
+  std::vector<NodeId> surface_rates_;  ///< of every switch
+  std::vector<NodeId> phase_rates_;
+  /// Of each loop whose unknowns' rates the surfaces need, for each residual: what its rate would be if the
+  /// loop's own unknowns stood still.
+  std::map<std::size_t, std::vector<NodeId>> loop_rates_;
+  struct FoundSource {
+    NodeId value, slope;
+    bool acts;
+    std::optional<std::uint32_t> switch_index;
+  };
+  std::vector<FoundSource> sources_;
   std::vector<bool> in_body_;         ///< of a node: written as part of its loop
   std::optional<TapeWriter> writer_;  ///< made once the graph is complete
 };

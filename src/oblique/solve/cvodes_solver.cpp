@@ -72,8 +72,11 @@ bool all_finite(const double* values, std::size_t size) {
 
 struct CvodesSolver::Handles {
   OdeSystem* system;
-  double t;
-  double end;
+  double start;      ///< the time at which CVODES' clock is zero [s]
+  double t;          ///< reached [s]
+  double end;        ///< [s]
+  double clock = 0;  ///< CVODES' own: since `start` [s]
+  double length;     ///< from `start` to `end` [s]
   long max_steps;
   long steps = 0;
   SolverStatistics before_restart;  ///< CVODES counts from its last start
@@ -88,9 +91,15 @@ struct CvodesSolver::Handles {
   Owned<SUNLinearSolver, LinearSolverDeleter> linear_solver;
   std::unique_ptr<void, CvodesDeleter> memory;
 
-  Handles(OdeSystem& ode, double t0, std::span<const double> x0, double last_time,
+  Handles(OdeSystem& ode, double t0, std::span<const double> x0, double last_time, double until_then,
           const SolverSettings& settings)
-      : system(&ode), t(t0), end(last_time), max_steps(settings.max_steps), context(make_context()) {
+      : system(&ode),
+        start(t0),
+        t(t0),
+        end(last_time),
+        length(until_then),
+        max_steps(settings.max_steps),
+        context(make_context()) {
     const auto n = static_cast<sunindextype>(x0.size());
     states.reset(made(N_VNew_Serial(n, context.get())));
     scratch.reset(made(N_VNew_Serial(n, context.get())));
@@ -100,7 +109,7 @@ struct CvodesSolver::Handles {
     linear_solver.reset(made(SUNLinSol_KLU(states.get(), matrix.get(), context.get())));
     memory.reset(made(CVodeCreate(settings.adams ? CV_ADAMS : CV_BDF, context.get())));
     void* const cvodes = memory.get();
-    check_setup(CVodeInit(cvodes, evaluate, t0, states.get()));
+    check_setup(CVodeInit(cvodes, evaluate, 0, states.get()));
     check_setup(CVodeSetErrHandlerFn(cvodes, ignore_message, nullptr));
     check_setup(CVodeSetUserData(cvodes, this));
     if (settings.own_tolerances.empty()) {
@@ -113,14 +122,14 @@ struct CvodesSolver::Handles {
     }
     check_setup(CVodeSetLinearSolver(cvodes, linear_solver.get(), matrix.get()));
     check_setup(CVodeSetJacFn(cvodes, differentiate));
-    check_setup(CVodeSetStopTime(cvodes, end));
+    check_setup(CVodeSetStopTime(cvodes, length));
   }
 
   static int evaluate(sunrealtype t, N_Vector x, N_Vector dxdt, void* user) {
     auto& self = *static_cast<Handles*>(user);
     const double* const states = N_VGetArrayPointer(x);
     double* const slopes = N_VGetArrayPointer(dxdt);
-    if (!self.system->derivatives(t, states, slopes)) {
+    if (!self.system->derivatives(self.start + t, states, slopes)) {
       self.saw_refusal = true;
       return 1;
     }
@@ -137,11 +146,22 @@ struct CvodesSolver::Handles {
               SUNSparseMatrix_IndexPointers(matrix));
     std::copy(pattern.rows.begin(), pattern.rows.end(), SUNSparseMatrix_IndexValues(matrix));
     double* const values = SUNSparseMatrix_Data(matrix);
-    if (!self.system->jacobian(t, N_VGetArrayPointer(x), values)) {
+    if (!self.system->jacobian(self.start + t, N_VGetArrayPointer(x), values)) {
       self.saw_refusal = true;
       return 1;
     }
     return all_finite(values, pattern.entries()) ? 0 : 1;
+  }
+
+  /// The states, or with `derivative` 1 their rates, at a time within the last step.
+  void interpolate(double at, int derivative, std::span<double> values) const {
+    sunrealtype last = 0;
+    CVodeGetLastStep(memory.get(), &last);
+    // The end of the step to the bit, and no rounding beyond its ends, which CVODES would refuse.
+    const double own = at >= t ? clock : std::clamp(at - start, clock - last, clock);
+    check_setup(CVodeGetDky(memory.get(), own, derivative, scratch.get()));
+    const double* const found = N_VGetArrayPointer(scratch.get());
+    std::copy(found, found + values.size(), values.begin());
   }
 
   /// What ended a step with this code, or the row of small steps that one of success ends.
@@ -160,45 +180,55 @@ struct CvodesSolver::Handles {
 };
 
 CvodesSolver::CvodesSolver(OdeSystem& system, double t0, std::span<const double> x0, double end,
-                           const SolverSettings& settings)
-    : handles_(std::make_unique<Handles>(system, t0, x0, end, settings)) {}
+                           double length, const SolverSettings& settings)
+    : handles_(std::make_unique<Handles>(system, t0, x0, end, length, settings)) {}
 CvodesSolver::~CvodesSolver() = default;
 CvodesSolver::CvodesSolver(CvodesSolver&&) noexcept = default;
 CvodesSolver& CvodesSolver::operator=(CvodesSolver&&) noexcept = default;
 
-void CvodesSolver::restart(double t, std::span<const double> x, double end) {
+void CvodesSolver::restart(double t, std::span<const double> x, double end, double length) {
   Handles& h = *handles_;
   h.before_restart = statistics();
   std::copy(x.begin(), x.end(), N_VGetArrayPointer(h.states.get()));
-  check_setup(CVodeReInit(h.memory.get(), t, h.states.get()));
-  check_setup(CVodeSetStopTime(h.memory.get(), end));
-  h.t = t;
+  check_setup(CVodeReInit(h.memory.get(), 0, h.states.get()));
+  check_setup(CVodeSetStopTime(h.memory.get(), length));
+  h.start = h.t = t;
+  h.clock = 0;
   h.end = end;
+  h.length = length;
   h.small_steps = 0;
+}
+
+void CvodesSolver::limit_step(double longest) {
+  check_setup(CVodeSetMaxStep(handles_->memory.get(), std::isinf(longest) ? 0 : longest));
 }
 
 double CvodesSolver::step() {
   Handles& h = *handles_;
   if (h.steps >= h.max_steps) throw SolverFailure{SolverFailure::Kind::step_budget, h.t, 0};
   if (h.small_steps == 0) h.saw_refusal = h.saw_not_finite = false;
-  const double before = h.t;
+  const double before = h.clock;
   // In one-step mode this time only tells the direction; it must not be the stop time itself.
-  const double direction = h.end + (h.end - before) + 1;
-  const int code = CVode(h.memory.get(), direction, h.states.get(), &h.t, CV_ONE_STEP);
+  const double direction = 2 * h.length + 1;
+  const int code = CVode(h.memory.get(), direction, h.states.get(), &h.clock, CV_ONE_STEP);
+  h.t = h.clock >= h.length ? h.end : std::min(h.start + h.clock, h.end);
   if (code < 0) throw h.failure(code);
   ++h.steps;
   if (!all_finite(N_VGetArrayPointer(h.states.get()), h.system->size())) {
     throw SolverFailure{SolverFailure::Kind::not_finite, h.t, code};
   }
-  h.small_steps = h.t - before < kSmallestStep * std::abs(h.t) && h.t < h.end ? h.small_steps + 1 : 0;
+  const bool small = h.clock - before < kSmallestStep * std::min(std::abs(h.t), h.length);
+  h.small_steps = small && h.clock < h.length ? h.small_steps + 1 : 0;
   if (h.small_steps > kMostSmallSteps) throw h.failure(code);
   return h.t;
 }
 
 void CvodesSolver::states_at(double t, std::span<double> x) const {
-  check_setup(CVodeGetDky(handles_->memory.get(), t, 0, handles_->scratch.get()));
-  const double* const values = N_VGetArrayPointer(handles_->scratch.get());
-  std::copy(values, values + x.size(), x.begin());
+  handles_->interpolate(t, 0, x);
+}
+
+void CvodesSolver::rates_at(double t, std::span<double> dxdt) const {
+  handles_->interpolate(t, 1, dxdt);
 }
 
 std::span<const double> CvodesSolver::states() const {

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include <oblique/solve/interpolant.h>
 #include <oblique/solve/ode_system.h>
 
 namespace oblique {
@@ -42,23 +43,31 @@ struct SolverFailure {
 
 /// CVODES with variable-order BDF (or Adams), Newton's method, and KLU on the analytic Jacobian. Owns all of
 /// SUNDIALS' memory.
-class CvodesSolver {
+///
+/// CVODES' own clock starts at zero with every start, so that a stretch far shorter than what the time itself
+/// resolves late in a run keeps its length.
+class CvodesSolver final : public Interpolant {
  public:
-  /// Starts at (t0, x0) and will not pass `end`. `system` must outlive the solver.
-  CvodesSolver(OdeSystem& system, double t0, std::span<const double> x0, double end,
+  /// Starts at (t0, x0) and will not pass `end`, which comes after `length`. `system` must outlive the
+  /// solver.
+  CvodesSolver(OdeSystem& system, double t0, std::span<const double> x0, double end, double length,
                const SolverSettings& settings);
-  ~CvodesSolver();
+  ~CvodesSolver() override;
   CvodesSolver(CvodesSolver&&) noexcept;
   CvodesSolver& operator=(CvodesSolver&&) noexcept;
 
-  /// Starts anew at (t, x), where the system has jumped, and will not pass `end`.
-  void restart(double t, std::span<const double> x, double end);
+  /// Starts anew at (t, x), where the system has jumped, and will not pass `end`, which comes after `length`.
+  void restart(double t, std::span<const double> x, double end, double length);
+
+  /// No step is longer than this from now on [s]; infinity: as long as the tolerance lets it be.
+  void limit_step(double longest);
 
   /// Takes one step and returns the time reached [s], exactly `end` at last. Throws SolverFailure.
   double step();
 
   /// The states at a time within the last step, from the solver's own interpolating polynomial.
-  void states_at(double t, std::span<double> x) const;
+  void states_at(double t, std::span<double> x) const override;
+  void rates_at(double t, std::span<double> dxdt) const override;
 
   /// The states at the time reached.
   std::span<const double> states() const;

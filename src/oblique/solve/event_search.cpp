@@ -1,146 +1,232 @@
 // SPDX-License-Identifier: MIT
-// The part of Switching that finds out when a switch turns over.
+#include <oblique/solve/event_search.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include <oblique/solve/solve_error.h>
-#include <oblique/solve/switching.h>
 
 namespace oblique {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+/// At least so often over a run, however smooth the states are: nothing is known of what is made of them.
+constexpr double kFewestLooks = 1000;
+
+/// No further from look to look than a periodic function of the states turns by this [rad].
+constexpr double kMostTurn = 0.5;
+constexpr double kMostLooks = 1e6;  ///< in a step
+
+/// How far beyond 0 and 1 the shares of a slide are where it ends.
+constexpr double kEdge = 1e-5;
+
+constexpr int kDeepest = 60;
+
 /// Nearer than this no two times are told apart.
 double resolution(double t) {
   return 4 * std::numeric_limits<double>::epsilon() * std::abs(t);
 }
 
-/// Where the parabola through (0, a), (½, b), (1, c) has its top: nothing if that is no maximum inside.
-std::optional<double> top_of_parabola(double a, double b, double c) {
-  const double curvature = a - 2 * b + c;
-  if (!(curvature < 0)) return std::nullopt;
-  const double at = 0.5 - (c - a) / (4 * curvature);
-  if (at <= 0 || at >= 1) return std::nullopt;
-  return at;
+/// A cubic over [0, 1] by its values at the ends and its slopes there.
+struct Cubic {
+  double begin, end, begin_slope, end_slope;
+
+  double value(double u) const {
+    const double v = 1 - u;
+    return v * v * (1 + 2 * u) * begin + u * u * (3 - 2 * u) * end +
+           u * v * (v * begin_slope - u * end_slope);
+  }
+
+  /// Where it has its top; nothing where it has none inside.
+  std::optional<double> top() const {
+    // d/du = begin_slope + 2 b u + 3 c u²
+    const double rise = end - begin;
+    const double b = 3 * rise - 2 * begin_slope - end_slope, c = begin_slope + end_slope - 2 * rise;
+    const double discriminant = b * b - 3 * c * begin_slope;
+    if (!(discriminant > 0)) return std::nullopt;
+    const double root = std::sqrt(discriminant);
+    // Of the two zeros the one where the slope falls, by the form that loses no digits.
+    const double at = b > 0 ? (3 * c == 0 ? kInfinity : (-b - root) / (3 * c)) : begin_slope / (-b + root);
+    if (!(at > 0 && at < 1)) return std::nullopt;
+    return at;
+  }
+};
+
+/// From one look to another; without rates a straight line.
+Cubic cubic_of(double from, double to, double from_rate, double to_rate, double length) {
+  const double secant = to - from;
+  const bool known = std::isfinite(from_rate) && std::isfinite(to_rate);
+  return {from, to, known ? from_rate * length : secant, known ? to_rate * length : secant};
 }
 
 }  // namespace
 
-double Switching::next_known_time(double t, std::span<const double> x) {
-  double next = kInfinity;
-  std::vector<double> times(announced_.size(), kInfinity);
-  if (!announced_.empty()) evaluate(t, x);
-  for (std::size_t s = 0; s < announced_.size(); ++s) {
-    const auto rate = program_.known_rate(s, workspace_);
-    if (!rate) continue;
-    const bool closed = workspace_.memory(program_.switches()[s].memory) == 1;
-    if (closed ? *rate >= 0 : *rate <= 0) continue;
-    times[s] = std::max(t, t - surfaces_[s] / *rate);
-    next = std::min(next, times[s]);
-  }
-  std::fill(announced_.begin(), announced_.end(), -1.0);
-  for (std::size_t s = 0; s < announced_.size(); ++s) {
-    if (times[s] < kInfinity && times[s] <= next + resolution(next)) {
-      announced_[s] = 1 - workspace_.memory(program_.switches()[s].memory);
-    }
-  }
-  return next;
+EventSearch::EventSearch(const Program& program, Workspace& workspace, SlidingMode& slide,
+                         const std::vector<double>& thresholds, double span, const std::string& file)
+    : program_(program),
+      workspace_(workspace),
+      slide_(slide),
+      thresholds_(thresholds),
+      span_(span),
+      file_(file),
+      check_interval_(span / kFewestLooks),
+      states_(program.n_states()),
+      rates_(program.n_states()),
+      surfaces_(program.switches().size()),
+      surface_rates_(program.switches().size()),
+      excursions_(program.switches().size(), 0) {
+  for (const Switch& s : program.switches()) check_interval_ = std::min(check_interval_, s.check_interval);
 }
 
-/// Of every switch by how much its surface has passed zero against its position; the last two tell of a slide
-/// that ends at either side.
-void Switching::look(double t, const StatesAt& states_at, Look& at) {
+void EventSearch::look(double t, const Interpolant& solution, Look& at) {
   at.time = t;
-  states_at(t, states_);
-  double slide = 0;
-  if (sliding_) {
-    slide = sliding_position(t, states_);
-    workspace_.set_memory(program_.switches()[*sliding_].memory, std::clamp(slide, 0.0, 1.0));
-  }
-  evaluate(t, states_);
-  at.overdue.resize(surfaces_.size() + 2);
-  for (std::size_t s = 0; s < surfaces_.size(); ++s) {
+  solution.states_at(t, states_);
+  solution.rates_at(t, rates_);
+  if (slide_.active() && !slide_.evaluate(t, states_))
+    throw loop_error(program_, workspace_.trouble(), t, file_);
+  if (!program_.surfaces(t, states_.data(), surfaces_.data(), workspace_))
+    throw loop_error(program_, workspace_.trouble(), t, file_);
+  program_.surface_rates(rates_.data(), surface_rates_.data(), workspace_);
+  at.phase_rate = program_.fastest_phase(workspace_);
+  const std::size_t n = surfaces_.size();
+  at.surfaces = surfaces_;
+  at.overdue.resize(n);
+  at.rates.resize(n);
+  for (std::size_t s = 0; s < n; ++s) {
     const bool closed = workspace_.memory(program_.switches()[s].memory) == 1;
-    at.overdue[s] = (closed ? -surfaces_[s] : surfaces_[s]) - tiny(s, t);
-    if (is_known(s) || sliding_ == s) at.overdue[s] = -kInfinity;
+    at.overdue[s] = (closed ? -surfaces_[s] : surfaces_[s]) - thresholds_[s];
+    at.rates[s] = closed ? -surface_rates_[s] : surface_rates_[s];
+    const bool elsewhere =
+        program_.switches()[s].rate || slide_.holds(s) || slide_.follows(s) || slide_.rests(s);
+    if (elsewhere) at.overdue[s] = -kInfinity;
   }
-  at.overdue[surfaces_.size()] = sliding_ ? -slide : -kInfinity;
-  at.overdue[surfaces_.size() + 1] = sliding_ ? slide - 1 : -kInfinity;
+  for (const double share : slide_.shares()) {
+    at.overdue.push_back(-share - kEdge);
+    at.overdue.push_back(share - 1 - kEdge);
+  }
+  for (std::size_t side = 0; side < slide_.sides(); ++side) {
+    for (std::size_t f = 0; f < slide_.followers().size(); ++f)
+      at.overdue.push_back(slide_.overdue(side, f) - thresholds_[slide_.followers()[f]]);
+  }
+  at.rates.resize(at.overdue.size(), std::numeric_limits<double>::quiet_NaN());
 }
 
-std::optional<double> Switching::search(double from, double to, const StatesAt& states_at) {
-  constexpr double kFewestLooks = 1000;  // over the run: the solver's steps are long where the states are
-                                         // smooth, whatever is made of them
-  double interval = span_ / kFewestLooks;
-  for (const Switch& s : program_.switches()) interval = std::min(interval, s.check_interval);
-  constexpr double kMostLooks = 1e6;
-  const auto looks = static_cast<int>(std::clamp(std::ceil((to - from) / interval), 1.0, kMostLooks));
+bool EventSearch::is_due(const Look& at) const {
+  return std::any_of(at.overdue.begin(), at.overdue.end(), [](double value) { return value > 0; });
+}
+
+std::optional<EventSearch::Found> EventSearch::search(double from, std::span<const double> looks,
+                                                      const Interpolant& solution) {
   Look left, right;
-  look(from, states_at, left);
+  look(from, solution, left);
   // Where the solver starts anew a surface may still lie within rounding of zero on the wrong side.
   for (double& value : left.overdue) value = std::min(value, 0.0);
-  for (int k = 1; k <= looks; ++k) {
-    look(k == looks ? to : from + (to - from) * k / looks, states_at, right);
-    if (const auto found = first_in(left, right, states_at)) return found;
-    std::swap(left, right);
-  }
-  return std::nullopt;
-}
-
-std::optional<double> Switching::first_in(const Look& from, const Look& to, const StatesAt& states_at) {
-  const auto any = [](const Look& at) {
-    return std::any_of(at.overdue.begin(), at.overdue.end(), [](double value) { return value > 0; });
-  };
-  Look middle;
-  look((from.time + to.time) / 2, states_at, middle);
-  if (any(middle)) return locate(from, middle, states_at);
-  Look peak;
-  if (finds_peak(from, middle, to, states_at, peak)) return locate(from, peak, states_at);
-  if (any(to)) return locate(middle, to, states_at);
-  return std::nullopt;
-}
-
-/// Whether a surface passes zero and comes back between two looks: its top, near which it may do so, is
-/// sought along parabolas.
-bool Switching::finds_peak(const Look& from, const Look& middle, const Look& to, const StatesAt& states_at,
-                           Look& found) {
-  constexpr double kNear = 0.25;  // of the way that the surface covers in the step
-  constexpr int kMostTries = 8;
-  for (std::size_t s = 0; s < from.overdue.size(); ++s) {
-    double a = from.overdue[s], b = middle.overdue[s], c = to.overdue[s];
-    if (!std::isfinite(a) || !std::isfinite(b) || !std::isfinite(c) || c > 0) continue;
-    double left = from.time, right = to.time;
-    for (int tried = 0; tried < kMostTries; ++tried) {
-      const auto top = top_of_parabola(a, b, c);
-      if (!top) break;
-      const double height = b - (c - a) * (c - a) / (8 * (a - 2 * b + c));
-      const double way = std::max({a, b, c}) - std::min({a, b, c});
-      if (height < -kNear * way) break;
-      const double at = left + *top * (right - left);
-      look(at, states_at, found);
-      if (found.overdue[s] > 0) return true;
-      // The next parabola lies around the top, a quarter as wide.
-      const double half = (right - left) / 8;
-      const double centre = found.overdue[s];
-      left = std::max(from.time, at - half);
-      right = std::min(to.time, at + half);
-      Look side;
-      look(left, states_at, side);
-      a = side.overdue[s];
-      look(right, states_at, side);
-      c = side.overdue[s];
-      b = centre;
-      if (at - left != right - at) break;
+  for (const double to : looks) {
+    const double begin = left.time;
+    look(to, solution, right);
+    const double turning = std::max(left.phase_rate, right.phase_rate);
+    const double longest = std::min(check_interval_, turning > 0 ? kMostTurn / turning : kInfinity);
+    const auto parts = static_cast<long>(std::clamp(std::ceil((to - begin) / longest), 1.0, kMostLooks));
+    for (long k = 1; k <= parts; ++k) {
+      if (parts > 1)
+        look(k == parts ? to : begin + (to - begin) * static_cast<double>(k) / static_cast<double>(parts),
+             solution, right);
+      if (auto found = between(left, right, solution)) return found;
+      std::swap(left, right);
+      for (std::size_t s = 0; s < excursions_.size(); ++s)
+        excursions_[s] = std::max(excursions_[s], std::abs(left.surfaces[s]));
     }
   }
-  return false;
+  return std::nullopt;
 }
 
-/// The first time at which something is overdue, between a time where nothing is and one where something is:
-/// by secants, halved where these are slow. Announces what turns over there.
-double Switching::locate(Look from, Look to, const StatesAt& states_at) {
+std::optional<EventSearch::Found> EventSearch::between(const Look& from, const Look& to,
+                                                       const Interpolant& solution) {
+  const double length = to.time - from.time;
+  const std::size_t n = to.overdue.size();
+  bool clear = true;
+  for (std::size_t k = 0; k < n && clear; ++k) {
+    const double reach = length * std::max(std::abs(from.rates[k]), std::abs(to.rates[k]));
+    const double nearest = std::max(from.overdue[k], to.overdue[k]);
+    clear = nearest == -kInfinity || nearest + reach < 0;
+  }
+  if (clear) return std::nullopt;
+  Look middle;
+  look(from.time + length / 2, solution, middle);
+  std::vector<double> errors(n, 0.0);
+  for (std::size_t k = 0; k < n; ++k) {
+    if (to.overdue[k] == -kInfinity || from.overdue[k] == -kInfinity) continue;
+    const Cubic cubic = cubic_of(from.overdue[k], to.overdue[k], from.rates[k], to.rates[k], length);
+    // Half a part has a sixteenth of the error of a cubic; twice that to be safe.
+    errors[k] = std::abs(cubic.value(0.5) - middle.overdue[k]) / 8;
+  }
+  if (auto found = split(from, middle, errors, 0, solution)) return found;
+  for (double& value : middle.overdue) value = std::min(value, 0.0);
+  return split(middle, to, errors, 0, solution);
+}
+
+/// `errors` is of each surface how far it may be from its cubic between the two.
+std::optional<EventSearch::Found> EventSearch::split(const Look& from, const Look& to,
+                                                     const std::vector<double>& errors, int depth,
+                                                     const Interpolant& solution) {
+  const double length = to.time - from.time;
+  const bool due = is_due(to);
+  if (depth > kDeepest || length <= resolution(to.time)) {
+    if (due) return locate(from, to, solution);
+    return std::nullopt;
+  }
+  double highest = 0, at = 0.5;
+  bool hides = false;
+  for (std::size_t k = 0; k < to.overdue.size(); ++k) {
+    const double a = from.overdue[k], b = to.overdue[k];
+    if (a == -kInfinity || b == -kInfinity || b > 0) continue;
+    const Cubic cubic = cubic_of(a, b, from.rates[k], to.rates[k], length);
+    const auto top = cubic.top();
+    // The error of a cubic through values and slopes is none at the ends, and goes as u² (1 − u)².
+    const auto bound = [&](double u) { return cubic.value(u) + 16 * errors[k] * u * u * (1 - u) * (1 - u); };
+    double height = top ? bound(*top) : -kInfinity;
+    for (const double u : {1.0 / 32, 0.125, 0.25, 0.5, 0.75, 0.875, 31.0 / 32})
+      height = std::max(height, bound(u));
+    if (!(height > 0)) continue;
+    if (!hides || height > highest) {
+      highest = height;
+      at = top ? std::clamp(*top, 0.02, 0.98) : 0.5;
+    }
+    hides = true;
+  }
+  if (!hides) {
+    if (due) return locate(from, to, solution);
+    return std::nullopt;
+  }
+  Look between;
+  look(from.time + at * length, solution, between);
+  if (!(between.time > from.time && between.time < to.time)) {
+    if (due) return locate(from, to, solution);
+    return std::nullopt;
+  }
+  // The error that the cubics have here tells those of the two parts, which fall with the fourth power of
+  // their lengths; twice that to be safe.
+  std::vector<double> before(errors.size(), 0.0), after(errors.size(), 0.0);
+  for (std::size_t k = 0; k < errors.size(); ++k) {
+    const double a = from.overdue[k], b = to.overdue[k];
+    if (a == -kInfinity || b == -kInfinity) continue;
+    const double off =
+        std::abs(cubic_of(a, b, from.rates[k], to.rates[k], length).value(at) - between.overdue[k]);
+    if (off <= 4 * std::numeric_limits<double>::epsilon() * (std::abs(a) + std::abs(b))) continue;
+    const double largest = std::min(errors[k], off / (16 * at * at * (1 - at) * (1 - at)));
+    before[k] = std::min(2 * std::pow(at, 4), 1.0) * largest;
+    after[k] = std::min(2 * std::pow(1 - at, 4), 1.0) * largest;
+  }
+  if (auto found = split(from, between, before, depth + 1, solution)) return found;
+  for (double& value : between.overdue) value = std::min(value, 0.0);
+  return split(between, to, after, depth + 1, solution);
+}
+
+/// The first crossing between a look at which nothing is due and one at which something is: secants, and
+/// halves where they do not close the bracket.
+EventSearch::Found EventSearch::locate(Look from, Look to, const Interpolant& solution) {
   Look middle;
   bool halve = false;
   while (to.time - from.time > resolution(to.time)) {
@@ -156,20 +242,23 @@ double Switching::locate(Look from, Look to, const StatesAt& states_at) {
     if (!halve) at = std::min(at + 0.01 * (at - from.time) * (to.time - at) / (to.time - from.time), to.time);
     if (!(at > from.time && at < to.time)) break;
     const double width = to.time - from.time;
-    look(at, states_at, middle);
-    const bool over =
-        std::any_of(middle.overdue.begin(), middle.overdue.end(), [](double v) { return v > 0; });
-    std::swap(over ? to : from, middle);
+    look(at, solution, middle);
+    std::swap(is_due(middle) ? to : from, middle);
     halve = to.time - from.time > width / 2;
   }
-  std::fill(announced_.begin(), announced_.end(), -1.0);
+  Found found;
+  found.time = to.time;
   const std::size_t n = surfaces_.size();
-  for (std::size_t s = 0; s < n; ++s) {
-    if (to.overdue[s] > 0) announced_[s] = 1 - workspace_.memory(program_.switches()[s].memory);
+  for (std::size_t k = 0; k < to.overdue.size(); ++k) {
+    if (!(to.overdue[k] > 0)) continue;
+    if (k < n) {
+      found.turned.emplace_back(static_cast<std::uint32_t>(k),
+                                1 - workspace_.memory(program_.switches()[k].memory));
+    } else {
+      found.slide_changes = true;
+    }
   }
-  if (sliding_ && to.overdue[n] > 0) announced_[*sliding_] = 0;
-  if (sliding_ && to.overdue[n + 1] > 0) announced_[*sliding_] = 1;
-  return to.time;
+  return found;
 }
 
 }  // namespace oblique

@@ -20,9 +20,10 @@ bool is_outside(double value) {
 
 }  // namespace
 
-OverloadWatch::OverloadWatch(const Program& program, Workspace& workspace, std::string file, bool halt)
+OverloadWatch::OverloadWatch(const Program& program, Switching& switching, std::string file, bool halt)
     : program_(program),
-      workspace_(workspace),
+      workspace_(switching.workspace()),
+      switching_(switching),
       file_(std::move(file)),
       halt_(halt),
       records_(program.n_signals()),
@@ -33,13 +34,13 @@ OverloadWatch::OverloadWatch(const Program& program, Workspace& workspace, std::
       end_(program.n_signals()) {}
 
 void OverloadWatch::evaluate(double t, std::vector<double>& values) {
-  if (!program_.signals(t, states_.data(), values.data(), workspace_)) {
+  if (!switching_.signals(t, states_.data(), values.data())) {
     throw loop_error(program_, workspace_.trouble(), t, file_);
   }
 }
 
-double OverloadWatch::value_at(double t, std::size_t signal, const StatesAt& states_at) {
-  states_at(t, states_);
+double OverloadWatch::value_at(double t, std::size_t signal, const Interpolant& solution) {
+  solution.states_at(t, states_);
   evaluate(t, probe_);
   return probe_[signal];
 }
@@ -56,16 +57,16 @@ void OverloadWatch::restart(double t, std::span<const double> states) {
   }
 }
 
-double OverloadWatch::advance(double t, const StatesAt& states_at) {
+double OverloadWatch::advance(double t, const Interpolant& solution) {
   if (halt_ && !overloads().empty()) {  // it began with one
     halted_ = true;
     return t_;
   }
-  states_at(t_ + (t - t_) / 2, states_);
+  solution.states_at(t_ + (t - t_) / 2, states_);
   evaluate(t_ + (t - t_) / 2, middle_);
-  states_at(t, states_);
+  solution.states_at(t, states_);
   evaluate(t, end_);
-  for (std::size_t s = 0; s < records_.size(); ++s) look_at(s, t, states_at);
+  for (std::size_t s = 0; s < records_.size(); ++s) look_at(s, t, solution);
   std::swap(begin_, end_);
   t_ = t;
   if (!halt_) return t;
@@ -83,7 +84,7 @@ bool OverloadWatch::matters(const Record& record, double extreme, double before,
   return new_peak || other_side;
 }
 
-void OverloadWatch::look_at(std::size_t signal, double t, const StatesAt& states_at) {
+void OverloadWatch::look_at(std::size_t signal, double t, const Interpolant& solution) {
   Record& record = records_[signal];
   const double middle_time = t_ + (t - t_) / 2;
   std::array<Sample, 4> samples{Sample{t_, begin_[signal]}, Sample{middle_time, middle_[signal]},
@@ -99,7 +100,7 @@ void OverloadWatch::look_at(std::size_t signal, double t, const StatesAt& states
     if (matters(record, extreme, middle_[signal], other)) {
       // Far inside the range the parabola will do: nothing but a proposal of a scale depends on it.
       samples[3] =
-          std::abs(extreme) < kFarInside ? Sample{time, extreme} : find_extreme(signal, time, t, states_at);
+          std::abs(extreme) < kFarInside ? Sample{time, extreme} : find_extreme(signal, time, t, solution);
       n = 4;
       std::sort(samples.begin(), samples.end(),
                 [](const Sample& x, const Sample& y) { return x.time < y.time; });
@@ -114,12 +115,12 @@ void OverloadWatch::look_at(std::size_t signal, double t, const StatesAt& states
       leave(record, last.time, value);                         // it still is; perhaps by more
     } else if (is_outside(last.value) && is_outside(value)) {  // across the whole range
       const Sample zero{last.time + (time - last.time) * last.value / (last.value - value), 0};
-      come_back(record, find_crossing(signal, zero, last, states_at));
-      leave(record, find_crossing(signal, zero, samples[k], states_at), value);
+      come_back(record, find_crossing(signal, zero, last, solution));
+      leave(record, find_crossing(signal, zero, samples[k], solution), value);
     } else if (is_outside(value)) {
-      leave(record, find_crossing(signal, last, samples[k], states_at), value);
+      leave(record, find_crossing(signal, last, samples[k], solution), value);
     } else if (is_outside(last.value)) {
-      come_back(record, find_crossing(signal, samples[k], last, states_at));
+      come_back(record, find_crossing(signal, samples[k], last, solution));
     }
   }
 }
@@ -127,9 +128,9 @@ void OverloadWatch::look_at(std::size_t signal, double t, const StatesAt& states
 /// From where a parabola puts an extreme: parabolas through ever closer neighbours there, whose error falls
 /// with the third power of their distance.
 OverloadWatch::Sample OverloadWatch::find_extreme(std::size_t signal, double near, double end,
-                                                  const StatesAt& states_at) {
+                                                  const Interpolant& solution) {
   const auto at = [&](double time) {
-    return Sample{time, value_at(std::clamp(time, t_, end), signal, states_at)};
+    return Sample{time, value_at(std::clamp(time, t_, end), signal, solution)};
   };
   Sample best = at(near);
   for (const double part : {1.0 / 16, 1.0 / 256}) {
@@ -149,7 +150,7 @@ OverloadWatch::Sample OverloadWatch::find_extreme(std::size_t signal, double nea
 /// Where |signal| passes 1 between a sample inside the range and one outside: false position with the
 /// Illinois rule.
 double OverloadWatch::find_crossing(std::size_t signal, Sample inside, Sample outside,
-                                    const StatesAt& states_at) {
+                                    const Interpolant& solution) {
   const double limit = std::copysign(1.0, outside.value);
   constexpr int kMostIterations = 60;
   double low = inside.time, high = outside.time;
@@ -157,7 +158,7 @@ double OverloadWatch::find_crossing(std::size_t signal, Sample inside, Sample ou
   if (at_low == 0) return low;
   for (int k = 0; k < kMostIterations && std::abs(high - low) > 1e-14 * std::abs(high); ++k) {
     const double time = high - at_high * (high - low) / (at_high - at_low);
-    const double value = (value_at(time, signal, states_at) - limit) * limit;
+    const double value = (value_at(time, signal, solution) - limit) * limit;
     if (value == 0) return time;
     if ((value > 0) == (at_high > 0)) {
       at_low /= 2;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -9,6 +8,8 @@
 
 #include <oblique/diagram/rescale.h>
 #include <oblique/network/program.h>
+#include <oblique/solve/interpolant.h>
+#include <oblique/solve/switching.h>
 
 namespace oblique {
 
@@ -33,18 +34,15 @@ struct OverloadRecord {
 /// value is taken. Times are those at which the magnitude passes 1, to the rounding of the interpolant.
 class OverloadWatch {
  public:
-  /// Gives the states at a time within the last step.
-  using StatesAt = std::function<void(double t, std::span<double> states)>;
-
-  /// `workspace` is that of the run. Where `halt` is set, `advance` stops at the first overload.
-  OverloadWatch(const Program& program, Workspace& workspace, std::string file, bool halt);
+  /// `switching` is that of the run. Where `halt` is set, `advance` stops at the first overload.
+  OverloadWatch(const Program& program, Switching& switching, std::string file, bool halt);
 
   /// Begins at (t, states), or goes on there after a jump of the signals. Throws SolveError.
   void restart(double t, std::span<const double> states);
 
   /// Looks at the step from the last time to t; gives the time to which the run counts: t, or that of the
   /// first overload where it halts there. Throws SolveError where an algebraic loop has no solution.
-  double advance(double t, const StatesAt& states_at);
+  double advance(double t, const Interpolant& solution);
 
   bool halted() const { return halted_; }
 
@@ -66,16 +64,17 @@ class OverloadWatch {
   };
 
   void evaluate(double t, std::vector<double>& values);
-  double value_at(double t, std::size_t signal, const StatesAt& states_at);
-  void look_at(std::size_t signal, double t, const StatesAt& states_at);
+  double value_at(double t, std::size_t signal, const Interpolant& solution);
+  void look_at(std::size_t signal, double t, const Interpolant& solution);
   bool matters(const Record& record, double extreme, double before, double after) const;
-  Sample find_extreme(std::size_t signal, double near, double end, const StatesAt& states_at);
-  double find_crossing(std::size_t signal, Sample inside, Sample outside, const StatesAt& states_at);
+  Sample find_extreme(std::size_t signal, double near, double end, const Interpolant& solution);
+  double find_crossing(std::size_t signal, Sample inside, Sample outside, const Interpolant& solution);
   void leave(Record& record, double t, double value);
   void come_back(Record& record, double t);
 
   const Program& program_;
-  Workspace& workspace_;
+  const Workspace& workspace_;
+  Switching& switching_;
   std::string file_;
   bool halt_;
   bool halted_ = false;

@@ -4,13 +4,16 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
+#include <oblique/solve/hidden_motion.h>
 #include <oblique/solve/phase_clock.h>
 #include <oblique/solve/rest.h>
 #include <oblique/solve/sampler.h>
 #include <oblique/solve/solve_error.h>
+#include <oblique/solve/source_watch.h>
 
 namespace oblique {
 namespace {
@@ -42,13 +45,15 @@ class Runner {
         options_(options),
         begin_(options.from ? options.from->time : 0),
         workspace_(program),
-        switching_(program, workspace_, options.until - begin_, diagram.file),
+        switching_(program, workspace_, options.until - begin_, options.tolerance, diagram.file),
         clock_(program, diagram.timeline, workspace_, begin_),
         system_(program, switching_),
         sampler_(program, diagram, options, workspace_, switching_),
+        sources_(program, workspace_,
+                 options.extremes || options.watch_overloads || options.halt_on_overload),
         states_(program.start()) {
     if (options.watch_overloads || options.halt_on_overload)
-      overloads_.emplace(program, workspace_, diagram.file, options.halt_on_overload);
+      overloads_.emplace(program, switching_, diagram.file, options.halt_on_overload);
   }
 
   Run run() {
@@ -60,8 +65,7 @@ class Runner {
       });
     }
     follow_phases(begin_);
-    sampler_.advance(
-        begin_, [&](double, std::span<double> x) { std::copy(states_.begin(), states_.end(), x.begin()); });
+    sampler_.advance(begin_, StandingStates(states_));
     if (overloads_) overloads_->restart(begin_, states_);
     if (program_.n_states() > 0) {
       integrate();
@@ -71,6 +75,7 @@ class Runner {
     sampler_.result.events = switching_.records();
     sampler_.result.event_count = switching_.count();
     sampler_.result.state = state();
+    sampler_.result.warnings = switching_.warnings();
     if (overloads_) {
       sampler_.result.peaks = overloads_->peaks();
       sampler_.result.overloads = overloads_->overloads();
@@ -122,30 +127,43 @@ class Runner {
     }
   }
 
-  /// The end of a smooth stretch that begins at t; settles what turns over at t itself.
-  double stretch_end(double t) {
-    if (!switching_.active()) return std::min(clock_.end(), options_.until);
-    double end = switching_.next_known_time(t, states_);
-    while (!(end > t + kShortest * std::abs(t))) {
-      switching_.settle(t, states_);
-      follow_phases(t);
-      end = switching_.next_known_time(t, states_);
+  /// Sets the end of the smooth stretch that begins at t; settles what turns over at t itself.
+  void begin_stretch(double t) {
+    double wait = std::numeric_limits<double>::infinity();
+    if (switching_.active()) {
+      wait = switching_.known_wait(t, states_);
+      while (!(wait > kShortest * std::abs(t))) {
+        switching_.settle(t, states_);
+        follow_phases(t);
+        wait = switching_.known_wait(t, states_);
+      }
     }
-    return std::min({end, clock_.end(), options_.until});
+    const double last = std::min(clock_.end(), options_.until);
+    stretch_end_ = std::min(t + wait, last);
+    stretch_length_ = std::min(wait, last - t);
   }
 
   /// Samples the step from `from` to t, and settles an event that cuts it short (t is then the time of the
-  /// event) or ends the stretch. True where the solver must start anew.
-  bool finish_step(double from, double& t, double stretch_end, const StatesAt& states_at) {
+  /// event) or ends the stretch. `looks` are times at which to look at least. True where the solver must
+  /// start anew.
+  bool finish_step(double from, double& t, std::span<const double> looks, const Interpolant& solution) {
     std::optional<double> event;
-    if (switching_.active()) event = switching_.search(from, t, states_at);
-    const bool ends = event || (t >= stretch_end && t < options_.until);
+    if (!program_.switches().empty()) event = switching_.search(from, looks, solution);
+    const bool ends = event || (t >= stretch_end_ && t < options_.until);
     if (event) t = *event;
-    if (overloads_) t = overloads_->advance(t, states_at);
-    sampler_.advance(t, states_at);
-    sampler_.watch(from, t, states_at);
+    double begin = from;
+    for (const double look : looks) {
+      double end = std::min(look, t);
+      if (!(end > begin) && look != looks.back()) continue;
+      if (overloads_) end = overloads_->advance(end, solution);
+      sampler_.watch(begin, end, solution);
+      begin = end;
+      if (halted()) t = end;
+      if (begin >= t) break;
+    }
+    sampler_.advance(t, solution);
     if (!ends || t >= options_.until || halted()) return false;
-    states_at(t, states_);
+    solution.states_at(t, states_);
     switching_.settle(t, states_);
     follow_phases(t);
     if (overloads_) overloads_->restart(t, states_);
@@ -179,20 +197,39 @@ class Runner {
         choose_method(options_.method, program_, workspace_, states_, options_.until - begin_);
     sampler_.result.method = method;
     double t = begin_;
-    double end = stretch_end(t);
-    CvodesSolver solver(system_, t, states_, end, solver_settings(method.method));
-    const StatesAt states_at = [&](double time, std::span<double> x) { solver.states_at(time, x); };
+    begin_stretch(t);
+    const SolverSettings settings = solver_settings(method.method);
+    CvodesSolver solver(system_, t, states_, stretch_end_, stretch_length_, settings);
+    HiddenMotion hidden(system_, settings.relative_tolerance,
+                        settings.own_tolerances.empty()
+                            ? std::vector<double>(states_.size(), settings.absolute_tolerance)
+                            : settings.own_tolerances);
+    double limit = kNoLimit, limited_until = begin_;
     constexpr long kStepsPerReport = 256;
     long steps = 0;
     try {
       while (goes_on(t)) {
         const double from = t;
         t = solver.step();
-        if (finish_step(from, t, end, states_at)) {
-          end = stretch_end(t);
-          solver.restart(t, states_, end);
+        const std::vector<double>& looks = sources_.looks(from, t);
+        if (const auto missed = hidden.find(from, looks, solver)) {
+          // The states are still those of `from`: take the step again, short enough to see.
+          limit = hidden.longest_step();
+          limited_until = *missed + limit;
+          t = from;
+          solver.restart(t, states_, stretch_end_, stretch_end_ - t);
+          solver.limit_step(limit);
+          continue;
+        }
+        if (finish_step(from, t, looks, solver)) {
+          begin_stretch(t);
+          solver.restart(t, states_, stretch_end_, stretch_length_);
         } else {
           std::copy(solver.states().begin(), solver.states().end(), states_.begin());
+        }
+        if (limit < kNoLimit && t > limited_until) {
+          limit = limit > options_.until - begin_ ? kNoLimit : 2 * limit;
+          solver.limit_step(limit);
         }
         if (options_.progress && ++steps % kStepsPerReport == 0)
           options_.progress((t - begin_) / (options_.until - begin_));
@@ -205,18 +242,19 @@ class Runner {
 
   /// A diagram without states follows the time alone: steps as long as the rows are apart.
   void follow() {
-    const StatesAt no_states = [](double, std::span<double>) {};
+    const StandingStates no_states({});
     const double step = (options_.until - begin_) / (options_.samples - 1);
     double t = begin_;
-    double end = stretch_end(t);
+    begin_stretch(t);
     while (goes_on(t)) {
       const double from = t;
-      t = std::min(end, t + step);
-      if (end - t < kShortest * end) t = end;
-      if (finish_step(from, t, end, no_states)) end = stretch_end(t);
+      t = std::min(stretch_end_, t + step);
+      if (stretch_end_ - t < kShortest * stretch_end_) t = stretch_end_;
+      if (finish_step(from, t, sources_.looks(from, t), no_states)) begin_stretch(t);
     }
   }
 
+  static constexpr double kNoLimit = std::numeric_limits<double>::infinity();  ///< of a step
   static constexpr double kShortest = 1e-15;  ///< of the time: the clock cannot show less
 
   const Program& program_;
@@ -228,6 +266,8 @@ class Runner {
   PhaseClock clock_;
   SwitchedSystem system_;
   Sampler sampler_;
+  SourceWatch sources_;
+  double stretch_end_ = 0, stretch_length_ = 0;  ///< [s]
   std::optional<OverloadWatch> overloads_;
   std::vector<double> states_;
 };

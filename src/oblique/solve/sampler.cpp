@@ -37,7 +37,7 @@ Sampler::Sampler(const Program& program, const FlatDiagram& diagram, const RunOp
   if (options.extremes) result.extremes.resize(diagram.outputs.size());
 }
 
-void Sampler::advance(double t, const StatesAt& states_at) {
+void Sampler::advance(double t, const Interpolant& solution) {
   while (true) {
     const bool grid_left = next_sample_ < options_.samples;
     const bool extra_left = next_extra_ < options_.extra_times.size();
@@ -45,7 +45,7 @@ void Sampler::advance(double t, const StatesAt& states_at) {
     const double extra_time = extra_left ? options_.extra_times[next_extra_] : options_.until + 1;
     const double time = std::min(grid_time, extra_time);
     if ((!grid_left && !extra_left) || time > t) return;
-    states_at(time, states_);
+    solution.states_at(time, states_);
     evaluate(time);
     if (grid_left && grid_time == time) {
       result.trajectory.add_row(row_);
@@ -61,10 +61,10 @@ void Sampler::advance(double t, const StatesAt& states_at) {
 
 /// In the middle of the stretch and at its ends, and once more where a parabola through these has its top:
 /// what is missed is of third order in the solver's step.
-void Sampler::watch(double from, double to, const StatesAt& states_at) {
+void Sampler::watch(double from, double to, const Interpolant& solution) {
   if (!options_.extremes) return;
   const auto at = [&](double time) {
-    states_at(time, states_);
+    solution.states_at(time, states_);
     evaluate(time);
     keep_extremes(time);
   };
@@ -98,8 +98,7 @@ double Sampler::sample_time(int k) const {
 }
 
 void Sampler::evaluate(double time) {
-  switching_.place_sliding(time, states_);
-  if (!program_.signals(time, states_.data(), signals_.data(), workspace_))
+  if (!switching_.signals(time, states_.data(), signals_.data()))
     throw loop_error(program_, workspace_.trouble(), time, diagram_.file);
   row_[0] = time;
   for (std::size_t i = 0; i < diagram_.outputs.size(); ++i) {

@@ -18,10 +18,10 @@ class Sampler {
           Switching& switching);
 
   /// Adds every row from the last one up to `t`.
-  void advance(double t, const StatesAt& states_at);
+  void advance(double t, const Interpolant& solution);
 
   /// Looks for the extremes of the outputs in a stretch without events.
-  void watch(double from, double to, const StatesAt& states_at);
+  void watch(double from, double to, const Interpolant& solution);
 
   Run result;
 

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-// The part of Switching that settles an instant: event_search.cpp finds it, sliding.cpp follows surfaces.
 #include <oblique/solve/switching.h>
 
 #include <algorithm>
@@ -14,56 +13,77 @@ namespace oblique {
 namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Rounding of a surface in machine units: a switch turns over beyond it, and within it lies on its surface.
+/// Rounding of a surface, of what is compared or of a machine unit: a switch turns over beyond it, and within
+/// it lies on its surface.
 constexpr double kRounding = 1e-13;
 
-/// A switch that turns over this often, each time within this part of the run, chatters.
+/// A switch that turns over without having left its surface by more than this, or than the errors of the
+/// states, is restless after a few turns: its surface then counts as zero within those errors. After many it
+/// chatters.
+constexpr double kSamePlace = 1e-10;
+constexpr long kRestless = 5;
 constexpr long kMostTurns = 1000;
-constexpr double kShortTime = 1e-7;
 
-/// An event that comes again sooner and sooner, this often in a row and within this part of the run, piles
-/// up.
+/// Events that come sooner and sooner, this often in a row, pile up where the times left to them, at the
+/// present ratio, are together below this part of the run.
 constexpr int kMostShorter = 10;
 constexpr double kPilingUp = 1e-5;
 
 constexpr int kMostRounds = 1000;  ///< of events that set each other off at one instant
 constexpr std::size_t kMostRecords = 1000;
-constexpr std::size_t kMostTogether = 12;  ///< switches of which every combination is tried
+
+/// Nearer than this no two times are told apart.
+double resolution(double t) {
+  return 4 * kEpsilon * std::abs(t);
+}
 
 }  // namespace
 
-Switching::Switching(const Program& program, Workspace& workspace, double span, const std::string& file)
+Switching::Switching(const Program& program, Workspace& workspace, double span, double tolerance,
+                     const std::string& file)
     : program_(program),
       workspace_(workspace),
       span_(span),
+      tolerance_(program.n_states() > 0 ? tolerance : 0),
       file_(file),
+      slide_(program, workspace, span),
+      thresholds_(program.switches().size(), kRounding),
+      search_(program, workspace, slide_, thresholds_, span, file),
+      positions_(program, workspace, slide_, thresholds_, span),
       surfaces_(program.switches().size()),
       signals_(program.n_signals()),
-      states_(program.n_states()),
-      moved_(program.n_states()),
-      slopes_(program.n_states()),
-      slopes_there_(program.n_states()),
       announced_(program.switches().size(), -1),
+      slack_(program.switches().size(), 0),
       held_(program.events().size(), false),
-      on_surface_(program.switches().size(), false),
-      switch_windows_(program.switches().size()),
+      decided_(program.switch_structure().members.size(), false),
+      unrest_(program.switches().size()),
       paces_(program.events().size()) {}
 
-bool Switching::is_known(std::size_t s) const {
-  return program_.switches()[s].rate.has_value();
-}
-
-/// A surface of time alone is known to rounding of the time.
-double Switching::tiny(std::size_t s, double t) const {
-  if (!is_known(s)) return kRounding;
-  const double rate = program_.known_rate(s, workspace_).value_or(1);
-  return 8 * kEpsilon * std::abs(t) * std::abs(rate);
-}
-
+/// The surfaces, and how far from zero each counts as zero: one of time alone is known to rounding of the
+/// time.
 void Switching::evaluate(double t, std::span<const double> x) {
   if (!program_.surfaces(t, x.data(), surfaces_.data(), workspace_))
     throw loop_error(program_, workspace_.trouble(), t, file_);
+  for (std::size_t s = 0; s < thresholds_.size(); ++s) {
+    if (const auto rate = program_.known_rate(s, workspace_)) {
+      thresholds_[s] = 8 * kEpsilon * std::abs(t) * std::abs(*rate);
+    } else {
+      thresholds_[s] = std::max(kRounding * compared_size(s), slack_[s]);
+    }
+  }
+}
+
+/// Of what a switch compares, at least a machine unit.
+double Switching::compared_size(std::size_t s) const {
+  const double size = program_.compared_size(s, workspace_);
+  return std::isfinite(size) ? std::max(1.0, size) : 1;
+}
+
+/// Within this of zero a surface is where it was.
+double Switching::place_size(std::size_t s) const {
+  return std::max(kSamePlace, tolerance_ * compared_size(s));
 }
 
 void Switching::record(double t, std::string what) {
@@ -83,100 +103,129 @@ void Switching::turn(std::size_t s, double position, double t) {
   const Switch& made = program_.switches()[s];
   if (workspace_.memory(made.memory) == position) return;
   workspace_.set_memory(made.memory, position);
-  Window& window = switch_windows_[s];
-  if (t - window.begin > kShortTime * span_) window.turns = 0;
-  window.begin = t;
-  if (++window.turns > kMostTurns) throw_chatter(made.block, made.comparison, t);
+  Unrest& unrest = unrest_[s];
+  const bool same_place = is_known(s) ? t <= unrest.last : search_.excursion(s) < place_size(s);
+  if (!same_place) unrest.turns = 0;
+  unrest.last = t;
+  search_.forget(s);
+  // A surface that is merely touched goes back and forth by the errors of the states.
+  if (!is_known(s) && announced_[s] >= 0) slack_[s] = tolerance_ * compared_size(s);
+  if (++unrest.turns > kMostTurns) throw_chatter(made.block, made.comparison, t);
 }
 
-/// Puts every switch into the position that its surface asks for; true where one turned over.
-bool Switching::decide(double t, std::span<const double> x) {
-  bool turned = false;
-  std::vector<std::size_t> undecided;
-  for (std::size_t s = 0; s < surfaces_.size(); ++s) {
-    if (sliding_ == s) continue;
+/// Turns every switch over whose surface asks for it, and collects the units that lie on their surfaces and
+/// have not been decided yet. True where any turned over.
+bool Switching::turn_by_surfaces(double t, Units& on_surface, std::vector<std::uint32_t>& turned) {
+  const SwitchStructure& structure = program_.switch_structure();
+  on_surface.clear();
+  turned.clear();
+  for (std::uint32_t s = 0; s < surfaces_.size(); ++s) {
+    if (slide_.holds(s) || slide_.follows(s)) continue;
     const double before = workspace_.memory(program_.switches()[s].memory);
+    const std::uint32_t unit = structure.unit[s];
+    const bool slid = std::find(slid_.begin(), slid_.end(), unit) != slid_.end();
+    double near = slid && !decided_[unit] ? std::max(SlidingMode::drift(), thresholds_[s]) : thresholds_[s];
+    if (unrest_[s].turns > kRestless) near = std::max(near, place_size(s));
     double position = before;
-    if (announced_[s] >= 0) {
-      position = announced_[s];
-    } else if (std::abs(surfaces_[s]) > tiny(s, t)) {
+    if (is_known(s)) {
+      const double rate = program_.known_rate(s, workspace_).value_or(0);
+      if (announced_[s] >= 0) {
+        position = announced_[s];
+      } else if (std::abs(surfaces_[s]) > thresholds_[s] || rate != 0) {
+        position = (std::abs(surfaces_[s]) > thresholds_[s] ? surfaces_[s] : rate) > 0 ? 1 : 0;
+      }
+    } else if (announced_[s] >= 0 || std::abs(surfaces_[s]) <= near) {
+      if (!decided_[unit] && std::find(on_surface.begin(), on_surface.end(), unit) == on_surface.end())
+        on_surface.push_back(unit);
+    } else {
       position = surfaces_[s] > 0 ? 1 : 0;
-    } else if (!on_surface_[s]) {
-      undecided.push_back(s);
     }
+    if (position == before) continue;
     turn(s, position, t);
-    turned = turned || position != before;
+    turned.push_back(s);
   }
-  if (turned) return true;
-  return std::any_of(undecided.begin(), undecided.end(), [&](std::size_t s) {
-    on_surface_[s] = true;
-    return decide_on_surface(s, t, x);
-  });
+  return !turned.empty();
+}
+
+/// Lets the solution decide where the units go that lie on their surfaces.
+void Switching::decide(Units units, double t, std::span<const double> x) {
+  const SwitchStructure& structure = program_.switch_structure();
+  for (const std::uint32_t unit : slide_.units()) {
+    if (std::find(units.begin(), units.end(), unit) == units.end()) units.push_back(unit);
+  }
+  slide_.end();
+  std::uint32_t preferred = 0;
+  std::vector<double> before;
+  for (std::size_t u = 0; u < units.size(); ++u) {
+    decided_[units[u]] = true;
+    const std::uint32_t s = structure.members[units[u]].front();
+    double position = workspace_.memory(program_.switches()[s].memory);
+    for (const std::uint32_t member : structure.members[units[u]]) {
+      if (announced_[member] >= 0)
+        position =
+            structure.opposite[member] == structure.opposite[s] ? announced_[member] : 1 - announced_[member];
+    }
+    if ((position == 1) != structure.opposite[s] && u < Positions::kMostUnits) preferred |= 1U << u;
+  }
+  for (const Switch& s : program_.switches()) before.push_back(workspace_.memory(s.memory));
+  if (!positions_.choose(units, preferred, t, x)) {
+    std::vector<std::uint32_t> members;
+    for (const std::uint32_t unit : units)
+      members.insert(members.end(), structure.members[unit].begin(), structure.members[unit].end());
+    if (units.size() > Positions::kMostUnits || !positions_.choose_any(members, t, x)) {
+      const Switch& first = program_.switches()[members.front()];
+      throw_chatter(first.block, "no position of its switch agrees with the signals that follow from it", t);
+    }
+  }
+  for (std::size_t s = 0; s < before.size(); ++s) {  // those that turned over count
+    const double position = workspace_.memory(program_.switches()[s].memory);
+    workspace_.set_memory(program_.switches()[s].memory, before[s]);
+    turn(s, position, t);
+  }
 }
 
 /// All switches and the algebra between them to a fixed point; true where any turned over.
 bool Switching::settle_switches(double t, std::span<const double> x) {
   const std::size_t most = 2 * surfaces_.size() + 10;
-  std::vector<double> before;
-  std::vector<std::size_t> restless;
-  evaluate(t, x);
-  std::size_t round = 0;
-  for (; decide(t, x); ++round) {
-    if (round > most) {  // these go on turning over: their surfaces depend on their own positions
-      for (std::size_t s = 0; s < surfaces_.size(); ++s) {
-        if (before[s] != workspace_.memory(program_.switches()[s].memory)) restless.push_back(s);
-      }
-      if (round > 2 * most) {
-        try_all_positions(t, x, restless);
-        return true;
-      }
-    }
-    before.resize(surfaces_.size());
-    for (std::size_t s = 0; s < surfaces_.size(); ++s)
-      before[s] = workspace_.memory(program_.switches()[s].memory);
+  bool any = false;
+  Units on_surface;
+  std::vector<std::uint32_t> turned, restless;
+  for (std::size_t round = 0;; ++round) {
     evaluate(t, x);
-  }
-  return round > 0;
-}
-
-/// An algebraic loop with switches in it is solved in each position of its switches; the one that agrees with
-/// itself holds.
-void Switching::try_all_positions(double t, std::span<const double> x,
-                                  const std::vector<std::size_t>& found) {
-  std::vector<std::size_t> restless = found;
-  std::sort(restless.begin(), restless.end());
-  restless.erase(std::unique(restless.begin(), restless.end()), restless.end());
-  if (restless.size() <= kMostTogether) {
-    for (std::uint32_t positions = 0; positions < (1U << restless.size()); ++positions) {
-      for (std::size_t k = 0; k < restless.size(); ++k) {
-        workspace_.set_memory(program_.switches()[restless[k]].memory, (positions >> k) & 1U);
+    if (turn_by_surfaces(t, on_surface, turned)) {
+      any = true;
+      if (round <= most) continue;
+      // These go on turning over: their surfaces depend on their own positions.
+      restless.insert(restless.end(), turned.begin(), turned.end());
+      if (round <= 2 * most) continue;
+      if (!positions_.choose_any(restless, t, x)) {
+        const Switch& first = program_.switches()[*std::min_element(restless.begin(), restless.end())];
+        throw_chatter(first.block, "no position of its switch agrees with the signals that follow from it",
+                      t);
       }
-      if (!program_.surfaces(t, x.data(), surfaces_.data(), workspace_)) continue;
-      bool agrees = true;
-      for (std::size_t s = 0; s < surfaces_.size(); ++s) {
-        if (sliding_ == s) continue;
-        const bool closed = workspace_.memory(program_.switches()[s].memory) == 1;
-        agrees = agrees && (closed ? surfaces_[s] >= -kRounding : surfaces_[s] <= kRounding);
-      }
-      if (agrees) return;
+      return true;
     }
+    if (on_surface.empty()) return any;
+    const std::vector<double> before(workspace_.memories().begin(), workspace_.memories().end());
+    decide(on_surface, t, x);
+    any = any || slide_.units() != slid_ ||
+          !std::equal(before.begin(), before.end(), workspace_.memories().begin());
   }
-  const Switch& first = program_.switches()[restless.front()];
-  throw_chatter(first.block, "no position of its switch agrees with the signals that follow from it", t);
 }
 
 void Switching::keep_pace(std::size_t event, double t) {
   Pace& pace = paces_[event];
   const double interval = t - pace.last;
   pace.shorter = interval > 0 && interval < pace.interval ? pace.shorter + 1 : 0;
-  if (pace.shorter >= kMostShorter && interval < kPilingUp * span_) {
-    const double ratio = interval / pace.interval;
+  const double ratio = pace.interval > 0 ? interval / pace.interval : 1;
+  const double left = interval * ratio / (1 - ratio);  // Σ interval · ratioᵏ
+  if (pace.shorter >= kMostShorter && interval < kPilingUp * span_ && left < kPilingUp * span_) {
     throw SolveError(
         SolveError::Kind::chatter, t,
         {{file_, {}},
          fmt::format("the events of '{}' come ever faster: at t = {:.9g} s again after {:.3g} s, and they "
                      "pile up at t = {:.9g} s",
-                     program_.events()[event].block, t, interval, t + interval * ratio / (1 - ratio)),
+                     program_.events()[event].block, t, interval, t + left),
          {},
          "end the run before, or let the block come to rest below some height"});
   }
@@ -229,30 +278,75 @@ bool Switching::serve_events(double t, std::vector<double>& x, bool starting) {
       workspace_.set_memory(change.action->index, change.value);
     }
   }
-  if (jumps && sliding_) leave_sliding(t, x);
+  begin_to_settle();
+  if (jumps) {
+    slid_.clear();
+    std::fill(slack_.begin(), slack_.end(), 0.0);
+  }
   // What was announced of surfaces that have moved away is past.
   evaluate(t, x);
   for (std::size_t s = 0; s < announced_.size(); ++s) {
-    if (jumps || std::abs(surfaces_[s]) > tiny(s, t)) announced_[s] = -1;
+    if (jumps || std::abs(surfaces_[s]) > thresholds_[s]) announced_[s] = -1;
   }
-  std::fill(on_surface_.begin(), on_surface_.end(), false);
   return true;
 }
 
+/// What lies on its surface is decided anew, and what slides is looked at as if it came there now.
+void Switching::begin_to_settle() {
+  std::fill(decided_.begin(), decided_.end(), false);
+  slid_ = slide_.units();
+  slide_.end();
+}
+
+/// Tells which slides have begun and ended since `before`, and what they hide.
+void Switching::note_slides(const Units& before, double t) {
+  const SwitchStructure& structure = program_.switch_structure();
+  const auto tell = [&](std::uint32_t unit, const char* what) {
+    const Switch& s = program_.switches()[structure.members[unit].front()];
+    record(t, fmt::format("{}: {} {} = 0", s.block, what, s.comparison));
+  };
+  const auto contains = [](const Units& units, std::uint32_t unit) {
+    return std::find(units.begin(), units.end(), unit) != units.end();
+  };
+  for (const std::uint32_t unit : before) {
+    if (contains(slide_.units(), unit)) continue;
+    tell(unit, "leaves");
+    // It may lie on the wrong side by what the integration let it drift off.
+    for (const std::uint32_t s : structure.members[unit]) slack_[s] = 2 * std::abs(surfaces_[s]);
+  }
+  for (const std::uint32_t unit : slide_.units()) {
+    if (!contains(before, unit)) tell(unit, "slides along");
+  }
+  for (const std::uint32_t s : slide_.followers()) {
+    if (!slide_.is_torn(s)) continue;
+    const Switch& follower = program_.switches()[s];
+    const std::string what = fmt::format(
+        "'{}' ({}) depends on '{}', which slides along its surface from t = {:.9g} s: it switches "
+        "without end, which is not counted and not stored",
+        follower.block, follower.comparison,
+        program_.switches()[structure.members[slide_.units().front()].front()].block, t);
+    const bool told = std::any_of(warnings_.begin(), warnings_.end(), [&](const Diagnostic& warning) {
+      return warning.what.substr(0, warning.what.find(" from t = ")) ==
+             what.substr(0, what.find(" from t = "));
+    });
+    const bool acts = std::any_of(program_.events().begin(), program_.events().end(),
+                                  [&](const Event& event) { return event.block == follower.block; });
+    if (acts && !told)
+      warnings_.push_back({{file_, {}}, what, {}, "give the switch that slides a hysteresis"});
+  }
+}
+
 void Switching::settle(double t, std::vector<double>& x) {
-  std::fill(on_surface_.begin(), on_surface_.end(), false);
+  const Units before = slide_.units();
+  begin_to_settle();
   evaluate(t, x);
   for (std::size_t s = 0; s < announced_.size(); ++s) {  // the stretch may have ended before their time
-    if (is_known(s) && std::abs(surfaces_[s]) > 4 * tiny(s, t)) announced_[s] = -1;
+    if (is_known(s) && std::abs(surfaces_[s]) > 4 * thresholds_[s]) announced_[s] = -1;
   }
-  std::vector<std::pair<std::size_t, double>> turned;
   for (std::size_t s = 0; s < announced_.size(); ++s) {
-    if (announced_[s] >= 0) turned.emplace_back(s, announced_[s]);
-  }
-  for (const auto& [s, position] : turned) {
-    if (sliding_ == s) sliding_.reset();
+    if (announced_[s] < 0) continue;
     record(t, fmt::format("{}: {} {}", program_.switches()[s].block, program_.switches()[s].comparison,
-                          position > 0 ? "from now on" : "no longer"));
+                          announced_[s] > 0 ? "from now on" : "no longer"));
   }
   for (int round = 0;; ++round) {
     settle_switches(t, x);
@@ -260,54 +354,105 @@ void Switching::settle(double t, std::vector<double>& x) {
     if (round > kMostRounds)
       throw_chatter(records_.empty() ? "" : records_.back().what, "events set each other off", t);
   }
-  // A switch that has just turned over and is pushed back slides.
-  for (const auto& [s, position] : turned) {
-    const bool stands = workspace_.memory(program_.switches()[s].memory) == position;
-    if (!stands || announced_[s] < 0 || is_known(s)) continue;
-    if (drift(s, 1, t, x) < 0 && drift(s, 0, t, x) > 0) decide_on_surface(s, t, x);
-  }
+  note_slides(before, t);
+  slid_.clear();
   std::fill(announced_.begin(), announced_.end(), -1.0);
+  evaluate(t, x);
+}
+
+/// Starts the states that start from signals.
+void Switching::take_starts(double t, std::vector<double>& x) {
+  constexpr int kMostStarts = 100;
+  for (int round = 0;; ++round) {
+    if (!program_.signals(t, x.data(), signals_.data(), workspace_))
+      throw loop_error(program_, workspace_.trouble(), t, file_);
+    double change = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const auto value = program_.start_value(i, workspace_);
+      if (!value) continue;
+      change = std::max(change, std::abs(*value - x[i]) / (1 + std::abs(*value)));
+      x[i] = *value;
+    }
+    if (!(change > 4 * kEpsilon)) return;
+    if (round > kMostStarts) {
+      throw SolveError(SolveError::Kind::no_rest, t,
+                       {{file_, {}},
+                        "the initial values that follow from signals depend on each other in a circle",
+                        "an initial value that does not come back to itself",
+                        "give one of the integrators a fixed 'initial'"});
+    }
+  }
 }
 
 void Switching::start(double t, std::vector<double>& x, const std::function<void()>& bring_to_rest) {
-  constexpr int kMostStarts = 100;
-  const auto take_starts = [&] {
-    for (int round = 0;; ++round) {
-      if (!program_.signals(t, x.data(), signals_.data(), workspace_))
-        throw loop_error(program_, workspace_.trouble(), t, file_);
-      double change = 0;
-      for (std::size_t i = 0; i < x.size(); ++i) {
-        const auto value = program_.start_value(i, workspace_);
-        if (!value) continue;
-        change = std::max(change, std::abs(*value - x[i]) / (1 + std::abs(*value)));
-        x[i] = *value;
-      }
-      if (!(change > 4 * kEpsilon)) return;
-      if (round > kMostStarts) {
-        throw SolveError(SolveError::Kind::no_rest, t,
-                         {{file_, {}},
-                          "the initial values that follow from signals depend on each other in a circle",
-                          "an initial value that does not come back to itself",
-                          "give one of the integrators a fixed 'initial'"});
-      }
-    }
-  };
   bool any_start = false;
   for (const State& state : program_.states()) any_start = any_start || state.start_node.has_value();
   bool starting = true;
   for (int round = 0;; ++round) {
     if (round > kMostRounds)
       throw_chatter(records_.empty() ? "" : records_.back().what, "the start does not settle", t);
-    std::fill(on_surface_.begin(), on_surface_.end(), false);
-    if (starting && any_start) take_starts();
+    begin_to_settle();
+    if (starting && any_start) take_starts(t, x);
     if (active() && settle_switches(t, x) && starting && any_start) continue;
     bring_to_rest();
     if (!active()) return;
-    std::fill(on_surface_.begin(), on_surface_.end(), false);
+    begin_to_settle();
     if (settle_switches(t, x)) continue;
-    if (!serve_events(t, x, starting)) return;
+    if (!serve_events(t, x, starting)) break;
     starting = false;
   }
+  note_slides({}, t);
+  slid_.clear();
+}
+
+double Switching::known_wait(double t, std::span<const double> x) {
+  if (announced_.empty()) return kInfinity;
+  double next = kInfinity;
+  std::vector<double> waits(announced_.size(), kInfinity);
+  evaluate(t, x);
+  for (std::size_t s = 0; s < announced_.size(); ++s) {
+    const auto rate = program_.known_rate(s, workspace_);
+    if (!rate) continue;
+    const bool closed = workspace_.memory(program_.switches()[s].memory) == 1;
+    if (closed ? *rate >= 0 : *rate <= 0) continue;
+    waits[s] = std::max(0.0, -surfaces_[s] / *rate);
+    next = std::min(next, waits[s]);
+  }
+  std::fill(announced_.begin(), announced_.end(), -1.0);
+  for (std::size_t s = 0; s < announced_.size(); ++s) {
+    if (waits[s] < kInfinity && waits[s] <= next + resolution(t + next)) {
+      announced_[s] = 1 - workspace_.memory(program_.switches()[s].memory);
+    }
+  }
+  return next;
+}
+
+std::optional<double> Switching::search(double from, std::span<const double> looks,
+                                        const Interpolant& solution) {
+  const auto found = search_.search(from, looks, solution);
+  if (!found) {
+    for (std::size_t s = 0; s < slack_.size(); ++s) {
+      if (slack_[s] == 0 || search_.excursion(s) <= 2 * slack_[s]) continue;
+      slack_[s] = 0;
+      thresholds_[s] = kRounding * compared_size(s);
+    }
+    return std::nullopt;
+  }
+  std::fill(announced_.begin(), announced_.end(), -1.0);
+  for (const auto& [s, position] : found->turned) announced_[s] = position;
+  return found->time;
+}
+
+bool Switching::derivatives(double t, const double* x, double* dxdt) {
+  return slide_.active() ? slide_.derivatives(t, x, dxdt) : program_.derivatives(t, x, dxdt, workspace_);
+}
+
+bool Switching::jacobian(double t, const double* x, double* values) {
+  return slide_.active() ? slide_.jacobian(t, x, values) : program_.jacobian(t, x, values, workspace_);
+}
+
+bool Switching::signals(double t, const double* x, double* values) {
+  return slide_.active() ? slide_.signals(t, x, values) : program_.signals(t, x, values, workspace_);
 }
 
 }  // namespace oblique

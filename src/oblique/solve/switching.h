@@ -9,6 +9,10 @@
 #include <vector>
 
 #include <oblique/network/program.h>
+#include <oblique/solve/event_search.h>
+#include <oblique/solve/interpolant.h>
+#include <oblique/solve/positions.h>
+#include <oblique/solve/sliding_mode.h>
 
 namespace oblique {
 
@@ -18,21 +22,21 @@ struct EventRecord {
   std::string what;
 };
 
-/// The states at a time within the last step of a solver.
-using StatesAt = std::function<void(double t, std::span<double> x)>;
-
 /// The memories of one run: finds the times at which switches turn over, and settles everything there.
 ///
 /// A switch is latched: between events it keeps its position, and the equations go on smoothly past its
 /// surface. It turns over where its surface has passed zero by more than rounding. Then all switches,
 /// algebraic loops and the events that they set off are settled to a fixed point at that one instant,
-/// simultaneous and secondary ones included. A surface that both positions of a switch push back to is slid
-/// along: the position then lies between 0 and 1 so that the surface stays at zero (Filippov's solution, by
-/// the equivalent control of Utkin).
+/// simultaneous and secondary ones included. Switches that lie on their surfaces go where the solution takes
+/// them; where no combination of their positions agrees with where it would take them, they slide (see
+/// SlidingMode), unless a surface depends on its own switch: then the other positions of the algebra around
+/// it are tried.
 class Switching {
  public:
-  /// `file` names the diagram in messages; `span` is the length of the run [s]. All must outlive this.
-  Switching(const Program& program, Workspace& workspace, double span, const std::string& file);
+  /// `file` names the diagram in messages; `span` is the length of the run [s], `tolerance` the relative one
+  /// of the states. All must outlive this.
+  Switching(const Program& program, Workspace& workspace, double span, double tolerance,
+            const std::string& file);
 
   /// Whether there is anything to watch.
   bool active() const { return !program_.switches().empty() || !program_.events().empty(); }
@@ -41,55 +45,48 @@ class Switching {
   /// `bring_to_rest` is called whenever something has changed that servo loops may follow. Throws SolveError.
   void start(double t, std::vector<double>& x, const std::function<void()>& bring_to_rest);
 
-  /// Settles everything at time t, after the switches that `next_known_time` or `search` announced have
-  /// turned over. Throws SolveError.
+  /// Settles everything at time t, after the switches that `known_wait` or `search` announced have turned
+  /// over. Throws SolveError.
   void settle(double t, std::vector<double>& x);
 
-  /// The next time after t at which a switch that follows time alone turns over; infinite without one.
-  double next_known_time(double t, std::span<const double> x);
+  /// How long after t the next switch that follows time alone turns over [s]; infinite without one.
+  double known_wait(double t, std::span<const double> x);
 
-  /// The first time in (from, to] at which a switch turns over, or nothing; all are in place at `from`.
-  std::optional<double> search(double from, double to, const StatesAt& states_at);
+  /// The first time after `from` at which a switch turns over, or nothing; all are in place at `from`.
+  /// `looks` are times at which to look at least; the search ends at the last.
+  std::optional<double> search(double from, std::span<const double> looks, const Interpolant& solution);
 
-  /// dx/dt and its Jacobian with a sliding switch held on its surface.
+  /// dx/dt, its Jacobian and all signals, with what slides held on its surfaces.
   bool derivatives(double t, const double* x, double* dxdt);
   bool jacobian(double t, const double* x, double* values);
+  bool signals(double t, const double* x, double* values);
 
-  /// Puts a sliding switch into its place at (t, x), for those who look at signals there.
-  void place_sliding(double t, std::span<const double> x);
+  const Workspace& workspace() const { return workspace_; }
 
   /// The first thousand events, and how many there were.
   const std::vector<EventRecord>& records() const { return records_; }
   long count() const { return count_; }
+  /// What could not be seen.
+  const std::vector<Diagnostic>& warnings() const { return warnings_; }
 
   /// What must be kept to go on later: whether each condition held.
   const std::vector<bool>& conditions() const { return held_; }
   void restore(std::vector<bool> conditions) { held_ = std::move(conditions); }
 
  private:
-  /// Values of all that is watched at one time: above 0 where it must turn over.
-  struct Look {
-    double time = 0;
-    std::vector<double> overdue;
-  };
+  using Units = std::vector<std::uint32_t>;
 
-  double tiny(std::size_t s, double t) const;
-  bool is_known(std::size_t s) const;
-  void look(double t, const StatesAt& states_at, Look& at);
-  std::optional<double> first_in(const Look& from, const Look& to, const StatesAt& states_at);
-  double locate(Look from, Look to, const StatesAt& states_at);
-  bool finds_peak(const Look& from, const Look& middle, const Look& to, const StatesAt& states_at,
-                  Look& found);
-
+  bool is_known(std::size_t s) const { return program_.switches()[s].rate.has_value(); }
+  double compared_size(std::size_t s) const;
+  double place_size(std::size_t s) const;
   void evaluate(double t, std::span<const double> x);
   bool settle_switches(double t, std::span<const double> x);
-  bool decide(double t, std::span<const double> x);
-  bool decide_on_surface(std::size_t s, double t, std::span<const double> x);
-  void try_all_positions(double t, std::span<const double> x, const std::vector<std::size_t>& found);
-  double drift(std::size_t s, double position, double t, std::span<const double> x);
+  bool turn_by_surfaces(double t, Units& on_surface, std::vector<std::uint32_t>& turned);
+  void decide(Units units, double t, std::span<const double> x);
+  void begin_to_settle();
+  void note_slides(const Units& before, double t);
+  void take_starts(double t, std::vector<double>& x);
   bool serve_events(double t, std::vector<double>& x, bool starting);
-  double sliding_position(double t, std::span<const double> x);
-  void leave_sliding(double t, std::span<const double> x);
   void turn(std::size_t s, double position, double t);
   void record(double t, std::string what);
   void keep_pace(std::size_t event, double t);
@@ -97,23 +94,29 @@ class Switching {
 
   const Program& program_;
   Workspace& workspace_;
-  double span_;
+  double span_, tolerance_;
   const std::string& file_;
+  SlidingMode slide_;
+  std::vector<double> thresholds_;
+  EventSearch search_;
+  Positions positions_;
 
-  std::vector<double> surfaces_;
-  std::vector<double> signals_;
-  std::vector<double> states_, moved_, slopes_, slopes_there_;  ///< scratch, of the size of x
+  std::vector<double> surfaces_, signals_;
   std::vector<double>
-      announced_;           ///< position that a switch takes at the next `settle`; −1: as its surface is
-  std::vector<bool> held_;  ///< whether the condition of each event held when it was last looked at
-  std::optional<std::size_t> sliding_;
-  std::vector<bool> on_surface_;  ///< decided by where it drifts, once in a `settle`
+      announced_;  ///< position that a switch takes at the next `settle`; −1: as its surface is
+  /// How far a surface may go back beyond zero by the errors of the states alone, until it has left them
+  /// behind.
+  std::vector<double> slack_;
+  std::vector<bool> held_;     ///< whether the condition of each event held when it was last looked at
+  std::vector<bool> decided_;  ///< of each unit: by where it drifts, once in a `settle`
+  Units slid_;                 ///< what slid when the settling began
 
-  struct Window {
-    double begin = 0;
+  /// How often a switch has turned over without leaving its place.
+  struct Unrest {
+    double last = 0;
     long turns = 0;
   };
-  std::vector<Window> switch_windows_;
+  std::vector<Unrest> unrest_;
   /// How quickly an event comes again: ever faster is how it piles up (Zeno).
   struct Pace {
     double last = 0;
@@ -123,6 +126,7 @@ class Switching {
   std::vector<Pace> paces_;
   std::vector<EventRecord> records_;
   long count_ = 0;
+  std::vector<Diagnostic> warnings_;
 };
 
 }  // namespace oblique

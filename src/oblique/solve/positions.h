@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <oblique/network/program.h>
+#include <oblique/solve/sliding_mode.h>
+
+namespace oblique {
+
+/// Chooses the positions of switches that lie on their surfaces: those from which the solution goes to the
+/// side that they stand for. Where no combination does, they slide.
+///
+/// Where a surface is at rest to first order, what it does a moment later decides; one along which the
+/// solution runs by itself, while the other side drives to it, is slid along too, so that rounding makes no
+/// events.
+class Positions {
+ public:
+  /// All must outlive this; `thresholds` is of every switch how far from zero its surface counts as zero.
+  Positions(const Program& program, Workspace& workspace, SlidingMode& slide,
+            const std::vector<double>& thresholds, double span);
+
+  /// Places the units, and the switches that follow from them, at (t, x); bit u of `preferred` is the side of
+  /// unit u that is taken where several are possible. False, with nothing changed, where nothing agrees.
+  bool choose(const std::vector<std::uint32_t>& units, std::uint32_t preferred, double t,
+              std::span<const double> x);
+
+  /// Tries all combinations of `restless` and of the switches that share their algebraic loops, the nearest
+  /// to the present one first. False where none agrees with itself.
+  bool choose_any(std::vector<std::uint32_t> restless, double t, std::span<const double> x);
+
+  static constexpr std::size_t kMostUnits = 10;  ///< of which `choose` tries all combinations
+
+ private:
+  /// What one combination of sides leads to.
+  struct Trial {
+    bool valid = false;
+    std::vector<double> surfaces, rates, later;  ///< of each unit; `later` is the rate a moment on
+  };
+
+  Trial attempt(std::uint32_t bits, double t, std::span<const double> x);
+  bool place(std::uint32_t bits, double t, std::span<const double> x);
+  int direction(std::uint32_t bits, std::size_t unit) const;
+  bool stands(std::uint32_t bits, bool strictly) const;
+  bool jumps(std::size_t unit) const;
+  bool any_of_them_jumps(std::uint32_t units) const;
+  bool settle_others(const std::vector<bool>& placed, double t, std::span<const double> x);
+  bool try_slide(std::uint32_t sliding, std::uint32_t bits, double t, std::span<const double> x);
+  bool is_independent(std::uint32_t sliding) const;
+  bool agrees(double t, std::span<const double> x);
+  double of_unit(const std::vector<double>& of_switches, std::size_t unit) const;
+  std::vector<std::uint32_t> nearest_first(std::uint32_t to) const;
+
+  const Program& program_;
+  Workspace& workspace_;
+  SlidingMode& slide_;
+  const std::vector<double>& thresholds_;
+  double span_;
+
+  std::vector<std::uint32_t> units_;
+  std::vector<double> before_;  ///< memories
+  std::vector<Trial> trials_;
+  double fastest_ = 0;  ///< largest of all dx/dt in the trials
+  std::vector<double> surfaces_, rates_, slopes_, moved_;
+};
+
+}  // namespace oblique
