@@ -42,7 +42,7 @@ TEST_P(ForeignDiagram, GivesTheTruth) {
   const FlatDiagram flat = flatten(diagram, library);
   RunOptions options = options_of(diagram.run);
   ask_for_expectations(diagram, options);
-  const Run result = run(Program(assemble(flat)), flat, options);
+  const oblique::Run result = run(Program(assemble(flat)), flat, options);
   for (const ExpectationResult& expectation : check_expectations(diagram, result)) {
     EXPECT_TRUE(expectation.met) << expectation.expectation.text << " = " << expectation.actual;
   }
