@@ -279,8 +279,8 @@ INSTANTIATE_TEST_SUITE_P(
                 {"drive 'crank' has speed zero and never turns"}},
         BadFile{"SpeedUnit",
                 kCrank,
-                R"(crank = { turns = "AB", about = "A", speed = "3 Hz" })",
-                {"'Hz' is the wrong unit here"}},
+                R"(crank = { turns = "AB", about = "A", speed = "3 1/s" })",
+                {"'1/s' is the wrong unit here"}},
         BadFile{
             "NoSpeed", kCrank, R"(crank = { turns = "AB", about = "A" })", {"drive 'crank' has no 'speed'"}},
         BadFile{"InfiniteStart",

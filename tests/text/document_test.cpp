@@ -160,5 +160,22 @@ TEST(DeepDocument, DotsElsewhereAreNoNesting) {
   EXPECT_EQ(message_of("a = " + repeated("[", 31) + repeated("]", 31)), "no error");
 }
 
+TEST(Document, TakesAByteOrderMarkAndTypesetSigns) {
+  const Document document = parse_document(
+      "\xEF\xBB\xBF[t]\r\na = \u22121.5\r\nb =\u00a0\u20132 # \u2212\r\nc = \"\u2212x\"\r\n", "t.toml");
+  const Value& table = *document.root.find("t");
+  EXPECT_EQ(table.find("a")->number, -1.5);
+  EXPECT_EQ(table.find("b")->number, -2);
+  EXPECT_EQ(table.find("c")->text, "\u2212x");
+  EXPECT_EQ(table.find("c")->position, (SourcePosition{4, 5}));
+}
+
+TEST(Document, SaysWhatIsTypesetAndWhereACommaIsNoPoint) {
+  EXPECT_THAT(message_of("a = 1\nb = \u201cx\u201d\n"), HasSubstr("the quotes here are typeset"));
+  EXPECT_THAT(message_of("a = { x = 0,5 }\n"), HasSubstr("remedy: numbers have a decimal point, no comma"));
+  EXPECT_THAT(message_of("a = [0,5, x]\n"), HasSubstr("words, and numbers with a unit, stand in quotes"));
+  EXPECT_THAT(message_of("\xFE\xFFx"), HasSubstr("the file is in UTF-16"));
+}
+
 }  // namespace
 }  // namespace oblique

@@ -97,7 +97,7 @@ TEST(Quantity, SaysWhichUnitWasMeant) {
   EXPECT_EQ(message_of("30 dge", "rad"),
             "4: there is no unit 'dge'; expected a quantity in 'rad'; did you mean 'deg'?");
   EXPECT_EQ(message_of("30 grade", "rad"),
-            "4: there is no unit 'grade'; expected a quantity in 'rad'; known: rad, deg, °, rev");
+            "4: there is no unit 'grade'; expected a quantity in 'rad'; known: rad, mrad, deg, °, º, rev");
   EXPECT_EQ(message_of("30 rads", "rad"),
             "4: there is no unit 'rads'; expected a quantity in 'rad'; did you mean 'rad'?");
 }
@@ -113,10 +113,69 @@ TEST(Quantity, SaysHowToWriteAProduct) {
       "3: there is no unit '(1+1)'; expected a quantity in '1'; a product is written with '*': 2*(1+1)");
 }
 
+TEST(Quantity, CountsTurnsWhereOneIsWantedAndTheOtherGiven) {
+  EXPECT_DOUBLE_EQ(quantity("60 rpm", "Hz"), 1);
+  EXPECT_DOUBLE_EQ(quantity("360 deg/s", "Hz"), 1);
+  EXPECT_DOUBLE_EQ(quantity("1 rad/s", "Hz"), 1 / (2 * kPi));
+  EXPECT_DOUBLE_EQ(quantity("3000 1/min", "Hz"), 50);
+  EXPECT_DOUBLE_EQ(quantity("50 Hz", "rad/s"), 100 * kPi);
+  EXPECT_DOUBLE_EQ(quantity("2 kHz", "rad/s"), 4000 * kPi);
+  EXPECT_DOUBLE_EQ(quantity("60 1/min", "rad/s"), 2 * kPi);
+  EXPECT_DOUBLE_EQ(quantity("90º", "rad"), kPi / 2);
+}
+
+/// A unit of signals on a machine of so many volts; 0: they are not known.
+Unit signal(std::string_view name, double volts) {
+  Unit wanted = unit(name);
+  wanted.machine = "ec-1";
+  if (volts > 0) wanted.volts = volts;
+  return wanted;
+}
+
+TEST(Quantity, TakesVoltagesForSignalsOfAMachine) {
+  EXPECT_DOUBLE_EQ(parse_quantity("30 V", signal("machine unit", 60)), 0.5);
+  EXPECT_DOUBLE_EQ(parse_quantity("-600 mV", signal("machine unit", 60)), -0.01);
+  EXPECT_DOUBLE_EQ(parse_quantity("6 V/ms", signal("machine unit/s", 60)), 100);
+  EXPECT_DOUBLE_EQ(parse_quantity("50 %", signal("machine unit", 60)), 0.5);
+  EXPECT_DOUBLE_EQ(parse_quantity("0.25", signal("machine unit", 60)), 0.25);
+  EXPECT_THROW(parse_quantity("30 V^2", signal("machine unit", 60)), ExpressionError);
+  EXPECT_THROW(parse_quantity("30 V", signal("machine unit/s", 60)), ExpressionError);
+}
+
+TEST(Quantity, RefusesVoltagesOfAMachineWithoutVolts) {
+  try {
+    parse_quantity("30 V", signal("machine unit", 0));
+    FAIL() << "was taken";
+  } catch (const ExpressionError& error) {
+    EXPECT_EQ(error.what, "'V' is a voltage, and the unit of the machine 'ec-1' is no known voltage");
+    EXPECT_EQ(error.expected, "a quantity in 'machine unit'");
+    EXPECT_EQ(
+        error.remedy,
+        "name the machine, profile = \"ec-1\" in [machine], or divide by its greatest voltage: 30 V of 60 V "
+        "are 0.5");
+  }
+}
+
+TEST(Quantity, TakesTypesetSignsAndSpaces) {
+  EXPECT_DOUBLE_EQ(quantity("\u22123\u00a0mm", "m"), -0.003);
+  EXPECT_DOUBLE_EQ(quantity("5 \u2013 2\u00d73", "1"), -1);
+  EXPECT_DOUBLE_EQ(quantity("2\u00b7pi", "rad"), 2 * kPi);
+}
+
+TEST(Quantity, AsksForADecimalPoint) {
+  EXPECT_EQ(message_of("0,5 mm", "m"),
+            "2: a comma stands in the number; expected a decimal point; write 0.5 mm");
+}
+
 TEST(Quantity, RefusesTheWrongDimension) {
-  EXPECT_EQ(message_of("10 Hz", "rad/s"),
-            "4: 'Hz' is the wrong unit here; expected a quantity in 'rad/s'; give it in 'rad/s', or as a "
-            "number without a unit");
+  EXPECT_EQ(
+      message_of("10 1/s", "rad/s"),
+      "4: '1/s' is the wrong unit here; expected a quantity in 'rad/s'; of radians give it in 'rad/s', of "
+      "turns in 'Hz' or 'rpm'");
+  EXPECT_EQ(
+      message_of("30 V", "machine unit"),
+      "4: 'V' is the wrong unit here; expected a quantity in 'machine unit'; give it in 'machine unit', or "
+      "as a number without a unit");
   EXPECT_EQ(message_of("3 mm", "s"),
             "3: 'mm' is the wrong unit here; expected a quantity in 's'; give it in 's', or as a number "
             "without a unit");

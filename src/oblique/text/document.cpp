@@ -7,6 +7,9 @@
 
 #include <fmt/format.h>
 
+#include <oblique/text/encoding.h>
+#include <oblique/text/expression_grammar.h>
+
 // This is the only translation unit of toml++ 3.3, which asserts or assumes away things that malformed text
 // can bring about. Here an assertion that fails throws. It throws from a function because many asserts stand
 // in functions that are noexcept: a throw written there would be a warning of its own, although none of those
@@ -147,6 +150,55 @@ std::optional<SourcePosition> find_overlong_key(std::string_view text) {
   return std::nullopt;
 }
 
+/// The text with a plain minus before numbers and plain spaces, where typeset ones stand outside quotes and
+/// comments: no TOML has them there. Characters stay as many as they were, and so do columns.
+std::string with_plain_signs(std::string_view text) {
+  std::string plain;
+  plain.reserve(text.size());
+  for (std::size_t at = 0; at < text.size();) {
+    const char c = text[at];
+    const bool quoted = c == '"' || c == '\'';
+    std::size_t length = 1;
+    if (quoted || c == '#') {
+      length = quoted ? end_of_string(text, at) - at : std::min(text.find('\n', at), text.size()) - at;
+      plain += text.substr(at, length);
+    } else if (static_cast<unsigned char>(c) < 0x80) {
+      plain += c;
+    } else if (const std::size_t minus = minus_at(text, at); minus > 0) {
+      plain += '-';
+      length = minus;
+    } else if (const std::size_t space = space_at(text, at); space > 0) {
+      plain += ' ';
+      length = space;
+    } else {
+      plain += c;
+    }
+    at += length;
+  }
+  return plain;
+}
+
+/// What to do about a line that is no TOML.
+std::string remedy_for(std::string_view text, int line) {
+  for (int k = 1; k < line && !text.empty(); ++k)
+    text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
+  text = text.substr(0, text.find('\n'));
+  for (const std::string_view quote : {"\u201c", "\u201d", "\u201e", "\u2018", "\u2019", "\u00ab"}) {
+    if (text.find(quote) != std::string_view::npos)
+      return fmt::format("the quotes here are typeset ({}): write \" or '", quote);
+  }
+  for (std::size_t at = 1; at + 1 < text.size(); ++at) {
+    if (text[at] != ',' || !is_digit(text[at - 1]) || !is_digit(text[at + 1])) continue;
+    std::size_t first = at;
+    while (first > 0 && is_digit(text[first - 1])) --first;
+    const std::size_t before = text.substr(0, first).find_last_not_of(" -+");
+    if (before != std::string_view::npos && text[before] == '=')
+      return "numbers have a decimal point, no comma";
+  }
+  return "words, and numbers with a unit, stand in quotes (\"60 rpm\"); the syntax is at "
+         "https://toml.io/en/v1.0.0";
+}
+
 }  // namespace
 
 const Value* Value::find(std::string_view key) const {
@@ -174,6 +226,8 @@ std::string_view kind_name(Value::Kind kind) {
 }
 
 Document parse_document(std::string_view text, std::string file) {
+  const std::string plain = with_plain_signs(without_byte_order_mark(text, file));
+  text = plain;
   if (const auto place = find_overlong_key(text)) {
     fail(std::move(file), *place, fmt::format("a key has more than {} parts", kLongestKey), "shorten it");
   }
@@ -186,9 +240,9 @@ Document parse_document(std::string_view text, std::string file) {
     std::string_view description = error.description();
     constexpr std::string_view kPrefix = "Error while ";
     if (description.starts_with(kPrefix)) description.remove_prefix(kPrefix.size());
-    fail(std::move(file), position_of(error.source().begin), fmt::format("broken TOML: {}", description),
-         "words, and numbers with a unit, stand in quotes (\"60 rpm\"); the syntax is at "
-         "https://toml.io/en/v1.0.0");
+    const SourcePosition position = position_of(error.source().begin);
+    fail(std::move(file), position, fmt::format("broken TOML: {}", description),
+         remedy_for(text, position.line));
   } catch (const TomlAssertion&) {
     fail(std::move(file), {}, "broken TOML: the parser lost its way in this file",
          "look for an unfinished [table] header or string");

@@ -48,7 +48,7 @@ double interpolate(std::span<const double> table) {
   const std::size_t points = (table.size() - 1) / 2;
   if (points < 2) return std::numeric_limits<double>::quiet_NaN();
   std::size_t right = 1;
-  while (right + 1 < points && table[1 + 2 * right] < x) ++right;
+  while (right + 1 < points && table[1 + 2 * right] <= x) ++right;
   const double x1 = table[2 * right - 1], y1 = table[2 * right];
   const double x2 = table[2 * right + 1], y2 = table[2 * right + 2];
   return y1 + (y2 - y1) * (x - x1) / (x2 - x1);

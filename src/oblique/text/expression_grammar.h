@@ -20,7 +20,8 @@ struct BinaryOperator {
 };
 
 // Longer spellings first: "<=" is not "<".
-inline constexpr std::array<BinaryOperator, 13> kBinaryOperators{{
+// Of those that mean the same, the one that is printed comes first; the others are pasted from typeset text.
+inline constexpr std::array<BinaryOperator, 17> kBinaryOperators{{
     {"<=", Expression::Kind::less_equal, kComparison},
     {">=", Expression::Kind::greater_equal, kComparison},
     {"==", Expression::Kind::equal, kComparison},
@@ -29,7 +30,11 @@ inline constexpr std::array<BinaryOperator, 13> kBinaryOperators{{
     {">", Expression::Kind::greater, kComparison},
     {"+", Expression::Kind::add, kSum},
     {"-", Expression::Kind::subtract, kSum},
+    {"\u2212", Expression::Kind::subtract, kSum},
+    {"\u2013", Expression::Kind::subtract, kSum},
     {"*", Expression::Kind::multiply, kProduct},
+    {"·", Expression::Kind::multiply, kProduct},
+    {"×", Expression::Kind::multiply, kProduct},
     {"/", Expression::Kind::divide, kProduct},
     {"^", Expression::Kind::power, kPower},
     {"or", Expression::Kind::logical_or, kOr},
@@ -41,6 +46,11 @@ const BinaryOperator* operator_of(Expression::Kind kind);
 
 /// The function of this name, or nothing.
 const FunctionInfo* find_function(std::string_view name);
+
+/// The bytes of the minus sign or dash that begins at `at`, and of the space, the typographic ones included;
+/// 0 where there is none.
+std::size_t minus_at(std::string_view text, std::size_t at);
+std::size_t space_at(std::string_view text, std::size_t at);
 
 inline bool is_letter(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';

@@ -27,6 +27,16 @@ std::string excerpt(std::string_view text) {
   return std::string(text.substr(0, end)) + "…";
 }
 
+/// The bytes of the first of `spellings` that begins at `at`.
+std::size_t length_at(std::string_view text, std::size_t at,
+                      std::initializer_list<std::string_view> spellings) {
+  const std::string_view rest = text.substr(std::min(at, text.size()));
+  for (const std::string_view spelling : spellings) {
+    if (rest.starts_with(spelling)) return spelling.size();
+  }
+  return 0;
+}
+
 class Parser {
  public:
   explicit Parser(std::string_view text) : text_(text) {}
@@ -70,10 +80,7 @@ class Parser {
   static constexpr int kMostOperators = 1000;
 
   void skip_space() {
-    while (at_ < text_.size() &&
-           (text_[at_] == ' ' || text_[at_] == '\t' || text_[at_] == '\n' || text_[at_] == '\r')) {
-      ++at_;
-    }
+    for (std::size_t space = 1; space > 0; at_ += space) space = space_at(text_, at_);
   }
 
   bool take(char c) {
@@ -101,7 +108,10 @@ class Parser {
   Expression prefix(int loosest) {
     skip_space();
     const std::size_t offset = at_;
-    if (take('-')) return negation(offset);
+    if (const std::size_t minus = minus_at(text_, at_); minus > 0) {
+      at_ += minus;
+      return negation(offset);
+    }
     if (take('+')) return parse(kNegation);
     if (loosest <= kNot && peek_word() == "not") {
       at_ += 3;
@@ -227,6 +237,14 @@ class Parser {
 };
 
 }  // namespace
+
+std::size_t minus_at(std::string_view text, std::size_t at) {
+  return length_at(text, at, {"-", "\u2212", "\u2013"});
+}
+
+std::size_t space_at(std::string_view text, std::size_t at) {
+  return length_at(text, at, {" ", "\t", "\n", "\r", "\u00a0", "\u2009", "\u202f"});
+}
 
 Expression parse_expression_prefix(std::string_view text, std::size_t& rest) {
   Parser parser(text);

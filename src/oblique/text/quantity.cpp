@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include <oblique/text/expression_grammar.h>
+
 namespace oblique {
 namespace {
 
@@ -15,9 +17,25 @@ constexpr double kPi = std::numbers::pi;
 
 Unit base_unit(std::string_view name, double scale,
                std::initializer_list<std::pair<Unit::Base, int>> powers) {
-  Unit unit{std::string(name), scale, {}};
+  Unit unit;
+  unit.name = name;
+  unit.scale = scale;
   for (const auto& [base, power] : powers) unit.exponents[base] = power;
   return unit;
+}
+
+Unit frequency(std::string_view name, double scale) {
+  Unit unit = base_unit(name, scale, {{Unit::time, -1}});
+  unit.counts_turns = true;
+  return unit;
+}
+
+bool is_frequency(const Unit& unit) {
+  return unit.same_dimension(frequency("Hz", 1));
+}
+
+bool is_angular_velocity(const Unit& unit) {
+  return unit.same_dimension(base_unit("rad/s", 1, {{Unit::angle, 1}, {Unit::time, -1}}));
 }
 
 const std::vector<Unit>& named_units() {
@@ -37,22 +55,27 @@ const std::vector<Unit>& named_units() {
       base_unit("ft", 0.3048, {{U::length, 1}}),
       base_unit("s", 1, {{U::time, 1}}),
       base_unit("ms", 1e-3, {{U::time, 1}}),
+      base_unit("ns", 1e-9, {{U::time, 1}}),
       base_unit("us", 1e-6, {{U::time, 1}}),
       base_unit("µs", 1e-6, {{U::time, 1}}),
       base_unit("μs", 1e-6, {{U::time, 1}}),
       base_unit("min", 60, {{U::time, 1}}),
       base_unit("h", 3600, {{U::time, 1}}),
-      base_unit("Hz", 1, {{U::time, -1}}),
-      base_unit("kHz", 1e3, {{U::time, -1}}),
-      base_unit("MHz", 1e6, {{U::time, -1}}),
+      frequency("Hz", 1),
+      frequency("mHz", 1e-3),
+      frequency("kHz", 1e3),
+      frequency("MHz", 1e6),
       base_unit("rad", 1, {{U::angle, 1}}),
+      base_unit("mrad", 1e-3, {{U::angle, 1}}),
       base_unit("deg", kPi / 180, {{U::angle, 1}}),
       base_unit("°", kPi / 180, {{U::angle, 1}}),
+      base_unit("º", kPi / 180, {{U::angle, 1}}),  // the ordinal sign, which looks the same
       base_unit("rev", 2 * kPi, {{U::angle, 1}}),
       base_unit("rpm", 2 * kPi / 60, {{U::angle, 1}, {U::time, -1}}),
       base_unit("g", 1e-3, {{U::mass, 1}}),
       base_unit("kg", 1, {{U::mass, 1}}),
       base_unit("V", 1, {{U::voltage, 1}}),
+      base_unit("kV", 1e3, {{U::voltage, 1}}),
       base_unit("mV", 1e-3, {{U::voltage, 1}}),
       base_unit("uV", 1e-6, {{U::voltage, 1}}),
       base_unit("µV", 1e-6, {{U::voltage, 1}}),
@@ -63,8 +86,12 @@ const std::vector<Unit>& named_units() {
 }
 
 std::string_view trim(std::string_view text) {
-  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
-  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+  while (!text.empty()) {
+    const std::size_t space = space_at(text, 0);
+    if (space == 0) break;
+    text.remove_prefix(space);
+  }
+  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
   return text;
 }
 
@@ -72,7 +99,8 @@ std::string_view trim(std::string_view text) {
 
 std::optional<Unit> parse_unit(std::string_view text) {
   text = trim(text);
-  Unit unit{std::string(text), 1, {}};
+  Unit unit;
+  unit.name = text;
   int sign = 1;
   while (true) {
     const std::size_t end = text.find_first_of("*/");
@@ -88,10 +116,15 @@ std::optional<Unit> parse_unit(std::string_view text) {
     const auto known =
         std::find_if(names.begin(), names.end(), [&](const Unit& u) { return u.name == factor; });
     if (known == names.end()) return std::nullopt;
+    if (unit.name == factor) unit.counts_turns = known->counts_turns;
     unit.scale *= std::pow(known->scale, sign * power);
     for (std::size_t i = 0; i < unit.exponents.size(); ++i)
       unit.exponents[i] += sign * power * known->exponents[i];
-    if (end == std::string_view::npos) return unit;
+    if (end == std::string_view::npos) {
+      // The speed of a shaft: of what is counted by the minute, turns are meant.
+      unit.counts_turns = unit.counts_turns || unit.name == "1/min";
+      return unit;
+    }
     sign = text[end] == '/' ? -1 : 1;
     text.remove_prefix(end + 1);
   }
@@ -121,6 +154,22 @@ std::vector<std::string> names_like(const Unit& wanted) {
 
 }  // namespace
 
+std::optional<double> factor_between(const Unit& unit, const Unit& wanted) {
+  const double factor = unit.scale / wanted.scale;
+  if (unit.same_dimension(wanted)) return factor;
+  if (wanted.counts_turns && is_angular_velocity(unit)) return factor / (2 * kPi);
+  if (unit.counts_turns && is_angular_velocity(wanted)) return factor * 2 * kPi;
+  const int power = wanted.exponents[Unit::signal];
+  if (power == 0 || unit.exponents[Unit::signal] != 0) return std::nullopt;
+  Unit signal = unit;  // its volts, or its percent, taken as machine units
+  signal.exponents[Unit::signal] = power;
+  signal.exponents[Unit::voltage] = 0;
+  if (!signal.same_dimension(wanted)) return std::nullopt;
+  if (unit.exponents[Unit::voltage] == 0) return factor;
+  if (unit.exponents[Unit::voltage] != power || !wanted.volts) return std::nullopt;
+  return factor / std::pow(*wanted.volts, power);
+}
+
 double parse_quantity(std::string_view text, const Unit& wanted, const NameLookup& lookup) {
   std::size_t rest = 0;
   const double number = evaluate(parse_expression_prefix(text, rest), lookup);
@@ -133,6 +182,11 @@ double unit_factor(std::string_view text, std::size_t rest, const Unit& wanted, 
   const int column = static_cast<int>(rest) + 1;
   const auto unit = parse_unit(unit_text);
   if (!unit) {
+    if (unit_text.front() == ',' && unit_text.size() > 1 && is_digit(unit_text[1])) {
+      std::string point(text);
+      std::replace(point.begin(), point.end(), ',', '.');
+      throw ExpressionError{column, "a comma stands in the number", "a decimal point", "write " + point};
+    }
     const std::string number_text(trim(text.substr(0, rest)));
     std::string remedy = has_value(unit_text, lookup)
                              ? fmt::format("a product is written with '*': {}*{}", number_text, unit_text)
@@ -140,12 +194,21 @@ double unit_factor(std::string_view text, std::size_t rest, const Unit& wanted, 
     throw ExpressionError{column, fmt::format("there is no unit '{}'", unit_text),
                           fmt::format("a quantity in '{}'", wanted.name), std::move(remedy)};
   }
-  if (!unit->same_dimension(wanted)) {
-    throw ExpressionError{column, fmt::format("'{}' is the wrong unit here", unit_text),
-                          fmt::format("a quantity in '{}'", wanted.name),
-                          fmt::format("give it in '{}', or as a number without a unit", wanted.name)};
+  if (const auto factor = factor_between(*unit, wanted)) return *factor;
+  std::string what = fmt::format("'{}' is the wrong unit here", unit_text);
+  std::string remedy = fmt::format("give it in '{}', or as a number without a unit", wanted.name);
+  if (unit->exponents[Unit::voltage] != 0 && wanted.exponents[Unit::signal] != 0 && !wanted.machine.empty()) {
+    what = fmt::format("'{}' is a voltage, and the unit of the machine '{}' is no known voltage", unit_text,
+                       wanted.machine);
+    remedy =
+        "name the machine, profile = \"ec-1\" in [machine], or divide by its greatest voltage: 30 V of 60 V "
+        "are "
+        "0.5";
+  } else if (is_frequency(*unit) && is_angular_velocity(wanted)) {
+    remedy = "of radians give it in 'rad/s', of turns in 'Hz' or 'rpm'";
   }
-  return unit->scale / wanted.scale;
+  throw ExpressionError{column, std::move(what), fmt::format("a quantity in '{}'", wanted.name),
+                        std::move(remedy)};
 }
 
 }  // namespace oblique

@@ -46,6 +46,11 @@ const Value* TableReader::table(std::string_view key) {
 
 std::optional<double> TableReader::quantity(std::string_view key, std::string_view unit,
                                             const NameLookup& lookup) {
+  return quantity(key, parse_unit(unit).value(), lookup);
+}
+
+std::optional<double> TableReader::quantity(std::string_view key, const Unit& unit,
+                                            const NameLookup& lookup) {
   const Value* const value = find(key);
   if (value == nullptr) return std::nullopt;
   return read_quantity(file_, *value, unit, fmt::format("'{}' of {}", key, what_), *diagnostics_, lookup);
@@ -75,8 +80,12 @@ std::optional<std::string> TableReader::required_string(std::string_view key, st
 }
 
 std::optional<double> TableReader::required_quantity(std::string_view key, std::string_view unit) {
+  return required_quantity(key, parse_unit(unit).value());
+}
+
+std::optional<double> TableReader::required_quantity(std::string_view key, const Unit& unit) {
   auto value = quantity(key, unit);
-  if (!value) report_absent(key, fmt::format("a quantity in '{}'", unit));
+  if (!value) report_absent(key, fmt::format("a quantity in '{}'", unit.name));
   return value;
 }
 
@@ -105,12 +114,18 @@ void TableReader::finish() {
 std::optional<double> read_quantity(const std::string& file, const Value& value, std::string_view unit,
                                     const std::string& what, Diagnostics& diagnostics,
                                     const NameLookup& lookup) {
+  return read_quantity(file, value, parse_unit(unit).value(), what, diagnostics, lookup);
+}
+
+std::optional<double> read_quantity(const std::string& file, const Value& value, const Unit& unit,
+                                    const std::string& what, Diagnostics& diagnostics,
+                                    const NameLookup& lookup) {
   double number = 0;
   if (value.kind == Value::Kind::number) {
     number = value.number;
   } else if (value.kind == Value::Kind::string) {
     try {
-      number = parse_quantity(value.text, parse_unit(unit).value(), lookup);
+      number = parse_quantity(value.text, unit, lookup);
     } catch (const ExpressionError& error) {
       diagnostics.add(to_diagnostic(error, file, value, what));
       return std::nullopt;
@@ -118,7 +133,7 @@ std::optional<double> read_quantity(const std::string& file, const Value& value,
   } else {
     diagnostics.add({{file, value.position},
                      fmt::format("{} is {}", what, kind_name(value.kind)),
-                     fmt::format("a number or a quantity in '{}'", unit),
+                     fmt::format("a number or a quantity in '{}'", unit.name),
                      {}});
     return std::nullopt;
   }
@@ -144,9 +159,9 @@ Diagnostic to_diagnostic(const ExpressionError& error, const std::string& file, 
   return {{file, at}, fmt::format("{}: {}", what, error.what), error.expected, error.remedy};
 }
 
-std::optional<ExpectedValue> read_expected_value(TableReader& reader) {
-  const auto value = reader.required_quantity("value", "1");
-  const auto within = reader.required_quantity("within", "1");
+std::optional<ExpectedValue> read_expected_value(TableReader& reader, const Unit& unit) {
+  const auto value = reader.required_quantity("value", unit);
+  const auto within = reader.required_quantity("within", unit);
   if (value && !std::isfinite(*value)) {
     reader.report("value", fmt::format("'value' of {} is infinite", reader.what()), "a finite number");
   }

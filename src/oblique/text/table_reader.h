@@ -30,6 +30,7 @@ class TableReader {
   std::optional<bool> boolean(std::string_view key);
   /// A number, a constant expression or a quantity, in `unit`.
   std::optional<double> quantity(std::string_view key, std::string_view unit, const NameLookup& lookup = {});
+  std::optional<double> quantity(std::string_view key, const Unit& unit, const NameLookup& lookup = {});
   /// A sub-table.
   const Value* table(std::string_view key);
   /// An array of strings; a lone string counts as one where `allow_single`.
@@ -38,6 +39,7 @@ class TableReader {
   /// As `string` and friends, but an absent key is reported; `expected` says what should stand there.
   std::optional<std::string> required_string(std::string_view key, std::string_view expected);
   std::optional<double> required_quantity(std::string_view key, std::string_view unit);
+  std::optional<double> required_quantity(std::string_view key, const Unit& unit);
 
   /// Reports a finding at the value of `key`, or at the table where the key is absent.
   void report(std::string_view key, std::string what, std::string expected = {}, std::string remedy = {});
@@ -64,6 +66,11 @@ std::optional<double> read_quantity(const std::string& file, const Value& value,
                                     const std::string& what, Diagnostics& diagnostics,
                                     const NameLookup& lookup = {});
 
+/// The same in a unit that knows more than its name.
+std::optional<double> read_quantity(const std::string& file, const Value& value, const Unit& unit,
+                                    const std::string& what, Diagnostics& diagnostics,
+                                    const NameLookup& lookup = {});
+
 /// Turns the error of an expression inside a string value into a diagnostic at the right column (of a string
 /// of several lines: at its beginning).
 Diagnostic to_diagnostic(const ExpressionError& error, const std::string& file, const Value& string_value,
@@ -76,7 +83,7 @@ struct ExpectedValue {
 };
 
 /// Reads `{ value = …, within = … }`, both in the unit of what is expected; nothing after a finding.
-std::optional<ExpectedValue> read_expected_value(TableReader& reader);
+std::optional<ExpectedValue> read_expected_value(TableReader& reader, const Unit& unit = {});
 
 /// Checks `format = "oblique-…/1"`; reports what else stands there. False where that is a file of another
 /// kind, of which nothing else is worth a finding.
