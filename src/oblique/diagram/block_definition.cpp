@@ -43,6 +43,7 @@ class BlockReader {
     each("inputs", [&](const Entry& entry) { read_input(entry); });
     each("outputs", [&](const Entry& entry) { read_output(entry, blocks != nullptr); });
     each("parameters", [&](const Entry& entry) { read_parameter(entry); });
+    check_open_inputs();
     if (reader_.table().find("outputs") == nullptr) {
       reader_.report("outputs", "the block has no [outputs]", "at least one output");
     }
@@ -100,9 +101,25 @@ class BlockReader {
       reader.report("default", fmt::format("'default' of input '{}' is infinite", entry.key),
                     "a finite number");
     }
+    input.open_with = reader.strings("open_with").value_or(std::vector<std::string>{});
     input.doc = reader.string("doc").value_or("");
     reader.finish();
     definition_.inputs.push_back(std::move(input));
+  }
+
+  void check_open_inputs() {
+    std::vector<std::string> names;
+    for (const InputPort& input : definition_.inputs) names.push_back(input.name);
+    for (const InputPort& input : definition_.inputs) {
+      for (const std::string& other : input.open_with) {
+        if (other != input.name && definition_.find_input(other)) continue;
+        diagnostics_.add(
+            {{definition_.file, {}},
+             fmt::format("'open_with' of input '{}': there is no other input '{}'", input.name, other),
+             {},
+             suggest(other, names)});
+      }
+    }
   }
 
   void read_output(const Entry& entry, bool composite) {
@@ -120,6 +137,18 @@ class BlockReader {
     output.doc = reader.string("doc").value_or("");
     reader.finish();
     definition_.outputs.push_back(std::move(output));
+  }
+
+  static void read_unit(TableReader& reader, std::string_view key, const std::string& parameter,
+                        std::string& unit) {
+    auto read = reader.string(key);
+    if (!read) return;
+    if (parse_unit(*read)) {
+      unit = std::move(*read);
+    } else {
+      reader.report(key, fmt::format("parameter '{}': there is no unit '{}'", parameter, *read),
+                    R"(a unit such as "1", "Hz", "s", "rad", "m/s" or "machine unit")");
+    }
   }
 
   void read_parameter(const Entry& entry) {
@@ -143,29 +172,31 @@ class BlockReader {
         return;
       }
       if (*kind == "points") {
+        read_unit(reader, "x_unit", parameter.name, parameter.x_unit);
+        read_unit(reader, "y_unit", parameter.name, parameter.y_unit);
         parameter.points = PointTable{{0, 1}, {0, 1}};
         const std::string subject = fmt::format("default of parameter '{}'", entry.key);
         if (const Value* const value = reader.find("default"))
-          parameter.points = read_points(definition_.file, *value, subject, diagnostics_);
+          parameter.points =
+              read_points(definition_.file, *value,
+                          {parse_unit(parameter.x_unit).value(), parse_unit(parameter.y_unit).value()},
+                          subject, diagnostics_);
         parameter.doc = reader.string("doc").value_or("");
         reader.finish();
         definition_.parameters.push_back(std::move(parameter));
         return;
       }
     }
-    if (auto unit = reader.string("unit")) {
-      if (parse_unit(*unit)) {
-        parameter.unit = std::move(*unit);
-      } else {
-        reader.report("unit", fmt::format("parameter '{}': there is no unit '{}'", entry.key, *unit),
-                      R"(a unit such as "1", "Hz", "s", "rad", "m/s" or "machine unit")");
-      }
-    }
+    read_unit(reader, "unit", parameter.name, parameter.unit);
     parameter.default_value = reader.quantity("default", parameter.unit).value_or(0);
     parameter.above = reader.quantity("above", parameter.unit);
     parameter.below = reader.quantity("below", parameter.unit);
     parameter.at_least = reader.quantity("at_least", parameter.unit);
     parameter.at_most = reader.quantity("at_most", parameter.unit);
+    parameter.saturation = reader.boolean("saturation").value_or(false);
+    if (parameter.saturation && parameter.unit != "machine unit")
+      reader.report("saturation", fmt::format("parameter '{}' is no voltage of an amplifier", entry.key),
+                    "a parameter in 'machine unit'");
     parameter.doc = reader.string("doc").value_or("");
     if (!parameter.allows(parameter.default_value)) {
       reader.report("default",

@@ -20,6 +20,8 @@ struct InputPort {
   bool sum = false;
   std::optional<double>
       default_value;  ///< what an unconnected input sees [machine unit]; without it: an error
+  std::vector<std::string>
+      open_with;  ///< inputs of which one that is connected lets this one stay open, at 0
   std::string doc;
 };
 
@@ -38,8 +40,10 @@ struct ParameterDefinition {
   std::string unit = "1";
   std::optional<double> above, below;       ///< exclusive limits
   std::optional<double> at_least, at_most;  ///< inclusive limits
+  bool saturation = false;  ///< where it stays open it is what the amplifiers of the machine saturate at
   std::string doc;
-  std::optional<PointTable> points;   ///< the default of a parameter that is a function given by points
+  std::optional<PointTable> points;  ///< the default of a parameter that is a function given by points
+  std::string x_unit = "machine unit", y_unit = "machine unit";  ///< of its points
   std::optional<Expression> formula;  ///< the default of a parameter that is an expression of time
 
   bool allows(double value) const;  ///< within the limits; never for "not a number"

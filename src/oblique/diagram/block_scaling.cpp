@@ -59,7 +59,8 @@ class RuleReader {
     for (const MemoryRule& memory : definition.memories) hidden_.emplace_back(memory.name, rules_.columns_++);
     for (const ParameterDefinition& parameter : definition.parameters) {
       const auto unit = parse_unit(parameter.unit);
-      const bool signal = unit && unit->exponents[Unit::signal] != 0;
+      const bool fixed = block_.saturation == rules_.parameters_.size();
+      const bool signal = unit && unit->exponents[Unit::signal] != 0 && !fixed;
       rules_.parameters_.push_back(signal ? rules_.columns_++ : -1);
     }
     for (std::size_t i = 0; i < definition.inputs.size(); ++i) rules_.inputs_.push_back(rules_.columns_++);
@@ -74,6 +75,11 @@ class RuleReader {
       if (hidden == name) return column;
     }
     return -1;
+  }
+
+  /// Where the machine saturates does not follow the signals: a scaled diagram is to stay below it.
+  bool is_saturation(std::string_view name) const {
+    return block_.saturation && block_.definition->parameters[*block_.saturation].name == name;
   }
 
   Scale number() const { return Eigen::VectorXd::Zero(rules_.columns_); }
@@ -111,6 +117,7 @@ class RuleReader {
     const std::optional<double> value = constant(e);
     if (value && (*value == 0 || std::isinf(*value))) return {};
     if (e.kind == Kind::number) return number();
+    if (e.kind == Kind::name && is_saturation(e.name)) return {};
     if (e.kind == Kind::name) return variable(column_of(e.name));
     if (e.kind == Kind::call && e.function == Function::weights) return number();
     if (e.kind == Kind::call && e.function == Function::if_) {

@@ -37,7 +37,8 @@ class DiagramReader {
     if (const Value* const table = reader_.table("groups"))
       diagram_.groups = read_groups(diagram_.file, *table, diagnostics_);
     if (const Value* const table = reader_.table("timeline")) {
-      diagram_.timeline = read_timeline(diagram_.file, *table, diagram_.groups, diagnostics_);
+      diagram_.timeline =
+          read_timeline(diagram_.file, *table, diagram_.groups, diagram_.machine.profile, diagnostics_);
       const double whole = duration_of(diagram_.timeline);
       if (whole > 0 && std::isfinite(whole)) diagram_.run.until = last_time_ = whole;
     }
@@ -49,7 +50,7 @@ class DiagramReader {
     }
     if (const Value* const table = reader_.table("outputs")) read_outputs(*table);
     if (const Value* const table = reader_.table("expect")) {
-      diagram_.expectations = read_expectations(diagram_.file, *table, last_time_, diagnostics_);
+      diagram_.expectations = read_expectations(diagram_, *table, last_time_, diagnostics_);
     }
     if (!diagram_.outputs.empty()) {
       std::vector<std::string> names;
@@ -112,7 +113,9 @@ class DiagramReader {
     if (const Value* const own = reader.table("tolerances")) {
       for (const Entry& entry : own->entries) {
         const std::string subject = fmt::format("tolerance of '{}' in [run]", entry.key);
-        const auto number = read_quantity(diagram_.file, entry.value, "machine unit", subject, diagnostics_);
+        const auto number =
+            read_quantity(diagram_.file, entry.value, unit_on(diagram_.machine.profile, "machine unit"),
+                          subject, diagnostics_);
         if (!number) continue;
         if (!(*number > 0 && std::isfinite(*number))) {
           diagnostics_.add({{diagram_.file, entry.value.position},

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <oblique/diagram/machine_profile.h>
+
 namespace oblique {
 namespace {
 
@@ -53,10 +55,19 @@ bool split_key(const Entry& entry, double until, Expectation& expectation, Diagn
   return true;
 }
 
+/// The unit of an output, in which what is expected of it may be given; "1" where it is any text for people.
+Unit unit_of(const Diagram& diagram, std::string_view output) {
+  const auto found = std::find_if(diagram.outputs.begin(), diagram.outputs.end(),
+                                  [&](const OutputSpec& spec) { return spec.name == output; });
+  const std::string unit = found == diagram.outputs.end() ? OutputSpec{}.unit : found->unit;
+  return unit_on(diagram.machine.profile, unit);
+}
+
 }  // namespace
 
-std::vector<Expectation> read_expectations(const std::string& file, const Value& table, double until,
+std::vector<Expectation> read_expectations(const Diagram& diagram, const Value& table, double until,
                                            Diagnostics& diagnostics) {
+  const std::string& file = diagram.file;
   std::vector<Expectation> expectations;
   for (const Entry& entry : table.entries) {
     Expectation expectation;
@@ -65,7 +76,7 @@ std::vector<Expectation> read_expectations(const std::string& file, const Value&
     const bool good_key = split_key(entry, until, expectation, diagnostics);
     TableReader reader(file, entry.value, fmt::format("[expect] '{}'", entry.key), diagnostics);
     if (entry.value.kind != Value::Kind::table) continue;
-    const auto expected = read_expected_value(reader);
+    const auto expected = read_expected_value(reader, unit_of(diagram, expectation.output));
     if (!good_key || !expected) continue;
     expectation.value = expected->value;
     expectation.within = expected->within;

@@ -9,8 +9,9 @@
 
 namespace oblique {
 
-/// Reads `[expect]`; times must lie within a run of `until` [s].
-std::vector<Expectation> read_expectations(const std::string& file, const Value& table, double until,
+/// Reads `[expect]`; a value may be given in the unit of its output, which `diagram` holds already. Times
+/// must lie within a run of `until` [s].
+std::vector<Expectation> read_expectations(const Diagram& diagram, const Value& table, double until,
                                            Diagnostics& diagnostics);
 
 /// "side at 3.5", "side maximum": the key of an expectation that has no text of its own.

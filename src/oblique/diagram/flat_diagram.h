@@ -40,8 +40,9 @@ struct FlatBlock {
   /// That case with the block's formulas in it, where it has some: `behaviour` points to it. It never
   /// changes, so copies of the block share it.
   std::shared_ptr<const Behaviour> own_behaviour;
-  std::vector<double> parameters;              ///< in the order of the definition
-  std::vector<PointTable> points;              ///< of the parameters that are functions; else empty ones
+  std::vector<double> parameters;         ///< in the order of the definition
+  std::optional<std::size_t> saturation;  ///< the parameter that the machine's saturation gives its value
+  std::vector<PointTable> points;         ///< of the parameters that are functions; else empty ones
   std::map<std::string, Expression> formulas;  ///< of the parameters that are expressions of time
   std::vector<FlatInput> inputs;               ///< in the order of the definition
   double polarity = 1;                         ///< −1 where summers and integrators invert

@@ -155,6 +155,10 @@ class Layout {
     block.polarity = scope.inverting ? -1 : 1;
     block.behaviour = block.definition->choose_behaviour(node.parameters, block.polarity);
     block.parameters = node.parameters;
+    for (std::size_t k = 0; k < node.parameters.size(); ++k) {
+      const bool machine = node.open[k] && machine_.of(*block.definition)[k];
+      if (machine && block.definition->parameters[k].saturation) block.saturation = k;
+    }
     for (std::size_t k = 0; k < block.definition->parameters.size(); ++k) {
       const ParameterDefinition& parameter = block.definition->parameters[k];
       if (parameter.formula)

@@ -13,7 +13,11 @@ MachineDefaults::MachineDefaults(std::string profile) : profile_(std::move(profi
 const std::vector<std::optional<double>>& MachineDefaults::of(const BlockDefinition& block) {
   const auto [at, is_new] = values_.try_emplace(&block, block.parameters.size());
   if (!is_new) return at->second;
-  for (const BlockFigure& figure : find_machine(profile_)->errors) {
+  const MachineProfile& machine = *find_machine(profile_);
+  for (std::size_t k = 0; k < block.parameters.size(); ++k) {
+    if (block.parameters[k].saturation) at->second[k] = machine.saturation;
+  }
+  for (const BlockFigure& figure : machine.errors) {
     if (figure.block != block.name) continue;
     if (const auto index = block.find_parameter(figure.parameter)) at->second[*index] = figure.value;
   }

@@ -10,7 +10,8 @@
 
 namespace oblique::wiring {
 
-/// What a machine says for the parameters that a diagram leaves open: its systematic errors.
+/// What a machine says for the parameters that a diagram leaves open: its systematic errors, and where its
+/// amplifiers saturate.
 class MachineDefaults {
  public:
   /// Of a shipped profile. Throws DiagramError where there is none of that name.

@@ -13,6 +13,8 @@
 namespace oblique {
 namespace {
 
+constexpr std::string_view kIdeal = "ideal";
+
 std::vector<MachineProfile> read_shipped() {
   const BlockLibrary library = BlockLibrary::shipped();
   std::vector<MachineProfile> machines;
@@ -20,7 +22,7 @@ std::vector<MachineProfile> read_shipped() {
     machines.push_back(parse_machine(file.text, fmt::format("src/machines/{}.toml", file.name),
                                      std::string(file.name), library));
   }
-  const auto rank = [](const MachineProfile& m) { return std::pair(m.name != "ideal", m.name); };
+  const auto rank = [](const MachineProfile& m) { return std::pair(m.name != kIdeal, m.name); };
   std::sort(machines.begin(), machines.end(),
             [&](const MachineProfile& a, const MachineProfile& b) { return rank(a) < rank(b); });
   return machines;
@@ -108,6 +110,14 @@ std::vector<std::string> machine_names() {
   std::vector<std::string> names;
   for (const MachineProfile& machine : shipped()) names.push_back(machine.name);
   return names;
+}
+
+Unit unit_on(std::string_view profile, std::string_view unit) {
+  Unit wanted = parse_unit(unit).value_or(Unit{});
+  const MachineProfile* const machine = find_machine(profile);
+  wanted.machine = profile;
+  if (machine != nullptr && profile != kIdeal) wanted.volts = machine->unit;
+  return wanted;
 }
 
 Diagnostic unknown_machine(std::string_view name, Place place) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <oblique/text/diagnostic.h>
+#include <oblique/text/quantity.h>
 
 namespace oblique {
 
@@ -62,6 +63,7 @@ struct MachineProfile {
   bool input_gains_known = true;    ///< false: not published, and `input_gains` is empty
   bool rates_known = true;
   bool signed_coefficients = false;  ///< coefficients may be negative
+  std::optional<double> saturation;  ///< greatest magnitude of an amplifier's output [machine unit]
   std::vector<ElementCount> elements;
   std::vector<MachineFigure> figures;
   std::vector<BlockFigure> errors;    ///< systematic: every element has them
@@ -74,6 +76,10 @@ struct MachineProfile {
 /// The shipped profile of that name, or nothing; all of them in alphabetical order, "ideal" first.
 const MachineProfile* find_machine(std::string_view name);
 std::vector<std::string> machine_names();
+
+/// A unit that quantities of a diagram for that machine are wanted in: voltages stand for signals there, but
+/// on the ideal machine, whose unit is no voltage, and where a machine's is not published.
+Unit unit_on(std::string_view profile, std::string_view unit);
 
 /// What to say where there is no profile of that name: with the nearest one, which may also be meant by a
 /// word of its title ("МН-14", "Heathkit").

@@ -158,13 +158,30 @@ class MachineReader {
       const Value* const scatters = reader.table("scatters");
       if (errors != nullptr) read_actions(*errors, figure, machine_.errors, false);
       if (scatters != nullptr) read_actions(*scatters, figure, machine_.scatters, true);
-      if (figure.value == kUnknown && (errors != nullptr || scatters != nullptr))
+      read_saturation(reader, figure);
+      if (figure.value == kUnknown &&
+          (errors != nullptr || scatters != nullptr || reader.find("saturation") != nullptr))
         report(entry.position, fmt::format("figure '{}' is unknown and yet acts on blocks", entry.key),
                "a figure that acts has a value");
       reader.finish();
     }
     if (figure.source.empty() && figure.value != kUnknown) figure.source = machine_.source;
     machine_.figures.push_back(std::move(figure));
+  }
+
+  /// What all amplifiers saturate at; one figure of a machine says it.
+  void read_saturation(TableReader& reader, const MachineFigure& figure) {
+    const Value* const value = reader.find("saturation");
+    if (value == nullptr) return;
+    const std::string subject = fmt::format("figure '{}': 'saturation'", figure.name);
+    const auto number = read_value(*value, "machine unit", subject);
+    if (!number) return;
+    if (machine_.saturation) {
+      report(value->position, subject + " is given a second time", "one figure that says it");
+    } else if (!(*number >= 1 && std::isfinite(*number))) {
+      report(value->position, fmt::format("{} is {}", subject, *number), "at least 1 [machine unit]");
+    }
+    machine_.saturation = number;
   }
 
   /// `{ summer.offset = "20 µV", … }`: what a figure is for parameters of blocks.

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <oblique/text/quantity.h>
+#include <oblique/diagram/machine_profile.h>
 
 namespace oblique::wiring {
 namespace {
@@ -11,8 +11,9 @@ namespace {
 /// Finds one override; its findings have no place, since the text stands in no file.
 class Finder {
  public:
-  Finder(const ParameterOverride& override, Diagnostics& diagnostics)
+  Finder(const ParameterOverride& override, const std::string& machine, Diagnostics& diagnostics)
       : override_(override),
+        machine_(machine),
         subject_(fmt::format("--set {}={}", override.path, override.value)),
         diagnostics_(diagnostics) {}
 
@@ -66,7 +67,7 @@ class Finder {
       return std::nullopt;
     }
     try {
-      const double value = parse_quantity(override_.value, parse_unit(parameter.unit).value_or(Unit{}));
+      const double value = parse_quantity(override_.value, unit_on(machine_, parameter.unit));
       check_range(parameter, value, subject_ + ": the value", {}, {}, diagnostics_);
       return ReplacedParameter{*index, value};
     } catch (const ExpressionError& error) {
@@ -83,6 +84,7 @@ class Finder {
 
  private:
   const ParameterOverride& override_;
+  const std::string& machine_;
   std::string subject_;
   Diagnostics& diagnostics_;
 };
@@ -93,7 +95,7 @@ Replacements resolve_overrides(const Scope& diagram, const std::vector<Parameter
                                Diagnostics& diagnostics) {
   Replacements replacements;
   for (const ParameterOverride& override : overrides) {
-    const Finder finder(override, diagnostics);
+    const Finder finder(override, diagram.machine, diagnostics);
     const std::size_t dot = override.path.rfind('.');
     if (dot == std::string::npos) {
       finder.report(fmt::format("'{}' names no parameter", override.path), "BLOCK.PARAMETER=VALUE");

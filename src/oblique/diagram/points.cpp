@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/diagram/points.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -14,26 +15,30 @@ namespace {
 
 class PointReader {
  public:
-  PointReader(const std::string& file, const std::string& subject, Diagnostics& diagnostics)
-      : file_(file), subject_(subject), diagnostics_(diagnostics) {}
+  PointReader(const std::string& file, const PointUnits& units, const std::string& subject,
+              Diagnostics& diagnostics)
+      : file_(file), units_(units), subject_(subject), diagnostics_(diagnostics) {}
 
   std::optional<PointTable> read(const Value& value) {
     std::optional<PointTable> table;
+    bool hold = false;
     if (value.kind == Value::Kind::array) {
       table = from_list(value);
     } else if (value.kind == Value::Kind::table) {
-      table = from_file(value);
+      table = from_table(value, hold);
     } else {
       return report(value.position, fmt::format("is {}", kind_name(value.kind)),
                     R"([[x, y], …], or { file = "data.csv", x = "COLUMN", y = "COLUMN" })");
     }
-    if (table) check(value.position, *table);
+    if (table && check(value.position, *table)) continue_ends(*table, hold);
     return table;
   }
 
  private:
-  std::nullopt_t report(SourcePosition position, const std::string& what, std::string expected) {
-    diagnostics_.add({{file_, position}, fmt::format("{} {}", subject_, what), std::move(expected), {}});
+  std::nullopt_t report(SourcePosition position, const std::string& what, std::string expected,
+                        std::string remedy = {}) {
+    diagnostics_.add(
+        {{file_, position}, fmt::format("{} {}", subject_, what), std::move(expected), std::move(remedy)});
     return std::nullopt;
   }
 
@@ -42,8 +47,8 @@ class PointReader {
     for (const Value& point : list.elements) {
       if (point.kind != Value::Kind::array || point.elements.size() != 2)
         return report(point.position, "has something else than a point", "[x, y]");
-      const auto x = read_quantity(file_, point.elements[0], "1", subject_, diagnostics_);
-      const auto y = read_quantity(file_, point.elements[1], "1", subject_, diagnostics_);
+      const auto x = read_quantity(file_, point.elements[0], units_.x, subject_, diagnostics_);
+      const auto y = read_quantity(file_, point.elements[1], units_.y, subject_, diagnostics_);
       if (!x || !y) return std::nullopt;
       table.x.push_back(*x);
       table.y.push_back(*y);
@@ -51,8 +56,22 @@ class PointReader {
     return table;
   }
 
-  std::optional<PointTable> from_file(const Value& value) {
+  std::optional<PointTable> from_table(const Value& value, bool& hold) {
     TableReader reader(file_, value, subject_, diagnostics_);
+    if (const auto beyond = reader.string("beyond")) {
+      hold = *beyond == "hold";
+      if (!hold && *beyond != "extrapolate") {
+        reader.report("beyond", fmt::format("{}: 'beyond' is '{}'", subject_, *beyond),
+                      "what holds before the first and after the last point: \"hold\", their values, or "
+                      "\"extrapolate\", the lines through the nearest two");
+      }
+    }
+    if (const Value* const points = reader.find("points")) {
+      reader.finish();
+      if (points->kind == Value::Kind::array) return from_list(*points);
+      return report(points->position, fmt::format("has points that are {}", kind_name(points->kind)),
+                    "[[x, y], …]");
+    }
     const auto name = reader.required_string("file", "the name of a CSV file");
     const auto x = reader.required_string("x", "the name of the column of the argument");
     const auto y = reader.required_string("y", "the name of the column of the value");
@@ -61,50 +80,79 @@ class PointReader {
     const std::filesystem::path path = std::filesystem::path(file_).parent_path() / *name;
     try {
       const CsvTable csv = parse_csv(read_file(path), path.string());
-      for (const auto& [key, column] : {std::pair{"x", *x}, std::pair{"y", *y}}) {
-        if (csv.find(column) == nullptr) {
-          diagnostics_.add({{file_, value.find(key)->position},
-                            fmt::format("{}: '{}' has no column '{}'", subject_, path.string(), column),
-                            {},
-                            suggest(column, csv.names)});
-        }
-      }
-      if (csv.find(*x) == nullptr || csv.find(*y) == nullptr) return std::nullopt;
-      return PointTable{*csv.find(*x), *csv.find(*y)};
+      const auto of_x = column(csv, *x, units_.x, value.find("x")->position, path);
+      const auto of_y = column(csv, *y, units_.y, value.find("y")->position, path);
+      if (!of_x || !of_y) return std::nullopt;
+      return PointTable{*of_x, *of_y};
     } catch (const ReadError& error) {
       for (const Diagnostic& finding : error.diagnostics()) diagnostics_.add(finding);
       return std::nullopt;
     }
   }
 
-  void check(SourcePosition position, const PointTable& table) {
-    if (table.x.size() < 2) {
-      report(position, fmt::format("has {} points", table.x.size()), "at least two points");
-      return;
+  /// A column in the unit that is wanted, where its heading tells one that can stand for it.
+  std::optional<std::vector<double>> column(const CsvTable& csv, const std::string& name, const Unit& wanted,
+                                            SourcePosition position, const std::filesystem::path& path) {
+    const auto index = csv.index_of(name);
+    if (!index) {
+      diagnostics_.add({{file_, position},
+                        fmt::format("{}: '{}' has no column '{}'", subject_, path.string(), name),
+                        {},
+                        suggest(name, csv.names)});
+      return std::nullopt;
     }
-    for (std::size_t i = 0; i < table.x.size(); ++i) {
-      if (!std::isfinite(table.x[i]) || !std::isfinite(table.y[i])) {
+    std::vector<double> values = csv.columns[*index];
+    const auto unit = parse_unit(split_heading(csv.names[*index]).unit);
+    const auto factor = unit ? factor_between(*unit, wanted) : std::nullopt;
+    for (double& value : values) value *= factor.value_or(1);
+    return values;
+  }
+
+  bool check(SourcePosition position, const PointTable& table) {
+    const std::vector<double>& x = table.x;
+    const std::size_t before = diagnostics_.size();
+    if (x.size() < 2) report(position, fmt::format("has {} points", x.size()), "at least two points");
+    for (std::size_t i = 0; i < x.size() && diagnostics_.size() == before; ++i) {
+      if (!std::isfinite(x[i]) || !std::isfinite(table.y[i])) {
         report(position, "has a point that is not finite", "finite numbers");
-        return;
-      }
-      if (i > 0 && !(table.x[i] > table.x[i - 1])) {
-        report(position, fmt::format("has x = {} after x = {}", table.x[i], table.x[i - 1]),
+      } else if (i > 0 && !(x[i] >= x[i - 1])) {
+        report(position, fmt::format("has x = {} after x = {}", x[i], x[i - 1]),
                "points whose x rises from one to the next");
-        return;
+      } else if (i > 1 && x[i] == x[i - 2]) {
+        report(position, fmt::format("has more than two points at x = {}", x[i]),
+               "one, or two that make a jump", "keep the first and the last of them");
       }
+    }
+    return diagnostics_.size() == before;
+  }
+
+  /// What is to hold before and after all points, where the line through the nearest two does not say it.
+  static void continue_ends(PointTable& table, bool hold) {
+    std::vector<double>&x = table.x, &y = table.y;
+    if (hold || x[0] == x[1]) {
+      x.insert(x.begin(), before(x.front()));
+      y.insert(y.begin(), y.front());
+    }
+    if (hold || x[x.size() - 1] == x[x.size() - 2]) {
+      x.push_back(-before(-x.back()));
+      y.push_back(y.back());
     }
   }
 
+  /// A number well below x.
+  static double before(double x) { return x - std::max(1.0, std::abs(x)); }
+
   const std::string& file_;
+  const PointUnits& units_;
   const std::string& subject_;
   Diagnostics& diagnostics_;
 };
 
 }  // namespace
 
-std::optional<PointTable> read_points(const std::string& file, const Value& value, const std::string& subject,
-                                      Diagnostics& diagnostics) {
-  return PointReader(file, subject, diagnostics).read(value);
+std::optional<PointTable> read_points(const std::string& file, const Value& value, const PointUnits& units,
+                                      const std::string& subject, Diagnostics& diagnostics) {
+  return PointReader(file, units, subject, diagnostics).read(value);
 }
 
 }  // namespace oblique

@@ -6,12 +6,20 @@
 
 #include <oblique/text/document.h>
 #include <oblique/text/point_table.h>
+#include <oblique/text/quantity.h>
 
 namespace oblique {
 
-/// Reads a function given by points: [[x, y], …], or { file = "data.csv", x = "t", y = "u" }, two columns of
-/// a file beside `file`. Reports what is wrong with it; `subject` names it in messages.
-std::optional<PointTable> read_points(const std::string& file, const Value& value, const std::string& subject,
-                                      Diagnostics& diagnostics);
+/// What the numbers of a function given by points are in.
+struct PointUnits {
+  Unit x, y;
+};
+
+/// Reads a function given by points: [[x, y], …], or { points = [[x, y], …], beyond = "hold" }, or, with
+/// `beyond` or without, { file = "data.csv", x = "t", y = "u" }, two columns of a file beside `file`. Numbers
+/// without a unit are in `units`; of a column whose heading tells another unit that can stand for it ("t
+/// [ms]", "u/V") all are converted. Reports what is wrong with it; `subject` names it in messages.
+std::optional<PointTable> read_points(const std::string& file, const Value& value, const PointUnits& units,
+                                      const std::string& subject, Diagnostics& diagnostics);
 
 }  // namespace oblique

@@ -139,6 +139,7 @@ class Writer {
         instance.settings.push_back(points_setting(definition.parameters[k].name, block.points[k]));
         continue;
       }
+      if (block.saturation == k) continue;  // it stays the machine's
       set(instance, definition, k, scaled_number(block.parameters[k], scaling_[b].parameters[k], 1));
     }
     return instance;

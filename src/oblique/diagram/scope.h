@@ -69,6 +69,7 @@ struct Scope {
   const BlockDefinition* composite = nullptr;  ///< none for the diagram
   std::string file;
   bool inverting = false;
+  std::string machine;  ///< the profile, whose volts count
   std::vector<WiredBlock> blocks;
   std::unordered_map<std::string_view, std::size_t> index;  ///< of `blocks` by name
   std::vector<std::optional<Source>> outputs;               ///< of a composite; empty where the wire is wrong

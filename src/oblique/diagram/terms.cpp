@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <oblique/diagram/machine_profile.h>
 #include <oblique/diagram/names.h>
 #include <oblique/text/table_reader.h>
 
@@ -151,11 +152,10 @@ std::optional<Constant> read_parameter(const Scope& scope, const Value& value,
            signal ? "signals go to inputs, not to parameters" : suggest(name->name, known)});
       return std::nullopt;
     }
-    // The unit is the business of parse_quantity; any value of the names will do to learn it.
-    const Unit wanted = parse_unit(parameter.unit).value_or(Unit{});
-    parse_quantity(value.text, wanted, [](std::string_view) { return 1.0; });
-    const auto unit = parse_unit(std::string_view(value.text).substr(rest));
-    Constant constant = fold(std::move(expression), unit ? unit->scale / wanted.scale : 1);
+    // Whatever value the names have: in a message the text before the unit counts as a number.
+    Constant constant =
+        fold(std::move(expression), unit_factor(value.text, rest, unit_on(scope.machine, parameter.unit),
+                                                [](std::string_view) { return 1.0; }));
     if (constant.expression) return constant;
     const std::size_t before = diagnostics.size();
     check_range(parameter, constant.number, subject, place, {}, diagnostics);

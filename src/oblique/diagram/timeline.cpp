@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include <oblique/diagram/machine_profile.h>
 #include <oblique/diagram/names.h>
 
 namespace oblique {
@@ -44,12 +45,15 @@ struct Comparison {
 };
 
 std::optional<Comparison> read_comparison(const std::string& text, const Place& place,
-                                          const std::string& what, Diagnostics& diagnostics) {
+                                          const std::string& what, const std::string& machine,
+                                          Diagnostics& diagnostics) {
   try {
-    const Expression e = parse_expression(text);
+    std::size_t rest = 0;
+    const Expression e = parse_expression_prefix(text, rest);
+    const double unit = unit_factor(text, rest, unit_on(machine, "machine unit"));
     const bool above = e.kind == Expression::Kind::greater;
     if ((above || e.kind == Expression::Kind::less) && e.operands[0].kind == Expression::Kind::name) {
-      return Comparison{e.operands[0].name, above, evaluate(e.operands[1])};
+      return Comparison{e.operands[0].name, above, unit * evaluate(e.operands[1])};
     }
     diagnostics.add({place, fmt::format("{}: '{}' does not compare a signal with a number", what, text),
                      "'SIGNAL > NUMBER' or 'SIGNAL < NUMBER'",
@@ -61,7 +65,7 @@ std::optional<Comparison> read_comparison(const std::string& text, const Place& 
 }
 
 Phase read_phase(const std::string& file, const Value& value, const std::string& what,
-                 const std::vector<ModeGroup>& groups, Diagnostics& diagnostics) {
+                 const std::vector<ModeGroup>& groups, const std::string& machine, Diagnostics& diagnostics) {
   Phase phase;
   phase.place = {file, value.position};
   TableReader reader(file, value, what, diagnostics);
@@ -79,7 +83,7 @@ Phase read_phase(const std::string& file, const Value& value, const std::string&
   }
   if (const auto until = reader.string("until")) {
     phase.until = *until;
-    read_comparison(phase.until, phase.place, what, diagnostics);
+    read_comparison(phase.until, phase.place, what, machine, diagnostics);
   }
   const auto duration = reader.quantity("for", "s");
   phase.duration = duration.value_or(kInfinity);
@@ -127,7 +131,7 @@ std::vector<ModeGroup> read_groups(const std::string& file, const Value& table, 
 }
 
 Timeline read_timeline(const std::string& file, const Value& table, const std::vector<ModeGroup>& groups,
-                       Diagnostics& diagnostics) {
+                       const std::string& machine, Diagnostics& diagnostics) {
   Timeline timeline;
   TableReader reader(file, table, "[timeline]", diagnostics);
   const Value* const phases = reader.find("phases");
@@ -136,8 +140,8 @@ Timeline read_timeline(const std::string& file, const Value& table, const std::v
                   R"(phases = [{ mode = "operate", for = "1 s" }])");
   } else {
     for (std::size_t i = 0; i < phases->elements.size(); ++i) {
-      timeline.phases.push_back(
-          read_phase(file, phases->elements[i], fmt::format("phase {}", i + 1), groups, diagnostics));
+      timeline.phases.push_back(read_phase(file, phases->elements[i], fmt::format("phase {}", i + 1), groups,
+                                           machine, diagnostics));
     }
   }
   if (const auto cycles = reader.quantity("cycles", "1")) {
@@ -211,7 +215,8 @@ void lay_out_timeline(const Diagram& diagram, FlatDiagram& flat, const FindSigna
     }
     if (phase.until.empty()) continue;
     const std::string what = fmt::format("phase {}", i + 1);
-    const auto comparison = read_comparison(phase.until, phase.place, what, diagnostics);
+    const auto comparison =
+        read_comparison(phase.until, phase.place, what, diagram.machine.profile, diagnostics);
     if (!comparison) continue;
     if (const auto signal = find_signal(comparison->signal, phase.place, what))
       made.until = FlatCondition{*signal, comparison->above, comparison->threshold};

@@ -14,9 +14,9 @@ namespace oblique {
 /// Reads `[groups]`: each a list of blocks, or a table of `blocks` and the mode lines `initial` and `hold`.
 std::vector<ModeGroup> read_groups(const std::string& file, const Value& table, Diagnostics& diagnostics);
 
-/// Reads `[timeline]`: `phases` and `cycles`.
+/// Reads `[timeline]`: `phases` and `cycles`; `machine` is the profile whose volts count in conditions.
 Timeline read_timeline(const std::string& file, const Value& table, const std::vector<ModeGroup>& groups,
-                       Diagnostics& diagnostics);
+                       const std::string& machine, Diagnostics& diagnostics);
 
 /// How long all phases together take [s]; infinite where a phase ends by a condition alone.
 double duration_of(const Timeline& timeline);

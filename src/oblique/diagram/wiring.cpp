@@ -4,7 +4,9 @@
 #include <algorithm>
 
 #include <oblique/diagram/formula.h>
+#include <oblique/diagram/machine_profile.h>
 #include <oblique/diagram/points.h>
+#include <oblique/text/expression.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -31,12 +33,34 @@ std::vector<std::string> names_of(const std::vector<Port>& ports) {
   return names;
 }
 
+bool has_word(std::string_view text, std::string_view word) {
+  const auto is_word = [](char c) { return is_identifier(std::string("_") + c); };
+  for (std::size_t at = text.find(word); at != std::string_view::npos; at = text.find(word, at + 1)) {
+    const std::size_t end = at + word.size();
+    if ((at == 0 || !is_word(text[at - 1])) && (end == text.size() || !is_word(text[end]))) return true;
+  }
+  return false;
+}
+
+/// What may be meant by a key that a block does not have: a name that is near, or else the parameter whose
+/// documentation has that word, as "k0" of machines that have no rate.
+std::string hint_for(const std::string& key, const BlockDefinition& definition,
+                     const std::vector<std::string>& known) {
+  if (!nearest_name(key, known) && key.size() > 1) {
+    for (const ParameterDefinition& parameter : definition.parameters) {
+      if (has_word(parameter.doc, key)) return fmt::format("'{}' is {}", parameter.name, parameter.doc);
+    }
+  }
+  return suggest(key, known);
+}
+
 }  // namespace
 
 Scope Resolver::diagram(const Diagram& diagram) {
   Scope scope;
   scope.file = diagram.file;
   scope.inverting = diagram.machine.inverting;
+  scope.machine = machine_ = diagram.machine.profile;
   add_blocks(diagram.blocks, scope);
   return scope;
 }
@@ -67,6 +91,7 @@ const Scope* Resolver::composite(const BlockDefinition& definition, const Place&
   made->composite = &definition;
   made->file = definition.file;
   made->inverting = definition.inverting;
+  made->machine = machine_;
   open_.push_back(&definition);
   add_blocks(definition.blocks, *made);
   read_outputs(*made);
@@ -121,7 +146,11 @@ void Resolver::read_settings(const Scope& scope, WiredBlock& block) {
       WiredParameter& wired = block.parameters[*parameter];
       const std::string subject = describe_port(scope, "parameter", block, entry.key);
       if (definition.parameters[*parameter].points) {
-        wired.points = read_points(scope.file, entry.value, subject, *diagnostics_);
+        const ParameterDefinition& points = definition.parameters[*parameter];
+        wired.points =
+            read_points(scope.file, entry.value,
+                        {unit_on(scope.machine, points.x_unit), unit_on(scope.machine, points.y_unit)},
+                        subject, *diagnostics_);
         continue;
       }
       if (definition.parameters[*parameter].formula) {
@@ -142,7 +171,7 @@ void Resolver::read_settings(const Scope& scope, WiredBlock& block) {
           {{scope.file, entry.position},
            fmt::format("{} has no input and no parameter '{}'", describe_block(scope, block), entry.key),
            {},
-           suggest(entry.key, known)});
+           hint_for(entry.key, definition, known)});
     }
   }
   check_open_inputs(scope, block);
@@ -202,7 +231,7 @@ void Resolver::connect(const Scope& scope, WiredBlock& block, std::size_t input,
          "add the signals in a block with a summing input and wire its output here"});
     return;
   }
-  wired.connected = !wires.empty();
+  wired.connected = !wires.empty() || port.sum;  // an empty list says that nothing is to be added
   if (wired.connected) drivers[input] = &entry;
   for (const Value* const wire : wires) {
     if (auto term = read_term(scope, *wire, subject, *diagnostics_)) wired.terms.push_back(std::move(*term));
@@ -213,10 +242,19 @@ void Resolver::check_open_inputs(const Scope& scope, const WiredBlock& block) {
   for (std::size_t i = 0; i < block.inputs.size(); ++i) {
     const InputPort& port = block.definition->inputs[i];
     if (block.inputs[i].connected || port.default_value) continue;
-    diagnostics_->add({block.instance->place,
-                       fmt::format("{} ({}) is not connected",
-                                   describe_port(scope, "input", block, port.name), block.instance->type),
-                       "a signal", fmt::format("{} = \"NAME OF A SIGNAL\"", port.name)});
+    const bool may_be_open =
+        std::any_of(port.open_with.begin(), port.open_with.end(), [&](const std::string& other) {
+          const auto input = block.definition->find_input(other);
+          return input && block.inputs[*input].connected;
+        });
+    if (may_be_open) continue;
+    diagnostics_->add(
+        {block.instance->place,
+         fmt::format("{} ({}) is not connected", describe_port(scope, "input", block, port.name),
+                     block.instance->type),
+         "a signal",
+         fmt::format("{} = \"NAME OF A SIGNAL\"{}", port.name,
+                     port.sum ? fmt::format(", or {} = [] where nothing is to be added", port.name) : "")});
   }
 }
 

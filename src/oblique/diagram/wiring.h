@@ -34,6 +34,7 @@ class Resolver {
 
   const BlockLibrary* library_;
   Diagnostics* diagnostics_;
+  std::string machine_;
   std::unordered_map<const BlockDefinition*, std::unique_ptr<Scope>> composites_;
   std::vector<const BlockDefinition*> open_;  ///< the composites being resolved, outermost first
 };

@@ -238,9 +238,12 @@ NodeId Assembler::interpolate(std::size_t block, const Expression& call, PointTa
   ExpressionGraph& graph = network_.graph;
   const auto [found, inserted] = table_index_.try_emplace(std::pair(block, to_string(call)), kNone);
   if (inserted) {
-    if (!std::is_sorted(table.x.begin(), table.x.end(), std::less_equal<>())) {
-      throw ExpressionError{
-          call.column, "the x of a table do not rise from point to point", "x1 < x2 < …", {}};
+    const std::vector<double>& x = table.x;
+    if (!std::is_sorted(x.begin(), x.end()) || x[0] == x[1] || x[x.size() - 2] == x.back()) {
+      throw ExpressionError{call.column,
+                            "the x of a table do not rise from point to point",
+                            "x1 < x2 ≤ x3 < …, where two that are equal make a jump",
+                            {}};
     }
     found->second = static_cast<std::uint32_t>(network_.tables.size());
     network_.tables.push_back(std::move(table));

@@ -239,8 +239,11 @@ TapeWriter::TapeWriter(const ExpressionGraph& graph, std::size_t n_variables, st
       initial_slots_(n_variables + n_memories, 0.0) {
   for (const PointTable& table : tables) {
     table_slots_.push_back(static_cast<std::uint32_t>(initial_slots_.size()));
-    initial_slots_.push_back(static_cast<double>(table.x.size()));
+    const std::size_t count = initial_slots_.size();
+    initial_slots_.push_back(1);
     for (std::size_t k = 0; k + 1 < table.x.size(); ++k) {
+      if (table.x[k] == table.x[k + 1]) continue;  // a jump: it lies between two segments
+      ++initial_slots_[count];
       initial_slots_.push_back(table.x[k]);
       initial_slots_.push_back(table.y[k]);
       initial_slots_.push_back((table.y[k + 1] - table.y[k]) / (table.x[k + 1] - table.x[k]));
