@@ -11,6 +11,7 @@
 #include <oblique/solve/hidden_motion.h>
 #include <oblique/solve/phase_clock.h>
 #include <oblique/solve/rest.h>
+#include <oblique/solve/run_warnings.h>
 #include <oblique/solve/sampler.h>
 #include <oblique/solve/solve_error.h>
 #include <oblique/solve/source_watch.h>
@@ -295,6 +296,8 @@ Run run(const Program& program, const FlatDiagram& diagram, const RunOptions& op
   const auto begin = std::chrono::steady_clock::now();
   if (options.from) check_run_state(*options.from, program, diagram.file);
   Run result = Runner(program, diagram, options).run();
+  for (Diagnostic& warning : warnings_at_end(diagram, options, result))
+    result.warnings.push_back(std::move(warning));
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return result;
 }

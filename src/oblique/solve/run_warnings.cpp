@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/solve/run_warnings.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace oblique {
+namespace {
+
+/// Ends that differ by rounding are one: "300 ms" is not quite 0.3 s.
+constexpr double kRounding = 1e-12;
+
+/// The points that the expression takes at the time of the run; nothing where it holds no such table.
+const PointTable* points_over_time(const FlatBlock& block, const Expression& expression) {
+  const bool table = expression.kind == Expression::Kind::call && expression.function == Function::table &&
+                     expression.operands.size() == 2 && expression.operands[0].name == "time";
+  if (table && !block.points.empty()) {
+    if (const auto parameter = block.definition->find_parameter(expression.operands[1].name))
+      return &block.points[*parameter];
+  }
+  for (const Expression& operand : expression.operands) {
+    if (const PointTable* const found = points_over_time(block, operand)) return found;
+  }
+  return nullptr;
+}
+
+/// A line that does not change says what holds beyond the points; of another nobody knows whether it goes on.
+void warn_of_points(const FlatBlock& block, const PointTable& points, double begin, double end,
+                    std::vector<Diagnostic>& warnings) {
+  const std::vector<double>&x = points.x, &y = points.y;
+  const std::size_t last = x.size() - 1;
+  const auto warn = [&](std::string_view what, double point, double run, std::string_view which) {
+    warnings.push_back({block.place,
+                        fmt::format("the points of '{}' {} at t = {:.10g} s, the run at {:.10g} s: between "
+                                    "them the line through the "
+                                    "{} two points goes on",
+                                    block.path, what, point, run, which),
+                        "points over the whole run",
+                        "beyond = \"hold\" in the table of the points makes the outermost values hold; "
+                        "another point, or a pause "
+                        "at the end, says what else should"});
+  };
+  if (begin < x.front() - kRounding * std::abs(x.front()) && y[0] != y[1])
+    warn("begin", x.front(), begin, "first");
+  if (end > x[last] + kRounding * std::abs(x[last]) && y[last] != y[last - 1])
+    warn("end", x[last], end, "last");
+}
+
+void warn_of_timeline(const FlatTimeline& timeline, const std::string& file, const RunState& state,
+                      std::vector<Diagnostic>& warnings) {
+  const bool by_condition = std::any_of(timeline.phases.begin(), timeline.phases.end(),
+                                        [](const FlatPhase& phase) { return std::isinf(phase.duration); });
+  const PhaseClock::Position& at = state.position;
+  const bool in_last = at.phase + 1 == timeline.phases.size() && at.cycle + 1 >= timeline.cycles;
+  // Phases of known length were cut off on purpose, and who repeats without end knows that the run ends.
+  if (!by_condition || in_last || std::isinf(timeline.cycles)) return;
+  std::string remedy =
+      "such phases have no length that is known before: give a later 'until' in [run], or --until";
+  if (at.cycle > 0) {
+    remedy +=
+        fmt::format("; at the pace so far all cycles take {:.3g} s", state.time * timeline.cycles / at.cycle);
+  }
+  warnings.push_back(
+      {{file, {}},
+       fmt::format("the run ends at t = {:.10g} s in phase {} of cycle {} of its timeline", state.time,
+                   at.phase + 1, at.cycle + 1),
+       fmt::format("phase {} of cycle {}, the last one", timeline.phases.size(), timeline.cycles),
+       std::move(remedy)});
+}
+
+}  // namespace
+
+std::vector<Diagnostic> warnings_at_end(const FlatDiagram& diagram, const RunOptions& options,
+                                        const Run& run) {
+  std::vector<Diagnostic> warnings;
+  const double begin = options.from ? options.from->time : 0;
+  for (const FlatBlock& block : diagram.blocks) {
+    for (const Equation& equation : block.behaviour->equations) {
+      const PointTable* const points = points_over_time(block, equation.expression);
+      if (points != nullptr) warn_of_points(block, *points, begin, run.state.time, warnings);
+    }
+  }
+  const bool came_to_its_end = !run.halted && run.state.time >= options.until;
+  if (came_to_its_end) warn_of_timeline(diagram.timeline, diagram.file, run.state, warnings);
+  return warnings;
+}
+
+}  // namespace oblique
