@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "runs.h"
+#include "../support/runs.h"
 
 namespace oblique {
 namespace {
