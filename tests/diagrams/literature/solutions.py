@@ -15,11 +15,11 @@ import pathlib
 import sys
 import tomllib
 
-from truth import late, mechanics, switching
+from truth import late, mechanics, smooth, stiff, switching
 
 
 def problems():
-    for module in (late, switching, mechanics):
+    for module in (late, switching, mechanics, smooth, stiff):
         for name, function in vars(module).items():
             if callable(function) and function.__module__ == module.__name__ and not name.startswith("_"):
                 yield name, function
