@@ -11,17 +11,20 @@ How `within` was chosen, before any run: a run sums the errors of some hundred t
 its tolerance, so 1000 times the tolerance times the size of the signal, and where a deviation grows on its way, times
 that growth; the comment of the diagram says so where it is another number. Counts must be right.
 """
+import inspect
 import pathlib
 import sys
 import tomllib
 
-from truth import late, mechanics, smooth, stiff, switching
+sys.dont_write_bytecode = True
+
+from truth import big, hysteresis, late, mechanics, operation, pulses, smooth, stiff, switching
 
 
 def problems():
-    for module in (late, switching, mechanics, smooth, stiff):
-        for name, function in vars(module).items():
-            if callable(function) and function.__module__ == module.__name__ and not name.startswith("_"):
+    for module in (late, pulses, switching, hysteresis, mechanics, smooth, stiff, big, operation):
+        for name, function in list(vars(module).items()):
+            if inspect.isfunction(function) and function.__module__ == module.__name__ and not name.startswith("_"):
                 yield name, function
 
 
@@ -37,7 +40,7 @@ def main(wanted):
         for key, value in function().items():
             line = written.get(key)
             # A tenth of `within`: the constants of the diagrams are rounded, and SciPy's versions differ.
-            agrees = not written or line is not None and abs(float(line["value"]) - value) <= 0.1 * float(line["within"])
+            agrees = not written or line and abs(line["value"] - value) <= 0.1 * line["within"]
             disagreements += not agrees
             print(f"  {key!r}: {value!r}{'' if agrees else '   <-- not in the diagram'}")
     return 1 if disagreements else 0

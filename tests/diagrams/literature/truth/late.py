@@ -12,7 +12,8 @@ def late_pulse_rc_ladder():
 
     motion = ode(f(1), [0, 0, 0], 0.001)
     rest = ode(f(0), motion.y, 60)
-    return {"x1 at 700.0005": float(ode(f(1), [0, 0, 0], 0.0005)(0.0005)[0]), "x1 at 701": float(rest(0.999)[0]),
+    return {"x1 at 700.0005": float(ode(f(1), [0, 0, 0], 0.0005)(0.0005)[0]),
+            "x1 at 701": float(rest(0.999)[0]),
             "x3 at 703": float(rest(2.999)[2]), "x3 maximum": rest.largest(lambda t, x: x[2])}
 
 
@@ -46,11 +47,13 @@ def late_alpha_synapse():
         return [(-v[0] + 10 * s * np.exp(1 - s)) / 20]
 
     motion = ode(f, [0], 100)
-    return {"v at 405": float(motion(5)[0]), "v at 450": float(motion(50)[0]), "v maximum": motion.largest(lambda t, v: v[0])}
+    return {"v at 405": float(motion(5)[0]), "v at 450": float(motion(50)[0]),
+            "v maximum": motion.largest(lambda t, v: v[0])}
 
 
 def nigam_jennings():
-    points = [(0, 0), (50, 0), (50.02, 0.12), (50.06, -0.31), (50.1, 0.28), (50.15, -0.22), (50.2, 0.17), (50.26, -0.05),
+    points = [(0, 0), (50, 0), (50.02, 0.12), (50.06, -0.31), (50.1, 0.28), (50.15, -0.22), (50.2, 0.17),
+              (50.26, -0.05),
               (50.3, 0), (60, 0)]
     times, values = zip(*points)
 
@@ -90,7 +93,8 @@ def exponential_sweep_counted():
 
 def chirp_through_resonance():
     w = 10 * np.pi
-    motion = ode(lambda t, y: [y[1], w * w * (np.sin(0.1 * np.pi * t * t) - y[0]) - 0.4 * y[1]], [0, 0], 60, max_step=0.02)
+    motion = ode(lambda t, y: [y[1], w * w * (np.sin(0.1 * np.pi * t * t) - y[0]) - 0.4 * y[1]], [0, 0], 60,
+                 max_step=0.02)
     return {"x at 40": float(motion(40)[0]), "x at 55": float(motion(55)[0]), "x at 60": float(motion(60)[0]),
             "x maximum": motion.largest(lambda t, y: y[0], samples=200_000)}
 
@@ -106,7 +110,8 @@ def near_graze():
 def bessel_zeros_counted():
     zeros = jn_zeros(0, 120)
     rises = zeros[1::2]  # J0 starts positive: it rises through its 2nd, 4th, … zero
-    return {"n at 300": float(np.count_nonzero(rises < 301)), "x at 300": float(j0(301)), "x at 100": float(j0(101))}
+    return {"n at 300": float(np.count_nonzero(rises < 301)), "x at 300": float(j0(301)),
+            "x at 100": float(j0(101))}
 
 
 def adler_slips():
@@ -118,26 +123,28 @@ def adler_slips():
         phase = s * t / 2 - c
         return 2 * (np.arctan((1 + s * np.tan(phase)) / d) + np.pi * np.round(phase / np.pi))
 
-    return {"theta at 400": float(theta(400)), "theta at 1000": float(theta(1000)), "slips at 2000": float(np.floor(theta(2000) / (2 * np.pi) + 0.25))}
+    return {"theta at 400": float(theta(400)), "theta at 1000": float(theta(1000)),
+            "slips at 2000": float(np.floor(theta(2000) / (2 * np.pi) + 0.25))}
 
 
 def saddle_node_ghost():
-    return {"x at 290": float(0.01 * np.tan(0.01 * 290 + np.arctan(-100))), "x at 310": float(0.01 * np.tan(0.01 * 310 + np.arctan(-100)))}
+    return {"x at 290": float(0.01 * np.tan(0.01 * 290 + np.arctan(-100))),
+            "x at 310": float(0.01 * np.tan(0.01 * 310 + np.arctan(-100)))}
 
 
 def monostable_train():
     # Edges at (asin 0.9 + 2πk)/2π; a pulse of 1.3 that is not retriggerable swallows every second edge.
     first = np.arcsin(0.9) / (2 * np.pi)
     area = lambda length, period: sum(max(0, min(length, 100.4 - t)) for t in np.arange(first, 100.4, period))
-    return {"short at 100.4": float(area(0.3, 1)), "long at 100.4": float(area(1.3, 2)), "retriggered at 100.4": float(100.4 - first)}
+    return {"short at 100.4": float(area(0.3, 1)), "long at 100.4": float(area(1.3, 2)),
+            "retriggered at 100.4": float(100.4 - first)}
 
 
 def sigma_delta():
-    x, area, ones, u = 0.05, 0.0, 0, 1 / np.pi
+    x, area, u = 0.05, 0.0, 1 / np.pi
     y = -1
     for _ in range(1000):  # a clock period each; the clock rises at its end
         x += 0.01 * (u - y)
         area += 0.01 * y
         y = 1 if x > 0 else -1
-        ones += y > 0
     return {"area at 10.005": float(area + 0.005 * y), "x at 10.005": float(x + 0.005 * (u - y))}

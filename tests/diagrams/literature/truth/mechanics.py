@@ -5,14 +5,14 @@ import itertools
 import mpmath
 import numpy as np
 from scipy.optimize import brentq
-from scipy.special import ellipj, ellipk
 
 from .tools import Motion, ode
 
 
 def _friction(y, until, rates, sliding, greatest):
-    """Coulomb friction in several contacts. `sliding(y)`: speeds of the contacts; `rates(t, y, force)`: y′, in which each
-    contact's force acts; `greatest[i](speed)`: its size. A contact that sticks carries what keeps its speed at zero."""
+    """Coulomb friction in several contacts. `sliding(y)`: the contacts' speeds; `rates(t, y, force)`: y′, in which
+    the contacts' forces act; `greatest[i](speed)`: their sizes. A contact that sticks carries what keeps its speed
+    at zero, up to its greatest force at rest, and then tears."""
     n = len(greatest)
     motion = Motion(y)
 
@@ -73,7 +73,8 @@ def _friction(y, until, rates, sliding, greatest):
 
 
 def den_hartog_friction():
-    motion = _friction([1, 0], 40, lambda t, y, q: [y[1], np.cos(0.5 * t) - y[0] + q[0]], lambda y: y[1:2], [lambda w: 0.8])
+    motion = _friction([1, 0], 40, lambda t, y, q: [y[1], np.cos(0.5 * t) - y[0] + q[0]], lambda y: y[1:2],
+                       [lambda w: 0.8])
     assert abs(motion(40)[1]) < 1e-12  # it sticks
     return {"x at 5": motion(5)[0], "x at 20": motion(20)[0], "x at 40": motion(40)[0], "v at 40": 0.0}
 
@@ -84,7 +85,8 @@ def two_masses_dry():
         return [v1, v2, -2 * x1 + x2 + q[0], x1 - x2 + 1.2 * np.sin(0.7 * t) + q[1]]
 
     motion = _friction([0, 0, 0, 0], 30, rates, lambda y: y[2:4], [lambda w: 0.3, lambda w: 0.4])
-    return {"x1 at 10": motion(10)[0], "x2 at 10": motion(10)[1], "x1 at 30": motion(30)[0], "x2 at 30": motion(30)[1]}
+    return {"x1 at 10": motion(10)[0], "x2 at 10": motion(10)[1], "x1 at 30": motion(30)[0],
+            "x2 at 30": motion(30)[1]}
 
 
 def box_on_a_plate():
@@ -92,15 +94,19 @@ def box_on_a_plate():
         force = 1.5 * np.sin(1.5 * t)
         return [force + q[0], (-q[0] + q[1]) / 2, y[0], y[1]]
 
-    motion = _friction([0.2, 0.1, 0, 0], 12, rates, lambda y: np.array([y[0] - y[1], y[1]]), [lambda w: 0.6, lambda w: 0.3])
-    return {"x1 at 5": motion(5)[2], "x2 at 5": motion(5)[3], "x1 at 12": motion(12)[2], "x2 at 12": motion(12)[3],
+    motion = _friction([0.2, 0.1, 0, 0], 12, rates, lambda y: np.array([y[0] - y[1], y[1]]),
+                       [lambda w: 0.6, lambda w: 0.3])
+    return {"x1 at 5": motion(5)[2], "x2 at 5": motion(5)[3], "x1 at 12": motion(12)[2],
+            "x2 at 12": motion(12)[3],
             "v1 at 12": motion(12)[0], "v2 at 12": motion(12)[1]}
 
 
 def stribeck_belt():
     force = lambda w: 0.6 + 0.4 * np.exp(-3 * w)
-    motion = _friction([0, 0.1], 30, lambda t, y, q: [y[1], -y[0] - q[0]], lambda y: np.array([0.2 - y[1]]), [force])
-    return {"x at 3": motion(3)[0], "x at 10": motion(10)[0], "x at 30": motion(30)[0], "x maximum": motion.largest(lambda t, y: y[0]), "v minimum": -motion.largest(lambda t, y: -y[1])}
+    motion = _friction([0, 0.1], 30, lambda t, y, q: [y[1], -y[0] - q[0]], lambda y: np.array([0.2 - y[1]]),
+                       [force])
+    return {"x at 3": motion(3)[0], "x at 10": motion(10)[0], "x at 30": motion(30)[0],
+            "x maximum": motion.largest(lambda t, y: y[0]), "v minimum": -motion.largest(lambda t, y: -y[1])}
 
 
 def ball_on_a_table():
@@ -108,7 +114,8 @@ def ball_on_a_table():
     a, w, e, g = 0.1, 2 * np.pi, 0.8, 9.81
     phase = lambda t: w * (t - 0.5) + 0.522
     motion = Motion([1.3, 0])
-    while motion.go(lambda t, y: [y[1], -g], 15.2, [(lambda t, y: y[0] - a * np.sin(phase(t)), -1)], max_step=0.05) is not None:
+    while motion.go(lambda t, y: [y[1], -g], 15.2, [(lambda t, y: y[0] - a * np.sin(phase(t)), -1)],
+                    max_step=0.05) is not None:
         speed = a * w * np.cos(phase(motion.t))
         motion.y[1] = speed + e * (speed - motion.y[1])
     return {"y at 5": motion(5)[0], "y at 15.2": motion(15.2)[0], "n at 15.2": float(len(motion.events))}
@@ -119,13 +126,15 @@ def impact_oscillator():
     motion = Motion([0, 0])
     while motion.t < 40:
         assert len(motion.events) < 100
-        hit = motion.go(lambda t, y: [y[1], np.cos(1.4 * t) - y[0] - 0.1 * y[1]], 40, [(lambda t, y: y[0] - 0.5, 1)], max_step=0.05)
+        hit = motion.go(lambda t, y: [y[1], np.cos(1.4 * t) - y[0] - 0.1 * y[1]], 40,
+                        [(lambda t, y: y[0] - 0.5, 1)], max_step=0.05)
         if hit is None:
             break
         motion.y = np.array([0.5, -0.7 * motion.y[1]])
     times = [t for t, _ in motion.events]
     assert min(np.diff(times)) > 0.05, np.diff(times)
-    return {"x at 10": motion(10)[0], "x at 40": motion(40)[0], "v at 40": motion(40)[1], "n at 40": float(len(times))}
+    return {"x at 10": motion(10)[0], "x at 40": motion(40)[0], "v at 40": motion(40)[1],
+            "n at 40": float(len(times))}
 
 
 def _orbit(t, e):
@@ -136,7 +145,8 @@ def _orbit(t, e):
 
 def kepler_eccentric():
     x, y = _orbit(15, 0.9)
-    return {"x at 5*pi": -1.9, "y at 5*pi": 0.0, "x at 15": x, "y at 15": y, "energy at 20": -0.5, "momentum at 20": np.sqrt(0.19)}
+    return {"x at 5*pi": -1.9, "y at 5*pi": 0.0, "x at 15": x, "y at 15": y, "energy at 20": -0.5,
+            "momentum at 20": np.sqrt(0.19)}
 
 
 def arenstorf():
@@ -149,14 +159,16 @@ def _arenstorf_between():
     def f(t, s):
         x, y, u, v = s
         a, b = ((x + mu)**2 + y * y)**1.5, ((x - 1 + mu)**2 + y * y)**1.5
-        return [u, v, x + 2 * v - (1 - mu) * (x + mu) / a - mu * (x - 1 + mu) / b, y - 2 * u - (1 - mu) * y / a - mu * y / b]
+        return [u, v, x + 2 * v - (1 - mu) * (x + mu) / a - mu * (x - 1 + mu) / b,
+                y - 2 * u - (1 - mu) * y / a - mu * y / b]
 
     motion = ode(f, [0.994, 0, 0, -2.00158510637908252240537862224], 9)
     return {"x at 5": motion(5)[0], "y at 5": motion(5)[1]}
 
 
 def figure_of_eight():
-    """A. Chenciner and R. Montgomery 2000; C. Simó's initial values. After a third of the period the bodies change places."""
+    """A. Chenciner and R. Montgomery 2000; C. Simó's initial values. After a third of the period the bodies
+    change places."""
     def f(t, s):
         r, v = s[:6].reshape(3, 2), s[6:]
         a = np.zeros((3, 2))
@@ -169,7 +181,8 @@ def figure_of_eight():
 
     p, q, u, w = 0.97000436, -0.24308753, 0.93240737, 0.86473146
     motion = ode(f, [p, q, -p, -q, 0, 0, u / 2, w / 2, u / 2, w / 2, -u, -w], 6.32591398)
-    return {"x1 at 2": motion(2)[0], "y1 at 2": motion(2)[1], "x3 at 2": motion(2)[4], "x1 at 6.32591398": motion(6.32591398)[0],
+    return {"x1 at 2": motion(2)[0], "y1 at 2": motion(2)[1], "x3 at 2": motion(2)[4],
+            "x1 at 6.32591398": motion(6.32591398)[0],
             "y1 at 6.32591398": motion(6.32591398)[1]}
 
 
@@ -186,7 +199,8 @@ def euler_rigid_body():
     at = lambda t: motion(t)
     for t in (10, 25, 40):
         assert abs(np.sum(inertia * at(t)**2) - energy2) < 1e-10 and abs(np.sum((inertia * at(t))**2) - momentum2) < 1e-10
-    return {"w1 at 10": at(10)[0], "w2 at 10": at(10)[1], "w2 at 25": at(25)[1], "w3 at 40": at(40)[2], "w2 at 40": at(40)[1]}
+    return {"w1 at 10": at(10)[0], "w2 at 10": at(10)[1], "w2 at 25": at(25)[1], "w3 at 40": at(40)[2],
+            "w2 at 40": at(40)[1]}
 
 
 def pendulum_near_the_top():
@@ -195,7 +209,8 @@ def pendulum_near_the_top():
     k = mpmath.cos(mpmath.mpf("1e-4") / 2)
     quarter = mpmath.ellipk(k * k)
     theta = lambda t: float(2 * mpmath.asin(k * mpmath.ellipfun("sn", quarter - t, m=k * k)))
-    return {"theta at 5": theta(5), "theta at 10": theta(10), "theta at 15": theta(15), "theta at 20": theta(20), "quarter at 25": float(quarter)}
+    return {"theta at 5": theta(5), "theta at 10": theta(10), "theta at 15": theta(15),
+            "theta at 20": theta(20), "quarter at 25": float(quarter)}
 
 
 def henon_heiles():
@@ -203,15 +218,18 @@ def henon_heiles():
     s = [0.1, 0.2, 0.3, 0.1]
     energy = (s[2]**2 + s[3]**2 + s[0]**2 + s[1]**2) / 2 + s[0]**2 * s[1] - s[1]**3 / 3
     motion = ode(f, s, 60)
-    return {"x at 30": motion(30)[0], "x at 60": motion(60)[0], "y at 60": motion(60)[1], "energy at 60": energy}
+    return {"x at 30": motion(30)[0], "x at 60": motion(60)[0], "y at 60": motion(60)[1],
+            "energy at 60": energy}
 
 
 def double_pendulum():
-    """Two equal rods without mass of length 1 with masses 1, g = 9.81; the 2×2 equations solved for the accelerations."""
+    """Two equal rods without mass of length 1 with masses 1, g = 9.81; the 2×2 equations solved for the
+    accelerations."""
     def f(t, s):
         a, b, p, q = s
         c, d = np.cos(a - b), np.sin(a - b)
-        acceleration = np.linalg.solve([[2, c], [c, 1]], [-d * q * q - 2 * 9.81 * np.sin(a), d * p * p - 9.81 * np.sin(b)])
+        acceleration = np.linalg.solve([[2, c], [c, 1]],
+                                       [-d * q * q - 2 * 9.81 * np.sin(a), d * p * p - 9.81 * np.sin(b)])
         return [p, q, *acceleration]
 
     motion = ode(f, [1.5, 2.0, 0, 0], 4)
@@ -220,12 +238,14 @@ def double_pendulum():
 
 def kapitza_pendulum():
     """θ measured from the top: θ″ = (1 − 30 cos 30t) sin θ − 0.4 θ′."""
-    motion = ode(lambda t, s: [s[1], (1 - 60 * np.cos(30 * t)) * np.sin(s[0]) - 0.4 * s[1]], [0.5, 0], 30, max_step=0.02)
+    motion = ode(lambda t, s: [s[1], (1 - 60 * np.cos(30 * t)) * np.sin(s[0]) - 0.4 * s[1]], [0.5, 0], 30,
+                 max_step=0.02)
     return {"theta at 5": motion(5)[0], "theta at 15": motion(15)[0], "theta at 30": motion(30)[0]}
 
 
 def spring_pendulum():
-    """A mass on a spring that swings (A. Vitt and G. Gorelik 1933), tuned 2:1: ω² = 4 and g/l = 1, l = 1 with the load."""
+    """A mass on a spring that swings (A. Vitt and G. Gorelik 1933), tuned 2:1: ω² = 4 and g/l = 1, l = 1 with
+    the load."""
     def f(t, s):
         x, y, u, v = s  # y downwards from the hook
         r = np.hypot(x, y)
@@ -253,7 +273,8 @@ def mathieu_tongue():
 
 
 def rocket_in_two_stages():
-    """K. E. Tsiolkovsky 1903, without gravity and air: the speed is the sum of the logarithms, the way in closed form."""
+    """K. E. Tsiolkovsky 1903, without gravity and air: the speed is the sum of the logarithms, the way in
+    closed form."""
     # m from 1 to 0.5 in 10 s, jet 3; coasting until 20; m from 0.4 to 0.15 in 10 s, jet 4; coasting until 40.
     v1 = 3 * np.log(2)
     v2 = v1 + 4 * np.log(0.4 / 0.15)

@@ -10,7 +10,8 @@ from .tools import Motion, ode
 
 
 def lorenz_short():
-    motion = ode(lambda t, y: [10 * (y[1] - y[0]), y[0] * (28 - y[2]) - y[1], y[0] * y[1] - 8 / 3 * y[2]], [1, 1, 1], 12)
+    motion = ode(lambda t, y: [10 * (y[1] - y[0]), y[0] * (28 - y[2]) - y[1], y[0] * y[1] - 8 / 3 * y[2]],
+                 [1, 1, 1], 12)
     return {"x at 3": motion(3)[0], "x at 12": motion(12)[0], "z at 12": motion(12)[2]}
 
 
@@ -27,7 +28,8 @@ def ueda_short():
 def epidemic_of_one_case():
     """W. O. Kermack and A. G. McKendrick 1927: from one case in 100 millions, R₀ = 2.5."""
     motion = ode(lambda t, y: [-2.5 * y[0] * y[1], 2.5 * y[0] * y[1] - y[1]], [1 - 1e-8, 1e-8], 40)
-    return {"i at 8": motion(8)[1], "i at 12": motion(12)[1], "s at 40": motion(40)[0], "i maximum": 1 - (1 + np.log(2.5 * (1 - 1e-8))) / 2.5}
+    return {"i at 8": motion(8)[1], "i at 12": motion(12)[1], "s at 40": motion(40)[0],
+            "i maximum": 1 - (1 + np.log(2.5 * (1 - 1e-8))) / 2.5}
 
 
 def q_switched_laser():
@@ -45,7 +47,8 @@ def _pitchfork(start, rate, seed, times):
     for t in times:
         middle = [p for p in (-start / rate,) if p < t]
         # 1/x² = e^(−2g) (1/seed² + 2 ∫ e^(2g))
-        integral = quad(lambda s: np.exp(2 * (g(s) - g(t))), 0, t, points=middle or None, epsabs=0, epsrel=1e-12, limit=500)[0]
+        integral = quad(lambda s: np.exp(2 * (g(s) - g(t))), 0, t, points=middle or None, epsabs=0,
+                        epsrel=1e-12, limit=500)[0]
         out.append(1 / np.sqrt(np.exp(-2 * g(t)) / seed**2 + 2 * integral))
     return out
 
@@ -61,21 +64,25 @@ def delayed_loss_of_stability():
 
 
 def may_leonard():
-    """R. May and W. Leonard 1975, α = 0.8, β = 1.3, in logarithms, so that the small species are as exact as the large ones."""
+    """R. May and W. Leonard 1975, α = 0.8, β = 1.3, in logarithms, so that the small species are as exact as
+    the large ones."""
     def f(t, u):
         n = np.exp(u)
-        return [1 - n[0] - 0.8 * n[1] - 1.3 * n[2], 1 - 1.3 * n[0] - n[1] - 0.8 * n[2], 1 - 0.8 * n[0] - 1.3 * n[1] - n[2]]
+        return [1 - n[0] - 0.8 * n[1] - 1.3 * n[2], 1 - 1.3 * n[0] - n[1] - 0.8 * n[2],
+                1 - 0.8 * n[0] - 1.3 * n[1] - n[2]]
 
     motion = ode(f, np.log([0.5, 0.2, 0.1]), 200)
     n = lambda t: np.exp(motion(t))
-    return {"n1 at 50": n(50)[0], "n1 at 120": n(120)[0], "n2 at 200": n(200)[1], "n1 at 200": n(200)[0], "n3 at 200": n(200)[2]}
+    return {"n1 at 50": n(50)[0], "n1 at 120": n(120)[0], "n2 at 200": n(200)[1], "n1 at 200": n(200)[0],
+            "n3 at 200": n(200)[2]}
 
 
 def canard():
     """van der Pol with ε = 0.05 near the explosion (E. Benoît, J.-L. Callot, F. and M. Diener 1981)."""
     f = lambda t, y: [(y[1] - y[0]**3 / 3 + y[0]) / 0.05, 0.9935 - y[0]]
     motion = ode(f, [1.2, -0.6], 20)
-    return {"x at 2": motion(2)[0], "x at 5": motion(5)[0], "x at 20": motion(20)[0], "x minimum": -motion.largest(lambda t, y: -y[0])}
+    return {"x at 2": motion(2)[0], "x at 5": motion(5)[0], "x at 20": motion(20)[0],
+            "x minimum": -motion.largest(lambda t, y: -y[0])}
 
 
 def flame():
@@ -88,7 +95,8 @@ def flame():
 def boundary_layer():
     """ε y″ + (1 + ε) y′ + y = 0, y(0) = 0, y(1) = 1 (C. M. Bender and S. A. Orszag, section 9.1)."""
     y = lambda t: (np.exp(-t) - np.exp(-t / 1e-4)) / np.exp(-1)
-    return {"y at 1e-4": y(1e-4), "y at 0.5": y(0.5), "y at 1": 1.0, "y maximum": y(np.log(1e4) * 1e-4 / (1 - 1e-4))}
+    return {"y at 1e-4": y(1e-4), "y at 0.5": y(0.5), "y at 1": 1.0,
+            "y maximum": y(np.log(1e4) * 1e-4 / (1 - 1e-4))}
 
 
 def blasius():
@@ -132,7 +140,8 @@ def cube_root_servo():
 
 
 def quotient_of_sines():
-    return {"q at 1": float(np.sin(1) / (2 + np.cos(1))), "q at pi": 0.0, "q at 20": float(np.sin(20) / (2 + np.cos(20)))}
+    return {"q at 1": float(np.sin(1) / (2 + np.cos(1))), "q at pi": 0.0,
+            "q at 20": float(np.sin(20) / (2 + np.cos(20)))}
 
 
 def joukowski_map():
@@ -140,14 +149,16 @@ def joukowski_map():
     r = abs(1.1 - 0.1j)
     z = lambda t: -0.1 + 0.1j + r * np.exp(1j * t)
     w = lambda t: z(t) + 1 / z(t)
-    return {"x at 1": w(1).real, "y at 1": w(1).imag, "x at 4": w(4).real, "y at 4": w(4).imag, "y at 6": w(6).imag}
+    return {"x at 1": w(1).real, "y at 1": w(1).imag, "x at 4": w(4).real, "y at 4": w(4).imag,
+            "y at 6": w(6).imag}
 
 
 def polar_of_a_spiral():
     """(x, y) = e^(−t/10) (cos 3t, sin 3t) + (0.02, 0): length and continuous angle."""
     z = lambda t: np.exp(-t / 10 + 3j * t) + 0.02
     turns = np.unwrap(np.angle(z(np.linspace(0, 15, 100001))))
-    return {"length at 5": abs(z(5)), "angle at 5": float(np.interp(5, np.linspace(0, 15, 100001), turns)), "length at 15": abs(z(15)), "angle at 15": turns[-1]}
+    return {"length at 5": abs(z(5)), "angle at 5": float(np.interp(5, np.linspace(0, 15, 100001), turns)),
+            "length at 15": abs(z(15)), "angle at 15": turns[-1]}
 
 
 def steep_table():
@@ -156,10 +167,12 @@ def steep_table():
     motion, part = Motion([0.5, 0]), 1
     while motion.t < 20.3:
         if part:
-            hit = motion.go(lambda t, y: [y[1], -part], 20.3, [(lambda t, y: part * y[0] - width, -1)], max_step=0.1)
+            hit = motion.go(lambda t, y: [y[1], -part], 20.3, [(lambda t, y: part * y[0] - width, -1)],
+                            max_step=0.1)
             part = 0
         else:
-            hit = motion.go(lambda t, y: [y[1], -y[0] / width], 20.3, [(lambda t, y: y[0] - width, 1), (lambda t, y: y[0] + width, -1)])
+            hit = motion.go(lambda t, y: [y[1], -y[0] / width], 20.3,
+                            [(lambda t, y: y[0] - width, 1), (lambda t, y: y[0] + width, -1)])
             part = (1, -1)[hit] if hit is not None else 0
         if hit is None:
             break
@@ -185,38 +198,45 @@ def resonance_at_a_kilohertz():
 
 
 def am_detector():
-    """A carrier of 1 kHz with a modulation of 20 Hz, a diode (a maximum with zero) and a lag of 2 ms: half wave by half wave."""
+    """A carrier of 1 kHz with a modulation of 20 Hz, a diode (a maximum with zero) and a lag of 2 ms: half
+    wave by half wave."""
     e = lambda t: (1 + 0.5 * np.sin(40 * np.pi * t)) * np.sin(2000 * np.pi * t)
 
     def x(end):
         total = 0.0
         for start in np.arange(0, end, 1e-3):
-            total += quad(lambda s: np.exp(-(end - s) / 2e-3) / 2e-3 * e(s), start, min(start + 0.5e-3, end), epsabs=1e-14)[0]
+            total += quad(lambda s: np.exp(-(end - s) / 2e-3) / 2e-3 * e(s), start, min(start + 0.5e-3, end),
+                          epsabs=1e-14)[0]
         return float(total)
 
     return {"x at 0.0125": x(0.0125), "x at 0.0999": x(0.0999)}
 
 
 def morris_lecar():
-    """C. Morris and H. Lecar 1981 (class I values of J. Rinzel and B. Ermentrout), a current of 60 that comes at 400 ms."""
+    """C. Morris and H. Lecar 1981 (class I values of J. Rinzel and B. Ermentrout), a current of 60 that comes
+    at 400 ms."""
     def f(current):
         def rates(t, y):
             v, w = y
             m = (1 + np.tanh((v + 1.2) / 18)) / 2
             inf = (1 + np.tanh((v - 12) / 17.4)) / 2
-            return [(current - 4 * m * (v - 120) - 8 * w * (v + 84) - 2 * (v + 60)) / 20, 0.0666667 * (inf - w) * np.cosh((v - 12) / 34.8)]
+            return [(current - 4 * m * (v - 120) - 8 * w * (v + 84) - 2 * (v + 60)) / 20,
+                    0.0666667 * (inf - w) * np.cosh((v - 12) / 34.8)]
         return rates
 
     motion = Motion([-60, 0])
     motion.go(f(0), 400)
     motion.go(f(60), 500)
-    return {"v at 390": motion(390)[0], "v at 420": motion(420)[0], "v at 500": motion(500)[0], "v maximum": motion.largest(lambda t, y: y[0], samples=4000)}
+    return {"v at 390": motion(390)[0], "v at 420": motion(420)[0], "v at 500": motion(500)[0],
+            "v maximum": motion.largest(lambda t, y: y[0], samples=4000)}
 
 
 def hindmarsh_rose():
-    f = lambda t, y: [y[1] - y[0]**3 + 3 * y[0]**2 - y[2] + 2, 1 - 5 * y[0]**2 - y[1], 0.006 * (4 * (y[0] + 1.6) - y[2])]
+    f = lambda t, y: [y[1] - y[0]**3 + 3 * y[0]**2 - y[2] + 2, 1 - 5 * y[0]**2 - y[1],
+                      0.006 * (4 * (y[0] + 1.6) - y[2])]
     motion = ode(f, [-1.6, -12, 1.5], 120, max_step=0.5)
-    return {"x at 20": motion(20)[0], "x at 60": motion(60)[0], "x at 120": motion(120)[0], "z at 120": motion(120)[2]}
+    return {"x at 20": motion(20)[0], "x at 60": motion(60)[0], "x at 120": motion(120)[0],
+            "z at 120": motion(120)[2]}
 
 
 def leaky_integrate_and_fire():
@@ -231,7 +251,8 @@ def izhikevich():
     motion = Motion([-70, -14])
     motion.go(lambda t, y: [0.04 * y[0]**2 + 5 * y[0] + 140 - y[1], 0.02 * (0.2 * y[0] - y[1])], 50)
     n = 0
-    while motion.go(lambda t, y: [0.04 * y[0]**2 + 5 * y[0] + 140 - y[1] + 10, 0.02 * (0.2 * y[0] - y[1])], 250, [(lambda t, y: y[0] - 30, 1)]) is not None:
+    while motion.go(lambda t, y: [0.04 * y[0]**2 + 5 * y[0] + 140 - y[1] + 10, 0.02 * (0.2 * y[0] - y[1])],
+                    250, [(lambda t, y: y[0] - 30, 1)]) is not None:
         motion.y = np.array([-65, motion.y[1] + 8])
         n += 1
     return {"spikes at 250": float(n), "u at 250": motion(250)[1], "v at 250": motion(250)[0]}

@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.integrate import quad
 from scipy.linalg import expm
-from scipy.optimize import brentq, fsolve
+from scipy.optimize import brentq
 
 from .tools import Motion, ode
 
@@ -19,8 +19,9 @@ def equivalent_control():
         return [-y[0], y[0], u, 2, 4, u * np.cos(t)]
 
     motion.go(slide, 10)
-    x, v, mean, size, square, product = motion(10)
-    return {"x at 10": x, "mean at 10": mean, "size at 10": size, "square at 10": square, "product at 10": product,
+    x, _, mean, size, square, product = motion(10)
+    return {"x at 10": x, "mean at 10": mean, "size at 10": size, "square at 10": square,
+            "product at 10": product,
             "x at 0.5": motion(0.5)[0]}
 
 
@@ -34,7 +35,8 @@ def terminal_surface():
 
 
 def two_sliding_surfaces():
-    """x₁′ = 0.4 sin t + u₁ + 0.3 u₂, x₂′ = 0.3 cos 2t − 0.2 u₁ + u₂, uᵢ = −sign xᵢ; both end on their surfaces."""
+    """x₁′ = 0.4 sin t + u₁ + 0.3 u₂, x₂′ = 0.3 cos 2t − 0.2 u₁ + u₂, uᵢ = −sign xᵢ; both end on their
+    surfaces."""
     d = lambda t: np.array([0.4 * np.sin(t), 0.3 * np.cos(2 * t)])
     b = np.array([[1, 0.3], [-0.2, 1]])
     motion = Motion([0.5, -1.3, 0, 0])
@@ -53,12 +55,14 @@ def two_sliding_surfaces():
     assert len(motion.events) == 2
     motion.go(lambda t, y: [0, 0, *np.linalg.solve(b, -d(t))], 9)
     last = np.linalg.solve(b, -d(9))
-    return {"x1 at 9": 0.0, "x2 at 9": 0.0, "mean1 at 9": motion(9)[2], "mean2 at 9": motion(9)[3], "u1 at 9": last[0],
+    return {"x1 at 9": 0.0, "x2 at 9": 0.0, "mean1 at 9": motion(9)[2], "mean2 at 9": motion(9)[3],
+            "u1 at 9": last[0],
             "u2 at 9": last[1]}
 
 
 def tsypkin_relay():
-    """A relay and 1/(s + 1)³: half a period by the exact condition of Tsypkin and Hamel, solved for its fixed point."""
+    """A relay and 1/(s + 1)³: half a period by the exact condition of Tsypkin and Hamel, solved for its fixed
+    point."""
     a = np.array([[-1.0, 1, 0], [0, -1, 1], [0, 0, -1]])
     b = np.array([0, 0, 1.0])
 
@@ -77,7 +81,8 @@ def tsypkin_relay():
         u = -u
     times = [t for t, _ in motion.events]
     assert abs(times[-1] - times[-2] - tau) < 1e-6
-    return {"x at 10": motion(10)[0], "x at 40": motion(40)[0], "n at 40": float(sum(1 for t in times[1::2] if t < 40))}
+    return {"x at 10": motion(10)[0], "x at 40": motion(40)[0],
+            "n at 40": float(sum(1 for t in times[1::2] if t < 40))}
 
 
 def thermostat_cycles():
@@ -114,7 +119,8 @@ def minimum_time_double_integrator():
 
 
 def bushaw_oscillator():
-    """x″ + x = u, |u| ≤ 1 (D. Bushaw 1953): circles about (u, 0); the switching curve near the origin is of radius 1."""
+    """x″ + x = u, |u| ≤ 1 (D. Bushaw 1953): circles about (u, 0); the switching curve near the origin is of
+    radius 1."""
     s = lambda y: y[1] * abs(y[1]) + y[0] * (2 - abs(y[0]))
     f = lambda u: lambda t, y: [y[1], u - y[0]]
     motion = Motion([1.5, 0.5])
@@ -123,7 +129,8 @@ def bushaw_oscillator():
     assert x1 > 0 > v1
     end = t1 + np.arctan2(-v1, 1 - x1)  # on the circle about (1, 0), clockwise to the origin
     motion.go(f(1), end)
-    return {"x at 1": motion(1)[0], "x at 2": motion(2)[0], "v at 2": motion(2)[1], "x at 4": 0.0, "v at 4": 0.0}
+    return {"x at 1": motion(1)[0], "x at 2": motion(2)[0], "v at 2": motion(2)[1], "x at 4": 0.0,
+            "v at 4": 0.0}
 
 
 def satellite_deadband():
@@ -139,15 +146,18 @@ def satellite_deadband():
     # Outside s′ = θ′ + 0.5 > 0, inside s′ = θ′ < 0: it slides.
     assert -0.5 < motion.y[1] < 0 and motion.t < 3
     motion.go(lambda t, y: [y[1], -2 * y[1], abs(2 * y[1])], 20)
-    out |= {"theta at 3": motion(3)[0], "theta at 20": motion(20)[0], "rate at 3": motion(3)[1], "fuel at 20": motion(20)[2]}
+    out |= {"theta at 3": motion(3)[0], "theta at 20": motion(20)[0], "rate at 3": motion(3)[1],
+            "fuel at 20": motion(20)[2]}
     return out
 
 
 def schmitt_by_feedback():
-    """y = clip(10 (x + 0.2 y), ±1): up where x rises through 0.1, down where it falls through −0.1; x = −0.5 cos t."""
+    """y = clip(10 (x + 0.2 y), ±1): up where x rises through 0.1, down where it falls through −0.1; x = −0.5
+    cos t."""
     up = np.arccos(-0.2)
     area = -up + np.pi - np.pi + np.pi - (12 - up - 3 * np.pi)  # low, high, low, high, low
-    return {"y at 1.77": -1.0, "y at 1.78": 1.0, "y at 4.91": 1.0, "y at 4.92": -1.0, "y at 12": -1.0, "area at 12": area}
+    return {"y at 1.77": -1.0, "y at 1.78": 1.0, "y at 4.91": 1.0, "y at 4.92": -1.0, "y at 12": -1.0,
+            "area at 12": area}
 
 
 def limiter_astable():
@@ -155,7 +165,8 @@ def limiter_astable():
     half = np.log(1.4 / 0.6)
     n, rest = divmod(10 - np.log(1.45 / 0.6), half)
     sign = -1 if n % 2 == 0 else 1
-    return {"v at 10": sign * (1 - 1.4 * np.exp(-rest)), "u at 10": float(sign), "v maximum": 0.4, "u maximum": 1.0,
+    return {"v at 10": sign * (1 - 1.4 * np.exp(-rest)), "u at 10": float(sign), "v maximum": 0.4,
+            "u maximum": 1.0,
             "u minimum": -1.0, "n at 10": float((n + 1) // 2)}
 
 
@@ -170,7 +181,8 @@ def relay_with_delay():
 
 
 def antiwindup_back_calculation():
-    """Plant 1/(s + 1)², PI with back calculation (Åström and Hägglund): I′ = 2 e + 4 (u − asked), u = clip(asked, 0, 1.2)."""
+    """Plant 1/(s + 1)², PI with back calculation (Åström and Hägglund): I′ = 2 e + 4 (u − asked), u =
+    clip(asked, 0, 1.2)."""
     asked = lambda y: 4 * (1 - y[0]) + y[2]
 
     def f(fixed):
@@ -195,7 +207,8 @@ def antiwindup_back_calculation():
 
 
 def backlash_limit_cycle():
-    """A motor 1/(s (s + 1)) with gain 4 behind a gear with play 0.2; the driven side follows as the block's page says."""
+    """A motor 1/(s (s + 1)) with gain 4 behind a gear with play 0.2; the driven side follows as the block's
+    page says."""
     gap = lambda y: y[0] - y[2]
     f = lambda part: lambda t, y: [y[1], -y[1] - 4 * y[2], 1000 * (gap(y) - 0.1 * part) if part else 0.0]
     motion, part = Motion([1, 0, 0.95]), 0
@@ -223,4 +236,5 @@ def saturating_time_optimal():
             mode = 0 if hit is not None else mode
         if hit is None:
             break
-    return {"x at 1.5": motion(1.5)[0], "x at 3": motion(3)[0], "v at 3": motion(3)[1], "x at 10": motion(10)[0]}
+    return {"x at 1.5": motion(1.5)[0], "x at 3": motion(3)[0], "v at 3": motion(3)[1],
+            "x at 10": motion(10)[0]}
