@@ -2,14 +2,15 @@
 # SPDX-License-Identifier: MIT
 """Solves every problem of this folder without Oblique and prints what its [expect] ought to say.
 
-By hand, with Debian's python3-scipy and python3-mpmath:  python3 solutions.py [NAME…]
+By hand, with Debian's python3-scipy and python3-mpmath:  python3 solutions.py [--growth] [NAME…]
 
 A line that does not agree with the diagram beside this script is marked; the status is then 1. The truths are closed
 forms, mpmath, or SciPy's integrators at a relative tolerance of 1e-12 whose events are handled by hand (truth/tools.py).
 
 How `within` was chosen, before any run: a run sums the errors of some hundred to some ten thousand steps, each below
 its tolerance, so 1000 times the tolerance times the size of the signal, and where a deviation grows on its way, times
-that growth; the comment of the diagram says so where it is another number. Counts must be right.
+that growth (which --growth prints for the problems without events); the comment of the diagram says so where it is
+another number. Counts must be right.
 """
 import inspect
 import pathlib
@@ -19,6 +20,7 @@ import tomllib
 sys.dont_write_bytecode = True
 
 from truth import big, hysteresis, late, mechanics, operation, pulses, smooth, stiff, switching
+from truth.tools import latest_growth
 
 
 def problems():
@@ -28,7 +30,8 @@ def problems():
                 yield name, function
 
 
-def main(wanted):
+def main(arguments):
+    wanted = [argument for argument in arguments if argument != "--growth"]
     folder = pathlib.Path(__file__).parent
     disagreements = 0
     for name, function in problems():
@@ -43,6 +46,8 @@ def main(wanted):
             agrees = not written or line and abs(line["value"] - value) <= 0.1 * line["within"]
             disagreements += not agrees
             print(f"  {key!r}: {value!r}{'' if agrees else '   <-- not in the diagram'}")
+        if "--growth" in arguments and (growth := latest_growth()) is not None:
+            print(f"  growth of a deviation of the start until the end: {growth:.3g}")
     return 1 if disagreements else 0
 
 

@@ -150,10 +150,6 @@ def kepler_eccentric():
 
 
 def arenstorf():
-    return {"x at 17.065216560157963": 0.994, "y at 17.065216560157963": 0.0, **_arenstorf_between()}
-
-
-def _arenstorf_between():
     mu = 0.012277471
 
     def f(t, s):
@@ -162,8 +158,10 @@ def _arenstorf_between():
         return [u, v, x + 2 * v - (1 - mu) * (x + mu) / a - mu * (x - 1 + mu) / b,
                 y - 2 * u - (1 - mu) * y / a - mu * y / b]
 
-    motion = ode(f, [0.994, 0, 0, -2.00158510637908252240537862224], 9)
-    return {"x at 5": motion(5)[0], "y at 5": motion(5)[1]}
+    motion = ode(f, [0.994, 0, 0, -2.00158510637908252240537862224], 17.0652165601)
+    # R. F. Arenstorf 1963; E. Hairer, S. P. Nørsett and G. Wanner give the period, after which it is where it began.
+    return {"x at 5": motion(5)[0], "y at 5": motion(5)[1], "x at 17.065216560157963": 0.994,
+            "y at 17.065216560157963": 0.0}
 
 
 def figure_of_eight():

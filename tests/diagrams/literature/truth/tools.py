@@ -58,21 +58,30 @@ class Motion:
         return best
 
 
+_latest = {}  # what `ode` was last asked for
+
+
 def ode(f, y, until, method="DOP853", breaks=(), **options):
     """A motion without events; `breaks` are the times at which f jumps."""
+    _latest.update(f=f, y=y, until=until, method=method, breaks=breaks, **options)
     motion = Motion(y)
     for end in [*breaks, until]:
         motion.go(f, end, method=method, **options)
     return motion
 
 
-def growth(f, y, until, at=0.0, deviation=1e-7, **options):
-    """How much larger a deviation of the start is at the end, at most over the coordinates."""
-    y = np.array(y, dtype=float)
-    plain = ode(f, y, until, **options)(until)
-    worst = 0
-    for k in range(len(y)):
-        other = y.copy()
-        other[k] += deviation
-        worst = max(worst, np.abs(ode(f, other, until, **options)(until) - plain).max() / deviation)
+def latest_growth(deviation=1e-8):
+    """How much larger a deviation of the start of the latest `ode` is at its end, at most over the coordinates; None
+    where there was none."""
+    if not _latest:
+        return None
+    problem = dict(_latest)
+    start, until = np.array(problem["y"], dtype=float), problem["until"]
+    plain = ode(**problem)(until)
+    worst = 0.0
+    for k in range(len(start)):
+        problem["y"] = start.copy()
+        problem["y"][k] += deviation
+        worst = max(worst, np.abs(ode(**problem)(until) - plain).max() / deviation)
+    _latest.clear()
     return worst
