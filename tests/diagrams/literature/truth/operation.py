@@ -93,7 +93,7 @@ def noise_through_a_lag():
     top = 400
     h = lambda f: 1 / (1 + (0.2 * np.pi * f)**2)
     variance = quad(lambda f: s(f) * h(f), 0, top, limit=1000)[0] / quad(s, 0, top, limit=1000)[0]
-    return {"variance at 500": float(variance), "source at 500": 1.0}
+    return {"variance at 100": float(variance), "source at 100": 1.0}
 
 
 def poincare_store():
