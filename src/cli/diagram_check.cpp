@@ -94,7 +94,7 @@ ExitStatus check_diagram(const Session& session, const CheckRequest& request, co
   if (check.analysis.run) check.scaling = propose(flat, program, check.analysis);
   if (!plots_in_terminal(request.plot)) print(request.json ? to_json(check) : to_text(check));
   if (!request.plot.empty())
-    plot(pole_chart(program, check.analysis.instants, "Eigenvalues along the run: " + diagram.title),
+    plot(pole_chart(flat, program, check.analysis.instants, "Eigenvalues along the run: " + diagram.title),
          request.plot, check_plot(request));
   if (check.analysis.failure) throw SolveError(*check.analysis.failure);
   if (request.rescale) write_rescaled(check, library, request.output);

@@ -40,6 +40,9 @@ std::string to_json(const DiagramCheck& check);
 
 /// "grows", "undamped", "badly damped", "well damped".
 std::string_view verdict_name(ModeVerdict verdict);
+/// "no feedback", "stable", "stable when frozen", "undamped", "grows", "grows at times",
+/// "servo loops unstable", "not told".
+std::string_view verdict_name(StabilityVerdict verdict);
 /// "linear", "varying", "non-linear".
 std::string_view kind_name(LoopKind kind);
 

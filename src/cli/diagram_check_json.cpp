@@ -57,8 +57,10 @@ Json mode_json(const std::optional<WorstMode>& worst, const Program& program) {
   return {{"pole", {mode.pole.real(), mode.pole.imag()}},
           {"natural_frequency", mode.natural_frequency()},
           {"damping_ratio", mode.damping_ratio()},
-          {"verdict", verdict_name(verdict_on(mode))},
+          {"verdict", verdict_name(verdict_on(*worst))},
           {"time", worst->time},
+          {"ideal_pole",
+           worst->ideal_pole ? Json({worst->ideal_pole->real(), worst->ideal_pole->imag()}) : Json(nullptr)},
           {"participants", std::move(participants)}};
 }
 
@@ -71,7 +73,20 @@ Json stability_json(const StabilityReport& report, const Program& program) {
     margin["time"] = servo.time;
     margins.push_back(std::move(margin));
   }
+  Json growth = nullptr;
+  if (report.growth) {
+    growth = {{"from", report.growth->from},
+              {"to", report.growth->to},
+              {"factor", report.growth->factor},
+              {"exponent", report.growth->exponent}};
+  }
   return {{"instants", report.instants},
+          {"verdict", verdict_name(report.verdict)},
+          {"proven", report.proven},
+          {"growing", report.growing},
+          {"varies", report.varies},
+          {"growth", std::move(growth)},
+          {"rightmost_mode", mode_json(report.rightmost, program)},
           {"servo_mode", mode_json(report.servo_mode, program)},
           {"slowest_servo", mode_json(report.slowest_servo, program)},
           {"grows_from", optional_number(report.grows_from)},

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -97,7 +98,7 @@ std::string mode_text(const char* whose, const std::optional<WorstMode>& worst, 
   if (!worst) return fmt::format("  no mode of {}\n", whose);
   const Mode& mode = worst->mode;
   std::string text =
-      fmt::format("  {}: {}, ω₀ = {} rad/s, ζ = {}, pole {}", whose, verdict_name(verdict_on(mode)),
+      fmt::format("  {}: {}, ω₀ = {} rad/s, ζ = {}, pole {}", whose, verdict_name(verdict_on(*worst)),
                   number(mode.natural_frequency()), number(mode.damping_ratio()), number(mode.pole.real()));
   if (mode.pole.imag() != 0) text += fmt::format(" ± {}i", number(mode.pole.imag()));
   text += fmt::format(" 1/s at t = {} s\n    elements:", number(worst->time));
@@ -110,10 +111,68 @@ std::string mode_text(const char* whose, const std::optional<WorstMode>& worst, 
   return text + "\n";
 }
 
-std::string stability(const StabilityReport& report, const Program& program) {
+std::string growth_text(const DisturbanceGrowth& growth) {
+  return fmt::format(
+      "a small disturbance of the start is {:.3g} times as large at the end, {:+.3g} 1/s in the "
+      "second half",
+      growth.factor, growth.exponent);
+}
+
+std::string verdict_text(const StabilityReport& report) {
+  const auto pole = [](const WorstMode& worst) {
+    const Mode& mode = worst.mode;
+    return mode.pole.imag() == 0
+               ? fmt::format("{:+.3g} 1/s", mode.pole.real())
+               : fmt::format("{:+.3g} ± {}i 1/s", mode.pole.real(), number(mode.pole.imag()));
+  };
+  switch (report.verdict) {
+    case StabilityVerdict::no_feedback:
+      return "no state acts back on itself, so that nothing grows or decays by itself";
+    case StabilityVerdict::stable:
+      if (!report.proven) return "stable as far as was found: no mode that grows, which is no proof";
+      return report.varies
+                 ? "stable along this run: every frozen mode decays, and small disturbances do not grow"
+                 : "stable: every mode of the closed system decays";
+    case StabilityVerdict::stable_when_frozen:
+      return "every frozen mode decays; the equations vary along the run, and whether small disturbances "
+             "grow "
+             "on it is not known";
+    case StabilityVerdict::undamped:
+      return "undamped: a mode neither decays nor grows, and none grows";
+    case StabilityVerdict::grows:
+      if (report.rightmost && verdict_on(*report.rightmost) == ModeVerdict::grows) {
+        const auto& ideal = report.rightmost->ideal_pole;
+        const bool by_the_machine = ideal && ideal->real() < report.rightmost->mode.pole.real() / 2;
+        return fmt::format("the problem itself grows{}: {}",
+                           by_the_machine ? ", a little, by the errors of the amplifiers" : "",
+                           pole(*report.rightmost));
+      }
+      return "the problem itself grows along the run, although no frozen mode does";
+    case StabilityVerdict::grows_at_times:
+      return fmt::format("a mode of the problem itself grows at times, {} at t = {} s, {}",
+                         pole(*report.rightmost), number(report.rightmost->time),
+                         !report.growth                   ? "and the growth along the run is not known"
+                         : report.growth->does_not_grow() ? "and small disturbances do not grow along the run"
+                                                          : "and along the run hardly or not for long");
+    case StabilityVerdict::servos_unstable:
+      return fmt::format("unstable by the servo loops, not by the problem: {} at t = {} s",
+                         pole(*report.slowest_servo), number(report.slowest_servo->time));
+    case StabilityVerdict::not_told:
+      break;
+  }
+  return "not told by what was looked at";
+}
+
+std::string stability(const StabilityReport& report, const Program& program, bool has_servo_loops) {
   std::string text = fmt::format("\nstability (worst modes of the frozen equations at {})\n",
                                  count(report.instants, "instant", "instants"));
-  text += mode_text("the servo amplifiers", report.servo_mode, program);
+  text += fmt::format("  verdict: {}\n", verdict_text(report));
+  if (report.growing > 0)
+    text += fmt::format("  right of the axis: {}\n", count(report.growing, "eigenvalue", "eigenvalues"));
+  if (report.growth) text += fmt::format("  along the run: {}\n", growth_text(*report.growth));
+  // Without loops around them what is left of amplifiers is the pole of each.
+  const char* const servos = has_servo_loops ? "the servo amplifiers" : "the amplifiers by themselves";
+  text += mode_text(servos, report.servo_mode, program);
   if (report.slowest_servo) {
     text += fmt::format("    largest real part of their eigenvalues: {:+.3g} 1/s at t = {} s\n",
                         report.slowest_servo->mode.pole.real(), number(report.slowest_servo->time));
@@ -190,6 +249,28 @@ std::string_view verdict_name(ModeVerdict verdict) {
   return "well damped";
 }
 
+std::string_view verdict_name(StabilityVerdict verdict) {
+  switch (verdict) {
+    case StabilityVerdict::no_feedback:
+      return "no feedback";
+    case StabilityVerdict::stable:
+      return "stable";
+    case StabilityVerdict::stable_when_frozen:
+      return "stable when frozen";
+    case StabilityVerdict::undamped:
+      return "undamped";
+    case StabilityVerdict::grows:
+      return "grows";
+    case StabilityVerdict::grows_at_times:
+      return "grows at times";
+    case StabilityVerdict::servos_unstable:
+      return "servo loops unstable";
+    case StabilityVerdict::not_told:
+      break;
+  }
+  return "not told";
+}
+
 std::string_view kind_name(LoopKind kind) {
   switch (kind) {
     case LoopKind::linear:
@@ -207,7 +288,10 @@ std::string to_text(const DiagramCheck& check) {
   if (check.bill) text += "\n" + to_text(*check.bill);
   text += trial(check);
   if (!check.analysis.instants.empty()) {
-    text += loops(check.analysis.loops) + stability(check.analysis.stability, check.program);
+    const std::vector<LoopReport>& found = check.analysis.loops;
+    const bool servos =
+        std::any_of(found.begin(), found.end(), [](const LoopReport& loop) { return !loop.algebraic; });
+    text += loops(found) + stability(check.analysis.stability, check.program, servos);
   }
   if (check.analysis.run) text += overloads(check) + scaling(check);
   return text;

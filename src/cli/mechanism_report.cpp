@@ -237,7 +237,7 @@ class Writer {
       page_.paragraph(fmt::format("A servo loop grows from t = {} s on.", readable(*found.grows_from)));
     if (analysis.failure) page_.paragraph("The run fails: " + words_of(SolveError(*analysis.failure)));
     for (const std::string& what : found.left_out) page_.paragraph("Left out: " + what + ".");
-    const Chart poles = pole_chart(program, analysis.instants, "");
+    const Chart poles = pole_chart(flat, program, analysis.instants, "");
     page_.picture(draw_chart(poles));
   }
 

@@ -7,30 +7,27 @@
 namespace oblique::cli {
 namespace {
 
-constexpr std::size_t kMostStates = 200;
 constexpr double kHeight = 220;  // [px]
-
-bool is_servo_mode(const Mode& mode, const Program& program) {
-  double share = 0;
-  for (const Participation& participant : mode.participants) {
-    if (program.states()[participant.state].at_rest) share += participant.share;
-  }
-  return share > 0.5;
-}
 
 }  // namespace
 
-Chart pole_chart(const Program& program, const std::vector<Instant>& instants, const std::string& title) {
+Chart pole_chart(const FlatDiagram& diagram, const Program& program, const std::vector<Instant>& instants,
+                 const std::string& title) {
   std::array<Curve, 2> kinds{Curve{"", {}, 0, Curve::Style::marks}, Curve{"", {}, 1, Curve::Style::marks}};
   const auto groups = coupled_groups(program);
+  IdealMachine ideal(diagram, program);
   Workspace workspace(program);
   for (const Instant& instant : instants) {
     const auto linear = Linearisation::at(program, workspace, instant);
     if (!linear) continue;
+    ideal.look_at(instant, workspace);
     for (const auto& group : groups) {
-      if (group.size() > kMostStates) continue;
-      for (const Mode& mode : modes_of(linear->block(group), group)) {
-        Curve& curve = kinds[is_servo_mode(mode, program) ? 0 : 1];
+      if (group.size() > kMostStatesForModes) continue;
+      const std::vector<Mode> modes = modes_of(linear->block(group), group);
+      const auto of_the_problem = ideal.problem_modes(group, modes);
+      for (std::size_t m = 0; m < modes.size(); ++m) {
+        const Mode& mode = modes[m];
+        Curve& curve = kinds[of_the_problem[m] ? 1 : 0];
         curve.points.emplace_back(mode.pole.real(), mode.pole.imag());
         if (mode.pole.imag() != 0) curve.points.emplace_back(mode.pole.real(), -mode.pole.imag());
       }

@@ -5,13 +5,14 @@
 
 #include <oblique/draw/chart.h>
 #include <oblique/network/program.h>
-#include <oblique/solve/linearisation.h>
+#include <oblique/solve/ideal_machine.h>
 
 namespace oblique::cli {
 
-/// The eigenvalues of a diagram in the complex plane at these instants of its run: those of the modes in
-/// which servo amplifiers have the greater share apart from those of the problem, each kind to its own scale.
-/// Groups of more than 200 states that act on each other are left out, as `check` does.
-Chart pole_chart(const Program& program, const std::vector<Instant>& instants, const std::string& title);
+/// The eigenvalues of a diagram in the complex plane at these instants of its run: those of the modes that
+/// come from the machine apart from those of the problem (see IdealMachine), each kind to its own scale.
+/// Groups of more than 200 states that act on each other are left out: of these `check` finds the rightmost.
+Chart pole_chart(const FlatDiagram& diagram, const Program& program, const std::vector<Instant>& instants,
+                 const std::string& title);
 
 }  // namespace oblique::cli

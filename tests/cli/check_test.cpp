@@ -91,6 +91,104 @@ TEST_F(Check, JsonOfADampedOscillatorHasItsMode) {
   EXPECT_EQ(mode.at("participants").size(), 2U);
 }
 
+// Two lags in the loop of an amplifier: unstable from a gain of about 320 on (NumPy: +2801 ± 15402i, −27.8°).
+std::string through_lags(int gain) {
+  return "r = { type = \"constant\", value = 0.5 }\n"
+         "a = { type = \"servo-amplifier\", in = [\"l2\", \"-r\"], bandwidth = 10, gain = " +
+         std::to_string(gain) +
+         " }\nl1 = { type = \"transfer-lag\", in = \"a\", time_constant = 1e-4 }\n"
+         "l2 = { type = \"transfer-lag\", in = \"l1\", time_constant = 1e-4 }\n";
+}
+
+TEST_F(Check, TextAndJsonGiveOneVerdictAndTheLoopOfEveryMargin) {
+  const std::string path = file("l.toml", "");
+  for (const int gain : {100, 1000}) {
+    std::ofstream(path) << "format = \"oblique-diagram/1\"\n[run]\nuntil = 0.01\n[blocks]\n"
+                        << through_lags(gain);
+    const Outcome text = oblique("check " + path);
+    const auto json = nlohmann::json::parse(oblique("check --json " + path).out);
+    const auto& stability = json.at("stability");
+    ASSERT_EQ(json.at("loops").size(), 1U);
+    EXPECT_THAT(json.at("loops").at(0).at("members"), ElementsAre("a", "l1", "l2"));
+    ASSERT_EQ(stability.at("margins").size(), 1U);
+    EXPECT_TRUE(stability.at("problem_mode").is_null());
+    if (gain == 100) {
+      EXPECT_EQ(stability.at("verdict"), "stable");
+      EXPECT_THAT(text.out, HasSubstr("  verdict: stable: every mode of the closed system decays\n"));
+      EXPECT_NEAR(stability.at("margins").at(0).at("degrees").get<double>(), 37.416325, 1e-4);
+    } else {
+      EXPECT_EQ(stability.at("verdict"), "servo loops unstable");
+      EXPECT_EQ(stability.at("growing"), 2);
+      EXPECT_THAT(text.out, HasSubstr("  verdict: unstable by the servo loops, not by the problem: "
+                                      "+2.8e+03 ± 1.54e+04i 1/s at t = 0 s\n"));
+      EXPECT_THAT(text.out, HasSubstr("  right of the axis: 2 eigenvalues\n"));
+      EXPECT_THAT(text.out, HasSubstr("no: the servo loops are unstable from t = 0 s on"));
+      EXPECT_NEAR(stability.at("margins").at(0).at("degrees").get<double>(), -27.813490, 1e-4);
+    }
+  }
+}
+
+TEST_F(Check, AmplifiersWithoutALoopAreNotCalledOne) {
+  const std::string path = file("m.toml",
+                                "x = { type = \"integrator\", in = [\"-x\"], initial = 0.5 }\n"
+                                "m = { type = \"multiplier\", in = [\"x\", \"x\"], bandwidth = 1e6 }\n");
+  const std::string text = oblique("check " + path).out;
+  EXPECT_THAT(text, HasSubstr("loops: no servo loops and no algebraic ones"));
+  EXPECT_THAT(text, HasSubstr("the amplifiers by themselves: well damped"));
+  EXPECT_THAT(text, Not(HasSubstr("phase margin")));
+}
+
+// x′ = (2 cos t − 1) x grows at times, and not along the run.
+TEST_F(Check, TellsTheGrowthAlongARunThatVaries) {
+  const std::string path = file("v.toml", "");
+  std::ofstream(path) << R"toml(format = "oblique-diagram/1"
+[run]
+until = "8*pi"
+[blocks]
+c = { type = "integrator", in = "-s", initial = 1 }
+s = { type = "integrator", in = "c" }
+cx = { type = "multiplier", in = ["c", "x"] }
+x = { type = "integrator", in = ["2*cx", "-x"], initial = 0.1 }
+)toml";
+  const std::string text = oblique("check " + path).out;
+  EXPECT_THAT(text, HasSubstr("verdict: a mode of the problem itself grows at times, +1 1/s at t = "));
+  EXPECT_THAT(text, HasSubstr("and small disturbances do not grow along the run\n"));
+  EXPECT_THAT(text, HasSubstr(", -1 1/s in the second half\n"));
+  const auto growth = nlohmann::json::parse(oblique("check --json " + path).out).at("stability").at("growth");
+  EXPECT_NEAR(growth.at("exponent").get<double>(), -1, 1e-3);
+  EXPECT_NEAR(growth.at("to").get<double>(), 8 * std::numbers::pi, 1e-12);
+}
+
+// (1 − t²) a = t v − 25 y is singular at t = 1, where y = T₅(t) passes smoothly; the overload of t is there.
+TEST_F(Check, ASingularInstantThatTheRunPassesIsNoFailure) {
+  const std::string path = file("c.toml", "");
+  std::ofstream(path) << R"toml(format = "oblique-diagram/1"
+[run]
+until = 1.2
+[blocks]
+one = { type = "constant" }
+x = { type = "integrator", in = ["one"] }
+xx = { type = "squarer", in = "x" }
+w = { type = "summer", in = ["one", "-xx"] }
+xv = { type = "multiplier", in = ["x", "v"] }
+a = { type = "servo-amplifier", in = ["wa", "-xv", "25*y"], gain = "inf", bandwidth = "inf" }
+wa = { type = "multiplier", in = ["w", "a"] }
+v = { type = "integrator", in = ["a"], initial = 5 }
+y = { type = "integrator", in = ["v"], initial = 0 }
+)toml";
+  const Outcome outcome = oblique("check --json " + path);
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  bool found = false;
+  const auto json = nlohmann::json::parse(outcome.out);
+  for (const auto& overload : json.at("overloads")) {
+    if (overload.at("signal") != "x") continue;
+    found = true;
+    EXPECT_NEAR(overload.at("first").get<double>(), 1, 1e-9);
+  }
+  EXPECT_TRUE(found);
+  EXPECT_THAT(oblique("run " + path).err, Not(HasSubstr("leaves the machine")));
+}
+
 TEST_F(Check, InfiniteNumbersAreNullInJson) {
   const Outcome outcome = oblique(
       "check --json " + file("i.toml",

@@ -28,16 +28,29 @@ Analysis analyse(const Program& program, const FlatDiagram& diagram, RunOptions 
   Analysis analysis;
   options.watch_overloads = true;
   RunOptions trial = options;
-  collect_instants(trial, most_instants, analysis.instants);
+  std::vector<Instant> rows;  // all of them, where they are few enough to be kept
+  constexpr double kMostNumbers = 4e6;
+  const auto n_rows = static_cast<std::size_t>(options.samples);
+  const bool keep_all = static_cast<double>(n_rows * program.n_states()) <= kMostNumbers;
+  collect_instants(trial, keep_all ? n_rows : most_instants, rows);
   try {
     analysis.run = run(program, diagram, trial);
   } catch (const SolveError& error) {
     analysis.failure = error;
   }
 
+  const std::size_t shown = std::min(n_rows, most_instants);
+  for (std::size_t k = 0; k < shown; ++k) {
+    const std::size_t row = !keep_all ? k : shown < 2 ? 0 : k * (n_rows - 1) / (shown - 1);
+    if (row < rows.size()) analysis.instants.push_back(rows[row]);
+  }
+
   analysis.fastest_slopes.assign(program.n_states(), 0);
   const SignalFlow flow(diagram, program);
-  analysis.stability = judge_stability(program, flow, analysis.instants);
+  // At an event the disturbance jumps too, which slopes do not tell.
+  std::optional<DisturbanceGrowth> growth;
+  if (keep_all && analysis.run && analysis.run->event_count == 0) growth = disturbance_growth(program, rows);
+  analysis.stability = judge_stability(program, flow, analysis.instants, growth);
   if (analysis.failure || analysis.stability.grows_from)
     stand(analysis, program, flow, diagram, options, most_instants);
   if (analysis.instants.empty()) return analysis;  // it did not even start

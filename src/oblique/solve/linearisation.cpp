@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/Eigenvalues>
 
@@ -62,19 +63,75 @@ Eigen::MatrixXd Linearisation::block(const std::vector<std::size_t>& group) cons
   return dense;
 }
 
+Eigen::SparseMatrix<double> Linearisation::sparse_block(const std::vector<std::size_t>& group) const {
+  const SparsePattern& pattern = program_->jacobian_pattern();
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t column = 0; column < group.size(); ++column) {
+    for (auto k = pattern.column_starts[group[column]]; k < pattern.column_starts[group[column] + 1]; ++k) {
+      const auto entry = static_cast<std::size_t>(k);
+      const auto wanted = static_cast<std::size_t>(pattern.rows[entry]);
+      const auto found = std::lower_bound(group.begin(), group.end(), wanted);
+      if (found == group.end() || *found != wanted) continue;
+      entries.emplace_back(static_cast<int>(found - group.begin()), static_cast<int>(column), values_[entry]);
+    }
+  }
+  const auto n = static_cast<Eigen::Index>(group.size());
+  Eigen::SparseMatrix<double> sparse(n, n);
+  sparse.setFromTriplets(entries.begin(), entries.end());
+  return sparse;
+}
+
+double Linearisation::largest_in_row(std::size_t state) const {
+  const SparsePattern& pattern = program_->jacobian_pattern();
+  double largest = 0;
+  for (std::size_t entry = 0; entry < pattern.entries(); ++entry) {
+    if (static_cast<std::size_t>(pattern.rows[entry]) == state)
+      largest = std::max(largest, std::abs(values_[entry]));
+  }
+  return largest;
+}
+
+Eigen::VectorXd balance(const Eigen::MatrixXd& matrix) {
+  Eigen::MatrixXd balanced = matrix;
+  Eigen::VectorXd scale = Eigen::VectorXd::Ones(matrix.rows());
+  constexpr int kMostSweeps = 30;
+  for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+    bool changed = false;
+    for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+      const double own = std::abs(balanced(i, i));
+      const double column = balanced.col(i).lpNorm<1>() - own, row = balanced.row(i).lpNorm<1>() - own;
+      if (!(column > 0) || !(row > 0)) continue;
+      const double factor = std::exp2(std::round(std::log2(row / column) / 2));
+      if (factor == 1) continue;
+      balanced.col(i) *= factor;
+      balanced.row(i) /= factor;
+      scale[i] *= factor;
+      changed = true;
+    }
+    if (!changed) break;
+  }
+  return scale;
+}
+
 std::vector<Mode> modes_of(const Eigen::MatrixXd& block, const std::vector<std::size_t>& group) {
   std::vector<Mode> modes;
-  const double size = block.cwiseAbs().maxCoeff();
-  if (!std::isfinite(size)) return modes;
-  const Eigen::EigenSolver<Eigen::MatrixXd> solver(block);
+  if (!block.allFinite()) return modes;
+  const Eigen::VectorXd scale = balance(block);
+  const Eigen::MatrixXd balanced = scale.cwiseInverse().asDiagonal() * block * scale.asDiagonal();
+  const double size = balanced.cwiseAbs().maxCoeff();
+  const Eigen::EigenSolver<Eigen::MatrixXd> solver(balanced);
   if (solver.info() != Eigen::Success) return modes;
   const Eigen::MatrixXcd right = solver.eigenvectors();
   const Eigen::MatrixXcd left = right.partialPivLu().inverse();  // a row for each mode
+  const double error = std::numeric_limits<double>::epsilon() * balanced.norm();
+  const double greatest_error = std::sqrt(std::numeric_limits<double>::epsilon()) * balanced.norm();
   for (Eigen::Index m = 0; m < block.rows(); ++m) {
     const std::complex<double> pole = solver.eigenvalues()[m];
     if (pole.imag() < 0 || std::abs(pole) <= kZeroPole * size) continue;
     Mode& mode = modes.emplace_back();
     mode.pole = pole;
+    const double condition = left.row(m).norm() * right.col(m).norm();
+    mode.rounding = condition * error < greatest_error ? condition * error : greatest_error;
     Eigen::VectorXd shares = (left.row(m).transpose().array() * right.col(m).array()).abs();
     // Where eigenvectors coincide (a multiple pole without enough of them) there are no shares: all alike.
     if (!shares.allFinite()) shares.setOnes();

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <Eigen/Dense>
+#include <Eigen/SparseCore>
 
 #include <oblique/network/program.h>
 
@@ -33,6 +34,10 @@ class Linearisation {
 
   /// The rows and columns of `group`, whose states ascend [1/s].
   Eigen::MatrixXd block(const std::vector<std::size_t>& group) const;
+  /// The same, of a large group.
+  Eigen::SparseMatrix<double> sparse_block(const std::vector<std::size_t>& group) const;
+  /// The greatest magnitude in the row of a state [1/s].
+  double largest_in_row(std::size_t state) const;
 
  private:
   Linearisation(const Program& program, std::vector<double> values)
@@ -51,11 +56,18 @@ struct Participation {
 struct Mode {
   std::complex<double> pole;                ///< [1/s]
   std::vector<Participation> participants;  ///< of every state of its group, the greatest share first
+  /// How far rounding may have moved the pole [1/s]: ε‖A‖ times the condition of the eigenvalue, or √ε‖A‖
+  /// where that is less (a double pole).
+  double rounding = 0;
 
   double natural_frequency() const { return std::abs(pole); }  ///< ω₀ [rad/s]
   /// ζ = −Re p/|p|: 1 and above for a decay, 0 for an undamped oscillation, negative where the mode grows.
   double damping_ratio() const { return -pole.real() / std::abs(pole); }
 };
+
+/// A diagonal matrix D, of powers of 2, for which the rows and columns of D⁻¹ `matrix` D are about alike
+/// (Osborne 1960): slow modes beside fast ones then lose less to rounding.
+Eigen::VectorXd balance(const Eigen::MatrixXd& matrix);
 
 /// The modes of dx/dt = `block` x. `group` names the states of its rows. Poles that are 0 to rounding, of
 /// integrators that no feedback reaches, are left out. The share of state k in a mode with right eigenvector

@@ -12,6 +12,7 @@ namespace oblique {
 namespace {
 
 constexpr double kPointsPerDecade = 20;
+constexpr double kRounding = 1e-6;  ///< [°] of a loop on the verge
 
 }  // namespace
 
@@ -39,6 +40,11 @@ std::complex<double> OpenLoops::gain(Eigen::Index place, double own_pole, std::c
 }
 
 std::optional<OpenLoops::Margin> OpenLoops::phase_margin(Eigen::Index place, double own_pole) const {
+  return phase_margin(place, own_pole, triangle_.diagonal().real().maxCoeff() > 0);
+}
+
+std::optional<OpenLoops::Margin> OpenLoops::phase_margin(Eigen::Index place, double own_pole,
+                                                         bool unstable) const {
   double slowest = std::numeric_limits<double>::infinity(), fastest = 0;
   const auto take = [&](double rate) {
     if (rate == 0 || !std::isfinite(rate)) return;
@@ -67,7 +73,8 @@ std::optional<OpenLoops::Margin> OpenLoops::phase_margin(Eigen::Index place, dou
       }
       const double frequency = std::exp(high);
       // arg(−L) is 180° + arg L brought into (−180°, 180°].
-      const double degrees = std::arg(-gain(place, own_pole, {0, frequency})) * 180 / std::numbers::pi;
+      double degrees = std::arg(-gain(place, own_pole, {0, frequency})) * 180 / std::numbers::pi;
+      if (!unstable && degrees < -kRounding) degrees += 360;
       if (!worst || degrees < worst->degrees) worst = {degrees, frequency};
     }
     last = next;

@@ -34,11 +34,16 @@ class OpenLoops {
 
   /// The gain crossover with the smallest phase margin.
   struct Margin {
-    double degrees = 0;    ///< 180° + arg L, in (−180°, 180°]: how much more lag the loop bears
+    /// 180° + arg L: how much more lag the loop bears, in (0°, 360°) where it is stable. A loop that is
+    /// unstable is told what it lacks: in (−180°, 180°].
+    double degrees = 0;
     double frequency = 0;  ///< where |L| = 1 [rad/s]
   };
   /// Nothing where |L| never passes 1. Crossovers are sought on a logarithmic grid around all poles, 20
-  /// points a decade, and refined to rounding.
+  /// points a decade, and refined to rounding. A conditionally stable loop has several, and only from
+  /// whether it is `unstable` follows what they mean.
+  std::optional<Margin> phase_margin(Eigen::Index place, double own_pole, bool unstable) const;
+  /// The same, unstable where A has an eigenvalue right of the imaginary axis.
   std::optional<Margin> phase_margin(Eigen::Index place, double own_pole) const;
 
  private:

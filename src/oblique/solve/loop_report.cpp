@@ -6,7 +6,7 @@
 #include <limits>
 
 #include <oblique/solve/loop_gain.h>
-#include <oblique/solve/rest.h>
+#include <oblique/solve/servo_loops.h>
 
 namespace oblique {
 namespace {
@@ -64,24 +64,28 @@ bool same_slopes(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   return (a - b).cwiseAbs().maxCoeff() <= kSameSlope * a.cwiseAbs().maxCoeff();
 }
 
-class ServoLoop {
+class ServoLoopHistory {
  public:
-  ServoLoop(const Program& program, const SignalFlow& flow, std::vector<std::size_t> group)
-      : program_(program), flow_(flow), group_(std::move(group)) {
-    for (const std::size_t i : group_) histories_.push_back({program.states()[i].name, true, {}, {}});
+  ServoLoopHistory(const Program& program, const SignalFlow& flow, ServoLoop loop)
+      : program_(program), flow_(flow), loop_(std::move(loop)) {
+    for (const std::size_t i : loop_.servos) histories_.push_back({program.states()[i].name, true, {}, {}});
   }
 
   void look_at(const Linearisation& linear, const Instant& instant, std::span<const double> signals,
                const Workspace& workspace) {
-    const Eigen::MatrixXd block = linear.block(group_);
+    const Eigen::MatrixXd block = linear.block(loop_.states);
     const OpenLoops loops(block);
-    for (std::size_t k = 0; k < group_.size(); ++k) {
+    for (std::size_t k = 0; k < histories_.size(); ++k) {
       const auto own = flow_.own_slope(histories_[k].signal, instant.t, signals);
       if (!own) continue;
+      const auto place = std::lower_bound(loop_.states.begin(), loop_.states.end(), loop_.servos[k]);
+      const double gain = loops.gain(place - loop_.states.begin(), *own, 0).real();
+      constexpr double kBehindAnIntegrator = 1e14;  // a pole of L at 0, to rounding
       histories_[k].times.push_back(instant.t);
-      histories_[k].gains.push_back(loops.gain(static_cast<Eigen::Index>(k), *own, 0).real());
+      histories_[k].gains.push_back(std::abs(gain) > kBehindAnIntegrator ? std::copysign(kInfinity, gain)
+                                                                         : gain);
     }
-    for (const Mode& mode : modes_of(block, group_)) {
+    for (const Mode& mode : modes_of(block, loop_.states)) {
       slowest_ = std::max(slowest_, mode.pole.real());
     }
     if (linear_ && trials_ < kMostTrials) {
@@ -90,18 +94,9 @@ class ServoLoop {
     }
   }
 
-  /// Whether its one output came back to it at no instant: a summer with a bandwidth, for one, which is
-  /// brought to rest as servo amplifiers are. The gain is then zero to the rounding of differences.
-  bool is_open() const {
-    constexpr double kRounding = 1e-9;
-    const std::vector<double>& gains = histories_.front().gains;
-    return group_.size() == 1 && !gains.empty() &&
-           std::all_of(gains.begin(), gains.end(), [](double gain) { return std::abs(gain) < kRounding; });
-  }
-
   LoopReport report() const {
     LoopReport loop;
-    loop.members = flow_.members_of_loop(group_);
+    loop.members = flow_.members_of_loop(loop_.states);
     const bool steady = std::all_of(histories_.begin(), histories_.end(), is_steady);
     loop.kind = !linear_ ? LoopKind::non_linear : steady ? LoopKind::linear : LoopKind::varying;
     for (const GainHistory& history : histories_) loop.unknowns.push_back(summary_of(history));
@@ -116,17 +111,17 @@ class ServoLoop {
     Workspace scratch = workspace;  // with the solutions of the algebraic loops here
     Instant moved = instant;
     double by = 0.0371;
-    for (const std::size_t i : group_) {
+    for (const std::size_t i : loop_.states) {
       moved.states[i] += by * (1 + std::abs(moved.states[i]));
       by = by > 0 ? -by * 0.83 : -by * 1.13;
     }
     const auto linear = Linearisation::at(program_, scratch, moved);
-    return !linear || !same_slopes(block, linear->block(group_));
+    return !linear || !same_slopes(block, linear->block(loop_.states));
   }
 
   const Program& program_;
   const SignalFlow& flow_;
-  std::vector<std::size_t> group_;
+  ServoLoop loop_;
   std::vector<GainHistory> histories_;
   double slowest_ = -kInfinity;
   bool linear_ = true;
@@ -188,8 +183,9 @@ class AlgebraicLoop {
 
 std::vector<LoopReport> explain_loops(const Program& program, const SignalFlow& flow,
                                       const std::vector<Instant>& instants) {
-  std::vector<ServoLoop> servos;
-  for (const auto& group : servo_groups(program)) servos.emplace_back(program, flow, group);
+  std::vector<ServoLoopHistory> servos;
+  for (ServoLoop& loop : servo_loops(program, flow, instants))
+    servos.emplace_back(program, flow, std::move(loop));
   std::vector<AlgebraicLoop> algebraic;
   for (std::size_t l = 0; l < program.loops().size(); ++l) algebraic.emplace_back(program, flow, l);
   Workspace workspace(program);
@@ -200,13 +196,11 @@ std::vector<LoopReport> explain_loops(const Program& program, const SignalFlow& 
     for (AlgebraicLoop& loop : algebraic) loop.look_at(instant, signals, workspace);
     const auto linear = Linearisation::at(program, workspace, instant);
     if (!linear) continue;
-    for (ServoLoop& loop : servos) loop.look_at(*linear, instant, signals, workspace);
+    for (ServoLoopHistory& loop : servos) loop.look_at(*linear, instant, signals, workspace);
   }
   std::vector<LoopReport> reports;
   reports.reserve(servos.size() + algebraic.size());
-  for (const ServoLoop& loop : servos) {
-    if (!loop.is_open()) reports.push_back(loop.report());
-  }
+  for (const ServoLoopHistory& loop : servos) reports.push_back(loop.report());
   for (const AlgebraicLoop& loop : algebraic) reports.push_back(loop.report());
   return reports;
 }

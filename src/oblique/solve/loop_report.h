@@ -18,7 +18,9 @@ enum class LoopKind {
 };
 
 /// What feedback makes of one unknown: the output of a servo amplifier or the unknown of an algebraic loop,
-/// with the rest of its loop closed and all other states held.
+/// with the rest of its loop closed and all other states held. Where a loop closes through lags or
+/// integrators only, these belong to it, and L(0) is what it has when they have come to rest: infinite
+/// behind an integrator.
 struct LoopUnknown {
   std::string signal;  ///< path
   /// L(0), positive for negative feedback, at the instant when its magnitude was the least (see OpenLoops).
@@ -39,7 +41,7 @@ struct LoopReport {
   std::vector<std::string> members;  ///< paths of the blocks on it, in file order
   LoopKind kind = LoopKind::linear;
   std::vector<LoopUnknown> unknowns;
-  /// −1/Re of the slowest pole of the servo amplifiers, all other states held, when it was the longest [s].
+  /// −1/Re of the slowest pole of the loop, all states outside it held, when it was the longest [s].
   /// Nothing for algebraic loops and loops that did not settle everywhere.
   std::optional<double> time_constant;
 };

@@ -39,9 +39,22 @@ void OverloadWatch::evaluate(double t, std::vector<double>& values) {
   }
 }
 
-double OverloadWatch::value_at(double t, std::size_t signal, const Interpolant& solution) {
+/// The signals at t within the step that ends at `end`, or close by.
+void OverloadWatch::evaluate_near(double t, double end, const Interpolant& solution,
+                                  std::vector<double>& values) {
+  // As far away as what the equation of a loop divides by there is again large beside the solver's errors.
+  for (const double part : {0.0, 1.0 / 64, 1.0 / 8}) {
+    const double distance = part * (end - t_);
+    const double near = t + distance <= end ? t + distance : t - distance;
+    solution.states_at(near, states_);
+    if (switching_.signals(near, states_.data(), values.data())) return;
+  }
   solution.states_at(t, states_);
-  evaluate(t, probe_);
+  evaluate(t, values);
+}
+
+double OverloadWatch::value_at(double t, double end, std::size_t signal, const Interpolant& solution) {
+  evaluate_near(t, end, solution, probe_);
   return probe_[signal];
 }
 
@@ -62,10 +75,8 @@ double OverloadWatch::advance(double t, const Interpolant& solution) {
     halted_ = true;
     return t_;
   }
-  solution.states_at(t_ + (t - t_) / 2, states_);
-  evaluate(t_ + (t - t_) / 2, middle_);
-  solution.states_at(t, states_);
-  evaluate(t, end_);
+  evaluate_near(t_ + (t - t_) / 2, t, solution, middle_);
+  evaluate_near(t, t, solution, end_);
   for (std::size_t s = 0; s < records_.size(); ++s) look_at(s, t, solution);
   std::swap(begin_, end_);
   t_ = t;
@@ -115,12 +126,12 @@ void OverloadWatch::look_at(std::size_t signal, double t, const Interpolant& sol
       leave(record, last.time, value);                         // it still is; perhaps by more
     } else if (is_outside(last.value) && is_outside(value)) {  // across the whole range
       const Sample zero{last.time + (time - last.time) * last.value / (last.value - value), 0};
-      come_back(record, find_crossing(signal, zero, last, solution));
-      leave(record, find_crossing(signal, zero, samples[k], solution), value);
+      come_back(record, find_crossing(signal, zero, last, t, solution));
+      leave(record, find_crossing(signal, zero, samples[k], t, solution), value);
     } else if (is_outside(value)) {
-      leave(record, find_crossing(signal, last, samples[k], solution), value);
+      leave(record, find_crossing(signal, last, samples[k], t, solution), value);
     } else if (is_outside(last.value)) {
-      come_back(record, find_crossing(signal, samples[k], last, solution));
+      come_back(record, find_crossing(signal, samples[k], last, t, solution));
     }
   }
 }
@@ -130,7 +141,7 @@ void OverloadWatch::look_at(std::size_t signal, double t, const Interpolant& sol
 OverloadWatch::Sample OverloadWatch::find_extreme(std::size_t signal, double near, double end,
                                                   const Interpolant& solution) {
   const auto at = [&](double time) {
-    return Sample{time, value_at(std::clamp(time, t_, end), signal, solution)};
+    return Sample{time, value_at(std::clamp(time, t_, end), end, signal, solution)};
   };
   Sample best = at(near);
   for (const double part : {1.0 / 16, 1.0 / 256}) {
@@ -149,7 +160,7 @@ OverloadWatch::Sample OverloadWatch::find_extreme(std::size_t signal, double nea
 
 /// Where |signal| passes 1 between a sample inside the range and one outside: false position with the
 /// Illinois rule.
-double OverloadWatch::find_crossing(std::size_t signal, Sample inside, Sample outside,
+double OverloadWatch::find_crossing(std::size_t signal, Sample inside, Sample outside, double end,
                                     const Interpolant& solution) {
   const double limit = std::copysign(1.0, outside.value);
   constexpr int kMostIterations = 60;
@@ -158,7 +169,7 @@ double OverloadWatch::find_crossing(std::size_t signal, Sample inside, Sample ou
   if (at_low == 0) return low;
   for (int k = 0; k < kMostIterations && std::abs(high - low) > 1e-14 * std::abs(high); ++k) {
     const double time = high - at_high * (high - low) / (at_high - at_low);
-    const double value = (value_at(time, signal, solution) - limit) * limit;
+    const double value = (value_at(time, end, signal, solution) - limit) * limit;
     if (value == 0) return time;
     if ((value > 0) == (at_high > 0)) {
       at_low /= 2;

@@ -41,7 +41,9 @@ class OverloadWatch {
   void restart(double t, std::span<const double> states);
 
   /// Looks at the step from the last time to t; gives the time to which the run counts: t, or that of the
-  /// first overload where it halts there. Throws SolveError where an algebraic loop has no solution.
+  /// first overload where it halts there. At an instant at which an algebraic loop is singular, as a run
+  /// passes some without meeting them, a moment close by is taken. Throws SolveError where a loop has no
+  /// solution there either.
   double advance(double t, const Interpolant& solution);
 
   bool halted() const { return halted_; }
@@ -64,11 +66,13 @@ class OverloadWatch {
   };
 
   void evaluate(double t, std::vector<double>& values);
-  double value_at(double t, std::size_t signal, const Interpolant& solution);
+  void evaluate_near(double t, double end, const Interpolant& solution, std::vector<double>& values);
+  double value_at(double t, double end, std::size_t signal, const Interpolant& solution);
   void look_at(std::size_t signal, double t, const Interpolant& solution);
   bool matters(const Record& record, double extreme, double before, double after) const;
   Sample find_extreme(std::size_t signal, double near, double end, const Interpolant& solution);
-  double find_crossing(std::size_t signal, Sample inside, Sample outside, const Interpolant& solution);
+  double find_crossing(std::size_t signal, Sample inside, Sample outside, double end,
+                       const Interpolant& solution);
   void leave(Record& record, double t, double value);
   void come_back(Record& record, double t);
 

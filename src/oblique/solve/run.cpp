@@ -77,6 +77,7 @@ class Runner {
     sampler_.result.event_count = switching_.count();
     sampler_.result.state = state();
     sampler_.result.warnings = switching_.warnings();
+    for (Diagnostic& warning : sampler_.warnings()) sampler_.result.warnings.push_back(std::move(warning));
     if (overloads_) {
       sampler_.result.peaks = overloads_->peaks();
       sampler_.result.overloads = overloads_->overloads();

@@ -28,6 +28,7 @@ Sampler::Sampler(const Program& program, const FlatDiagram& diagram, const RunOp
       options_(options),
       workspace_(workspace),
       switching_(switching),
+      runaway_(program, options.from ? options.from->time : 0, options.until, options.watch_overloads),
       states_(program.n_states()),
       signals_(program.n_signals()),
       row_(diagram.outputs.size() + 1) {
@@ -47,6 +48,7 @@ void Sampler::advance(double t, const Interpolant& solution) {
     if ((!grid_left && !extra_left) || time > t) return;
     solution.states_at(time, states_);
     evaluate(time);
+    runaway_.look_at(time, signals_);
     if (grid_left && grid_time == time) {
       result.trajectory.add_row(row_);
       if (options_.on_sample) options_.on_sample(time, states_, workspace_.memories());

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <oblique/solve/run.h>
+#include <oblique/solve/runaway.h>
 #include <oblique/solve/switching.h>
 
 namespace oblique {
@@ -23,6 +24,9 @@ class Sampler {
   /// Looks for the extremes of the outputs in a stretch without events.
   void watch(double from, double to, const Interpolant& solution);
 
+  /// What the rows alone warn of.
+  std::vector<Diagnostic> warnings() const { return runaway_.warnings(diagram_.file); }
+
   Run result;
 
  private:
@@ -35,6 +39,7 @@ class Sampler {
   const RunOptions& options_;
   Workspace& workspace_;
   Switching& switching_;
+  RunawayWatch runaway_;
   std::vector<double> states_, signals_, row_;
   std::vector<double> begin_, middle_;  ///< rows of `watch`
   int next_sample_ = 0;

@@ -19,6 +19,7 @@ class SignalFlow {
  public:
   /// Both must outlive this.
   SignalFlow(const FlatDiagram& diagram, const Program& program);
+  const FlatDiagram& diagram() const { return diagram_; }
 
   /// The blocks on the feedback that the given states close, through elements without memory and each other:
   /// paths, in file order. With one state whose output comes back to it by no way, its own block alone.

@@ -8,6 +8,7 @@
 #include <Eigen/Eigenvalues>
 
 #include <oblique/solve/rest.h>
+#include <oblique/solve/rightmost_modes.h>
 
 namespace oblique {
 namespace {
@@ -47,23 +48,16 @@ class GroupJacobian {
     return Eigen::EigenSolver<Eigen::MatrixXd>(dense, false).eigenvalues().real().maxCoeff();
   }
 
-  /// A bound of it, or infinity. By Gershgorin no real part is above max_i a_ii + Σ_j |a_ij| d_j/d_i,
-  /// whatever the weights d > 0 of the loops. Those are made better by powers of the matrix |a_ij|/|a_ii|,
-  /// which tend to its Perron vector; the bound falls below zero if any weights do that.
+  /// A bound of it, or infinity (see real_part_bound).
   double bound() const {
-    if (!(diagonal_.maxCoeff() < 0)) return kInfinity;
-    constexpr int kMostPowers = 60;
-    Eigen::VectorXd weights = Eigen::VectorXd::Ones(size()), sums(size());
-    for (int power = 0; power < kMostPowers; ++power) {
-      sums.setZero();
-      for (const Entry& entry : others_) sums[entry.row] += std::abs(entry.value) * weights[entry.column];
-      const double bound = (diagonal_.array() + sums.array() / weights.array()).maxCoeff();
-      if (bound < 0) return bound;
-      weights += (sums.array() / -diagonal_.array()).matrix();
-      weights /= weights.maxCoeff();
-      weights = weights.cwiseMax(std::numeric_limits<double>::min());
-    }
-    return kInfinity;
+    std::vector<Eigen::Triplet<double>> entries;
+    for (Eigen::Index i = 0; i < size(); ++i)
+      entries.emplace_back(static_cast<int>(i), static_cast<int>(i), diagonal_[i]);
+    for (const Entry& entry : others_)
+      entries.emplace_back(static_cast<int>(entry.row), static_cast<int>(entry.column), entry.value);
+    Eigen::SparseMatrix<double> matrix(size(), size());
+    matrix.setFromTriplets(entries.begin(), entries.end());
+    return real_part_bound(matrix);
   }
 
  private:

@@ -8,14 +8,11 @@
 #include <oblique/network/network.h>
 
 namespace oblique {
-namespace {
 
 bool is_brought_to_rest(const BlockDefinition& definition) {
   return std::any_of(definition.starts.begin(), definition.starts.end(),
                      [](const auto& start) { return start.at_rest; });
 }
-
-}  // namespace
 
 FlatDiagram with_instant_servos(FlatDiagram diagram) {
   for (FlatBlock& block : diagram.blocks) {

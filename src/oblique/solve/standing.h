@@ -10,6 +10,9 @@
 
 namespace oblique {
 
+/// Whether states of such a block are brought to rest before a run: those of servo amplifiers.
+bool is_brought_to_rest(const BlockDefinition& definition);
+
 /// The diagram with servo loops that are infinitely fast: a block whose states are brought to rest before a
 /// run and that has a parameter `bandwidth` takes its output from an algebraic loop of the same gain.
 FlatDiagram with_instant_servos(FlatDiagram diagram);
