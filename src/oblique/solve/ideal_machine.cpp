@@ -94,15 +94,15 @@ IdealMachine::IdealMachine(const FlatDiagram& diagram, const Program& program)
 bool IdealMachine::look_at(const Instant& instant, const Workspace& actual) {
   linear_.reset();
   if (program_.memories().size() != real_.memories().size()) return false;
-  Instant here{instant.t, program_.start(), instant.memories};
-  for (std::size_t i = 0; i < here.states.size(); ++i) {
-    if (real_state_[i] < real_.n_states()) here.states[i] = instant.states[real_state_[i]];
+  here_ = {instant.t, program_.start(), instant.memories};
+  for (std::size_t i = 0; i < here_.states.size(); ++i) {
+    if (real_state_[i] < real_.n_states()) here_.states[i] = instant.states[real_state_[i]];
   }
   for (std::size_t u = 0; u < real_unknown_.size(); ++u) {
     if (real_unknown_[u] < real_.unknowns().size())
       workspace_.set_unknown(u, actual.unknown(real_unknown_[u]));
   }
-  linear_ = Linearisation::at(program_, workspace_, here);
+  linear_ = Linearisation::at(program_, workspace_, here_);
   return linear_.has_value();
 }
 
@@ -112,18 +112,18 @@ bool IdealMachine::differs_in(const std::vector<std::size_t>& group) const {
   });
 }
 
-bool IdealMachine::is_open_amplifier(std::size_t state, const Instant& instant) const {
-  if (!linear_ || !state_of_[state] || !real_.states()[state].at_rest) return false;
+std::vector<std::size_t> IdealMachine::open_amplifiers(const std::vector<std::size_t>& states) {
+  std::vector<std::size_t> found;
   std::vector<double> signals(program_.n_signals());
-  Workspace scratch = workspace_;
-  Instant here{instant.t, program_.start(), {}};
-  for (std::size_t i = 0; i < here.states.size(); ++i) {
-    if (real_state_[i] < real_.n_states()) here.states[i] = instant.states[real_state_[i]];
-  }
-  if (!program_.signals(here.t, here.states.data(), signals.data(), scratch)) return false;
-  const auto own = flow_.own_slope(real_.states()[state].name, instant.t, signals);
+  if (!linear_ || !program_.signals(here_.t, here_.states.data(), signals.data(), workspace_)) return found;
+  const std::vector<double> largest = linear_->largest_in_rows();
   constexpr double kOpen = 1e-9;  // far above the rounding of own_slope, far below a follower's 1
-  return own && std::abs(*own) < kOpen * linear_->largest_in_row(*state_of_[state]);
+  for (const std::size_t state : states) {
+    if (!state_of_[state] || !real_.states()[state].at_rest) continue;
+    const auto own = flow_.own_slope(real_.states()[state].name, here_.t, signals);
+    if (own && std::abs(*own) < kOpen * largest[*state_of_[state]]) found.push_back(state);
+  }
+  return found;
 }
 
 std::vector<std::optional<Complex>> IdealMachine::problem_modes(const std::vector<std::size_t>& group,

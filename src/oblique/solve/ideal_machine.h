@@ -38,9 +38,10 @@ class IdealMachine {
   /// Whether any state of the group would be no state on an ideal machine.
   bool differs_in(const std::vector<std::size_t>& group) const;
 
-  /// Whether a state is the output of an amplifier that is open by itself: it is the diagram that closes a
-  /// loop around it. A summer or multiplier, which follows its inputs whatever the diagram does, is not.
-  bool is_open_amplifier(std::size_t state, const Instant& instant) const;
+  /// Those of some states, at the last instant, that are outputs of amplifiers open by themselves: it is the
+  /// diagram that closes a loop around them. A summer or multiplier, which follows its inputs whatever the
+  /// diagram does, is not.
+  std::vector<std::size_t> open_amplifiers(const std::vector<std::size_t>& states);
 
   /// For each of the `modes` of a group, at the last instant, the mode of the ideal machine that it is: the
   /// problem's own. Nothing for one that comes from the machine. Where the ideal machine has no solution at
@@ -68,6 +69,7 @@ class IdealMachine {
   std::vector<std::optional<std::size_t>> state_of_;    ///< here, of a state of the real machine
   std::vector<std::size_t> real_state_, real_unknown_;  ///< of a state and an unknown here
   Workspace workspace_;
+  Instant here_;  ///< the last instant, with the states here
   std::optional<Linearisation> linear_;
 };
 

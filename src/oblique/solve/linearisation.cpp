@@ -81,12 +81,12 @@ Eigen::SparseMatrix<double> Linearisation::sparse_block(const std::vector<std::s
   return sparse;
 }
 
-double Linearisation::largest_in_row(std::size_t state) const {
+std::vector<double> Linearisation::largest_in_rows() const {
   const SparsePattern& pattern = program_->jacobian_pattern();
-  double largest = 0;
+  std::vector<double> largest(pattern.size(), 0);
   for (std::size_t entry = 0; entry < pattern.entries(); ++entry) {
-    if (static_cast<std::size_t>(pattern.rows[entry]) == state)
-      largest = std::max(largest, std::abs(values_[entry]));
+    double& row = largest[static_cast<std::size_t>(pattern.rows[entry])];
+    row = std::max(row, std::abs(values_[entry]));
   }
   return largest;
 }

@@ -36,8 +36,8 @@ class Linearisation {
   Eigen::MatrixXd block(const std::vector<std::size_t>& group) const;
   /// The same, of a large group.
   Eigen::SparseMatrix<double> sparse_block(const std::vector<std::size_t>& group) const;
-  /// The greatest magnitude in the row of a state [1/s].
-  double largest_in_row(std::size_t state) const;
+  /// The greatest magnitude in the row of every state [1/s].
+  std::vector<double> largest_in_rows() const;
 
  private:
   Linearisation(const Program& program, std::vector<double> values)

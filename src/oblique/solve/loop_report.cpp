@@ -184,8 +184,11 @@ class AlgebraicLoop {
 std::vector<LoopReport> explain_loops(const Program& program, const SignalFlow& flow,
                                       const std::vector<Instant>& instants) {
   std::vector<ServoLoopHistory> servos;
-  for (ServoLoop& loop : servo_loops(program, flow, instants))
-    servos.emplace_back(program, flow, std::move(loop));
+  for (ServoLoop& loop : servo_loops(program, flow, instants)) {
+    // Beyond, a loop has no margins either; the stability report says so.
+    if (loop.states == loop.servos || loop.states.size() <= kMostStatesForModes)
+      servos.emplace_back(program, flow, std::move(loop));
+  }
   std::vector<AlgebraicLoop> algebraic;
   for (std::size_t l = 0; l < program.loops().size(); ++l) algebraic.emplace_back(program, flow, l);
   Workspace workspace(program);

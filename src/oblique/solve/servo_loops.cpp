@@ -23,23 +23,25 @@ class LoneAmplifiers {
     Workspace workspace(program_);
     std::vector<double> signals(program_.n_signals());
     std::optional<IdealMachine> ideal;
-    for (const Instant& instant : instants) {
+    // Whether an amplifier is open is its make; a gain may be zero at an instant.
+    const std::size_t stride = std::max<std::size_t>(1, instants.size() / 4);
+    for (std::size_t k = 0; k < instants.size(); ++k) {
+      const Instant& instant = instants[k];
       workspace.load_memories(instant.memories);
       if (!program_.signals(instant.t, instant.states.data(), signals.data(), workspace)) continue;
       const auto linear = Linearisation::at(program_, workspace, instant);
       if (!linear) continue;
+      const std::vector<double> largest = linear->largest_in_rows();
       bool all_known = true;
       for (const std::size_t i : lone) {
-        if (!closed_[i]) closed_[i] = acts_on_itself(*linear, i, instant.t, signals);
+        if (!closed_[i]) closed_[i] = acts_on_itself(*linear, i, largest[i], instant.t, signals);
         all_known = all_known && closed_[i];
       }
       if (all_known) return;
-      if (in_groups.empty()) continue;
+      if (in_groups.empty() || k % stride != 0) continue;
       if (!ideal) ideal.emplace(flow_.diagram(), program_);
       if (!ideal->look_at(instant, workspace)) continue;
-      for (const std::size_t i : in_groups) {
-        if (!open_[i] && !closed_[i]) open_[i] = ideal->is_open_amplifier(i, instant);
-      }
+      for (const std::size_t i : ideal->open_amplifiers(in_groups)) open_[i] = true;
     }
   }
 
@@ -48,13 +50,13 @@ class LoneAmplifiers {
 
  private:
   /// Its gain with all others held is zero to the rounding of the differences of its own slope.
-  bool acts_on_itself(const Linearisation& linear, std::size_t state, double t,
+  bool acts_on_itself(const Linearisation& linear, std::size_t state, double largest, double t,
                       std::span<const double> signals) const {
     const auto own = flow_.own_slope(program_.states()[state].name, t, signals);
     if (!own) return false;
     constexpr double kRounding = 1e-9;
     const double fed_back = linear.block({state})(0, 0) - *own;
-    return std::abs(fed_back) > kRounding * (std::abs(*own) + linear.largest_in_row(state));
+    return std::abs(fed_back) > kRounding * (std::abs(*own) + largest);
   }
 
   const Program& program_;
