@@ -134,7 +134,9 @@ class Runner {
     double wait = std::numeric_limits<double>::infinity();
     if (switching_.active()) {
       wait = switching_.known_wait(t, states_);
-      while (!(wait > kShortest * std::abs(t))) {
+      for (int settled = 0; !(wait > 0); ++settled) {
+        constexpr int kMostSettled = 1000;
+        if (settled > kMostSettled) switching_.throw_endless(t);
         switching_.settle(t, states_);
         follow_phases(t);
         wait = switching_.known_wait(t, states_);

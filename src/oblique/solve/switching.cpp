@@ -67,8 +67,9 @@ void Switching::evaluate(double t, std::span<const double> x) {
   if (!program_.surfaces(t, x.data(), surfaces_.data(), workspace_))
     throw loop_error(program_, workspace_.trouble(), t, file_);
   for (std::size_t s = 0; s < thresholds_.size(); ++s) {
-    if (const auto rate = program_.known_rate(s, workspace_)) {
-      thresholds_[s] = 8 * kEpsilon * std::abs(t) * std::abs(*rate);
+    if (is_known(s)) {
+      const double size = program_.compared_size(s, workspace_);
+      thresholds_[s] = 8 * kEpsilon * (std::isfinite(size) ? size : std::abs(t));
     } else {
       thresholds_[s] = std::max(kRounding * compared_size(s), slack_[s]);
     }
@@ -97,6 +98,10 @@ void Switching::throw_chatter(const std::string& block, const std::string& what,
                     fmt::format("'{}' switches without end at t = {:.9g} s ({})", block, t, what),
                     {},
                     "give the switch a hysteresis, or end what it repeats before it becomes endlessly fast"});
+}
+
+void Switching::throw_endless(double t) const {
+  throw_chatter(records_.empty() ? "" : records_.back().what, "a comparison of the time is always due", t);
 }
 
 void Switching::turn(std::size_t s, double position, double t) {
@@ -341,7 +346,8 @@ void Switching::settle(double t, std::vector<double>& x) {
   begin_to_settle();
   evaluate(t, x);
   for (std::size_t s = 0; s < announced_.size(); ++s) {  // the stretch may have ended before their time
-    if (is_known(s) && std::abs(surfaces_[s]) > 4 * thresholds_[s]) announced_[s] = -1;
+    const double rate = program_.known_rate(s, workspace_).value_or(0);
+    if (is_known(s) && std::abs(surfaces_[s]) > 8 * resolution(t) * std::abs(rate)) announced_[s] = -1;
   }
   for (std::size_t s = 0; s < announced_.size(); ++s) {
     if (announced_[s] < 0) continue;
@@ -415,7 +421,7 @@ double Switching::known_wait(double t, std::span<const double> x) {
     if (!rate) continue;
     const bool closed = workspace_.memory(program_.switches()[s].memory) == 1;
     if (closed ? *rate >= 0 : *rate <= 0) continue;
-    waits[s] = std::max(0.0, -surfaces_[s] / *rate);
+    waits[s] = std::abs(surfaces_[s]) <= thresholds_[s] ? 0 : std::max(0.0, -surfaces_[s] / *rate);
     next = std::min(next, waits[s]);
   }
   std::fill(announced_.begin(), announced_.end(), -1.0);

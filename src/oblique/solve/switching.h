@@ -52,6 +52,9 @@ class Switching {
   /// How long after t the next switch that follows time alone turns over [s]; infinite without one.
   double known_wait(double t, std::span<const double> x);
 
+  /// Ends a run in which something is always due. Throws SolveError.
+  [[noreturn]] void throw_endless(double t) const;
+
   /// The first time after `from` at which a switch turns over, or nothing; all are in place at `from`.
   /// `looks` are times at which to look at least; the search ends at the last.
   std::optional<double> search(double from, std::span<const double> looks, const Interpolant& solution);

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/network/interval.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <oblique/text/expression.h>
+
+#include "../support/naive_value.h"
+
+namespace oblique {
+namespace {
+
+using testing::naive_value;
+
+/// The range of a node where the variables lie in these intervals.
+Interval range_of(const ExpressionGraph& graph, NodeId root, std::span<const Interval> variables) {
+  TapeWriter writer(graph, variables.size(), 0, {}, std::vector<std::uint32_t>(graph.size(), 2));
+  std::vector<NodeId> nodes(graph.size());
+  std::iota(nodes.begin(), nodes.end(), NodeId{0});
+  writer.write(nodes);
+  const std::uint32_t slot = writer.slot(root);
+  std::vector<Interval> slots;
+  for (const double value : writer.initial_slots()) slots.push_back({value, value});
+  std::copy(variables.begin(), variables.end(), slots.begin());
+  run_tape(writer.instructions(), slots);
+  return slots[slot];
+}
+
+TEST(Interval, ContainsTheValuesOfEveryOperation) {
+  constexpr std::array kOne{Op::negate, Op::sin,  Op::cos, Op::tan, Op::asin,
+                            Op::acos,   Op::atan, Op::exp, Op::log, Op::sqrt};
+  constexpr std::array kTwo{Op::add, Op::subtract, Op::multiply, Op::divide, Op::power, Op::atan2, Op::hypot};
+  rc::check([&] {
+    ExpressionGraph graph;
+    const NodeId x = graph.variable(0), y = graph.variable(1);
+    const auto number = [] { return *rc::gen::inRange(-4000, 4000) / 1000.0; };
+    const double a = number(), b = number(), c = number(), d = number();
+    const std::array box{Interval{std::min(a, b), std::max(a, b)}, Interval{std::min(c, d), std::max(c, d)}};
+    const bool unary = *rc::gen::arbitrary<bool>();
+    const NodeId root = unary ? graph.apply(kOne[*rc::gen::inRange<std::size_t>(0, kOne.size())], x)
+                              : graph.apply(kTwo[*rc::gen::inRange<std::size_t>(0, kTwo.size())], x, y);
+    const Interval range = range_of(graph, root, box);
+    constexpr int kPoints = 7;
+    for (int i = 0; i <= kPoints; ++i) {
+      for (int k = 0; k <= kPoints; ++k) {
+        const std::array point{box[0].low + box[0].width() * i / kPoints,
+                               box[1].low + box[1].width() * k / kPoints};
+        const double value = naive_value(graph, root, point);
+        if (std::isnan(value)) continue;
+        const double rounding = 1e-12 * (1 + std::abs(value));  // of the few operations of a point
+        RC_ASSERT(value >= range.low - rounding);
+        RC_ASSERT(value <= range.high + rounding);
+      }
+    }
+  });
+}
+
+TEST(Interval, IsSharpForASingleOperation) {
+  ExpressionGraph graph;
+  const NodeId x = graph.variable(0);
+  const std::array box{Interval{-1, 3}};
+  const auto range = [&](NodeId root) { return range_of(graph, root, box); };
+  const Interval square = range(graph.apply(Op::multiply, x, x));
+  EXPECT_EQ(square.low, 0);
+  EXPECT_EQ(square.high, 9);
+  const Interval sine = range(graph.apply(Op::sin, x));
+  EXPECT_DOUBLE_EQ(sine.low, std::sin(-1));
+  EXPECT_EQ(sine.high, 1);
+  const Interval cosine = range(graph.apply(Op::cos, x));
+  EXPECT_DOUBLE_EQ(cosine.low, std::cos(3));
+  EXPECT_EQ(cosine.high, 1);
+  const Interval bell = range(graph.apply(Op::exp, graph.apply(Op::negate, graph.apply(Op::multiply, x, x))));
+  EXPECT_DOUBLE_EQ(bell.low, std::exp(-9));
+  EXPECT_EQ(bell.high, 1);
+}
+
+TEST(Interval, KnowsNothingWhereAnOperationHasNoValue) {
+  ExpressionGraph graph;
+  const NodeId x = graph.variable(0);
+  const std::array box{Interval{-1, 3}};
+  for (const NodeId root : {graph.apply(Op::divide, graph.constant(1), x), graph.apply(Op::log, x),
+                            graph.apply(Op::sqrt, x), graph.apply(Op::tan, x)}) {
+    EXPECT_EQ(range_of(graph, root, box).low, -std::numeric_limits<double>::infinity());
+    EXPECT_EQ(range_of(graph, root, box).high, std::numeric_limits<double>::infinity());
+  }
+}
+
+TEST(Interval, ContainsNoiseThatItSamples) {
+  ExpressionGraph graph;
+  const NodeId root = graph.apply(Op::noise, graph.variable(0), graph.constant(3));
+  for (int k = 0; k < 200; ++k) {
+    const std::array box{Interval{0.17 * k, 0.17 * k + 0.2}};
+    const Interval range = range_of(graph, root, box);
+    for (int i = 0; i <= 20; ++i) {
+      const double value = noise(box[0].low + 0.01 * i, 3, 0);
+      EXPECT_GE(value, range.low) << k;
+      EXPECT_LE(value, range.high) << k;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace oblique
