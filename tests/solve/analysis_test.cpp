@@ -181,7 +181,8 @@ v = { type = "integrator", in = ["-3*x"] }
   EXPECT_NEAR(report.problem_mode->mode.natural_frequency(), 3, 1e-12);
 }
 
-TEST(Stability, SaysWhatIsTooLarge) {
+// A ring of 201 heated places: 0 for all together, and −4 sin²(π/201) for the slowest that die.
+TEST(Stability, SeeksTheRightmostModesOfWhatIsLargeAndSaysSo) {
   std::string ladder;
   for (int i = 0; i < 201; ++i) {
     ladder += fmt::format("x{0} = {{ type = \"integrator\", in = [\"-2*x{0}\", \"x{1}\", \"x{2}\"] }}\n", i,
@@ -190,7 +191,9 @@ TEST(Stability, SaysWhatIsTooLarge) {
   const StabilityReport report = analysis_of(Compiled(ladder)).stability;
   ASSERT_EQ(report.left_out.size(), 1U);
   EXPECT_THAT(report.left_out[0], ::testing::HasSubstr("201 states"));
-  EXPECT_FALSE(report.problem_mode);
+  ASSERT_TRUE(report.problem_mode);
+  EXPECT_NEAR(report.rightmost->mode.pole.real(), -4 * std::pow(std::sin(pi / 201), 2), 1e-12);
+  EXPECT_FALSE(report.proven);  // the ring as a whole does not decay
 }
 
 TEST(Analysis, OfARunThatFailsTellsOfItsLoopsAtRest) {

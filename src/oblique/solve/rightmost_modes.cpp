@@ -21,7 +21,9 @@ constexpr Eigen::Index kSubspace = 60;   ///< of Arnoldi's method about one shif
 constexpr int kDecades = 9;              ///< of rates, down from the norm
 constexpr double kPromising = 1e-2;      ///< relative residual of a guess that is worth iterating
 constexpr std::size_t kMostRefined = 4;  ///< of the rightmost, and of the least damped
-/// An eigenvalue that is left of the axis by less than this part of the norm is 0 to rounding.
+constexpr std::size_t kMostTried = 12;
+constexpr double kZeroGuess = 1e-11;  ///< of the norm: a guess that will be 0
+/// An eigenvalue of less than this part of the norm is 0 to rounding.
 constexpr double kZeroPole = 1e-13;
 
 /// Numbers without a pattern, the same in every run: multiples of an irrational number.
@@ -178,10 +180,17 @@ std::vector<Mode> rightmost_modes(const Sparse& a, const std::vector<std::size_t
   std::vector<Guess> guesses;
   double shift = norm;
   for (int k = 0; k < kDecades; ++k, shift /= 10) collect_guesses(a, shift, guesses);
+  // Integrators that no feedback reaches are found about every shift, each time with another rounding.
+  guesses.erase(std::remove_if(guesses.begin(), guesses.end(),
+                               [&](const Guess& guess) { return std::abs(guess.pole) <= kZeroGuess * norm; }),
+                guesses.end());
   const auto refine_first = [&] {
-    for (std::size_t k = 0; k < std::min(kMostRefined, guesses.size()); ++k) {
-      const auto mode = refine(a, guesses[k], group, norm);
+    std::size_t tried = 0, found = 0;
+    for (const Guess& guess : guesses) {
+      if (found == kMostRefined || ++tried > kMostTried) return;
+      const auto mode = refine(a, guess, group, norm);
       if (!mode || std::abs(mode->pole) <= kZeroPole * norm) continue;
+      ++found;
       const bool known = std::any_of(modes.begin(), modes.end(), [&](const Mode& other) {
         return std::abs(other.pole - mode->pole) <= 1e-9 * norm;
       });
