@@ -2,60 +2,81 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
 #include <Eigen/Dense>
 
+#include <oblique/network/loop_matrix.h>
 #include <oblique/network/tape.h>
 
 namespace oblique {
 
-/// A number on a slot that belongs at (row, column) of a matrix.
-struct MatrixEntry {
-  std::uint32_t row, column, slot;
+enum class LoopFailure : std::uint8_t {
+  none,
+  singular,
+  diverged,
+  not_finite,
+  lost  ///< no solution on the branch that is followed
 };
 
-/// An algebraic loop g(z) = 0 as code: `body` computes, from the unknowns' slots, the residuals and dg/dz.
-struct LoopCode {
-  std::vector<std::uint32_t> unknown_slots;
-  std::vector<std::uint32_t> residual_slots;
-  std::vector<MatrixEntry> slopes;    ///< dg/dz
-  std::vector<double> natural_scale;  ///< a row of dg/dz far below this has cancelled: 1 where torn, else 0
-  TapeRange body;
-  bool linear = false;  ///< dg/dz does not depend on z: one step solves it
-
-  std::size_t size() const { return unknown_slots.size(); }
-};
-
-enum class LoopFailure : std::uint8_t { none, singular, diverged, not_finite };
-
-/// Scratch memory and LU factors of one loop; dense, since the loops of diagrams are short.
+/// Scratch memory of one loop, and what is known of its last solution.
+///
+/// Of a loop with branches, a solution is one that the amplifiers reach from the last: Newton's method where
+/// it stays on the branch (it never turns back, and the determinant of dg/dz keeps its sign), else the motion
+/// of the amplifiers themselves, infinitely fast, until they rest.
 class LoopWorkspace {
  public:
   explicit LoopWorkspace(std::size_t size);
 
-  /// Factors dg/dz as the slots hold it now; false where it is singular to rounding.
-  bool factor(const LoopCode& loop, const double* slots);
-
-  /// Overwrites `right_sides` (a column for each) with the solutions of dg/dz · X = right_sides.
-  void solve(Eigen::Ref<Eigen::MatrixXd> right_sides);
+  LoopMatrix& matrix() { return matrix_; }
 
   /// Solves the loop by Newton's method, damped where the residual would grow, from what the unknowns' slots
   /// hold (one LU from zero where it is linear); they then hold the solution, to rounding, and `body` has
   /// been run on it.
   LoopFailure solve_loop(const LoopCode& loop, std::span<const Instruction> tape, double* slots);
 
- private:
-  double residual_norm(const LoopCode& loop, const double* slots) const;
-  double move(const LoopCode& loop, double* slots, double fraction) const;
+  /// While a branch is followed, `lost` is told where it ends, and the amplifiers do not leave it.
+  void follow_branch(bool follow) { following_ = follow; }
 
-  Eigen::MatrixXd matrix_;  ///< rows scaled by 1/scale_
-  Eigen::VectorXd scale_;
-  Eigen::MatrixXd step_;   ///< one column
-  Eigen::VectorXd start_;  ///< iterate that the step starts from
-  Eigen::VectorXd permuted_;
-  Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
+  /// Forgets what it knows of the last solution, but not what is held.
+  void reset();
+
+  /// At time t, where the loop is singular, its unknowns are these: for as long as they solve it or, with
+  /// `whatever`, in any case.
+  void hold(double t, std::vector<double> unknowns, bool whatever);
+
+ private:
+  /// How Newton's method has ended.
+  struct Search {
+    LoopFailure failure = LoopFailure::none;
+    bool damped = false;      ///< a step has led uphill
+    bool even_order = false;  ///< each step was half the one before it: the root has no slope
+  };
+  Search newton(const LoopCode& loop, std::span<const Instruction> body, double* slots);
+  LoopFailure solve_linear(const LoopCode& loop, std::span<const Instruction> body, double* slots);
+  LoopFailure solve_branched(const LoopCode& loop, std::span<const Instruction> body, double* slots);
+  bool solves(const LoopCode& loop, std::span<const Instruction> body, double* slots,
+              std::span<const double> unknowns);
+  bool keeps_sign(const LoopCode& loop, std::span<const Instruction> body, double* slots);
+  bool relax(const LoopCode& loop, std::span<const Instruction> body, double* slots);
+  double way(const LoopCode& loop, const double* slots) const;
+  double move(const LoopCode& loop, double* slots, double fraction) const;
+  void read(const LoopCode& loop, const double* slots, Eigen::VectorXd& unknowns) const;
+  void write(const LoopCode& loop, double* slots, const Eigen::VectorXd& unknowns) const;
+
+  LoopMatrix matrix_;
+  Eigen::MatrixXd step_;             ///< one column
+  Eigen::VectorXd start_;            ///< iterate that the step starts from
+  Eigen::VectorXd origin_, target_;  ///< where a search began and ended
+
+  bool following_ = false;
+  bool solved_ = false;  ///< a solution is known, and was no singular one
+  int branch_ = 0;       ///< sign of the determinant of dg/dz on it
+  double held_time_ = std::numeric_limits<double>::quiet_NaN();
+  std::vector<double> held_;
+  bool held_whatever_ = false;
 };
 
 }  // namespace oblique

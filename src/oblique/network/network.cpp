@@ -178,8 +178,9 @@ void Assembler::define(const OrderStep& step) {
     const bool torn = quantity.equation->kind == Equation::Kind::assignment;
     quantity.variable_index = static_cast<std::uint32_t>(network_.unknowns.size());
     const double guess = torn ? 0.0 : start_value(quantity, start_of(quantity));
+    const bool held = !torn && start_of(quantity).at_rest;
     loop.unknowns.push_back(network_.unknowns.size());
-    network_.unknowns.push_back({name_of(quantity), guess, 0, torn, block_of(quantity).place});
+    network_.unknowns.push_back({name_of(quantity), guess, 0, torn, block_of(quantity).place, held});
     quantity.node = network_.graph.variable(network_.unknown_variable(quantity.variable_index));
   }
   for (const std::uint32_t q : step.inner) quantities_[q].node = expression_of(quantities_[q]);

@@ -72,6 +72,8 @@ struct Unknown {
   /// (itself). Otherwise the unknown of an implicit equation, such as an ideal servo amplifier's.
   bool torn = false;
   Place place;
+  /// The output of an amplifier: infinitely fast it moves as −residual, and rests where the residual rises.
+  bool held_by_amplifier = false;
 };
 
 /// Unknowns that must be solved for together.

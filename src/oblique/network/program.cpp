@@ -31,7 +31,8 @@ bool Program::run(const std::vector<Step>& steps, Workspace& workspace) const {
     const LoopFailure failure = workspace.loops_[*step.loop].solve_loop(loop, tape, slots);
     if (failure != LoopFailure::none) {
       const double slope = loop.size() == 1 && !loop.slopes.empty() ? slots[loop.slopes[0].slot] : 0;
-      workspace.trouble_ = {*step.loop, failure, slope};
+      workspace.trouble_ = {*step.loop, failure, slope,
+                            workspace.solved_[loop.unknown_slots.front() - first_unknown]};
       for (const std::uint32_t slot : loop.unknown_slots)
         slots[slot] = workspace.solved_[slot - first_unknown];
       return false;
@@ -149,6 +150,11 @@ Eigen::MatrixXd Program::loop_slopes(std::size_t loop, const Workspace& workspac
   return slopes;
 }
 
+bool Program::derivatives_need(std::size_t loop) const {
+  return std::any_of(derivative_steps_.begin(), derivative_steps_.end(),
+                     [&](const Step& step) { return step.loop == loop; });
+}
+
 bool Program::differentiate_loops(Workspace& workspace) const {
   const double* const slots = workspace.slots_.data();
   for (const std::uint32_t l : sensitivity_order_) {
@@ -165,11 +171,12 @@ bool Program::differentiate_loops(Workspace& workspace) const {
         }
       }
     }
-    if (!workspace.loops_[l].factor(loop_codes_[l], slots)) {
-      workspace.trouble_ = {l, LoopFailure::singular, 0};
+    if (!workspace.loops_[l].matrix().factor(loop_codes_[l], slots)) {
+      const std::uint32_t first = loop_codes_[l].unknown_slots.front();
+      workspace.trouble_ = {l, LoopFailure::singular, 0, slots[first]};
       return false;
     }
-    workspace.loops_[l].solve(dz_dx);
+    workspace.loops_[l].matrix().solve(dz_dx);
   }
   return true;
 }
@@ -210,6 +217,16 @@ void Workspace::set_unknown(std::size_t u, double value) {
   slots_[1 + program_->n_states() + u] = value;
 }
 
+void Workspace::follow_branches(bool follow) {
+  for (LoopWorkspace& loop : loops_) loop.follow_branch(follow);
+}
+
+void Workspace::hold_loop(std::size_t loop, double t, const std::vector<double>& unknowns, bool whatever) {
+  const Loop& members = program_->loops_[loop];
+  for (std::size_t i = 0; i < unknowns.size(); ++i) set_unknown(members.unknowns[i], unknowns[i]);
+  loops_[loop].hold(t, unknowns, whatever);
+}
+
 std::span<const double> Workspace::memories() const {
   return std::span(slots_).subspan(first_memory_, program_->memories_.size());
 }
@@ -227,6 +244,7 @@ void Workspace::reset() {
   for (const Unknown& unknown : program_->unknowns_) solved_.push_back(unknown.guess);
   std::copy(solved_.begin(), solved_.end(),
             slots_.begin() + static_cast<std::ptrdiff_t>(1 + program_->n_states()));
+  for (LoopWorkspace& loop : loops_) loop.reset();
   trouble_ = {};
 }
 

@@ -110,6 +110,10 @@ class Program {
   Eigen::MatrixXd loop_slopes(std::size_t loop, const Workspace& workspace) const;
   /// Whether dg/dz of a loop does not depend on its own unknowns.
   bool loop_is_linear(std::size_t loop) const { return loop_codes_[loop].linear; }
+  /// Whether amplifiers choose among several solutions of a loop.
+  bool loop_has_branches(std::size_t loop) const { return loop_codes_[loop].has_branches(); }
+  /// Whether derivatives depend on a loop.
+  bool derivatives_need(std::size_t loop) const;
 
  private:
   friend class Workspace;
@@ -220,8 +224,16 @@ class Workspace {
     std::size_t loop = 0;
     LoopFailure failure = LoopFailure::none;
     double slope = 0;  ///< dg/dz where the loop has one unknown
+    double value = 0;  ///< of its first unknown where it was solved last, or its guess
   };
   const Trouble& trouble() const { return trouble_; }
+
+  /// While branches are followed, a loop of which amplifiers choose the solution fails (`lost`) where its
+  /// branch ends or is left; else the amplifiers go to where they rest.
+  void follow_branches(bool follow);
+  /// Takes these values for the unknowns of a loop at time t, where it is singular: as long as they solve it
+  /// or, with `whatever`, in any case. A time that is not a number lets go.
+  void hold_loop(std::size_t loop, double t, const std::vector<double>& unknowns, bool whatever);
 
   /// The last solution of an unknown of an algebraic loop, from which the next is sought.
   double unknown(std::size_t u) const { return solved_[u]; }

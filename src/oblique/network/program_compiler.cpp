@@ -267,6 +267,7 @@ std::vector<NodeId> ProgramCompiler::write_loop_body(std::size_t loop, std::vect
     code.unknown_slots.push_back(network_.unknown_variable(u));
     code.residual_slots.push_back(writer.slot(network_.unknowns[u].residual));
     code.natural_scale.push_back(network_.unknowns[u].torn ? 1.0 : 0.0);
+    code.held_by_amplifier.push_back(network_.unknowns[u].held_by_amplifier);
     for (const auto& [variable, node] : residual_gradients_[u]) {
       if (!is_unknown(variable) || loop_of_unknown_[unknown_of(variable)] != loop) continue;
       code.slopes.push_back(
