@@ -122,6 +122,9 @@ struct CvodesSolver::Handles {
     }
     check_setup(CVodeSetLinearSolver(cvodes, linear_solver.get(), matrix.get()));
     check_setup(CVodeSetJacFn(cvodes, differentiate));
+    // Of a decay that becomes slower by powers of ten from step to step (y′/x from x = 0 on) an old Jacobian
+    // takes Newton's corrections away, and with them the estimated error: a new one for each factorisation.
+    check_setup(CVodeSetJacEvalFrequency(cvodes, 1));
     check_setup(CVodeSetStopTime(cvodes, length));
   }
 
