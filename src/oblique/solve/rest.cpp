@@ -3,7 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <Eigen/Eigenvalues>
 #include <Eigen/SparseLU>
 
 #include <oblique/network/dependency_order.h>
@@ -102,8 +106,9 @@ bool settle(const Program& program, Workspace& workspace, double t, const std::v
   constexpr double kLongest =
       1e18;  // of a step, in time constants of the fastest loop: nothing but Newton's method
   constexpr double kShortest = 1e-9;
-  constexpr double kAtRest = 1e-12;  // rounding, where a loop has lost most of its gain
-  constexpr double kFarAway = 1e6;   // [machine unit]
+  constexpr double kAtRest = 1e-12;   // rounding, where a loop has lost most of its gain
+  constexpr double kNothing = 1e-17;  // of 1 + |x|
+  constexpr double kFarAway = 1e6;    // [machine unit]
   constexpr int kMostSteps = 2000;
   SettlingSystem system(program, workspace, t, moving);
   const double unit = fastest_time_constant(system, states);
@@ -135,7 +140,8 @@ bool settle(const Program& program, Workspace& workspace, double t, const std::v
       h /= 4;
       continue;
     }
-    if (h >= kLongest * unit && change < kAtRest && change >= last) return true;  // rounding has been reached
+    // Rounding has been reached: the steps become no shorter, or move nothing.
+    if (h >= kLongest * unit && change < kAtRest && (change >= last || change < kNothing)) return true;
     x = next;
     slopes = next_slopes;
     shortest = kShortest * std::min(unit, step_of_change());
@@ -149,6 +155,87 @@ bool settle(const Program& program, Workspace& workspace, double t, const std::v
     }
   }
   return false;
+}
+
+/// The states that `group` acts on and that act on it, all of them: where its loops close. Sorted.
+std::vector<std::size_t> closed_loop(const Program& program, const std::vector<std::size_t>& group) {
+  const SparsePattern& pattern = program.jacobian_pattern();
+  std::vector<std::vector<std::uint32_t>> needed(program.n_states());
+  for (std::size_t column = 0; column < pattern.size(); ++column) {
+    for (auto k = pattern.column_starts[column]; k < pattern.column_starts[column + 1]; ++k) {
+      needed[static_cast<std::size_t>(pattern.rows[static_cast<std::size_t>(k)])].push_back(
+          static_cast<std::uint32_t>(column));
+    }
+  }
+  Dependencies dependencies;
+  for (const auto& row : needed) dependencies.add_row(row);
+  for (const OrderStep& step : dependency_order(dependencies, std::vector<bool>(program.n_states(), true))) {
+    std::vector<std::size_t> loop(step.tears.begin(), step.tears.end());
+    std::sort(loop.begin(), loop.end());
+    if (std::binary_search(loop.begin(), loop.end(), group.front())) return loop;
+  }
+  return group;
+}
+
+/// Largest real part [1/s] of the eigenvalues of these states with all others held; NaN where the equations
+/// have no linearisation, or the states are too many.
+double largest_real_part(const Program& program, Workspace& workspace, double t,
+                         const std::vector<std::size_t>& members, const std::vector<double>& states) {
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  if (members.size() > static_cast<std::size_t>(kMostLoopsForEigenvalues)) return kUnknown;
+  const SparsePattern& pattern = program.jacobian_pattern();
+  std::vector<double> values(pattern.entries());
+  if (!program.jacobian(t, states.data(), values.data(), workspace)) return kUnknown;
+  std::vector<Eigen::Index> place(program.n_states(), -1);
+  for (std::size_t i = 0; i < members.size(); ++i) place[members[i]] = static_cast<Eigen::Index>(i);
+  const auto n = static_cast<Eigen::Index>(members.size());
+  Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(n, n);
+  for (const std::size_t column : members) {
+    for (auto k = pattern.column_starts[column]; k < pattern.column_starts[column + 1]; ++k) {
+      const auto entry = static_cast<std::size_t>(k);
+      const Eigen::Index row = place[static_cast<std::size_t>(pattern.rows[entry])];
+      if (row >= 0) dense(row, place[column]) = values[entry];
+    }
+  }
+  if (!dense.allFinite()) return kUnknown;
+  return Eigen::EigenSolver<Eigen::MatrixXd>(dense, false).eigenvalues().real().maxCoeff();
+}
+
+/// Whether a group that does not come to rest by itself is held by the rest of its closed loop: what is left
+/// of its growth there is nothing beside its own (a problem may grow, but not at the speed of an amplifier).
+/// Judged where the whole loop rests; or at the start, for a group that is unstable by itself.
+bool settles_when_let_loose(const Program& program, Workspace& workspace, double t,
+                            const std::vector<std::size_t>& group, const std::vector<std::size_t>& loop,
+                            const std::vector<double>& states) {
+  constexpr double kNothing = 1e-3;
+  if (loop.size() <= group.size()) return false;
+  workspace.reset();
+  const double alone = largest_real_part(program, workspace, t, group, states);
+  if (alone > 0 && largest_real_part(program, workspace, t, loop, states) < kNothing * alone) return true;
+  std::vector<double> loose = states;
+  const bool held = settle(program, workspace, t, loop, loose) &&
+                    largest_real_part(program, workspace, t, loop, loose) < kNothing * std::max(alone, 0.0);
+  workspace.reset();
+  return held;
+}
+
+Diagnostic loose_start(const Program& program, const std::vector<std::size_t>& group,
+                       const std::vector<std::size_t>& loop, const std::vector<double>& states,
+                       const std::string& file) {
+  const auto name = [&](std::size_t i) { return fmt::format("'{}'", program.states()[i].name); };
+  std::vector<std::string> servos, through;
+  for (const std::size_t i : group) servos.push_back(fmt::format("{} at {:.4g}", name(i), states[i]));
+  for (const std::size_t i : loop) {
+    if (std::find(group.begin(), group.end(), i) == group.end()) through.push_back(name(i));
+  }
+  return {{file, {}},
+          fmt::format("the run does not start at rest: {} cannot settle before the clock starts, because {} "
+                      "closes through {}, which {} held until then; the closed loop is stable, and the run "
+                      "begins with its transient",
+                      fmt::join(servos, ", "), group.size() == 1 ? "its loop" : "their loop",
+                      shortened(through), through.size() == 1 ? "is" : "are"),
+          {},
+          "give the amplifier the 'initial' that it shall start from"};
 }
 
 }  // namespace
@@ -187,9 +274,9 @@ std::vector<std::vector<std::size_t>> servo_groups(const Program& program) {
   return groups;
 }
 
-void bring_to_rest(const Program& program, Workspace& workspace, double t, std::vector<double>& states,
-                   const std::string& file) {
-  if (rest_states(program).empty()) return;
+std::vector<Diagnostic> bring_to_rest(const Program& program, Workspace& workspace, double t,
+                                      std::vector<double>& states, const std::string& file) {
+  if (rest_states(program).empty()) return {};
   SettlingSystem all(program, workspace, t, rest_states(program));
   std::vector<double> slopes(states.size());
   if (!all.derivatives(t, states.data(), slopes.data()))
@@ -199,18 +286,28 @@ void bring_to_rest(const Program& program, Workspace& workspace, double t, std::
   // move (a triangle that does not close for a moment): then one group after the other, along the flow of the
   // signals.
   std::vector<double> settled = states;
-  if (settle(program, workspace, t, rest_states(program), settled)) {
+  if (settle(program, workspace, t, rest_states(program), settled) &&
+      unstable_group(program, workspace, t, settled).empty()) {
     states = settled;
-  } else {
-    workspace.reset();
-    for (const std::vector<std::size_t>& group : servo_groups(program)) {
-      if (settle(program, workspace, t, group, states)) continue;
-      SettlingSystem system(program, workspace, t, group);
-      throw rest_error(program, by_speed(system, group, states), states, file);
-    }
+    return {};
   }
-  const auto unstable = unstable_group(program, workspace, t, states);
-  if (!unstable.empty()) throw rest_error(program, unstable, states, file);
+  workspace.reset();
+  std::vector<Diagnostic> warnings;
+  for (const std::vector<std::size_t>& group : servo_groups(program)) {
+    settled = states;
+    if (settle(program, workspace, t, group, settled) &&
+        !(largest_real_part(program, workspace, t, group, settled) > 0)) {
+      states = settled;
+      continue;
+    }
+    const std::vector<std::size_t> loop = closed_loop(program, group);
+    if (!settles_when_let_loose(program, workspace, t, group, loop, states)) {
+      SettlingSystem system(program, workspace, t, group);
+      throw rest_error(program, by_speed(system, group, settled), settled, loop, file);
+    }
+    warnings.push_back(loose_start(program, group, loop, states, file));
+  }
+  return warnings;
 }
 
 }  // namespace oblique

@@ -18,7 +18,11 @@ std::vector<std::vector<std::size_t>> servo_groups(const Program& program);
 /// to settle before he starts the clock: the loops run with the clock stopped, then Newton's method takes
 /// them to dx/dt = 0. Changes `states` in place. Throws SolveError where a loop does not settle, would not
 /// stay at rest (an unstable loop may balance for a moment), or an algebraic loop has no solution.
-void bring_to_rest(const Program& program, Workspace& workspace, double t, std::vector<double>& states,
-                   const std::string& file);
+///
+/// A loop may close through states that are held (a lag, an integrator), and be stable only when those move.
+/// It has no rest before the clock starts, on no machine. It then starts where its `initial` says, and the
+/// warnings that are given back say so.
+std::vector<Diagnostic> bring_to_rest(const Program& program, Workspace& workspace, double t,
+                                      std::vector<double>& states, const std::string& file);
 
 }  // namespace oblique

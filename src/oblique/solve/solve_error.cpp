@@ -74,9 +74,18 @@ SolveError loop_error(const Program& program, const Workspace::Trouble& trouble,
         "solution (a combination of its gains is 1)",
         path, t, loop.unknowns.size());
     remedy = "change a weight, or put an integrator or a servo amplifier of finite bandwidth into the loop";
+  } else if (trouble.failure == LoopFailure::lost) {
+    what = fmt::format(
+        "the algebraic loop {} loses its solution at t = {:.6g} s: the branch that it was on ends near {} = "
+        "{:.6g}, and its amplifiers find no other rest",
+        path, t, unknown.name, trouble.value);
+    remedy =
+        "check that its equation can be satisfied (a root of a negative number, a triangle that cannot "
+        "close?), "
+        "or give its amplifier a finite gain and bandwidth, or a 'limit', to see where it goes";
   } else {
     what = fmt::format("the algebraic loop {} has no solution near {} = {:.6g} at t = {:.6g} s", path,
-                       unknown.name, unknown.guess, t);
+                       unknown.name, trouble.value, t);
     remedy =
         "check that its equation can be satisfied (a root of a negative number, a triangle that cannot "
         "close?), "
@@ -128,8 +137,17 @@ SolveError run_error(const Program& program, const SolverFailure& failure, const
            "loosen the tolerance in [run]"}};
 }
 
+std::string shortened(std::vector<std::string> names) {
+  if (names.size() > kMostNamed) {
+    names.resize(kMostNamed);
+    names.emplace_back("…");
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
 SolveError rest_error(const Program& program, const std::vector<std::size_t>& worst,
-                      const std::vector<double>& states, const std::string& file) {
+                      const std::vector<double>& states, const std::vector<std::size_t>& loop,
+                      const std::string& file) {
   std::string names;
   for (std::size_t i = 0; i < std::min(worst.size(), kMostNamed); ++i) {
     names += fmt::format("{}'{}' (at {:.4g})", i == 0 ? "" : ", ", program.states()[worst[i]].name,
@@ -139,10 +157,11 @@ SolveError rest_error(const Program& program, const std::vector<std::size_t>& wo
       SolveError::Kind::no_rest,
       0,
       {{file, {}},
-       fmt::format("the servo loops do not come to rest before the clock starts; still moving: {}", names),
+       fmt::format("the servo loops do not come to rest before the clock starts{}; still moving: {}",
+                   loop.size() > worst.size() ? ", nor when all states on their loop move" : "", names),
        "residuals that rise with the output of their amplifier",
        "check the signs at the amplifier's inputs, that its equation has a solution at the start, and its "
-       "'initial'"}};
+       "'initial'; or let the run begin unsettled, with settle = false in [run]"}};
 }
 
 }  // namespace oblique

@@ -35,8 +35,12 @@ SolveError run_error(const Program& program, const SolverFailure& failure, const
                      const Workspace& workspace, const std::string& file);
 
 /// The error of servo loops that do not settle; `worst` are states by how fast they still move, fastest
-/// first.
+/// first, and `loop` all states through which their loops close.
 SolveError rest_error(const Program& program, const std::vector<std::size_t>& worst,
-                      const std::vector<double>& states, const std::string& file);
+                      const std::vector<double>& states, const std::vector<std::size_t>& loop,
+                      const std::string& file);
+
+/// "a, b, …": the first few names of a long list.
+std::string shortened(std::vector<std::string> names);
 
 }  // namespace oblique
