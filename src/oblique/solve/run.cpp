@@ -4,15 +4,18 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include <fmt/format.h>
 
+#include <oblique/solve/branch_end.h>
 #include <oblique/solve/hidden_motion.h>
 #include <oblique/solve/phase_clock.h>
 #include <oblique/solve/rest.h>
 #include <oblique/solve/run_warnings.h>
 #include <oblique/solve/sampler.h>
+#include <oblique/solve/singular_start.h>
 #include <oblique/solve/solve_error.h>
 #include <oblique/solve/source_watch.h>
 
@@ -52,6 +55,7 @@ class Runner {
         sampler_(program, diagram, options, workspace_, switching_),
         sources_(program, workspace_,
                  options.extremes || options.watch_overloads || options.halt_on_overload),
+        branches_(program, workspace_, begin_, options, diagram.file),
         states_(program.start()) {
     if (options.watch_overloads || options.halt_on_overload)
       overloads_.emplace(program, switching_, diagram.file, options.halt_on_overload);
@@ -61,11 +65,10 @@ class Runner {
     if (options_.from) {
       resume(*options_.from);
     } else {
-      switching_.start(begin_, states_, [&] {
-        if (options_.settle) bring_to_rest(program_, workspace_, begin_, states_, diagram_.file);
-      });
+      start();
     }
     follow_phases(begin_);
+    workspace_.follow_branches(true);
     sampler_.advance(begin_, StandingStates(states_));
     if (overloads_) overloads_->restart(begin_, states_);
     if (program_.n_states() > 0) {
@@ -73,10 +76,12 @@ class Runner {
     } else {
       follow();
     }
-    sampler_.result.events = switching_.records();
-    sampler_.result.event_count = switching_.count();
+    sampler_.result.events = branches_.merged_with(switching_.records());
+    sampler_.result.event_count = switching_.count() + static_cast<long>(branches_.jumps().size());
     sampler_.result.state = state();
-    sampler_.result.warnings = switching_.warnings();
+    sampler_.result.warnings = std::move(warnings_at_start_);
+    for (const auto* warnings : {&branches_.warnings(), &switching_.warnings()})
+      sampler_.result.warnings.insert(sampler_.result.warnings.end(), warnings->begin(), warnings->end());
     for (Diagnostic& warning : sampler_.warnings()) sampler_.result.warnings.push_back(std::move(warning));
     if (overloads_) {
       sampler_.result.peaks = overloads_->peaks();
@@ -87,6 +92,28 @@ class Runner {
   }
 
  private:
+  void start() {
+    std::vector<double> signals(program_.n_signals());
+    const auto settle_all = [&] {
+      switching_.start(begin_, states_, [&] {
+        if (options_.settle)
+          warnings_at_start_ = bring_to_rest(program_, workspace_, begin_, states_, diagram_.file);
+      });
+      if (!switching_.signals(begin_, states_.data(), signals.data()))
+        throw loop_error(program_, workspace_.trouble(), begin_, diagram_.file);
+    };
+    try {
+      settle_all();
+    } catch (const SolveError& error) {
+      if (error.kind() != SolveError::Kind::singular_loop ||
+          !hold_singular_start(program_, workspace_, begin_, states_, options_.until - begin_))
+        throw;
+      settle_all();
+    }
+    for (Diagnostic& warning : unstable_branches(program_, workspace_, begin_, diagram_.file))
+      warnings_at_start_.push_back(std::move(warning));
+  }
+
   void resume(const RunState& state) {
     for (std::size_t i = 0; i < states_.size(); ++i) states_[i] = state.states[i].second;
     for (std::size_t u = 0; u < state.unknowns.size(); ++u)
@@ -129,6 +156,15 @@ class Runner {
     }
   }
 
+  /// Settles everything at t, where an event has come or a branch of an algebraic loop has ended.
+  void settle(double t, bool at_branch_end) {
+    workspace_.follow_branches(false);
+    if (at_branch_end) branches_.pass(t, states_);
+    switching_.settle(t, states_);
+    follow_phases(t);
+    workspace_.follow_branches(true);
+  }
+
   /// Sets the end of the smooth stretch that begins at t; settles what turns over at t itself.
   void begin_stretch(double t) {
     double wait = std::numeric_limits<double>::infinity();
@@ -137,8 +173,7 @@ class Runner {
       for (int settled = 0; !(wait > 0); ++settled) {
         constexpr int kMostSettled = 1000;
         if (settled > kMostSettled) switching_.throw_endless(t);
-        switching_.settle(t, states_);
-        follow_phases(t);
+        settle(t, false);
         wait = switching_.known_wait(t, states_);
       }
     }
@@ -151,9 +186,19 @@ class Runner {
   /// event) or ends the stretch. `looks` are times at which to look at least. True where the solver must
   /// start anew.
   bool finish_step(double from, double& t, std::span<const double> looks, const Interpolant& solution) {
+    std::optional<double> branch_end = branches_.find(from, t, solution);
+    std::vector<double> looks_before;
+    if (branch_end) {
+      t = std::max(from, branches_.before(*branch_end));
+      std::copy_if(looks.begin(), looks.end(), std::back_inserter(looks_before),
+                   [&](double look) { return look < t; });
+      looks_before.push_back(t);
+      looks = looks_before;
+    }
     std::optional<double> event;
-    if (!program_.switches().empty()) event = switching_.search(from, looks, solution);
-    const bool ends = event || (t >= stretch_end_ && t < options_.until);
+    if (!program_.switches().empty() && t > from) event = switching_.search(from, looks, solution);
+    if (event) branch_end.reset();
+    const bool ends = event || branch_end || (t >= stretch_end_ && t < options_.until);
     if (event) t = *event;
     double begin = from;
     for (const double look : looks) {
@@ -167,9 +212,12 @@ class Runner {
     }
     sampler_.advance(t, solution);
     if (!ends || t >= options_.until || halted()) return false;
+    if (branch_end) {
+      branches_.find(t, *branch_end, solution);  // it jumps from the last place on the branch
+      t = *branch_end;
+    }
     solution.states_at(t, states_);
-    switching_.settle(t, states_);
-    follow_phases(t);
+    settle(t, branch_end.has_value());
     if (overloads_) overloads_->restart(t, states_);
     return true;
   }
@@ -214,7 +262,24 @@ class Runner {
     try {
       while (goes_on(t)) {
         const double from = t;
-        t = solver.step();
+        try {
+          t = solver.step();
+        } catch (const SolverFailure& failure) {
+          if (failure.kind == SolverFailure::Kind::step_budget) throw;
+          switch (branches_.look_ahead(t, stretch_end_, states_, solver)) {
+            case BranchWatch::Ahead::end:
+              settle(t, true);
+              if (overloads_) overloads_->restart(t, states_);
+              begin_stretch(t);
+              solver.restart(t, states_, stretch_end_, stretch_length_);
+              continue;
+            case BranchWatch::Ahead::not_yet:
+              solver.restart(t, states_, stretch_end_, stretch_end_ - t);
+              continue;
+            case BranchWatch::Ahead::nothing:
+              throw;
+          }
+        }
         const std::vector<double>& looks = sources_.looks(from, t);
         if (const auto missed = hidden.find(from, looks, solver)) {
           // The states are still those of `from`: take the step again, short enough to see.
@@ -272,8 +337,10 @@ class Runner {
   Sampler sampler_;
   SourceWatch sources_;
   double stretch_end_ = 0, stretch_length_ = 0;  ///< [s]
+  BranchWatch branches_;
   std::optional<OverloadWatch> overloads_;
   std::vector<double> states_;
+  std::vector<Diagnostic> warnings_at_start_;
 };
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <unordered_map>
 
 #include <oblique/solve/rest.h>
+#include <oblique/solve/singular_start.h>
 #include <oblique/solve/solve_error.h>
 #include <oblique/solve/switching.h>
 
@@ -18,7 +19,9 @@ std::vector<StaticReading> static_test(const Program& program, const std::string
   Switching switching(program, workspace, 1, 0, file);
   switching.start(0, states, [&] { bring_to_rest(program, workspace, 0, states, file); });
   std::vector<double> outputs(program.n_signals()), slopes(program.n_states());
-  const bool has_outputs = switching.signals(0, states.data(), outputs.data());
+  const bool has_outputs = switching.signals(0, states.data(), outputs.data()) ||
+                           (hold_singular_start(program, workspace, 0, states, 1) &&
+                            switching.signals(0, states.data(), outputs.data()));
   // What the integrators would do with their inputs: the first moment of "operate".
   for (const std::uint32_t mode : program.mode_memories())
     workspace.set_memory(mode, static_cast<double>(OperatingMode::operate));

@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: MIT
+// Ideal amplifiers where the solution of their loop ends, is lost, or is singular when the run starts.
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "../support/runs.h"
+
+namespace oblique {
+namespace {
+
+using testing::Compiled;
+using testing::failure_of;
+using ::testing::HasSubstr;
+using testing::row_values;
+using testing::run_of;
+using ::testing::StartsWith;
+
+// y³ − y = x: the lower branch ends at x = 2/(3√3), y = −1/√3, and the amplifier goes to y = 2/√3.
+const double kFold = 2 / (3 * std::sqrt(3.0));
+
+std::string cubic(const std::string& drive, const std::string& amplifier) {
+  return drive +
+         "yy = { type = \"squarer\", in = \"y\" }\nyyy = { type = \"multiplier\", in = [\"yy\", \"y\"] }\n" +
+         "y = { type = \"servo-amplifier\", in = [\"yyy\", \"-y\", \"-x\"], " + amplifier + " }\n";
+}
+
+constexpr const char* kIdeal = "initial = -1.2, gain = inf, bandwidth = inf";
+constexpr const char* kRising =
+    "one = { type = \"constant\" }\nx = { type = \"integrator\", in = \"one\", initial = -0.6 }\n";
+
+TEST(Branch, EndsWithAJumpThatIsAnEvent) {
+  const auto result = run_of(Compiled(cubic(kRising, kIdeal)), {.until = 2});
+  ASSERT_EQ(result.events.size(), 1U);
+  EXPECT_EQ(result.event_count, 1);
+  EXPECT_NEAR(result.events[0].time, 0.6 + kFold, 1e-9);  // found to 1e-10 of the run
+  EXPECT_THAT(result.events[0].what, StartsWith("jumps where its branch ends: y from -0.5773"));
+  EXPECT_THAT(result.events[0].what, HasSubstr(" to 1.1547"));
+  EXPECT_TRUE(result.warnings.empty());
+  const auto x = row_values(result, "x"), y = row_values(result, "y");
+  for (std::size_t r = 0; r < x.size(); ++r) {
+    EXPECT_NEAR(y[r] * y[r] * y[r] - y[r], x[r], 1e-12);
+    EXPECT_EQ(y[r] > 0, x[r] > kFold) << x[r];  // on either side of the jump the branch that is held
+  }
+}
+
+// ∫ y dx along each branch is 3 y⁴/4 − y²/2.
+TEST(Branch, EndsInsideTheSolversStepToo) {
+  const auto area = [](double y) { return 0.75 * std::pow(y, 4) - y * y / 2; };
+  constexpr double kFirst = -1.2210, kLast = 1.41136396430037;  // roots for x = −0.6 and 1.4
+  double first = kFirst;
+  for (int i = 0; i < 5; ++i) first -= (first * first * first - first + 0.6) / (3 * first * first - 1);
+  const double exact = area(-1 / std::sqrt(3.0)) - area(first) + area(kLast) - area(2 / std::sqrt(3.0));
+  const auto result =
+      run_of(Compiled(cubic(kRising, kIdeal) + "z = { type = \"integrator\", in = \"y\" }\n"), {.until = 2});
+  ASSERT_EQ(result.events.size(), 1U);
+  EXPECT_NEAR(result.events[0].time, 0.6 + kFold, 1e-8);
+  EXPECT_NEAR(row_values(result, "z").back(), exact, 1e-6);  // a hundred times the tolerance
+}
+
+// Jumps there and back, seven in twenty seconds, and the loop closes through no state: only the rows see it.
+TEST(Branch, OfAHysteresisIsHeldBetweenTheJumps) {
+  const auto result = run_of(Compiled(cubic("x = { type = \"time-function\", formula = \"0.6*sin(time)\" }\n",
+                                            "initial = -1, gain = inf, bandwidth = inf")),
+                             {.until = 20, .samples = 2001});
+  ASSERT_EQ(result.events.size(), 7U);
+  for (std::size_t k = 0; k < 7; ++k) {
+    const double turn = std::asin(kFold / 0.6) + static_cast<double>(k) * std::numbers::pi;
+    EXPECT_NEAR(result.events[k].time, turn, 1e-8);  // found to 1e-10 of the run
+  }
+}
+
+// y³/3 − y = x, x′ = −y: van der Pol's oscillator at infinite μ, of period 3 − 2 ln 2.
+TEST(Branch, JumpsOfARelaxationOscillationKeepItsPeriod) {
+  const double period = 3 - 2 * std::log(2.0);
+  for (const double tolerance : {1e-7, 1e-9, 1e-11}) {
+    const Compiled made(R"toml(yy = { type = "squarer", in = "y" }
+yyy = { type = "multiplier", in = ["yy", "y"] }
+y = { type = "servo-amplifier", in = ["0.3333333333333333*yyy", "-y", "-x"], initial = 2, gain = inf, bandwidth = inf }
+x = { type = "integrator", in = ["-y"], initial = 0.6666666666666666 }
+)toml");
+    const auto result = run_of(made, {.until = 5 * period + 0.1, .tolerance = tolerance});
+    ASSERT_EQ(result.events.size(), 10U);
+    // a root of the tolerance's power 2/3 a jump, from the slope that is infinite there; and 1e-10 of the run
+    EXPECT_NEAR(result.events[9].time, 5 * period, 100 * std::pow(tolerance, 2.0 / 3) + 1e-7) << tolerance;
+  }
+}
+
+TEST(Branch, KeepsTheSideThatAnAmplifierHoldsAtADoubleRoot) {
+  const auto result = run_of(Compiled(R"toml(one = { type = "constant" }
+x = { type = "integrator", in = "-one", initial = 1 }
+xx = { type = "squarer", in = "x" }
+yy = { type = "squarer", in = "y" }
+y = { type = "servo-amplifier", in = ["yy", "-xx"], initial = 1, gain = inf, bandwidth = inf }
+z = { type = "integrator", in = "y" }
+)toml"),
+                             {.until = 2});
+  const auto x = row_values(result, "x"), y = row_values(result, "y");
+  for (std::size_t r = 0; r < x.size(); ++r) EXPECT_NEAR(y[r], std::abs(x[r]), 1e-7) << x[r];  // √ε
+  EXPECT_NEAR(row_values(result, "z").back(), 1, 1e-6);  // the kink costs some steps: a hundred tolerances
+  EXPECT_TRUE(result.warnings.empty());
+}
+
+TEST(Branch, BeginsAtARootWithoutASlope) {
+  const auto result = run_of(Compiled(R"toml(one = { type = "constant" }
+u = { type = "integrator", in = "one" }
+yy = { type = "squarer", in = "y" }
+y = { type = "servo-amplifier", in = ["yy", "-u"], gain = inf, bandwidth = inf }
+z = { type = "integrator", in = "y" }
+)toml"),
+                             {.until = 2});
+  EXPECT_EQ(row_values(result, "y").front(), 0);
+  EXPECT_NEAR(row_values(result, "z").back(), 2.0 / 3 * std::pow(2.0, 1.5), 1e-6);  // a hundred tolerances
+}
+
+TEST(Branch, ThatEndsWithoutAnotherIsAnError) {
+  for (const char* const state : {"", "z = { type = \"integrator\", in = \"y\" }\n"}) {
+    const auto failure =
+        failure_of(Compiled(std::string(R"toml(u = { type = "time-function", formula = "1 - time" }
+yy = { type = "squarer", in = "y" }
+y = { type = "servo-amplifier", in = ["yy", "-u"], initial = 1, gain = inf, bandwidth = inf }
+)toml") + state),
+                   {.until = 2});
+    ASSERT_TRUE(failure);
+    EXPECT_EQ(failure->kind, SolveError::Kind::singular_loop);
+    EXPECT_NEAR(failure->time, 1, 1e-5);
+    EXPECT_THAT(failure->message,
+                HasSubstr("the algebraic loop yy → y → yy loses its solution at t = 1 s: the branch "
+                          "that it was on ends near y = "));
+    EXPECT_THAT(failure->message,
+                HasSubstr("and its amplifiers find no other rest\n  remedy: check that its equation "
+                          "can be satisfied"));
+    EXPECT_THAT(failure->message,
+                HasSubstr("or give its amplifier a finite gain and bandwidth, or a 'limit'"));
+  }
+}
+
+// x + y = 3, x y = 2 with x > y: whichever sign the second amplifier has, the pair runs away from there.
+TEST(Branch, OnWhichAmplifiersDoNotRestIsWarnedOf) {
+  const auto result = run_of(Compiled(R"toml(s = { type = "constant", value = 3 }
+p = { type = "constant", value = 2 }
+xy = { type = "multiplier", in = ["x", "y"] }
+x = { type = "servo-amplifier", in = ["x", "y", "-s"], initial = 2, gain = inf, bandwidth = inf }
+y = { type = "servo-amplifier", in = ["-xy", "p"], initial = 1, gain = inf, bandwidth = inf }
+)toml"));
+  ASSERT_EQ(result.warnings.size(), 1U);
+  EXPECT_EQ(
+      to_string(result.warnings[0]),
+      "d.toml: from t = 0 s on the equations of 'x', 'y' are solved where a machine would not rest: its "
+      "amplifiers run away from x = 2\n  remedy: turn the signs at the amplifier's inputs about, give it "
+      "another 'initial', or a finite gain and bandwidth to see what a machine does");
+}
+
+// Singular starts: Bessel's equation of order 0, x y″ + y′ + x y = 0, from x = 0, where y″ = −1/2.
+
+constexpr double kJ0 = -0.24593576445134832, kJ1 = 0.04347274616886144;  // of 10; Abramowitz and Stegun, 9.4
+
+void expect_bessel(const std::string& blocks, const std::string& second) {
+  const auto result = run_of(Compiled(blocks), {.until = 10});
+  EXPECT_NEAR(row_values(result, "y").back(), kJ0, 1e-6);  // a hundred tolerances
+  EXPECT_NEAR(row_values(result, "v").back(), -kJ1, 1e-6);
+  if (!second.empty()) {
+    EXPECT_NEAR(row_values(result, second).front(), -0.5, 1e-9);  // the limit of two moments
+  }
+  EXPECT_TRUE(result.warnings.empty());
+}
+
+TEST(SingularStart, OfBesselsEquationSolvedForItsSecondDerivative) {
+  for (const char* const x : {"one = { type = \"constant\" }\nx = { type = \"integrator\", in = \"one\" }\n",
+                              "x = { type = \"ramp\" }\n"}) {
+    expect_bessel(std::string(x) + R"toml(xa = { type = "multiplier", in = ["x", "a"] }
+xy = { type = "multiplier", in = ["x", "y"] }
+a = { type = "servo-amplifier", in = ["xa", "v", "xy"], gain = inf, bandwidth = inf }
+v = { type = "integrator", in = "a" }
+y = { type = "integrator", in = "v", initial = 1 }
+)toml",
+                  "a");
+  }
+}
+
+TEST(SingularStart, OfBesselsEquationWithADivider) {
+  expect_bessel(R"toml(x = { type = "ramp" }
+q = { type = "divider", numerator = "v", denominator = "x", gain = inf, bandwidth = inf }
+a = { type = "summer", in = ["-q", "-y"] }
+v = { type = "integrator", in = "a" }
+y = { type = "integrator", in = "v", initial = 1 }
+)toml",
+                "a");
+}
+
+TEST(SingularStart, OfBesselsEquationAsAMomentum) {
+  expect_bessel(R"toml(one = { type = "constant" }
+x = { type = "integrator", in = "one" }
+xv = { type = "multiplier", in = ["x", "v"] }
+v = { type = "servo-amplifier", in = ["xv", "-p"], gain = inf, bandwidth = inf }
+xy = { type = "multiplier", in = ["x", "y"] }
+p = { type = "integrator", in = ["-xy"] }
+y = { type = "integrator", in = "v", initial = 1 }
+)toml",
+                "");
+}
+
+// At x = 1e-9 nothing is singular, but the decay 1/x becomes slower by powers of ten from step to step, and
+// an old Jacobian would hide it.
+TEST(SingularStart, NextToTheSingularityIsAsGood) {
+  for (const double x : {1e-3, 1e-6, 1e-9, 1e-12}) {
+    const Compiled made(fmt::format(R"toml(one = {{ type = "constant" }}
+x = {{ type = "integrator", in = "one", initial = {} }}
+xa = {{ type = "multiplier", in = ["x", "a"] }}
+xy = {{ type = "multiplier", in = ["x", "y"] }}
+a = {{ type = "servo-amplifier", in = ["xa", "v", "xy"], gain = inf, bandwidth = inf }}
+v = {{ type = "integrator", in = "a", initial = {} }}
+y = {{ type = "integrator", in = "v", initial = {} }}
+)toml",
+                                    x, -x / 2 + x * x * x / 16, 1 - x * x / 4));
+    // two terms of J0 and J1 leave x⁴/64; a hundred tolerances
+    EXPECT_NEAR(row_values(run_of(made, {.until = 10 - x}), "y").back(), kJ0, 1e-6) << x;
+  }
+}
+
+// θ″ + 2 θ′/ξ + θⁿ = 0 of Lane and Emden, θ″(0) = −1/3: sin ξ/ξ for n = 1, 1/√(1 + ξ²/3) for n = 5.
+TEST(SingularStart, OfAStarOfLaneAndEmden) {
+  const auto star = [](const std::string& power, const std::string& blocks) {
+    return run_of(Compiled(R"toml(x = { type = "ramp" }
+xa = { type = "multiplier", in = ["x", "a"] }
+xt = { type = "multiplier", in = ["x", ")toml" +
+                           power + R"toml("] }
+a = { type = "servo-amplifier", in = ["xa", "2*v", "xt"], gain = inf, bandwidth = inf }
+v = { type = "integrator", in = "a" }
+w = { type = "integrator", in = "v", initial = 1 }
+)toml" + blocks),
+                  {.until = 3});
+  };
+  const auto first = star("w", "");
+  EXPECT_NEAR(row_values(first, "w").back(), std::sin(3.0) / 3, 1e-6);  // a hundred tolerances
+  EXPECT_NEAR(row_values(first, "a").front(), -1.0 / 3, 1e-9);
+  const auto fifth = star("t5", R"toml(t2 = { type = "squarer", in = "w" }
+t4 = { type = "squarer", in = "t2" }
+t5 = { type = "multiplier", in = ["t4", "w"] }
+)toml");
+  EXPECT_NEAR(row_values(fifth, "w").back(), 0.5, 1e-6);
+}
+
+// x + s y = 1, s x + y = 1 from s = 1, where only x + y is determined: x = y = 1/2 by continuity.
+TEST(SingularStart, OfAPairThatHasNoRankThere) {
+  const auto result = run_of(Compiled(R"toml(one = { type = "constant" }
+s = { type = "integrator", in = "one", initial = 1 }
+sx = { type = "multiplier", in = ["s", "x"] }
+sy = { type = "multiplier", in = ["s", "y"] }
+x = { type = "servo-amplifier", in = ["x", "sy", "-one"], gain = inf, bandwidth = inf }
+y = { type = "servo-amplifier", in = ["sx", "y", "-one"], gain = inf, bandwidth = inf }
+z = { type = "integrator", in = "x" }
+)toml"));
+  EXPECT_NEAR(row_values(result, "x").front(), 0.5, 1e-9);
+  EXPECT_NEAR(row_values(result, "z").back(), std::log(1.5), 1e-6);  // a hundred tolerances
+}
+
+TEST(SingularStart, WithoutALimitIsRefused) {
+  // x q = 1 at x = 0: a pole
+  const auto failure = failure_of(Compiled(R"toml(one = { type = "constant" }
+x = { type = "ramp" }
+q = { type = "divider", numerator = "one", denominator = "x", gain = inf, bandwidth = inf }
+)toml"));
+  ASSERT_TRUE(failure);
+  EXPECT_EQ(failure->kind, SolveError::Kind::singular_loop);
+  EXPECT_EQ(failure->time, 0);
+}
+
+}  // namespace
+}  // namespace oblique
