@@ -155,6 +155,12 @@ TEST(ParseDiagram, ChecksMachineAndRun) {
   EXPECT_THAT(diagram_message("[run]\nsamples = inf\n"), HasSubstr("'samples' of [run] is inf"));
   EXPECT_THAT(diagram_message("[run]\nmethod = \"adam\"\n"),
               HasSubstr("there is no method 'adam'\n  remedy: did you mean 'adams'?"));
+  EXPECT_EQ(diagram_message("[run]\nabsolute_tolerance = 0\n"),
+            "d.toml:5:22: 'absolute_tolerance' of [run] is 0 machine unit; expected a finite number above 0 "
+            "[machine unit]");
+  EXPECT_EQ(diagram_message("[run]\nmax_step = \"-1 ms\"\n"),
+            "d.toml:5:12: 'max_step' of [run] is -0.001 s; expected a finite number above 0 [s]");
+  EXPECT_THAT(diagram_message("[run]\nmax_step = inf\n"), HasSubstr("'max_step' of [run] is inf s"));
   EXPECT_THAT(diagram_message("[run]\nmax_steps = 0\n"), HasSubstr("'max_steps' of [run] is 0"));
 }
 

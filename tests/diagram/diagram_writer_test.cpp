@@ -158,6 +158,8 @@ Diagram any_diagram() {
       *rc::gen::element(IntegrationMethod::automatic, IntegrationMethod::bdf, IntegrationMethod::adams);
   d.run.samples = *rc::gen::inRange(2, 1'000'000);
   d.run.max_steps = *rc::gen::inRange(1L, 1'000'000'000'000L);
+  if (*rc::gen::arbitrary<bool>()) d.run.absolute_tolerance = *positive_number();
+  if (*rc::gen::arbitrary<bool>()) d.run.max_step = *positive_number();
   for (const std::string& name :
        *small(rc::gen::nonEmpty(rc::gen::container<std::set<std::string>>(identifier())))) {
     d.blocks.push_back(any_block(name));
@@ -206,6 +208,8 @@ TEST(WriteDiagram, DiagramsThatDifferAnywhereAreNotEqual) {
   EXPECT_TRUE(differs([](Diagram& o) { o.machine.inverting = true; }));
   EXPECT_TRUE(differs([](Diagram& o) { o.run.method = IntegrationMethod::bdf; }));
   EXPECT_TRUE(differs([](Diagram& o) { o.run.samples = 2; }));
+  EXPECT_TRUE(differs([](Diagram& o) { o.run.absolute_tolerance = 2; }));
+  EXPECT_TRUE(differs([](Diagram& o) { o.run.max_step = 2; }));
   EXPECT_TRUE(differs([](Diagram& o) { o.blocks[0].name = "x"; }));
   EXPECT_TRUE(differs([](Diagram& o) { o.blocks[0].label = "x"; }));
   EXPECT_TRUE(differs([](Diagram& o) { o.blocks[0].settings[0].value.number = 2; }));

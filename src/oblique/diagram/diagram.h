@@ -45,6 +45,9 @@ struct RunSettings {
   /// Absolute tolerances of single states [machine unit]: of a block (a composite stands for all in it) by
   /// its path.
   std::vector<std::pair<std::string, double>> tolerances;
+  std::optional<double>
+      absolute_tolerance;          ///< [machine unit] of all other states; else it follows `tolerance`
+  std::optional<double> max_step;  ///< [s] the longest step of the run
   bool operator==(const RunSettings&) const = default;
 };
 

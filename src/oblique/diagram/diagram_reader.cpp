@@ -109,6 +109,8 @@ class DiagramReader {
                       "a number above 0 and below 1, such as 1e-8");
       }
     }
+    run.absolute_tolerance = above_zero(reader, "absolute_tolerance", "machine unit");
+    run.max_step = above_zero(reader, "max_step", "s");
     read_method(reader);
     if (const Value* const own = reader.table("tolerances")) {
       for (const Entry& entry : own->entries) {
@@ -130,6 +132,14 @@ class DiagramReader {
     run.max_steps = whole(reader, "max_steps", 1, kLargestWhole).value_or(run.max_steps);
     run.settle = reader.boolean("settle").value_or(true);
     reader.finish();
+  }
+
+  static std::optional<double> above_zero(TableReader& reader, std::string_view key, std::string_view unit) {
+    const auto number = reader.quantity(key, unit);
+    if (!number || (*number > 0 && std::isfinite(*number))) return number;
+    reader.report(key, fmt::format("'{}' of [run] is {} {}", key, *number, unit),
+                  fmt::format("a finite number above 0 [{}]", unit));
+    return std::nullopt;
   }
 
   static std::optional<long> whole(TableReader& reader, std::string_view key, double least, double most) {

@@ -139,6 +139,9 @@ std::string write_diagram(const Diagram& diagram) {
                              {{}, "method", toml_string(method_name(run.method))},
                              {{}, "samples", fmt::format("{}", run.samples)},
                              {{}, "max_steps", fmt::format("{}", run.max_steps)}};
+  if (run.absolute_tolerance)
+    settings.push_back({{}, "absolute_tolerance", fmt::format("{}", *run.absolute_tolerance)});
+  if (run.max_step) settings.push_back({{}, "max_step", fmt::format("{}", *run.max_step)});
   if (!run.settle) settings.push_back({{}, "settle", "false"});
   if (!run.tolerances.empty()) {
     std::string value = "{ ";
