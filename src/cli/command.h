@@ -41,6 +41,7 @@ struct RunRequest {
   bool events = false;
   bool static_test = false;
   bool halt_on_overload = false;
+  bool trust = false;  ///< estimate the errors
 };
 ExitStatus run_diagram(const Session& session, const RunRequest& request);
 

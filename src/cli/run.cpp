@@ -122,6 +122,7 @@ void check_request(const RunRequest& request) {
                             : !request.save.empty()    ? "--save"
                             : !request.from.empty()    ? "--from"
                             : request.events           ? "--events"
+                            : request.trust            ? "--trust"
                             : !request.plot.empty()    ? "--plot"
                                                        : nullptr;
   if (other == nullptr) return;
@@ -129,6 +130,35 @@ void check_request(const RunRequest& request) {
                              fmt::format("--static-test runs nothing, so {} has nothing to work on", other),
                              "one of the two",
                              {}});
+}
+
+/// The estimate of --trust, as remarks.
+std::string trust_text(const Trust& trust) {
+  if (trust.checks.empty())
+    return fmt::format("trust: no estimate of the errors: {}\n",
+                       trust.failure.empty() ? "interrupted" : trust.failure);
+  std::string text = "trust: errors of the outputs, from";
+  for (std::size_t k = 0; k < trust.checks.size(); ++k) {
+    const Trust::Check& check = trust.checks[k];
+    text += fmt::format("{} a run at a tolerance of {:.3g} by {}", k == 0 ? "" : " and", check.tolerance,
+                        method_name(check.method));
+  }
+  Table table({"output", "size", "largest error", "digits", "digits at the end", "no digit from [s]"});
+  for (const OutputError& output : trust.outputs) {
+    table.add({output.name, short_number(output.size), fmt::format("{:.1e}", output.largest),
+               fmt::format("{}", output.digits(output.largest)),
+               fmt::format("{}", output.digits(output.at_end)),
+               output.lost ? short_number(*output.lost) : ""});
+  }
+  text += "\n" + table.text();
+  if (trust.event_shift > 0)
+    text += fmt::format("trust: the times of events differ by {:.1e} s at most\n", trust.event_shift);
+  if (trust.events_part) {
+    text += fmt::format("warning: from t = {:.6g} s on the runs do not have the same events\n",
+                        *trust.events_part);
+  }
+  if (!trust.failure.empty()) text += fmt::format("trust: one more run ended early: {}\n", trust.failure);
+  return text;
 }
 
 void note_overloads(const Program& program, const Run& run) {
@@ -178,6 +208,7 @@ ExitStatus run_diagram(const Session& session, const RunRequest& request) {
   }
   RunOptions options = options_of(diagram.run);
   options.halt_on_overload = request.halt_on_overload;
+  options.trust = request.trust;
   options.watch_overloads = diagram.machine.profile != "ideal";
   if (!request.from.empty()) {
     options.from = parse_run_state(read_file(request.from), request.from);
@@ -231,13 +262,14 @@ ExitStatus run_diagram(const Session& session, const RunRequest& request) {
     note(fmt::format("{}; --events lists them\n",
                      count(static_cast<std::size_t>(result.event_count), "event", "events")));
   }
-  constexpr double kCoarseForAdams = 1e-5;
+  constexpr double kCoarseForAdams = 1e-3;
   if (result.method.method == IntegrationMethod::adams && options.tolerance > kCoarseForAdams) {
-    note(fmt::format("warning: at a tolerance of {} Adams lets oscillations grow; 1e-5 or less is safe\n",
+    note(fmt::format("warning: at a tolerance of {} Adams lets oscillations grow; 1e-3 or less is safe\n",
                      options.tolerance));
   }
   for (const Diagnostic& warning : result.warnings) note("warning: " + to_string(warning) + "\n");
   note_overloads(program, result);
+  if (result.trust) note(trust_text(*result.trust));
   if (result.halted) return ExitStatus::no;
   return request.check ? report_expectations(diagram, result) : ExitStatus::done;
 }

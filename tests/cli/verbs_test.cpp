@@ -87,6 +87,17 @@ TEST_F(Verbs, RunChecksExpectations) {
   EXPECT_THAT(bad.out, HasSubstr("FAILED  quotient at 0 = 0.5, expected 0.6 ± 2e-08"));
 }
 
+TEST_F(Verbs, RunTellsHowManyDigitsStand) {
+  const Outcome outcome = oblique("run diagrams/lessons/damped-oscillator.toml --trust --check");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.error,
+              HasSubstr("trust: errors of the outputs, from a run at a tolerance of 1e-10 by adams and a "
+                        "run at a tolerance of 1e-10 by bdf\n"));
+  EXPECT_THAT(outcome.error, HasSubstr("digits at the end"));
+  EXPECT_THAT(outcome.output, Not(HasSubstr("trust")));
+  EXPECT_THAT(oblique("run diagrams/lessons/damped-oscillator.toml").error, Not(HasSubstr("trust")));
+}
+
 TEST_F(Verbs, RunTakesAnotherEndAndUnits) {
   const Outcome outcome =
       oblique("run diagrams/lessons/circle.toml --until '500 ms' -o " + file("circle.csv"));

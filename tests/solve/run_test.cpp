@@ -157,5 +157,45 @@ TEST(Run, CountsItsWork) {
   EXPECT_GT(work.last_step, 0);
 }
 
+// x = e^-t with an absolute tolerance far above it is not looked at; with the usual one it is right.
+TEST(Run, HoldsStatesToTheAbsoluteToleranceOfTheDiagram) {
+  const std::string decay = "x = { type = \"integrator\", in = [\"-x\"], initial = 1 }\n";
+  const Compiled coarse(decay, "[run]\nabsolute_tolerance = 10\ntolerance = 1e-3\n");
+  const Compiled usual(decay, "[run]\ntolerance = 1e-3\n");
+  const oblique::Run a = run(coarse.program, coarse.flat, options_of(coarse.diagram.run));
+  const oblique::Run b = run(usual.program, usual.flat, options_of(usual.diagram.run));
+  EXPECT_LT(2 * a.statistics.steps, b.statistics.steps);
+  EXPECT_NEAR(testing::row_values(b, "x").back(), std::exp(-1.0), 1e-3);
+  EXPECT_GT(std::abs(testing::row_values(a, "x").back() - std::exp(-1.0)),
+            10 * std::abs(testing::row_values(b, "x").back() - std::exp(-1.0)));
+}
+
+TEST(Run, TakesNoLongerStepsThanAskedFor) {
+  const Compiled made("x = { type = \"integrator\", in = [\"-x\"], initial = 1 }\n",
+                      "[run]\nmax_step = 1e-3\n");
+  EXPECT_GE(run(made.program, made.flat, options_of(made.diagram.run)).statistics.steps, 1000);
+}
+
+// Without states and with two rows there is one step, in which a thousand looks meet few of the 2000
+// crossings.
+TEST(Run, TakesNoLongerStepsThanAskedForWithoutStates) {
+  const std::string blocks =
+      "s = { type = \"time-function\", formula = \"sin(2*pi*1000*time + 1)\" }\n"
+      "is_above = { type = \"comparator\", in = \"s\" }\n";
+  const Compiled made(blocks, "[run]\nsamples = 2\nmax_step = 1e-4\n");
+  EXPECT_EQ(run(made.program, made.flat, options_of(made.diagram.run)).event_count, 2000);
+}
+
+TEST(Run, RefusesStepsThatNoBudgetHolds) {
+  for (const char* const blocks :
+       {"x = { type = \"integrator\", in = [\"-x\"], initial = 1 }\n", "x = { type = \"constant\" }\n"}) {
+    const Compiled made(blocks, "[run]\nmax_step = 1e-300\n");
+    EXPECT_EQ(
+        testing::message_of<SolveError>([&] { run(made.program, made.flat, options_of(made.diagram.run)); }),
+        "d.toml: steps of 1e-300 s at most would be more than 10000000 over a run of 1 s\n"
+        "  remedy: raise max_step or max_steps in [run], or end the run earlier with --until");
+  }
+}
+
 }  // namespace
 }  // namespace oblique

@@ -58,6 +58,7 @@ RecordedRun run_recorded(const PatchedMechanism& patched, const std::string& wha
   how.on_sample = [&](double t, std::span<const double> states, std::span<const double> memories) {
     recorded.instants.push_back({t, {states.begin(), states.end()}, {memories.begin(), memories.end()}});
   };
+  how.on_restart = [&] { recorded.instants.clear(); };
   try {
     recorded.run = run(patched.program, patched.flat, how);
   } catch (const SolveError& error) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -14,7 +15,8 @@ struct SolverSettings {
   double relative_tolerance = 1e-8;
   double absolute_tolerance = 1e-8;  ///< [machine unit]
   long max_steps = 10'000'000;
-  bool adams = false;                       ///< Adams–Moulton formulas in place of BDF
+  double max_step = std::numeric_limits<double>::infinity();  ///< [s] the longest step
+  bool adams = false;                                         ///< Adams–Moulton formulas in place of BDF
   std::vector<double> own_tolerances = {};  ///< [machine unit] of each state, where not all have that one
 };
 
@@ -41,8 +43,9 @@ struct SolverFailure {
   int code = 0;     ///< CVODES' return value
 };
 
-/// CVODES with variable-order BDF (or Adams), Newton's method, and KLU on the analytic Jacobian. Owns all of
-/// SUNDIALS' memory.
+/// CVODES with variable-order BDF (or Adams), Newton's method, and KLU on the analytic Jacobian. Errors are
+/// measured by the state that is worst beside its tolerance, so that no number of other states hides it. Owns
+/// all of SUNDIALS' memory.
 ///
 /// CVODES' own clock starts at zero with every start, so that a stretch far shorter than what the time itself
 /// resolves late in a run keeps its length.

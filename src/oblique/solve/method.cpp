@@ -2,74 +2,99 @@
 #include <oblique/solve/method.h>
 
 #include <algorithm>
+#include <cmath>
 #include <complex>
+#include <limits>
 
 #include <fmt/format.h>
-#include <Eigen/Eigenvalues>
 
+#include <oblique/solve/coupled_modes.h>
 #include <oblique/solve/rest.h>
 
 namespace oblique {
 namespace {
 
-constexpr std::size_t kMostStatesForEigenvalues = 100;
-constexpr double kStiff =
-    100;  ///< ratio of the fastest rate to the slowest from which decays are left to BDF
+/// A decay is left to BDF from this ratio of its rate to that of what moves beside it.
+constexpr double kStiff = 100;
 
-/// Time constants of the fastest decay in a run from which it is left to BDF: Adams takes a step or more for
-/// each.
-constexpr double kLongRun = 1e4;
+/// Time constants of the fastest decay in a run: below the first Adams' formulas pass it in a few hundred
+/// steps, as stiff as it may be; from the second it is left to BDF even where nothing else has a rate, for
+/// Adams takes a step or more for each.
+constexpr double kShortRun = 300, kLongRun = 1e4;
 
-Eigen::VectorXcd eigenvalues_at(const Program& program, Workspace& workspace,
-                                std::span<const double> states) {
-  const SparsePattern& pattern = program.jacobian_pattern();
-  std::vector<double> values(pattern.entries());
-  if (!program.jacobian(0, states.data(), values.data(), workspace)) return {};
-  const auto n = static_cast<Eigen::Index>(program.n_states());
-  Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(n, n);
-  for (std::size_t column = 0; column < pattern.size(); ++column) {
-    for (auto k = pattern.column_starts[column]; k < pattern.column_starts[column + 1]; ++k) {
-      const auto entry = static_cast<std::size_t>(k);
-      dense(pattern.rows[entry], static_cast<Eigen::Index>(column)) = values[entry];
-    }
+/// What would move by less than this part of itself in the whole run does not move: an integrator, whose
+/// eigenvalue is zero, is no slow decay.
+constexpr double kStill = 1e-2;
+
+/// Of the magnitude of an eigenvalue: a mode of more damping is over after two turns, and a decay.
+constexpr double kDamped = 0.3;
+
+/// The rates of the equations linearised [1/s]; 0 where there is none of the kind.
+struct Rates {
+  double fastest_decay = 0, slowest_decay = 0;
+  double lasting = 0;       ///< the fastest of what oscillates or grows
+  bool oscillates = false;  ///< that one
+};
+
+void count(std::complex<double> mode, double span, Rates& rates) {
+  const double rate = std::abs(mode);
+  if (rate * span < kStill) return;
+  if (mode.real() < -kDamped * rate) {
+    rates.fastest_decay = std::max(rates.fastest_decay, rate);
+    rates.slowest_decay = rates.slowest_decay == 0 ? rate : std::min(rates.slowest_decay, rate);
+  } else if (rate > rates.lasting) {
+    rates.lasting = rate;
+    rates.oscillates = std::abs(mode.imag()) > std::abs(mode.real());
   }
-  if (!dense.allFinite()) return {};
-  return Eigen::EigenSolver<Eigen::MatrixXd>(dense, false).eigenvalues();
 }
 
-MethodChoice from_eigenvalues(const Eigen::VectorXcd& eigenvalues, double until) {
+MethodChoice from_rates(const Rates& rates, double span) {
   using Method = IntegrationMethod;
-  if (eigenvalues.size() == 0) return {Method::bdf, "the equations have no linearisation at the start"};
-  std::complex<double> fastest = 0;
-  double slowest = 0;
-  for (const std::complex<double>& value : eigenvalues) {
-    if (std::abs(value) > std::abs(fastest)) fastest = value;
+  const double constants = rates.fastest_decay * span;
+  // What oscillates or grows asks for short steps all the time; slow decays do so only where nothing else
+  // moves.
+  if (rates.lasting > 0 && rates.fastest_decay > kStiff * rates.lasting && constants > kShortRun) {
+    return {Method::bdf, fmt::format("a decay of {:.3g} 1/s at the start, beside what moves at {:.3g} 1/s",
+                                     rates.fastest_decay, rates.lasting)};
   }
-  slowest = std::abs(fastest);
-  for (const std::complex<double>& value : eigenvalues) {
-    if (std::abs(value) > 0) slowest = std::min(slowest, std::abs(value));
+  if (rates.lasting == 0 && rates.fastest_decay > kStiff * rates.slowest_decay && constants > kShortRun) {
+    return {Method::bdf, fmt::format("decays from {:.3g} to {:.3g} 1/s at the start", rates.slowest_decay,
+                                     rates.fastest_decay)};
   }
-  if (std::abs(fastest.imag()) >= std::abs(fastest.real()) && std::abs(fastest) > 0) {
+  if (rates.lasting == 0 && constants > kLongRun) {
+    return {Method::bdf, fmt::format("a decay of {:.3g} 1/s at the start of a run of {:.3g} s",
+                                     rates.fastest_decay, span)};
+  }
+  if (rates.oscillates && rates.lasting > rates.fastest_decay) {
     return {Method::adams,
-            fmt::format("the fastest mode at the start oscillates, at {:.3g} rad/s", std::abs(fastest))};
-  }
-  if (fastest.real() < 0 && std::abs(fastest) > kStiff * slowest) {
-    return {Method::bdf,
-            fmt::format("decays from {:.3g} to {:.3g} 1/s at the start", slowest, std::abs(fastest))};
-  }
-  // Beside what does not move by itself (an integrator that is fed, the clock) a decay may be the only rate
-  // there is.
-  if (fastest.real() < 0 && std::abs(fastest) * until > kLongRun) {
-    return {Method::bdf,
-            fmt::format("a decay of {:.3g} 1/s at the start of a run of {:.3g} s", std::abs(fastest), until)};
+            fmt::format("the fastest mode at the start oscillates, at {:.3g} rad/s", rates.lasting)};
   }
   return {Method::adams, "nothing is fast at the start"};
 }
 
+MethodChoice from_linearisation(const Program& program, Workspace& workspace, double t,
+                                std::span<const double> states, double span) {
+  const SparsePattern& pattern = program.jacobian_pattern();
+  std::vector<double> values(pattern.entries());
+  const auto unknown = [](std::string why) { return MethodChoice{IntegrationMethod::bdf, std::move(why)}; };
+  if (!program.jacobian(t, states.data(), values.data(), workspace))
+    return unknown("the equations have no linearisation at the start");
+  Rates rates;
+  for (const CoupledModes& group : coupled_modes(pattern, values, std::vector<bool>(pattern.size(), true))) {
+    if (group.eigenvalues.empty() && group.states.size() > 1) {
+      return unknown(fmt::format("{} states that act on each other, too many to look for fast ones",
+                                 group.states.size()));
+    }
+    if (group.eigenvalues.empty()) return unknown("the equations have no linearisation at the start");
+    for (const std::complex<double>& mode : group.eigenvalues) count(mode, span, rates);
+  }
+  return from_rates(rates, span);
+}
+
 }  // namespace
 
-MethodChoice choose_method(IntegrationMethod asked, const Program& program, Workspace& workspace,
-                           std::span<const double> start, double until) {
+MethodChoice choose_method(IntegrationMethod asked, const Program& program, Workspace& workspace, double t,
+                           std::span<const double> states, double span) {
   if (asked != IntegrationMethod::automatic) return {asked, "as the diagram asks"};
   const std::size_t servos = rest_states(program).size();
   if (servos > 0) {
@@ -78,11 +103,7 @@ MethodChoice choose_method(IntegrationMethod asked, const Program& program, Work
         fmt::format("{} {} faster than what {} {}", servos, servos == 1 ? "servo loop is" : "servo loops are",
                     servos == 1 ? "it" : "they", servos == 1 ? "follows" : "follow")};
   }
-  if (program.n_states() > kMostStatesForEigenvalues) {
-    return {IntegrationMethod::bdf,
-            fmt::format("{} states, too many to look for fast ones", program.n_states())};
-  }
-  return from_eigenvalues(eigenvalues_at(program, workspace, start), until);
+  return from_linearisation(program, workspace, t, states, span);
 }
 
 }  // namespace oblique

@@ -16,10 +16,12 @@ struct MethodChoice {
 };
 
 /// Chooses between BDF and Adams where the diagram leaves it open (`automatic`), from the equations
-/// linearised at the start: BDF for servo loops, for decays that are fast beside others or beside the time
-/// that the run lasts (`until` [s]), and for many states; Adams where the fastest mode oscillates or nothing
-/// is fast. Adams keeps the amplitude of an oscillation; BDF takes long steps past a decay.
-MethodChoice choose_method(IntegrationMethod asked, const Program& program, Workspace& workspace,
-                           std::span<const double> start, double until);
+/// linearised at the start (t, states): BDF for servo loops, for decays that are fast beside what oscillates
+/// or grows, and where nothing does so, beside slower decays or beside the time that the run lasts (`span`
+/// [s]); and for more states that act on each other than it can look at. Adams in all other cases: it keeps
+/// the amplitude of an oscillation; BDF takes long steps past a decay. Eigenvalues at zero are integrators
+/// and decide nothing.
+MethodChoice choose_method(IntegrationMethod asked, const Program& program, Workspace& workspace, double t,
+                           std::span<const double> states, double span);
 
 }  // namespace oblique

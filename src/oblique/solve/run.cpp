@@ -12,6 +12,7 @@
 #include <oblique/solve/branch_end.h>
 #include <oblique/solve/hidden_motion.h>
 #include <oblique/solve/phase_clock.h>
+#include <oblique/solve/refinement.h>
 #include <oblique/solve/rest.h>
 #include <oblique/solve/run_warnings.h>
 #include <oblique/solve/sampler.h>
@@ -43,10 +44,13 @@ class SwitchedSystem final : public OdeSystem {
 /// One run from its start to its end: smooth stretches, and events between them.
 class Runner {
  public:
-  Runner(const Program& program, const FlatDiagram& diagram, const RunOptions& options)
+  Runner(const Program& program, const FlatDiagram& diagram, const RunOptions& options,
+         const Refinement& refinement, bool may_end_unseen)
       : program_(program),
         diagram_(diagram),
         options_(options),
+        refinement_(refinement),
+        may_end_unseen_(may_end_unseen),
         begin_(options.from ? options.from->time : 0),
         workspace_(program),
         switching_(program, workspace_, options.until - begin_, options.tolerance, diagram.file),
@@ -89,6 +93,11 @@ class Runner {
       sampler_.result.halted = overloads_->halted();
     }
     return std::move(sampler_.result);
+  }
+
+  /// After `run`, also one that failed: growth that it did not see.
+  std::span<const UnseenGrowth> unseen() const {
+    return watch_ ? std::span<const UnseenGrowth>(watch_->found()) : std::span<const UnseenGrowth>();
   }
 
  private:
@@ -222,6 +231,14 @@ class Runner {
     return true;
   }
 
+  /// Whether growth was not seen so long ago that the run, which must be made again, is not worth its end.
+  bool ends_unseen() {
+    constexpr long kMore = 1000;
+    if (!may_end_unseen_ || watch_->found().empty()) return false;
+    if (steps_unseen_ == 0) steps_unseen_ = steps_;
+    return steps_ > 2 * steps_unseen_ + kMore;
+  }
+
   bool halted() const { return overloads_ && overloads_->halted(); }
 
   bool goes_on(double t) {
@@ -229,36 +246,22 @@ class Runner {
     return t < options_.until && !halted() && !(options_.interrupted && options_.interrupted());
   }
 
-  SolverSettings solver_settings(IntegrationMethod method) const {
-    SolverSettings settings;
-    settings.relative_tolerance = options_.tolerance;
-    settings.absolute_tolerance = kAbsoluteTolerance * options_.tolerance;
-    settings.max_steps = options_.max_steps;
-    settings.adams = method == IntegrationMethod::adams;
-    const std::vector<State>& states = program_.states();
-    if (std::any_of(states.begin(), states.end(), [](const State& s) { return s.tolerance > 0; })) {
-      for (const State& state : states)
-        settings.own_tolerances.push_back(state.tolerance > 0 ? state.tolerance
-                                                              : settings.absolute_tolerance);
-    }
-    return settings;
-  }
-
   void integrate() {
     const MethodChoice method =
-        choose_method(options_.method, program_, workspace_, states_, options_.until - begin_);
+        choose_method(options_.method, program_, workspace_, begin_, states_, options_.until - begin_);
     sampler_.result.method = method;
+    settings_ = solver_settings(program_.states(), options_, method.method, refinement_);
     double t = begin_;
     begin_stretch(t);
-    const SolverSettings settings = solver_settings(method.method);
-    CvodesSolver solver(system_, t, states_, stretch_end_, stretch_length_, settings);
-    HiddenMotion hidden(system_, settings.relative_tolerance,
-                        settings.own_tolerances.empty()
-                            ? std::vector<double>(states_.size(), settings.absolute_tolerance)
-                            : settings.own_tolerances);
+    CvodesSolver solver(system_, t, states_, stretch_end_, stretch_length_, settings_);
+    watch_.emplace(system_, settings_);
+    watch_->restart(t, states_);
+    HiddenMotion hidden(system_, settings_.relative_tolerance,
+                        settings_.own_tolerances.empty()
+                            ? std::vector<double>(states_.size(), settings_.absolute_tolerance)
+                            : settings_.own_tolerances);
     double limit = kNoLimit, limited_until = begin_;
     constexpr long kStepsPerReport = 256;
-    long steps = 0;
     try {
       while (goes_on(t)) {
         const double from = t;
@@ -293,14 +296,18 @@ class Runner {
         if (finish_step(from, t, looks, solver)) {
           begin_stretch(t);
           solver.restart(t, states_, stretch_end_, stretch_length_);
+          watch_->restart(t, states_);
         } else {
           std::copy(solver.states().begin(), solver.states().end(), states_.begin());
+          watch_->advance(t, states_);
         }
         if (limit < kNoLimit && t > limited_until) {
           limit = limit > options_.until - begin_ ? kNoLimit : 2 * limit;
           solver.limit_step(limit);
         }
-        if (options_.progress && ++steps % kStepsPerReport == 0)
+        ++steps_;
+        if (ends_unseen()) break;
+        if (options_.progress && steps_ % kStepsPerReport == 0)
           options_.progress((t - begin_) / (options_.until - begin_));
       }
     } catch (const SolverFailure& failure) {
@@ -309,10 +316,11 @@ class Runner {
     sampler_.result.statistics = solver.statistics();
   }
 
-  /// A diagram without states follows the time alone: steps as long as the rows are apart.
+  /// A diagram without states follows the time alone: steps as long as the rows are apart, or shorter where
+  /// that is asked for.
   void follow() {
     const StandingStates no_states({});
-    const double step = (options_.until - begin_) / (options_.samples - 1);
+    const double step = std::min((options_.until - begin_) / (options_.samples - 1), options_.max_step);
     double t = begin_;
     begin_stretch(t);
     while (goes_on(t)) {
@@ -329,6 +337,8 @@ class Runner {
   const Program& program_;
   const FlatDiagram& diagram_;
   const RunOptions& options_;
+  const Refinement& refinement_;
+  bool may_end_unseen_;
   double begin_, end_ = 0;  ///< [s]
   Workspace workspace_;
   Switching switching_;
@@ -341,7 +351,58 @@ class Runner {
   std::optional<OverloadWatch> overloads_;
   std::vector<double> states_;
   std::vector<Diagnostic> warnings_at_start_;
+  SolverSettings settings_;
+  std::optional<GrowthWatch> watch_;
+  long steps_ = 0, steps_unseen_ = 0;  ///< in all, and until growth was first unseen
 };
+
+/// Runs, and where states grow out of what the tolerance hides, anew and finer. Where no run is fine enough,
+/// the last one says so.
+Run run_seeing(const Program& program, const FlatDiagram& diagram, const RunOptions& options) {
+  constexpr int kMostTries = 5;
+  Refinement refinement;
+  for (int k = 0; k < kMostTries; ++k) {
+    if (k > 0 && options.on_restart) options.on_restart();
+    Runner runner(program, diagram, options, refinement, true);
+    Run result;
+    try {
+      result = runner.run();
+    } catch (const SolveError&) {  // what was not seen may be why
+      if (runner.unseen().empty() && k == 0) throw;
+      if (runner.unseen().empty()) break;
+    }
+    if (runner.unseen().empty()) return result;
+    const Refinement before = refinement;
+    refine(runner.unseen(), program.n_states(), refinement);
+    if (refinement == before) break;
+  }
+  const auto run_to_the_end = [&](const Refinement& how) {
+    if (options.on_restart) options.on_restart();
+    Runner runner(program, diagram, options, how, false);
+    Run result = runner.run();
+    for (const UnseenGrowth& growth : runner.unseen())
+      result.warnings.push_back(unseen_growth(program.states(), growth, diagram.file));
+    return result;
+  };
+  try {
+    return run_to_the_end(refinement);
+  } catch (const SolveError&) {  // finer than it can be run
+    return run_to_the_end({});
+  }
+}
+
+/// A longest step that would use up the budget of steps is refused at once, and so is one that the clock
+/// cannot show.
+void check_longest_step(const FlatDiagram& diagram, const RunOptions& options) {
+  const double span = options.until - (options.from ? options.from->time : 0);
+  if (span / options.max_step <= static_cast<double>(options.max_steps)) return;
+  throw SolveError(SolveError::Kind::step_budget, options.until - span,
+                   {{diagram.file, {}},
+                    fmt::format("steps of {} s at most would be more than {} over a run of {} s",
+                                options.max_step, options.max_steps, span),
+                    {},
+                    "raise max_step or max_steps in [run], or end the run earlier with --until"});
+}
 
 }  // namespace
 
@@ -355,6 +416,8 @@ RunOptions options_of(const RunSettings& settings) {
   RunOptions options;
   options.until = settings.until;
   options.tolerance = settings.tolerance;
+  options.absolute_tolerance = settings.absolute_tolerance;
+  if (settings.max_step) options.max_step = *settings.max_step;
   options.method = settings.method;
   options.samples = settings.samples;
   options.max_steps = settings.max_steps;
@@ -365,10 +428,12 @@ RunOptions options_of(const RunSettings& settings) {
 Run run(const Program& program, const FlatDiagram& diagram, const RunOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   if (options.from) check_run_state(*options.from, program, diagram.file);
-  Run result = Runner(program, diagram, options).run();
+  check_longest_step(diagram, options);
+  Run result = run_seeing(program, diagram, options);
   for (Diagnostic& warning : warnings_at_end(diagram, options, result))
     result.warnings.push_back(std::move(warning));
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  if (options.trust) result.trust = estimate_error(program, diagram, options, result);
   return result;
 }
 

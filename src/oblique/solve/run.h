@@ -16,6 +16,7 @@
 #include <oblique/solve/run_state.h>
 #include <oblique/solve/switching.h>
 #include <oblique/solve/trajectory.h>
+#include <oblique/solve/trust.h>
 
 namespace oblique {
 
@@ -26,8 +27,10 @@ inline constexpr double kAbsoluteTolerance = 1e-2;
 
 /// How to run; `RunSettings` of the diagram are the usual source.
 struct RunOptions {
-  double until = 1;         ///< [s]
-  double tolerance = 1e-8;  ///< relative; the absolute one is kAbsoluteTolerance of it
+  double until = 1;                          ///< [s]
+  double tolerance = 1e-8;                   ///< relative, of the results; the solver's own is finer
+  std::optional<double> absolute_tolerance;  ///< [machine unit]; else kAbsoluteTolerance of the relative one
+  double max_step = std::numeric_limits<double>::infinity();  ///< [s]
   IntegrationMethod method = IntegrationMethod::automatic;
   int samples = 1001;  ///< rows, evenly spaced, both ends included
   long max_steps = 10'000'000;
@@ -39,9 +42,11 @@ struct RunOptions {
   std::function<void(double fraction)>
       progress;  ///< called now and then with the part of the run that is done
   std::function<void(double t, std::span<const double> states, std::span<const double> memories)>
-      on_sample;                  ///< called at every row of the grid
+      on_sample;                     ///< called at every row of the grid
+  std::function<void()> on_restart;  ///< called where the run begins anew, finer: its rows come once more
   bool watch_overloads = false;   ///< look for overloads at every step, at the price of two evaluations each
   bool halt_on_overload = false;  ///< end the run at the first overload; watches too
+  bool trust = false;             ///< estimate the error of the outputs, at the price of further runs
 };
 
 /// The options that a diagram states.
@@ -67,10 +72,11 @@ struct Run {
   std::vector<Peak> peaks;         ///< of every signal of the program, in its order; at the rows, or watched
   std::vector<OverloadRecord> overloads;  ///< the first one first, where they were watched
   bool halted = false;                    ///< it ended at the first overload
-  std::vector<Diagnostic> warnings;       ///< what the run may not have seen, or did in another way than asked
+  std::vector<Diagnostic> warnings;  ///< what the run may not have seen, or did in another way than asked
   SolverStatistics statistics;
-  MethodChoice method;  ///< with which method, and why; nothing for a diagram without states
-  double seconds = 0;   ///< wall clock of the run itself, compilation apart
+  MethodChoice method;         ///< with which method, and why; nothing for a diagram without states
+  std::optional<Trust> trust;  ///< how many digits stand, where asked for
+  double seconds = 0;          ///< wall clock of the run itself, compilation and estimates apart
 };
 
 /// Runs a compiled diagram from t = 0: brings servo loops to rest, integrates with BDF or Adams and KLU, and

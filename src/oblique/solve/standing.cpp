@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
 #include <unordered_map>
 
 #include <oblique/network/network.h>
@@ -56,12 +57,16 @@ std::vector<Instant> standing_instants(const Program& program, const FlatDiagram
 void collect_instants(RunOptions& options, std::size_t most, std::vector<Instant>& instants) {
   const auto rows = static_cast<std::size_t>(options.samples);
   const std::size_t shown = std::min(rows, most);
-  options.on_sample = [&instants, rows, shown, row = std::size_t{0}](
-                          double t, std::span<const double> states,
-                          std::span<const double> memories) mutable {
+  const auto row = std::make_shared<std::size_t>(0);
+  options.on_restart = [&instants, row] {
+    instants.clear();
+    *row = 0;
+  };
+  options.on_sample = [&instants, rows, shown, row](double t, std::span<const double> states,
+                                                    std::span<const double> memories) {
     const std::size_t taken = instants.size();
     const std::size_t wanted = shown < 2 ? 0 : taken * (rows - 1) / (shown - 1);
-    if (row++ == wanted && taken < shown)
+    if ((*row)++ == wanted && taken < shown)
       instants.push_back({t, {states.begin(), states.end()}, {memories.begin(), memories.end()}});
   };
 }

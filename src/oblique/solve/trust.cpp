@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/solve/trust.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include <oblique/solve/run.h>
+#include <oblique/solve/solve_error.h>
+
+namespace oblique {
+namespace {
+
+constexpr double kFiner = 100, kLeastFiner = 3;  ///< times finer than the run
+/// Below it rounding decides; a run that is nearly as fine is held beside a coarser one.
+constexpr double kFinestTolerance = 1e-12;
+constexpr long kMostEffort = 20;      ///< steps of the other method, times those of the run
+constexpr long kLeastSteps = 10'000;  ///< that are allowed to it all the same
+
+constexpr double kLost = 0.1;  ///< of the size: no digit stands
+
+/// A time at which one run has had an event and the other not yet.
+struct Between {
+  double from, to;  ///< [s]
+};
+
+/// Pairs the events of two runs.
+std::vector<Between> pair_events(const Run& a, const Run& b, Trust& trust) {
+  std::vector<Between> pairs;
+  const std::size_t both = std::min(a.events.size(), b.events.size());
+  std::size_t k = 0;
+  for (; k < both && a.events[k].what == b.events[k].what; ++k) {
+    const auto [from, to] = std::minmax(a.events[k].time, b.events[k].time);
+    pairs.push_back({from, to});
+    trust.event_shift = std::max(trust.event_shift, to - from);
+  }
+  const bool all_told = k == a.events.size() && k == b.events.size();
+  if (all_told && a.event_count == b.event_count) return pairs;
+  double part = std::numeric_limits<double>::infinity();
+  if (k < a.events.size()) part = a.events[k].time;
+  if (k < b.events.size()) part = std::min(part, b.events[k].time);
+  if (all_told) part = a.events.back().time;  // the lists end there, and their counts differ
+  trust.events_part = std::min(part, trust.events_part.value_or(part));
+  return pairs;
+}
+
+class Comparison {
+ public:
+  Comparison(const Run& done, Trust& trust) : done_(done), trust_(trust) {}
+
+  void compare(const Run& check) {
+    const std::vector<Between> jumps = pair_events(done_, check, trust_);
+    compare(done_.trajectory, check.trajectory, jumps);
+    compare(done_.extra, check.extra, jumps);
+  }
+
+ private:
+  static bool jumps_at(double t, const std::vector<Between>& jumps) {
+    constexpr double kRounding = 1e-14;
+    const double around = kRounding * std::abs(t);
+    return std::any_of(jumps.begin(), jumps.end(), [&](const Between& between) {
+      return t >= between.from - around && t <= between.to + around;
+    });
+  }
+
+  void compare(const Trajectory& a, const Trajectory& b, const std::vector<Between>& jumps) {
+    constexpr std::size_t kPartAtEnd = 20;
+    const std::size_t rows = std::min(a.rows(), b.rows());  // fewer where the run was halted or interrupted
+    if (rows == 0) return;
+    const std::size_t end = rows - 1 - (rows - 1) / kPartAtEnd;
+    for (std::size_t row = 0; row < rows; ++row) {
+      const double t = a.at(row, 0);
+      if (jumps_at(t, jumps)) continue;
+      for (std::size_t c = 0; c < trust_.outputs.size(); ++c) {
+        OutputError& output = trust_.outputs[c];
+        const double error = std::abs(a.at(row, c + 1) - b.at(row, c + 1));
+        output.largest = std::max(output.largest, error);
+        if (row >= end) output.at_end = std::max(output.at_end, error);
+        if (error > kLost * output.size && error > 0) output.lost = std::min(t, output.lost.value_or(t));
+      }
+    }
+  }
+
+  const Run& done_;
+  Trust& trust_;
+};
+
+/// The same run without those who listen to it.
+RunOptions silent(const RunOptions& options) {
+  RunOptions check = options;
+  check.trust = false;
+  check.progress = nullptr;
+  check.on_sample = nullptr;
+  check.on_restart = nullptr;
+  check.watch_overloads = check.halt_on_overload = false;
+  check.extremes = false;
+  return check;
+}
+
+}  // namespace
+
+int OutputError::digits(double error) const {
+  constexpr double kMost = 15;
+  if (!(error > 0)) return static_cast<int>(kMost);
+  return static_cast<int>(std::clamp(std::floor(std::log10(size / error)), 0.0, kMost));
+}
+
+Trust estimate_error(const Program& program, const FlatDiagram& diagram, const RunOptions& options,
+                     const Run& done) {
+  Trust trust;
+  for (std::size_t c = 0; c < diagram.outputs.size(); ++c) {
+    OutputError& output = trust.outputs.emplace_back();
+    output.name = diagram.outputs[c].name;
+    for (std::size_t row = 0; row < done.trajectory.rows(); ++row)
+      output.size = std::max(output.size, std::abs(done.trajectory.at(row, c + 1)));
+  }
+  Comparison comparison(done, trust);
+  RunOptions check = silent(options);
+  const double finest = options.tolerance / kFinestTolerance;
+  const double ratio = finest > kLeastFiner ? std::min(finest, kFiner) : 1 / kFiner;
+  check.tolerance = options.tolerance / ratio;
+  if (check.absolute_tolerance) *check.absolute_tolerance /= ratio;
+  const auto hold_beside = [&] {
+    const Run other = run(program, diagram, check);
+    if (other.state.time < done.state.time) return;  // interrupted: it tells nothing of the rest
+    trust.checks.push_back({check.tolerance, other.method.method});
+    comparison.compare(other);
+  };
+  check.method = done.method.method;
+  try {
+    hold_beside();
+  } catch (const SolveError& error) {
+    trust.failure = error.diagnostics().front().what;
+  }
+  if (program.n_states() == 0) return trust;
+  const bool adams = done.method.method == IntegrationMethod::adams;
+  check.method = adams ? IntegrationMethod::bdf : IntegrationMethod::adams;
+  check.max_steps = std::min(options.max_steps, std::max(kLeastSteps, kMostEffort * done.statistics.steps));
+  try {
+    hold_beside();
+  } catch (const SolveError&) {  // it is not the method for these equations, and the report does not name it
+  }
+  return trust;
+}
+
+}  // namespace oblique

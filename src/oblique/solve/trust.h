@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <oblique/diagram/diagram.h>
+
+namespace oblique {
+
+class Program;
+struct FlatDiagram;
+struct Run;
+struct RunOptions;
+
+/// How far an output of a run may be from the solution of its equations, in the unit of the output.
+struct OutputError {
+  std::string name;
+  double size = 0;     ///< the largest magnitude of the output at the rows
+  double largest = 0;  ///< error over all rows
+  double at_end = 0;   ///< over the last twentieth of them: the last alone may be right by chance
+  std::optional<double>
+      lost;  ///< [s] the first row with an error above a tenth of `size`: no digit stands there
+
+  /// Decimal digits of `size` that an error of this size leaves, from 0 to 15.
+  int digits(double error) const;
+};
+
+/// The global error of a run, estimated by others that are finer.
+struct Trust {
+  struct Check {
+    double tolerance = 0;
+    IntegrationMethod method = IntegrationMethod::adams;  ///< for a diagram without states of no meaning
+  };
+  std::vector<Check> checks;          ///< the runs that were held beside it; none: there is no estimate
+  std::vector<OutputError> outputs;   ///< in the order of the diagram
+  double event_shift = 0;             ///< [s] by which the times of events differ at most
+  std::optional<double> events_part;  ///< [s] from where on the runs do not have the same events
+  std::string failure;                ///< why a check did not come to its end; empty: all did
+};
+
+/// Estimates the error of `done`, the run of these options, by running again at a finer tolerance, and once
+/// more so with the other method where that takes no more than some twenty times the steps: the largest
+/// difference of each output. A method's error and its tolerance fall together, so that the first is known to
+/// a few per cent where the equations are smooth; the second does not share what one method does wrong. Rows
+/// between the times at which two runs have the same event are left out: there an output that jumps has
+/// jumped in one of them. Whatever all the runs miss alike (a pulse between their steps) is not in the
+/// estimate.
+Trust estimate_error(const Program& program, const FlatDiagram& diagram, const RunOptions& options,
+                     const Run& done);
+
+}  // namespace oblique

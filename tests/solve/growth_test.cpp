@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+// States that grow from below the absolute tolerance.
+#include <cmath>
+#include <numbers>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "../support/runs.h"
+
+namespace oblique {
+namespace {
+
+using testing::Compiled;
+using ::testing::HasSubstr;
+using testing::row_values;
+using testing::run_of;
+
+std::string logistic(const std::string& start) {
+  return "xx = { type = \"squarer\", in = \"x\" }\n"
+         "x = { type = \"integrator\", in = [\"x\", \"-xx\"], initial = " +
+         start + " }\n";
+}
+
+// x′ = x − x²: x = 1/(1 + (1/x₀ − 1) e^−t). The tolerance of the run is 1e-8, that of x in the solver 1e-12:
+// from 1e-9 on only three digits of x are known without a second try, and the time at which it has grown up
+// is off by so much.
+TEST(UnseenGrowth, IsSeenBySecondTry) {
+  for (const char* const start : {"1e-5", "1e-9", "1e-11", "1e-20", "1e-100", "-1e-200"}) {
+    const double first = std::stod(start);
+    const double until = first < 0 ? 400 : std::log(1 / first) + 10;
+    const oblique::Run result = run_of(Compiled(logistic(start)), {.until = until});
+    EXPECT_TRUE(result.warnings.empty()) << start;
+    const auto t = row_values(result, "t"), x = row_values(result, "x");
+    for (std::size_t k = 0; k < t.size(); ++k)
+      EXPECT_NEAR(x[k], 1 / (1 + (1 / first - 1) * std::exp(-t[k])), 1e-7) << start << " at " << t[k];
+  }
+}
+
+TEST(UnseenGrowth, LeavesAnEquilibriumThatIsMetExactly) {
+  const oblique::Run result = run_of(Compiled(logistic("0")), {.until = 100});
+  EXPECT_TRUE(result.warnings.empty());
+  EXPECT_EQ(row_values(result, "x").back(), 0);
+  EXPECT_LT(result.statistics.steps, 10);
+}
+
+// x″ = x from x = 0, x′ = 1e-11: neither state grows alone. x = 1e-11 sinh t.
+TEST(UnseenGrowth, IsSeenInPairs) {
+  const oblique::Run result =
+      run_of(Compiled("x = { type = \"integrator\", in = [\"y\"] }\n"
+                      "y = { type = \"integrator\", in = [\"x\"], initial = 1e-11 }\n"),
+             {.until = 25});
+  EXPECT_TRUE(result.warnings.empty());
+  const double end = 1e-11 * std::sinh(25.0);
+  EXPECT_NEAR(row_values(result, "x").back(), end, 1e-7 * end);
+}
+
+// x′ = −a cos(ω t) x: x = exp(−(a/ω) sin ω t) falls to 3e-17, far below the tolerance, and comes back to 1.
+TEST(UnseenGrowth, IsSeenWhereAStateFellBelowTheToleranceDuringTheRun) {
+  const oblique::Run result =
+      run_of(Compiled(R"toml(a = { type = "time-function", formula = "-cos(2*pi*time/60)*4" }
+ax = { type = "multiplier", in = ["a", "x"] }
+x = { type = "integrator", in = ["ax"], initial = 1 }
+)toml"),
+             {.until = 45});
+  EXPECT_TRUE(result.warnings.empty());
+  const auto t = row_values(result, "t"), x = row_values(result, "x");
+  for (std::size_t k = 0; k < t.size(); ++k) {
+    const double truth = std::exp(-120 / std::numbers::pi * std::sin(2 * std::numbers::pi * t[k] / 60));
+    EXPECT_NEAR(x[k], truth, 1e-6 * std::max(truth, 1.0)) << t[k];
+  }
+}
+
+// Prey and predators (x′ = x − x y, y′ = x y − y from 20, 20) fall to 4.6e-15 in turn. Truth: SciPy's DOP853
+// at 1e-13 on the logarithms of both, 5e-9 of it from one tolerance to the other. Without a second try x
+// turns negative, and the run ends at −4e11.
+TEST(UnseenGrowth, IsSeenWhereStatesFallInTurn) {
+  const oblique::Run result = run_of(Compiled(R"toml(xy = { type = "multiplier", in = ["x", "y"] }
+x = { type = "integrator", in = ["x", "-xy"], initial = 20 }
+y = { type = "integrator", in = ["-y", "xy"], initial = 20 }
+)toml"),
+                                     {.until = 60, .samples = 61});
+  EXPECT_TRUE(result.warnings.empty());
+  EXPECT_NEAR(row_values(result, "x").back() / 4.61143821e-09, 1, 1e-6);
+  EXPECT_NEAR(row_values(result, "y").back() / 3.68505932e-07, 1, 1e-6);
+}
+
+// The same equation about 1: what a double keeps of 1e-11 beside 1 is five digits, which is not 1e-8.
+TEST(UnseenGrowth, IsToldWhereNoToleranceSeesIt) {
+  int restarts = 0, rows = 0;
+  const Compiled made(R"toml(one = { type = "constant" }
+e = { type = "summer", in = ["x", "-one"] }
+ee = { type = "squarer", in = "e" }
+x = { type = "integrator", in = ["e", "-ee"], initial = 1.00000000001 }
+)toml");
+  RunOptions options;
+  options.until = 30;
+  options.samples = 11;
+  options.on_sample = [&](double, std::span<const double>, std::span<const double>) { ++rows; };
+  options.on_restart = [&] {
+    ++restarts;
+    rows = 0;
+  };
+  const oblique::Run result = run(made.program, made.flat, options);
+  ASSERT_EQ(result.warnings.size(), 1);
+  const std::string text = to_string(result.warnings.front());
+  EXPECT_THAT(text, HasSubstr("d.toml: 'x' grew until t = "));
+  EXPECT_THAT(text,
+              HasSubstr("machine units of an unstable equilibrium: too near for the finest tolerance, so "
+                        "that what follows may be wrong\n  remedy: start farther from the equilibrium, or "
+                        "write the states as their distance from it"));
+  EXPECT_GE(restarts, 1);
+  EXPECT_EQ(rows, 11);
+  const double seed = 1.00000000001 - 1;  // as a double keeps it
+  EXPECT_NEAR(row_values(result, "x").back(), 1 + 1 / (1 + (1 / seed - 1) * std::exp(-30.0)), 1e-4);
+}
+
+// Nothing grows unseen in oscillations, decays and chaos: one run each.
+TEST(UnseenGrowth, IsNotSuspectedElsewhere) {
+  for (const char* const blocks :
+       {"x = { type = \"integrator\", in = [\"-y\"], initial = 1 }\ny = { type = \"integrator\", in = "
+        "[\"x\"] }\n",
+        "x = { type = \"integrator\", in = [\"-x\"], initial = 1 }\n",
+        "one = { type = \"constant\" }\nx = { type = \"integrator\", in = [\"one\"] }\n",
+        "x = { type = \"integrator\", in = [\"10*y\", \"-10*x\"], initial = 1 }\n"
+        "xz = { type = \"multiplier\", in = [\"x\", \"z\"] }\nxy = { type = \"multiplier\", in = [\"x\", "
+        "\"y\"] }\n"
+        "y = { type = \"integrator\", in = [\"28*x\", \"-xz\", \"-y\"], initial = 1 }\n"
+        "z = { type = \"integrator\", in = [\"xy\", \"-2.6*z\"], initial = 1 }\n"}) {
+    const Compiled made(blocks);
+    RunOptions options;
+    options.until = 30;
+    int restarts = 0;
+    options.on_restart = [&] { ++restarts; };
+    EXPECT_TRUE(run(made.program, made.flat, options).warnings.empty());
+    EXPECT_EQ(restarts, 0) << blocks;
+  }
+}
+
+}  // namespace
+}  // namespace oblique
