@@ -70,8 +70,8 @@ std::string refusal(const std::string& points) {
 TEST(FunctionGenerator, RefusesPointsThatMakeNoFunction) {
   EXPECT_EQ(refusal("[[0, 0]]"),
             "d.toml:3:55: parameter 'f.points' has 1 points; expected at least two points");
-  EXPECT_THAT(refusal("[[0, 0], [0, 1]]"),
-              HasSubstr("has x = 0 after x = 0; expected points whose x rises from one to the next"));
+  EXPECT_THAT(refusal("[[0, 0], [-1, 1]]"),
+              HasSubstr("has x = -1 after x = 0; expected points whose x rises from one to the next"));
   EXPECT_THAT(refusal("[[0, 0], [1]]"), HasSubstr("has something else than a point; expected [x, y]"));
   EXPECT_THAT(refusal("3"), HasSubstr("parameter 'f.points' is a number; expected [[x, y], …], or"));
   EXPECT_THAT(refusal("{ file = \"none.csv\", x = \"a\" }"),

@@ -88,12 +88,12 @@ void Program::surface_rates(const double* dxdt, double* values, Workspace& works
     if (!step.loop) continue;
     LoopWorkspace& loop = workspace.loops_[*step.loop];
     Eigen::MatrixXd& rates = workspace.dz_dt_[*step.loop];
-    const bool regular = loop.factor(loop_codes_[*step.loop], slots);
+    const bool regular = loop.matrix().factor(loop_codes_[*step.loop], slots);
     for (std::size_t i = 0; i < step.right_sides.size(); ++i) {
       rates(static_cast<Eigen::Index>(i), 0) =
           regular ? -slots[step.right_sides[i]] : std::numeric_limits<double>::quiet_NaN();
     }
-    if (regular) loop.solve(rates);
+    if (regular) loop.matrix().solve(rates);
     for (std::size_t i = 0; i < step.rates.size(); ++i)
       slots[step.rates[i]] = rates(static_cast<Eigen::Index>(i), 0);
   }

@@ -205,29 +205,78 @@ class Runner {
       looks = looks_before;
     }
     std::optional<double> event;
-    if (!program_.switches().empty() && t > from) event = switching_.search(from, looks, solution);
-    if (event) branch_end.reset();
-    const bool ends = event || branch_end || (t >= stretch_end_ && t < options_.until);
-    if (event) t = *event;
-    double begin = from;
-    for (const double look : looks) {
-      double end = std::min(look, t);
-      if (!(end > begin) && look != looks.back()) continue;
-      if (overloads_) end = overloads_->advance(end, solution);
-      sampler_.watch(begin, end, solution);
-      begin = end;
-      if (halted()) t = end;
-      if (begin >= t) break;
+    bool settled = false;
+    for (double begin = from;;) {
+      while (!looks.empty() && looks.front() <= begin) looks = looks.subspan(1);
+      event.reset();
+      if (!program_.switches().empty() && t > begin) event = switching_.search(begin, looks, solution);
+      const double end = event ? *event : t;
+      const double reached = look_through(begin, end, looks, solution);
+      if (halted()) {
+        t = reached;
+        return false;
+      }
+      if (!event) break;
+      if (!branch_end && end < t && end < stretch_end_) {
+        settled = true;
+        if (turns_without_effect(end, t, solution)) {
+          settled = false;
+          begin = end;
+          continue;
+        }
+      }
+      t = end;
+      branch_end.reset();
+      break;
     }
-    sampler_.advance(t, solution);
-    if (!ends || t >= options_.until || halted()) return false;
+    const bool ends = event || branch_end || (t >= stretch_end_ && t < options_.until);
+    if (!ends || t >= options_.until) return false;
     if (branch_end) {
       branches_.find(t, *branch_end, solution);  // it jumps from the last place on the branch
       t = *branch_end;
     }
-    solution.states_at(t, states_);
-    settle(t, branch_end.has_value());
+    if (!settled) {
+      solution.states_at(t, states_);
+      settle(t, branch_end.has_value());
+    }
     if (overloads_) overloads_->restart(t, states_);
+    return true;
+  }
+
+  /// Rows, extremes and overloads from `begin` to `end`, both within one step and without events between
+  /// them.
+  double look_through(double begin, double end, std::span<const double> looks, const Interpolant& solution) {
+    double from = begin;
+    const auto to = [&](double time) {
+      if (halted() || !(time > from)) return;
+      if (overloads_) time = overloads_->advance(time, solution);
+      sampler_.watch(from, time, solution);
+      from = time;
+    };
+    for (const double look : looks) to(std::min(look, end));
+    to(end);
+    const double reached = halted() ? from : end;
+    sampler_.advance(reached, solution);
+    return reached;
+  }
+
+  /// Settles what turns over at `at`, and tells whether the solver may go on with its step to `end` as if
+  /// nothing had been: no state and no memory changes, and dx/dt at the end is the same. (A condition that
+  /// others mask may turn over at every rounding.)
+  bool turns_without_effect(double at, double end, const Interpolant& solution) {
+    std::vector<double> at_end(states_.size()), before(states_.size()), after(states_.size());
+    solution.states_at(end, at_end);
+    const bool known = !switching_.slides() && switching_.derivatives(end, at_end.data(), before.data());
+    std::vector<double> memories(workspace_.memories().begin(), workspace_.memories().end());
+    solution.states_at(at, states_);
+    const std::vector<double> states = states_;
+    settle(at, false);
+    if (!known || switching_.slides() || states_ != states) return false;
+    for (const Switch& s : program_.switches()) memories[s.memory] = workspace_.memory(s.memory);
+    if (!std::equal(memories.begin(), memories.end(), workspace_.memories().begin())) return false;
+    if (!switching_.derivatives(end, at_end.data(), after.data()) || before != after) return false;
+    if (overloads_) overloads_->restart(at, states_);
+    switching_.known_wait(at, states_);  // announces what ends the stretch
     return true;
   }
 

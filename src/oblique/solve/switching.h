@@ -64,6 +64,7 @@ class Switching {
   bool jacobian(double t, const double* x, double* values);
   bool signals(double t, const double* x, double* values);
 
+  bool slides() const { return slide_.active(); }
   const Workspace& workspace() const { return workspace_; }
 
   /// The first thousand events, and how many there were.
