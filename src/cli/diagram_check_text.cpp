@@ -138,6 +138,7 @@ std::string verdict_text(const StabilityReport& report) {
              "grow "
              "on it is not known";
     case StabilityVerdict::undamped:
+      if (!report.proven) return "undamped as far as was found: no mode that grows, which is no proof";
       return "undamped: a mode neither decays nor grows, and none grows";
     case StabilityVerdict::grows:
       if (report.rightmost && verdict_on(*report.rightmost) == ModeVerdict::grows) {
