@@ -90,12 +90,12 @@ TEST_F(Verbs, RunChecksExpectations) {
 TEST_F(Verbs, RunTellsHowManyDigitsStand) {
   const Outcome outcome = oblique("run diagrams/lessons/damped-oscillator.toml --trust --check");
   EXPECT_EQ(outcome.status, 0);
-  EXPECT_THAT(outcome.error,
+  EXPECT_THAT(outcome.err,
               HasSubstr("trust: errors of the outputs, from a run at a tolerance of 1e-10 by adams and a "
                         "run at a tolerance of 1e-10 by bdf\n"));
-  EXPECT_THAT(outcome.error, HasSubstr("digits at the end"));
-  EXPECT_THAT(outcome.output, Not(HasSubstr("trust")));
-  EXPECT_THAT(oblique("run diagrams/lessons/damped-oscillator.toml").error, Not(HasSubstr("trust")));
+  EXPECT_THAT(outcome.err, HasSubstr("digits at the end"));
+  EXPECT_THAT(outcome.out, Not(HasSubstr("trust")));
+  EXPECT_THAT(oblique("run diagrams/lessons/damped-oscillator.toml").err, Not(HasSubstr("trust")));
 }
 
 TEST_F(Verbs, RunTakesAnotherEndAndUnits) {

@@ -46,7 +46,9 @@ std::string refusal(const std::string& block, const std::string& rest = "") {
 
 /// The points of a recording of a file with this text.
 PointTable recorded(const std::string& csv, const std::string& columns, const std::string& rest = "") {
-  const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "lab_file_test";
+  const std::filesystem::path folder =
+      std::filesystem::path(::testing::TempDir()) /
+      ("lab_file_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
   std::filesystem::create_directories(folder);
   std::ofstream(folder / "lab.csv", std::ios::binary) << csv;
   const FlatDiagram made =

@@ -129,17 +129,17 @@ TEST(Rescale, AmplifiersOfAMachineStayAsTheyAre) {
       testing::shipped_blocks_and("squared-sum",
                                   "summary = \"x\"\n[inputs]\nin = { sum = true, doc = \"x\" "
                                   "}\n[outputs]\nout = { wire = \"m\", doc = \"x\" }\n"
-                                  "[blocks]\nm = { type = \"multiplier\", x = \"in\", y = \"in\", limit = inf }\n");
+                                  "[blocks]\nm = { type = \"multiplier\", x = \"in\", y = \"in\" }\n");
   const Compiled made(R"toml(u = { type = "constant", value = 3 }
-real  = { type = "inverter", in = "u", limit = inf }
-exact = { type = "inverter", in = "u", gain = inf, limit = inf }
+real  = { type = "inverter", in = "u" }
+exact = { type = "inverter", in = "u", gain = inf }
 p     = { type = "squared-sum", in = ["u", "-2*exact"] }
 )toml",
                       "[machine]\nprofile = \"ec-1\"\n", library);
   const Rescaled result = rescaled(made, 1, library);
   EXPECT_LT(result.difference, kSame);
-  EXPECT_THAT(result.text, HasSubstr("real  = { type = \"inverter\", in = \"u\", limit = inf }"));
-  EXPECT_THAT(result.text, HasSubstr("exact = { type = \"inverter\", in = \"u\", gain = inf, limit = inf }"));
+  EXPECT_THAT(result.text, HasSubstr("real  = { type = \"inverter\", in = \"u\" }"));
+  EXPECT_THAT(result.text, HasSubstr("exact = { type = \"inverter\", in = \"u\", gain = inf }"));
 }
 
 TEST(Rescale, BlocksThatCannotBeScaledKeepTheirSignals) {

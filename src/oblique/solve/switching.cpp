@@ -114,7 +114,11 @@ void Switching::turn(std::size_t s, double position, double t) {
   unrest.last = t;
   search_.forget(s);
   // A surface that is merely touched goes back and forth by the errors of the states.
-  if (!is_known(s) && announced_[s] >= 0) slack_[s] = tolerance_ * compared_size(s);
+  const SwitchStructure& structure = program_.switch_structure();
+  const auto& unit = structure.members[structure.unit[s]];
+  const bool found =
+      std::any_of(unit.begin(), unit.end(), [&](std::uint32_t m) { return announced_[m] >= 0; });
+  if (!is_known(s) && found) slack_[s] = tolerance_ * compared_size(s);
   if (++unrest.turns > kMostTurns) throw_chatter(made.block, made.comparison, t);
 }
 
@@ -364,6 +368,13 @@ void Switching::settle(double t, std::vector<double>& x) {
   slid_.clear();
   std::fill(announced_.begin(), announced_.end(), -1.0);
   evaluate(t, x);
+  // Where a surface goes back at once it stays on the wrong side for a moment, which is no event of its own.
+  for (std::size_t s = 0; s < surfaces_.size(); ++s) {
+    if (is_known(s) || slide_.holds(s) || slide_.follows(s)) continue;
+    const bool closed = workspace_.memory(program_.switches()[s].memory) == 1;
+    const double wrong = closed ? -surfaces_[s] : surfaces_[s];
+    if (wrong > thresholds_[s]) thresholds_[s] = slack_[s] = 2 * wrong;
+  }
 }
 
 /// Starts the states that start from signals.
