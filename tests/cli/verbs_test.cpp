@@ -91,8 +91,8 @@ TEST_F(Verbs, RunTellsHowManyDigitsStand) {
   const Outcome outcome = oblique("run diagrams/lessons/damped-oscillator.toml --trust --check");
   EXPECT_EQ(outcome.status, 0);
   EXPECT_THAT(outcome.err,
-              HasSubstr("trust: errors of the outputs, from a run at a tolerance of 1e-10 by adams and a "
-                        "run at a tolerance of 1e-10 by bdf\n"));
+              HasSubstr("trust: errors of the outputs, from a run at a tolerance of 1e-12 by adams and a "
+                        "run at a tolerance of 1e-12 by bdf\n"));
   EXPECT_THAT(outcome.err, HasSubstr("digits at the end"));
   EXPECT_THAT(outcome.out, Not(HasSubstr("trust")));
   EXPECT_THAT(oblique("run diagrams/lessons/damped-oscillator.toml").err, Not(HasSubstr("trust")));
