@@ -12,13 +12,13 @@ namespace {
 /// The tolerance of a run is what its results are to be good to. The solver holds every single step to its
 /// own tolerance, and the errors of all steps add up: on the catalogue of tests/solve/smooth_problems.py half
 /// of the problems erred by more than 15 (Adams) and 120 (BDF) times that, Kepler's orbits by thousands.
-/// Tightened so, the medians are below 1 and 6, the worst below 60 and 20, for 1.6 times the steps each; BDF,
-/// of order 5, pays more for a digit than Adams' formulas, of order 12.
+/// Tightened so, the medians are 0.1 and 4, the worst 60 and 15, for 1.5 and 1.75 times the steps; BDF, of
+/// order 5, pays more for a digit than Adams' formulas, of order 12.
 ///
-/// ARKODE's explicit Runge-Kutta methods were measured beside Adams: Fehlberg's of order 8 needs 4 to 8 times
-/// the evaluations for the same digits, and its interpolant, of degree 5, is 10 to 100 times less accurate
-/// than its steps, though events and rows are read from it; that of Adams costs nothing and is as good as the
-/// steps.
+/// ARKODE's explicit Runge-Kutta methods were measured beside Adams on three of the problems: Fehlberg's of
+/// order 8 takes a fifth to a half of the steps and 2 to 4 times the evaluations for the same digits, but its
+/// interpolant, of degree 5, is 10 to 100 times less accurate than its steps, though events and rows are read
+/// from it; that of Adams costs nothing and is as good as the steps.
 constexpr double kTighterAdams = 100, kTighterBdf = 30;
 
 /// Below this, rounding in dx/dt decides about steps.
