@@ -219,7 +219,7 @@ class Runner {
       if (!event) break;
       if (!branch_end && end < t && end < stretch_end_) {
         settled = true;
-        if (turns_without_effect(end, t, solution)) {
+        if (turns_without_effect(end, looks, solution)) {
           settled = false;
           begin = end;
           continue;
@@ -260,13 +260,18 @@ class Runner {
     return reached;
   }
 
-  /// Settles what turns over at `at`, and tells whether the solver may go on with its step to `end` as if
-  /// nothing had been: no state and no memory changes, and dx/dt at the end is the same. (A condition that
-  /// others mask may turn over at every rounding.)
-  bool turns_without_effect(double at, double end, const Interpolant& solution) {
-    std::vector<double> at_end(states_.size()), before(states_.size()), after(states_.size());
-    solution.states_at(end, at_end);
-    const bool known = !switching_.slides() && switching_.derivatives(end, at_end.data(), before.data());
+  /// Settles what turns over at `at`, and tells whether the solver may go on with its step as if nothing had
+  /// been: no state and no memory changes, and dx/dt is the same at every one of `looks`, which show what the
+  /// time alone does. (A condition that others mask may turn over at every rounding.)
+  bool turns_without_effect(double at, std::span<const double> looks, const Interpolant& solution) {
+    std::vector<std::vector<double>> states_there, before;
+    std::vector<double> after(states_.size());
+    bool known = !switching_.slides();
+    for (const double look : looks) {
+      solution.states_at(look, states_there.emplace_back(states_.size()));
+      known = known && switching_.derivatives(look, states_there.back().data(),
+                                              before.emplace_back(states_.size()).data());
+    }
     std::vector<double> memories(workspace_.memories().begin(), workspace_.memories().end());
     solution.states_at(at, states_);
     const std::vector<double> states = states_;
@@ -274,7 +279,10 @@ class Runner {
     if (!known || switching_.slides() || states_ != states) return false;
     for (const Switch& s : program_.switches()) memories[s.memory] = workspace_.memory(s.memory);
     if (!std::equal(memories.begin(), memories.end(), workspace_.memories().begin())) return false;
-    if (!switching_.derivatives(end, at_end.data(), after.data()) || before != after) return false;
+    for (std::size_t k = 0; k < looks.size(); ++k) {
+      if (!switching_.derivatives(looks[k], states_there[k].data(), after.data()) || before[k] != after)
+        return false;
+    }
     if (overloads_) overloads_->restart(at, states_);
     switching_.known_wait(at, states_);  // announces what ends the stretch
     return true;
