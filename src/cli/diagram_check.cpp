@@ -14,6 +14,21 @@
 namespace oblique::cli {
 namespace {
 
+/// Where a signal leaves the machine unit and amplifiers saturate, what it would do if they did not: a peak
+/// that is cut off tells no scale. Nothing where such a run fails.
+std::optional<Unsaturated> analyse_unsaturated(const FlatDiagram& flat, const Analysis& analysis,
+                                               const RunOptions& options) {
+  const bool saturates = std::any_of(flat.blocks.begin(), flat.blocks.end(), [](const FlatBlock& block) {
+    return block.saturation && std::isfinite(block.parameters[*block.saturation]);
+  });
+  if (!saturates || !analysis.run || analysis.run->overloads.empty()) return std::nullopt;
+  const FlatDiagram free = without_saturation(flat);
+  Program program(assemble(free));
+  Analysis found = analyse(program, free, options);
+  if (!found.run) return std::nullopt;
+  return Unsaturated{std::move(program), std::move(found)};
+}
+
 ScalingProposal propose(const FlatDiagram& flat, const Program& program, const Analysis& analysis) {
   std::vector<double> peaks;
   for (const Peak& peak : analysis.run->peaks) peaks.push_back(peak.value);
@@ -67,7 +82,7 @@ void write_rescaled(const DiagramCheck& check, const BlockLibrary& library, cons
   options.watch_overloads = true;
   const Run result = run(program, flat, options);
   save(path, write_diagram(scaled));
-  const double difference = largest_difference(check.analysis.run->trajectory, result.trajectory);
+  const double difference = largest_difference(check.in_full().run->trajectory, result.trajectory);
   note(fmt::format("its outputs differ by {:.1e} of their size, at a tolerance of {}; {}\n", difference,
                    scaled.run.tolerance, count(result.overloads.size(), "overload", "overloads")));
   constexpr double kSameOutputs = 1e-3;
@@ -83,15 +98,20 @@ ExitStatus check_diagram(const Session& session, const CheckRequest& request, co
   const Diagram diagram = parse_diagram(text, request.file);
   const FlatDiagram flat = flatten(diagram, library);
   const Program program(assemble(flat));
-  DiagramCheck check{request.file, diagram, flat, program, {}, {}, {}};
+  DiagramCheck check{request.file, diagram, flat, program, {}, {}, {}, {}};
   if (diagram.machine.profile != "ideal") check.bill = bill_of(flat, *find_machine(diagram.machine.profile));
   {
     Progress progress("running on trial");
     RunOptions options = options_of(diagram.run);
     options.progress = [&](double fraction) { progress.show(fraction); };
     check.analysis = analyse(program, flat, options);
+    check.unsaturated = analyse_unsaturated(flat, check.analysis, options);
   }
-  if (check.analysis.run) check.scaling = propose(flat, program, check.analysis);
+  if (check.unsaturated) {
+    check.scaling = propose(flat, check.unsaturated->program, check.unsaturated->analysis);
+  } else if (check.analysis.run) {
+    check.scaling = propose(flat, program, check.analysis);
+  }
   if (!plots_in_terminal(request.plot)) print(request.json ? to_json(check) : to_text(check));
   if (!request.plot.empty())
     plot(pole_chart(flat, program, check.analysis.instants, "Eigenvalues along the run: " + diagram.title),

@@ -21,6 +21,12 @@ struct ScalingProposal {
   double time_scale = 1;
 };
 
+/// A diagram without the saturation of its machine.
+struct Unsaturated {
+  Program program;
+  Analysis analysis;
+};
+
 /// All that `oblique check` finds out about a diagram.
 struct DiagramCheck {
   std::string file;
@@ -30,6 +36,12 @@ struct DiagramCheck {
   Analysis analysis;
   std::optional<ScalingProposal> scaling;
   std::optional<Bill> bill;  ///< on the machine that the diagram is for; none for the ideal one
+  /// Of the same diagram where no amplifier saturates, if it comes to its end: how far signals would go. Only
+  /// where one leaves the machine unit on a machine that saturates.
+  std::optional<Unsaturated> unsaturated;
+
+  /// What overloads and scales are judged by.
+  const Analysis& in_full() const { return unsaturated ? unsaturated->analysis : analysis; }
 };
 
 /// The report for people: what the diagram is made of, then loops, stability, overloads, scaling.

@@ -98,7 +98,7 @@ Json stability_json(const StabilityReport& report, const Program& program) {
 Json overloads_json(const DiagramCheck& check) {
   if (!check.analysis.run) return nullptr;
   Json list = Json::array();
-  for (const OverloadRecord& o : check.analysis.run->overloads) {
+  for (const OverloadRecord& o : check.in_full().run->overloads) {
     list.push_back({{"signal", check.program.signal_names()[o.signal]},
                     {"first", o.first},
                     {"peak", o.peak.value},
@@ -113,7 +113,7 @@ Json scaling_json(const DiagramCheck& check) {
   if (!check.scaling) return nullptr;
   Json signals = Json::array();
   for (std::size_t s = 0; s < check.scaling->signals.size(); ++s) {
-    const Peak& peak = check.analysis.run->peaks[s];
+    const Peak& peak = check.in_full().run->peaks[s];
     signals.push_back({{"signal", check.program.signal_names()[s]},
                        {"peak", peak.value},
                        {"peak_time", peak.time},

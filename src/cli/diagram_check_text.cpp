@@ -201,7 +201,7 @@ std::string stability(const StabilityReport& report, const Program& program, boo
 }
 
 std::string overloads(const DiagramCheck& check) {
-  const auto& found = check.analysis.run->overloads;
+  const auto& found = check.in_full().run->overloads;
   if (found.empty()) return "\noverloads: none, every signal stays within ±1 machine unit\n";
   Table table({"signal", "first at t [s]", "peak", "at t [s]", "duration [s]", "cured by a scale of"});
   for (std::size_t k = 0; k < std::min(found.size(), kMostRows); ++k) {
@@ -209,7 +209,10 @@ std::string overloads(const DiagramCheck& check) {
     table.add({check.program.signal_names()[o.signal], short_number(o.first), short_number(o.peak.value),
                short_number(o.peak.time), short_number(o.duration), short_number(o.cure)});
   }
-  std::string text = "\noverloads\n" + table.text(1);
+  std::string text =
+      fmt::format("\noverloads{}\n",
+                  check.unsaturated ? " (as far as signals would go if no amplifier saturated)" : "") +
+      table.text(1);
   if (found.size() > kMostRows)
     text += fmt::format("({} more; --json lists all)\n", found.size() - kMostRows);
   return text;
@@ -221,7 +224,7 @@ std::string scaling(const DiagramCheck& check) {
   std::size_t scaled = 0;
   for (std::size_t s = 0; s < proposal.signals.size(); ++s) {
     if (proposal.signals[s] == 1 || ++scaled > kMostRows) continue;
-    const Peak& peak = check.analysis.run->peaks[s];
+    const Peak& peak = check.in_full().run->peaks[s];
     table.add({check.program.signal_names()[s], short_number(peak.value), short_number(peak.time),
                short_number(proposal.signals[s]), short_number(proposal.signals[s] * peak.value)});
   }

@@ -68,6 +68,8 @@ std::string page_of(const MachineProfile& machine, const BlockLibrary& library) 
   facts.add({"summers and integrators", machine.inverting ? "invert" : "do not invert"});
   facts.add({"input gains", text_of(machine.input_gains, machine.input_gains_known)});
   facts.add({"time factors k0 [1/s]", text_of(machine.rates, machine.rates_known)});
+  facts.add({"amplifiers saturate at",
+             machine.saturation ? "±" + short_number(*machine.saturation) + " machine units" : "no level"});
   facts.add({"coefficients", machine.signed_coefficients ? "−1 … 1" : "0 … 1"});
   text += "\n" + facts.text(2) + "\n";
   Table elements({"element", "count", ""});
@@ -118,6 +120,7 @@ Json json_of(const MachineProfile& machine) {
           {"input_gains", steps_json(machine.input_gains, machine.input_gains_known)},
           {"rates", steps_json(machine.rates, machine.rates_known)},
           {"signed_coefficients", machine.signed_coefficients},
+          {"saturation", machine.saturation ? Json(*machine.saturation) : Json("none")},
           {"elements", std::move(elements)},
           {"figures", std::move(figures)},
           {"errors", json_of(machine.errors)},

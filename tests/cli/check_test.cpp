@@ -16,6 +16,7 @@
 namespace oblique::test {
 namespace {
 
+using testing::ContainsRegex;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -245,6 +246,23 @@ TEST_F(Check, RescaleWritesADiagramThatGivesTheSame) {
   EXPECT_THAT(written.err, Not(HasSubstr("warning")));
   EXPECT_THAT(oblique("check " + file("s.toml")).out, HasSubstr("overloads: none"));
   EXPECT_EQ(oblique("run " + file("s.toml")).out, oblique("run " + file("o.toml")).out);
+}
+
+// An undamped oscillator of amplitude 5 on a machine that saturates at 1.2, started where the sine is zero:
+// its scale is that of 5, not of what is left of it, and scaled it is what it would have been.
+TEST_F(Check, ScalesByHowFarSaturatedSignalsWouldGo) {
+  const std::string path = file(
+      "saturated.toml",
+      "x = { type = \"integrator\", in = \"v\", initial = 5 }\nv = { type = \"integrator\", in = \"-x\" }\n"
+      "[machine]\nprofile = \"the-analog-thing\"\ninverting = false\n[run]\nuntil = 7\n");
+  const Outcome outcome = oblique("check " + path + " --rescale -o " + file("scaled.toml"));
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.out, HasSubstr("\noverloads (as far as signals would go if no amplifier saturated)\n"));
+  EXPECT_THAT(outcome.out, ContainsRegex("\nx +0 +5 .* 0\\.2\n"));
+  EXPECT_THAT(outcome.err, HasSubstr("0 overloads"));
+  const Outcome scaled = oblique("run " + file("scaled.toml") + " --until 2*pi");
+  EXPECT_THAT(scaled.out,
+              HasSubstr("  4.99"));  // 5, and what its amplifiers' offset of 1e-4 and the pole add
 }
 
 TEST_F(Check, RescaleLeavesTheFileThatItReads) {

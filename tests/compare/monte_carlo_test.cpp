@@ -75,7 +75,8 @@ TEST(MonteCarlo, PercentilesAlongTheTurnAreThoseOfTheSortedRuns) {
   options.runs = 200;
   options.threads = 2;
   const MonteCarlo result = drawn(mechanism, options);
-  const FlatDiagram flat = flatten(patch(mechanism, {}), BlockLibrary::shipped());
+  const BlockLibrary library = BlockLibrary::shipped();  // which the flat diagram refers to
+  const FlatDiagram flat = flatten(patch(mechanism, {}), library);
   ASSERT_EQ(result.drive.size(), 73U);
   ASSERT_EQ(result.along.size(), 200U);
   std::vector<std::array<double, 2>> scatter;

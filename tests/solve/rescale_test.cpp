@@ -33,7 +33,8 @@ struct Rescaled {
 };
 
 Rescaled rescaled(const Compiled& made, double until, const BlockLibrary& library = shipped_blocks()) {
-  const auto before = watched(made.program, made.flat, until);
+  const FlatDiagram free = without_saturation(made.flat);  // how far the signals want to go
+  const auto before = watched(Program(assemble(free)), free, until);
   std::vector<double> peaks;
   for (const Peak& peak : before.peaks) peaks.push_back(peak.value);
   const Diagram scaled = rescale(made.diagram, made.flat, propose_scaling(made.flat, peaks), library);

@@ -100,6 +100,9 @@ struct FlatDiagram {
   std::string signal_name(SignalRef signal) const;
 };
 
+/// The same diagram with amplifiers that give any voltage: those that saturate only because their machine does.
+FlatDiagram without_saturation(FlatDiagram diagram);
+
 /// A parameter to replace, by path: `--set c.gain=1e4`; the value is a quantity in the parameter's unit.
 struct ParameterOverride {
   std::string path;  ///< "block.parameter"

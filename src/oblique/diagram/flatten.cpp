@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -331,6 +332,15 @@ FlatDiagram flatten(const Diagram& diagram, const BlockLibrary& library,
   if (diagnostics.empty()) check_expected_outputs(diagram.expectations, names, diagnostics);
   diagnostics.throw_if_any<DiagramError>();
   return flat;
+}
+
+FlatDiagram without_saturation(FlatDiagram diagram) {
+  for (FlatBlock& block : diagram.blocks) {
+    if (!block.saturation || block.own_behaviour) continue;
+    block.parameters[*block.saturation] = std::numeric_limits<double>::infinity();
+    block.behaviour = block.definition->choose_behaviour(block.parameters, block.polarity);
+  }
+  return diagram;
 }
 
 }  // namespace oblique

@@ -41,7 +41,7 @@ class Assembler {
     Expression left, right;
     std::uint32_t memory;
     Place place;
-    bool jumps;
+    Turning turning;
   };
   struct PendingTable {
     std::size_t block;
@@ -82,7 +82,7 @@ class Assembler {
   void make_starts();
   void define_switches();
   std::optional<NodeId> rate_of(NodeId surface);
-  NodeId switch_of(std::size_t block, const Expression& left, const Expression& right, bool jumps);
+  NodeId switch_of(std::size_t block, const Expression& left, const Expression& right, Turning turning);
   NodeId built(std::size_t block, const Expression& expression, const Place& place, const std::string& what);
   bool is_algebraic(std::uint32_t q) const;
   std::vector<bool> implicit_marks() const;
@@ -134,8 +134,8 @@ class Assembler::BlockContext final : public ExpressionContext {
     return Change::never;
   }
 
-  NodeId greater(const Expression& left, const Expression& right, bool jumps) override {
-    return assembler_.switch_of(block_, left, right, jumps);
+  NodeId greater(const Expression& left, const Expression& right, Turning turning) override {
+    return assembler_.switch_of(block_, left, right, turning);
   }
 
   NodeId interpolated(const Expression& call) override { return assembler_.interpolated(block_, call); }

@@ -178,7 +178,7 @@ void Assembler::define_switches() {
     made.block = diagram_.blocks[pending.block].path;
     made.comparison = network_.memories[pending.memory].name;
     made.surface = network_.graph.apply(Op::subtract, left, right);
-    made.jumps = pending.jumps;
+    made.turning = pending.turning;
     if (const auto& interval = diagram_.blocks[pending.block].definition->check_interval)
       made.check_interval = constant_value(pending.block, *interval).value_or(made.check_interval);
     add_switch(std::move(made));
@@ -193,17 +193,18 @@ std::optional<NodeId> Assembler::rate_of(NodeId surface) {
   return gradient[0].second;
 }
 
-NodeId Assembler::switch_of(std::size_t block, const Expression& left, const Expression& right, bool jumps) {
+NodeId Assembler::switch_of(std::size_t block, const Expression& left, const Expression& right,
+                            Turning turning) {
   std::string text = to_string(left) + " > " + to_string(right);
   const auto [found, inserted] = switch_index_.try_emplace(std::pair(block, text), kNone);
   if (inserted) {
     found->second = static_cast<std::uint32_t>(network_.memories.size());
     network_.memories.push_back({std::move(text), 0});
-    pending_switches_.push_back({block, left, right, found->second, diagram_.blocks[block].place, jumps});
-  } else if (jumps) {
+    pending_switches_.push_back({block, left, right, found->second, diagram_.blocks[block].place, turning});
+  } else {
     const auto pending = std::find_if(pending_switches_.begin(), pending_switches_.end(),
                                       [&](const PendingSwitch& p) { return p.memory == found->second; });
-    if (pending != pending_switches_.end()) pending->jumps = true;
+    if (pending != pending_switches_.end()) pending->turning = std::max(pending->turning, turning);
   }
   return network_.graph.memory(found->second);
 }
@@ -282,7 +283,7 @@ void Assembler::define_tables() {
       made.block = diagram_.blocks[pending.block].path;
       made.comparison = to_string(pending.x) + (up ? " after its segment" : " before its segment");
       made.surface = up ? graph.apply(Op::subtract, x, edge) : graph.apply(Op::subtract, edge, x);
-      made.jumps = false;
+      made.turning = Turning::bends;
       // At least to the next one, which rounding may hide from the search.
       const NodeId next = graph.apply(up ? Op::add : Op::subtract, segment, graph.constant(1));
       const NodeId farther = up ? graph.apply(Op::less, next, found) : graph.apply(Op::less, found, next);

@@ -129,7 +129,8 @@ class Builder {
       case Function::max:
         return extreme(e);
       case Function::clip:
-        return graph_.apply(Op::select, bend(x[0], x[2]), build(x[2]), choose(bend(x[1], x[0]), x[1], x[0]));
+        return graph_.apply(Op::select, greater(x[0], x[2], Turning::limits), build(x[2]),
+                            choose(greater(x[1], x[0], Turning::limits), x[1], x[0]));
       case Function::deadzone:
         return graph_.apply(
             Op::select, bend(x[0], x[1]), graph_.apply(Op::subtract, build(x[0]), build(x[1])),
@@ -197,9 +198,11 @@ class Builder {
   NodeId inverse(NodeId condition) { return graph_.apply(Op::subtract, graph_.constant(1), condition); }
 
   /// A switch between two pieces that meet where it turns over.
-  NodeId bend(const Expression& left, const Expression& right) { return greater(left, right, false); }
+  NodeId bend(const Expression& left, const Expression& right) {
+    return greater(left, right, Turning::bends);
+  }
 
-  NodeId greater(const Expression& left, const Expression& right, bool jumps = true) {
+  NodeId greater(const Expression& left, const Expression& right, Turning turning = Turning::jumps) {
     const Change changes = std::max(change_of(left, context_), change_of(right, context_));
     if (changes != Change::always) return graph_.apply(Op::less, build(right), build(left));
     // Nothing that changes is beyond infinity.
@@ -208,7 +211,7 @@ class Builder {
       const double value = graph_[build(*side)].value;
       if (std::isinf(value)) return graph_.constant((side == &left) == (value > 0) ? 1 : 0);
     }
-    return context_.greater(left, right, jumps);
+    return context_.greater(left, right, turning);
   }
 
   static Expression zero() { return {}; }

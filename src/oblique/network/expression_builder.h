@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include <oblique/network/expression_graph.h>
+#include <oblique/network/network.h>
 #include <oblique/text/expression.h>
 
 namespace oblique {
@@ -20,8 +21,7 @@ class ExpressionContext {
   enum class Change { never, with_events, always };
   virtual Change change_of(std::string_view name) const = 0;
   /// A switch: the memory that is 1 where left > right, else 0. At least one side changes at any time.
-  /// `jumps`: what it chooses between need not be equal where left = right.
-  virtual NodeId greater(const Expression& left, const Expression& right, bool jumps) = 0;
+  virtual NodeId greater(const Expression& left, const Expression& right, Turning turning) = 0;
   /// The function through points: the parameter that holds them, or numbers.
   virtual NodeId interpolated(const Expression& call) = 0;
   /// Sum of the magnitudes of the weights at an input.

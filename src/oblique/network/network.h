@@ -35,6 +35,11 @@ struct Memory {
   double start = 0;
 };
 
+/// What meets where a switch turns over, the least first: the bounds of a clip and what lies between them,
+/// which is in force at position 0; pieces that meet (of abs, min, max, deadzone, a table); pieces that need
+/// not.
+enum class Turning { limits, bends, jumps };
+
 /// A switch: its memory is 1 where the surface is above 0, else 0.
 struct Switch {
   std::uint32_t memory = 0;
@@ -44,9 +49,7 @@ struct Switch {
   /// d surface/dt of a surface that depends on time alone, and linearly: its crossing is known beforehand.
   std::optional<NodeId> rate = std::nullopt;
   double check_interval = std::numeric_limits<double>::infinity();  ///< [s] how often at least to look
-  /// Whether the equations may jump where it turns over, or only bend: the pieces of abs, min, max, clip and
-  /// deadzone meet.
-  bool jumps = true;
+  Turning turning = Turning::jumps;
 };
 
 /// What happens when a condition becomes true: all values are those of the moment before.

@@ -144,7 +144,7 @@ int Positions::direction(std::uint32_t bits, std::size_t unit) const {
 bool Positions::jumps(std::size_t unit) const {
   const auto& members = program_.switch_structure().members[units_[unit]];
   return std::any_of(members.begin(), members.end(),
-                     [&](std::uint32_t s) { return program_.switches()[s].jumps; });
+                     [&](std::uint32_t s) { return program_.switches()[s].turning == Turning::jumps; });
 }
 
 bool Positions::any_of_them_jumps(std::uint32_t units) const {

@@ -144,7 +144,7 @@ bool SlidingMode::is_surface(const Program& program, const std::vector<std::uint
     const auto& positions = structure.members[other];
     return std::any_of(surfaces.begin(), surfaces.end(), [&](std::uint32_t s) {
       return std::any_of(positions.begin(), positions.end(), [&](std::uint32_t p) {
-        return (unit == other || program.switches()[p].jumps) && structure.depends(s, p);
+        return (unit == other || program.switches()[p].turning == Turning::jumps) && structure.depends(s, p);
       });
     });
   };

@@ -25,6 +25,39 @@ FlatDiagram with_instant_servos(FlatDiagram diagram) {
   return diagram;
 }
 
+namespace {
+
+using Values = std::unordered_map<std::string_view, double>;
+
+/// The memories of a program in these states: those with a namesake are as it is, and the switches of real
+/// amplifiers, which instant ones have not, as their surfaces tell.
+std::vector<double> memories_of(const Program& program, double t, const std::vector<double>& states,
+                                const Values& namesakes, Workspace& workspace) {
+  constexpr int kMostRounds = 100;
+  workspace.reset_memories();
+  for (std::size_t m = 0; m < program.memories().size(); ++m) {
+    const auto found = namesakes.find(program.memories()[m].name);
+    if (found != namesakes.end()) workspace.set_memory(m, found->second);
+  }
+  std::vector<double> surfaces(program.switches().size());
+  bool turned = true;
+  for (int round = 0; turned && round < kMostRounds; ++round) {
+    turned = false;
+    if (!program.surfaces(t, states.data(), surfaces.data(), workspace)) break;
+    for (std::size_t s = 0; s < surfaces.size(); ++s) {
+      const std::uint32_t memory = program.switches()[s].memory;
+      const double position = surfaces[s] > 0 ? 1 : 0;
+      if (namesakes.contains(program.memories()[memory].name) || workspace.memory(memory) == position)
+        continue;
+      workspace.set_memory(memory, position);
+      turned = true;
+    }
+  }
+  return {workspace.memories().begin(), workspace.memories().end()};
+}
+
+}  // namespace
+
 std::vector<Instant> standing_instants(const Program& program, const FlatDiagram& diagram, RunOptions options,
                                        std::size_t most) {
   const FlatDiagram instant_servos = with_instant_servos(diagram);
@@ -35,12 +68,12 @@ std::vector<Instant> standing_instants(const Program& program, const FlatDiagram
 
   std::unordered_map<std::string_view, std::size_t> signals;
   for (std::size_t s = 0; s < standing.n_signals(); ++s) signals.emplace(standing.signal_names()[s], s);
-  Workspace workspace(standing);
+  Workspace workspace(standing), real(program);
   std::vector<double> values(standing.n_signals());
   for (Instant& instant : instants) {
     workspace.load_memories(instant.memories);
     standing.signals(instant.t, instant.states.data(), values.data(), workspace);
-    std::unordered_map<std::string_view, double> held;
+    Values held, memories;
     for (std::size_t i = 0; i < standing.n_states(); ++i)
       held.emplace(standing.states()[i].name, instant.states[i]);
     std::vector<double> states(program.n_states());
@@ -49,6 +82,9 @@ std::vector<Instant> standing_instants(const Program& program, const FlatDiagram
       const auto state = held.find(name);
       states[i] = state != held.end() ? state->second : values[signals.at(name)];
     }
+    for (std::size_t m = 0; m < instant.memories.size(); ++m)
+      memories.emplace(standing.memories()[m].name, instant.memories[m]);
+    instant.memories = memories_of(program, instant.t, states, memories, real);
     instant.states = std::move(states);
   }
   return instants;

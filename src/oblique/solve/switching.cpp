@@ -401,17 +401,47 @@ void Switching::take_starts(double t, std::vector<double>& x) {
   }
 }
 
+/// Brings servo loops to rest with all limits let loose, and tells whether they rest there, within them. An
+/// amplifier's guess may be far off only because the elements in its loop have not settled yet; at a limit it
+/// has no gain, and may stay there for good.
+bool Switching::rests_within_limits(double t, std::vector<double>& x,
+                                    const std::function<void()>& bring_to_rest) {
+  const std::vector<double> states = x;
+  const std::vector<double> memories(workspace_.memories().begin(), workspace_.memories().end());
+  bool any = false;
+  for (const Switch& made : program_.switches()) {
+    if (made.turning != Turning::limits || workspace_.memory(made.memory) == 0) continue;
+    workspace_.set_memory(made.memory, 0);
+    any = true;
+  }
+  if (!any) return false;
+  try {
+    bring_to_rest();
+    evaluate(t, x);
+    bool within = true;
+    for (std::size_t s = 0; s < surfaces_.size(); ++s)
+      within =
+          within && (program_.switches()[s].turning != Turning::limits || surfaces_[s] <= thresholds_[s]);
+    if (within) return true;
+  } catch (const SolveError&) {  // what lies between the limits has no rest; they may make one
+  }
+  x = states;
+  for (std::size_t m = 0; m < memories.size(); ++m) workspace_.set_memory(m, memories[m]);
+  return false;
+}
+
 void Switching::start(double t, std::vector<double>& x, const std::function<void()>& bring_to_rest) {
   bool any_start = false;
   for (const State& state : program_.states()) any_start = any_start || state.start_node.has_value();
-  bool starting = true;
+  bool starting = true, first = true;
   for (int round = 0;; ++round) {
     if (round > kMostRounds)
       throw_chatter(records_.empty() ? "" : records_.back().what, "the start does not settle", t);
     begin_to_settle();
     if (starting && any_start) take_starts(t, x);
     if (active() && settle_switches(t, x) && starting && any_start) continue;
-    bring_to_rest();
+    if (!first || !rests_within_limits(t, x, bring_to_rest)) bring_to_rest();
+    first = false;
     if (!active()) return;
     begin_to_settle();
     if (settle_switches(t, x)) continue;

@@ -42,7 +42,8 @@ class Switching {
   bool active() const { return !program_.switches().empty() || !program_.events().empty(); }
 
   /// Settles switches and events at the start of the run, and the states that start from signals.
-  /// `bring_to_rest` is called whenever something has changed that servo loops may follow. Throws SolveError.
+  /// `bring_to_rest` is called whenever something has changed that servo loops may follow; it throws
+  /// SolveError where they do not settle. Throws SolveError.
   void start(double t, std::vector<double>& x, const std::function<void()>& bring_to_rest);
 
   /// Settles everything at time t, after the switches that `known_wait` or `search` announced have turned
@@ -90,6 +91,7 @@ class Switching {
   void begin_to_settle();
   void note_slides(const Units& before, double t);
   void take_starts(double t, std::vector<double>& x);
+  bool rests_within_limits(double t, std::vector<double>& x, const std::function<void()>& bring_to_rest);
   bool serve_events(double t, std::vector<double>& x, bool starting);
   void turn(std::size_t s, double position, double t);
   void record(double t, std::string what);
