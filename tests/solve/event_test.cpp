@@ -78,6 +78,34 @@ TEST(Events, BallThatPilesUpIsEndedByName) {
   EXPECT_THAT(message, HasSubstr("the events of 'b' come ever faster"));
   // Σ: fall · (1 + 2e/(1 − e)) = √0.2 · 3
   EXPECT_THAT(message, HasSubstr("they pile up at t = 1.3416"));
+  EXPECT_THAT(
+      message,
+      HasSubstr("remedy: end the run before, or tell the block what happens there: 'piling_up' beside "
+                "'set' in its [[events]]"));
+}
+
+// A block that says what comes after rests there: to what is left of its bounces, 1e-5 of the run, and a
+// speed of g times that, half of a flight.
+TEST(Events, BallThatPilesUpGoesOverIntoWhatItsBlockSays) {
+  std::string resting = kBall;
+  resting.replace(resting.find("count = 0\n"), 10, "count = 0\nrests = 0\n");
+  resting.replace(resting.find("\"-g\""), 4, "\"if(rests == 1, 0, -g)\"");
+  const BlockLibrary library =
+      shipped_blocks_and("ball", resting + "piling_up = { x = 0, v = 0, rests = 1 }\n");
+  const Compiled made("b = { type = \"ball\", e = 0.5 }", "", library);
+  const auto result = run_of(made, {.until = 5, .tolerance = 1e-10, .samples = 501});
+  ASSERT_FALSE(result.events.empty());
+  EXPECT_EQ(result.events.back().what, "b: its events pile up");
+  EXPECT_NEAR(result.events.back().time, std::sqrt(0.2) * 3, 5e-5);
+  EXPECT_LT(result.events.back().time, std::sqrt(0.2) * 3);
+  const std::size_t last = result.trajectory.rows() - 1;
+  EXPECT_EQ(result.trajectory.at(last, 1), 0);
+  EXPECT_EQ(result.trajectory.at(last, 2), 0);
+  for (std::size_t row = 0; row <= last; ++row) {
+    if (result.trajectory.at(row, 0) > std::sqrt(0.2) * 3) {
+      EXPECT_EQ(result.trajectory.at(row, 1), 0);
+    }
+  }
 }
 
 TEST(Events, RelayOscillatorKeepsItsPeriodOverTwoThousandSwitchings) {

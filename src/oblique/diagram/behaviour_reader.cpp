@@ -176,7 +176,16 @@ class BehaviourReader {
     if (set == nullptr && reader.table().find("set") == nullptr) {
       reader.report("set", "[[events]] has no 'set'", "what the event changes, { memory = \"value\" }");
     }
-    for (const Entry& entry : set != nullptr ? set->entries : std::vector<Entry>{}) {
+    if (set != nullptr) rule.actions = read_actions(*set, names);
+    if (const Value* const piling_up = reader.table("piling_up"))
+      rule.piling_up = read_actions(*piling_up, names);
+    reader.finish();
+    definition_.events.push_back(std::move(rule));
+  }
+
+  std::vector<EventAction> read_actions(const Value& set, const std::vector<std::string>& names) {
+    std::vector<EventAction> actions;
+    for (const Entry& entry : set.entries) {
       if (!is_event_target(entry.key)) {
         std::vector<std::string> known;
         for (const MemoryRule& memory : definition_.memories) known.push_back(memory.name);
@@ -189,10 +198,9 @@ class BehaviourReader {
       auto value = read_expression(entry.value, what);
       if (!value) continue;
       check_names(*value, entry.value, what, names);
-      rule.actions.push_back({entry.key, std::move(*value), place(entry.value.position)});
+      actions.push_back({entry.key, std::move(*value), place(entry.value.position)});
     }
-    reader.finish();
-    definition_.events.push_back(std::move(rule));
+    return actions;
   }
 
   void read_equation(const Entry& entry, bool implicit, std::vector<Written>& written) {

@@ -97,6 +97,7 @@ struct EventAction {
 struct EventRule {
   Expression when;
   std::vector<EventAction> actions;
+  std::vector<EventAction> piling_up;  ///< in their place where the event comes ever faster; none: not told
   bool at_start = true;  ///< a condition that holds when the run starts counts as having become true
   std::optional<Expression> where;  ///< of parameters: there is no such event where it is 0
   Place place;

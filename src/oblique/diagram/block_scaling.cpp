@@ -31,9 +31,12 @@ class RuleReader {
     for (const EventRule& event : block_.definition->events) {
       scale_of(event.when);
       if (event.where) scale_of(*event.where);
-      for (const EventAction& action : event.actions) {
-        const auto value = scale_of(action.value);
-        if (const Eigen::Index column = column_of(action.target); column >= 0) equal(variable(column), value);
+      for (const auto* actions : {&event.actions, &event.piling_up}) {
+        for (const EventAction& action : *actions) {
+          const auto value = scale_of(action.value);
+          if (const Eigen::Index column = column_of(action.target); column >= 0)
+            equal(variable(column), value);
+        }
       }
     }
     for (const Behaviour& behaviour : block_.definition->behaviours) {  // which of them applies must stay

@@ -79,6 +79,7 @@ class Assembler {
   void make_memories();
   NodeId memory_node(std::size_t block, std::size_t memory);
   void make_events();
+  std::vector<Event::Action> actions_of(std::size_t block, const std::vector<EventAction>& rules);
   void make_starts();
   void define_switches();
   std::optional<NodeId> rate_of(NodeId surface);

@@ -136,17 +136,28 @@ void Assembler::make_events() {
     event.block = diagram_.blocks[block].path;
     event.at_start = rule->at_start;
     event.condition = built(block, rule->when, rule->place, "an event's 'when'");
-    for (const EventAction& action : rule->actions) {
-      Event::Action done;
-      const auto memory = diagram_.blocks[block].definition->find_memory(action.target);
-      done.on_state = !memory;
-      done.index = memory ? first_memory_[block] + static_cast<std::uint32_t>(*memory)
-                          : quantities_[quantity_of(block, action.target)].variable_index;
-      done.value = built(block, action.value, action.place, "an event's '" + action.target + "'");
-      event.actions.push_back(done);
+    event.actions = actions_of(block, rule->actions);
+    if (!rule->piling_up.empty()) {
+      event.piling_up = network_.events.size();
+      network_.events.push_back(
+          {event.block, network_.graph.constant(0), false, false, actions_of(block, rule->piling_up)});
     }
     network_.events.push_back(std::move(event));
   }
+}
+
+std::vector<Event::Action> Assembler::actions_of(std::size_t block, const std::vector<EventAction>& rules) {
+  std::vector<Event::Action> actions;
+  for (const EventAction& rule : rules) {
+    Event::Action done;
+    const auto memory = diagram_.blocks[block].definition->find_memory(rule.target);
+    done.on_state = !memory;
+    done.index = memory ? first_memory_[block] + static_cast<std::uint32_t>(*memory)
+                        : quantities_[quantity_of(block, rule.target)].variable_index;
+    done.value = built(block, rule.value, rule.place, "an event's '" + rule.target + "'");
+    actions.push_back(done);
+  }
+  return actions;
 }
 
 void Assembler::make_starts() {
@@ -196,17 +207,18 @@ std::optional<NodeId> Assembler::rate_of(NodeId surface) {
 NodeId Assembler::switch_of(std::size_t block, const Expression& left, const Expression& right,
                             Turning turning) {
   std::string text = to_string(left) + " > " + to_string(right);
-  const auto [found, inserted] = switch_index_.try_emplace(std::pair(block, text), kNone);
-  if (inserted) {
-    found->second = static_cast<std::uint32_t>(network_.memories.size());
+  const auto added = switch_index_.try_emplace(std::pair(block, text), kNone);
+  std::uint32_t& memory = added.first->second;
+  if (added.second) {
+    memory = static_cast<std::uint32_t>(network_.memories.size());
     network_.memories.push_back({std::move(text), 0});
-    pending_switches_.push_back({block, left, right, found->second, diagram_.blocks[block].place, turning});
+    pending_switches_.push_back({block, left, right, memory, diagram_.blocks[block].place, turning});
   } else {
     const auto pending = std::find_if(pending_switches_.begin(), pending_switches_.end(),
-                                      [&](const PendingSwitch& p) { return p.memory == found->second; });
+                                      [&](const PendingSwitch& p) { return p.memory == memory; });
     if (pending != pending_switches_.end()) pending->turning = std::max(pending->turning, turning);
   }
-  return network_.graph.memory(found->second);
+  return network_.graph.memory(memory);
 }
 
 /// table(x, x1, y1, …): the segment is a memory that follows x across the ends of segments.

@@ -123,7 +123,7 @@ void ProgramCompiler::find_sources() {
     }
   }
   for (NodeId id = 0; id < size; ++id) follows[id] = follows_of(graph, graph[id], follows);
-  for (NodeId id = static_cast<NodeId>(size); id-- > 0;) {
+  for (auto id = static_cast<NodeId>(size); id-- > 0;) {
     if (!needed[id]) continue;
     const Node& node = graph[id];
     for (int i = 0; i < operand_count(node.op); ++i) {

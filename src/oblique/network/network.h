@@ -64,6 +64,8 @@ struct Event {
   bool at_start = true;
   bool repeats = false;  ///< comes again for as long as the condition holds
   std::vector<Action> actions;
+  std::optional<std::size_t> piling_up =
+      std::nullopt;  ///< the event that takes its place where it comes ever faster
 };
 
 /// A quantity that is defined by an equation: residual = 0.

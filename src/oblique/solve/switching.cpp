@@ -222,13 +222,16 @@ bool Switching::settle_switches(double t, std::span<const double> x) {
   }
 }
 
-void Switching::keep_pace(std::size_t event, double t) {
+/// Whether an event piles up, so that the one that takes its place is to come. Throws SolveError where none
+/// does.
+bool Switching::piles_up(std::size_t event, double t) {
   Pace& pace = paces_[event];
   const double interval = t - pace.last;
   pace.shorter = interval > 0 && interval < pace.interval ? pace.shorter + 1 : 0;
   const double ratio = pace.interval > 0 ? interval / pace.interval : 1;
   const double left = interval * ratio / (1 - ratio);  // Σ interval · ratioᵏ
   if (pace.shorter >= kMostShorter && interval < kPilingUp * span_ && left < kPilingUp * span_) {
+    if (program_.events()[event].piling_up) return true;
     throw SolveError(
         SolveError::Kind::chatter, t,
         {{file_, {}},
@@ -236,10 +239,12 @@ void Switching::keep_pace(std::size_t event, double t) {
                      "pile up at t = {:.9g} s",
                      program_.events()[event].block, t, interval, t + left),
          {},
-         "end the run before, or let the block come to rest below some height"});
+         "end the run before, or tell the block what happens there: 'piling_up' beside 'set' in its "
+         "[[events]]"});
   }
   pace.last = t;
   pace.interval = interval;
+  return false;
 }
 
 /// Serves all events whose conditions have become true; true where there were any.
@@ -260,7 +265,13 @@ bool Switching::serve_events(double t, std::vector<double>& x, bool starting) {
     double value;
   };
   std::vector<Change> changes;
-  for (const std::size_t e : served) {
+  for (std::size_t e : served) {
+    if (piles_up(e, t)) {
+      e = *program_.events()[e].piling_up;
+      record(t, program_.events()[e].block + ": its events pile up");
+    } else {
+      record(t, program_.events()[e].block);
+    }
     const Event& event = program_.events()[e];
     for (std::size_t a = 0; a < event.actions.size(); ++a) {
       const double value = program_.action_value(e, a, workspace_);
@@ -275,8 +286,6 @@ bool Switching::serve_events(double t, std::vector<double>& x, bool starting) {
       }
       changes.push_back({&event.actions[a], value});
     }
-    record(t, event.block);
-    keep_pace(e, t);
   }
   bool jumps = false;
   for (const Change& change : changes) {

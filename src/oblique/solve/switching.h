@@ -95,7 +95,7 @@ class Switching {
   bool serve_events(double t, std::vector<double>& x, bool starting);
   void turn(std::size_t s, double position, double t);
   void record(double t, std::string what);
-  void keep_pace(std::size_t event, double t);
+  bool piles_up(std::size_t event, double t);
   [[noreturn]] void throw_chatter(const std::string& block, const std::string& what, double t) const;
 
   const Program& program_;
