@@ -12,6 +12,7 @@
 namespace oblique {
 namespace {
 
+using ::testing::AllOf;
 using testing::Compiled;
 using testing::failure_of;
 using ::testing::HasSubstr;
@@ -267,6 +268,32 @@ q = { type = "divider", numerator = "one", denominator = "x", gain = inf, bandwi
   ASSERT_TRUE(failure);
   EXPECT_EQ(failure->kind, SolveError::Kind::singular_loop);
   EXPECT_EQ(failure->time, 0);
+}
+
+// cos 3y = y at 0.3901, −0.8876 and −0.9795 (Newton's method on a pocket calculator, to the digits given).
+TEST(Branch, TellsThatALoopHasOtherSolutions) {
+  const auto result = run_of(Compiled("y = { type = \"cosine\", in = \"3*y\" }\n"), {.until = 1});
+  ASSERT_EQ(result.warnings.size(), 1U);
+  EXPECT_THAT(
+      result.warnings[0].what,
+      AllOf(
+          StartsWith("the algebraic loop of 'y' has several solutions: at t = 0 s the run begins with y = "),
+          HasSubstr("; nothing in the diagram chooses between them")));
+  const double y = result.trajectory.at(1, 1);
+  EXPECT_NEAR(std::cos(3 * y), y, 1e-10);
+  EXPECT_DOUBLE_EQ(result.trajectory.at(0, 1), y);  // looking for others has changed nothing but rounding
+}
+
+TEST(Branch, TellsNothingOfLoopsWithOneSolution) {
+  for (const char* blocks : {
+           "y = { type = \"cosine\", in = \"y\" }\n",  // cos y = y once
+           "y = { type = \"summer\", in = [\"0.5*y\", \"z\"] }\nz = { type = \"constant\" }\n",  // linear
+       }) {
+    EXPECT_TRUE(run_of(Compiled(blocks), {.until = 1}).warnings.empty()) << blocks;
+  }
+  // An amplifier's `initial` chooses.
+  EXPECT_TRUE(run_of(Compiled(cubic("x = { type = \"constant\", value = 0 }\n", kIdeal)), {.until = 1})
+                  .warnings.empty());
 }
 
 }  // namespace

@@ -80,7 +80,7 @@ double largest_weighted(N_Vector x, N_Vector weights) {
 
 /// A vector whose clones, and so all vectors of the solver, measure errors by `largest_weighted`.
 N_Vector make_vector(sunindextype size, SUNContext context) {
-  const N_Vector vector = N_VNew_Serial(size, context);
+  N_Vector vector = N_VNew_Serial(size, context);
   if (vector != nullptr) vector->ops->nvwrmsnorm = largest_weighted;
   return vector;
 }

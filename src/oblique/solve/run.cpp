@@ -11,6 +11,7 @@
 
 #include <oblique/solve/branch_end.h>
 #include <oblique/solve/hidden_motion.h>
+#include <oblique/solve/other_solutions.h>
 #include <oblique/solve/phase_clock.h>
 #include <oblique/solve/refinement.h>
 #include <oblique/solve/rest.h>
@@ -120,6 +121,8 @@ class Runner {
       settle_all();
     }
     for (Diagnostic& warning : unstable_branches(program_, workspace_, begin_, diagram_.file))
+      warnings_at_start_.push_back(std::move(warning));
+    for (Diagnostic& warning : other_solutions(program_, workspace_, begin_, states_, diagram_.file))
       warnings_at_start_.push_back(std::move(warning));
   }
 
