@@ -77,4 +77,35 @@ std::vector<CoupledModes> coupled_modes(const SparsePattern& pattern, std::span<
   return groups;
 }
 
+CoupledModes closed_modes(const SparsePattern& pattern, std::span<const double> jacobian,
+                          std::size_t member) {
+  // Those that it acts on, and those that act on it.
+  std::vector<std::vector<std::size_t>> followers(pattern.size()), leaders(pattern.size());
+  for (std::size_t column = 0; column < pattern.size(); ++column) {
+    for (auto k = pattern.column_starts[column]; k < pattern.column_starts[column + 1]; ++k) {
+      const auto entry = static_cast<std::size_t>(k);
+      if (jacobian[entry] == 0) continue;
+      followers[column].push_back(static_cast<std::size_t>(pattern.rows[entry]));
+      leaders[static_cast<std::size_t>(pattern.rows[entry])].push_back(column);
+    }
+  }
+  const auto reach = [&](const std::vector<std::vector<std::size_t>>& next) {
+    std::vector<bool> reached(pattern.size(), false);
+    reached[member] = true;
+    for (std::vector<std::size_t> open{member}; !open.empty();) {
+      const std::size_t at = open.back();
+      open.pop_back();
+      for (const std::size_t i : next[at]) {
+        if (!reached[i]) open.push_back(i);
+        reached[i] = true;
+      }
+    }
+    return reached;
+  };
+  std::vector<bool> group = reach(followers);
+  const std::vector<bool> acting = reach(leaders);
+  for (std::size_t i = 0; i < group.size(); ++i) group[i] = group[i] && acting[i];
+  return coupled_modes(pattern, jacobian, group).front();
+}
+
 }  // namespace oblique

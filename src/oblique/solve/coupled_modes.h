@@ -22,4 +22,7 @@ struct CoupledModes {
 std::vector<CoupledModes> coupled_modes(const SparsePattern& pattern, std::span<const double> jacobian,
                                         const std::vector<bool>& among);
 
+/// The modes of the whole group that some states which act on each other belong to, the others of it let go.
+CoupledModes closed_modes(const SparsePattern& pattern, std::span<const double> jacobian, std::size_t member);
+
 }  // namespace oblique

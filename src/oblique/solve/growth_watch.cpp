@@ -31,7 +31,8 @@ GrowthWatch::GrowthWatch(OdeSystem& system, const SolverSettings& settings)
       growth_(system.size()),
       distance_(system.size()),
       near_(system.size()),
-      told_(system.size()) {}
+      told_(system.size()),
+      held_since_(system.size()) {}
 
 void GrowthWatch::restart(double t, std::span<const double> x) {
   before_.assign(x.begin(), x.end());
@@ -74,6 +75,7 @@ void GrowthWatch::advance(double t, std::span<const double> x) {
 
 void GrowthWatch::judge(double t, std::span<const double> x, double step) {
   if (!system_.jacobian(t, x.data(), jacobian_.data())) return;
+  ++looked_;
   std::vector<bool> unstable(x.size(), false);
   for (const CoupledModes& group : coupled_modes(system_.pattern(), jacobian_, near_)) {
     double rate = 0;
@@ -101,6 +103,21 @@ void GrowthWatch::judge(double t, std::span<const double> x, double step) {
       least = std::min(least, distance_[i]);
     }
     if (!much || told) continue;
+    // Near may be the part of a loop that the rest of it holds. That is asked ever more seldom.
+    const std::size_t first = group.states.front();
+    if (held_since_[first] > 0 && looked_ < 2 * held_since_[first]) {
+      for (const std::size_t i : group.states) growth_[i] = 0;
+      continue;
+    }
+    const CoupledModes closed = closed_modes(system_.pattern(), jacobian_, first);
+    const bool held = !closed.eigenvalues.empty() &&
+                      std::all_of(closed.eigenvalues.begin(), closed.eigenvalues.end(),
+                                  [&](const std::complex<double>& mode) { return mode.real() < rate / 2; });
+    if (held) {
+      held_since_[first] = looked_;
+      for (const std::size_t i : group.states) growth_[i] = 0;
+      continue;
+    }
     found_.push_back({t, group.states, least, in_relative});
     for (const std::size_t i : group.states) told_[i] = true;
   }

@@ -49,8 +49,10 @@ class GrowthWatch {
   std::vector<double> distance_;  ///< the least since then
   std::vector<bool> near_;
   double time_ = 0, judged_ = 0, judged_step_ = 0;
-  int steps_ = 0;           ///< since it was judged
-  std::vector<bool> told_;  ///< of each state, whether it is among `found_`
+  int steps_ = 0;                 ///< since it was judged
+  long looked_ = 0;               ///< Jacobians
+  std::vector<bool> told_;        ///< of each state, whether it is among `found_`
+  std::vector<long> held_since_;  ///< Jacobian at which its growth was last found to be held by other states
   std::vector<UnseenGrowth> found_;
 };
 
