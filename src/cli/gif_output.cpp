@@ -25,7 +25,8 @@ std::string gif_of(const Mechanism& mechanism, const LinkageAnimation& animation
   while (pngs.size() < n) {
     std::vector<std::future<std::string>> batch;
     for (std::size_t k = pngs.size(); k < std::min(n, pngs.size() + at_a_time); ++k) {
-      batch.push_back(std::async(std::launch::async, [&, k] {
+      // Deferred where no thread can be had.
+      batch.push_back(std::async(std::launch::async | std::launch::deferred, [&, k] {
         const Picture picture = frames.picture(k);
         const double zoom = animation.width > 0 ? animation.width / picture.width : 1;
         return png_of(to_svg(picture, theme, zoom), path);

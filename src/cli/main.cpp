@@ -10,6 +10,7 @@
 #include <oblique/synthesis/synthesis_error.h>
 
 #include "arguments.h"
+#include "memory.h"
 #include "terminal.h"
 
 namespace oblique::cli {
@@ -41,6 +42,24 @@ ExitStatus run_program(int argc, char** argv) {
   }
 }
 
+/// Whatever happens is said, except that memory ran out: that is thrown.
+ExitStatus run_and_report(int argc, char** argv) {
+  try {
+    keep_stdout();
+    const ExitStatus status = run_program(argc, argv);
+    if (results_are_written()) return status;
+    print_error(
+        "the results could not be written to stdout\n"
+        "  remedy: make room where they go, or give a file with -o");
+    return ExitStatus::bad_request;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    print_error(fmt::format("internal error: {}; please report it", error.what()));
+    return ExitStatus::solver_failed;
+  }
+}
+
 }  // namespace
 
 BlockLibrary Session::blocks() const {
@@ -54,20 +73,11 @@ BlockLibrary Session::blocks() const {
 int main(int argc, char** argv) {
   using namespace oblique::cli;
   try {
-    keep_stdout();
-    const ExitStatus status = run_program(argc, argv);
-    if (results_are_written()) return static_cast<int>(status);
-    print_error(
-        "the results could not be written to stdout\n"
-        "  remedy: make room where they go, or give a file with -o");
-    return static_cast<int>(ExitStatus::bad_request);
+    guard_memory();
+    const ExitStatus status = run_and_report(argc, argv);
+    if (!memory_ran_out()) return static_cast<int>(status);
   } catch (const std::bad_alloc&) {
-    print_error(
-        "there is not enough memory for this\n"
-        "  remedy: ask for fewer rows ('samples' in [run], --positions) or outputs, or split the diagram");
-    return static_cast<int>(ExitStatus::bad_request);
-  } catch (const std::exception& error) {
-    print_error(fmt::format("internal error: {}; please report it", error.what()));
-    return static_cast<int>(ExitStatus::solver_failed);
   }
+  print_no_memory();
+  return static_cast<int>(ExitStatus::bad_request);
 }

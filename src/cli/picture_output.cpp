@@ -2,8 +2,9 @@
 #include "picture_output.h"
 
 #include <array>
-#include <cstdio>
+#include <cerrno>
 #include <cstdlib>
+#include <cstring>
 
 #include <unistd.h>
 
@@ -22,41 +23,61 @@ bool is_png(const std::string& path) {
   return std::filesystem::path(path).extension() == ".png";
 }
 
-/// A folder of our own for what goes between two programs.
+[[noreturn]] void fail_without_folder() {
+  throw ReadError(Diagnostic{{},
+                             "no temporary folder could be made for the conversion to pixels",
+                             {},
+                             "set TMPDIR to a folder that you may write to"});
+}
+
+std::string folder_pattern() {
+  std::error_code trouble;
+  std::string pattern = (std::filesystem::temp_directory_path(trouble) / "oblique-XXXXXX").string();
+  if (trouble) fail_without_folder();
+  return pattern;
+}
+
+/// A folder of our own for what goes between two programs. Once it is there nothing takes memory: where that
+/// runs out the folder is cleared away too.
 class ScratchFolder {
  public:
-  ScratchFolder() {
-    std::error_code trouble;
-    std::string name = (std::filesystem::temp_directory_path(trouble) / "oblique-XXXXXX").string();
-    if (trouble || mkdtemp(name.data()) == nullptr) {
-      throw ReadError(Diagnostic{{},
-                                 "no temporary folder could be made for the conversion to pixels",
-                                 {},
-                                 "set TMPDIR to a folder that you may write to"});
-    }
-    path_ = name;
+  ScratchFolder() : name_(folder_pattern()), svg_(name_ + "/picture.svg"), png_(name_ + "/picture.png") {
+    if (mkdtemp(name_.data()) == nullptr) fail_without_folder();
+    name_.copy(svg_.data(), name_.size());
+    name_.copy(png_.data(), name_.size());
   }
   ~ScratchFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
+    unlink(svg_.c_str());
+    unlink(png_.c_str());
+    rmdir(name_.c_str());
   }
   ScratchFolder(const ScratchFolder&) = delete;
   ScratchFolder& operator=(const ScratchFolder&) = delete;
-  std::filesystem::path operator/(const char* name) const { return path_ / name; }
+
+  const std::string& svg() const { return svg_; }
+  const std::string& png() const { return png_; }
 
  private:
-  std::filesystem::path path_;
+  std::string name_, svg_, png_;
 };
 
 /// A word for the shell as it stands.
-std::string quoted(const std::filesystem::path& path) {
+std::string quoted(const std::string& path) {
   std::string text = "'";
-  for (const char c : path.string()) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  for (const char c : path) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return text + "'";
 }
 
-bool converter_is_installed() {
-  return std::system("command -v rsvg-convert >/dev/null 2>&1") == 0;
+/// Whether a command for the shell ends well. `path` is what it is for.
+bool succeeds(const std::string& command, const std::string& path) {
+  const int status = std::system(command.c_str());
+  if (status < 0) {
+    throw ReadError(Diagnostic{{path, {}},
+                               fmt::format("rsvg-convert could not be started: {}", std::strerror(errno)),
+                               {},
+                               "end other programs, or write an .svg"});
+  }
+  return status == 0;
 }
 
 }  // namespace
@@ -67,7 +88,7 @@ void check_picture_output(const std::string& path) {
 }
 
 void require_converter(const std::string& path) {
-  if (converter_is_installed()) return;
+  if (succeeds("command -v rsvg-convert >/dev/null 2>&1", path)) return;
   throw ReadError(Diagnostic{
       {path, {}},
       fmt::format("a {} is made by rsvg-convert, which is not installed", is_png(path) ? "PNG" : "GIF"),
@@ -77,12 +98,11 @@ void require_converter(const std::string& path) {
 
 std::string png_of(std::string_view svg, const std::string& path) {
   const ScratchFolder folder;
-  const auto from = folder / "picture.svg", to = folder / "picture.png";
-  write_file(from, svg);
-  if (std::system(fmt::format("rsvg-convert {} -o {}", quoted(from), quoted(to)).c_str()) != 0) {
+  write_file(folder.svg(), svg);
+  if (!succeeds(fmt::format("rsvg-convert {} -o {}", quoted(folder.svg()), quoted(folder.png())), path)) {
     throw ReadError(Diagnostic{{path, {}}, "rsvg-convert could not draw this", {}, "write an .svg"});
   }
-  return read_file(to);
+  return read_file(folder.png());
 }
 
 void save_picture(const Picture& picture, const std::string& path, Theme theme) {

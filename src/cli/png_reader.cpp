@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "png_reader.h"
 
+#include <cstring>
+#include <new>
+
 #include <png.h>
 
 #include <fmt/format.h>
@@ -22,6 +25,7 @@ Raster read_png(const std::string& bytes, const std::string& path) {
     png_image_finish_read(&image, nullptr, dots.data(), 0, nullptr);
   }
   if (PNG_IMAGE_FAILED(image)) {
+    if (std::strstr(static_cast<const char*>(image.message), "memory") != nullptr) throw std::bad_alloc();
     throw ReadError(
         Diagnostic{{path, {}},
                    fmt::format("a frame could not be read back: {}", static_cast<const char*>(image.message)),

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <new>
 
 #include <fcntl.h>
 #include <sys/ioctl.h>
@@ -16,6 +17,8 @@
 
 #include <oblique/text/document.h>
 #include <oblique/text/quantity.h>
+
+#include "memory.h"
 
 namespace oblique::cli {
 namespace {
@@ -105,9 +108,15 @@ void note(std::string_view text) {
   std::fwrite(text.data(), 1, text.size(), stderr);
 }
 
+void print_error_mark() {
+  note(has_colours(STDERR_FILENO) ? "\033[1;31merror:\033[0m " : "error: ");
+}
+
 void print_error(std::string_view text) {
-  const bool colours = has_colours(STDERR_FILENO);
-  note(fmt::format("{}error:{} {}\n", colours ? "\033[1;31m" : "", colours ? "\033[0m" : "", text));
+  if (memory_ran_out()) throw std::bad_alloc();  // the finding may be for the lack of it
+  const std::string line = fmt::format("{}\n", text);
+  print_error_mark();
+  note(line);
 }
 
 void save(const std::filesystem::path& path, std::string_view text) {

@@ -62,6 +62,9 @@ void note(std::string_view text);
 /// Writes an error to stderr, "error:" in red where that is a terminal that wants colours (NO_COLOR).
 void print_error(std::string_view text);
 
+/// The word before it, for those who write the text themselves with `note`; takes no memory.
+void print_error_mark();
+
 /// Writes a file and says so on stderr.
 void save(const std::filesystem::path& path, std::string_view text);
 

@@ -41,6 +41,18 @@ TEST_F(File, IsReadBackAsWritten) {
   EXPECT_EQ(files(), 1U);
 }
 
+// Linux gives no first byte of a program's memory: what a damaged disk does, it does at once.
+TEST_F(File, ThatCannotBeReadToItsEndIsRefused) {
+  try {
+    read_file("/proc/self/mem");
+    FAIL() << "was read";
+  } catch (const ReadError& error) {
+    EXPECT_STREQ(error.what(),
+                 "/proc/self/mem: cannot read the file: Input/output error\n"
+                 "  remedy: it, or the disk that it is on, may be damaged: read a copy");
+  }
+}
+
 TEST_F(File, KeepsItsPermissions) {
   write_file(folder_ / "a.csv", "old");
   std::filesystem::permissions(folder_ / "a.csv", std::filesystem::perms(0600));

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cmath>
 #include <exception>
+#include <system_error>
 #include <thread>
 
 #include <oblique/compare/patched_run.h>
@@ -153,8 +154,11 @@ MonteCarlo monte_carlo(const Mechanism& whole, const Diagram& diagram, const Blo
   Queue queue(experiment, result);
   {
     std::vector<std::jthread> others;
-    for (int t = 1; t < std::min(options.threads, options.runs); ++t)
-      others.emplace_back([&queue] { queue.work({}); });
+    try {
+      for (int t = 1; t < std::min(options.threads, options.runs); ++t)
+        others.emplace_back([&queue] { queue.work({}); });
+    } catch (const std::system_error&) {  // no more threads to be had: those there are do the work
+    }
     queue.work(options.progress);
   }
   queue.finish();

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <sstream>
 
 namespace oblique {
 namespace {
@@ -76,8 +75,11 @@ std::vector<PanelScales> scales_of(const Chart& chart) {
 std::vector<std::string> wrapped(const std::string& text,
                                  const std::function<bool(const std::string& line)>& fits) {
   std::vector<std::string> lines;
-  std::istringstream words(text);
-  for (std::string word; words >> word;) {
+  constexpr const char* kSpace = " \t\n";
+  for (std::size_t first = text.find_first_not_of(kSpace); first != std::string::npos;) {
+    const std::size_t end = std::min(text.find_first_of(kSpace, first), text.size());
+    const std::string word = text.substr(first, end - first);
+    first = text.find_first_not_of(kSpace, end);
     const std::string longer = lines.empty() ? word : lines.back() + " " + word;
     if (lines.empty() || !fits(longer)) {
       lines.push_back(word);

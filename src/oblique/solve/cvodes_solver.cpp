@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <new>
 #include <stdexcept>
@@ -46,20 +47,25 @@ struct CvodesDeleter {
 template <class Handle, class Deleter>
 using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Deleter>;
 
-SUNContext make_context() {
-  SUNContext context = nullptr;
-  if (SUNContext_Create(nullptr, &context) != 0) throw std::bad_alloc();
-  return context;
-}
-
 template <class Handle>
 Handle made(Handle handle) {
   if (handle == nullptr) throw std::bad_alloc();
   return handle;
 }
 
+/// SUNHashMap_New writes into what it is given without a look whether it was given anything. That there is
+/// more than a context takes is found out first.
+SUNContext make_context() {
+  constexpr std::size_t kMoreThanContext = 16'384;
+  std::free(made(std::malloc(kMoreThanContext)));
+  SUNContext context = nullptr;
+  if (SUNContext_Create(nullptr, &context) != 0) throw std::bad_alloc();
+  return context;
+}
+
 /// Setup calls fail only for lack of memory or for arguments that this file fixes.
 void check_setup(int code) {
+  if (code == CV_MEM_FAIL || code == CVLS_MEM_FAIL) throw std::bad_alloc();
   if (code != CV_SUCCESS)
     throw std::logic_error("CVODES refuses its setup with code " + std::to_string(code));
 }
@@ -78,10 +84,23 @@ double largest_weighted(N_Vector x, N_Vector weights) {
   return largest;
 }
 
+/// SUNDIALS' N_VClone writes into what this gives without a look whether it gave anything. So the lack of
+/// memory is thrown, through frames of C that have nothing to clean up: what they made hangs on the memory of
+/// CVODES.
+N_Vector clone_or_throw(N_Vector vector) {
+  return made(N_VClone_Serial(vector));
+}
+
+/// As above.
+SUNMatrix clone_matrix_or_throw(SUNMatrix matrix) {
+  return made(SUNMatClone_Sparse(matrix));
+}
+
 /// A vector whose clones, and so all vectors of the solver, measure errors by `largest_weighted`.
 N_Vector make_vector(sunindextype size, SUNContext context) {
-  N_Vector vector = N_VNew_Serial(size, context);
-  if (vector != nullptr) vector->ops->nvwrmsnorm = largest_weighted;
+  N_Vector vector = made(N_VNew_Serial(size, context));
+  vector->ops->nvwrmsnorm = largest_weighted;
+  vector->ops->nvclone = clone_or_throw;
   return vector;
 }
 
@@ -126,21 +145,25 @@ struct CvodesSolver::Handles {
         max_steps(settings.max_steps),
         context(make_context()) {
     const auto n = static_cast<sunindextype>(x0.size());
-    states.reset(made(make_vector(n, context.get())));
-    scratch.reset(made(N_VClone(states.get())));
+    states.reset(make_vector(n, context.get()));
+    scratch.reset(N_VClone(states.get()));
     std::copy(x0.begin(), x0.end(), N_VGetArrayPointer(states.get()));
     const auto entries = static_cast<sunindextype>(system->pattern().entries());
     matrix.reset(made(SUNSparseMatrix(n, n, entries, CSC_MAT, context.get())));
+    matrix->ops->clone = clone_matrix_or_throw;
     linear_solver.reset(made(SUNLinSol_KLU(states.get(), matrix.get(), context.get())));
     memory.reset(made(CVodeCreate(settings.adams ? CV_ADAMS : CV_BDF, context.get())));
     void* const cvodes = memory.get();
-    check_setup(CVodeInit(cvodes, evaluate, 0, states.get()));
     check_setup(CVodeSetErrHandlerFn(cvodes, ignore_message, nullptr));
+    const int started = CVodeInit(cvodes, evaluate, 0, states.get());
+    // It has then freed its vectors, and CVodeFree would do so again.
+    if (started == CV_MEM_FAIL) static_cast<void>(memory.release());
+    check_setup(started);
     check_setup(CVodeSetUserData(cvodes, this));
     if (settings.own_tolerances.empty()) {
       check_setup(CVodeSStolerances(cvodes, settings.relative_tolerance, settings.absolute_tolerance));
     } else {
-      const Owned<N_Vector, VectorDeleter> own(made(N_VClone(states.get())));
+      const Owned<N_Vector, VectorDeleter> own(N_VClone(states.get()));
       std::copy(settings.own_tolerances.begin(), settings.own_tolerances.end(),
                 N_VGetArrayPointer(own.get()));
       check_setup(CVodeSVtolerances(cvodes, settings.relative_tolerance, own.get()));
@@ -158,7 +181,11 @@ struct CvodesSolver::Handles {
   /// stop time itself.
   int take_step(double part) {
     const double direction = part < 1 ? part * length : 2 * length + 1;
-    return CVode(memory.get(), direction, states.get(), &clock, CV_ONE_STEP);
+    const int code = CVode(memory.get(), direction, states.get(), &clock, CV_ONE_STEP);
+    // CVODES takes a factorisation that found no memory for one that failed.
+    if (code < 0 && SUNLinSol_KLUGetCommon(linear_solver.get())->status == KLU_OUT_OF_MEMORY)
+      throw std::bad_alloc();
+    return code;
   }
 
   static int evaluate(sunrealtype t, N_Vector x, N_Vector dxdt, void* user) {
@@ -300,7 +327,7 @@ SolverStatistics CvodesSolver::statistics() const {
 
 std::vector<double> CvodesSolver::weighted_errors() const {
   const Handles& h = *handles_;
-  const Owned<N_Vector, VectorDeleter> weights(made(N_VClone(h.states.get())));
+  const Owned<N_Vector, VectorDeleter> weights(N_VClone(h.states.get()));
   CVodeGetEstLocalErrors(h.memory.get(), h.scratch.get());
   CVodeGetErrWeights(h.memory.get(), weights.get());
   std::vector<double> errors(h.system->size());

@@ -122,7 +122,7 @@ int Positions::direction(std::uint32_t bits, std::size_t unit) const {
   const Trial& trial = trials_[bits];
   if (!trial.valid) return 0;
   const std::uint32_t s = program_.switch_structure().members[units_[unit]].front();
-  if (std::abs(trial.surfaces[unit]) > std::max(thresholds_[s], slide_.drift()))
+  if (std::abs(trial.surfaces[unit]) > std::max(thresholds_[s], SlidingMode::drift()))
     return sign_of(trial.surfaces[unit]);
   double largest = kRounding * fastest_, largest_later = 0;
   for (const Trial& other : trials_) {

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/text/document.h>
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
-#include <sstream>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -15,9 +17,32 @@
 namespace oblique {
 namespace {
 
+constexpr std::size_t kPiece = 16'384;  ///< read at once [bytes]
+
 [[noreturn]] void fail(const std::filesystem::path& path, std::string what, std::string remedy) {
   throw ReadError(Diagnostic{{path.string(), {}}, std::move(what), {}, std::move(remedy)});
 }
+
+/// A file for reading. Not a stream of the standard library: those take a file that cannot be read any
+/// further, and memory that runs out, for its end.
+class OpenFile {
+ public:
+  explicit OpenFile(const std::filesystem::path& path)
+      : descriptor_(open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
+    if (descriptor_ >= 0) return;
+    const int reason = errno;
+    fail(path, fmt::format("cannot open the file: {}", std::strerror(reason)),
+         reason == ENOENT ? "check the spelling and the folder you stand in" : "check its permissions");
+  }
+  ~OpenFile() { close(descriptor_); }
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+
+  int descriptor() const { return descriptor_; }
+
+ private:
+  int descriptor_;
+};
 
 }  // namespace
 
@@ -26,15 +51,17 @@ std::string read_file(const std::filesystem::path& path) {
   if (std::filesystem::is_directory(path, ignored)) {
     fail(path, "this is a directory, not a file", "name a file in it");
   }
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) {
-    const int reason = errno;
-    fail(path, fmt::format("cannot open the file: {}", std::strerror(reason)),
-         reason == ENOENT ? "check the spelling and the folder you stand in" : "check its permissions");
+  const OpenFile file(path);
+  std::string text;
+  for (std::array<char, kPiece> piece;;) {  // NOLINT(*-member-init): the system fills it
+    const ssize_t length = read(file.descriptor(), piece.data(), piece.size());
+    if (length == 0) return text;
+    if (length > 0) text.append(piece.data(), static_cast<std::size_t>(length));
+    if (length < 0 && errno != EINTR) {
+      fail(path, fmt::format("cannot read the file: {}", std::strerror(errno)),
+           "it, or the disk that it is on, may be damaged: read a copy");
+    }
   }
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return std::move(text).str();
 }
 
 void write_file(const std::filesystem::path& path, std::string_view text) {

@@ -61,20 +61,20 @@ void NewFile::open_beside() {
   if (descriptor_ < 0) claim_neighbour(false);
 }
 
-/// Takes the first free name beside the target: for the open file, or for one that is opened by it.
+/// Takes the first free name beside the target: for the open file, or for one that is opened by it. A name
+/// that is taken is moved to where it is kept: a copy could fail for lack of memory, and the file would stay.
 void NewFile::claim_neighbour(bool link_to_open_file) {
   for (int k = 0;; ++k) {
-    const std::filesystem::path name =
-        target_.parent_path() / fmt::format(".oblique-{}-{}.part", getpid(), k);
+    std::filesystem::path name = target_.parent_path() / fmt::format(".oblique-{}-{}.part", getpid(), k);
     if (link_to_open_file) {
       if (linkat(AT_FDCWD, name_of(descriptor_).c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0) {
-        neighbour_ = name;
+        neighbour_ = std::move(name);
         return;
       }
     } else {
       descriptor_ = open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kMode);
       if (descriptor_ >= 0) {
-        neighbour_ = name;
+        neighbour_ = std::move(name);
         return;
       }
     }
