@@ -9,6 +9,8 @@
 #include <oblique/text/document.h>
 #include <oblique/text/quantity.h>
 
+#include "whole_way.h"
+
 namespace oblique::fuzz {
 namespace {
 
@@ -54,6 +56,11 @@ void expression(std::string_view bytes) {
     require(error.column >= 1 && static_cast<std::size_t>(error.column) <= bytes.size() + 1,
             "a column lies in the text");
   }
+}
+
+void diagram(std::string_view bytes) {
+  const Verdict verdict = examine_diagram(bytes);
+  require(verdict.fault.empty(), verdict.fault.c_str());
 }
 
 }  // namespace oblique::fuzz

@@ -14,4 +14,7 @@ void document(std::string_view bytes);
 /// An expression (printed and read back unchanged) and a quantity.
 void expression(std::string_view bytes);
 
+/// A diagram that the bytes make (see whole_way.h), from its text to its trajectory.
+void diagram(std::string_view bytes);
+
 }  // namespace oblique::fuzz

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+#include "block_kinds.h"
+
+namespace oblique::fuzz {
+namespace {
+
+constexpr PortKind kSumOfValues[] = {{"in", kValue, true}};
+constexpr PortKind kOneValue[] = {{"in", kValue}};
+constexpr PortKind kOnePlain[] = {{"in", kPlain}};
+constexpr PortKind kTwoValues[] = {{"x", kValue}, {"y", kValue}};
+constexpr PortKind kFactors[] = {{"x", kValue}, {"y", kPlain}};
+constexpr OutputKind kValueOut[] = {{"out", kValue}};
+constexpr OutputKind kPlainOut[] = {{"out", kPlain}};
+
+constexpr PortKind kIntegratorIn[] = {
+    {"in", kValue, true}, {"start", kValue, false, false}, {"set", kPlain, false, false}};
+constexpr ParameterKind kIntegrator[] = {
+    {"initial", -1, 1, kValue}, {"rate", 0.25, 4, kRate, true}, {"limit", 0.25, 2.25, kValue}};
+constexpr ParameterKind kPlainIntegrator[] = {{"initial", -1, 1, kValue}, {"rate", 0.25, 2.25, kRate, true}};
+constexpr ParameterKind kRealIntegrator[] = {{"initial", -1, 1, kValue},  {"rate", 0.25, 2.25, kRate, true},
+                                             {"gain", 100, 1700, kPlain}, {"offset", -0.01, 0.01, kValue},
+                                             {"leakage", 0, 0.25, kRate}, {"drift", -0.125, 0.125, kSlope}};
+constexpr ParameterKind kFactor[] = {{"factor", -2, 2, kPlain, true}};
+constexpr ParameterKind kSetting[] = {{"setting", 0, 1, kPlain, true}};
+constexpr ParameterKind kLag[] = {
+    {"time_constant", 0.03125, 1.03125, kTime, true}, {"gain", -2, 2, kPlain}, {"initial", -1, 1, kValue}};
+constexpr ParameterKind kComparator[] = {
+    {"hysteresis", 0, 0.5, kValue}, {"low", -1, 0, kPlain}, {"high", 0.25, 1.25, kPlain}};
+constexpr PortKind kRelayIn[] = {
+    {"coil", kValue}, {"make", kValue, false, false}, {"break", kValue, false, false}};
+constexpr ParameterKind kRelay[] = {
+    {"pull_in", 0.25, 1.25, kValue, true}, {"drop_out", -0.5, 0.25, kValue, true}, {"delay", 0, 0.5, kTime}};
+constexpr ParameterKind kLimits[] = {{"low", -1, -0.0625, kValue, true},
+                                     {"high", 0.0625, 1.0625, kValue, true}};
+constexpr ParameterKind kBacklash[] = {
+    {"play", 0, 0.5, kValue, true}, {"rate", 64, 1024, kRate, true}, {"initial", -0.5, 0.5, kValue}};
+constexpr ParameterKind kConstant[] = {{"value", -1, 1, kValue, true}};
+constexpr ParameterKind kSineSource[] = {
+    {"amplitude", -1, 1, kValue, true}, {"frequency", 0, 4, kRate, true}, {"phase", -3, 3, kPlain}};
+constexpr ParameterKind kPulses[] = {{"period", 0.5, 2.5, kTime, true},
+                                     {"width", 0.015625, 0.484375, kTime, true},
+                                     {"delay", 0, 1, kTime},
+                                     {"low", -1, 1, kValue},
+                                     {"high", -1, 1, kValue, true}};
+constexpr ParameterKind kRamp[] = {{"slope", -2, 2, kSlope, true},
+                                   {"start", 0, 1, kTime},
+                                   {"stop", 1, 3, kTime},
+                                   {"initial", -1, 1, kValue}};
+constexpr ParameterKind kStep[] = {
+    {"at", 0, 2, kTime, true}, {"from", -1, 1, kValue}, {"to", -1, 1, kValue, true}};
+constexpr ParameterKind kServo[] = {
+    {"gain", 100, 16100, kPlain, true}, {"bandwidth", 1, 17, kRate, true}, {"initial", -1, 1, kValue}};
+constexpr PortKind kDividerIn[] = {{"numerator", kValue}, {"denominator", kPlain}};
+constexpr ParameterKind kDivider[] = {{"gain", 1000, 17000, kPlain, true}, {"bandwidth", 1, 17, kRate, true}};
+constexpr ParameterKind kRoot[] = {{"gain", 1000, 17000, kPlain, true}, {"bandwidth", 1, 17, kRate, true}};
+constexpr PortKind kSumOfPlain[] = {{"in", kPlain, true}};
+constexpr OutputKind kCosineAndSine[] = {{"cos", kPlain}, {"sin", kPlain}};
+constexpr ParameterKind kGenerator[] = {
+    {"rate", -4, 4, kRate, true}, {"start", -3, 3, kPlain}, {"hold", 0, 0.5, kRate, true}};
+constexpr PortKind kCrankIn[] = {{"speed", kPlain, false, false}};
+constexpr ParameterKind kCrank[] = {{"rate", -4, 4, kRate, true}, {"start", -3, 3, kPlain}};
+constexpr PortKind kSwitchIn[] = {
+    {"on", kValue, false, false}, {"off", kValue, false, false}, {"control", kValue}};
+constexpr ParameterKind kSwitch[] = {{"threshold", -0.5, 0.5, kValue, true}};
+constexpr PortKind kStoreIn[] = {{"in", kValue}, {"track", kPlain}};
+constexpr ParameterKind kStore[] = {{"acquisition_time", 0, 0.5, kTime}, {"initial", -1, 1, kValue}};
+constexpr PortKind kFlipFlopIn[] = {{"set", kPlain, false, false}, {"reset", kPlain}};
+constexpr OutputKind kOutAndInverse[] = {{"out", kPlain}, {"inverse", kPlain}};
+constexpr PortKind kCounterIn[] = {{"clock", kPlain}, {"reset", kPlain, false, false}};
+constexpr OutputKind kCounterOut[] = {{"out", kPlain}, {"carry", kPlain}};
+constexpr ParameterKind kCounter[] = {{"step", 0.0625, 0.3125, kPlain, true}};
+constexpr PortKind kTrigger[] = {{"trigger", kPlain}};
+constexpr ParameterKind kMonostable[] = {
+    {"length", 0.0625, 1.0625, kTime, true}, {"retriggerable", 0, 1, kPlain}, {"high", -1, 1, kValue, true}};
+constexpr PortKind kServoMultiplierIn[] = {{"x", kPlain}, {"y1", kValue}};
+constexpr OutputKind kServoMultiplierOut[] = {{"out1", kValue}, {"position", kPlain}};
+constexpr ParameterKind kServoMultiplier[] = {{"loop_gain", 10, 100, kRate, true},
+                                              {"time_constant", 0, 0.0625, kTime},
+                                              {"velocity_limit", 0.5, 8.5, kRate},
+                                              {"dead_zone", 0, 0.0625, kPlain}};
+constexpr PortKind kDirectionIn[] = {{"x", kPlain}, {"y", kPlain}};
+constexpr OutputKind kDirectionOut[] = {{"length", kPlain}, {"cos", kPlain}, {"sin", kPlain}};
+constexpr ParameterKind kDirection[] = {{"gain", 1000, 17000, kPlain, true},
+                                        {"bandwidth", 1, 17, kRate, true}};
+constexpr ParameterKind kNoise[] = {
+    {"rms", 0, 0.25, kValue, true}, {"bandwidth", 0.5, 2.5, kRate, true}, {"seed", 0, 16, kPlain}};
+constexpr ParameterKind kCurve[] = {{"points", -1, 1, kPlain, true}};
+constexpr ParameterKind kFormula[] = {{"formula", 0.25, 4.25, kRate, true}};
+
+constexpr BlockKind kKinds[] = {
+    {"integrator", 8, kSumOfValues, kValueOut, kPlainIntegrator, true},
+    {"integrator", 2, kIntegratorIn, kValueOut, kIntegrator, true},
+    {"integrator", 1, kSumOfValues, kValueOut, kRealIntegrator, true, true},
+    {"summer", 6, kSumOfValues, kValueOut, {}},
+    {"inverter", 1, kOneValue, kValueOut, {}},
+    {"gain", 2, kOneValue, kValueOut, kFactor},
+    {"potentiometer", 2, kOneValue, kValueOut, kSetting},
+    {"multiplier", 4, kFactors, kValueOut, {}},
+    {"squarer", 1, kOnePlain, kPlainOut, {}},
+    {"absolute-value", 1, kOneValue, kValueOut, {}},
+    {"maximum", 1, kTwoValues, kValueOut, {}},
+    {"minimum", 1, kTwoValues, kValueOut, {}},
+    {"sign", 1, kOneValue, kPlainOut, {}},
+    {"sine", 1, kOnePlain, kPlainOut, {}},
+    {"cosine", 1, kOnePlain, kPlainOut, {}},
+    {"arc-tangent", 1, kOnePlain, kPlainOut, {}},
+    {"function-generator", 1, kOnePlain, kPlainOut, kCurve},
+    {"limiter", 2, kOneValue, kValueOut, kLimits},
+    {"dead-zone", 2, kOneValue, kValueOut, kLimits},
+    {"backlash", 1, kOneValue, kValueOut, kBacklash, true},
+    {"comparator", 3, kSumOfValues, kPlainOut, kComparator},
+    {"relay", 2, kRelayIn, kValueOut, kRelay},
+    {"electronic-switch", 1, kSwitchIn, kValueOut, kSwitch},
+    {"track-and-store", 1, kStoreIn, kValueOut, kStore},
+    {"flip-flop", 1, kFlipFlopIn, kOutAndInverse, {}},
+    {"counter", 1, kCounterIn, kCounterOut, kCounter},
+    {"monostable", 1, kTrigger, kValueOut, kMonostable},
+    {"transfer-lag", 4, kOneValue, kValueOut, kLag, true},
+    {"servo-amplifier", 2, kSumOfValues, kValueOut, kServo, true},
+    {"servo-multiplier", 1, kServoMultiplierIn, kServoMultiplierOut, kServoMultiplier, true},
+    {"divider", 1, kDividerIn, kValueOut, kDivider, true},
+    {"square-root", 1, kOnePlain, kPlainOut, kRoot, true},
+    {"sine-cosine-generator", 1, kSumOfPlain, kCosineAndSine, kGenerator, true},
+    {"crank-generator", 1, kCrankIn, kCosineAndSine, kCrank, true},
+    {"vector-direction", 1, kDirectionIn, kDirectionOut, kDirection, true},
+    {"constant", 2, {}, kValueOut, kConstant, true},
+    {"sine-source", 3, {}, kValueOut, kSineSource, true},
+    {"pulse-train", 2, {}, kValueOut, kPulses, true},
+    {"ramp", 1, {}, kValueOut, kRamp, true},
+    {"step", 1, {}, kValueOut, kStep, true},
+    {"time-function", 1, {}, kPlainOut, kFormula, true},
+    {"noise-source", 1, {}, kValueOut, kNoise, true},
+};
+
+}  // namespace
+
+std::span<const BlockKind> block_kinds() {
+  return kKinds;
+}
+
+}  // namespace oblique::fuzz

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: MIT
+#include "random_diagram.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+
+#include <fmt/format.h>
+
+namespace oblique::fuzz {
+namespace {
+
+const BlockKind& random_kind(Dice& dice) {
+  const auto kinds = block_kinds();
+  const int all = std::accumulate(kinds.begin(), kinds.end(), 0,
+                                  [](int sum, const BlockKind& kind) { return sum + kind.weight; });
+  int left = static_cast<int>(dice.below(static_cast<std::size_t>(all)));
+  const auto found = std::find_if(kinds.begin(), kinds.end(),
+                                  [&](const BlockKind& kind) { return (left -= kind.weight) < 0; });
+  return *found;
+}
+
+double random_weight(Dice& dice) {
+  constexpr double kWeights[] = {1, -1, 0.5, -0.5, -2, 2, 0.3, -1.7};
+  return kWeights[dice.below(std::size(kWeights))];
+}
+
+/// Mostly a block before this one or one with a state, so that algebraic loops are there but not everywhere.
+Wire random_wire(const DiagramPlan& plan, std::size_t to, Dice& dice) {
+  constexpr int kTries = 4;
+  const bool any = dice.one_in(8);
+  std::size_t from = dice.below(plan.blocks.size());
+  for (int k = 0; k < kTries && !any && from >= to && !plan.blocks[from].kind->has_state; ++k)
+    from = dice.below(plan.blocks.size());
+  return {random_weight(dice), from, dice.below(plan.blocks[from].kind->outputs.size())};
+}
+
+void wire(DiagramPlan& plan, std::size_t index, Dice& dice) {
+  PlannedBlock& block = plan.blocks[index];
+  for (const PortKind& port : block.kind->inputs) {
+    if (!port.required && !dice.one_in(3)) continue;
+    std::vector<Wire> wires{random_wire(plan, index, dice)};
+    if (port.is_sum) {
+      while (wires.size() < 3 && dice.one_in(2)) wires.push_back(random_wire(plan, index, dice));
+      // Most integrators are damped, and most amplifiers fed back: what grows without end soon leaves every
+      // machine.
+      if (block.kind->type == "integrator" && !dice.one_in(3)) wires.push_back({-0.5, index, 0});
+      if (block.kind->type == "servo-amplifier" && !dice.one_in(4)) wires.push_back({1, index, 0});
+    }
+    block.inputs.emplace_back(&port, std::move(wires));
+  }
+}
+
+double factor_of(Dimension dimension, const Writing& writing) {
+  return std::pow(writing.value, dimension.value) * std::pow(writing.time, dimension.time);
+}
+
+class Writer {
+ public:
+  Writer(const DiagramPlan& plan, const Writing& writing)
+      : plan_(plan), writing_(writing), signs_(writing.signs) {}
+
+  std::string text() {
+    std::string out = "format = \"oblique-diagram/1\"\n";
+    if (plan_.profile != "ideal" || plan_.inverting)
+      out += fmt::format("[machine]\nprofile = \"{}\"\ninverting = {}\n", plan_.profile, plan_.inverting);
+    out += fmt::format(
+        "[run]\nuntil = {}\ntolerance = {}\nmethod = \"{}\"\nsettle = {}\nsamples = {}\n[blocks]\n",
+        plan_.until * writing_.time, plan_.tolerance, plan_.method, plan_.settle, writing_.samples);
+    std::vector<std::string> lines;
+    for (std::size_t k = 0; k < plan_.blocks.size(); ++k) lines.push_back(line_of(k));
+    for (std::size_t k = 0; k < lines.size(); ++k)
+      out += lines[writing_.order.empty() ? k : writing_.order[k]];
+    out += "[outputs]\n";
+    for (std::size_t k = 0; k < plan_.blocks.size(); ++k) {
+      out += fmt::format("y{} = {{ signal = \"{}\", scale = {} }}\n", k, signal({1, k, 0}),
+                         1 / factor_of(plan_.blocks[k].kind->outputs[0].dimension, writing_));
+    }
+    return out;
+  }
+
+ private:
+  std::string name(std::size_t block) const {
+    if (writing_.names == Writing::Names::rising) return fmt::format("b{}", block);
+    return fmt::format("x{}", 900 - block);
+  }
+
+  std::string signal(const Wire& wire) const {
+    const BlockKind& kind = *plan_.blocks[wire.block].kind;
+    if (kind.outputs.size() == 1) return name(wire.block);
+    return name(wire.block) + "." + std::string(kind.outputs[wire.output].name);
+  }
+
+  double disturbed(double number) {
+    if (writing_.disturbance == 0) return number;
+    return number * (1 + ((signs_() & 1U) != 0 ? writing_.disturbance : -writing_.disturbance));
+  }
+
+  std::string term(const Wire& wire, const PortKind& port) {
+    const Dimension from = plan_.blocks[wire.block].kind->outputs[wire.output].dimension;
+    const double scale = factor_of(port.dimension, writing_) / factor_of(from, writing_);
+    return fmt::format("\"{}*{}\"", disturbed(wire.weight) * scale, signal(wire));
+  }
+
+  std::string line_of(std::size_t index) {
+    const PlannedBlock& block = plan_.blocks[index];
+    std::string line = fmt::format("{} = {{ type = \"{}\"", name(index), block.kind->type);
+    for (const auto& [port, wires] : block.inputs) {
+      line += fmt::format(", {} = ", port->name);
+      if (!port->is_sum) {
+        line += term(wires.front(), *port);
+        continue;
+      }
+      line += "[";
+      for (std::size_t k = 0; k < wires.size(); ++k) line += (k == 0 ? "" : ", ") + term(wires[k], *port);
+      line += "]";
+    }
+    for (const auto& [parameter, planned] : block.parameters) {
+      // Parts of one, such as a setting, may only become less.
+      const bool is_part = parameter->dimension.value == 0 && parameter->dimension.time == 0;
+      const double number = is_part ? planned * (1 - writing_.disturbance) : disturbed(planned);
+      const double value = number * factor_of(parameter->dimension, writing_);
+      line += fmt::format(", {} = {}", parameter->name, setting(parameter->name, value));
+    }
+    return line + " }\n";
+  }
+
+  static std::string setting(std::string_view parameter, double value) {
+    if (parameter == "points") return fmt::format("[[-1, {0}], [0, 0], [0.5, 1], [1, {1}]]", value, -value);
+    if (parameter == "formula") return fmt::format("\"sin({}*time)\"", value);
+    if (parameter == "seed") return fmt::format("{}", std::round(value));
+    return fmt::format("{}", value);
+  }
+
+  const DiagramPlan& plan_;
+  const Writing& writing_;
+  std::mt19937 signs_;
+};
+
+}  // namespace
+
+DiagramPlan plan_diagram(Dice& dice) {
+  constexpr double kTolerances[] = {1e-8, 1e-6, 1e-7, 1e-9};
+  constexpr const char* kMethods[] = {"auto", "auto", "bdf", "adams"};
+  constexpr const char* kProfiles[] = {"tr-10", "rat-700", "mn-7", "the-analog-thing"};
+  DiagramPlan plan;
+  plan.until = dice.number(0.5, 8.5);
+  plan.tolerance = kTolerances[dice.below(std::size(kTolerances))];
+  plan.method = kMethods[dice.below(std::size(kMethods))];
+  plan.settle = !dice.one_in(8);
+  plan.inverting = dice.one_in(8);
+  if (dice.one_in(16)) {
+    plan.profile = kProfiles[dice.below(std::size(kProfiles))];
+    plan.inverting = true;
+  }
+  const std::size_t n = 2 + dice.below(9);
+  for (std::size_t k = 0; k < n; ++k) plan.blocks.push_back({&random_kind(dice), {}, {}});
+  for (std::size_t k = 0; k < n; ++k) {
+    wire(plan, k, dice);
+    for (const ParameterKind& parameter : plan.blocks[k].kind->parameters) {
+      if (parameter.required || dice.one_in(2))
+        plan.blocks[k].parameters.emplace_back(&parameter, dice.number(parameter.low, parameter.high));
+    }
+  }
+  return plan;
+}
+
+bool can_be_scaled(const DiagramPlan& plan) {
+  const auto changes = [&](const Wire& wire) {
+    return plan.blocks[wire.block].kind->outputs[wire.output].dimension.value == 0;
+  };
+  return plan.profile == "ideal" &&
+         std::none_of(plan.blocks.begin(), plan.blocks.end(), [&](const PlannedBlock& block) {
+           if (!block.kind->weighs) return false;
+           const auto& wires = block.inputs.front().second;
+           return std::any_of(wires.begin(), wires.end(), changes);
+         });
+}
+
+std::string text_of(const DiagramPlan& plan, const Writing& writing) {
+  return Writer(plan, writing).text();
+}
+
+}  // namespace oblique::fuzz

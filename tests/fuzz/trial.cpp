@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+#include "trial.h"
+
+#include <cctype>
+#include <cmath>
+#include <exception>
+#include <functional>
+
+#include <fmt/format.h>
+
+#include <oblique/diagram/block_library.h>
+#include <oblique/network/network.h>
+#include <oblique/solve/solve_error.h>
+
+namespace oblique::fuzz {
+namespace {
+
+/// A random diagram takes some hundred steps; one that chatters as fast as its solver can, many more.
+constexpr long kMostSteps = 20'000;
+
+const BlockLibrary& blocks() {
+  static const BlockLibrary library = BlockLibrary::shipped();
+  return library;
+}
+
+/// A message without what renaming and rounding change: quoted names and numbers.
+std::string without_particulars(std::string_view message) {
+  std::string text;
+  bool quoted = false;
+  for (const char c : message) {
+    if (c == '\'') quoted = !quoted;
+    if (quoted || c == '\'' || std::isdigit(static_cast<unsigned char>(c)) != 0) continue;
+    text += c;
+  }
+  return text;
+}
+
+bool is_finite(const Trajectory& table) {
+  for (const double value : table.values()) {
+    if (!std::isfinite(value)) return false;
+  }
+  return true;
+}
+
+void refuse(Trial& trial, std::string_view stage, const Error& error) {
+  trial.end = Trial::End::refused;
+  trial.says = stage;
+  trial.message = error.what();
+  if (error.diagnostics().empty() || error.diagnostics().front().what.empty()) {
+    trial.end = Trial::End::broken;
+    trial.says = "a refusal without words";
+  }
+}
+
+Trial attempt(const std::function<void(Trial&)>& way) {
+  Trial trial;
+  try {
+    way(trial);
+  } catch (const SolveError& error) {
+    refuse(trial, fmt::format("solve {}", static_cast<int>(error.kind())), error);
+    if (error.kind() == SolveError::Kind::step_budget) trial.end = Trial::End::over_budget;
+    if (!std::isfinite(error.time())) {
+      trial.end = Trial::End::broken;
+      trial.says = "a refusal at no time";
+    }
+  } catch (const DiagramError& error) {
+    refuse(trial, "diagram", error);
+  } catch (const NetworkError& error) {
+    refuse(trial, "network", error);
+  } catch (const std::exception& error) {
+    trial.says = fmt::format("an exception of no stage: {}", error.what());
+  }
+  return trial;
+}
+
+void run_whole(const Diagram& diagram, const TrialOptions& asked, Trial& trial) {
+  const FlatDiagram flat = flatten(diagram, blocks());
+  const Program program(assemble(flat));
+  RunOptions options = options_of(diagram.run);
+  if (asked.method) options.method = *asked.method;
+  if (asked.tolerance) options.tolerance = *asked.tolerance;
+  if (asked.until) options.until = *asked.until;
+  if (asked.samples) options.samples = *asked.samples;
+  options.from = asked.from;
+  options.max_steps = kMostSteps;
+  long asked_to_end = 0;  // of all attempts, and of steps that events end
+  options.interrupted = [&] { return ++asked_to_end > 3 * kMostSteps; };
+  trial.run = run(program, flat, options);
+  if (!is_finite(trial.run->trajectory)) {
+    trial.says = "an output that is no finite number";
+    return;
+  }
+  if (trial.run->state.time < options.until) {
+    trial.end = Trial::End::over_budget;
+    return;
+  }
+  if (trial.run->trajectory.rows() != static_cast<std::size_t>(options.samples)) {
+    trial.says = "rows are missing";
+    return;
+  }
+  trial.end = trial.run->warnings.empty() ? Trial::End::clean : Trial::End::warned;
+  for (const Diagnostic& warning : trial.run->warnings) {
+    trial.says += without_particulars(warning.what.substr(0, warning.what.find(':'))) + ";";
+    trial.message += to_string(warning) + "\n";
+  }
+}
+
+}  // namespace
+
+Trial try_diagram(const std::string& text, const TrialOptions& options) {
+  return attempt([&](Trial& trial) { run_whole(parse_diagram(text, "fuzz.toml"), options, trial); });
+}
+
+Trial try_diagram(const Diagram& diagram, const TrialOptions& options) {
+  return attempt([&](Trial& trial) { run_whole(diagram, options, trial); });
+}
+
+}  // namespace oblique::fuzz
