@@ -63,4 +63,9 @@ void diagram(std::string_view bytes) {
   require(verdict.fault.empty(), verdict.fault.c_str());
 }
 
+void mechanism(std::string_view bytes) {
+  const Verdict verdict = examine_mechanism(bytes);
+  require(verdict.fault.empty(), verdict.fault.c_str());
+}
+
 }  // namespace oblique::fuzz

@@ -17,4 +17,7 @@ void expression(std::string_view bytes);
 /// A diagram that the bytes make (see whole_way.h), from its text to its trajectory.
 void diagram(std::string_view bytes);
 
+/// A mechanism that the bytes make, from its file by its exact motion and its patch to the run of that.
+void mechanism(std::string_view bytes);
+
 }  // namespace oblique::fuzz

@@ -16,7 +16,7 @@ namespace oblique::fuzz {
 namespace {
 
 /// A random diagram takes some hundred steps; one that chatters as fast as its solver can, many more.
-constexpr long kMostSteps = 20'000;
+constexpr long kMostSteps = 5'000;
 
 const BlockLibrary& blocks() {
   static const BlockLibrary library = BlockLibrary::shipped();

@@ -19,8 +19,8 @@ struct Trial {
     broken,       ///< in a way that no run may end
   };
   End end = End::broken;
-  std::string says;  ///< the stage and kind of a refusal, the warnings without their numbers and names; or
-                     ///< how it is broken
+  std::string says;     ///< the stage and kind of a refusal, the warnings without their numbers and names; or
+                        ///< how it is broken
   std::string message;  ///< in full
   std::optional<Run> run;
 };

@@ -22,9 +22,21 @@ struct Verdict {
 ///   two runs without warnings differ by no more than those of the same diagram do when its numbers are
 ///   disturbed by a thousand tolerances.
 ///
-/// Other names, another order and another scale must also end in the same way, with the same warnings.
-/// A run that takes too many steps tells nothing; a refusal of a stage is no fault, but nothing else may be
-/// thrown, and no output may be without a number. (Scaled values may leave the machine where others do not.)
+/// Other names, another order and another scale must also end in the same way, with the same warnings; but
+/// for other names not where disturbed numbers make the diagram end otherwise too. A run that takes too many
+/// steps tells nothing; a refusal of a stage is no fault, but nothing else may be thrown, and no output may
+/// be without a number. (Scaled values may leave the machine where others do not.)
 Verdict examine_diagram(std::string_view bytes);
+
+/// The same of one random mechanism: a four-bar, a slider-crank, a six-bar or a triad, from its file by its
+/// exact motion and its patch to the run of that. Held against it are
+///
+/// * the same with its points and bodies renamed: not a bit of the exact motion may differ;
+/// * with its bodies in another order, or with all lengths doubled: the exact motions agree;
+/// * its patch, written and read back: it is equal, and so is each bit of its run;
+/// * the run of its patch by either method, where it turns and stays well away from dead centres: the points
+/// are
+///   where they exactly are, but for what the gain of the amplifiers leaves.
+Verdict examine_mechanism(std::string_view bytes);
 
 }  // namespace oblique::fuzz

@@ -46,5 +46,9 @@ TEST(WholeWay, OfDiagramsIsTheSameHoweverItIsGone) {
   examine(examine_diagram, 1000, 0.5);
 }
 
+TEST(WholeWay, OfMechanismsIsTheSameHoweverItIsGone) {
+  examine(examine_mechanism, 300, 0.3);
+}
+
 }  // namespace
 }  // namespace oblique::fuzz
