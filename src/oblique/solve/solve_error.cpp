@@ -50,6 +50,17 @@ std::size_t largest_state(const CvodesSolver& solver) {
 
 SolveError loop_error(const Program& program, const Workspace::Trouble& trouble, double t,
                       const std::string& file) {
+  if (trouble.failure == LoopFailure::none) {  // what fails is no loop but a slide
+    return {
+        SolveError::Kind::chatter,
+        t,
+        {{file, {}},
+         fmt::format("at t = {:.6g} s no mixture of both of its sides keeps a switch on the surface that it "
+                     "slides along",
+                     t),
+         {},
+         "give the switch a hysteresis"}};
+  }
   const Loop& loop = program.loops()[trouble.loop];
   const Unknown& unknown = program.unknowns()[loop.unknowns.front()];
   const std::string path = loop_path(loop);

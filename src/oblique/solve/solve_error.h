@@ -26,6 +26,7 @@ class SolveError : public Error {
 };
 
 /// The error of an algebraic loop that could not be solved at time t: its members, its gain, the remedy.
+/// Where the trouble is with none, that of a slide that goes nowhere.
 SolveError loop_error(const Program& program, const Workspace::Trouble& trouble, double t,
                       const std::string& file);
 
