@@ -396,20 +396,6 @@ BlockLibrary library_with_bit(const std::string& set, const std::string& clear) 
           set + "\"\nset = { q = 1 }\n[[events]]\nwhen = \"" + clear + "\"\nset = { q = 0 }\n");
 }
 
-// At t = 0.5 the loop gain is zero, and the sides of the slide say nothing of how it is to be mixed.
-TEST(Events, ASlideWhoseSidesSayNothingIsRefusedByName) {
-  const Compiled made(R"toml(
-g = { type = "ramp", slope = -1, initial = 0.5 }
-p = { type = "multiplier", in = ["g", "x"] }
-c = { type = "sign", in = "-p" }
-x = { type = "integrator", in = ["c"], initial = 0.1 }
-)toml");
-  EXPECT_EQ(
-      message_of<SolveError>([&] { run_of(made, {.until = 2}); }),
-      "d.toml: at t = 0.5 s no mixture of both of its sides keeps a switch on the surface that it slides "
-      "along\n  remedy: give the switch a hysteresis");
-}
-
 TEST(Events, AMemoryThatUndoesItselfChatters) {
   const BlockLibrary library = library_with_bit("in > 0", "in < 0");
   const Compiled made(R"(one = { type = "constant" }

@@ -24,6 +24,8 @@ constexpr double kEdge = 1e-5;
 
 constexpr int kDeepest = 60;
 
+constexpr double kRounding = 1e-13;  ///< of what a switch compares, or of a machine unit
+
 /// Nearer than this no two times are told apart.
 double resolution(double t) {
   return 4 * std::numeric_limits<double>::epsilon() * std::abs(t);
@@ -64,7 +66,7 @@ Cubic cubic_of(double from, double to, double from_rate, double to_rate, double 
 }  // namespace
 
 EventSearch::EventSearch(const Program& program, Workspace& workspace, SlidingMode& slide,
-                         const std::vector<double>& thresholds, double span, const std::string& file)
+                         Thresholds& thresholds, double span, const std::string& file)
     : program_(program),
       workspace_(workspace),
       slide_(slide),
@@ -96,7 +98,7 @@ void EventSearch::look(double t, const Interpolant& solution, Look& at) {
   at.rates.resize(n);
   for (std::size_t s = 0; s < n; ++s) {
     const bool closed = workspace_.memory(program_.switches()[s].memory) == 1;
-    at.overdue[s] = (closed ? -surfaces_[s] : surfaces_[s]) - thresholds_[s];
+    at.overdue[s] = (closed ? -surfaces_[s] : surfaces_[s]) - thresholds_.now[s];
     at.rates[s] = closed ? -surface_rates_[s] : surface_rates_[s];
     const bool elsewhere =
         program_.switches()[s].rate || slide_.holds(s) || slide_.follows(s) || slide_.rests(s);
@@ -106,9 +108,11 @@ void EventSearch::look(double t, const Interpolant& solution, Look& at) {
     at.overdue.push_back(-share - kEdge);
     at.overdue.push_back(share - 1 - kEdge);
   }
+  for (std::size_t unit = 0; unit < slide_.units().size(); ++unit)
+    at.overdue.push_back(slide_.repulsion(unit) - SlidingMode::kNoRepulsion);
   for (std::size_t side = 0; side < slide_.sides(); ++side) {
     for (std::size_t f = 0; f < slide_.followers().size(); ++f)
-      at.overdue.push_back(slide_.overdue(side, f) - thresholds_[slide_.followers()[f]]);
+      at.overdue.push_back(slide_.overdue(side, f) - thresholds_.now[slide_.followers()[f]]);
   }
   at.rates.resize(at.overdue.size(), std::numeric_limits<double>::quiet_NaN());
 }
@@ -135,11 +139,27 @@ std::optional<EventSearch::Found> EventSearch::search(double from, std::span<con
              solution, right);
       if (auto found = between(left, right, solution)) return found;
       std::swap(left, right);
-      for (std::size_t s = 0; s < excursions_.size(); ++s)
-        excursions_[s] = std::max(excursions_[s], std::abs(left.surfaces[s]));
+      leave_behind(left);
     }
   }
   return std::nullopt;
+}
+
+double EventSearch::rounding(std::size_t s) const {
+  const double size = program_.compared_size(s, workspace_);
+  return kRounding * (std::isfinite(size) ? std::max(1.0, size) : 1);
+}
+
+/// Takes its slack from every surface that is beyond the errors of the states.
+void EventSearch::leave_behind(Look& at) {
+  for (std::size_t s = 0; s < excursions_.size(); ++s) {
+    excursions_[s] = std::max(excursions_[s], std::abs(at.surfaces[s]));
+    if (thresholds_.slack[s] == 0 || excursions_[s] <= 2 * thresholds_.slack[s]) continue;
+    const double least = rounding(s);
+    at.overdue[s] += thresholds_.now[s] - least;
+    thresholds_.now[s] = least;
+    thresholds_.slack[s] = 0;
+  }
 }
 
 std::optional<EventSearch::Found> EventSearch::between(const Look& from, const Look& to,

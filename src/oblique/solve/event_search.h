@@ -30,9 +30,20 @@ class EventSearch {
     bool slide_changes = false;                            ///< it ends, or what follows it turns over
   };
 
-  /// `thresholds` is of every switch how far its surface must have passed zero. All must outlive this.
-  EventSearch(const Program& program, Workspace& workspace, SlidingMode& slide,
-              const std::vector<double>& thresholds, double span, const std::string& file);
+  /// How far its surface must have passed zero, of every switch.
+  struct Thresholds {
+    std::vector<double> now;
+    /// Of it, how far the surface may go back by the errors of the states alone; nothing once it has left
+    /// them behind.
+    std::vector<double> slack;
+  };
+
+  /// All must outlive this.
+  EventSearch(const Program& program, Workspace& workspace, SlidingMode& slide, Thresholds& thresholds,
+              double span, const std::string& file);
+
+  /// Rounding of the surface of a switch: of what it compares, at least of a machine unit.
+  double rounding(std::size_t s) const;
 
   /// In (from, to]; all is in place at `from`. `looks` are times at which to look at least, the last one
   /// `to`.
@@ -57,11 +68,12 @@ class EventSearch {
   std::optional<Found> split(const Look& from, const Look& to, const std::vector<double>& errors, int depth,
                              const Interpolant& solution);
   Found locate(Look from, Look to, const Interpolant& solution);
+  void leave_behind(Look& at);
 
   const Program& program_;
   Workspace& workspace_;
   SlidingMode& slide_;
-  const std::vector<double>& thresholds_;
+  Thresholds& thresholds_;
   double span_;
   const std::string& file_;
   double check_interval_;

@@ -170,6 +170,14 @@ bool Positions::stands(std::uint32_t bits, bool strictly) const {
   return true;
 }
 
+/// Whether every unit whose surface stays at zero is where it was: nothing asks it to turn over.
+bool Positions::keeps(std::uint32_t bits, std::uint32_t preferred) const {
+  for (std::size_t u = 0; u < units_.size(); ++u) {
+    if (has(bits, u) != has(preferred, u) && direction(bits, u) == 0) return false;
+  }
+  return true;
+}
+
 /// Whether the surfaces of these units do not depend on their own positions.
 bool Positions::is_independent(std::uint32_t sliding) const {
   std::vector<std::uint32_t> units;
@@ -221,9 +229,13 @@ bool Positions::choose(const std::vector<std::uint32_t>& units, std::uint32_t pr
   const std::uint32_t combinations = 1U << units_.size();
   for (std::uint32_t bits = 0; bits < combinations; ++bits) trials_.push_back(attempt(bits, t, x));
   const bool any_jump = any_of_them_jumps(combinations - 1);
+  const std::vector<std::uint32_t> nearest = nearest_first(preferred);
   for (const bool strictly : {true, false}) {
-    for (const std::uint32_t bits : nearest_first(preferred)) {
-      if ((strictly || !any_jump) && stands(bits, strictly)) return place(bits, t, x);
+    if (!strictly && any_jump) continue;
+    for (const bool keeping : {true, false}) {  // else the order of the units would decide
+      for (const std::uint32_t bits : nearest) {
+        if ((!keeping || keeps(bits, preferred)) && stands(bits, strictly)) return place(bits, t, x);
+      }
     }
   }
   // To events, what slides stays where it was.

@@ -43,6 +43,7 @@ class Positions {
   Trial attempt(std::uint32_t bits, double t, std::span<const double> x);
   bool place(std::uint32_t bits, double t, std::span<const double> x);
   int direction(std::uint32_t bits, std::size_t unit) const;
+  bool keeps(std::uint32_t bits, std::uint32_t preferred) const;
   bool stands(std::uint32_t bits, bool strictly) const;
   bool jumps(std::size_t unit) const;
   bool any_of_them_jumps(std::uint32_t units) const;

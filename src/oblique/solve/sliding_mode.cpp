@@ -26,6 +26,9 @@ constexpr double kProbe = 1e-6;
 /// they are.
 constexpr double kNoSlope = 1e-8;
 
+/// Of the drive of the other side.
+constexpr double kDrives = 1e-3;
+
 constexpr std::size_t kMostCoupled = 8;
 constexpr std::size_t kMostUnits = 64;
 
@@ -37,6 +40,7 @@ SlidingMode::SlidingMode(const Program& program, Workspace& workspace, double sp
       span_(span),
       follows_(program.switches().size(), false),
       rests_(program.switches().size(), false),
+      strongest_(program.switch_structure().members.size()),
       scratch_(std::max(program.n_states(), program.jacobian_pattern().entries())),
       moved_(program.n_states()) {}
 
@@ -159,7 +163,6 @@ bool SlidingMode::begin(std::vector<std::uint32_t> units, double t, std::span<co
   units_ = std::move(units);
   find_followers();
   make_sides();
-  const SwitchStructure& structure = program_.switch_structure();
   base_.clear();
   for (std::uint32_t s = 0; s < follows_.size(); ++s) {
     const std::uint32_t memory = program_.switches()[s].memory;
@@ -173,8 +176,13 @@ bool SlidingMode::begin(std::vector<std::uint32_t> units, double t, std::span<co
   shares_.assign(units_.size(), 0.5);
   const auto within = [](double share) { return share >= -kEdge && share <= 1 + kEdge; };
   if (possible && evaluate(t, x) && std::all_of(shares_.begin(), shares_.end(), within) && lasts(t, x)) {
-    load_base();
-    return true;
+    bool attracts = true;
+    for (std::size_t u = 0; u < units_.size(); ++u) attracts = attracts && !(repulsion(u) > kNoRepulsion);
+    if (attracts) {
+      load_base();
+      begun_ = true;
+      return true;
+    }
   }
   end();
   workspace_.load_memories(before);
@@ -189,6 +197,7 @@ void SlidingMode::end() {
   std::fill(rests_.begin(), rests_.end(), false);
   sides_.clear();
   shares_.clear();
+  begun_ = false;
 }
 
 bool SlidingMode::evaluate(Side& side, double t, std::span<const double> x) {
@@ -207,7 +216,31 @@ bool SlidingMode::evaluate(double t, std::span<const double> x) {
   for (Side& side : sides_) valid = valid && evaluate(side, t, x);
   valid = valid && find_shares();
   load_base();
+  for (std::size_t u = 0; valid && u < units_.size(); ++u)
+    strongest_[units_[u]] = std::max(strongest_[units_[u]], std::abs(drive_apart(u)));
   return valid;
+}
+
+/// How much more the upper side of a unit drives up than its lower one; nothing of one that is coupled, or of
+/// which one side does not drive, or both alike: that decides where it goes.
+double SlidingMode::drive_apart(std::size_t unit) const {
+  const auto alone = [&](const Side& side) { return side.bits == std::uint64_t{1} << unit; };
+  const bool coupled = std::count(cluster_of_.begin(), cluster_of_.end(), cluster_of_[unit]) > 1;
+  const auto upper = std::find_if(sides_.begin(), sides_.end(), alone);
+  if (coupled || upper == sides_.end()) return 0;
+  const double above = unit_value(upper->rates, unit), below = unit_value(sides_.front().rates, unit);
+  const double weaker = std::min(std::abs(above), std::abs(below));
+  const double stronger = std::max(std::abs(above), std::abs(below));
+  return std::min(weaker, std::abs(above - below)) > kDrives * stronger ? above - below : 0;
+}
+
+double SlidingMode::repulsion(std::size_t unit) const {
+  const double strongest = strongest_[units_[unit]];
+  if (!(strongest > 0)) return -1;
+  const double apart = drive_apart(unit);
+  if (apart == 0) return -1;
+  const double part = apart / strongest;
+  return part > kNoDrive ? part : std::min(part, 0.0);
 }
 
 double SlidingMode::unit_value(const std::vector<double>& of_switches, std::size_t unit) const {
@@ -245,8 +278,15 @@ bool SlidingMode::find_shares() {
   const std::size_t n = units_.size();
   if (n == 1) {
     const double below = unit_value(sides_[0].rates, 0), above = unit_value(sides_[1].rates, 0);
-    if (!(std::abs(below - above) > 0) || !std::isfinite(below - above)) return false;
+    if (!std::isfinite(below - above)) return false;
+    if (below == above) {  // a slide stays as it was where its sides say nothing; none begins there
+      weigh(shares_);
+      return begun_ && std::abs(below) <= kNoDrive * strongest_[units_[0]];
+    }
     shares_[0] = (below + way_back(0, std::abs(below - above))) / (below - above);
+    // Where the sides hardly drive any more the way back says nothing; what follows is told by `repulsion`.
+    if (std::abs(below - above) < kNoDrive * strongest_[units_[0]])
+      shares_[0] = std::clamp(shares_[0], 0.0, 1.0);
     weigh(shares_);
     return true;
   }

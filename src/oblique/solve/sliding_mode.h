@@ -56,6 +56,14 @@ class SlidingMode {
   // As the last `evaluate` left them:
   /// Of each unit, that of its upper side: outside 0 and 1 where the slide is over.
   const std::vector<double>& shares() const { return shares_; }
+  /// Of a unit that nothing couples, how much more its upper side drives up than its lower one does, over the
+  /// most by which they have ever driven together: above 0 both drive away from the surface. Else −1.
+  double repulsion(std::size_t unit) const;
+  /// Rounding of it.
+  static constexpr double kNoRepulsion = 1e-8;
+  /// Sides that drive together or apart by less than this part of what they drove together do neither: a
+  /// magnitude in the surface may be about to turn over.
+  static constexpr double kNoDrive = 1e-6;
   /// d surface/dt of every switch in the mixture.
   void mixed_rates(std::span<double> rates) const;
   /// Whether a switch that follows is in one position on one side and in the other on another.
@@ -86,6 +94,7 @@ class SlidingMode {
   bool find_shares();
   double unit_value(const std::vector<double>& of_switches, std::size_t unit) const;
   double way_back(std::size_t unit, double fastest) const;
+  double drive_apart(std::size_t unit) const;
   double weigh(std::span<const double> shares);
   bool lasts(double t, std::span<const double> x);
 
@@ -99,6 +108,8 @@ class SlidingMode {
   std::vector<Side> sides_;                             ///< the first one with all units below
   std::vector<std::pair<std::uint32_t, double>> base_;  ///< positions that events see
   std::vector<double> shares_;
+  std::vector<double> strongest_;  ///< drive together of each unit of the program in all slides of the run
+  bool begun_ = false;
   std::vector<double> scratch_, moved_;
 };
 

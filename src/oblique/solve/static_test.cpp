@@ -16,7 +16,7 @@ std::vector<StaticReading> static_test(const Program& program, const std::string
   std::vector<double> states = program.start();
   for (const std::uint32_t mode : program.mode_memories())
     workspace.set_memory(mode, static_cast<double>(OperatingMode::initial));
-  Switching switching(program, workspace, 1, 0, file);
+  Switching switching(program, workspace, 1, 0, 0, file);
   switching.start(0, states, [&] { bring_to_rest(program, workspace, 0, states, file); });
   std::vector<double> outputs(program.n_signals()), slopes(program.n_states());
   const bool has_outputs = switching.signals(0, states.data(), outputs.data()) ||

@@ -15,14 +15,10 @@ namespace {
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Rounding of a surface, of what is compared or of a machine unit: a switch turns over beyond it, and within
-/// it lies on its surface.
-constexpr double kRounding = 1e-13;
-
 /// A switch that turns over without having left its surface by more than this, or than the errors of the
 /// states, is restless after a few turns: its surface then counts as zero within those errors. After many it
 /// chatters.
-constexpr double kSamePlace = 1e-10;
+constexpr double kSamePlace = 10;  // roundings
 constexpr long kRestless = 5;
 constexpr long kMostTurns = 1000;
 
@@ -42,20 +38,22 @@ double resolution(double t) {
 }  // namespace
 
 Switching::Switching(const Program& program, Workspace& workspace, double span, double tolerance,
-                     const std::string& file)
+                     double absolute_tolerance, const std::string& file)
     : program_(program),
       workspace_(workspace),
       span_(span),
-      tolerance_(program.n_states() > 0 ? tolerance : 0),
+      tolerance_(tolerance),
+      absolute_tolerance_(absolute_tolerance),
       file_(file),
       slide_(program, workspace, span),
-      thresholds_(program.switches().size(), kRounding),
+      thresholds_{std::vector<double>(program.switches().size(), 0.0),
+                  std::vector<double>(program.switches().size(), 0.0)},
       search_(program, workspace, slide_, thresholds_, span, file),
-      positions_(program, workspace, slide_, thresholds_, span),
+      positions_(program, workspace, slide_, thresholds_.now, span),
       surfaces_(program.switches().size()),
       signals_(program.n_signals()),
       announced_(program.switches().size(), -1),
-      slack_(program.switches().size(), 0),
+      errors_(program.switches().size(), 0),
       held_(program.events().size(), false),
       decided_(program.switch_structure().members.size(), false),
       unrest_(program.switches().size()),
@@ -64,27 +62,47 @@ Switching::Switching(const Program& program, Workspace& workspace, double span, 
 /// The surfaces, and how far from zero each counts as zero: one of time alone is known to rounding of the
 /// time.
 void Switching::evaluate(double t, std::span<const double> x) {
+  states_.assign(x.begin(), x.end());
+  weighed_ = false;
   if (!program_.surfaces(t, x.data(), surfaces_.data(), workspace_))
     throw loop_error(program_, workspace_.trouble(), t, file_);
-  for (std::size_t s = 0; s < thresholds_.size(); ++s) {
+  for (std::size_t s = 0; s < thresholds_.now.size(); ++s) {
     if (is_known(s)) {
       const double size = program_.compared_size(s, workspace_);
-      thresholds_[s] = 8 * kEpsilon * (std::isfinite(size) ? size : std::abs(t));
+      thresholds_.now[s] = 8 * kEpsilon * (std::isfinite(size) ? size : std::abs(t));
     } else {
-      thresholds_[s] = std::max(kRounding * compared_size(s), slack_[s]);
+      thresholds_.now[s] = std::max(search_.rounding(s), thresholds_.slack[s]);
     }
   }
 }
 
-/// Of what a switch compares, at least a machine unit.
-double Switching::compared_size(std::size_t s) const {
-  const double size = program_.compared_size(s, workspace_);
-  return std::isfinite(size) ? std::max(1.0, size) : 1;
-}
-
 /// Within this of zero a surface is where it was.
 double Switching::place_size(std::size_t s) const {
-  return std::max(kSamePlace, tolerance_ * compared_size(s));
+  return std::max(kSamePlace * search_.rounding(s), errors_[s]);
+}
+
+/// How far the surfaces are off zero by the errors that the solver leaves to the states: the most for some
+/// combinations of their signs, where the surfaces were evaluated last.
+void Switching::weigh_errors() {
+  constexpr std::uint64_t kTrials = 4;
+  std::vector<double> off(program_.n_states(), 0.0), rates(surfaces_.size()), still(surfaces_.size());
+  program_.surface_rates(off.data(), still.data(), workspace_);
+  std::fill(errors_.begin(), errors_.end(), 0.0);
+  for (std::uint64_t trial = 0; trial < kTrials; ++trial) {
+    std::uint64_t signs = 0x9E3779B97F4A7C15 * (trial + 1);
+    for (std::size_t i = 0; i < off.size(); ++i) {
+      const double own = program_.states()[i].tolerance;
+      const double error = tolerance_ * std::abs(states_[i]) + (own > 0 ? own : absolute_tolerance_);
+      off[i] = trial == 0 || (signs >> 63) != 0 ? error : -error;
+      signs = 6364136223846793005 * signs + 1442695040888963407;
+    }
+    program_.surface_rates(off.data(), rates.data(), workspace_);
+    for (std::size_t s = 0; s < errors_.size(); ++s) {
+      const double error = std::abs(rates[s] - still[s]);
+      errors_[s] = std::max(errors_[s], std::isfinite(error) ? error : tolerance_);
+    }
+  }
+  weighed_ = true;
 }
 
 void Switching::record(double t, std::string what) {
@@ -108,6 +126,7 @@ void Switching::turn(std::size_t s, double position, double t) {
   const Switch& made = program_.switches()[s];
   if (workspace_.memory(made.memory) == position) return;
   workspace_.set_memory(made.memory, position);
+  if (!weighed_) weigh_errors();
   Unrest& unrest = unrest_[s];
   const bool same_place = is_known(s) ? t <= unrest.last : search_.excursion(s) < place_size(s);
   if (!same_place) unrest.turns = 0;
@@ -118,7 +137,7 @@ void Switching::turn(std::size_t s, double position, double t) {
   const auto& unit = structure.members[structure.unit[s]];
   const bool found =
       std::any_of(unit.begin(), unit.end(), [&](std::uint32_t m) { return announced_[m] >= 0; });
-  if (!is_known(s) && found) slack_[s] = tolerance_ * compared_size(s);
+  if (!is_known(s) && found) thresholds_.slack[s] = errors_[s];
   if (++unrest.turns > kMostTurns) throw_chatter(made.block, made.comparison, t);
 }
 
@@ -133,15 +152,16 @@ bool Switching::turn_by_surfaces(double t, Units& on_surface, std::vector<std::u
     const double before = workspace_.memory(program_.switches()[s].memory);
     const std::uint32_t unit = structure.unit[s];
     const bool slid = std::find(slid_.begin(), slid_.end(), unit) != slid_.end();
-    double near = slid && !decided_[unit] ? std::max(SlidingMode::drift(), thresholds_[s]) : thresholds_[s];
+    double near =
+        slid && !decided_[unit] ? std::max(SlidingMode::drift(), thresholds_.now[s]) : thresholds_.now[s];
     if (unrest_[s].turns > kRestless) near = std::max(near, place_size(s));
     double position = before;
     if (is_known(s)) {
       const double rate = program_.known_rate(s, workspace_).value_or(0);
       if (announced_[s] >= 0) {
         position = announced_[s];
-      } else if (std::abs(surfaces_[s]) > thresholds_[s] || rate != 0) {
-        position = (std::abs(surfaces_[s]) > thresholds_[s] ? surfaces_[s] : rate) > 0 ? 1 : 0;
+      } else if (std::abs(surfaces_[s]) > thresholds_.now[s] || rate != 0) {
+        position = (std::abs(surfaces_[s]) > thresholds_.now[s] ? surfaces_[s] : rate) > 0 ? 1 : 0;
       }
     } else if (announced_[s] >= 0 || std::abs(surfaces_[s]) <= near) {
       if (!decided_[unit] && std::find(on_surface.begin(), on_surface.end(), unit) == on_surface.end())
@@ -299,12 +319,12 @@ bool Switching::serve_events(double t, std::vector<double>& x, bool starting) {
   begin_to_settle();
   if (jumps) {
     slid_.clear();
-    std::fill(slack_.begin(), slack_.end(), 0.0);
+    std::fill(thresholds_.slack.begin(), thresholds_.slack.end(), 0.0);
   }
   // What was announced of surfaces that have moved away is past.
   evaluate(t, x);
   for (std::size_t s = 0; s < announced_.size(); ++s) {
-    if (jumps || std::abs(surfaces_[s]) > thresholds_[s]) announced_[s] = -1;
+    if (jumps || std::abs(surfaces_[s]) > thresholds_.now[s]) announced_[s] = -1;
   }
   return true;
 }
@@ -316,8 +336,24 @@ void Switching::begin_to_settle() {
   slide_.end();
 }
 
+/// Tells that rounding decides where the solution goes. Once for each unit: it may come back.
+void Switching::warn_of_repulsion(std::uint32_t unit, double t) {
+  const Switch& s = program_.switches()[program_.switch_structure().members[unit].front()];
+  const std::string what =
+      fmt::format("'{}' ({}) leaves the surface that it slides along", s.block, s.comparison);
+  const bool told = std::any_of(warnings_.begin(), warnings_.end(),
+                                [&](const Diagnostic& warning) { return warning.what.starts_with(what); });
+  if (told) return;
+  warnings_.push_back({{file_, {}},
+                       what + fmt::format(" at t = {:.9g} s, since both of its sides drive away from it from "
+                                          "then on: rounding decides to which side it goes",
+                                          t),
+                       {},
+                       "end the run before, or add the disturbance that decides it on the machine"});
+}
+
 /// Tells which slides have begun and ended since `before`, and what they hide.
-void Switching::note_slides(const Units& before, double t) {
+void Switching::note_slides(const Units& before, const Units& repelled, double t) {
   const SwitchStructure& structure = program_.switch_structure();
   const auto tell = [&](std::uint32_t unit, const char* what) {
     const Switch& s = program_.switches()[structure.members[unit].front()];
@@ -329,8 +365,9 @@ void Switching::note_slides(const Units& before, double t) {
   for (const std::uint32_t unit : before) {
     if (contains(slide_.units(), unit)) continue;
     tell(unit, "leaves");
+    if (contains(repelled, unit)) warn_of_repulsion(unit, t);
     // It may lie on the wrong side by what the integration let it drift off.
-    for (const std::uint32_t s : structure.members[unit]) slack_[s] = 2 * std::abs(surfaces_[s]);
+    for (const std::uint32_t s : structure.members[unit]) thresholds_.slack[s] = 2 * std::abs(surfaces_[s]);
   }
   for (const std::uint32_t unit : slide_.units()) {
     if (!contains(before, unit)) tell(unit, "slides along");
@@ -356,6 +393,12 @@ void Switching::note_slides(const Units& before, double t) {
 
 void Switching::settle(double t, std::vector<double>& x) {
   const Units before = slide_.units();
+  Units repelled;
+  if (slide_.active() && slide_.evaluate(t, x)) {
+    for (std::size_t u = 0; u < before.size(); ++u) {
+      if (slide_.repulsion(u) > -SlidingMode::kNoDrive) repelled.push_back(before[u]);
+    }
+  }
   begin_to_settle();
   evaluate(t, x);
   for (std::size_t s = 0; s < announced_.size(); ++s) {  // the stretch may have ended before their time
@@ -373,7 +416,7 @@ void Switching::settle(double t, std::vector<double>& x) {
     if (round > kMostRounds)
       throw_chatter(records_.empty() ? "" : records_.back().what, "events set each other off", t);
   }
-  note_slides(before, t);
+  note_slides(before, repelled, t);
   slid_.clear();
   std::fill(announced_.begin(), announced_.end(), -1.0);
   evaluate(t, x);
@@ -382,7 +425,7 @@ void Switching::settle(double t, std::vector<double>& x) {
     if (is_known(s) || slide_.holds(s) || slide_.follows(s)) continue;
     const bool closed = workspace_.memory(program_.switches()[s].memory) == 1;
     const double wrong = closed ? -surfaces_[s] : surfaces_[s];
-    if (wrong > thresholds_[s]) thresholds_[s] = slack_[s] = 2 * wrong;
+    if (wrong > thresholds_.now[s]) thresholds_.now[s] = thresholds_.slack[s] = 2 * wrong;
   }
 }
 
@@ -430,7 +473,7 @@ bool Switching::rests_within_limits(double t, std::vector<double>& x,
     bool within = true;
     for (std::size_t s = 0; s < surfaces_.size(); ++s)
       within =
-          within && (program_.switches()[s].turning != Turning::limits || surfaces_[s] <= thresholds_[s]);
+          within && (program_.switches()[s].turning != Turning::limits || surfaces_[s] <= thresholds_.now[s]);
     if (within) return true;
   } catch (const SolveError&) {  // what lies between the limits has no rest; they may make one
   }
@@ -457,7 +500,7 @@ void Switching::start(double t, std::vector<double>& x, const std::function<void
     if (!serve_events(t, x, starting)) break;
     starting = false;
   }
-  note_slides({}, t);
+  note_slides({}, {}, t);
   slid_.clear();
 }
 
@@ -471,7 +514,7 @@ double Switching::known_wait(double t, std::span<const double> x) {
     if (!rate) continue;
     const bool closed = workspace_.memory(program_.switches()[s].memory) == 1;
     if (closed ? *rate >= 0 : *rate <= 0) continue;
-    waits[s] = std::abs(surfaces_[s]) <= thresholds_[s] ? 0 : std::max(0.0, -surfaces_[s] / *rate);
+    waits[s] = std::abs(surfaces_[s]) <= thresholds_.now[s] ? 0 : std::max(0.0, -surfaces_[s] / *rate);
     next = std::min(next, waits[s]);
   }
   std::fill(announced_.begin(), announced_.end(), -1.0);
@@ -486,14 +529,7 @@ double Switching::known_wait(double t, std::span<const double> x) {
 std::optional<double> Switching::search(double from, std::span<const double> looks,
                                         const Interpolant& solution) {
   const auto found = search_.search(from, looks, solution);
-  if (!found) {
-    for (std::size_t s = 0; s < slack_.size(); ++s) {
-      if (slack_[s] == 0 || search_.excursion(s) <= 2 * slack_[s]) continue;
-      slack_[s] = 0;
-      thresholds_[s] = kRounding * compared_size(s);
-    }
-    return std::nullopt;
-  }
+  if (!found) return std::nullopt;
   std::fill(announced_.begin(), announced_.end(), -1.0);
   for (const auto& [s, position] : found->turned) announced_[s] = position;
   return found->time;

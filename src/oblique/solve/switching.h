@@ -34,9 +34,9 @@ struct EventRecord {
 class Switching {
  public:
   /// `file` names the diagram in messages; `span` is the length of the run [s], `tolerance` the relative one
-  /// of the states. All must outlive this.
+  /// of the states, `absolute_tolerance` that of those without one of their own. All must outlive this.
   Switching(const Program& program, Workspace& workspace, double span, double tolerance,
-            const std::string& file);
+            double absolute_tolerance, const std::string& file);
 
   /// Whether there is anything to watch.
   bool active() const { return !program_.switches().empty() || !program_.events().empty(); }
@@ -82,14 +82,15 @@ class Switching {
   using Units = std::vector<std::uint32_t>;
 
   bool is_known(std::size_t s) const { return program_.switches()[s].rate.has_value(); }
-  double compared_size(std::size_t s) const;
+  void weigh_errors();
   double place_size(std::size_t s) const;
   void evaluate(double t, std::span<const double> x);
   bool settle_switches(double t, std::span<const double> x);
   bool turn_by_surfaces(double t, Units& on_surface, std::vector<std::uint32_t>& turned);
   void decide(Units units, double t, std::span<const double> x);
   void begin_to_settle();
-  void note_slides(const Units& before, double t);
+  void note_slides(const Units& before, const Units& repelled, double t);
+  void warn_of_repulsion(std::uint32_t unit, double t);
   void take_starts(double t, std::vector<double>& x);
   bool rests_within_limits(double t, std::vector<double>& x, const std::function<void()>& bring_to_rest);
   bool serve_events(double t, std::vector<double>& x, bool starting);
@@ -100,22 +101,22 @@ class Switching {
 
   const Program& program_;
   Workspace& workspace_;
-  double span_, tolerance_;
+  double span_, tolerance_, absolute_tolerance_;
   const std::string& file_;
   SlidingMode slide_;
-  std::vector<double> thresholds_;
+  EventSearch::Thresholds thresholds_;
   EventSearch search_;
   Positions positions_;
 
   std::vector<double> surfaces_, signals_;
   std::vector<double>
       announced_;  ///< position that a switch takes at the next `settle`; −1: as its surface is
-  /// How far a surface may go back beyond zero by the errors of the states alone, until it has left them
-  /// behind.
-  std::vector<double> slack_;
-  std::vector<bool> held_;     ///< whether the condition of each event held when it was last looked at
-  std::vector<bool> decided_;  ///< of each unit: by where it drifts, once in a `settle`
-  Units slid_;                 ///< what slid when the settling began
+  std::vector<double> states_;  ///< where the surfaces were evaluated last
+  std::vector<double> errors_;  ///< of the surfaces, where a switch turned over last
+  bool weighed_ = false;        ///< whether they are those of `states_`
+  std::vector<bool> held_;      ///< whether the condition of each event held when it was last looked at
+  std::vector<bool> decided_;   ///< of each unit: by where it drifts, once in a `settle`
+  Units slid_;                  ///< what slid when the settling began
 
   /// How often a switch has turned over without leaving its place.
   struct Unrest {
