@@ -171,7 +171,27 @@ TEST(NotFinite, DerivativeAtTheStart) {
   const auto f = failure("x = { type = \"slope\" }\n", {}, library);
   EXPECT_EQ(f.kind, SolveError::Kind::blow_up);
   EXPECT_EQ(f.time, 0);
-  EXPECT_THAT(f.message, HasSubstr("the run stopped at t = 0 s"));
+  EXPECT_EQ(
+      f.message,
+      "d.toml: the rate of 'x' is no finite number where the run starts, at t = 0 s; expected equations that "
+      "have a value there\n  remedy: start a little beside it, or write a quotient of zeros as its limit, "
+      "with "
+      "an if(…) in a block");
+}
+
+// x = e^1000t comes to 1e10 turns a second within 30 ms, which no search can look through.
+TEST(StepBudget, OfLooksAtTurnsIsTold) {
+  const auto f = failure(
+      "x = { type = \"integrator\", in = \"1000*x\", initial = 1 }\nc = { type = \"cosine\", in = \"x\" }\n"
+      "k = { type = \"comparator\", in = \"c\" }\n",
+      {.until = 1, .max_steps = 2000});
+  EXPECT_EQ(f.kind, SolveError::Kind::step_budget);
+  EXPECT_THAT(
+      f.message,
+      HasSubstr(
+          " rad a second: too fast to look through all turns for those at which it turns over\n  remedy: end "
+          "the run before, keep the argument of the sine or cosine small, or give more 'max_steps' in "
+          "[run]"));
 }
 
 TEST(StepBudget, IsKept) {

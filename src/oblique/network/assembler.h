@@ -98,6 +98,7 @@ class Assembler {
   NodeId sum_of(const FlatInput& input);
   NodeId interpolated(std::size_t block, const Expression& call);
   NodeId interpolate(std::size_t block, const Expression& call, PointTable table);
+  NodeId interpolate_by_segments(std::size_t block, const Expression& call, PointTable table);
   NodeId built_operand(std::size_t block, const Expression& expression);
   void define_tables();
 

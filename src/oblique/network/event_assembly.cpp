@@ -247,7 +247,43 @@ NodeId Assembler::interpolated(std::size_t block, const Expression& call) {
   return interpolate(block, call, std::move(table));
 }
 
+/// A table with a few jumps is one without them and a step at each: a step can be slid along.
 NodeId Assembler::interpolate(std::size_t block, const Expression& call, PointTable table) {
+  constexpr std::size_t kMostSteps =
+      32;  // a recording may have thousands, of the time, which slides along none
+  struct Step {
+    double x, height;
+  };
+  std::vector<Step> steps;
+  PointTable joined;
+  double risen = 0;
+  for (std::size_t k = 0; k < table.x.size(); ++k) {
+    const bool jumps = k > 0 && k + 1 < table.x.size() && table.x[k] == table.x[k - 1];
+    if (jumps) {
+      steps.push_back({table.x[k], table.y[k] - table.y[k - 1]});
+      risen += steps.back().height;
+    } else {
+      joined.x.push_back(table.x[k]);
+      joined.y.push_back(table.y[k] - risen);
+    }
+  }
+  const bool apart = !steps.empty() && steps.size() <= kMostSteps && joined.x.size() >= 2;
+  NodeId sum = interpolate_by_segments(block, call, apart ? std::move(joined) : std::move(table));
+  if (!apart) return sum;
+  for (const Step& step : steps) {
+    Expression at;
+    at.number = step.x;
+    Expression beyond;
+    beyond.kind = Expression::Kind::greater;
+    beyond.operands = {call.operands[0], at};
+    sum = network_.graph.apply(Op::add, sum,
+                               network_.graph.apply(Op::multiply, network_.graph.constant(step.height),
+                                                    built_operand(block, beyond)));
+  }
+  return sum;
+}
+
+NodeId Assembler::interpolate_by_segments(std::size_t block, const Expression& call, PointTable table) {
   ExpressionGraph& graph = network_.graph;
   const auto [found, inserted] = table_index_.try_emplace(std::pair(block, to_string(call)), kNone);
   if (inserted) {

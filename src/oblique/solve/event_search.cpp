@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include <fmt/format.h>
+
 #include <oblique/solve/solve_error.h>
 
 namespace oblique {
@@ -132,7 +134,19 @@ std::optional<EventSearch::Found> EventSearch::search(double from, std::span<con
     look(to, solution, right);
     const double turning = std::max(left.phase_rate, right.phase_rate);
     const double longest = std::min(check_interval_, turning > 0 ? kMostTurn / turning : kInfinity);
+    if (!((to - begin) / longest <= looks_left_)) {
+      throw SolveError(
+          SolveError::Kind::step_budget, begin,
+          {{file_, {}},
+           fmt::format("from t = {:.9g} s on what a switch compares turns by {:.3g} rad a second: too fast "
+                       "to look through all turns for those at which it turns over",
+                       begin, turning),
+           {},
+           "end the run before, keep the argument of the sine or cosine small, or give more 'max_steps' "
+           "in [run]"});
+    }
     const auto parts = static_cast<long>(std::clamp(std::ceil((to - begin) / longest), 1.0, kMostLooks));
+    looks_left_ -= static_cast<double>(parts - 1);
     for (long k = 1; k <= parts; ++k) {
       if (parts > 1)
         look(k == parts ? to : begin + (to - begin) * static_cast<double>(k) / static_cast<double>(parts),

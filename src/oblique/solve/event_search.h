@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -49,6 +50,9 @@ class EventSearch {
   /// `to`.
   std::optional<Found> search(double from, std::span<const double> looks, const Interpolant& solution);
 
+  /// How often to look between steps in all, where something turns fast.
+  void limit_looks(double looks) { looks_left_ = looks; }
+
   /// How far the surface of a switch has been from zero since `forget`.
   double excursion(std::size_t s) const { return excursions_[s]; }
   void forget(std::size_t s) { excursions_[s] = 0; }
@@ -77,6 +81,7 @@ class EventSearch {
   double span_;
   const std::string& file_;
   double check_interval_;
+  double looks_left_ = std::numeric_limits<double>::infinity();
   std::vector<double> states_, rates_, surfaces_, surface_rates_, excursions_;
 };
 

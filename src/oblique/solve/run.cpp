@@ -63,6 +63,8 @@ class Runner {
                  options.extremes || options.watch_overloads || options.halt_on_overload),
         branches_(program, workspace_, begin_, options, diagram.file),
         states_(program.start()) {
+    constexpr double kLooksAStep = 100;
+    switching_.limit_looks(kLooksAStep * static_cast<double>(options.max_steps) + 1e6);
     if (options.watch_overloads || options.halt_on_overload)
       overloads_.emplace(program, switching_, diagram.file, options.halt_on_overload);
   }
@@ -121,10 +123,25 @@ class Runner {
         throw;
       settle_all();
     }
+    std::vector<double> slopes(states_.size());
+    if (switching_.derivatives(begin_, states_.data(), slopes.data())) refuse_singular_rates(slopes);
     for (Diagnostic& warning : unstable_branches(program_, workspace_, begin_, diagram_.file))
       warnings_at_start_.push_back(std::move(warning));
     for (Diagnostic& warning : other_solutions(program_, workspace_, begin_, states_, diagram_.file))
       warnings_at_start_.push_back(std::move(warning));
+  }
+
+  void refuse_singular_rates(const std::vector<double>& slopes) const {
+    for (std::size_t i = 0; i < slopes.size(); ++i) {
+      if (std::isfinite(slopes[i])) continue;
+      throw SolveError(
+          SolveError::Kind::blow_up, begin_,
+          {{diagram_.file, {}},
+           fmt::format("the rate of '{}' is no finite number where the run starts, at t = {:.6g} s",
+                       program_.states()[i].name, begin_),
+           "equations that have a value there",
+           "start a little beside it, or write a quotient of zeros as its limit, with an if(…) in a block"});
+    }
   }
 
   void resume(const RunState& state) {

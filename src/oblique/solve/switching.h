@@ -65,6 +65,8 @@ class Switching {
   bool jacobian(double t, const double* x, double* values);
   bool signals(double t, const double* x, double* values);
 
+  void limit_looks(double looks) { search_.limit_looks(looks); }
+
   bool slides() const { return slide_.active(); }
   const Workspace& workspace() const { return workspace_; }
 
