@@ -111,7 +111,7 @@ class Judge {
                         Eigen::SparseMatrix<double>(block - group.last).norm() == 0;
       if (!same) {
         group.varies = group.varies || group.seen;
-        group.last = std::move(block);
+        group.last = block;
         if (!ideal_seen && ideal_->differs_in(group.states)) {
           ideal_seen = true;
           ideal_->look_at(instant, workspace_);
