@@ -65,6 +65,7 @@ int LoopMatrix::determinant_sign() {
 }
 
 void LoopMatrix::solve(Eigen::Ref<Eigen::MatrixXd> right_sides) {
+  if (right_sides.cols() == 0) return;  // a loop that no state enters
   for (Eigen::Index column = 0; column < right_sides.cols(); ++column) {
     right_sides.col(column).array() /= scale_.array();
   }
