@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/mechanism/law_derivative.h>
 
+#include <array>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -15,40 +16,60 @@ double at(const Expression& e, double time) {
                   [&](std::string_view name) { return name == "time" ? std::optional(time) : std::nullopt; });
 }
 
-// Every function and operation that a law may have, against central differences; their error is that of the
+/// Every function and operation that a law may have.
+constexpr std::array kLaws{"3*time",
+                           "2 + sin(3*time)",
+                           "cos(time)*sin(2*time)",
+                           "tan(time/2)",
+                           "asin(time/3)",
+                           "acos(time/3)",
+                           "atan(2*time)",
+                           "exp(-time)",
+                           "log(1 + time)",
+                           "sqrt(1 + time)",
+                           "atan2(time, 2)",
+                           "atan2(2, time)",
+                           "hypot(time, 1 - time)",
+                           "time^3",
+                           "time^2",
+                           "(1 + time)^0.5",
+                           "2^time",
+                           "(1 + time)^time",
+                           "time^(2 - 1)",
+                           "-time",
+                           "-(time - 2*time^2)",
+                           "1/time",
+                           "sin(time)/(1 + time)",
+                           "pi - time/2",
+                           "17*pi/180*2*pi*cos(2*pi*time)"};
+
+// Against central differences; their error is that of the
 // third derivative, 1e-10 times up to some hundreds, and rounding, 1e-16/1e-5.
 TEST(LawDerivative, AgreesWithDifferences) {
-  for (const char* const text : {"3*time",
-                                 "2 + sin(3*time)",
-                                 "cos(time)*sin(2*time)",
-                                 "tan(time/2)",
-                                 "asin(time/3)",
-                                 "acos(time/3)",
-                                 "atan(2*time)",
-                                 "exp(-time)",
-                                 "log(1 + time)",
-                                 "sqrt(1 + time)",
-                                 "atan2(time, 2)",
-                                 "atan2(2, time)",
-                                 "hypot(time, 1 - time)",
-                                 "time^3",
-                                 "time^2",
-                                 "(1 + time)^0.5",
-                                 "2^time",
-                                 "(1 + time)^time",
-                                 "time^(2 - 1)",
-                                 "-time",
-                                 "-(time - 2*time^2)",
-                                 "1/time",
-                                 "sin(time)/(1 + time)",
-                                 "pi - time/2",
-                                 "17*pi/180*2*pi*cos(2*pi*time)"}) {
+  for (const char* const text : kLaws) {
     const Expression law = parse_expression(text);
     const Expression derivative = law_derivative(law);
     for (const double t : {0.3, 0.7, 1.1}) {
       constexpr double kStep = 1e-5;
       const double difference = (at(law, t + kStep) - at(law, t - kStep)) / (2 * kStep);
       EXPECT_NEAR(at(derivative, t), difference, 1e-7) << text << " -> " << to_string(derivative);
+    }
+  }
+}
+
+// The acceleration of a drive is found by another way, without an expression for it; its speed is in units of
+// the scale.
+TEST(LawDerivative, IsTheAccelerationOfADrive) {
+  for (const char* const text : kLaws) {
+    Drive drive;
+    drive.law = parse_expression(text);
+    drive.law_scale = 3;
+    for (const double t : {0.3, 0.7, 1.1}) {
+      constexpr double kStep = 1e-5;
+      const double difference = 3 * (at(*drive.law, t + kStep) - at(*drive.law, t - kStep)) / (2 * kStep);
+      EXPECT_NEAR(law_at(drive, t).rate, 3 * at(*drive.law, t), 1e-14 * std::abs(at(*drive.law, t)) + 1e-14)
+          << text;
+      EXPECT_NEAR(law_at(drive, t).acceleration, difference, 3e-7) << text;
     }
   }
 }

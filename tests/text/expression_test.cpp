@@ -382,6 +382,31 @@ TEST(ExpressionValue, AsksTheLookupForNames) {
   }
 }
 
+// How many arguments each has, and whether it has a kink or a jump.
+TEST(Functions, TakeTheirArgumentsAndSwitchOrNot) {
+  struct Known {
+    const char* name;
+    std::size_t least, most;
+    bool switches;
+  };
+  constexpr std::size_t kAny = 1000;
+  const std::vector<Known> known{
+      {"sin", 1, 1, false},     {"cos", 1, 1, false},    {"tan", 1, 1, false},     {"asin", 1, 1, false},
+      {"acos", 1, 1, false},    {"atan", 1, 1, false},   {"atan2", 2, 2, false},   {"exp", 1, 1, false},
+      {"log", 1, 1, false},     {"sqrt", 1, 1, false},   {"abs", 1, 1, true},      {"min", 1, kAny, true},
+      {"max", 1, kAny, true},   {"hypot", 2, 2, false},  {"sign", 1, 1, true},     {"clip", 3, 3, true},
+      {"deadzone", 2, 2, true}, {"step", 1, 1, true},    {"table", 2, kAny, true}, {"if", 3, 3, true},
+      {"noise", 2, 2, false},   {"weights", 1, 1, false}};
+  ASSERT_EQ(functions().size(), known.size());
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    const FunctionInfo& info = functions()[i];
+    EXPECT_EQ(info.name, known[i].name);
+    EXPECT_EQ(info.min_arguments, known[i].least) << info.name;
+    EXPECT_EQ(info.max_arguments, known[i].most) << info.name;
+    EXPECT_EQ(info.switches, known[i].switches) << info.name;
+  }
+}
+
 TEST(Functions, StandInTheOrderOfTheirEnumeration) {
   for (std::size_t i = 0; i < functions().size(); ++i) {
     EXPECT_EQ(static_cast<std::size_t>(functions()[i].function), i) << functions()[i].name;
