@@ -79,6 +79,25 @@ TEST(Scatter, ChangesTheEquationsOfWhatItTouches) {
   EXPECT_NE(flat.blocks[1].parameters[*flat.blocks[1].definition->find_parameter("tolerance")], 0);
 }
 
+TEST(Scatter, LeavesTheFormulasOfWhatItTouches) {
+  const BlockLibrary library = testing::shipped_blocks_and("curve", R"toml([outputs]
+out = {}
+[parameters]
+formula = { kind = "formula", default = "0" }
+error = { default = 0, above = -1 }
+[equations]
+out = "formula*(1 + error)")toml");
+  testing::Compiled made("c = { type = \"curve\", formula = \"3*time\" }\n", "", library);
+  const std::vector<Draw> draws = draw(made.flat, {{"curve", "error", 0.3, ""}}, {1, 0});
+  ASSERT_EQ(draws.size(), 1U);
+  apply_draws(draws, made.flat);
+  const Program program(assemble(made.flat));
+  Workspace workspace(program);
+  std::vector<double> signals(program.n_signals());
+  program.signals(0.5, nullptr, signals.data(), workspace);
+  EXPECT_DOUBLE_EQ(signals[made.signal("c")], 3 * 0.5 * (1 + draws[0].value));
+}
+
 TEST(Scatter, OfAToleranceTakesWeightsAndMultipliers) {
   const std::vector<BlockFigure> scatters = scatters_of_tolerance(testing::shipped_blocks(), 1e-3);
   std::vector<std::string> names;

@@ -52,7 +52,7 @@ void apply_draws(const std::vector<Draw>& draws, FlatDiagram& diagram) {
   for (const Draw& drawn : draws) {
     FlatBlock& block = diagram.blocks[drawn.block];
     block.parameters[drawn.parameter] = drawn.value;
-    block.behaviour = block.definition->choose_behaviour(block.parameters, block.polarity);
+    block.choose_behaviour();
   }
 }
 

@@ -49,6 +49,9 @@ struct FlatBlock {
   double tolerance = 0;                        ///< absolute, of its states [machine unit]; 0: that of the run
   std::size_t group = 0;                       ///< of FlatTimeline::groups
   Place place;                                 ///< of the block of the diagram that it is or is a part of
+
+  /// Takes the case that the parameters select, with the formulas in it: to be called where one has changed.
+  void choose_behaviour();
 };
 
 /// A column of the trajectory.
@@ -100,7 +103,7 @@ struct FlatDiagram {
   std::string signal_name(SignalRef signal) const;
 };
 
-/// The same diagram with amplifiers that give any voltage: those that saturate only because their machine does.
+/// The same diagram where no amplifier saturates because its machine does.
 FlatDiagram without_saturation(FlatDiagram diagram);
 
 /// A parameter to replace, by path: `--set c.gain=1e4`; the value is a quantity in the parameter's unit.

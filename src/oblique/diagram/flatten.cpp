@@ -154,7 +154,6 @@ class Layout {
     block.path = node.path;
     block.definition = node.wired->definition;
     block.polarity = scope.inverting ? -1 : 1;
-    block.behaviour = block.definition->choose_behaviour(node.parameters, block.polarity);
     block.parameters = node.parameters;
     for (std::size_t k = 0; k < node.parameters.size(); ++k) {
       const bool machine = node.open[k] && machine_.of(*block.definition)[k];
@@ -169,11 +168,7 @@ class Layout {
       block.points.resize(block.definition->parameters.size());
       block.points[k] = node.wired->parameters[k].points.value_or(*default_points);
     }
-    if (!block.formulas.empty()) {
-      block.own_behaviour =
-          std::make_shared<const Behaviour>(with_formulas(*block.behaviour, block.formulas));
-      block.behaviour = block.own_behaviour.get();
-    }
+    block.choose_behaviour();
     block.place = node.place;
     node.flat = flat_.blocks.size();
     flat_.blocks.push_back(std::move(block));
@@ -334,11 +329,18 @@ FlatDiagram flatten(const Diagram& diagram, const BlockLibrary& library,
   return flat;
 }
 
+void FlatBlock::choose_behaviour() {
+  behaviour = definition->choose_behaviour(parameters, polarity);
+  if (formulas.empty()) return;
+  own_behaviour = std::make_shared<const Behaviour>(with_formulas(*behaviour, formulas));
+  behaviour = own_behaviour.get();
+}
+
 FlatDiagram without_saturation(FlatDiagram diagram) {
   for (FlatBlock& block : diagram.blocks) {
-    if (!block.saturation || block.own_behaviour) continue;
+    if (!block.saturation) continue;
     block.parameters[*block.saturation] = std::numeric_limits<double>::infinity();
-    block.behaviour = block.definition->choose_behaviour(block.parameters, block.polarity);
+    block.choose_behaviour();
   }
   return diagram;
 }

@@ -62,8 +62,7 @@ FlatDiagram idealised(FlatDiagram diagram) {
     }
     if (!gain) continue;
     block.parameters[*gain] = block.parameters[*bandwidth] = kInfinity;
-    const Behaviour* const ideal = block.definition->choose_behaviour(block.parameters, block.polarity);
-    if (!block.own_behaviour) block.behaviour = ideal;
+    block.choose_behaviour();
   }
   return diagram;
 }

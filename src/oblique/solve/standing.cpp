@@ -20,7 +20,7 @@ FlatDiagram with_instant_servos(FlatDiagram diagram) {
     const auto bandwidth = block.definition->find_parameter("bandwidth");
     if (!bandwidth || !is_brought_to_rest(*block.definition)) continue;
     block.parameters[*bandwidth] = std::numeric_limits<double>::infinity();
-    block.behaviour = block.definition->choose_behaviour(block.parameters, block.polarity);
+    block.choose_behaviour();
   }
   return diagram;
 }
