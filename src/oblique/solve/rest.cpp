@@ -7,10 +7,10 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <Eigen/Eigenvalues>
 #include <Eigen/SparseLU>
 
 #include <oblique/network/dependency_order.h>
+#include <oblique/solve/coupled_modes.h>
 #include <oblique/solve/ode_system.h>
 #include <oblique/solve/solve_error.h>
 #include <oblique/solve/stability.h>
@@ -178,27 +178,20 @@ std::vector<std::size_t> closed_loop(const Program& program, const std::vector<s
 }
 
 /// Largest real part [1/s] of the eigenvalues of these states with all others held; NaN where the equations
-/// have no linearisation, or the states are too many.
+/// have no linearisation, or those that act on each other are too many.
 double largest_real_part(const Program& program, Workspace& workspace, double t,
                          const std::vector<std::size_t>& members, const std::vector<double>& states) {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-  if (members.size() > static_cast<std::size_t>(kMostLoopsForEigenvalues)) return kUnknown;
-  const SparsePattern& pattern = program.jacobian_pattern();
-  std::vector<double> values(pattern.entries());
+  std::vector<double> values(program.jacobian_pattern().entries());
   if (!program.jacobian(t, states.data(), values.data(), workspace)) return kUnknown;
-  std::vector<Eigen::Index> place(program.n_states(), -1);
-  for (std::size_t i = 0; i < members.size(); ++i) place[members[i]] = static_cast<Eigen::Index>(i);
-  const auto n = static_cast<Eigen::Index>(members.size());
-  Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(n, n);
-  for (const std::size_t column : members) {
-    for (auto k = pattern.column_starts[column]; k < pattern.column_starts[column + 1]; ++k) {
-      const auto entry = static_cast<std::size_t>(k);
-      const Eigen::Index row = place[static_cast<std::size_t>(pattern.rows[entry])];
-      if (row >= 0) dense(row, place[column]) = values[entry];
-    }
+  std::vector<bool> moves(program.n_states(), false);
+  for (const std::size_t member : members) moves[member] = true;
+  double largest = -std::numeric_limits<double>::infinity();
+  for (const CoupledModes& group : coupled_modes(program.jacobian_pattern(), values, moves)) {
+    if (group.eigenvalues.empty()) return kUnknown;
+    for (const std::complex<double>& mode : group.eigenvalues) largest = std::max(largest, mode.real());
   }
-  if (!dense.allFinite()) return kUnknown;
-  return Eigen::EigenSolver<Eigen::MatrixXd>(dense, false).eigenvalues().real().maxCoeff();
+  return largest;
 }
 
 /// Whether a group that does not come to rest by itself is held by the rest of its closed loop: what is left
