@@ -81,6 +81,31 @@ TEST(FunctionGenerator, RefusesPointsThatMakeNoFunction) {
               HasSubstr("input 's.in' is given an array; expected the name of a signal, or a list of names"));
 }
 
+TEST(FunctionGenerator, HasItsSecondValueWhereAJumpIsMetExactly) {
+  // As written, and as a recording is read: the jump is where its second point is.
+  const Compiled made(R"(u = { type = "constant", value = 0.25 }
+f = { type = "function-generator", in = "u", points = [[0, 0], [0.25, 0.5], [0.25, -0.5], [1, 1]] }
+)");
+  EXPECT_EQ(row_values(run_of(made, {.until = 1}), "f").front(), -0.5);
+}
+
+std::string refusal_of_table(const std::string& points) {
+  const BlockLibrary library = testing::shipped_blocks_and(
+      "fg", "[inputs]\nin = {}\n[outputs]\nout = {}\n[equations]\nout = \"table(in, " + points + ")\"\n");
+  return message_of<Error>([&] { Compiled("f = { type = \"fg\", in = \"f\" }\n", "", library); });
+}
+
+TEST(FunctionGenerator, RefusesATableThatMakesNoFunction) {
+  // A jump at either end would have no straight line to go on by.
+  for (const char* const points : {"0, 1, 0, 2, 1, 3", "0, 1, 1, 2, 1, 3", "0, 1, 2, 2, 1, 3, 4, 4"}) {
+    EXPECT_THAT(
+        refusal_of_table(points),
+        HasSubstr("the x of a table do not rise from point to point; expected x1 < x2 ≤ x3 < …, where two "
+                  "that are equal make a jump"))
+        << points;
+  }
+}
+
 TEST(Points, AreWrittenAsTheyAreRead) {
   const Compiled made("f = { type = \"function-generator\", in = \"f\", points = [[-0.5, 1], [0, 0.25]] }\n");
   EXPECT_EQ(parse_diagram(write_diagram(made.diagram), "d.toml"), made.diagram);

@@ -249,17 +249,23 @@ NodeId Assembler::interpolated(std::size_t block, const Expression& call) {
 
 /// A table with a few jumps is one without them and a step at each: a step can be slid along.
 NodeId Assembler::interpolate(std::size_t block, const Expression& call, PointTable table) {
-  constexpr std::size_t kMostSteps =
-      32;  // a recording may have thousands, of the time, which slides along none
+  // A recording may have thousands, of the time, which slides along none.
+  constexpr std::size_t kMostSteps = 32;
+  const std::vector<double>& x = table.x;
+  if (!std::is_sorted(x.begin(), x.end()) || x[0] == x[1] || x[x.size() - 2] == x.back()) {
+    throw ExpressionError{call.column,
+                          "the x of a table do not rise from point to point",
+                          "x1 < x2 ≤ x3 < …, where two that are equal make a jump",
+                          {}};
+  }
   struct Step {
     double x, height;
   };
   std::vector<Step> steps;
   PointTable joined;
   double risen = 0;
-  for (std::size_t k = 0; k < table.x.size(); ++k) {
-    const bool jumps = k > 0 && k + 1 < table.x.size() && table.x[k] == table.x[k - 1];
-    if (jumps) {
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    if (k > 0 && x[k] == x[k - 1]) {
       steps.push_back({table.x[k], table.y[k] - table.y[k - 1]});
       risen += steps.back().height;
     } else {
@@ -267,14 +273,14 @@ NodeId Assembler::interpolate(std::size_t block, const Expression& call, PointTa
       joined.y.push_back(table.y[k] - risen);
     }
   }
-  const bool apart = !steps.empty() && steps.size() <= kMostSteps && joined.x.size() >= 2;
+  const bool apart = !steps.empty() && steps.size() <= kMostSteps;
   NodeId sum = interpolate_by_segments(block, call, apart ? std::move(joined) : std::move(table));
   if (!apart) return sum;
   for (const Step& step : steps) {
     Expression at;
     at.number = step.x;
     Expression beyond;
-    beyond.kind = Expression::Kind::greater;
+    beyond.kind = Expression::Kind::greater_equal;
     beyond.operands = {call.operands[0], at};
     sum = network_.graph.apply(Op::add, sum,
                                network_.graph.apply(Op::multiply, network_.graph.constant(step.height),
@@ -287,13 +293,6 @@ NodeId Assembler::interpolate_by_segments(std::size_t block, const Expression& c
   ExpressionGraph& graph = network_.graph;
   const auto [found, inserted] = table_index_.try_emplace(std::pair(block, to_string(call)), kNone);
   if (inserted) {
-    const std::vector<double>& x = table.x;
-    if (!std::is_sorted(x.begin(), x.end()) || x[0] == x[1] || x[x.size() - 2] == x.back()) {
-      throw ExpressionError{call.column,
-                            "the x of a table do not rise from point to point",
-                            "x1 < x2 ≤ x3 < …, where two that are equal make a jump",
-                            {}};
-    }
     found->second = static_cast<std::uint32_t>(network_.tables.size());
     network_.tables.push_back(std::move(table));
     const auto segment = static_cast<std::uint32_t>(network_.memories.size());
