@@ -57,6 +57,56 @@ cycles = 2
   }
 }
 
+/// Two integrators that take their values from each other by turns; `front` follows `next`, a function of x.
+Compiled memory_pair(const std::string& next) {
+  return Compiled(
+      "one = { type = \"constant\" }\nxx = { type = \"squarer\", in = \"x\" }\n"
+      "next = { type = \"summer\", in = [" +
+          next +
+          "] }\n"
+          "front = { type = \"integrator\", in = [], start = \"next\" }\n"
+          "x = { type = \"integrator\", in = [], start = \"front\", initial = 0.25 }\n",
+      R"([groups]
+a = ["front"]
+b = ["x"]
+[timeline]
+phases = [{ mode = "operate", a = "initial", b = "hold", for = 1 }, { mode = "operate", a = "hold", b = "initial", for = 1 }]
+)");
+}
+
+TEST(Timeline, StartsThatFollowFromEachOtherAreToldOf) {
+  // x = front + 0.25 and front = 0.5 x + 1 agree at x = 2.5; one that is held would not take part.
+  const auto agreed = run_of(memory_pair("\"0.5*x\", \"one\""), {.until = 2});
+  ASSERT_EQ(agreed.warnings.size(), 1U);
+  EXPECT_EQ(agreed.warnings[0].what,
+            "the initial values of 'front', 'x' follow from each other in a circle: the run begins where "
+            "they agree, "
+            "at front = 2.25");
+  EXPECT_EQ(agreed.warnings[0].remedy,
+            "give one of them a fixed 'initial', or cut the circle at the start with an electronic-switch");
+  // x -> 2 x + 1 runs away, and x -> 4 x (1 - x) as well, from 0.25 on beyond all numbers.
+  for (const char* const next : {"\"2*x\", \"one\"", "\"4*x\", \"-4*xx\""}) {
+    EXPECT_THAT(
+        message_of<SolveError>([&] { run_of(memory_pair(next), {.until = 2}); }),
+        HasSubstr("the initial values of 'front', 'x' follow from each other in a circle; expected initial "
+                  "values that agree"))
+        << next;
+  }
+}
+
+TEST(Timeline, AStartFromAChainOfSignalsIsNoCircle) {
+  std::string blocks =
+      "one = { type = \"constant\", value = 0.5 }\nx9 = { type = \"integrator\", in = [], start = \"one\" "
+      "}\n";
+  for (int k = 8; k >= 0; --k)
+    blocks += "x" + std::to_string(k) + " = { type = \"integrator\", in = [], start = \"x" +
+              std::to_string(k + 1) + "\" }\n";
+  const Compiled made(blocks);
+  const auto result = run_of(made, {.until = 1});
+  EXPECT_TRUE(result.warnings.empty());
+  EXPECT_EQ(row_values(result, "x0").front(), 0.5);
+}
+
 TEST(Timeline, APhaseEndsByItsCondition) {
   // Repetitive operation: cos t until it falls below 0, π/2 each time.
   const BlockLibrary library = library_with_modes();

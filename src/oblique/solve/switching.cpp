@@ -429,28 +429,46 @@ void Switching::settle(double t, std::vector<double>& x) {
   }
 }
 
-/// Starts the states that start from signals.
+/// Starts the states that start from signals. Those that start from each other in a circle begin where they
+/// agree, which is not what integrators do that take their values by turns.
 void Switching::take_starts(double t, std::vector<double>& x) {
-  constexpr int kMostStarts = 100;
-  for (int round = 0;; ++round) {
+  constexpr long kMostRoundsInCircle = 100;
+  const long starts = std::count_if(program_.states().begin(), program_.states().end(),
+                                    [](const State& state) { return state.start_node.has_value(); });
+  std::vector<std::size_t> circle;
+  bool changes = true, finite = true;
+  for (long round = 0; changes && finite && round <= starts + kMostRoundsInCircle; ++round) {
     if (!program_.signals(t, x.data(), signals_.data(), workspace_))
       throw loop_error(program_, workspace_.trouble(), t, file_);
-    double change = 0;
+    changes = false;
     for (std::size_t i = 0; i < x.size(); ++i) {
       const auto value = program_.start_value(i, workspace_);
-      if (!value) continue;
-      change = std::max(change, std::abs(*value - x[i]) / (1 + std::abs(*value)));
+      if (!value || std::abs(*value - x[i]) <= 4 * kEpsilon * (1 + std::abs(*value))) continue;
+      changes = true;
+      finite = finite && std::isfinite(*value);
+      // A chain of starts is through after as many rounds as it is long.
+      if ((round > starts || !std::isfinite(*value)) &&
+          std::find(circle.begin(), circle.end(), i) == circle.end())
+        circle.push_back(i);
       x[i] = *value;
     }
-    if (!(change > 4 * kEpsilon)) return;
-    if (round > kMostStarts) {
-      throw SolveError(SolveError::Kind::no_rest, t,
-                       {{file_, {}},
-                        "the initial values that follow from signals depend on each other in a circle",
-                        "an initial value that does not come back to itself",
-                        "give one of the integrators a fixed 'initial'"});
-    }
   }
+  if (circle.empty()) return;
+  std::sort(circle.begin(), circle.end());
+  std::vector<std::string> quoted;
+  for (const std::size_t i : circle) quoted.push_back(fmt::format("'{}'", program_.states()[i].name));
+  const std::string told = fmt::format("the initial values of {} follow from each other in a circle",
+                                       shortened(std::move(quoted)));
+  constexpr const char* kCut =
+      "give one of them a fixed 'initial', or cut the circle at the start with an electronic-switch";
+  if (changes)
+    throw SolveError(SolveError::Kind::no_rest, t, {{file_, {}}, told, "initial values that agree", kCut});
+  const State& first = program_.states()[circle.front()];
+  const std::string agreed =
+      fmt::format("{}: the run begins where they agree, at {} = {:.6g}", told, first.name, x[circle.front()]);
+  const bool is_told = std::any_of(warnings_.begin(), warnings_.end(),
+                                   [&](const Diagnostic& warning) { return warning.what == agreed; });
+  if (!is_told) warnings_.push_back({{file_, {}}, agreed, {}, kCut});
 }
 
 /// Brings servo loops to rest with all limits let loose, and tells whether they rest there, within them. An
