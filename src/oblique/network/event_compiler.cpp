@@ -19,8 +19,13 @@ enum class Follows : std::uint8_t {
   states,
 };
 
-Follows follows_of(const ExpressionGraph& graph, const Node& node, const std::vector<Follows>& known) {
-  if (node.op == Op::variable) return node.variable == 0 ? Follows::time_linearly : Follows::states;
+/// `clocks` are the states that go along a straight line between events.
+Follows follows_of(const ExpressionGraph& graph, const Node& node, const std::vector<bool>& clocks,
+                   const std::vector<Follows>& known) {
+  if (node.op == Op::variable) {
+    const bool linear = node.variable == 0 || (node.variable <= clocks.size() && clocks[node.variable - 1]);
+    return linear ? Follows::time_linearly : Follows::states;
+  }
   if (!node.continuous) return Follows::nothing;
   std::array<Follows, 3> operands{};
   Follows most = Follows::nothing;
@@ -106,11 +111,22 @@ void ProgramCompiler::find_phases() {
     phase_rates_.push_back(total_derivative(graph.gradient(argument), kNoLoop));
 }
 
-/// The largest parts of the equations that follow the time alone, and not linearly.
+/// The largest parts of the equations that follow the time alone, and not linearly. An integrator of what
+/// only events change is a clock, and tells the time as well.
 void ProgramCompiler::find_sources() {
   ExpressionGraph& graph = network_.graph;
   const std::size_t size = graph.size();
   std::vector<Follows> follows(size);
+  std::vector<bool> clocks(network_.states.size(), false);
+  const auto find_follows = [&] {
+    for (NodeId id = 0; id < size; ++id) follows[id] = follows_of(graph, graph[id], clocks, follows);
+  };
+  find_follows();
+  for (std::size_t i = 0; i < clocks.size(); ++i) {
+    clocks[i] = follows[network_.states[i].derivative] == Follows::nothing;
+    if (clocks[i]) program_.clocks_.push_back(i);
+  }
+  find_follows();
   std::vector<bool> is_root(size), acts(size), needed(size);
   std::vector<NodeId> acting, others = network_.signals;
   for (const State& state : network_.states) acting.push_back(state.derivative);
@@ -122,7 +138,6 @@ void ProgramCompiler::find_sources() {
       acts[root] = acts[root] || roots == &acting;
     }
   }
-  for (NodeId id = 0; id < size; ++id) follows[id] = follows_of(graph, graph[id], follows);
   for (auto id = static_cast<NodeId>(size); id-- > 0;) {
     if (!needed[id]) continue;
     const Node& node = graph[id];
@@ -135,8 +150,11 @@ void ProgramCompiler::find_sources() {
   }
   for (NodeId id = 0; id < size; ++id) {
     if (!is_root[id] || follows[id] != Follows::time) continue;
-    const auto gradient = graph.gradient(id);
-    const NodeId slope = gradient.empty() ? graph.constant(0) : gradient.front().second;
+    NodeId slope = graph.constant(0);
+    for (const auto& [variable, part] : graph.gradient(id)) {
+      const NodeId rate = variable == 0 ? graph.constant(1) : network_.states[variable - 1].derivative;
+      slope = graph.apply(Op::add, slope, graph.apply(Op::multiply, part, rate));
+    }
     sources_.push_back({id, slope, acts[id], std::nullopt});
   }
   for (std::size_t s = 0; s < network_.switches.size(); ++s) {

@@ -111,7 +111,31 @@ class Builder {
     return graph_.apply(op, a, e.operands.size() > 1 ? build(e.operands[1]) : 0);
   }
 
+  /// Whether only a switch keeps an expression from being negative, as max(x, 0): before it turns over, the
+  /// expression goes on a little below zero.
+  bool is_kept_positive(const Expression& e) {
+    bool by_switch = false;
+    return is_never_negative(e, by_switch) && by_switch;
+  }
+
+  bool is_never_negative(const Expression& e, bool& by_switch) {
+    using Kind = Expression::Kind;
+    if (change_of(e, context_) == Change::never) return graph_[build(e)].value >= 0;
+    const auto is_nowhere = [&](const Expression& part) { return is_never_negative(part, by_switch); };
+    if (e.kind == Kind::add || e.kind == Kind::multiply || e.kind == Kind::divide)
+      return std::all_of(e.operands.begin(), e.operands.end(), is_nowhere);
+    if (e.kind != Kind::call) return false;
+    const bool found =
+        e.function == Function::abs ||
+        (e.function == Function::max && std::any_of(e.operands.begin(), e.operands.end(), is_nowhere)) ||
+        (e.function == Function::clip && is_nowhere(e.operands[1]));
+    by_switch = by_switch || found;
+    return found;
+  }
+
   NodeId function(const Expression& e) {
+    if (e.function == Function::sqrt && is_kept_positive(e.operands[0]))
+      return graph_.apply(Op::sqrt, graph_.apply(Op::hypot, build(e.operands[0]), graph_.constant(0)));
     if (const auto op = smooth_operation(e.function)) return smooth(*op, e);
     if (e.function == Function::weights) return graph_.constant(context_.weights(e));
     if (e.function == Function::table && (e.operands.size() == 2 || change_of(e, context_) != Change::never))

@@ -35,7 +35,8 @@ bool Program::run(const std::vector<Step>& steps, Workspace& workspace) const {
                             workspace.solved_[loop.unknown_slots.front() - first_unknown]};
       for (const std::uint32_t slot : loop.unknown_slots)
         slots[slot] = workspace.solved_[slot - first_unknown];
-      return false;
+      if (!workspace.passes_failing_loops_) return false;
+      continue;
     }
     for (const std::uint32_t slot : loop.unknown_slots) workspace.solved_[slot - first_unknown] = slots[slot];
   }
@@ -115,9 +116,10 @@ std::vector<Interval> Program::source_slots() const {
   return slots;
 }
 
-void Program::source_ranges(const Interval& time, const Workspace& workspace,
-                            std::span<Interval> slots) const {
+void Program::source_ranges(const Interval& time, std::span<const Interval> clocks,
+                            const Workspace& workspace, std::span<Interval> slots) const {
   slots[0] = time;
+  for (std::size_t c = 0; c < clocks.size(); ++c) slots[1 + clocks_[c]] = clocks[c];
   for (std::size_t m = first_memory_; m < first_memory_ + memories_.size(); ++m)
     slots[m] = {workspace.slots_[m], workspace.slots_[m]};
   run_tape(std::span(tape_).subspan(source_stretch_.begin, source_stretch_.end - source_stretch_.begin),

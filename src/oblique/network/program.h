@@ -27,7 +27,7 @@ struct SparsePattern {
 
 class Workspace;
 
-/// A part of the equations that follows the time alone, and not along a straight line.
+/// A part of the equations that follows the time alone, or clocks, and not along a straight line.
 struct Source {
   std::uint32_t slot = 0, slope_slot = 0;     ///< its value, and d value/dt
   bool acts = false;                          ///< on dx/dt, or on the surface of a switch
@@ -94,10 +94,15 @@ class Program {
   double fastest_phase(const Workspace& workspace) const;
   const SwitchStructure& switch_structure() const { return switch_structure_; }
 
+  /// Whether dx/dt contains functions that can be next to nothing here and a peak there.
+  bool can_hide() const { return can_hide_; }
   const std::vector<Source>& sources() const { return sources_; }
-  /// The values of all sources, and their slopes, for times within `time`, on slots of the kind that
-  /// `source_slots` gives, with the memories as they are in the workspace.
-  void source_ranges(const Interval& time, const Workspace& workspace, std::span<Interval> slots) const;
+  /// The states that go along a straight line between events: integrators of what only events change.
+  const std::vector<std::size_t>& clocks() const { return clocks_; }
+  /// The values of all sources, and their slopes, for times within `time` and the clocks within `clocks`, on
+  /// slots of the kind that `source_slots` gives, with the memories as they are in the workspace.
+  void source_ranges(const Interval& time, std::span<const Interval> clocks, const Workspace& workspace,
+                     std::span<Interval> slots) const;
   std::vector<Interval> source_slots() const;
 
   // As the last `signals` left them:
@@ -198,6 +203,8 @@ class Program {
   std::vector<RateStep> rate_steps_;  ///< after `surface_steps_`
   std::vector<std::uint32_t> surface_rate_slots_, phase_rate_slots_;
   std::vector<Source> sources_;
+  std::vector<std::size_t> clocks_;
+  bool can_hide_ = false;
   TapeRange source_stretch_;
 
   SparsePattern pattern_;
@@ -231,6 +238,9 @@ class Workspace {
   /// While branches are followed, a loop of which amplifiers choose the solution fails (`lost`) where its
   /// branch ends or is left; else the amplifiers go to where they rest.
   void follow_branches(bool follow);
+  /// Whether a loop that fails is passed over, its unknowns as they were last: what does not depend on them
+  /// is then as it should be.
+  void pass_failing_loops(bool pass) { passes_failing_loops_ = pass; }
   /// Takes these values for the unknowns of a loop at time t, where it is singular: as long as they solve it
   /// or, with `whatever`, in any case. A time that is not a number lets go.
   void hold_loop(std::size_t loop, double t, const std::vector<double>& unknowns, bool whatever);
@@ -254,6 +264,7 @@ class Workspace {
   std::vector<double> solved_;  ///< unknowns at the last success
   std::vector<LoopWorkspace> loops_;
   std::vector<Eigen::MatrixXd> dz_dx_, dz_dt_;
+  bool passes_failing_loops_ = false;
   Trouble trouble_;
 };
 

@@ -32,6 +32,7 @@ class ProgramCompiler {
   void find_phases();
   void find_sources();
   void find_levels();
+  bool is_peaked(const Node& node) const;
   void find_needs();
   void close_over(NodeId root, Needs& needs) const;
   void require_loop(std::size_t loop, Needs& needs, std::vector<NodeId>& pending) const;

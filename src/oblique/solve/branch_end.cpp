@@ -76,23 +76,6 @@ double change_of(const Program& program, const Workspace& workspace, std::size_t
   return change;
 }
 
-/// States that go on from a moment as they moved there.
-class StraightLine final : public Interpolant {
- public:
-  StraightLine(double t, std::vector<double> states, std::vector<double> rates)
-      : t_(t), states_(std::move(states)), rates_(std::move(rates)) {}
-  void states_at(double t, std::span<double> x) const override {
-    for (std::size_t i = 0; i < x.size(); ++i) x[i] = states_[i] + (t - t_) * rates_[i];
-  }
-  void rates_at(double, std::span<double> dxdt) const override {
-    std::copy(rates_.begin(), rates_.end(), dxdt.begin());
-  }
-
- private:
-  double t_;
-  std::vector<double> states_, rates_;
-};
-
 }  // namespace
 
 BranchWatch::BranchWatch(const Program& program, Workspace& workspace, double begin,

@@ -11,6 +11,23 @@
 
 namespace oblique {
 
+/// States that go on from a moment as they moved there.
+class StraightLine final : public Interpolant {
+ public:
+  StraightLine(double t, std::vector<double> states, std::vector<double> rates)
+      : t_(t), states_(std::move(states)), rates_(std::move(rates)) {}
+  void states_at(double t, std::span<double> x) const override {
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] = states_[i] + (t - t_) * rates_[i];
+  }
+  void rates_at(double, std::span<double> dxdt) const override {
+    std::copy(rates_.begin(), rates_.end(), dxdt.begin());
+  }
+
+ private:
+  double t_;
+  std::vector<double> states_, rates_;
+};
+
 /// A warning for each loop whose amplifiers, at equal speeds, do not rest at the solution that they have been
 /// given, though the loop has or had others. `signals` must have been evaluated at t.
 std::vector<Diagnostic> unstable_branches(const Program& program, const Workspace& workspace, double t,

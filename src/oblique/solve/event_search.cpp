@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <oblique/solve/along_branch.h>
 #include <oblique/solve/solve_error.h>
 
 namespace oblique {
@@ -86,12 +87,22 @@ EventSearch::EventSearch(const Program& program, Workspace& workspace, SlidingMo
 
 void EventSearch::look(double t, const Interpolant& solution, Look& at) {
   at.time = t;
-  solution.states_at(t, states_);
+  const double reached = evaluate_along_branch(reached_, t, workspace_, [&](double time) {
+    solution.states_at(time, states_);
+    return (!slide_.active() || slide_.evaluate(time, states_)) &&
+           program_.surfaces(time, states_.data(), surfaces_.data(), workspace_);
+  });
+  reached_ = reached;
+  if (reached != t) {
+    if (workspace_.trouble().failure != LoopFailure::lost)
+      throw loop_error(program_, workspace_.trouble(), t, file_);
+    // The branch may end because a switch is due that does not depend on it.
+    solution.states_at(t, states_);
+    workspace_.pass_failing_loops(true);
+    program_.surfaces(t, states_.data(), surfaces_.data(), workspace_);
+    workspace_.pass_failing_loops(false);
+  }
   solution.rates_at(t, rates_);
-  if (slide_.active() && !slide_.evaluate(t, states_))
-    throw loop_error(program_, workspace_.trouble(), t, file_);
-  if (!program_.surfaces(t, states_.data(), surfaces_.data(), workspace_))
-    throw loop_error(program_, workspace_.trouble(), t, file_);
   program_.surface_rates(rates_.data(), surface_rates_.data(), workspace_);
   at.phase_rate = program_.fastest_phase(workspace_);
   const std::size_t n = surfaces_.size();
@@ -126,6 +137,7 @@ bool EventSearch::is_due(const Look& at) const {
 std::optional<EventSearch::Found> EventSearch::search(double from, std::span<const double> looks,
                                                       const Interpolant& solution) {
   Look left, right;
+  reached_ = looks.empty() ? from : looks.back();  // where the solver was last
   look(from, solution, left);
   // Where the solver starts anew a surface may still lie within rounding of zero on the wrong side.
   for (double& value : left.overdue) value = std::min(value, 0.0);

@@ -24,22 +24,32 @@ constexpr double kTighterAdams = 100, kTighterBdf = 30;
 /// Below this, rounding in dx/dt decides about steps.
 constexpr double kFinestTolerance = 1e-14;
 
-/// The absolute tolerance of a state over its size, times the relative one. The run that found the size was
-/// itself wrong about how small the state became.
+/// Of the distance from an equilibrium out of which a state grew: the size down to which it is to be known.
+/// The run that found the distance was itself wrong about how small it became.
 constexpr double kFarBelow = 1e-8;
 constexpr double kSmallest = 1e-290;  ///< [machine unit] of an absolute tolerance: its inverse is a weight
 
+std::string quoted_names(const Program& program, const std::vector<std::size_t>& states) {
+  std::string names;
+  constexpr std::size_t kMostNamed = 3;
+  for (std::size_t k = 0; k < std::min(states.size(), kMostNamed); ++k)
+    names += fmt::format("{}'{}'", k == 0 ? "" : ", ", program.states()[states[k]].name);
+  return states.size() > kMostNamed ? names + ", …" : names;
+}
+
 }  // namespace
 
-void refine(std::span<const UnseenGrowth> found, std::size_t n_states, Refinement& refinement) {
+void refine(const Unseen& unseen, std::size_t n_states, Refinement& refinement) {
   refinement.reach.resize(n_states, 0);
-  for (const UnseenGrowth& growth : found) {
+  const auto reach_to = [&](std::size_t i, double size) {
+    double& reach = refinement.reach[i];
+    reach = reach > 0 ? std::min(reach, size) : size;
+  };
+  for (const UnseenGrowth& growth : unseen.growth) {
     refinement.finest = refinement.finest || growth.in_relative;
-    for (const std::size_t i : growth.states) {
-      double& reach = refinement.reach[i];
-      reach = reach > 0 ? std::min(reach, growth.distance) : growth.distance;
-    }
+    for (const std::size_t i : growth.states) reach_to(i, kFarBelow * growth.distance);
   }
+  for (const SmallState& small : unseen.small) reach_to(small.state, kAbsoluteTolerance * small.size);
 }
 
 SolverSettings solver_settings(const std::vector<State>& states, const RunOptions& options,
@@ -63,25 +73,40 @@ SolverSettings solver_settings(const std::vector<State>& states, const RunOption
   for (std::size_t i = 0; i < refinement.reach.size(); ++i) {
     if (refinement.reach[i] == 0) continue;
     double& own = settings.own_tolerances[i];
-    own = std::clamp(kFarBelow * settings.relative_tolerance * refinement.reach[i], kSmallest, own);
+    own = std::clamp(settings.relative_tolerance * refinement.reach[i], kSmallest, own);
   }
   return settings;
 }
 
-Diagnostic unseen_growth(const std::vector<State>& states, const UnseenGrowth& growth,
-                         const std::string& file) {
-  std::string names;
-  constexpr std::size_t kMostNamed = 3;
-  for (std::size_t k = 0; k < std::min(growth.states.size(), kMostNamed); ++k)
-    names += fmt::format("{}'{}'", k == 0 ? "" : ", ", states[growth.states[k]].name);
-  if (growth.states.size() > kMostNamed) names += ", …";
-  return {
-      {file, {}},
-      fmt::format("{} grew until t = {:.6g} s from within {:.2g} machine units of an unstable equilibrium: "
-                  "too near for the finest tolerance, so that what follows may be wrong",
-                  names, growth.time, growth.distance),
-      {},
-      "start farther from the equilibrium, or write the states as their distance from it"};
+std::vector<Diagnostic> warnings_of(const Unseen& unseen, const Program& program,
+                                    const FlatDiagram& diagram) {
+  std::vector<Diagnostic> warnings;
+  for (const UnseenGrowth& growth : unseen.growth) {
+    warnings.push_back(
+        {{diagram.file, {}},
+         fmt::format(
+             "{} grew until t = {:.6g} s from within {:.2g} machine units of an unstable equilibrium: "
+             "too near for the finest tolerance, so that what follows may be wrong",
+             quoted_names(program, growth.states), growth.time, growth.distance),
+         {},
+         "start farther from the equilibrium, or write the states as their distance from it"});
+  }
+  for (const SmallState& small : unseen.small) {
+    const std::size_t beyond = small.reading - std::min(small.reading, diagram.outputs.size());
+    const std::string reader = small.reading < diagram.outputs.size()
+                                   ? fmt::format("output '{}'", diagram.outputs[small.reading].name)
+                                   : fmt::format("'{}' ({})", program.switches()[beyond].block,
+                                                 program.switches()[beyond].comparison);
+    warnings.push_back(
+        {{diagram.file, {}},
+         fmt::format(
+             "'{}' stays within {:.2g} machine units, which is too small for the finest tolerance, and "
+             "{} depends on it: it may be wrong",
+             program.states()[small.state].name, small.size, reader),
+         {},
+         "scale the state up, and down again what reads it"});
+  }
+  return warnings;
 }
 
 }  // namespace oblique

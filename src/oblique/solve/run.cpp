@@ -59,12 +59,13 @@ class Runner {
         clock_(program, diagram.timeline, workspace_, begin_),
         system_(program, switching_),
         sampler_(program, diagram, options, workspace_, switching_),
-        sources_(program, workspace_,
-                 options.extremes || options.watch_overloads || options.halt_on_overload),
+        sources_(program, workspace_, options.extremes || options.watch_overloads || options.halt_on_overload,
+                 diagram.file),
         branches_(program, workspace_, begin_, options, diagram.file),
         states_(program.start()) {
-    constexpr double kLooksAStep = 100;
+    constexpr double kLooksAStep = 100, kSourceLooksAStep = 10;
     switching_.limit_looks(kLooksAStep * static_cast<double>(options.max_steps) + 1e6);
+    sources_.limit_looks(kSourceLooksAStep * static_cast<double>(options.max_steps) + 1e6);
     if (options.watch_overloads || options.halt_on_overload)
       overloads_.emplace(program, switching_, diagram.file, options.halt_on_overload);
   }
@@ -99,9 +100,16 @@ class Runner {
     return std::move(sampler_.result);
   }
 
-  /// After `run`, also one that failed: growth that it did not see.
-  std::span<const UnseenGrowth> unseen() const {
-    return watch_ ? std::span<const UnseenGrowth>(watch_->found()) : std::span<const UnseenGrowth>();
+  /// After `run`, also one that failed: how many it took, and what it did not see.
+  long steps() const { return steps_; }
+  Unseen unseen() const {
+    Unseen unseen;
+    if (growth_) unseen.growth = growth_->found();
+    if (small_) unseen.small = small_->found();
+    std::erase_if(unseen.small, [this](const SmallState& small) {  // it was asked for
+      return program_.states()[small.state].tolerance > 0;
+    });
+    return unseen;
   }
 
  private:
@@ -195,6 +203,28 @@ class Runner {
     workspace_.follow_branches(true);
   }
 
+  /// Whether a switch turns over between `from` and t, where a branch of an algebraic loop has ended; t is
+  /// then its time. The branch may end only because the switch was not turned over.
+  bool turns_before(double from, double& t, const Interpolant& solution) {
+    if (program_.switches().empty() || !(t > from)) return false;
+    const double look[] = {t};
+    workspace_.pass_failing_loops(true);
+    const auto event = switching_.search(from, look, solution);
+    workspace_.pass_failing_loops(false);
+    if (event) t = *event;
+    return event.has_value();
+  }
+
+  /// Settles what there is at t, where a branch ends, the states having gone straight on from `last`.
+  void end_branch(double from, const std::vector<double>& last, double& t) {
+    std::vector<double> rates(states_.size());
+    for (std::size_t i = 0; i < rates.size(); ++i) rates[i] = (states_[i] - last[i]) / (t - from);
+    const StraightLine ahead(from, last, rates);
+    const bool turned = turns_before(from, t, ahead);
+    ahead.states_at(t, states_);
+    settle(t, !turned);
+  }
+
   /// Sets the end of the smooth stretch that begins at t; settles what turns over at t itself.
   void begin_stretch(double t) {
     double wait = std::numeric_limits<double>::infinity();
@@ -253,8 +283,13 @@ class Runner {
     const bool ends = event || branch_end || (t >= stretch_end_ && t < options_.until);
     if (!ends || t >= options_.until) return false;
     if (branch_end) {
-      branches_.find(t, *branch_end, solution);  // it jumps from the last place on the branch
-      t = *branch_end;
+      if (turns_before(t, *branch_end, solution)) {
+        t = *branch_end;
+        branch_end.reset();
+      } else {
+        branches_.find(t, *branch_end, solution);  // it jumps from the last place on the branch
+        t = *branch_end;
+      }
     }
     if (!settled) {
       solution.states_at(t, states_);
@@ -312,9 +347,18 @@ class Runner {
   /// Whether growth was not seen so long ago that the run, which must be made again, is not worth its end.
   bool ends_unseen() {
     constexpr long kMore = 1000;
-    if (!may_end_unseen_ || watch_->found().empty()) return false;
+    if (!may_end_unseen_ || growth_->found().empty()) return false;
     if (steps_unseen_ == 0) steps_unseen_ = steps_;
     return steps_ > 2 * steps_unseen_ + kMore;
+  }
+
+  /// What shows that a state is not known: the outputs, then the surfaces of the switches.
+  bool read(double t, const double* x, double* values) {
+    std::vector<double> signals(program_.n_signals());
+    if (!switching_.signals(t, x, signals.data())) return false;
+    for (const FlatOutput& output : diagram_.outputs)
+      *values++ = output.scale * signals[program_.signal_index(output.signal)];
+    return program_.surfaces(t, x, values, workspace_);
   }
 
   bool halted() const { return overloads_ && overloads_->halted(); }
@@ -332,12 +376,19 @@ class Runner {
     double t = begin_;
     begin_stretch(t);
     CvodesSolver solver(system_, t, states_, stretch_end_, stretch_length_, settings_);
-    watch_.emplace(system_, settings_);
-    watch_->restart(t, states_);
+    growth_.emplace(system_, settings_);
+    growth_->restart(t, states_);
+    const std::size_t n_outputs = diagram_.outputs.size();
+    small_.emplace(
+        system_, settings_, options_.tolerance, options_.until - begin_,
+        [this](double at, const double* x, double* values) { return read(at, x, values); },
+        n_outputs + program_.switches().size(), n_outputs);
+    small_->advance(t, states_);
     HiddenMotion hidden(system_, settings_.relative_tolerance,
                         settings_.own_tolerances.empty()
                             ? std::vector<double>(states_.size(), settings_.absolute_tolerance)
-                            : settings_.own_tolerances);
+                            : settings_.own_tolerances,
+                        program_.can_hide() ? (options_.until - begin_) / kFewestLooks : kNoLimit);
     double limit = kNoLimit, limited_until = begin_;
     constexpr long kStepsPerReport = 256;
     try {
@@ -347,9 +398,10 @@ class Runner {
           t = solver.step();
         } catch (const SolverFailure& failure) {
           if (failure.kind == SolverFailure::Kind::step_budget) throw;
+          const std::vector<double> last = states_;
           switch (branches_.look_ahead(t, stretch_end_, states_, solver)) {
             case BranchWatch::Ahead::end:
-              settle(t, true);
+              end_branch(from, last, t);
               if (overloads_) overloads_->restart(t, states_);
               begin_stretch(t);
               solver.restart(t, states_, stretch_end_, stretch_length_);
@@ -361,7 +413,7 @@ class Runner {
               throw;
           }
         }
-        const std::vector<double>& looks = sources_.looks(from, t);
+        const std::vector<double>& looks = sources_.looks(from, t, solver);
         if (const auto missed = hidden.find(from, looks, solver)) {
           // The states are still those of `from`: take the step again, short enough to see.
           limit = hidden.longest_step();
@@ -374,11 +426,12 @@ class Runner {
         if (finish_step(from, t, looks, solver)) {
           begin_stretch(t);
           solver.restart(t, states_, stretch_end_, stretch_length_);
-          watch_->restart(t, states_);
+          growth_->restart(t, states_);
         } else {
           std::copy(solver.states().begin(), solver.states().end(), states_.begin());
-          watch_->advance(t, states_);
+          growth_->advance(t, states_);
         }
+        small_->advance(t, states_);
         if (limit < kNoLimit && t > limited_until) {
           limit = limit > options_.until - begin_ ? kNoLimit : 2 * limit;
           solver.limit_step(limit);
@@ -405,10 +458,11 @@ class Runner {
       const double from = t;
       t = std::min(stretch_end_, t + step);
       if (stretch_end_ - t < kShortest * stretch_end_) t = stretch_end_;
-      if (finish_step(from, t, sources_.looks(from, t), no_states)) begin_stretch(t);
+      if (finish_step(from, t, sources_.looks(from, t, no_states), no_states)) begin_stretch(t);
     }
   }
 
+  static constexpr double kFewestLooks = 1000;  ///< of a run, for what the states hide
   static constexpr double kNoLimit = std::numeric_limits<double>::infinity();  ///< of a step
   static constexpr double kShortest = 1e-15;  ///< of the time: the clock cannot show less
 
@@ -430,18 +484,21 @@ class Runner {
   std::vector<double> states_;
   std::vector<Diagnostic> warnings_at_start_;
   SolverSettings settings_;
-  std::optional<GrowthWatch> watch_;
+  std::optional<GrowthWatch> growth_;
+  std::optional<SmallStates> small_;
   long steps_ = 0, steps_unseen_ = 0;  ///< in all, and until growth was first unseen
 };
 
-/// Runs, and where states grow out of what the tolerance hides, anew and finer. Where no run is fine enough,
+/// Runs, and where states matter that the tolerance hides, anew and finer. Where no run is fine enough,
 /// the last one says so.
 Run run_seeing(const Program& program, const FlatDiagram& diagram, const RunOptions& options) {
   constexpr int kMostTries = 5;
+  constexpr long kMostTimesFirst = 100, kAlwaysAllowed = 100'000;  // steps of a finer run
   Refinement refinement;
+  RunOptions finer = options;
   for (int k = 0; k < kMostTries; ++k) {
     if (k > 0 && options.on_restart) options.on_restart();
-    Runner runner(program, diagram, options, refinement, true);
+    Runner runner(program, diagram, finer, refinement, true);
     Run result;
     try {
       result = runner.run();
@@ -449,23 +506,26 @@ Run run_seeing(const Program& program, const FlatDiagram& diagram, const RunOpti
       if (runner.unseen().empty() && k == 0) throw;
       if (runner.unseen().empty()) break;
     }
-    if (runner.unseen().empty()) return result;
+    const Unseen unseen = runner.unseen();
+    if (unseen.empty()) return result;
+    if (k == 0)
+      finer.max_steps = std::min(options.max_steps, kMostTimesFirst * runner.steps() + kAlwaysAllowed);
     const Refinement before = refinement;
-    refine(runner.unseen(), program.n_states(), refinement);
+    refine(unseen, program.n_states(), refinement);
     if (refinement == before) break;
   }
-  const auto run_to_the_end = [&](const Refinement& how) {
+  const auto run_to_the_end = [&](const Refinement& how, const RunOptions& with) {
     if (options.on_restart) options.on_restart();
-    Runner runner(program, diagram, options, how, false);
+    Runner runner(program, diagram, with, how, false);
     Run result = runner.run();
-    for (const UnseenGrowth& growth : runner.unseen())
-      result.warnings.push_back(unseen_growth(program.states(), growth, diagram.file));
+    for (Diagnostic& warning : warnings_of(runner.unseen(), program, diagram))
+      result.warnings.push_back(std::move(warning));
     return result;
   };
   try {
-    return run_to_the_end(refinement);
+    return run_to_the_end(refinement, finer);
   } catch (const SolveError&) {  // finer than it can be run
-    return run_to_the_end({});
+    return run_to_the_end({}, options);
   }
 }
 

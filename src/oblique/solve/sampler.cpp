@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <oblique/solve/along_branch.h>
 #include <oblique/solve/solve_error.h>
 
 namespace oblique {
@@ -39,6 +40,7 @@ Sampler::Sampler(const Program& program, const FlatDiagram& diagram, const RunOp
 }
 
 void Sampler::advance(double t, const Interpolant& solution) {
+  double last = t;
   while (true) {
     const bool grid_left = next_sample_ < options_.samples;
     const bool extra_left = next_extra_ < options_.extra_times.size();
@@ -46,8 +48,8 @@ void Sampler::advance(double t, const Interpolant& solution) {
     const double extra_time = extra_left ? options_.extra_times[next_extra_] : options_.until + 1;
     const double time = std::min(grid_time, extra_time);
     if ((!grid_left && !extra_left) || time > t) return;
-    solution.states_at(time, states_);
-    evaluate(time);
+    evaluate(last, time, solution);
+    last = time;
     runaway_.look_at(time, signals_);
     if (grid_left && grid_time == time) {
       result.trajectory.add_row(row_);
@@ -65,9 +67,10 @@ void Sampler::advance(double t, const Interpolant& solution) {
 /// what is missed is of third order in the solver's step.
 void Sampler::watch(double from, double to, const Interpolant& solution) {
   if (!options_.extremes) return;
+  double last = to;
   const auto at = [&](double time) {
-    solution.states_at(time, states_);
-    evaluate(time);
+    evaluate(last, time, solution);
+    last = time;
     keep_extremes(time);
   };
   at(from);
@@ -99,8 +102,16 @@ double Sampler::sample_time(int k) const {
   return begin + (options_.until - begin) * k / (options_.samples - 1);
 }
 
-void Sampler::evaluate(double time) {
-  if (!switching_.signals(time, states_.data(), signals_.data()))
+/// `last` is where something was evaluated last.
+void Sampler::evaluate(double last, double time, const Interpolant& solution) {
+  constexpr double kSameTime = 1e-9;  // of the run: at the end of a branch stands the last value on it
+  const auto signals_at = [&](double at) {
+    solution.states_at(at, states_);
+    return switching_.signals(at, states_.data(), signals_.data());
+  };
+  const double reached = evaluate_along_branch(last, time, workspace_, signals_at);
+  const double span = options_.until - (options_.from ? options_.from->time : 0);
+  if (reached != time && (std::abs(time - reached) > kSameTime * span || !signals_at(reached)))
     throw loop_error(program_, workspace_.trouble(), time, diagram_.file);
   row_[0] = time;
   for (std::size_t i = 0; i < diagram_.outputs.size(); ++i) {

@@ -31,7 +31,7 @@ class Sampler {
 
  private:
   double sample_time(int k) const;
-  void evaluate(double time);
+  void evaluate(double last, double time, const Interpolant& solution);
   void keep_extremes(double time);
 
   const Program& program_;

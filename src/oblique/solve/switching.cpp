@@ -23,9 +23,13 @@ constexpr long kRestless = 5;
 constexpr long kMostTurns = 1000;
 
 /// Events that come sooner and sooner, this often in a row, pile up where the times left to them, at the
-/// present ratio, are together below this part of the run.
+/// present ratio, are together below this part of the run, and the ratio is not on its way to 1 (events that
+/// crowd together and thin out again: two balls between a heavy one and a wall). That is seen over intervals
+/// that become shorter by such a factor: 1 less the ratio is then no smaller than this part of what it was.
 constexpr int kMostShorter = 10;
 constexpr double kPilingUp = 1e-5;
+constexpr double kSteadyOver = 4;
+constexpr double kSteady = 0.75;
 
 constexpr int kMostRounds = 1000;  ///< of events that set each other off at one instant
 constexpr std::size_t kMostRecords = 1000;
@@ -64,8 +68,13 @@ Switching::Switching(const Program& program, Workspace& workspace, double span, 
 void Switching::evaluate(double t, std::span<const double> x) {
   states_.assign(x.begin(), x.end());
   weighed_ = false;
-  if (!program_.surfaces(t, x.data(), surfaces_.data(), workspace_))
-    throw loop_error(program_, workspace_.trouble(), t, file_);
+  if (!program_.surfaces(t, x.data(), surfaces_.data(), workspace_)) {
+    // An algebraic loop may have a solution only where the switches that are due have turned over.
+    if (!is_pending()) throw loop_error(program_, workspace_.trouble(), t, file_);
+    workspace_.pass_failing_loops(true);
+    program_.surfaces(t, x.data(), surfaces_.data(), workspace_);
+    workspace_.pass_failing_loops(false);
+  }
   for (std::size_t s = 0; s < thresholds_.now.size(); ++s) {
     if (is_known(s)) {
       const double size = program_.compared_size(s, workspace_);
@@ -74,6 +83,14 @@ void Switching::evaluate(double t, std::span<const double> x) {
       thresholds_.now[s] = std::max(search_.rounding(s), thresholds_.slack[s]);
     }
   }
+}
+
+/// Whether a switch that was announced has not turned over yet.
+bool Switching::is_pending() const {
+  for (std::size_t s = 0; s < announced_.size(); ++s) {
+    if (announced_[s] >= 0 && announced_[s] != workspace_.memory(program_.switches()[s].memory)) return true;
+  }
+  return false;
 }
 
 /// Within this of zero a surface is where it was.
@@ -250,7 +267,16 @@ bool Switching::piles_up(std::size_t event, double t) {
   pace.shorter = interval > 0 && interval < pace.interval ? pace.shorter + 1 : 0;
   const double ratio = pace.interval > 0 ? interval / pace.interval : 1;
   const double left = interval * ratio / (1 - ratio);  // Σ interval · ratioᵏ
-  if (pace.shorter >= kMostShorter && interval < kPilingUp * span_ && left < kPilingUp * span_) {
+  if (pace.shorter == 0) {
+    pace.steady = false;
+    pace.longer = kInfinity;
+  } else if (pace.longer == kInfinity || kSteadyOver * interval < pace.longer) {
+    pace.steady = pace.longer < kInfinity && 1 - ratio > kSteady * pace.approach;
+    pace.longer = interval;
+    pace.approach = 1 - ratio;
+  }
+  if (pace.steady && pace.shorter >= kMostShorter && interval < kPilingUp * span_ &&
+      left < kPilingUp * span_) {
     if (program_.events()[event].piling_up) return true;
     throw SolveError(
         SolveError::Kind::chatter, t,

@@ -84,6 +84,7 @@ class Switching {
   using Units = std::vector<std::uint32_t>;
 
   bool is_known(std::size_t s) const { return program_.switches()[s].rate.has_value(); }
+  bool is_pending() const;
   void weigh_errors();
   double place_size(std::size_t s) const;
   void evaluate(double t, std::span<const double> x);
@@ -131,6 +132,9 @@ class Switching {
     double last = 0;
     double interval = 0;
     int shorter = 0;  ///< how often in a row the interval has become shorter
+    /// An interval of the row, 1 less the ratio of it to the one before, and whether that is still so.
+    double longer = 0, approach = 0;
+    bool steady = false;
   };
   std::vector<Pace> paces_;
   std::vector<EventRecord> records_;
