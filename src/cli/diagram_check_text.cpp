@@ -105,7 +105,10 @@ std::string mode_text(const char* whose, const std::optional<WorstMode>& worst, 
   constexpr double kLeastShare = 0.01;
   for (std::size_t k = 0; k < std::min(mode.participants.size(), kMostNamed); ++k) {
     const auto& [state, share] = mode.participants[k];
-    if (share < kLeastShare) break;
+    if (share < kLeastShare) {
+      if (k == 0) text += " many, each by less than 1 %";
+      break;
+    }
     text += fmt::format("{} {} {:.0f} %", k == 0 ? "" : ",", program.states()[state].name, 100 * share);
   }
   return text + "\n";
@@ -127,7 +130,9 @@ std::string verdict_text(const StabilityReport& report) {
   };
   switch (report.verdict) {
     case StabilityVerdict::no_feedback:
-      return "no state acts back on itself, so that nothing grows or decays by itself";
+      return report.switches ? "no state acts back on itself between events; what switches and stores bring "
+                               "back is not told"
+                             : "no state acts back on itself, so that nothing grows or decays by itself";
     case StabilityVerdict::stable:
       if (!report.proven) return "stable as far as was found: no mode that grows, which is no proof";
       return report.varies

@@ -140,6 +140,33 @@ TEST_F(Check, AmplifiersWithoutALoopAreNotCalledOne) {
 }
 
 // x′ = (2 cos t − 1) x grows at times, and not along the run.
+TEST_F(Check, DoesNotSayOfStoresThatNothingGrows) {
+  // One store takes x while the other holds: x(n + 1) = x(n) - 2.1 x(n).
+  const Outcome outcome = oblique("check " + file("sampled.toml", R"(one = { type = "constant" }
+clk = { type = "pulse-train", width = 0.1 }
+nclk = { type = "summer", in = ["one", "-clk"] }
+m = { type = "track-and-store", in = "x", track = "nclk" }
+h = { type = "track-and-store", in = "m", track = "clk" }
+x = { type = "integrator", in = "-2.1*h", initial = 0.01 }
+)"));
+  EXPECT_THAT(outcome.out, HasSubstr("between events; what switches and stores bring back is not told"));
+  const Outcome fed =
+      oblique("check " +
+              file("fed.toml", "c = { type = \"constant\" }\nx = { type = \"integrator\", in = \"c\" }\n"));
+  EXPECT_THAT(fed.out, HasSubstr("no state acts back on itself, so that nothing grows or decays by itself"));
+}
+
+TEST_F(Check, NamesNoElementOfAModeOfVeryMany) {
+  std::string ring;
+  for (int k = 0; k < 250; ++k) {
+    const std::string number = std::to_string(k);
+    ring += "x" + number + " = { type = \"integrator\", in = [\"-3*x" + number + "\", \"2*x" +
+            std::to_string((k + 1) % 250) + "\"], initial = 0.01 }\n";
+  }
+  EXPECT_THAT(oblique("check " + file("ring.toml", ring)).out,
+              HasSubstr("elements: many, each by less than 1 %"));
+}
+
 TEST_F(Check, TellsTheGrowthAlongARunThatVaries) {
   const std::string path = file("v.toml", "");
   std::ofstream(path) << R"toml(format = "oblique-diagram/1"

@@ -32,11 +32,21 @@ std::string test_name(const testing::TestParamInfo<std::string>& tested) {
   return name;
 }
 
+/// The shipped blocks, and those that the diagrams bring with them.
+const BlockLibrary& foreign_blocks() {
+  static const BlockLibrary library = [] {
+    BlockLibrary all = BlockLibrary::shipped();
+    all.add_directory(std::filesystem::path(OBLIQUE_SOURCE_DIR) / "tests/diagrams/blocks");
+    return all;
+  }();
+  return library;
+}
+
 class ForeignDiagram : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Diagrams, ForeignDiagram, testing::ValuesIn(foreign_diagrams()), test_name);
 
 TEST_P(ForeignDiagram, GivesTheTruth) {
-  const BlockLibrary library = BlockLibrary::shipped();
+  const BlockLibrary& library = foreign_blocks();
   const Diagram diagram = read_diagram(GetParam());
   ASSERT_FALSE(diagram.expectations.empty());
   const FlatDiagram flat = flatten(diagram, library);

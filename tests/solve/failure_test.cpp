@@ -206,6 +206,21 @@ TEST(StepBudget, IsKept) {
   EXPECT_THAT(f.message, HasSubstr("remedy: raise max_steps in [run], loosen the tolerance"));
 }
 
+// u' = -u/|u|: at rest after 1 s, where the quotient of two numbers that are both next to nothing goes on.
+TEST(StepBudget, IsNotToBeRaisedWhereStepsBecomeEverShorter) {
+  const auto f = failure(
+      "uu = { type = \"squarer\", in = \"u\" }\n"
+      "v = { type = \"square-root\", in = \"uu\", gain = \"inf\", bandwidth = \"inf\" }\n"
+      "c = { type = \"divider\", numerator = \"u\", denominator = \"v\", gain = \"inf\", bandwidth = \"inf\" "
+      "}\n"
+      "u = { type = \"integrator\", in = [\"-c\"], initial = 1 }\n",
+      {.until = 2, .max_steps = 20000});
+  EXPECT_EQ(f.kind, SolveError::Kind::step_budget);
+  EXPECT_THAT(
+      f.message,
+      HasSubstr("remedy: end the run earlier with --until, or look at what comes to an end near t = 1"));
+}
+
 TEST(StepBudget, OfExactlyTheStepsNeededIsEnough) {
   const Compiled made("x = { type = \"integrator\", in = [\"-x\"], initial = 1 }\n");
   const long needed = testing::run_of(made).statistics.steps;

@@ -137,5 +137,52 @@ TEST(UnseenGrowth, IsNotSuspectedElsewhere) {
   }
 }
 
+// x = a cos t, read by a gain of 1/a. The tolerance of x in the solver is 1e-12.
+std::string small_oscillator(const std::string& size, const std::string& gain) {
+  return "v = { type = \"integrator\", in = \"-x\" }\n"
+         "x = { type = \"integrator\", in = \"v\", initial = " +
+         size + " }\ny = { type = \"gain\", in = \"x\", factor = " + gain + " }\n";
+}
+constexpr const char* kShowY = "[outputs]\ny = \"y\"\n";
+
+TEST(SmallStates, AreKnownWhereAnOutputShowsThem) {
+  for (const int digits : {6, 9, 12, 15, 40, 200}) {
+    const std::string power = std::to_string(digits);
+    const oblique::Run result =
+        run_of(Compiled(small_oscillator("1e-" + power, "1e" + power), kShowY), {.until = 30});
+    EXPECT_TRUE(result.warnings.empty()) << digits;
+    const auto t = row_values(result, "t"), y = row_values(result, "y");
+    // The tolerance of the run times the turns it goes on for.
+    for (std::size_t k = 0; k < t.size(); ++k)
+      EXPECT_NEAR(y[k], std::cos(t[k]), 1e-7) << digits << " at " << t[k];
+  }
+}
+
+TEST(SmallStates, AreLeftAloneWhereNothingShowsThem) {
+  const oblique::Run shown = run_of(Compiled(small_oscillator("1e-15", "1"), kShowY), {.until = 30});
+  EXPECT_TRUE(shown.warnings.empty());
+  EXPECT_LT(shown.statistics.steps, 50);
+}
+
+// A mean of a comparator that a state of 1e-11 turns over, one that the absolute tolerance hides.
+TEST(SmallStates, AreKnownWhereAComparisonDependsOnThem) {
+  const Compiled made(
+      small_oscillator("1e-11", "1") +
+      "c = { type = \"comparator\", in = \"x\" }\ni = { type = \"integrator\", in = \"c\" }\n");
+  const oblique::Run result = run_of(made, {.until = 4 * std::numbers::pi});
+  // High for half of each turn. A comparison of states is met to 1e-13, one percent of a radian here.
+  EXPECT_NEAR(row_values(result, "i").back(), 2 * std::numbers::pi, 4e-2);
+}
+
+TEST(SmallStates, AreToldOfWhereNoToleranceIsFineEnough) {
+  const oblique::Run result = run_of(Compiled(small_oscillator("1e-295", "1e295"), kShowY), {.until = 30});
+  ASSERT_EQ(result.warnings.size(), 2U);
+  EXPECT_EQ(
+      result.warnings[1].what,
+      "'x' stays within 1e-295 machine units, which is too small for the finest tolerance, and output 'y' "
+      "depends on it: it may be wrong");
+  EXPECT_EQ(result.warnings[1].remedy, "scale the state up, and down again what reads it");
+}
+
 }  // namespace
 }  // namespace oblique

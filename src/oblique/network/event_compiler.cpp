@@ -111,6 +111,48 @@ void ProgramCompiler::find_phases() {
     phase_rates_.push_back(total_derivative(graph.gradient(argument), kNoLoop));
 }
 
+/// The largest parts of the equations made by functions that can be next to nothing here and a peak there, of
+/// states that a solver follows (of sums, products, sines and cosines of those it sees what they do).
+void ProgramCompiler::find_peaks(const std::vector<bool>& acts,
+                                 const std::function<bool(NodeId)>& follows_states) {
+  const ExpressionGraph& graph = network_.graph;
+  std::vector<bool> by_unknowns(graph.size()), covered(graph.size()), reached(graph.size());
+  for (NodeId id = 0; id < graph.size(); ++id) {
+    const Node& node = graph[id];
+    by_unknowns[id] = node.op == Op::variable && is_unknown(node.variable);
+    for (int i = 0; i < operand_count(node.op); ++i)
+      by_unknowns[id] = by_unknowns[id] || by_unknowns[node.operand(i)];
+  }
+  const auto makes_peaks = [&](const Node& node) {
+    switch (node.op) {
+      case Op::divide:
+        return follows_states(node.b);
+      case Op::power:
+      case Op::tan:
+      case Op::atan:
+      case Op::atan2:
+      case Op::exp:
+        return true;
+      default:
+        return false;
+    }
+  };
+  for (auto id = static_cast<NodeId>(graph.size()); id-- > 0;) {
+    const Node& node = graph[id];
+    const bool peak = acts[id] && !covered[id] && follows_states(id) && !by_unknowns[id] && makes_peaks(node);
+    if (peak) sources_.push_back({id, id, true, true, std::nullopt});
+    for (int i = 0; i < operand_count(node.op); ++i) {
+      const NodeId child = node.operand(i);
+      covered[child] = covered[child] || covered[id] || peak;
+      reached[child] = reached[child] || reached[id] || peak;
+    }
+    if (reached[id] && node.op == Op::variable && node.variable != 0 && !is_unknown(node.variable) &&
+        std::find(program_.source_states_.begin(), program_.source_states_.end(), node.variable - 1) ==
+            program_.source_states_.end())
+      program_.source_states_.push_back(node.variable - 1);
+  }
+}
+
 /// The largest parts of the equations that follow the time alone, and not linearly. An integrator of what
 /// only events change is a clock, and tells the time as well.
 void ProgramCompiler::find_sources() {
@@ -124,8 +166,9 @@ void ProgramCompiler::find_sources() {
   find_follows();
   for (std::size_t i = 0; i < clocks.size(); ++i) {
     clocks[i] = follows[network_.states[i].derivative] == Follows::nothing;
-    if (clocks[i]) program_.clocks_.push_back(i);
+    if (clocks[i]) program_.source_states_.push_back(i);
   }
+  program_.n_clocks_ = program_.source_states_.size();
   find_follows();
   std::vector<bool> is_root(size), acts(size), needed(size);
   std::vector<NodeId> acting, others = network_.signals;
@@ -148,6 +191,7 @@ void ProgramCompiler::find_sources() {
       if (follows[id] == Follows::states && follows[child] == Follows::time) is_root[child] = true;
     }
   }
+  find_peaks(acts, [&](NodeId id) { return follows[id] == Follows::states; });
   for (NodeId id = 0; id < size; ++id) {
     if (!is_root[id] || follows[id] != Follows::time) continue;
     NodeId slope = graph.constant(0);
@@ -155,11 +199,11 @@ void ProgramCompiler::find_sources() {
       const NodeId rate = variable == 0 ? graph.constant(1) : network_.states[variable - 1].derivative;
       slope = graph.apply(Op::add, slope, graph.apply(Op::multiply, part, rate));
     }
-    sources_.push_back({id, slope, acts[id], std::nullopt});
+    sources_.push_back({id, slope, acts[id], false, std::nullopt});
   }
   for (std::size_t s = 0; s < network_.switches.size(); ++s) {
     const auto same = std::find_if(sources_.begin(), sources_.end(), [&](const FoundSource& source) {
-      return source.value == network_.switches[s].surface && !source.switch_index;
+      return source.value == network_.switches[s].surface && !source.by_states && !source.switch_index;
     });
     if (same != sources_.end()) same->switch_index = static_cast<std::uint32_t>(s);
   }
@@ -224,8 +268,8 @@ void ProgramCompiler::write_sources() {
   }
   program_.source_stretch_ = writer_->write(nodes);
   for (const FoundSource& source : sources_)
-    program_.sources_.push_back(
-        {writer_->slot(source.value), writer_->slot(source.slope), source.acts, source.switch_index});
+    program_.sources_.push_back({writer_->slot(source.value), writer_->slot(source.slope), source.acts,
+                                 source.by_states, source.switch_index});
 }
 
 }  // namespace oblique

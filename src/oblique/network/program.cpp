@@ -116,10 +116,10 @@ std::vector<Interval> Program::source_slots() const {
   return slots;
 }
 
-void Program::source_ranges(const Interval& time, std::span<const Interval> clocks,
+void Program::source_ranges(const Interval& time, std::span<const Interval> states,
                             const Workspace& workspace, std::span<Interval> slots) const {
   slots[0] = time;
-  for (std::size_t c = 0; c < clocks.size(); ++c) slots[1 + clocks_[c]] = clocks[c];
+  for (std::size_t k = 0; k < states.size(); ++k) slots[1 + source_states_[k]] = states[k];
   for (std::size_t m = first_memory_; m < first_memory_ + memories_.size(); ++m)
     slots[m] = {workspace.slots_[m], workspace.slots_[m]};
   run_tape(std::span(tape_).subspan(source_stretch_.begin, source_stretch_.end - source_stretch_.begin),

@@ -27,10 +27,12 @@ struct SparsePattern {
 
 class Workspace;
 
-/// A part of the equations that follows the time alone, or clocks, and not along a straight line.
+/// A part of the equations that follows the time alone, or clocks, and not along a straight line; or one that
+/// follows states, and may be next to nothing here and a peak there.
 struct Source {
-  std::uint32_t slot = 0, slope_slot = 0;     ///< its value, and d value/dt
-  bool acts = false;                          ///< on dx/dt, or on the surface of a switch
+  std::uint32_t slot = 0, slope_slot = 0;  ///< its value, and d value/dt (of one by states no use)
+  bool acts = false;                       ///< on dx/dt, or on the surface of a switch
+  bool by_states = false;
   std::optional<std::uint32_t> switch_index;  ///< the switch whose whole surface it is
 };
 
@@ -94,14 +96,15 @@ class Program {
   double fastest_phase(const Workspace& workspace) const;
   const SwitchStructure& switch_structure() const { return switch_structure_; }
 
-  /// Whether dx/dt contains functions that can be next to nothing here and a peak there.
-  bool can_hide() const { return can_hide_; }
   const std::vector<Source>& sources() const { return sources_; }
-  /// The states that go along a straight line between events: integrators of what only events change.
-  const std::vector<std::size_t>& clocks() const { return clocks_; }
-  /// The values of all sources, and their slopes, for times within `time` and the clocks within `clocks`, on
-  /// slots of the kind that `source_slots` gives, with the memories as they are in the workspace.
-  void source_ranges(const Interval& time, std::span<const Interval> clocks, const Workspace& workspace,
+  /// The states that sources depend on. The first `clocks` of them go along a straight line between events:
+  /// integrators of what only events change.
+  const std::vector<std::size_t>& source_states() const { return source_states_; }
+  std::size_t clocks() const { return n_clocks_; }
+  /// The values of all sources, and their slopes, for times within `time` and the source states within
+  /// `states`, on slots of the kind that `source_slots` gives, with the memories as they are in the
+  /// workspace.
+  void source_ranges(const Interval& time, std::span<const Interval> states, const Workspace& workspace,
                      std::span<Interval> slots) const;
   std::vector<Interval> source_slots() const;
 
@@ -203,8 +206,8 @@ class Program {
   std::vector<RateStep> rate_steps_;  ///< after `surface_steps_`
   std::vector<std::uint32_t> surface_rate_slots_, phase_rate_slots_;
   std::vector<Source> sources_;
-  std::vector<std::size_t> clocks_;
-  bool can_hide_ = false;
+  std::vector<std::size_t> source_states_;
+  std::size_t n_clocks_ = 0;
   TapeRange source_stretch_;
 
   SparsePattern pattern_;

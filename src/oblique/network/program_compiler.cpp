@@ -90,24 +90,6 @@ void ProgramCompiler::close_over(NodeId root, Needs& needs) const {
   }
 }
 
-/// Sums, products, sines and cosines of what a solver follows change no faster than it does.
-bool ProgramCompiler::is_peaked(const Node& node) const {
-  switch (node.op) {
-    case Op::constant:
-    case Op::variable:
-    case Op::memory:
-    case Op::add:
-    case Op::subtract:
-    case Op::multiply:
-    case Op::negate:
-    case Op::sin:
-    case Op::cos:
-      return false;
-    default:
-      return node.continuous;
-  }
-}
-
 void ProgramCompiler::find_needs() {
   const Needs none{std::vector<bool>(network_.graph.size()), std::vector<bool>(network_.loops.size())};
   for_derivatives_ = for_surfaces_ = for_jacobian_ = for_signals_ = for_rates_ = for_sources_ = none;
@@ -116,8 +98,6 @@ void ProgramCompiler::find_needs() {
   for (const NodeId root : signal_roots()) close_over(root, for_signals_);
   for (const NodeId root : rate_roots()) close_over(root, for_rates_);
   for (const NodeId root : source_roots()) close_over(root, for_sources_);
-  for (NodeId id = 0; id < network_.graph.size(); ++id)
-    program_.can_hide_ = program_.can_hide_ || (for_derivatives_.nodes[id] && is_peaked(network_.graph[id]));
   for (const Gradient& gradient : state_gradients_) {
     for (const auto& [variable, node] : gradient) close_over(node, for_jacobian_);
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <utility>
@@ -31,8 +32,8 @@ class ProgramCompiler {
   NodeId total_derivative(const Gradient& gradient, std::size_t without_loop);
   void find_phases();
   void find_sources();
+  void find_peaks(const std::vector<bool>& acts, const std::function<bool(NodeId)>& follows_states);
   void find_levels();
-  bool is_peaked(const Node& node) const;
   void find_needs();
   void close_over(NodeId root, Needs& needs) const;
   void require_loop(std::size_t loop, Needs& needs, std::vector<NodeId>& pending) const;
@@ -76,7 +77,7 @@ class ProgramCompiler {
   std::map<std::size_t, std::vector<NodeId>> loop_rates_;
   struct FoundSource {
     NodeId value, slope;
-    bool acts;
+    bool acts, by_states;
     std::optional<std::uint32_t> switch_index;
   };
   std::vector<FoundSource> sources_;

@@ -81,8 +81,12 @@ EventSearch::EventSearch(const Program& program, Workspace& workspace, SlidingMo
       rates_(program.n_states()),
       surfaces_(program.switches().size()),
       surface_rates_(program.switches().size()),
-      excursions_(program.switches().size(), 0) {
+      excursions_(program.switches().size(), 0),
+      of_time_(program.switches().size(), false) {
   for (const Switch& s : program.switches()) check_interval_ = std::min(check_interval_, s.check_interval);
+  for (const Source& source : program.sources()) {
+    if (source.switch_index) of_time_[*source.switch_index] = true;
+  }
 }
 
 void EventSearch::look(double t, const Interpolant& solution, Look& at) {
@@ -111,7 +115,9 @@ void EventSearch::look(double t, const Interpolant& solution, Look& at) {
   at.rates.resize(n);
   for (std::size_t s = 0; s < n; ++s) {
     const bool closed = workspace_.memory(program_.switches()[s].memory) == 1;
-    at.overdue[s] = (closed ? -surfaces_[s] : surfaces_[s]) - thresholds_.now[s];
+    // What the time alone does is known to the rounding that it has there.
+    const double least = of_time_[s] && thresholds_.slack[s] == 0 ? rounding(s) : thresholds_.now[s];
+    at.overdue[s] = (closed ? -surfaces_[s] : surfaces_[s]) - least;
     at.rates[s] = closed ? -surface_rates_[s] : surface_rates_[s];
     const bool elsewhere =
         program_.switches()[s].rate || slide_.holds(s) || slide_.follows(s) || slide_.rests(s);
@@ -173,6 +179,7 @@ std::optional<EventSearch::Found> EventSearch::search(double from, std::span<con
 
 double EventSearch::rounding(std::size_t s) const {
   const double size = program_.compared_size(s, workspace_);
+  if (of_time_[s] && std::isfinite(size)) return 8 * std::numeric_limits<double>::epsilon() * size;
   return kRounding * (std::isfinite(size) ? std::max(1.0, size) : 1);
 }
 

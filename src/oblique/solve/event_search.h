@@ -84,6 +84,7 @@ class EventSearch {
   double reached_ = 0;  ///< [s] where the surfaces were evaluated last
   double looks_left_ = std::numeric_limits<double>::infinity();
   std::vector<double> states_, rates_, surfaces_, surface_rates_, excursions_;
+  std::vector<bool> of_time_;  ///< of each switch: its surface follows the time alone, to rounding
 };
 
 }  // namespace oblique

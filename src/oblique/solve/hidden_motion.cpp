@@ -14,11 +14,10 @@ constexpr double kMostErrors = 100;
 }  // namespace
 
 HiddenMotion::HiddenMotion(OdeSystem& system, double relative_tolerance,
-                           std::vector<double> absolute_tolerances, double longest)
+                           std::vector<double> absolute_tolerances)
     : system_(system),
       relative_(relative_tolerance),
       absolute_(std::move(absolute_tolerances)),
-      apart_(longest),
       x_(system.size()),
       rates_(system.size()),
       slopes_(system.size()) {}
@@ -52,19 +51,10 @@ bool HiddenMotion::misses(double t, double part, const Interpolant& solution) {
 std::optional<double> HiddenMotion::find(double from, std::span<const double> looks,
                                          const Interpolant& solution) {
   double before = from;
-  for (std::size_t k = 0; k < looks.size(); ++k) {
-    const double length = looks[k] - before;
-    const double parts = std::max(1.0, std::ceil(length / apart_));
-    for (double part = 1; part < parts; ++part) {
-      const double at = before + length * part / parts;
-      if (misses(at, length / parts, solution)) {
-        longest_ = length / parts;
-        return at;
-      }
-    }
-    if (k + 1 == looks.size()) break;
-    if (misses(looks[k], length / parts, solution)) {
-      longest_ = std::min(length / parts, looks[k + 1] - looks[k]);
+  for (std::size_t k = 0; k + 1 < looks.size(); ++k) {
+    const double part = looks[k] - before;
+    if (misses(looks[k], part, solution)) {
+      longest_ = std::min(part, looks[k + 1] - looks[k]);
       return looks[k];
     }
     before = looks[k];

@@ -13,16 +13,13 @@ namespace oblique {
 /// Tells whether a solver has stepped over something: a pulse that comes to a system at rest, whose error
 /// test saw nothing of it.
 ///
-/// Where the time does something inside a step (SourceWatch says where to look), and as often over a run as
-/// is asked for, the residual u′ − f(t, u) of
+/// Where something may happen inside a step (SourceWatch says where to look), the residual u′ − f(t, u) of
 /// the solution u between the solver's own points shows whether the step has seen it: over the part of a step
 /// that a look stands for it makes an error of about |u′ − f| Δ/(1 + Δ |∂f/∂u|).
 class HiddenMotion {
  public:
   /// `system` must outlive this; tolerances as those of the solver, the absolute ones of each state.
-  /// No two looks are farther apart than `longest` [s].
-  HiddenMotion(OdeSystem& system, double relative_tolerance, std::vector<double> absolute_tolerances,
-               double longest);
+  HiddenMotion(OdeSystem& system, double relative_tolerance, std::vector<double> absolute_tolerances);
 
   /// The first of `looks` in the step that begins at `from` where the solution misses the equations; the last
   /// of them is the end of the step and not looked at.
@@ -37,7 +34,6 @@ class HiddenMotion {
   OdeSystem& system_;
   double relative_;
   std::vector<double> absolute_;
-  double apart_;
   std::vector<double> x_, rates_, slopes_, jacobian_;
   double longest_ = 0;
 };

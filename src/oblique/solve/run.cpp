@@ -64,6 +64,8 @@ class Runner {
         branches_(program, workspace_, begin_, options, diagram.file),
         states_(program.start()) {
     constexpr double kLooksAStep = 100, kSourceLooksAStep = 10;
+    switching_.end_at(options.until);
+    switching_.know_states(refinement.reach);
     switching_.limit_looks(kLooksAStep * static_cast<double>(options.max_steps) + 1e6);
     sources_.limit_looks(kSourceLooksAStep * static_cast<double>(options.max_steps) + 1e6);
     if (options.watch_overloads || options.halt_on_overload)
@@ -387,8 +389,7 @@ class Runner {
     HiddenMotion hidden(system_, settings_.relative_tolerance,
                         settings_.own_tolerances.empty()
                             ? std::vector<double>(states_.size(), settings_.absolute_tolerance)
-                            : settings_.own_tolerances,
-                        program_.can_hide() ? (options_.until - begin_) / kFewestLooks : kNoLimit);
+                            : settings_.own_tolerances);
     double limit = kNoLimit, limited_until = begin_;
     constexpr long kStepsPerReport = 256;
     try {
@@ -462,7 +463,6 @@ class Runner {
     }
   }
 
-  static constexpr double kFewestLooks = 1000;  ///< of a run, for what the states hide
   static constexpr double kNoLimit = std::numeric_limits<double>::infinity();  ///< of a step
   static constexpr double kShortest = 1e-15;  ///< of the time: the clock cannot show less
 

@@ -129,14 +129,23 @@ SolveError run_error(const Program& program, const SolverFailure& failure, const
            "look for a positive feedback, a divisor that passes zero or a servo loop whose residual falls "
            "with its "
            "output; or end the run earlier with --until"}};
-    case Kind::step_budget:
-      return {SolveError::Kind::step_budget,
-              failure.time,
-              {{file, {}},
-               fmt::format("{}: its budget of {} steps is used up, the last step was {:.2g} s{}", where,
-                           solver.statistics().steps, solver.statistics().last_step, details),
-               {},
-               "raise max_steps in [run], loosen the tolerance, or end the run earlier with --until"}};
+    case Kind::step_budget: {
+      const double last_step = solver.statistics().last_step;
+      constexpr double kStuck = 1e-10;  // of the time: no number of steps leads on
+      const bool stuck = last_step < kStuck * std::abs(failure.time);
+      return {
+          SolveError::Kind::step_budget,
+          failure.time,
+          {{file, {}},
+           fmt::format("{}: its budget of {} steps is used up, the last step was {:.2g} s{}", where,
+                       solver.statistics().steps, last_step, details),
+           {},
+           stuck ? fmt::format(
+                       "end the run earlier with --until, or look at what comes to an end near t = {:.6g} s: "
+                       "its steps become ever shorter there",
+                       failure.time)
+                 : "raise max_steps in [run], loosen the tolerance, or end the run earlier with --until"}};
+    }
     case Kind::other:
       break;
   }

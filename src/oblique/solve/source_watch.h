@@ -9,12 +9,14 @@
 
 namespace oblique {
 
-/// Sees to it that no step hides what the time alone does, or a clock (an integrator of a constant).
+/// Sees to it that no step hides what the time alone does, or a clock (an integrator of a constant), or what
+/// a function makes of the states that is next to nothing here and a peak there.
 ///
-/// A pulse of the time may lie between two times at which a solver looks, and a fast sine may look slow.
-/// Whether it does is not guessed: interval arithmetic bounds every source and its slope over the whole of a
-/// step. A step is parted until over each part every source is monotone, or within what its ends show; the
-/// surface of a switch that follows the time alone, until it is monotone or has no zero.
+/// A pulse may lie between two times at which a solver looks, and a fast sine may look slow. Whether it does
+/// is not guessed: interval arithmetic bounds every source over the whole of a step, and those of the time
+/// their slopes. A step is parted until over each part every source is monotone, or within what its ends
+/// show; the surface of a switch that follows the time alone, until it is monotone or has no zero. The states
+/// are bounded by the cubic through their values and rates at the ends of a part, and twice its bend.
 class SourceWatch {
  public:
   /// Looks at the sources that act on the states and switches, and with `outputs` at those too that are only
@@ -31,11 +33,14 @@ class SourceWatch {
   const std::vector<double>& looks(double from, double to, const Interpolant& solution);
 
  private:
-  using Values = std::vector<double>;
+  /// At one time: the sources, and the source states with their rates.
+  struct Values {
+    std::vector<double> sources, states, rates;
+  };
   void part(double from, const Values& at_from, double to, const Values& at_to, int depth);
-  bool is_plain(double from, const Values& at_from, double to, const Values& at_to);
+  bool is_plain(double from, const Values& at_from, double to, const Values& at_to, int depth);
   Values values_at(double t);
-  void bound(double from, double to);
+  void bound(double from, const Values& at_from, double to, const Values& at_to);
 
   const Program& program_;
   const Workspace& workspace_;
@@ -43,10 +48,10 @@ class SourceWatch {
   double looks_left_ = 1e9;
   std::vector<Source> watched_;
   std::vector<Interval> slots_;
-  double step_begin_ = 0, step_end_ = 0;            ///< [s]
-  std::vector<double> states_, at_begin_, at_end_;  ///< all states; the clocks at both ends of the step
-  std::vector<Interval> clocks_;
-  std::vector<double> largest_;  ///< magnitude of each source so far
+  const Interpolant* solution_ = nullptr;
+  std::vector<double> states_, rates_;  ///< all of them, at a time
+  std::vector<Interval> ranges_;        ///< of the source states
+  std::vector<double> largest_;         ///< magnitude of each source so far
   std::vector<double> times_;
 };
 

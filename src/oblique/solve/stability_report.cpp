@@ -48,6 +48,7 @@ class Judge {
     for (std::size_t k = 0; k < instants_.size(); ++k) look_at(k);
     report_.growth = growth;
     say_what_is_left_out();
+    report_.switches = !program_.switches().empty();
     report_.verdict = verdict();
     return std::move(report_);
   }

@@ -41,7 +41,7 @@ ModeVerdict verdict_on(const WorstMode& worst);
 
 /// What is judged of the whole closed system.
 enum class StabilityVerdict {
-  no_feedback,         ///< no state acts back on itself
+  no_feedback,         ///< no state acts back on itself between events
   stable,              ///< every mode decays, and small disturbances of a system that varies do too
   stable_when_frozen,  ///< every mode decays at each instant; what the changes do between them is not known
   undamped,            ///< a mode neither decays nor grows, none grows
@@ -71,6 +71,7 @@ struct StabilityReport {
   std::optional<WorstMode> rightmost;
   bool rightmost_is_servo = false;
   std::size_t growing = 0;  ///< most eigenvalues right of the axis at one instant; of a large group: found
+  bool switches = false;    ///< whether there are switches, which may bring back what the modes do not show
   bool varies = false;      ///< whether the slopes change along the run
   std::optional<DisturbanceGrowth> growth;  ///< along the run, where it varies and was followed
   /// Of the modes that come from the machine (the problem does not have them on an ideal one, see

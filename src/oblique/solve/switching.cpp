@@ -68,9 +68,8 @@ Switching::Switching(const Program& program, Workspace& workspace, double span, 
 void Switching::evaluate(double t, std::span<const double> x) {
   states_.assign(x.begin(), x.end());
   weighed_ = false;
-  if (!program_.surfaces(t, x.data(), surfaces_.data(), workspace_)) {
-    // An algebraic loop may have a solution only where the switches that are due have turned over.
-    if (!is_pending()) throw loop_error(program_, workspace_.trouble(), t, file_);
+  const bool known = program_.surfaces(t, x.data(), surfaces_.data(), workspace_);
+  if (!known) {
     workspace_.pass_failing_loops(true);
     program_.surfaces(t, x.data(), surfaces_.data(), workspace_);
     workspace_.pass_failing_loops(false);
@@ -83,12 +82,17 @@ void Switching::evaluate(double t, std::span<const double> x) {
       thresholds_.now[s] = std::max(search_.rounding(s), thresholds_.slack[s]);
     }
   }
+  // An algebraic loop may have a solution only where the switches that are due have turned over.
+  if (!known && !is_any_due()) throw loop_error(program_, workspace_.trouble(), t, file_);
 }
 
-/// Whether a switch that was announced has not turned over yet.
-bool Switching::is_pending() const {
+/// Whether a switch is on the wrong side of its surface, or has not turned over though it was announced.
+bool Switching::is_any_due() const {
   for (std::size_t s = 0; s < announced_.size(); ++s) {
-    if (announced_[s] >= 0 && announced_[s] != workspace_.memory(program_.switches()[s].memory)) return true;
+    const double position = workspace_.memory(program_.switches()[s].memory);
+    if (announced_[s] >= 0 ? announced_[s] != position
+                           : (position == 1 ? -surfaces_[s] : surfaces_[s]) > thresholds_.now[s])
+      return true;
   }
   return false;
 }
@@ -102,6 +106,9 @@ double Switching::place_size(std::size_t s) const {
 /// combinations of their signs, where the surfaces were evaluated last.
 void Switching::weigh_errors() {
   constexpr std::uint64_t kTrials = 4;
+  constexpr double kErrorOfClock = 1e-13;  // it is a straight line to any method
+  std::vector<bool> clocks(program_.n_states(), false);
+  for (std::size_t c = 0; c < program_.clocks(); ++c) clocks[program_.source_states()[c]] = true;
   std::vector<double> off(program_.n_states(), 0.0), rates(surfaces_.size()), still(surfaces_.size());
   program_.surface_rates(off.data(), still.data(), workspace_);
   std::fill(errors_.begin(), errors_.end(), 0.0);
@@ -109,7 +116,10 @@ void Switching::weigh_errors() {
     std::uint64_t signs = 0x9E3779B97F4A7C15 * (trial + 1);
     for (std::size_t i = 0; i < off.size(); ++i) {
       const double own = program_.states()[i].tolerance;
-      const double error = tolerance_ * std::abs(states_[i]) + (own > 0 ? own : absolute_tolerance_);
+      double least = own > 0 ? own : absolute_tolerance_;
+      if (!reach_.empty() && reach_[i] > 0) least = std::min(least, tolerance_ * reach_[i]);
+      const double size = std::abs(states_[i]);
+      const double error = clocks[i] ? kErrorOfClock * (1 + size) : tolerance_ * size + least;
       off[i] = trial == 0 || (signs >> 63) != 0 ? error : -error;
       signs = 6364136223846793005 * signs + 1442695040888963407;
     }
@@ -276,7 +286,7 @@ bool Switching::piles_up(std::size_t event, double t) {
     pace.approach = 1 - ratio;
   }
   if (pace.steady && pace.shorter >= kMostShorter && interval < kPilingUp * span_ &&
-      left < kPilingUp * span_) {
+      left < kPilingUp * span_ && t + left < end_) {
     if (program_.events()[event].piling_up) return true;
     throw SolveError(
         SolveError::Kind::chatter, t,

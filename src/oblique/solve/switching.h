@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -66,6 +67,10 @@ class Switching {
   bool signals(double t, const double* x, double* values);
 
   void limit_looks(double looks) { search_.limit_looks(looks); }
+  /// The size [machine unit] down to which each state is known relatively; 0: as its absolute tolerance says.
+  void know_states(std::span<const double> reach) { reach_.assign(reach.begin(), reach.end()); }
+  /// Where the run ends [s]: what would come later is not told of.
+  void end_at(double t) { end_ = t; }
 
   bool slides() const { return slide_.active(); }
   const Workspace& workspace() const { return workspace_; }
@@ -84,7 +89,7 @@ class Switching {
   using Units = std::vector<std::uint32_t>;
 
   bool is_known(std::size_t s) const { return program_.switches()[s].rate.has_value(); }
-  bool is_pending() const;
+  bool is_any_due() const;
   void weigh_errors();
   double place_size(std::size_t s) const;
   void evaluate(double t, std::span<const double> x);
@@ -105,6 +110,7 @@ class Switching {
   const Program& program_;
   Workspace& workspace_;
   double span_, tolerance_, absolute_tolerance_;
+  double end_ = std::numeric_limits<double>::infinity();  ///< [s] of the run
   const std::string& file_;
   SlidingMode slide_;
   EventSearch::Thresholds thresholds_;
@@ -113,7 +119,8 @@ class Switching {
 
   std::vector<double> surfaces_, signals_;
   std::vector<double>
-      announced_;  ///< position that a switch takes at the next `settle`; −1: as its surface is
+      announced_;              ///< position that a switch takes at the next `settle`; −1: as its surface is
+  std::vector<double> reach_;  ///< see `know_states`
   std::vector<double> states_;  ///< where the surfaces were evaluated last
   std::vector<double> errors_;  ///< of the surfaces, where a switch turned over last
   bool weighed_ = false;        ///< whether they are those of `states_`

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Solves every problem of this folder without Oblique and prints what its [expect] ought to say.
+"""Solves the problems of this folder without Oblique and prints what their [expect] ought to say; so too those of
+../findings for which there is a function of their name.
 
 By hand, with Debian's python3-scipy and python3-mpmath:  python3 solutions.py [--growth] [NAME…]
 
-A line that does not agree with the diagram beside this script is marked; the status is then 1. The truths are closed
+A line that does not agree with the diagram is marked; the status is then 1. The truths are closed
 forms, mpmath, or SciPy's integrators at a relative tolerance of 1e-12 whose events are handled by hand (truth/tools.py).
 
 How `within` was chosen, before any run: a run sums the errors of some hundred to some ten thousand steps, each below
@@ -19,12 +20,14 @@ import tomllib
 
 sys.dont_write_bytecode = True
 
-from truth import big, hysteresis, late, mechanics, operation, pulses, smooth, stiff, switching
+from truth import (arrivals, big, hysteresis, impacts, implicit, late, loops, mechanics, operation, pulses, seeds, slides,
+                   smooth, stiff, stores, switching)
 from truth.tools import latest_growth
 
 
 def problems():
-    for module in (late, pulses, switching, hysteresis, mechanics, smooth, stiff, big, operation):
+    for module in (late, pulses, switching, hysteresis, mechanics, smooth, stiff, big, operation, arrivals, stores,
+                   loops, impacts, slides, implicit, seeds):
         for name, function in list(vars(module).items()):
             if inspect.isfunction(function) and function.__module__ == module.__name__ and not name.startswith("_"):
                 yield name, function
@@ -37,8 +40,8 @@ def main(arguments):
     for name, function in problems():
         if wanted and name not in wanted:
             continue
-        path = folder / f"{name}.toml"
-        written = tomllib.loads(path.read_text(encoding="utf-8"))["expect"] if path.exists() else {}
+        paths = [path for path in (folder / f"{name}.toml", folder.parent / f"findings/{name}.toml") if path.exists()]
+        written = tomllib.loads(paths[0].read_text(encoding="utf-8"))["expect"] if paths else {}
         print(name)
         for key, value in function().items():
             line = written.get(key)

@@ -92,6 +92,10 @@ def flame():
     return {"y at 9000": y(9000), "y at 9999": y(9999), "y at 10010": y(10010), "y at 20000": y(20000)}
 
 
+def flame_at_the_default_tolerance():
+    return flame()
+
+
 def boundary_layer():
     """ε y″ + (1 + ε) y′ + y = 0, y(0) = 0, y(1) = 1 (C. M. Bender and S. A. Orszag, section 9.1)."""
     y = lambda t: (np.exp(-t) - np.exp(-t / 1e-4)) / np.exp(-1)
@@ -256,3 +260,9 @@ def izhikevich():
         motion.y = np.array([-65, motion.y[1] + 8])
         n += 1
     return {"spikes at 250": float(n), "u at 250": motion(250)[1], "v at 250": motion(250)[0]}
+
+
+def duffing_elliptic():
+    """x″ = −x − 2x³ from 1: C. G. J. Jacobi's cn(√3 t | 1/3)."""
+    x = lambda t: float(mpmath.ellipfun("cn", mpmath.sqrt(3) * t, m=mpmath.mpf(1) / 3))
+    return {"x at 10": x(10), "x at 100": x(100)}

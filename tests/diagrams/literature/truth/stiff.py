@@ -106,3 +106,25 @@ def scaled_chain_e5():
     return {"y1 at 1000": motion(1000)[0] / 1.76e-3, "y2 at 1000": motion(1000)[1] / 1e-9,
             "y2 at 1e5": motion(1e5)[1] / 1e-9,
             "y1 at 1e5": motion(1e5)[0] / 1.76e-3}
+
+
+def van_der_pol_million():
+    f = lambda t, y: [y[1], 1e6 * ((1 - y[0]**2) * y[1] - y[0])]
+    motion = _stiff(f, [2, 0], 2, atol=1e-13)
+    assert abs(motion(2)[0] - 1.706167732170483) < 1e-8  # the test set's
+    return {"x at 2": motion(2)[0], "v at 2": motion(2)[1]}
+
+
+def akzo_nobel():
+    """The test set's index 1 with y₆ = 115.83 y₁ y₄ put in."""
+    def f(t, y):
+        a, b, c, d, e = y
+        root = np.sqrt(b)
+        r1, r2, r3, r4 = 18.7 * a**4 * root, 0.58 * c * d, 0.58 / 34.4 * a * e, 0.09 * a * d * d
+        r5 = 0.42 * (115.83 * a * d)**2 * root
+        return [-2 * r1 + r2 - r3 - r4, -0.5 * r1 - r4 - 0.5 * r5 + 3.3 * (0.9 / 737 - b), r1 - r2 + r3,
+                -r2 + r3 - 2 * r4, r2 - r3 + r5]
+
+    y = _stiff(f, [0.444, 0.00123, 0, 0.007, 0], 180)(180)
+    assert abs(y[0] - 0.1150794920661702) < 1e-10  # the test set's
+    return {f"y{k + 1} at 180": y[k] for k in range(5)} | {"y6 at 180": 115.83 * y[0] * y[3]}

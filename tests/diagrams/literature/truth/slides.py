@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: MIT
+"""Relays that slide, several of them and along surfaces that others make."""
+import numpy as np
+from scipy.optimize import brentq
+
+from .mechanics import _friction
+from .tools import Motion
+
+_ONE = lambda w: 1.0  # the size of a relay, which acts as −sign of its input like a friction
+
+
+def energy_relay():
+    """x″ = −x − sign(x² + x′² − 1) x′: an undamped spiral to the unit circle, then round it."""
+    motion = Motion([0.5, 0])
+    motion.go(lambda t, y: [y[1], -y[0] + y[1]], 10, [(lambda t, y: y @ y - 1, 1)])
+    motion.go(lambda t, y: [y[1], -y[0]], 30)
+    out = {}
+    for t in ("0.65", "10", "30"):
+        x, v = motion(float(t))
+        out |= {f"x at {t}": x, f"v at {t}": v}
+    return out
+
+
+def lasso_flow():
+    """x′ = b − A x − 0.5 sign x (R. Tibshirani 1996) ends in the lasso: x₁ = 0.35 alone, the slopes of the others are
+    below 0.5."""
+    a = np.array([[2, 0.5, 0.3], [0.5, 1.5, 0.4], [0.3, 0.4, 1]])
+    b = np.array([1.2, 0.1, -0.2])
+    rest = np.array([(1.2 - 0.5) / 2, 0, 0])
+    assert max(abs(b - a @ rest)[1:]) < 0.5
+    motion = _friction([-0.5, 0.8, 0.4], 2, lambda t, x, q: b - a @ x + 0.5 * q, lambda x: x, [_ONE] * 3)
+    out = {f"x{k + 1} at {t:g}": motion(t)[k] for t in (0.3, 1, 2) for k in range(3)}
+    return out | {f"x{k + 1} at 40": rest[k] for k in range(3)}
+
+
+def bowling_ball():
+    """v′ = −0.2 g s − g a, u′ = 0.5 g s, s = sign(v − u), up a ramp that steepens as a = 0.1 (t − 3)."""
+    g = 9.81
+    motion = _friction([8, 0], 12,
+                       lambda t, y, q: [0.2 * g * q[0] - g * 0.1 * max(t - 3, 0), -0.5 * g * q[0]],
+                       lambda y: np.array([y[0] - y[1]]), [_ONE])
+    assert abs(motion(2)[0] - 40 / 7) < 1e-9  # it rolls with 5/7 of its speed
+    return {"v at 0.5": motion(0.5)[0], "v at 2": motion(2)[0], "v at 8": motion(8)[0],
+            "d at 8": motion(8)[0] - motion(8)[1], "v at 12": motion(12)[0], "u at 12": motion(12)[1]}
+
+
+def relay_follows_van_der_pol():
+    """y′ = 1.5 sign(x − y) behind van der Pol's oscillator with μ = 2; sign² is 1 on both sides, so also while it
+    slides."""
+    motion = _friction([2, 0, 0], 25,
+                       lambda t, y, q: [y[1], 2 * (1 - y[0]**2) * y[1] - y[0], -1.5 * q[0]],
+                       lambda y: np.array([y[0] - y[2]]), [_ONE])
+    out = {}
+    for t in (0.5, 8, 16, 25):
+        out |= {f"x at {t}": motion(t)[0], f"y at {t}": motion(t)[2]}
+    return out | {"E at 25": 25.0}
+
+
+def three_coupled_relays():
+    """x′ = b(t) − A sign x (V. I. Utkin 1992); the means of those that slide solve linear equations."""
+    a = np.array([[1, 0.3, -0.2], [0.2, 1, 0.3], [-0.3, 0.2, 1]])
+    b = lambda t: np.array([0.5 * np.sin(t), 0.4 * np.cos(t), 1.2 * np.sin(0.5 * t)])
+    motion = _friction([0.5, -0.4, 0.3], 10, lambda t, x, q: b(t) + a @ q, lambda x: x, [_ONE] * 3)
+    x = motion(10)
+    assert max(abs(x[:2])) < 1e-9 and x[2] < 0
+    u = np.linalg.solve(a[:2, :2], b(10)[:2] + a[:2, 2])
+    return {"x1 at 10": x[0], "x2 at 10": x[1], "x3 at 10": x[2], "u1 at 10": u[0], "u3 at 10": -1.0}
+
+
+def parallel_relays():
+    """Only the sum of three equal relays is determined: it carries 0.5 cos t."""
+    return {"x at 5": 0.0, "sum at 5": 0.5 * np.cos(5)}
+
+
+def median_by_relays():
+    """The third of five sines, and from 0.5 s on the integral of its square, by the trapezoidal rule."""
+    sines = lambda t: [0.8 * np.sin(t + 2 * np.pi * k / 5 + 0.1 * k) + 0.03 * (k - 2) for k in range(5)]
+    median = lambda t: np.sort(np.array(sines(t)), axis=0)[2]
+    t = np.linspace(0.5, 12, 1000001)
+    square = median(t)**2
+    area = (square.sum() - (square[0] + square[-1]) / 2) * (t[1] - t[0])
+    return {f"x at {at}": float(median(at)) for at in (1, 3.3, 7, 12)} | {"i at 12": area}
+
+
+def linear_program():
+    """I. B. Pyne 1956: y = 2 t until 0.6, x = t until 0.4; the relays of 20 carry 1 and 1, before 0 and 2."""
+    return {"x at 0.35": 0.35, "y at 0.35": 0.6, "s2 at 0.35": 0.1, "x at 2": 0.4, "y at 2": 0.6, "s1 at 2": 0.05,
+            "s2 at 2": 0.05}
+
+
+def spiral_of_two_relays():
+    """x′ = −sign x + 2 sign y, y′ = −2 sign x − sign y from (1, 0.5): by straight lines; each turn leaves 1/81 of the
+    distance, the time is a geometric series."""
+    x, y, t, out = 1.0, 0.5, 0.0, {}
+    lasts = 0.0
+    while abs(x) + abs(y) > 1e-14:
+        # On an axis the side to which the other one's relay drives.
+        sx = np.sign(x) or np.sign(y)
+        sy = np.sign(y) or -np.sign(x)
+        dx, dy = -sx + 2 * sy, -2 * sx - sy
+        span, along_x = min((-p / d, p == x) for p, d in ((x, dx), (y, dy)) if p * d < 0)
+        for at in (0.1, 0.3):
+            if t <= at < t + span:
+                out |= {f"x at {at}": x + dx * (at - t), f"y at {at}": y + dy * (at - t)}
+        x, y, t = (0.0, y + dy * span, t + span) if along_x else (x + dx * span, 0.0, t + span)
+        lasts = t
+    assert abs(lasts - 0.75) < 1e-9
+    del out["y at 0.1"]
+    return out | {"x at 2": 0.0, "y at 4": 0.0}
+
+
+def _arrives():
+    """When x = 0.5 − t + 0.15 t², the relay's lag behind 0.3 t, comes to 0; it slides until 0.3 t = 1."""
+    return brentq(lambda t: 0.5 - t + 0.15 * t * t, 0, 1, xtol=1e-15), 1 / 0.3
+
+
+def slide_that_is_held():
+    """x′ = 0.3 t − sign x, held from 1 to 2 s, at 0."""
+    free = lambda t: 0.15 * t * t - t
+    begins, ends = _arrives()
+    assert begins < 0.8
+    return {"x at 0.4": 0.5 + free(0.4), "x at 1.5": 0.0, "u at 0.8": 0.3 * 0.8, "u at 3": 0.9,
+            "x at 4": free(4) - free(ends), "e at 4": 4.0}
+
+
+def slide_behind_an_amplifier():
+    """The same without a hold; e^u is e or 1/e, with the mean cosh 1 + 0.3 t sinh 1 while u has the mean 0.3 t."""
+    free = lambda t: 0.15 * t * t - t
+    begins, ends = _arrives()
+    mean = np.cosh(1) * (ends - begins) + 0.15 * np.sinh(1) * (ends**2 - begins**2)
+    return {"e at 4": np.e * (begins + 4 - ends) + mean, "x at 4": free(4) - free(ends)}
