@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Where surfaces are left that are slid along, or rested on.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -58,6 +60,67 @@ TEST(Switches, StayWhereTheyAreOnASurfaceThatRests) {
     const oblique::Run result = run_of(made, {.samples = 11});
     EXPECT_EQ(row_values(result, "s"), std::vector<double>(11, -1)) << blocks;
     EXPECT_NEAR(row_values(result, "x").back(), 0.5 * (1 - std::exp(-1)), 1e-7);  // ten tolerances
+  }
+}
+
+// Two real amplifiers at their limits at once: whichever comes first stays there when the other one comes,
+// and when that one leaves. Between −x and y alone the limits differ, so that they come and leave one after
+// the other.
+TEST(Slide, KeepsTheLimitOfOneAmplifierWhileAnotherComesToItsOwn) {
+  const std::string source = "u = { type = \"sine-source\", frequency = 0.2, phase = 1.5707963267948966 }\n";
+  const std::string x =
+      "x = { type = \"integrator\", in = [\"u\"], limit = 0.5, gain = 1e4, bandwidth = 1e4 }\n";
+  const std::string y =
+      "y = { type = \"integrator\", in = [\"-0.9*u\"], limit = 0.6, gain = 1e4, bandwidth = 1e4 }\n";
+  for (const std::string& blocks : {source + x + y, source + y + x, y + x + source}) {
+    const oblique::Run result = run_of(Compiled(blocks), {.until = 4, .samples = 401});
+    const std::vector<double> at_x = row_values(result, "x"), at_y = row_values(result, "y");
+    double most_x = 0, most_y = 0;
+    for (std::size_t row = 0; row < at_x.size(); ++row) {
+      most_x = std::max(most_x, std::abs(at_x[row]));
+      most_y = std::max(most_y, std::abs(at_y[row]));
+    }
+    // The limit is that of the capacitor, whose voltage is greater by one part in the gain; a slide may drift
+    // by 1e-7.
+    EXPECT_NEAR(most_x, 0.5 / (1 + 1e-4), 2e-7) << blocks;
+    EXPECT_NEAR(most_y, 0.6 / (1 + 1e-4), 2e-7) << blocks;
+  }
+}
+
+// x slides along 0 from t = 1/6 on, where the mean of c is −1/2. A run that goes on from there slides on at
+// once.
+TEST(Slide, GoesOnWhereARunGoesOn) {
+  const Compiled made(R"toml(
+one = { type = "constant" }
+x = { type = "integrator", in = ["0.5*one", "c"], initial = -0.25 }
+c = { type = "sign", in = "-x" }
+)toml");
+  RunOptions options;
+  options.until = 1;
+  options.samples = 11;
+  const oblique::Run first = run(made.program, made.flat, options);
+  options.from = first.state;
+  options.from->states.front().second += 1e-9;  // by which a slide may have drifted
+  options.until = 2;
+  const oblique::Run second = run(made.program, made.flat, options);
+  for (const double mean : row_values(second, "c")) EXPECT_NEAR(mean, -0.5, 1e-6);
+}
+
+// x = t up to its limit of 0.5, is put back to 0 at t = 1, and rises again: nothing that happens on the way,
+// as the turn of a sign at t = 1.2, may take it for a limited one.
+TEST(Slide, IsOverWhereAnEventTakesTheStateElsewhere) {
+  const oblique::Run result = run_of(Compiled(R"toml(
+one = { type = "constant" }
+back = { type = "pulse-train", period = 10, width = 0.1, delay = 1, low = 0, high = 1 }
+x = { type = "integrator", in = ["one"], set = "back", limit = 0.5 }
+clock = { type = "integrator", in = ["one"], initial = -1.2 }
+c = { type = "sign", in = "clock" }
+)toml"),
+                                     {.until = 2, .samples = 21});
+  const std::vector<double> t = row_values(result, "t"), x = row_values(result, "x");
+  for (std::size_t row = 0; row < t.size(); ++row) {
+    if (t[row] == 1) continue;                                                             // there it jumps
+    EXPECT_NEAR(x[row], std::min(0.5, t[row] < 1 ? t[row] : t[row] - 1), 1e-7) << t[row];  // ten tolerances
   }
 }
 

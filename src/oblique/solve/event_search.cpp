@@ -119,9 +119,8 @@ void EventSearch::look(double t, const Interpolant& solution, Look& at) {
     const double least = of_time_[s] && thresholds_.slack[s] == 0 ? rounding(s) : thresholds_.now[s];
     at.overdue[s] = (closed ? -surfaces_[s] : surfaces_[s]) - least;
     at.rates[s] = closed ? -surface_rates_[s] : surface_rates_[s];
-    const bool elsewhere =
-        program_.switches()[s].rate || slide_.holds(s) || slide_.follows(s) || slide_.rests(s);
-    if (elsewhere) at.overdue[s] = -kInfinity;
+    if (slide_.rests(s)) at.overdue[s] -= SlidingMode::drift();
+    if (program_.switches()[s].rate || slide_.holds(s) || slide_.follows(s)) at.overdue[s] = -kInfinity;
   }
   for (const double share : slide_.shares()) {
     at.overdue.push_back(-share - kEdge);

@@ -34,6 +34,10 @@ constexpr double kSteady = 0.75;
 constexpr int kMostRounds = 1000;  ///< of events that set each other off at one instant
 constexpr std::size_t kMostRecords = 1000;
 
+bool contains(const std::vector<std::uint32_t>& units, std::uint32_t unit) {
+  return std::find(units.begin(), units.end(), unit) != units.end();
+}
+
 /// Nearer than this no two times are told apart.
 double resolution(double t) {
   return 4 * kEpsilon * std::abs(t);
@@ -60,6 +64,7 @@ Switching::Switching(const Program& program, Workspace& workspace, double span, 
       errors_(program.switches().size(), 0),
       held_(program.events().size(), false),
       decided_(program.switch_structure().members.size(), false),
+      rested_(program.switches().size(), false),
       unrest_(program.switches().size()),
       paces_(program.events().size()) {}
 
@@ -178,9 +183,8 @@ bool Switching::turn_by_surfaces(double t, Units& on_surface, std::vector<std::u
     if (slide_.holds(s) || slide_.follows(s)) continue;
     const double before = workspace_.memory(program_.switches()[s].memory);
     const std::uint32_t unit = structure.unit[s];
-    const bool slid = std::find(slid_.begin(), slid_.end(), unit) != slid_.end();
-    double near =
-        slid && !decided_[unit] ? std::max(SlidingMode::drift(), thresholds_.now[s]) : thresholds_.now[s];
+    const bool drifted = slide_.rests(s) || (!decided_[unit] && (rested_[s] || contains(slid_, unit)));
+    double near = drifted ? std::max(SlidingMode::drift(), thresholds_.now[s]) : thresholds_.now[s];
     if (unrest_[s].turns > kRestless) near = std::max(near, place_size(s));
     double position = before;
     if (is_known(s)) {
@@ -191,8 +195,7 @@ bool Switching::turn_by_surfaces(double t, Units& on_surface, std::vector<std::u
         position = (std::abs(surfaces_[s]) > thresholds_.now[s] ? surfaces_[s] : rate) > 0 ? 1 : 0;
       }
     } else if (announced_[s] >= 0 || std::abs(surfaces_[s]) <= near) {
-      if (!decided_[unit] && std::find(on_surface.begin(), on_surface.end(), unit) == on_surface.end())
-        on_surface.push_back(unit);
+      if (!decided_[unit] && !contains(on_surface, unit)) on_surface.push_back(unit);
     } else {
       position = surfaces_[s] > 0 ? 1 : 0;
     }
@@ -207,7 +210,7 @@ bool Switching::turn_by_surfaces(double t, Units& on_surface, std::vector<std::u
 void Switching::decide(Units units, double t, std::span<const double> x) {
   const SwitchStructure& structure = program_.switch_structure();
   for (const std::uint32_t unit : slide_.units()) {
-    if (std::find(units.begin(), units.end(), unit) == units.end()) units.push_back(unit);
+    if (!contains(units, unit)) units.push_back(unit);
   }
   slide_.end();
   std::uint32_t preferred = 0;
@@ -355,6 +358,7 @@ bool Switching::serve_events(double t, std::vector<double>& x, bool starting) {
   begin_to_settle();
   if (jumps) {
     slid_.clear();
+    std::fill(rested_.begin(), rested_.end(), false);
     std::fill(thresholds_.slack.begin(), thresholds_.slack.end(), 0.0);
   }
   // What was announced of surfaces that have moved away is past.
@@ -369,6 +373,8 @@ bool Switching::serve_events(double t, std::vector<double>& x, bool starting) {
 void Switching::begin_to_settle() {
   std::fill(decided_.begin(), decided_.end(), false);
   slid_ = slide_.units();
+  for (std::size_t s = 0; s < rested_.size(); ++s) rested_[s] = resumed_ || slide_.rests(s);
+  resumed_ = false;
   slide_.end();
 }
 
@@ -395,15 +401,14 @@ void Switching::note_slides(const Units& before, const Units& repelled, double t
     const Switch& s = program_.switches()[structure.members[unit].front()];
     record(t, fmt::format("{}: {} {} = 0", s.block, what, s.comparison));
   };
-  const auto contains = [](const Units& units, std::uint32_t unit) {
-    return std::find(units.begin(), units.end(), unit) != units.end();
-  };
   for (const std::uint32_t unit : before) {
     if (contains(slide_.units(), unit)) continue;
     tell(unit, "leaves");
     if (contains(repelled, unit)) warn_of_repulsion(unit, t);
-    // It may lie on the wrong side by what the integration let it drift off.
-    for (const std::uint32_t s : structure.members[unit]) thresholds_.slack[s] = 2 * std::abs(surfaces_[s]);
+    // It may lie on the wrong side by what the integration let it drift off; after a jump it lies elsewhere.
+    for (const std::uint32_t s : structure.members[unit]) {
+      if (std::abs(surfaces_[s]) <= SlidingMode::drift()) thresholds_.slack[s] = 2 * std::abs(surfaces_[s]);
+    }
   }
   for (const std::uint32_t unit : slide_.units()) {
     if (!contains(before, unit)) tell(unit, "slides along");

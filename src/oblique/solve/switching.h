@@ -83,7 +83,10 @@ class Switching {
 
   /// What must be kept to go on later: whether each condition held.
   const std::vector<bool>& conditions() const { return held_; }
-  void restore(std::vector<bool> conditions) { held_ = std::move(conditions); }
+  void restore(std::vector<bool> conditions) {
+    held_ = std::move(conditions);
+    resumed_ = true;
+  }
 
  private:
   using Units = std::vector<std::uint32_t>;
@@ -127,6 +130,8 @@ class Switching {
   std::vector<bool> held_;      ///< whether the condition of each event held when it was last looked at
   std::vector<bool> decided_;   ///< of each unit: by where it drifts, once in a `settle`
   Units slid_;                  ///< what slid when the settling began
+  std::vector<bool> rested_;    ///< the surfaces that then stayed at zero along with it
+  bool resumed_ = false;        ///< from a state that does not say what slid
 
   /// How often a switch has turned over without leaving its place.
   struct Unrest {
