@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <string>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -84,6 +85,24 @@ TEST(Slide, KeepsTheLimitOfOneAmplifierWhileAnotherComesToItsOwn) {
     // by 1e-7.
     EXPECT_NEAR(most_x, 0.5 / (1 + 1e-4), 2e-7) << blocks;
     EXPECT_NEAR(most_y, 0.6 / (1 + 1e-4), 2e-7) << blocks;
+  }
+}
+
+// x rests at 0, on the surface of c, where c is low; with c high the amplifier would drive it down. What
+// rounding leaves of its rate decides nothing, whatever the unit of x.
+TEST(Switches, StayWhereTheyAreWhereAllIsAtRest) {
+  for (const double unit : {0.5, 1.0, 2.0, 4.0}) {
+    const Compiled made(fmt::format(R"toml(
+p = {{ type = "multiplier", x = "-2*a", y = "{0}*a" }}
+x = {{ type = "integrator", in = ["0.3*p", "-0.5*a"], rate = 0.875 }}
+a = {{ type = "servo-amplifier", in = ["0.3*p", "{1}*c", "x", "a"], gain = 3373.125, bandwidth = 6, initial = {2} }}
+c = {{ type = "comparator", in = ["x"], high = 0.5 }}
+)toml",
+                                    0.3 / unit, -0.5 * unit, 0.875 * unit));
+    const oblique::Run result = run_of(made, {.until = 5, .samples = 11});
+    for (const double x : row_values(result, "x"))
+      EXPECT_NEAR(x, 0, 1e-12) << unit;  // rounding that grows e-fold
+    EXPECT_EQ(row_values(result, "c"), std::vector<double>(11, 0)) << unit;
   }
 }
 

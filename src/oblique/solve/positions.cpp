@@ -19,7 +19,7 @@ constexpr double kNoLaterRate = 1e-6;
 /// A rate that is this small a part of its change over the moment is about to turn, within rounding of the
 /// surface.
 constexpr double kAboutToTurn = 0.05;
-/// Rounding of a rate, of the fastest state's.
+/// Rounding of a rate, of the fastest state's; and of a surface [machine unit].
 constexpr double kRounding = 1e-13;
 
 constexpr std::size_t kMostTogether = 12;  ///< switches of which `choose_any` tries all combinations
@@ -117,6 +117,12 @@ Positions::Trial Positions::attempt(std::uint32_t bits, double t, std::span<cons
   return trial;
 }
 
+/// Whether a rate takes a surface out of its rounding at all while the run lasts: where all is at rest there
+/// is no faster state beside which to see that it is rounding.
+bool Positions::leaves_rounding(double rate) const {
+  return std::abs(rate) * span_ > kRounding;
+}
+
 /// To which side the surface of a unit goes in a trial: 1, −1, or 0 where it stays at zero.
 int Positions::direction(std::uint32_t bits, std::size_t unit) const {
   const Trial& trial = trials_[bits];
@@ -131,6 +137,7 @@ int Positions::direction(std::uint32_t bits, std::size_t unit) const {
     largest_later = std::max(largest_later, std::abs(other.later[unit]));
   }
   const double rate = trial.rates[unit];
+  if (!leaves_rounding(rate) && !leaves_rounding(trial.later[unit])) return 0;
   if (std::abs(rate) > kNoRate * largest && std::abs(rate) > kRounding * fastest_ &&
       std::abs(rate) > kAboutToTurn * std::abs(trial.later[unit] - rate))
     return sign_of(rate);
@@ -264,7 +271,9 @@ bool Positions::agrees(double t, std::span<const double> x) {
     const int side = workspace_.memory(program_.switches()[s].memory) == 1 ? 1 : -1;
     const bool on_surface = std::abs(surfaces_[s]) <= thresholds_[s];
     if (!on_surface && sign_of(surfaces_[s]) != side) return false;
-    if (on_surface && std::abs(rates_[s]) > kNoRate * fastest && sign_of(rates_[s]) != side) return false;
+    if (on_surface && leaves_rounding(rates_[s]) && std::abs(rates_[s]) > kNoRate * fastest &&
+        sign_of(rates_[s]) != side)
+      return false;
   }
   return true;
 }

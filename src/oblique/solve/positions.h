@@ -50,6 +50,7 @@ class Positions {
   bool settle_others(const std::vector<bool>& placed, double t, std::span<const double> x);
   bool try_slide(std::uint32_t sliding, std::uint32_t bits, double t, std::span<const double> x);
   bool is_independent(std::uint32_t sliding) const;
+  bool leaves_rounding(double rate) const;
   bool agrees(double t, std::span<const double> x);
   double of_unit(const std::vector<double>& of_switches, std::size_t unit) const;
   std::vector<std::uint32_t> nearest_first(std::uint32_t to) const;
