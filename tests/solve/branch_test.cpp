@@ -288,12 +288,48 @@ TEST(Branch, TellsNothingOfLoopsWithOneSolution) {
   for (const char* blocks : {
            "y = { type = \"cosine\", in = \"y\" }\n",  // cos y = y once
            "y = { type = \"summer\", in = [\"0.5*y\", \"z\"] }\nz = { type = \"constant\" }\n",  // linear
+           // y = −y²/2 and z = 4 y² have −2 and 16 too, which is on no machine
+           "y = { type = \"gain\", in = \"-0.5*z\", factor = 0.25 }\nz = { type = \"squarer\", in = \"-2*y\" "
+           "}\n",
+           // y = −y²/4 has −4 too, which is beyond the limit
+           "y = { type = \"limiter\", in = \"-0.5*z\", low = -0.7, high = 0.2 }\n"
+           "z = { type = \"multiplier\", x = \"y\", y = \"0.5*y\" }\n",
        }) {
     EXPECT_TRUE(run_of(Compiled(blocks), {.until = 1}).warnings.empty()) << blocks;
   }
   // An amplifier's `initial` chooses.
   EXPECT_TRUE(run_of(Compiled(cubic("x = { type = \"constant\", value = 0 }\n", kIdeal)), {.until = 1})
                   .warnings.empty());
+}
+
+// w = min(−1/2, −2v), v = −atan 2w: v = 1.39325 alone (Newton's method on a pocket calculator). Without the
+// −1/2 there are v = 0 and −1.39325 too, where a search may end that begins with the guesses.
+TEST(Branch, IsFoundThoughTheGuessesLeadToNone) {
+  for (const char* blocks : {"v = { type = \"arc-tangent\", in = \"-2*w\" }\n"
+                             "w = { type = \"minimum\", x = \"-0.5*one\", y = \"-2*v\" }\n"
+                             "one = { type = \"constant\" }\n",
+                             "one = { type = \"constant\" }\n"
+                             "w = { type = \"minimum\", x = \"-0.5*one\", y = \"-2*v\" }\n"
+                             "v = { type = \"arc-tangent\", in = \"-2*w\" }\n"}) {
+    const auto result = run_of(Compiled(blocks), {.until = 1});
+    EXPECT_TRUE(result.warnings.empty());
+    EXPECT_NEAR(row_values(result, "v").front(), 1.39325, 1e-5) << blocks;
+  }
+}
+
+// y = cos 3y + s/2 has three solutions where the amplifier s begins, at 0. It goes to s = 3y, where one of
+// them has led to y = 0.63051, s/2 = 0.94577, and no other solution is left there (roots by bisection);
+// another has led to −0.44825.
+TEST(Branch, TellsOfAChoiceThatTheAmplifiersHaveFollowed) {
+  const std::string y = "y = { type = \"summer\", in = [\"c\", \"0.5*s\"] }\n";
+  const std::string c = "c = { type = \"cosine\", in = \"3*y\" }\n";
+  const std::string s =
+      "s = { type = \"servo-amplifier\", in = [\"s\", \"-3*y\"], gain = 1e4, bandwidth = 10 }\n";
+  for (const std::string& blocks : {y + c + s, s + c + y}) {
+    const auto result = run_of(Compiled(blocks), {.until = 1});
+    ASSERT_EQ(result.warnings.size(), 1U) << blocks;
+    EXPECT_THAT(result.warnings[0].what, HasSubstr(" has several solutions: ")) << blocks;
+  }
 }
 
 }  // namespace

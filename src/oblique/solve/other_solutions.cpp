@@ -28,57 +28,82 @@ double even_point(int k, std::size_t i, std::size_t n) {
   return 2 * (multiple - std::floor(multiple)) - 1;
 }
 
-/// An unknown of the loop that differs from what it was in `solution`.
-std::optional<std::size_t> changed(const Program& program, const Workspace& workspace, std::size_t loop,
-                                   const std::vector<double>& solution) {
+constexpr int kPoints = 24;
+constexpr double kReach = 3;  // [machine unit]
+
+LoopStart point(const Program& program, std::size_t loop, int k) {
+  const std::size_t n = program.loops()[loop].unknowns.size();
+  LoopStart start{loop, std::vector<double>(n)};
+  for (std::size_t i = 0; i < n; ++i) start.unknowns[i] = kReach * even_point(k, i, n);
+  return start;
+}
+
+/// An unknown of the loop that differs between two solutions.
+std::optional<std::size_t> changed(const Program& program, std::size_t loop,
+                                   const std::vector<double>& solution, const std::vector<double>& other) {
   constexpr double kOther = 1e-4;  // of 1 + |z|: far beyond what is left of Newton's method at a double root
   for (const std::size_t u : program.loops()[loop].unknowns) {
-    if (std::abs(workspace.unknown(u) - solution[u]) > kOther * (1 + std::abs(solution[u]))) return u;
+    if (std::abs(other[u] - solution[u]) > kOther * (1 + std::abs(solution[u]))) return u;
   }
   return std::nullopt;
 }
 
+/// Whether an element of the loop is beyond the range that is searched: which of them is the unknown must not
+/// matter.
+bool leaves_reach(const Program& program, std::size_t loop, const std::vector<double>& signals) {
+  for (const std::string& member : program.loops()[loop].members) {
+    for (std::size_t s = 0; s < signals.size(); ++s) {
+      const std::string& name = program.signal_names()[s];
+      const bool of_member = name == member || name.starts_with(member + ".");
+      if (of_member && std::abs(signals[s]) > kReach) return true;
+    }
+  }
+  return false;
+}
+
+Diagnostic several_solutions(const Program& program, std::size_t loop, double t, const std::string& file,
+                             const std::string& unknown, double here, double there) {
+  std::vector<std::string> members;
+  for (const std::string& member : program.loops()[loop].members) members.push_back("'" + member + "'");
+  return {
+      {file, {}},
+      fmt::format("the algebraic loop of {} has several solutions: at t = {:.6g} s the run begins with {} = "
+                  "{:.6g}, and {:.6g} is another; nothing in the diagram chooses between them",
+                  shortened(std::move(members)), t, unknown, here, there),
+      {},
+      "put a servo amplifier with an 'initial', or a lag, into the loop: where it starts from chooses"};
+}
+
 }  // namespace
 
-std::vector<Diagnostic> other_solutions(const Program& program, Workspace& workspace, double t,
-                                        const std::vector<double>& states, const std::string& file) {
-  constexpr int kPoints = 24;
-  constexpr double kReach = 3;  // [machine unit]
-  std::vector<Diagnostic> warnings;
-  std::vector<double> solution(program.unknowns().size()), signals(program.n_signals());
-  for (std::size_t u = 0; u < solution.size(); ++u) solution[u] = workspace.unknown(u);
-  const auto restore = [&] {
-    for (std::size_t u = 0; u < solution.size(); ++u) workspace.set_unknown(u, solution[u]);
-  };
-  bool tried = false;
+StartChoice choose_start(const Program& program, double t, const std::string& file,
+                         const std::function<std::optional<StartOutcome>(const LoopStart&)>& start) {
+  StartChoice choice;
+  std::vector<std::size_t> blind;
   for (std::size_t loop = 0; loop < program.loops().size(); ++loop) {
-    if (!chooses_blindly(program, loop)) continue;
-    const std::vector<std::size_t>& unknowns = program.loops()[loop].unknowns;
+    if (chooses_blindly(program, loop)) blind.push_back(loop);
+  }
+  if (blind.empty()) return choice;
+  std::optional<StartOutcome> solution = start({});
+  for (const std::size_t loop : blind) {
+    for (int k = 1; k <= kPoints && !solution; ++k) {
+      choice.from = point(program, loop, k);
+      solution = start(choice.from);
+    }
+  }
+  if (!solution) return {};
+  for (const std::size_t loop : blind) {
     for (int k = 1; k <= kPoints; ++k) {
-      tried = true;
-      restore();
-      for (std::size_t i = 0; i < unknowns.size(); ++i)
-        workspace.set_unknown(unknowns[i], kReach * even_point(k, i, unknowns.size()));
-      if (!program.signals(t, states.data(), signals.data(), workspace)) continue;
-      const auto other = changed(program, workspace, loop, solution);
-      if (!other) continue;
-      std::vector<std::string> members;
-      for (const std::string& member : program.loops()[loop].members) members.push_back("'" + member + "'");
-      warnings.push_back(
-          {{file, {}},
-           fmt::format(
-               "the algebraic loop of {} has several solutions: at t = {:.6g} s the run begins with {} = "
-               "{:.6g}, and {:.6g} is another; nothing in the diagram chooses between them",
-               shortened(std::move(members)), t, program.unknowns()[*other].name, solution[*other],
-               workspace.unknown(*other)),
-           {},
-           "put a servo amplifier with an 'initial', or a lag, into the loop: where it starts from chooses"});
+      const auto other = start(point(program, loop, k));
+      if (!other || leaves_reach(program, loop, other->signals)) continue;
+      const auto unknown = changed(program, loop, solution->unknowns, other->unknowns);
+      if (!unknown) continue;
+      choice.warnings.push_back(several_solutions(program, loop, t, file, program.unknowns()[*unknown].name,
+                                                  solution->unknowns[*unknown], other->unknowns[*unknown]));
       break;
     }
   }
-  restore();
-  if (tried) program.signals(t, states.data(), signals.data(), workspace);
-  return warnings;
+  return choice;
 }
 
 }  // namespace oblique

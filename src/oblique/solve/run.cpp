@@ -46,10 +46,11 @@ class SwitchedSystem final : public OdeSystem {
 class Runner {
  public:
   Runner(const Program& program, const FlatDiagram& diagram, const RunOptions& options,
-         const Refinement& refinement, bool may_end_unseen)
+         const LoopStart& loop_start, const Refinement& refinement, bool may_end_unseen)
       : program_(program),
         diagram_(diagram),
         options_(options),
+        loop_start_(loop_start),
         refinement_(refinement),
         may_end_unseen_(may_end_unseen),
         begin_(options.from ? options.from->time : 0),
@@ -114,8 +115,22 @@ class Runner {
     return unseen;
   }
 
+  StartOutcome outcome_of_start() {
+    StartOutcome outcome{std::vector<double>(program_.unknowns().size()),
+                         std::vector<double>(program_.n_signals())};
+    settle_start();
+    for (std::size_t u = 0; u < outcome.unknowns.size(); ++u) outcome.unknowns[u] = workspace_.unknown(u);
+    switching_.signals(begin_, states_.data(), outcome.signals.data());
+    return outcome;
+  }
+
  private:
-  void start() {
+  void settle_start() {
+    if (loop_start_.loop) {
+      const std::vector<std::size_t>& unknowns = program_.loops()[*loop_start_.loop].unknowns;
+      for (std::size_t i = 0; i < unknowns.size(); ++i)
+        workspace_.set_unknown(unknowns[i], loop_start_.unknowns[i]);
+    }
     std::vector<double> signals(program_.n_signals());
     const auto settle_all = [&] {
       switching_.start(begin_, states_, [&] {
@@ -133,11 +148,13 @@ class Runner {
         throw;
       settle_all();
     }
+  }
+
+  void start() {
+    settle_start();
     std::vector<double> slopes(states_.size());
     if (switching_.derivatives(begin_, states_.data(), slopes.data())) refuse_singular_rates(slopes);
     for (Diagnostic& warning : unstable_branches(program_, workspace_, begin_, diagram_.file))
-      warnings_at_start_.push_back(std::move(warning));
-    for (Diagnostic& warning : other_solutions(program_, workspace_, begin_, states_, diagram_.file))
       warnings_at_start_.push_back(std::move(warning));
   }
 
@@ -469,6 +486,7 @@ class Runner {
   const Program& program_;
   const FlatDiagram& diagram_;
   const RunOptions& options_;
+  const LoopStart& loop_start_;
   const Refinement& refinement_;
   bool may_end_unseen_;
   double begin_, end_ = 0;  ///< [s]
@@ -491,14 +509,15 @@ class Runner {
 
 /// Runs, and where states matter that the tolerance hides, anew and finer. Where no run is fine enough,
 /// the last one says so.
-Run run_seeing(const Program& program, const FlatDiagram& diagram, const RunOptions& options) {
+Run run_seeing(const Program& program, const FlatDiagram& diagram, const RunOptions& options,
+               const LoopStart& loop_start) {
   constexpr int kMostTries = 5;
   constexpr long kMostTimesFirst = 100, kAlwaysAllowed = 100'000;  // steps of a finer run
   Refinement refinement;
   RunOptions finer = options;
   for (int k = 0; k < kMostTries; ++k) {
     if (k > 0 && options.on_restart) options.on_restart();
-    Runner runner(program, diagram, finer, refinement, true);
+    Runner runner(program, diagram, finer, loop_start, refinement, true);
     Run result;
     try {
       result = runner.run();
@@ -516,7 +535,7 @@ Run run_seeing(const Program& program, const FlatDiagram& diagram, const RunOpti
   }
   const auto run_to_the_end = [&](const Refinement& how, const RunOptions& with) {
     if (options.on_restart) options.on_restart();
-    Runner runner(program, diagram, with, how, false);
+    Runner runner(program, diagram, with, loop_start, how, false);
     Run result = runner.run();
     for (Diagnostic& warning : warnings_of(runner.unseen(), program, diagram))
       result.warnings.push_back(std::move(warning));
@@ -527,6 +546,19 @@ Run run_seeing(const Program& program, const FlatDiagram& diagram, const RunOpti
   } catch (const SolveError&) {  // finer than it can be run
     return run_to_the_end({}, options);
   }
+}
+
+/// Chooses where the loops of elements without memory start; a run that goes on has chosen already.
+StartChoice start_of(const Program& program, const FlatDiagram& diagram, const RunOptions& options) {
+  if (options.from) return {};
+  const auto start = [&](const LoopStart& from) -> std::optional<StartOutcome> {
+    try {
+      return Runner(program, diagram, options, from, {}, true).outcome_of_start();
+    } catch (const SolveError&) {
+      return std::nullopt;
+    }
+  };
+  return choose_start(program, 0, diagram.file, start);
 }
 
 /// A longest step that would use up the budget of steps is refused at once, and so is one that the clock
@@ -567,7 +599,9 @@ Run run(const Program& program, const FlatDiagram& diagram, const RunOptions& op
   const auto begin = std::chrono::steady_clock::now();
   if (options.from) check_run_state(*options.from, program, diagram.file);
   check_longest_step(diagram, options);
-  Run result = run_seeing(program, diagram, options);
+  StartChoice start = start_of(program, diagram, options);
+  Run result = run_seeing(program, diagram, options, start.from);
+  std::move(start.warnings.begin(), start.warnings.end(), std::back_inserter(result.warnings));
   for (Diagnostic& warning : warnings_at_end(diagram, options, result))
     result.warnings.push_back(std::move(warning));
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
