@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "block_kinds.h"
 
+#include <limits>
+
 namespace oblique::fuzz {
 namespace {
 
@@ -82,10 +84,27 @@ constexpr PortKind kDirectionIn[] = {{"x", kPlain}, {"y", kPlain}};
 constexpr OutputKind kDirectionOut[] = {{"length", kPlain}, {"cos", kPlain}, {"sin", kPlain}};
 constexpr ParameterKind kDirection[] = {{"gain", 1000, 17000, kPlain, true},
                                         {"bandwidth", 1, 17, kRate, true}};
-constexpr ParameterKind kNoise[] = {
-    {"rms", 0, 0.25, kValue, true}, {"bandwidth", 0.5, 2.5, kRate, true}, {"seed", 0, 16, kPlain}};
-constexpr ParameterKind kCurve[] = {{"points", -1, 1, kPlain, true}};
-constexpr ParameterKind kFormula[] = {{"formula", 0.25, 4.25, kRate, true}};
+constexpr ParameterKind kNoise[] = {{"rms", 0, 0.25, kValue, true},
+                                    {"bandwidth", 0.5, 2.5, kRate, true},
+                                    {"seed", 0, 16, kPlain, false, Form::whole}};
+constexpr ParameterKind kCurve[] = {{"points", -1, 1, kPlain, true, Form::curve}};
+constexpr ParameterKind kJumpingCurve[] = {{"points", -1, 1, kPlain, true, Form::jumping_curve}};
+constexpr ParameterKind kFormula[] = {{"formula", 0.25, 4.25, kRate, true, Form::sine}};
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr ParameterKind kFastServo[] = {{"gain", 100, 16100, kPlain, true},
+                                        {"bandwidth", kInfinity, kInfinity, kRate, true},
+                                        {"initial", -1, 1, kValue}};
+constexpr ParameterKind kIdealServo[] = {{"gain", kInfinity, kInfinity, kPlain, true},
+                                         {"bandwidth", kInfinity, kInfinity, kRate, true},
+                                         {"initial", -1, 1, kValue}};
+constexpr ParameterKind kIdealDivider[] = {{"gain", kInfinity, kInfinity, kPlain, true},
+                                           {"bandwidth", kInfinity, kInfinity, kRate, true}};
+constexpr OutputKind kBallOut[] = {{"height", kValue}, {"speed", kSlope}, {"bounce", kPlain}};
+constexpr ParameterKind kBall[] = {{"drop", 0.25, 2.25, kValue, true},
+                                   {"g", 2, 10, {1, -2}, true},
+                                   {"restitution", 0.25, 0.9, kPlain, true}};
+constexpr ParameterKind kSpiker[] = {{"rate", 0.5, 4.5, kRate, true},
+                                     {"threshold", 0.25, 1.25, kValue, true}};
 
 constexpr BlockKind kKinds[] = {
     {"integrator", 8, kSumOfValues, kValueOut, kPlainIntegrator, true},
@@ -105,6 +124,7 @@ constexpr BlockKind kKinds[] = {
     {"cosine", 1, kOnePlain, kPlainOut, {}},
     {"arc-tangent", 1, kOnePlain, kPlainOut, {}},
     {"function-generator", 1, kOnePlain, kPlainOut, kCurve},
+    {"function-generator", 1, kOnePlain, kPlainOut, kJumpingCurve},
     {"limiter", 2, kOneValue, kValueOut, kLimits},
     {"dead-zone", 2, kOneValue, kValueOut, kLimits},
     {"backlash", 1, kOneValue, kValueOut, kBacklash, true},
@@ -117,8 +137,11 @@ constexpr BlockKind kKinds[] = {
     {"monostable", 1, kTrigger, kValueOut, kMonostable},
     {"transfer-lag", 4, kOneValue, kValueOut, kLag, true},
     {"servo-amplifier", 2, kSumOfValues, kValueOut, kServo, true},
+    {"servo-amplifier", 1, kSumOfValues, kValueOut, kFastServo},
+    {"servo-amplifier", 1, kSumOfValues, kValueOut, kIdealServo},
     {"servo-multiplier", 1, kServoMultiplierIn, kServoMultiplierOut, kServoMultiplier, true},
     {"divider", 1, kDividerIn, kValueOut, kDivider, true},
+    {"divider", 1, kDividerIn, kValueOut, kIdealDivider},
     {"square-root", 1, kOnePlain, kPlainOut, kRoot, true},
     {"sine-cosine-generator", 1, kSumOfPlain, kCosineAndSine, kGenerator, true},
     {"crank-generator", 1, kCrankIn, kCosineAndSine, kCrank, true},
@@ -130,6 +153,9 @@ constexpr BlockKind kKinds[] = {
     {"step", 1, {}, kValueOut, kStep, true},
     {"time-function", 1, {}, kPlainOut, kFormula, true},
     {"noise-source", 1, {}, kValueOut, kNoise, true},
+    {"ball", 1, {}, kBallOut, kBall, true},
+    {"spiker", 1, kOneValue, kValueOut, kSpiker, true},
+    {"swap", 1, kOnePlain, kPlainOut, {}},
 };
 
 }  // namespace

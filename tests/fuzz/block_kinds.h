@@ -28,6 +28,15 @@ struct OutputKind {
   Dimension dimension;
 };
 
+/// How the number of a parameter is written.
+enum class Form {
+  number,
+  whole,          ///< rounded
+  curve,          ///< a table whose ends it says
+  jumping_curve,  ///< one that jumps by it at 0
+  sine,           ///< the frequency in a formula
+};
+
 /// Left at its default in one of two blocks, unless it is required: as all are whose default would have to be
 /// scaled too.
 struct ParameterKind {
@@ -35,6 +44,7 @@ struct ParameterKind {
   double low, high;
   Dimension dimension;
   bool required = false;
+  Form form = Form::number;
 };
 
 /// What the generator knows of a kind of block. It is written down here, not read from the block's own file:

@@ -21,6 +21,7 @@ class Dice {
   /// A number in [low, high]: mostly on a grid of sixteenths, so that signals meet levels and each other
   /// exactly more often than by chance.
   double number(double low, double high) {
+    if (low == high) return low;
     constexpr unsigned kOnGrid = 192;
     const unsigned choice = byte();
     if (choice < kOnGrid) return low + (high - low) * static_cast<double>(choice % 17) / 16;

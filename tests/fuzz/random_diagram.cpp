@@ -65,9 +65,22 @@ class Writer {
     std::string out = "format = \"oblique-diagram/1\"\n";
     if (plan_.profile != "ideal" || plan_.inverting)
       out += fmt::format("[machine]\nprofile = \"{}\"\ninverting = {}\n", plan_.profile, plan_.inverting);
-    out += fmt::format(
-        "[run]\nuntil = {}\ntolerance = {}\nmethod = \"{}\"\nsettle = {}\nsamples = {}\n[blocks]\n",
-        plan_.until * writing_.time, plan_.tolerance, plan_.method, plan_.settle, writing_.samples);
+    out += fmt::format("[run]\nuntil = {}\ntolerance = {}\nmethod = \"{}\"\nsettle = {}\nsamples = {}\n",
+                       plan_.until * writing_.time, plan_.tolerance, plan_.method, plan_.settle,
+                       writing_.samples);
+    if (plan_.max_step) out += fmt::format("max_step = {}\n", *plan_.max_step * writing_.time);
+    if (plan_.absolute_tolerance)
+      out += fmt::format("absolute_tolerance = {}\n", *plan_.absolute_tolerance * writing_.value);
+    if (!plan_.phases.empty()) {
+      constexpr const char* kModes[] = {"operate", "hold", "initial"};
+      out += "[timeline]\nphases = [";
+      for (const PlannedPhase& phase : plan_.phases) {
+        out +=
+            fmt::format("{{ mode = \"{}\", for = {} }}, ", kModes[phase.mode], phase.length * writing_.time);
+      }
+      out += fmt::format("]\ncycles = {}\n", plan_.cycles);
+    }
+    out += "[blocks]\n";
     std::vector<std::string> lines;
     for (std::size_t k = 0; k < plan_.blocks.size(); ++k) lines.push_back(line_of(k));
     for (std::size_t k = 0; k < lines.size(); ++k)
@@ -121,16 +134,24 @@ class Writer {
       const bool is_part = parameter->dimension.value == 0 && parameter->dimension.time == 0;
       const double number = is_part ? planned * (1 - writing_.disturbance) : disturbed(planned);
       const double value = number * factor_of(parameter->dimension, writing_);
-      line += fmt::format(", {} = {}", parameter->name, setting(parameter->name, value));
+      line += fmt::format(", {} = {}", parameter->name, setting(parameter->form, value));
     }
     return line + " }\n";
   }
 
-  static std::string setting(std::string_view parameter, double value) {
-    if (parameter == "points") return fmt::format("[[-1, {0}], [0, 0], [0.5, 1], [1, {1}]]", value, -value);
-    if (parameter == "formula") return fmt::format("\"sin({}*time)\"", value);
-    if (parameter == "seed") return fmt::format("{}", std::round(value));
-    return fmt::format("{}", value);
+  static std::string setting(Form form, double value) {
+    switch (form) {
+      case Form::whole:
+        return fmt::format("{}", std::round(value));
+      case Form::curve:
+        return fmt::format("[[-1, {0}], [0, 0], [0.5, 1], [1, {1}]]", value, -value);
+      case Form::jumping_curve:
+        return fmt::format("[[-1, 0.5], [0, 0], [0, {0}], [1, {0}]]", value);
+      case Form::sine:
+        return fmt::format("\"sin({}*time)\"", value);
+      default:
+        return fmt::format("{}", value);
+    }
   }
 
   const DiagramPlan& plan_;
@@ -153,6 +174,13 @@ DiagramPlan plan_diagram(Dice& dice) {
   if (dice.one_in(16)) {
     plan.profile = kProfiles[dice.below(std::size(kProfiles))];
     plan.inverting = true;
+  }
+  if (dice.one_in(8)) plan.max_step = dice.number(0.015625, 0.265625);
+  if (dice.one_in(8)) plan.absolute_tolerance = plan.tolerance * dice.number(0.001, 0.1);
+  if (dice.one_in(8)) {
+    for (std::size_t phases = 1 + dice.below(4); phases > 0; --phases)
+      plan.phases.push_back({dice.below(3), dice.number(0.125, 2.125)});
+    plan.cycles = 1 + dice.below(3);
   }
   const std::size_t n = 2 + dice.below(9);
   for (std::size_t k = 0; k < n; ++k) plan.blocks.push_back({&random_kind(dice), {}, {}});

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,6 +25,11 @@ struct PlannedBlock {
   std::vector<std::pair<const ParameterKind*, double>> parameters;
 };
 
+struct PlannedPhase {
+  std::size_t mode = 0;  ///< operate, hold, initial
+  double length = 1;     ///< [s]
+};
+
 /// A diagram before its blocks have names, an order and a scale.
 struct DiagramPlan {
   std::vector<PlannedBlock> blocks;
@@ -32,6 +38,9 @@ struct DiagramPlan {
   double until = 1;  ///< [s]
   double tolerance = 1e-8;
   std::string method = "auto";
+  std::optional<double> max_step, absolute_tolerance;
+  std::vector<PlannedPhase> phases;  ///< of a timeline; none: it operates throughout
+  std::size_t cycles = 1;
 };
 
 /// Any bytes make a diagram: random blocks, wired at random forwards and back, with algebraic loops and

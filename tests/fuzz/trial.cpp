@@ -8,20 +8,16 @@
 
 #include <fmt/format.h>
 
-#include <oblique/diagram/block_library.h>
 #include <oblique/network/network.h>
 #include <oblique/solve/solve_error.h>
+
+#include "own_blocks.h"
 
 namespace oblique::fuzz {
 namespace {
 
 /// A random diagram takes some hundred steps; one that chatters as fast as its solver can, many more.
 constexpr long kMostSteps = 5'000;
-
-const BlockLibrary& blocks() {
-  static const BlockLibrary library = BlockLibrary::shipped();
-  return library;
-}
 
 /// A message without what renaming and rounding change: quoted names and numbers.
 std::string without_particulars(std::string_view message) {
@@ -74,7 +70,7 @@ Trial attempt(const std::function<void(Trial&)>& way) {
 }
 
 void run_whole(const Diagram& diagram, const TrialOptions& asked, Trial& trial) {
-  const FlatDiagram flat = flatten(diagram, blocks());
+  const FlatDiagram flat = flatten(diagram, library());
   const Program program(assemble(flat));
   RunOptions options = options_of(diagram.run);
   if (asked.method) options.method = *asked.method;

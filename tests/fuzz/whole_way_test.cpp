@@ -4,8 +4,11 @@
 // for one alone.
 #include <cstdint>
 #include <cstdlib>
+#include <ctime>
 #include <random>
 #include <string>
+
+#include <sys/resource.h>
 
 #include <gtest/gtest.h>
 
@@ -27,12 +30,29 @@ std::string random_bytes(std::uint64_t seed) {
   return bytes;
 }
 
+/// Of the whole process so far, as its most [bytes].
+double memory_used() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return 1024.0 * static_cast<double>(usage.ru_maxrss);
+}
+
+/// What one input may take: each of its runs has a budget of steps, which takes a tenth of a second at most.
+constexpr double kMostSeconds = 5;  // of the processor, so that a busy machine makes no faults
+constexpr double kMostMemory = 1e9;
+
 /// At least `least` of the inputs must lead to runs that are compared: else nothing is tested.
 void examine(Verdict (*examined)(std::string_view bytes), std::uint64_t usual, double least) {
   const std::uint64_t first = asked("OBLIQUE_FUZZ_SEED", 1), runs = asked("OBLIQUE_FUZZ_RUNS", usual);
   std::uint64_t compared = 0;
   for (std::uint64_t seed = first; seed < first + runs; ++seed) {
+    const double before = memory_used();
+    const std::clock_t begin = std::clock();
     const Verdict verdict = examined(random_bytes(seed));
+    const double seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+    EXPECT_LT(seconds, kMostSeconds) << "OBLIQUE_FUZZ_SEED=" << seed << " OBLIQUE_FUZZ_RUNS=1";
+    if (before <= kMostMemory)  // the first that needs more is told
+      EXPECT_LT(memory_used(), kMostMemory) << "OBLIQUE_FUZZ_SEED=" << seed << " OBLIQUE_FUZZ_RUNS=1";
     EXPECT_TRUE(verdict.fault.empty())
         << "OBLIQUE_FUZZ_SEED=" << seed << " OBLIQUE_FUZZ_RUNS=1: " << verdict.fault;
     compared += verdict.compared ? 1 : 0;
