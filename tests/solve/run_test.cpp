@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <oblique/solve/source_watch.h>
+
 #include "../support/runs.h"
 
 namespace oblique {
@@ -34,6 +36,20 @@ TEST(Run, SamplesOnAnExactGrid) {
     EXPECT_EQ(t.front(), 0);
     EXPECT_EQ(t.back(), until);  // 0.23 · 71/71 is not 0.23
   }
+}
+
+// The square of what goes beyond a dead zone that the source never leaves is 0 throughout, and is looked at
+// no closer than what varies: within the zone neither value nor slope has any width.
+TEST(SourceWatch, LooksNoCloserWhereNothingShows) {
+  const Compiled made(R"toml(
+u = { type = "sine-source", amplitude = 0.25, frequency = 2 }
+z = { type = "dead-zone", in = "u", low = -0.5, high = 0.5 }
+q = { type = "squarer", in = "z" }
+x = { type = "integrator", in = ["q"] }
+)toml");
+  const Workspace workspace(made.program);
+  SourceWatch watch(made.program, workspace, false);
+  EXPECT_EQ(watch.looks(0, 3).size(), 1U);
 }
 
 TEST(Run, DoesNotDependOnTheNumberOfRows) {
