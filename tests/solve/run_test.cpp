@@ -3,9 +3,12 @@
 
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
+#include <oblique/solve/interpolant.h>
 #include <oblique/solve/source_watch.h>
 
 #include "../support/runs.h"
@@ -48,8 +51,10 @@ q = { type = "squarer", in = "z" }
 x = { type = "integrator", in = ["q"] }
 )toml");
   const Workspace workspace(made.program);
-  SourceWatch watch(made.program, workspace, false);
-  EXPECT_EQ(watch.looks(0, 3).size(), 1U);
+  const std::string file = "d.toml";
+  SourceWatch watch(made.program, workspace, false, file);
+  const std::vector<double> states = made.program.start();
+  EXPECT_EQ(watch.looks(0, 3, StandingStates(states)).size(), 1U);
 }
 
 TEST(Run, DoesNotDependOnTheNumberOfRows) {
