@@ -99,7 +99,7 @@ constexpr ParameterKind kIdealServo[] = {{"gain", kInfinity, kInfinity, kPlain, 
                                          {"initial", -1, 1, kValue}};
 constexpr ParameterKind kIdealDivider[] = {{"gain", kInfinity, kInfinity, kPlain, true},
                                            {"bandwidth", kInfinity, kInfinity, kRate, true}};
-constexpr OutputKind kBallOut[] = {{"height", kValue}, {"speed", kSlope}, {"bounce", kPlain}};
+constexpr OutputKind kBallOut[] = {{"height", kValue}, {"speed", kSlope}};
 constexpr ParameterKind kBall[] = {{"drop", 0.25, 2.25, kValue, true},
                                    {"g", 2, 10, {1, -2}, true},
                                    {"restitution", 0.25, 0.9, kPlain, true}};
