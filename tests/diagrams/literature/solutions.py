@@ -5,8 +5,8 @@
 
 By hand, with Debian's python3-scipy and python3-mpmath:  python3 solutions.py [--growth] [NAME…]
 
-A line that does not agree with the diagram is marked; the status is then 1. The truths are closed
-forms, mpmath, or SciPy's integrators at a relative tolerance of 1e-12 whose events are handled by hand (truth/tools.py).
+A line that does not agree with the diagram is marked; the status is then 1. The truths are closed forms, mpmath, or
+SciPy's integrators at a relative tolerance of 1e-12 whose events are handled by hand (truth/tools.py).
 
 How `within` was chosen, before any run: a run sums the errors of some hundred to some ten thousand steps, each below
 its tolerance, so 1000 times the tolerance times the size of the signal, and where a deviation grows on its way, times
@@ -20,8 +20,8 @@ import tomllib
 
 sys.dont_write_bytecode = True
 
-from truth import (arrivals, big, hysteresis, impacts, implicit, late, loops, mechanics, operation, pulses, seeds, slides,
-                   smooth, stiff, stores, switching)
+from truth import (arrivals, big, hysteresis, impacts, implicit, late, loops, mechanics, operation, pulses, seeds,
+                   slides, smooth, stiff, stores, switching)
 from truth.tools import latest_growth
 
 

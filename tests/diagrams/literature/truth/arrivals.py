@@ -7,8 +7,8 @@ _GAUSS = np.sqrt(np.pi)  # the area of exp(−t²)
 
 
 def bloch_gated_pulse():
-    """∫ of the product of two logistic functions, one up at 0 and one down at d, of width s: d/(1 − e^(−d/s)); by 40 times
-    that the Bloch vector turns."""
+    """∫ of the product of two logistic functions, one up at 0 and one down at d, of width s: d/(1 − e^(−d/s)); by 40
+    times that the Bloch vector turns."""
     angle = 40 * 0.05 / -np.expm1(-0.05 / 0.002)
     return {"w at 1000": -np.cos(angle), "v at 1000": -np.sin(angle), "v at 400": 0.0}
 

@@ -63,8 +63,8 @@ def ball_by_integrators():
 
 
 def two_tanks_zeno():
-    """J. Zhang and others 2001: the tank with the hose gains 0.25, the other loses 0.5 a second; the hose goes to the one
-    that is empty. Counted are the times at which it comes to the second tank."""
+    """J. Zhang and others 2001: the tank with the hose gains 0.25, the other loses 0.5 a second; the hose goes to the
+    one that is empty. Counted are the times at which it comes to the second tank."""
     levels, t, hose, n = [1.0, 1.0], 0.0, 0, 0
     while True:
         other = 1 - hose
@@ -79,8 +79,8 @@ def two_tanks_zeno():
 
 
 def two_neurons_locked():
-    """R. E. Mirollo and S. H. Strogatz 1990: x′ = 1.2 − x, from firing to firing; the one that is pushed above 1 fires
-    too, and from then on both are one."""
+    """R. E. Mirollo and S. H. Strogatz 1990: x′ = 1.2 − x, from firing to firing; the one that is pushed above 1
+    fires too, and from then on both are one."""
     v, fired, t, out = np.array([0.3, 0.0]), np.array([0, 0]), 0.0, {}
     after = lambda span: 1.2 - (1.2 - v) * np.exp(-span)
     while t < 30:

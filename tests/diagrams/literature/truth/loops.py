@@ -8,7 +8,7 @@ from .tools import Motion
 
 
 def peak_current_buck():
-    """In microseconds: up by 0.06 to 1, down by 0.04 until the next clock at 10 k. From 0.5 at first."""
+    """In microseconds: from 0.5 up by 0.06 to 1, down by 0.04 until the next clock; clocks at 0, 10, … 10090."""
     def at(t):
         valley = 0.5
         for _ in range(int(t // 10)):
@@ -53,7 +53,9 @@ def dickson_charge_pump():
             hit = motion.go(f, end, guards, max_step=0.05)
             if hit is None:
                 break
-            conducts[hit] = not conducts[hit]
+            turned = not conducts[hit]
+            conducts = drops(motion.y) > 0  # others may turn at the same time
+            conducts[hit] = turned
     return {f"q{k + 1} at 20.25": motion(20.25)[k] for k in range(3)}
 
 
@@ -75,7 +77,8 @@ def pwm_natural():
     triangle = lambda t: 2 / np.pi * np.arcsin(np.sin(100 * np.pi * t))
     above = lambda t: 0.8 * np.sin(2 * np.pi * t) - triangle(t)
     corners = [1e-12, *((k + 0.5) / 100 for k in range(203)), 2.03]
-    edges = [brentq(above, a, b, xtol=1e-16, rtol=1e-15) for a, b in zip(corners, corners[1:]) if above(a) * above(b) < 0]
+    edges = [brentq(above, a, b, xtol=1e-16, rtol=1e-15) for a, b in zip(corners, corners[1:])
+             if above(a) * above(b) < 0]
     side = -1 if above(1e-6) < 0 else 1
     i = on = t = n = 0.0
     for edge in [*edges, 2.03]:
@@ -160,7 +163,7 @@ def saturated_integrator():
     top, bottom = lambda t: 1.2 - 2 * (1 - np.sin(t)), lambda t: -1.2 + 2 * (1 + np.sin(t))
     y = lambda t: (min(2 * np.sin(t), 1.2) if t < np.pi / 2 else
                    max(top(t), -1.2) if (t - np.pi / 2) % (2 * np.pi) < np.pi else min(bottom(t), 1.2))
-    return {"y at 1": y(1), "x at 1": -10 * y(1), "y at 2": y(2), "y at 4.5": y(4.5), "y at 9": y(9), "y at 10": y(10)}
+    return {"x at 1": -10 * y(1)} | {f"y at {t}": y(t) for t in (1, 2, 4.5, 9, 10)}
 
 
 def saturating_oscillator():

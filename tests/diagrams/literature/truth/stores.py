@@ -22,7 +22,7 @@ def peaks_in_a_store():
     """x″ + 0.1 x′ + x = 0 from 1 has its peaks after whole turns."""
     turn = 2 * np.pi / np.sqrt(1 - 0.05**2)
     peak = lambda n: np.exp(-0.05 * n * turn)
-    return {"p at 8": peak(1), "q at 11": peak(1), "p at 57": peak(9), "q at 60": peak(9), "n at 60": float(60 // turn)}
+    return {"p at 8": peak(1), "q at 11": peak(1), "p at 57": peak(9), "q at 60": peak(9), "n at 60": 60 // turn}
 
 
 def highest_so_far():
