@@ -51,8 +51,9 @@ void examine(Verdict (*examined)(std::string_view bytes), std::uint64_t usual, d
     const Verdict verdict = examined(random_bytes(seed));
     const double seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
     EXPECT_LT(seconds, kMostSeconds) << "OBLIQUE_FUZZ_SEED=" << seed << " OBLIQUE_FUZZ_RUNS=1";
-    if (before <= kMostMemory)  // the first that needs more is told
+    if (before <= kMostMemory) {  // the first that needs more is told
       EXPECT_LT(memory_used(), kMostMemory) << "OBLIQUE_FUZZ_SEED=" << seed << " OBLIQUE_FUZZ_RUNS=1";
+    }
     EXPECT_TRUE(verdict.fault.empty())
         << "OBLIQUE_FUZZ_SEED=" << seed << " OBLIQUE_FUZZ_RUNS=1: " << verdict.fault;
     compared += verdict.compared ? 1 : 0;

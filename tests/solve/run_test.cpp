@@ -41,8 +41,9 @@ TEST(Run, SamplesOnAnExactGrid) {
   }
 }
 
-// The square of what goes beyond a dead zone that the source never leaves is 0 throughout, and is looked at
-// no closer than what varies: within the zone neither value nor slope has any width.
+// The square of what goes beyond a dead zone that the source never leaves is 0 throughout: within the zone
+// neither its value nor its slope has any width. It is looked at a few times for the edges of the zone, not a
+// million times for itself.
 TEST(SourceWatch, LooksNoCloserWhereNothingShows) {
   const Compiled made(R"toml(
 u = { type = "sine-source", amplitude = 0.25, frequency = 2 }
@@ -54,7 +55,7 @@ x = { type = "integrator", in = ["q"] }
   const std::string file = "d.toml";
   SourceWatch watch(made.program, workspace, false, file);
   const std::vector<double> states = made.program.start();
-  EXPECT_EQ(watch.looks(0, 3, StandingStates(states)).size(), 1U);
+  EXPECT_LE(watch.looks(0, 3, StandingStates(states)).size(), 16U);
 }
 
 TEST(Run, DoesNotDependOnTheNumberOfRows) {

@@ -15,23 +15,12 @@ namespace {
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// A switch that turns over without having left its surface by more than this, or than the errors of the
-/// states, is restless after a few turns: its surface then counts as zero within those errors. After many it
+/// A switch that turns over without having left its place, by more than rounding or the errors of the states,
+/// is restless after a few turns: its surface then counts as zero within those errors. After many it
 /// chatters.
-constexpr double kSamePlace = 10;  // roundings
 constexpr long kRestless = 5;
 constexpr long kMostTurns = 1000;
 
-/// Events that come sooner and sooner, this often in a row, pile up where the times left to them, at the
-/// present ratio, are together below this part of the run, and the ratio is not on its way to 1 (events that
-/// crowd together and thin out again: two balls between a heavy one and a wall). That is seen over intervals
-/// that become shorter by such a factor: 1 less the ratio is then no smaller than this part of what it was.
-constexpr int kMostShorter = 10;
-constexpr double kPilingUp = 1e-5;
-constexpr double kSteadyOver = 4;
-constexpr double kSteady = 0.75;
-
-constexpr int kMostRounds = 1000;  ///< of events that set each other off at one instant
 constexpr std::size_t kMostRecords = 1000;
 
 bool contains(const std::vector<std::uint32_t>& units, std::uint32_t unit) {
@@ -100,41 +89,6 @@ bool Switching::is_any_due() const {
       return true;
   }
   return false;
-}
-
-/// Within this of zero a surface is where it was.
-double Switching::place_size(std::size_t s) const {
-  return std::max(kSamePlace * search_.rounding(s), errors_[s]);
-}
-
-/// How far the surfaces are off zero by the errors that the solver leaves to the states: the most for some
-/// combinations of their signs, where the surfaces were evaluated last.
-void Switching::weigh_errors() {
-  constexpr std::uint64_t kTrials = 4;
-  constexpr double kErrorOfClock = 1e-13;  // it is a straight line to any method
-  std::vector<bool> clocks(program_.n_states(), false);
-  for (std::size_t c = 0; c < program_.clocks(); ++c) clocks[program_.source_states()[c]] = true;
-  std::vector<double> off(program_.n_states(), 0.0), rates(surfaces_.size()), still(surfaces_.size());
-  program_.surface_rates(off.data(), still.data(), workspace_);
-  std::fill(errors_.begin(), errors_.end(), 0.0);
-  for (std::uint64_t trial = 0; trial < kTrials; ++trial) {
-    std::uint64_t signs = 0x9E3779B97F4A7C15 * (trial + 1);
-    for (std::size_t i = 0; i < off.size(); ++i) {
-      const double own = program_.states()[i].tolerance;
-      double least = own > 0 ? own : absolute_tolerance_;
-      if (!reach_.empty() && reach_[i] > 0) least = std::min(least, tolerance_ * reach_[i]);
-      const double size = std::abs(states_[i]);
-      const double error = clocks[i] ? kErrorOfClock * (1 + size) : tolerance_ * size + least;
-      off[i] = trial == 0 || (signs >> 63) != 0 ? error : -error;
-      signs = 6364136223846793005 * signs + 1442695040888963407;
-    }
-    program_.surface_rates(off.data(), rates.data(), workspace_);
-    for (std::size_t s = 0; s < errors_.size(); ++s) {
-      const double error = std::abs(rates[s] - still[s]);
-      errors_[s] = std::max(errors_[s], std::isfinite(error) ? error : tolerance_);
-    }
-  }
-  weighed_ = true;
 }
 
 void Switching::record(double t, std::string what) {
@@ -272,103 +226,6 @@ bool Switching::settle_switches(double t, std::span<const double> x) {
   }
 }
 
-/// Whether an event piles up, so that the one that takes its place is to come. Throws SolveError where none
-/// does.
-bool Switching::piles_up(std::size_t event, double t) {
-  Pace& pace = paces_[event];
-  const double interval = t - pace.last;
-  pace.shorter = interval > 0 && interval < pace.interval ? pace.shorter + 1 : 0;
-  const double ratio = pace.interval > 0 ? interval / pace.interval : 1;
-  const double left = interval * ratio / (1 - ratio);  // Σ interval · ratioᵏ
-  if (pace.shorter == 0) {
-    pace.steady = false;
-    pace.longer = kInfinity;
-  } else if (pace.longer == kInfinity || kSteadyOver * interval < pace.longer) {
-    pace.steady = pace.longer < kInfinity && 1 - ratio > kSteady * pace.approach;
-    pace.longer = interval;
-    pace.approach = 1 - ratio;
-  }
-  if (pace.steady && pace.shorter >= kMostShorter && interval < kPilingUp * span_ &&
-      left < kPilingUp * span_ && t + left < end_) {
-    if (program_.events()[event].piling_up) return true;
-    throw SolveError(
-        SolveError::Kind::chatter, t,
-        {{file_, {}},
-         fmt::format("the events of '{}' come ever faster: at t = {:.9g} s again after {:.3g} s, and they "
-                     "pile up at t = {:.9g} s",
-                     program_.events()[event].block, t, interval, t + left),
-         {},
-         "end the run before, or tell the block what happens there: 'piling_up' beside 'set' in its "
-         "[[events]]"});
-  }
-  pace.last = t;
-  pace.interval = interval;
-  return false;
-}
-
-/// Serves all events whose conditions have become true; true where there were any.
-bool Switching::serve_events(double t, std::vector<double>& x, bool starting) {
-  std::vector<std::size_t> served;
-  for (std::size_t e = 0; e < held_.size(); ++e) {
-    const Event& event = program_.events()[e];
-    const bool holds = program_.condition(e, workspace_);
-    const bool comes = holds && (!held_[e] || event.repeats) && (!starting || event.at_start);
-    held_[e] = holds;
-    if (comes) served.push_back(e);
-  }
-  if (served.empty()) return false;
-  if (!program_.signals(t, x.data(), signals_.data(), workspace_))
-    throw loop_error(program_, workspace_.trouble(), t, file_);
-  struct Change {
-    const Event::Action* action;
-    double value;
-  };
-  std::vector<Change> changes;
-  for (std::size_t e : served) {
-    if (piles_up(e, t)) {
-      e = *program_.events()[e].piling_up;
-      record(t, program_.events()[e].block + ": its events pile up");
-    } else {
-      record(t, program_.events()[e].block);
-    }
-    const Event& event = program_.events()[e];
-    for (std::size_t a = 0; a < event.actions.size(); ++a) {
-      const double value = program_.action_value(e, a, workspace_);
-      if (!std::isfinite(value)) {
-        throw SolveError(
-            SolveError::Kind::blow_up, t,
-            {{file_, {}},
-             fmt::format("an event of '{}' would set a value that is no finite number at t = {:.6g} s",
-                         event.block, t),
-             {},
-             {}});
-      }
-      changes.push_back({&event.actions[a], value});
-    }
-  }
-  bool jumps = false;
-  for (const Change& change : changes) {
-    if (change.action->on_state) {
-      jumps = jumps || x[change.action->index] != change.value;
-      x[change.action->index] = change.value;
-    } else {
-      workspace_.set_memory(change.action->index, change.value);
-    }
-  }
-  begin_to_settle();
-  if (jumps) {
-    slid_.clear();
-    std::fill(rested_.begin(), rested_.end(), false);
-    std::fill(thresholds_.slack.begin(), thresholds_.slack.end(), 0.0);
-  }
-  // What was announced of surfaces that have moved away is past.
-  evaluate(t, x);
-  for (std::size_t s = 0; s < announced_.size(); ++s) {
-    if (jumps || std::abs(surfaces_[s]) > thresholds_.now[s]) announced_[s] = -1;
-  }
-  return true;
-}
-
 /// What lies on its surface is decided anew, and what slides is looked at as if it came there now.
 void Switching::begin_to_settle() {
   std::fill(decided_.begin(), decided_.end(), false);
@@ -468,99 +325,6 @@ void Switching::settle(double t, std::vector<double>& x) {
     const double wrong = closed ? -surfaces_[s] : surfaces_[s];
     if (wrong > thresholds_.now[s]) thresholds_.now[s] = thresholds_.slack[s] = 2 * wrong;
   }
-}
-
-/// Starts the states that start from signals. Those that start from each other in a circle begin where they
-/// agree, which is not what integrators do that take their values by turns.
-void Switching::take_starts(double t, std::vector<double>& x) {
-  constexpr long kMostRoundsInCircle = 100;
-  const long starts = std::count_if(program_.states().begin(), program_.states().end(),
-                                    [](const State& state) { return state.start_node.has_value(); });
-  std::vector<std::size_t> circle;
-  bool changes = true, finite = true;
-  for (long round = 0; changes && finite && round <= starts + kMostRoundsInCircle; ++round) {
-    if (!program_.signals(t, x.data(), signals_.data(), workspace_))
-      throw loop_error(program_, workspace_.trouble(), t, file_);
-    changes = false;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      const auto value = program_.start_value(i, workspace_);
-      if (!value || std::abs(*value - x[i]) <= 4 * kEpsilon * (1 + std::abs(*value))) continue;
-      changes = true;
-      finite = finite && std::isfinite(*value);
-      // A chain of starts is through after as many rounds as it is long.
-      if ((round > starts || !std::isfinite(*value)) &&
-          std::find(circle.begin(), circle.end(), i) == circle.end())
-        circle.push_back(i);
-      x[i] = *value;
-    }
-  }
-  if (circle.empty()) return;
-  std::sort(circle.begin(), circle.end());
-  std::vector<std::string> quoted;
-  for (const std::size_t i : circle) quoted.push_back(fmt::format("'{}'", program_.states()[i].name));
-  const std::string told = fmt::format("the initial values of {} follow from each other in a circle",
-                                       shortened(std::move(quoted)));
-  constexpr const char* kCut =
-      "give one of them a fixed 'initial', or cut the circle at the start with an electronic-switch";
-  if (changes)
-    throw SolveError(SolveError::Kind::no_rest, t, {{file_, {}}, told, "initial values that agree", kCut});
-  const State& first = program_.states()[circle.front()];
-  const std::string agreed =
-      fmt::format("{}: the run begins where they agree, at {} = {:.6g}", told, first.name, x[circle.front()]);
-  const bool is_told = std::any_of(warnings_.begin(), warnings_.end(),
-                                   [&](const Diagnostic& warning) { return warning.what == agreed; });
-  if (!is_told) warnings_.push_back({{file_, {}}, agreed, {}, kCut});
-}
-
-/// Brings servo loops to rest with all limits let loose, and tells whether they rest there, within them. An
-/// amplifier's guess may be far off only because the elements in its loop have not settled yet; at a limit it
-/// has no gain, and may stay there for good.
-bool Switching::rests_within_limits(double t, std::vector<double>& x,
-                                    const std::function<void()>& bring_to_rest) {
-  const std::vector<double> states = x;
-  const std::vector<double> memories(workspace_.memories().begin(), workspace_.memories().end());
-  bool any = false;
-  for (const Switch& made : program_.switches()) {
-    if (made.turning != Turning::limits || workspace_.memory(made.memory) == 0) continue;
-    workspace_.set_memory(made.memory, 0);
-    any = true;
-  }
-  if (!any) return false;
-  try {
-    bring_to_rest();
-    evaluate(t, x);
-    bool within = true;
-    for (std::size_t s = 0; s < surfaces_.size(); ++s)
-      within =
-          within && (program_.switches()[s].turning != Turning::limits || surfaces_[s] <= thresholds_.now[s]);
-    if (within) return true;
-  } catch (const SolveError&) {  // what lies between the limits has no rest; they may make one
-  }
-  x = states;
-  for (std::size_t m = 0; m < memories.size(); ++m) workspace_.set_memory(m, memories[m]);
-  return false;
-}
-
-void Switching::start(double t, std::vector<double>& x, const std::function<void()>& bring_to_rest) {
-  bool any_start = false;
-  for (const State& state : program_.states()) any_start = any_start || state.start_node.has_value();
-  bool starting = true, first = true;
-  for (int round = 0;; ++round) {
-    if (round > kMostRounds)
-      throw_chatter(records_.empty() ? "" : records_.back().what, "the start does not settle", t);
-    begin_to_settle();
-    if (starting && any_start) take_starts(t, x);
-    if (active() && settle_switches(t, x) && starting && any_start) continue;
-    if (!first || !rests_within_limits(t, x, bring_to_rest)) bring_to_rest();
-    first = false;
-    if (!active()) return;
-    begin_to_settle();
-    if (settle_switches(t, x)) continue;
-    if (!serve_events(t, x, starting)) break;
-    starting = false;
-  }
-  note_slides({}, {}, t);
-  slid_.clear();
 }
 
 double Switching::known_wait(double t, std::span<const double> x) {

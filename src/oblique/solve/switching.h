@@ -90,6 +90,7 @@ class Switching {
 
  private:
   using Units = std::vector<std::uint32_t>;
+  static constexpr int kMostRounds = 1000;  ///< of events that set each other off at one instant
 
   bool is_known(std::size_t s) const { return program_.switches()[s].rate.has_value(); }
   bool is_any_due() const;

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <oblique/solve/other_solutions.h>
+#include <oblique/solve/refinement.h>
+#include <oblique/solve/run.h>
+
+namespace oblique {
+
+/// What became apparent in one run, also in one that failed.
+struct Observed {
+  Unseen unseen;
+  long steps = 0;
+};
+
+/// One run from its start to its end: smooth stretches, and events between them. Its algebraic loops begin
+/// from `loop_start`. With `may_end_unseen` it ends early where it must be made again: it has met growth that
+/// it did not see, long ago. Throws SolveError. Not installed.
+Run run_once(const Program& program, const FlatDiagram& diagram, const RunOptions& options,
+             const LoopStart& loop_start, const Refinement& refinement, bool may_end_unseen,
+             Observed& observed);
+
+/// What the start of such a run leads to. Throws SolveError.
+StartOutcome start_once(const Program& program, const FlatDiagram& diagram, const RunOptions& options,
+                        const LoopStart& loop_start);
+
+}  // namespace oblique
