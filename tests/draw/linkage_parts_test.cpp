@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+// The parts that mechanisms are drawn of, each in a frame of its own [px], y down.
+#include <oblique/draw/linkage_parts.h>
+
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <oblique/mechanism/motion.h>
+#include <oblique/mechanism/read_mechanism.h>
+
+namespace oblique::test {
+namespace {
+
+using Eigen::Vector2d;
+using Carrier = LinkagePart::Carrier;
+
+constexpr double kScale = 2;  // px a millimetre
+
+Mechanism shipped(const std::string& name) {
+  return read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/" + name + ".toml");
+}
+
+std::vector<LinkagePart> parts_of(const Mechanism& mechanism) {
+  // Every third of a degree: the ends of a stroke are met within 10⁻⁵ of the crank's length.
+  return linkage_parts(mechanism, solve_motion(mechanism, 1081).configurations, kScale);
+}
+
+const LinkagePart& part_of(const std::vector<LinkagePart>& parts, Carrier carrier) {
+  const auto found = std::find_if(parts.begin(), parts.end(),
+                                  [&](const LinkagePart& part) { return part.carrier == carrier; });
+  EXPECT_NE(found, parts.end());
+  return *found;
+}
+
+std::vector<Vector2d> corners_of(const Mark& mark) {
+  std::vector<Vector2d> corners;
+  for (const Segment& segment : std::get<Outline>(mark.shape).segments) {
+    if (segment.kind != Segment::Kind::close) corners.push_back(segment.to);
+  }
+  return corners;
+}
+
+// The piston comes to rest at √((l+r)² − e²) and at √((l−r)² − e²) from the bearing, l = 150, r = 50, e = 40.
+TEST(LinkageParts, GuideReachesAsFarBeyondBothEndsOfTheStroke) {
+  const auto parts = parts_of(shipped("slider-crank-offset"));
+  const LinkagePart& guide = part_of(parts, Carrier::guide);
+  const double near = kScale * std::sqrt(100 * 100 - 40 * 40), far = kScale * std::sqrt(200 * 200 - 40 * 40);
+  const std::vector<Vector2d> line = corners_of(guide.marks.at(0)), ground = corners_of(guide.marks.at(1));
+  ASSERT_EQ(line.size(), 2U);
+  const double overhang = near - line[0].x();
+  EXPECT_GT(overhang, 15);  // half a block
+  EXPECT_NEAR(line[1].x(), far + overhang, 1e-3);
+  EXPECT_EQ(line[0].y(), -40 * kScale);  // up
+  EXPECT_EQ(line[1].y(), -40 * kScale);
+  // The ground is as long, under the block.
+  EXPECT_EQ(ground[0].x(), line[0].x());
+  EXPECT_EQ(ground[1].x(), line[1].x());
+  const Eigen::AlignedBox<double, 2> block = extent_of(part_of(parts, Carrier::slide).marks.at(0));
+  EXPECT_GE(ground[0].y(), line[0].y() + block.max().y() - 1);
+  EXPECT_LT(ground[0].y(), line[0].y() + block.max().y() + 2);
+}
+
+TEST(LinkageParts, GroundIsHatchedAllAlongOnItsLowerSide) {
+  const auto parts = parts_of(shipped("slider-crank-offset"));
+  for (const LinkagePart& part : parts) {
+    if (part.carrier != Carrier::guide && part.carrier != Carrier::frame) continue;
+    const auto ground = corners_of(part.marks.at(1)), strokes = corners_of(part.marks.at(2));
+    ASSERT_GE(strokes.size(), 8U);
+    ASSERT_EQ(strokes.size() % 2, 0U);
+    const double pitch = strokes[2].x() - strokes[0].x();
+    EXPECT_NEAR(strokes[0].x(), ground[0].x() + pitch, 1e-9);
+    EXPECT_GT(strokes.back().x() + 2 * pitch, ground[1].x());
+    for (std::size_t k = 0; k < strokes.size(); k += 2) {
+      EXPECT_NEAR(strokes[k].x(), strokes[0].x() + pitch * static_cast<double>(k / 2), 1e-9);
+      EXPECT_EQ(strokes[k].y(), ground[0].y());
+      EXPECT_LE(strokes[k].x(), ground[1].x() + 1e-6);
+      EXPECT_GE(strokes[k + 1].x(), ground[0].x() - 1e-9);
+      EXPECT_LT(strokes[k + 1].x(), strokes[k].x());
+      EXPECT_GT(strokes[k + 1].y(), strokes[k].y());
+    }
+  }
+}
+
+TEST(LinkageParts, SupportIsATriangleUnderItsPin) {
+  const auto parts = parts_of(shipped("four-bar"));
+  const LinkagePart& support = part_of(parts, Carrier::frame);
+  const auto corners = corners_of(support.marks.at(0)), ground = corners_of(support.marks.at(1));
+  ASSERT_EQ(corners.size(), 3U);
+  EXPECT_EQ(corners[0], Vector2d(0, 0));
+  EXPECT_EQ(corners[1], Vector2d(-corners[2].x(), corners[2].y()));
+  EXPECT_GT(corners[2].x(), 0);
+  EXPECT_GT(corners[2].y(), 0);
+  EXPECT_EQ(ground[0], Vector2d(-ground[1].x(), corners[1].y()));
+  EXPECT_EQ(ground[1].y(), corners[1].y());
+  EXPECT_GT(ground[1].x(), corners[2].x());
+}
+
+}  // namespace
+}  // namespace oblique::test
