@@ -91,7 +91,7 @@ void show_the_fault(JudgedPatch& patched) {
   RunSettings& run = patched.diagram.run;
   const Judgement& judgement = patched.judgement;
   run.settle = false;
-  if (!judgement.grows_from || !std::isfinite(patched.options.gain)) return;
+  if (!judgement.grows_from) return;
   run.until = std::min(run.until, *judgement.grows_from + std::log(patched.options.gain) / judgement.growth);
 }
 
