@@ -13,6 +13,7 @@
 #include <oblique/synthesis/fitted_text.h>
 #include <oblique/synthesis/least_squares.h>
 #include <oblique/synthesis/path_problem.h>
+#include <oblique/synthesis/spread_point.h>
 #include <oblique/synthesis/synthesis_error.h>
 
 namespace oblique {
@@ -42,20 +43,6 @@ PathError error_of(const VectorXd& residuals) {
 [[noreturn]] void fail(SynthesisError::Kind kind, const std::string& file, std::string what,
                        std::string expected, std::string remedy) {
   throw SynthesisError(kind, Diagnostic{{file, {}}, std::move(what), std::move(expected), std::move(remedy)});
-}
-
-/// Points k = 1, 2, … of the unit cube, spread evenly however many are taken: the additive recurrence
-/// frac(½ + k/gⁱ), g the root of gⁿ⁺¹ = g + 1 (M. Roberts, "The unreasonable effectiveness of quasirandom
-/// sequences", 2018).
-VectorXd spread_point(Index dimensions, int k) {
-  double g = 2;
-  for (int i = 0; i < 60; ++i) g = std::pow(1 + g, 1 / static_cast<double>(dimensions + 1));
-  VectorXd point(dimensions);
-  for (Index i = 0; i < dimensions; ++i) {
-    const double x = 0.5 + k * std::pow(1 / g, static_cast<double>(i + 1));
-    point[i] = x - std::floor(x);
-  }
-  return point;
 }
 
 class Fitter {
