@@ -165,6 +165,28 @@ crank = { turns = "AB", about = "A", speed = 1 }
                     HasSubstr("test.toml:11:1: body 'CX' can move freely (mobility 1 after the drives)")));
 }
 
+// The four-bar stands still without K, which has 3 freedoms and 6 conditions: three too many, of two hinges.
+TEST(Structure, TellsOfAHingeThatIsTooMuchOnce) {
+  const auto [kind, text] = refusal(R"([frame]
+A = [0, 0]
+D = [4, 0]
+G = [2, 0]
+[bodies]
+AB = { points = ["A", "B"], length = 1 }
+BC = { points = ["B", "C"], length = 3.5, marks = { M = [1, 1] } }
+CD = { points = ["C", "D"], length = 3, marks = { N = [1, 1] } }
+K  = { points = ["G", "M"], length = 1, marks = { N = [1, 1] } }
+FX = { points = ["F", "X"], length = 1 }
+[drives]
+crank = { turns = "AB", about = "A", speed = 1 }
+)");
+  EXPECT_EQ(kind, MechanismError::Kind::mobility);
+  for (const std::string hinge : {"its hinge at 'M' is too much", "its hinge at 'N' is too much"}) {
+    EXPECT_NE(text.find(hinge), std::string::npos) << text;
+    EXPECT_EQ(text.find(hinge), text.rfind(hinge)) << text;
+  }
+}
+
 // The ternary link BCD on three leads, one of them from the crank OA (method of 003_69ea068b7b221c3d.txt).
 TEST(Structure, KnowsATriad) {
   const Structure triad = find_groups(mechanism(R"([frame]
