@@ -96,6 +96,8 @@ class Examination {
                     bool exactly, bool is_scaled = false) {
     if (other.end == End::over_budget) return "";
     if (is_scaled && (leaves_the_machine(base_) || leaves_the_machine(other))) return "";
+    // Of two things that are wrong, the order decides which is met first.
+    if (!exactly && other.end == End::refused && base_.end == End::refused) return "";
     if (other.end != base_.end || other.says != base_.says) {
       if (!exactly && (is_pushed_by_rounding(base_) || is_pushed_by_rounding(other))) return "";
       if (!exactly && (chooses_blindly(base_) || chooses_blindly(other))) return "";

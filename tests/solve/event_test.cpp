@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Switches, and what they set off, against closed forms.
+#include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -103,6 +105,27 @@ TEST(Events, BallThatPilesUpGoesOverIntoWhatItsBlockSays) {
   for (std::size_t row = 0; row <= last; ++row) {
     if (result.trajectory.at(row, 0) > std::sqrt(0.2) * 3) {
       EXPECT_EQ(result.trajectory.at(row, 1), 0);
+    }
+  }
+}
+
+// Where each flight is a tenth of the one before, the seventh is within the errors of the height: it rests
+// before that.
+TEST(Events, BallThatPilesUpQuicklyDoesNotFallThroughTheFloor) {
+  std::string resting = kBall;
+  resting.replace(resting.find("count = 0\n"), 10, "count = 0\nrests = 0\n");
+  resting.replace(resting.find("\"-g\""), 4, "\"if(rests == 1, 0, -g)\"");
+  const BlockLibrary library =
+      shipped_blocks_and("ball", resting + "piling_up = { x = 0, v = 0, rests = 1 }\n");
+  for (const double e : {0.05, 0.1, 0.25, 0.3}) {
+    const Compiled made(fmt::format("b = {{ type = \"ball\", e = {} }}", e), "", library);
+    for (const double tolerance : {1e-6, 1e-8}) {
+      const auto result = run_of(made, {.until = 8, .tolerance = tolerance, .samples = 501});
+      const std::size_t last = result.trajectory.rows() - 1;
+      double least = 0;
+      for (std::size_t row = 0; row <= last; ++row) least = std::min(least, result.trajectory.at(row, 1));
+      EXPECT_GE(least, -1e-8) << e << ' ' << tolerance;  // an event is as exact as the height
+      EXPECT_EQ(result.trajectory.at(last, 1), 0) << e << ' ' << tolerance;
     }
   }
 }

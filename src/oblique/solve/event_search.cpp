@@ -26,6 +26,7 @@ constexpr double kMostLooks = 1e6;  ///< in a step
 constexpr double kEdge = 1e-5;
 
 constexpr int kDeepest = 60;
+constexpr int kMostSplits = 1000;  ///< of a part between two looks: more is asked for by rounding alone
 
 constexpr double kRounding = 1e-13;  ///< of what a switch compares, or of a machine unit
 
@@ -214,6 +215,7 @@ std::optional<EventSearch::Found> EventSearch::between(const Look& from, const L
     // Half a part has a sixteenth of the error of a cubic; twice that to be safe.
     errors[k] = std::abs(cubic.value(0.5) - middle.overdue[k]) / 8;
   }
+  splits_left_ = kMostSplits;
   if (auto found = split(from, middle, errors, 0, solution)) return found;
   for (double& value : middle.overdue) value = std::min(value, 0.0);
   return split(middle, to, errors, 0, solution);
@@ -225,7 +227,7 @@ std::optional<EventSearch::Found> EventSearch::split(const Look& from, const Loo
                                                      const Interpolant& solution) {
   const double length = to.time - from.time;
   const bool due = is_due(to);
-  if (depth > kDeepest || length <= resolution(to.time)) {
+  if (depth > kDeepest || --splits_left_ < 0 || length <= resolution(to.time)) {
     if (due) return locate(from, to, solution);
     return std::nullopt;
   }

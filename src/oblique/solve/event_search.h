@@ -81,6 +81,7 @@ class EventSearch {
   double span_;
   const std::string& file_;
   double check_interval_;
+  int splits_left_ = 0;
   double reached_ = 0;  ///< [s] where the surfaces were evaluated last
   double looks_left_ = std::numeric_limits<double>::infinity();
   std::vector<double> states_, rates_, surfaces_, surface_rates_, excursions_;

@@ -144,7 +144,8 @@ class Switching {
   struct Pace {
     double last = 0;
     double interval = 0;
-    int shorter = 0;  ///< how often in a row the interval has become shorter
+    double ratio = 1;  ///< of the interval to the one before
+    int shorter = 0;   ///< how often in a row the interval has become shorter
     /// An interval of the row, 1 less the ratio of it to the one before, and whether that is still so.
     double longer = 0, approach = 0;
     bool steady = false;

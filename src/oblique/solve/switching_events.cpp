@@ -21,6 +21,10 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// that become shorter by such a factor: 1 less the ratio is then no smaller than this part of what it was.
 constexpr int kMostShorter = 10;
 constexpr double kPilingUp = 1e-5;
+/// Three intervals are enough where they shorten this quickly, and their two ratios are the same to such a
+/// part of them: they are soon within the errors of the states, where no event can be told.
+constexpr double kQuickly = 0.7;
+constexpr double kSameRatio = 0.01;
 constexpr double kSteadyOver = 4;
 constexpr double kSteady = 0.75;
 
@@ -42,8 +46,11 @@ bool Switching::piles_up(std::size_t event, double t) {
     pace.longer = interval;
     pace.approach = 1 - ratio;
   }
-  if (pace.steady && pace.shorter >= kMostShorter && interval < kPilingUp * span_ &&
-      left < kPilingUp * span_ && t + left < end_) {
+  const bool quick =
+      pace.shorter > 1 && ratio < kQuickly && std::abs(ratio - pace.ratio) < kSameRatio * ratio;
+  pace.ratio = ratio;
+  const bool many = pace.steady && pace.shorter >= kMostShorter && interval < kPilingUp * span_;
+  if ((many || quick) && left < kPilingUp * span_ && t + left < end_) {
     if (program_.events()[event].piling_up) return true;
     throw SolveError(
         SolveError::Kind::chatter, t,
