@@ -44,6 +44,7 @@ void Switching::take_starts(double t, std::vector<double>& x) {
   if (circle.empty()) return;
   std::sort(circle.begin(), circle.end());
   std::vector<std::string> quoted;
+  quoted.reserve(circle.size());
   for (const std::size_t i : circle) quoted.push_back(fmt::format("'{}'", program_.states()[i].name));
   const std::string told = fmt::format("the initial values of {} follow from each other in a circle",
                                        shortened(std::move(quoted)));
