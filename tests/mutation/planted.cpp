@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Linked to every program of a build that holds faults. OBLIQUE_PLANTED is the number of the one that is let loose, and
-// OBLIQUE_PLANTED_REACHED names a file with a byte for each, which becomes 1 where it is come by: mapped, so that
-// nothing is lost where a program ends by itself, and so that what it starts marks it too.
+// Linked to every program of a build that holds faults. OBLIQUE_PLANTED is the number of the one that is let
+// loose, and OBLIQUE_PLANTED_REACHED names a file with a byte for each, which becomes 1 where it is come by:
+// mapped, so that nothing is lost where a program ends by itself, and so that what it starts marks it too.
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <unistd.h>

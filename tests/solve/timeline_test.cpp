@@ -94,6 +94,16 @@ TEST(Timeline, StartsThatFollowFromEachOtherAreToldOf) {
   }
 }
 
+TEST(Timeline, AStartThatIsNoFiniteNumberIsNoCircle) {
+  const Compiled made(
+      "s = { type = \"time-function\", formula = \"1/time\" }\n"
+      "x = { type = \"integrator\", in = [], start = \"s\" }\n");
+  EXPECT_THAT(
+      message_of<SolveError>([&] { run_of(made, {.until = 1}); }),
+      HasSubstr(
+          "'x' would start at inf, which the signals at its start give; expected a finite initial value"));
+}
+
 TEST(Timeline, AStartFromAChainOfSignalsIsNoCircle) {
   std::string blocks =
       "one = { type = \"constant\", value = 0.5 }\nx9 = { type = \"integrator\", in = [], start = \"one\" "

@@ -99,8 +99,9 @@ class Runner {
     return std::move(sampler_.result);
   }
 
-  /// After `run`, also one that failed: how many it took, and what it did not see.
+  /// After `run`, also one that failed: the steps that it took.
   long steps() const { return steps_; }
+  /// And what it did not see.
   Unseen unseen() const {
     Unseen unseen;
     if (growth_) unseen.growth = growth_->found();

@@ -31,13 +31,21 @@ void Switching::take_starts(double t, std::vector<double>& x) {
     changes = false;
     for (std::size_t i = 0; i < x.size(); ++i) {
       const auto value = program_.start_value(i, workspace_);
-      if (!value || std::abs(*value - x[i]) <= 4 * kEpsilon * (1 + std::abs(*value))) continue;
+      if (!value) continue;
+      const bool same = std::abs(*value - x[i]) <= 4 * kEpsilon * (1 + std::abs(*value));
+      if (same && std::isfinite(*value)) continue;
       changes = true;
       finite = finite && std::isfinite(*value);
       // A chain of starts is through after as many rounds as it is long.
-      if ((round > starts || !std::isfinite(*value)) &&
-          std::find(circle.begin(), circle.end(), i) == circle.end())
-        circle.push_back(i);
+      if (round > starts && std::find(circle.begin(), circle.end(), i) == circle.end()) circle.push_back(i);
+      if (!finite && circle.empty()) {
+        throw SolveError(SolveError::Kind::blow_up, t,
+                         {{file_, {}},
+                          fmt::format("'{}' would start at {}, which the signals at its start give",
+                                      program_.states()[i].name, *value),
+                          "a finite initial value",
+                          "look for a division by zero or a logarithm of zero before it"});
+      }
       x[i] = *value;
     }
   }
