@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -26,109 +25,6 @@ BlockLibrary library_with_sign() {
 
 // --- location
 // -------------------------------------------------------------------------------------------------------
-
-constexpr const char* kBall = R"toml([outputs]
-x = {}
-v = {}
-impacts = {}
-[parameters]
-e = { default = 0.9 }
-g = { default = 10 }
-height = { default = 1 }
-[memories]
-count = 0
-[equations]
-"der(x)" = "v"
-"der(v)" = "-g"
-impacts = "count"
-[start]
-x = "height"
-v = 0
-[[events]]
-when = "x < 0 and v < 0"
-set = { x = 0, v = "-e*v", count = "count + 1" }
-)toml";
-
-/// Time of impact k of a ball let fall from height h: the flights shorten by e each time.
-double impact_time(int k, double h, double e, double g) {
-  const double fall = std::sqrt(2 * h / g);
-  double t = fall;
-  for (int i = 1; i < k; ++i) t += 2 * fall * std::pow(e, i);
-  return t;
-}
-
-TEST(Events, BouncingBallMeetsTheTwentiethImpact) {
-  const BlockLibrary library = shipped_blocks_and("ball", kBall);
-  const Compiled made("b = { type = \"ball\" }", "", library);
-  const auto result = run_of(made, {.until = 8.2, .tolerance = 1e-10, .samples = 11});
-  ASSERT_GE(result.events.size(), 20U);
-  std::vector<double> impacts;
-  for (const EventRecord& event : result.events) {
-    if (event.what == "b") impacts.push_back(event.time);
-  }
-  ASSERT_GE(impacts.size(), 20U);
-  for (int k = 1; k <= 20; ++k) {  // asked: 1e-8; the tolerance of 1e-10 a flight, over 20 flights
-    EXPECT_NEAR(impacts[static_cast<std::size_t>(k) - 1], impact_time(k, 1, 0.9, 10), 1e-8) << k;
-  }
-}
-
-TEST(Events, BallThatPilesUpIsEndedByName) {
-  const BlockLibrary library = shipped_blocks_and("ball", kBall);
-  const Compiled made("b = { type = \"ball\", e = 0.5 }", "", library);
-  const std::string message = message_of<SolveError>([&] { run_of(made, {.until = 5}); });
-  EXPECT_THAT(message, HasSubstr("the events of 'b' come ever faster"));
-  // Σ: fall · (1 + 2e/(1 − e)) = √0.2 · 3
-  EXPECT_THAT(message, HasSubstr("they pile up at t = 1.3416"));
-  EXPECT_THAT(
-      message,
-      HasSubstr("remedy: end the run before, or tell the block what happens there: 'piling_up' beside "
-                "'set' in its [[events]]"));
-}
-
-// A block that says what comes after rests there: to what is left of its bounces, 1e-5 of the run, and a
-// speed of g times that, half of a flight.
-TEST(Events, BallThatPilesUpGoesOverIntoWhatItsBlockSays) {
-  std::string resting = kBall;
-  resting.replace(resting.find("count = 0\n"), 10, "count = 0\nrests = 0\n");
-  resting.replace(resting.find("\"-g\""), 4, "\"if(rests == 1, 0, -g)\"");
-  const BlockLibrary library =
-      shipped_blocks_and("ball", resting + "piling_up = { x = 0, v = 0, rests = 1 }\n");
-  const Compiled made("b = { type = \"ball\", e = 0.5 }", "", library);
-  const auto result = run_of(made, {.until = 5, .tolerance = 1e-10, .samples = 501});
-  ASSERT_FALSE(result.events.empty());
-  EXPECT_EQ(result.events.back().what, "b: its events pile up");
-  EXPECT_NEAR(result.events.back().time, std::sqrt(0.2) * 3, 5e-5);
-  EXPECT_LT(result.events.back().time, std::sqrt(0.2) * 3);
-  const std::size_t last = result.trajectory.rows() - 1;
-  EXPECT_EQ(result.trajectory.at(last, 1), 0);
-  EXPECT_EQ(result.trajectory.at(last, 2), 0);
-  for (std::size_t row = 0; row <= last; ++row) {
-    if (result.trajectory.at(row, 0) > std::sqrt(0.2) * 3) {
-      EXPECT_EQ(result.trajectory.at(row, 1), 0);
-    }
-  }
-}
-
-// Where each flight is a tenth of the one before, the seventh is within the errors of the height: it rests
-// before that.
-TEST(Events, BallThatPilesUpQuicklyDoesNotFallThroughTheFloor) {
-  std::string resting = kBall;
-  resting.replace(resting.find("count = 0\n"), 10, "count = 0\nrests = 0\n");
-  resting.replace(resting.find("\"-g\""), 4, "\"if(rests == 1, 0, -g)\"");
-  const BlockLibrary library =
-      shipped_blocks_and("ball", resting + "piling_up = { x = 0, v = 0, rests = 1 }\n");
-  for (const double e : {0.05, 0.1, 0.25, 0.3}) {
-    const Compiled made(fmt::format("b = {{ type = \"ball\", e = {} }}", e), "", library);
-    for (const double tolerance : {1e-6, 1e-8}) {
-      const auto result = run_of(made, {.until = 8, .tolerance = tolerance, .samples = 501});
-      const std::size_t last = result.trajectory.rows() - 1;
-      double least = 0;
-      for (std::size_t row = 0; row <= last; ++row) least = std::min(least, result.trajectory.at(row, 1));
-      EXPECT_GE(least, -1e-8) << e << ' ' << tolerance;  // an event is as exact as the height
-      EXPECT_EQ(result.trajectory.at(last, 1), 0) << e << ' ' << tolerance;
-    }
-  }
-}
 
 TEST(Events, RelayOscillatorKeepsItsPeriodOverTwoThousandSwitchings) {
   // x'' = −sign x from x = 1, x' = 0: parabolas of which each quarter takes √2.

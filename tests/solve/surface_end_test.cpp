@@ -49,6 +49,32 @@ x = { type = "integrator", in = ["c"], initial = 0.1 }
             "end the run before, or add the disturbance that decides it on the machine");
 }
 
+// dx/dt = sign(x) from x = 0 is ±t as well as 0: what comes out is a solution, and it is told that it is not
+// the only one. From beside it, where it is crossed, and where it is driven to, nothing is told.
+TEST(Switches, OnASurfaceThatBothSidesLeaveAreToldOf) {
+  const auto made = [](double initial, const std::string& in) {
+    return Compiled(
+        fmt::format("c = {{ type = \"sign\", in = \"x\" }}\none = {{ type = \"constant\" }}\n"
+                    "x = {{ type = \"integrator\", in = [{}], initial = {} }}\n",
+                    in, initial));
+  };
+  const oblique::Run result = run_of(made(0, "\"c\""), {.until = 2, .samples = 3});
+  EXPECT_NEAR(std::abs(row_values(result, "x").back()), 2,
+              1e-9);  // a straight line, to rounding of the steps
+  ASSERT_EQ(result.warnings.size(), 1U);
+  EXPECT_EQ(
+      result.warnings.front().what,
+      "'c' (in > 0) stands on its surface at t = 0 s, and both of its sides drive away from it: nothing "
+      "decides to which side it goes");
+  EXPECT_EQ(
+      result.warnings.front().remedy,
+      "begin a little to the side that is meant, or add the disturbance that decides it on the machine");
+  EXPECT_TRUE(run_of(made(0.01, "\"c\"")).warnings.empty());
+  EXPECT_TRUE(run_of(made(0, "\"c\", \"2*one\"")).warnings.empty());
+  EXPECT_TRUE(run_of(made(-0.5, "\"0.5*c\", \"one\"")).warnings.empty());
+  EXPECT_TRUE(run_of(made(0, "\"-c\"")).warnings.empty());
+}
+
 // Two switches lie on their surfaces at the start. Only that of the absolute value moves off, so only it may
 // turn.
 TEST(Switches, StayWhereTheyAreOnASurfaceThatRests) {

@@ -185,6 +185,16 @@ bool Positions::keeps(std::uint32_t bits, std::uint32_t preferred) const {
   return true;
 }
 
+/// Where both sides of a surface lead away from it, either is a solution.
+void Positions::note_undecided(std::uint32_t bits) {
+  for (std::size_t u = 0; u < units_.size(); ++u) {
+    const std::uint32_t other = bits ^ (1U << u);
+    if (!jumps(u) || !is_independent(1U << u) || !trials_[other].valid) continue;
+    const int side = has(bits, u) ? 1 : -1;
+    if (direction(bits, u) == side && direction(other, u) == -side) undecided_.push_back(units_[u]);
+  }
+}
+
 /// Whether the surfaces of these units do not depend on their own positions.
 bool Positions::is_independent(std::uint32_t sliding) const {
   std::vector<std::uint32_t> units;
@@ -223,6 +233,7 @@ bool Positions::try_slide(std::uint32_t sliding, std::uint32_t bits, double t, s
 bool Positions::choose(const std::vector<std::uint32_t>& units, std::uint32_t preferred, double t,
                        std::span<const double> x) {
   units_ = units;
+  undecided_.clear();
   if (units_.size() > kMostUnits) return false;
   before_.assign(workspace_.memories().begin(), workspace_.memories().end());
   std::uint32_t present = 0;
@@ -241,7 +252,9 @@ bool Positions::choose(const std::vector<std::uint32_t>& units, std::uint32_t pr
     if (!strictly && any_jump) continue;
     for (const bool keeping : {true, false}) {  // else the order of the units would decide
       for (const std::uint32_t bits : nearest) {
-        if ((!keeping || keeps(bits, preferred)) && stands(bits, strictly)) return place(bits, t, x);
+        if ((keeping && !keeps(bits, preferred)) || !stands(bits, strictly)) continue;
+        note_undecided(bits);
+        return place(bits, t, x);
       }
     }
   }

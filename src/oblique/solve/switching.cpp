@@ -52,6 +52,7 @@ Switching::Switching(const Program& program, Workspace& workspace, double span, 
       announced_(program.switches().size(), -1),
       errors_(program.switches().size(), 0),
       held_(program.events().size(), false),
+      at_edge_(program.events().size(), false),
       decided_(program.switch_structure().members.size(), false),
       rested_(program.switches().size(), false),
       unrest_(program.switches().size()),
@@ -190,6 +191,13 @@ void Switching::decide(Units units, double t, std::span<const double> x) {
       throw_chatter(first.block, "no position of its switch agrees with the signals that follow from it", t);
     }
   }
+  for (const std::uint32_t unit : positions_.undecided()) {
+    if (contains(slid_, unit)) continue;  // which is told apart
+    const auto& members = structure.members[unit];
+    const bool came =
+        std::any_of(members.begin(), members.end(), [&](std::uint32_t m) { return announced_[m] >= 0; });
+    if (!came) warn_of_no_side(unit, t);
+  }
   for (std::size_t s = 0; s < before.size(); ++s) {  // those that turned over count
     const double position = workspace_.memory(program_.switches()[s].memory);
     workspace_.set_memory(program_.switches()[s].memory, before[s]);
@@ -235,20 +243,33 @@ void Switching::begin_to_settle() {
   slide_.end();
 }
 
-/// Tells that rounding decides where the solution goes. Once for each unit: it may come back.
-void Switching::warn_of_repulsion(std::uint32_t unit, double t) {
+/// A warning about a unit that is the same each time but for what follows `what`; once for each unit: it may
+/// come back.
+void Switching::warn_once(std::uint32_t unit, const char* what, const std::string& rest, const char* remedy) {
   const Switch& s = program_.switches()[program_.switch_structure().members[unit].front()];
-  const std::string what =
-      fmt::format("'{}' ({}) leaves the surface that it slides along", s.block, s.comparison);
+  const std::string begin = fmt::format("'{}' ({}) {}", s.block, s.comparison, what);
   const bool told = std::any_of(warnings_.begin(), warnings_.end(),
-                                [&](const Diagnostic& warning) { return warning.what.starts_with(what); });
-  if (told) return;
-  warnings_.push_back({{file_, {}},
-                       what + fmt::format(" at t = {:.9g} s, since both of its sides drive away from it from "
-                                          "then on: rounding decides to which side it goes",
-                                          t),
-                       {},
-                       "end the run before, or add the disturbance that decides it on the machine"});
+                                [&](const Diagnostic& warning) { return warning.what.starts_with(begin); });
+  if (!told) warnings_.push_back({{file_, {}}, begin + rest, {}, remedy});
+}
+
+/// Tells that rounding decides where the solution goes.
+void Switching::warn_of_repulsion(std::uint32_t unit, double t) {
+  warn_once(unit, "leaves the surface that it slides along",
+            fmt::format(" at t = {:.9g} s, since both of its sides drive away from it from then on: rounding "
+                        "decides to which side it goes",
+                        t),
+            "end the run before, or add the disturbance that decides it on the machine");
+}
+
+/// Tells that nothing decides where the solution goes.
+void Switching::warn_of_no_side(std::uint32_t unit, double t) {
+  warn_once(
+      unit, "stands on its surface",
+      fmt::format(" at t = {:.9g} s, and both of its sides drive away from it: nothing decides to which "
+                  "side it goes",
+                  t),
+      "begin a little to the side that is meant, or add the disturbance that decides it on the machine");
 }
 
 /// Tells which slides have begun and ended since `before`, and what they hide.
@@ -308,6 +329,7 @@ void Switching::settle(double t, std::vector<double>& x) {
     record(t, fmt::format("{}: {} {}", program_.switches()[s].block, program_.switches()[s].comparison,
                           announced_[s] > 0 ? "from now on" : "no longer"));
   }
+  std::fill(at_edge_.begin(), at_edge_.end(), false);
   for (int round = 0;; ++round) {
     settle_switches(t, x);
     if (!serve_events(t, x, false)) break;

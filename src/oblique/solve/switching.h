@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <oblique/network/program.h>
+#include <oblique/solve/event_pace.h>
 #include <oblique/solve/event_search.h>
 #include <oblique/solve/interpolant.h>
 #include <oblique/solve/positions.h>
@@ -81,10 +82,12 @@ class Switching {
   /// What could not be seen.
   const std::vector<Diagnostic>& warnings() const { return warnings_; }
 
-  /// What must be kept to go on later: whether each condition held.
+  /// What must be kept of the events to go on later: whether each condition held, and how quickly each comes.
   const std::vector<bool>& conditions() const { return held_; }
-  void restore(std::vector<bool> conditions) {
+  const std::vector<EventPace>& paces() const { return paces_; }
+  void restore(std::vector<bool> conditions, std::vector<EventPace> paces) {
     held_ = std::move(conditions);
+    paces_ = std::move(paces);
     resumed_ = true;
   }
 
@@ -102,13 +105,16 @@ class Switching {
   void decide(Units units, double t, std::span<const double> x);
   void begin_to_settle();
   void note_slides(const Units& before, const Units& repelled, double t);
+  void warn_once(std::uint32_t unit, const char* what, const std::string& rest, const char* remedy);
   void warn_of_repulsion(std::uint32_t unit, double t);
+  void warn_of_no_side(std::uint32_t unit, double t);
   void take_starts(double t, std::vector<double>& x);
   bool rests_within_limits(double t, std::vector<double>& x, const std::function<void()>& bring_to_rest);
   bool serve_events(double t, std::vector<double>& x, bool starting);
   void turn(std::size_t s, double position, double t);
   void record(double t, std::string what);
   bool piles_up(std::size_t event, double t);
+  bool is_at_edge(std::size_t event, double t, std::span<const double> x);
   [[noreturn]] void throw_chatter(const std::string& block, const std::string& what, double t) const;
 
   const Program& program_;
@@ -129,10 +135,12 @@ class Switching {
   std::vector<double> errors_;  ///< of the surfaces, where a switch turned over last
   bool weighed_ = false;        ///< whether they are those of `states_`
   std::vector<bool> held_;      ///< whether the condition of each event held when it was last looked at
-  std::vector<bool> decided_;   ///< of each unit: by where it drifts, once in a `settle`
-  Units slid_;                  ///< what slid when the settling began
-  std::vector<bool> rested_;    ///< the surfaces that then stayed at zero along with it
-  bool resumed_ = false;        ///< from a state that does not say what slid
+  std::vector<bool>
+      at_edge_;  ///< of each event: it came at this instant, and its condition may be about to hold again
+  std::vector<bool> decided_;  ///< of each unit: by where it drifts, once in a `settle`
+  Units slid_;                 ///< what slid when the settling began
+  std::vector<bool> rested_;   ///< the surfaces that then stayed at zero along with it
+  bool resumed_ = false;       ///< from a state that does not say what slid
 
   /// How often a switch has turned over without leaving its place.
   struct Unrest {
@@ -140,17 +148,7 @@ class Switching {
     long turns = 0;
   };
   std::vector<Unrest> unrest_;
-  /// How quickly an event comes again: ever faster is how it piles up (Zeno).
-  struct Pace {
-    double last = 0;
-    double interval = 0;
-    double ratio = 1;  ///< of the interval to the one before
-    int shorter = 0;   ///< how often in a row the interval has become shorter
-    /// An interval of the row, 1 less the ratio of it to the one before, and whether that is still so.
-    double longer = 0, approach = 0;
-    bool steady = false;
-  };
-  std::vector<Pace> paces_;
+  std::vector<EventPace> paces_;
   std::vector<EventRecord> records_;
   long count_ = 0;
   std::vector<Diagnostic> warnings_;

@@ -4,66 +4,53 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <fmt/format.h>
 
 #include <oblique/solve/solve_error.h>
 
 namespace oblique {
-namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-/// Events that come sooner and sooner, this often in a row, pile up where the times left to them, at the
-/// present ratio, are together below this part of the run, and the ratio is not on its way to 1 (events that
-/// crowd together and thin out again: two balls between a heavy one and a wall). That is seen over intervals
-/// that become shorter by such a factor: 1 less the ratio is then no smaller than this part of what it was.
-constexpr int kMostShorter = 10;
-constexpr double kPilingUp = 1e-5;
-/// Three intervals are enough where they shorten this quickly, and their two ratios are the same to such a
-/// part of them: they are soon within the errors of the states, where no event can be told.
-constexpr double kQuickly = 0.7;
-constexpr double kSameRatio = 0.01;
-constexpr double kSteadyOver = 4;
-constexpr double kSteady = 0.75;
-
-}  // namespace
 
 /// Whether an event piles up, so that the one that takes its place is to come. Throws SolveError where none
 /// does.
 bool Switching::piles_up(std::size_t event, double t) {
-  Pace& pace = paces_[event];
-  const double interval = t - pace.last;
-  pace.shorter = interval > 0 && interval < pace.interval ? pace.shorter + 1 : 0;
-  const double ratio = pace.interval > 0 ? interval / pace.interval : 1;
-  const double left = interval * ratio / (1 - ratio);  // Σ interval · ratioᵏ
-  if (pace.shorter == 0) {
-    pace.steady = false;
-    pace.longer = kInfinity;
-  } else if (pace.longer == kInfinity || kSteadyOver * interval < pace.longer) {
-    pace.steady = pace.longer < kInfinity && 1 - ratio > kSteady * pace.approach;
-    pace.longer = interval;
-    pace.approach = 1 - ratio;
+  const auto pile_up = paces_[event].come(t, span_, end_);
+  if (!pile_up && !at_edge_[event]) return false;
+  const Event& what = program_.events()[event];
+  if (what.piling_up) return true;
+  const std::string told =
+      pile_up
+          ? fmt::format(
+                "come ever faster: at t = {:.9g} s again after {:.3g} s, and they pile up at t = "
+                "{:.9g} s",
+                t, pile_up->interval, pile_up->at)
+          : fmt::format("come again at once at t = {:.9g} s: what they set leads back to their condition", t);
+  throw SolveError(SolveError::Kind::chatter, t,
+                   {{file_, {}},
+                    fmt::format("the events of '{}' {}", what.block, told),
+                    {},
+                    "end the run before, or tell the block what happens there: 'piling_up' beside 'set' in "
+                    "its [[events]]"});
+}
+
+/// Whether the condition of an event that has set states hangs on switches whose surfaces are now at zero: it
+/// may then hold anew at once.
+bool Switching::is_at_edge(std::size_t event, double t, std::span<const double> x) {
+  const auto& actions = program_.events()[event].actions;
+  if (std::none_of(actions.begin(), actions.end(),
+                   [](const Event::Action& action) { return action.on_state; }))
+    return false;
+  std::vector<double> others(surfaces_.size());
+  for (std::size_t s = 0; s < surfaces_.size(); ++s) {
+    if (is_known(s) || std::abs(surfaces_[s]) > thresholds_.now[s]) continue;
+    const std::uint32_t memory = program_.switches()[s].memory;
+    const double position = workspace_.memory(memory);
+    workspace_.set_memory(memory, 1 - position);
+    const bool ends =
+        program_.surfaces(t, x.data(), others.data(), workspace_) && !program_.condition(event, workspace_);
+    workspace_.set_memory(memory, position);
+    if (ends) return true;
   }
-  const bool quick =
-      pace.shorter > 1 && ratio < kQuickly && std::abs(ratio - pace.ratio) < kSameRatio * ratio;
-  pace.ratio = ratio;
-  const bool many = pace.steady && pace.shorter >= kMostShorter && interval < kPilingUp * span_;
-  if ((many || quick) && left < kPilingUp * span_ && t + left < end_) {
-    if (program_.events()[event].piling_up) return true;
-    throw SolveError(
-        SolveError::Kind::chatter, t,
-        {{file_, {}},
-         fmt::format("the events of '{}' come ever faster: at t = {:.9g} s again after {:.3g} s, and they "
-                     "pile up at t = {:.9g} s",
-                     program_.events()[event].block, t, interval, t + left),
-         {},
-         "end the run before, or tell the block what happens there: 'piling_up' beside 'set' in its "
-         "[[events]]"});
-  }
-  pace.last = t;
-  pace.interval = interval;
   return false;
 }
 
@@ -73,7 +60,7 @@ bool Switching::serve_events(double t, std::vector<double>& x, bool starting) {
   for (std::size_t e = 0; e < held_.size(); ++e) {
     const Event& event = program_.events()[e];
     const bool holds = program_.condition(e, workspace_);
-    const bool comes = holds && (!held_[e] || event.repeats) && (!starting || event.at_start);
+    const bool comes = holds && (!held_[e] || event.repeats || at_edge_[e]) && (!starting || event.at_start);
     held_[e] = holds;
     if (comes) served.push_back(e);
   }
@@ -85,8 +72,9 @@ bool Switching::serve_events(double t, std::vector<double>& x, bool starting) {
     double value;
   };
   std::vector<Change> changes;
-  for (std::size_t e : served) {
+  for (std::size_t& e : served) {
     if (piles_up(e, t)) {
+      at_edge_[e] = false;
       e = *program_.events()[e].piling_up;
       record(t, program_.events()[e].block + ": its events pile up");
     } else {
@@ -122,8 +110,9 @@ bool Switching::serve_events(double t, std::vector<double>& x, bool starting) {
     std::fill(rested_.begin(), rested_.end(), false);
     std::fill(thresholds_.slack.begin(), thresholds_.slack.end(), 0.0);
   }
-  // What was announced of surfaces that have moved away is past.
   evaluate(t, x);
+  for (const std::size_t e : served) at_edge_[e] = is_at_edge(e, t, x);
+  // What was announced of surfaces that have moved away is past.
   for (std::size_t s = 0; s < announced_.size(); ++s) {
     if (jumps || std::abs(surfaces_[s]) > thresholds_.now[s]) announced_[s] = -1;
   }

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: MIT
+// Events that pile up: the impacts of a ball.
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "../support/runs.h"
+
+namespace oblique {
+namespace {
+
+using testing::Compiled;
+using ::testing::HasSubstr;
+using testing::message_of;
+using testing::run_of;
+using testing::shipped_blocks_and;
+
+constexpr const char* kBall = R"toml([outputs]
+x = {}
+v = {}
+impacts = {}
+[parameters]
+e = { default = 0.9 }
+g = { default = 10 }
+height = { default = 1 }
+[memories]
+count = 0
+[equations]
+"der(x)" = "v"
+"der(v)" = "-g"
+impacts = "count"
+[start]
+x = "height"
+v = 0
+[[events]]
+when = "x < 0 and v < 0"
+set = { x = 0, v = "-e*v", count = "count + 1" }
+)toml";
+
+/// Time of impact k of a ball let fall from height h: the flights shorten by e each time.
+double impact_time(int k, double h, double e, double g) {
+  const double fall = std::sqrt(2 * h / g);
+  double t = fall;
+  for (int i = 1; i < k; ++i) t += 2 * fall * std::pow(e, i);
+  return t;
+}
+
+TEST(PileUp, BouncingBallMeetsTheTwentiethImpact) {
+  const BlockLibrary library = shipped_blocks_and("ball", kBall);
+  const Compiled made("b = { type = \"ball\" }", "", library);
+  const auto result = run_of(made, {.until = 8.2, .tolerance = 1e-10, .samples = 11});
+  ASSERT_GE(result.events.size(), 20U);
+  std::vector<double> impacts;
+  for (const EventRecord& event : result.events) {
+    if (event.what == "b") impacts.push_back(event.time);
+  }
+  ASSERT_GE(impacts.size(), 20U);
+  for (int k = 1; k <= 20; ++k) {  // asked: 1e-8; the tolerance of 1e-10 a flight, over 20 flights
+    EXPECT_NEAR(impacts[static_cast<std::size_t>(k) - 1], impact_time(k, 1, 0.9, 10), 1e-8) << k;
+  }
+}
+
+TEST(PileUp, BallThatPilesUpIsEndedByName) {
+  const BlockLibrary library = shipped_blocks_and("ball", kBall);
+  const Compiled made("b = { type = \"ball\", e = 0.5 }", "", library);
+  const std::string message = message_of<SolveError>([&] { run_of(made, {.until = 5}); });
+  EXPECT_THAT(message, HasSubstr("the events of 'b' come ever faster"));
+  // Σ: fall · (1 + 2e/(1 − e)) = √0.2 · 3
+  EXPECT_THAT(message, HasSubstr("they pile up at t = 1.3416"));
+  EXPECT_THAT(
+      message,
+      HasSubstr("remedy: end the run before, or tell the block what happens there: 'piling_up' beside "
+                "'set' in its [[events]]"));
+}
+
+BlockLibrary library_with_resting_ball() {
+  std::string resting = kBall;
+  resting.replace(resting.find("count = 0\n"), 10, "count = 0\nrests = 0\n");
+  resting.replace(resting.find("\"-g\""), 4, "\"if(rests == 1, 0, -g)\"");
+  return shipped_blocks_and("ball", resting + "piling_up = { x = 0, v = 0, rests = 1 }\n");
+}
+
+// A block that says what comes after rests there: to what is left of its bounces, 1e-5 of the run, and a
+// speed of g times that, half of a flight.
+TEST(PileUp, BallThatPilesUpGoesOverIntoWhatItsBlockSays) {
+  const BlockLibrary library = library_with_resting_ball();
+  const Compiled made("b = { type = \"ball\", e = 0.5 }", "", library);
+  const auto result = run_of(made, {.until = 5, .tolerance = 1e-10, .samples = 501});
+  ASSERT_FALSE(result.events.empty());
+  EXPECT_EQ(result.events.back().what, "b: its events pile up");
+  EXPECT_NEAR(result.events.back().time, std::sqrt(0.2) * 3, 5e-5);
+  EXPECT_LT(result.events.back().time, std::sqrt(0.2) * 3);
+  const std::size_t last = result.trajectory.rows() - 1;
+  EXPECT_EQ(result.trajectory.at(last, 1), 0);
+  EXPECT_EQ(result.trajectory.at(last, 2), 0);
+  for (std::size_t row = 0; row <= last; ++row) {
+    if (result.trajectory.at(row, 0) > std::sqrt(0.2) * 3) {
+      EXPECT_EQ(result.trajectory.at(row, 1), 0);
+    }
+  }
+}
+
+// Where each flight is a tenth of the one before, the seventh is within the errors of the height: it rests
+// before that.
+TEST(PileUp, BallThatPilesUpQuicklyDoesNotFallThroughTheFloor) {
+  const BlockLibrary library = library_with_resting_ball();
+  for (const double e : {0.05, 0.1, 0.25, 0.3}) {
+    const Compiled made(fmt::format("b = {{ type = \"ball\", e = {} }}", e), "", library);
+    for (const double tolerance : {1e-6, 1e-8}) {
+      const auto result = run_of(made, {.until = 8, .tolerance = tolerance, .samples = 501});
+      const std::size_t last = result.trajectory.rows() - 1;
+      double least = 0;
+      for (std::size_t row = 0; row <= last; ++row) least = std::min(least, result.trajectory.at(row, 1));
+      EXPECT_GE(least, -1e-8) << e << ' ' << tolerance;  // an event is as exact as the height
+      EXPECT_EQ(result.trajectory.at(last, 1), 0) << e << ' ' << tolerance;
+    }
+  }
+}
+
+/// The least height of the ball of a run, and its last.
+struct Heights {
+  double least = 0, last = 0;
+};
+Heights heights_of(const oblique::Run& result) {
+  Heights heights;
+  for (std::size_t row = 0; row < result.trajectory.rows(); ++row)
+    heights.least = std::min(heights.least, heights.last = result.trajectory.at(row, 1));
+  return heights;
+}
+
+// Wherever the run is cut in two, the flights before count.
+TEST(PileUp, IsSeenInARunThatGoesOn) {
+  const BlockLibrary library = library_with_resting_ball();
+  const Compiled made("b = { type = \"ball\", e = 0.6, g = 2.5 }", "", library);
+  const double rest = impact_time(200, 1, 0.6, 2.5);
+  for (const double part : {0.2, 0.5, 0.9, 0.99, 0.999, 0.9999, 0.99999, 0.999999, 1.1}) {
+    for (const double tolerance : {1e-6, 1e-8}) {
+      const auto first = run_of(made, {.until = part * rest, .tolerance = tolerance, .samples = 11});
+      RunOptions options;
+      options.until = 3 * rest;
+      options.tolerance = tolerance;
+      options.from = parse_run_state(to_text(first.state), "s.toml");
+      const Heights heights = heights_of(run(made.program, made.flat, options));
+      EXPECT_GE(heights.least, -10 * tolerance) << part;  // an event is as exact as the height
+      EXPECT_EQ(heights.last, 0) << part << ' ' << tolerance;
+    }
+  }
+}
+
+TEST(PileUp, PacesOfASavedRunAreReadAsTheyWereWritten) {
+  RunState state;
+  state.conditions = {true, false};
+  EXPECT_THAT(to_text(state), ::testing::Not(HasSubstr("paces"))) << "where no event has come";
+  state.paces = {{},
+                 {.last = 0.1,
+                  .interval = 0.1 + 0.2,
+                  .ratio = 0.6,
+                  .shorter = 3,
+                  .longer = 1.0 / 3,
+                  .approach = 0.4,
+                  .steady = true}};
+  const std::string text = to_text(state);
+  EXPECT_EQ(parse_run_state(text, "s.toml").paces, state.paces);
+  const auto refusal = [&](const std::string& of, const std::string& by) {
+    std::string changed = text;
+    changed.replace(changed.find(of), of.size(), by);
+    return message_of<ReadError>([&] { parse_run_state(changed, "s.toml"); });
+  };
+  EXPECT_EQ(refusal("shorter = [0, 3]", "shorter = [3]"),
+            "s.toml:15:11: 'shorter' has 1 elements; expected 2, one an event, as 'conditions'");
+  EXPECT_EQ(refusal("shorter = [0, 3]", "shorter = 3"),
+            "s.toml:15:11: 'shorter' is a number; expected an array of numbers");
+  EXPECT_EQ(refusal("conditions = [1, 0]", "conditions = [1, \"no\"]"),
+            "s.toml:4:18: an element of 'conditions' is a string; expected a number");
+}
+
+// A ball that lies on the floor from the start falls no deeper; one that is only pressed against it does not
+// either, and where the block does not say what it does there, the run ends.
+TEST(PileUp, OfFlightsOfNoLengthIsSeenAtOnce) {
+  const BlockLibrary balls = library_with_resting_ball();
+  const Compiled lying("b = { type = \"ball\", height = 0 }", "", balls);
+  const Heights heights = heights_of(run_of(lying));
+  EXPECT_EQ(heights.least, 0);
+  EXPECT_EQ(heights.last, 0);
+
+  const BlockLibrary library = shipped_blocks_and("stop", R"toml([inputs]
+in = {}
+[outputs]
+x = {}
+[equations]
+"der(x)" = "in"
+[start]
+x = 0
+[[events]]
+when = "x > 1"
+set = { x = 1 }
+)toml");
+  const Compiled pressed("one = { type = \"constant\" }\ns = { type = \"stop\", in = \"2*one\" }", "",
+                         library);
+  EXPECT_EQ(
+      message_of<SolveError>([&] { run_of(pressed, {.until = 2}); }),
+      "d.toml: the events of 's' come again at once at t = 0.5 s: what they set leads back to their "
+      "condition\n  remedy: end the run before, or tell the block what happens there: 'piling_up' beside "
+      "'set' in its [[events]]");
+}
+
+}  // namespace
+}  // namespace oblique
