@@ -87,7 +87,7 @@ Diagnostic explain(const CLI::App& app, const CLI::ParseError& error,
 std::optional<ExitStatus> parse_arguments(int argc, char** argv, Chosen& chosen) {
   CLI::App app(kIntroduction, "oblique");
   app.footer(kEpilogue);
-  app.set_version_flag("--version", std::string("oblique ") + OBLIQUE_VERSION);
+  app.set_version_flag("--version", "oblique " OBLIQUE_VERSION "\nsolver: " OBLIQUE_SOLVER);
   app.add_option("--blocks", chosen.session.block_directories,
                  "folder with further blocks (*.toml); may be repeated")
       ->type_name("DIR")

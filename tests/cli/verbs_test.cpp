@@ -56,6 +56,13 @@ class Verbs : public testing::Test {
   std::filesystem::path folder_;
 };
 
+TEST_F(Verbs, VersionTellsOfTheSolverToo) {
+  const Outcome outcome = oblique("--version");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.output, ContainsRegex("^oblique [0-9.]+\nsolver: SUNDIALS [0-9.]+(, compiled with "
+                                            "optimisation| as it was installed; [^\n]+)\n$"));
+}
+
 TEST_F(Verbs, WithoutArgumentsTheProgramIntroducesItself) {
   const Outcome outcome = oblique("");
   EXPECT_EQ(outcome.status, 0);
