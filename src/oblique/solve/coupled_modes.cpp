@@ -2,6 +2,7 @@
 #include <oblique/solve/coupled_modes.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <Eigen/Eigenvalues>
@@ -15,66 +16,101 @@ constexpr std::size_t kMostTogether = 200;  ///< the eigenvalues of so many take
 
 constexpr std::uint32_t kNowhere = ~std::uint32_t{0};
 
-struct MatrixElement {
-  std::uint32_t row, column;
-  double value;
-};
-
-std::vector<std::complex<double>> eigenvalues_of(Eigen::Index size, const std::vector<MatrixElement>& part) {
-  Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(size, size);
-  for (const MatrixElement& element : part) dense(element.row, element.column) = element.value;
-  if (!dense.allFinite()) return {};
-  if (size == 1) return {dense(0, 0)};
-  const Eigen::VectorXcd values = Eigen::EigenSolver<Eigen::MatrixXd>(dense, false).eigenvalues();
-  return {values.begin(), values.end()};
+/// Of the matrix (a, b; c, d), without a difference of nearly equal numbers.
+std::array<std::complex<double>, 2> eigenvalues_of_two(double a, double b, double c, double d) {
+  const double half = (a - d) / 2, squared = half * half + b * c;
+  if (squared < 0) {
+    const double mean = (a + d) / 2, frequency = std::sqrt(-squared);
+    return {std::complex<double>(mean, frequency), std::complex<double>(mean, -frequency)};
+  }
+  const double far = half + std::copysign(std::sqrt(squared), half);
+  return {std::complex<double>(d + far), std::complex<double>(far == 0 ? d : d - b * c / far)};
 }
 
 }  // namespace
 
-std::vector<CoupledModes> coupled_modes(const SparsePattern& pattern, std::span<const double> jacobian,
-                                        const std::vector<bool>& among) {
-  std::vector<std::uint32_t> place(pattern.size(), kNowhere);
+void ModeFinder::find_groups() {
+  std::vector<std::uint32_t> place(pattern_.size(), kNowhere);
   std::vector<std::size_t> members;
-  for (std::size_t i = 0; i < pattern.size(); ++i) {
-    if (!among[i]) continue;
+  for (std::size_t i = 0; i < pattern_.size(); ++i) {
+    if (!among_[i]) continue;
     place[i] = static_cast<std::uint32_t>(members.size());
     members.push_back(i);
   }
-  std::vector<MatrixElement> elements;
+  std::vector<Element> elements;
   std::vector<std::vector<std::uint32_t>> needed(members.size());
   for (const std::size_t column : members) {
-    for (auto k = pattern.column_starts[column]; k < pattern.column_starts[column + 1]; ++k) {
+    for (auto k = pattern_.column_starts[column]; k < pattern_.column_starts[column + 1]; ++k) {
       const auto entry = static_cast<std::size_t>(k);
-      const std::uint32_t row = place[static_cast<std::size_t>(pattern.rows[entry])];
-      if (row == kNowhere || jacobian[entry] == 0) continue;
-      elements.push_back({row, place[column], jacobian[entry]});
+      const std::uint32_t row = place[static_cast<std::size_t>(pattern_.rows[entry])];
+      if (row == kNowhere || !acts_[entry]) continue;
+      elements.push_back({entry, row, place[column]});
       if (row != place[column]) needed[row].push_back(place[column]);
     }
   }
   Dependencies dependencies;
   for (const auto& row : needed) dependencies.add_row(row);
 
-  std::vector<CoupledModes> groups;
+  groups_.clear();
   std::vector<std::uint32_t> group_of(members.size()), place_in_group(members.size());
   for (const OrderStep& step : dependency_order(dependencies, std::vector<bool>(members.size(), true))) {
-    CoupledModes& group = groups.emplace_back();
+    CoupledModes& group = groups_.emplace_back();
     for (const std::uint32_t member : step.tears) {
-      group_of[member] = static_cast<std::uint32_t>(groups.size() - 1);
+      group_of[member] = static_cast<std::uint32_t>(groups_.size() - 1);
       place_in_group[member] = static_cast<std::uint32_t>(group.states.size());
       group.states.push_back(members[member]);
     }
   }
-  std::vector<std::vector<MatrixElement>> parts(groups.size());
-  for (const MatrixElement& element : elements) {
+  elements_.assign(groups_.size(), {});
+  for (const Element& element : elements) {
     const std::uint32_t group = group_of[element.row];
     if (group_of[element.column] == group)
-      parts[group].push_back({place_in_group[element.row], place_in_group[element.column], element.value});
+      elements_[group].push_back(
+          {element.entry, place_in_group[element.row], place_in_group[element.column]});
   }
-  for (std::size_t g = 0; g < groups.size(); ++g) {
-    if (groups[g].states.size() <= kMostTogether)
-      groups[g].eigenvalues = eigenvalues_of(static_cast<Eigen::Index>(groups[g].states.size()), parts[g]);
+}
+
+const std::vector<CoupledModes>& ModeFinder::find(std::span<const double> jacobian,
+                                                  const std::vector<bool>& among) {
+  acts_now_.resize(jacobian.size());
+  for (std::size_t k = 0; k < jacobian.size(); ++k) acts_now_[k] = jacobian[k] != 0;
+  if (among != among_ || acts_now_ != acts_) {
+    among_ = among;
+    acts_ = acts_now_;
+    find_groups();
   }
-  return groups;
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    auto& eigenvalues = groups_[g].eigenvalues;
+    eigenvalues.clear();
+    const std::size_t size = groups_[g].states.size();
+    const bool finite = std::all_of(elements_[g].begin(), elements_[g].end(), [&](const Element& element) {
+      return std::isfinite(jacobian[element.entry]);
+    });
+    if (size > kMostTogether || !finite) continue;
+    if (size <= 2) {
+      std::array<double, 4> block{};
+      for (const Element& element : elements_[g])
+        block[2 * element.row + element.column] = jacobian[element.entry];
+      if (size == 1) {
+        eigenvalues.emplace_back(block[0]);
+      } else {
+        const auto both = eigenvalues_of_two(block[0], block[1], block[2], block[3]);
+        eigenvalues.assign(both.begin(), both.end());
+      }
+      continue;
+    }
+    Eigen::MatrixXd dense =
+        Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(size), static_cast<Eigen::Index>(size));
+    for (const Element& element : elements_[g]) dense(element.row, element.column) = jacobian[element.entry];
+    const Eigen::VectorXcd values = Eigen::EigenSolver<Eigen::MatrixXd>(dense, false).eigenvalues();
+    eigenvalues.assign(values.begin(), values.end());
+  }
+  return groups_;
+}
+
+std::vector<CoupledModes> coupled_modes(const SparsePattern& pattern, std::span<const double> jacobian,
+                                        const std::vector<bool>& among) {
+  return ModeFinder(pattern).find(jacobian, among);
 }
 
 CoupledModes closed_modes(const SparsePattern& pattern, std::span<const double> jacobian,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <complex>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -16,9 +17,34 @@ struct CoupledModes {
   std::vector<std::complex<double>> eigenvalues;
 };
 
-/// The modes of the equations linearised, group by group, those of `among` alone (the others are held).
-/// `jacobian` has the values of `pattern`. Taken by groups, the eigenvalues of a chain of integrators are
-/// zero: those of the whole matrix would be the n-th root of rounding. Not installed.
+/// Finds the modes of the equations linearised, group by group. Taken by groups, the eigenvalues of a chain
+/// of integrators are zero: those of the whole matrix would be the n-th root of rounding. Which states act on
+/// each other is found anew only where other elements of the Jacobian than before are zero. Not installed.
+class ModeFinder {
+ public:
+  /// `pattern` must outlive this.
+  explicit ModeFinder(const SparsePattern& pattern) : pattern_(pattern) {}
+
+  /// Those of `among` alone (the others are held). `jacobian` has the values of the pattern. The groups stay
+  /// until the next call.
+  const std::vector<CoupledModes>& find(std::span<const double> jacobian, const std::vector<bool>& among);
+
+ private:
+  /// An element of the Jacobian by its place in the block of a group.
+  struct Element {
+    std::size_t entry;
+    std::uint32_t row, column;
+  };
+
+  void find_groups();
+
+  const SparsePattern& pattern_;
+  std::vector<bool> among_, acts_, acts_now_;
+  std::vector<CoupledModes> groups_;
+  std::vector<std::vector<Element>> elements_;  ///< of each group
+};
+
+/// The modes once.
 std::vector<CoupledModes> coupled_modes(const SparsePattern& pattern, std::span<const double> jacobian,
                                         const std::vector<bool>& among);
 

@@ -14,6 +14,8 @@
 #include <sunlinsol/sunlinsol_klu.h>
 #include <sunmatrix/sunmatrix_sparse.h>
 
+#include <oblique/solve/solver_vector.h>
+
 namespace oblique {
 namespace {
 
@@ -70,38 +72,10 @@ void check_setup(int code) {
     throw std::logic_error("CVODES refuses its setup with code " + std::to_string(code));
 }
 
-/// In place of SUNDIALS' weighted root mean square over all states, in which the error of an oscillator
-/// beside 10 000 idle integrators counts a hundredth. Of one state both are the same.
-double largest_weighted(N_Vector x, N_Vector weights) {
-  const double* const values = N_VGetArrayPointer(x);
-  const double* const scale = N_VGetArrayPointer(weights);
-  double largest = 0;
-  for (sunindextype i = 0; i < N_VGetLength(x); ++i) {
-    const double value = std::abs(values[i] * scale[i]);
-    if (std::isnan(value)) return value;  // a comparison would lose it
-    largest = std::max(largest, value);
-  }
-  return largest;
-}
-
-/// SUNDIALS' N_VClone writes into what this gives without a look whether it gave anything. So the lack of
-/// memory is thrown, through frames of C that have nothing to clean up: what they made hangs on the memory of
-/// CVODES.
-N_Vector clone_or_throw(N_Vector vector) {
-  return made(N_VClone_Serial(vector));
-}
-
-/// As above.
+/// SUNDIALS writes into what this gives without a look whether it gave anything. So the lack of memory is
+/// thrown, as by the clones of `make_solver_vector`.
 SUNMatrix clone_matrix_or_throw(SUNMatrix matrix) {
   return made(SUNMatClone_Sparse(matrix));
-}
-
-/// A vector whose clones, and so all vectors of the solver, measure errors by `largest_weighted`.
-N_Vector make_vector(sunindextype size, SUNContext context) {
-  N_Vector vector = made(N_VNew_Serial(size, context));
-  vector->ops->nvwrmsnorm = largest_weighted;
-  vector->ops->nvclone = clone_or_throw;
-  return vector;
 }
 
 bool all_finite(const double* values, std::size_t size) {
@@ -145,7 +119,7 @@ struct CvodesSolver::Handles {
         max_steps(settings.max_steps),
         context(make_context()) {
     const auto n = static_cast<sunindextype>(x0.size());
-    states.reset(make_vector(n, context.get()));
+    states.reset(make_solver_vector(n, context.get()));
     scratch.reset(N_VClone(states.get()));
     std::copy(x0.begin(), x0.end(), N_VGetArrayPointer(states.get()));
     const auto entries = static_cast<sunindextype>(system->pattern().entries());

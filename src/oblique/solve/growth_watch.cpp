@@ -5,8 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include <oblique/solve/coupled_modes.h>
-
 namespace oblique {
 namespace {
 
@@ -28,6 +26,7 @@ GrowthWatch::GrowthWatch(OdeSystem& system, const SolverSettings& settings)
       settings_(settings),
       change_(system.size()),
       jacobian_(system.pattern().entries()),
+      modes_(system.pattern()),
       growth_(system.size()),
       distance_(system.size()),
       near_(system.size()),
@@ -77,7 +76,7 @@ void GrowthWatch::judge(double t, std::span<const double> x, double step) {
   if (!system_.jacobian(t, x.data(), jacobian_.data())) return;
   ++looked_;
   std::vector<bool> unstable(x.size(), false);
-  for (const CoupledModes& group : coupled_modes(system_.pattern(), jacobian_, near_)) {
+  for (const CoupledModes& group : modes_.find(jacobian_, near_)) {
     double rate = 0;
     for (const std::complex<double>& mode : group.eigenvalues) rate = std::max(rate, mode.real());
     if (rate == 0) continue;

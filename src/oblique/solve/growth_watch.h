@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include <oblique/solve/coupled_modes.h>
 #include <oblique/solve/cvodes_solver.h>
 #include <oblique/solve/ode_system.h>
 
@@ -45,6 +46,7 @@ class GrowthWatch {
   OdeSystem& system_;
   const SolverSettings& settings_;
   std::vector<double> before_, change_, jacobian_;
+  ModeFinder modes_;
   std::vector<double> growth_;    ///< of each state, in powers of e, while it is near an unstable equilibrium
   std::vector<double> distance_;  ///< the least since then
   std::vector<bool> near_;

@@ -457,6 +457,7 @@ class Runner {
         if (options_.progress && steps_ % kStepsPerReport == 0)
           options_.progress((t - begin_) / (options_.until - begin_));
       }
+      small_->end(t, states_);
     } catch (const SolverFailure& failure) {
       throw run_error(program_, failure, solver, workspace_, diagram_.file);
     }

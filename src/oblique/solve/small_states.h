@@ -38,6 +38,9 @@ class SmallStates {
   /// Looks at the states (t, x) that a step has reached or the run starts from.
   void advance(double t, std::span<const double> x);
 
+  /// Looks at the end (t, x) of the run.
+  void end(double t, std::span<const double> x) { look(t, x); }
+
   /// Of the states that were small all the time, those that were read.
   std::vector<SmallState> found() const;
 
@@ -58,7 +61,8 @@ class SmallStates {
   std::vector<double> values_, moved_, off_states_;
   std::map<std::size_t, std::vector<double>>
       moves_;  ///< of each small state, by how much it moves the readings
-  long steps_ = 0, next_look_ = 0;
+  /// The first look is late: many a state begins at zero, and is small for some steps only.
+  long steps_ = 0, next_look_ = 16;
 };
 
 }  // namespace oblique
