@@ -108,7 +108,8 @@ def in_class(hidden, at):
 
 def expression_around(hidden, at, end):
     """The smallest full expression, from and to, that holds what stands from `at` to `end`."""
-    stops = ",;" if hidden[end - 1] == "=" and hidden[at] in "+-*" else ",;?:"  # what is assigned is the whole
+    assigns = hidden[end - 1] == "=" and hidden[at] in "+-*"
+    stops = ",;" if assigns else ",;?:"  # what is assigned is the whole, with what is assigned within it
     begin, depth = at, 0
     while begin > 0:
         c, before = hidden[begin - 1], hidden[begin - 2:begin]
@@ -141,7 +142,7 @@ def expression_around(hidden, at, end):
             if hidden[end:end + 2] == "::":
                 end += 2
                 continue
-            if c in stops or (c == "=" and hidden[end - 1] not in "=!<>" and hidden[end + 1] != "="):
+            if c in stops or (c == "=" and not assigns and hidden[end - 1] not in "=!<>" and hidden[end + 1] != "="):
                 break
         end += 1
     while hidden[begin] in " \n" and begin < at:
@@ -201,7 +202,8 @@ def constant_wrap(path, hidden, at):
     brace = enclosing(hidden, begin)
     of_class = in_class(hidden, begin)
     outside = brace < 0 or re.search(r"namespace[^;{}]*$", hidden[:brace])
-    return Wrap(begin, begin + 9, "", "", "inline const" if of_class or (outside and path.endswith(".h")) else "const")
+    shared = (of_class or (outside and path.endswith(".h"))) and not hidden[:begin].rstrip().endswith("inline")
+    return Wrap(begin, begin + 9, "", "", "inline const" if shared else "const")
 
 
 def with_faults(path, source, faults):
