@@ -207,5 +207,41 @@ set = { x = 1 }
       "'set' in its [[events]]");
 }
 
+// What is set may also end what led to it: the condition then holds on, and nothing comes again.
+TEST(PileUp, IsNotWhereASetStateStays) {
+  const BlockLibrary library = shipped_blocks_and("stop", R"toml([inputs]
+in = {}
+[outputs]
+x = {}
+v = {}
+[memories]
+stuck = 0
+[equations]
+"der(x)" = "if(stuck == 1, 0, v)"
+"der(v)" = "if(stuck == 1, 0, in)"
+[start]
+x = 0
+v = 0
+[[events]]
+when = "x > 1"
+set = { x = 1, v = 0, stuck = 1 }
+[[events]]
+when = "stuck == 1 and in < 0"
+set = { stuck = 0 }
+)toml");
+  const Compiled made(
+      "w = { type = \"sine-source\", frequency = \"1/8 Hz\" }\ns = { type = \"stop\", in = \"w\" }", "",
+      library);
+  const auto result = run_of(made, {.until = 6, .samples = 61});
+  const std::size_t x = result.trajectory.find("s.x").value();
+  double greatest = 0;
+  for (std::size_t row = 0; row < result.trajectory.rows(); ++row)
+    greatest = std::max(greatest, result.trajectory.at(row, x));
+  EXPECT_EQ(greatest, 1);
+  // It is let go at t = 4, at x = 1, and moves by −∬ sin(π t/4) over 2 s.
+  const double pi = 3.141592653589793;
+  EXPECT_NEAR(result.trajectory.at(60, x), 1 - 4 / pi * (2 - 4 / pi), 1e-7);
+}
+
 }  // namespace
 }  // namespace oblique

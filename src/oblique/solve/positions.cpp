@@ -186,8 +186,9 @@ bool Positions::keeps(std::uint32_t bits, std::uint32_t preferred) const {
 }
 
 /// Where both sides of a surface lead away from it, either is a solution.
-void Positions::note_undecided(std::uint32_t bits) {
+void Positions::note_choice(std::uint32_t bits) {
   for (std::size_t u = 0; u < units_.size(); ++u) {
+    if (direction(bits, u) == 0) resting_.push_back(units_[u]);
     const std::uint32_t other = bits ^ (1U << u);
     if (!jumps(u) || !is_independent(1U << u) || !trials_[other].valid) continue;
     const int side = has(bits, u) ? 1 : -1;
@@ -234,6 +235,7 @@ bool Positions::choose(const std::vector<std::uint32_t>& units, std::uint32_t pr
                        std::span<const double> x) {
   units_ = units;
   undecided_.clear();
+  resting_.clear();
   if (units_.size() > kMostUnits) return false;
   before_.assign(workspace_.memories().begin(), workspace_.memories().end());
   std::uint32_t present = 0;
@@ -253,7 +255,7 @@ bool Positions::choose(const std::vector<std::uint32_t>& units, std::uint32_t pr
     for (const bool keeping : {true, false}) {  // else the order of the units would decide
       for (const std::uint32_t bits : nearest) {
         if ((keeping && !keeps(bits, preferred)) || !stands(bits, strictly)) continue;
-        note_undecided(bits);
+        note_choice(bits);
         return place(bits, t, x);
       }
     }

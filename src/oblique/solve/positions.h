@@ -31,6 +31,9 @@ class Positions {
   /// the surface.
   const std::vector<std::uint32_t>& undecided() const { return undecided_; }
 
+  /// Those whose surfaces stay at zero where the last `choose` put them.
+  const std::vector<std::uint32_t>& resting() const { return resting_; }
+
   /// Tries all combinations of `restless` and of the switches that share their algebraic loops, the nearest
   /// to the present one first. False where none agrees with itself.
   bool choose_any(std::vector<std::uint32_t> restless, double t, std::span<const double> x);
@@ -48,7 +51,7 @@ class Positions {
   bool place(std::uint32_t bits, double t, std::span<const double> x);
   int direction(std::uint32_t bits, std::size_t unit) const;
   bool keeps(std::uint32_t bits, std::uint32_t preferred) const;
-  void note_undecided(std::uint32_t bits);
+  void note_choice(std::uint32_t bits);
   bool stands(std::uint32_t bits, bool strictly) const;
   bool jumps(std::size_t unit) const;
   bool any_of_them_jumps(std::uint32_t units) const;
@@ -66,7 +69,7 @@ class Positions {
   const std::vector<double>& thresholds_;
   double span_;
 
-  std::vector<std::uint32_t> units_, undecided_;
+  std::vector<std::uint32_t> units_, undecided_, resting_;
   std::vector<double> before_;  ///< memories
   std::vector<Trial> trials_;
   double fastest_ = 0;  ///< largest of all dx/dt in the trials

@@ -52,7 +52,8 @@ Switching::Switching(const Program& program, Workspace& workspace, double span, 
       announced_(program.switches().size(), -1),
       errors_(program.switches().size(), 0),
       held_(program.events().size(), false),
-      at_edge_(program.events().size(), false),
+      came_(program.events().size(), false),
+      stays_(program.switches().size(), false),
       decided_(program.switch_structure().members.size(), false),
       rested_(program.switches().size(), false),
       unrest_(program.switches().size()),
@@ -191,6 +192,9 @@ void Switching::decide(Units units, double t, std::span<const double> x) {
       throw_chatter(first.block, "no position of its switch agrees with the signals that follow from it", t);
     }
   }
+  for (const std::uint32_t unit : positions_.resting()) {
+    for (const std::uint32_t member : structure.members[unit]) stays_[member] = true;
+  }
   for (const std::uint32_t unit : positions_.undecided()) {
     if (contains(slid_, unit)) continue;  // which is told apart
     const auto& members = structure.members[unit];
@@ -237,6 +241,7 @@ bool Switching::settle_switches(double t, std::span<const double> x) {
 /// What lies on its surface is decided anew, and what slides is looked at as if it came there now.
 void Switching::begin_to_settle() {
   std::fill(decided_.begin(), decided_.end(), false);
+  std::fill(stays_.begin(), stays_.end(), false);
   slid_ = slide_.units();
   for (std::size_t s = 0; s < rested_.size(); ++s) rested_[s] = resumed_ || slide_.rests(s);
   resumed_ = false;
@@ -329,7 +334,7 @@ void Switching::settle(double t, std::vector<double>& x) {
     record(t, fmt::format("{}: {} {}", program_.switches()[s].block, program_.switches()[s].comparison,
                           announced_[s] > 0 ? "from now on" : "no longer"));
   }
-  std::fill(at_edge_.begin(), at_edge_.end(), false);
+  std::fill(came_.begin(), came_.end(), false);
   for (int round = 0;; ++round) {
     settle_switches(t, x);
     if (!serve_events(t, x, false)) break;

@@ -113,8 +113,8 @@ class Switching {
   bool serve_events(double t, std::vector<double>& x, bool starting);
   void turn(std::size_t s, double position, double t);
   void record(double t, std::string what);
-  bool piles_up(std::size_t event, double t);
-  bool is_at_edge(std::size_t event, double t, std::span<const double> x);
+  bool piles_up(std::size_t event, double t, bool at_once);
+  bool comes_at_once(std::size_t event, double t, std::span<const double> x);
   [[noreturn]] void throw_chatter(const std::string& block, const std::string& what, double t) const;
 
   const Program& program_;
@@ -135,12 +135,12 @@ class Switching {
   std::vector<double> errors_;  ///< of the surfaces, where a switch turned over last
   bool weighed_ = false;        ///< whether they are those of `states_`
   std::vector<bool> held_;      ///< whether the condition of each event held when it was last looked at
-  std::vector<bool>
-      at_edge_;  ///< of each event: it came at this instant, and its condition may be about to hold again
-  std::vector<bool> decided_;  ///< of each unit: by where it drifts, once in a `settle`
-  Units slid_;                 ///< what slid when the settling began
-  std::vector<bool> rested_;   ///< the surfaces that then stayed at zero along with it
-  bool resumed_ = false;       ///< from a state that does not say what slid
+  std::vector<bool> came_;      ///< of each event that sets states: whether it came at this instant
+  std::vector<bool> stays_;     ///< of each switch: whether its surface, at zero, was found to stay there
+  std::vector<bool> decided_;   ///< of each unit: by where it drifts, once in a `settle`
+  Units slid_;                  ///< what slid when the settling began
+  std::vector<bool> rested_;    ///< the surfaces that then stayed at zero along with it
+  bool resumed_ = false;        ///< from a state that does not say what slid
 
   /// How often a switch has turned over without leaving its place.
   struct Unrest {

@@ -13,9 +13,9 @@ namespace oblique {
 
 /// Whether an event piles up, so that the one that takes its place is to come. Throws SolveError where none
 /// does.
-bool Switching::piles_up(std::size_t event, double t) {
+bool Switching::piles_up(std::size_t event, double t, bool at_once) {
   const auto pile_up = paces_[event].come(t, span_, end_);
-  if (!pile_up && !at_edge_[event]) return false;
+  if (!pile_up && !at_once) return false;
   const Event& what = program_.events()[event];
   if (what.piling_up) return true;
   const std::string told =
@@ -33,34 +33,34 @@ bool Switching::piles_up(std::size_t event, double t) {
                     "its [[events]]"});
 }
 
-/// Whether the condition of an event that has set states hangs on switches whose surfaces are now at zero: it
-/// may then hold anew at once.
-bool Switching::is_at_edge(std::size_t event, double t, std::span<const double> x) {
-  const auto& actions = program_.events()[event].actions;
-  if (std::none_of(actions.begin(), actions.end(),
-                   [](const Event::Action& action) { return action.on_state; }))
-    return false;
+/// Whether the condition of an event that came at this instant holds because what it set leads back to it: it
+/// hangs on a switch whose surface is at zero, and does not stay there.
+bool Switching::comes_at_once(std::size_t event, double t, std::span<const double> x) {
+  if (!came_[event]) return false;
   std::vector<double> others(surfaces_.size());
-  for (std::size_t s = 0; s < surfaces_.size(); ++s) {
-    if (is_known(s) || std::abs(surfaces_[s]) > thresholds_.now[s]) continue;
+  bool hangs = false;
+  for (std::size_t s = 0; s < surfaces_.size() && !hangs; ++s) {
+    if (is_known(s) || stays_[s] || slide_.rests(s) || std::abs(surfaces_[s]) > thresholds_.now[s]) continue;
     const std::uint32_t memory = program_.switches()[s].memory;
     const double position = workspace_.memory(memory);
     workspace_.set_memory(memory, 1 - position);
-    const bool ends =
+    hangs =
         program_.surfaces(t, x.data(), others.data(), workspace_) && !program_.condition(event, workspace_);
     workspace_.set_memory(memory, position);
-    if (ends) return true;
   }
-  return false;
+  program_.surfaces(t, x.data(), others.data(), workspace_);  // leaves everything as it was
+  return hangs;
 }
 
 /// Serves all events whose conditions have become true; true where there were any.
 bool Switching::serve_events(double t, std::vector<double>& x, bool starting) {
   std::vector<std::size_t> served;
+  std::vector<bool> at_once(held_.size(), false);
   for (std::size_t e = 0; e < held_.size(); ++e) {
     const Event& event = program_.events()[e];
     const bool holds = program_.condition(e, workspace_);
-    const bool comes = holds && (!held_[e] || event.repeats || at_edge_[e]) && (!starting || event.at_start);
+    at_once[e] = holds && comes_at_once(e, t, x);
+    const bool comes = holds && (!held_[e] || event.repeats || at_once[e]) && (!starting || event.at_start);
     held_[e] = holds;
     if (comes) served.push_back(e);
   }
@@ -72,9 +72,12 @@ bool Switching::serve_events(double t, std::vector<double>& x, bool starting) {
     double value;
   };
   std::vector<Change> changes;
-  for (std::size_t& e : served) {
-    if (piles_up(e, t)) {
-      at_edge_[e] = false;
+  for (std::size_t e : served) {
+    const auto& set = program_.events()[e].actions;
+    came_[e] =
+        std::any_of(set.begin(), set.end(), [](const Event::Action& action) { return action.on_state; });
+    if (piles_up(e, t, at_once[e])) {
+      came_[e] = false;
       e = *program_.events()[e].piling_up;
       record(t, program_.events()[e].block + ": its events pile up");
     } else {
@@ -110,9 +113,8 @@ bool Switching::serve_events(double t, std::vector<double>& x, bool starting) {
     std::fill(rested_.begin(), rested_.end(), false);
     std::fill(thresholds_.slack.begin(), thresholds_.slack.end(), 0.0);
   }
-  evaluate(t, x);
-  for (const std::size_t e : served) at_edge_[e] = is_at_edge(e, t, x);
   // What was announced of surfaces that have moved away is past.
+  evaluate(t, x);
   for (std::size_t s = 0; s < announced_.size(); ++s) {
     if (jumps || std::abs(surfaces_[s]) > thresholds_.now[s]) announced_[s] = -1;
   }
