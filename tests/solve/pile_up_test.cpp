@@ -207,7 +207,8 @@ set = { x = 1 }
       "'set' in its [[events]]");
 }
 
-// What is set may also end what led to it: the condition then holds on, and nothing comes again.
+// What is set may also end what led to it: then nothing comes again, and put on its level the state is not
+// above it, also where it leaves that level no faster than its third power.
 TEST(PileUp, IsNotWhereASetStateStays) {
   const BlockLibrary library = shipped_blocks_and("stop", R"toml([inputs]
 in = {}
@@ -223,7 +224,7 @@ stuck = 0
 x = 0
 v = 0
 [[events]]
-when = "x > 1"
+when = "x > 1 and stuck == 0"
 set = { x = 1, v = 0, stuck = 1 }
 [[events]]
 when = "stuck == 1 and in < 0"

@@ -175,6 +175,7 @@ void Switching::decide(Units units, double t, std::span<const double> x) {
     decided_[units[u]] = true;
     const std::uint32_t s = structure.members[units[u]].front();
     double position = workspace_.memory(program_.switches()[s].memory);
+    if (set_ && surfaces_[s] == 0) position = 0;  // put on its level it is not above it
     for (const std::uint32_t member : structure.members[units[u]]) {
       if (announced_[member] >= 0)
         position =
@@ -335,6 +336,7 @@ void Switching::settle(double t, std::vector<double>& x) {
                           announced_[s] > 0 ? "from now on" : "no longer"));
   }
   std::fill(came_.begin(), came_.end(), false);
+  set_ = false;
   for (int round = 0;; ++round) {
     settle_switches(t, x);
     if (!serve_events(t, x, false)) break;

@@ -138,6 +138,7 @@ class Switching {
   std::vector<bool> came_;      ///< of each event that sets states: whether it came at this instant
   std::vector<bool> stays_;     ///< of each switch: whether its surface, at zero, was found to stay there
   std::vector<bool> decided_;   ///< of each unit: by where it drifts, once in a `settle`
+  bool set_ = false;            ///< whether events have set states at this instant
   Units slid_;                  ///< what slid when the settling began
   std::vector<bool> rested_;    ///< the surfaces that then stayed at zero along with it
   bool resumed_ = false;        ///< from a state that does not say what slid

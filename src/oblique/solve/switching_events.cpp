@@ -108,6 +108,8 @@ bool Switching::serve_events(double t, std::vector<double>& x, bool starting) {
     }
   }
   begin_to_settle();
+  set_ = set_ || std::any_of(changes.begin(), changes.end(),
+                             [](const Change& change) { return change.action->on_state; });
   if (jumps) {
     slid_.clear();
     std::fill(rested_.begin(), rested_.end(), false);
