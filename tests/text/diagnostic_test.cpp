@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/text/diagnostic.h>
 
+#include <algorithm>
+#include <random>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -55,6 +58,48 @@ TEST(NearestName, DoesNotGuessAtWhatIsFarAway) {
   EXPECT_EQ(nearest_name("comparator", {"integrator", "summer"}), std::nullopt);
   EXPECT_EQ(nearest_name("x", {"y", "in"}), std::nullopt) << "replacing all of a name is no slip";
   EXPECT_EQ(nearest_name("anything", {}), std::nullopt);
+}
+
+/// The definition, letter by letter: what remains of a from i on and of b from j on.
+std::size_t slips(const std::string& a, const std::string& b, std::size_t i = 0, std::size_t j = 0) {
+  if (i == a.size()) return b.size() - j;
+  if (j == b.size()) return a.size() - i;
+  std::size_t least = slips(a, b, i + 1, j + 1) + (a[i] == b[j] ? 0 : 1);
+  least = std::min({least, slips(a, b, i + 1, j) + 1, slips(a, b, i, j + 1) + 1});
+  if (i + 1 < a.size() && j + 1 < b.size() && a[i] == b[j + 1] && a[i + 1] == b[j])
+    least = std::min(least, slips(a, b, i + 2, j + 2) + 1);
+  return least;
+}
+
+TEST(NearestName, IsTheOneWithTheFewestSlips) {
+  std::mt19937 random(7);
+  const auto word = [&] {
+    std::string text(3 + random() % 5, ' ');
+    for (char& c : text) c = "abc"[random() % 3];
+    return text;
+  };
+  for (int k = 0; k < 300; ++k) {
+    const std::string name = word();
+    const std::vector<std::string> candidates{word(), word(), word()};
+    std::optional<std::string> nearest;
+    std::size_t fewest = std::max<std::size_t>(1, name.size() / 3) + 1;
+    for (const std::string& candidate : candidates) {
+      const std::size_t n = slips(name, candidate);
+      if (n < fewest && n < candidate.size()) nearest = candidate;
+      if (n < fewest && n < candidate.size()) fewest = n;
+    }
+    EXPECT_EQ(nearest_name(name, candidates), nearest) << name;
+  }
+}
+
+// The work grows with the length and not with its square: that would be 10¹² letters compared.
+TEST(NearestName, OfAMillionLettersIsFound) {
+  const std::string name(1'000'000, 'a');
+  std::string slip = name, other = name;
+  slip[500'000] = 'b';
+  for (std::size_t k = 0; k < other.size(); k += 2) other[k] = 'c';
+  EXPECT_EQ(nearest_name(slip, {other, name}), name);
+  EXPECT_EQ(nearest_name(slip, {other}), std::nullopt);
 }
 
 TEST(Suggest, NamesTheNearestOrListsTheKnown) {

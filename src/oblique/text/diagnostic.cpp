@@ -2,7 +2,6 @@
 #include <oblique/text/diagnostic.h>
 
 #include <algorithm>
-#include <numeric>
 #include <tuple>
 
 #include <fmt/format.h>
@@ -44,23 +43,31 @@ void Diagnostics::sort_by_place() {
 namespace {
 
 /// Letters to insert, drop, replace, or exchange with their neighbour to make `b` of `a` (optimal string
-/// alignment).
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> before_last(b.size() + 1);
-  std::vector<std::size_t> last(b.size() + 1);
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
+/// alignment), or more than `most` where that many do not do: only what is so near to the diagonal is looked
+/// at (E. Ukkonen, Algorithms for approximate string matching, 1985).
+std::size_t edit_distance(std::string_view a, std::string_view b, std::size_t most) {
+  if (a.size() > b.size() + most || b.size() > a.size() + most) return most + 1;
+  std::vector<std::size_t> before_last(b.size() + 1, most + 1);
+  std::vector<std::size_t> last(b.size() + 1, most + 1);
+  std::vector<std::size_t> row(b.size() + 1, most + 1);
+  for (std::size_t j = 0; j <= std::min(most, b.size()); ++j) row[j] = j;
   for (std::size_t i = 1; i <= a.size(); ++i) {
     std::swap(before_last, last);
     std::swap(last, row);
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
+    const std::size_t first = i > most ? i - most : 1;
+    const std::size_t end = std::min(b.size(), i + most);
+    row[first - 1] = first == 1 ? std::min(i, most + 1) : most + 1;
+    std::size_t least = row[first - 1];
+    for (std::size_t j = first; j <= end; ++j) {
       const std::size_t replaced = last[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
-      row[j] = std::min({replaced, last[j] + 1, row[j - 1] + 1});
+      row[j] = std::min({replaced, last[j] + 1, row[j - 1] + 1, most + 1});
       if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
         row[j] = std::min(row[j], before_last[j - 2] + 1);
       }
+      least = std::min(least, row[j]);
     }
+    if (end < b.size()) row[end + 1] = most + 1;  // of an earlier row
+    if (least > most) return most + 1;
   }
   return row.back();
 }
@@ -68,11 +75,12 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::optional<std::string> nearest_name(std::string_view name, const std::vector<std::string>& candidates) {
-  const std::size_t allowed = std::max<std::size_t>(1, name.size() / 3);
+  constexpr std::size_t kMostSlips = 20;  // however long the name is
+  const std::size_t allowed = std::clamp<std::size_t>(name.size() / 3, 1, kMostSlips);
   std::optional<std::string> best;
   std::size_t best_distance = allowed + 1;
   for (const std::string& candidate : candidates) {
-    const std::size_t distance = edit_distance(name, candidate);
+    const std::size_t distance = edit_distance(name, candidate, best_distance - 1);
     if (distance < best_distance && distance < candidate.size()) {
       best = candidate;
       best_distance = distance;
