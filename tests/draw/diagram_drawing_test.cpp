@@ -55,6 +55,30 @@ y = { type = "integrator", in = ["x"] }
   EXPECT_EQ(wire.segments.front().to.y(), wire.segments.back().to.y()) << "the wire forward is straight";
 }
 
+// Each composite holds the one before it twice: a drawing of 2⁴⁰ blocks, were it not counted first.
+TEST(DiagramDrawing, IsNotOpenedBeyondAllMeasure) {
+  BlockLibrary own = BlockLibrary::shipped();
+  for (int k = 0; k < 40; ++k) {
+    const std::string name = "c" + std::to_string(k);
+    const std::string inside = k == 0 ? "inverter" : "c" + std::to_string(k - 1);
+    own.add(
+        parse_block("format = \"oblique-block/1\"\ntitle = \"c\"\n[inputs]\nin = { doc = \"d\" }\n"
+                    "[outputs]\nout = { wire = \"j\", doc = \"d\" }\n[blocks]\n"
+                    "i = { type = \"" +
+                        inside +
+                        "\", in = \"in\" }\n"
+                        "j = { type = \"" +
+                        inside + "\", in = \"i\" }\n",
+                    name + ".toml", name));
+  }
+  const Diagram deep = diagram("one = { type = \"constant\" }\ne = { type = \"c39\", in = \"one\" }\n");
+  EXPECT_THAT([&] { draw_diagram(deep, own, {.depth = 100}); },
+              testing::ThrowsMessage<DiagramError>(
+                  "test.toml: so far opened, the drawing has more than 30000 blocks\n"
+                  "  remedy: open fewer levels of composites"));
+  EXPECT_NO_THROW(draw_diagram(deep, own, {.depth = 3}));
+}
+
 TEST(DiagramDrawing, ConstantsStandWhereTheyAreUsed) {
   const Picture picture = draw_diagram(diagram(R"(
 one = { type = "constant", value = 1 }

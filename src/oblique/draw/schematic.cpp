@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -261,6 +262,22 @@ std::vector<Record> records_of(const Diagram& diagram, const Scope& scope, Diagn
   return records;
 }
 
+/// Guards against composites of composites whose size explodes; a drawing of so many takes seconds.
+constexpr std::size_t kMostBlocks = 30'000;
+
+/// How many blocks are seen with so many levels open; one more than kMostBlocks where they are more.
+std::size_t blocks_seen(const Scope& scope, int depth,
+                        std::map<std::pair<const Scope*, int>, std::size_t>& known) {
+  const auto [found, is_new] = known.try_emplace({&scope, depth}, scope.blocks.size());
+  if (!is_new) return found->second;
+  std::size_t seen = scope.blocks.size();
+  for (const WiredBlock& wired : scope.blocks) {
+    if (depth > 0 && wired.inside != nullptr) seen += blocks_seen(*wired.inside, depth - 1, known);
+    seen = std::min(seen, kMostBlocks + 1);
+  }
+  return known[{&scope, depth}] = seen;
+}
+
 }  // namespace
 
 std::string number_text(double value) {
@@ -278,6 +295,14 @@ Schematic make_schematic(const Diagram& diagram, const BlockLibrary& library, in
   around.layout = &diagram.layout;
   around.records = records_of(diagram, scope, diagnostics);
   diagnostics.throw_if_any<DiagramError>();
+  std::map<std::pair<const Scope*, int>, std::size_t> known;
+  if (blocks_seen(scope, depth, known) > kMostBlocks) {
+    throw DiagramError(
+        Diagnostic{{diagram.file, {}},
+                   fmt::format("so far opened, the drawing has more than {} blocks", kMostBlocks),
+                   {},
+                   "open fewer levels of composites"});
+  }
   return Builder(around, depth).build();
 }
 
