@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "measured_time.h"
 #include "terminal.h"
 
 namespace oblique::cli {
@@ -35,10 +36,14 @@ Json json_of(const std::optional<double>& value) {
 }
 
 Json json_of(const ComparedRun& run) {
-  Json json{{"gain", run.gain},           {"max_error", run.max_error},
-            {"rms_error", run.rms_error}, {"steps", run.steps},
-            {"seconds", run.seconds},     {"overloads", run.overloads.size()},
-            {"stable", run.stable},       {"method", method_name(run.method)},
+  Json json{{"gain", run.gain},
+            {"max_error", run.max_error},
+            {"rms_error", run.rms_error},
+            {"steps", run.steps},
+            {"seconds", measured_seconds(run.seconds)},
+            {"overloads", run.overloads.size()},
+            {"stable", run.stable},
+            {"method", method_name(run.method)},
             {"bandwidth", run.bandwidth}};
   json["worst"] = {{"point", run.worst.point},
                    {"time", run.worst.time},

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "measured_time.h"
 #include "terminal.h"
 
 namespace oblique::cli {
@@ -65,7 +66,7 @@ Json to_json(const MonteCarloReport& report) {
             {"first_run", report.options.first_run},
             {"runs", result.errors.size()},
             {"drawn", result.drawn},
-            {"seconds", report.seconds}};
+            {"seconds", measured_seconds(report.seconds)}};
   json["percentiles"] = Json::object();
   for (const double percent : kPercents) {
     const auto error = result.percentile(percent);
