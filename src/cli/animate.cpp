@@ -14,6 +14,7 @@
 #include "gif_output.h"
 #include "linkage_scene.h"
 #include "magnified.h"
+#include "output_files.h"
 #include "patch_choice.h"
 #include "picture_output.h"
 #include "terminal.h"
@@ -49,7 +50,6 @@ Round round_of(const Mechanism& mechanism, int frames) {
 ExitStatus animate_mechanism(const Session& session, const AnimateRequest& request) {
   constexpr std::array<std::string_view, 3> kEndings{".svg", ".html", ".gif"};
   check_output(request.output, kEndings);
-  check_not_input(request.output, request.mechanism, "mechanism");
   const std::string ending = std::filesystem::path(request.output).extension().string();
   const bool gif = ending == ".gif";
   const AnimationTiming timing = timing_of(request, gif);

@@ -7,6 +7,7 @@
 #include "diagram_check.h"
 #include "file_kind.h"
 #include "mechanism_check.h"
+#include "output_files.h"
 #include "plot_output.h"
 #include "terminal.h"
 
@@ -32,7 +33,7 @@ ExitStatus check_mechanism(const CheckRequest& request, const std::string& text)
 }
 
 void check_request(const CheckRequest& request) {
-  check_plot(request);
+  check_plot(request.plot, request.theme);
   if (request.json && plots_in_terminal(request.plot)) {
     throw ReadError(Diagnostic{
         {}, "--json and --plot - would both print", "one of the two", "--plot FILE.svg beside --json"});
@@ -46,7 +47,6 @@ void check_request(const CheckRequest& request) {
   }
   if (request.rescale) {
     check_output(request.output, ".toml");
-    check_not_input(request.output, request.file, "diagram");
   }
 }
 

@@ -20,6 +20,7 @@
 #include "machine_comparison_output.h"
 #include "machine_patch.h"
 #include "monte_carlo_output.h"
+#include "output_files.h"
 #include "plot_output.h"
 #include "terminal.h"
 
@@ -128,7 +129,7 @@ MonteCarloReport draw_elements(const CompareRequest& request, const Mechanism& m
 
 ExitStatus compare_mechanism(const Session& session, const CompareRequest& request) {
   if (!request.output.empty()) check_output(request.output, ".json");
-  const Theme theme = check_plot(request);
+  check_plot(request.plot, request.theme);
   if (request.json && plots_in_terminal(request.plot))
     refuse("--json and --plot - would both print", "one of the two", "--plot FILE.svg beside --json");
   const BlockLibrary library = session.blocks();
@@ -180,7 +181,7 @@ ExitStatus compare_mechanism(const Session& session, const CompareRequest& reque
     failed = !report.result.worst_run;
   }
   if (!plots_in_terminal(request.plot)) print(request.json ? json_text(json) : text);
-  if (!request.plot.empty()) plot(chart, request.plot, theme);
+  if (!request.plot.empty()) plot(chart, request.plot, plot_theme(request.theme));
   if (!request.output.empty()) save(request.output, json_text(json));
   return failed ? ExitStatus::solver_failed : ExitStatus::done;
 }

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "output_files.h"
 #include "plot_output.h"
 #include "pole_chart.h"
 #include "terminal.h"
@@ -115,7 +116,7 @@ ExitStatus check_diagram(const Session& session, const CheckRequest& request, co
   if (!plots_in_terminal(request.plot)) print(request.json ? to_json(check) : to_text(check));
   if (!request.plot.empty())
     plot(pole_chart(flat, program, check.analysis.instants, "Eigenvalues along the run: " + diagram.title),
-         request.plot, check_plot(request));
+         request.plot, plot_theme(request.theme));
   if (check.analysis.failure) throw SolveError(*check.analysis.failure);
   if (request.rescale) write_rescaled(check, library, request.output);
   return ExitStatus::done;

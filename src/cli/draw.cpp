@@ -67,7 +67,6 @@ ExitStatus draw_file(const Session& session, const DrawRequest& request) {
   const Theme theme = theme_option(request.theme);
   const std::string text = read_file(request.file);  // once: it may be a pipe
   const bool is_diagram = kind_of_file(text, request.file) == FileKind::diagram;
-  if (!request.layout) check_not_input(request.output, request.file, is_diagram ? "diagram" : "mechanism");
   if (is_diagram) {
     check_options_of_diagram(request);
     return draw_diagram_file(session, request, text);

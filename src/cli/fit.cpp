@@ -7,6 +7,7 @@
 #include <oblique/text/document.h>
 
 #include "command.h"
+#include "output_files.h"
 #include "terminal.h"
 
 namespace oblique::cli {
@@ -58,7 +59,6 @@ std::string report(const Fit& fit, const Mechanism& mechanism, const TargetPath&
 ExitStatus fit_mechanism(const Session&, const FitRequest& request) {
   if (!request.output.empty()) {
     check_output(request.output, ".toml");
-    check_not_input(request.output, request.mechanism, "mechanism");
   }
   const std::string text = read_file(request.mechanism);
   const Mechanism mechanism = parse_mechanism(text, request.mechanism);

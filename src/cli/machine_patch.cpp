@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cmath>
-#include <list>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,8 +10,8 @@
 #include <oblique/diagram/machine_profile.h>
 #include <oblique/machine/realise.h>
 #include <oblique/network/network.h>
-#include <oblique/text/new_file.h>
 
+#include "output_files.h"
 #include "terminal.h"
 
 namespace oblique::cli {
@@ -22,20 +21,6 @@ std::string available_text(const BillRow& row) {
   if (!row.exists) return "none";
   if (!row.available) return "not published";
   return std::isinf(*row.available) ? "as many as it takes" : fmt::format("{}", *row.available);
-}
-
-/// A file and what it is to hold.
-struct Written {
-  std::string path;
-  std::string text;
-};
-
-/// Writes all files or none: they take their names when all are complete.
-void save_together(const std::vector<Written>& files) {
-  std::list<NewFile> open;
-  for (const Written& file : files) open.emplace_back(file.path).append(file.text);
-  for (NewFile& file : open) file.commit();
-  for (const Written& file : files) note(fmt::format("wrote {}\n", file.path));
 }
 
 constexpr std::array<const char*, 4> kSheetEndings{"-patch.csv", "-pots.csv", "-static.csv", ".txt"};
@@ -120,9 +105,7 @@ void check_machine_request(const PatchRequest& request) {
   if (find_machine(request.machine) == nullptr) throw ReadError(unknown_machine(request.machine));
   if (request.sheets.empty()) return;
   for (const std::string ending : kSheetEndings) {
-    const std::string path = request.sheets + ending;
-    check_output(path, ending.substr(ending.find('.')));
-    check_not_input(path, request.mechanism, "mechanism");
+    check_output(request.sheets + ending, ending.substr(ending.find('.')));
   }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <exception>
 #include <new>
+#include <system_error>
 
 #include <fmt/format.h>
 
@@ -11,6 +12,7 @@
 
 #include "arguments.h"
 #include "memory.h"
+#include "signals.h"
 #include "terminal.h"
 
 namespace oblique::cli {
@@ -54,6 +56,11 @@ ExitStatus run_and_report(int argc, char** argv) {
     return ExitStatus::bad_request;
   } catch (const std::bad_alloc&) {
     throw;
+  } catch (const std::system_error& error) {  // no thread, no more open files …
+    print_error(
+        fmt::format("the system refuses: {}\n  remedy: end other programs, or raise its limits (ulimit -a)",
+                    error.code().message()));
+    return ExitStatus::bad_request;
   } catch (const std::exception& error) {
     print_error(fmt::format("internal error: {}; please report it", error.what()));
     return ExitStatus::solver_failed;
@@ -74,6 +81,7 @@ int main(int argc, char** argv) {
   using namespace oblique::cli;
   try {
     guard_memory();
+    end_in_order_on_signals();
     const ExitStatus status = run_and_report(argc, argv);
     if (!memory_ran_out()) return static_cast<int>(status);
   } catch (const std::bad_alloc&) {

@@ -10,6 +10,7 @@
 
 #include "command.h"
 #include "machine_patch.h"
+#include "output_files.h"
 #include "patch_choice.h"
 #include "terminal.h"
 
@@ -51,7 +52,6 @@ PatchMethod method_option(const std::string& text) {
 
 ExitStatus patch_mechanism(const Session& session, const PatchRequest& request) {
   if (!request.output.empty()) check_output(request.output, ".toml");
-  if (!request.output.empty()) check_not_input(request.output, request.mechanism, "mechanism");
   check_machine_request(request);
   PatchOptions options;
   options.method = method_option(request.method);

@@ -11,7 +11,11 @@
 #include <fmt/format.h>
 
 #include <oblique/text/document.h>
+#include <oblique/text/leftover.h>
+#include <oblique/text/new_file.h>
 
+#include "output_files.h"
+#include "signals.h"
 #include "terminal.h"
 
 namespace oblique::cli {
@@ -45,6 +49,9 @@ class ScratchFolder {
     if (mkdtemp(name_.data()) == nullptr) fail_without_folder();
     name_.copy(svg_.data(), name_.size());
     name_.copy(png_.data(), name_.size());
+    leftovers_[0].remember(name_);
+    leftovers_[1].remember(svg_);
+    leftovers_[2].remember(png_);
   }
   ~ScratchFolder() {
     unlink(svg_.c_str());
@@ -59,6 +66,7 @@ class ScratchFolder {
 
  private:
   std::string name_, svg_, png_;
+  std::array<Leftover, 3> leftovers_;  ///< for signals
 };
 
 /// A word for the shell as it stands.
@@ -77,6 +85,7 @@ bool succeeds(const std::string& command, const std::string& path) {
                                {},
                                "end other programs, or write an .svg"});
   }
+  end_as_ended(status);
   return status == 0;
 }
 
@@ -98,7 +107,9 @@ void require_converter(const std::string& path) {
 
 std::string png_of(std::string_view svg, const std::string& path) {
   const ScratchFolder folder;
-  write_file(folder.svg(), svg);
+  NewFile file(folder.svg());
+  file.append(svg);
+  file.commit(NewFile::Lasting::no);
   if (!succeeds(fmt::format("rsvg-convert {} -o {}", quoted(folder.svg()), quoted(folder.png())), path)) {
     throw ReadError(Diagnostic{{path, {}}, "rsvg-convert could not draw this", {}, "write an .svg"});
   }
@@ -106,7 +117,6 @@ std::string png_of(std::string_view svg, const std::string& path) {
 }
 
 void save_picture(const Picture& picture, const std::string& path, Theme theme) {
-  check_picture_output(path);
   const std::string svg = to_svg(picture, theme);
   save(path, is_png(path) ? png_of(svg, path) : svg);
 }

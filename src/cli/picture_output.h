@@ -10,12 +10,11 @@
 
 namespace oblique::cli {
 
-/// Checks before the work is done that a picture can be written to `path`, which ends in .svg or .png. Throws
-/// ReadError.
+/// As `check_output`, of a picture, which ends in .svg or .png and for which rsvg-convert may be needed.
 void check_picture_output(const std::string& path);
 
-/// Writes a picture and says so on stderr: .svg itself, .png through rsvg-convert. Throws ReadError, also
-/// where rsvg-convert is not installed or fails; nothing is then written.
+/// Writes a picture, whose path was checked, and says so on stderr: .svg itself, .png through rsvg-convert.
+/// Throws ReadError, also where rsvg-convert fails; nothing is then written.
 void save_picture(const Picture& picture, const std::string& path, Theme theme);
 
 /// Throws ReadError where the program is missing that makes `path`, a .png or a .gif.

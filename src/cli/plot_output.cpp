@@ -13,7 +13,7 @@ bool plots_in_terminal(const std::string& target) {
   return target == "-";
 }
 
-Theme check_plot(const std::string& target, const std::string& theme) {
+void check_plot(const std::string& target, const std::string& theme) {
   if (!theme.empty() && (target.empty() || plots_in_terminal(target))) {
     throw ReadError(Diagnostic{{},
                                target.empty()
@@ -23,13 +23,17 @@ Theme check_plot(const std::string& target, const std::string& theme) {
                                {}});
   }
   if (!target.empty() && !plots_in_terminal(target)) check_picture_output(target);
+  plot_theme(theme);
+}
+
+Theme plot_theme(const std::string& theme) {
   return theme.empty() ? Theme::automatic : theme_option(theme);
 }
 
 void plot(const Chart& chart, const std::string& target, Theme theme) {
   constexpr std::size_t kWidthElsewhere = 80;
   if (plots_in_terminal(target)) {
-    print(to_braille(chart, terminal_width(kWidthElsewhere), stdout_has_colours()));
+    print_coloured(to_braille(chart, terminal_width(kWidthElsewhere), stdout_has_colours()));
   } else {
     save_picture(draw_chart(chart), target, theme);
   }

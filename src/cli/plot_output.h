@@ -11,12 +11,11 @@ namespace oblique::cli {
 /// What --plot asks for: "-" is the terminal, anything else a picture's file.
 bool plots_in_terminal(const std::string& target);
 
-/// Checks --plot and --theme before the work is done; empty: not given. Throws ReadError.
-Theme check_plot(const std::string& target, const std::string& theme);
-template <class Request>
-Theme check_plot(const Request& request) {
-  return check_plot(request.plot, request.theme);
-}
+/// Checks --plot and --theme, once and before the work is done; empty: not given. Throws ReadError.
+void check_plot(const std::string& target, const std::string& theme);
+
+/// The theme that --theme names; empty: not given. Throws ReadError.
+Theme plot_theme(const std::string& theme);
 
 /// Prints the chart in Braille, as wide as the terminal, or writes it as a picture.
 void plot(const Chart& chart, const std::string& target, Theme theme);

@@ -3,6 +3,7 @@
 
 #include "command.h"
 #include "mechanism_report.h"
+#include "output_files.h"
 #include "patch_choice.h"
 #include "picture_output.h"
 #include "terminal.h"
@@ -10,7 +11,6 @@
 namespace oblique::cli {
 ExitStatus report_mechanism(const Session& session, const ReportRequest& request) {
   check_output(request.output, ".html");
-  check_not_input(request.output, request.mechanism, "mechanism");
   const Theme theme = theme_option(request.theme);
   const BlockLibrary library = session.blocks();
   const Mechanism mechanism = read_mechanism(request.mechanism);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
-#include <csignal>
 
 #include <fmt/format.h>
 
@@ -10,8 +9,10 @@
 #include <oblique/solve/static_test.h>
 
 #include "command.h"
+#include "output_files.h"
 #include "plot_output.h"
 #include "run_chart.h"
+#include "signals.h"
 #include "table_output.h"
 #include "terminal.h"
 
@@ -62,22 +63,6 @@ std::string table_of(const std::vector<EventRecord>& events, long count) {
   return text;
 }
 
-/// Set by Ctrl-C while a run can be interrupted.
-// NOLINTNEXTLINE(*-avoid-non-const-global-variables): a signal reaches no other
-volatile std::sig_atomic_t interrupt_asked = 0;
-
-/// While it lives, Ctrl-C only asks for the end of the run.
-class InterruptGuard {
- public:
-  InterruptGuard() : before_(std::signal(SIGINT, [](int) { interrupt_asked = 1; })) { interrupt_asked = 0; }
-  ~InterruptGuard() { std::signal(SIGINT, before_); }
-  InterruptGuard(const InterruptGuard&) = delete;
-  InterruptGuard& operator=(const InterruptGuard&) = delete;
-
- private:
-  void (*before_)(int);
-};
-
 ExitStatus report_expectations(const Diagram& diagram, const Run& run) {
   ExitStatus status = ExitStatus::done;
   print("\n");
@@ -102,18 +87,12 @@ std::string table_of(const std::vector<StaticReading>& readings) {
 }
 
 void check_request(const RunRequest& request) {
-  if (request.plot.empty()) {
-    check_table_output(request.output, request.columns);
-    if (!request.against.empty())
-      throw ReadError(Diagnostic{{}, "--against is about a drawing", "--plot beside it", {}});
-  }
-  check_plot(request);
-  if (!request.output.empty()) check_table_output(request.output, request.columns);
-  check_not_input(request.output, request.diagram, "diagram");
-  if (!request.save.empty()) {
-    check_output(request.save, ".toml");
-    check_not_input(request.save, request.diagram, "diagram");
-  }
+  const bool columns_are_drawn = !request.plot.empty();
+  check_table_output(request.output, columns_are_drawn ? std::vector<std::string>{} : request.columns);
+  if (request.plot.empty() && !request.against.empty())
+    throw ReadError(Diagnostic{{}, "--against is about a drawing", "--plot beside it", {}});
+  check_plot(request.plot, request.theme);
+  if (!request.save.empty()) check_output(request.save, ".toml");
   if (!request.static_test) return;
   const char* const other = request.check              ? "--check"
                             : request.halt_on_overload ? "--halt-on-overload"
@@ -228,14 +207,14 @@ ExitStatus run_diagram(const Session& session, const RunRequest& request) {
     std::optional<InterruptGuard> guard;
     if (!request.save.empty()) {
       guard.emplace();
-      options.interrupted = [] { return interrupt_asked != 0; };
+      options.interrupted = InterruptGuard::asked;
     }
     options.progress = [&](double fraction) { progress.show(fraction); };
     result = run(program, flat, options);
   }
   if (!plots_in_terminal(request.plot)) print(table_of(result.trajectory));
   if (drawn) {
-    plot(chart_of(result, *drawn, diagram.title), request.plot, check_plot(request));
+    plot(chart_of(result, *drawn, diagram.title), request.plot, plot_theme(request.theme));
     if (drawn->left_out > 0) {
       note(fmt::format("drawn are the first {} columns; --columns names others of the {} more\n",
                        drawn->drawn.size(), drawn->left_out));

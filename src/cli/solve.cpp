@@ -137,7 +137,6 @@ MotionOptions options_of(const SolveRequest& request) {
 
 ExitStatus solve_mechanism(const Session&, const SolveRequest& request) {
   check_table_output(request.output, request.columns);
-  check_not_input(request.output, request.mechanism, "mechanism");
   if (request.analysis && request.output.empty()) {
     throw ReadError(Diagnostic{{}, "--analysis has no file to write its columns to", "-o FILE.csv", {}});
   }

@@ -7,6 +7,7 @@
 
 #include <oblique/text/diagnostic.h>
 
+#include "output_files.h"
 #include "terminal.h"
 
 namespace oblique::cli {

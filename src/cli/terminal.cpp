@@ -2,11 +2,9 @@
 #include "terminal.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <new>
 
 #include <fcntl.h>
@@ -15,7 +13,7 @@
 
 #include <fmt/format.h>
 
-#include <oblique/text/document.h>
+#include <oblique/text/encoding.h>
 #include <oblique/text/quantity.h>
 
 #include "memory.h"
@@ -31,6 +29,11 @@ std::size_t width(std::string_view text) {
 
 bool has_colours(int descriptor) {
   return isatty(descriptor) != 0 && std::getenv("NO_COLOR") == nullptr;
+}
+
+void write_note(std::string_view text) {
+  std::fflush(stdout);  // where both go to one place, results and notes stay in order
+  std::fwrite(text.data(), 1, text.size(), stderr);
 }
 
 }  // namespace
@@ -83,6 +86,10 @@ std::string short_number(double value, double scale) {
 }
 
 void print(std::string_view text) {
+  print_coloured(is_visible(text) ? std::string(text) : visible(text));
+}
+
+void print_coloured(std::string_view text) {
   std::fwrite(text.data(), 1, text.size(), stdout);
 }
 
@@ -104,12 +111,15 @@ std::string count(std::size_t n, std::string_view one, std::string_view many) {
 }
 
 void note(std::string_view text) {
-  std::fflush(stdout);  // where both go to one place, results and notes stay in order
-  std::fwrite(text.data(), 1, text.size(), stderr);
+  if (is_visible(text)) {
+    write_note(text);
+  } else {
+    write_note(visible(text));
+  }
 }
 
 void print_error_mark() {
-  note(has_colours(STDERR_FILENO) ? "\033[1;31merror:\033[0m " : "error: ");
+  write_note(has_colours(STDERR_FILENO) ? "\033[1;31merror:\033[0m " : "error: ");
 }
 
 void print_error(std::string_view text) {
@@ -119,13 +129,8 @@ void print_error(std::string_view text) {
   note(line);
 }
 
-void save(const std::filesystem::path& path, std::string_view text) {
-  write_file(path, text);
-  note(fmt::format("wrote {}\n", path.string()));
-}
-
 Progress::~Progress() {
-  if (shown_) note("\r\033[K");
+  if (shown_) write_note("\r\033[K");
 }
 
 void Progress::show(double fraction) {
@@ -134,7 +139,7 @@ void Progress::show(double fraction) {
   if (now - begin_ < std::chrono::seconds(1) || now - last_ < std::chrono::milliseconds(200)) return;
   last_ = now;
   shown_ = true;
-  note(fmt::format("\r{}: {:3.0f} %\033[K", what_, 100 * fraction));
+  write_note(fmt::format("\r{}: {:3.0f} %\033[K", what_, 100 * fraction));
 }
 
 double quantity_option(const std::string& option, const std::string& text, std::string_view unit) {
@@ -143,42 +148,6 @@ double quantity_option(const std::string& option, const std::string& text, std::
   } catch (const ExpressionError& error) {
     throw ReadError(
         Diagnostic{{}, fmt::format("{} {}: {}", option, text, error.what), error.expected, error.remedy});
-  }
-}
-
-void check_not_input(const std::filesystem::path& output, const std::filesystem::path& input,
-                     std::string_view kind) {
-  std::error_code none_yet;
-  if (!std::filesystem::equivalent(input, output, none_yet)) return;
-  throw ReadError(Diagnostic{{output.string(), {}},
-                             fmt::format("this is the {} itself, which would be replaced", kind),
-                             {},
-                             "write to another file"});
-}
-
-void check_output(const std::filesystem::path& path, std::string_view ending) {
-  check_output(path, std::span(&ending, 1));
-}
-
-void check_output(const std::filesystem::path& path, std::span<const std::string_view> endings) {
-  check_ending(path, endings);
-  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
-  std::error_code unknown;
-  if (!std::filesystem::is_directory(folder, unknown)) {
-    throw ReadError(Diagnostic{{path.string(), {}},
-                               "the folder of this file does not exist",
-                               {},
-                               fmt::format("make it first: mkdir -p {}", folder.string())});
-  }
-  const std::filesystem::file_status status = std::filesystem::status(path, unknown);
-  const bool special = std::filesystem::exists(status) && !std::filesystem::is_regular_file(status);
-  int reason = access(special ? path.c_str() : folder.c_str(), W_OK) == 0 ? 0 : errno;
-  if (std::filesystem::is_directory(status)) reason = EISDIR;
-  if (reason != 0) {
-    throw ReadError(Diagnostic{{path.string(), {}},
-                               fmt::format("this file could not be written: {}", std::strerror(reason)),
-                               {},
-                               "name a file in a folder that you may write to"});
   }
 }
 

@@ -2,8 +2,6 @@
 #pragma once
 
 #include <chrono>
-#include <filesystem>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -47,8 +45,11 @@ std::string short_number(double value, double scale = 0);
 /// "1 block", "3 blocks".
 std::string count(std::size_t n, std::string_view one, std::string_view many);
 
-/// Writes results to stdout.
+/// Writes results to stdout, `visible`: nothing that stands in a file commands the terminal.
 void print(std::string_view text);
+
+/// The same of a text whose colours are escapes of our own.
+void print_coloured(std::string_view text);
 
 /// Keeps the number of stdout taken where the caller has closed it, so that no file is opened in its place.
 void keep_stdout();
@@ -56,7 +57,7 @@ void keep_stdout();
 /// Whether everything printed so far has reached stdout.
 bool results_are_written();
 
-/// Writes anything else to stderr.
+/// Writes anything else to stderr, `visible`.
 void note(std::string_view text);
 
 /// Writes an error to stderr, "error:" in red where that is a terminal that wants colours (NO_COLOR).
@@ -64,9 +65,6 @@ void print_error(std::string_view text);
 
 /// The word before it, for those who write the text themselves with `note`; takes no memory.
 void print_error_mark();
-
-/// Writes a file and says so on stderr.
-void save(const std::filesystem::path& path, std::string_view text);
 
 /// A line on stderr that shows how far work of more than a second has come; nothing where stderr is no
 /// terminal.
@@ -87,14 +85,5 @@ class Progress {
 
 /// A quantity given as an option, in `unit`. Throws ReadError that names the option.
 double quantity_option(const std::string& option, const std::string& text, std::string_view unit);
-
-/// Checks that a result can be written to `path` before the work is done; its name must end with one of
-/// `endings`. Throws ReadError.
-void check_output(const std::filesystem::path& path, std::span<const std::string_view> endings);
-void check_output(const std::filesystem::path& path, std::string_view ending);
-
-/// Refuses to write over the file that is read, a "mechanism" or a "diagram".
-void check_not_input(const std::filesystem::path& output, const std::filesystem::path& input,
-                     std::string_view kind);
 
 }  // namespace oblique::cli

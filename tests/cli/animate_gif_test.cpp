@@ -36,7 +36,7 @@ bool shows_pin(const ShownGif& gif, std::size_t frame, const Vector2d& at, doubl
 }
 
 TEST_F(Animations, GifShowsPinsWhereTheMotionSays) {
-  if (!can_draw()) GTEST_SKIP() << "rsvg-convert is not installed";
+  if (!can_draw()) FAIL() << "rsvg-convert is not installed (librsvg2-bin)";
   const Outcome outcome =
       run("oblique animate " + kFourBar + " --frames 20 --rate 10 --size 600 -o " + file("x.gif"));
   ASSERT_EQ(outcome.status, 0) << outcome.err;
@@ -67,7 +67,7 @@ TEST_F(Animations, GifShowsPinsWhereTheMotionSays) {
 
 // The scale, the title and all of the grid that the mechanism never comes near stay as they are, bit by bit.
 TEST_F(Animations, GifDoesNotFlicker) {
-  if (!can_draw()) GTEST_SKIP() << "rsvg-convert is not installed";
+  if (!can_draw()) FAIL() << "rsvg-convert is not installed (librsvg2-bin)";
   run("oblique animate " + kFourBar + " --frames 16 -o " + file("x.gif"));
   const ShownGif gif = read_gif(bytes_of("x.gif"));
   run("oblique draw " + kFourBar + " -o " + file("x.svg"));
@@ -94,7 +94,7 @@ TEST_F(Animations, GifDoesNotFlicker) {
 }
 
 TEST_F(Animations, GifIsTheSameForTheSameRequest) {
-  if (!can_draw()) GTEST_SKIP() << "rsvg-convert is not installed";
+  if (!can_draw()) FAIL() << "rsvg-convert is not installed (librsvg2-bin)";
   for (const char* name : {"one.gif", "two.gif"})
     EXPECT_EQ(run("oblique animate " + kFourBar + " --frames 8 --size 300 -o " + file(name)).status, 0);
   EXPECT_EQ(bytes_of("one.gif"), bytes_of("two.gif"));
@@ -109,7 +109,7 @@ struct Pace {
 
 // Two of --frames, --duration and --rate make the third; delays are whole hundredths of a second.
 TEST_F(Animations, GifGoesAsFastAsItCan) {
-  if (!can_draw()) GTEST_SKIP() << "rsvg-convert is not installed";
+  if (!can_draw()) FAIL() << "rsvg-convert is not installed (librsvg2-bin)";
   for (const Pace& pace : std::vector<Pace>{
            {"--duration 1", 25, 4, ""},
            {"--frames 10 --duration 1", 10, 10, ""},

@@ -7,9 +7,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <unistd.h>
-
 #include "../support/process.h"
+#include "../support/scratch_folder.h"
 
 namespace oblique::test {
 namespace {
@@ -19,8 +18,7 @@ using testing::IsEmpty;
 
 class SavedRun : public testing::Test {
  protected:
-  SavedRun()
-      : folder_(std::filesystem::temp_directory_path() / ("oblique-state-" + std::to_string(getpid()))) {
+  SavedRun() : folder_(make_scratch_folder()) {
     std::filesystem::create_directories(folder_);
     std::filesystem::copy_file(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/historical/van-der-pol.toml",
                                folder_ / "pol.toml", std::filesystem::copy_options::overwrite_existing);
@@ -109,16 +107,6 @@ TEST_F(SavedRun, RefusesAnEndThatIsPast) {
   EXPECT_EQ(outcome.status, 2);
   EXPECT_THAT(outcome.err, HasSubstr("the state is that of t = 5 s, and the run ends at 4 s"));
   EXPECT_THAT(outcome.err, HasSubstr("give a later --until"));
-}
-
-TEST_F(SavedRun, DoesNotReplaceItsDiagram) {
-  const std::string before = content("circle.toml");
-  const Outcome outcome = oblique("run circle.toml --until 1 --save circle.toml");
-  EXPECT_EQ(outcome.status, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("this is the diagram itself, which would be replaced"));
-  EXPECT_EQ(content("circle.toml"), before);
-  EXPECT_EQ(oblique("check circle.toml --rescale -o circle.toml").status, 2);
-  EXPECT_EQ(content("circle.toml"), before);
 }
 
 }  // namespace

@@ -11,9 +11,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include <unistd.h>
-
 #include "../support/process.h"
+#include "../support/scratch_folder.h"
 
 namespace oblique::test {
 namespace {
@@ -23,9 +22,7 @@ using testing::HasSubstr;
 
 class Verbs : public testing::Test {
  protected:
-  Verbs() : folder_(std::filesystem::temp_directory_path() / ("oblique-verbs-" + std::to_string(getpid()))) {
-    std::filesystem::create_directories(folder_);
-  }
+  Verbs() : folder_(make_scratch_folder()) { std::filesystem::create_directories(folder_); }
   ~Verbs() override { std::filesystem::remove_all(folder_); }
 
   static Outcome oblique(const std::string& arguments) {
@@ -290,6 +287,16 @@ TEST_F(Verbs, CompareHoldsMethodsAndBandwidthsAgainstEachOther) {
   EXPECT_NEAR(sum, json.at("runs")[0].at("max_error").get<double>(), 1e-12);  // an identity, but for rounding
   ASSERT_EQ(json.at("series").size(), 4U);
   EXPECT_NEAR(json.at("series")[3].at("order").get<double>(), -1, 0.05);
+}
+
+TEST_F(Verbs, JsonIsTheSameBytesTwiceWhereThatIsAskedFor) {
+  const std::string command =
+      "SOURCE_DATE_EPOCH=0 oblique compare diagrams/mechanisms/four-bar.toml --gain 1e3 --tolerance 1% "
+      "--monte-carlo 3 --json";
+  const Outcome once = run_command(command, OBLIQUE_SOURCE_DIR);
+  EXPECT_EQ(once.status, 0) << once.err;
+  EXPECT_TRUE(nlohmann::json::parse(once.out).at("runs")[0].at("seconds").is_null());
+  EXPECT_EQ(run_command(command, OBLIQUE_SOURCE_DIR).out, once.out);
 }
 
 TEST_F(Verbs, MonteCarloGivesTheSameForAnyNumberOfThreadsAndRepeatsItsWorstRun) {

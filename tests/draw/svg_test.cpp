@@ -11,6 +11,7 @@ using testing::HasSubstr;
 
 TEST(Svg, EscapesWhatXmlReserves) {
   EXPECT_EQ(escape_xml("a<b & \"c\" > 'd'\x01"), "a&lt;b &amp; &quot;c&quot; &gt; &#39;d&#39;");
+  EXPECT_EQ(escape_xml("\uFFFF\uFFFE\uFFFD"), "\uFFFD\uFFFD\uFFFD") << "XML 1.0, production 2";
 }
 
 TEST(Svg, WritesShortNumbers) {

@@ -219,6 +219,9 @@ int close(int file) {
   errno = reason;
   return -1;
 }
+int fsync(int file) {
+  return file_fails(EIO) ? -1 : next<int (*)(int)>("fsync")(file);
+}
 int rename(const char* from, const char* to) {
   return file_fails(EIO) ? -1 : next<int (*)(const char*, const char*)>("rename")(from, to);
 }

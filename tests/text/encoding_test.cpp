@@ -21,5 +21,16 @@ TEST(Encoding, ReadsLatin1) {
   EXPECT_EQ(utf8_of_latin1("20\xB0\xFF"), "20°ÿ");
 }
 
+TEST(Encoding, ShowsControlCharactersAndObeysNone) {
+  EXPECT_EQ(visible("\x1b[2J\a\r"), "␛[2J␇␍");
+  EXPECT_EQ(visible(std::string_view("a\0b\x7f", 4)), "a␀b␡");
+  EXPECT_EQ(visible("\u0085\u009b31m"), "\uFFFD\uFFFD31m");
+  const std::string plain = "φ̇ = 1.5\t[rad/s]\n\u00a0\xff";
+  EXPECT_EQ(visible(plain), plain);
+  EXPECT_TRUE(is_visible(plain));
+  EXPECT_FALSE(is_visible("\u009f"));
+  EXPECT_FALSE(is_visible("a\x1b"));
+}
+
 }  // namespace
 }  // namespace oblique

@@ -11,6 +11,8 @@
 #include <gtest/gtest.h>
 
 #include <oblique/text/document.h>
+#include <oblique/text/leftover.h>
+#include <oblique/text/output_claim.h>
 
 namespace oblique {
 namespace {
@@ -53,6 +55,22 @@ TEST_F(File, ThatCannotBeReadToItsEndIsRefused) {
   }
 }
 
+// A device may give bytes for ever.
+TEST_F(File, ThatIsTooLongIsRefused) {
+  EXPECT_THAT([] { read_file("/dev/zero"); },
+              testing::ThrowsMessage<ReadError>(
+                  "/dev/zero: the file has more than 256 MiB\n  remedy: split it, or leave out rows"));
+}
+
+// The system would read the name up to the NUL, and another file.
+TEST_F(File, HasNoNulInItsName) {
+  write_file(folder_ / "a.csv", "text");
+  const std::string name = (folder_ / "a.csv").string();
+  EXPECT_THAT([&] { read_file(name + std::string("\0.csv", 5)); },
+              testing::ThrowsMessage<ReadError>(
+                  name + "␀.csv: no file has a NUL character in its name\n  remedy: correct the name"));
+}
+
 TEST_F(File, KeepsItsPermissions) {
   write_file(folder_ / "a.csv", "old");
   std::filesystem::permissions(folder_ / "a.csv", std::filesystem::perms(0600));
@@ -66,6 +84,60 @@ TEST_F(File, BehindALinkIsReplacedAndTheLinkKept) {
   write_file(folder_ / "link", "new");
   EXPECT_TRUE(std::filesystem::is_symlink(folder_ / "link"));
   EXPECT_EQ(read_file(folder_ / "a.csv"), "new");
+}
+
+TEST_F(File, BehindALinkThatLedNowhereIsMadeThere) {
+  std::filesystem::create_directory(folder_ / "b");
+  std::filesystem::create_symlink("b/next", folder_ / "link");
+  std::filesystem::create_symlink("../a.csv", folder_ / "b/next");
+  write_file(folder_ / "link", "new");
+  EXPECT_TRUE(std::filesystem::is_symlink(folder_ / "link"));
+  EXPECT_TRUE(std::filesystem::is_symlink(folder_ / "b/next"));
+  EXPECT_EQ(read_file(folder_ / "a.csv"), "new");
+}
+
+TEST_F(File, BehindALinkToItselfIsRefused) {
+  std::filesystem::create_symlink("link", folder_ / "link");
+  EXPECT_THAT([&] { write_file(folder_ / "link", "text"); },
+              testing::ThrowsMessage<ReadError>((folder_ / "link").string() +
+                                                ": cannot write the file: Too many levels of symbolic links\n"
+                                                "  remedy: name a file: this link leads back to itself"));
+  EXPECT_EQ(files(), 1U);
+}
+
+TEST_F(File, AndFolderThatAreLeftOverAreClearedAway) {
+  write_file(folder_ / "kept", "text");
+  write_file(folder_ / "forgotten", "text");
+  std::filesystem::create_directory(folder_ / "scratch");
+  write_file(folder_ / "scratch/part", "text");
+  Leftover scratch, part;
+  scratch.remember((folder_ / "scratch").native());
+  part.remember((folder_ / "scratch/part").native());
+  {
+    Leftover forgotten;
+    forgotten.remember((folder_ / "forgotten").native());
+  }
+  clear_away_leftovers();
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "scratch"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "kept"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "forgotten"));
+}
+
+TEST_F(File, ThatIsClaimedIsNotReadUntilTheClaimEnds) {
+  write_file(folder_ / "a.csv", "text");
+  std::filesystem::create_hard_link(folder_ / "a.csv", folder_ / "b.csv");
+  {
+    const OutputClaim claim(folder_ / "b.csv");
+    EXPECT_THAT([&] { read_file(folder_ / "a.csv"); },
+                testing::ThrowsMessage<ReadError>(
+                    (folder_ / "b.csv").string() + ": this file is read, as " + (folder_ / "a.csv").string() +
+                    ", and would be replaced\n  remedy: write to another file"));
+    EXPECT_THAT([&] { const OutputClaim again(folder_ / "a.csv"); },
+                testing::ThrowsMessage<ReadError>((folder_ / "a.csv").string() +
+                                                  ": two results would go to this file\n"
+                                                  "  remedy: name two files"));
+  }
+  EXPECT_EQ(read_file(folder_ / "a.csv"), "text");
 }
 
 // A device must be written to and never replaced by a file, which root otherwise could.

@@ -34,6 +34,13 @@ TEST(CsvFile, QuotesNamesAsRfc4180Says) {
             "\"a,b\",\"say \"\"x\"\"\",\"two\nlines\",plain name\n");
 }
 
+// What begins so a spreadsheet computes, and it may compute anything.
+TEST(CsvFile, HoldsNoFormulaAndNoControlCharacter) {
+  EXPECT_EQ(written(".csv", named({"=1+1", "+a", "-a", "@a", "\ta", "a=1"}), {}),
+            "'=1+1,'+a,'-a,'@a,'\ta,a=1\n");
+  EXPECT_EQ(written(".csv", named({"\x1b[2J", std::string("n\0l", 3), "a\rb"}), {}), "␛[2J,n␀l,a␍b\n");
+}
+
 TEST(CsvFile, LeavesCellsEmptyAndWritesWords) {
   EXPECT_EQ(written(".csv", {{"x"}, {"status", "", {"ok", "dead-centre", "open"}}},
                     {1, 0, 2, 1, kNan, 2, kNan, kNan, 3, 7, 4, 0.5, 5, -1}),

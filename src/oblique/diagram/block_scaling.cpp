@@ -2,12 +2,10 @@
 #include <oblique/diagram/block_scaling.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <optional>
 #include <string_view>
 
-#include <fmt/format.h>
-
+#include <oblique/text/nearest_decimal.h>
 #include <oblique/text/quantity.h>
 
 namespace oblique {
@@ -270,7 +268,7 @@ BlockScaling BlockScalingRules::scaling_of(const Eigen::VectorXd& logarithms) co
   // 14 digits: a factor of 0.2 comes out as 0.2, and the equations hold far below any tolerance.
   const auto factor = [&](Eigen::Index column) {
     if (column < 0) return 1.0;
-    return std::strtod(fmt::format("{:.14g}", std::exp(logarithms[column])).c_str(), nullptr);
+    return nearest_decimal(std::exp(logarithms[column]), 14);
   };
   BlockScaling scaling;
   for (const Eigen::Index column : inputs_) scaling.inputs.push_back(factor(column));

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -11,6 +10,7 @@
 
 #include <oblique/diagram/machine_defaults.h>
 #include <oblique/diagram/names.h>
+#include <oblique/text/nearest_decimal.h>
 
 namespace oblique {
 namespace {
@@ -185,7 +185,7 @@ class Writer {
   /// A number as it is, or times a ratio, without the rounding of the ratio.
   static double scaled_number(double number, double by, double over) {
     if (by == over) return number;
-    return std::strtod(fmt::format("{:.14g}", number * by / over).c_str(), nullptr);
+    return nearest_decimal(number * by / over, 14);
   }
 
   /// A block of 1 machine unit, made when it is first asked for.

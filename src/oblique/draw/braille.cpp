@@ -7,6 +7,7 @@
 #include <optional>
 
 #include <oblique/draw/chart_layout.h>
+#include <oblique/text/encoding.h>
 
 namespace oblique {
 namespace {
@@ -228,9 +229,24 @@ class PanelText {
   Dots dots_;
 };
 
+/// The colours are the only escapes.
+Chart with_visible_texts(Chart chart) {
+  chart.title = visible(chart.title);
+  chart.note = visible(chart.note);
+  for (Panel& panel : chart.panels) {
+    for (Axis* axis : {&panel.x, &panel.y}) {
+      axis->name = visible(axis->name);
+      axis->unit = visible(axis->unit);
+    }
+    for (Curve& curve : panel.curves) curve.name = visible(curve.name);
+  }
+  return chart;
+}
+
 }  // namespace
 
-std::string to_braille(const Chart& chart, std::size_t columns, bool colours) {
+std::string to_braille(const Chart& read, std::size_t columns, bool colours) {
+  const Chart chart = with_visible_texts(read);
   columns = std::max(columns, kFewestColumns);
   const std::vector<PanelScales> scales = scales_of(chart);
   std::size_t label_width = 0;

@@ -138,7 +138,14 @@ std::string svg_number(double value) {
 
 std::string escape_xml(std::string_view text) {
   std::string out;
-  for (const char c : text) {
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    const char c = text[at];
+    const std::string_view here = text.substr(at, 3);
+    if (here == "\uFFFE" || here == "\uFFFF") {  // no characters, and none of XML
+      out += "\uFFFD";
+      at += 2;
+      continue;
+    }
     switch (c) {
       case '&':
         out += "&amp;";

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <optional>
 
@@ -15,6 +14,7 @@
 #include <oblique/synthesis/path_problem.h>
 #include <oblique/synthesis/spread_point.h>
 #include <oblique/synthesis/synthesis_error.h>
+#include <oblique/text/nearest_decimal.h>
 
 namespace oblique {
 namespace {
@@ -172,9 +172,9 @@ class Fitter {
     VectorXd rounded = values;
     for (Index i = 0; i < values.size(); ++i) {
       const Dimension& dimension = family_.dimensions()[static_cast<std::size_t>(i)];
-      const std::string text = fmt::format("{:.10g}", values[i]);
-      rounded[i] = std::clamp(std::strtod(text.c_str(), nullptr), dimension.lower, dimension.upper);
-      if (text == fmt::format("{:.10g}", dimension.value)) rounded[i] = dimension.value;
+      const double decimal = nearest_decimal(values[i], 10);
+      rounded[i] = std::clamp(decimal, dimension.lower, dimension.upper);
+      if (decimal == nearest_decimal(dimension.value, 10)) rounded[i] = dimension.value;
     }
     return rounded;
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/text/encoding.h>
 
+#include <algorithm>
 #include <cstddef>
 
 #include <oblique/text/diagnostic.h>
@@ -52,6 +53,45 @@ bool is_utf8(std::string_view text) {
     at += length;
   }
   return true;
+}
+
+namespace {
+
+/// How many bytes a control character has that begins at `at`; 0: none does. Those above ASCII are U+0080 to
+/// U+009F.
+std::size_t control_length(std::string_view text, std::size_t at) {
+  const unsigned char c = byte_at(text, at);
+  if (c == 0xC2 && at + 1 < text.size() && byte_at(text, at + 1) >= 0x80 && byte_at(text, at + 1) < 0xA0)
+    return 2;
+  return (c < 0x20 && c != '\n' && c != '\t') || c == 0x7F ? 1 : 0;
+}
+
+}  // namespace
+
+bool is_visible(std::string_view text) {
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    if (control_length(text, at) > 0) return false;
+  }
+  return true;
+}
+
+std::string visible(std::string_view text) {
+  std::string out;
+  out.reserve(text.size());
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = control_length(text, at);
+    const unsigned char c = byte_at(text, at);
+    if (length == 0) {
+      out += text[at];
+    } else if (length == 2) {
+      out += "\uFFFD";
+    } else {  // the pictures stand in their order from U+2400 on, that of DEL behind them
+      out += "\xE2\x90";
+      out += static_cast<char>(0x80 + (c == 0x7F ? 0x21 : c));
+    }
+    at += std::max<std::size_t>(length, 1);
+  }
+  return out;
 }
 
 std::string utf8_of_latin1(std::string_view text) {

@@ -12,12 +12,15 @@
 
 #include <fmt/format.h>
 
+#include <oblique/text/encoding.h>
 #include <oblique/text/new_file.h>
+#include <oblique/text/output_claim.h>
 
 namespace oblique {
 namespace {
 
-constexpr std::size_t kPiece = 16'384;  ///< read at once [bytes]
+constexpr std::size_t kPiece = 16'384;      ///< read at once [bytes]
+constexpr std::size_t kMost = 268'435'456;  ///< of a file [bytes]: a device may never end
 
 [[noreturn]] void fail(const std::filesystem::path& path, std::string what, std::string remedy) {
   throw ReadError(Diagnostic{{path.string(), {}}, std::move(what), {}, std::move(remedy)});
@@ -47,16 +50,20 @@ class OpenFile {
 }  // namespace
 
 std::string read_file(const std::filesystem::path& path) {
+  if (path.native().find('\0') != std::string::npos)
+    fail(visible(path.native()), "no file has a NUL character in its name", "correct the name");
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) {
     fail(path, "this is a directory, not a file", "name a file in it");
   }
   const OpenFile file(path);
+  OutputClaim::refuse_input(file.descriptor(), path);
   std::string text;
   for (std::array<char, kPiece> piece;;) {  // NOLINT(*-member-init): the system fills it
     const ssize_t length = read(file.descriptor(), piece.data(), piece.size());
     if (length == 0) return text;
     if (length > 0) text.append(piece.data(), static_cast<std::size_t>(length));
+    if (text.size() > kMost) fail(path, "the file has more than 256 MiB", "split it, or leave out rows");
     if (length < 0 && errno != EINTR) {
       fail(path, fmt::format("cannot read the file: {}", std::strerror(errno)),
            "it, or the disk that it is on, may be damaged: read a copy");

@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include <oblique/text/diagnostic.h>
+#include <oblique/text/output_claim.h>
 
 namespace oblique {
 namespace {
@@ -41,8 +42,11 @@ NewFile::NewFile(std::filesystem::path path) : path_(std::move(path)) {
     return;
   }
   if (std::filesystem::exists(status)) permissions_ = status.permissions();
-  const bool through_link = std::filesystem::is_symlink(path_, error) && std::filesystem::exists(status);
-  target_ = through_link ? std::filesystem::canonical(path_, error) : path_;
+  try {
+    target_ = behind_links(path_);
+  } catch (const std::system_error& circle) {
+    fail(circle.code().value());
+  }
   open_beside();
 }
 
@@ -69,12 +73,14 @@ void NewFile::claim_neighbour(bool link_to_open_file) {
     if (link_to_open_file) {
       if (linkat(AT_FDCWD, name_of(descriptor_).c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0) {
         neighbour_ = std::move(name);
+        leftover_.remember(neighbour_.native());
         return;
       }
     } else {
       descriptor_ = open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kMode);
       if (descriptor_ >= 0) {
         neighbour_ = std::move(name);
+        leftover_.remember(neighbour_.native());
         return;
       }
     }
@@ -115,9 +121,15 @@ void NewFile::write_at(std::uint64_t offset, std::string_view bytes) const {
   }
 }
 
-void NewFile::commit() {
+/// What a disk does not do (a pipe, some file systems) need not be waited for.
+void NewFile::synchronise() const {
+  if (fsync(descriptor_) != 0 && errno != EINVAL && errno != ENOTSUP) fail(errno);
+}
+
+void NewFile::commit(Lasting lasting) {
   flush();
   if (!target_.empty()) {
+    if (lasting == Lasting::yes) synchronise();
     // As far as the file system knows permissions.
     if (permissions_) static_cast<void>(fchmod(descriptor_, static_cast<mode_t>(*permissions_)));
     if (neighbour_.empty()) claim_neighbour(true);
@@ -126,11 +138,13 @@ void NewFile::commit() {
   if (target_.empty()) return;
   if (std::rename(neighbour_.c_str(), target_.c_str()) != 0) fail(errno);
   neighbour_.clear();
+  leftover_.forget();
 }
 
 void NewFile::fail(int reason) const {
   std::string remedy = "name a file in a folder that exists and that you may write to";
   if (reason == ENOSPC || reason == EDQUOT) remedy = "make room on the disk";
+  if (reason == ELOOP) remedy = "name a file: this link leads back to itself";
   if (reason == EISDIR) remedy = "name a file in it";
   if (reason == ESPIPE) remedy = "name a file on a disk: this kind is not written from its start to its end";
   throw ReadError(Diagnostic{{path_.string(), {}},

@@ -7,13 +7,18 @@
 #include <fmt/compile.h>
 #include <fmt/format.h>
 
+#include <oblique/text/encoding.h>
 #include <oblique/text/table_format.h>
 
 namespace oblique {
 namespace {
 
-/// A field of a CSV file; quoted where it has to be (RFC 4180).
-std::string csv_field(const std::string& text) {
+/// A field of a CSV file; quoted where it has to be (RFC 4180). What a spreadsheet would take for a formula
+/// begins with an apostrophe, which spreadsheets take for "a text follows".
+std::string csv_field(const std::string& name) {
+  std::string text = visible(name);
+  if (!text.empty() && std::string_view("=+-@\t").find(text.front()) != std::string_view::npos)
+    text.insert(0, 1, '\'');
   if (text.find_first_of(",\"\n") == std::string::npos) return text;
   std::string quoted = "\"";
   for (const char c : text) {

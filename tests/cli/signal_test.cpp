@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+// A program that is told to end does, by the signal that told it, and leaves nothing half done behind.
+#include <array>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <oblique/text/leftover.h>
+
+#include "../../src/cli/signals.h"
+#include "../support/scratch_folder.h"
+
+namespace oblique::test {
+namespace {
+
+/// Waits up to half a minute.
+template <class Condition>
+bool comes_true(const Condition& condition) {
+  for (int k = 0; k < 3000; ++k) {
+    if (condition()) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return false;
+}
+
+class Signalled : public testing::Test {
+ protected:
+  Signalled() {
+    for (const char* name : {"temporary", "programs", "work"})
+      std::filesystem::create_directory(folder_ / name);
+    // Drawing goes on and on, as a large picture's does.
+    std::ofstream(folder_ / "programs/rsvg-convert") << "#!/bin/sh\nexec sleep 60\n";
+    std::filesystem::permissions(folder_ / "programs/rsvg-convert", std::filesystem::perms::owner_all);
+  }
+
+  /// Starts the program in a group of its own, as a shell does.
+  pid_t start(const std::vector<std::string>& arguments) const {
+    const pid_t child = fork();
+    if (child != 0) return child;
+    setpgid(0, 0);
+    std::signal(SIGINT, SIG_DFL);
+    setenv("TMPDIR", (folder_ / "temporary").c_str(), 1);
+    setenv("PATH", ((folder_ / "programs").string() + ":" + std::getenv("PATH")).c_str(), 1);
+    std::vector<char*> words;
+    for (const std::string& word : arguments) words.push_back(const_cast<char*>(word.c_str()));
+    words.push_back(nullptr);
+    if (chdir((folder_ / "work").c_str()) == 0) execv(OBLIQUE_PROGRAM, words.data());
+    _exit(127);
+  }
+
+  ScratchFolder folder_;
+};
+class Signals : public Signalled, public testing::WithParamInterface<int> {};
+INSTANTIATE_TEST_SUITE_P(Cli, Signals, testing::Values(SIGINT, SIGTERM, SIGHUP));
+
+TEST_P(Signals, LeaveNothingOfAPictureInTheMaking) {
+  const std::string mechanism = std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/four-bar.toml";
+  const pid_t child = start({"oblique", "draw", mechanism, "-o", "x.png"});
+  ASSERT_TRUE(comes_true([&] { return !std::filesystem::is_empty(folder_ / "temporary"); }));
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));  // until the converter runs
+  kill(-child, GetParam());                                     // as a terminal does
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == GetParam()) << status;
+  EXPECT_TRUE(std::filesystem::is_empty(folder_ / "temporary"));
+  EXPECT_TRUE(std::filesystem::is_empty(folder_ / "work"));
+}
+
+// The first Ctrl-C waits for the step that is being done, however long that takes; the second does not.
+TEST_F(Signalled, AskFirstWhereTheRunIsSavedAndThenEndIt) {
+  std::ofstream(folder_ / "work/part") << "half";
+  std::array<int, 2> said{};
+  ASSERT_EQ(pipe(said.data()), 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    dup2(said[1], STDERR_FILENO);
+    Leftover part;
+    part.remember((folder_ / "work/part").native());
+    cli::end_in_order_on_signals();
+    const cli::InterruptGuard guard;
+    if (cli::InterruptGuard::asked()) _exit(1);
+    std::raise(SIGINT);
+    if (!cli::InterruptGuard::asked() || !std::filesystem::exists(folder_ / "work/part")) _exit(2);
+    std::raise(SIGINT);
+    _exit(3);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGINT) << status;
+  EXPECT_TRUE(std::filesystem::is_empty(folder_ / "work"));
+  std::string text(100, ' ');
+  text.resize(static_cast<std::size_t>(read(said[0], text.data(), text.size())));
+  EXPECT_EQ(text, "interrupting; Ctrl-C once more ends at once\n");
+}
+
+}  // namespace
+}  // namespace oblique::test
