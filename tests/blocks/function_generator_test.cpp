@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "../support/runs.h"
+#include "../support/scratch_folder.h"
 
 namespace oblique {
 namespace {
@@ -45,8 +46,7 @@ sum = { type = "integrator", in = ["f"] }
 }
 
 TEST(Recording, FollowsAColumnOfAFile) {
-  const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "oblique-recording";
-  std::filesystem::create_directories(folder);
+  const test::ScratchFolder folder;
   std::ofstream(folder / "measured.csv")
       << "# a step that takes 10 ms\n\"t\", u ,v\n0,0,9\n1,0,9\n1.01,2,9\n3,2,9\n";
   const std::string text = testing::diagram_text(

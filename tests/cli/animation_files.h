@@ -18,9 +18,8 @@
 
 #include <gtest/gtest.h>
 
-#include <unistd.h>
-
 #include "../support/process.h"
+#include "../support/scratch_folder.h"
 
 // What tests of `oblique animate` share.
 namespace oblique::test {
@@ -61,10 +60,7 @@ struct Scale {
 
 class Animations : public testing::Test {
  protected:
-  Animations()
-      : folder_(std::filesystem::temp_directory_path() / ("oblique-animations-" + std::to_string(getpid()))) {
-    std::filesystem::create_directories(folder_);
-  }
+  Animations() : folder_(make_scratch_folder()) { std::filesystem::create_directories(folder_); }
   ~Animations() override { std::filesystem::remove_all(folder_); }
 
   static Outcome run(const std::string& command) { return run_command(command, OBLIQUE_SOURCE_DIR); }

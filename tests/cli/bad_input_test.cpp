@@ -6,9 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <unistd.h>
-
 #include "../support/process.h"
+#include "../support/scratch_folder.h"
 
 namespace oblique::test {
 namespace {
@@ -192,16 +191,14 @@ INSTANTIATE_TEST_SUITE_P(Cli, BadInputs, testing::ValuesIn(kCases),
                          [](const auto& tested) { return tested.param.name; });
 
 TEST_P(BadInputs, EndWithTheirStatusAndAMessage) {
-  const auto folder = std::filesystem::temp_directory_path() / ("oblique-bad-" + std::to_string(getpid()));
-  std::filesystem::create_directories(folder);
+  const ScratchFolder folder;
   std::ofstream(folder / "input.toml") << GetParam().text;
   const Outcome outcome =
-      run_command(std::string("oblique ") + GetParam().verb + " input.toml", folder.string());
+      run_command(std::string("oblique ") + GetParam().verb + " input.toml", folder.path().string());
   EXPECT_EQ(outcome.status, GetParam().status) << outcome.err;
   EXPECT_THAT(outcome.out, IsEmpty());
   EXPECT_THAT(outcome.err, testing::StartsWith("error: "));
   for (const char* part : GetParam().says) EXPECT_THAT(outcome.err, HasSubstr(part));
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

@@ -9,9 +9,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include <unistd.h>
-
 #include "../support/process.h"
+#include "../support/scratch_folder.h"
 
 namespace oblique::test {
 namespace {
@@ -24,9 +23,7 @@ using testing::Not;
 
 class Check : public testing::Test {
  protected:
-  Check() : folder_(std::filesystem::temp_directory_path() / ("oblique-check-" + std::to_string(getpid()))) {
-    std::filesystem::create_directories(folder_);
-  }
+  Check() : folder_(make_scratch_folder()) { std::filesystem::create_directories(folder_); }
   ~Check() override { std::filesystem::remove_all(folder_); }
 
   static Outcome oblique(const std::string& arguments) {

@@ -9,9 +9,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <unistd.h>
-
 #include "../support/process.h"
+#include "../support/scratch_folder.h"
 
 namespace oblique::test {
 namespace {
@@ -22,10 +21,7 @@ const std::string kDiagrams = std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/";
 
 class DrawDiagram : public testing::Test {
  protected:
-  DrawDiagram()
-      : folder_(std::filesystem::temp_directory_path() / ("oblique-draw-" + std::to_string(getpid()))) {
-    std::filesystem::create_directories(folder_);
-  }
+  DrawDiagram() : folder_(make_scratch_folder()) { std::filesystem::create_directories(folder_); }
   ~DrawDiagram() override { std::filesystem::remove_all(folder_); }
 
   Outcome run(const std::string& command) const { return run_command(command, folder_.string()); }

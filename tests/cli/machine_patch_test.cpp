@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "../support/process.h"
+#include "../support/scratch_folder.h"
 
 namespace oblique::test {
 namespace {
@@ -24,8 +25,7 @@ using testing::StartsWith;
 /// An empty folder with the program at hand.
 class PatchForMachine : public testing::Test {
  protected:
-  PatchForMachine()
-      : folder_(std::filesystem::temp_directory_path() / ("oblique-machine-" + std::to_string(getpid()))) {
+  PatchForMachine() : folder_(make_scratch_folder()) {
     std::filesystem::remove_all(folder_);
     std::filesystem::create_directories(folder_);
   }

@@ -10,9 +10,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include <unistd.h>
-
 #include "../support/process.h"
+#include "../support/scratch_folder.h"
 
 namespace oblique::test {
 namespace {
@@ -24,10 +23,7 @@ using testing::Not;
 
 class MechanismCheck : public testing::Test {
  protected:
-  MechanismCheck()
-      : folder_(std::filesystem::temp_directory_path() / ("oblique-mechanism-" + std::to_string(getpid()))) {
-    std::filesystem::create_directories(folder_);
-  }
+  MechanismCheck() : folder_(make_scratch_folder()) { std::filesystem::create_directories(folder_); }
   ~MechanismCheck() override { std::filesystem::remove_all(folder_); }
 
   static Outcome oblique(const std::string& arguments) {
@@ -75,11 +71,9 @@ C = [190, 40]
 )";
 
 TEST_F(MechanismCheck, WritesJsonOfFilesWhoseNamesAreNotUtf8) {
-  const std::filesystem::path copy = std::filesystem::temp_directory_path() / "oblique-caf\xe9.toml";
-  std::filesystem::copy_file(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/four-bar.toml", copy,
-                             std::filesystem::copy_options::overwrite_existing);
+  const std::filesystem::path copy = folder_ / "oblique-caf\xe9.toml";
+  std::filesystem::copy_file(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/four-bar.toml", copy);
   const Outcome outcome = oblique("check --json '" + copy.string() + "'");
-  std::filesystem::remove(copy);
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("oblique-caf\uFFFD.toml\""));
 }

@@ -16,9 +16,8 @@
 
 #include <oblique/draw/picture.h>
 
-#include <unistd.h>
-
 #include "../support/process.h"
+#include "../support/scratch_folder.h"
 
 // What the tests of --plot and report share.
 namespace oblique::test {
@@ -129,10 +128,7 @@ class Svg {
 /// A folder of its own, and the program.
 class PlotTest : public testing::Test {
  protected:
-  PlotTest()
-      : folder_(std::filesystem::temp_directory_path() / ("oblique-plot-" + std::to_string(getpid()))) {
-    std::filesystem::create_directories(folder_);
-  }
+  PlotTest() : folder_(make_scratch_folder()) { std::filesystem::create_directories(folder_); }
   ~PlotTest() override { std::filesystem::remove_all(folder_); }
 
   static Outcome oblique(const std::string& arguments) {

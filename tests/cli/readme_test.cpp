@@ -10,9 +10,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <unistd.h>
-
 #include "../support/process.h"
+#include "../support/scratch_folder.h"
 
 namespace oblique::test {
 namespace {
@@ -62,13 +61,12 @@ Tokens tokens_of(const std::string& text) {
 }
 
 TEST_P(Readme, ShowsWhatTheProgramDraws) {
-  const std::filesystem::path drawn =
-      std::filesystem::temp_directory_path() / ("oblique-readme-" + std::to_string(getpid()) + ".svg");
+  const ScratchFolder folder;
+  const std::filesystem::path drawn = folder / "picture.svg";
   const std::string command = GetParam().command;
   const Outcome outcome = run_command(command + " -o " + drawn.string(), OBLIQUE_SOURCE_DIR);
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const Tokens now = tokens_of(text_of(drawn));
-  std::filesystem::remove(drawn);
   const std::string shipped = std::string("docs/pictures/") + GetParam().name;
   const Tokens then = tokens_of(text_of(std::string(OBLIQUE_SOURCE_DIR) + "/" + shipped));
   const std::string remedy = "renew it: " + command + " -o " + shipped;

@@ -8,9 +8,8 @@
 
 #include <gtest/gtest.h>
 
-#include <unistd.h>
-
 #include "../support/process.h"
+#include "../support/scratch_folder.h"
 
 namespace oblique::test {
 namespace {
@@ -122,8 +121,7 @@ INSTANTIATE_TEST_SUITE_P(Docs, Page,
 // The commands of a page run in order, in a copy of the diagrams, since some write files that later ones
 // read.
 TEST_P(Page, PrintsWhatItSays) {
-  const auto folder = std::filesystem::temp_directory_path() / ("oblique-page-" + std::to_string(getpid()));
-  std::filesystem::create_directories(folder);
+  const ScratchFolder folder;
   std::filesystem::copy(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams", folder / "diagrams",
                         std::filesystem::copy_options::recursive);
   const std::vector<Example> examples = examples_of(GetParam());
@@ -131,7 +129,7 @@ TEST_P(Page, PrintsWhatItSays) {
   for (const Example& example : examples) {
     if (example.command.starts_with("./bootstrap")) continue;  // CI itself is that example
     SCOPED_TRACE(example.page + ":" + std::to_string(example.line) + ": " + example.command);
-    const Outcome outcome = run_command(example.command + " 2>&1", folder.string());
+    const Outcome outcome = run_command(example.command + " 2>&1", folder.path().string());
     expect_output(example, outcome.out);
     EXPECT_TRUE(outcome.status == 0 || outcome.out.find("error:") != std::string::npos ||
                 outcome.out.find("FAILED") != std::string::npos ||
@@ -140,7 +138,6 @@ TEST_P(Page, PrintsWhatItSays) {
                 example.command.starts_with("diff "))
         << outcome.out;
   }
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include <oblique/text/document.h>
 
+#include "../support/scratch_folder.h"
 #include "small_library.h"
 
 namespace oblique {
@@ -23,21 +24,11 @@ const std::filesystem::path kBlocks = std::filesystem::path(OBLIQUE_SOURCE_DIR) 
 /// An empty directory that goes with the test.
 class Directory {
  public:
-  Directory() {
-    const auto* const test = ::testing::UnitTest::GetInstance()->current_test_info();
-    path_ = std::filesystem::path(::testing::TempDir()) / (std::string("oblique-") + test->name());
-    std::filesystem::remove_all(path_);
-    std::filesystem::create_directory(path_);
-  }
-  ~Directory() { std::filesystem::remove_all(path_); }
-  Directory(const Directory&) = delete;
-  Directory& operator=(const Directory&) = delete;
-
-  void write(const std::string& name, const std::string& text) const { write_file(path_ / name, text); }
-  const std::filesystem::path& path() const { return path_; }
+  void write(const std::string& name, const std::string& text) const { write_file(folder_ / name, text); }
+  const std::filesystem::path& path() const { return folder_.path(); }
 
  private:
-  std::filesystem::path path_;
+  test::ScratchFolder folder_;
 };
 
 std::string block_text(const std::string& title) {

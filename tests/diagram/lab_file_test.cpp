@@ -11,6 +11,7 @@
 
 #include <oblique/diagram/flat_diagram.h>
 
+#include "../support/scratch_folder.h"
 #include "small_library.h"
 
 namespace oblique {
@@ -46,10 +47,7 @@ std::string refusal(const std::string& block, const std::string& rest = "") {
 
 /// The points of a recording of a file with this text.
 PointTable recorded(const std::string& csv, const std::string& columns, const std::string& rest = "") {
-  const std::filesystem::path folder =
-      std::filesystem::path(::testing::TempDir()) /
-      ("lab_file_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
-  std::filesystem::create_directories(folder);
+  const test::ScratchFolder folder;
   std::ofstream(folder / "lab.csv", std::ios::binary) << csv;
   const FlatDiagram made =
       flat("u = { type = \"recording\", data = { file = \"lab.csv\", " + columns + " } }\n", rest,
