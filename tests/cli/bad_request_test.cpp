@@ -28,8 +28,8 @@ TEST(BadRequest, ReportsAllWiringErrorsAtOnce) {
       "$status",
       OBLIQUE_SOURCE_DIR);
   EXPECT_EQ(outcome.status, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("oblique-two.toml:3:"));
-  EXPECT_THAT(outcome.err, HasSubstr("oblique-two.toml:4:"));
+  EXPECT_THAT(outcome.err, HasSubstr("SCRATCH/two.toml:3:"));
+  EXPECT_THAT(outcome.err, HasSubstr("SCRATCH/two.toml:4:"));
 }
 
 struct BadRequestCase {

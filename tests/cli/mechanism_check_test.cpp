@@ -71,7 +71,8 @@ C = [190, 40]
 )";
 
 TEST_F(MechanismCheck, WritesJsonOfFilesWhoseNamesAreNotUtf8) {
-  const std::filesystem::path copy = folder_ / "oblique-caf\xe9.toml";
+  const ScratchFolder folder;
+  const std::filesystem::path copy = folder / "oblique-caf\xe9.toml";
   std::filesystem::copy_file(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/four-bar.toml", copy);
   const Outcome outcome = oblique("check --json '" + copy.string() + "'");
   EXPECT_EQ(outcome.status, 0) << outcome.err;
