@@ -196,7 +196,8 @@ DiagramPlan plan_diagram(Dice& dice) {
 
 bool can_be_scaled(const DiagramPlan& plan) {
   const auto changes = [&](const Wire& wire) {
-    return plan.blocks[wire.block].kind->outputs[wire.output].dimension.value == 0;
+    const Dimension dimension = plan.blocks[wire.block].kind->outputs[wire.output].dimension;
+    return dimension.value == 0 || dimension.time != 0;
   };
   return plan.profile == "ideal" &&
          std::none_of(plan.blocks.begin(), plan.blocks.end(), [&](const PlannedBlock& block) {
