@@ -38,9 +38,8 @@ bool same_place(const Configuration& one, const Configuration& other, double siz
 bool ends_at_limit(const Mechanism& mechanism, const Motion& motion) {
   const AtLimit way_on =
       mechanism.motion.at_limit.value_or(mechanism.drives.front().slide ? AtLimit::reverse : AtLimit::open);
-  return way_on == AtLimit::open &&
-         std::any_of(motion.events.begin(), motion.events.end(),
-                     [](const MotionEvent& event) { return event.kind == MotionEvent::Kind::limit; });
+  return way_on == AtLimit::open && std::any_of(motion.events.begin(), motion.events.end(),
+                                                [](const MotionEvent& event) { return event.ends(); });
 }
 
 /// The positions beside the one that is shown, the last one just before it.

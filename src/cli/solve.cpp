@@ -90,11 +90,15 @@ void note_events(const Mechanism& mechanism, const Structure& structure,
                          group));
         break;
       case MotionEvent::Kind::return_:
-        note(fmt::format("from {} on {} can be assembled again\n", where, group));
+        note(fmt::format("from {} on {} can be assembled again, on the branch that it left\n", where, group));
         break;
       case MotionEvent::Kind::change:
         note(fmt::format("change point at {}: the modes of {} meet, and it goes on by its velocity\n", where,
                          group));
+        break;
+      case MotionEvent::Kind::infinity:
+        note(fmt::format("infinity at {}: {} goes away without end, and comes back from the other side\n",
+                         where, group));
         break;
     }
   }

@@ -21,11 +21,9 @@ constexpr double kSharpness = 1e-11;
 constexpr double kBodyStep = 0.866;
 /// Above this regularity a group is far from everything.
 constexpr double kRegular = 0.25;
-/// Below this part of its largest regularity a group is at the point where its modes meet: the height of a
-/// triangle is then a few times what counts as flat, so that rates still have a value.
-constexpr double kSingular = 1e-6;
-/// First correction by Newton's method, over the group's size, up to which a guess is nearly right.
-constexpr double kGoodGuess = 0.02;
+/// First correction by Newton's method, over the group's size, up to which a guess is nearly right; and the
+/// part of it up to which the second one shows that no other mode lies as near.
+constexpr double kGoodGuess = 0.02, kContracts = 0.25;
 
 }  // namespace
 
@@ -40,17 +38,58 @@ Follower::Follower(const Mechanism& mechanism, const Structure& structure)
       here_(frame_configuration(mechanism)),
       next_(here_),
       shown_(here_) {
-  double fastest = 0;
-  for (const Drive& drive : mechanism.drives) {
-    const double rate = std::abs(drive.speed);
-    fastest = std::max(fastest, drive.slide ? rate / mechanism.largest_length() : rate);
-  }
-  duration_of_degree_ = fastest > 0 ? kDriveStep / fastest : 1;
-  smallest_ = fastest > 0 ? kSharpness / fastest : 1;
+  std::vector<double> rates;
+  for (const Drive& drive : mechanism.drives) rates.push_back(drive.speed);
+  set_pace(rates);
   for (std::size_t g = 0; g < courses_.size(); ++g) {
     courses_[g].side = structure.groups[g].side;
     tracks_ = tracks_ || kinematics_.solver(g).is_tracked();
   }
+}
+
+/// Follows the branch on which `from` stands while each drive goes straight on, at the rates `way`, from time
+/// 0.
+Follower::Follower(const Follower& other, const Standing& from, std::vector<double> way)
+    : kinematics_(other.mechanism_, other.kinematics_.structure()),
+      mechanism_(other.mechanism_),
+      clock_(other.mechanism_),
+      way_(std::move(way)),
+      way_from_(from.drives),
+      courses_(from.courses),
+      regularities_(other.regularities_),
+      drives_(from.drives),
+      next_drives_(from.drives),
+      here_(from.here),
+      next_(from.here),
+      shown_(from.here),
+      angles_(from.angles),
+      started_(true),
+      tracks_(other.tracks_) {
+  set_pace(way_);
+  step_ = duration_of_degree_;
+  place_all(0);
+  accept(0);
+  standing_ = standing();
+  probe(1e-4 * duration_of_degree_);
+}
+
+/// Steps by the fastest of the drives' rates.
+void Follower::set_pace(std::span<const double> rates) {
+  double fastest = 0;
+  for (std::size_t d = 0; d < rates.size(); ++d) {
+    const double rate = std::abs(rates[d]);
+    fastest = std::max(fastest, mechanism_.drives[d].slide ? rate / mechanism_.largest_length() : rate);
+  }
+  duration_of_degree_ = fastest > 0 ? kDriveStep / fastest : 1;
+  smallest_ = fastest > 0 ? kSharpness / fastest : 1;
+}
+
+void Follower::drives_at(double t, std::vector<DriveState>& states) {
+  if (way_.empty()) {
+    clock_.at(t, states);
+    return;
+  }
+  for (std::size_t d = 0; d < way_.size(); ++d) states[d] = {way_from_[d].value + t * way_[d], way_[d], 0};
 }
 
 void Follower::start() {
@@ -67,12 +106,12 @@ void Follower::start() {
     courses_[g].peak = std::abs(regularities_[g]);
   }
   copy_angles();
-  if (!open_) probe();
+  standing_ = standing();
+  if (!open_) probe(1e-4 * duration_of_degree_);
 }
 
 /// The slopes of the regularities from a small step that is not made.
-void Follower::probe() {
-  const double dt = 1e-4 * duration_of_degree_;
+void Follower::probe(double dt) {
   for (Course& course : courses_) course.slope = 0;
   if (tracks_) predict(dt);
   if (attempt(time_ + dt) == Verdict::blocked) return;
@@ -100,7 +139,7 @@ void Follower::predict(double dt) {
 
 /// Puts the mechanism together at time `t`, in next_.
 Follower::Verdict Follower::attempt(double t) {
-  clock_.at(t, next_drives_);
+  drives_at(t, next_drives_);
   next_.status = Status::ok;
   next_.group.reset();
   Verdict verdict = Verdict::good;
@@ -136,7 +175,11 @@ Follower::Verdict Follower::judge(std::size_t g, double dt) const {
     return Verdict::too_far;
   }
   const GroupSolver& solver = kinematics_.solver(g);
-  if (solver.is_tracked() && !(solver.correction() < kGoodGuess)) return Verdict::too_far;
+  constexpr double kExact = 1e-7;  // a correction that is mostly rounding need not contract
+  if (solver.is_tracked() && solver.correction() > kExact &&
+      !(solver.correction() < kGoodGuess && solver.contraction() < kContracts)) {
+    return Verdict::too_far;
+  }
   for (const std::size_t body : kinematics_.structure().groups[g].bodies) {
     const BodyState& a = here_.bodies[body];
     const BodyState& b = next_.bodies[body];
@@ -172,35 +215,9 @@ void Follower::copy_angles() {
   }
 }
 
-/// One step towards `t`.
-Follower::Crossing Follower::step_towards(double t) {
-  const double direction = t > time_ ? 1 : -1;
-  double dt = std::min({step_, duration_of_degree_, std::abs(t - time_)});
-  while (true) {
-    // the last step ends at t itself
-    const double target = dt == std::abs(t - time_) ? t : time_ + direction * dt;
-    if (tracks_) predict(target - time_);
-    const Verdict verdict = attempt(target);
-    if (verdict == Verdict::good) {
-      accept(target);
-      step_ = std::min(2 * dt, duration_of_degree_);
-      return Crossing::passed;
-    }
-    const std::size_t g = culprit_;
-    const Course& course = courses_[g];
-    const bool at_singularity = std::abs(course.regularity) < kSingular * course.peak &&
-                                course.slope * course.regularity * direction < 0;
-    dt /= 2;
-    if (at_singularity || dt < smallest_) {
-      step_ = duration_of_degree_;
-      return cross(g, t);
-    }
-  }
-}
-
 /// Finishes what is shown for a time at which the follower itself does not stand.
 void Follower::show(double t) {
-  clock_.at(t, next_drives_);
+  drives_at(t, next_drives_);
   kinematics_.finish(next_drives_, shown_);
   for (std::size_t b = 0; b < angles_.size(); ++b) {
     double& angle = shown_.bodies[b].angle;
@@ -208,44 +225,40 @@ void Follower::show(double t) {
   }
 }
 
+/// No numbers at time `t`.
+void Follower::show_open(double t, std::size_t group) {
+  shown_ = here_;
+  clear(mechanism_, shown_);
+  shown_.status = Status::open;
+  shown_.group = group;
+  drives_at(t, next_drives_);
+}
+
 const Configuration& Follower::advance(double t) {
   if (!started_) start();
   while (time_ != t) {
     if (open_) {
-      if (!try_to_return(t)) {
-        shown_ = here_;
-        clear(mechanism_, shown_);
-        shown_.status = Status::open;
-        shown_.group = culprit_;
-        clock_.at(t, drives_);
+      const std::size_t group = culprit_;
+      if (!come_back(t)) {
+        show_open(t, group);
         time_ = t;
+        culprit_ = group;
         return shown_;
       }
-      const std::size_t g = culprit_;
-      double outside = time_, inside = t;
-      while (std::abs(inside - outside) > smallest_) {
-        const double middle = outside + (inside - outside) / 2;
-        if (middle == inside || middle == outside) break;
-        (try_to_return(middle) ? inside : outside) = middle;
-      }
-      events_.push_back({MotionEvent::Kind::return_, inside, g});
-      try_to_return(t);
-      accept(t);
+      events_.push_back({MotionEvent::Kind::return_, time_, group});
       open_ = false;
-      step_ = duration_of_degree_;
-      probe();
-      break;
+      continue;
     }
+    const std::size_t before = events_.size();
     const Crossing crossing = step_towards(t);
-    if (crossing == Crossing::amidst) {
-      show(t);
-      return shown_;
-    }
+    if (crossing == Crossing::amidst) return shown_;
     if (crossing == Crossing::limit) {
       open_ = true;
       culprit_ = events_.back().group;
       if (stop_at_limit_) return here_;
+      leave_branch();
     }
+    if (stop_at_limit_ && events_.size() > before && events_.back().ends()) return here_;
   }
   return here_;
 }
@@ -256,9 +269,7 @@ std::optional<MotionEvent> Follower::advance_to_limit(double t) {
   advance(t);
   stop_at_limit_ = false;
   for (std::size_t i = before; i < events_.size(); ++i) {
-    // one beyond t is where a change point was not passed, and no end of the way to t
-    const bool on_the_way = std::abs(events_[i].time) <= std::abs(t);
-    if (events_[i].kind == MotionEvent::Kind::limit && on_the_way) return events_[i];
+    if (events_[i].ends() && std::abs(events_[i].time) <= std::abs(t)) return events_[i];
   }
   return std::nullopt;
 }

@@ -1,137 +1,62 @@
 // SPDX-License-Identifier: MIT
-// The part of Follower that deals with the points where the modes of a group meet: limits, change points,
-// returns.
+// The part of Follower that makes its steps, and deals with the points where the modes of a group meet:
+// limits, change points, infinity.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include <oblique/mechanism/follower.h>
 
 namespace oblique {
 namespace {
 
-/// How far a pose may lie from where it would be by its velocity, over the largest length, and still continue
-/// it.
-constexpr double kNear = 0.02;
+using Eigen::Vector2d;
+
+/// Below this part of its largest regularity a group is at the point where its modes meet: the height of a
+/// triangle is then a few times what counts as flat, so that rates still have a value.
+constexpr double kSingular = 1e-6;
+/// Within this way of the fastest drive [rad] what is left out beyond the second order is rounding.
+constexpr double kNear = 1e-5;
+/// From this many sizes away on a group may go to infinity.
+constexpr double kFar = 300;
 
 }  // namespace
 
-/// Whether group `g` closes at time `t` near to where it would be by its velocity; leaves the pose found in
-/// next_.
-bool Follower::closes(std::size_t g, double t) {
-  predict(t - time_);
-  clock_.at(t, next_drives_);
-  for (std::size_t before = 0; before < g; ++before) {
-    if (kinematics_.solver(before).place(next_drives_, courses_[before].side, next_) == Status::open)
-      return false;
-  }
-  GroupSolver& solver = kinematics_.solver(g);
-  if (!solver.is_tracked()) {
-    return solver.place(next_drives_, courses_[g].side, next_) != Status::open;
-  }
-  const std::vector<PointState> guess = next_.points;
-  if (solver.place(next_drives_, 0, next_) == Status::open) return false;
-  double far = 0;
-  for (const std::size_t point : kinematics_.structure().groups[g].points)
-    far = std::max(far, (next_.points[point].position - guess[point].position).norm());
-  return far < kNear * mechanism_.largest_length();
-}
-
-/// The time of a limit between one where the group closes and one where it does not.
-double Follower::limit_between(std::size_t g, double inside, double outside) {
-  while (std::abs(outside - inside) > smallest_) {
-    const double middle = inside + (outside - inside) / 2;
-    if (middle == inside || middle == outside) break;
-    (closes(g, middle) ? inside : outside) = middle;
-  }
-  return inside;
-}
-
-/// Looks for a mode of group `g` at time `to` that goes on from here by its velocity, and takes it.
-bool Follower::passes(std::size_t g, double from, double to) {
-  predict(to - from);
-  const Configuration guess = next_;
-  clock_.at(to, next_drives_);
-  for (std::size_t before = 0; before < g; ++before) {
-    if (kinematics_.solver(before).place(next_drives_, courses_[before].side, next_) == Status::open)
-      return false;
-  }
-  GroupSolver& solver = kinematics_.solver(g);
-  const Group& group = kinematics_.structure().groups[g];
-  const auto distance = [&](const Configuration& there) {
-    double far = 0;
-    for (const std::size_t point : group.points)
-      far = std::max(far, (there.points[point].position - guess.points[point].position).norm());
-    return far;
-  };
-  double nearest = std::numeric_limits<double>::infinity();
-  Configuration found;
-  int side = 0;
-  const auto consider = [&](Configuration there, Status status, int its_side) {
-    if (status == Status::open || distance(there) >= nearest) return;
-    nearest = distance(there);
-    found = std::move(there);
-    side = its_side;
-  };
-  if (solver.is_tracked()) {
-    Configuration there = next_;
-    const Status status = solver.place(next_drives_, 0, there);
-    consider(std::move(there), status, 0);
-  } else {
-    for (const int candidate : {+1, -1}) {
-      Configuration there = next_;
-      const Status status = solver.place(next_drives_, candidate, there);
-      consider(std::move(there), status, candidate);
-    }
-  }
-  // the two modes are as far apart as the regularity says; the right one is nearer by orders
-  const double size = mechanism_.largest_length();
-  if (!(nearest < std::abs(courses_[g].regularity) * size / 2)) return false;
-  courses_[g].side = side;
-  return true;
-}
-
-/// Passes the point ahead where the modes of group `g` meet, or ends before it.
-Follower::Crossing Follower::cross(std::size_t g, double t) {
-  const Course& course = courses_[g];
+/// One step towards `t`.
+Follower::Crossing Follower::step_towards(double t) {
   const double direction = t > time_ ? 1 : -1;
-  const double zero = std::abs(course.regularity / course.slope);  // of a regularity that falls in a line
-  const double from = time_, to = time_ + direction * 2 * zero;
-  bool opens = false;
-  for (const double part : {0.25, 0.5, 0.75, 0.9, 1.0, 1.1, 1.25, 1.5, 1.75}) {
-    if (kinematics_.solver(g).is_tracked()) break;
-    opens = opens || !closes(g, time_ + direction * part * zero);
-  }
-  const int side = course.side;
-  if (!opens && passes(g, from, to)) {
-    if ((t - to) * direction <= 0) {  // the time asked for lies amidst
-      const bool there = passes(g, from, t) && place_all(t);
-      courses_[g].side = side;
-      shown_ = next_;
-      return there ? Crossing::amidst : Crossing::limit;
+  double dt = std::min({step_, duration_of_degree_, std::abs(t - time_)});
+  // nearer to where modes meet than this no pose tells them apart, so none is taken there
+  for (std::size_t g = 0; g < courses_.size(); ++g) {
+    const Course& course = courses_[g];
+    if (std::abs(course.regularity) < kSingular * course.peak &&
+        course.slope * course.regularity * direction < 0) {
+      const Crossing crossing = cross(g, t, false);
+      if (crossing != Crossing::regular) return crossing;
     }
-    events_.push_back({MotionEvent::Kind::change, time_ + direction * zero, g});
-    if (!place_all(to)) return Crossing::limit;
-    accept(to);
-    probe();
-    return Crossing::passed;
   }
-  if (closes(g, t) && place_all(t) && std::abs(t - time_) <= 2 * zero) {  // just before a limit
-    shown_ = next_;
-    return Crossing::amidst;
+  while (true) {
+    // the last step ends at t itself
+    const double target = dt == std::abs(t - time_) ? t : time_ + direction * dt;
+    if (tracks_) predict(target - time_);
+    const Verdict verdict = attempt(target);
+    if (verdict == Verdict::good) {
+      accept(target);
+      step_ = std::min(2 * dt, duration_of_degree_);
+      return Crossing::passed;
+    }
+    if (step_ == duration_of_degree_) standing_ = standing();
+    step_ = dt /= 2;
+    if (dt < smallest_) return cross(culprit_, t, true);
   }
-  // a limit: between here and twice as far as a root would have it
-  double outside = to;
-  for (int i = 0; i < 60 && closes(g, outside); ++i) outside = time_ + direction * zero * std::pow(1.5, i);
-  const double at = limit_between(g, time_, outside);
-  events_.push_back({MotionEvent::Kind::limit, at, g});
-  return Crossing::limit;
 }
 
 /// All groups at time `t`, in next_; false where one is open.
 bool Follower::place_all(double t) {
   if (started_) predict(t - time_);
-  clock_.at(t, next_drives_);
+  drives_at(t, next_drives_);
   next_.status = Status::ok;
   next_.group.reset();
   for (std::size_t g = 0; g < courses_.size(); ++g) {
@@ -148,47 +73,210 @@ bool Follower::place_all(double t) {
   return true;
 }
 
-bool Follower::try_to_return(double t) {
-  // a pose of which nothing is left as a guess but the last one before the limit
-  clock_.at(t, next_drives_);
-  predict(0);
+/// What lies ahead of group `g`, whose modes meet nearby.
+Follower::Crossing Follower::cross(std::size_t g, double t, bool is_last) {
+  GroupSolver& solver = kinematics_.solver(g);
+  if (solver.distance(here_) > kFar) {
+    const Crossing crossing = cross_infinity(g, t);
+    if (crossing != Crossing::regular) return crossing;
+  }
+  const double direction = t > time_ ? 1 : -1;
+  const double radian = duration_of_degree_ * 180 / std::numbers::pi;
+  const Singularity singularity = solver.singularity(drives_, here_, radian);
+  const auto meeting = singularity.crossing();
+  if (meeting && meeting->time * direction > 0 && std::abs(meeting->time) < kNear * radian) {
+    const Crossing crossing = cross_modes(g, t, meeting->time);
+    if (crossing != Crossing::regular) return crossing;
+  }
+  const auto fold = singularity.fold(direction);
+  if (fold && std::abs(*fold) < kNear * radian) return end_at(g, t, *fold, singularity);
+  if (!is_last) return Crossing::regular;
+  events_.push_back({MotionEvent::Kind::limit, time_, g});  // no step leads on
+  step_ = duration_of_degree_;
+  return Crossing::limit;
+}
+
+/// Ends at a limit a time `tau` from here.
+Follower::Crossing Follower::end_at(std::size_t g, double t, double tau, const Singularity& singularity) {
+  const double dt = t - time_;
+  if (std::abs(dt) <= std::abs(tau)) {
+    predict(dt);
+    const Structure& structure = kinematics_.structure();
+    for (const std::size_t point : structure.groups[g].points) next_.points[point] = here_.points[point];
+    for (const std::size_t body : structure.groups[g].bodies) next_.bodies[body] = here_.bodies[body];
+    kinematics_.solver(g).displace(singularity.branch(dt) * singularity.along + dt * singularity.drift,
+                                   next_);
+    const Configuration guess = next_;
+    drives_at(t, next_drives_);
+    next_.status = Status::ok;
+    next_.group.reset();
+    for (std::size_t i = 0; i < courses_.size() && next_.status != Status::open; ++i) {
+      const Status status = kinematics_.solver(i).place(next_drives_, courses_[i].side, next_);
+      if (status == Status::ok) continue;
+      next_.status = status;
+      next_.group = i;
+    }
+    if (next_.status == Status::open) {
+      show_open(t, g);
+    } else {
+      shown_ = next_;
+      show(t);
+    }
+    return Crossing::amidst;
+  }
+  events_.push_back({MotionEvent::Kind::limit, time_ + tau, g});
+  step_ = duration_of_degree_;
+  return Crossing::limit;
+}
+
+/// Group `g` in next_, at the states of next_drives_, in that of its modes to which its velocity leads within
+/// `dt`; false where none is near.
+bool Follower::place_next_to_velocity(std::size_t g, double dt) {
+  GroupSolver& solver = kinematics_.solver(g);
+  const Group& group = kinematics_.structure().groups[g];
+  for (const std::size_t point : group.points) next_.points[point] = here_.points[point];
+  for (const std::size_t body : group.bodies) next_.bodies[body] = here_.bodies[body];
+  const Eigen::VectorXd step = dt * solver.velocity(here_);
+  if (!step.allFinite()) return false;
+  solver.displace(step, next_);
+  const Configuration guess = next_;
+  // the modes lie as far apart as the regularity says; the right one is nearer to the guess by orders
+  double nearest = std::max(std::abs(courses_[g].regularity), 1e-9) * mechanism_.largest_length() / 2;
+  bool found = false;
+  Configuration best;
+  const std::array<int, 2> sides{1, -1};
+  const std::size_t count = solver.is_tracked() || solver.is_single() ? 1 : 2;
+  for (std::size_t i = 0; i < count; ++i) {
+    Configuration there = guess;
+    const int side = count == 1 ? 0 : sides[i];
+    if (solver.place(next_drives_, side, there) == Status::open) continue;
+    double far = 0;
+    for (const std::size_t point : group.points) {
+      const Vector2d way = there.points[point].position - here_.points[point].position;
+      far = std::max(far, (way - dt * here_.points[point].velocity).norm());
+    }
+    if (!(far < nearest)) continue;
+    found = true;
+    nearest = far;
+    best = std::move(there);
+    regularities_[g] = solver.regularity();
+    courses_[g].side = side;
+  }
+  if (found) next_ = std::move(best);
+  return found;
+}
+
+/// Passes a change point of group `g` a time `zero` from here, and of all groups that pass one with it.
+Follower::Crossing Follower::cross_modes(std::size_t g, double t, double zero) {
+  const std::vector<Course> before = courses_;
+  const double direction = zero > 0 ? 1 : -1;
+  const bool amidst = (t - time_ - 2 * zero) * direction <= 0;
+  const double to = amidst ? t : time_ + 2 * zero;
+  predict(to - time_);
+  drives_at(to, next_drives_);
   next_.status = Status::ok;
   next_.group.reset();
-  const Structure& structure = kinematics_.structure();
-  for (std::size_t g = 0; g < courses_.size(); ++g) {
-    GroupSolver& solver = kinematics_.solver(g);
-    Status status = Status::open;
-    if (!solver.is_tracked()) {
-      status = solver.place(next_drives_, courses_[g].side, next_);
+  std::vector<std::size_t> passing;
+  for (std::size_t i = 0; i < courses_.size(); ++i) {
+    constexpr double kBeside = 1e3 * kSingular;
+    GroupSolver& solver = kinematics_.solver(i);
+    const bool passes = i == g || std::abs(before[i].regularity) < kBeside * before[i].peak;
+    Status status = Status::ok;
+    if (!passes) {
+      status = solver.place(next_drives_, courses_[i].side, next_);
+      regularities_[i] = solver.regularity();
+    } else if (place_next_to_velocity(i, to - time_)) {
+      const bool flat =
+          std::isnan(next_.points[kinematics_.structure().groups[i].points.front()].velocity.x());
+      status = flat ? Status::dead_centre : Status::ok;
+      if ((regularities_[i] > 0) != (before[i].regularity > 0)) passing.push_back(i);
+    } else if (amidst) {  // a group without a place of its own there: the one that it passes
+      solver.stand(next_drives_, next_);
+      status = Status::dead_centre;
     } else {
-      const GroupPoses poses = solver.poses(next_drives_, next_);
-      double nearest = std::numeric_limits<double>::infinity();
-      Configuration found;
-      for (const GroupPose& pose : poses.poses) {
-        Configuration there = next_;
-        const Status its = solver.place(next_drives_, pose, there);
-        if (its == Status::open || (solver.regularity() > 0) != (courses_[g].regularity > 0)) continue;
-        double far = 0;
-        for (const std::size_t point : structure.groups[g].points)
-          far += (there.points[point].position - here_.points[point].position).norm();
-        if (far >= nearest) continue;
-        nearest = far;
-        status = its;
-        found = std::move(there);
-      }
-      if (status != Status::open) next_ = std::move(found);
+      status = Status::open;
     }
-    regularities_[g] = solver.regularity();
     if (status == Status::open) {
-      culprit_ = g;
-      return false;
+      courses_ = before;
+      return Crossing::regular;
     }
     if (status == Status::dead_centre) {
-      next_.group = g;
+      if (!next_.group) next_.group = i;
       next_.status = status;
     }
   }
-  return true;
+  if (amidst) {
+    courses_ = before;
+    shown_ = next_;
+    show(t);
+    return Crossing::amidst;
+  }
+  if (std::find(passing.begin(), passing.end(), g) == passing.end()) {
+    courses_ = before;
+    return Crossing::regular;
+  }
+  for (const std::size_t i : passing) events_.push_back({MotionEvent::Kind::change, time_ + zero, i});
+  accept(to);
+  step_ = std::abs(zero);
+  probe(1e-2 * zero);
+  return Crossing::passed;
+}
+
+/// Passes infinity: x = c + k/(t∞ − t), so that the time to it is Δ = 2 ẋ²/(ẋ·ẍ), and a way h from here
+/// stands x + ẋ Δ h/(Δ − h), on either side.
+Follower::Crossing Follower::cross_infinity(std::size_t g, double t) {
+  GroupSolver& solver = kinematics_.solver(g);
+  const Group& group = kinematics_.structure().groups[g];
+  const auto farthest =
+      *std::max_element(group.points.begin(), group.points.end(), [&](std::size_t a, std::size_t b) {
+        return here_.points[a].position.norm() < here_.points[b].position.norm();
+      });
+  const PointState& point = here_.points[farthest];
+  const double left = 2 * point.velocity.squaredNorm() / point.velocity.dot(point.acceleration);
+  const double radian = duration_of_degree_ * 180 / std::numbers::pi;
+  constexpr double kBrief = 0.05, kAtIt = 1e-9;  // rad
+  if (!((t - time_) * left > 0 && std::abs(left) < kBrief * radian)) return Crossing::regular;
+  const bool amidst = (t - time_ - 2 * left) * left <= 0;
+  if (amidst && std::abs(t - time_ - left) < kAtIt * radian) {
+    show_open(t, g);
+    return Crossing::amidst;
+  }
+  const double to = amidst ? t : time_ + 2 * left;
+  const double h = to - time_, away = solver.distance(here_);
+  predict(h);
+  for (const std::size_t p : group.points) next_.points[p] = here_.points[p];
+  for (const std::size_t body : group.bodies) next_.bodies[body] = here_.bodies[body];
+  Eigen::VectorXd step = solver.velocity(here_);
+  for (double& part : step) {
+    const bool goes_far = std::abs(part * left) > 0.1 * away * mechanism_.largest_length();
+    part *= goes_far ? left * h / (left - h) : h;
+  }
+  solver.displace(step, next_);
+  drives_at(to, next_drives_);
+  next_.status = Status::ok;
+  next_.group.reset();
+  for (std::size_t i = 0; i < courses_.size(); ++i) {
+    if (kinematics_.solver(i).place(next_drives_, courses_[i].side, next_) != Status::ok)
+      return Crossing::regular;
+    regularities_[i] = kinematics_.solver(i).regularity();
+  }
+  const double beyond = solver.distance(next_), before = std::abs(courses_[g].regularity);
+  const double there = std::abs(regularities_[g]);
+  const bool is_beyond = (h - left) * left > 0;
+  const bool other_side = next_.points[farthest].position.dot(point.position) < 0;
+  if (other_side != is_beyond || !(beyond > away / 2)) return Crossing::regular;
+  if (amidst) {
+    shown_ = next_;
+    show(t);
+    return Crossing::amidst;
+  }
+  if (!(beyond < 2 * away && there > before / 4 && there < 4 * before)) return Crossing::regular;
+  events_.push_back({MotionEvent::Kind::infinity, time_ + left, g});
+  if (stop_at_limit_) return Crossing::passed;
+  accept(to);
+  step_ = std::abs(left);
+  probe(1e-2 * left);
+  return Crossing::passed;
 }
 
 }  // namespace oblique

@@ -244,6 +244,7 @@ bool GroupSolver::newton(std::span<const DriveState> drives, const Configuration
   // Errors are squared from step to step: after one this small the next would be rounding.
   constexpr double kLastStep = 1e-9;
   double before = std::numeric_limits<double>::infinity();
+  contraction_ = 0;
   double largest = size_;
   for (const Core& core : cores_) largest = std::max(largest, core.origin.position.lpNorm<Eigen::Infinity>());
   for (const PointState& point : free_) largest = std::max(largest, point.position.lpNorm<Eigen::Infinity>());
@@ -254,6 +255,7 @@ bool GroupSolver::newton(std::span<const DriveState> drives, const Configuration
     if (!solve()) return false;
     double length = solution_.lpNorm<Eigen::Infinity>();
     if (step == 0) correction_ = length / size_;
+    if (step == 1) contraction_ = length / before;
     // a step that is too long is shortened, so that the search does not leap into the far
     const double most = longest_step * size_;
     const double factor = length > most ? most / length : 1;

@@ -8,6 +8,7 @@
 
 #include <oblique/mechanism/configuration.h>
 #include <oblique/mechanism/drive_law.h>
+#include <oblique/mechanism/singularity.h>
 #include <oblique/mechanism/structure.h>
 
 namespace oblique {
@@ -66,6 +67,26 @@ class GroupSolver {
   /// guess was.
   double correction() const { return correction_; }
 
+  /// By which part of the first correction the second one was left: below 1/4 no other pose lies as near as
+  /// the corrections go (Kantorovich, with a reserve); 0 where one correction was enough.
+  double contraction() const { return contraction_; }
+
+  /// The conditions beside the pose in `here`, of which the groups before have their rates; `seconds` is a
+  /// time in which the drives make a way of the order of 1.
+  Singularity singularity(std::span<const DriveState> drives, const Configuration& here, double seconds);
+
+  /// Takes the pose in `here` as it stands, at a point where modes meet: without rates.
+  void stand(std::span<const DriveState> drives, Configuration& here);
+
+  /// Moves the pose in `here`, as a guess, by a step of the unknowns (angles as lengths on the group's size).
+  void displace(const Eigen::VectorXd& step, Configuration& here) const;
+
+  /// The rates of the unknowns in `here`, in the same order and measure.
+  Eigen::VectorXd velocity(const Configuration& here) const;
+
+  /// How far its farthest point is from the frame, over the size of the mechanism.
+  double distance(const Configuration& here) const;
+
  private:
   enum class Form { crank, dyad, loci, pivot, newton };
 
@@ -107,6 +128,7 @@ class GroupSolver {
               GroupPoses& found);
   Status finish(std::span<const DriveState> drives, Configuration& here, bool flat);
 
+  void set_rates(const Eigen::VectorXd& rates);
   void load(const Configuration& here);
   void load(const GroupPose& pose);
   GroupPose pose(int side) const;
@@ -142,6 +164,7 @@ class GroupSolver {
   double regularity_ = 1;
   double determinant_ = 1;
   double correction_ = 0;
+  double contraction_ = 0;
 };
 
 }  // namespace oblique

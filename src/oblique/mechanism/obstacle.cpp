@@ -12,8 +12,7 @@ std::optional<Obstacle> find_obstacle(const Mechanism& mechanism, const Structur
   follower.advance(turn);
   if (follower.events().empty()) return std::nullopt;
   const MotionEvent& first = follower.events().front();
-  return Obstacle{first.time, first.group,
-                  first.kind == MotionEvent::Kind::limit ? Status::open : Status::dead_centre};
+  return Obstacle{first.time, first.group, first.ends() ? Status::open : Status::dead_centre};
 }
 
 }  // namespace oblique

@@ -33,7 +33,7 @@ TurningPoint turning_point(TourWalk& walk, const Signal& signal, double a, doubl
     walk.go(u);
     const SignalValue here = signal.at(walk);
     static_cast<Reading&>(found) = read(walk, here.value);
-    if (here.rate == 0 || u == a || u == b) break;
+    if (here.rate == 0 || !std::isfinite(here.rate) || u == a || u == b) break;
     if ((here.rate > 0) == (rate_a > 0)) {
       a = u;
       rate_a = here.rate;

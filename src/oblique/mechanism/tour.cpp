@@ -13,6 +13,8 @@ constexpr double kSampleStep = std::numbers::pi / 720;
 constexpr std::size_t kFewestSamples = 1440, kMostSamples = 20000;
 /// Limits are known to about 1e-11 rad of the fastest drive; a tour keeps this far away from them [rad].
 constexpr double kBeforeLimit = 4e-11;
+/// As far from infinity, where the mechanism is a thousand times its size away [rad].
+constexpr double kBeforeInfinity = 1e-3;
 
 double fastest_rate(const Mechanism& mechanism) {
   double fastest = 0;
@@ -79,14 +81,17 @@ Tour plan_tour(const Mechanism& mechanism, const Structure& structure) {
     tour.range = find_range(mechanism, structure);
     if (!tour.range.forward || !tour.range.backward) tour.end = cycle(mechanism, structure);
   }
-  const double margin = kBeforeLimit / fastest_rate(mechanism);
+  const auto margin = [&](const MotionEvent& end) {
+    const bool far = end.kind == MotionEvent::Kind::infinity;
+    return (far ? kBeforeInfinity : kBeforeLimit) / fastest_rate(mechanism);
+  };
   if (tour.range.backward) {
     tour.from_limit = true;
-    tour.begin = tour.range.backward->time + margin;
+    tour.begin = tour.range.backward->time + margin(*tour.range.backward);
   }
   if (tour.range.forward) {
     tour.at_limit = true;
-    tour.end = tour.range.forward->time - margin;
+    tour.end = tour.range.forward->time - margin(*tour.range.forward);
   }
   if (tour.from_limit || tour.at_limit) {
     tour.kind = tour.from_limit && tour.at_limit ? Tour::Kind::limits : Tour::Kind::to_limit;

@@ -24,9 +24,7 @@ Mechanism within_range(const Mechanism& mechanism) {
     return mechanism;
   const Drive& drive = mechanism.drives.front();
   const MotionRange range = find_range(mechanism, decompose(mechanism));
-  const auto is_limit = [](const std::optional<MotionEvent>& event) {
-    return event && event->kind == MotionEvent::Kind::limit;
-  };
+  const auto is_limit = [](const std::optional<MotionEvent>& event) { return event && event->ends(); };
   if (!is_limit(range.forward) || !is_limit(range.backward)) return mechanism;
   const double first = range.backward->time * drive.speed, last = range.forward->time * drive.speed;
   const double middle = (first + last) / 2;  // from the start

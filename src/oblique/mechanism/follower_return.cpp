@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+// The part of Follower that knows, beyond a limit, where the branch that was left begins anew.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <oblique/mechanism/follower.h>
+
+namespace oblique {
+namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
+/// A branch that goes on for more turns of its drive than this is not looked at to its other end.
+constexpr double kMostTurns = 16;
+/// How far within its ends a branch is taken up again [rad], where both are known to 1e-11.
+constexpr double kInside = 1e-10;
+
+}  // namespace
+
+/// Finds out where the branch that has just been left at a limit goes on: of a single drive that turns, its
+/// other end, by following it all the way back.
+void Follower::leave_branch() {
+  time_ = events_.back().time;
+  Gap gap{standing_, {}, 0, 0, std::numeric_limits<double>::infinity()};
+  if (mechanism_.drives.size() == 1) {
+    drives_at(time_, next_drives_);
+    gap.end = next_drives_.front().value;
+    const double from = standing_.drives.front().value;
+    gap.outward = gap.end > from ? 1 : -1;
+    if (!mechanism_.drives.front().slide && gap.end != from) {
+      Follower back(*this, standing_, {-gap.outward});
+      if (const auto other = back.advance_to_limit(kMostTurns * kTurn)) {
+        const double length = std::abs(gap.end - from) + other->time;
+        const double turns = std::ceil(length / kTurn);
+        gap.width = turns * kTurn - length;
+        gap.ahead = back.standing_;
+        gap.ahead.drives.front().value += gap.outward * turns * kTurn;
+      }
+    }
+  }
+  gap_ = std::move(gap);
+}
+
+/// Goes on, open, towards `t` until the branch can be taken up again, and stands on it then; false where it
+/// stays open.
+bool Follower::come_back(double t) {
+  return gap_ && (mechanism_.drives.size() == 1 ? come_back_alone(t) : come_back_together(t));
+}
+
+bool Follower::come_back_alone(double t) {
+  const double scale = mechanism_.drives.front().slide ? mechanism_.largest_length() : 1;
+  const double inside = kInside * scale;
+  const auto beyond = [&](double time) {
+    drives_at(time, next_drives_);
+    return gap_->outward * (next_drives_.front().value - gap_->end);
+  };
+  const auto is_back = [&](double way) { return way <= -inside || way >= gap_->width + inside; };
+  double from = time_, here = beyond(from);
+  while (from != t) {
+    double dt = std::min(duration_of_degree_, std::abs(t - from));
+    double to = 0, there = 0;
+    constexpr double kLongest = 3 * std::numbers::pi / 180;  // a law may be faster than at its start
+    while (true) {
+      to = dt == std::abs(t - from) ? t : from + std::copysign(dt, t - from);
+      there = beyond(to);
+      if (std::abs(there - here) <= kLongest * scale || dt < smallest_) break;
+      dt /= 2;
+    }
+    if (is_back(there)) {
+      double outside = from, within = to;
+      while (true) {
+        const double middle = outside + (within - outside) / 2;
+        if (middle == outside || middle == within) break;
+        (is_back(beyond(middle)) ? within : outside) = middle;
+      }
+      if (enter(beyond(within) < 0 ? gap_->behind : gap_->ahead, within)) return true;
+    }
+    from = to;
+    here = there;
+  }
+  return false;
+}
+
+/// Of several drives: looks from degree to degree whether the straight way of all of them from where the
+/// branch was left, by the nearest turns, is free.
+bool Follower::come_back_together(double t) {
+  const auto try_at = [&](double time) {
+    drives_at(time, next_drives_);
+    Standing from = gap_->behind;
+    for (std::size_t d = 0; d < from.drives.size(); ++d) {
+      double& value = from.drives[d].value;
+      if (!mechanism_.drives[d].slide) value += kTurn * std::round((next_drives_[d].value - value) / kTurn);
+    }
+    return enter(from, time);
+  };
+  for (double from = time_; from != t;) {
+    const double dt = std::min(duration_of_degree_, std::abs(t - from));
+    const double to = dt == std::abs(t - from) ? t : from + std::copysign(dt, t - from);
+    if (try_at(to)) return true;
+    from = to;
+  }
+  return false;
+}
+
+/// Stands at time `t` as the straight way of the drives leads there from a standing on the branch; false, and
+/// nothing is changed, where a limit lies on it.
+bool Follower::enter(const Standing& from, double t) {
+  drives_at(t, next_drives_);
+  std::vector<double> way;
+  double longest = 0;
+  for (std::size_t d = 0; d < next_drives_.size(); ++d) {
+    way.push_back(next_drives_[d].value - from.drives[d].value);
+    longest = std::max(longest, std::abs(way.back()));
+  }
+  if (!(longest > 0)) return false;
+  Follower along(*this, from, std::move(way));
+  if (along.advance_to_limit(1) || along.here_.status != Status::ok || along.time_ != 1) return false;
+  const std::vector<Course> before = courses_;
+  courses_ = along.courses_;
+  std::swap(here_, along.here_);
+  std::swap(angles_, along.angles_);
+  const double time = time_;
+  time_ = t;
+  if (!place_all(t)) {
+    std::swap(here_, along.here_);
+    std::swap(angles_, along.angles_);
+    courses_ = before;
+    time_ = time;
+    return false;
+  }
+  accept(t);
+  step_ = 10 * smallest_;
+  probe(smallest_);
+  return true;
+}
+
+}  // namespace oblique

@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: MIT
+// A motion stays on the branch of its positions on which it was begun.
+#include <oblique/mechanism/motion.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+#include <oblique/mechanism/obstacle.h>
+#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/mechanism/tour.h>
+
+#include "random_sixbar.h"
+
+namespace oblique {
+namespace {
+
+using Eigen::Vector2d;
+using Kind = MotionEvent::Kind;
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kDegree = kPi / 180;
+
+Motion solve(const Mechanism& mechanism, int positions) {
+  return solve_motion(mechanism, positions);
+}
+
+std::vector<double> times_of(const Motion& motion, Kind kind) {
+  std::vector<double> times;
+  for (const MotionEvent& event : motion.events) {
+    if (event.kind == kind) times.push_back(event.time);
+  }
+  return times;
+}
+
+const Vector2d& place(const Configuration& here, const Mechanism& mechanism, const std::string& point) {
+  return here.points[mechanism.find_point(point).value()].position;
+}
+
+/// Every link is as long as it is and not turned over.
+void expect_rigid(const RandomSixbar& sixbar, const Mechanism& mechanism, const Motion& motion) {
+  for (const Configuration& here : motion.configurations) {
+    if (here.status != Status::ok) continue;
+    // Newton's last step is below 1e-9 of the size and squared after that; the rest are roundings of
+    // coordinates
+    for (const RandomSixbar::Bar& bar : sixbar.bars)
+      ASSERT_NEAR((place(here, mechanism, bar.a) - place(here, mechanism, bar.b)).norm(), bar.length, 1e-12);
+    for (const RandomSixbar::Plate& plate : sixbar.plates) {
+      const Vector2d base = place(here, mechanism, plate.b) - place(here, mechanism, plate.a);
+      const Vector2d to = place(here, mechanism, plate.c) - place(here, mechanism, plate.a);
+      ASSERT_GT(plate.side * (base.x() * to.y() - base.y() * to.x()), 0);
+    }
+  }
+}
+
+/// No point goes farther from one row to the next than the greater of its two speeds allows. Between two rows
+/// of a quarter degree the speed of a point may pass a maximum; three times the greater one is never reached
+/// by what moves on, and a leap to another mode is some hundred times as far.
+void expect_continuous(const Mechanism& mechanism, const Motion& motion) {
+  for (std::size_t row = 1; row < motion.times.size(); ++row) {
+    const Configuration& before = motion.configurations[row - 1];
+    const Configuration& here = motion.configurations[row];
+    const bool event = std::any_of(motion.events.begin(), motion.events.end(), [&](const MotionEvent& e) {
+      return e.time >= motion.times[row - 1] && e.time <= motion.times[row];
+    });
+    if (event || before.status != Status::ok || here.status != Status::ok) continue;
+    const double dt = motion.times[row] - motion.times[row - 1];
+    for (std::size_t p = 0; p < mechanism.points.size(); ++p) {
+      const double fastest = std::max(before.points[p].velocity.norm(), here.points[p].velocity.norm());
+      ASSERT_LE((here.points[p].position - before.points[p].position).norm(), 3 * fastest * dt + 1e-3)
+          << "row " << row << " " << mechanism.points[p].name;
+    }
+  }
+}
+
+/// What came again after a limit is where the mechanism stood, or would have stood before its start, at the
+/// same angle of the crank: the way back from the start leads there.
+void expect_the_same_branch(const Mechanism& mechanism, const Motion& motion) {
+  const std::vector<double> returns = times_of(motion, Kind::return_);
+  if (returns.empty()) return;
+  const double turn = motion.times.back();
+  Motion backwards = solve_motion(mechanism, std::vector<double>{0, returns.front() - turn});
+  ASSERT_EQ(times_of(backwards, Kind::limit).size(), 0U);
+  std::vector<double> times;
+  std::vector<std::size_t> rows;
+  for (std::size_t row = motion.times.size(); row-- > 0 && motion.times[row] > returns.front();) {
+    if (motion.configurations[row].status != Status::ok) continue;
+    times.push_back(motion.times[row] - turn);
+    rows.push_back(row);
+  }
+  backwards = solve_motion(mechanism, times);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    ASSERT_EQ(backwards.configurations[i].status, Status::ok) << times[i];
+    for (std::size_t p = 0; p < mechanism.points.size(); ++p) {
+      const double far =
+          (backwards.configurations[i].points[p].position - motion.configurations[rows[i]].points[p].position)
+              .norm();
+      // beside a limit a rounding of the angle is one of its root in the position
+      ASSERT_LT(far, 1e-6) << times[i];
+    }
+  }
+}
+
+TEST(Branch, IsKeptByRandomSixbars) {
+  int with_limit = 0, returning = 0;
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    SCOPED_TRACE(seed);
+    const RandomSixbar sixbar = random_sixbar(seed);
+    const Mechanism mechanism = parse_mechanism(sixbar.text, "six.toml");
+    const Motion motion = solve(mechanism, 1441);
+    expect_rigid(sixbar, mechanism, motion);
+    expect_continuous(mechanism, motion);
+    expect_the_same_branch(mechanism, motion);
+    // two modes cross only at special dimensions
+    EXPECT_TRUE(times_of(motion, Kind::change).empty());
+    for (const int positions : {91, 361}) {
+      const Motion coarse = solve(mechanism, positions);
+      for (const Kind kind : {Kind::limit, Kind::return_}) {
+        const std::vector<double> some = times_of(coarse, kind), all = times_of(motion, kind);
+        ASSERT_EQ(some.size(), all.size());
+        // limits are told within 1e-10 of a radian, which the crank makes in a second
+        for (std::size_t i = 0; i < some.size(); ++i) EXPECT_NEAR(some[i], all[i], 1e-9);
+      }
+      const std::size_t every = 1440 / (static_cast<std::size_t>(positions) - 1);
+      for (std::size_t row = 0; row < coarse.times.size(); ++row) {
+        const Configuration& here = coarse.configurations[row];
+        const Configuration& fine = motion.configurations[every * row];
+        ASSERT_EQ(here.status, fine.status) << row;
+        if (here.status != Status::ok) continue;
+        for (std::size_t p = 0; p < mechanism.points.size(); ++p)
+          ASSERT_LT((here.points[p].position - fine.points[p].position).norm(), 1e-9) << row;
+      }
+    }
+    with_limit += times_of(motion, Kind::limit).empty() ? 0 : 1;
+    returning += times_of(motion, Kind::return_).empty() ? 0 : 1;
+  }
+  EXPECT_GE(with_limit, 20);
+  EXPECT_GE(returning, 10);
+}
+
+/// |BD|² = 13 − 12 cos φ lies between 1.8² and 4.2² for |φ| from arccos(9.76/12) = 35.6° to arccos(−4.64/12)
+/// = 112.8°: two arcs, and no way from one to the other but to take it apart.
+constexpr const char* kTwoArcs = R"(format = "oblique-mechanism/1"
+[frame]
+A = [0, 0]
+D = [3, 0]
+[bodies]
+AB = { points = ["A", "B"], length = 2 }
+BC = { points = ["B", "C"], length = 3 }
+CD = { points = ["C", "D"], length = 1.2 }
+[drives]
+crank = { turns = "AB", about = "A", speed = 1, start = "60 deg" }
+[sketch]
+C = [3, 1.5]
+)";
+
+TEST(Branch, IsNotTakenForAnotherOfTheSameSide) {
+  const Mechanism mechanism = parse_mechanism(kTwoArcs, "four.toml");
+  const Motion motion = solve(mechanism, 361);
+  const double low = std::acos(9.76 / 12), high = std::acos(-4.64 / 12);
+  for (std::size_t row = 0; row < motion.times.size(); ++row) {
+    const double angle = motion.drives[row][0].value;
+    const bool on_it = (angle > low && angle < high) || angle > low + 2 * kPi;
+    EXPECT_EQ(motion.configurations[row].status, on_it ? Status::ok : Status::open) << row;
+  }
+  ASSERT_EQ(motion.events.size(), 2U);
+  EXPECT_EQ(motion.events[0].kind, Kind::limit);
+  EXPECT_NEAR(motion.events[0].time, high - kPi / 3, 1e-10);
+  EXPECT_EQ(motion.events[1].kind, Kind::return_);
+  // it is taken up again 1e-10 inside its end
+  EXPECT_NEAR(motion.events[1].time, low + 2 * kPi - kPi / 3, 2e-10);
+}
+
+// The drive turns back beyond the limit: the branch goes on where it was left, at whatever rows.
+TEST(Branch, GoesOnWhereTheDriveComesBack) {
+  std::string text = kTwoArcs;
+  text.replace(text.find("speed = 1,"), 10, "speed = \"cos(time)\",");
+  const Mechanism mechanism = parse_mechanism(text, "four.toml");
+  const double limit = std::asin(std::acos(-4.64 / 12) - kPi / 3);  // sin t is the crank's way
+  for (const int positions : {7, 100, 1000}) {
+    MotionOptions options;
+    options.positions = positions;
+    options.until = kPi;
+    const Motion motion = solve_motion(mechanism, options);
+    ASSERT_EQ(motion.events.size(), 2U) << positions;
+    EXPECT_NEAR(motion.events[0].time, limit, 1e-9);
+    EXPECT_NEAR(motion.events[1].time, kPi - limit, 1e-9);
+    const Configuration& last = motion.configurations.back();
+    EXPECT_EQ(last.status, Status::ok);
+    EXPECT_LT((last.points[3].position - motion.configurations.front().points[3].position).norm(), 1e-12);
+  }
+}
+
+// Two drives: an arm of two links carries the hinge of a dyad out of its reach, and another way back into it.
+TEST(Branch, OfSeveralDrivesComesBackOnAStraightWay) {
+  const Mechanism mechanism = parse_mechanism(R"(format = "oblique-mechanism/1"
+[frame]
+A = [0, 0]
+D = [3, 0]
+[bodies]
+AB = { points = ["A", "B"], length = 1 }
+BC = { points = ["B", "C"], length = 2 }
+CE = { points = ["C", "E"], length = 2 }
+DE = { points = ["D", "E"], length = 1.5 }
+[drives]
+left  = { turns = "AB", about = "A", speed = 1, start = "60 deg" }
+right = { turns = "DE", about = "D", speed = -1, start = "120 deg" }
+[sketch]
+C = [1.5, 2.5]
+)",
+                                              "five.toml");
+  const Motion motion = solve(mechanism, 361);
+  ASSERT_EQ(motion.events.size(), 2U);
+  EXPECT_EQ(motion.events[0].kind, Kind::limit);
+  EXPECT_EQ(motion.events[1].kind, Kind::return_);
+  for (std::size_t row = 0; row < motion.times.size(); ++row) {
+    const double t = motion.times[row];
+    const Vector2d b(std::cos(kPi / 3 + t), std::sin(kPi / 3 + t));
+    const Vector2d e(3 + 1.5 * std::cos(2 * kPi / 3 - t), 1.5 * std::sin(2 * kPi / 3 - t));
+    EXPECT_EQ(motion.configurations[row].status, (b - e).norm() < 4 ? Status::ok : Status::open) << row;
+  }
+}
+
+// A deltoid: C lies on the bisector of the crank and the frame, cos(φ/2) + √(4 − sin²(φ/2)) from A, over two
+// turns of the crank; at 360° B lies on D.
+TEST(Branch, OfAKitePassesWhereItsPivotsMeet) {
+  const Mechanism mechanism = parse_mechanism(R"(format = "oblique-mechanism/1"
+[frame]
+A = [0, 0]
+D = [1, 0]
+[bodies]
+AB = { points = ["A", "B"], length = 1 }
+BC = { points = ["B", "C"], length = 2 }
+DC = { points = ["D", "C"], length = 2 }
+[drives]
+crank = { turns = "AB", about = "A", speed = 1, start = "40 deg" }
+[sketch]
+C = [2, 1.5]
+)",
+                                              "kite.toml");
+  for (const int positions : {91, 721, 10000}) {
+    MotionOptions options;
+    options.positions = positions;
+    options.until = 4 * kPi;
+    const Motion motion = solve_motion(mechanism, options);
+    ASSERT_EQ(motion.events.size(), 2U) << positions;
+    for (std::size_t k = 0; k < 2; ++k) {
+      EXPECT_EQ(motion.events[k].kind, Kind::change);
+      EXPECT_NEAR(motion.events[k].time, 2 * kPi * static_cast<double>(k + 1) - 40 * kDegree, 1e-9);
+    }
+    for (std::size_t row = 0; row < motion.times.size(); ++row) {
+      const double half = motion.drives[row][0].value / 2;
+      const Vector2d c = (std::cos(half) + std::sqrt(4 - std::pow(std::sin(half), 2))) *
+                         Vector2d(std::cos(half), std::sin(half));
+      // the direction of B → D carries a rounding over their distance, 1e-6 at the least where it is used
+      EXPECT_LT((motion.configurations[row].points[3].position - c).norm(), 1e-9) << row;
+    }
+  }
+  EXPECT_TRUE(plan_tour(mechanism, decompose(mechanism)).changes.size() == 1);
+}
+
+// A rocker that is longer than the parallelogram's by 1e-13 makes it a crank and rocker: C never changes its
+// side of B → D, though it comes as near to it as 4e-7.
+TEST(Branch, PassesByWhatIsNoChangePoint) {
+  const Mechanism mechanism = parse_mechanism(R"(format = "oblique-mechanism/1"
+[frame]
+A = [0, 0]
+D = [2, 0]
+[bodies]
+AB = { points = ["A", "B"], length = 1 }
+BC = { points = ["B", "C"], length = 2 }
+DC = { points = ["D", "C"], length = "1+1e-13" }
+[drives]
+crank = { turns = "AB", about = "A", speed = 1, start = "30 deg" }
+[sketch]
+C = [2.86, 0.5]
+)",
+                                              "near.toml");
+  for (const int positions : {91, 361, 1441}) {
+    const Motion motion = solve(mechanism, positions);
+    EXPECT_TRUE(motion.events.empty());
+    for (const Configuration& here : motion.configurations) {
+      const Vector2d b = here.points[2].position, d(2, 0);
+      EXPECT_GT(
+          (d - b).x() * (here.points[3].position - b).y() - (d - b).y() * (here.points[3].position - b).x(),
+          0);
+    }
+  }
+}
+
+// x = 100 tan φ
+TEST(Branch, GoesThroughInfinity) {
+  const Mechanism mechanism = parse_mechanism(R"(format = "oblique-mechanism/1"
+[units]
+length = "mm"
+[frame]
+O = [0, 0]
+F = [100, 0]
+E = [100, 100]
+[bodies]
+arm = { points = ["O", "T"], length = 150 }
+block = { points = ["C", "K"], length = 30 }
+[slides]
+slot = { point = "C", along = ["O", "T"] }
+guide = { point = "C", along = ["F", "E"], of = "block", angle = 0 }
+[drives]
+crank = { turns = "arm", about = "O", speed = 1, start = 0 }
+)",
+                                              "tangent.toml");
+  for (const int positions : {8, 91, 361, 10000}) {
+    const Motion motion = solve(mechanism, positions);
+    ASSERT_EQ(motion.events.size(), 2U) << positions;
+    EXPECT_EQ(motion.events[0].kind, Kind::infinity);
+    EXPECT_NEAR(motion.events[0].time, kPi / 2, 1e-9);
+    EXPECT_EQ(motion.events[1].kind, Kind::infinity);
+    EXPECT_NEAR(motion.events[1].time, 3 * kPi / 2, 1e-9);
+    const std::size_t c = mechanism.find_point("C").value();
+    for (std::size_t row = 0; row < motion.times.size(); ++row) {
+      const double t = motion.times[row];
+      const bool is_there = std::abs(std::cos(t)) < 1e-9;
+      EXPECT_EQ(motion.configurations[row].status, is_there ? Status::open : Status::ok) << t;
+      if (is_there) continue;
+      const double x = 100 * std::tan(t);
+      EXPECT_NEAR(motion.configurations[row].points[c].position.y(), x, 1e-13 * (100 + x * x)) << t;
+    }
+  }
+  const Tour tour = plan_tour(mechanism, decompose(mechanism));
+  ASSERT_TRUE(tour.range.forward && tour.range.backward);
+  EXPECT_EQ(tour.range.forward->kind, Kind::infinity);
+  EXPECT_NEAR(tour.range.backward->time, -kPi / 2, 1e-9);
+}
+
+}  // namespace
+}  // namespace oblique
