@@ -52,7 +52,7 @@ Curve slope_of(const Curve& errors, const GainSeries& series) {
   Curve slope{fmt::format("slope {}", signed_text(*series.order)), {}, errors.number, Curve::Style::guide};
   double n = 0, x = 0, y = 0;
   for (const Eigen::Vector2d& point : errors.points) {
-    if (!stands_clear(point.y(), series.floor)) continue;
+    if (!stands_clear(point.y(), series.floor.value_or(0))) continue;
     n += 1;
     x += std::log10(point.x());
     y += std::log10(point.y());
@@ -60,7 +60,7 @@ Curve slope_of(const Curve& errors, const GainSeries& series) {
   for (const Eigen::Vector2d& point : errors.points) {
     const double exponent = y / n + *series.order * (std::log10(point.x()) - x / n);
     const double error = std::pow(10, exponent);
-    if (error >= series.floor) slope.points.emplace_back(point.x(), error);
+    if (error >= series.floor.value_or(0)) slope.points.emplace_back(point.x(), error);
   }
   return slope;
 }
@@ -103,7 +103,7 @@ Panel error_along(const Comparison& comparison, std::size_t s) {
     Curve curve{fmt::format("gain {}", gain_text(run.gain)), {}, k};
     for (std::size_t row = 0; row < run.error_along.size(); ++row) {
       // what is far below that which the tolerance leaves tells nothing, and would stretch the axis
-      const bool tells = run.error_along[row] > kBelowFloor * series.floor;
+      const bool tells = run.error_along[row] > kBelowFloor * series.floor.value_or(0);
       curve.points.emplace_back(comparison.drive[row] / unit,
                                 tells ? run.error_along[row] : std::numeric_limits<double>::quiet_NaN());
     }
@@ -115,7 +115,7 @@ Panel error_along(const Comparison& comparison, std::size_t s) {
 /// Whether `error_along` leaves points out.
 bool leaves_out(const Comparison& comparison) {
   for (std::size_t k = 0; k < comparison.runs.size(); ++k) {
-    const double least = kBelowFloor * comparison.series[k / runs_per_series(comparison)].floor;
+    const double least = kBelowFloor * comparison.series[k / runs_per_series(comparison)].floor.value_or(0);
     const auto& errors = comparison.runs[k].error_along;
     if (std::any_of(errors.begin(), errors.end(), [&](double error) { return error <= least; })) return true;
   }

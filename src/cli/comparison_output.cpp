@@ -44,7 +44,8 @@ Json json_of(const ComparedRun& run) {
             {"overloads", run.overloads.size()},
             {"stable", run.stable},
             {"method", method_name(run.method)},
-            {"bandwidth", run.bandwidth}};
+            {"bandwidth", run.bandwidth},
+            {"left_branch", json_of(run.left_branch)}};
   json["worst"] = {{"point", run.worst.point},
                    {"time", run.worst.time},
                    {"drive", run.worst.drive},
@@ -91,7 +92,7 @@ class RowHead {
   }
 
   std::vector<std::string> cells(const ComparedRun& run) const {
-    std::vector<std::string> cells = this->cells(GainSeries{run.method, run.bandwidth, 0, {}});
+    std::vector<std::string> cells = this->cells(GainSeries{run.method, run.bandwidth, {}, {}});
     cells.push_back(short_number(run.gain));
     return cells;
   }
@@ -121,11 +122,14 @@ std::string error_table(const Comparison& comparison, const RowHead& head) {
                                      fmt::format("rms error [{}]", unit), "worst point", "steps", "ms",
                                      "overloads", "stable"}));
   for (const ComparedRun& run : comparison.runs) {
-    table.add(joined(head.cells(run), {fmt::format("{:.3e}", run.max_error),
-                                       fmt::format("{:.3e}", run.max_error / comparison.size),
-                                       fmt::format("{:.3e}", run.rms_error), run.worst.point,
-                                       std::to_string(run.steps), fmt::format("{:.3g}", 1e3 * run.seconds),
-                                       std::to_string(run.overloads.size()), run.stable ? "yes" : "NO"}));
+    table.add(
+        joined(head.cells(run),
+               {fmt::format("{:.3e}", run.max_error), fmt::format("{:.3e}", run.max_error / comparison.size),
+                fmt::format("{:.3e}", run.rms_error), run.worst.point, std::to_string(run.steps),
+                fmt::format("{:.3g}", 1e3 * run.seconds), std::to_string(run.overloads.size()),
+                run.left_branch ? "other mode"
+                : run.stable    ? "yes"
+                                : "NO"}));
   }
   return table.text();
 }
@@ -164,9 +168,10 @@ std::string orders_of(const Comparison& comparison, const RowHead& head) {
   const std::string& unit = comparison.unit;
   if (has_one(comparison)) {
     const GainSeries& series = comparison.series.front();
-    return fmt::format(
-               "largest link {:.6g} {}; amplifiers of gain 1e12 leave {:.0e} {} (the solver's tolerance)\n",
-               comparison.size, unit, series.floor, unit) +
+    const std::string floor =
+        series.floor ? fmt::format("leave {:.0e} {} (the solver's tolerance)", *series.floor, unit)
+                     : "do not run, so what the tolerance leaves is unknown";
+    return fmt::format("largest link {:.6g} {}; amplifiers of gain 1e12 {}\n", comparison.size, unit, floor) +
            (series.order ? fmt::format("the error falls with the gain to the power {:.3f}\n", *series.order)
                          : "no order: it takes two gains whose errors stand clear of the tolerance\n");
   }
@@ -174,7 +179,7 @@ std::string orders_of(const Comparison& comparison, const RowHead& head) {
       joined(head.series_titles(), {"power of the gain", fmt::format("left at gain 1e12 [{}]", unit)}));
   for (const GainSeries& series : comparison.series) {
     table.add(joined(head.cells(series), {series.order ? fmt::format("{:.3f}", *series.order) : "none",
-                                          fmt::format("{:.0e}", series.floor)}));
+                                          series.floor ? fmt::format("{:.0e}", *series.floor) : "unknown"}));
   }
   return fmt::format(
       "largest link {:.6g} {}; how the error goes with the gain, and what the tolerance leaves\n\n{}",
@@ -201,7 +206,7 @@ nlohmann::ordered_json to_json(const Comparison& comparison) {
   for (const GainSeries& series : comparison.series) {
     json["series"].push_back({{"method", method_name(series.method)},
                               {"bandwidth", series.bandwidth},
-                              {"floor", series.floor},
+                              {"floor", json_of(series.floor)},
                               {"order", json_of(series.order)}});
   }
   return json;
@@ -227,6 +232,14 @@ std::string to_text(const Comparison& comparison) {
       "tolerance\n\n";
   text += parts_table(comparison, head) + "\n" + reasons_of(comparison);
   text += orders_of(comparison, head);
+  for (const ComparedRun& run : comparison.runs) {
+    if (!run.left_branch) continue;
+    text += fmt::format(
+        "wrong branch at {}: its loops hold another assembly mode at {}; that is no error of the gain, and "
+        "not "
+        "in its order\n",
+        head.run_name(run), drive_text(comparison, run.worst.drive));
+  }
   for (const ComparedRun& run : comparison.runs) {
     for (const Overload& overload : run.overloads) {
       text += fmt::format("overload at {}: {} reaches {:.6g} at t = {:.6g} s\n", head.run_name(run),

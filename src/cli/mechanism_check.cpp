@@ -44,10 +44,11 @@ std::optional<std::string> obstacle_of(const Mechanism& mechanism, const Structu
   if (mechanism.drives.front().slide && !mechanism.motion.until) return std::nullopt;
   const auto obstacle = find_obstacle(mechanism, structure);
   if (!obstacle) return std::nullopt;
-  return fmt::format(
-      "over one turn the group {} {} at t = {:.6g} s", structure.groups[obstacle->group].name,
-      obstacle->status == oblique::Status::open ? "cannot be assembled" : "passes a dead centre",
-      obstacle->time);
+  const char* const what = obstacle->infinite                          ? "goes to infinity"
+                           : obstacle->status == oblique::Status::open ? "cannot be assembled"
+                                                                       : "passes a dead centre";
+  return fmt::format("over one turn the group {} {} at t = {:.6g} s", structure.groups[obstacle->group].name,
+                     what, obstacle->time);
 }
 
 }  // namespace

@@ -55,9 +55,10 @@ class Report {
     const Tour& tour = *analysis_.tour;
     DriveClock clock(mechanism_);
     const auto limit = [&](const char* word, const std::optional<MotionEvent>& event) {
-      return event ? fmt::format(" {} {} ({})", word, drive_text(check_, clock.at(0, event->time).value),
-                                 check_.structure.groups[event->group].name)
-                   : std::string();
+      if (!event) return std::string();
+      return fmt::format(" {} {} ({}{})", word, drive_text(check_, clock.at(0, event->time).value),
+                         check_.structure.groups[event->group].name,
+                         event->kind == MotionEvent::Kind::infinity ? ", which is at infinity" : "");
     };
     if (tour.range.backward || tour.range.forward) {
       text_ += fmt::format("  range of '{}':{}{}; what follows is about that range\n",

@@ -132,6 +132,47 @@ B = [0, 110]
                                  HasSubstr("range of 'block': from -120 m (bar) to 120 m (bar)")));
 }
 
+TEST_F(MechanismCheck, TellsOfMotionThroughInfinity) {
+  const std::string path = file("tangent.toml", R"([frame]
+O = [0, 0]
+F = [100, 0]
+E = [100, 100]
+[bodies]
+arm = { points = ["O", "T"], length = 150 }
+block = { points = ["C", "K"], length = 30 }
+[slides]
+slot = { point = "C", along = ["O", "T"] }
+guide = { point = "C", along = ["F", "E"], of = "block", angle = 0 }
+[drives]
+crank = { turns = "arm", about = "O", speed = "60 rpm", start = 0 }
+)");
+  const Outcome checked = oblique("check " + path);
+  EXPECT_EQ(checked.status, 1);
+  EXPECT_THAT(
+      checked.out,
+      AllOf(HasSubstr("no: over one turn the group block goes to infinity at t = 0.25 s\n"),
+            HasSubstr("range of 'crank': from -90.00° (block, which is at infinity) to 90.00° (block, "
+                      "which is at infinity);")));
+  const Outcome solved = oblique("solve " + path + " --positions 91");
+  EXPECT_EQ(solved.status, 0);
+  EXPECT_THAT(
+      solved.err,
+      AllOf(HasSubstr("infinity at crank = 90 deg: block goes away without end, and comes back from the "
+                      "other side\n"),
+            HasSubstr("infinity at crank = 270 deg: ")));
+}
+
+TEST_F(MechanismCheck, SolveTellsWhereABranchEndsAndBeginsAgain) {
+  const Outcome outcome = oblique("solve " + file("d.toml", kDoubleRocker) + " --positions 361");
+  EXPECT_EQ(outcome.status, 1);
+  // arccos(−89/120) = 137.873… degrees, and as much before a whole turn
+  EXPECT_THAT(outcome.err,
+              AllOf(HasSubstr("limit at rocker = 137.87"),
+                    HasSubstr(" deg: a dead centre of BC-CD, which cannot be assembled beyond\n"),
+                    HasSubstr("from rocker = 222.12"),
+                    HasSubstr(" deg on BC-CD can be assembled again, on the branch that it left\n")));
+}
+
 TEST_F(MechanismCheck, JsonHasTheDocumentedKeysAlone) {
   const auto json = nlohmann::json::parse(oblique("check --json " + file("s.toml", kSliderCrank)).out);
   std::vector<std::string> keys;

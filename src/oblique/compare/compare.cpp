@@ -6,10 +6,12 @@
 
 #include <fmt/format.h>
 
+#include <oblique/compare/branch.h>
 #include <oblique/compare/error_parts.h>
 #include <oblique/compare/judge.h>
 #include <oblique/compare/patched_run.h>
 #include <oblique/compare/worst_reason.h>
+#include <oblique/solve/solve_error.h>
 
 namespace oblique {
 namespace {
@@ -23,8 +25,13 @@ constexpr double kFloorGain = 1e12;
 class Comparer {
  public:
   Comparer(const Mechanism& mechanism, const BlockLibrary& library, const CompareOptions& options,
-           const Motion& exact, const WorstReasons& reasons)
-      : mechanism_(mechanism), library_(library), options_(options), exact_(exact), reasons_(reasons) {}
+           const Structure& structure, const Motion& exact, const WorstReasons& reasons)
+      : mechanism_(mechanism),
+        library_(library),
+        options_(options),
+        structure_(structure),
+        exact_(exact),
+        reasons_(reasons) {}
 
   ComparedRun compared(const PatchOptions& options) {
     const PatchedMechanism patched(patch_named(mechanism_, options), library_);
@@ -47,17 +54,25 @@ class Comparer {
     result.worst = {mechanism_.points[error.worst.point].name, exact_.times[error.row],
                     exact_.drives[error.row].front().value,
                     reasons_.reason(patched, options, recorded, error)};
+    const auto off =
+        row_off_branch(mechanism_, structure_, patched.flat, analog.trajectory, exact_, error.along);
+    if (off) result.left_branch = exact_.drives[*off].front().value;
     result.parts = error_parts(patched, exact_, analog.trajectory, error, progress());
     finish_run();
     return result;
   }
 
-  double floor(PatchOptions options) {
+  std::optional<double> floor(PatchOptions options) {
     options.gain = kFloorGain;
-    const PatchedMechanism patched(patch_named(mechanism_, options), library_);
-    const RecordedRun recorded = run_recorded(patched, name_of(options), options.tolerance, progress());
-    finish_run();
-    return distances(mechanism_, patched.flat, recorded.run.trajectory, exact_).largest;
+    try {
+      const PatchedMechanism patched(patch_named(mechanism_, options), library_);
+      const RecordedRun recorded = run_recorded(patched, name_of(options), options.tolerance, progress());
+      finish_run();
+      return distances(mechanism_, patched.flat, recorded.run.trajectory, exact_).largest;
+    } catch (const SolveError&) {  // nobody asked for this run
+      finish_run();
+      return std::nullopt;
+    }
   }
 
  private:
@@ -85,6 +100,7 @@ class Comparer {
   const Mechanism& mechanism_;
   const BlockLibrary& library_;
   const CompareOptions& options_;
+  const Structure& structure_;
   const Motion& exact_;
   const WorstReasons& reasons_;
   double done_ = 0;  ///< runs
@@ -94,7 +110,7 @@ class Comparer {
 std::optional<double> fitted_order(std::span<const ComparedRun> runs, double floor) {
   double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
   for (const ComparedRun& run : runs) {
-    if (!stands_clear(run.max_error, floor) || !std::isfinite(run.gain)) continue;
+    if (run.left_branch || !stands_clear(run.max_error, floor) || !std::isfinite(run.gain)) continue;
     const double x = std::log10(run.gain), y = std::log10(run.max_error);
     n += 1;
     sx += x;
@@ -113,14 +129,14 @@ Comparison compare_within_range(const Mechanism& mechanism, const BlockLibrary& 
   comparison.mechanism = mechanism.title;
   comparison.unit = mechanism.length_unit;
   comparison.size = mechanism.largest_length();
-  const std::vector<Group> groups = decompose(mechanism).groups;
-  comparison.closed_form = std::none_of(groups.begin(), groups.end(),
+  const Structure structure = decompose(mechanism);
+  comparison.closed_form = std::none_of(structure.groups.begin(), structure.groups.end(),
                                         [](const Group& group) { return group.kind == GroupKind::general; });
   comparison.turning = mechanism.drives.empty() || !mechanism.drives.front().slide;
   const Motion exact = solve_motion(mechanism, options.positions);
   for (const auto& drives : exact.drives) comparison.drive.push_back(drives.front().value);
   const WorstReasons reasons(mechanism, exact);
-  Comparer comparer(mechanism, library, options, exact, reasons);
+  Comparer comparer(mechanism, library, options, structure, exact, reasons);
   std::vector<std::optional<double>> bandwidths(options.bandwidths.begin(), options.bandwidths.end());
   if (bandwidths.empty()) bandwidths.emplace_back();
   for (const PatchMethod method : options.methods) {
@@ -138,7 +154,7 @@ Comparison compare_within_range(const Mechanism& mechanism, const BlockLibrary& 
       }
       GainSeries series{
           method, bandwidth.value_or(default_bandwidth(mechanism)), comparer.floor(patch_options), {}};
-      series.order = fitted_order(std::span(comparison.runs).subspan(first), series.floor);
+      series.order = fitted_order(std::span(comparison.runs).subspan(first), series.floor.value_or(0));
       comparison.series.push_back(series);
     }
   }

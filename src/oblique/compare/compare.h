@@ -64,6 +64,9 @@ struct ComparedRun {
   long steps = 0;
   double seconds = 0;  ///< of the run, wall clock
   std::vector<Overload> overloads;
+  /// The first drive where its loops first hold another assembly mode than the mechanism's [rad] or [length
+  /// unit]: what it errs there is none of its gain.
+  std::optional<double> left_branch;
   bool stable = true;       ///< every servo loop would return to rest, at every tenth row
   double slowest_pole = 0;  ///< largest real part of the servo loops' eigenvalues over these rows [1/s]
 };
@@ -71,11 +74,12 @@ struct ComparedRun {
 /// What the runs of one method and one bandwidth tell together.
 struct GainSeries {
   PatchMethod method = PatchMethod::triangles;
-  double bandwidth = 0;         ///< [Hz]
-  double floor = 0;             ///< largest error with amplifiers of gain 1e12: what tolerance alone leaves
-                                ///< [length unit]
-  std::optional<double> order;  ///< slope of log error over log gain; none with fewer than two runs above the
-                                ///< floor
+  double bandwidth = 0;  ///< [Hz]
+  /// Largest error with amplifiers of gain 1e12: what tolerance alone leaves [length unit]; nothing where
+  /// that run fails, which is none of those that were asked for.
+  std::optional<double> floor;
+  /// Slope of log error over log gain; none with fewer than two runs above the floor and on the branch.
+  std::optional<double> order;
 };
 
 /// Whether an error tells of the gain and not of the tolerance: it is at least ten times the floor of its

@@ -17,8 +17,9 @@ using Eigen::Vector2d;
 /// Below this part of its largest regularity a group is at the point where its modes meet: the height of a
 /// triangle is then a few times what counts as flat, so that rates still have a value.
 constexpr double kSingular = 1e-6;
-/// Within this way of the fastest drive [rad] what is left out beyond the second order is rounding.
-constexpr double kNear = 1e-5;
+/// Within these ways of the fastest drive [rad] what is left out beyond the second order is rounding: of a
+/// crossing it is of third order in the way, of a fold of third order in its root.
+constexpr double kNearCrossing = 1e-5, kNearFold = 1e-9;
 /// From this many sizes away on a group may go to infinity.
 constexpr double kFar = 300;
 
@@ -84,12 +85,12 @@ Follower::Crossing Follower::cross(std::size_t g, double t, bool is_last) {
   const double radian = duration_of_degree_ * 180 / std::numbers::pi;
   const Singularity singularity = solver.singularity(drives_, here_, radian);
   const auto meeting = singularity.crossing();
-  if (meeting && meeting->time * direction > 0 && std::abs(meeting->time) < kNear * radian) {
+  if (meeting && meeting->time * direction > 0 && std::abs(meeting->time) < kNearCrossing * radian) {
     const Crossing crossing = cross_modes(g, t, meeting->time);
     if (crossing != Crossing::regular) return crossing;
   }
   const auto fold = singularity.fold(direction);
-  if (fold && std::abs(*fold) < kNear * radian) return end_at(g, t, *fold, singularity);
+  if (fold && std::abs(*fold) < kNearFold * radian) return end_at(g, t, *fold, singularity);
   if (!is_last) return Crossing::regular;
   events_.push_back({MotionEvent::Kind::limit, time_, g});  // no step leads on
   step_ = duration_of_degree_;

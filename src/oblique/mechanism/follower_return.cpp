@@ -13,8 +13,8 @@ namespace {
 constexpr double kTurn = 2 * std::numbers::pi;
 /// A branch that goes on for more turns of its drive than this is not looked at to its other end.
 constexpr double kMostTurns = 16;
-/// How far within its ends a branch is taken up again [rad], where both are known to 1e-11.
-constexpr double kInside = 1e-10;
+/// How far within its ends a branch is taken up again [rad], where both are known to 1e-11 or so.
+constexpr double kInside = 1e-9;
 
 }  // namespace
 

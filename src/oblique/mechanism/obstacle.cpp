@@ -12,7 +12,8 @@ std::optional<Obstacle> find_obstacle(const Mechanism& mechanism, const Structur
   follower.advance(turn);
   if (follower.events().empty()) return std::nullopt;
   const MotionEvent& first = follower.events().front();
-  return Obstacle{first.time, first.group, first.ends() ? Status::open : Status::dead_centre};
+  return Obstacle{first.time, first.group, first.ends() ? Status::open : Status::dead_centre,
+                  first.kind == MotionEvent::Kind::infinity};
 }
 
 }  // namespace oblique

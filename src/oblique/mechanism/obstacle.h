@@ -15,6 +15,7 @@ struct Obstacle {
   double time = 0;        ///< [s]
   std::size_t group = 0;  ///< index in Structure::groups
   Status status = Status::open;
+  bool infinite = false;  ///< `open`, since the group goes away without end
 };
 
 /// The first obstacle within one turn of the first drive, or none; found by a Follower. Throws MechanismError

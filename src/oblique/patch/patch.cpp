@@ -27,15 +27,18 @@ std::optional<PatchMethod> parse_patch_method(std::string_view text) {
 
 namespace {
 
-/// The greatest speed of a drive over the motion [rad/s] or [length unit/s]; of a law, at a thousand moments.
+/// The greatest speed of a drive over the motion [rad/s], of one that moves a slide as that of a crank as
+/// long as the longest link; of a law, at a thousand moments.
 double greatest_speed(const Mechanism& mechanism, const Drive& drive) {
-  if (!drive.law) return std::abs(drive.speed);
-  constexpr int kMoments = 1000;
-  const double until = period(mechanism);
-  double fastest = 0;
-  for (int k = 0; k <= kMoments; ++k)
-    fastest = std::max(fastest, std::abs(law_at(drive, until * k / kMoments).rate));
-  return fastest;
+  double fastest = std::abs(drive.speed);
+  if (drive.law) {
+    constexpr int kMoments = 1000;
+    const double until = period(mechanism);
+    fastest = 0;
+    for (int k = 0; k <= kMoments; ++k)
+      fastest = std::max(fastest, std::abs(law_at(drive, until * k / kMoments).rate));
+  }
+  return drive.slide ? fastest / mechanism.largest_length() : fastest;
 }
 
 }  // namespace

@@ -26,7 +26,10 @@ namespace {
       fmt::format(
           "the {} {} {} at t = {:.6g} s, where drive '{}' stands at {}, so no servo loop can track it",
           structure.groups[obstacle.group].assur_class == 2 ? "dyad" : "group",
-          structure.groups[obstacle.group].name, open ? "cannot be assembled" : "is at a dead centre",
+          structure.groups[obstacle.group].name,
+          obstacle.infinite ? "goes to infinity"
+          : open            ? "cannot be assembled"
+                            : "is at a dead centre",
           obstacle.time, drive.name, stand),
       open ? "links that reach each other in every position" : "a group that never comes to a dead centre",
       open ? "lengthen the links of the dyad, or shorten the crank; `oblique solve` shows where it opens"
