@@ -245,7 +245,6 @@ const Configuration& Follower::advance(double t) {
         culprit_ = group;
         return shown_;
       }
-      events_.push_back({MotionEvent::Kind::return_, time_, group});
       open_ = false;
       continue;
     }

@@ -27,6 +27,10 @@ struct MotionEvent {
   bool ends() const { return kind == Kind::limit || kind == Kind::infinity; }
 };
 
+/// A motion that ends at infinity stops this far before it, where the mechanism is a thousand times its size
+/// away [rad of the fastest drive].
+inline constexpr double kBeforeInfinity = 1e-3;
+
 /// Follows a mechanism from time 0, on one branch of its positions. Steps are made so small that no body
 /// turns by more than 30° in one, that no group's regularity (GroupSolver) changes sign or by more than a
 /// factor of two, and that Newton's method finds its guess nearly right and contracts; so a group never

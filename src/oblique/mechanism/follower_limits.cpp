@@ -45,7 +45,7 @@ Follower::Crossing Follower::step_towards(double t) {
     const Verdict verdict = attempt(target);
     if (verdict == Verdict::good) {
       accept(target);
-      step_ = std::min(2 * dt, duration_of_degree_);
+      step_ = std::min(std::max(step_, 2 * dt), duration_of_degree_);  // a near row is no reason to go slower
       return Crossing::passed;
     }
     if (step_ == duration_of_degree_) standing_ = standing();

@@ -49,13 +49,25 @@ bool Follower::come_back(double t) {
 }
 
 bool Follower::come_back_alone(double t) {
+  const std::size_t group = culprit_;
   const double scale = mechanism_.drives.front().slide ? mechanism_.largest_length() : 1;
   const double inside = kInside * scale;
   const auto beyond = [&](double time) {
     drives_at(time, next_drives_);
     return gap_->outward * (next_drives_.front().value - gap_->end);
   };
-  const auto is_back = [&](double way) { return way <= -inside || way >= gap_->width + inside; };
+  const auto is_back = [&](double time, double margin) {
+    const double way = beyond(time);
+    return way <= -margin || way >= gap_->width + margin;
+  };
+  /// The moment between two of which the second is back.
+  const auto first_back = [&](double outside, double within, double margin) {
+    while (true) {
+      const double middle = outside + (within - outside) / 2;
+      if (middle == outside || middle == within) return within;
+      (is_back(middle, margin) ? within : outside) = middle;
+    }
+  };
   double from = time_, here = beyond(from);
   while (from != t) {
     double dt = std::min(duration_of_degree_, std::abs(t - from));
@@ -67,14 +79,12 @@ bool Follower::come_back_alone(double t) {
       if (std::abs(there - here) <= kLongest * scale || dt < smallest_) break;
       dt /= 2;
     }
-    if (is_back(there)) {
-      double outside = from, within = to;
-      while (true) {
-        const double middle = outside + (within - outside) / 2;
-        if (middle == outside || middle == within) break;
-        (is_back(beyond(middle)) ? within : outside) = middle;
+    if (is_back(to, inside)) {
+      const double within = first_back(from, to, inside);
+      if (enter(beyond(within) < 0 ? gap_->behind : gap_->ahead, within)) {
+        events_.push_back({MotionEvent::Kind::return_, first_back(from, within, 0), group});
+        return true;
       }
-      if (enter(beyond(within) < 0 ? gap_->behind : gap_->ahead, within)) return true;
     }
     from = to;
     here = there;
@@ -85,19 +95,53 @@ bool Follower::come_back_alone(double t) {
 /// Of several drives: looks from degree to degree whether the straight way of all of them from where the
 /// branch was left, by the nearest turns, is free.
 bool Follower::come_back_together(double t) {
+  const std::size_t group = culprit_;
+  // of each drive that turns, the last turn before the one that it stands in now, or the next one
   const auto try_at = [&](double time) {
-    drives_at(time, next_drives_);
-    Standing from = gap_->behind;
-    for (std::size_t d = 0; d < from.drives.size(); ++d) {
-      double& value = from.drives[d].value;
-      if (!mechanism_.drives[d].slide) value += kTurn * std::round((next_drives_[d].value - value) / kTurn);
+    std::size_t ways = 1;
+    for (const Drive& drive : mechanism_.drives) ways *= drive.slide ? 1U : 2U;
+    for (std::size_t way = 0; way < ways; ++way) {
+      drives_at(time, next_drives_);
+      Standing from = gap_->behind;
+      for (std::size_t d = 0, bits = way; d < from.drives.size(); ++d) {
+        if (mechanism_.drives[d].slide) continue;
+        double& value = from.drives[d].value;
+        const double turns = (next_drives_[d].value - value) / kTurn;
+        value += kTurn * (bits % 2 == 0 ? std::floor(turns) : std::ceil(turns));
+        bits /= 2;
+      }
+      if (enter(from, time)) return true;
     }
-    return enter(from, time);
+    return false;
+  };
+  const Standing left = standing();
+  const double since = time_;
+  const auto go_back = [&] {
+    here_ = left.here;
+    courses_ = left.courses;
+    drives_ = left.drives;
+    angles_ = left.angles;
+    time_ = since;
   };
   for (double from = time_; from != t;) {
     const double dt = std::min(duration_of_degree_, std::abs(t - from));
     const double to = dt == std::abs(t - from) ? t : from + std::copysign(dt, t - from);
-    if (try_at(to)) return true;
+    if (try_at(to)) {
+      double outside = from, within = to;
+      while (std::abs(within - outside) > smallest_) {
+        const double middle = outside + (within - outside) / 2;
+        if (middle == outside || middle == within) break;
+        go_back();
+        (try_at(middle) ? within : outside) = middle;
+      }
+      go_back();
+      const double beside = 100 * smallest_;  // where rates have values again
+      if (std::abs(to - within) > beside && try_at(within + std::copysign(beside, t - from))) {
+        events_.push_back({MotionEvent::Kind::return_, within, group});
+        return true;
+      }
+      go_back();
+    }
     from = to;
   }
   return false;

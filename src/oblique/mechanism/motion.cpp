@@ -41,6 +41,17 @@ double search_time(const Mechanism& mechanism) {
   return kLongestWay * mechanism.largest_length() / std::abs(drive.speed);
 }
 
+/// Up to which time a motion goes that ends at a limit, or before infinity.
+double end_of(const Mechanism& mechanism, const MotionEvent& end) {
+  if (end.kind != MotionEvent::Kind::infinity) return end.time;
+  double fastest = 0;
+  for (const Drive& drive : mechanism.drives) {
+    const double rate = std::abs(drive.speed);
+    fastest = std::max(fastest, drive.slide ? rate / mechanism.largest_length() : rate);
+  }
+  return end.time - std::copysign(kBeforeInfinity / fastest, end.time);
+}
+
 /// A time that goes to and fro between two limits, and in which direction it goes.
 class Reversal {
  public:
@@ -151,8 +162,9 @@ std::vector<MotionEvent> visit_motion(const Mechanism& mechanism, const Structur
   if (drive.slide && !until && at_limit == AtLimit::open) at_limit = AtLimit::reverse;
   MotionRange range;
   if (at_limit != AtLimit::open) range = find_range(mechanism, structure);
-  const double high = range.forward ? range.forward->time : 0;
-  const double low = range.backward ? range.backward->time : -std::numeric_limits<double>::infinity();
+  const double high = range.forward ? end_of(mechanism, *range.forward) : 0;
+  const double low =
+      range.backward ? end_of(mechanism, *range.backward) : -std::numeric_limits<double>::infinity();
   double end = 0;
   if (until) {
     end = *until;

@@ -13,8 +13,6 @@ constexpr double kSampleStep = std::numbers::pi / 720;
 constexpr std::size_t kFewestSamples = 1440, kMostSamples = 20000;
 /// Limits are known to about 1e-11 rad of the fastest drive; a tour keeps this far away from them [rad].
 constexpr double kBeforeLimit = 4e-11;
-/// As far from infinity, where the mechanism is a thousand times its size away [rad].
-constexpr double kBeforeInfinity = 1e-3;
 
 double fastest_rate(const Mechanism& mechanism) {
   double fastest = 0;
