@@ -109,6 +109,17 @@ std::optional<Comparison> compared(const Mechanism& mechanism) {
   }
 }
 
+/// What one run overloads clearly the other overloads too; a signal that grazes the margin of 1e-6 is decided
+/// by roundings.
+void expect_overloads_of(const ComparedRun& one, const ComparedRun& other) {
+  for (const Overload& overload : one.overloads) {
+    if (std::abs(overload.peak.value) < 1 + 10 * kOverloadMargin) continue;
+    EXPECT_TRUE(std::any_of(other.overloads.begin(), other.overloads.end(), [&](const Overload& twin) {
+      return twin.signal == overload.signal;
+    })) << overload.signal;
+  }
+}
+
 TEST_P(Units, ChangeNothingInTheComparison) {
   const Mechanism original = read();
   const auto comparison = compared(in_unit(original, kUnits[2]));
@@ -120,7 +131,8 @@ TEST_P(Units, ChangeNothingInTheComparison) {
     const ComparedRun& again = same->runs.front();
     EXPECT_EQ(again.bandwidth, run.bandwidth) << unit.name;
     EXPECT_EQ(again.stable, run.stable) << unit.name;
-    EXPECT_EQ(again.overloads.size(), run.overloads.size()) << unit.name;
+    expect_overloads_of(run, again);
+    expect_overloads_of(again, run);
     // the runs have a tolerance of 1e-10 a step, and take some thousands of them
     const double error = run.max_error / comparison->size;
     EXPECT_NEAR(again.max_error / same->size, error, 1e-3 * error + 1e-7) << unit.name;
