@@ -39,9 +39,10 @@ namespace {
 }  // namespace
 
 double round_scale_up(double value) {
+  constexpr double kSame = 1e-12;  // a boundary is one whatever the unit of length rounds it to
   const double decade = std::pow(10, std::floor(std::log10(value)));
   for (const double step : {1.0, 2.0, 4.0, 5.0, 8.0}) {
-    if (step * decade >= value) return step * decade;
+    if (step * decade >= value * (1 - kSame)) return step * decade;
   }
   return 10 * decade;
 }
