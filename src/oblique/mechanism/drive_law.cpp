@@ -127,16 +127,22 @@ std::array<double, 2> gauss_kronrod(const Drive& drive, double a, double b) {
   return {kronrod * half, gauss * half};
 }
 
-double integral(const Drive& drive, double a, double b, int halvings) {
+constexpr int kMostHalvings = 12;
+
+/// Over [a, b], piece by piece from a on; `done` is told the end of each piece and the integral over it.
+template <class Done>
+void integrate(const Drive& drive, double a, double b, const Done& done, int halvings = kMostHalvings) {
   const auto [fine, coarse] = gauss_kronrod(drive, a, b);
   // the coarse rule errs by this, the fine one by about its square
   constexpr double kAgree = 1e-9;
-  if (halvings == 0 || !(std::abs(fine - coarse) > kAgree * std::abs(fine))) return fine;
+  if (halvings == 0 || !(std::abs(fine - coarse) > kAgree * std::abs(fine))) {
+    done(b, fine);
+    return;
+  }
   const double middle = (a + b) / 2;
-  return integral(drive, a, middle, halvings - 1) + integral(drive, middle, b, halvings - 1);
+  integrate(drive, a, middle, done, halvings - 1);
+  integrate(drive, middle, b, done, halvings - 1);
 }
-
-constexpr int kMostHalvings = 12;
 
 }  // namespace
 
@@ -158,7 +164,8 @@ DriveState law_at(const Drive& drive, double t) {
 DriveClock::DriveClock(const Mechanism& mechanism)
     : mechanism_(mechanism),
       forward_(mechanism.drives.size(), {0}),
-      backward_(mechanism.drives.size(), {0}) {}
+      backward_(mechanism.drives.size(), {0}),
+      last_(mechanism.drives.size()) {}
 
 double DriveClock::way(std::size_t d, double t) {
   const Drive& drive = mechanism_.drives[d];
@@ -166,12 +173,26 @@ double DriveClock::way(std::size_t d, double t) {
   std::vector<double>& kept = t < 0 ? backward_[d] : forward_[d];
   const double panel = t < 0 ? -panel_ : panel_;
   const auto whole = static_cast<std::size_t>(t / panel);
-  while (kept.size() <= whole) {
-    const double from = panel * static_cast<double>(kept.size() - 1);
-    kept.push_back(kept.back() + drive.law_scale * integral(drive, from, from + panel, kMostHalvings));
-  }
-  const double from = panel * static_cast<double>(whole);
-  return kept[whole] + (t == from ? 0 : drive.law_scale * integral(drive, from, t, kMostHalvings));
+  Pieces& last = last_[d];
+  const auto enter = [&](std::size_t k) {
+    if (last.panel == panel * static_cast<double>(k) && !last.all.empty() && last.step == panel) return;
+    last.panel = panel * static_cast<double>(k);
+    last.step = panel;
+    last.all = {{last.panel, kept[k]}};
+    integrate(drive, last.panel, last.panel + panel, [&](double end, double integral) {
+      last.all.push_back({end, last.all.back().way + drive.law_scale * integral});
+    });
+    if (kept.size() == k + 1) kept.push_back(last.all.back().way);
+  };
+  while (kept.size() <= whole) enter(kept.size() - 1);
+  enter(whole);
+  const auto after = std::upper_bound(last.all.begin(), last.all.end(), std::abs(t),
+                                      [](double time, const Piece& p) { return time < std::abs(p.from); });
+  const Piece& piece = *(after - 1);
+  double way = piece.way;
+  if (t != piece.from)
+    integrate(drive, piece.from, t, [&](double, double integral) { way += drive.law_scale * integral; });
+  return way;
 }
 
 DriveState DriveClock::at(std::size_t drive, double t) {

@@ -52,10 +52,22 @@ class DriveClock {
  private:
   double way(std::size_t drive, double t);
 
+  /// What was integrated from a panel's beginning on, in pieces so short that one rule does for each: a law
+  /// that varies many times in a panel is not integrated anew at each moment of it.
+  struct Piece {
+    double from = 0;  ///< [s]
+    double way = 0;   ///< of the drive up to there
+  };
+  struct Pieces {
+    double panel = 0, step = 0;  ///< where it begins and how wide it is (below 0: before time 0) [s]
+    std::vector<Piece> all;
+  };
+
   const Mechanism& mechanism_;
   double panel_ = 1;                          ///< width of the intervals that are kept [s]
   std::vector<std::vector<double>> forward_;  ///< for each drive its way up to k·panel_
   std::vector<std::vector<double>> backward_;
+  std::vector<Pieces> last_;  ///< for each drive, of the panel that was asked for last
 };
 
 }  // namespace oblique
