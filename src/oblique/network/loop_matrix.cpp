@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include <Eigen/SparseLU>
+
 namespace oblique {
 namespace {
 
@@ -12,19 +14,87 @@ Eigen::Index index(std::size_t i) {
   return static_cast<Eigen::Index>(i);
 }
 
+/// Up to here dense factors are as quick.
+constexpr std::size_t kShort = 100;
+/// Slopes of an unknown, on the average, up to which sparse factors stay sparse.
+constexpr std::size_t kFew = 8;
+
 }  // namespace
+
+/// Factors that grow with the slopes and what fills in between them, not with the cube of the size. (They
+/// take memory anew each time, which beside their work is nothing.)
+class LoopMatrix::Sparse : public Eigen::SparseLU<Eigen::SparseMatrix<double>, Eigen::COLAMDOrdering<int>> {
+ public:
+  explicit Sparse(const LoopCode& loop) {
+    std::vector<Eigen::Triplet<double>> places;
+    for (const MatrixEntry& entry : loop.slopes)
+      places.emplace_back(static_cast<int>(entry.row), static_cast<int>(entry.column), 0.0);
+    for (int i = 0; i < static_cast<int>(loop.size()); ++i) places.emplace_back(i, i, 0.0);
+    matrix.resize(index(loop.size()), index(loop.size()));
+    matrix.setFromTriplets(places.begin(), places.end());
+    const auto place_of = [&](Eigen::Index row, Eigen::Index column) {
+      return static_cast<std::size_t>(&matrix.coeffRef(row, column) - matrix.valuePtr());
+    };
+    for (const MatrixEntry& entry : loop.slopes) of_slope.push_back(place_of(entry.row, entry.column));
+    for (std::size_t i = 0; i < loop.size(); ++i) of_diagonal.push_back(place_of(index(i), index(i)));
+    analyzePattern(matrix);
+  }
+
+  double smallest_pivot() const {
+    double smallest = std::numeric_limits<double>::infinity();
+    for (Eigen::Index column = 0; column < cols(); ++column) {
+      for (SCMatrix::InnerIterator entry(m_Lstore, column); entry; ++entry) {
+        if (entry.index() == column) smallest = std::min(smallest, std::abs(entry.value()));
+      }
+    }
+    return smallest;
+  }
+
+  Eigen::SparseMatrix<double> matrix;              ///< rows scaled by 1/scale_
+  std::vector<std::size_t> of_slope, of_diagonal;  ///< where its values are
+  Eigen::MatrixXd right_sides, solutions;
+};
 
 bool LoopCode::has_branches() const {
   return !linear &&
          std::find(held_by_amplifier.begin(), held_by_amplifier.end(), true) != held_by_amplifier.end();
 }
 
-LoopMatrix::LoopMatrix(std::size_t size)
-    : matrix_(index(size), index(size)),
-      scale_(index(size)),
-      permuted_(index(size)),
-      visited_(size),
-      lu_(index(size)) {}
+LoopMatrix::LoopMatrix(std::size_t size) : scale_(index(size)), permuted_(index(size)), visited_(size) {
+  if (size > kShort) return;  // it may be sparse
+  matrix_.resize(index(size), index(size));
+  lu_ = Eigen::PartialPivLU<Eigen::MatrixXd>(index(size));
+}
+
+LoopMatrix::~LoopMatrix() = default;
+LoopMatrix::LoopMatrix(LoopMatrix&&) noexcept = default;
+LoopMatrix& LoopMatrix::operator=(LoopMatrix&&) noexcept = default;
+
+/// Once, for a long loop.
+void LoopMatrix::prepare(const LoopCode& loop) {
+  if (loop.slopes.size() <= kFew * loop.size()) {
+    sparse_ = std::make_unique<Sparse>(loop);
+  } else {
+    matrix_.resize(index(loop.size()), index(loop.size()));
+    lu_ = Eigen::PartialPivLU<Eigen::MatrixXd>(index(loop.size()));
+  }
+}
+
+bool LoopMatrix::factor_sparse(const LoopCode& loop, const double* slots, double mass,
+                               double smallest_pivot) {
+  double* const values = sparse_->matrix.valuePtr();
+  std::fill(values, values + sparse_->matrix.nonZeros(), 0.0);
+  for (std::size_t k = 0; k < loop.slopes.size(); ++k) {
+    const double slope = slots[loop.slopes[k].slot];
+    if (!std::isfinite(slope)) return false;
+    values[sparse_->of_slope[k]] = slope / scale_[loop.slopes[k].row];
+  }
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    if (loop.held_by_amplifier[i]) values[sparse_->of_diagonal[i]] += mass / scale_[index(i)];
+  }
+  sparse_->factorize(sparse_->matrix);
+  return sparse_->info() == Eigen::Success && sparse_->smallest_pivot() > smallest_pivot;
+}
 
 bool LoopMatrix::factor(const LoopCode& loop, const double* slots, double mass) {
   scale_ = Eigen::Map<const Eigen::VectorXd>(loop.natural_scale.data(), index(loop.size()));
@@ -35,6 +105,9 @@ bool LoopMatrix::factor(const LoopCode& loop, const double* slots, double mass) 
     scale_[entry.row] = std::max(scale_[entry.row], std::abs(slots[entry.slot]));
   }
   if (!scale_.allFinite() || scale_.minCoeff() <= 0) return false;
+  const double smallest_pivot = 8 * std::numeric_limits<double>::epsilon() * static_cast<double>(loop.size());
+  if (!sparse_ && matrix_.size() == 0) prepare(loop);
+  if (sparse_) return factor_sparse(loop, slots, mass, smallest_pivot);
   matrix_.setZero();
   for (const MatrixEntry& entry : loop.slopes) {
     matrix_(entry.row, entry.column) = slots[entry.slot] / scale_[entry.row];
@@ -42,13 +115,13 @@ bool LoopMatrix::factor(const LoopCode& loop, const double* slots, double mass) 
   for (std::size_t i = 0; i < loop.size(); ++i) {
     if (loop.held_by_amplifier[i]) matrix_(index(i), index(i)) += mass / scale_[index(i)];
   }
-  const double smallest_pivot = 8 * std::numeric_limits<double>::epsilon() * static_cast<double>(loop.size());
   if (loop.size() == 1) return std::abs(matrix_(0, 0)) > smallest_pivot;
   lu_.compute(matrix_);
   return lu_.matrixLU().diagonal().cwiseAbs().minCoeff() > smallest_pivot;
 }
 
 int LoopMatrix::determinant_sign() {
+  if (sparse_) return sparse_->signDeterminant() < 0 ? -1 : 1;
   if (matrix_.rows() == 1) return matrix_(0, 0) < 0 ? -1 : 1;
   int sign = 1;
   const auto& row_of = lu_.permutationP().indices();
@@ -68,6 +141,12 @@ void LoopMatrix::solve(Eigen::Ref<Eigen::MatrixXd> right_sides) {
   if (right_sides.cols() == 0) return;  // a loop that no state enters
   for (Eigen::Index column = 0; column < right_sides.cols(); ++column) {
     right_sides.col(column).array() /= scale_.array();
+  }
+  if (sparse_) {
+    sparse_->right_sides = right_sides;
+    sparse_->solutions = sparse_->solve(sparse_->right_sides);
+    right_sides = sparse_->solutions;
+    return;
   }
   if (matrix_.rows() == 1) {
     right_sides /= matrix_(0, 0);

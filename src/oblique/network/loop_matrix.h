@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include <Eigen/Dense>
@@ -31,10 +32,14 @@ struct LoopCode {
   bool has_branches() const;
 };
 
-/// dg/dz of one loop, and its LU factors; dense, since the loops of diagrams are short.
+/// dg/dz of one loop, and its LU factors: dense, since the loops of diagrams are short, but sparse where a
+/// loop is long and each of its elements reads few others.
 class LoopMatrix {
  public:
   explicit LoopMatrix(std::size_t size);
+  ~LoopMatrix();
+  LoopMatrix(LoopMatrix&&) noexcept;
+  LoopMatrix& operator=(LoopMatrix&&) noexcept;
 
   /// Factors dg/dz as the slots hold it now, with `mass` added for each amplifier; false where it is singular
   /// to rounding.
@@ -49,7 +54,12 @@ class LoopMatrix {
   double residual_norm(const LoopCode& loop, const double* slots) const;
 
  private:
-  Eigen::MatrixXd matrix_;  ///< rows scaled by 1/scale_
+  class Sparse;
+  void prepare(const LoopCode& loop);
+  bool factor_sparse(const LoopCode& loop, const double* slots, double mass, double smallest_pivot);
+
+  std::unique_ptr<Sparse> sparse_;  ///< in place of the two below that are dense
+  Eigen::MatrixXd matrix_;          ///< rows scaled by 1/scale_
   Eigen::VectorXd scale_;
   Eigen::VectorXd permuted_;
   std::vector<char> visited_;  ///< scratch of `determinant_sign`
