@@ -47,6 +47,24 @@ struct Chain {
   std::vector<double> slots;
 };
 
+TEST(LoopMatrix, ACopyHasTheFactorsToo) {
+  for (const unsigned seed : {1U, 2U}) {
+    const Chain chain(seed);
+    LoopMatrix matrix(kSize);
+    const LoopMatrix empty(matrix);
+    ASSERT_TRUE(matrix.factor(chain.code, chain.slots.data()));
+    LoopMatrix copy(matrix), assigned(empty);
+    assigned = matrix;
+    Eigen::MatrixXd ours = Eigen::MatrixXd::Ones(static_cast<Eigen::Index>(kSize), 1), others = ours,
+                    theirs = ours;
+    matrix.solve(ours);
+    copy.solve(others);
+    assigned.solve(theirs);
+    EXPECT_EQ(ours, others);
+    EXPECT_EQ(ours, theirs);
+  }
+}
+
 TEST(LoopMatrix, OfALongLoopSolvesWhatIsKnown) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
     const Chain chain(seed);

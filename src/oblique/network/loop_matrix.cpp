@@ -40,6 +40,17 @@ class LoopMatrix::Sparse : public Eigen::SparseLU<Eigen::SparseMatrix<double>, E
     analyzePattern(matrix);
   }
 
+  /// Eigen's factors cannot be copied: they are made anew.
+  Sparse(const Sparse& other)
+      : Eigen::SparseLU<Eigen::SparseMatrix<double>, Eigen::COLAMDOrdering<int>>(),
+        matrix(other.matrix),
+        of_slope(other.of_slope),
+        of_diagonal(other.of_diagonal) {
+    analyzePattern(matrix);
+    if (other.m_factorizationIsOk) factorize(matrix);
+  }
+  Sparse& operator=(const Sparse&) = delete;
+
   double smallest_pivot() const {
     double smallest = std::numeric_limits<double>::infinity();
     for (Eigen::Index column = 0; column < cols(); ++column) {
@@ -67,6 +78,20 @@ LoopMatrix::LoopMatrix(std::size_t size) : scale_(index(size)), permuted_(index(
 }
 
 LoopMatrix::~LoopMatrix() = default;
+
+LoopMatrix::LoopMatrix(const LoopMatrix& other)
+    : sparse_(other.sparse_ ? std::make_unique<Sparse>(*other.sparse_) : nullptr),
+      matrix_(other.matrix_),
+      scale_(other.scale_),
+      permuted_(other.permuted_),
+      visited_(other.visited_),
+      lu_(other.lu_) {}
+
+LoopMatrix& LoopMatrix::operator=(const LoopMatrix& other) {
+  if (this != &other) *this = LoopMatrix(other);
+  return *this;
+}
+
 LoopMatrix::LoopMatrix(LoopMatrix&&) noexcept = default;
 LoopMatrix& LoopMatrix::operator=(LoopMatrix&&) noexcept = default;
 

@@ -38,6 +38,8 @@ class LoopMatrix {
  public:
   explicit LoopMatrix(std::size_t size);
   ~LoopMatrix();
+  LoopMatrix(const LoopMatrix& other);
+  LoopMatrix& operator=(const LoopMatrix& other);
   LoopMatrix(LoopMatrix&&) noexcept;
   LoopMatrix& operator=(LoopMatrix&&) noexcept;
 
