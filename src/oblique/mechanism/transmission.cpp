@@ -49,9 +49,8 @@ std::optional<Needles> bar_and_guide(const Group& group) {
   for (const Condition& c : group.equations.conditions) {
     if (c.kind == Kind::distance) {
       for (const Link& link : group.equations.links) {
-        const bool same = (link.from == c.a.point && link.to == c.b.point) ||
-                          (link.from == c.b.point && link.to == c.a.point);
-        if (same) return Needles{{link.from, link.to, link.body, nullptr}, line};
+        if (link.from == c.b.point && link.to == c.a.point)
+          return Needles{{link.from, link.to, link.body, nullptr}, line};
       }
     }
     if (c.kind == Kind::coincidence && c.b.kind == PointRef::Kind::known) {
