@@ -128,9 +128,7 @@ std::vector<TriadSplit> splits_of(const Group& group, const Motion& motion) {
 std::size_t lead_of(const Group& triad, std::size_t condition) {
   const Condition& c = triad.equations.conditions[condition];
   for (const Link& link : triad.equations.links) {
-    const bool forwards = link.from == c.a.point && link.to == c.b.point;
-    const bool backwards = link.from == c.b.point && link.to == c.a.point;
-    if (forwards || backwards) return link.body;
+    if (link.from == c.b.point && link.to == c.a.point) return link.body;
   }
   throw std::logic_error("a distance condition without its link");
 }
