@@ -105,9 +105,9 @@ class ModeChooser {
       }
       double cosine = 0, sine = 0;  // the best rotation: the sum of the complex quotients
       for (const auto& [in_body, in_world] : pairs) {
-        const Eigen::Vector2d a = in_body - local, b = in_world - world;
-        cosine += a.dot(b);
-        sine += a.x() * b.y() - a.y() * b.x();
+        const Eigen::Vector2d b = in_world - world;
+        cosine += in_body.dot(b);
+        sine += in_body.x() * b.y() - in_body.y() * b.x();
       }
       const double norm = std::hypot(cosine, sine);
       cosine = norm > 0 ? cosine / norm : 1;
