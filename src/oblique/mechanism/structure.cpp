@@ -171,7 +171,7 @@ class Decomposition {
     if (other > 0 || unknowns > 3) return GroupKind::general;
     if (along > 0 || turned > 0) {
       if (hinges == 1 && turned == 1) return GroupKind::crank;
-      const bool led = along == 1 && on_given == 1 && hinges == 0 && turned == 0;
+      const bool led = along == 1 && on_given == 1;
       return led && (unknowns == 2 || angles == 1) ? GroupKind::slider : GroupKind::general;
     }
     if (hinges == 1 && angles == 0) {
