@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <tuple>
 
 #include <oblique/mechanism/triad_closure.h>
@@ -108,7 +109,8 @@ class Triad {
 
 Triad::Triad(const std::array<Lead, 3>& leads)
     : group_(leads), closure_(group_.conditions, group_.rounding), radius_(group_.conditions[2].length) {
-  for (std::size_t i = 0; i < (group_.circular ? 2 : 3); ++i) add_line(group_.conditions[i]);
+  for (const Condition& condition : std::span(group_.conditions).first(group_.circular ? 2 : 3))
+    add_line(condition);
 }
 
 void Triad::add_line(const Condition& condition) {
