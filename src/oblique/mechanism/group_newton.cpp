@@ -263,8 +263,8 @@ bool GroupSolver::newton(std::span<const DriveState> drives, const Configuration
     for (Core& core : cores_) {
       core.origin.position += factor * solution_.segment<2>(k);
       const double angle = factor * solution_(k + 2) / size_;
-      const double c = core.cosine - angle * core.sine - angle * angle / 2 * core.cosine;
-      const double s = core.sine + angle * core.cosine - angle * angle / 2 * core.sine;
+      const double c = core.cosine - angle * core.sine;
+      const double s = core.sine + angle * core.cosine;
       const double norm = 1 / std::sqrt(c * c + s * s);
       core.cosine = c * norm;
       core.sine = s * norm;
