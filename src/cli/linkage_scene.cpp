@@ -70,7 +70,7 @@ DrawnMotion drawn_motion(const Mechanism& mechanism, const Structure& structure,
   }
   const Tour tour = plan_tour(mechanism, structure);
   constexpr double kBesideLimit = 1e-5;  // where the mechanism can surely be assembled
-  const double first = tour.from_limit ? kBesideLimit : 0, last = tour.at_limit ? 1 - kBesideLimit : 1;
+  const double first = tour.from_limit ? kBesideLimit : 0, last = 1 - kBesideLimit;
   DrawnMotion motion;
   motion.ends_at_limit = true;
   motion.times.reserve(static_cast<std::size_t>(options.positions));
