@@ -54,7 +54,9 @@ def run_test(command, folder, seconds, **environment):
     do); None where it does not end at all."""
     for name in ("TMPDIR", "TEST_TMPDIR"):
         environment[name] = str(folder)
-    limited = ["bash", "-c", f'ulimit -v {MEMORY} -f {FILES} -t {math.ceil(seconds)} -c 0; exec "$@"', "test", *command]
+    # The seconds softly: a test may give what it starts a limit of its own, which is then not above a hard one.
+    limits = f"ulimit -v {MEMORY} -f {FILES} -c 0; ulimit -S -t {math.ceil(seconds)}"
+    limited = ["bash", "-c", f'{limits}; exec "$@"', "test", *command]
     # In a session of its own, so that what it starts ends with it.
     process = subprocess.Popen(limited, cwd=folder, env=os.environ | environment, stdin=subprocess.DEVNULL,
                                stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
@@ -151,7 +153,8 @@ class Scratch:
 
     def unfit(self, said, kind):
         """The faults on the lines that the compiler speaks of; where it speaks of none, those of the files."""
-        places = re.findall(rf"{re.escape(str(self.folder))}/(src/[\w./]+):(\d+):\d+:\s+{kind}", said)
+        # A compiler cache may have made the path one that begins in the folder of the build.
+        places = re.findall(rf"^(?:\S*/)?(src/[\w./]+):(\d+):\d+:\s+{kind}", said, re.MULTILINE)
         on_line = {number for path, line in places for number, (first, last) in self.asleep.get(path, {}).items()
                    if first <= int(line) <= last}
         return on_line or {number for path, _ in places for number in self.asleep.get(path, {})}
