@@ -82,6 +82,67 @@ TEST(Transmission, ExtremesOfAFourBarAreWhereCrankAndFrameLieOnALine) {
   EXPECT_TRUE(analysis_of(four_bar(2.3, 3.5, 3.4, 4)).transmissions.front().is_poor());
 }
 
+// At a limit the places go as the square of the time to it; `rate` is the derivative of `time`, here by
+// differences, which err by the step's square and by 1e-16 over it.
+TEST(Tour, HasSmoothPlacesUpToItsLimits) {
+  for (const bool from_limit : {false, true}) {
+    for (const bool at_limit : {false, true}) {
+      Tour tour;
+      tour.begin = 1;
+      tour.end = 3;
+      tour.from_limit = from_limit;
+      tour.at_limit = at_limit;
+      EXPECT_EQ(tour.time(0), 1);
+      EXPECT_EQ(tour.time(1), 3);
+      const double third = from_limit && at_limit ? 0.25
+                           : from_limit           ? 1.0 / 9
+                           : at_limit             ? 5.0 / 9
+                                                  : 1.0 / 3;
+      EXPECT_NEAR(tour.time(1.0 / 3), 1 + 2 * third, 1e-15);
+      constexpr double kStep = 1e-5;
+      for (const double u : {0.1, 0.35, 0.5, 0.8}) {
+        EXPECT_NEAR(tour.rate(u), (tour.time(u + kStep) - tour.time(u - kStep)) / (2 * kStep), 1e-8) << u;
+      }
+    }
+  }
+}
+
+TEST(Transmission, IsPoorBeyondWhatTextbooksAllow) {
+  Transmission angle;
+  angle.measure = Transmission::Measure::transmission_angle;
+  const auto is_poor = [&](double least, double greatest) {
+    angle.least.value = least;
+    angle.greatest.value = greatest;
+    return angle.is_poor();
+  };
+  EXPECT_FALSE(is_poor(kPi / 6, kPi - kPi / 6));  // 30° and 150° are still allowed
+  EXPECT_TRUE(is_poor(kPi / 6 - 1e-9, kPi / 2));
+  EXPECT_TRUE(is_poor(kPi / 2, kPi - kPi / 6 + 1e-9));
+  angle.measure = Transmission::Measure::pressure_angle;
+  EXPECT_FALSE(is_poor(0, kPi / 2 - kPi / 6));
+  EXPECT_TRUE(is_poor(0, kPi / 2 - kPi / 6 + 1e-9));
+  angle.measure = Transmission::Measure::regularity;
+  EXPECT_FALSE(is_poor(0, 1));
+}
+
+// sin 2πu' with u' = u + 0.1137 has its top at u' = 1/4 and its bottom at 3/4.
+TEST(Scan, RefinesTheExtremesOfASignalWithoutARate) {
+  const Mechanism crank = four_bar(1, 3.5, 3, 4);
+  const Structure structure = decompose(crank);
+  TourWalk walk(crank, structure, plan_tour(crank, structure));
+  Signal wave;
+  wave.has_rate = false;
+  wave.at = [](const TourWalk& at) {
+    return SignalValue{std::sin(2 * kPi * (at.place() + 0.1137)), std::nan("")};
+  };
+  const SignalScan found = scan(walk, {wave}).front();
+  // u to 1e-8, as promised; that moves the value by (2π·1e-8)²/2 = 2e-15 and a rounding
+  EXPECT_NEAR(found.greatest.place, 0.25 - 0.1137, 1e-7);
+  EXPECT_NEAR(found.greatest.value, 1, 1e-14);
+  EXPECT_NEAR(found.least.place, 0.75 - 0.1137, 1e-7);
+  EXPECT_NEAR(found.least.value, -1, 1e-14);
+}
+
 // The rod leans most where the pin is farthest from the guide.
 TEST(Transmission, PressureAngleOfASliderCrank) {
   const Transmission t = analysis_of(slider_crank(40)).transmissions.front();
@@ -326,6 +387,23 @@ TEST(InstantCentre, OfTranslationIsAtInfinity) {
   EXPECT_FALSE(coupler.position);
   const Eigen::Vector2d along(std::cos(kPi / 3), std::sin(kPi / 3));
   EXPECT_NEAR(std::abs(coupler.direction.value().dot(along)), 1, 1e-12);
+}
+
+TEST(InstantCentre, DoesNotDependOnTheSpeed) {
+  const auto coupler_at = [](const Mechanism& mechanism, double times_as_fast) {
+    Configuration here = start_configuration(mechanism, decompose(mechanism));
+    for (PointState& point : here.points) point.velocity *= times_as_fast;
+    for (BodyState& body : here.bodies) body.omega *= times_as_fast;
+    return instant_centre(mechanism, here, std::nullopt, 1);
+  };
+  const Mechanism rocking = four_bar(1, 3.5, 3, 4, "50 deg");
+  const Mechanism parallelogram = four_bar(1, 3, 1, 3, "60 deg", "[3.5, 1]");
+  const Eigen::Vector2d place = coupler_at(rocking, 1).position.value();
+  for (const double speed : {1e-9, 1e9}) {
+    EXPECT_LT((coupler_at(rocking, speed).position.value_or(Eigen::Vector2d::Zero()) - place).norm(), 1e-12);
+    EXPECT_FALSE(coupler_at(parallelogram, speed).position) << speed;
+    EXPECT_TRUE(coupler_at(parallelogram, speed).direction) << speed;
+  }
 }
 
 /// Twice the kinetic energy at a crank speed of 1, from positions alone, differentiated by five points.

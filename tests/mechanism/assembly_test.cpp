@@ -3,7 +3,9 @@
 
 #include <array>
 #include <cmath>
+#include <map>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -42,6 +44,19 @@ std::pair<MechanismError::Kind, std::string> refusal(const std::string& text) {
     return {error.kind(), error.what()};
   }
   return {MechanismError::Kind::file, "not refused"};
+}
+
+// Wherever it stands in the list.
+TEST(FrameConfiguration, GivesAPlaceToTheFrameAlone) {
+  Mechanism mechanism;
+  mechanism.points = {{"B", false, {1, 2}}, {"A", true, {3, 4}}, {"C", false, {5, 6}}};
+  mechanism.bodies.resize(1);
+  const Configuration here = frame_configuration(mechanism);
+  EXPECT_TRUE(here.points.at(0).position.array().isNaN().all());
+  EXPECT_EQ(here.points.at(1).position, Eigen::Vector2d(3, 4));
+  EXPECT_EQ(here.points.at(1).velocity, Eigen::Vector2d(0, 0));
+  EXPECT_TRUE(here.points.at(2).position.array().isNaN().all());
+  EXPECT_TRUE(std::isnan(here.bodies.at(0).cosine));
 }
 
 TEST(AssemblyMode, IsTheOneNearerToTheSketch) {
@@ -104,6 +119,42 @@ FD = { points = ["F", "D"], length = 4 }
   } catch (const MechanismError& error) {
     ASSERT_EQ(error.diagnostics().size(), 2U) << error.what();
     EXPECT_THAT(error.what(), AllOf(HasSubstr("'AC-CD'"), HasSubstr("'AE-ED'"), Not(HasSubstr("'CF-FD'"))));
+  }
+}
+
+// The body CDFH on rods to E and G, and P and Q on rods to each other, to the frame and to the body: seven
+// conditions for three unknowns of the body and two of each free point, which no part of them gives.
+TEST(AssemblyModes, OfAGroupOfABodyAndTwoFreePoints) {
+  const std::map<std::string, Eigen::Vector2d> places{
+      {"A", {1, 0}},     {"B", {6, 0}},     {"C", {2.2, 4}}, {"D", {4.4, 4.1}}, {"E", {-0.5, 5.5}},
+      {"F", {3.0, 5.0}}, {"G", {7.2, 6.0}}, {"H", {4, 5.2}}, {"P", {1.5, 2.0}}, {"Q", {5.0, 2.2}}};
+  const Eigen::Vector2d x = (places.at("D") - places.at("C")).normalized(), y(-x.y(), x.x());
+  const auto local = [&](const std::string& point) {
+    const Eigen::Vector2d arm = places.at(point) - places.at("C");
+    return fmt::format("{} = [{:.17g}, {:.17g}]", point, x.dot(arm), y.dot(arm));
+  };
+  const auto length = [&](const std::string& rod) {
+    return (places.at(rod.substr(0, 1)) - places.at(rod.substr(1))).norm();
+  };
+  std::string text = "format = \"oblique-mechanism/1\"\n[frame]\n";
+  for (const std::string point : {"A", "B", "E", "G"})
+    text += fmt::format("{} = [{}, {}]\n", point, places.at(point).x(), places.at(point).y());
+  text += fmt::format("[bodies]\nK = {{ points = [\"C\", \"D\"], length = {:.17g}, marks = {{ {}, {} }} }}\n",
+                      length("CD"), local("F"), local("H"));
+  for (const std::string rod : {"AP", "BQ", "PC", "QD", "PQ", "EF", "GH"})
+    text += fmt::format("{} = {{ points = [\"{}\", \"{}\"], length = {:.17g} }}\n", rod, rod[0], rod[1],
+                        length(rod));
+  text += "[sketch]\n";
+  for (const std::string point : {"C", "D", "P", "Q"})
+    text += fmt::format("{} = [{}, {}]\n", point, places.at(point).x() + 0.1, places.at(point).y() - 0.1);
+  const Mechanism mechanism = parse_mechanism(text, "truss.toml");
+  const Structure structure = decompose(mechanism);
+  ASSERT_EQ(structure.groups.size(), 1U);
+  const Configuration here = start_configuration(mechanism, structure);
+  for (const auto& [point, place] : places) {
+    const Eigen::Vector2d& found = here.points[mechanism.find_point(point).value()].position;
+    EXPECT_LT((found - place).norm(), 1e-12)
+        << point;  // roundings of numbers near 7, through seven conditions
   }
 }
 

@@ -109,9 +109,30 @@ TEST(SliderLoops, SayWhatTurnsOfASliderCrank) {
   EXPECT_EQ(type_of(slider_crank(3, 1, 1)), SliderLoop::Type::rod_turns);
   const Mechanism offset = slider_crank(1, 3, 1);
   const auto loops = slider_loops(offset, find_groups(offset));
+  EXPECT_FALSE(loops.at(0).is_lever);
   EXPECT_EQ(loops.at(0).radius, 1);
   EXPECT_EQ(loops.at(0).length, 3);
   EXPECT_EQ(loops.at(0).offset, 1);
+}
+
+// The guide runs in the direction (0.8, 0.6) through (5, 1), and the crank turns about (2, 3): its normal
+// (−0.6, 0.8) sees the pivot at −0.6·(2 − 5) + 0.8·(3 − 1) = 3.4.
+TEST(SliderLoops, MeasureTheOffsetFromTheGuideWhereverItLies) {
+  const Mechanism crank = mechanism(R"([frame]
+A = [2, 3]
+P = [5, 1]
+Q = [9, 4]
+[bodies]
+AB = { points = ["A", "B"], length = 1 }
+BC = { points = ["B", "C"], length = 6 }
+[slides]
+piston = { point = "C", along = ["P", "Q"] }
+[drives]
+crank = { turns = "AB", about = "A", speed = 1 }
+)");
+  const auto loops = slider_loops(crank, find_groups(crank));
+  EXPECT_NEAR(loops.at(0).offset, 3.4, 1e-14);  // a few roundings of numbers below 9
+  EXPECT_EQ(loops.at(0).type, SliderLoop::Type::crank_turns);
 }
 
 // A slotted lever about D over the crank's pin, or a bar at the pin through a sleeve at D.
@@ -130,7 +151,9 @@ crank = {{ turns = "AB", about = "A", speed = 1 }}
 )",
                                  -d, r, offset));
   };
-  EXPECT_EQ(type_of(lever(1, 3, 0)), SliderLoop::Type::lever_swings);
+  const Mechanism swinging = lever(1, 3, 0);
+  EXPECT_TRUE(slider_loops(swinging, find_groups(swinging)).at(0).is_lever);
+  EXPECT_EQ(type_of(swinging), SliderLoop::Type::lever_swings);
   EXPECT_EQ(type_of(lever(3, 1, 0)), SliderLoop::Type::lever_turns);
   EXPECT_EQ(type_of(lever(3, 1, 2)), SliderLoop::Type::change_point);
   EXPECT_EQ(type_of(lever(2, 1, 2)), SliderLoop::Type::none_turns);

@@ -33,6 +33,85 @@ Mechanism four_bar(double crank, double coupler, double rocker, double frame, co
   return parse_mechanism(text.str(), "four.toml");
 }
 
+// A drive that turns the coupler of a four-bar: B and C follow together, |AB| = 1 and |CD| = 3.
+TEST(Motion, OfADriveInsideAGroup) {
+  const Mechanism mechanism = parse_mechanism(R"(format = "oblique-mechanism/1"
+[frame]
+A = [0, 0]
+D = [4, 0]
+[bodies]
+AB = { points = ["A", "B"], length = 1 }
+BC = { points = ["B", "C"], length = 3.5 }
+CD = { points = ["C", "D"], length = 3 }
+[drives]
+push = { turns = "BC", about = "B", speed = 0.5, start = "30 deg" }
+[sketch]
+B = [0.3, 1]
+C = [3.3, 2.8]
+)",
+                                              "push.toml");
+  const std::array times{0.0, 0.1, 0.2, 0.3};
+  const Motion motion = solve_motion(mechanism, times);
+  const auto place = [&](std::size_t row, const char* point) -> const PointState& {
+    return motion.configurations[row].points[mechanism.find_point(point).value()];
+  };
+  for (std::size_t row = 0; row < times.size(); ++row) {
+    ASSERT_EQ(motion.configurations[row].status, Status::ok) << row;
+    const Eigen::Vector2d b = place(row, "B").position, c = place(row, "C").position;
+    const double angle = kPi / 6 + 0.5 * times[row];
+    EXPECT_NEAR(b.norm(), 1, 1e-13) << row;  // roundings of numbers near 4
+    EXPECT_NEAR((c - Eigen::Vector2d(4, 0)).norm(), 3, 1e-13) << row;
+    EXPECT_LT((c - b - 3.5 * Eigen::Vector2d(std::cos(angle), std::sin(angle))).norm(), 1e-13) << row;
+    // B goes across AB, C across CD, and C about B at 0.5 rad/s
+    const Eigen::Vector2d v = place(row, "B").velocity, w = place(row, "C").velocity;
+    EXPECT_NEAR(v.dot(b), 0, 1e-12) << row;
+    EXPECT_NEAR(w.dot(c - Eigen::Vector2d(4, 0)), 0, 1e-12) << row;
+    EXPECT_LT((w - v - 0.5 * Eigen::Vector2d(b.y() - c.y(), c.x() - b.x())).norm(), 1e-12) << row;
+  }
+}
+
+// class-iv.toml, but that the drive turns the link CFG, and G goes where it must: all five links in one
+// group.
+TEST(Motion, OfADriveInsideAGroupOfManyLinks) {
+  const Mechanism mechanism = parse_mechanism(R"(format = "oblique-mechanism/1"
+[frame]
+A = [0, 0]
+H = [180, 60]
+[bodies]
+HG  = { points = ["H", "G"], length = 20 }
+ABE = { points = ["A", "B"], length = 63, marks = { E = [47, 79] } }
+BC  = { points = ["B", "C"], length = 70 }
+EF  = { points = ["E", "F"], length = 90 }
+CFG = { points = ["C", "F"], length = 124, marks = { G = [32, -80] } }
+[drives]
+push = { turns = "CFG", about = "G", speed = "0.2*cos(3*time) rad/s", start = "108 deg" }
+[sketch]
+B = [60, 20]
+E = [20, 90]
+C = [130, 10]
+F = [100, 130]
+G = [190, 77]
+)",
+                                              "push.toml");
+  const std::array times{0.0, 0.2, 0.5, 1.0};
+  const Motion motion = solve_motion(mechanism, times);
+  for (std::size_t row = 0; row < times.size(); ++row) {
+    ASSERT_EQ(motion.configurations[row].status, Status::ok) << row;
+    const auto place = [&](const char* point) -> Eigen::Vector2d {
+      return motion.configurations[row].points[mechanism.find_point(point).value()].position;
+    };
+    const double angle = 0.6 * kPi + 0.2 / 3 * std::sin(3 * times[row]);
+    const Eigen::Vector2d along(std::cos(angle), std::sin(angle)), across(-along.y(), along.x());
+    // roundings of numbers near 200, through six equations
+    EXPECT_LT((place("F") - place("C") - 124 * along).norm(), 1e-10) << row;
+    EXPECT_LT((place("G") - place("C") - 32 * along + 80 * across).norm(), 1e-10) << row;
+    EXPECT_NEAR((place("G") - place("H")).norm(), 20, 1e-10) << row;
+    EXPECT_NEAR((place("C") - place("B")).norm(), 70, 1e-10) << row;
+    EXPECT_NEAR((place("F") - place("E")).norm(), 90, 1e-10) << row;
+    EXPECT_NEAR(place("B").norm(), 63, 1e-10) << row;
+  }
+}
+
 TEST(Motion, SpansOneTurnWithBothEnds) {
   const Mechanism mechanism = four_bar(1, 3.5, 3, 4, "-2 rad/s", "30 deg", "[3, 3]");
   const Motion motion = solve_motion(mechanism, 5);

@@ -187,6 +187,23 @@ crank = { turns = "AB", about = "A", speed = 1 }
   }
 }
 
+// The drive pushes the bar's end A across: what is left of it follows in closed form.
+TEST(Structure, KnowsADrivenSlider) {
+  const Structure trammel = find_groups(shipped("elliptical-trammel-by-slide.toml"));
+  EXPECT_EQ(trammel.groups.at(0).kind, GroupKind::slider);
+  EXPECT_EQ(trammel.groups.at(1).kind, GroupKind::rrp);
+}
+
+// Four links in a closed loop, of which one is hinged to the crank and one to the frame (Artobolevsky calls a
+// group by the number of pairs in the loop of most pairs, where no link has more).
+TEST(Structure, KnowsAGroupOfClassIV) {
+  const Structure structure = decompose(shipped("class-iv.toml"));
+  ASSERT_THAT(names(structure), ElementsAre("HG", "ABE-BC-EF-CFG"));
+  EXPECT_EQ(structure.groups[1].assur_class, 4);
+  EXPECT_EQ(structure.groups[1].order, 2);
+  EXPECT_EQ(structure.groups[1].side, 0);  // it may have more than two modes
+}
+
 // The ternary link BCD on three leads, one of them from the crank OA (method of 003_69ea068b7b221c3d.txt).
 TEST(Structure, KnowsATriad) {
   const Structure triad = find_groups(mechanism(R"([frame]

@@ -290,6 +290,27 @@ TEST(Triad, IsMovableAsAParallelogram) {
   }
 }
 
+// Legs that a parallelogram turned by a very little has: its three circles are nearly one.
+TEST(Triad, FindsAPoseNextToAParallelogram) {
+  const std::array<Vector2d, 3> corners = {Vector2d(0, 0), Vector2d(3, 0), Vector2d(1, 2)};
+  for (const double delta : {1e-4, 1e-6, 1e-8, 1e-9}) {
+    for (int k = 0; k < 40; ++k) {
+      const Vector2d place = rotation(0.157 * k) * Vector2d(1.3 + 0.03 * k, 0);
+      const double theta = 0.4 + (k % 2 == 0 ? delta : -delta);
+      const PlatformPose known{place, std::cos(theta), std::sin(theta)};
+      std::array<Lead, 3> leads;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const Vector2d anchor = rotation(0.4) * corners[i];
+        leads[i] = circle(corners[i], anchor, (world(known, corners[i]) - anchor).norm());
+      }
+      const PlatformModes modes = platform_modes(leads);
+      EXPECT_FALSE(modes.movable);
+      // The conditions see the place by δ; 1e-13 is what a pose closes to.
+      EXPECT_LT(distance_to(modes, known), 1e-13 / delta) << delta << " " << k;
+    }
+  }
+}
+
 TEST(Triad, IsMovableWhereLeadsRepeat) {
   const Lead rod = circle({1, 0}, {4, 0}, 2.5);
   EXPECT_TRUE(platform_modes({rod, rod, circle({0, 1}, {0, 0}, 2)}).movable);
@@ -326,6 +347,18 @@ TEST(Triad, IsMovableOnThreeParallelGuides) {
   apart[2].anchor.y() = 2.5;
   EXPECT_FALSE(platform_modes(apart).movable);
   EXPECT_EQ(platform_modes(apart).count, 0);
+}
+
+// As above, but inclined, so that F is rounding and not 0, and nothing else tells that there is no pose.
+TEST(Triad, HasNoPoseOnParallelGuidesThatLieOtherwiseThanItsPoints) {
+  for (const double inclined : {0.3, 0.7, 1.1, 2.0}) {
+    const auto guide = [&](double x, double y, double turned) {
+      return fixed_line({x, 0}, rotation(inclined) * Vector2d(0, y), inclined + turned);
+    };
+    const PlatformModes modes = platform_modes({guide(0, 0, 0), guide(2, 1, kPi), guide(4, 2.5, 0)});
+    EXPECT_FALSE(modes.movable) << inclined;
+    EXPECT_EQ(modes.count, 0) << inclined;
+  }
 }
 
 }  // namespace
