@@ -160,6 +160,10 @@ TEST(Bill, TakesAGainForWhatItStandsFor) {
            inverting_machine());
   EXPECT_EQ(row(counted, "potentiometers").needed, 1);
   EXPECT_EQ(row(counted, "amplifiers").note, "1 summer, 1 inverter, 1 integrator");
+  const Bill turned =
+      bill("x = { type = \"integrator\", in = [\"g\"] }\ng = { type = \"gain\", in = \"x\", factor = -1 }\n",
+           inverting_machine());
+  EXPECT_EQ(row(turned, "amplifiers").note, "1 inverter, 1 integrator");
 }
 
 TEST(Bill, CannotTellWhereTimeFactorsAreNotPublished) {

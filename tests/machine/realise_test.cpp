@@ -144,6 +144,34 @@ s = { type = "summer", in = ["a", "b", "c", "d"] }
             2);
 }
 
+// Above its first element; of a composite too.
+TEST(Realise, KeepsTheCommentOfABlock) {
+  Diagram diagram = parse_diagram(diagram_text(R"(
+x = { type = "integrator", in = ["-x"], initial = 0.5 }
+q = { type = "divider", numerator = "x", denominator = "one" }
+one = { type = "constant" }
+)"),
+                                  "d.toml");
+  diagram.blocks[0].comment = "falls";
+  diagram.blocks[1].comment = "a quotient";
+  const Diagram made = realise(diagram, shipped_blocks(), inverting_machine()).diagram;
+  for (const std::string comment : {"falls", "a quotient"}) {
+    EXPECT_EQ(std::count_if(made.blocks.begin(), made.blocks.end(),
+                            [&](const BlockInstance& b) { return b.comment == comment; }),
+              1);
+  }
+}
+
+// Next to nothing, but all there is.
+TEST(Realise, KeepsAWeightThatIsSmallAlone) {
+  const Diagram made = realised(R"(
+x = { type = "integrator", in = [], initial = 1 }
+y = { type = "integrator", in = ["-1e-17*x"] }
+)",
+                                "", inverting_machine());
+  EXPECT_THAT(write_diagram(made), HasSubstr("setting = 1e-17"));
+}
+
 TEST(Realise, PutsAnAmplifierBeforeAFactorAboveOne) {
   const std::string blocks = R"(
 x = { type = "integrator", in = ["-x"], initial = 0.3 }

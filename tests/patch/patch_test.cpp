@@ -13,6 +13,7 @@
 #include <oblique/mechanism/motion.h>
 #include <oblique/mechanism/read_mechanism.h>
 #include <oblique/patch/scaling.h>
+#include <oblique/patch/triad_split.h>
 #include <oblique/solve/run.h>
 
 #include "patched_run.h"
@@ -235,6 +236,32 @@ TEST(Patch, TakesATriadApart) {
               HasSubstr("Of the six splits this one keeps\n# farthest from flat triangles"));
 }
 
+// Of two leads that share their anchor each has its own length.
+TEST(LeadOf, TellsLeadsOfOneAnchorApart) {
+  const Mechanism mechanism = parse_mechanism(R"(format = "oblique-mechanism/1"
+[frame]
+O = [0, 0]
+O1 = [0, 1.2]
+[bodies]
+OA = { points = ["O", "A"], length = 0.3 }
+AB = { points = ["A", "B"], length = 1.07 }
+BDC = { points = ["B", "D"], length = 0.665, marks = { C = [0.825, -0.581] } }
+O1D = { points = ["D", "O1"], length = 1.1 }
+O1C = { points = ["O1", "C"], length = 1.9 }
+[drives]
+crank = { turns = "OA", about = "O", speed = 1 }
+)",
+                                              "meet.toml");
+  const Structure structure = find_groups(mechanism);
+  const Group& triad = structure.groups.at(1);
+  ASSERT_EQ(triad.kind, GroupKind::triad);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Body& lead = mechanism.bodies[lead_of(triad, i)];
+    const double length = (lead.points[1].local - lead.points[0].local).norm();
+    EXPECT_DOUBLE_EQ(length, triad.equations.conditions[i].value) << i;
+  }
+}
+
 /// class-iii.toml and the same once more, 4 to its right, with a P before each name.
 Mechanism two_triads() {
   std::string frame, bodies, drives, sketch;
@@ -294,6 +321,67 @@ TEST(Patch, OffersTheGradientWhereATriadHasASlide) {
                 HasSubstr("has a slide among its leads, so that it cannot be taken apart into triangles"));
     EXPECT_THAT(error.what(), HasSubstr("remedy: patch it with --method gradient"));
   }
+}
+
+// The way of a slide's point along a line that moves is scaled by itself, to reach its machine unit.
+TEST(Patch, UsesTheRangeForTheWayAlongASlot) {
+  PatchOptions options;
+  options.method = PatchMethod::gradient;
+  const PatchedRun patched(patch(shipped("crank-shaper"), options));
+  double largest = 0;
+  for (std::size_t s = 0; s < patched.result.peaks.size(); ++s) {
+    const std::string name = patched.program.signal_names()[s];
+    if (name == "slot_dx" || name == "slot_dy")
+      largest = std::max(largest, std::abs(patched.result.peaks[s].value));
+  }
+  EXPECT_GT(largest, 0.9);  // upright, the slot is all dy; the scale is rounded up to two digits
+}
+
+// Of a body's points the one that slides matters more than one that nothing else uses.
+TEST(Patch, TakesForABodyThePointsThatOthersUse) {
+  PatchOptions options;
+  options.method = PatchMethod::gradient;
+  const std::string text = write_diagram(patch(parse_mechanism(R"(
+format = "oblique-mechanism/1"
+[frame]
+A = [0, 0]
+X = [1, 0]
+[bodies]
+AB = { points = ["A", "B"], length = 1 }
+BM = { points = ["B", "M"], length = 2, marks = { S = [3, 0.5] } }
+[slides]
+guide = { point = "S", along = ["A", "X"] }
+[drives]
+crank = { turns = "AB", about = "A", speed = 1 }
+[sketch]
+S = [4, 0]
+)",
+                                                               "lever.toml"),
+                                               options));
+  EXPECT_THAT(text, HasSubstr("|BS| = 3.04138 m"));  // √(3² + 0.5²)
+}
+
+// scotch-yoke-inclined.toml with its guide turned by 30°.
+TEST(Patch, DescendsToAYokeOnAnInclinedGuide) {
+  const Mechanism mechanism = parse_mechanism(R"(
+format = "oblique-mechanism/1"
+[frame]
+A = [0, 0]
+X = [0.8660254037844387, 0.5]
+[bodies]
+AB   = { points = ["A", "B"], length = 0.5 }
+yoke = { points = ["C", "T"], length = 0.6 }
+[slides]
+guide = { point = "C", along = ["A", "X"], angle = "60 deg" }
+slot  = { point = "B", along = ["C", "T"] }
+[drives]
+crank = { turns = "AB", about = "A", speed = 1 }
+)",
+                                              "inclined.toml");
+  PatchOptions options;
+  options.method = PatchMethod::gradient;
+  // It lags by |ẋ|/(K σ²) (method.md): 4e-8 is measured.
+  EXPECT_LT(largest_error(mechanism, PatchedRun(patch(mechanism, options)).result), 1e-6);
 }
 
 TEST(Patch, RefusesAGradientServoOfInfiniteGain) {
