@@ -56,6 +56,12 @@ x = { type = "integrator", in = ["u"] })toml");
   EXPECT_NEAR(last(run_of(made, {.until = 3, .samples = 18}), "x"), 0.5 + 2, kIntegrated);
 }
 
+TEST(TimeFunction, KnowsPiAndInf) {
+  const Compiled made("u = { type = \"time-function\", formula = \"pi*min(time, inf)\" }\n");
+  expect_form(run_of(made, {.until = 3, .samples = 11}), "u", kRounding,
+              [](double t) { return std::numbers::pi * t; });
+}
+
 TEST(TimeFunction, RefusesWhatIsNoFormulaOfTime) {
   const auto refusal = [](const std::string& formula) {
     return testing::message_of<DiagramError>(

@@ -75,9 +75,42 @@ TEST(Interval, IsSharpForASingleOperation) {
   const Interval cosine = range(graph.apply(Op::cos, x));
   EXPECT_DOUBLE_EQ(cosine.low, std::cos(3));
   EXPECT_EQ(cosine.high, 1);
+  // narrow, about a top and a bottom of the cosine
+  const auto narrow = [&](double low, double high) {
+    return range_of(graph, graph.apply(Op::cos, x), std::array{Interval{low, high}});
+  };
+  EXPECT_EQ(narrow(6.0, 6.5).high, 1);
+  EXPECT_DOUBLE_EQ(narrow(6.0, 6.5).low, std::cos(6.0));
+  EXPECT_EQ(narrow(2.9, 3.3).low, -1);
+  EXPECT_DOUBLE_EQ(narrow(2.9, 3.3).high, std::cos(2.9));
   const Interval bell = range(graph.apply(Op::exp, graph.apply(Op::negate, graph.apply(Op::multiply, x, x))));
   EXPECT_DOUBLE_EQ(bell.low, std::exp(-9));
   EXPECT_EQ(bell.high, 1);
+}
+
+// [1, 2] and [2, 3] meet in one point, where they are equal.
+TEST(Interval, ComparesWhatMeetsInAPoint) {
+  ExpressionGraph graph;
+  const NodeId x = graph.variable(0), y = graph.variable(1);
+  const auto truth = [&](Op op, Interval a, Interval b) {
+    const Interval range = range_of(graph, graph.apply(op, x, y), std::array{a, b});
+    return std::pair(range.low, range.high);
+  };
+  const std::pair no(0.0, 0.0), perhaps(0.0, 1.0), yes(1.0, 1.0);
+  const Interval low{1, 2}, high{2, 3}, point{2, 2}, far{4, 5};
+  EXPECT_EQ(truth(Op::less, low, high), perhaps);
+  EXPECT_EQ(truth(Op::less, high, low), no);
+  EXPECT_EQ(truth(Op::less, low, far), yes);
+  EXPECT_EQ(truth(Op::less, point, point), no);
+  EXPECT_EQ(truth(Op::less_equal, low, high), yes);
+  EXPECT_EQ(truth(Op::less_equal, high, low), perhaps);
+  EXPECT_EQ(truth(Op::less_equal, far, low), no);
+  EXPECT_EQ(truth(Op::less_equal, point, point), yes);
+  EXPECT_EQ(truth(Op::equal, low, high), perhaps);
+  EXPECT_EQ(truth(Op::equal, high, low), perhaps);
+  EXPECT_EQ(truth(Op::equal, low, far), no);
+  EXPECT_EQ(truth(Op::equal, far, low), no);
+  EXPECT_EQ(truth(Op::equal, point, point), yes);
 }
 
 TEST(Interval, KnowsNothingWhereAnOperationHasNoValue) {

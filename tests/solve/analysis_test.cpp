@@ -110,6 +110,18 @@ q   = {{ type = "servo-amplifier", in = ["xq", "-z"], gain = 1e5, bandwidth = {}
   }
 }
 
+// x q = 0.3 as above, but x grows by q: the integrator closes a loop of the problem's own, and is held.
+TEST(Loops, HoldWhatIsNoAmplifier) {
+  const Compiled made(R"toml(z  = { type = "constant", value = 0.3 }
+x  = { type = "integrator", in = ["0.5*q"], initial = 0.5 }
+xq = { type = "multiplier", in = ["x", "q"] }
+q  = { type = "servo-amplifier", in = ["xq", "-z"], gain = 1e5, bandwidth = 10 }
+)toml");
+  const auto loops = analysis_of(made).loops;
+  ASSERT_EQ(loops.size(), 1U);
+  EXPECT_THAT(loops[0].members, ElementsAre("xq", "q"));
+}
+
 TEST(Loops, AnIdealAmplifierHasInfiniteGainAndNoError) {
   const Compiled made(R"toml(z = { type = "constant", value = 0.3 }
 q = { type = "servo-amplifier", in = ["2*q", "-z"], gain = inf }

@@ -197,6 +197,26 @@ b = { type = "multiplier", in = ["u", "a"] }
   EXPECT_EQ(scaling[2].outputs[0], 0.2);
 }
 
+// What an inverting block gives with inverted inputs is the same, 0 included: a dead zone is laid out.
+TEST(Rescale, AnInvertingDeadZoneStandsOutsideItsComposite) {
+  BlockLibrary library = testing::shipped_blocks_and(
+      "dead-zone",
+      "summary = \"x\"\n[inputs]\nin = { doc = \"x\" }\n[outputs]\nout = { doc = \"x\" }\n"
+      "[equations]\nout = \"polarity*(max(in - 2, 0) + min(in + 2, 0))\"\n");
+  library.add(parse_block(
+      "format = \"oblique-block/1\"\ntitle = \"c\"\nsummary = \"c\"\n[inputs]\nin = { doc = \"x\" }\n"
+      "[outputs]\nout = { wire = \"s\", doc = \"x\" }\n[blocks]\n"
+      "s = { type = \"dead-zone\", in = [\"in\"] }\n",
+      "c.toml", "c"));
+  const Compiled made("u = { type = \"constant\", value = 0.5 }\nc = { type = \"c\", in = \"u\" }\n",
+                      "[machine]\ninverting = true\n", library);
+  EXPECT_EQ(
+      testing::message_of<DiagramError>([&] {
+        rescale(made.diagram, made.flat, propose_scaling(made.flat, std::vector<double>{1, 1}), library);
+      }),
+      "");
+}
+
 TEST(Rescale, SaysWhatCannotStandOutsideItsComposite) {
   BlockLibrary library = testing::shipped_blocks_and(
       "shifted",
