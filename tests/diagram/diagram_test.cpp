@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/diagram/diagram.h>
 
+#include <functional>
 #include <numbers>
 
 #include <gmock/gmock.h>
@@ -25,6 +26,45 @@ std::string diagram_message(const std::string& rest) {
 /// The message about one line of [expect], which is line 7, in a run of 2 s.
 std::string expect_message(const std::string& line) {
   return diagram_message("[run]\nuntil = 2\n[expect]\n" + line + "\n");
+}
+
+// Of two diagrams that differ in one place only.
+TEST(Diagram, IsEqualToNoOther) {
+  Diagram one;
+  one.title = "t";
+  one.blocks = {{"a", "reference", "", "", {}, {}}};
+  one.outputs = {{"a", "a", 1, "machine unit", {}}};
+  one.expectations = {{"", "a", Expectation::Kind::at_time, 1, 2, 3, {}}};
+  one.layout = {{"a", 1, 2, {}}};
+  EXPECT_TRUE(one == Diagram(one));
+  const auto is_equal_after = [&](const std::function<void(Diagram&)>& change) {
+    Diagram other = one;
+    change(other);
+    return one == other;
+  };
+  EXPECT_FALSE(is_equal_after([](Diagram& d) { d.title = "u"; }));
+  EXPECT_FALSE(is_equal_after([](Diagram& d) { d.source = "u"; }));
+  EXPECT_FALSE(is_equal_after([](Diagram& d) { d.machine.inverting = true; }));
+  EXPECT_FALSE(is_equal_after([](Diagram& d) { d.run.until = 7; }));
+  EXPECT_FALSE(is_equal_after([](Diagram& d) { d.groups.emplace_back(); }));
+  EXPECT_FALSE(is_equal_after([](Diagram& d) { d.timeline.phases.emplace_back(); }));
+  EXPECT_FALSE(is_equal_after([](Diagram& d) { d.blocks[0].name = "b"; }));
+  EXPECT_FALSE(is_equal_after([](Diagram& d) { d.blocks[0].type = "adder"; }));
+  EXPECT_FALSE(is_equal_after([](Diagram& d) { d.blocks[0].label = "b"; }));
+  EXPECT_FALSE(is_equal_after([](Diagram& d) { d.blocks[0].settings = {number_setting("value", 1)}; }));
+  EXPECT_FALSE(is_equal_after([](Diagram& d) { d.outputs[0].name = "b"; }));
+  EXPECT_FALSE(is_equal_after([](Diagram& d) { d.outputs[0].signal = "b"; }));
+  EXPECT_FALSE(is_equal_after([](Diagram& d) { d.outputs[0].scale = 7; }));
+  EXPECT_FALSE(is_equal_after([](Diagram& d) { d.outputs[0].unit = "V"; }));
+  EXPECT_FALSE(is_equal_after([](Diagram& d) { d.outputs[0].offset = 7; }));
+  EXPECT_FALSE(is_equal_after([](Diagram& d) { d.expectations[0].output = "b"; }));
+  EXPECT_FALSE(is_equal_after([](Diagram& d) { d.expectations[0].kind = Expectation::Kind::maximum; }));
+  EXPECT_FALSE(is_equal_after([](Diagram& d) { d.expectations[0].time = 7; }));
+  EXPECT_FALSE(is_equal_after([](Diagram& d) { d.expectations[0].value = 7; }));
+  EXPECT_FALSE(is_equal_after([](Diagram& d) { d.expectations[0].within = 7; }));
+  EXPECT_FALSE(is_equal_after([](Diagram& d) { d.layout[0].name = "b"; }));
+  EXPECT_FALSE(is_equal_after([](Diagram& d) { d.layout[0].x = 7; }));
+  EXPECT_FALSE(is_equal_after([](Diagram& d) { d.layout[0].y = 7; }));
 }
 
 TEST(ParseDiagram, ReadsEveryPart) {

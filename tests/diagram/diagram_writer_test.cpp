@@ -70,6 +70,25 @@ c        = [0, 1]
 )toml");
 }
 
+// A bare key is of letters, digits, `_` and `-` (TOML 1.0); everything else stands in quotes.
+TEST(WriteDiagram, QuotesOnlyTheNamesThatNeedIt) {
+  const auto output_line = [](const std::string& name) {
+    Diagram d;
+    d.blocks = {{"u", "constant", "", "", {}, {}}};
+    d.outputs = {{name, "u", 1, "machine unit", {}}};
+    const std::string text = write_diagram(d);
+    const std::size_t begin = text.find("[outputs]\n") + 10;
+    return text.substr(begin, text.find('\n', begin) - begin);
+  };
+  for (const std::string bare : {"a", "z", "A", "Z", "0", "9", "_", "-", "x_10-Y"}) {
+    EXPECT_EQ(output_line(bare), bare + " = \"u\"");
+  }
+  // neighbours of the ends of each range, and what a word of another language begins with
+  for (const std::string quoted : {"`", "{", "@", "[", "/", ":", " ", ".", "φ", "a b"}) {
+    EXPECT_EQ(output_line(quoted), "\"" + quoted + "\" = \"u\"");
+  }
+}
+
 /// Small things: what may go wrong shows in a few characters and a few blocks.
 template <class T>
 rc::Gen<T> small(rc::Gen<T> gen) {

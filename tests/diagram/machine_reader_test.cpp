@@ -183,6 +183,21 @@ TEST(ParseMachine, TakesOneFigureAParameter) {
             "");
 }
 
+TEST(ParseMachine, TakesOneSaturation) {
+  const auto figure = [](const std::string& name, const std::string& saturation) {
+    return "[figures." + name + "]\nvalue = \"1\"\nsaturation = " + saturation + "\n";
+  };
+  EXPECT_EQ(machine_with("").saturation, std::nullopt);
+  EXPECT_EQ(machine_with(figure("a", "\"12 V\"")).saturation, 1.2);
+  EXPECT_EQ(machine_with(figure("a", "1")).saturation, 1);
+  EXPECT_EQ(message_with(figure("a", "0.5")),
+            "m.toml:12:14: figure 'a': 'saturation' is 0.5; expected at least 1 [machine unit]");
+  EXPECT_THAT(message_with(figure("a", "\"inf\"")), HasSubstr("figure 'a': 'saturation' is inf"));
+  EXPECT_EQ(
+      message_with(figure("a", "1.2") + figure("b", "1.3")),
+      "m.toml:15:14: figure 'b': 'saturation' is given a second time; expected one figure that says it");
+}
+
 TEST(ParseMachine, CannotTurnVoltsIntoUnknownUnits) {
   EXPECT_EQ(
       message_with("[figures.f]\nvalue = \"1\"\nerrors = { summer.offset = \"3 mV\" }\n",

@@ -166,6 +166,35 @@ TEST_F(TableReaderTest, ReportsAtTheValueOrAtTheTable) {
   EXPECT_EQ(reader.place({7, 8}), (Place{"t.toml", {7, 8}}));
 }
 
+TEST_F(TableReaderTest, ReadsAnExpectedValue) {
+  const auto expected =
+      read_expected_value(read("value = \"3 mm\"\nwithin = 0.5\n"), parse_unit("m").value());
+  ASSERT_TRUE(expected);
+  EXPECT_EQ(expected->value, 0.003);
+  EXPECT_EQ(expected->within, 0.5);
+  EXPECT_EQ(findings(), "");
+}
+
+TEST_F(TableReaderTest, ChecksAnExpectedValue) {
+  EXPECT_FALSE(read_expected_value(read("withn = 1\n")));
+  EXPECT_EQ(findings(),
+            "t.toml:1:1: [run] has no 'value'; expected a quantity in '1'\n"
+            "t.toml:1:1: [run] has no 'within'; expected a quantity in '1'\n"
+            "t.toml:1:1: unknown key 'withn' in [run]\n  remedy: did you mean 'within'?");
+}
+
+TEST_F(TableReaderTest, TakesOnlyFiniteExpectedValues) {
+  read_expected_value(read("value = inf\nwithin = inf\n"));
+  EXPECT_EQ(findings(),
+            "t.toml:1:9: 'value' of [run] is infinite; expected a finite number\n"
+            "t.toml:2:10: 'within' of [run] is inf; expected a finite number above 0");
+}
+
+TEST_F(TableReaderTest, TakesOnlyTolerancesAboveZero) {
+  read_expected_value(read("value = 1\nwithin = 0\n"));
+  EXPECT_EQ(findings(), "t.toml:2:10: 'within' of [run] is 0; expected a finite number above 0");
+}
+
 TEST_F(TableReaderTest, ChecksTheFormat) {
   EXPECT_TRUE(check_format(read("format = \"oblique-diagram/1\"\n"), "oblique-diagram/1"));
   EXPECT_EQ(findings(), "");
