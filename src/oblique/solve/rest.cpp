@@ -146,7 +146,6 @@ bool settle(const Program& program, Workspace& workspace, double t, const std::v
     slopes = next_slopes;
     shortest = kShortest * std::min(unit, step_of_change());
     if (x.cwiseAbs().maxCoeff() > kFarAway) return false;
-    if (h >= kLongest * unit && change == 0) return true;
     last = change;
     if (change < kSmallChange) {
       h *= 10;
