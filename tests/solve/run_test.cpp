@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <oblique/solve/interpolant.h>
@@ -216,6 +217,22 @@ TEST(Run, RefusesStepsThatNoBudgetHolds) {
         testing::message_of<SolveError>([&] { run(made.program, made.flat, options_of(made.diagram.run)); }),
         "d.toml: steps of 1e-300 s at most would be more than 10000000 over a run of 1 s\n"
         "  remedy: raise max_step or max_steps in [run], or end the run earlier with --until");
+  }
+}
+
+// A pulse late in a run is seen, and what lies before it costs no steps as short as it is.
+TEST(Run, GoesToAShortPulseByLongSteps) {
+  for (const double sharpness : {1e2, 1e4, 1e6, 1e8}) {
+    const Compiled made(
+        fmt::format("p = {{ type = \"time-function\", formula = \"{0}*exp(-((time - 99.999)*{0})^2)\" }}\n"
+                    "x = {{ type = \"integrator\", in = [\"p\"] }}\n",
+                    sharpness));
+    const auto result = run_of(made, {.until = 100, .samples = 11});
+    // ∫ = √π; each of some hundred steps errs by up to a tolerance of 1e-8, of the time by its rounding
+    // there.
+    EXPECT_NEAR(row_values(result, "x").back(), std::sqrt(kPi), 1e-6 + 1e-14 * sharpness) << sharpness;
+    // At 1e8 the rounding of the time is 1e-6 of the pulse, which an error test of 1e-8 sees.
+    EXPECT_LT(result.statistics.steps, sharpness < 1e8 ? 2000 : 50'000) << sharpness;
   }
 }
 

@@ -55,6 +55,7 @@ std::optional<double> HiddenMotion::find(double from, std::span<const double> lo
     const double part = looks[k] - before;
     if (misses(looks[k], part, solution)) {
       longest_ = std::min(part, looks[k + 1] - looks[k]);
+      seen_until_ = before;
       return looks[k];
     }
     before = looks[k];

@@ -25,8 +25,9 @@ class HiddenMotion {
   /// of them is the end of the step and not looked at.
   std::optional<double> find(double from, std::span<const double> looks, const Interpolant& solution);
 
-  /// How long a step may be that sees what was found [s].
+  /// How long a step may be that sees what was found [s], and until when there was nothing to see [s].
   double longest_step() const { return longest_; }
+  double seen_until() const { return seen_until_; }
 
  private:
   bool misses(double t, double part, const Interpolant& solution);
@@ -35,7 +36,7 @@ class HiddenMotion {
   double relative_;
   std::vector<double> absolute_;
   std::vector<double> x_, rates_, slopes_, jacobian_;
-  double longest_ = 0;
+  double longest_ = 0, seen_until_ = 0;
 };
 
 }  // namespace oblique

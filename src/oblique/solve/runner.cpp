@@ -406,6 +406,7 @@ class Runner {
                             ? std::vector<double>(states_.size(), settings_.absolute_tolerance)
                             : settings_.own_tolerances);
     double limit = kNoLimit, limited_until = begin_;
+    double approach_end = kNoLimit;  // [s] where steps of any length end, and limited ones begin
     constexpr long kStepsPerReport = 256;
     try {
       while (goes_on(t)) {
@@ -431,21 +432,31 @@ class Runner {
         }
         const std::vector<double>& looks = sources_.looks(from, t, solver);
         if (const auto missed = hidden.find(from, looks, solver)) {
-          // The states are still those of `from`: take the step again, short enough to see.
+          // The states are still those of `from`: take the step again, as far as it has seen everything, and
+          // from there on with steps that are short enough.
           limit = hidden.longest_step();
           limited_until = *missed + limit;
           t = from;
-          solver.restart(t, states_, stretch_end_, stretch_end_ - t);
-          solver.limit_step(limit);
+          const bool is_far = hidden.seen_until() - from > limit;
+          approach_end = is_far ? hidden.seen_until() : kNoLimit;
+          const double end = is_far ? approach_end : stretch_end_;
+          solver.restart(t, states_, end, end - t);
+          solver.limit_step(is_far ? kNoLimit : limit);
           continue;
         }
         if (finish_step(from, t, looks, solver)) {
           begin_stretch(t);
           solver.restart(t, states_, stretch_end_, stretch_length_);
           growth_->restart(t, states_);
+          approach_end = kNoLimit;
         } else {
           std::copy(solver.states().begin(), solver.states().end(), states_.begin());
           growth_->advance(t, states_);
+        }
+        if (t >= approach_end) {
+          approach_end = kNoLimit;
+          solver.restart(t, states_, stretch_end_, stretch_end_ - t);
+          solver.limit_step(limit);
         }
         small_->advance(t, states_);
         if (limit < kNoLimit && t > limited_until) {
