@@ -245,10 +245,10 @@ Chart with_visible_texts(Chart chart) {
 
 }  // namespace
 
-std::string to_braille(const Chart& read, std::size_t columns, bool colours) {
-  const Chart chart = with_visible_texts(read);
+std::string to_braille(const Chart& chart, std::size_t columns, bool colours) {
+  const Chart shown = with_visible_texts(chart);
   columns = std::max(columns, kFewestColumns);
-  const std::vector<PanelScales> scales = scales_of(chart);
+  const std::vector<PanelScales> scales = scales_of(shown);
   std::size_t label_width = 0;
   for (const PanelScales& both : scales) {
     for (const Tick& tick : both.y.ticks(8)) label_width = std::max(label_width, length_of(tick.label));
@@ -260,13 +260,13 @@ std::string to_braille(const Chart& read, std::size_t columns, bool colours) {
       lines += cut(line, columns) + "\n";
     return lines;
   };
-  std::string text = in_lines(chart.title);
-  for (std::size_t p = 0; p < chart.panels.size(); ++p) {
+  std::string text = in_lines(shown.title);
+  for (std::size_t p = 0; p < shown.panels.size(); ++p) {
     if (!text.empty()) text += "\n";
     text +=
-        PanelText(chart.panels[p], scales[p], label_width, columns).text(shows_x_numbers(chart, p), colours);
+        PanelText(shown.panels[p], scales[p], label_width, columns).text(shows_x_numbers(shown, p), colours);
   }
-  if (!chart.note.empty()) text += "\n" + in_lines(chart.note);
+  if (!shown.note.empty()) text += "\n" + in_lines(shown.note);
   return text;
 }
 

@@ -25,6 +25,7 @@ constexpr std::size_t kFew = 8;
 /// take memory anew each time, which beside their work is nothing.)
 class LoopMatrix::Sparse : public Eigen::SparseLU<Eigen::SparseMatrix<double>, Eigen::COLAMDOrdering<int>> {
  public:
+  Sparse() = default;
   explicit Sparse(const LoopCode& loop) {
     std::vector<Eigen::Triplet<double>> places;
     for (const MatrixEntry& entry : loop.slopes)
@@ -41,15 +42,15 @@ class LoopMatrix::Sparse : public Eigen::SparseLU<Eigen::SparseMatrix<double>, E
   }
 
   /// Eigen's factors cannot be copied: they are made anew.
-  Sparse(const Sparse& other)
-      : Eigen::SparseLU<Eigen::SparseMatrix<double>, Eigen::COLAMDOrdering<int>>(),
-        matrix(other.matrix),
-        of_slope(other.of_slope),
-        of_diagonal(other.of_diagonal) {
-    analyzePattern(matrix);
-    if (other.m_factorizationIsOk) factorize(matrix);
+  std::unique_ptr<Sparse> copy() const {
+    auto made = std::make_unique<Sparse>();
+    made->matrix = matrix;
+    made->of_slope = of_slope;
+    made->of_diagonal = of_diagonal;
+    made->analyzePattern(made->matrix);
+    if (m_factorizationIsOk) made->factorize(made->matrix);
+    return made;
   }
-  Sparse& operator=(const Sparse&) = delete;
 
   double smallest_pivot() const {
     double smallest = std::numeric_limits<double>::infinity();
@@ -80,7 +81,7 @@ LoopMatrix::LoopMatrix(std::size_t size) : scale_(index(size)), permuted_(index(
 LoopMatrix::~LoopMatrix() = default;
 
 LoopMatrix::LoopMatrix(const LoopMatrix& other)
-    : sparse_(other.sparse_ ? std::make_unique<Sparse>(*other.sparse_) : nullptr),
+    : sparse_(other.sparse_ ? other.sparse_->copy() : nullptr),
       matrix_(other.matrix_),
       scale_(other.scale_),
       permuted_(other.permuted_),

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <new>
 #include <stdexcept>
@@ -59,7 +58,7 @@ Handle made(Handle handle) {
 /// more than a context takes is found out first.
 SUNContext make_context() {
   constexpr std::size_t kMoreThanContext = 16'384;
-  std::free(made(std::malloc(kMoreThanContext)));
+  ::operator delete(made(::operator new(kMoreThanContext, std::nothrow)));
   SUNContext context = nullptr;
   if (SUNContext_Create(nullptr, &context) != 0) throw std::bad_alloc();
   return context;
