@@ -67,7 +67,7 @@ int linear_combination(int count, double* c, N_Vector* x, N_Vector z) {
 /// memory is thrown, through frames of C that have nothing to clean up: what they made hangs on the memory of
 /// CVODES.
 N_Vector clone_or_throw(N_Vector vector) {
-  const N_Vector clone = N_VClone_Serial(vector);
+  N_Vector clone = N_VClone_Serial(vector);
   if (clone == nullptr) throw std::bad_alloc();
   return clone;
 }
@@ -75,7 +75,7 @@ N_Vector clone_or_throw(N_Vector vector) {
 }  // namespace
 
 N_Vector make_solver_vector(sunindextype size, SUNContext context) {
-  const N_Vector vector = N_VNew_Serial(size, context);
+  N_Vector vector = N_VNew_Serial(size, context);
   if (vector == nullptr) throw std::bad_alloc();
   vector->ops->nvwrmsnorm = largest_weighted;
   vector->ops->nvlinearsum = linear_sum;
