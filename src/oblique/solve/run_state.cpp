@@ -92,6 +92,7 @@ void write_paces(const std::vector<EventPace>& paces, std::string& out) {
   out += "\n[paces]\n";
   for (const PaceField& field : kPaceFields) {
     std::vector<double> values;
+    values.reserve(paces.size());
     for (const EventPace& pace : paces) values.push_back(field.get(pace));
     write_list(field.name, values, out);
   }
