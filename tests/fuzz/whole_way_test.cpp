@@ -37,9 +37,14 @@ double memory_used() {
   return 1024.0 * static_cast<double>(usage.ru_maxrss);
 }
 
+#ifdef __SANITIZE_ADDRESS__
+constexpr double kSanitized = 5;  // times as long and as large
+#else
+constexpr double kSanitized = 1;
+#endif
 /// What one input may take: each of its runs has a budget of steps, which takes a tenth of a second at most.
-constexpr double kMostSeconds = 5;  // of the processor, so that a busy machine makes no faults
-constexpr double kMostMemory = 1e9;
+constexpr double kMostSeconds = 5 * kSanitized;  // of the processor, so that a busy machine makes no faults
+constexpr double kMostMemory = 1e9 * kSanitized;
 
 /// At least `least` of the inputs must lead to runs that are compared: else nothing is tested.
 void examine(Verdict (*examined)(std::string_view bytes), std::uint64_t usual, double least) {
