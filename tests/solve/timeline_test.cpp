@@ -298,6 +298,21 @@ TEST(RunState, IsReadAsItWasWritten) {
   EXPECT_EQ(again.position.begin, 0.7);
 }
 
+TEST(RunState, WithConditionsThatAreNoNumbersIsRefused) {
+  RunState state;
+  state.conditions = {true, false};
+  const std::string text = to_text(state);
+  const auto refusal = [&](const std::string& by) {
+    std::string changed = text;
+    const std::string of = "conditions = [1, 0]";
+    changed.replace(changed.find(of), of.size(), by);
+    return message_of<ReadError>([&] { parse_run_state(changed, "s.toml"); });
+  };
+  EXPECT_EQ(refusal("conditions = [1, \"no\"]"),
+            "s.toml:4:18: an element of 'conditions' is a string; expected a number");
+  EXPECT_EQ(refusal("conditions = 1"), "s.toml:4:14: 'conditions' is a number; expected an array of numbers");
+}
+
 TEST(RunState, OfAnotherDiagramIsRefused) {
   const Compiled made(kVanDerPol);
   const Compiled other(

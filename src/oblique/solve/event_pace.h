@@ -27,8 +27,6 @@ struct EventPace {
     double interval, at;
   };
   std::optional<PileUp> come(double t, double span, double end);
-
-  bool operator==(const EventPace&) const = default;
 };
 
 }  // namespace oblique

@@ -63,61 +63,6 @@ std::vector<double> read_list(TableReader& reader, std::string_view key, Diagnos
   return values;
 }
 
-void write_list(std::string_view key, const std::vector<double>& values, std::string& out) {
-  out += fmt::format("{} = [{}]\n", key, fmt::join(values, ", "));
-}
-
-/// The numbers of a pace, by the names that they have in a file.
-struct PaceField {
-  std::string_view name;
-  double (*get)(const EventPace& pace);
-  void (*set)(EventPace& pace, double value);
-};
-constexpr PaceField kPaceFields[] = {
-    {"last", [](const EventPace& p) { return p.last; }, [](EventPace& p, double v) { p.last = v; }},
-    {"interval", [](const EventPace& p) { return p.interval; },
-     [](EventPace& p, double v) { p.interval = v; }},
-    {"ratio", [](const EventPace& p) { return p.ratio; }, [](EventPace& p, double v) { p.ratio = v; }},
-    {"shorter", [](const EventPace& p) { return static_cast<double>(p.shorter); },
-     [](EventPace& p, double v) { p.shorter = static_cast<int>(v); }},
-    {"longer", [](const EventPace& p) { return p.longer; }, [](EventPace& p, double v) { p.longer = v; }},
-    {"approach", [](const EventPace& p) { return p.approach; },
-     [](EventPace& p, double v) { p.approach = v; }},
-    {"steady", [](const EventPace& p) { return p.steady ? 1.0 : 0.0; },
-     [](EventPace& p, double v) { p.steady = v != 0; }}};
-
-void write_paces(const std::vector<EventPace>& paces, std::string& out) {
-  const EventPace none;
-  if (std::all_of(paces.begin(), paces.end(), [&](const EventPace& pace) { return pace == none; })) return;
-  out += "\n[paces]\n";
-  for (const PaceField& field : kPaceFields) {
-    std::vector<double> values;
-    values.reserve(paces.size());
-    for (const EventPace& pace : paces) values.push_back(field.get(pace));
-    write_list(field.name, values, out);
-  }
-}
-
-/// The paces of so many events; a file of an older program has none.
-std::vector<EventPace> read_paces(TableReader& reader, std::size_t events, const std::string& file,
-                                  Diagnostics& diagnostics) {
-  std::vector<EventPace> paces(events);
-  if (reader.table().find("paces") == nullptr) return paces;
-  const Value* const table = reader.table("paces");
-  if (table == nullptr) return paces;
-  TableReader fields(file, *table, "[paces]", diagnostics);
-  for (const PaceField& field : kPaceFields) {
-    const bool sound = diagnostics.empty();
-    const std::vector<double> values = read_list(fields, field.name, diagnostics);
-    if (sound && diagnostics.empty() && values.size() != events)
-      fields.report(field.name, fmt::format("'{}' has {} elements", field.name, values.size()),
-                    fmt::format("{}, one an event, as 'conditions'", events));
-    for (std::size_t e = 0; e < std::min(events, values.size()); ++e) field.set(paces[e], values[e]);
-  }
-  fields.finish();
-  return paces;
-}
-
 /// The first name in which two lists differ, for a message.
 template <class Things>
 void compare_names(const RunState::Named& saved, const Things& things, std::string_view what,
@@ -146,10 +91,10 @@ std::string to_text(const RunState& state) {
   std::string out =
       "# Where a run stood: to go on, oblique run DIAGRAM --from THIS.\nformat = \"oblique-state/1\"\n";
   out += fmt::format("time = {}\n", state.time);
-  write_list("conditions", {state.conditions.begin(), state.conditions.end()}, out);
+  out += fmt::format("conditions = [{}]\n",
+                     fmt::join(std::vector<int>(state.conditions.begin(), state.conditions.end()), ", "));
   out += fmt::format("\n[timeline]\nphase = {}\ncycle = {}\nbegin = {}\n", state.position.phase,
                      state.position.cycle, state.position.begin);
-  write_paces(state.paces, out);
   write_numbers("states", state.states, out);
   write_numbers("unknowns", state.unknowns, out);
   write_numbers("memories", state.memories, out);
@@ -169,7 +114,6 @@ RunState parse_run_state(std::string_view text, const std::string& file) {
   state.time = reader.required_quantity("time", "s").value_or(0);
   for (const double condition : read_list(reader, "conditions", diagnostics))
     state.conditions.push_back(condition != 0);
-  state.paces = read_paces(reader, state.conditions.size(), file, diagnostics);
   if (const Value* const table = reader.table("timeline")) {
     TableReader timeline(file, *table, "[timeline]", diagnostics);
     state.position.phase = static_cast<std::size_t>(timeline.required_quantity("phase", "1").value_or(0));

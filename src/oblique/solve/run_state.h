@@ -7,7 +7,6 @@
 #include <vector>
 
 #include <oblique/network/program.h>
-#include <oblique/solve/event_pace.h>
 #include <oblique/solve/phase_clock.h>
 #include <oblique/text/diagnostic.h>
 
@@ -22,7 +21,6 @@ struct RunState {
   Named unknowns;  ///< of algebraic loops: where the next search begins
   Named memories;
   std::vector<bool> conditions;  ///< of events, in the program's order
-  std::vector<EventPace> paces;  ///< of events, too
   PhaseClock::Position position;
 };
 

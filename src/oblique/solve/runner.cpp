@@ -175,7 +175,7 @@ class Runner {
     for (std::size_t m = 0; m < state.memories.size(); ++m)
       workspace_.set_memory(m, state.memories[m].second);
     clock_.restore(state.position);
-    switching_.restore(state.conditions, state.paces);
+    switching_.restore(state.conditions);
     switching_.settle(begin_, states_);
   }
 
@@ -189,7 +189,6 @@ class Runner {
     for (std::size_t m = 0; m < program_.memories().size(); ++m)
       state.memories.emplace_back(program_.memories()[m].name, workspace_.memory(m));
     state.conditions = switching_.conditions();
-    state.paces = switching_.paces();
     state.position = clock_.position();
     return state;
   }

@@ -82,12 +82,10 @@ class Switching {
   /// What could not be seen.
   const std::vector<Diagnostic>& warnings() const { return warnings_; }
 
-  /// What must be kept of the events to go on later: whether each condition held, and how quickly each comes.
+  /// What must be kept to go on later: whether each condition held.
   const std::vector<bool>& conditions() const { return held_; }
-  const std::vector<EventPace>& paces() const { return paces_; }
-  void restore(std::vector<bool> conditions, std::vector<EventPace> paces) {
+  void restore(std::vector<bool> conditions) {
     held_ = std::move(conditions);
-    paces_ = std::move(paces);
     resumed_ = true;
   }
 
