@@ -9,7 +9,6 @@
 #include <oblique/mechanism/read_mechanism.h>
 #include <oblique/synthesis/least_squares.h>
 #include <oblique/synthesis/path_curve.h>
-#include <oblique/synthesis/spread_point.h>
 #include <oblique/synthesis/target_path.h>
 #include <oblique/synthesis/text_edit.h>
 
@@ -75,42 +74,6 @@ TEST(Minimise, TurnsBackFromWhereThereIsNoValue) {
   EXPECT_LE(found->x[0], 0.7);
   EXPECT_LT(found->sum, 0.2);  // (1 − 0.7)² = 0.09 at the edge, 4.84 at the start
   EXPECT_FALSE(minimise(problem, Vector2d(1, 1)));
-}
-
-// ---- spread points
-
-double fraction(double x) {
-  return x - std::floor(x);
-}
-
-// The roots in one and two dimensions are the golden ratio and the plastic number, here by Cardano's formula.
-TEST(SpreadPoint, StepsByThePowersOfTheRoot) {
-  const double golden = (1 + std::sqrt(5)) / 2;
-  const double plastic = std::cbrt((9 + std::sqrt(69)) / 18) + std::cbrt((9 - std::sqrt(69)) / 18);
-  for (const int k : {1, 2, 3, 50}) {
-    EXPECT_NEAR(spread_point(1, k)[0], fraction(0.5 + k / golden), 1e-12);  // of the rounding, k times
-    const VectorXd two = spread_point(2, k);
-    ASSERT_EQ(two.size(), 2);
-    EXPECT_NEAR(two[0], fraction(0.5 + k / plastic), 1e-12);
-    EXPECT_NEAR(two[1], fraction(0.5 + k / (plastic * plastic)), 1e-12);
-  }
-}
-
-// Thrown blindly, a tenth of the way would get 100 ± 9.5 of 1000 points; spread, it gets them to a few.
-TEST(SpreadPoint, EveryPartOfEveryDimensionGetsItsShare) {
-  for (const Eigen::Index dimensions : {1, 2, 3}) {
-    Eigen::ArrayXXi counts = Eigen::ArrayXXi::Zero(dimensions, 10);
-    for (int k = 1; k <= 1000; ++k) {
-      const VectorXd point = spread_point(dimensions, k);
-      for (Eigen::Index i = 0; i < dimensions; ++i) {
-        ASSERT_GE(point[i], 0);
-        ASSERT_LT(point[i], 1);
-        ++counts(i, static_cast<Eigen::Index>(10 * point[i]));
-      }
-    }
-    EXPECT_GE(counts.minCoeff(), 96);
-    EXPECT_LE(counts.maxCoeff(), 104);
-  }
 }
 
 // ---- PathCurve

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <oblique/solve/solve_error.h>
+#include <oblique/text/even_point.h>
 
 namespace oblique {
 namespace {
@@ -19,22 +20,13 @@ bool chooses_blindly(const Program& program, std::size_t loop) {
   });
 }
 
-/// Point k of an even sequence in (−1, 1)^n, coordinate i: multiples of the powers of the root of
-/// g^(n + 1) = g + 1 (Roberts), which is the golden ratio for n = 1.
-double even_point(int k, std::size_t i, std::size_t n) {
-  double g = 2;
-  for (int round = 0; round < 30; ++round) g = std::pow(1 + g, 1 / static_cast<double>(n + 1));
-  const double multiple = k * std::pow(g, -static_cast<double>(i + 1));
-  return 2 * (multiple - std::floor(multiple)) - 1;
-}
-
 constexpr int kPoints = 24;
 constexpr double kReach = 3;  // [machine unit]
 
 LoopStart point(const Program& program, std::size_t loop, int k) {
   const std::size_t n = program.loops()[loop].unknowns.size();
-  LoopStart start{loop, std::vector<double>(n)};
-  for (std::size_t i = 0; i < n; ++i) start.unknowns[i] = kReach * even_point(k, i, n);
+  LoopStart start{loop, even_point(k, n)};
+  for (double& unknown : start.unknowns) unknown = kReach * (2 * unknown - 1);
   return start;
 }
 

@@ -12,8 +12,8 @@
 #include <oblique/synthesis/fitted_text.h>
 #include <oblique/synthesis/least_squares.h>
 #include <oblique/synthesis/path_problem.h>
-#include <oblique/synthesis/spread_point.h>
 #include <oblique/synthesis/synthesis_error.h>
+#include <oblique/text/even_point.h>
 #include <oblique/text/nearest_decimal.h>
 
 namespace oblique {
@@ -100,7 +100,9 @@ class Fitter {
         continue;
       }
       for (int trial = 0; trial < kTriesForAStart; ++trial) {
-        const VectorXd point = spread_point(family_.values().size(), ++tried);
+        const std::vector<double> even =
+            even_point(++tried, static_cast<std::size_t>(family_.values().size()));
+        const VectorXd point = VectorXd::Map(even.data(), family_.values().size());
         if (search_from(family_.lower() + point.cwiseProduct(family_.upper() - family_.lower()))) break;
       }
     }
