@@ -18,21 +18,14 @@ using testing::row_values;
 using testing::run_of;
 using testing::shipped_blocks_and;
 
-BlockLibrary library_with_sign() {
-  return shipped_blocks_and("sgn",
-                            "[inputs]\nin = {}\n[outputs]\nout = {}\n[equations]\nout = \"sign(in)\"\n");
-}
-
 // --- location
 // -------------------------------------------------------------------------------------------------------
 
 TEST(Events, RelayOscillatorKeepsItsPeriodOverTwoThousandSwitchings) {
   // x'' = −sign x from x = 1, x' = 0: parabolas of which each quarter takes √2.
-  const BlockLibrary library = library_with_sign();
   const Compiled made(R"(x = { type = "integrator", in = ["v"], initial = 1 }
 v = { type = "integrator", in = ["-s"] }
-s = { type = "sgn", in = "x" })",
-                      "", library);
+s = { type = "sign", in = "x" })");
   const double period = 4 * std::sqrt(2.0);
   const auto result = run_of(made, {.until = 1000 * period, .tolerance = 1e-10, .samples = 1001});
   EXPECT_EQ(result.event_count, 2000);
@@ -44,14 +37,12 @@ s = { type = "sgn", in = "x" })",
 
 TEST(Events, TwoCrossingsInsideOneStepAreFound) {
   // cos t rises above 1 − 1e-6 for 2√(2e-6) s at each turn: far shorter than a step.
-  const BlockLibrary library = library_with_sign();
   const Compiled made(R"(x = { type = "integrator", in = ["y"], initial = 1 }
 y = { type = "integrator", in = ["-x"] }
 one = { type = "constant" }
 d = { type = "summer", in = ["x", "-0.999999*one"] }
-s = { type = "sgn", in = "d" }
-sum = { type = "integrator", in = ["0.5*s", "0.5*one"] })",
-                      "", library);
+s = { type = "sign", in = "d" }
+sum = { type = "integrator", in = ["0.5*s", "0.5*one"] })");
   const auto result = run_of(made, {.until = 60, .tolerance = 1e-10, .samples = 2});
   // Nine turns and the half at the start. One missed turn would be 1 width; the amplitude is good to some
   // 1e-9, of 1e-6.
@@ -180,11 +171,9 @@ l = { type = "lim", in = "d" })",
 
 TEST(Events, ALoopWithoutAnAgreeingModeIsRefusedByName) {
   // s = −sign s: neither position agrees with itself.
-  const BlockLibrary library = library_with_sign();
   const std::string message = message_of<SolveError>([&] {
-    run_of(
-        Compiled("n = { type = \"inverter\", in = \"s\" }\ns = { type = \"sgn\", in = \"n\" }", "", library),
-        {.until = 1});
+    run_of(Compiled("n = { type = \"inverter\", in = \"s\" }\ns = { type = \"sign\", in = \"n\" }"),
+           {.until = 1});
   });
   EXPECT_THAT(message, HasSubstr("'s' switches without end at t = 0 s (no position of its switch agrees"));
 }

@@ -18,20 +18,13 @@ using testing::row_values;
 using testing::run_of;
 using testing::shipped_blocks_and;
 
-BlockLibrary library_with_sign() {
-  return shipped_blocks_and("sgn",
-                            "[inputs]\nin = {}\n[outputs]\nout = {}\n[equations]\nout = \"sign(in)\"\n");
-}
-
 TEST(Slides, ARelayWithoutHysteresisSlidesAlongItsSurface) {
   // x' = −sign x + 0.5 cos t reaches 0 and stays: Filippov's solution has sign x = 0.5 cos t there.
-  const BlockLibrary library = library_with_sign();
   const Compiled made(R"(one = { type = "constant" }
 phase = { type = "integrator", in = ["one"] }
 c = { type = "cosine", in = "phase" }
-s = { type = "sgn", in = "x" }
-x = { type = "integrator", in = ["-s", "0.5*c"], initial = 1 })",
-                      "", library);
+s = { type = "sign", in = "x" }
+x = { type = "integrator", in = ["-s", "0.5*c"], initial = 1 })");
   const auto result = run_of(made, {.until = 6, .samples = 61});
   const auto t = row_values(result, "t"), x = row_values(result, "x"), s = row_values(result, "s");
   for (std::size_t r = 20; r < t.size(); ++r) {
@@ -48,15 +41,13 @@ x = { type = "integrator", in = ["-s", "0.5*c"], initial = 1 })",
 
 TEST(Slides, ASurfaceThatStartsAtItsTurningPointGoesWhereItBends) {
   // x = ±t²/2: its sign is known at once, though neither x nor x' shows it.
-  const BlockLibrary library = library_with_sign();
   for (const double side : {1.0, -1.0}) {
     const Compiled made(fmt::format(R"(one = {{ type = "constant", value = {} }}
 v = {{ type = "integrator", in = ["one"] }}
 x = {{ type = "integrator", in = ["v"] }}
-s = {{ type = "sgn", in = "x" }}
+s = {{ type = "sign", in = "x" }}
 sum = {{ type = "integrator", in = ["s"] }})",
-                                    side),
-                        "", library);
+                                    side));
     const auto result = run_of(made, {.until = 1, .samples = 2});
     EXPECT_NEAR(row_values(result, "sum").back(), side,
                 1e-12);  // to rounding; found late, it would lack 1e-6
@@ -66,14 +57,12 @@ sum = {{ type = "integrator", in = ["s"] }})",
 
 TEST(Slides, TwoSwitchesSlideAtOnce) {
   // Each comes to its surface at its own time and stays; what both do together is the sum.
-  const BlockLibrary library = library_with_sign();
   const Compiled made(R"(x = { type = "integrator", in = ["-sx"], initial = 1 }
-sx = { type = "sgn", in = "x" }
+sx = { type = "sign", in = "x" }
 y = { type = "integrator", in = ["-sy", "0.5*one"], initial = 1 }
-sy = { type = "sgn", in = "y" }
+sy = { type = "sign", in = "y" }
 one = { type = "constant" }
-z = { type = "integrator", in = ["sx", "sy"] })",
-                      "", library);
+z = { type = "integrator", in = ["sx", "sy"] })");
   const auto result = run_of(made, {.until = 3, .samples = 4});
   EXPECT_NEAR(row_values(result, "x").back(), 0, 1e-9);  // the switch is met to rounding, and held
   EXPECT_NEAR(row_values(result, "y").back(), 0, 1e-9);
@@ -86,14 +75,12 @@ z = { type = "integrator", in = ["sx", "sy"] })",
 TEST(Slides, CoupledSlidesShareTheirEquation) {
   // Two masses rub on each other and one on the ground: at rest the contacts carry α and β with
   // f = 2 β − α and α = 0.3 (a dry chain, by hand).
-  const BlockLibrary library = library_with_sign();
   const Compiled made(R"(one = { type = "constant" }
 d = { type = "summer", in = ["v1", "-v2"] }
-s1 = { type = "sgn", in = "d" }
-s2 = { type = "sgn", in = "v2" }
+s1 = { type = "sign", in = "d" }
+s2 = { type = "sign", in = "v2" }
 v1 = { type = "integrator", in = ["0.3*one", "-s1"], initial = 0.2 }
-v2 = { type = "integrator", in = ["s1", "-2*s2"], initial = 0.1 })",
-                      "", library);
+v2 = { type = "integrator", in = ["s1", "-2*s2"], initial = 0.1 })");
   const auto result = run_of(made, {.until = 4, .samples = 5});
   EXPECT_NEAR(row_values(result, "v1").back(), 0, 1e-8);  // some tolerances
   EXPECT_NEAR(row_values(result, "v2").back(), 0, 1e-8);
@@ -103,13 +90,11 @@ v2 = { type = "integrator", in = ["s1", "-2*s2"], initial = 0.1 })",
 
 TEST(Slides, WhatASlideDoesPassesThroughASquarer) {
   // x' = 0.2 − u slides at x = 0 with a mean u of 0.2; u² is 1 on both sides, whatever the mean is.
-  const BlockLibrary library = library_with_sign();
   const Compiled made(R"(one = { type = "constant" }
-u = { type = "sgn", in = "x" }
+u = { type = "sign", in = "x" }
 x = { type = "integrator", in = ["-u", "0.2*one"], initial = 0.5 }
 uu = { type = "squarer", in = "u" }
-y = { type = "integrator", in = ["uu"] })",
-                      "", library);
+y = { type = "integrator", in = ["uu"] })");
   const auto result = run_of(made, {.until = 2, .samples = 3});
   EXPECT_NEAR(row_values(result, "u").back(), 0.2, 1e-9);
   EXPECT_NEAR(row_values(result, "uu").back(), 1, 1e-12);  // a mixture of ones
@@ -118,11 +103,9 @@ y = { type = "integrator", in = ["uu"] })",
 
 TEST(Slides, PositiveFeedbackMakesAHysteresisOfItsOwn) {
   // m = c/2 − x with c = sign m and x' = c: a triangle of ±0.5 with a period of 2.
-  const BlockLibrary library = library_with_sign();
   const Compiled made(R"(m = { type = "summer", in = ["-x", "0.5*c"] }
-c = { type = "sgn", in = "m" }
-x = { type = "integrator", in = "c" })",
-                      "", library);
+c = { type = "sign", in = "m" }
+x = { type = "integrator", in = "c" })");
   const auto result = run_of(made, {.until = 9.75, .samples = 40});
   const auto t = row_values(result, "t"), x = row_values(result, "x");
   for (std::size_t r = 0; r < t.size(); ++r) {
@@ -134,14 +117,12 @@ x = { type = "integrator", in = "c" })",
 TEST(Slides, ASlideOnACurvedSurfaceLeadsToTheOrigin) {
   // The double integrator in the least time (Pontryagin): from x = 1 at rest to the origin in 2 s, and there
   // it stays.
-  const BlockLibrary library = library_with_sign();
   const Compiled made(R"(av = { type = "absolute-value", in = "v" }
 vv = { type = "multiplier", in = ["v", "av"] }
 h = { type = "summer", in = ["-x", "-0.5*vv"] }
-u = { type = "sgn", in = "h" }
+u = { type = "sign", in = "h" }
 v = { type = "integrator", in = "u" }
-x = { type = "integrator", in = "v", initial = 1 })",
-                      "", library);
+x = { type = "integrator", in = "v", initial = 1 })");
   const auto result = run_of(made, {.until = 3, .samples = 31});
   const auto t = row_values(result, "t"), x = row_values(result, "x"), v = row_values(result, "v");
   for (std::size_t r = 0; r < t.size(); ++r) {
@@ -153,12 +134,10 @@ x = { type = "integrator", in = "v", initial = 1 })",
 
 TEST(Slides, ASlideEndsWhereThePushBecomesTooStrong) {
   // x' = −sign x + 0.8 t: slides until t = 1.25, then x = 0.4 (t − 1.25)².
-  const BlockLibrary library = library_with_sign();
   const Compiled made(R"(one = { type = "constant" }
 ramp = { type = "integrator", in = ["0.8*one"] }
-s = { type = "sgn", in = "x" }
-x = { type = "integrator", in = ["-s", "ramp"], initial = 0.1 })",
-                      "", library);
+s = { type = "sign", in = "x" }
+x = { type = "integrator", in = ["-s", "ramp"], initial = 0.1 })");
   const auto result = run_of(made, {.until = 2.25, .samples = 4});
   EXPECT_NEAR(row_values(result, "x").back(), 0.4, 1e-7);
   EXPECT_EQ(row_values(result, "s").back(), 1);
