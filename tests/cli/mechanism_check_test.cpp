@@ -12,6 +12,7 @@
 
 #include "../support/process.h"
 #include "../support/scratch_folder.h"
+#include "../support/tangent.h"
 
 namespace oblique::test {
 namespace {
@@ -133,19 +134,9 @@ B = [0, 110]
 }
 
 TEST_F(MechanismCheck, TellsOfMotionThroughInfinity) {
-  const std::string path = file("tangent.toml", R"([frame]
-O = [0, 0]
-F = [100, 0]
-E = [100, 100]
-[bodies]
-arm = { points = ["O", "T"], length = 150 }
-block = { points = ["C", "K"], length = 30 }
-[slides]
-slot = { point = "C", along = ["O", "T"] }
-guide = { point = "C", along = ["F", "E"], of = "block", angle = 0 }
-[drives]
-crank = { turns = "arm", about = "O", speed = "60 rpm", start = 0 }
-)");
+  const std::string path =
+      file("tangent.toml", std::string(kTangent) +
+                               "[drives]\ncrank = { turns = \"arm\", about = \"O\", speed = \"60 rpm\" }\n");
   const Outcome checked = oblique("check " + path);
   EXPECT_EQ(checked.status, 1);
   EXPECT_THAT(

@@ -4,11 +4,14 @@
 
 #include <cmath>
 #include <numbers>
+#include <string>
 
 #include <gtest/gtest.h>
 
 #include <oblique/mechanism/read_mechanism.h>
 #include <oblique/mechanism/tour.h>
+
+#include "../support/tangent.h"
 
 namespace oblique {
 namespace {
@@ -88,23 +91,10 @@ C = [2.86, 0.5]
 
 // x = 100 tan φ
 TEST(Crossing, GoesThroughInfinity) {
-  const Mechanism mechanism = parse_mechanism(R"(format = "oblique-mechanism/1"
-[units]
-length = "mm"
-[frame]
-O = [0, 0]
-F = [100, 0]
-E = [100, 100]
-[bodies]
-arm = { points = ["O", "T"], length = 150 }
-block = { points = ["C", "K"], length = 30 }
-[slides]
-slot = { point = "C", along = ["O", "T"] }
-guide = { point = "C", along = ["F", "E"], of = "block", angle = 0 }
-[drives]
-crank = { turns = "arm", about = "O", speed = 1, start = 0 }
-)",
-                                              "tangent.toml");
+  const Mechanism mechanism =
+      parse_mechanism("format = \"oblique-mechanism/1\"\n" + std::string(test::kTangent) +
+                          "[drives]\ncrank = { turns = \"arm\", about = \"O\", speed = 1 }\n",
+                      "tangent.toml");
   for (const int positions : {8, 91, 361, 10000}) {
     const Motion motion = solve_motion(mechanism, positions);
     ASSERT_EQ(motion.events.size(), 2U) << positions;
