@@ -9,10 +9,10 @@
 #include <fmt/format.h>
 
 #include <oblique/solve/branch_end.h>
-#include <oblique/solve/hidden_motion.h>
 #include <oblique/solve/phase_clock.h>
 #include <oblique/solve/rest.h>
 #include <oblique/solve/sampler.h>
+#include <oblique/solve/short_steps.h>
 #include <oblique/solve/singular_start.h>
 #include <oblique/solve/solve_error.h>
 #include <oblique/solve/source_watch.h>
@@ -400,12 +400,12 @@ class Runner {
         [this](double at, const double* x, double* values) { return read(at, x, values); },
         n_outputs + program_.switches().size(), n_outputs);
     small_->advance(t, states_);
-    HiddenMotion hidden(system_, settings_.relative_tolerance,
-                        settings_.own_tolerances.empty()
-                            ? std::vector<double>(states_.size(), settings_.absolute_tolerance)
-                            : settings_.own_tolerances);
-    double limit = kNoLimit, limited_until = begin_;
-    double approach_end = kNoLimit;  // [s] where steps of any length end, and limited ones begin
+    ShortSteps short_steps(
+        HiddenMotion(system_, settings_.relative_tolerance,
+                     settings_.own_tolerances.empty()
+                         ? std::vector<double>(states_.size(), settings_.absolute_tolerance)
+                         : settings_.own_tolerances),
+        solver, options_.until - begin_);
     constexpr long kStepsPerReport = 256;
     try {
       while (goes_on(t)) {
@@ -430,38 +430,22 @@ class Runner {
           }
         }
         const std::vector<double>& looks = sources_.looks(from, t, solver);
-        if (const auto missed = hidden.find(from, looks, solver)) {
-          // The states are still those of `from`: take the step again, as far as it has seen everything, and
-          // from there on with steps that are short enough.
-          limit = hidden.longest_step();
-          limited_until = *missed + limit;
+        if (short_steps.take_back(from, states_, looks,
+                                  stretch_end_)) {  // the states are still those of `from`
           t = from;
-          const bool is_far = hidden.seen_until() - from > limit;
-          approach_end = is_far ? hidden.seen_until() : kNoLimit;
-          const double end = is_far ? approach_end : stretch_end_;
-          solver.restart(t, states_, end, end - t);
-          solver.limit_step(is_far ? kNoLimit : limit);
           continue;
         }
         if (finish_step(from, t, looks, solver)) {
           begin_stretch(t);
           solver.restart(t, states_, stretch_end_, stretch_length_);
           growth_->restart(t, states_);
-          approach_end = kNoLimit;
+          short_steps.restart();
         } else {
           std::copy(solver.states().begin(), solver.states().end(), states_.begin());
           growth_->advance(t, states_);
-        }
-        if (t >= approach_end) {
-          approach_end = kNoLimit;
-          solver.restart(t, states_, stretch_end_, stretch_end_ - t);
-          solver.limit_step(limit);
+          short_steps.advance(t, states_, stretch_end_);
         }
         small_->advance(t, states_);
-        if (limit < kNoLimit && t > limited_until) {
-          limit = limit > options_.until - begin_ ? kNoLimit : 2 * limit;
-          solver.limit_step(limit);
-        }
         ++steps_;
         if (ends_unseen()) break;
         if (options_.progress && steps_ % kStepsPerReport == 0)
@@ -489,7 +473,6 @@ class Runner {
     }
   }
 
-  static constexpr double kNoLimit = std::numeric_limits<double>::infinity();  ///< of a step
   static constexpr double kShortest = 1e-15;  ///< of the time: the clock cannot show less
 
   const Program& program_;
