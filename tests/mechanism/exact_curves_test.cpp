@@ -268,8 +268,8 @@ TEST(ExactCurve, OfTheThreeBarFollowsTheSourcesFormulas) {
 }
 
 // The seed's classes I_Rod and RRR_II_RodGroup (004_fc681cbe650dac02.txt), in mm and s throughout.
-TEST(ExactCurve, OfTheSixBarFollowsTheSourcesFormulas) {
-  const MovingMechanism six_bar("six-bar");
+void expect_six_bar(const std::string& name, double side) {
+  const MovingMechanism six_bar(name);
   const double bc = 140, cd = 150, omega = 100, arm = std::hypot(50, 45), arm_angle = std::atan2(45, 50);
   const Complex d_point = 200;
   for (std::size_t row = 0; row < six_bar.rows(); ++row) {
@@ -280,7 +280,7 @@ TEST(ExactCurve, OfTheSixBarFollowsTheSourcesFormulas) {
                  c_coefficient = bc * bc + std::norm(to_d) - cd * cd;
     const double root = std::sqrt(a_coefficient * a_coefficient + b_coefficient * b_coefficient -
                                   c_coefficient * c_coefficient);
-    const double phi1 = 2 * std::atan((b_coefficient + root) / (a_coefficient + c_coefficient));
+    const double phi1 = 2 * std::atan((b_coefficient + side * root) / (a_coefficient + c_coefficient));
     const Complex e1 = std::polar(bc, phi1), c_point = b.z + e1, e2 = c_point - d_point;
     // velocity and acceleration
     const double g = e1.real() * e2.imag() - e2.real() * e1.imag();
@@ -292,6 +292,12 @@ TEST(ExactCurve, OfTheSixBarFollowsTheSourcesFormulas) {
                omega);
     EXPECT_NEAR(six_bar.body("CD", row).omega, omega2, 1e-10 * omega);
   }
+}
+
+// The source's program takes the root with −.
+TEST(ExactCurve, OfTheSixBarFollowsTheSourcesFormulas) {
+  expect_six_bar("six-bar", -1);
+  expect_six_bar("six-bar-above", 1);
 }
 
 /// The seed's vector transformation: `r` turned by `angle` and brought to `length`.

@@ -171,7 +171,7 @@ TEST(ExactMotion, OfTheFourBarSolvesItsLoopEquations) {
 }
 
 TEST(ExactMotion, OfTheSixBarSolvesItsLoopEquations) {
-  expect_exact("six-bar.toml", four_bar(80, 140, 150, 200, {50, 45}, "BCF", "F"));
+  expect_exact("six-bar-above.toml", four_bar(80, 140, 150, 200, {50, 45}, "BCF", "F"));
 }
 
 TEST(ExactMotion, OfJansensLegsSolvesTheirLoopEquations) {
