@@ -109,7 +109,7 @@ INSTANTIATE_TEST_SUITE_P(
                 kPath,
                 "'D' is 2 numbers, which 'D=100..150' bounds together; expected bounds of one number\n  "
                 "remedy: give "
-                "each its own: D.x=100..150 D.y=100..150"},
+                "each its own: D.x=100..150,D.y=100..150"},
         Refused{"WithoutEffect",
                 {"AB", "CG"},
                 kPath,

@@ -71,9 +71,11 @@ class DimensionReader {
     } else if (equals == std::string::npos) {
       for (const Number* number : named) add(*number, std::nullopt);
     } else if (named.size() > 1) {
-      std::string remedy = "give each its own:";
-      for (const Number* number : named)
-        remedy += fmt::format(" {}={}", number->name, wanted.substr(equals + 1));
+      std::string remedy = "give each its own: ";
+      for (const Number* number : named) {
+        remedy += fmt::format("{}{}={}", number == named.front() ? "" : ",", number->name,
+                              wanted.substr(equals + 1));
+      }
       report(fmt::format("'{}' is {} numbers, which '{}' bounds together", name, named.size(), wanted),
              "bounds of one number", std::move(remedy));
     } else if (const auto bounds = read_bounds(wanted, equals + 1, *named.front())) {

@@ -134,7 +134,7 @@ class Fitter {
     constexpr int kStages = 6;
     if (sum <= least_squares_.floor) return false;
     problem_.restart();
-    const VectorXd accelerations = problem_.accelerations(family_.values());
+    const VectorXd accelerations = problem_.accelerations(family_.values(), problem_.stance());
     double weight =
         kFirstPart * sum * static_cast<double>(accelerations.size()) / accelerations.squaredNorm();
     Minimum minimum{start, sum, true};
@@ -193,8 +193,12 @@ class Fitter {
     fit.text = family_.text(values);
     if (!fit.improved) return;
     if (fit.turns_fully) {
-      fit.acceleration_before = problem_.accelerations(family_.values()).lpNorm<Eigen::Infinity>();
-      fit.acceleration_after = problem_.accelerations(values).lpNorm<Eigen::Infinity>();
+      const auto largest = [&](const VectorXd& member, const Stance& stance) {
+        return problem_.accelerations(member, stance).lpNorm<Eigen::Infinity>();
+      };
+      fit.acceleration_after = largest(values, best_->stance);
+      problem_.restart();
+      fit.acceleration_before = largest(family_.values(), problem_.stance());
     }
     FittedText fitted = fitted_text(family_, values, best_->stance);
     fit.sketch_moved = fitted.sketch_moved;

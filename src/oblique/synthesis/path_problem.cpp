@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include <fmt/format.h>
 
@@ -234,15 +233,10 @@ MatrixXd PathProblem::jacobian(const VectorXd& values) {
   return jacobian;
 }
 
-VectorXd PathProblem::accelerations(const VectorXd& values) {
-  const double before = std::exchange(barrier_, 1.0);
-  VectorXd accelerations;
-  if (const auto with = residuals(values)) {
-    accelerations =
-        with->tail(with->size() - 2 * std::ssize(target_.positions)) / weight_of_an_acceleration();
-  }
-  barrier_ = before;
-  return accelerations;
+VectorXd PathProblem::accelerations(const VectorXd& values, const Stance& stance) const {
+  Mechanism mechanism = family_.mechanism(values);
+  mechanism.sketch = stance;
+  return accelerations_in(turn_of(mechanism));
 }
 
 std::optional<double> PathProblem::effect_of(Index dimension) {

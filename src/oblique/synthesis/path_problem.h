@@ -48,9 +48,9 @@ class PathProblem {
   /// not, as a four-bar linkage passes its change point with a jump in them. Only of use where `must_turn`.
   void set_barrier(double weight) { barrier_ = weight; }
 
-  /// α/ω₀² of all bodies over the turn of a member, ω₀ the speed of the first drive; empty where it does not
-  /// turn.
-  Eigen::VectorXd accelerations(const Eigen::VectorXd& values);
+  /// α/ω₀² of all bodies over the turn of a member that begins near `stance`, ω₀ the speed of the first
+  /// drive.
+  Eigen::VectorXd accelerations(const Eigen::VectorXd& values, const Stance& stance) const;
 
   const Family& family() const { return family_; }
   bool must_turn() const { return must_turn_; }
