@@ -23,41 +23,6 @@ namespace {
 
 using testing::HasSubstr;
 
-const char* const kFourBar = R"(
-format = "oblique-mechanism/1"
-[frame]
-A = [0, 0]
-D = [4, 0]
-[bodies]
-AB = { points = ["A", "B"], length = 1 }
-BC = { points = ["B", "C"], length = 3.5 }
-CD = { points = ["C", "D"], length = 3 }
-[drives]
-crank = { turns = "AB", about = "A", speed = 1 }
-[sketch]
-C = [3, 2.8]
-)";
-
-/// Largest distance of any moving point from its exact place [length unit].
-double largest_error(const Mechanism& mechanism, const Run& analog) {
-  const Trajectory& table = analog.trajectory;
-  std::vector<double> times;
-  for (std::size_t r = 0; r < table.rows(); ++r) times.push_back(table.at(r, 0));
-  const Motion exact = solve_motion(mechanism, times);
-  double largest = 0;
-  for (std::size_t p = 0; p < mechanism.points.size(); ++p) {
-    if (mechanism.points[p].fixed) continue;
-    const auto x = table.find(mechanism.points[p].name + ".x"),
-               y = table.find(mechanism.points[p].name + ".y");
-    EXPECT_TRUE(x && y) << mechanism.points[p].name;
-    for (std::size_t r = 0; r < table.rows(); ++r) {
-      const Eigen::Vector2d& place = exact.configurations[r].points[p].position;
-      largest = std::max(largest, std::hypot(table.at(r, *x) - place.x(), table.at(r, *y) - place.y()));
-    }
-  }
-  return largest;
-}
-
 class ShippedMechanism : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Patch, ShippedMechanism, testing::Values("four-bar", "six-bar", "jansen"));
 
@@ -394,36 +359,6 @@ TEST(Patch, RefusesAGradientServoOfInfiniteGain) {
   } catch (const PatchError& error) {
     EXPECT_THAT(error.what(), HasSubstr("a gradient servo of infinite gain has no time scale"));
   }
-}
-
-// Slow at the start and the end, backwards in between, and at a standstill twice: the exact motion has the
-// law's integral.
-TEST(Patch, FollowsASpeedLaw) {
-  const std::string text =
-      replaced(kFourBar, "speed = 1", "speed = \"0.2 + cos(3*time)*30 rpm\"") + "[motion]\nuntil = 4\n";
-  const Mechanism mechanism = parse_mechanism(text, "law.toml");
-  const Diagram diagram = patch_triangles(mechanism);
-  EXPECT_EQ(diagram.run.until, 4);
-  EXPECT_LT(largest_error(mechanism, PatchedRun(diagram).result), 1e-6 * mechanism.largest_length());
-  const std::string written = write_diagram(diagram);
-  EXPECT_THAT(written, HasSubstr("Run over the 4 s of its motion."));
-  EXPECT_THAT(written, HasSubstr("# crank AB: turns about A at (0.2 + cos(3*time)*30)*0.10472 rad/s"));
-  EXPECT_TRUE(parse_diagram(written, "patched.toml") == diagram);
-}
-
-TEST(Patch, FollowsALawThatStartsFromRest) {
-  const Mechanism mechanism =
-      parse_mechanism(replaced(kFourBar, "speed = 1", "speed = \"sin(time/4)^2 rad/s\""), "law.toml");
-  const Diagram diagram = patch_triangles(mechanism);
-  EXPECT_NEAR(diagram.run.until, period(mechanism), 1e-12);  // a whole turn
-  EXPECT_LT(largest_error(mechanism, PatchedRun(diagram).result), 1e-6 * mechanism.largest_length());
-}
-
-// roberts.toml swings by 17° · 2π cos 2πt: 1.86 rad/s at most.
-TEST(Patch, ChoosesTheBandwidthOfALawByItsGreatestSpeed) {
-  EXPECT_EQ(default_bandwidth(shipped("roberts")), 50);
-  const std::string from_rest = replaced(kFourBar, "speed = 1", "speed = \"10*sin(time) rad/s\"");
-  EXPECT_EQ(default_bandwidth(parse_mechanism(from_rest, "m.toml")), 200);  // 1000/(2π) = 159
 }
 
 }  // namespace

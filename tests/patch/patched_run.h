@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <string>
+#include <vector>
 
+#include <gtest/gtest.h>
+
+#include <oblique/mechanism/motion.h>
 #include <oblique/mechanism/read_mechanism.h>
 #include <oblique/patch/patch.h>
 #include <oblique/solve/run.h>
@@ -29,5 +35,40 @@ struct PatchedRun {
   Program program;
   Run result;
 };
+
+inline const char* const kFourBar = R"(
+format = "oblique-mechanism/1"
+[frame]
+A = [0, 0]
+D = [4, 0]
+[bodies]
+AB = { points = ["A", "B"], length = 1 }
+BC = { points = ["B", "C"], length = 3.5 }
+CD = { points = ["C", "D"], length = 3 }
+[drives]
+crank = { turns = "AB", about = "A", speed = 1 }
+[sketch]
+C = [3, 2.8]
+)";
+
+/// Largest distance of any moving point from its exact place [length unit].
+inline double largest_error(const Mechanism& mechanism, const Run& analog) {
+  const Trajectory& table = analog.trajectory;
+  std::vector<double> times;
+  for (std::size_t r = 0; r < table.rows(); ++r) times.push_back(table.at(r, 0));
+  const Motion exact = solve_motion(mechanism, times);
+  double largest = 0;
+  for (std::size_t p = 0; p < mechanism.points.size(); ++p) {
+    if (mechanism.points[p].fixed) continue;
+    const auto x = table.find(mechanism.points[p].name + ".x"),
+               y = table.find(mechanism.points[p].name + ".y");
+    EXPECT_TRUE(x && y) << mechanism.points[p].name;
+    for (std::size_t r = 0; r < table.rows(); ++r) {
+      const Eigen::Vector2d& place = exact.configurations[r].points[p].position;
+      largest = std::max(largest, std::hypot(table.at(r, *x) - place.x(), table.at(r, *y) - place.y()));
+    }
+  }
+  return largest;
+}
 
 }  // namespace oblique

@@ -8,6 +8,11 @@
 #include <oblique/patch/patch_builder.h>
 
 namespace oblique {
+namespace {
+
+constexpr double kBetweenRows = 1.001;  ///< how much more there may be between two positions of the motion
+
+}  // namespace
 
 std::string PatchBuilder::speed_text(const Drive& drive) const {
   const std::string unit = drive.slide ? mechanism_.length_unit + "/s" : "rad/s";
@@ -23,8 +28,7 @@ const PatchBuilder::Speed& PatchBuilder::add_speed(std::size_t d) {
   double fastest = 0;
   for (const std::vector<DriveState>& row : motion_.drives)
     fastest = std::max(fastest, std::abs(row[d].rate));
-  constexpr double kMargin = 1.001;  // for what lies between two positions of the motion
-  const double unit = fastest > 0 ? round_up(kMargin * fastest) : 1;
+  const double unit = fastest > 0 ? round_up(kBetweenRows * fastest) : 1;
   speeds_[d].signal = add_block(
       drive.name + "_speed", "time-function",
       {text_setting("formula", to_string(*drive.law)), number_setting("scale", drive.law_scale / unit)});
@@ -43,8 +47,11 @@ std::string PatchBuilder::add_generator(std::size_t d, const std::string& commen
   return generator;
 }
 
-std::string PatchBuilder::add_way(std::size_t d, double reach) {
+std::string PatchBuilder::add_way(std::size_t d) {
   const Drive& drive = mechanism_.drives[d];
+  const double margin = drive.law ? kBetweenRows : 1;
+  const double reach =
+      round_up(scaled(std::max(margin * scaling_.slides[*drive.slide], scaling_.length / 1000)));
   const Speed& speed = add_speed(d);
   std::string way = add_block(drive.name, "integrator",
                               {wire_setting("in", {{scaled(speed.unit) / reach, speed.signal}}),

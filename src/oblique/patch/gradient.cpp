@@ -82,7 +82,7 @@ class GradientPatch : private PatchBuilder {
   void add_drive(const Group& group, std::size_t d) {
     const Drive& drive = mechanism_.drives[d];
     if (drive.slide) {
-      add_way(d, 1);
+      add_way(d);
     } else {
       add_generator(d, fmt::format("drive {} turns {} inside the group {}", drive.name,
                                    mechanism_.bodies[drive.body].name, group.name));

@@ -69,9 +69,9 @@ class PatchBuilder : private MachineTime, protected PointForms {
   /// A block that gives the direction of the body that a drive turns: its name; `drives_` keeps the form.
   std::string add_generator(std::size_t drive, const std::string& comment);
 
-  /// A block that gives the way of a drive along its slide, in units of `reach` [machine unit]: its signal;
-  /// `drives_` keeps the form.
-  std::string add_way(std::size_t drive, double reach);
+  /// A block that gives the way of a drive along its slide, scaled to stay within ±1 machine unit: its
+  /// signal; `drives_` keeps the form.
+  std::string add_way(std::size_t drive);
 
   bool is_known(std::size_t point) const {
     return mechanism_.points[point].fixed || !signals_[point].x.empty();

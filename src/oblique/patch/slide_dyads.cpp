@@ -258,10 +258,8 @@ VectorForm SlideDyadPatch::add_crossing(const Group& group, Locus first, Locus s
 }
 
 VectorForm SlideDyadPatch::add_slider(const Group& group, const Condition& along, const std::string& name) {
-  const Drive& drive = mechanism_.drives[*along.drive];
-  const double reach = largest_over_motion(
-      [&](const Configuration& here) { return std::abs(here.slides[*drive.slide].position); });
-  const std::string way = add_way(*along.drive, reach);
+  const std::string way = add_way(*along.drive);
+  const double reach = drives_[*along.drive].way.weights.at(way);
   const Locus line = locus(group, along);
   VectorForm unknown = line.at;
   const auto add = [&](LinearForm& to, const LinearForm& direction, const char* axis) {
