@@ -18,7 +18,8 @@ class Tables {
       : check_(check),
         mechanism_(check.mechanism),
         analysis_(check.analysis),
-        unit_(check.mechanism.length_unit) {}
+        unit_(check.mechanism.length_unit),
+        size_(check.mechanism.largest_length()) {}
 
   std::vector<CheckTable> all() {
     four_bars();
@@ -36,7 +37,7 @@ class Tables {
  private:
   std::string length(double value) const {
     constexpr double kRounding = 1e-9;
-    return fmt::format("{:.5g}", std::abs(value) < kRounding * mechanism_.largest_length() ? 0.0 : value);
+    return fmt::format("{:.5g}", std::abs(value) < kRounding * size_ ? 0.0 : value);
   }
   static std::string degrees(double value) {
     const double shown = std::round(value / kDegree * 100) / 100;
@@ -217,8 +218,7 @@ class Tables {
 
   std::string area(double value) const {
     constexpr double kRounding = 1e-9;
-    const double size = mechanism_.largest_length();
-    return fmt::format("{:.5g}", std::abs(value) < kRounding * size * size ? 0.0 : value);
+    return fmt::format("{:.5g}", std::abs(value) < kRounding * size_ * size_ ? 0.0 : value);
   }
 
   void centres() {
@@ -261,6 +261,7 @@ class Tables {
   const Mechanism& mechanism_;
   const MechanismAnalysis& analysis_;
   std::string unit_;
+  double size_;  ///< largest length [length unit]
   std::vector<CheckTable> tables_;
 };
 

@@ -44,11 +44,11 @@ std::string table_of(const Mechanism& mechanism, const Digest& digest, int posit
   units.emplace_back();
   Table table(header);
   table.add(units);
+  const double size = mechanism.largest_length();
   for (std::size_t row = 0; row < digest.rows.size(); ++row) {
     std::vector<std::string> cells;
     cells.reserve(columns.size() + 1);
-    for (const std::size_t c : columns)
-      cells.push_back(short_number(digest.rows[row][c], mechanism.largest_length()));
+    for (const std::size_t c : columns) cells.push_back(short_number(digest.rows[row][c], size));
     cells.emplace_back(status_name(digest.statuses[row]));
     table.add(cells);
   }

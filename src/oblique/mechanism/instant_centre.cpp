@@ -36,10 +36,8 @@ std::optional<std::size_t> hinge(const Mechanism& mechanism, std::optional<std::
   return std::nullopt;
 }
 
-}  // namespace
-
-InstantCentre instant_centre(const Mechanism& mechanism, const Configuration& here,
-                             std::optional<std::size_t> first, std::size_t second) {
+InstantCentre centre_of(const Mechanism& mechanism, double size, const Configuration& here,
+                        std::optional<std::size_t> first, std::size_t second) {
   InstantCentre centre{first, second, std::nullopt, std::nullopt};
   if (here.status == Status::open) return centre;
   if (const auto shared = hinge(mechanism, first, second)) {
@@ -50,7 +48,6 @@ InstantCentre instant_centre(const Mechanism& mechanism, const Configuration& he
   const Twist other = twist(mechanism, here, second);
   const double omega = other.omega - one.omega;
   const Vector2d relative = other.a - one.a;
-  const double size = mechanism.largest_length();
   const double rate =
       std::max({std::abs(one.omega), std::abs(other.omega), one.speed / size, other.speed / size});
   if (!std::isfinite(omega) || !relative.allFinite()) return centre;
@@ -63,14 +60,22 @@ InstantCentre instant_centre(const Mechanism& mechanism, const Configuration& he
   return centre;
 }
 
+}  // namespace
+
+InstantCentre instant_centre(const Mechanism& mechanism, const Configuration& here,
+                             std::optional<std::size_t> first, std::size_t second) {
+  return centre_of(mechanism, mechanism.largest_length(), here, first, second);
+}
+
 std::vector<InstantCentre> instant_centres(const Mechanism& mechanism, const Configuration& here) {
+  const double size = mechanism.largest_length();
   std::vector<InstantCentre> centres;
   for (std::size_t b = 0; b < mechanism.bodies.size(); ++b) {
-    centres.push_back(instant_centre(mechanism, here, std::nullopt, b));
+    centres.push_back(centre_of(mechanism, size, here, std::nullopt, b));
   }
   for (std::size_t a = 0; a < mechanism.bodies.size(); ++a) {
     for (std::size_t b = a + 1; b < mechanism.bodies.size(); ++b) {
-      centres.push_back(instant_centre(mechanism, here, a, b));
+      centres.push_back(centre_of(mechanism, size, here, a, b));
     }
   }
   return centres;

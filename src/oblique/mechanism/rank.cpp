@@ -93,6 +93,13 @@ class Rows {
   std::vector<Eigen::RowVectorXd> rows_;
 };
 
+/// Jacobi's method finds small ones best, and takes minutes for a thousand rows.
+Eigen::VectorXd singular_values(const Eigen::MatrixXd& matrix) {
+  constexpr Index kMostRows = 100;
+  if (matrix.rows() <= kMostRows) return Eigen::JacobiSVD<Eigen::MatrixXd>(matrix).singularValues();
+  return Eigen::BDCSVD<Eigen::MatrixXd>(matrix).singularValues();
+}
+
 }  // namespace
 
 std::vector<BodyPose> poses_of(const Mechanism& mechanism, const Configuration& here) {
@@ -123,8 +130,7 @@ JacobianRank jacobian_rank(const Mechanism& mechanism, const std::vector<BodyPos
       }));
   result.conditions = static_cast<std::size_t>(rows);
   if (rows == 0) return result;
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(jacobian);
-  const auto& values = svd.singularValues();
+  const Eigen::VectorXd values = singular_values(jacobian);
   for (Index i = 0; i < values.size(); ++i) {
     const double ratio = values(i) / values(0);
     if (ratio > kRankTolerance) {
