@@ -69,7 +69,7 @@ void check_mobility(const Mechanism& mechanism) {
                      loose_ends(mechanism);
   } else {
     finding.remedy = freedom < 0 ? "over-constrained: leave out bodies or hinges"
-                                 : "over-driven: leave out drives, or add bodies";
+                                 : "over-driven: leave out drives, or hinges that are too many";
   }
   throw MechanismError(MechanismError::Kind::mobility, std::move(finding));
 }

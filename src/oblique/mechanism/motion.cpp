@@ -83,7 +83,7 @@ double period(const Mechanism& mechanism) {
   if (mechanism.motion.until) return *mechanism.motion.until;
   if (drive.slide) {
     refuse(mechanism, fmt::format("drive '{}' moves a slide and makes no turn", drive.name),
-           "a first drive that turns a body", "give the time of the motion: --until, or until in [motion]");
+           "a first drive that turns a body", "give the time of the motion, until in [motion]");
   }
   if (!drive.law) return kTurn / std::abs(drive.speed);
   // as long as ten turns at the speed of the start, or at the unit of the law
@@ -91,7 +91,7 @@ double period(const Mechanism& mechanism) {
   if (const auto time = DriveClock(mechanism).time_of_way(0, kTurn, 10 * kTurn / speed)) return *time;
   refuse(mechanism,
          fmt::format("drive '{}' makes no full turn within {:.4g} s", drive.name, 10 * kTurn / speed),
-         "a speed that turns it once", "give the time of the motion: --until, or until in [motion]");
+         "a speed that turns it once", "give the time of the motion, until in [motion]");
 }
 
 double cycle(const Mechanism& mechanism, const Structure& structure) {
@@ -100,7 +100,7 @@ double cycle(const Mechanism& mechanism, const Structure& structure) {
   const MotionRange range = find_range(mechanism, structure);
   if (!range.backward || !range.forward) {
     refuse(mechanism, fmt::format("drive '{}' moves a slide that meets no limit", drive.name),
-           "an end of the motion", "give its time: --until, or until in [motion]");
+           "an end of the motion", "give its time, until in [motion]");
   }
   return 2 * (range.forward->time - range.backward->time);
 }
