@@ -54,8 +54,9 @@ Handle made(Handle handle) {
   return handle;
 }
 
-/// SUNHashMap_New writes into what it is given without a look whether it was given anything. That there is
-/// more than a context takes is found out first.
+/// SUNHashMap_New writes into what it is given without a look whether it was given anything, and
+/// SUNContext_Create destroys a logger that it was not given. That there is more than a context takes is found
+/// out first.
 SUNContext make_context() {
   constexpr std::size_t kMoreThanContext = 16'384;
   ::operator delete(made(::operator new(kMoreThanContext, std::nothrow)));

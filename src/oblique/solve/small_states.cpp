@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/SparseLU>
+#include <oblique/solve/linear_factors.h>
 
 namespace oblique {
 namespace {
@@ -90,10 +90,8 @@ void SmallStates::look(double t, std::span<const double> x) {
         entries.emplace_back(pattern.rows[entry], column, -length * jacobian[entry]);
       }
     }
-    Eigen::SparseMatrix<double> step(n, n);
-    step.setFromTriplets(entries.begin(), entries.end());
-    const Eigen::SparseLU<Eigen::SparseMatrix<double>> factors(step);
-    if (factors.info() != Eigen::Success) continue;
+    const LinearFactors factors(n, entries);
+    if (factors.sign() == 0) continue;
     for (const std::size_t i : small) {
       Eigen::VectorXd error = Eigen::VectorXd::Zero(n);
       error[static_cast<Eigen::Index>(i)] = kErrorOfState * tolerance_of(i);
