@@ -19,6 +19,7 @@ import os
 import random
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import time
@@ -302,6 +303,8 @@ def parse_options():
 
 
 def main():
+    # Started in the background it may have been told to ignore the interrupt; the tests are to be reached by theirs.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     options = parse_options()
     mutants = chosen_mutants(options)
     if options.list:
