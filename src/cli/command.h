@@ -80,6 +80,20 @@ PatchMethod method_option(const std::string& text);
 /// What was found about a patch that is written, for people.
 std::string judgement_text(const Judgement& judgement);
 
+/// How the triads of a mechanism are taken apart.
+struct TriadChoice {
+  std::vector<std::string> split;
+  std::string slower;  ///< empty: as it takes
+};
+
+/// One patch that is run beside other work.
+struct PatchChoice {
+  std::string gain = "1e6";
+  std::string bandwidth;
+  std::string method = "triangles";
+  TriadChoice triads;
+};
+
 struct PatchRequest {
   std::string mechanism;
   std::string output;
@@ -89,8 +103,7 @@ struct PatchRequest {
   bool derivatives = false;
   std::string unit;
   std::string period;
-  std::string slower;  ///< empty: as it takes
-  std::vector<std::string> split;
+  TriadChoice triads;
   std::string machine;  ///< in whose elements
   std::string sheets;   ///< how the names of its sheets begin
   bool force = false;
@@ -103,6 +116,7 @@ struct CompareRequest {
   std::vector<std::string> gains;  ///< empty: those of CompareOptions
   std::vector<std::string> bandwidths;
   std::vector<std::string> methods{"triangles"};
+  TriadChoice triads;
   std::string machine;  ///< in whose elements besides
   int runs = 0;         ///< of --monte-carlo; 0: none
   std::uint64_t seed = 1;
@@ -114,13 +128,6 @@ struct CompareRequest {
   std::string theme;  ///< of the drawing; empty: auto
 };
 ExitStatus compare_mechanism(const Session& session, const CompareRequest& request);
-
-/// One patch that is run beside other work.
-struct PatchChoice {
-  std::string gain = "1e6";
-  std::string bandwidth;
-  std::string method = "triangles";
-};
 
 struct ReportRequest {
   std::string mechanism;

@@ -21,6 +21,7 @@
 #include "machine_patch.h"
 #include "monte_carlo_output.h"
 #include "output_files.h"
+#include "patch_choice.h"
 #include "plot_output.h"
 #include "terminal.h"
 
@@ -57,7 +58,19 @@ CompareOptions options_of(const CompareRequest& request) {
     options.gains = numbers_option("--gain", request.gains, "1", "finite gains above 0, such as 1e3,1e4,1e5");
   options.bandwidths = numbers_option("--bandwidth", request.bandwidths, "Hz",
                                       "finite bandwidths above 0, such as 10,100 or \"1 kHz\"");
+  take_apart(request.triads, options.methods, options.split, options.slower);
   return options;
+}
+
+/// Says what is missing in the tables; whether a run failed.
+bool warn_of(const std::vector<RefusedRun>& refused) {
+  for (const RefusedRun& run : refused) {
+    std::string name = fmt::format("method {}", method_name(run.method));
+    if (run.bandwidth) name += fmt::format(", {:.6g} Hz", *run.bandwidth);
+    if (run.gain) name += fmt::format(", gain {:.6g}", *run.gain);
+    note(fmt::format("warning: {} is left out: {}\n", name, to_string(run.why)));
+  }
+  return std::any_of(refused.begin(), refused.end(), [](const RefusedRun& run) { return run.gain; });
 }
 
 /// The one patch that `option` is about: "--machine", "--monte-carlo".
@@ -71,6 +84,8 @@ PatchOptions single_patch(const std::string& option, const CompareRequest& reque
   one_of("--method", options.methods.size());
   PatchOptions patch;
   patch.method = options.methods.front();
+  patch.split = options.split;
+  patch.slower = options.slower;
   if (!request.gains.empty()) patch.gain = options.gains.front();
   if (!options.bandwidths.empty()) patch.bandwidth = options.bandwidths.front();
   return patch;
@@ -165,7 +180,7 @@ ExitStatus compare_mechanism(const Session& session, const CompareRequest& reque
   std::string text = to_text(comparison);
   nlohmann::ordered_json json = to_json(comparison);
   Chart chart = chart_of(comparison);
-  bool failed = false;
+  bool failed = warn_of(comparison.refused);
   if (machine != nullptr) {
     Progress progress("figure by figure");
     const MachineComparison on_machine = compare_on_machine(
@@ -178,7 +193,7 @@ ExitStatus compare_mechanism(const Session& session, const CompareRequest& reque
     text += to_text(report);
     json["monte_carlo"] = to_json(report);
     for (Panel& panel : panels_of(comparison, report)) chart.panels.push_back(std::move(panel));
-    failed = !report.result.worst_run;
+    failed = failed || !report.result.worst_run;
   }
   if (!plots_in_terminal(request.plot)) print(request.json ? json_text(json) : text);
   if (!request.plot.empty()) plot(chart, request.plot, plot_theme(request.theme));

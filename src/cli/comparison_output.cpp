@@ -209,6 +209,13 @@ nlohmann::ordered_json to_json(const Comparison& comparison) {
                               {"floor", json_of(series.floor)},
                               {"order", json_of(series.order)}});
   }
+  json["refused"] = Json::array();
+  for (const RefusedRun& run : comparison.refused) {
+    json["refused"].push_back({{"method", method_name(run.method)},
+                               {"bandwidth", json_of(run.bandwidth)},
+                               {"gain", json_of(run.gain)},
+                               {"why", run.why.what}});
+  }
   return json;
 }
 

@@ -51,16 +51,7 @@ void add_patch(CLI::App& app, Chosen& chosen) {
   add_method(verb, *request);
   verb->add_flag("--derivatives", request->derivatives,
                  "velocities and accelerations too, as further circuits");
-  verb->add_option(
-          "--split", request->split,
-          "how to take a triad apart: the lead whose triangle carries the variable length, the lead that "
-          "closes the loop, the third (default: the split that is worth the most)")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->type_name("LEAD,LEAD,LEAD");
-  verb->add_option(
-      "--slower", request->slower,
-      "how many times slower the outer loop of a triad is (default: 100, or more where it takes it)");
+  add_triad_choice(verb, request->triads);
   verb->add_option("--unit", request->unit,
                    "1 machine unit of the coordinates, for example \"2.5 m\" (default: by the exact motion)")
       ->type_name("LENGTH");
@@ -105,6 +96,7 @@ void add_compare(CLI::App& app, Chosen& chosen) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("M,M,…");
+  add_triad_choice(verb, request->triads);
   verb->add_option(
           "--machine", request->machine,
           "run it in this machine's elements too, and say what each published figure adds to the error "

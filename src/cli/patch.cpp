@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <oblique/mechanism/read_mechanism.h>
 
@@ -50,7 +49,9 @@ PatchMethod method_option(const std::string& text) {
                              suggest(text, {"triangles", "gradient", "paper"})});
 }
 
-ExitStatus patch_mechanism(const Session& session, const PatchRequest& request) {
+namespace {
+
+ExitStatus patch_or_refuse(const Session& session, const PatchRequest& request) {
   if (!request.output.empty()) check_output(request.output, ".toml");
   check_machine_request(request);
   PatchOptions options;
@@ -58,17 +59,7 @@ ExitStatus patch_mechanism(const Session& session, const PatchRequest& request) 
   options.gain = gain_option("--gain", request.gain, "1");
   if (!request.bandwidth.empty()) options.bandwidth = gain_option("--bandwidth", request.bandwidth, "Hz");
   options.derivatives = request.derivatives;
-  if (!request.slower.empty()) options.slower = positive_option("--slower", request.slower, "1");
-  options.split = request.split;
-  if (options.method == PatchMethod::gradient && !(options.split.empty() && request.slower.empty())) {
-    const std::string option = options.split.empty()
-                                   ? fmt::format("--slower {}", request.slower)
-                                   : fmt::format("--split {}", fmt::join(options.split, ","));
-    throw ReadError(Diagnostic{{},
-                               fmt::format("{} with --method gradient, which takes no group apart", option),
-                               "--method triangles or paper beside it",
-                               {}});
-  }
+  take_apart(request.triads, {options.method}, options.split, options.slower);
   options.force = request.force;
   const Mechanism mechanism = read_mechanism(request.mechanism);
   if (!request.unit.empty()) options.unit = positive_option("--unit", request.unit, mechanism.length_unit);
@@ -86,6 +77,19 @@ ExitStatus patch_mechanism(const Session& session, const PatchRequest& request) 
     note(fmt::format("run it with: oblique run {}\n", request.output));
   }
   return ExitStatus::done;
+}
+
+}  // namespace
+
+ExitStatus patch_mechanism(const Session& session, const PatchRequest& request) {
+  try {
+    return patch_or_refuse(session, request);
+  } catch (const PatchError& error) {
+    if (!error.can_be_forced()) throw;
+    Diagnostic refusal = error.diagnostics().front();
+    refusal.remedy += "; --force writes this one all the same";
+    throw PatchError(refusal, error.kind());
+  }
 }
 
 }  // namespace oblique::cli

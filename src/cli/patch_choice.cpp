@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "patch_choice.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "terminal.h"
 
@@ -15,11 +17,27 @@ double positive_option(const std::string& option, const std::string& text, std::
   throw ReadError(Diagnostic{{}, fmt::format("{} {}", option, text), "a finite number above 0", {}});
 }
 
+void take_apart(const TriadChoice& choice, const std::vector<PatchMethod>& methods,
+                std::vector<std::string>& split, std::optional<double>& slower) {
+  if (!choice.slower.empty()) slower = positive_option("--slower", choice.slower, "1");
+  split = choice.split;
+  if (split.empty() && !slower) return;
+  const auto takes_apart = [](PatchMethod method) { return method != PatchMethod::gradient; };
+  if (std::any_of(methods.begin(), methods.end(), takes_apart)) return;
+  const std::string option = split.empty() ? fmt::format("--slower {}", choice.slower)
+                                           : fmt::format("--split {}", fmt::join(split, ","));
+  throw ReadError(Diagnostic{{},
+                             fmt::format("{} with --method gradient, which takes no group apart", option),
+                             "--method triangles or paper beside it",
+                             {}});
+}
+
 PatchOptions patch_options(const PatchChoice& choice) {
   PatchOptions options;
   options.method = method_option(choice.method);
   options.gain = positive_option("--gain", choice.gain, "1");
   if (!choice.bandwidth.empty()) options.bandwidth = positive_option("--bandwidth", choice.bandwidth, "Hz");
+  take_apart(choice.triads, {options.method}, options.split, options.slower);
   return options;
 }
 

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
+#include <string>
+#include <vector>
+
 #include <oblique/patch/patch.h>
 
 #include "command.h"
@@ -10,7 +14,12 @@ namespace oblique::cli {
 /// A finite number above 0 given as an option, in `unit`. Throws ReadError that names the option.
 double positive_option(const std::string& option, const std::string& text, std::string_view unit);
 
-/// The patch that --method, --gain and --bandwidth ask for. Throws ReadError.
+/// Lets a patch by one of these methods take triads apart as --split and --slower say. Throws ReadError where
+/// none of the methods does.
+void take_apart(const TriadChoice& choice, const std::vector<PatchMethod>& methods,
+                std::vector<std::string>& split, std::optional<double>& slower);
+
+/// The patch that --method, --gain, --bandwidth, --split and --slower ask for. Throws ReadError.
 PatchOptions patch_options(const PatchChoice& choice);
 
 }  // namespace oblique::cli

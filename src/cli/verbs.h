@@ -54,16 +54,32 @@ void add_method(CLI::App* verb, Request& request) {
       ->capture_default_str();
 }
 
-/// --gain, --bandwidth and --method of a verb that runs one patch beside other work; where that is to be
-/// asked for, `needed` asks for it.
+/// --split and --slower of a verb that patches.
+inline void add_triad_choice(CLI::App* verb, TriadChoice& choice) {
+  verb->add_option(
+          "--split", choice.split,
+          "how to take a triad apart: the lead whose triangle carries the variable length, the lead that "
+          "closes the loop, the third (default: the split that is worth the most)")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("LEAD,LEAD,LEAD");
+  verb->add_option(
+      "--slower", choice.slower,
+      "how many times slower the outer loop of a triad is (default: 100, or more where it takes it)");
+}
+
+/// --gain, --bandwidth, --method, --split and --slower of a verb that runs one patch beside other work;
+/// where that is to be asked for, `needed` asks for it.
 inline void add_patch_choice(CLI::App* verb, PatchChoice& choice, CLI::Option* needed = nullptr) {
   verb->add_option("--gain", choice.gain, "gain of the servo amplifiers in the patch")->capture_default_str();
   verb->add_option("--bandwidth", choice.bandwidth,
                    "bandwidth of the servo amplifiers, in Hz or with a unit (default: 100 times the crank's "
                    "frequency)");
   add_method(verb, choice);
+  add_triad_choice(verb, choice.triads);
   if (needed == nullptr) return;
-  for (const char* option : {"--gain", "--bandwidth", "--method"}) verb->get_option(option)->needs(needed);
+  for (const char* option : {"--gain", "--bandwidth", "--method", "--split", "--slower"})
+    verb->get_option(option)->needs(needed);
 }
 
 // Each adds a verb with its options.

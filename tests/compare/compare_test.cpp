@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <oblique/mechanism/read_mechanism.h>
@@ -107,6 +108,22 @@ TEST(Compare, RunsEveryMethodWithEveryBandwidthAndGain) {
   }
   // The gradient servo's K is gain times bandwidth; to 1e-3, since K is some 1e4 times the crank's speed.
   EXPECT_NEAR(comparison.runs[4].max_error / comparison.runs[6].max_error, 10, 0.01);
+}
+
+TEST(Compare, LeavesOutWhatIsRefusedAndWhatFails) {
+  CompareOptions options;
+  options.methods = {PatchMethod::paper, PatchMethod::triangles};
+  options.gains = {1e3, 1e4};
+  const Comparison comparison = compare(shipped("four-bar"), BlockLibrary::shipped(), options);
+  ASSERT_EQ(comparison.runs.size(), 2U);
+  EXPECT_EQ(comparison.runs.front().method, PatchMethod::triangles);
+  ASSERT_EQ(comparison.series.size(), 1U);
+  ASSERT_EQ(comparison.refused.size(), 1U);
+  EXPECT_EQ(comparison.refused.front().method, PatchMethod::paper);
+  EXPECT_FALSE(comparison.refused.front().gain);
+  EXPECT_THAT(comparison.refused.front().why.what, testing::HasSubstr("is not of the source's kind"));
+  options.methods = {PatchMethod::paper};
+  EXPECT_THROW(compare(shipped("four-bar"), BlockLibrary::shipped(), options), PatchError);
 }
 
 TEST(Compare, ReportsProgressUpToTheEnd) {

@@ -67,8 +67,23 @@ x    = { type = "integrator", in = ["-x"], initial = 0.5 }
 turn = { type = "integrator", in = ["x"] }
 c    = { type = "servo-amplifier", in = ["c", "-turn"], gain = 20 }
 )",
-                               "[outputs]\n\"P.x\" = { signal = \"x\", scale = 1, unit = \"m\" }\n");
-  EXPECT_EQ(tracking_states(made.program, made.flat), (std::vector<std::size_t>{0, 2}));
+                               "[outputs]\n\"P.x\" = { signal = \"x\", scale = 1, unit = \"m\" }\n"
+                               "\"P.y\" = { signal = \"c\", scale = 1, unit = \"m\" }\n"
+                               "\"phi\" = { signal = \"turn\", scale = 1, unit = \"1\" }\n");
+  EXPECT_EQ(tracking_states(made.program, made.flat, {{0, 0, 1}}), (std::vector<std::size_t>{0, 2}));
+}
+
+// A static error falls as 1/μ: with a lag that is nearly all of it gone at rest, what is left says so.
+TEST(ErrorParts, AreKnownOfAPatchAsTheSourceDrawsIt) {
+  for (const std::string name : {"class-iii", "three-rrr"}) {
+    const ComparedRun coarse = compared(name, PatchMethod::paper, 1e3, 20);
+    const ComparedRun fine = compared(name, PatchMethod::paper, 1e4, 20);
+    ASSERT_TRUE(coarse.parts && fine.parts);
+    const auto sum = [](const ErrorParts& parts) { return parts.at_rest + parts.lag + parts.solver; };
+    EXPECT_NEAR(sum(*coarse.parts), coarse.max_error, 1e-9 * coarse.max_error);
+    EXPECT_NEAR(sum(*fine.parts), fine.max_error, 1e-9 * fine.max_error);
+    EXPECT_NEAR(coarse.parts->at_rest / fine.parts->at_rest, 10, 0.5);  // the next order in 1/μ: some percent
+  }
 }
 
 // 1 + x² has no root.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 
 #include <fmt/format.h>
 
@@ -57,7 +58,7 @@ class Comparer {
     const auto off =
         row_off_branch(mechanism_, structure_, patched.flat, analog.trajectory, exact_, error.along);
     if (off) result.left_branch = exact_.drives[*off].front().value;
-    result.parts = error_parts(patched, exact_, analog.trajectory, error, progress());
+    result.parts = error_parts(mechanism_, patched, exact_, analog, error, progress());
     finish_run();
     return result;
   }
@@ -139,25 +140,47 @@ Comparison compare_within_range(const Mechanism& mechanism, const BlockLibrary& 
   Comparer comparer(mechanism, library, options, structure, exact, reasons);
   std::vector<std::optional<double>> bandwidths(options.bandwidths.begin(), options.bandwidths.end());
   if (bandwidths.empty()) bandwidths.emplace_back();
+  std::exception_ptr first_refusal;
+  const auto refuse = [&](const PatchOptions& asked, std::optional<double> gain, const Error& error) {
+    comparison.refused.push_back({asked.method, asked.bandwidth, gain, error.diagnostics().front()});
+    if (!first_refusal) first_refusal = std::current_exception();
+  };
   for (const PatchMethod method : options.methods) {
     for (const std::optional<double>& bandwidth : bandwidths) {
-      PatchOptions patch_options;
-      patch_options.method = method;
-      patch_options.bandwidth = bandwidth;
-      patch_options.samples = options.positions;
-      patch_options.gain = *std::max_element(options.gains.begin(), options.gains.end());
-      patch_options = judged_patch(mechanism, library, patch_options).options;
+      PatchOptions asked;
+      asked.method = method;
+      asked.bandwidth = bandwidth;
+      asked.samples = options.positions;
+      asked.gain = *std::max_element(options.gains.begin(), options.gains.end());
+      if (method != PatchMethod::gradient) {
+        asked.split = options.split;
+        asked.slower = options.slower;
+      }
+      PatchOptions patched;
+      try {
+        patched = judged_patch(mechanism, library, asked).options;
+      } catch (const PatchError& error) {
+        if (error.kind() == PatchError::Kind::request) throw;
+        refuse(asked, {}, error);
+        continue;
+      }
       const std::size_t first = comparison.runs.size();
       for (const double gain : options.gains) {
-        patch_options.gain = gain;
-        comparison.runs.push_back(comparer.compared(patch_options));
+        patched.gain = gain;
+        try {
+          comparison.runs.push_back(comparer.compared(patched));
+        } catch (const SolveError& error) {
+          refuse(asked, gain, error);
+        }
       }
+      if (comparison.runs.size() == first) continue;
       GainSeries series{
-          method, bandwidth.value_or(default_bandwidth(mechanism)), comparer.floor(patch_options), {}};
+          method, bandwidth.value_or(default_bandwidth(mechanism)), comparer.floor(patched), {}};
       series.order = fitted_order(std::span(comparison.runs).subspan(first), series.floor.value_or(0));
       comparison.series.push_back(series);
     }
   }
+  if (comparison.runs.empty()) std::rethrow_exception(first_refusal);
   return comparison;
 }
 

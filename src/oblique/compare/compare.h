@@ -17,8 +17,10 @@ namespace oblique {
 struct CompareOptions {
   std::vector<PatchMethod> methods{PatchMethod::triangles};
   std::vector<double> gains{1e2, 1e3, 1e4, 1e5, 1e6};
-  std::vector<double> bandwidths;  ///< [Hz]; none: the `default_bandwidth` of the mechanism alone
-  int positions = 361;             ///< rows over one turn, both ends included
+  std::vector<double> bandwidths;       ///< [Hz]; none: the `default_bandwidth` of the mechanism alone
+  std::vector<std::string> split = {};  ///< of a triad, and
+  std::optional<double> slower = {};    ///< the speed of its outer loop, as PatchOptions has them
+  int positions = 361;                  ///< rows over one turn, both ends included
   std::function<void(double fraction)> progress;
 };
 
@@ -37,8 +39,8 @@ struct WorstPlace {
 };
 
 /// Where the largest error of a run comes from. With q_run, q_tight and q_rest where the worst point stands
-/// in the run, in a run of a hundredth of its tolerance, and with the cranks stopped there and all loops at
-/// rest:
+/// in the run, in a run of a hundredth of its tolerance (a tenth where rounding takes over), and with the
+/// cranks stopped there and all loops at rest:
 ///
 ///     q_run − q_exact = (q_rest − q_exact) + (q_tight − q_rest) + (q_run − q_tight)
 ///
@@ -71,6 +73,14 @@ struct ComparedRun {
   double slowest_pole = 0;  ///< largest real part of the servo loops' eigenvalues over these rows [1/s]
 };
 
+/// What was asked for and could not be had: a method that does not fit the mechanism, or a run that fails.
+struct RefusedRun {
+  PatchMethod method = PatchMethod::triangles;
+  std::optional<double> bandwidth;  ///< [Hz]; nothing: the default
+  std::optional<double> gain;       ///< of the run that failed; nothing: the patch was refused
+  Diagnostic why;
+};
+
 /// What the runs of one method and one bandwidth tell together.
 struct GainSeries {
   PatchMethod method = PatchMethod::triangles;
@@ -95,6 +105,7 @@ struct Comparison {
   std::vector<double> drive;       ///< value of the first drive in each row [rad] or [length unit]
   std::vector<ComparedRun> runs;   ///< method by method, bandwidth by bandwidth, in the order of the gains
   std::vector<GainSeries> series;  ///< in the order of the runs
+  std::vector<RefusedRun> refused;
 };
 
 /// A signal may pass 1 machine unit by this much before it counts as an overload: cosines that stand at 1
@@ -102,8 +113,8 @@ struct Comparison {
 inline constexpr double kOverloadMargin = 1e-6;
 
 /// Patches a mechanism with each method, bandwidth and gain, runs the diagrams over one turn, and measures
-/// them against the exact motion. Throws
-/// as `patch` and, with the gain in the message, as `run`.
+/// them against the exact motion. What is refused, or fails, leaves the others. Where nothing is left it
+/// throws what the first one did: as `patch` or, with the gain in the message, as `run`.
 Comparison compare(const Mechanism& mechanism, const BlockLibrary& library,
                    const CompareOptions& options = {});
 

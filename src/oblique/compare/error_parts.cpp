@@ -2,6 +2,7 @@
 #include <oblique/compare/error_parts.h>
 
 #include <algorithm>
+#include <array>
 
 #include <Eigen/LU>
 
@@ -10,8 +11,12 @@
 namespace oblique {
 namespace {
 
-/// How much tighter the run is against which the solver is judged: its errors are then a few hundredths.
-constexpr double kTighter = 1e-2;
+/// How much tighter the run is against which the solver is judged: its errors are then a few hundredths, or
+/// some tenths where rounding allows no better.
+constexpr std::array kTighter{1e-2, 1e-1};
+/// More steps than this many times those of the run are steps of rounding: of the fifth order, a hundredth of
+/// the tolerance takes 2.5 times as many.
+constexpr long kMostTimes = 20;
 /// Farther from the run [machine unit] it would be another solution.
 constexpr double kFarthest = 0.1;
 constexpr int kMostSteps = 30;
@@ -31,16 +36,32 @@ std::optional<Eigen::Vector2d> place_in(const PatchedMechanism& patched, const P
   return Eigen::Vector2d(value(point.x), value(point.y));
 }
 
+std::optional<RecordedRun> tighter_run(const PatchedMechanism& patched, const Run& run,
+                                       const std::function<void(double)>& progress) {
+  for (const double part : kTighter) {
+    try {
+      return run_recorded(patched, "a tighter tolerance", part * patched.diagram.run.tolerance, progress, {},
+                          kMostTimes * run.statistics.steps);
+    } catch (const SolveError&) {
+      continue;
+    }
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
-std::vector<std::size_t> tracking_states(const Program& program, const FlatDiagram& flat) {
+std::vector<std::size_t> tracking_states(const Program& program, const FlatDiagram& flat,
+                                         const std::vector<PointOutputs>& points) {
+  const auto name_of = [&](std::size_t column) {
+    return program.signal_names()[program.signal_index(flat.outputs[column].signal)];
+  };
   std::vector<std::size_t> found;
   for (std::size_t i = 0; i < program.n_states(); ++i) {
     const State& state = program.states()[i];
-    const bool is_coordinate =
-        std::any_of(flat.outputs.begin(), flat.outputs.end(), [&](const FlatOutput& output) {
-          return program.signal_names()[program.signal_index(output.signal)] == state.name;
-        });
+    const bool is_coordinate = std::any_of(points.begin(), points.end(), [&](const PointOutputs& point) {
+      return name_of(point.x) == state.name || name_of(point.y) == state.name;
+    });
     if (state.at_rest || is_coordinate) found.push_back(i);
   }
   return found;
@@ -73,22 +94,20 @@ std::optional<Instant> at_rest(const Program& program, const std::vector<std::si
   return std::nullopt;
 }
 
-std::optional<ErrorParts> error_parts(const PatchedMechanism& patched, const Motion& exact,
-                                      const Trajectory& analog, const Distances& error,
+std::optional<ErrorParts> error_parts(const Mechanism& mechanism, const PatchedMechanism& patched,
+                                      const Motion& exact, const Run& analog, const Distances& error,
                                       const std::function<void(double)>& progress) {
-  RecordedRun tight;
-  try {
-    tight = run_recorded(patched, "a tighter tolerance", kTighter * patched.diagram.run.tolerance, progress);
-  } catch (const SolveError&) {
-    return std::nullopt;
-  }
-  const auto rest =
-      at_rest(patched.program, tracking_states(patched.program, patched.flat), tight.instants[error.row]);
+  const auto found_tight = tighter_run(patched, analog, progress);
+  if (!found_tight) return std::nullopt;
+  const RecordedRun& tight = *found_tight;
+  const auto rest = at_rest(
+      patched.program, tracking_states(patched.program, patched.flat, point_outputs(mechanism, patched.flat)),
+      tight.instants[error.row]);
   const auto standing = rest ? place_in(patched, error.worst, *rest) : std::nullopt;
   if (!standing) return std::nullopt;
   const Eigen::Vector2d& there = exact.configurations[error.row].points[error.worst.point].position;
   const Eigen::Vector2d moving = place_of(error.worst, tight.run.trajectory, error.row);
-  const Eigen::Vector2d found = place_of(error.worst, analog, error.row);
+  const Eigen::Vector2d found = place_of(error.worst, analog.trajectory, error.row);
   const Eigen::Vector2d along = (found - there).normalized();
   return ErrorParts{along.dot(*standing - there), along.dot(moving - *standing), along.dot(found - moving)};
 }

@@ -176,11 +176,11 @@ JudgedPatch judged_patch(const Mechanism& mechanism, const BlockLibrary& library
       break;
     }
   }
-  throw PatchError(
-      Diagnostic{{mechanism.file, {}},
-                 fmt::format("this patch would not run: {}", fault_of(first.judgement)),
-                 "servo loops that return to rest everywhere on the way",
-                 help + "--method gradient patches any mechanism; --force writes this one all the same"});
+  throw PatchError(Diagnostic{{mechanism.file, {}},
+                              fmt::format("this patch would not run: {}", fault_of(first.judgement)),
+                              "servo loops that return to rest everywhere on the way",
+                              help + "--method gradient patches any mechanism"})
+      .forcible();
 }
 
 }  // namespace oblique

@@ -78,15 +78,15 @@ MachinePatch put_on_machine(const Mechanism& mechanism, const BlockLibrary& libr
   if (usual.judgement.good()) return usual;
   const auto stable = slower(&Judgement::good);
   if (stable && !usual.options.bandwidth) return *stable;
-  throw PatchError(Diagnostic{
-      {mechanism.file, {}},
-      fmt::format("on the machine {} this patch would not run: {}", machine.title, fault_of(usual.judgement)),
-      "servo loops that return to rest everywhere on the way",
-      stable ? fmt::format("--bandwidth \"{:g} Hz\" is stable; --force writes this one all the same",
-                           *stable->options.bandwidth)
-             : std::string("choose a machine of faster elements (oblique machines), or a lower --gain; "
-                           "--force writes it all the "
-                           "same")});
+  throw PatchError(
+      Diagnostic{
+          {mechanism.file, {}},
+          fmt::format("on the machine {} this patch would not run: {}", machine.title,
+                      fault_of(usual.judgement)),
+          "servo loops that return to rest everywhere on the way",
+          stable ? fmt::format("--bandwidth \"{:g} Hz\" is stable", *stable->options.bandwidth)
+                 : std::string("choose a machine of faster elements (oblique machines), or a lower --gain")})
+      .forcible();
 }
 
 }  // namespace oblique

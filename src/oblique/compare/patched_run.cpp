@@ -48,12 +48,14 @@ double slowest_pole_of(const Program& program, const std::vector<Instant>& insta
 }
 
 RecordedRun run_recorded(const PatchedMechanism& patched, const std::string& what, double tolerance,
-                         const std::function<void(double)>& progress, const std::vector<double>& moments) {
+                         const std::function<void(double)>& progress, const std::vector<double>& moments,
+                         std::optional<long> max_steps) {
   RecordedRun recorded;
   RunOptions how = options_of(patched.diagram.run);
   how.tolerance = tolerance;
   how.progress = progress;
   how.extra_times = moments;
+  how.max_steps = max_steps.value_or(how.max_steps);
   if (!moments.empty()) how.until = std::max(how.until, moments.back());
   how.on_sample = [&](double t, std::span<const double> states, std::span<const double> memories) {
     recorded.instants.push_back({t, {states.begin(), states.end()}, {memories.begin(), memories.end()}});

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,10 +36,11 @@ struct RecordedRun {
 };
 
 /// Runs as the diagram asks, but with another relative tolerance; with the outputs at further `moments` [s],
-/// ascending, as long as these go. What is thrown begins with "with `what`: ".
+/// ascending, as long as these go, and within `max_steps` of the solver. What is thrown begins with "with
+/// `what`: ".
 RecordedRun run_recorded(const PatchedMechanism& patched, const std::string& what, double tolerance,
                          const std::function<void(double)>& progress = {},
-                         const std::vector<double>& moments = {});
+                         const std::vector<double>& moments = {}, std::optional<long> max_steps = {});
 
 /// The signals that left ±1 machine unit by more than the margin.
 std::vector<Overload> overloads_of(const Program& program, const Run& run, double margin = kOverloadMargin);

@@ -24,8 +24,16 @@ class PatchError : public Error {
 
   Kind kind() const { return kind_; }
 
+  /// Whether PatchOptions::force would patch it all the same.
+  bool can_be_forced() const { return can_be_forced_; }
+  PatchError&& forcible() && {
+    can_be_forced_ = true;
+    return std::move(*this);
+  }
+
  private:
   Kind kind_;
+  bool can_be_forced_ = false;
 };
 
 /// How a mechanism becomes equations that amplifiers solve.

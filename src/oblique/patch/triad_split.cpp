@@ -146,29 +146,33 @@ TriadSplit choose_split(const Mechanism& mechanism, const Group& triad, const Mo
   });
   if (named == splits.end()) {
     if (splits.front().worth() > kLeastWorth || options.force) return splits.front();
-    throw PatchError(Diagnostic{
-        place,
-        fmt::format("the group {} ({}) has no split into two triangles that never go flat and a loop that "
-                    "keeps its gain on the way",
-                    triad.name, kind_name(triad.kind)),
-        "a triad on three links with such a split",
-        "patch it with --method gradient, which takes any group"});
+    throw PatchError(
+        Diagnostic{place,
+                   fmt::format(
+                       "the group {} ({}) has no split into two triangles that never go flat and a loop that "
+                       "keeps its gain on the way",
+                       triad.name, kind_name(triad.kind)),
+                   "a triad on three links with such a split",
+                   "patch it with --method gradient, which takes any group"})
+        .forcible();
   }
   if (named->flip != TriadSplit::Flip::none && !options.force) {
-    throw PatchError(Diagnostic{
-        place,
-        fmt::format("with the split {} of the triad {}, {} at t = {:.6g} s",
-                    split_name(mechanism, triad, *named), triad.name,
-                    named->flip == TriadSplit::Flip::loop
-                        ? fmt::format("the loop that tracks the variable length changes the sign of its gain")
-                        : fmt::format("the {} triangle goes flat and turns over",
-                                      named->flip == TriadSplit::Flip::first_triangle ? "first" : "second"),
-                    named->flip_time),
-        "triangles that never go flat and a loop that keeps its sign",
-        splits.front().worth() > kLeastWorth
-            ? fmt::format("--split {} never flips; --force patches it all the same",
-                          joined(leads_of(mechanism, triad, splits.front())))
-            : "patch it with --method gradient, which takes any group"});
+    throw PatchError(
+        Diagnostic{
+            place,
+            fmt::format(
+                "with the split {} of the triad {}, {} at t = {:.6g} s", split_name(mechanism, triad, *named),
+                triad.name,
+                named->flip == TriadSplit::Flip::loop
+                    ? fmt::format("the loop that tracks the variable length changes the sign of its gain")
+                    : fmt::format("the {} triangle goes flat and turns over",
+                                  named->flip == TriadSplit::Flip::first_triangle ? "first" : "second"),
+                named->flip_time),
+            "triangles that never go flat and a loop that keeps its sign",
+            splits.front().worth() > kLeastWorth
+                ? fmt::format("--split {} never flips", joined(leads_of(mechanism, triad, splits.front())))
+                : "patch it with --method gradient, which takes any group"})
+        .forcible();
   }
   named->asked_for = true;
   return *named;
