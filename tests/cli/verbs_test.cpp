@@ -263,6 +263,33 @@ TEST_F(Verbs, CompareRunsWhatIsAskedForTwiceOnce) {
   EXPECT_EQ(twice["series"].size(), 1U);
 }
 
+TEST_F(Verbs, CompareLeavesOutAMethodThatDoesNotFit) {
+  const std::string command = "compare diagrams/mechanisms/four-bar.toml --gain 1e3 --method paper,triangles";
+  const Outcome table = oblique(command);
+  EXPECT_EQ(table.status, 0);
+  EXPECT_THAT(table.err,
+              testing::StartsWith(
+                  "warning: method paper is left out: diagrams/mechanisms/four-bar.toml:23:1: the group "
+                  "BCM-CD (RRR) is not of the source's kind"));
+  EXPECT_THAT(table.out, HasSubstr("servo-tracked triangles"));
+  const auto json = nlohmann::json::parse(oblique(command + " --json").out);
+  EXPECT_EQ(json.at("runs").size(), 1U);
+  EXPECT_EQ(json.at("refused").at(0).at("method"), "paper");
+  EXPECT_TRUE(json.at("refused").at(0).at("gain").is_null());
+}
+
+TEST_F(Verbs, CompareTakesTheSplitThatARefusalNames) {
+  const std::string command = "compare diagrams/mechanisms/stephenson-ii.toml --method paper --gain 1e3";
+  const Outcome refused = oblique(command);
+  EXPECT_EQ(refused.status, 1);
+  EXPECT_THAT(refused.err, testing::EndsWith("remedy: --split HG,BC,EF never flips\n"));
+  EXPECT_EQ(oblique(command + " --split HG,BC,EF").status, 0);
+  const Outcome patched = oblique("patch diagrams/mechanisms/stephenson-ii.toml --method paper");
+  EXPECT_THAT(
+      patched.err,
+      testing::EndsWith("remedy: --split HG,BC,EF never flips; --force writes this one all the same\n"));
+}
+
 TEST_F(Verbs, CompareHoldsMethodsAndBandwidthsAgainstEachOther) {
   const std::string command =
       "compare diagrams/mechanisms/six-bar.toml --method triangles,gradient --bandwidth 2000,20kHz --gain "
