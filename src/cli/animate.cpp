@@ -28,20 +28,28 @@ struct Round {
   std::vector<double> times;  ///< [s]
 };
 
+/// The same position passed the other way.
+Configuration turned_back(Configuration here) {
+  for (PointState& point : here.points) point.velocity = -point.velocity;
+  for (BodyState& body : here.bodies) body.omega = -body.omega;
+  for (SlideState& slide : here.slides) slide.velocity = -slide.velocity;
+  return here;
+}
+
 Round round_of(const Mechanism& mechanism, int frames) {
   const Structure structure = decompose(mechanism);
   DrawnMotion motion = drawn_motion(mechanism, structure, frames + 1);
   const bool closed = motion.closed;
   if (!closed) motion = drawn_motion(mechanism, structure, (frames + 1) / 2 + 1);
   Round round;
-  const auto add = [&](std::size_t k) {
+  const auto add = [&](std::size_t k, bool back) {
     if (motion.rows[k].status == oblique::Status::open) return;
-    round.frames.push_back(motion.rows[k]);
+    round.frames.push_back(back ? turned_back(motion.rows[k]) : motion.rows[k]);
     round.times.push_back(motion.times[k]);
   };
-  for (std::size_t k = 0; k < motion.rows.size(); ++k) add(k);
+  for (std::size_t k = 0; k < motion.rows.size(); ++k) add(k, false);
   if (closed) return round;
-  for (std::size_t k = motion.rows.size() - 1; k-- > 0;) add(k);
+  for (std::size_t k = motion.rows.size() - 1; k-- > 0;) add(k, true);
   return round;
 }
 

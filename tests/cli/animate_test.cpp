@@ -69,6 +69,40 @@ TEST_F(Animations, ErrorsThatNobodySeesAreRemarkedUpon) {
               HasSubstr("is larger than the mechanism at 1e+09 times its size; --magnify 2e5"));
 }
 
+// There in four frames and back in four: at the end the arrow of the drive turns round.
+TEST_F(Animations, ArrowsOfDrivesTurnRoundOnTheWayBack) {
+  std::ofstream(file("lift.toml")) << R"(
+format = "oblique-mechanism/1"
+[frame]
+O = [0, 0]
+X = [3, 4]
+[bodies]
+rod = { points = ["A", "B"], length = 30 }
+[slides]
+s = { point = "A", along = ["O", "X"], of = "rod", angle = "30 deg" }
+[drives]
+lift = { slides = "s", speed = -20, start = 50 }
+[motion]
+until = 1
+)";
+  const Outcome outcome = run("oblique animate " + file("lift.toml") + " --frames 8 -o " + file("lift.svg"));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const std::string svg = bytes_of("lift.svg");
+  const std::regex pattern(
+      R"rx(type="rotate"[^>]*values="([^"]*)"/>\n<path[^>]*/>\n<path[^>]*/>\n<path id="arrow-s")rx");
+  std::smatch match;
+  ASSERT_TRUE(std::regex_search(svg, match, pattern));
+  std::string values = match[1];
+  std::replace(values.begin(), values.end(), ';', ' ');
+  std::istringstream numbers(values);
+  std::vector<double> turned;
+  for (double angle = 0; numbers >> angle;) turned.push_back(angle);
+  ASSERT_EQ(turned.size(), 9U);
+  const double up = -std::atan2(4, 3) * 180 / M_PI;  // clockwise
+  for (std::size_t k = 0; k < 9; ++k)
+    EXPECT_NEAR(std::remainder(turned[k] - (k < 5 ? up + 180 : up), 360), 0, 1e-3) << k;
+}
+
 struct Refused {
   const char* name;
   const char* arguments;

@@ -114,6 +114,79 @@ TEST_P(Shipped, NamesLieOnNothing) {
   }
 }
 
+/// The area between the points of a body [px²]; 0 for a bar.
+double area_of(const Mechanism& mechanism, const Body& body, const Picture& picture) {
+  const auto pin = [&](std::size_t k) {
+    return std::get<Disc>(find_mark(picture, "pin-" + mechanism.points[body.points[k].point].name)->shape)
+        .centre;
+  };
+  double greatest = 0;
+  for (std::size_t k = 2; k < body.points.size(); ++k) {
+    const Vector2d a = pin(1) - pin(0), b = pin(k) - pin(0);
+    greatest = std::max(greatest, std::abs(a.x() * b.y() - a.y() * b.x()) / 2);
+  }
+  return greatest;
+}
+
+TEST_P(Shipped, HatchingLiesOverPlates) {
+  const Mechanism mechanism = shipped(GetParam());
+  const Picture picture = draw_linkage(mechanism, scene_at(mechanism, 0));
+  const auto place = [&](const Mark& mark) { return &mark - picture.marks.data(); };
+  std::ptrdiff_t lowest = static_cast<std::ptrdiff_t>(picture.marks.size());
+  std::size_t supports = 0;
+  for (const Mark& mark : picture.marks) {
+    if (!mark.id.starts_with("ground-") && !mark.id.starts_with("guide-")) continue;
+    lowest = std::min(lowest, place(mark));
+    ++supports;
+  }
+  EXPECT_GE(supports, 1U);
+  for (const Body& body : mechanism.bodies) {
+    const Mark* const inside = find_mark(picture, "inside-" + body.name);
+    ASSERT_NE(inside, nullptr) << body.name;
+    EXPECT_NE(inside->fill, Ink::none);
+    constexpr double kSeen = 0.1;  // [px²]
+    EXPECT_LT(place(*inside), place(*find_mark(picture, "body-" + body.name)));
+    if (area_of(mechanism, body, picture) <= kSeen) continue;
+    EXPECT_LT(place(*inside), lowest) << body.name;
+  }
+}
+
+TEST_P(Shipped, NamesThatStrayAreLedToTheirPins) {
+  const Mechanism mechanism = shipped(GetParam());
+  const Picture picture = draw_linkage(mechanism, scene_at(mechanism, 0));
+  for (const Mark& name : picture.marks) {
+    if (!name.id.starts_with("name-")) continue;
+    const std::string point = name.id.substr(5);
+    const Mark* const leader = find_mark(picture, "leader-" + point);
+    const Mark* const pin = find_mark(picture, "pin-" + point);
+    const Vector2d centre = std::get<Disc>(pin->shape).centre;
+    const Extent extent = extent_of(name);
+    EXPECT_EQ(leader != nullptr, extent.exteriorDistance(centre) > kFarthestBeside) << point;
+    if (leader == nullptr) continue;
+    const auto& ends = std::get<Outline>(leader->shape).segments;
+    ASSERT_EQ(ends.size(), 2U);
+    EXPECT_LT((ends[0].to - centre).norm(), 1e-9) << point;
+    EXPECT_LT(extent.exteriorDistance(ends[1].to), 1e-9) << point;
+    EXPECT_NEAR((ends[1].to - centre).norm(), extent.exteriorDistance(centre), 1e-9) << point;
+    EXPECT_LT(leader->pen.width, 1) << point;
+    EXPECT_LT(leader, pin) << point;  // it comes out from under the pin
+    for (const Body& body : mechanism.bodies)
+      EXPECT_GT(leader, find_mark(picture, "body-" + body.name)) << point;
+    for (const Mark& other : picture.marks) {
+      if (!other.id.starts_with("name-") || &other == &name) continue;
+      EXPECT_FALSE(line_meets(*leader, extent_of(other))) << point << " over " << other.id;
+    }
+  }
+}
+
+// Jansen's bearing O2 lies under two plates, among six links.
+TEST(Linkage, AJointAmongManyLinksIsStillTold) {
+  const Mechanism mechanism = shipped("jansen");
+  const Picture picture = draw_linkage(mechanism, scene_at(mechanism, 0));
+  EXPECT_NE(find_mark(picture, "leader-O2"), nullptr);
+  EXPECT_EQ(find_mark(picture, "leader-P5"), nullptr);
+}
+
 // The paths of the crank's pin and of the bar's end, the crank at 79°: the closed form of the source.
 TEST(Linkage, ThreeBarPathsAreThoseOfItsFormulas) {
   const Mechanism mechanism = shipped("three-bar");
@@ -184,6 +257,36 @@ TEST(LabelPlacer, GivesEachOfManyAPlaceOfItsOwn) {
     for (const Extent& other : places) EXPECT_TRUE(place.intersection(other).isEmpty());
     places.push_back(place);
   }
+}
+
+// All around the point is taken, up to 40 px from it; then a second name behind the first.
+TEST(LabelPlacer, LeadsNamesThatStrayPastOthers) {
+  LabelPlacer placer(Extent(Vector2d(0, 0), Vector2d(400, 400)));
+  placer.avoid(disc_mark({200, 200}, 40, Ink::faint), 50);
+  std::vector<Extent> names;
+  std::vector<Mark> leaders;
+  for (int k = 0; k < 4; ++k) {
+    const Extent name = extent_of(placer.place({200, 200}, "P12", 13));
+    const auto end = leader_end(name, {200, 200});
+    ASSERT_TRUE(end);
+    const Mark leader = leader_mark({200, 200}, *end, "P12");
+    for (const Extent& other : names) EXPECT_FALSE(line_meets(leader, other)) << k;
+    for (const Mark& other : leaders) EXPECT_FALSE(line_meets(other, name)) << k;
+    names.push_back(name);
+    leaders.push_back(leader);
+  }
+}
+
+TEST(LeaderEnd, IsTheNearestPlaceOfAFarName) {
+  const Extent name(Vector2d(10, 20), Vector2d(40, 32));
+  EXPECT_FALSE(leader_end(name, {25, 26}));  // within
+  EXPECT_FALSE(leader_end(name, {40 + kFarthestBeside, 25}));
+  const auto right = leader_end(name, {41 + kFarthestBeside, 25});
+  ASSERT_TRUE(right);
+  EXPECT_EQ(*right, Vector2d(40, 25));
+  const auto corner = leader_end(name, {-10, 50});
+  ASSERT_TRUE(corner);
+  EXPECT_EQ(*corner, Vector2d(10, 32));
 }
 
 }  // namespace

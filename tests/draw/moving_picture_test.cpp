@@ -109,6 +109,33 @@ TEST_P(Moving, NamesStayClear) {
   EXPECT_LE(static_cast<double>(covered), 0.01 * static_cast<double>(all)) << "of " << all;
 }
 
+// A leader line comes out from under the pin while the name strays, and is hidden there while it does not.
+TEST_P(Moving, NamesThatStrayAreLedToTheirPins) {
+  const Mechanism mechanism = read_mechanism(folder() + "/" + GetParam() + ".toml");
+  const LinkageAnimation animation = animation_of(mechanism);
+  const AnimationFrames frames(mechanism, animation);
+  for (std::size_t k = 0; k < animation.frames.size(); ++k) {
+    const Picture picture = frames.picture(k);
+    for (const Mark& name : picture.marks) {
+      if (!name.id.starts_with("name-")) continue;
+      const std::string point = name.id.substr(5);
+      const Mark* const leader = find_mark(picture, "leader-" + point);
+      const Mark* const pin = find_mark(picture, "pin-" + point);
+      const Vector2d centre = std::get<Disc>(pin->shape).centre;
+      const Extent extent = extent_of(name);
+      const double away = extent.exteriorDistance(centre);
+      constexpr double kFarthestBeside = 25;  // [px]
+      ASSERT_TRUE(leader != nullptr || away <= kFarthestBeside) << name.id << k;
+      if (leader == nullptr) continue;
+      EXPECT_LT(leader, pin);
+      const auto& ends = std::get<Outline>(leader->shape).segments;
+      ASSERT_EQ(ends.size(), 2U);
+      EXPECT_LT((ends[0].to - centre).norm(), 1e-9) << name.id << k;
+      EXPECT_NEAR((ends[1].to - centre).norm(), away > kFarthestBeside ? away : 0, 1e-9) << name.id << k;
+    }
+  }
+}
+
 /// The four-bar linkage with an analog one that is off by 0.1 in x, and by 0.2 in y at the coupler's mark.
 LinkageAnimation with_analog(const Mechanism& mechanism) {
   LinkageAnimation animation = animation_of(mechanism);

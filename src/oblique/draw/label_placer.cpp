@@ -14,6 +14,7 @@ using Eigen::Vector2d;
 using Extent = Eigen::AlignedBox<double, 2>;
 
 constexpr int kPiecesOfCurve = 6;
+constexpr double kOfName = 100;  // weight
 
 std::vector<Vector2d> corners(const Extent& box) {
   return {box.min(), {box.max().x(), box.min().y()}, box.max(), {box.min().x(), box.max().y()}, box.min()};
@@ -67,6 +68,19 @@ bool contains(const std::vector<Vector2d>& polygon, const Vector2d& p) {
 
 }  // namespace
 
+std::optional<Vector2d> leader_end(const Extent& name, const Vector2d& at) {
+  const Vector2d nearest = at.cwiseMax(name.min()).cwiseMin(name.max());
+  if ((nearest - at).norm() <= kFarthestBeside) return std::nullopt;
+  return nearest;
+}
+
+Mark leader_mark(const Vector2d& from, const Vector2d& to, const std::string& point) {
+  constexpr double kWidth = 0.75;
+  Mark leader = line_mark(from, to, {Ink::line, kWidth});
+  leader.id = "leader-" + point;
+  return leader;
+}
+
 void LabelPlacer::avoid(const Mark& mark, double weight) {
   Obstacle obstacle;
   if (const auto* const outline = std::get_if<Outline>(&mark.shape)) {
@@ -81,7 +95,7 @@ void LabelPlacer::avoid(const Mark& mark, double weight) {
   obstacles_.push_back(std::move(obstacle));
 }
 
-double LabelPlacer::cost(const Extent& place) const {
+double LabelPlacer::cost(const Extent& place, const Vector2d& at) const {
   constexpr double kGap = 2;        // [px] between a label and what it avoids
   constexpr double kOutside = 1e4;  // beside the weights of obstacles
   double sum = frame_.contains(place) ? 0 : kOutside;
@@ -94,7 +108,21 @@ double LabelPlacer::cost(const Extent& place) const {
       touches = crosses(wide, o.line[k], o.line[k + 1]);
     if (touches) sum += o.weight;
   }
-  return sum;
+  const std::optional<Vector2d> end = leader_end(place, at);
+  if (!end) return sum;
+  constexpr double kLeaderGap = 4;  // [px] between a leader line and what it does not lead to
+  const Vector2d leader_gap = Vector2d::Constant(kLeaderGap);
+  const auto crossed = std::count_if(signs_.begin(), signs_.end(), [&](const Extent& sign) {
+    const Extent wide(sign.min() - leader_gap, sign.max() + leader_gap);
+    return !wide.contains(at) && crosses(wide, at, *end);
+  });
+  return sum + kOfName * static_cast<double>(crossed);
+}
+
+void LabelPlacer::add_name(const Mark& name, const Vector2d& at) {
+  avoid(name, kOfName);
+  signs_.push_back(extent_of(name));
+  if (const auto end = leader_end(signs_.back(), at)) avoid(line_mark(at, *end), kOfName);
 }
 
 Mark LabelPlacer::place(const Vector2d& at, const std::string& text, double size) {
@@ -113,7 +141,7 @@ Mark LabelPlacer::place(const Vector2d& at, const std::string& text, double size
       const Vector2d sign(std::abs(way.x()) < 0.1 ? 0 : std::copysign(1, way.x()),
                           std::abs(way.y()) < 0.1 ? 0 : std::copysign(1, way.y()));
       const Vector2d centre = at + distance * way + sign.cwiseProduct(half);
-      const double sum = cost({centre - half, centre + half});
+      const double sum = cost({centre - half, centre + half}, at);
       if (sum >= least) continue;
       least = sum;
       chosen = centre;
@@ -121,7 +149,7 @@ Mark LabelPlacer::place(const Vector2d& at, const std::string& text, double size
     if (least == 0) break;
   }
   std::get<Label>(best.shape).at = chosen - own.center();
-  avoid(best, 100);
+  add_name(best, at);
   return best;
 }
 

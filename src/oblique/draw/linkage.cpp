@@ -68,19 +68,26 @@ Picture draw_linkage(const Mechanism& mechanism, const LinkageScene& scene) {
     add_faint(picture.marks, mechanism, layout.axes, scene.others[k],
               kFaintest + (kStrongest - kFaintest) * along);
   }
-  const auto add = [&](Mark mark) { picture.marks.push_back(std::move(mark)); };
-  bool paths_drawn = false;
-  for (const LinkagePart& part : layout.parts) {
-    if (!paths_drawn && lies_over_paths(part)) {
-      picture.marks.insert(picture.marks.end(), layout.paths.begin(), layout.paths.end());
-      paths_drawn = true;
-    }
-    const PartPose pose = pose_of(part, mechanism, scene.shown);
-    for (const Mark& mark : part.marks) add(placed(mark, layout.place(pose), pose.angle));
-  }
   const std::vector<Vector2d> analog = scene.analog ? scene.analog->shown : std::vector<Vector2d>();
-  for (const AnalogShape& shape : layout.analog) add(analog_mark(shape, layout.axes, analog));
-  for (Mark& name : name_marks(mechanism, layout, scene.shown, analog)) add(std::move(name));
+  const NameMarks names = name_marks(mechanism, layout, scene.shown, analog);
+  const auto add = [&](const std::vector<Mark>& marks) {
+    picture.marks.insert(picture.marks.end(), marks.begin(), marks.end());
+  };
+  const auto add_parts = [&](Layer layer) {
+    for (const LinkagePart& part : parts_in(layer, layout.parts)) {
+      const PartPose pose = pose_of(part, mechanism, scene.shown);
+      for (const Mark& mark : part.marks)
+        picture.marks.push_back(placed(mark, layout.place(pose), pose.angle));
+    }
+  };
+  add_parts(Layer::bodies);
+  add(layout.paths);
+  add_parts(Layer::blocks);
+  add(names.leaders);
+  add_parts(Layer::pins);
+  for (const AnalogShape& shape : layout.analog)
+    picture.marks.push_back(analog_mark(shape, layout.axes, analog));
+  add(names.names);
   return picture;
 }
 

@@ -127,7 +127,11 @@ LabelPlacer placer_among(const Mechanism& mechanism, const LinkageLayout& layout
   for (const Mark& path : layout.paths) placer.avoid(path, kOfPath);
   for (const LinkagePart& part : layout.parts) {
     const PartPose pose = pose_of(part, mechanism, here);
-    for (const Mark& mark : part.marks) placer.avoid(placed(mark, layout.place(pose), pose.angle), kOfPart);
+    for (const Mark& mark : part.marks) {
+      const Mark drawn = placed(mark, layout.place(pose), pose.angle);
+      placer.avoid(drawn, kOfPart);
+      if (part.carrier == LinkagePart::Carrier::point) placer.add_pin(drawn);
+    }
   }
   if (analog.empty()) return placer;
   for (const AnalogShape& shape : layout.analog)
@@ -135,17 +139,20 @@ LabelPlacer placer_among(const Mechanism& mechanism, const LinkageLayout& layout
   return placer;
 }
 
-std::vector<Mark> name_marks(const Mechanism& mechanism, const LinkageLayout& layout,
-                             const Configuration& here, const std::vector<Vector2d>& analog) {
+NameMarks name_marks(const Mechanism& mechanism, const LinkageLayout& layout, const Configuration& here,
+                     const std::vector<Vector2d>& analog) {
   LabelPlacer placer = placer_among(mechanism, layout, here, analog);
-  std::vector<Mark> names;
+  NameMarks marks;
   for (std::size_t p = 0; p < mechanism.points.size(); ++p) {
     if (!is_drawn(mechanism, p)) continue;
     const std::string& name = mechanism.points[p].name;
-    names.push_back(placer.place(layout.axes.at(here.points[p].position), name, kNameSize));
-    names.back().id = "name-" + name;
+    const Vector2d pin = layout.axes.at(here.points[p].position);
+    marks.names.push_back(placer.place(pin, name, kNameSize));
+    marks.names.back().id = "name-" + name;
+    if (const auto end = leader_end(extent_of(marks.names.back()), pin))
+      marks.leaders.push_back(leader_mark(pin, *end, name));
   }
-  return names;
+  return marks;
 }
 
 }  // namespace oblique

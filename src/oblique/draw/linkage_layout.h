@@ -31,8 +31,11 @@ inline constexpr double kNameSize = 13;  ///< [px]
 LabelPlacer placer_among(const Mechanism& mechanism, const LinkageLayout& layout, const Configuration& here,
                          const std::vector<Eigen::Vector2d>& analog);
 
-/// The names of the drawn points beside their pins, one for each point drawn, in order of the points.
-std::vector<Mark> name_marks(const Mechanism& mechanism, const LinkageLayout& layout,
-                             const Configuration& here, const std::vector<Eigen::Vector2d>& analog);
+/// The names of the drawn points beside their pins, "name-B", and "leader-B" for those that stray.
+struct NameMarks {
+  std::vector<Mark> names, leaders;
+};
+NameMarks name_marks(const Mechanism& mechanism, const LinkageLayout& layout, const Configuration& here,
+                     const std::vector<Eigen::Vector2d>& analog);
 
 }  // namespace oblique

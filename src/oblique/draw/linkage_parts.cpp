@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <oblique/draw/rounded_hull.h>
 #include <oblique/mechanism/plane.h>
@@ -16,7 +17,8 @@ using Carrier = LinkagePart::Carrier;
 constexpr double kLinkRadius = 6, kPinRadius = 4.5, kMarkRadius = 3;  // [px]
 constexpr double kBlockLength = 30, kBlockHeight = 18;                // [px]
 constexpr double kOverhang = 26;  // of a guide beyond the way of its block [px]
-const Pen kThin{Ink::line, 1.3};
+constexpr double kOpacity = 0.6;  // of the inside of a body, and of the colour of what is driven
+const Pen kThin{Ink::line, 1.3}, kBlockPen{Ink::line, 1.5};
 
 /// From what the distance of a slide's point from its line's first point is measured.
 Vector2d line_direction(const Mechanism& mechanism, const Slide& slide) {
@@ -54,8 +56,34 @@ bool slides_along(const Mechanism& mechanism, std::size_t point) {
                      [&](const Slide& slide) { return slide.point == point; });
 }
 
+/// The drive that moves a slide, or nothing.
+const Drive* drive_of_slide(const Mechanism& mechanism, std::size_t slide) {
+  const auto found = std::find_if(mechanism.drives.begin(), mechanism.drives.end(),
+                                  [&](const Drive& drive) { return drive.slide == slide; });
+  return found == mechanism.drives.end() ? nullptr : &*found;
+}
+
+/// Whether a drive moves its slide towards the first point of the line. At rest that is as it sets off.
+bool moves_back(const Drive& drive, const SlideState& here) {
+  const bool moves = std::isfinite(here.velocity) && here.velocity != 0;
+  return (moves ? here.velocity : drive.speed) < 0;
+}
+
+/// Whether a body covers more than the line through its first two points.
+bool is_plate(const Body& body) {
+  constexpr double kRounding = 1e-9;
+  return std::any_of(body.points.begin(), body.points.end(), [](const BodyPoint& point) {
+    return std::abs(point.local.y()) > kRounding * point.local.norm();
+  });
+}
+
+Layer layer_of(const LinkagePart& part) {
+  if (part.carrier == Carrier::point) return Layer::pins;
+  return part.carrier == Carrier::slide || part.carrier == Carrier::drive ? Layer::blocks : Layer::bodies;
+}
+
 /// The sign of the frame: a line with strokes on its lower side.
-void add_ground(std::vector<Mark>& marks, double from, double to, double y) {
+void add_ground(std::vector<Mark>& marks, double from, double to, double y, const std::string& id) {
   constexpr double kPitch = 6, kDepth = 6;
   marks.push_back(line_mark({from, y}, {to, y}, {Ink::line, 1.5}));
   Outline strokes;
@@ -64,14 +92,15 @@ void add_ground(std::vector<Mark>& marks, double from, double to, double y) {
     strokes.segments.push_back({Segment::Kind::line, {x - kDepth, y + kDepth}});
   }
   marks.push_back({strokes, {Ink::line, 1}});
+  marks.back().id = id;
 }
 
-LinkagePart support(std::size_t point) {
+LinkagePart support(const Mechanism& mechanism, std::size_t point) {
   constexpr double kHalf = 10, kHeight = 18, kBase = 15;
   LinkagePart part{Carrier::frame, point};
   part.marks.push_back(polyline_mark({{0, 0}, {-kHalf, kHeight}, {kHalf, kHeight}}, kThin, true));
   part.marks.back().fill = Ink::paper;
-  add_ground(part.marks, -kBase, kBase, kHeight);
+  add_ground(part.marks, -kBase, kBase, kHeight, "ground-" + mechanism.points[point].name);
   return part;
 }
 
@@ -83,7 +112,7 @@ LinkagePart frame_guide(const Mechanism& mechanism, const std::vector<Configurat
   const double y = -mechanism.slides[index].offset * scale;
   LinkagePart part{Carrier::guide, index};
   part.marks.push_back(line_mark({from, y}, {to, y}, {Ink::line, 1, {8, 3, 2, 3}}));
-  add_ground(part.marks, from, to, y + kBlockHeight / 2 + 1);
+  add_ground(part.marks, from, to, y + kBlockHeight / 2 + 1, "guide-" + mechanism.slides[index].name);
   return part;
 }
 
@@ -106,6 +135,23 @@ void add_body_guide(LinkagePart& part, const Mechanism& mechanism, const std::ve
                                  pixel(std::max(length, range.greatest + overhang)), {Ink::line, 2.5}));
 }
 
+Outline outline_of(const Body& body, double scale) {
+  std::vector<Vector2d> points;
+  for (const BodyPoint& point : body.points)
+    points.emplace_back(point.local.x() * scale, -point.local.y() * scale);
+  return rounded_hull(std::move(points), kLinkRadius);
+}
+
+Mark inside_of(const Mechanism& mechanism, std::size_t index, double scale) {
+  Mark inside{outline_of(mechanism.bodies[index], scale),
+              {Ink::none, 0},
+              mechanism.drive_of(index) ? Ink::orange : Ink::faint};
+  inside.opacity = kOpacity;
+  inside.id = "inside-" + mechanism.bodies[index].name;
+  return inside;
+}
+
+/// A bar; of a plate what lies over its inside.
 LinkagePart body_part(const Mechanism& mechanism, const std::vector<Configuration>& motion, std::size_t index,
                       double scale) {
   const Body& body = mechanism.bodies[index];
@@ -113,28 +159,50 @@ LinkagePart body_part(const Mechanism& mechanism, const std::vector<Configuratio
   for (std::size_t s = 0; s < mechanism.slides.size(); ++s) {
     if (mechanism.slides[s].carrier == index) add_body_guide(part, mechanism, motion, s, scale);
   }
-  std::vector<Vector2d> points;
-  for (const BodyPoint& point : body.points)
-    points.emplace_back(point.local.x() * scale, -point.local.y() * scale);
-  const Outline hull = rounded_hull(points, kLinkRadius);
-  constexpr double kOpacity = 0.6;
-  Mark inside{hull, {Ink::none, 0}, mechanism.drive_of(index) ? Ink::orange : Ink::faint};
-  inside.opacity = kOpacity;
-  part.marks.push_back(inside);
-  Mark edge{hull, kThin};
+  if (!is_plate(body)) part.marks.push_back(inside_of(mechanism, index, scale));
+  Mark edge{outline_of(body, scale), kThin};
   edge.id = "body-" + body.name;
   part.marks.push_back(edge);
   return part;
 }
 
+/// A polygon in the colour of drives, as driven bodies have it; what lies under it does not show through.
+void add_driven(std::vector<Mark>& marks, const std::vector<Vector2d>& corners, const Mark& edge) {
+  Mark inside = polyline_mark(corners, {Ink::none, 0}, true);
+  inside.fill = Ink::paper;
+  marks.push_back(inside);
+  inside.fill = Ink::orange;
+  inside.opacity = kOpacity;
+  marks.push_back(std::move(inside));
+  marks.push_back(edge);
+}
+
 LinkagePart block_part(const Mechanism& mechanism, std::size_t index) {
   const Vector2d half(kBlockLength / 2, kBlockHeight / 2);
+  const std::vector<Vector2d> corners{-half, {half.x(), -half.y()}, half, {-half.x(), half.y()}};
   LinkagePart part{Carrier::slide, index};
-  Mark block =
-      polyline_mark({-half, {half.x(), -half.y()}, half, {-half.x(), half.y()}}, {Ink::line, 1.5}, true);
-  block.fill = Ink::paper;
+  Mark block = polyline_mark(corners, kBlockPen, true);
   block.id = "slide-" + mechanism.slides[index].name;
-  part.marks.push_back(block);
+  if (drive_of_slide(mechanism, index) != nullptr) {
+    add_driven(part.marks, corners, block);
+  } else {
+    block.fill = Ink::paper;
+    part.marks.push_back(std::move(block));
+  }
+  return part;
+}
+
+/// Before a driven block, on its line.
+LinkagePart arrow_part(const Mechanism& mechanism, std::size_t index) {
+  constexpr double kTail = kBlockLength / 2 + 4, kNeck = kTail + 12, kTip = kNeck + 11;  // [px]
+  constexpr double kHalfShaft = 2.5, kHalfHead = 7;                                      // [px]
+  const std::vector<Vector2d> corners{
+      {kTail, -kHalfShaft}, {kNeck, -kHalfShaft}, {kNeck, -kHalfHead}, {kTip, 0},
+      {kNeck, kHalfHead},   {kNeck, kHalfShaft},  {kTail, kHalfShaft}};
+  LinkagePart part{Carrier::drive, index};
+  Mark edge = polyline_mark(corners, kThin, true);
+  edge.id = "arrow-" + mechanism.slides[index].name;
+  add_driven(part.marks, corners, edge);
   return part;
 }
 
@@ -154,8 +222,9 @@ bool is_drawn(const Mechanism& mechanism, std::size_t point) {
   return !mechanism.bodies_at(point).empty() || slides_along(mechanism, point);
 }
 
-bool lies_over_paths(const LinkagePart& part) {
-  return part.carrier == Carrier::slide || part.carrier == Carrier::point;
+std::span<const LinkagePart> parts_in(Layer layer, const std::vector<LinkagePart>& parts) {
+  const auto found = std::ranges::equal_range(parts, layer, {}, layer_of);
+  return {found.begin(), found.end()};
 }
 
 PartPose pose_of(const LinkagePart& part, const Mechanism& mechanism, const Configuration& here) {
@@ -171,11 +240,15 @@ PartPose pose_of(const LinkagePart& part, const Mechanism& mechanism, const Conf
       return {mechanism.points[slide.first].position, angle_of(line_direction(mechanism, slide))};
     }
     case Carrier::slide:
+    case Carrier::drive:
       break;
   }
   const Slide& slide = mechanism.slides[part.index];
   const double turned_by = slide.carrier ? here.bodies[*slide.carrier].angle : 0;
-  return {here.points[slide.point].position, turned_by + angle_of(line_direction(mechanism, slide))};
+  const bool back = part.carrier == Carrier::drive &&
+                    moves_back(*drive_of_slide(mechanism, part.index), here.slides[part.index]);
+  return {here.points[slide.point].position,
+          turned_by + angle_of(line_direction(mechanism, slide)) + (back ? std::numbers::pi : 0)};
 }
 
 Mark placed(const Mark& mark, const Vector2d& at, double angle) {
@@ -200,15 +273,24 @@ Mark placed(const Mark& mark, const Vector2d& at, double angle) {
 std::vector<LinkagePart> linkage_parts(const Mechanism& mechanism, const std::vector<Configuration>& motion,
                                        double scale) {
   std::vector<LinkagePart> parts;
+  for (std::size_t b = 0; b < mechanism.bodies.size(); ++b) {
+    if (is_plate(mechanism.bodies[b])) parts.push_back({Carrier::body, b, {inside_of(mechanism, b, scale)}});
+  }
   for (std::size_t s = 0; s < mechanism.slides.size(); ++s) {
     if (!mechanism.slides[s].carrier) parts.push_back(frame_guide(mechanism, motion, s, scale));
   }
   for (std::size_t p = 0; p < mechanism.points.size(); ++p) {
-    if (mechanism.points[p].fixed && is_drawn(mechanism, p)) parts.push_back(support(p));
+    if (mechanism.points[p].fixed && is_drawn(mechanism, p)) parts.push_back(support(mechanism, p));
   }
   for (std::size_t b = 0; b < mechanism.bodies.size(); ++b)
     parts.push_back(body_part(mechanism, motion, b, scale));
-  for (std::size_t s = 0; s < mechanism.slides.size(); ++s) parts.push_back(block_part(mechanism, s));
+  for (const bool driven : {false, true}) {  // a point may slide on several lines: the driven block is seen
+    for (std::size_t s = 0; s < mechanism.slides.size(); ++s) {
+      if ((drive_of_slide(mechanism, s) != nullptr) != driven) continue;
+      parts.push_back(block_part(mechanism, s));
+      if (driven) parts.push_back(arrow_part(mechanism, s));
+    }
+  }
   for (std::size_t p = 0; p < mechanism.points.size(); ++p) {
     if (is_drawn(mechanism, p)) parts.push_back(pin_part(mechanism, p));
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -20,6 +21,7 @@ struct LinkagePart {
     guide,  ///< its origin is the first point of the line of the slide `index`
     body,   ///< its origin is the first point of the body `index`
     slide,  ///< its origin is the point of the slide `index`; it turns with the line
+    drive,  ///< as a slide, but x goes the way in which the slide's drive moves it
     point,  ///< its origin is the point `index`, and it never turns
   };
   Carrier carrier = Carrier::frame;
@@ -28,7 +30,7 @@ struct LinkagePart {
 };
 
 /// Where a part stands at a moment [length unit], and how far it is turned to the left [rad]: without jumps
-/// along a motion.
+/// along a motion, but where a drive turns back.
 struct PartPose {
   Eigen::Vector2d at = Eigen::Vector2d::Zero();
   double angle = 0;
@@ -39,14 +41,22 @@ PartPose pose_of(const LinkagePart& part, const Mechanism& mechanism, const Conf
 /// only.
 Mark placed(const Mark& mark, const Eigen::Vector2d& at, double angle);
 
-/// Everything that is drawn of a mechanism but its names, lower things first: supports and guides, bodies,
-/// blocks, pins. `motion` says how long guides have to be; `scale` [px/length unit]. Pins have the ids
-/// "pin-B", bodies "body-AB", blocks "slide-s".
+/// Everything that is drawn of a mechanism but its names, lower things first: the insides of plates, supports
+/// and guides, whose hatching so lies before plates, the edges of plates and the bars, blocks with the arrows
+/// of those that are driven, pins. `motion` says how long guides have to be; `scale` [px/length unit]. Pins
+/// have the ids "pin-B", bodies "body-AB" and "inside-AB", blocks "slide-s", their arrows "arrow-s", hatching
+/// "ground-A" under a point and "guide-s" along a guide.
 std::vector<LinkagePart> linkage_parts(const Mechanism& mechanism, const std::vector<Configuration>& motion,
                                        double scale);
 
-/// Whether a part is a block or a pin, which paths go under; the paths go over all others.
-bool lies_over_paths(const LinkagePart& part);
+/// How high parts lie. Paths go under blocks, and leader lines of names under pins.
+enum class Layer {
+  bodies,  ///< and the frame
+  blocks,  ///< of slides, with their arrows
+  pins,
+};
+/// Those of `linkage_parts` in one layer.
+std::span<const LinkagePart> parts_in(Layer layer, const std::vector<LinkagePart>& parts);
 
 /// Whether a point is drawn: points that only name a line of the frame are not.
 bool is_drawn(const Mechanism& mechanism, std::size_t point);

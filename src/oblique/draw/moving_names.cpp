@@ -97,7 +97,7 @@ std::vector<MovingName> moving_names(const Mechanism& mechanism, const LinkageLa
                                      const std::vector<Configuration>& frames,
                                      const std::vector<std::vector<Vector2d>>& analog) {
   constexpr std::size_t kMoments = 120;  // between them names go evenly
-  constexpr double kOfDistance = 0.05, kOfName = 100;
+  constexpr double kOfDistance = 0.05;
   const std::vector<std::size_t> moments = moments_of(frames.size(), kMoments);
   std::vector<LabelPlacer> placers;
   placers.reserve(moments.size());
@@ -121,13 +121,15 @@ std::vector<MovingName> moving_names(const Mechanism& mechanism, const LinkageLa
       std::vector<double>& row = costs.emplace_back();
       for (const Vector2d& place : places) {
         const Vector2d middle = pin(moments[m]) + place;
-        row.push_back(placers[m].cost({middle - half, middle + half}) + kOfDistance * place.norm());
+        row.push_back(placers[m].cost({middle - half, middle + half}, pin(moments[m])) +
+                      kOfDistance * place.norm());
       }
     }
     const std::vector<std::size_t> way = cheapest_round(costs, places);
     name.offsets.push_back(places[way.front()]);
     for (std::size_t m = 0; m < moments.size(); ++m) {
-      placers[m].avoid(placed(name.mark, pin(moments[m]) + places[way[m]], 0), kOfName);
+      const Vector2d at = pin(moments[m]);
+      placers[m].add_name(placed(name.mark, at + places[way[m]], 0), at);
       if (m == 0) continue;
       const std::size_t from = moments[m - 1], to = moments[m];
       for (std::size_t k = from + 1; k <= to; ++k) {

@@ -2,7 +2,9 @@
 #include <oblique/draw/moving_parts.h>
 
 #include <algorithm>
+#include <iterator>
 #include <numbers>
+#include <optional>
 
 #include <oblique/draw/moving_names.h>
 
@@ -40,38 +42,54 @@ MovingGroup group_of(const AnalogShape& shape, const LinkageLayout& layout,
   return group;
 }
 
-void add_names(std::vector<MovingGroup>& groups, const Mechanism& mechanism, const LinkageLayout& layout,
-               const LinkageAnimation& animation) {
-  for (const MovingName& name : moving_names(mechanism, layout, animation.frames, animation.analog_frames)) {
-    MovingGroup group{{name.mark}, {}};
-    for (std::size_t k = 0; k < animation.frames.size(); ++k) {
-      const Vector2d pin = layout.axes.at(animation.frames[k].points[name.point].position);
-      group.placings.push_back({pin + name.offsets[k]});
-    }
-    const Vector2d first = group.placings.front().at;
-    const bool still = std::all_of(group.placings.begin(), group.placings.end(),
-                                   [&](const Placing& placing) { return placing.at == first; });
-    if (still) group.placings.resize(1);
-    groups.push_back(std::move(group));
+MovingGroup group_of(const MovingName& name, const std::vector<Vector2d>& pins) {
+  MovingGroup group{{name.mark}, {}};
+  for (std::size_t k = 0; k < pins.size(); ++k) group.placings.push_back({pins[k] + name.offsets[k]});
+  const Vector2d first = group.placings.front().at;
+  const bool still = std::all_of(group.placings.begin(), group.placings.end(),
+                                 [&](const Placing& placing) { return placing.at == first; });
+  if (still) group.placings.resize(1);
+  return group;
+}
+
+/// The leader line of a name, hidden under the pin where the name is beside it; nothing where it always is.
+std::optional<MovingGroup> leader_of(const MovingName& name, const std::vector<Vector2d>& pins) {
+  MovingGroup group;
+  bool strays = false;
+  for (std::size_t k = 0; k < pins.size(); ++k) {
+    const auto end = leader_end(extent_of(placed(name.mark, pins[k] + name.offsets[k], 0)), pins[k]);
+    group.corners.push_back({pins[k], end.value_or(pins[k])});
+    strays = strays || end;
   }
+  if (!strays) return std::nullopt;
+  const std::vector<Vector2d>& first = group.corners.front();
+  group.marks.push_back(leader_mark(first.front(), first.back(), std::get<Label>(name.mark.shape).text));
+  return group;
 }
 
 }  // namespace
 
 std::vector<MovingGroup> moving_groups(const Mechanism& mechanism, const LinkageLayout& layout,
                                        const LinkageAnimation& animation) {
-  std::vector<MovingGroup> groups;
-  bool paths_drawn = false;
-  for (const LinkagePart& part : layout.parts) {
-    if (!paths_drawn && lies_over_paths(part)) {
-      groups.push_back({layout.paths, {Placing{}}});
-      paths_drawn = true;
-    }
-    groups.push_back(group_of(mechanism, layout, part, animation.frames));
+  std::vector<MovingGroup> groups, names;
+  const auto add_parts = [&](Layer layer) {
+    for (const LinkagePart& part : parts_in(layer, layout.parts))
+      groups.push_back(group_of(mechanism, layout, part, animation.frames));
+  };
+  add_parts(Layer::bodies);
+  groups.push_back({layout.paths, {Placing{}}});
+  add_parts(Layer::blocks);
+  for (const MovingName& name : moving_names(mechanism, layout, animation.frames, animation.analog_frames)) {
+    std::vector<Vector2d> pins;
+    for (const Configuration& here : animation.frames)
+      pins.push_back(layout.axes.at(here.points[name.point].position));
+    if (auto leader = leader_of(name, pins)) groups.push_back(std::move(*leader));
+    names.push_back(group_of(name, pins));
   }
+  add_parts(Layer::pins);
   for (const AnalogShape& shape : layout.analog)
     groups.push_back(group_of(shape, layout, animation.analog_frames));
-  add_names(groups, mechanism, layout, animation);
+  groups.insert(groups.end(), std::make_move_iterator(names.begin()), std::make_move_iterator(names.end()));
   return groups;
 }
 
