@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -32,7 +33,8 @@ std::string name_of(const Comparison& comparison, const GainSeries& series) {
 
 /// "−0.998".
 std::string signed_text(double value) {
-  return fmt::format("{}{:.3f}", value < 0 ? "−" : "", std::abs(value));
+  const std::string size = fmt::format("{:.3f}", std::abs(value));
+  return (value < 0 && size != "0.000" ? "−" : "") + size;
 }
 
 /// "250", "10⁶".
@@ -45,6 +47,20 @@ std::string gain_text(double gain) {
 
 std::size_t runs_per_series(const Comparison& comparison) {
   return comparison.runs.size() / comparison.series.size();
+}
+
+/// The runs of one series.
+std::span<const ComparedRun> runs_of(const Comparison& comparison, std::size_t series) {
+  const std::size_t n = runs_per_series(comparison);
+  return std::span(comparison.runs).subspan(series * n, n);
+}
+
+/// Whether the analog mechanism errs by no more than rounding in all of these runs. A logarithmic axis would
+/// magnify that; on a linear one it is the constant 0.
+bool is_exact(const Comparison& comparison, std::span<const ComparedRun> runs) {
+  constexpr double kRounding = 1e-14;  // of the largest link: some units in the last place of coordinates
+  return std::all_of(runs.begin(), runs.end(),
+                     [&](const ComparedRun& run) { return run.max_error <= kRounding * comparison.size; });
 }
 
 /// The line of the fitted order, through the middle of the runs that it was fitted to, in their colour.
@@ -66,18 +82,18 @@ Curve slope_of(const Curve& errors, const GainSeries& series) {
 }
 
 Panel convergence_of(const Comparison& comparison) {
-  Panel panel{{"gain", "", true}, {"largest error", comparison.unit, true}, {}, kHeight};
-  const std::size_t per_series = runs_per_series(comparison);
+  const bool exact = is_exact(comparison, comparison.runs);
+  Panel panel{{"gain", "", true}, {"largest error", comparison.unit, !exact}, {}, kHeight};
   for (std::size_t s = 0; s < comparison.series.size(); ++s) {
     const GainSeries& series = comparison.series[s];
     const std::string name = name_of(comparison, series);
     Curve errors{name.empty() ? "measured" : name, {}, s, Curve::Style::dotted_line};
-    for (std::size_t k = s * per_series; k < (s + 1) * per_series; ++k)
-      errors.points.emplace_back(comparison.runs[k].gain, comparison.runs[k].max_error);
+    for (const ComparedRun& run : runs_of(comparison, s))
+      errors.points.emplace_back(run.gain, exact ? 0 : run.max_error);
     std::sort(errors.points.begin(), errors.points.end(),
               [](const auto& a, const auto& b) { return a.x() < b.x(); });
     panel.curves.push_back(std::move(errors));
-    if (series.order) panel.curves.push_back(slope_of(panel.curves.back(), series));
+    if (series.order && !exact) panel.curves.push_back(slope_of(panel.curves.back(), series));
   }
   return panel;
 }
@@ -92,34 +108,51 @@ std::pair<Axis, double> drive_axis(const Comparison& comparison) {
 Panel error_along(const Comparison& comparison, std::size_t s) {
   const auto [drive, unit] = drive_axis(comparison);
   const GainSeries& series = comparison.series[s];
-  const std::size_t per_series = runs_per_series(comparison);
+  const std::span<const ComparedRun> runs = runs_of(comparison, s);
   const std::string name = name_of(comparison, series);
+  const bool exact = is_exact(comparison, runs);
   Panel panel{drive,
-              {name.empty() ? "error" : "error, " + name, comparison.unit, per_series > 1},
+              {name.empty() ? "error" : "error, " + name, comparison.unit, runs.size() > 1 && !exact},
               {},
               comparison.series.size() > 1 ? kLowHeight : kHeight};
-  for (std::size_t k = 0; k < per_series; ++k) {
-    const ComparedRun& run = comparison.runs[s * per_series + k];
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    const ComparedRun& run = runs[k];
     Curve curve{fmt::format("gain {}", gain_text(run.gain)), {}, k};
     for (std::size_t row = 0; row < run.error_along.size(); ++row) {
       // what is far below that which the tolerance leaves tells nothing, and would stretch the axis
       const bool tells = run.error_along[row] > kBelowFloor * series.floor.value_or(0);
-      curve.points.emplace_back(comparison.drive[row] / unit,
-                                tells ? run.error_along[row] : std::numeric_limits<double>::quiet_NaN());
+      const double error = tells ? run.error_along[row] : std::numeric_limits<double>::quiet_NaN();
+      curve.points.emplace_back(comparison.drive[row] / unit, exact ? 0 : error);
     }
     panel.curves.push_back(std::move(curve));
   }
   return panel;
 }
 
-/// Whether `error_along` leaves points out.
-bool leaves_out(const Comparison& comparison) {
-  for (std::size_t k = 0; k < comparison.runs.size(); ++k) {
-    const double least = kBelowFloor * comparison.series[k / runs_per_series(comparison)].floor.value_or(0);
-    const auto& errors = comparison.runs[k].error_along;
-    if (std::any_of(errors.begin(), errors.end(), [&](double error) { return error <= least; })) return true;
+/// Whether `error_along` leaves points of a series out.
+bool leaves_out(const Comparison& comparison, std::size_t s) {
+  const double least = kBelowFloor * comparison.series[s].floor.value_or(0);
+  const std::span<const ComparedRun> runs = runs_of(comparison, s);
+  return std::any_of(runs.begin(), runs.end(), [&](const ComparedRun& run) {
+    return std::any_of(run.error_along.begin(), run.error_along.end(),
+                       [&](double error) { return error <= least; });
+  });
+}
+
+/// What the panels do not show as it was measured.
+std::string note_of(const Comparison& comparison) {
+  bool exact = false, left_out = false;
+  for (std::size_t s = 0; s < comparison.series.size(); ++s) {
+    const bool is_zero = is_exact(comparison, runs_of(comparison, s));
+    exact = exact || is_zero;
+    left_out = left_out || (!is_zero && leaves_out(comparison, s));
   }
-  return false;
+  std::string note = exact ? "Errors along the way that are no more than rounding are drawn as 0." : "";
+  if (!left_out) return note;
+  if (exact) note += " ";
+  return note +
+         "Errors along the way that are less than a tenth of what the solver's tolerance leaves are not "
+         "drawn: they tell nothing of the machine.";
 }
 
 Panel bands_of(const Comparison& comparison, const MonteCarloReport& report) {
@@ -150,7 +183,7 @@ Panel histogram_of(const MonteCarloReport& report) {
   }
   Panel panel{{"largest error of a run", report.unit}, {"runs"}, {}, kLowHeight};
   const auto [least, greatest] = std::minmax_element(errors.begin(), errors.end());
-  const double low = *least, span = *greatest > low ? *greatest - low : std::max(std::abs(low), 1e-300);
+  const double low = *least, span = *greatest > low ? *greatest - low : low > 0 ? low : 1;
   // as many classes as make the shape stand out of the noise of counting (Rice's rule)
   const auto classes = static_cast<std::size_t>(std::ceil(2 * std::cbrt(static_cast<double>(errors.size()))));
   std::vector<double> counts(classes, 0);
@@ -188,12 +221,7 @@ Chart chart_of(const Comparison& comparison) {
   if (runs_per_series(comparison) > 1) chart.panels.push_back(convergence_of(comparison));
   for (std::size_t s = 0; s < comparison.series.size(); ++s)
     chart.panels.push_back(error_along(comparison, s));
-  if (leaves_out(comparison)) {
-    chart.note =
-        "Errors along the way that are less than a tenth of what the solver's tolerance leaves are not "
-        "drawn: "
-        "they tell nothing of the machine.";
-  }
+  chart.note = note_of(comparison);
   return chart;
 }
 

@@ -126,6 +126,8 @@ PointHistory point_history(const Mechanism& mechanism, const std::string& point)
   history.drive = drive.name;
   history.ends_at_limit = motion.ends_at_limit;
   history.drive_unit = drive.slide ? mechanism.length_unit : "°";
+  history.size = mechanism.largest_length();
+  history.rate = 2 * std::numbers::pi / (motion.times.back() - motion.times.front());
   DriveClock clock(mechanism);
   for (std::size_t k = 0; k < motion.rows.size(); ++k) {
     const double value = clock.at(0, motion.times[k]).value;

@@ -214,7 +214,8 @@ ExitStatus run_diagram(const Session& session, const RunRequest& request) {
   }
   if (!plots_in_terminal(request.plot)) print(table_of(result.trajectory));
   if (drawn) {
-    plot(chart_of(result, *drawn, diagram.title), request.plot, plot_theme(request.theme));
+    plot(chart_of(result, rounding_of(flat, options), *drawn, diagram.title), request.plot,
+         plot_theme(request.theme));
     if (drawn->left_out > 0) {
       note(fmt::format("drawn are the first {} columns; --columns names others of the {} more\n",
                        drawn->drawn.size(), drawn->left_out));

@@ -2,6 +2,7 @@
 #include "run_chart.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -24,6 +25,16 @@ std::size_t column_named(const std::vector<TableColumn>& columns, const char* op
 
 Axis axis_of(const TableColumn& column) {
   return {column.name, column.unit == "1" ? "" : column.unit};
+}
+
+/// A column of a run as it is drawn.
+std::vector<double> drawn_values(const Trajectory& trajectory, std::size_t column, double rounding) {
+  std::vector<double> values;
+  for (std::size_t row = 0; row < trajectory.rows(); ++row) values.push_back(trajectory.at(row, column));
+  const bool is_zero =
+      std::all_of(values.begin(), values.end(), [&](double value) { return std::abs(value) <= rounding; });
+  if (is_zero) std::fill(values.begin(), values.end(), 0);
+  return values;
 }
 
 /// A path is as wide as it is high on paper that is twice as wide as high: it gets more height.
@@ -78,11 +89,22 @@ void ask_for_curves(RunOptions& options, std::size_t n_columns) {
                             options.extra_times.end());
 }
 
-Chart chart_of(const Run& run, const DrawnColumns& columns, const std::string& title) {
+std::vector<double> rounding_of(const FlatDiagram& diagram, const RunOptions& options) {
+  constexpr double kOfUnit = 1e-15;
+  const double of_unit = std::min(kOfUnit, options.absolute_tolerance.value_or(kOfUnit));
+  std::vector<double> rounding{0};  // of the time
+  for (const FlatOutput& output : diagram.outputs)
+    rounding.push_back(of_unit * std::max(std::abs(output.scale), std::abs(output.offset)));
+  return rounding;
+}
+
+Chart chart_of(const Run& run, const std::vector<double>& rounding, const DrawnColumns& columns,
+               const std::string& title) {
   const Trajectory& trajectory = run.extra.rows() > run.trajectory.rows() ? run.extra : run.trajectory;
   Chart chart;
   chart.title = title;
   const TableColumn& x = trajectory.columns()[columns.against];
+  const std::vector<double> xs = drawn_values(trajectory, columns.against, rounding[columns.against]);
   for (const std::size_t c : columns.drawn) {
     const Axis axis = axis_of(trajectory.columns()[c]);
     auto panel = std::find_if(chart.panels.begin(), chart.panels.end(),
@@ -92,8 +114,8 @@ Chart chart_of(const Run& run, const DrawnColumns& columns, const std::string& t
       panel = chart.panels.end() - 1;
     }
     Curve curve{axis.name, {}, panel->curves.size()};
-    for (std::size_t row = 0; row < trajectory.rows(); ++row)
-      curve.points.emplace_back(trajectory.at(row, columns.against), trajectory.at(row, c));
+    const std::vector<double> ys = drawn_values(trajectory, c, rounding[c]);
+    for (std::size_t row = 0; row < xs.size(); ++row) curve.points.emplace_back(xs[row], ys[row]);
     panel->curves.push_back(std::move(curve));
   }
   for (Panel& panel : chart.panels) {

@@ -29,8 +29,13 @@ DrawnColumns drawn_columns(const std::vector<TableColumn>& columns, const RunCha
 /// Asks a run for as many further rows as make its curves smooth, where its own would be too few.
 void ask_for_curves(RunOptions& options, std::size_t n_columns);
 
-/// A panel for each unit, one above the other. Drawn against another column than the time one panel has equal
-/// scales where both axes have one unit.
-Chart chart_of(const Run& run, const DrawnColumns& columns, const std::string& title);
+/// What is 0 to rounding in each column of `output_columns`, in its unit: less than a few units in the last
+/// place of 1 machine unit, or than the absolute tolerance where that is finer.
+std::vector<double> rounding_of(const FlatDiagram& diagram, const RunOptions& options);
+
+/// A panel for each unit, one above the other; a column that never exceeds its `rounding` is drawn as 0.
+/// Drawn against another column than the time one panel has equal scales where both axes have one unit.
+Chart chart_of(const Run& run, const std::vector<double>& rounding, const DrawnColumns& columns,
+               const std::string& title);
 
 }  // namespace oblique::cli

@@ -148,6 +148,28 @@ TEST(ErrorParts, OfHugeGainsAreAllTheSolvers) {
   EXPECT_NEAR(run.parts->solver, run.max_error, 0.1 * run.max_error);
 }
 
+// Without loops nothing lags; the error of C points to the lower left, where a product with it has a sign.
+TEST(ErrorParts, OfNothingAreZeroWithoutASign) {
+  const Mechanism arm = parse_mechanism(R"(
+format = "oblique-mechanism/1"
+[frame]
+A = [0, 0]
+[bodies]
+upper = { points = ["A", "B"], length = 1 }
+fore  = { points = ["B", "C"], length = 1 }
+[drives]
+shoulder = { turns = "upper", about = "A", speed = 1 }
+elbow    = { turns = "fore", about = "B", speed = 2, start = "90 deg" }
+)",
+                                        "arm.toml");
+  const Comparison comparison = compare(arm, BlockLibrary::shipped());
+  for (const ComparedRun& run : comparison.runs) {
+    ASSERT_TRUE(run.parts);
+    EXPECT_EQ(run.parts->lag, 0);
+    EXPECT_FALSE(std::signbit(run.parts->lag));
+  }
+}
+
 class PartsOf : public ::testing::TestWithParam<std::tuple<const char*, PatchMethod>> {};
 INSTANTIATE_TEST_SUITE_P(
     ErrorParts, PartsOf,

@@ -101,6 +101,27 @@ TEST(PointPlots, DrawRoundingAsNothing) {
   for (const Vector2d& point : chart.panels[2].curves[0].points) EXPECT_EQ(point.y(), 0);
 }
 
+// Whatever a point that stands seems to do: a turn of 1 s of links of 80 makes 500 mm/s, beside which it is
+// nothing.
+TEST(PointPlots, DrawAPointThatStandsAsStanding) {
+  PointHistory history = crank_history();
+  history.size = 80;
+  history.rate = 2 * M_PI;
+  for (PointState& state : history.states) {
+    state.position *= 1e-14 / 80;
+    state.velocity *= 1e-12 / 8000;
+    state.acceleration *= 1e-12 / 800000;
+  }
+  const Chart chart = point_plots(history);
+  for (const Panel& panel : chart.panels) {
+    for (const Curve& curve : panel.curves) {
+      for (const Vector2d& point : curve.points) EXPECT_EQ(point.y(), 0) << panel.y.name;
+    }
+  }
+  history.size = 1e-14;  // of such links it would be a motion
+  EXPECT_NE(point_plots(history).panels[1].curves[0].points[0].y(), 0);
+}
+
 // v = 1/√(s + 10⁻⁵) along the way s from a limit: what is drawn is what can be seen beside the rest.
 TEST(PointPlots, LeaveOutWhatRisesOutOfSightAtALimit) {
   PointHistory history = crank_history();

@@ -109,7 +109,8 @@ std::optional<ErrorParts> error_parts(const Mechanism& mechanism, const PatchedM
   const Eigen::Vector2d moving = place_of(error.worst, tight.run.trajectory, error.row);
   const Eigen::Vector2d found = place_of(error.worst, analog.trajectory, error.row);
   const Eigen::Vector2d along = (found - there).normalized();
-  return ErrorParts{along.dot(*standing - there), along.dot(moving - *standing), along.dot(found - moving)};
+  const auto part = [&](const Eigen::Vector2d& way) { return along.dot(way) + 0.0; };  // −0 + 0 is 0
+  return ErrorParts{part(*standing - there), part(moving - *standing), part(found - moving)};
 }
 
 }  // namespace oblique

@@ -20,13 +20,18 @@ class OverDrive {
  public:
   explicit OverDrive(const PointHistory& history) : history_(history) {}
 
+  Curve path() const {
+    Curve path{{}, {}, Curve::kPlain};
+    const std::vector<double> x = values(&PointState::position, kOfX),
+                              y = values(&PointState::position, kOfY);
+    for (std::size_t k = 0; k < x.size(); ++k) path.points.emplace_back(x[k], y[k]);
+    return path;
+  }
+
   Curve curve(std::string name, Vector2d PointState::*vector, std::size_t axis) const {
     Curve curve{std::move(name), {}, axis};
-    const double least = kRounding * typical(vector);
-    for (std::size_t k = 0; k < history_.states.size(); ++k) {
-      const double value = (history_.states[k].*vector)[static_cast<Eigen::Index>(axis)];
-      curve.points.emplace_back(history_.drives[k], std::abs(value) < least ? 0 : value);
-    }
+    const std::vector<double> values = this->values(vector, axis);
+    for (std::size_t k = 0; k < values.size(); ++k) curve.points.emplace_back(history_.drives[k], values[k]);
     if (history_.ends_at_limit && vector != &PointState::position) leave_out_extremes(curve);
     return curve;
   }
@@ -39,7 +44,19 @@ class OverDrive {
   }
 
  private:
-  static constexpr double kRounding = 1e-9;
+  /// A component, with 0 for what is as small as rounding beside the vector, or beside the whole mechanism.
+  std::vector<double> values(Vector2d PointState::*vector, std::size_t axis) const {
+    constexpr double kOfVector = 1e-9, kOfMechanism = 1e-12;
+    const int order = vector == &PointState::position ? 0 : vector == &PointState::velocity ? 1 : 2;
+    const double least =
+        std::max(kOfVector * typical(vector), kOfMechanism * history_.size * std::pow(history_.rate, order));
+    std::vector<double> values;
+    for (const PointState& state : history_.states) {
+      const double value = (state.*vector)[static_cast<Eigen::Index>(axis)];
+      values.push_back(std::abs(value) < least ? 0 : value);
+    }
+    return values;
+  }
 
   /// The length of the vector that it exceeds a fifth of the time: at a limit it rises beyond all bounds.
   double typical(Vector2d PointState::*vector) const {
@@ -72,9 +89,8 @@ class OverDrive {
 };
 
 Panel path_of(const PointHistory& history) {
-  Curve path{{}, {}, Curve::kPlain};
-  for (const PointState& state : history.states) path.points.push_back(state.position);
-  Panel panel{{"x", history.length_unit}, {"path: y", history.length_unit}, {std::move(path)}, kHeight};
+  Panel panel{
+      {"x", history.length_unit}, {"path: y", history.length_unit}, {OverDrive(history).path()}, kHeight};
   panel.equal = true;
   return panel;
 }

@@ -19,6 +19,8 @@ struct PointHistory {
   std::vector<double> drives;      ///< [drive_unit]
   std::vector<PointState> states;  ///< what has no value is NaN
   bool ends_at_limit = false;      ///< velocities grow beyond all bounds there
+  double size = 0;                 ///< of the mechanism [length unit]; beside it and `rate` rounding is seen
+  double rate = 0;                 ///< how fast it moves [1/s]
 };
 
 /// Six plots in one chart, in three columns: the path and the coordinates, the components of the velocity,

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <oblique/patch/unit_vector.h>
+
 namespace oblique {
 
 GroupResiduals::GroupResiduals(PointForms& places, const Scaling& scaling,
@@ -134,8 +136,7 @@ void GroupResiduals::add_slide(const Slide& slide) {
   on_line.comment = fmt::format("{} stays on the line of {}", places_.name_of(slide.point), slide.name);
   residuals_.push_back(std::move(on_line));
   if (!slide.of) return;
-  const VectorForm guided =
-      places_.direction_of(*slide.of, Eigen::Vector2d(std::cos(slide.angle), -std::sin(slide.angle)));
+  const VectorForm guided = places_.direction_of(*slide.of, unit_vector(-slide.angle));
   const PointForms::LineForm line = places_.line_form(slide.carrier, line_of(mechanism_, slide));
   const double size = places_.scaled(largest_of(*slide.of));
   Residual angle;

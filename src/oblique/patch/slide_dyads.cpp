@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <oblique/patch/unit_vector.h>
+
 namespace oblique {
 
 std::optional<SlideDyadPatch::Parts> SlideDyadPatch::parts_of(const GroupEquations& equations) {
@@ -116,7 +118,7 @@ void SlideDyadPatch::set_axis(const Condition& angle) {
     axis_ = drives_[*angle.drive].axis;
     return;
   }
-  const Eigen::Vector2d heading(std::cos(angle.value), std::sin(angle.value));
+  const Eigen::Vector2d heading = unit_vector(angle.value);
   if (angle.line.kind == LineRef::Kind::known) {
     axis_ = direction_of(angle.line.body, heading);
   } else {
