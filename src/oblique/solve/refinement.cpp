@@ -50,6 +50,10 @@ void refine(const Unseen& unseen, std::size_t n_states, Refinement& refinement) 
     for (const std::size_t i : growth.states) reach_to(i, kFarBelow * growth.distance);
   }
   for (const SmallState& small : unseen.small) reach_to(small.state, kAbsoluteTolerance * small.size);
+  // As small as a decay may become: where it was when it was lost says nothing.
+  for (const FaintTurn& turn : unseen.faint) {
+    for (const auto& [state, size] : turn.states) reach_to(state, kSmallest);
+  }
 }
 
 SolverSettings solver_settings(const std::vector<State>& states, const RunOptions& options,
@@ -105,6 +109,17 @@ std::vector<Diagnostic> warnings_of(const Unseen& unseen, const Program& program
              program.states()[small.state].name, small.size, reader),
          {},
          "scale the state up, and down again what reads it"});
+  }
+  for (const FaintTurn& turn : unseen.faint) {
+    const Switch& made = program.switches()[turn.number];
+    warnings.push_back(
+        {{diagram.file, {}},
+         fmt::format(
+             "'{}' ({}) turns over at t = {:.9g} s, where what it compares is equal to within {:.2g}, "
+             "which is its error: what follows may be wrong",
+             made.block, made.comparison, turn.time, turn.error),
+         {},
+         "compare with a level that is passed, give the comparison a hysteresis, or end the run before"});
   }
   return warnings;
 }

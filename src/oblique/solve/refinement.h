@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <oblique/solve/cvodes_solver.h>
+#include <oblique/solve/faint_turns.h>
 #include <oblique/solve/growth_watch.h>
 #include <oblique/solve/run.h>
 #include <oblique/solve/small_states.h>
@@ -16,8 +17,9 @@ namespace oblique {
 struct Unseen {
   std::vector<UnseenGrowth> growth;
   std::vector<SmallState> small;
+  std::vector<FaintTurn> faint;
 
-  bool empty() const { return growth.empty() && small.empty(); }
+  bool empty() const { return growth.empty() && small.empty() && faint.empty(); }
 };
 
 /// Where a run is to be finer than its tolerance asks, because states that matter are smaller.

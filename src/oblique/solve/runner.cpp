@@ -106,6 +106,7 @@ class Runner {
     Unseen unseen;
     if (growth_) unseen.growth = growth_->found();
     if (small_) unseen.small = small_->found();
+    unseen.faint = switching_.faint_turns();
     std::erase_if(unseen.small, [this](const SmallState& small) {  // it was asked for
       return program_.states()[small.state].tolerance > 0;
     });

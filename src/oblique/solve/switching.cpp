@@ -46,6 +46,7 @@ Switching::Switching(const Program& program, Workspace& workspace, double span, 
       thresholds_{std::vector<double>(program.switches().size(), 0.0),
                   std::vector<double>(program.switches().size(), 0.0)},
       search_(program, workspace, slide_, thresholds_, span, file),
+      faint_turns_(program, workspace, span),
       positions_(program, workspace, slide_, thresholds_.now, span),
       surfaces_(program.switches().size()),
       signals_(program.n_signals()),
@@ -335,6 +336,11 @@ void Switching::settle(double t, std::vector<double>& x) {
     record(t, fmt::format("{}: {} {}", program_.switches()[s].block, program_.switches()[s].comparison,
                           announced_[s] > 0 ? "from now on" : "no longer"));
   }
+  const std::vector<std::uint32_t> faint = faint_switches(t);
+  const std::vector<double> errors = errors_;
+  if (!faint.empty() && !signals(t, x.data(), signals_.data()))
+    std::fill(signals_.begin(), signals_.end(), 0.0);
+  const std::vector<double> before_turning = faint.empty() ? std::vector<double>() : signals_;
   std::fill(came_.begin(), came_.end(), false);
   set_ = false;
   for (int round = 0;; ++round) {
@@ -354,6 +360,7 @@ void Switching::settle(double t, std::vector<double>& x) {
     const double wrong = closed ? -surfaces_[s] : surfaces_[s];
     if (wrong > thresholds_.now[s]) thresholds_.now[s] = thresholds_.slack[s] = 2 * wrong;
   }
+  if (!faint.empty() && signals(t, x.data(), signals_.data())) note_faint(faint, errors, before_turning, t);
 }
 
 double Switching::known_wait(double t, std::span<const double> x) {
@@ -384,6 +391,7 @@ std::optional<double> Switching::search(double from, std::span<const double> loo
   if (!found) return std::nullopt;
   std::fill(announced_.begin(), announced_.end(), -1.0);
   for (const auto& [s, position] : found->turned) announced_[s] = position;
+  faint_turns_.approach(from, found->time, found->turned, solution);
   return found->time;
 }
 

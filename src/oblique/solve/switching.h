@@ -12,6 +12,7 @@
 #include <oblique/network/program.h>
 #include <oblique/solve/event_pace.h>
 #include <oblique/solve/event_search.h>
+#include <oblique/solve/faint_turns.h>
 #include <oblique/solve/interpolant.h>
 #include <oblique/solve/positions.h>
 #include <oblique/solve/sliding_mode.h>
@@ -81,6 +82,8 @@ class Switching {
   long count() const { return count_; }
   /// What could not be seen.
   const std::vector<Diagnostic>& warnings() const { return warnings_; }
+  /// The first turn of each switch about which rounding has decided.
+  const std::vector<FaintTurn>& faint_turns() const { return faint_; }
 
   /// What must be kept to go on later: whether each condition held.
   const std::vector<bool>& conditions() const { return held_; }
@@ -96,6 +99,11 @@ class Switching {
   bool is_known(std::size_t s) const { return program_.switches()[s].rate.has_value(); }
   bool is_any_due() const;
   void weigh_errors();
+  double error_of_state(std::size_t i) const;
+  std::vector<std::pair<std::size_t, double>> states_behind(std::uint32_t s);
+  std::vector<std::uint32_t> faint_switches(double t);
+  void note_faint(const std::vector<std::uint32_t>& faint, const std::vector<double>& errors,
+                  const std::vector<double>& before, double t);
   double place_size(std::size_t s) const;
   void evaluate(double t, std::span<const double> x);
   bool settle_switches(double t, std::span<const double> x);
@@ -123,6 +131,7 @@ class Switching {
   SlidingMode slide_;
   EventSearch::Thresholds thresholds_;
   EventSearch search_;
+  FaintTurns faint_turns_;
   Positions positions_;
 
   std::vector<double> surfaces_, signals_;
@@ -151,6 +160,7 @@ class Switching {
   std::vector<EventRecord> records_;
   long count_ = 0;
   std::vector<Diagnostic> warnings_;
+  std::vector<FaintTurn> faint_;
 };
 
 }  // namespace oblique

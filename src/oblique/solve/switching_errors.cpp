@@ -18,6 +18,13 @@ double Switching::place_size(std::size_t s) const {
   return std::max(kSamePlace * search_.rounding(s), errors_[s]);
 }
 
+/// The absolute error that the solver leaves to a state.
+double Switching::error_of_state(std::size_t i) const {
+  const double own = program_.states()[i].tolerance;
+  const double least = own > 0 ? own : absolute_tolerance_;
+  return reach_.empty() || reach_[i] == 0 ? least : std::min(least, tolerance_ * reach_[i]);
+}
+
 /// How far the surfaces are off zero by the errors that the solver leaves to the states: the most for some
 /// combinations of their signs, where the surfaces were evaluated last.
 void Switching::weigh_errors() {
@@ -31,11 +38,8 @@ void Switching::weigh_errors() {
   for (std::uint64_t trial = 0; trial < kTrials; ++trial) {
     std::uint64_t signs = 0x9E3779B97F4A7C15 * (trial + 1);
     for (std::size_t i = 0; i < off.size(); ++i) {
-      const double own = program_.states()[i].tolerance;
-      double least = own > 0 ? own : absolute_tolerance_;
-      if (!reach_.empty() && reach_[i] > 0) least = std::min(least, tolerance_ * reach_[i]);
       const double size = std::abs(states_[i]);
-      const double error = clocks[i] ? kErrorOfClock * (1 + size) : tolerance_ * size + least;
+      const double error = clocks[i] ? kErrorOfClock * (1 + size) : tolerance_ * size + error_of_state(i);
       off[i] = trial == 0 || (signs >> 63) != 0 ? error : -error;
       signs = 6364136223846793005 * signs + 1442695040888963407;
     }
@@ -46,6 +50,47 @@ void Switching::weigh_errors() {
     }
   }
   weighed_ = true;
+}
+
+/// The states that are hardly known and move the surface of a switch, and their magnitudes.
+std::vector<std::pair<std::size_t, double>> Switching::states_behind(std::uint32_t s) {
+  constexpr double kHardlyKnown = 1e3;  // errors
+  constexpr double kPart = 1e-2;        // of the surface's error
+  std::vector<double> off(program_.n_states(), 0.0), rates(surfaces_.size());
+  program_.surface_rates(off.data(), rates.data(), workspace_);
+  const double still = rates[s];
+  std::vector<std::pair<std::size_t, double>> found;
+  for (std::size_t i = 0; i < off.size(); ++i) {
+    if (std::abs(states_[i]) > kHardlyKnown * error_of_state(i)) continue;
+    off[i] = error_of_state(i);
+    program_.surface_rates(off.data(), rates.data(), workspace_);
+    off[i] = 0;
+    if (std::abs(rates[s] - still) > kPart * errors_[s]) found.emplace_back(i, std::abs(states_[i]));
+  }
+  return found;
+}
+
+/// Of the switches that were announced those about which rounding decides; none that was told of before.
+std::vector<std::uint32_t> Switching::faint_switches(double t) {
+  if (!faint_turns_.any()) return {};
+  weigh_errors();
+  std::vector<std::uint32_t> found = faint_turns_.faint([&](std::uint32_t s) {
+    return FaintTurns::Past{errors_[s], search_.excursion(s), t - unrest_[s].last};
+  });
+  faint_turns_.leave();
+  std::erase_if(found, [this](std::uint32_t s) {
+    return announced_[s] < 0 ||
+           std::any_of(faint_.begin(), faint_.end(), [s](const FaintTurn& turn) { return turn.number == s; });
+  });
+  return found;
+}
+
+/// Keeps the turns that have an effect; the surfaces were evaluated last where they are, after it.
+void Switching::note_faint(const std::vector<std::uint32_t>& faint, const std::vector<double>& errors,
+                           const std::vector<double>& before, double t) {
+  for (const std::uint32_t s : faint) {
+    if (FaintTurns::jumps(before, signals_, errors[s])) faint_.push_back({s, t, errors[s], states_behind(s)});
+  }
 }
 
 }  // namespace oblique

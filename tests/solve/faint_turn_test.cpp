@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+// Comparisons of what decays: the sign is known for ever, and the absolute tolerance hides it.
+#include <cmath>
+#include <numbers>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "../support/runs.h"
+
+namespace oblique {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+// x = e^(−t/τ)/2 never passes zero, so that the comparator never drives it to −1/2.
+TEST(FaintTurn, OfADecayIsNone) {
+  for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10}) {
+    const testing::Compiled made(R"(
+x = { type = "transfer-lag", in = "-0.5*c", time_constant = 1e-3, initial = 0.5 }
+c = { type = "comparator", in = "-x" }
+)",
+                                 "[outputs]\nx = { signal = \"x\" }\nc = { signal = \"c\" }\n");
+    RunOptions options;
+    options.until = 0.5;  // 500 τ: e^(−500) = 7e-218
+    options.tolerance = tolerance;
+    const Run run = oblique::run(made.program, made.flat, options);
+    const std::size_t last = run.trajectory.rows() - 1;
+    EXPECT_NEAR(run.trajectory.at(last, 1), 0, 1e-100) << tolerance;
+    EXPECT_EQ(run.trajectory.at(last, 2), 0) << tolerance;
+    EXPECT_THAT(run.warnings, IsEmpty());
+  }
+}
+
+// x = e^(−t) cos 10 t: its zeros go on as ever, 127 of them until t = 40, where x is 1e-18.
+TEST(FaintTurn, OfADecayedOscillationComesInTime) {
+  const testing::Compiled made(R"(
+x = { type = "integrator", in = "v", initial = 1 }
+v = { type = "integrator", in = ["-101*x", "-2*v"], initial = -1 }
+c = { type = "comparator", in = "x" }
+)");
+  const Run run = testing::run_of(made, {.until = 40});
+  ASSERT_EQ(run.event_count, 127);
+  EXPECT_THAT(run.warnings, IsEmpty());
+  // the phase, by a relative tolerance of 1e-10 over 4000 steps
+  for (std::size_t k = 0; k < run.events.size(); ++k)
+    EXPECT_NEAR(run.events[k].time, (static_cast<double>(k) + 0.5) * std::numbers::pi / 10, 1e-6);
+}
+
+// Slow beside the steps that something else wants, but not beside its own way: its moment is known to 1e-6 s.
+TEST(FaintTurn, IsNotWhatTheStepsOfOthersCutFine) {
+  const testing::Compiled made(R"(
+one = { type = "constant", value = 1 }
+x = { type = "integrator", in = "0.001*one", initial = -0.0005 }
+u = { type = "integrator", in = "1000*w", initial = 1 }
+w = { type = "integrator", in = "-1000*u" }
+c = { type = "comparator", in = "x" }
+)");
+  const Run run = testing::run_of(made, {.until = 1, .tolerance = 1e-6});
+  ASSERT_EQ(run.event_count, 1);
+  EXPECT_NEAR(run.events.front().time, 0.5, 1e-6);
+  EXPECT_THAT(run.warnings, IsEmpty());
+  EXPECT_LT(run.statistics.steps, 10'000);  // no second try
+}
+
+// A kink is passed without an effect: |x| of a decay is as exact on both sides.
+TEST(FaintTurn, WithoutAnEffectIsNoMatter) {
+  const testing::Compiled made(R"(
+x = { type = "integrator", in = "v", initial = 1 }
+v = { type = "integrator", in = ["-101*x", "-2*v"], initial = -1 }
+c = { type = "absolute-value", in = "x" }
+)");
+  const Run run = testing::run_of(made, {.until = 40});
+  EXPECT_THAT(run.warnings, IsEmpty());
+  EXPECT_LT(run.statistics.steps, 3'000);  // no second try
+}
+
+}  // namespace
+}  // namespace oblique
