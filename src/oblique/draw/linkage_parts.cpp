@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include <oblique/draw/block_parts.h>
 #include <oblique/draw/rounded_hull.h>
 #include <oblique/mechanism/plane.h>
 
@@ -15,10 +16,8 @@ using Eigen::Vector2d;
 using Carrier = LinkagePart::Carrier;
 
 constexpr double kLinkRadius = 6, kPinRadius = 4.5, kMarkRadius = 3;  // [px]
-constexpr double kBlockLength = 30, kBlockHeight = 18;                // [px]
 constexpr double kOverhang = 26;  // of a guide beyond the way of its block [px]
-constexpr double kOpacity = 0.6;  // of the inside of a body, and of the colour of what is driven
-const Pen kThin{Ink::line, 1.3}, kBlockPen{Ink::line, 1.5};
+const Pen kThin{Ink::line, kThinLine};
 
 /// From what the distance of a slide's point from its line's first point is measured.
 Vector2d line_direction(const Mechanism& mechanism, const Slide& slide) {
@@ -54,19 +53,6 @@ Range range_of(const std::vector<Configuration>& motion, std::size_t slide) {
 bool slides_along(const Mechanism& mechanism, std::size_t point) {
   return std::any_of(mechanism.slides.begin(), mechanism.slides.end(),
                      [&](const Slide& slide) { return slide.point == point; });
-}
-
-/// The drive that moves a slide, or nothing.
-const Drive* drive_of_slide(const Mechanism& mechanism, std::size_t slide) {
-  const auto found = std::find_if(mechanism.drives.begin(), mechanism.drives.end(),
-                                  [&](const Drive& drive) { return drive.slide == slide; });
-  return found == mechanism.drives.end() ? nullptr : &*found;
-}
-
-/// Whether a drive moves its slide towards the first point of the line. At rest that is as it sets off.
-bool moves_back(const Drive& drive, const SlideState& here) {
-  const bool moves = std::isfinite(here.velocity) && here.velocity != 0;
-  return (moves ? here.velocity : drive.speed) < 0;
 }
 
 /// Whether a body covers more than the line through its first two points.
@@ -146,7 +132,7 @@ Mark inside_of(const Mechanism& mechanism, std::size_t index, double scale) {
   Mark inside{outline_of(mechanism.bodies[index], scale),
               {Ink::none, 0},
               mechanism.drive_of(index) ? Ink::orange : Ink::faint};
-  inside.opacity = kOpacity;
+  inside.opacity = kInsideOpacity;
   inside.id = "inside-" + mechanism.bodies[index].name;
   return inside;
 }
@@ -163,46 +149,6 @@ LinkagePart body_part(const Mechanism& mechanism, const std::vector<Configuratio
   Mark edge{outline_of(body, scale), kThin};
   edge.id = "body-" + body.name;
   part.marks.push_back(edge);
-  return part;
-}
-
-/// A polygon in the colour of drives, as driven bodies have it; what lies under it does not show through.
-void add_driven(std::vector<Mark>& marks, const std::vector<Vector2d>& corners, const Mark& edge) {
-  Mark inside = polyline_mark(corners, {Ink::none, 0}, true);
-  inside.fill = Ink::paper;
-  marks.push_back(inside);
-  inside.fill = Ink::orange;
-  inside.opacity = kOpacity;
-  marks.push_back(std::move(inside));
-  marks.push_back(edge);
-}
-
-LinkagePart block_part(const Mechanism& mechanism, std::size_t index) {
-  const Vector2d half(kBlockLength / 2, kBlockHeight / 2);
-  const std::vector<Vector2d> corners{-half, {half.x(), -half.y()}, half, {-half.x(), half.y()}};
-  LinkagePart part{Carrier::slide, index};
-  Mark block = polyline_mark(corners, kBlockPen, true);
-  block.id = "slide-" + mechanism.slides[index].name;
-  if (drive_of_slide(mechanism, index) != nullptr) {
-    add_driven(part.marks, corners, block);
-  } else {
-    block.fill = Ink::paper;
-    part.marks.push_back(std::move(block));
-  }
-  return part;
-}
-
-/// Before a driven block, on its line.
-LinkagePart arrow_part(const Mechanism& mechanism, std::size_t index) {
-  constexpr double kTail = kBlockLength / 2 + 4, kNeck = kTail + 12, kTip = kNeck + 11;  // [px]
-  constexpr double kHalfShaft = 2.5, kHalfHead = 7;                                      // [px]
-  const std::vector<Vector2d> corners{
-      {kTail, -kHalfShaft}, {kNeck, -kHalfShaft}, {kNeck, -kHalfHead}, {kTip, 0},
-      {kNeck, kHalfHead},   {kNeck, kHalfShaft},  {kTail, kHalfShaft}};
-  LinkagePart part{Carrier::drive, index};
-  Mark edge = polyline_mark(corners, kThin, true);
-  edge.id = "arrow-" + mechanism.slides[index].name;
-  add_driven(part.marks, corners, edge);
   return part;
 }
 
@@ -245,8 +191,7 @@ PartPose pose_of(const LinkagePart& part, const Mechanism& mechanism, const Conf
   }
   const Slide& slide = mechanism.slides[part.index];
   const double turned_by = slide.carrier ? here.bodies[*slide.carrier].angle : 0;
-  const bool back = part.carrier == Carrier::drive &&
-                    moves_back(*drive_of_slide(mechanism, part.index), here.slides[part.index]);
+  const bool back = part.carrier == Carrier::drive && goes_back(mechanism, part.index, here);
   return {here.points[slide.point].position,
           turned_by + angle_of(line_direction(mechanism, slide)) + (back ? std::numbers::pi : 0)};
 }
@@ -284,13 +229,7 @@ std::vector<LinkagePart> linkage_parts(const Mechanism& mechanism, const std::ve
   }
   for (std::size_t b = 0; b < mechanism.bodies.size(); ++b)
     parts.push_back(body_part(mechanism, motion, b, scale));
-  for (const bool driven : {false, true}) {  // a point may slide on several lines: the driven block is seen
-    for (std::size_t s = 0; s < mechanism.slides.size(); ++s) {
-      if ((drive_of_slide(mechanism, s) != nullptr) != driven) continue;
-      parts.push_back(block_part(mechanism, s));
-      if (driven) parts.push_back(arrow_part(mechanism, s));
-    }
-  }
+  for (LinkagePart& part : block_parts(mechanism)) parts.push_back(std::move(part));
   for (std::size_t p = 0; p < mechanism.points.size(); ++p) {
     if (is_drawn(mechanism, p)) parts.push_back(pin_part(mechanism, p));
   }
