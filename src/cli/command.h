@@ -124,8 +124,9 @@ struct CompareRequest {
   int threads = 0;  ///< 0: as many as the processor has
   std::string tolerance;
   bool json = false;
-  std::string plot;   ///< where the curves go; "-": the terminal
-  std::string theme;  ///< of the drawing; empty: auto
+  bool timings = false;  ///< in the JSON
+  std::string plot;      ///< where the curves go; "-": the terminal
+  std::string theme;     ///< of the drawing; empty: auto
 };
 ExitStatus compare_mechanism(const Session& session, const CompareRequest& request);
 

@@ -147,6 +147,8 @@ ExitStatus compare_mechanism(const Session& session, const CompareRequest& reque
   check_plot(request.plot, request.theme);
   if (request.json && plots_in_terminal(request.plot))
     refuse("--json and --plot - would both print", "one of the two", "--plot FILE.svg beside --json");
+  if (request.timings && !request.json && request.output.empty())
+    refuse("--timings is about the JSON, and none is written", "--json or -o FILE.json beside it");
   const BlockLibrary library = session.blocks();
   CompareOptions options = options_of(request);
   const MachineProfile* const machine = request.machine.empty() ? nullptr : find_machine(request.machine);
@@ -178,7 +180,7 @@ ExitStatus compare_mechanism(const Session& session, const CompareRequest& reque
     comparison = compare(mechanism, library, options);
   }
   std::string text = to_text(comparison);
-  nlohmann::ordered_json json = to_json(comparison);
+  nlohmann::ordered_json json = to_json(comparison, request.timings);
   Chart chart = chart_of(comparison);
   bool failed = warn_of(comparison.refused);
   if (machine != nullptr) {
@@ -191,7 +193,7 @@ ExitStatus compare_mechanism(const Session& session, const CompareRequest& reque
   if (request.runs > 0) {
     const MonteCarloReport report = draw_elements(request, mechanism, drawn, library, machine);
     text += to_text(report);
-    json["monte_carlo"] = to_json(report);
+    json["monte_carlo"] = to_json(report, request.timings);
     for (Panel& panel : panels_of(comparison, report)) chart.panels.push_back(std::move(panel));
     failed = failed || !report.result.worst_run;
   }

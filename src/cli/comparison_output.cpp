@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "measured_time.h"
 #include "terminal.h"
 
 namespace oblique::cli {
@@ -35,12 +34,12 @@ Json json_of(const std::optional<double>& value) {
   return value ? Json(*value) : Json(nullptr);
 }
 
-Json json_of(const ComparedRun& run) {
+Json json_of(const ComparedRun& run, bool timings) {
   Json json{{"gain", run.gain},
             {"max_error", run.max_error},
             {"rms_error", run.rms_error},
             {"steps", run.steps},
-            {"seconds", measured_seconds(run.seconds)},
+            {"seconds", timings ? Json(run.seconds) : Json(nullptr)},
             {"overloads", run.overloads.size()},
             {"stable", run.stable},
             {"method", method_name(run.method)},
@@ -194,12 +193,12 @@ std::string drive_text(const Comparison& comparison, double value) {
   return fmt::format("{:.4g}°", degrees < 0 ? degrees + 360 : degrees);
 }
 
-nlohmann::ordered_json to_json(const Comparison& comparison) {
+nlohmann::ordered_json to_json(const Comparison& comparison, bool timings) {
   Json json{{"mechanism", comparison.mechanism},
             {"method", methods_of(comparison)},
             {"size", comparison.size},
             {"runs", Json::array()}};
-  for (const ComparedRun& run : comparison.runs) json["runs"].push_back(json_of(run));
+  for (const ComparedRun& run : comparison.runs) json["runs"].push_back(json_of(run, timings));
   json["order"] = has_one(comparison) ? json_of(comparison.series.front().order) : Json(nullptr);
   json["unit"] = comparison.unit;
   json["series"] = Json::array();

@@ -15,7 +15,7 @@ std::string drive_text(const Comparison& comparison, double value);
 /// What `compare` prints: errors, their parts and reasons, order, overloads.
 std::string to_text(const Comparison& comparison);
 
-/// The same for `--json` (docs/trust.md).
-nlohmann::ordered_json to_json(const Comparison& comparison);
+/// The same for `--json` (docs/trust.md), with or without the seconds that were measured.
+nlohmann::ordered_json to_json(const Comparison& comparison, bool timings);
 
 }  // namespace oblique::cli

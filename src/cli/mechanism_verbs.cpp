@@ -130,6 +130,8 @@ void add_compare(CLI::App& app, Chosen& chosen) {
                   "draw the error over the gain with its slope, the error along the turn, and of "
                   "--monte-carlo the bands of the error along the turn and how often it errs how much");
   verb->add_flag("--json", request->json, "print JSON instead of the table");
+  verb->add_flag("--timings", request->timings,
+                 "write into the JSON how many seconds it took, which are others each time");
   verb->add_option("-o,--output", request->output, "write the JSON to FILE.json")->type_name("FILE");
   choose(verb, chosen, request, compare_mechanism);
 }

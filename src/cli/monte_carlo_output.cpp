@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include "measured_time.h"
 #include "terminal.h"
 
 namespace oblique::cli {
@@ -60,13 +59,13 @@ std::string to_text(const MonteCarloReport& report) {
   return text + failures(result);
 }
 
-Json to_json(const MonteCarloReport& report) {
+Json to_json(const MonteCarloReport& report, bool timings) {
   const MonteCarlo& result = report.result;
   Json json{{"seed", report.options.seed},
             {"first_run", report.options.first_run},
             {"runs", result.errors.size()},
             {"drawn", result.drawn},
-            {"seconds", measured_seconds(report.seconds)}};
+            {"seconds", timings ? Json(report.seconds) : Json(nullptr)}};
   json["percentiles"] = Json::object();
   for (const double percent : kPercents) {
     const auto error = result.percentile(percent);

@@ -22,7 +22,7 @@ struct MonteCarloReport {
 
 std::string to_text(const MonteCarloReport& report);
 
-/// The same for `--json` (docs/trust.md).
-nlohmann::ordered_json to_json(const MonteCarloReport& report);
+/// The same for `--json` (docs/trust.md), with or without the seconds that were measured.
+nlohmann::ordered_json to_json(const MonteCarloReport& report, bool timings);
 
 }  // namespace oblique::cli
