@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <exception>
 #include <new>
 #include <system_error>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -18,8 +20,13 @@
 namespace oblique::cli {
 namespace {
 
+/// The first findings, in the order of the file: who has more mends these first.
 ExitStatus report(const Error& error, ExitStatus status) {
-  for (const Diagnostic& diagnostic : error.diagnostics()) print_error(to_string(diagnostic));
+  constexpr std::size_t kMostFindings = 20;
+  const std::vector<Diagnostic>& all = error.diagnostics();
+  const std::size_t shown = std::min(all.size(), kMostFindings);
+  for (std::size_t i = 0; i < shown; ++i) print_error(to_string(all[i]));
+  if (shown < all.size()) print_error(fmt::format("… and {} more", all.size() - shown));
   return status;
 }
 

@@ -201,5 +201,56 @@ TEST_P(BadInputs, EndWithTheirStatusAndAMessage) {
   for (const char* part : GetParam().says) EXPECT_THAT(outcome.err, HasSubstr(part));
 }
 
+/// A file with so many blocks, each wrong in the same way.
+struct ManyFaults {
+  const char* name;
+  const char* rest_of_block;  ///< {} is its number
+  std::string first;          ///< what is said of block 0
+};
+
+void PrintTo(const ManyFaults& tested, std::ostream* out) {
+  *out << tested.name;
+}
+
+class ManyInputs : public testing::TestWithParam<ManyFaults> {};
+INSTANTIATE_TEST_SUITE_P(
+    Cli, ManyInputs,
+    testing::Values(
+        ManyFaults{"UnknownSignals", "type = \"gain\", in = \"no{}\"",
+                   "error: input.toml:3:29: input 'b0.in': there is no signal 'no0'\n"
+                   "  remedy: known: b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11 and 2988 more\n"},
+        ManyFaults{"OpenInputs", "type = \"gain\"",
+                   "error: input.toml:3:1: input 'b0.in' (gain) is not connected; expected a signal\n"
+                   "  remedy: in = \"NAME OF A SIGNAL\"\n"},
+        ManyFaults{
+            "TwoDrivers", "type = \"gain\", in = [\"b0\", \"b1\"]",
+            "error: input.toml:3:35: input 'b0.in' is doubly driven: it takes one signal and was given "
+            "2\n"
+            "  remedy: add the signals in a block with a summing input and wire its output here\n"},
+        ManyFaults{"UnknownTypes", "type = \"gian\", in = \"b0\"",
+                   "error: input.toml:3:1: block 'b0': there is no block type 'gian'\n"
+                   "  remedy: did you mean 'gain'?\n"}),
+    [](const auto& tested) { return tested.param.name; });
+
+TEST_P(ManyInputs, AreToldOfByTheFirstOfThem) {
+  constexpr int kMany = 3000;
+  const ScratchFolder folder;
+  std::string blocks;
+  for (int k = 0; k < kMany; ++k) {
+    const std::string number = std::to_string(k);
+    std::string rest = GetParam().rest_of_block;
+    if (const auto at = rest.find("{}"); at != std::string::npos) rest.replace(at, 2, number);
+    blocks += "b" + number + " = { " + rest + " }\n";
+  }
+  std::ofstream(folder / "input.toml") << diagram(blocks);
+  const Outcome outcome = run_command("oblique run input.toml", folder.path().string());
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, testing::StartsWith(GetParam().first));
+  EXPECT_THAT(outcome.err, testing::EndsWith("\nerror: … and 2980 more\n"));
+  std::size_t findings = 0;
+  for (std::size_t at = 0; (at = outcome.err.find("error: ", at)) != std::string::npos; ++at) ++findings;
+  EXPECT_EQ(findings, 21U);
+}
+
 }  // namespace
 }  // namespace oblique::test
