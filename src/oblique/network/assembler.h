@@ -13,6 +13,7 @@
 #include <oblique/network/dependency_order.h>
 #include <oblique/network/expression_builder.h>
 #include <oblique/network/network.h>
+#include <oblique/network/tangents.h>
 
 // How `assemble` works; not installed. network.cpp holds what is continuous, event_assembly.cpp what
 // switches.
@@ -83,6 +84,7 @@ class Assembler {
   void make_starts();
   void define_switches();
   std::optional<NodeId> rate_of(NodeId surface);
+  bool follows_time_alone(NodeId id);
   NodeId switch_of(std::size_t block, const Expression& left, const Expression& right, Turning turning);
   NodeId built(std::size_t block, const Expression& expression, const Place& place, const std::string& what);
   bool is_algebraic(std::uint32_t q) const;
@@ -111,6 +113,8 @@ class Assembler {
   std::vector<PendingSwitch> pending_switches_;
   std::vector<PendingTable> pending_tables_;
   Network network_;
+  std::vector<bool> beside_time_;  ///< of each node as far as looked at: what else varies is below it
+  Tangents rates_by_time_{network_.graph, [this](std::uint32_t) { return network_.graph.constant(1); }};
   std::vector<Quantity> quantities_;
   std::vector<std::uint32_t> first_quantity_;
   Diagnostics diagnostics_;

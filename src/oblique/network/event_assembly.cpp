@@ -198,10 +198,21 @@ void Assembler::define_switches() {
 
 /// d surface/dt where nothing but time enters and that rate is constant between events.
 std::optional<NodeId> Assembler::rate_of(NodeId surface) {
-  const auto gradient = network_.graph.gradient(surface);
-  if (gradient.size() != 1 || gradient[0].first != 0) return std::nullopt;
-  if (network_.graph[gradient[0].second].continuous) return std::nullopt;
-  return gradient[0].second;
+  if (!follows_time_alone(surface)) return std::nullopt;
+  const NodeId rate = rates_by_time_.of(surface);
+  if (network_.graph[rate].continuous || network_.graph.is_constant(rate, 0)) return std::nullopt;
+  return rate;
+}
+
+bool Assembler::follows_time_alone(NodeId id) {
+  const ExpressionGraph& graph = network_.graph;
+  for (auto next = static_cast<NodeId>(beside_time_.size()); next <= id; ++next) {
+    const Node& node = graph[next];
+    bool beside = node.op == Op::variable && node.variable != 0;
+    for (int i = 0; i < operand_count(node.op); ++i) beside = beside || beside_time_[node.operand(i)];
+    beside_time_.push_back(beside);
+  }
+  return graph[id].continuous && !beside_time_[id];
 }
 
 NodeId Assembler::switch_of(std::size_t block, const Expression& left, const Expression& right,

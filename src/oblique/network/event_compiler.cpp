@@ -9,8 +9,6 @@
 namespace oblique {
 namespace {
 
-constexpr std::size_t kNoLoop = static_cast<std::size_t>(-1);
-
 /// How a node depends on the time.
 enum class Follows : std::uint8_t {
   nothing,        ///< but events
@@ -53,21 +51,22 @@ Follows follows_of(const ExpressionGraph& graph, const Node& node, const std::ve
 
 }  // namespace
 
-/// d/dt of what has this gradient, with the rates of states and unknowns as numbers that are put in, as if
-/// they were memories. The unknowns of one loop may be left out.
+/// d variable/dt: of states and unknowns a number that is put in, as if it were a memory.
+NodeId ProgramCompiler::rate_of(std::uint32_t variable) {
+  if (variable == 0) return network_.graph.constant(1);
+  if (is_unknown(variable)) loop_rates_.try_emplace(loop_of_unknown_[unknown_of(variable)]);
+  return network_.graph.memory(static_cast<std::uint32_t>(network_.memories.size()) + variable - 1);
+}
+
+/// d/dt of what has this gradient. The unknowns of one loop may be left out.
 NodeId ProgramCompiler::total_derivative(const Gradient& gradient, std::size_t without_loop) {
   ExpressionGraph& graph = network_.graph;
   NodeId sum = graph.constant(0);
   for (const auto& [variable, slope] : gradient) {
     NodeId term = slope;
     if (variable != 0) {
-      if (is_unknown(variable)) {
-        const std::size_t loop = loop_of_unknown_[unknown_of(variable)];
-        if (loop == without_loop) continue;
-        loop_rates_.try_emplace(loop);
-      }
-      const auto rate = static_cast<std::uint32_t>(network_.memories.size()) + variable - 1;
-      term = graph.apply(Op::multiply, slope, graph.memory(rate));
+      if (is_unknown(variable) && loop_of_unknown_[unknown_of(variable)] == without_loop) continue;
+      term = graph.apply(Op::multiply, slope, rate_of(variable));
     }
     sum = graph.apply(Op::add, sum, term);
   }
@@ -75,24 +74,24 @@ NodeId ProgramCompiler::total_derivative(const Gradient& gradient, std::size_t w
 }
 
 void ProgramCompiler::differentiate_surfaces() {
-  for (const Switch& s : network_.switches)
-    surface_rates_.push_back(total_derivative(network_.graph.gradient(s.surface), kNoLoop));
-  find_phases();
+  Tangents rates(network_.graph, [this](std::uint32_t variable) { return rate_of(variable); });
+  for (const Switch& s : network_.switches) surface_rates_.push_back(rates.of(s.surface));
+  find_phases(rates);
   // A loop's rates may need those of loops before it.
   for (std::size_t l = network_.loops.size(); l-- > 0;) {
     const auto found = loop_rates_.find(l);
     if (found == loop_rates_.end()) continue;
-    std::vector<NodeId> rates;
+    std::vector<NodeId> right_sides;
     for (const std::size_t u : network_.loops[l].unknowns)
-      rates.push_back(total_derivative(residual_gradients_[u], l));
-    found->second = std::move(rates);
+      right_sides.push_back(total_derivative(residual_gradients_[u], l));
+    found->second = std::move(right_sides);
   }
 }
 
 /// Arguments of periodic functions below a surface that do not follow the time alone, which is seen
 /// otherwise.
-void ProgramCompiler::find_phases() {
-  ExpressionGraph& graph = network_.graph;
+void ProgramCompiler::find_phases(Tangents& rates) {
+  const ExpressionGraph& graph = network_.graph;
   std::vector<NodeId> pending, arguments;
   for (const Switch& s : network_.switches) pending.push_back(s.surface);
   std::vector<bool> seen(graph.size());
@@ -107,13 +106,12 @@ void ProgramCompiler::find_phases() {
         node.op == Op::sin || node.op == Op::cos || node.op == Op::tan || node.op == Op::noise;
     if (periodic && graph[node.a].continuous) arguments.push_back(node.a);
   }
-  for (const NodeId argument : arguments)
-    phase_rates_.push_back(total_derivative(graph.gradient(argument), kNoLoop));
+  for (const NodeId argument : arguments) phase_rates_.push_back(rates.of(argument));
 }
 
 /// The largest parts of the equations made by functions that can be next to nothing here and a peak there, of
 /// states that a solver follows (of sums, products, sines and cosines of those it sees what they do).
-void ProgramCompiler::find_peaks(const std::vector<bool>& acts,
+void ProgramCompiler::find_peaks(const std::vector<bool>& acts, const std::vector<bool>& clocks,
                                  const std::function<bool(NodeId)>& follows_states) {
   const ExpressionGraph& graph = network_.graph;
   std::vector<bool> by_unknowns(graph.size()), covered(graph.size()), reached(graph.size());
@@ -146,10 +144,9 @@ void ProgramCompiler::find_peaks(const std::vector<bool>& acts,
       covered[child] = covered[child] || covered[id] || peak;
       reached[child] = reached[child] || reached[id] || peak;
     }
-    if (reached[id] && node.op == Op::variable && node.variable != 0 && !is_unknown(node.variable) &&
-        std::find(program_.source_states_.begin(), program_.source_states_.end(), node.variable - 1) ==
-            program_.source_states_.end())
-      program_.source_states_.push_back(node.variable - 1);
+    const bool state = node.op == Op::variable && is_state(node.variable);
+    if (state && reached[id] && !clocks[state_of(node.variable)])
+      program_.source_states_.push_back(state_of(node.variable));
   }
 }
 
@@ -191,21 +188,21 @@ void ProgramCompiler::find_sources() {
       if (follows[id] == Follows::states && follows[child] == Follows::time) is_root[child] = true;
     }
   }
-  find_peaks(acts, [&](NodeId id) { return follows[id] == Follows::states; });
+  find_peaks(acts, clocks, [&](NodeId id) { return follows[id] == Follows::states; });
+  Tangents slopes(graph, [&](std::uint32_t variable) {
+    return variable == 0 ? graph.constant(1) : network_.states[variable - 1].derivative;
+  });
+  std::map<NodeId, std::size_t> source_of;
   for (NodeId id = 0; id < size; ++id) {
     if (!is_root[id] || follows[id] != Follows::time) continue;
-    NodeId slope = graph.constant(0);
-    for (const auto& [variable, part] : graph.gradient(id)) {
-      const NodeId rate = variable == 0 ? graph.constant(1) : network_.states[variable - 1].derivative;
-      slope = graph.apply(Op::add, slope, graph.apply(Op::multiply, part, rate));
-    }
-    sources_.push_back({id, slope, acts[id], false, std::nullopt});
+    source_of.emplace(id, sources_.size());
+    sources_.push_back({id, slopes.of(id), acts[id], false, std::nullopt});
   }
   for (std::size_t s = 0; s < network_.switches.size(); ++s) {
-    const auto same = std::find_if(sources_.begin(), sources_.end(), [&](const FoundSource& source) {
-      return source.value == network_.switches[s].surface && !source.by_states && !source.switch_index;
-    });
-    if (same != sources_.end()) same->switch_index = static_cast<std::uint32_t>(s);
+    const auto same = source_of.find(network_.switches[s].surface);
+    if (same == source_of.end()) continue;
+    std::optional<std::uint32_t>& index = sources_[same->second].switch_index;
+    if (!index) index = static_cast<std::uint32_t>(s);
   }
 }
 

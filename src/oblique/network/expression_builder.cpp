@@ -143,8 +143,11 @@ class Builder {
     if (change_of(e, context_) == Change::never && e.function != Function::if_) return constant_of(e);
     const std::vector<Expression>& x = e.operands;
     switch (e.function) {
-      case Function::abs:
-        return choose(bend(x[0], zero()), x[0], negative(x[0]));
+      case Function::abs: {
+        const NodeId positive = bend(x[0], zero());
+        const NodeId inner = build(x[0]);  // once: magnitudes may stand in magnitudes
+        return graph_.apply(Op::select, positive, inner, graph_.apply(Op::negate, inner));
+      }
       case Function::sign:
         return graph_.apply(Op::select, greater(x[0], zero()), graph_.constant(1), graph_.constant(-1));
       case Function::step:
@@ -155,11 +158,13 @@ class Builder {
       case Function::clip:
         return graph_.apply(Op::select, greater(x[0], x[2], Turning::limits), build(x[2]),
                             choose(greater(x[1], x[0], Turning::limits), x[1], x[0]));
-      case Function::deadzone:
+      case Function::deadzone: {
+        const NodeId above = bend(x[0], x[1]), below = bend(negative(x[1]), x[0]);
+        const NodeId inner = build(x[0]), width = build(x[1]);
         return graph_.apply(
-            Op::select, bend(x[0], x[1]), graph_.apply(Op::subtract, build(x[0]), build(x[1])),
-            graph_.apply(Op::select, bend(negative(x[1]), x[0]),
-                         graph_.apply(Op::add, build(x[0]), build(x[1])), graph_.constant(0)));
+            Op::select, above, graph_.apply(Op::subtract, inner, width),
+            graph_.apply(Op::select, below, graph_.apply(Op::add, inner, width), graph_.constant(0)));
+      }
       case Function::if_:
         return choose(condition(x[0]), x[1], x[2]);
       default:

@@ -229,10 +229,12 @@ NodeId ExpressionGraph::passed_on(NodeId adjoint, NodeId id, int operand) {
   const NodeId slope = partial(id, operand);
   const Op by = nodes_[adjoint].op;
   const bool gated = by == Op::select || by == Op::gate;
-  // What has a value everywhere needs no gate.
-  const Op op = node.op;
-  const bool safe = op == Op::add || op == Op::subtract || op == Op::negate || is_constant(slope);
-  return apply(gated && !safe ? Op::gate : Op::multiply, adjoint, slope);
+  return apply(gated && !has_value_everywhere(id, slope) ? Op::gate : Op::multiply, adjoint, slope);
+}
+
+bool ExpressionGraph::has_value_everywhere(NodeId id, NodeId slope) const {
+  const Op op = nodes_[id].op;
+  return op == Op::add || op == Op::subtract || op == Op::negate || is_constant(slope);
 }
 
 NodeId ExpressionGraph::partial(NodeId id, int operand) {

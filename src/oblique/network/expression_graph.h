@@ -85,6 +85,11 @@ class ExpressionGraph {
   /// the graph.
   std::vector<std::pair<std::uint32_t, NodeId>> gradient(NodeId root);
 
+  /// Partial derivative of a node by one of its operands. Adds nodes to the graph.
+  NodeId partial(NodeId id, int operand);
+  /// Whether `slope`, a partial derivative of a node, is a finite number wherever there is one at all.
+  bool has_value_everywhere(NodeId id, NodeId slope) const;
+
  private:
   struct Key {
     Op op;
@@ -100,7 +105,6 @@ class ExpressionGraph {
   NodeId simplified(Op op, NodeId a, NodeId b, NodeId c, bool& done);
   /// adjoint · (partial derivative of a node by one of its operands).
   NodeId passed_on(NodeId adjoint, NodeId id, int operand);
-  NodeId partial(NodeId id, int operand);
 
   std::vector<Node> nodes_;
   std::unordered_map<Key, NodeId, Hash> index_;

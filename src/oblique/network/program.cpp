@@ -101,6 +101,26 @@ void Program::surface_rates(const double* dxdt, double* values, Workspace& works
   for (std::size_t s = 0; s < surface_rate_slots_.size(); ++s) values[s] = slots[surface_rate_slots_[s]];
 }
 
+void Program::decide_in_order(double t, const double* x, const double* dxdt, Workspace& workspace,
+                              const Decide& decide) const {
+  double* const slots = workspace.slots_.data();
+  slots[0] = t;
+  std::copy(x, x + states_.size(), slots + 1);
+  std::copy(dxdt, dxdt + states_.size(), slots + first_rate_);
+  for (const auto& [stretch, s] : switch_order_) {
+    run_tape(std::span(tape_).subspan(stretch.begin, stretch.end - stretch.begin), slots);
+    decide(s, slots[surface_slots_[s]], slots[surface_rate_slots_[s]]);
+  }
+}
+
+bool Program::pieces_meet(std::size_t s, const Workspace& workspace) const {
+  constexpr double kMeet = 1e-9;  // a jump that is smaller is below any tolerance of a run
+  return has_pieces_[s] && std::all_of(pieces_[s].begin(), pieces_[s].end(), [&](const auto& pieces) {
+           const double a = workspace.slots_[pieces.first], b = workspace.slots_[pieces.second];
+           return std::abs(a - b) <= kMeet * std::max({1.0, std::abs(a), std::abs(b)});
+         });
+}
+
 double Program::fastest_phase(const Workspace& workspace) const {
   double fastest = 0;
   for (const std::uint32_t slot : phase_rate_slots_)

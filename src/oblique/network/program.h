@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <oblique/network/interval.h>
@@ -95,6 +97,19 @@ class Program {
   /// the last `surface_rates` left it.
   double fastest_phase(const Workspace& workspace) const;
   const SwitchStructure& switch_structure() const { return switch_structure_; }
+
+  /// Whether a switch follows from no algebraic loop, and its surface does not depend on its own position.
+  bool is_ordered(std::size_t s) const { return is_ordered_[s]; }
+  /// What `decide_in_order` calls: a switch, its surface, and d surface/dt.
+  using Decide = std::function<void(std::uint32_t s, double surface, double rate)>;
+  /// Goes once through all ordered switches at (t, x), where the states move with `dxdt`: each comes after
+  /// those on whose positions its surface depends, and sees them as `decide` has set them. The surfaces of
+  /// all must be evaluated anew after it.
+  void decide_in_order(double t, const double* x, const double* dxdt, Workspace& workspace,
+                       const Decide& decide) const;
+  /// Whether the equations and surfaces only bend where a switch turns over: as the last `surfaces` left
+  /// them, the pieces between which its position chooses are equal.
+  bool pieces_meet(std::size_t s, const Workspace& workspace) const;
 
   const std::vector<Source>& sources() const { return sources_; }
   /// The states that sources depend on. The first `clocks` of them go along a straight line between events:
@@ -200,6 +215,15 @@ class Program {
   std::vector<EventSlots> event_slots_;
   std::vector<std::optional<std::uint32_t>> start_slots_;
   std::vector<std::uint32_t> phase_end_slots_;
+
+  struct OrderedSwitch {
+    TapeRange stretch;  ///< computes its surface and the rate of it
+    std::uint32_t switch_index;
+  };
+  std::vector<OrderedSwitch> switch_order_;
+  std::vector<bool> is_ordered_;                                              ///< of each switch
+  std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>> pieces_;  ///< of each switch; slots
+  std::vector<bool> has_pieces_;  ///< of each switch: nothing but a choice between them reads its position
 
   SwitchStructure switch_structure_;
   std::size_t first_rate_ = 0;        ///< slot of d states/dt, then of d unknowns/dt

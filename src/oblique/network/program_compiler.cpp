@@ -21,6 +21,7 @@ ProgramCompiler::ProgramCompiler(Program& program, Network network)
 void ProgramCompiler::compile() {
   program_.switch_structure_ = find_switch_structure(network_);
   differentiate();
+  find_positions();
   differentiate_surfaces();
   find_sources();
   find_levels();
@@ -187,6 +188,8 @@ void ProgramCompiler::write_tapes() {
   write_events();
   write_rates();
   write_sources();
+  write_switch_order();
+  write_pieces();
 }
 
 void ProgramCompiler::write_events() {

@@ -8,7 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include <oblique/network/dependency_order.h>
 #include <oblique/network/program.h>
+#include <oblique/network/tangents.h>
 
 namespace oblique {
 
@@ -30,9 +32,11 @@ class ProgramCompiler {
   void differentiate();
   void differentiate_surfaces();
   NodeId total_derivative(const Gradient& gradient, std::size_t without_loop);
-  void find_phases();
+  void find_phases(Tangents& rates);
+  NodeId rate_of(std::uint32_t variable);
   void find_sources();
-  void find_peaks(const std::vector<bool>& acts, const std::function<bool(NodeId)>& follows_states);
+  void find_peaks(const std::vector<bool>& acts, const std::vector<bool>& clocks,
+                  const std::function<bool(NodeId)>& follows_states);
   void find_levels();
   void find_needs();
   void close_over(NodeId root, Needs& needs) const;
@@ -47,6 +51,11 @@ class ProgramCompiler {
   void write_events();
   void write_rates();
   void write_sources();
+  void find_positions();
+  std::vector<NodeId> grounds_of(std::size_t s) const;
+  std::vector<OrderStep> order_of_positions(const std::vector<bool>& ordered) const;
+  void write_switch_order();
+  void write_pieces();
   std::vector<NodeId> rate_roots() const;
   std::vector<NodeId> source_roots() const;
   std::vector<Program::Step> write_steps(const Needs& wanted, const Needs& done);
@@ -70,6 +79,8 @@ class ProgramCompiler {
   std::vector<std::uint32_t> levels_;  ///< of a node: 1 + the last loop it depends on, 0 for none
   Needs for_derivatives_, for_surfaces_, for_signals_, for_jacobian_, for_rates_, for_sources_;
 
+  static constexpr std::uint32_t kNoSwitch = SwitchStructure::kNone;
+  std::vector<NodeId> positions_;      ///< of every switch the node of its memory
   std::vector<NodeId> surface_rates_;  ///< of every switch
   std::vector<NodeId> phase_rates_;
   /// Of each loop whose unknowns' rates the surfaces need, for each residual: what its rate would be if the

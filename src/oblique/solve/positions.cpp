@@ -6,21 +6,10 @@
 #include <cmath>
 #include <limits>
 
+#include <oblique/solve/position_limits.h>
+
 namespace oblique {
 namespace {
-
-/// How far the states are moved to see what a surface does a moment later [machine unit]: its square is above
-/// rounding, its cube below.
-constexpr double kProbe = 1e-6;
-
-/// A rate below this part of the largest among the trials is none.
-constexpr double kNoRate = 1e-9;
-constexpr double kNoLaterRate = 1e-6;
-/// A rate that is this small a part of its change over the moment is about to turn, within rounding of the
-/// surface.
-constexpr double kAboutToTurn = 0.05;
-/// Rounding of a rate, of the fastest state's; and of a surface [machine unit].
-constexpr double kRounding = 1e-13;
 
 constexpr std::size_t kMostTogether = 12;  ///< switches of which `choose_any` tries all combinations
 
@@ -41,6 +30,8 @@ Positions::Positions(const Program& program, Workspace& workspace, SlidingMode& 
       slide_(slide),
       thresholds_(thresholds),
       span_(span),
+      bends_at_(program.switches().size(), false),
+      first_rates_(program.switches().size()),
       surfaces_(program.switches().size()),
       rates_(program.switches().size()),
       slopes_(program.n_states()),
@@ -72,22 +63,34 @@ bool Positions::place(std::uint32_t bits, double t, std::span<const double> x) {
       workspace_.set_memory(program_.switches()[s].memory, has(bits, u) != structure.opposite[s] ? 1 : 0);
     }
   }
-  return settle_others(placed, t, x);
+  for (const auto& [s, position] : bent_) {
+    placed[s] = true;
+    workspace_.set_memory(program_.switches()[s].memory, position);
+  }
+  return settle_others(placed, t, x) && (bends_.empty() || follow_bends(t, x));
 }
 
 /// Puts every switch but those that are placed where its surface asks for it.
 bool Positions::settle_others(const std::vector<bool>& placed, double t, std::span<const double> x) {
+  constexpr std::size_t kInOrder = 2;  // rounds before what is left goes in one
+  bool turned = false;
+  const auto settle = [&](std::size_t s, double surface) {
+    if (placed[s] || program_.switches()[s].rate || std::abs(surface) <= thresholds_[s]) return;
+    const std::uint32_t memory = program_.switches()[s].memory;
+    const double position = surface > 0 ? 1 : 0;
+    turned = turned || workspace_.memory(memory) != position;
+    workspace_.set_memory(memory, position);
+  };
   for (std::size_t round = 0; round <= 2 * surfaces_.size() + 1; ++round) {
     if (!program_.surfaces(t, x.data(), surfaces_.data(), workspace_)) return false;
-    bool turned = false;
-    for (std::size_t s = 0; s < surfaces_.size(); ++s) {
-      if (placed[s] || program_.switches()[s].rate || std::abs(surfaces_[s]) <= thresholds_[s]) continue;
-      const std::uint32_t memory = program_.switches()[s].memory;
-      const double position = surfaces_[s] > 0 ? 1 : 0;
-      turned = turned || workspace_.memory(memory) != position;
-      workspace_.set_memory(memory, position);
-    }
+    turned = false;
+    for (std::size_t s = 0; s < surfaces_.size(); ++s) settle(s, surfaces_[s]);
     if (!turned) return true;
+    if (round == kInOrder) {
+      const std::vector<double> still(x.size(), 0.0);
+      program_.decide_in_order(t, x.data(), still.data(), workspace_,
+                               [&](std::uint32_t s, double surface, double /*rate*/) { settle(s, surface); });
+    }
   }
   return false;
 }
@@ -198,11 +201,10 @@ void Positions::note_choice(std::uint32_t bits) {
 
 /// Whether the surfaces of these units do not depend on their own positions.
 bool Positions::is_independent(std::uint32_t sliding) const {
-  std::vector<std::uint32_t> units;
   for (std::size_t u = 0; u < units_.size(); ++u) {
-    if (has(sliding, u)) units.push_back(units_[u]);
+    if (has(sliding, u) && (broken_by_[u] & sliding) != 0) return false;
   }
-  return SlidingMode::is_surface(program_, units);
+  return true;
 }
 
 /// Slides along some units with the others on the sides of `bits`.
@@ -228,15 +230,22 @@ bool Positions::try_slide(std::uint32_t sliding, std::uint32_t bits, double t, s
       return false;
     }
   }
-  return true;
+  return let_bends_rest();
 }
 
-bool Positions::choose(const std::vector<std::uint32_t>& units, std::uint32_t preferred, double t,
-                       std::span<const double> x) {
-  units_ = units;
+bool Positions::choose(const std::vector<std::uint32_t>& units, const std::vector<bool>& preferred_sides,
+                       double t, std::span<const double> x) {
   undecided_.clear();
   resting_.clear();
+  resting_bends_.clear();
+  set_apart(units, preferred_sides);
   if (units_.size() > kMostUnits) return false;
+  broken_by_ = SlidingMode::broken_by(program_, units_);
+  std::uint32_t preferred = 0;
+  for (std::size_t u = 0; u < units_.size(); ++u) {
+    const auto at = std::find(units.begin(), units.end(), units_[u]) - units.begin();
+    if (preferred_sides[static_cast<std::size_t>(at)]) preferred |= 1U << u;
+  }
   before_.assign(workspace_.memories().begin(), workspace_.memories().end());
   std::uint32_t present = 0;
   for (std::size_t u = 0; u < units_.size(); ++u) {
@@ -256,7 +265,9 @@ bool Positions::choose(const std::vector<std::uint32_t>& units, std::uint32_t pr
       for (const std::uint32_t bits : nearest) {
         if ((keeping && !keeps(bits, preferred)) || !stands(bits, strictly)) continue;
         note_choice(bits);
-        return place(bits, t, x);
+        if (!place(bits, t, x)) return false;
+        resting_.insert(resting_.end(), resting_bends_.begin(), resting_bends_.end());
+        return true;
       }
     }
   }
@@ -296,7 +307,7 @@ bool Positions::agrees(double t, std::span<const double> x) {
 bool Positions::choose_any(std::vector<std::uint32_t> restless, double t, std::span<const double> x) {
   const SwitchStructure& structure = program_.switch_structure();
   for (std::size_t k = 0; k < restless.size(); ++k) {
-    for (const std::uint32_t other : structure.follows[restless[k]]) {
+    for (const std::uint32_t other : structure.positions_below(restless[k])) {
       const bool mutual = structure.depends(other, restless[k]);
       if (mutual && std::find(restless.begin(), restless.end(), other) == restless.end())
         restless.push_back(other);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <oblique/network/program.h>
@@ -22,9 +23,10 @@ class Positions {
   Positions(const Program& program, Workspace& workspace, SlidingMode& slide,
             const std::vector<double>& thresholds, double span);
 
-  /// Places the units, and the switches that follow from them, at (t, x); bit u of `preferred` is the side of
-  /// unit u that is taken where several are possible. False, with nothing changed, where nothing agrees.
-  bool choose(const std::vector<std::uint32_t>& units, std::uint32_t preferred, double t,
+  /// Places the units, and the switches that follow from them, at (t, x); `preferred` is of each of them
+  /// whether the upper side is taken where both are possible. False, with nothing changed, where nothing
+  /// agrees.
+  bool choose(const std::vector<std::uint32_t>& units, const std::vector<bool>& preferred, double t,
               std::span<const double> x);
 
   /// The units that the last `choose` could as well have put on the other side: both sides drive away from
@@ -38,7 +40,8 @@ class Positions {
   /// to the present one first. False where none agrees with itself.
   bool choose_any(std::vector<std::uint32_t> restless, double t, std::span<const double> x);
 
-  static constexpr std::size_t kMostUnits = 10;  ///< of which `choose` tries all combinations
+  /// Of so many `choose` tries all combinations; those at which the equations only bend do not count.
+  static constexpr std::size_t kMostUnits = 10;
 
  private:
   /// What one combination of sides leads to.
@@ -55,6 +58,12 @@ class Positions {
   bool stands(std::uint32_t bits, bool strictly) const;
   bool jumps(std::size_t unit) const;
   bool any_of_them_jumps(std::uint32_t units) const;
+  bool only_bends(std::uint32_t unit) const;
+  void set_apart(const std::vector<std::uint32_t>& units, const std::vector<bool>& preferred);
+  bool follow_bends(double t, std::span<const double> x);
+  void keep_where_both_sides_lead_back(double t, std::span<const double> x,
+                                       const std::vector<bool>& decided);
+  bool let_bends_rest();
   bool settle_others(const std::vector<bool>& placed, double t, std::span<const double> x);
   bool try_slide(std::uint32_t sliding, std::uint32_t bits, double t, std::span<const double> x);
   bool is_independent(std::uint32_t sliding) const;
@@ -70,7 +79,13 @@ class Positions {
   double span_;
 
   std::vector<std::uint32_t> units_, undecided_, resting_;
-  std::vector<double> before_;  ///< memories
+  std::vector<std::uint64_t> broken_by_;  ///< of each of `units_`, see SlidingMode
+  /// Apart from `units_`: those at which the equations only bend.
+  std::vector<std::uint32_t> bends_, resting_bends_;
+  std::vector<std::pair<std::uint32_t, double>> bent_;  ///< their switches, and the positions they prefer
+  std::vector<bool> bends_at_;                          ///< of each switch: it is one of them
+  std::vector<double> first_rates_;                     ///< of their surfaces
+  std::vector<double> before_;                          ///< memories
   std::vector<Trial> trials_;
   double fastest_ = 0;  ///< largest of all dx/dt in the trials
   std::vector<double> surfaces_, rates_, slopes_, moved_;

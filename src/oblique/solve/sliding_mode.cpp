@@ -51,19 +51,13 @@ bool SlidingMode::holds(std::size_t s) const {
 void SlidingMode::find_followers() {
   std::fill(follows_.begin(), follows_.end(), false);
   followers_.clear();
-  const SwitchStructure& structure = program_.switch_structure();
-  bool found = active();
-  while (found) {  // and what follows those that follow
-    found = false;
-    for (std::uint32_t s = 0; s < follows_.size(); ++s) {
-      if (follows_[s] || holds(s)) continue;
-      const auto& needed = structure.follows[s];
-      if (std::none_of(needed.begin(), needed.end(),
-                       [&](std::uint32_t n) { return holds(n) || follows_[n]; }))
-        continue;
-      follows_[s] = found = true;
-      followers_.push_back(s);
-    }
+  if (!active()) return;
+  std::vector<bool> held(follows_.size());
+  for (std::size_t s = 0; s < held.size(); ++s) held[s] = holds(s);
+  follows_ = program_.switch_structure().followers_of(held);
+  for (std::uint32_t s = 0; s < follows_.size(); ++s) {
+    follows_[s] = follows_[s] && !held[s];
+    if (follows_[s]) followers_.push_back(s);
   }
 }
 
@@ -141,20 +135,21 @@ void SlidingMode::load_base() {
   for (const auto& [memory, position] : base_) workspace_.set_memory(memory, position);
 }
 
-bool SlidingMode::is_surface(const Program& program, const std::vector<std::uint32_t>& units) {
+std::vector<std::uint64_t> SlidingMode::broken_by(const Program& program,
+                                                  const std::vector<std::uint32_t>& units) {
   const SwitchStructure& structure = program.switch_structure();
-  const auto breaks = [&](std::uint32_t unit, std::uint32_t other) {
-    const auto& surfaces = structure.members[unit];
-    const auto& positions = structure.members[other];
-    return std::any_of(surfaces.begin(), surfaces.end(), [&](std::uint32_t s) {
-      return std::any_of(positions.begin(), positions.end(), [&](std::uint32_t p) {
-        return (unit == other || program.switches()[p].turning == Turning::jumps) && structure.depends(s, p);
-      });
-    });
-  };
-  return std::none_of(units.begin(), units.end(), [&](std::uint32_t unit) {
-    return std::any_of(units.begin(), units.end(), [&](std::uint32_t other) { return breaks(unit, other); });
-  });
+  std::vector<std::uint64_t> broken(units.size(), 0);
+  for (std::size_t u = 0; u < units.size(); ++u) {
+    for (const std::uint32_t s : structure.members[units[u]]) {
+      for (const std::uint32_t p : structure.positions_below(s)) {
+        const auto other = std::find(units.begin(), units.end(), structure.unit[p]);
+        if (other == units.end()) continue;
+        const auto v = static_cast<std::size_t>(other - units.begin());
+        if (u == v || program.switches()[p].turning == Turning::jumps) broken[u] |= std::uint64_t{1} << v;
+      }
+    }
+  }
+  return broken;
 }
 
 bool SlidingMode::begin(std::vector<std::uint32_t> units, double t, std::span<const double> x) {
@@ -172,7 +167,8 @@ bool SlidingMode::begin(std::vector<std::uint32_t> units, double t, std::span<co
     return std::count(cluster_of_.begin(), cluster_of_.end(), cluster) <= static_cast<long>(kMostCoupled);
   });
   for (Side& side : sides_) possible = possible && settle(side, t, x);
-  possible = possible && is_surface(program_, units_);
+  const std::vector<std::uint64_t> broken = broken_by(program_, units_);
+  possible = possible && std::none_of(broken.begin(), broken.end(), [](std::uint64_t by) { return by != 0; });
   shares_.assign(units_.size(), 0.5);
   const auto within = [](double share) { return share >= -kEdge && share <= 1 + kEdge; };
   if (possible && evaluate(t, x) && std::all_of(shares_.begin(), shares_.end(), within) && lasts(t, x)) {

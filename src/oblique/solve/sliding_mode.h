@@ -24,9 +24,10 @@ class SlidingMode {
   /// Both must outlive this; `span` is the length of the run [s].
   SlidingMode(const Program& program, Workspace& workspace, double span);
 
-  /// Whether the surfaces of these units are surfaces at all: a unit whose surface jumps or bends with its
-  /// own position, or jumps with that of another, is none to slide on.
-  static bool is_surface(const Program& program, const std::vector<std::uint32_t>& units);
+  /// Of each of these units, up to 64, the others (as bits) whose positions break its surface: a unit whose
+  /// surface jumps or bends with its own position, or jumps with that of another, is none to slide on.
+  static std::vector<std::uint64_t> broken_by(const Program& program,
+                                              const std::vector<std::uint32_t>& units);
 
   bool active() const { return !units_.empty(); }
   const std::vector<std::uint32_t>& units() const { return units_; }

@@ -58,7 +58,17 @@ Switching::Switching(const Program& program, Workspace& workspace, double span, 
       decided_(program.switch_structure().members.size(), false),
       rested_(program.switches().size(), false),
       unrest_(program.switches().size()),
-      paces_(program.events().size()) {}
+      paces_(program.events().size()),
+      chained_(known_follow_from_others()) {}
+
+/// Then the time at which one comes tells nothing of where it goes before the others are known.
+bool Switching::known_follow_from_others() const {
+  for (std::size_t s = 0; s < program_.switches().size(); ++s) {
+    if (is_known(s) && program_.is_ordered(s) && !program_.switch_structure().positions_below(s).empty())
+      return true;
+  }
+  return false;
+}
 
 /// The surfaces, and how far from zero each counts as zero: one of time alone is known to rounding of the
 /// time.
@@ -136,6 +146,7 @@ bool Switching::turn_by_surfaces(double t, Units& on_surface, std::vector<std::u
   const SwitchStructure& structure = program_.switch_structure();
   on_surface.clear();
   turned.clear();
+  std::vector<bool> listed = decided_;
   for (std::uint32_t s = 0; s < surfaces_.size(); ++s) {
     if (slide_.holds(s) || slide_.follows(s)) continue;
     const double before = workspace_.memory(program_.switches()[s].memory);
@@ -145,6 +156,7 @@ bool Switching::turn_by_surfaces(double t, Units& on_surface, std::vector<std::u
     if (unrest_[s].turns > kRestless) near = std::max(near, place_size(s));
     double position = before;
     if (is_known(s)) {
+      if (chained_ && program_.is_ordered(s)) continue;  // is where it belongs
       const double rate = program_.known_rate(s, workspace_).value_or(0);
       if (announced_[s] >= 0) {
         position = announced_[s];
@@ -152,7 +164,8 @@ bool Switching::turn_by_surfaces(double t, Units& on_surface, std::vector<std::u
         position = (std::abs(surfaces_[s]) > thresholds_.now[s] ? surfaces_[s] : rate) > 0 ? 1 : 0;
       }
     } else if (announced_[s] >= 0 || std::abs(surfaces_[s]) <= near) {
-      if (!decided_[unit] && !contains(on_surface, unit)) on_surface.push_back(unit);
+      if (!listed[unit]) on_surface.push_back(unit);
+      listed[unit] = true;
     } else {
       position = surfaces_[s] > 0 ? 1 : 0;
     }
@@ -170,7 +183,7 @@ void Switching::decide(Units units, double t, std::span<const double> x) {
     if (!contains(units, unit)) units.push_back(unit);
   }
   slide_.end();
-  std::uint32_t preferred = 0;
+  std::vector<bool> preferred(units.size());
   std::vector<double> before;
   for (std::size_t u = 0; u < units.size(); ++u) {
     decided_[units[u]] = true;
@@ -182,7 +195,7 @@ void Switching::decide(Units units, double t, std::span<const double> x) {
         position =
             structure.opposite[member] == structure.opposite[s] ? announced_[member] : 1 - announced_[member];
     }
-    if ((position == 1) != structure.opposite[s] && u < Positions::kMostUnits) preferred |= 1U << u;
+    preferred[u] = (position == 1) != structure.opposite[s];
   }
   for (const Switch& s : program_.switches()) before.push_back(workspace_.memory(s.memory));
   if (!positions_.choose(units, preferred, t, x)) {
@@ -211,14 +224,46 @@ void Switching::decide(Units units, double t, std::span<const double> x) {
   }
 }
 
+/// Turns every switch over whose surface asks for it, each after those on whose positions its surface
+/// depends: one after the other turns over in one go, however many there are. At its known time a switch goes
+/// where its surface goes with the others as they then stand: it may merely touch.
+void Switching::turn_in_order(double t, std::span<const double> x) {
+  if (!weighed_) weigh_errors();
+  std::vector<double> still(x.size(), 0.0);  // what is known follows the time alone
+  program_.decide_in_order(
+      t, x.data(), still.data(), workspace_, [&](std::uint32_t s, double surface, double rate) {
+        const bool away = std::abs(surface) > thresholds_.now[s];
+        if (is_known(s) && !chained_) return;
+        if (is_known(s)) {
+          const bool due = announced_[s] >= 0;
+          const double position = away && !due ? (surface > 0 ? 1 : 0)
+                                  : rate != 0  ? (rate > 0 ? 1 : 0)
+                                  : due        ? announced_[s]
+                                               : workspace_.memory(program_.switches()[s].memory);
+          turn(s, position, t);
+          return;
+        }
+        const bool decided = announced_[s] >= 0 || slide_.holds(s) || slide_.follows(s) || slide_.rests(s) ||
+                             rested_[s] || decided_[program_.switch_structure().unit[s]];
+        if (!decided && away) turn(s, surface > 0 ? 1 : 0, t);
+      });
+}
+
 /// All switches and the algebra between them to a fixed point; true where any turned over.
 bool Switching::settle_switches(double t, std::span<const double> x) {
+  constexpr std::size_t kInOrder = 2;  // rounds before
   const std::size_t most = 2 * surfaces_.size() + 10;
   bool any = false;
   Units on_surface;
   std::vector<std::uint32_t> turned, restless;
   for (std::size_t round = 0;; ++round) {
     evaluate(t, x);
+    if (chained_ || round == kInOrder) {
+      const std::vector<double> before(workspace_.memories().begin(), workspace_.memories().end());
+      turn_in_order(t, x);
+      any = any || !std::equal(before.begin(), before.end(), workspace_.memories().begin());
+      evaluate(t, x);
+    }
     if (turn_by_surfaces(t, on_surface, turned)) {
       any = true;
       if (round <= most) continue;

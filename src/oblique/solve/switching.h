@@ -97,6 +97,7 @@ class Switching {
   static constexpr int kMostRounds = 1000;  ///< of events that set each other off at one instant
 
   bool is_known(std::size_t s) const { return program_.switches()[s].rate.has_value(); }
+  bool known_follow_from_others() const;
   bool is_any_due() const;
   void weigh_errors();
   double error_of_state(std::size_t i) const;
@@ -108,6 +109,7 @@ class Switching {
   void evaluate(double t, std::span<const double> x);
   bool settle_switches(double t, std::span<const double> x);
   bool turn_by_surfaces(double t, Units& on_surface, std::vector<std::uint32_t>& turned);
+  void turn_in_order(double t, std::span<const double> x);
   void decide(Units units, double t, std::span<const double> x);
   void begin_to_settle();
   void note_slides(const Units& before, const Units& repelled, double t);
@@ -157,6 +159,7 @@ class Switching {
   };
   std::vector<Unrest> unrest_;
   std::vector<EventPace> paces_;
+  bool chained_;  ///< whether a known switch depends on the position of another
   std::vector<EventRecord> records_;
   long count_ = 0;
   std::vector<Diagnostic> warnings_;
