@@ -206,8 +206,11 @@ ExitStatus run_diagram(const Session& session, const RunRequest& request) {
     Progress progress("running");
     std::optional<InterruptGuard> guard;
     if (!request.save.empty()) {
-      guard.emplace();
       options.interrupted = InterruptGuard::asked;
+      // Before the first row there is no state to save, and Ctrl-C ends the program.
+      options.on_sample = [&](double, std::span<const double>, std::span<const double>) {
+        if (!guard) guard.emplace();
+      };
     }
     options.progress = [&](double fraction) { progress.show(fraction); };
     result = run(program, flat, options);

@@ -3,9 +3,15 @@
 #include <array>
 #include <chrono>
 #include <csignal>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <optional>
+#include <regex>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -73,7 +79,61 @@ TEST_P(Signals, LeaveNothingOfAPictureInTheMaking) {
   EXPECT_TRUE(std::filesystem::is_empty(folder_ / "work"));
 }
 
-// The first Ctrl-C waits for the step that is being done, however long that takes; the second does not.
+/// Waits until a child has ended, a while at most, and gives its status; nothing where it goes on.
+std::optional<int> ended(pid_t child) {
+  int status = 0;
+  const bool done = comes_true([&] { return waitpid(child, &status, WNOHANG) == child; });
+  return done ? std::optional(status) : std::nullopt;
+}
+
+// What 200 comparisons of sin(10⁶ x) with 2 do is looked for through every turn: of x = t the solver takes
+// steps that are ten times as long as the ones before, and is minutes in each.
+TEST_F(Signalled, SaveTheLastWholeStepOfARunThatIsInterruptedWithinOne) {
+  std::filesystem::create_directory(folder_ / "work/blocks");
+  std::ofstream(folder_ / "work/blocks/turns.toml")
+      << "format = \"oblique-block/1\"\ntitle = \"Turns\"\n[inputs]\nin = {}\n[outputs]\nout = {}\n"
+         "[equations]\nout = \"if(sin(1e6*in) > 2, 1, 0)\"\n";
+  {
+    std::ofstream diagram(folder_ / "work/d.toml");
+    diagram << "format = \"oblique-diagram/1\"\n[run]\nuntil = 100\n[blocks]\n"
+               "one = { type = \"constant\", value = 1 }\nx = { type = \"integrator\", in = \"one\" }\n";
+    for (int k = 0; k < 200; ++k) {
+      diagram << "s" << k << " = { type = \"turns\", in = \"x\" }\n"
+              << "y" << k << " = { type = \"integrator\", in = \"s" << k << "\" }\n";
+    }
+    diagram << "[outputs]\nx = { signal = \"x\" }\n";
+  }
+  const pid_t child =
+      start({"oblique", "--blocks", "blocks", "run", "d.toml", "--save", "state.toml", "-o", "x.csv"});
+  std::this_thread::sleep_for(std::chrono::seconds(3));
+  const auto asked = std::chrono::steady_clock::now();
+  kill(child, SIGINT);
+  const std::optional<int> status = ended(child);
+  const std::chrono::duration<double> waited = std::chrono::steady_clock::now() - asked;
+  if (!status) kill(child, SIGKILL);
+  ASSERT_TRUE(status && WIFEXITED(*status)) << status.value_or(-1);
+  EXPECT_EQ(WEXITSTATUS(*status), 0);
+  EXPECT_LT(waited.count(), 5);  // a hundredth of a second; sanitizers and a busy machine take more
+  std::ifstream stream(folder_ / "work/state.toml");
+  const std::string state{std::istreambuf_iterator<char>(stream), {}};
+  std::smatch time, x;
+  ASSERT_TRUE(std::regex_search(state, time, std::regex(R"(\ntime = (\S+))"))) << state;
+  ASSERT_TRUE(std::regex_search(state, x, std::regex(R"(\n"?x"? = (\S+))"))) << state;
+  const double at = std::stod(time[1]);
+  EXPECT_GT(at, 0);
+  EXPECT_LT(at, 100);
+  EXPECT_NEAR(std::stod(x[1]), at, 1e-8 * at);  // x = t
+  // And the run goes on from there.
+  char until[40];
+  snprintf(until, sizeof until, "%.17g", 1.001 * at);
+  const pid_t next =
+      start({"oblique", "--blocks", "blocks", "run", "d.toml", "--from", "state.toml", "--until", until});
+  const std::optional<int> went_on = ended(next);
+  if (!went_on) kill(next, SIGKILL);
+  EXPECT_EQ(went_on, 0);
+}
+
+// The first Ctrl-C asks for the end of the run, the second does not ask.
 TEST_F(Signalled, AskFirstWhereTheRunIsSavedAndThenEndIt) {
   std::ofstream(folder_ / "work/part") << "half";
   std::array<int, 2> said{};

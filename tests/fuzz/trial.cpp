@@ -79,9 +79,17 @@ void run_whole(const Diagram& diagram, const TrialOptions& asked, Trial& trial) 
   if (asked.samples) options.samples = *asked.samples;
   options.from = asked.from;
   options.max_steps = kMostSteps;
-  long asked_to_end = 0;  // of all attempts, and of steps that events end
-  options.interrupted = [&] { return ++asked_to_end > 3 * kMostSteps; };
-  trial.run = run(program, flat, options);
+  // Of all attempts, and of steps that events end: at every evaluation, of which a step has some ten.
+  constexpr long kMostAsked = 30 * kMostSteps;
+  long asked_to_end = 0;
+  options.interrupted = [&] { return ++asked_to_end > kMostAsked; };
+  try {
+    trial.run = run(program, flat, options);
+  } catch (const SolveError&) {
+    if (asked_to_end <= kMostAsked) throw;
+    trial.end = Trial::End::over_budget;
+    return;
+  }
   if (!is_finite(trial.run->trajectory)) {
     trial.says = "an output that is no finite number";
     return;

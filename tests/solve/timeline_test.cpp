@@ -332,12 +332,30 @@ TEST(Run, EndsWhereItIsInterrupted) {
   const Compiled made(kVanDerPol);
   RunOptions options;
   options.until = 1000;
-  int steps = 0;
-  options.interrupted = [&] { return ++steps > 50; };
+  int asked = 0;  // at every evaluation
+  options.interrupted = [&] { return ++asked > 500; };
   const auto result = run(made.program, made.flat, options);
   EXPECT_GT(result.state.time, 0);
   EXPECT_LT(result.state.time, 100);
   EXPECT_EQ(result.state.states.size(), 2U);
+  // Wherever that is within a step, what is kept is the end of a whole one: of x = t on its line.
+  const Compiled line(
+      "one = { type = \"constant\", value = 1 }\nx = { type = \"integrator\", in = \"one\" }\n"
+      "half = { type = \"constant\", value = 0.5 }\n"
+      "s = { type = \"summer\", in = [\"x\", \"-half\"] }\n"
+      "a = { type = \"absolute-value\", in = \"s\" }\n");
+  for (int most = 20; most < 200; ++most) {
+    asked = 0;
+    options.until = 1;
+    options.interrupted = [&] { return ++asked > most; };
+    const auto part = run(line.program, line.flat, options);
+    EXPECT_NEAR(part.state.states[0].second, part.state.time, 1e-8) << most;
+    EXPECT_EQ(part.state.memories[0].second == 1, part.state.time >= 0.5) << most;
+  }
+  asked = 0;
+  options.interrupted = [&] { return ++asked > 0; };
+  EXPECT_EQ(message_of<SolveError>([&] { run(line.program, line.flat, options); }),
+            "d.toml: interrupted before the run had begun: it has no state yet");
 }
 
 TEST(Run, TakesTolerancesOfSingleBlocks) {

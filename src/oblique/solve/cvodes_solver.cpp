@@ -26,6 +26,8 @@ static_assert(sizeof(sunindextype) == sizeof(std::int64_t), "SparsePattern share
 constexpr double kSmallestStep = 8 * std::numeric_limits<double>::epsilon();
 constexpr int kMostSmallSteps = 20;
 
+constexpr int kGiveUp = -1;  ///< of what CVODES calls: it is not to try again
+
 /// SUNDIALS' sentences are for its own log; ours are made from the return code.
 void ignore_message(int, const char*, const char*, char*, void*) {}
 
@@ -166,6 +168,7 @@ struct CvodesSolver::Handles {
     auto& self = *static_cast<Handles*>(user);
     const double* const states = N_VGetArrayPointer(x);
     double* const slopes = N_VGetArrayPointer(dxdt);
+    if (self.system->is_to_end()) return kGiveUp;
     if (!self.system->derivatives(self.start + t, states, slopes)) {
       self.saw_refusal = true;
       return 1;
@@ -183,6 +186,7 @@ struct CvodesSolver::Handles {
               SUNSparseMatrix_IndexPointers(matrix));
     std::copy(pattern.rows.begin(), pattern.rows.end(), SUNSparseMatrix_IndexValues(matrix));
     double* const values = SUNSparseMatrix_Data(matrix);
+    if (self.system->is_to_end()) return kGiveUp;
     if (!self.system->jacobian(self.start + t, N_VGetArrayPointer(x), values)) {
       self.saw_refusal = true;
       return 1;
@@ -258,6 +262,7 @@ double CvodesSolver::step() {
     code = h.take_step(part);
   }
   h.t = h.clock >= h.length ? h.end : std::min(h.start + h.clock, h.end);
+  if (code < 0 && h.system->is_to_end()) throw SolverFailure{SolverFailure::Kind::interrupted, h.t, code};
   if (code < 0) throw h.failure(code);
   ++h.steps;
   if (!all_finite(N_VGetArrayPointer(h.states.get()), h.system->size())) {

@@ -36,6 +36,7 @@ struct SolverFailure {
     no_value,     ///< the system refused to give dx/dt, however short the step
     small_step,   ///< the step fell below what the time can resolve
     step_budget,  ///< `max_steps` are used up
+    interrupted,  ///< the system is to end
     other,        ///< anything else CVODES reports
   };
   Kind kind = Kind::other;

@@ -91,6 +91,7 @@ EventSearch::EventSearch(const Program& program, Workspace& workspace, SlidingMo
 }
 
 void EventSearch::look(double t, const Interpolant& solution, Look& at) {
+  interruption_.check();
   at.time = t;
   const double reached = evaluate_along_branch(reached_, t, workspace_, [&](double time) {
     solution.states_at(time, states_);

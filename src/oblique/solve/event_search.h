@@ -10,6 +10,7 @@
 
 #include <oblique/network/program.h>
 #include <oblique/solve/interpolant.h>
+#include <oblique/solve/interruption.h>
 #include <oblique/solve/sliding_mode.h>
 
 namespace oblique {
@@ -52,6 +53,8 @@ class EventSearch {
 
   /// How often to look between steps in all, where something turns fast.
   void limit_looks(double looks) { looks_left_ = looks; }
+  /// `search` then throws Interrupted.
+  void end_when(const Interruption& interruption) { interruption_ = interruption; }
 
   /// How far the surface of a switch has been from zero since `forget`.
   double excursion(std::size_t s) const { return excursions_[s]; }
@@ -84,6 +87,7 @@ class EventSearch {
   int splits_left_ = 0;
   double reached_ = 0;  ///< [s] where the surfaces were evaluated last
   double looks_left_ = std::numeric_limits<double>::infinity();
+  Interruption interruption_;
   std::vector<double> states_, rates_, surfaces_, surface_rates_, excursions_;
   std::vector<bool> of_time_;  ///< of each switch: its surface follows the time alone, to rounding
 };

@@ -17,6 +17,8 @@ class OdeSystem {
   virtual bool derivatives(double t, const double* x, double* dxdt) = 0;
   /// df/dx in the order of `pattern`; false as above.
   virtual bool jacobian(double t, const double* x, double* values) = 0;
+  /// Whether the solver is to end, also in the midst of a step.
+  virtual bool is_to_end() const { return false; }
 };
 
 }  // namespace oblique

@@ -33,6 +33,11 @@ Run run_seeing(const Program& program, const FlatDiagram& diagram, const RunOpti
       if (observed.unseen.empty()) break;
     }
     if (observed.unseen.empty()) return result;
+    if (options.interrupted && options.interrupted()) {  // no finer one comes
+      for (Diagnostic& warning : warnings_of(observed.unseen, program, diagram))
+        result.warnings.push_back(std::move(warning));
+      return result;
+    }
     if (k == 0)
       finer.max_steps = std::min(options.max_steps, kMostTimesFirst * observed.steps + kAlwaysAllowed);
     const Refinement before = refinement;

@@ -36,7 +36,7 @@ struct RunOptions {
   long max_steps = 10'000'000;
   bool settle = true;                 ///< bring servo loops to rest before the clock starts
   std::optional<RunState> from;       ///< goes on from there; `until` is then later than its time
-  std::function<bool()> interrupted;  ///< asked after every step: true ends the run there
+  std::function<bool()> interrupted;  ///< asked all the time: true ends the run at its last whole step
   bool extremes = false;              ///< look for the extremes of the outputs between the rows too
   std::vector<double> extra_times;    ///< [s] ascending, within [0, until]: further rows, kept apart
   std::function<void(double fraction)>

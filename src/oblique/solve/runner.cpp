@@ -23,7 +23,8 @@ namespace {
 /// The equations of a diagram with its switches.
 class SwitchedSystem final : public OdeSystem {
  public:
-  SwitchedSystem(const Program& program, Switching& switching) : program_(program), switching_(switching) {}
+  SwitchedSystem(const Program& program, Switching& switching, const Interruption& interruption)
+      : program_(program), switching_(switching), interruption_(interruption) {}
   std::size_t size() const override { return program_.n_states(); }
   const SparsePattern& pattern() const override { return program_.jacobian_pattern(); }
   bool derivatives(double t, const double* x, double* dxdt) override {
@@ -32,10 +33,12 @@ class SwitchedSystem final : public OdeSystem {
   bool jacobian(double t, const double* x, double* values) override {
     return switching_.jacobian(t, x, values);
   }
+  bool is_to_end() const override { return interruption_.is_asked(); }
 
  private:
   const Program& program_;
   Switching& switching_;
+  const Interruption& interruption_;
 };
 
 /// One run from its start to its end: smooth stretches, and events between them.
@@ -54,7 +57,8 @@ class Runner {
         switching_(program, workspace_, options.until - begin_, options.tolerance,
                    options.absolute_tolerance.value_or(kAbsoluteTolerance * options.tolerance), diagram.file),
         clock_(program, diagram.timeline, workspace_, begin_),
-        system_(program, switching_),
+        interruption_(options.interrupted),
+        system_(program, switching_, interruption_),
         sampler_(program, diagram, options, workspace_, switching_),
         sources_(program, workspace_, options.extremes || options.watch_overloads || options.halt_on_overload,
                  diagram.file),
@@ -62,6 +66,7 @@ class Runner {
         states_(program.start()) {
     constexpr double kLooksAStep = 100, kSourceLooksAStep = 10;
     switching_.end_at(options.until);
+    switching_.end_when(interruption_);
     switching_.know_states(refinement.reach);
     switching_.limit_looks(kLooksAStep * static_cast<double>(options.max_steps) + 1e6);
     sources_.limit_looks(kSourceLooksAStep * static_cast<double>(options.max_steps) + 1e6);
@@ -77,12 +82,17 @@ class Runner {
     }
     follow_phases(begin_);
     workspace_.follow_branches(true);
-    sampler_.advance(begin_, StandingStates(states_));
-    if (overloads_) overloads_->restart(begin_, states_);
-    if (program_.n_states() > 0) {
-      integrate();
-    } else {
-      follow();
+    keep(begin_);
+    try {
+      sampler_.advance(begin_, StandingStates(states_));
+      if (overloads_) overloads_->restart(begin_, states_);
+      if (program_.n_states() > 0) {
+        integrate();
+      } else {
+        follow();
+      }
+    } catch (const Interrupted&) {
+      go_back();
     }
     sampler_.result.events = branches_.merged_with(switching_.records());
     sampler_.result.event_count = switching_.count() + static_cast<long>(branches_.jumps().size());
@@ -382,7 +392,30 @@ class Runner {
 
   bool goes_on(double t) {
     end_ = t;
-    return t < options_.until && !halted() && !(options_.interrupted && options_.interrupted());
+    if (!(t < options_.until) || halted() || interruption_.is_asked()) return false;
+    if (options_.interrupted) keep(t);
+    return true;
+  }
+
+  /// Keeps what makes the state at t, where a whole step has ended.
+  void keep(double t) {
+    last_.time = t;
+    last_.states = states_;
+    last_.memories.assign(workspace_.memories().begin(), workspace_.memories().end());
+    last_.unknowns.resize(program_.unknowns().size());
+    for (std::size_t u = 0; u < last_.unknowns.size(); ++u) last_.unknowns[u] = workspace_.unknown(u);
+    last_.conditions = switching_.conditions();
+    last_.position = clock_.position();
+  }
+
+  /// Leaves a step that was interrupted.
+  void go_back() {
+    end_ = last_.time;
+    states_ = last_.states;
+    workspace_.load_memories(last_.memories);
+    for (std::size_t u = 0; u < last_.unknowns.size(); ++u) workspace_.set_unknown(u, last_.unknowns[u]);
+    switching_.restore(last_.conditions);
+    clock_.restore(last_.position);
   }
 
   void integrate() {
@@ -414,6 +447,7 @@ class Runner {
         try {
           t = solver.step();
         } catch (const SolverFailure& failure) {
+          if (failure.kind == SolverFailure::Kind::interrupted) throw Interrupted();
           if (failure.kind == SolverFailure::Kind::step_budget) throw;
           const std::vector<double> last = states_;
           switch (branches_.look_ahead(t, stretch_end_, states_, solver)) {
@@ -455,6 +489,9 @@ class Runner {
       small_->end(t, states_);
     } catch (const SolverFailure& failure) {
       throw run_error(program_, failure, solver, workspace_, diagram_.file);
+    } catch (const Interrupted&) {
+      sampler_.result.statistics = solver.statistics();
+      throw;
     }
     sampler_.result.statistics = solver.statistics();
   }
@@ -486,6 +523,7 @@ class Runner {
   Workspace workspace_;
   Switching switching_;
   PhaseClock clock_;
+  Interruption interruption_;
   SwitchedSystem system_;
   Sampler sampler_;
   SourceWatch sources_;
@@ -498,7 +536,22 @@ class Runner {
   std::optional<GrowthWatch> growth_;
   std::optional<SmallStates> small_;
   long steps_ = 0, steps_unseen_ = 0;  ///< in all, and until growth was first unseen
+
+  /// The last whole step, where the run may be interrupted.
+  struct Whole {
+    double time = 0;
+    std::vector<double> states, memories, unknowns;
+    std::vector<bool> conditions;
+    PhaseClock::Position position;
+  };
+  Whole last_;
 };
+
+SolveError interrupted_start(const FlatDiagram& diagram, const RunOptions& options) {
+  return {SolveError::Kind::other,
+          options.from ? options.from->time : 0,
+          {{diagram.file, {}}, "interrupted before the run had begun: it has no state yet", {}, {}}};
+}
 
 }  // namespace
 
@@ -514,13 +567,19 @@ Run run_once(const Program& program, const FlatDiagram& diagram, const RunOption
   } catch (const SolveError&) {
     observe();
     throw;
+  } catch (const Interrupted&) {
+    throw interrupted_start(diagram, options);
   }
 }
 
 StartOutcome start_once(const Program& program, const FlatDiagram& diagram, const RunOptions& options,
                         const LoopStart& loop_start) {
   const Refinement refinement;
-  return Runner(program, diagram, options, loop_start, refinement, false).outcome_of_start();
+  try {
+    return Runner(program, diagram, options, loop_start, refinement, false).outcome_of_start();
+  } catch (const Interrupted&) {
+    throw interrupted_start(diagram, options);
+  }
 }
 
 }  // namespace oblique

@@ -146,6 +146,7 @@ SolveError run_error(const Program& program, const SolverFailure& failure, const
                        failure.time)
                  : "raise max_steps in [run], loosen the tolerance, or end the run earlier with --until"}};
     }
+    case Kind::interrupted:
     case Kind::other:
       break;
   }

@@ -73,6 +73,7 @@ bool Switching::known_follow_from_others() const {
 /// The surfaces, and how far from zero each counts as zero: one of time alone is known to rounding of the
 /// time.
 void Switching::evaluate(double t, std::span<const double> x) {
+  interruption_.check();
   states_.assign(x.begin(), x.end());
   weighed_ = false;
   const bool known = program_.surfaces(t, x.data(), surfaces_.data(), workspace_);
@@ -449,6 +450,7 @@ bool Switching::jacobian(double t, const double* x, double* values) {
 }
 
 bool Switching::signals(double t, const double* x, double* values) {
+  interruption_.check();
   return slide_.active() ? slide_.signals(t, x, values) : program_.signals(t, x, values, workspace_);
 }
 

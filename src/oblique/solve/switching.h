@@ -14,6 +14,7 @@
 #include <oblique/solve/event_search.h>
 #include <oblique/solve/faint_turns.h>
 #include <oblique/solve/interpolant.h>
+#include <oblique/solve/interruption.h>
 #include <oblique/solve/positions.h>
 #include <oblique/solve/sliding_mode.h>
 
@@ -69,6 +70,12 @@ class Switching {
   bool signals(double t, const double* x, double* values);
 
   void limit_looks(double looks) { search_.limit_looks(looks); }
+  /// Whoever evaluates or settles then throws Interrupted; but `derivatives` and `jacobian`, which solvers
+  /// call that know no exceptions.
+  void end_when(const Interruption& interruption) {
+    interruption_ = interruption;
+    search_.end_when(interruption);
+  }
   /// The size [machine unit] down to which each state is known relatively; 0: as its absolute tolerance says.
   void know_states(std::span<const double> reach) { reach_.assign(reach.begin(), reach.end()); }
   /// Where the run ends [s]: what would come later is not told of.
@@ -129,6 +136,7 @@ class Switching {
   Workspace& workspace_;
   double span_, tolerance_, absolute_tolerance_;
   double end_ = std::numeric_limits<double>::infinity();  ///< [s] of the run
+  Interruption interruption_;
   const std::string& file_;
   SlidingMode slide_;
   EventSearch::Thresholds thresholds_;
