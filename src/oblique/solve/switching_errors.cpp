@@ -52,20 +52,41 @@ void Switching::weigh_errors() {
   weighed_ = true;
 }
 
-/// The states that are hardly known and move the surface of a switch, and their magnitudes.
+/// The states that are hardly known and move the surface of a switch, itself or by the states that they
+/// drive, and their magnitudes.
 std::vector<std::pair<std::size_t, double>> Switching::states_behind(std::uint32_t s) {
-  constexpr double kHardlyKnown = 1e3;  // errors
+  constexpr double kHardlyKnown = 1e4;  // errors
   constexpr double kPart = 1e-2;        // of the surface's error
-  std::vector<double> off(program_.n_states(), 0.0), rates(surfaces_.size());
+  const std::size_t n = program_.n_states();
+  std::vector<double> off(n, 0.0), rates(surfaces_.size());
   program_.surface_rates(off.data(), rates.data(), workspace_);
   const double still = rates[s];
-  std::vector<std::pair<std::size_t, double>> found;
-  for (std::size_t i = 0; i < off.size(); ++i) {
-    if (std::abs(states_[i]) > kHardlyKnown * error_of_state(i)) continue;
+  std::vector<bool> behind(n, false);
+  std::vector<std::size_t> pending;
+  for (std::size_t i = 0; i < n; ++i) {
     off[i] = error_of_state(i);
     program_.surface_rates(off.data(), rates.data(), workspace_);
     off[i] = 0;
-    if (std::abs(rates[s] - still) > kPart * errors_[s]) found.emplace_back(i, std::abs(states_[i]));
+    if (!(std::abs(rates[s] - still) > kPart * errors_[s])) continue;
+    behind[i] = true;
+    pending.push_back(i);
+  }
+  const SparsePattern& pattern = program_.jacobian_pattern();
+  while (!pending.empty()) {
+    const auto row = static_cast<std::int64_t>(pending.back());
+    pending.pop_back();
+    for (std::size_t column = 0; column < n; ++column) {
+      const auto begin = pattern.rows.begin() + pattern.column_starts[column];
+      const auto end = pattern.rows.begin() + pattern.column_starts[column + 1];
+      if (behind[column] || !std::binary_search(begin, end, row)) continue;
+      behind[column] = true;
+      pending.push_back(column);
+    }
+  }
+  std::vector<std::pair<std::size_t, double>> found;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (behind[i] && std::abs(states_[i]) <= kHardlyKnown * error_of_state(i))
+      found.emplace_back(i, std::abs(states_[i]));
   }
   return found;
 }
