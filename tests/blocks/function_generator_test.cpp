@@ -89,6 +89,14 @@ f = { type = "function-generator", in = "u", points = [[0, 0], [0.25, 0.5], [0.2
   EXPECT_EQ(row_values(run_of(made, {.until = 1}), "f").front(), -0.5);
 }
 
+TEST(FunctionGenerator, TakesATableOfTwoPoints) {
+  const BlockLibrary library = testing::shipped_blocks_and(
+      "line", "[inputs]\nin = {}\n[outputs]\nout = {}\n[equations]\nout = \"table(in, 0, 1, 2, 5)\"\n");
+  const Compiled made("u = { type = \"constant\", value = 0.5 }\nf = { type = \"line\", in = \"u\" }\n", "",
+                      library);
+  EXPECT_EQ(row_values(run_of(made, {.until = 1}), "f").front(), 2);
+}
+
 std::string refusal_of_table(const std::string& points) {
   const BlockLibrary library = testing::shipped_blocks_and(
       "fg", "[inputs]\nin = {}\n[outputs]\nout = {}\n[equations]\nout = \"table(in, " + points + ")\"\n");

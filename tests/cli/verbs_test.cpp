@@ -263,6 +263,18 @@ TEST_F(Verbs, CompareRunsWhatIsAskedForTwiceOnce) {
   EXPECT_EQ(twice["series"].size(), 1U);
 }
 
+// With the crank upright B = (0, 1): |BD|² = 17, and C is where circles of 3.5 about B and of 3 about D meet.
+TEST_F(Verbs, ModesAreThoseWhereTheDriveIsAskedToStand) {
+  const auto modes =
+      nlohmann::json::parse(oblique("modes diagrams/mechanisms/four-bar.toml --at '90 deg' --json").out);
+  ASSERT_EQ(modes.at("groups").at(1).at("modes").size(), 2U);
+  for (const auto& mode : modes.at("groups").at(1).at("modes")) {
+    const double x = mode.at("points").at("C").at(0), y = mode.at("points").at("C").at(1);
+    EXPECT_NEAR(std::hypot(x, y - 1), 3.5, 1e-12);
+    EXPECT_NEAR(std::hypot(x - 4, y), 3, 1e-12);
+  }
+}
+
 TEST_F(Verbs, CompareLeavesOutAMethodThatDoesNotFit) {
   const std::string command = "compare diagrams/mechanisms/four-bar.toml --gain 1e3 --method paper,triangles";
   const Outcome table = oblique(command);
@@ -297,6 +309,7 @@ TEST_F(Verbs, CompareHoldsMethodsAndBandwidthsAgainstEachOther) {
   const Outcome table = oblique(command);
   ASSERT_EQ(table.status, 0) << table.err;
   EXPECT_THAT(table.out, HasSubstr("   method     Hz   gain  max error [mm]"));
+  EXPECT_THAT(table.out, testing::Not(HasSubstr("wrong branch")));
   EXPECT_THAT(table.out,
               HasSubstr("worst at C, 180°: the triangle B–C–D is flattest there (sin γ = 0.27 at B)"));
   EXPECT_THAT(table.out, HasSubstr("   method     Hz  power of the gain  left at gain 1e12 [mm]"));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/diagram/diagram.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -68,6 +69,19 @@ c     = "c"
 long_one = [12.5, -3]
 c        = [0, 1]
 )toml");
+}
+
+TEST(WriteDiagram, HasWhatHoldsAGroup) {
+  for (const auto& [initial, hold, written] : {std::array{"", "", "{ blocks = [\"x\"] }"},
+                                               std::array{"u", "", "{ blocks = [\"x\"], initial = \"u\" }"},
+                                               std::array{"", "u", "{ blocks = [\"x\"], hold = \"u\" }"}}) {
+    Diagram d;
+    d.blocks = {{"x", "integrator", "", "", {}, {}}, {"u", "constant", "", "", {}, {}}};
+    d.groups = {{"slow", {"x"}, initial, hold, {}}};
+    const std::string text = write_diagram(d);
+    EXPECT_NE(text.find(std::string("[groups]\nslow = ") + written + "\n"), std::string::npos) << text;
+    EXPECT_TRUE(parse_diagram(text, "d.toml") == d);
+  }
 }
 
 // A bare key is of letters, digits, `_` and `-` (TOML 1.0); everything else stands in quotes.

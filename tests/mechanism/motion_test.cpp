@@ -33,6 +33,33 @@ Mechanism four_bar(double crank, double coupler, double rocker, double frame, co
   return parse_mechanism(text.str(), "four.toml");
 }
 
+// A crank that is given from its pin to its bearing, with a speed that varies: B stands opposite to the angle
+// φ = t + t², and |AB| = 2.
+TEST(Motion, OfACrankGivenFromItsPin) {
+  const Mechanism mechanism = parse_mechanism(R"(format = "oblique-mechanism/1"
+[frame]
+A = [1, 0]
+[bodies]
+AB = { points = ["B", "A"], length = 2 }
+[drives]
+crank = { turns = "AB", about = "A", speed = "1 + 2*time rad/s" }
+[motion]
+until = 2
+)",
+                                              "pin.toml");
+  const std::array times{0.0, 0.4, 1.3};
+  const Motion motion = solve_motion(mechanism, times);
+  for (std::size_t row = 0; row < times.size(); ++row) {
+    const double angle = times[row] + times[row] * times[row], rate = 1 + 2 * times[row], bend = 2;
+    const Eigen::Vector2d u(std::cos(angle), std::sin(angle)), n(-u.y(), u.x());
+    const PointState& b = motion.configurations[row].points[mechanism.find_point("B").value()];
+    // the angle is the integral of the law, to 1e-12
+    EXPECT_LT((b.position - (Eigen::Vector2d(1, 0) - 2 * u)).norm(), 1e-10);
+    EXPECT_LT((b.velocity + 2 * rate * n).norm(), 1e-10);
+    EXPECT_LT((b.acceleration + 2 * (bend * n - rate * rate * u)).norm(), 1e-9);
+  }
+}
+
 // A drive that turns the coupler of a four-bar: B and C follow together, |AB| = 1 and |CD| = 3.
 TEST(Motion, OfADriveInsideAGroup) {
   const Mechanism mechanism = parse_mechanism(R"(format = "oblique-mechanism/1"
