@@ -17,7 +17,10 @@ using Carrier = LinkagePart::Carrier;
 
 constexpr double kLinkRadius = 6, kPinRadius = 4.5, kMarkRadius = 3;  // [px]
 constexpr double kOverhang = 26;  // of a guide beyond the way of its block [px]
-const Pen kThin{Ink::line, kThinLine};
+
+Pen thin_pen() {
+  return {Ink::line, kThinLine};
+}
 
 /// From what the distance of a slide's point from its line's first point is measured.
 Vector2d line_direction(const Mechanism& mechanism, const Slide& slide) {
@@ -84,7 +87,7 @@ void add_ground(std::vector<Mark>& marks, double from, double to, double y, cons
 LinkagePart support(const Mechanism& mechanism, std::size_t point) {
   constexpr double kHalf = 10, kHeight = 18, kBase = 15;
   LinkagePart part{Carrier::frame, point};
-  part.marks.push_back(polyline_mark({{0, 0}, {-kHalf, kHeight}, {kHalf, kHeight}}, kThin, true));
+  part.marks.push_back(polyline_mark({{0, 0}, {-kHalf, kHeight}, {kHalf, kHeight}}, thin_pen(), true));
   part.marks.back().fill = Ink::paper;
   add_ground(part.marks, -kBase, kBase, kHeight, "ground-" + mechanism.points[point].name);
   return part;
@@ -146,7 +149,7 @@ LinkagePart body_part(const Mechanism& mechanism, const std::vector<Configuratio
     if (mechanism.slides[s].carrier == index) add_body_guide(part, mechanism, motion, s, scale);
   }
   if (!is_plate(body)) part.marks.push_back(inside_of(mechanism, index, scale));
-  Mark edge{outline_of(body, scale), kThin};
+  Mark edge{outline_of(body, scale), thin_pen()};
   edge.id = "body-" + body.name;
   part.marks.push_back(edge);
   return part;
@@ -169,8 +172,11 @@ bool is_drawn(const Mechanism& mechanism, std::size_t point) {
 }
 
 std::span<const LinkagePart> parts_in(Layer layer, const std::vector<LinkagePart>& parts) {
-  const auto found = std::ranges::equal_range(parts, layer, {}, layer_of);
-  return {found.begin(), found.end()};
+  const auto begin = std::partition_point(parts.begin(), parts.end(),
+                                          [&](const LinkagePart& part) { return layer_of(part) < layer; });
+  const auto end = std::partition_point(begin, parts.end(),
+                                        [&](const LinkagePart& part) { return layer_of(part) == layer; });
+  return {begin, end};
 }
 
 PartPose pose_of(const LinkagePart& part, const Mechanism& mechanism, const Configuration& here) {
