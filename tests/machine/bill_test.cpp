@@ -66,6 +66,7 @@ TEST(Bill, TakesSummersForOpenAmplifiersAndForInvertersBeyondThoseThereAre) {
   set_count(machine, ElementKind::integrator, 2);
   set_count(machine, ElementKind::summer, 3);
   Bill counted = bill(kBlocks, machine);  // without inverters of its own
+  EXPECT_EQ(row(counted, "integrators").needed, 2);
   EXPECT_EQ(row(counted, "summers").needed, 3);
   EXPECT_EQ(row(counted, "summers").note, "1 open amplifier, 1 inverter of these");
   EXPECT_EQ(counted.verdict(), Bill::Verdict::fits);

@@ -76,7 +76,9 @@ void add_ground(std::vector<Mark>& marks, double from, double to, double y, cons
   constexpr double kPitch = 6, kDepth = 6;
   marks.push_back(line_mark({from, y}, {to, y}, {Ink::line, 1.5}));
   Outline strokes;
-  for (double x = from + kPitch; x <= to + 1e-9; x += kPitch) {
+  const int n = static_cast<int>((to - from) / kPitch + 1e-9);
+  for (int k = 1; k <= n; ++k) {
+    const double x = from + k * kPitch;
     strokes.segments.push_back({Segment::Kind::move, {x, y}});
     strokes.segments.push_back({Segment::Kind::line, {x - kDepth, y + kDepth}});
   }
