@@ -311,6 +311,8 @@ def main():
         for m in mutants:
             print(f"{m['file']}:{m['line']}:{m['column']}\n  - {m['before']}\n  + {m['after']}")
         return
+    if os.geteuid() == 0:  # a fault in what guards devices has replaced /dev/full by a file
+        sys.exit("started by root, a fault may write and remove whatever there is\n  remedy: start it as another user")
     if len(mutants) >= MOST:
         sys.exit(f"{len(mutants)} faults are too many for one build, which holds {MOST - 1}")
     if subprocess.run(["git", "status", "--porcelain", "src"], cwd=ROOT, capture_output=True, check=True).stdout:
