@@ -45,16 +45,6 @@ std::string gain_text(double gain) {
              : fmt::format("{:.6g}", gain);
 }
 
-std::size_t runs_per_series(const Comparison& comparison) {
-  return comparison.runs.size() / comparison.series.size();
-}
-
-/// The runs of one series.
-std::span<const ComparedRun> runs_of(const Comparison& comparison, std::size_t series) {
-  const std::size_t n = runs_per_series(comparison);
-  return std::span(comparison.runs).subspan(series * n, n);
-}
-
 /// Whether the analog mechanism errs by no more than rounding in all of these runs. A logarithmic axis would
 /// magnify that; on a linear one it is the constant 0.
 bool is_exact(const Comparison& comparison, std::span<const ComparedRun> runs) {
@@ -88,7 +78,7 @@ Panel convergence_of(const Comparison& comparison) {
     const GainSeries& series = comparison.series[s];
     const std::string name = name_of(comparison, series);
     Curve errors{name.empty() ? "measured" : name, {}, s, Curve::Style::dotted_line};
-    for (const ComparedRun& run : runs_of(comparison, s))
+    for (const ComparedRun& run : comparison.runs_of(comparison.series[s]))
       errors.points.emplace_back(run.gain, exact ? 0 : run.max_error);
     std::sort(errors.points.begin(), errors.points.end(),
               [](const auto& a, const auto& b) { return a.x() < b.x(); });
@@ -108,7 +98,7 @@ std::pair<Axis, double> drive_axis(const Comparison& comparison) {
 Panel error_along(const Comparison& comparison, std::size_t s) {
   const auto [drive, unit] = drive_axis(comparison);
   const GainSeries& series = comparison.series[s];
-  const std::span<const ComparedRun> runs = runs_of(comparison, s);
+  const std::span<const ComparedRun> runs = comparison.runs_of(comparison.series[s]);
   const std::string name = name_of(comparison, series);
   const bool exact = is_exact(comparison, runs);
   Panel panel{drive,
@@ -132,7 +122,7 @@ Panel error_along(const Comparison& comparison, std::size_t s) {
 /// Whether `error_along` leaves points of a series out.
 bool leaves_out(const Comparison& comparison, std::size_t s) {
   const double least = kBelowFloor * comparison.series[s].floor.value_or(0);
-  const std::span<const ComparedRun> runs = runs_of(comparison, s);
+  const std::span<const ComparedRun> runs = comparison.runs_of(comparison.series[s]);
   return std::any_of(runs.begin(), runs.end(), [&](const ComparedRun& run) {
     return std::any_of(run.error_along.begin(), run.error_along.end(),
                        [&](double error) { return error <= least; });
@@ -143,7 +133,7 @@ bool leaves_out(const Comparison& comparison, std::size_t s) {
 std::string note_of(const Comparison& comparison) {
   bool exact = false, left_out = false;
   for (std::size_t s = 0; s < comparison.series.size(); ++s) {
-    const bool is_zero = is_exact(comparison, runs_of(comparison, s));
+    const bool is_zero = is_exact(comparison, comparison.runs_of(comparison.series[s]));
     exact = exact || is_zero;
     left_out = left_out || (!is_zero && leaves_out(comparison, s));
   }
@@ -218,7 +208,9 @@ Panel histogram_of(const MonteCarloReport& report) {
 Chart chart_of(const Comparison& comparison) {
   Chart chart;
   chart.title = comparison.mechanism + ": patched against exact";
-  if (runs_per_series(comparison) > 1) chart.panels.push_back(convergence_of(comparison));
+  const bool several = std::any_of(comparison.series.begin(), comparison.series.end(),
+                                   [](const GainSeries& series) { return series.n > 1; });
+  if (several) chart.panels.push_back(convergence_of(comparison));
   for (std::size_t s = 0; s < comparison.series.size(); ++s)
     chart.panels.push_back(error_along(comparison, s));
   chart.note = note_of(comparison);

@@ -91,7 +91,7 @@ class RowHead {
   }
 
   std::vector<std::string> cells(const ComparedRun& run) const {
-    std::vector<std::string> cells = this->cells(GainSeries{run.method, run.bandwidth, {}, {}});
+    std::vector<std::string> cells = this->cells(GainSeries{run.method, run.bandwidth, 0, 0, {}, {}});
     cells.push_back(short_number(run.gain));
     return cells;
   }

@@ -174,9 +174,13 @@ Comparison compare_within_range(const Mechanism& mechanism, const BlockLibrary& 
         }
       }
       if (comparison.runs.size() == first) continue;
-      GainSeries series{
-          method, bandwidth.value_or(default_bandwidth(mechanism)), comparer.floor(patched), {}};
-      series.order = fitted_order(std::span(comparison.runs).subspan(first), series.floor.value_or(0));
+      GainSeries series{method,
+                        bandwidth.value_or(default_bandwidth(mechanism)),
+                        first,
+                        comparison.runs.size() - first,
+                        comparer.floor(patched),
+                        {}};
+      series.order = fitted_order(comparison.runs_of(series), series.floor.value_or(0));
       comparison.series.push_back(series);
     }
   }

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -84,7 +85,8 @@ struct RefusedRun {
 /// What the runs of one method and one bandwidth tell together.
 struct GainSeries {
   PatchMethod method = PatchMethod::triangles;
-  double bandwidth = 0;  ///< [Hz]
+  double bandwidth = 0;          ///< [Hz]
+  std::size_t first = 0, n = 0;  ///< its runs in Comparison::runs
   /// Largest error with amplifiers of gain 1e12: what tolerance alone leaves [length unit]; nothing where
   /// that run fails, which is none of those that were asked for.
   std::optional<double> floor;
@@ -106,6 +108,10 @@ struct Comparison {
   std::vector<ComparedRun> runs;   ///< method by method, bandwidth by bandwidth, in the order of the gains
   std::vector<GainSeries> series;  ///< in the order of the runs
   std::vector<RefusedRun> refused;
+
+  std::span<const ComparedRun> runs_of(const GainSeries& of) const {
+    return std::span(runs).subspan(of.first, of.n);
+  }
 };
 
 /// A signal may pass 1 machine unit by this much before it counts as an overload: cosines that stand at 1
