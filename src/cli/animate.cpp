@@ -28,14 +28,6 @@ struct Round {
   std::vector<double> times;  ///< [s]
 };
 
-/// The same position passed the other way.
-Configuration turned_back(Configuration here) {
-  for (PointState& point : here.points) point.velocity = -point.velocity;
-  for (BodyState& body : here.bodies) body.omega = -body.omega;
-  for (SlideState& slide : here.slides) slide.velocity = -slide.velocity;
-  return here;
-}
-
 Round round_of(const Mechanism& mechanism, int frames) {
   const Structure structure = decompose(mechanism);
   DrawnMotion motion = drawn_motion(mechanism, structure, frames + 1);
@@ -44,7 +36,8 @@ Round round_of(const Mechanism& mechanism, int frames) {
   Round round;
   const auto add = [&](std::size_t k, bool back) {
     if (motion.rows[k].status == oblique::Status::open) return;
-    round.frames.push_back(back ? turned_back(motion.rows[k]) : motion.rows[k]);
+    round.frames.push_back(motion.rows[k]);
+    if (back) turn_back(round.frames.back());
     round.times.push_back(motion.times[k]);
   };
   for (std::size_t k = 0; k < motion.rows.size(); ++k) add(k, false);

@@ -30,4 +30,10 @@ void clear(const Mechanism& mechanism, Configuration& configuration) {
   configuration.slides.assign(mechanism.slides.size(), {kNaN, kNaN, kNaN});
 }
 
+void turn_back(Configuration& configuration) {
+  for (PointState& point : configuration.points) point.velocity = -point.velocity;
+  for (BodyState& body : configuration.bodies) body.omega = -body.omega;
+  for (SlideState& slide : configuration.slides) slide.velocity = -slide.velocity;
+}
+
 }  // namespace oblique

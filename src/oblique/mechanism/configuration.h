@@ -59,6 +59,9 @@ struct Configuration {
 /// The configuration in which only the frame has a place.
 Configuration frame_configuration(const Mechanism& mechanism);
 
+/// Gives the velocities of the same motion passed the other way.
+void turn_back(Configuration& configuration);
+
 /// Takes away all numbers but those of the frame.
 void clear(const Mechanism& mechanism, Configuration& configuration);
 

@@ -69,13 +69,6 @@ class Reversal {
   double low_, high_;
 };
 
-/// The rates of a motion that goes backwards.
-void turn_back(Configuration& configuration) {
-  for (PointState& point : configuration.points) point.velocity = -point.velocity;
-  for (BodyState& body : configuration.bodies) body.omega = -body.omega;
-  for (SlideState& slide : configuration.slides) slide.velocity = -slide.velocity;
-}
-
 }  // namespace
 
 double period(const Mechanism& mechanism) {
