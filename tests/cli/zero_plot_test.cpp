@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "../support/arm.h"
 #include "plot_reading.h"
 
 namespace oblique::test {
@@ -126,21 +127,9 @@ until = 1
   EXPECT_THAT(texts, Not(HasSubstr("solver's tolerance leaves")));
 }
 
-constexpr const char* kArm = R"(
-format = "oblique-mechanism/1"
-[frame]
-A = [0, 0]
-[bodies]
-upper = { points = ["A", "B"], length = 1 }
-fore  = { points = ["B", "C"], length = 1 }
-[drives]
-shoulder = { turns = "upper", about = "A", speed = 1 }
-elbow    = { turns = "fore", about = "B", speed = 2, start = "90 deg" }
-)";
-
 // The arm has no loops that could lag; what its integrators err is the solver's, and no rounding.
 TEST_F(ZeroPlot, APartThatIsNothingHasNoSign) {
-  const std::string arm = written("arm.toml", kArm);
+  const std::string arm = written("arm.toml", test::kArm);
   const Outcome table = oblique("compare " + arm);
   EXPECT_EQ(table.status, 0) << table.err;
   EXPECT_THAT(table.out, HasSubstr("  0.000e+00  "));

@@ -7,7 +7,10 @@
 #include <gtest/gtest.h>
 
 #include <oblique/mechanism/read_mechanism.h>
+#include <oblique/solve/solve_error.h>
 
+#include "../support/arm.h"
+#include "../support/chain_of_dyads.h"
 #include "../support/compiled.h"
 #include "four_bar.h"
 
@@ -150,24 +153,30 @@ TEST(ErrorParts, OfHugeGainsAreAllTheSolvers) {
 
 // Without loops nothing lags; the error of C points to the lower left, where a product with it has a sign.
 TEST(ErrorParts, OfNothingAreZeroWithoutASign) {
-  const Mechanism arm = parse_mechanism(R"(
-format = "oblique-mechanism/1"
-[frame]
-A = [0, 0]
-[bodies]
-upper = { points = ["A", "B"], length = 1 }
-fore  = { points = ["B", "C"], length = 1 }
-[drives]
-shoulder = { turns = "upper", about = "A", speed = 1 }
-elbow    = { turns = "fore", about = "B", speed = 2, start = "90 deg" }
-)",
-                                        "arm.toml");
+  const Mechanism arm = parse_mechanism(test::kArm, "arm.toml");
   const Comparison comparison = compare(arm, BlockLibrary::shipped());
   for (const ComparedRun& run : comparison.runs) {
     ASSERT_TRUE(run.parts);
     EXPECT_EQ(run.parts->lag, 0);
     EXPECT_FALSE(std::signbit(run.parts->lag));
   }
+}
+
+// The loops of a long chain add up their rounding: a hundredth of the tolerance takes hundreds of times the
+// steps there, and a tenth will do.
+TEST(ErrorParts, AreKnownOfALongChain) {
+  const Mechanism chain =
+      parse_mechanism("format = \"oblique-mechanism/1\"\n" + test::chain_of_dyads(20), "chain.toml");
+  CompareOptions options;
+  options.gains = {1e4};
+  const ComparedRun run = compare(chain, BlockLibrary::shipped(), options).runs.front();
+  ASSERT_TRUE(run.parts);
+  EXPECT_GT(run.parts->at_rest, 0.9 * run.max_error);
+}
+
+TEST(ErrorParts, OfARunThatTakesStepsOfRoundingAreGivenUp) {
+  const PatchedMechanism patched(patch_named(shipped("four-bar"), {}), BlockLibrary::shipped());
+  EXPECT_THROW(run_recorded(patched, "few steps", 1e-10, {}, {}, 10), SolveError);
 }
 
 class PartsOf : public ::testing::TestWithParam<std::tuple<const char*, PatchMethod>> {};

@@ -12,6 +12,8 @@
 #include <oblique/mechanism/read_mechanism.h>
 #include <oblique/mechanism/redundancy.h>
 
+#include "../support/chain_of_dyads.h"
+
 namespace oblique {
 namespace {
 
@@ -81,31 +83,10 @@ TEST(Rank, IsWhatGrueblersFormulaSaysOfTheShippedMechanisms) {
   }
 }
 
-/// A crank and so many dyads, each on the rocker of the one before; all rockers are alike and upright.
-std::string chain_of_dyads(int n) {
-  std::string frame = "[frame]\nA = [0, 0]\n",
-              bodies = "[bodies]\nAB = { points = [\"A\", \"M0\"], length = 0.3 }\n";
-  std::string sketch = "[sketch]\n";
-  double y = 0.3;
-  for (int k = 0; k < n; ++k) {
-    const int x = 2 * (k + 1);
-    frame += fmt::format("D{} = [{}, 0]\n", k, x);
-    bodies +=
-        fmt::format("C{0} = {{ points = [\"M{0}\", \"P{0}\"], length = {1} }}\n", k, std::hypot(2, 1.2 - y));
-    y = 1.182;
-    bodies += fmt::format(
-        "R{0} = {{ points = [\"D{0}\", \"P{0}\"], length = 1.2, marks = {{ M{1} = [{2}, 0] }} }}\n", k, k + 1,
-        y);
-    sketch += fmt::format("P{} = [{}, 1.2]\n", k, x);
-  }
-  return frame + bodies +
-         "[drives]\ncrank = { turns = \"AB\", about = \"A\", speed = 1, start = \"90 deg\" }\n" + sketch;
-}
-
 // Jacobi's method takes up to a hundred conditions, another one more.
 TEST(Rank, IsFoundOfManyLinksToo) {
   for (const int n : {10, 20}) {  // 62 and 122 conditions
-    const Mechanism chain = mechanism(chain_of_dyads(n));
+    const Mechanism chain = mechanism(test::chain_of_dyads(n));
     const MobilityReport report = mobility_report(chain, decompose(chain));
     EXPECT_EQ(report.start.mobility(), 1);
     EXPECT_EQ(report.start.rank, static_cast<std::size_t>(6 * n + 2));

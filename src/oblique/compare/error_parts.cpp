@@ -39,9 +39,10 @@ std::optional<Eigen::Vector2d> place_in(const PatchedMechanism& patched, const P
 std::optional<RecordedRun> tighter_run(const PatchedMechanism& patched, const Run& run,
                                        const std::function<void(double)>& progress) {
   for (const double part : kTighter) {
+    const bool first = part == kTighter.front();  // of a second one there is no progress to be told
     try {
-      return run_recorded(patched, "a tighter tolerance", part * patched.diagram.run.tolerance, progress, {},
-                          kMostTimes * run.statistics.steps);
+      return run_recorded(patched, "a tighter tolerance", part * patched.diagram.run.tolerance,
+                          first ? progress : nullptr, {}, kMostTimes * run.statistics.steps);
     } catch (const SolveError&) {
       continue;
     }

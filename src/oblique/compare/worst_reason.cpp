@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <oblique/mechanism/follower.h>
+#include <oblique/solve/driving_states.h>
 #include <oblique/solve/loop_report.h>
 
 namespace oblique {
@@ -41,27 +42,12 @@ std::vector<bool> states_behind(const PatchedMechanism& patched, const Instant& 
                            signals[program.signal_index(patched.flat.outputs[point.y].signal)]);
   };
   const Eigen::Vector2d here = place(instant.states);
-  std::vector<std::size_t> pending;
   for (std::size_t i = 0; i < program.n_states(); ++i) {
     std::vector<double> moved = instant.states;
     moved[i] += 0.0371;  // an odd part of a machine unit
-    if (place(std::move(moved)) == here) continue;
-    behind[i] = true;
-    pending.push_back(i);
+    behind[i] = place(std::move(moved)) != here;
   }
-  const SparsePattern& pattern = program.jacobian_pattern();
-  while (!pending.empty()) {
-    const auto row = static_cast<std::int64_t>(pending.back());
-    pending.pop_back();
-    for (std::size_t column = 0; column < pattern.size(); ++column) {
-      const auto begin = pattern.rows.begin() + pattern.column_starts[column];
-      const auto end = pattern.rows.begin() + pattern.column_starts[column + 1];
-      if (behind[column] || !std::binary_search(begin, end, row)) continue;
-      behind[column] = true;
-      pending.push_back(column);
-    }
-  }
-  return behind;
+  return with_driving_states(program.jacobian_pattern(), std::move(behind));
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 namespace oblique {
 
 /// d/ds of nodes where the variables move along a direction s: forward accumulation, in which every node is
-/// differentiated once however many roots share it. Not installed.
+/// differentiated once however many roots share it.
 class Tangents {
  public:
   /// `rate_of` gives d variable/ds of a variable by its number. `graph` must outlive this; nodes may be added

@@ -14,10 +14,10 @@ namespace oblique {
 /// A switch that turned over, with an effect, where the errors of the states do not tell its surface from
 /// zero: whether it turns over at all, rounding has decided.
 struct FaintTurn {
-  std::uint32_t number = 0;                            ///< in Program::switches
-  double time = 0;                                     ///< [s]
-  double error = 0;                                    ///< of its surface
-  std::vector<std::pair<std::size_t, double>> states;  ///< that decide about it, and their magnitudes there
+  std::uint32_t number = 0;         ///< in Program::switches
+  double time = 0;                  ///< [s]
+  double error = 0;                 ///< of its surface
+  std::vector<std::size_t> states;  ///< that decide about it, and would be known better by a finer run
 };
 
 /// Tells turns that are faint. The surface of a switch that reads a decay comes from afar, ever nearer to

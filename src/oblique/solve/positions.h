@@ -61,8 +61,7 @@ class Positions {
   bool only_bends(std::uint32_t unit) const;
   void set_apart(const std::vector<std::uint32_t>& units, const std::vector<bool>& preferred);
   bool follow_bends(double t, std::span<const double> x);
-  void keep_where_both_sides_lead_back(double t, std::span<const double> x,
-                                       const std::vector<bool>& decided);
+  void keep_where_both_sides_lead_back(double t, std::span<const double> x, const std::vector<bool>& decided);
   bool let_bends_rest();
   bool settle_others(const std::vector<bool>& placed, double t, std::span<const double> x);
   bool try_slide(std::uint32_t sliding, std::uint32_t bits, double t, std::span<const double> x);

@@ -52,7 +52,7 @@ void refine(const Unseen& unseen, std::size_t n_states, Refinement& refinement) 
   for (const SmallState& small : unseen.small) reach_to(small.state, kAbsoluteTolerance * small.size);
   // As small as a decay may become: where it was when it was lost says nothing.
   for (const FaintTurn& turn : unseen.faint) {
-    for (const auto& [state, size] : turn.states) reach_to(state, kSmallest);
+    for (const std::size_t state : turn.states) reach_to(state, kSmallest);
   }
 }
 

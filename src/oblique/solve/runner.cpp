@@ -11,6 +11,7 @@
 #include <oblique/solve/branch_end.h>
 #include <oblique/solve/phase_clock.h>
 #include <oblique/solve/rest.h>
+#include <oblique/solve/run_snapshot.h>
 #include <oblique/solve/sampler.h>
 #include <oblique/solve/short_steps.h>
 #include <oblique/solve/singular_start.h>
@@ -82,7 +83,7 @@ class Runner {
     }
     follow_phases(begin_);
     workspace_.follow_branches(true);
-    keep(begin_);
+    last_whole_ = RunSnapshot(begin_, parts());
     try {
       sampler_.advance(begin_, StandingStates(states_));
       if (overloads_) overloads_->restart(begin_, states_);
@@ -92,11 +93,12 @@ class Runner {
         follow();
       }
     } catch (const Interrupted&) {
-      go_back();
+      end_ = last_whole_.time();
+      last_whole_.restore(parts());
     }
     sampler_.result.events = branches_.merged_with(switching_.records());
     sampler_.result.event_count = switching_.count() + static_cast<long>(branches_.jumps().size());
-    sampler_.result.state = state();
+    sampler_.result.state = RunSnapshot(end_, parts()).named(program_);
     sampler_.result.warnings = std::move(warnings_at_start_);
     for (const auto* warnings : {&branches_.warnings(), &switching_.warnings()})
       sampler_.result.warnings.insert(sampler_.result.warnings.end(), warnings->begin(), warnings->end());
@@ -179,29 +181,11 @@ class Runner {
     }
   }
 
-  void resume(const RunState& state) {
-    for (std::size_t i = 0; i < states_.size(); ++i) states_[i] = state.states[i].second;
-    for (std::size_t u = 0; u < state.unknowns.size(); ++u)
-      workspace_.set_unknown(u, state.unknowns[u].second);
-    for (std::size_t m = 0; m < state.memories.size(); ++m)
-      workspace_.set_memory(m, state.memories[m].second);
-    clock_.restore(state.position);
-    switching_.restore(state.conditions);
-    switching_.settle(begin_, states_);
-  }
+  RunParts parts() { return {program_, states_, workspace_, switching_, clock_}; }
 
-  RunState state() const {
-    RunState state;
-    state.time = end_;
-    for (std::size_t i = 0; i < states_.size(); ++i)
-      state.states.emplace_back(program_.states()[i].name, states_[i]);
-    for (std::size_t u = 0; u < program_.unknowns().size(); ++u)
-      state.unknowns.emplace_back(program_.unknowns()[u].name, workspace_.unknown(u));
-    for (std::size_t m = 0; m < program_.memories().size(); ++m)
-      state.memories.emplace_back(program_.memories()[m].name, workspace_.memory(m));
-    state.conditions = switching_.conditions();
-    state.position = clock_.position();
-    return state;
+  void resume(const RunState& state) {
+    RunSnapshot(state).restore(parts());
+    switching_.settle(begin_, states_);
   }
 
   /// Begins the phases that are due at t.
@@ -393,29 +377,8 @@ class Runner {
   bool goes_on(double t) {
     end_ = t;
     if (!(t < options_.until) || halted() || interruption_.is_asked()) return false;
-    if (options_.interrupted) keep(t);
+    if (options_.interrupted) last_whole_ = RunSnapshot(t, parts());
     return true;
-  }
-
-  /// Keeps what makes the state at t, where a whole step has ended.
-  void keep(double t) {
-    last_.time = t;
-    last_.states = states_;
-    last_.memories.assign(workspace_.memories().begin(), workspace_.memories().end());
-    last_.unknowns.resize(program_.unknowns().size());
-    for (std::size_t u = 0; u < last_.unknowns.size(); ++u) last_.unknowns[u] = workspace_.unknown(u);
-    last_.conditions = switching_.conditions();
-    last_.position = clock_.position();
-  }
-
-  /// Leaves a step that was interrupted.
-  void go_back() {
-    end_ = last_.time;
-    states_ = last_.states;
-    workspace_.load_memories(last_.memories);
-    for (std::size_t u = 0; u < last_.unknowns.size(); ++u) workspace_.set_unknown(u, last_.unknowns[u]);
-    switching_.restore(last_.conditions);
-    clock_.restore(last_.position);
   }
 
   void integrate() {
@@ -465,8 +428,8 @@ class Runner {
           }
         }
         const std::vector<double>& looks = sources_.looks(from, t, solver);
-        if (short_steps.take_back(from, states_, looks,
-                                  stretch_end_)) {  // the states are still those of `from`
+        // The states are still those of `from`.
+        if (short_steps.take_back(from, states_, looks, stretch_end_)) {
           t = from;
           continue;
         }
@@ -537,14 +500,7 @@ class Runner {
   std::optional<SmallStates> small_;
   long steps_ = 0, steps_unseen_ = 0;  ///< in all, and until growth was first unseen
 
-  /// The last whole step, where the run may be interrupted.
-  struct Whole {
-    double time = 0;
-    std::vector<double> states, memories, unknowns;
-    std::vector<bool> conditions;
-    PhaseClock::Position position;
-  };
-  Whole last_;
+  RunSnapshot last_whole_;  ///< the last whole step, where the run may be interrupted
 };
 
 SolveError interrupted_start(const FlatDiagram& diagram, const RunOptions& options) {

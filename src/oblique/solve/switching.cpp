@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -382,11 +383,9 @@ void Switching::settle(double t, std::vector<double>& x) {
     record(t, fmt::format("{}: {} {}", program_.switches()[s].block, program_.switches()[s].comparison,
                           announced_[s] > 0 ? "from now on" : "no longer"));
   }
-  const std::vector<std::uint32_t> faint = faint_switches(t);
-  const std::vector<double> errors = errors_;
-  if (!faint.empty() && !signals(t, x.data(), signals_.data()))
-    std::fill(signals_.begin(), signals_.end(), 0.0);
-  const std::vector<double> before_turning = faint.empty() ? std::vector<double>() : signals_;
+  std::vector<FaintTurn> faint = faint_turns_at(t);
+  if (!faint.empty() && !signals(t, x.data(), signals_.data())) faint.clear();
+  const std::vector<double> signals_before = faint.empty() ? std::vector<double>() : signals_;
   std::fill(came_.begin(), came_.end(), false);
   set_ = false;
   for (int round = 0;; ++round) {
@@ -406,7 +405,10 @@ void Switching::settle(double t, std::vector<double>& x) {
     const double wrong = closed ? -surfaces_[s] : surfaces_[s];
     if (wrong > thresholds_.now[s]) thresholds_.now[s] = thresholds_.slack[s] = 2 * wrong;
   }
-  if (!faint.empty() && signals(t, x.data(), signals_.data())) note_faint(faint, errors, before_turning, t);
+  if (faint.empty() || !signals(t, x.data(), signals_.data())) return;
+  for (FaintTurn& turn : faint) {
+    if (FaintTurns::jumps(signals_before, signals_, turn.error)) faint_.push_back(std::move(turn));
+  }
 }
 
 double Switching::known_wait(double t, std::span<const double> x) {

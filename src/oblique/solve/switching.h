@@ -108,10 +108,8 @@ class Switching {
   bool is_any_due() const;
   void weigh_errors();
   double error_of_state(std::size_t i) const;
-  std::vector<std::pair<std::size_t, double>> states_behind(std::uint32_t s);
-  std::vector<std::uint32_t> faint_switches(double t);
-  void note_faint(const std::vector<std::uint32_t>& faint, const std::vector<double>& errors,
-                  const std::vector<double>& before, double t);
+  std::vector<std::size_t> states_behind(std::uint32_t s);
+  std::vector<FaintTurn> faint_turns_at(double t);
   double place_size(std::size_t s) const;
   void evaluate(double t, std::span<const double> x);
   bool settle_switches(double t, std::span<const double> x);

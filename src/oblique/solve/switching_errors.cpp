@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <utility>
+
+#include <oblique/solve/driving_states.h>
 
 namespace oblique {
 namespace {
@@ -53,65 +56,44 @@ void Switching::weigh_errors() {
 }
 
 /// The states that are hardly known and move the surface of a switch, itself or by the states that they
-/// drive, and their magnitudes.
-std::vector<std::pair<std::size_t, double>> Switching::states_behind(std::uint32_t s) {
+/// drive.
+std::vector<std::size_t> Switching::states_behind(std::uint32_t s) {
   constexpr double kHardlyKnown = 1e4;  // errors
   constexpr double kPart = 1e-2;        // of the surface's error
   const std::size_t n = program_.n_states();
   std::vector<double> off(n, 0.0), rates(surfaces_.size());
   program_.surface_rates(off.data(), rates.data(), workspace_);
   const double still = rates[s];
-  std::vector<bool> behind(n, false);
-  std::vector<std::size_t> pending;
+  std::vector<bool> moves(n, false);
   for (std::size_t i = 0; i < n; ++i) {
     off[i] = error_of_state(i);
     program_.surface_rates(off.data(), rates.data(), workspace_);
     off[i] = 0;
-    if (!(std::abs(rates[s] - still) > kPart * errors_[s])) continue;
-    behind[i] = true;
-    pending.push_back(i);
+    moves[i] = std::abs(rates[s] - still) > kPart * errors_[s];
   }
-  const SparsePattern& pattern = program_.jacobian_pattern();
-  while (!pending.empty()) {
-    const auto row = static_cast<std::int64_t>(pending.back());
-    pending.pop_back();
-    for (std::size_t column = 0; column < n; ++column) {
-      const auto begin = pattern.rows.begin() + pattern.column_starts[column];
-      const auto end = pattern.rows.begin() + pattern.column_starts[column + 1];
-      if (behind[column] || !std::binary_search(begin, end, row)) continue;
-      behind[column] = true;
-      pending.push_back(column);
-    }
-  }
-  std::vector<std::pair<std::size_t, double>> found;
+  const std::vector<bool> behind = with_driving_states(program_.jacobian_pattern(), std::move(moves));
+  std::vector<std::size_t> found;
   for (std::size_t i = 0; i < n; ++i) {
-    if (behind[i] && std::abs(states_[i]) <= kHardlyKnown * error_of_state(i))
-      found.emplace_back(i, std::abs(states_[i]));
+    if (behind[i] && std::abs(states_[i]) <= kHardlyKnown * error_of_state(i)) found.push_back(i);
   }
   return found;
 }
 
-/// Of the switches that were announced those about which rounding decides; none that was told of before.
-std::vector<std::uint32_t> Switching::faint_switches(double t) {
+/// Of the switches that were announced those about which rounding decides; none that was told of before. The
+/// surfaces were evaluated last at t.
+std::vector<FaintTurn> Switching::faint_turns_at(double t) {
   if (!faint_turns_.any()) return {};
   weigh_errors();
-  std::vector<std::uint32_t> found = faint_turns_.faint([&](std::uint32_t s) {
-    return FaintTurns::Past{errors_[s], search_.excursion(s), t - unrest_[s].last};
-  });
-  faint_turns_.leave();
-  std::erase_if(found, [this](std::uint32_t s) {
-    return announced_[s] < 0 ||
-           std::any_of(faint_.begin(), faint_.end(), [s](const FaintTurn& turn) { return turn.number == s; });
-  });
-  return found;
-}
-
-/// Keeps the turns that have an effect; the surfaces were evaluated last where they are, after it.
-void Switching::note_faint(const std::vector<std::uint32_t>& faint, const std::vector<double>& errors,
-                           const std::vector<double>& before, double t) {
-  for (const std::uint32_t s : faint) {
-    if (FaintTurns::jumps(before, signals_, errors[s])) faint_.push_back({s, t, errors[s], states_behind(s)});
+  std::vector<FaintTurn> found;
+  for (const std::uint32_t s : faint_turns_.faint([&](std::uint32_t number) {
+         return FaintTurns::Past{errors_[number], search_.excursion(number), t - unrest_[number].last};
+       })) {
+    const bool told =
+        std::any_of(faint_.begin(), faint_.end(), [s](const FaintTurn& turn) { return turn.number == s; });
+    if (announced_[s] >= 0 && !told) found.push_back({s, t, errors_[s], states_behind(s)});
   }
+  faint_turns_.leave();
+  return found;
 }
 
 }  // namespace oblique

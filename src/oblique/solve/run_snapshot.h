@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <vector>
+
+#include <oblique/solve/phase_clock.h>
+#include <oblique/solve/run_state.h>
+#include <oblique/solve/switching.h>
+
+namespace oblique {
+
+/// The parts of a run that make its state. Not installed.
+struct RunParts {
+  const Program& program;
+  std::vector<double>& states;
+  Workspace& workspace;
+  Switching& switching;
+  PhaseClock& clock;
+};
+
+/// A RunState without names, which is quick to take at every step.
+class RunSnapshot {
+ public:
+  RunSnapshot() = default;
+  /// The state in which the parts are at time t.
+  RunSnapshot(double t, const RunParts& parts);
+  explicit RunSnapshot(const RunState& state);
+
+  double time() const { return time_; }
+  /// Brings the parts back to this state; what slides is to be settled.
+  void restore(const RunParts& parts) const;
+  RunState named(const Program& program) const;
+
+ private:
+  double time_ = 0;
+  std::vector<double> states_, memories_, unknowns_;
+  std::vector<bool> conditions_;
+  PhaseClock::Position position_;
+};
+
+}  // namespace oblique
