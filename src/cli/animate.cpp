@@ -4,9 +4,9 @@
 
 #include <fmt/format.h>
 
-#include <oblique/draw/animation.h>
-#include <oblique/mechanism/motion.h>
-#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/draw/animation/animation.h>
+#include <oblique/mechanism/model/read_mechanism.h>
+#include <oblique/mechanism/motion/motion.h>
 
 #include "animation_timing.h"
 #include "command.h"
@@ -24,20 +24,20 @@ namespace {
 
 /// The moments of a round and its frames: a closed motion once, another one to its end and back.
 struct Round {
-  std::vector<Configuration> frames;
+  std::vector<mechanism::Configuration> frames;
   std::vector<double> times;  ///< [s]
 };
 
-Round round_of(const Mechanism& mechanism, int frames) {
-  const Structure structure = decompose(mechanism);
+Round round_of(const mechanism::Mechanism& mechanism, int frames) {
+  const mechanism::Structure structure = mechanism::decompose(mechanism);
   DrawnMotion motion = drawn_motion(mechanism, structure, frames + 1);
   const bool closed = motion.closed;
   if (!closed) motion = drawn_motion(mechanism, structure, (frames + 1) / 2 + 1);
   Round round;
   const auto add = [&](std::size_t k, bool back) {
-    if (motion.rows[k].status == oblique::Status::open) return;
+    if (motion.rows[k].status == oblique::mechanism::Status::open) return;
     round.frames.push_back(motion.rows[k]);
-    if (back) turn_back(round.frames.back());
+    if (back) mechanism::turn_back(round.frames.back());
     round.times.push_back(motion.times[k]);
   };
   for (std::size_t k = 0; k < motion.rows.size(); ++k) add(k, false);
@@ -54,17 +54,17 @@ ExitStatus animate_mechanism(const Session& session, const AnimateRequest& reque
   const std::string ending = std::filesystem::path(request.output).extension().string();
   const bool gif = ending == ".gif";
   const AnimationTiming timing = timing_of(request, gif);
-  const Theme theme = theme_option(request.theme);
+  const draw::Theme theme = theme_option(request.theme);
   const std::optional<double> magnification = magnify_option(request.magnify);
   if (gif) require_converter(request.output);
-  Mechanism mechanism = read_mechanism(request.mechanism);
-  if (mechanism.drives.empty()) period(mechanism);  // says that there is no drive
-  if (magnification) mechanism = within_range(mechanism);
+  mechanism::Mechanism mechanism = mechanism::read_mechanism(request.mechanism);
+  if (mechanism.drives.empty()) mechanism::period(mechanism);  // says that there is no drive
+  if (magnification) mechanism = patch::within_range(mechanism);
   const std::vector<std::size_t> traces = trace_option(mechanism, request.trace);
   const TimedScene timed = linkage_scene(mechanism, "", 1);
   const Round round = round_of(mechanism, timing.frames);
 
-  LinkageAnimation animation;
+  draw::LinkageAnimation animation;
   animation.duration = timing.duration;
   animation.width = request.size.value_or(0);
   animation.scene = timed.scene;
@@ -82,7 +82,8 @@ ExitStatus animate_mechanism(const Session& session, const AnimateRequest& reque
   }
 
   if (!gif) {
-    save(request.output, (ending == ".html" ? animated_page : animated_svg)(mechanism, animation, theme));
+    save(request.output,
+         (ending == ".html" ? draw::animated_page : draw::animated_svg)(mechanism, animation, theme));
     return ExitStatus::done;
   }
   save(request.output, gif_of(mechanism, animation, theme, timing.delay, request.output));

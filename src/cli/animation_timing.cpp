@@ -26,11 +26,12 @@ std::optional<double> duration_of(const AnimateRequest& request) {
   if (request.duration.empty()) return std::nullopt;
   const double duration = quantity_option("--duration", request.duration, "s");
   if (duration > 0 && std::isfinite(duration)) return duration;
-  throw ReadError(Diagnostic{{}, fmt::format("--duration {}", request.duration), "a time above 0", {}});
+  throw text::ReadError(
+      text::Diagnostic{{}, fmt::format("--duration {}", request.duration), "a time above 0", {}});
 }
 
 [[noreturn]] void refuse(const std::string& what, const std::string& expected, const std::string& remedy) {
-  throw ReadError(Diagnostic{{}, what, expected, remedy});
+  throw text::ReadError(text::Diagnostic{{}, what, expected, remedy});
 }
 
 AnimationTiming gif_timing(const std::optional<int>& frames, const std::optional<double>& duration,

@@ -53,8 +53,8 @@ std::optional<std::string> first_word(const CLI::App& app, const std::vector<std
 }
 
 /// CLI11's finding with the nearest verb or option added, which it does not know.
-Diagnostic explain(const CLI::App& app, const CLI::ParseError& error,
-                   const std::vector<std::string>& arguments) {
+text::Diagnostic explain(const CLI::App& app, const CLI::ParseError& error,
+                         const std::vector<std::string>& arguments) {
   const auto chosen = app.get_subcommands();
   if (chosen.empty()) {
     const auto word = first_word(app, arguments);
@@ -63,7 +63,7 @@ Diagnostic explain(const CLI::App& app, const CLI::ParseError& error,
     if (std::find(verbs.begin(), verbs.end(), *word) != verbs.end()) {  // hidden behind "--"
       return {{}, fmt::format("'--' stands before the command '{}'", *word), {}, "leave '--' out there"};
     }
-    return {{}, fmt::format("there is no command '{}'", *word), {}, suggest(*word, verbs)};
+    return {{}, fmt::format("there is no command '{}'", *word), {}, text::suggest(*word, verbs)};
   }
   std::vector<std::string> names = option_names(*chosen.front());
   for (const std::string& name : option_names(app)) names.push_back(name);
@@ -74,7 +74,7 @@ Diagnostic explain(const CLI::App& app, const CLI::ParseError& error,
     return {{},
             fmt::format("'{}' has no option '{}'", chosen.front()->get_name(), name),
             {},
-            suggest(name, names)};
+            text::suggest(name, names)};
   }
   return {{},
           error.what(),
@@ -115,7 +115,7 @@ std::optional<ExitStatus> parse_arguments(int argc, char** argv, Chosen& chosen)
   } catch (const CLI::Success& success) {  // --help, --version
     return static_cast<ExitStatus>(app.exit(success));
   } catch (const CLI::ParseError& error) {
-    print_error(to_string(explain(app, error, std::vector<std::string>(argv + 1, argv + argc))));
+    print_error(text::to_string(explain(app, error, std::vector<std::string>(argv + 1, argv + argc))));
     return ExitStatus::bad_request;
   }
   return std::nullopt;

@@ -11,13 +11,13 @@
 namespace oblique::cli {
 namespace {
 
-std::string list_of(const BlockLibrary& library) {
+std::string list_of(const diagram::BlockLibrary& library) {
   Table table({"block", "what it does"});
   for (const std::string& name : library.names()) table.add({name, library.find(name)->summary});
   return table.text(2) + "\n`oblique blocks NAME` tells all about one.\n";
 }
 
-std::string range_of(const ParameterDefinition& p) {
+std::string range_of(const diagram::ParameterDefinition& p) {
   std::string text;
   const auto add = [&](std::string_view words, const std::optional<double>& limit) {
     if (limit) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", words, *limit);
@@ -30,7 +30,7 @@ std::string range_of(const ParameterDefinition& p) {
 }
 
 /// The part of a block's file that says what it does, without the tables that stand above it already.
-std::string definition_of(const BlockDefinition& block) {
+std::string definition_of(const diagram::BlockDefinition& block) {
   std::size_t begin = block.text.size();
   for (const std::string_view section :
        {"\n[equations]", "\n[implicit]", "\n[[cases]]", "\n[machine]", "\n[blocks]"}) {
@@ -39,21 +39,22 @@ std::string definition_of(const BlockDefinition& block) {
   return begin < block.text.size() ? block.text.substr(begin + 1) : block.text;
 }
 
-std::string page_of(const BlockDefinition& block) {
+std::string page_of(const diagram::BlockDefinition& block) {
   std::string text = fmt::format("{} ({})\n{}\n", block.title, block.name, block.summary);
   if (!block.doc.empty()) text += fmt::format("\n{}\n", block.doc);
   if (!block.inputs.empty()) {
     Table table({"input", "takes", "meaning"});
-    for (const InputPort& p : block.inputs) table.add({p.name, p.sum ? "a sum" : "one signal", p.doc});
+    for (const diagram::InputPort& p : block.inputs)
+      table.add({p.name, p.sum ? "a sum" : "one signal", p.doc});
     text += table.text(3) + "\n";
   }
   Table outputs({"output", "meaning"});
-  for (const OutputPort& p : block.outputs) outputs.add({p.name, p.doc});
+  for (const diagram::OutputPort& p : block.outputs) outputs.add({p.name, p.doc});
   text += outputs.text(2);
   if (!block.parameters.empty()) {
     Table table({"parameter", "default", "unit", "range", "meaning"});
-    for (const ParameterDefinition& p : block.parameters) {
-      table.add({p.name, p.formula ? to_string(*p.formula) : short_number(p.default_value), p.unit,
+    for (const diagram::ParameterDefinition& p : block.parameters) {
+      table.add({p.name, p.formula ? text::to_string(*p.formula) : short_number(p.default_value), p.unit,
                  range_of(p), p.doc});
     }
     text += "\n" + table.text(5);
@@ -65,15 +66,17 @@ std::string page_of(const BlockDefinition& block) {
 }  // namespace
 
 ExitStatus show_blocks(const Session& session, const BlocksRequest& request) {
-  const BlockLibrary library = session.blocks();
+  const diagram::BlockLibrary library = session.blocks();
   if (request.name.empty()) {
     print(list_of(library));
     return ExitStatus::done;
   }
-  const BlockDefinition* const block = library.find(request.name);
+  const diagram::BlockDefinition* const block = library.find(request.name);
   if (block == nullptr) {
-    throw DiagramError(Diagnostic{
-        {}, fmt::format("there is no block '{}'", request.name), {}, suggest(request.name, library.names())});
+    throw diagram::DiagramError(text::Diagnostic{{},
+                                                 fmt::format("there is no block '{}'", request.name),
+                                                 {},
+                                                 text::suggest(request.name, library.names())});
   }
   print(page_of(*block));
   return ExitStatus::done;

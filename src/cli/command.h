@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include <oblique/compare/judge.h>
+#include <oblique/commission/judge.h>
 #include <oblique/diagram/block_library.h>
 #include <oblique/patch/patch.h>
 
@@ -21,7 +21,7 @@ struct Session {
   std::vector<std::filesystem::path> block_directories;
 
   /// The shipped blocks and those of `--blocks`. Throws DiagramError.
-  BlockLibrary blocks() const;
+  diagram::BlockLibrary blocks() const;
 };
 
 // One request and one function a verb. Options are texts where they may carry units. Empty: not given.
@@ -75,10 +75,10 @@ struct ModesRequest {
 ExitStatus show_modes(const Session& session, const ModesRequest& request);
 
 /// The method of patching that --method names. Throws ReadError.
-PatchMethod method_option(const std::string& text);
+patch::PatchMethod method_option(const std::string& text);
 
 /// What was found about a patch that is written, for people.
-std::string judgement_text(const Judgement& judgement);
+std::string judgement_text(const commission::Judgement& judgement);
 
 /// How the triads of a mechanism are taken apart.
 struct TriadChoice {

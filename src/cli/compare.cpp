@@ -8,10 +8,10 @@
 
 #include <fmt/format.h>
 
+#include <oblique/commission/on_machine.h>
 #include <oblique/compare/machine_comparison.h>
 #include <oblique/compare/monte_carlo.h>
-#include <oblique/compare/on_machine.h>
-#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/mechanism/model/read_mechanism.h>
 
 #include "command.h"
 #include "comparison_chart.h"
@@ -30,7 +30,7 @@ namespace {
 
 [[noreturn]] void refuse(const std::string& what, const std::string& expected,
                          const std::string& remedy = {}) {
-  throw ReadError(Diagnostic{{}, what, expected, remedy});
+  throw text::ReadError(text::Diagnostic{{}, what, expected, remedy});
 }
 
 /// Positive finite numbers of an option that takes several, each once.
@@ -46,11 +46,11 @@ std::vector<double> numbers_option(const std::string& option, const std::vector<
   return values;
 }
 
-CompareOptions options_of(const CompareRequest& request) {
-  CompareOptions options;
+compare::CompareOptions options_of(const CompareRequest& request) {
+  compare::CompareOptions options;
   options.methods.clear();
   for (const std::string& name : request.methods) {
-    const PatchMethod method = method_option(name);
+    const patch::PatchMethod method = method_option(name);
     if (std::find(options.methods.begin(), options.methods.end(), method) == options.methods.end())
       options.methods.push_back(method);
   }
@@ -63,26 +63,26 @@ CompareOptions options_of(const CompareRequest& request) {
 }
 
 /// Says what is missing in the tables; whether a run failed.
-bool warn_of(const std::vector<RefusedRun>& refused) {
-  for (const RefusedRun& run : refused) {
-    std::string name = fmt::format("method {}", method_name(run.method));
+bool warn_of(const std::vector<compare::RefusedRun>& refused) {
+  for (const compare::RefusedRun& run : refused) {
+    std::string name = fmt::format("method {}", patch::method_name(run.method));
     if (run.bandwidth) name += fmt::format(", {:.6g} Hz", *run.bandwidth);
     if (run.gain) name += fmt::format(", gain {:.6g}", *run.gain);
-    note(fmt::format("warning: {} is left out: {}\n", name, to_string(run.why)));
+    note(fmt::format("warning: {} is left out: {}\n", name, text::to_string(run.why)));
   }
-  return std::any_of(refused.begin(), refused.end(), [](const RefusedRun& run) { return run.gain; });
+  return std::any_of(refused.begin(), refused.end(), [](const compare::RefusedRun& run) { return run.gain; });
 }
 
 /// The one patch that `option` is about: "--machine", "--monte-carlo".
-PatchOptions single_patch(const std::string& option, const CompareRequest& request,
-                          const CompareOptions& options) {
+patch::PatchOptions single_patch(const std::string& option, const CompareRequest& request,
+                                 const compare::CompareOptions& options) {
   const auto one_of = [&](const char* several, std::size_t n) {
     if (n > 1) refuse(fmt::format("{} with {} of {}", option, count(n, "value", "values"), several), "one");
   };
   one_of("--gain", request.gains.size());
   one_of("--bandwidth", options.bandwidths.size());
   one_of("--method", options.methods.size());
-  PatchOptions patch;
+  patch::PatchOptions patch;
   patch.method = options.methods.front();
   patch.split = options.split;
   patch.slower = options.slower;
@@ -92,14 +92,15 @@ PatchOptions single_patch(const std::string& option, const CompareRequest& reque
 }
 
 /// How the elements scatter: as --tolerance says, or the machine's profile.
-std::vector<BlockFigure> scatters_of(const CompareRequest& request, const BlockLibrary& library,
-                                     const MachineProfile* machine) {
+std::vector<diagram::BlockFigure> scatters_of(const CompareRequest& request,
+                                              const diagram::BlockLibrary& library,
+                                              const diagram::MachineProfile* machine) {
   constexpr double kMost = 0.5;  // a factor of two is no tolerance any more
   if (!request.tolerance.empty()) {
     const double tolerance = quantity_option("--tolerance", request.tolerance, "1");
     if (!(tolerance > 0 && tolerance <= kMost))
       refuse(fmt::format("--tolerance {}", request.tolerance), "a number above 0 and up to 50%");
-    return scatters_of_tolerance(library, tolerance);
+    return compare::scatters_of_tolerance(library, tolerance);
   }
   if (machine == nullptr)
     refuse("--monte-carlo without how far the elements scatter", "--tolerance, such as 0.1%, or a --machine");
@@ -110,9 +111,9 @@ std::vector<BlockFigure> scatters_of(const CompareRequest& request, const BlockL
   return machine->scatters;
 }
 
-MonteCarloReport draw_elements(const CompareRequest& request, const Mechanism& mechanism,
-                               const Diagram& diagram, const BlockLibrary& library,
-                               const MachineProfile* machine) {
+MonteCarloReport draw_elements(const CompareRequest& request, const mechanism::Mechanism& mechanism,
+                               const diagram::Diagram& diagram, const diagram::BlockLibrary& library,
+                               const diagram::MachineProfile* machine) {
   MonteCarloReport report;
   report.tolerance = request.tolerance;
   if (request.tolerance.empty()) report.machine = machine->title;
@@ -125,9 +126,10 @@ MonteCarloReport draw_elements(const CompareRequest& request, const Mechanism& m
                                ? request.threads
                                : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   if (report.options.runs == 1) {
-    const FlatDiagram flat = flatten(diagram, library);
-    for (const Draw& drawn : draw(flat, report.options.scatters, {request.seed, request.first_run})) {
-      const FlatBlock& block = flat.blocks[drawn.block];
+    const diagram::FlatDiagram flat = diagram::flatten(diagram, library);
+    for (const compare::Draw& drawn :
+         compare::draw(flat, report.options.scatters, {request.seed, request.first_run})) {
+      const diagram::FlatBlock& block = flat.blocks[drawn.block];
       report.draws.emplace_back(block.path + "." + block.definition->parameters[drawn.parameter].name,
                                 drawn.value);
     }
@@ -135,7 +137,7 @@ MonteCarloReport draw_elements(const CompareRequest& request, const Mechanism& m
   Progress progress("drawing elements");
   report.options.progress = [&](double fraction) { progress.show(fraction); };
   const auto begin = std::chrono::steady_clock::now();
-  report.result = monte_carlo(mechanism, diagram, library, report.options);
+  report.result = compare::monte_carlo(mechanism, diagram, library, report.options);
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return report;
 }
@@ -149,43 +151,45 @@ ExitStatus compare_mechanism(const Session& session, const CompareRequest& reque
     refuse("--json and --plot - would both print", "one of the two", "--plot FILE.svg beside --json");
   if (request.timings && !request.json && request.output.empty())
     refuse("--timings is about the JSON, and none is written", "--json or -o FILE.json beside it");
-  const BlockLibrary library = session.blocks();
-  CompareOptions options = options_of(request);
-  const MachineProfile* const machine = request.machine.empty() ? nullptr : find_machine(request.machine);
-  if (machine == nullptr && !request.machine.empty()) throw ReadError(unknown_machine(request.machine));
-  PatchOptions single;
+  const diagram::BlockLibrary library = session.blocks();
+  compare::CompareOptions options = options_of(request);
+  const diagram::MachineProfile* const machine =
+      request.machine.empty() ? nullptr : diagram::find_machine(request.machine);
+  if (machine == nullptr && !request.machine.empty())
+    throw text::ReadError(diagram::unknown_machine(request.machine));
+  patch::PatchOptions single;
   if (machine != nullptr || request.runs > 0) {
     single = single_patch(machine != nullptr ? "--machine" : "--monte-carlo", request, options);
     options.gains = {single.gain};
   }
   if (request.runs > 0) scatters_of(request, library, machine);  // before the work, not after it
-  const Mechanism mechanism = within_range(read_mechanism(request.mechanism));
-  std::optional<MachinePatch> on_elements;
-  Diagram drawn;  // whose elements scatter
+  const mechanism::Mechanism mechanism = patch::within_range(mechanism::read_mechanism(request.mechanism));
+  std::optional<commission::MachinePatch> on_elements;
+  diagram::Diagram drawn;  // whose elements scatter
   if (machine != nullptr || request.runs > 0) {
-    JudgedPatch patched = judged_patch(mechanism, library, single);
+    commission::JudgedPatch patched = commission::judged_patch(mechanism, library, single);
     single = patched.options;
     drawn = patched.diagram;
     if (machine != nullptr) {
-      on_elements = put_on_machine(mechanism, library, *machine, std::move(patched));
+      on_elements = commission::put_on_machine(mechanism, library, *machine, std::move(patched));
       single = on_elements->options;
       drawn = on_elements->realised;
       if (single.bandwidth) options.bandwidths = {*single.bandwidth};
     }
   }
-  Comparison comparison;
+  compare::Comparison comparison;
   {
     Progress progress("comparing");
     options.progress = [&](double fraction) { progress.show(fraction); };
-    comparison = compare(mechanism, library, options);
+    comparison = compare::compare(mechanism, library, options);
   }
   std::string text = to_text(comparison);
   nlohmann::ordered_json json = to_json(comparison, request.timings);
-  Chart chart = chart_of(comparison);
+  draw::Chart chart = chart_of(comparison);
   bool failed = warn_of(comparison.refused);
   if (machine != nullptr) {
     Progress progress("figure by figure");
-    const MachineComparison on_machine = compare_on_machine(
+    const compare::MachineComparison on_machine = compare::compare_on_machine(
         mechanism, library, *machine, single, [&](double fraction) { progress.show(fraction); });
     text += to_text(on_machine, comparison) + bandwidth_text(*on_elements, *machine);
     json["machine"] = to_json(on_machine);
@@ -194,7 +198,7 @@ ExitStatus compare_mechanism(const Session& session, const CompareRequest& reque
     const MonteCarloReport report = draw_elements(request, mechanism, drawn, library, machine);
     text += to_text(report);
     json["monte_carlo"] = to_json(report, request.timings);
-    for (Panel& panel : panels_of(comparison, report)) chart.panels.push_back(std::move(panel));
+    for (draw::Panel& panel : panels_of(comparison, report)) chart.panels.push_back(std::move(panel));
     failed = failed || !report.result.worst_run;
   }
   if (!plots_in_terminal(request.plot)) print(request.json ? json_text(json) : text);

@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include <oblique/draw/scale.h>
+#include <oblique/draw/picture/scale.h>
 
 namespace oblique::cli {
 namespace {
@@ -19,14 +19,14 @@ constexpr double kBelowFloor = 0.1;
 constexpr double kHeight = 220, kLowHeight = 160;  // [px]
 
 /// "triangles", "20 Hz", "triangles, 20 Hz": what tells a series from the others; nothing of a single one.
-std::string name_of(const Comparison& comparison, const GainSeries& series) {
+std::string name_of(const compare::Comparison& comparison, const compare::GainSeries& series) {
   const auto differs = [&](const auto& what) {
     return std::any_of(comparison.series.begin(), comparison.series.end(), what);
   };
   std::string name;
-  if (differs([&](const GainSeries& other) { return other.method != series.method; }))
-    name = method_name(series.method);
-  if (differs([&](const GainSeries& other) { return other.bandwidth != series.bandwidth; }))
+  if (differs([&](const compare::GainSeries& other) { return other.method != series.method; }))
+    name = patch::method_name(series.method);
+  if (differs([&](const compare::GainSeries& other) { return other.bandwidth != series.bandwidth; }))
     name += fmt::format("{}{:.6g} Hz", name.empty() ? "" : ", ", series.bandwidth);
   return name;
 }
@@ -41,24 +41,26 @@ std::string signed_text(double value) {
 std::string gain_text(double gain) {
   const double exponent = std::round(std::log10(gain));
   return exponent >= 3 && std::abs(gain / std::pow(10, exponent) - 1) < 1e-12
-             ? power_of_ten(static_cast<int>(exponent))
+             ? draw::power_of_ten(static_cast<int>(exponent))
              : fmt::format("{:.6g}", gain);
 }
 
 /// Whether the analog mechanism errs by no more than rounding in all of these runs. A logarithmic axis would
 /// magnify that; on a linear one it is the constant 0.
-bool is_exact(const Comparison& comparison, std::span<const ComparedRun> runs) {
+bool is_exact(const compare::Comparison& comparison, std::span<const compare::ComparedRun> runs) {
   constexpr double kRounding = 1e-14;  // of the largest link: some units in the last place of coordinates
-  return std::all_of(runs.begin(), runs.end(),
-                     [&](const ComparedRun& run) { return run.max_error <= kRounding * comparison.size; });
+  return std::all_of(runs.begin(), runs.end(), [&](const compare::ComparedRun& run) {
+    return run.max_error <= kRounding * comparison.size;
+  });
 }
 
 /// The line of the fitted order, through the middle of the runs that it was fitted to, in their colour.
-Curve slope_of(const Curve& errors, const GainSeries& series) {
-  Curve slope{fmt::format("slope {}", signed_text(*series.order)), {}, errors.number, Curve::Style::guide};
+draw::Curve slope_of(const draw::Curve& errors, const compare::GainSeries& series) {
+  draw::Curve slope{
+      fmt::format("slope {}", signed_text(*series.order)), {}, errors.number, draw::Curve::Style::guide};
   double n = 0, x = 0, y = 0;
   for (const Eigen::Vector2d& point : errors.points) {
-    if (!stands_clear(point.y(), series.floor.value_or(0))) continue;
+    if (!compare::stands_clear(point.y(), series.floor.value_or(0))) continue;
     n += 1;
     x += std::log10(point.x());
     y += std::log10(point.y());
@@ -71,14 +73,14 @@ Curve slope_of(const Curve& errors, const GainSeries& series) {
   return slope;
 }
 
-Panel convergence_of(const Comparison& comparison) {
+draw::Panel convergence_of(const compare::Comparison& comparison) {
   const bool exact = is_exact(comparison, comparison.runs);
-  Panel panel{{"gain", "", true}, {"largest error", comparison.unit, !exact}, {}, kHeight};
+  draw::Panel panel{{"gain", "", true}, {"largest error", comparison.unit, !exact}, {}, kHeight};
   for (std::size_t s = 0; s < comparison.series.size(); ++s) {
-    const GainSeries& series = comparison.series[s];
+    const compare::GainSeries& series = comparison.series[s];
     const std::string name = name_of(comparison, series);
-    Curve errors{name.empty() ? "measured" : name, {}, s, Curve::Style::dotted_line};
-    for (const ComparedRun& run : comparison.runs_of(comparison.series[s]))
+    draw::Curve errors{name.empty() ? "measured" : name, {}, s, draw::Curve::Style::dotted_line};
+    for (const compare::ComparedRun& run : comparison.runs_of(comparison.series[s]))
       errors.points.emplace_back(run.gain, exact ? 0 : run.max_error);
     std::sort(errors.points.begin(), errors.points.end(),
               [](const auto& a, const auto& b) { return a.x() < b.x(); });
@@ -89,25 +91,25 @@ Panel convergence_of(const Comparison& comparison) {
 }
 
 /// The axis of the drive, and what one of its units is in those of the numbers.
-std::pair<Axis, double> drive_axis(const Comparison& comparison) {
+std::pair<draw::Axis, double> drive_axis(const compare::Comparison& comparison) {
   if (comparison.turning) return {{"drive", "°"}, std::numbers::pi / 180};
   return {{"drive", comparison.unit}, 1};
 }
 
 /// The errors of a method and bandwidth along the way, a curve for each gain.
-Panel error_along(const Comparison& comparison, std::size_t s) {
+draw::Panel error_along(const compare::Comparison& comparison, std::size_t s) {
   const auto [drive, unit] = drive_axis(comparison);
-  const GainSeries& series = comparison.series[s];
-  const std::span<const ComparedRun> runs = comparison.runs_of(comparison.series[s]);
+  const compare::GainSeries& series = comparison.series[s];
+  const std::span<const compare::ComparedRun> runs = comparison.runs_of(comparison.series[s]);
   const std::string name = name_of(comparison, series);
   const bool exact = is_exact(comparison, runs);
-  Panel panel{drive,
-              {name.empty() ? "error" : "error, " + name, comparison.unit, runs.size() > 1 && !exact},
-              {},
-              comparison.series.size() > 1 ? kLowHeight : kHeight};
+  draw::Panel panel{drive,
+                    {name.empty() ? "error" : "error, " + name, comparison.unit, runs.size() > 1 && !exact},
+                    {},
+                    comparison.series.size() > 1 ? kLowHeight : kHeight};
   for (std::size_t k = 0; k < runs.size(); ++k) {
-    const ComparedRun& run = runs[k];
-    Curve curve{fmt::format("gain {}", gain_text(run.gain)), {}, k};
+    const compare::ComparedRun& run = runs[k];
+    draw::Curve curve{fmt::format("gain {}", gain_text(run.gain)), {}, k};
     for (std::size_t row = 0; row < run.error_along.size(); ++row) {
       // what is far below that which the tolerance leaves tells nothing, and would stretch the axis
       const bool tells = run.error_along[row] > kBelowFloor * series.floor.value_or(0);
@@ -120,17 +122,17 @@ Panel error_along(const Comparison& comparison, std::size_t s) {
 }
 
 /// Whether `error_along` leaves points of a series out.
-bool leaves_out(const Comparison& comparison, std::size_t s) {
+bool leaves_out(const compare::Comparison& comparison, std::size_t s) {
   const double least = kBelowFloor * comparison.series[s].floor.value_or(0);
-  const std::span<const ComparedRun> runs = comparison.runs_of(comparison.series[s]);
-  return std::any_of(runs.begin(), runs.end(), [&](const ComparedRun& run) {
+  const std::span<const compare::ComparedRun> runs = comparison.runs_of(comparison.series[s]);
+  return std::any_of(runs.begin(), runs.end(), [&](const compare::ComparedRun& run) {
     return std::any_of(run.error_along.begin(), run.error_along.end(),
                        [&](double error) { return error <= least; });
   });
 }
 
 /// What the panels do not show as it was measured.
-std::string note_of(const Comparison& comparison) {
+std::string note_of(const compare::Comparison& comparison) {
   bool exact = false, left_out = false;
   for (std::size_t s = 0; s < comparison.series.size(); ++s) {
     const bool is_zero = is_exact(comparison, comparison.runs_of(comparison.series[s]));
@@ -145,9 +147,9 @@ std::string note_of(const Comparison& comparison) {
          "drawn: they tell nothing of the machine.";
 }
 
-Panel bands_of(const Comparison& comparison, const MonteCarloReport& report) {
+draw::Panel bands_of(const compare::Comparison& comparison, const MonteCarloReport& report) {
   const auto [drive, unit] = drive_axis(comparison);
-  Panel panel{drive, {"error with elements drawn", report.unit}, {}, kLowHeight};
+  draw::Panel panel{drive, {"error with elements drawn", report.unit}, {}, kLowHeight};
   const auto percentile = [&, unit = unit](double percent) {
     std::vector<Eigen::Vector2d> points;
     const std::vector<double> errors = report.result.percentile_along(percent);
@@ -159,19 +161,20 @@ Panel bands_of(const Comparison& comparison, const MonteCarloReport& report) {
   const bool several = report.result.errors.size() > 1;
   if (several) {
     panel.curves.push_back(
-        {"95 % of the runs", percentile(97.5), kWide, Curve::Style::band, percentile(2.5)});
-    panel.curves.push_back({"half of them", percentile(75), kNarrow, Curve::Style::band, percentile(25)});
+        {"95 % of the runs", percentile(97.5), kWide, draw::Curve::Style::band, percentile(2.5)});
+    panel.curves.push_back(
+        {"half of them", percentile(75), kNarrow, draw::Curve::Style::band, percentile(25)});
   }
-  panel.curves.push_back({several ? "median" : "the run", percentile(50), Curve::kPlain});
+  panel.curves.push_back({several ? "median" : "the run", percentile(50), draw::Curve::kPlain});
   return panel;
 }
 
-Panel histogram_of(const MonteCarloReport& report) {
+draw::Panel histogram_of(const MonteCarloReport& report) {
   std::vector<double> errors;
   for (const std::optional<double>& error : report.result.errors) {
     if (error) errors.push_back(*error);
   }
-  Panel panel{{"largest error of a run", report.unit}, {"runs"}, {}, kLowHeight};
+  draw::Panel panel{{"largest error of a run", report.unit}, {"runs"}, {}, kLowHeight};
   const auto [least, greatest] = std::minmax_element(errors.begin(), errors.end());
   const double low = *least, span = *greatest > low ? *greatest - low : low > 0 ? low : 1;
   // as many classes as make the shape stand out of the noise of counting (Rice's rule)
@@ -181,7 +184,7 @@ Panel histogram_of(const MonteCarloReport& report) {
     const auto place = static_cast<std::size_t>((error - low) / span * static_cast<double>(classes));
     counts[std::min(place, classes - 1)] += 1;
   }
-  Curve histogram{fmt::format("{} runs", errors.size()), {}, 0, Curve::Style::area};
+  draw::Curve histogram{fmt::format("{} runs", errors.size()), {}, 0, draw::Curve::Style::area};
   histogram.points.emplace_back(low, 0);
   for (std::size_t k = 0; k < classes; ++k) {
     const double width = span / static_cast<double>(classes);
@@ -193,10 +196,10 @@ Panel histogram_of(const MonteCarloReport& report) {
   panel.curves.push_back(std::move(histogram));
   for (const double percent : {50, 95}) {
     const double error = *report.result.percentile(percent);
-    Curve line{fmt::format("{:.0f} % up to {:.3g} {}", percent, error, report.unit),
-               {},
-               panel.curves.size(),
-               Curve::Style::guide};
+    draw::Curve line{fmt::format("{:.0f} % up to {:.3g} {}", percent, error, report.unit),
+                     {},
+                     panel.curves.size(),
+                     draw::Curve::Style::guide};
     line.points = {{error, 0}, {error, most}};
     panel.curves.push_back(std::move(line));
   }
@@ -205,11 +208,11 @@ Panel histogram_of(const MonteCarloReport& report) {
 
 }  // namespace
 
-Chart chart_of(const Comparison& comparison) {
-  Chart chart;
+draw::Chart chart_of(const compare::Comparison& comparison) {
+  draw::Chart chart;
   chart.title = comparison.mechanism + ": patched against exact";
   const bool several = std::any_of(comparison.series.begin(), comparison.series.end(),
-                                   [](const GainSeries& series) { return series.n > 1; });
+                                   [](const compare::GainSeries& series) { return series.n > 1; });
   if (several) chart.panels.push_back(convergence_of(comparison));
   for (std::size_t s = 0; s < comparison.series.size(); ++s)
     chart.panels.push_back(error_along(comparison, s));
@@ -217,7 +220,7 @@ Chart chart_of(const Comparison& comparison) {
   return chart;
 }
 
-std::vector<Panel> panels_of(const Comparison& comparison, const MonteCarloReport& report) {
+std::vector<draw::Panel> panels_of(const compare::Comparison& comparison, const MonteCarloReport& report) {
   if (!report.result.worst_run) return {};  // all failed
   return {bands_of(comparison, report), histogram_of(report)};
 }

@@ -10,12 +10,12 @@
 namespace oblique::cli {
 
 /// Where the first drive stands: "172.5°" within one turn, or "12.5 mm" of a slide.
-std::string drive_text(const Comparison& comparison, double value);
+std::string drive_text(const compare::Comparison& comparison, double value);
 
 /// What `compare` prints: errors, their parts and reasons, order, overloads.
-std::string to_text(const Comparison& comparison);
+std::string to_text(const compare::Comparison& comparison);
 
 /// The same for `--json` (docs/trust.md), with or without the seconds that were measured.
-nlohmann::ordered_json to_json(const Comparison& comparison, bool timings);
+nlohmann::ordered_json to_json(const compare::Comparison& comparison, bool timings);
 
 }  // namespace oblique::cli

@@ -17,26 +17,29 @@ namespace {
 
 /// Where a signal leaves the machine unit and amplifiers saturate, what it would do if they did not: a peak
 /// that is cut off tells no scale. Nothing where such a run fails.
-std::optional<Unsaturated> analyse_unsaturated(const FlatDiagram& flat, const Analysis& analysis,
-                                               const RunOptions& options) {
-  const bool saturates = std::any_of(flat.blocks.begin(), flat.blocks.end(), [](const FlatBlock& block) {
-    return block.saturation && std::isfinite(block.parameters[*block.saturation]);
-  });
+std::optional<Unsaturated> analyse_unsaturated(const diagram::FlatDiagram& flat,
+                                               const solve::Analysis& analysis,
+                                               const solve::RunOptions& options) {
+  const bool saturates =
+      std::any_of(flat.blocks.begin(), flat.blocks.end(), [](const diagram::FlatBlock& block) {
+        return block.saturation && std::isfinite(block.parameters[*block.saturation]);
+      });
   if (!saturates || !analysis.run || analysis.run->overloads.empty()) return std::nullopt;
-  const FlatDiagram free = without_saturation(flat);
-  Program program(assemble(free));
-  Analysis found = analyse(program, free, options);
+  const diagram::FlatDiagram free = diagram::without_saturation(flat);
+  network::Program program(network::assemble(free));
+  solve::Analysis found = solve::analyse(program, free, options);
   if (!found.run) return std::nullopt;
   return Unsaturated{std::move(program), std::move(found)};
 }
 
-ScalingProposal propose(const FlatDiagram& flat, const Program& program, const Analysis& analysis) {
+ScalingProposal propose(const diagram::FlatDiagram& flat, const network::Program& program,
+                        const solve::Analysis& analysis) {
   std::vector<double> peaks;
-  for (const Peak& peak : analysis.run->peaks) peaks.push_back(peak.value);
+  for (const solve::Peak& peak : analysis.run->peaks) peaks.push_back(peak.value);
   ScalingProposal proposal;
-  proposal.blocks = propose_scaling(flat, peaks);
+  proposal.blocks = diagram::propose_scaling(flat, peaks);
   std::unordered_map<std::string_view, double> factors;
-  for (const BlockScaling& block : proposal.blocks) {
+  for (const diagram::BlockScaling& block : proposal.blocks) {
     for (const double factor : block.outputs) {
       factors.emplace(program.signal_names()[proposal.signals.size()], factor);
       proposal.signals.push_back(factor);
@@ -44,18 +47,18 @@ ScalingProposal propose(const FlatDiagram& flat, const Program& program, const A
   }
   double fastest = 0;
   for (std::size_t i = 0; i < program.n_states(); ++i) {
-    const State& state = program.states()[i];
+    const network::State& state = program.states()[i];
     const auto factor = factors.find(state.name);
     if (state.at_rest || factor == factors.end()) continue;
     fastest = std::max(fastest, factor->second * analysis.fastest_slopes[i]);
   }
-  proposal.time_scale = 1 / scale_for_peak(fastest);
+  proposal.time_scale = 1 / diagram::scale_for_peak(fastest);
   return proposal;
 }
 
 /// The largest difference between the rows of two runs of the same columns, relative to the largest value of
 /// the column.
-double largest_difference(const Trajectory& a, const Trajectory& b) {
+double largest_difference(const solve::Trajectory& a, const solve::Trajectory& b) {
   double largest = 0;
   for (std::size_t c = 1; c < a.columns().size(); ++c) {
     double size = 0, difference = 0;
@@ -69,20 +72,21 @@ double largest_difference(const Trajectory& a, const Trajectory& b) {
 }
 
 /// Writes the scaled diagram after running it: it is to give what the other one gave.
-void write_rescaled(const DiagramCheck& check, const BlockLibrary& library, const std::string& path) {
-  Diagram scaled = rescale(check.diagram, check.flat, check.scaling->blocks, library);
+void write_rescaled(const DiagramCheck& check, const diagram::BlockLibrary& library,
+                    const std::string& path) {
+  diagram::Diagram scaled = diagram::rescale(check.diagram, check.flat, check.scaling->blocks, library);
   scaled.comment = fmt::format(
       "{} in scaled signals, by: oblique check --rescale\n"
       "Time is not scaled, so that the outputs are what they were; for integrators of k0 = 1/s slow it down "
       "{:.6g} "
       "times.",
       check.file, check.scaling->time_scale);
-  const FlatDiagram flat = flatten(scaled, library);
-  const Program program(assemble(flat));
-  RunOptions options = options_of(scaled.run);
+  const diagram::FlatDiagram flat = diagram::flatten(scaled, library);
+  const network::Program program(network::assemble(flat));
+  solve::RunOptions options = solve::options_of(scaled.run);
   options.watch_overloads = true;
-  const Run result = run(program, flat, options);
-  save(path, write_diagram(scaled));
+  const solve::Run result = solve::run(program, flat, options);
+  save(path, diagram::write_diagram(scaled));
   const double difference = largest_difference(check.in_full().run->trajectory, result.trajectory);
   note(fmt::format("its outputs differ by {:.1e} of their size, at a tolerance of {}; {}\n", difference,
                    scaled.run.tolerance, count(result.overloads.size(), "overload", "overloads")));
@@ -95,17 +99,18 @@ void write_rescaled(const DiagramCheck& check, const BlockLibrary& library, cons
 }  // namespace
 
 ExitStatus check_diagram(const Session& session, const CheckRequest& request, const std::string& text) {
-  const BlockLibrary library = session.blocks();
-  const Diagram diagram = parse_diagram(text, request.file);
-  const FlatDiagram flat = flatten(diagram, library);
-  const Program program(assemble(flat));
+  const diagram::BlockLibrary library = session.blocks();
+  const diagram::Diagram diagram = diagram::parse_diagram(text, request.file);
+  const diagram::FlatDiagram flat = diagram::flatten(diagram, library);
+  const network::Program program(network::assemble(flat));
   DiagramCheck check{request.file, diagram, flat, program, {}, {}, {}, {}};
-  if (diagram.machine.profile != "ideal") check.bill = bill_of(flat, *find_machine(diagram.machine.profile));
+  if (diagram.machine.profile != "ideal")
+    check.bill = machine::bill_of(flat, *diagram::find_machine(diagram.machine.profile));
   {
     Progress progress("running on trial");
-    RunOptions options = options_of(diagram.run);
+    solve::RunOptions options = solve::options_of(diagram.run);
     options.progress = [&](double fraction) { progress.show(fraction); };
-    check.analysis = analyse(program, flat, options);
+    check.analysis = solve::analyse(program, flat, options);
     check.unsaturated = analyse_unsaturated(flat, check.analysis, options);
   }
   if (check.unsaturated) {
@@ -117,7 +122,7 @@ ExitStatus check_diagram(const Session& session, const CheckRequest& request, co
   if (!request.plot.empty())
     plot(pole_chart(flat, program, check.analysis.instants, "Eigenvalues along the run: " + diagram.title),
          request.plot, plot_theme(request.theme));
-  if (check.analysis.failure) throw SolveError(*check.analysis.failure);
+  if (check.analysis.failure) throw solve::SolveError(*check.analysis.failure);
   if (request.rescale) write_rescaled(check, library, request.output);
   return ExitStatus::done;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <nlohmann/json.hpp>
 
-#include <oblique/solve/rest.h>
+#include <oblique/solve/operating_point/rest.h>
 
 #include "diagram_check.h"
 #include "json_text.h"
@@ -17,7 +17,7 @@ Json optional_number(const std::optional<T>& value) {
 }
 
 Json run_json(const DiagramCheck& check) {
-  const Analysis& analysis = check.analysis;
+  const solve::Analysis& analysis = check.analysis;
   if (analysis.failure) {
     return {{"until", check.diagram.run.until},
             {"failed", analysis.failure->diagnostics().front().what},
@@ -25,13 +25,13 @@ Json run_json(const DiagramCheck& check) {
   }
   return {{"until", check.diagram.run.until},
           {"steps", analysis.run->statistics.steps},
-          {"method", method_name(analysis.run->method.method)},
+          {"method", diagram::method_name(analysis.run->method.method)},
           {"reason", analysis.run->method.reason}};
 }
 
-Json loop_json(const LoopReport& loop) {
+Json loop_json(const solve::LoopReport& loop) {
   Json unknowns = Json::array();
-  for (const LoopUnknown& unknown : loop.unknowns) {
+  for (const solve::LoopUnknown& unknown : loop.unknowns) {
     unknowns.push_back({{"signal", unknown.signal},
                         {"least_gain", unknown.least_gain},
                         {"least_gain_time", unknown.least_time},
@@ -47,9 +47,9 @@ Json loop_json(const LoopReport& loop) {
           {"unknowns", std::move(unknowns)}};
 }
 
-Json mode_json(const std::optional<WorstMode>& worst, const Program& program) {
+Json mode_json(const std::optional<solve::WorstMode>& worst, const network::Program& program) {
   if (!worst) return nullptr;
-  const Mode& mode = worst->mode;
+  const solve::Mode& mode = worst->mode;
   Json participants = Json::array();
   for (const auto& [state, share] : mode.participants) {
     participants.push_back({{"signal", program.states()[state].name}, {"share", share}});
@@ -57,16 +57,16 @@ Json mode_json(const std::optional<WorstMode>& worst, const Program& program) {
   return {{"pole", {mode.pole.real(), mode.pole.imag()}},
           {"natural_frequency", mode.natural_frequency()},
           {"damping_ratio", mode.damping_ratio()},
-          {"verdict", verdict_name(verdict_on(*worst))},
+          {"verdict", verdict_name(solve::verdict_on(*worst))},
           {"time", worst->time},
           {"ideal_pole",
            worst->ideal_pole ? Json({worst->ideal_pole->real(), worst->ideal_pole->imag()}) : Json(nullptr)},
           {"participants", std::move(participants)}};
 }
 
-Json stability_json(const StabilityReport& report, const Program& program) {
+Json stability_json(const solve::StabilityReport& report, const network::Program& program) {
   Json margins = Json::array();
-  for (const ServoMargin& servo : report.margins) {
+  for (const solve::ServoMargin& servo : report.margins) {
     Json margin{{"signal", program.states()[servo.state].name}};
     margin["degrees"] = servo.margin ? Json(servo.margin->degrees) : Json(nullptr);
     margin["frequency"] = servo.margin ? Json(servo.margin->frequency) : Json(nullptr);
@@ -98,7 +98,7 @@ Json stability_json(const StabilityReport& report, const Program& program) {
 Json overloads_json(const DiagramCheck& check) {
   if (!check.analysis.run) return nullptr;
   Json list = Json::array();
-  for (const OverloadRecord& o : check.in_full().run->overloads) {
+  for (const solve::OverloadRecord& o : check.in_full().run->overloads) {
     list.push_back({{"signal", check.program.signal_names()[o.signal]},
                     {"first", o.first},
                     {"peak", o.peak.value},
@@ -113,7 +113,7 @@ Json scaling_json(const DiagramCheck& check) {
   if (!check.scaling) return nullptr;
   Json signals = Json::array();
   for (std::size_t s = 0; s < check.scaling->signals.size(); ++s) {
-    const Peak& peak = check.in_full().run->peaks[s];
+    const solve::Peak& peak = check.in_full().run->peaks[s];
     signals.push_back({{"signal", check.program.signal_names()[s]},
                        {"peak", peak.value},
                        {"peak_time", peak.time},
@@ -122,10 +122,10 @@ Json scaling_json(const DiagramCheck& check) {
   return {{"signals", std::move(signals)}, {"time_scale", check.scaling->time_scale}};
 }
 
-Json bill_json(const std::optional<Bill>& bill) {
+Json bill_json(const std::optional<machine::Bill>& bill) {
   if (!bill) return nullptr;
   Json rows = Json::array();
-  for (const BillRow& row : bill->rows) {
+  for (const machine::BillRow& row : bill->rows) {
     rows.push_back({{"element", row.element},
                     {"needed", row.needed},
                     {"at_least", row.at_least},
@@ -133,8 +133,9 @@ Json bill_json(const std::optional<Bill>& bill) {
                     {"available", row.available ? Json(*row.available) : Json()},
                     {"missing", row.missing()}});
   }
-  const Bill::Verdict verdict = bill->verdict();
-  const Json fits = verdict == Bill::Verdict::cannot_tell ? Json() : Json(verdict == Bill::Verdict::fits);
+  const machine::Bill::Verdict verdict = bill->verdict();
+  const Json fits =
+      verdict == machine::Bill::Verdict::cannot_tell ? Json() : Json(verdict == machine::Bill::Verdict::fits);
   return {{"machine", bill->machine}, {"rows", std::move(rows)}, {"fits", fits}};
 }
 
@@ -142,14 +143,14 @@ Json bill_json(const std::optional<Bill>& bill) {
 
 std::string to_json(const DiagramCheck& check) {
   Json loops = Json::array();
-  for (const LoopReport& loop : check.analysis.loops) loops.push_back(loop_json(loop));
+  for (const solve::LoopReport& loop : check.analysis.loops) loops.push_back(loop_json(loop));
   Json json{{"file", check.file},
             {"kind", "diagram"},
             {"title", check.diagram.title},
             {"blocks", check.diagram.blocks.size()},
             {"elements", check.flat.blocks.size()},
             {"states", check.program.n_states()},
-            {"servo_amplifiers", rest_states(check.program).size()},
+            {"servo_amplifiers", solve::rest_states(check.program).size()},
             {"outputs", check.flat.outputs.size()}};
   json["bill"] = bill_json(check.bill);
   json["run"] = run_json(check);

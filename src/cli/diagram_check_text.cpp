@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <oblique/solve/rest.h>
+#include <oblique/solve/operating_point/rest.h>
 
 #include "diagram_check.h"
 #include "machine_patch.h"
@@ -32,13 +32,13 @@ std::string names(std::vector<std::string> all) {
 }
 
 std::string contents(const DiagramCheck& check) {
-  const Program& program = check.program;
+  const network::Program& program = check.program;
   std::string text = fmt::format("{}: a diagram, \"{}\"\n", check.file, check.diagram.title);
   text += fmt::format("  {}; flattened: {}\n", count(check.diagram.blocks.size(), "block", "blocks"),
                       count(check.flat.blocks.size(), "element", "elements"));
   text += fmt::format("  {}, {} of them servo amplifiers brought to rest at the start\n",
-                      count(program.n_states(), "state", "states"), rest_states(program).size());
-  for (const Loop& loop : program.loops()) {
+                      count(program.n_states(), "state", "states"), solve::rest_states(program).size());
+  for (const network::Loop& loop : program.loops()) {
     text += fmt::format("  algebraic loop with {}: {}\n", count(loop.unknowns.size(), "unknown", "unknowns"),
                         fmt::join(loop.members, ", "));
   }
@@ -48,7 +48,7 @@ std::string contents(const DiagramCheck& check) {
 }
 
 std::string trial(const DiagramCheck& check) {
-  const Analysis& analysis = check.analysis;
+  const solve::Analysis& analysis = check.analysis;
   if (analysis.instants.empty())
     return "\ntrial run: it could not start, so nothing is known about its loops\n";
   if (analysis.failure) {
@@ -61,13 +61,13 @@ std::string trial(const DiagramCheck& check) {
       fmt::format("\ntrial run: {:.6g} s, {}", check.diagram.run.until,
                   count(static_cast<std::size_t>(analysis.run->statistics.steps), "step", "steps"));
   if (check.program.n_states() > 0) {
-    text +=
-        fmt::format(", method {}: {}", method_name(analysis.run->method.method), analysis.run->method.reason);
+    text += fmt::format(", method {}: {}", diagram::method_name(analysis.run->method.method),
+                        analysis.run->method.reason);
   }
   return text + "\n";
 }
 
-std::string sign_text(const LoopUnknown& unknown) {
+std::string sign_text(const solve::LoopUnknown& unknown) {
   if (unknown.sign_changes.empty()) return unknown.sign > 0 ? "keeps +" : unknown.sign < 0 ? "keeps −" : "0";
   std::string text = "changes at t =";
   for (std::size_t k = 0; k < std::min<std::size_t>(unknown.sign_changes.size(), 3); ++k) {
@@ -76,12 +76,12 @@ std::string sign_text(const LoopUnknown& unknown) {
   return text + (unknown.sign_changes.size() > 3 ? ", …" : "");
 }
 
-std::string loops(const std::vector<LoopReport>& loops) {
+std::string loops(const std::vector<solve::LoopReport>& loops) {
   if (loops.empty()) return "\nloops: no servo loops and no algebraic ones\n";
   Table table({"unknown", "loop", "kind", "least gain", "at t [s]", "static error", "time constant [s]",
                "sign of slope", "members"});
-  for (const LoopReport& loop : loops) {
-    for (const LoopUnknown& unknown : loop.unknowns) {
+  for (const solve::LoopReport& loop : loops) {
+    for (const solve::LoopUnknown& unknown : loop.unknowns) {
       const bool first = &unknown == &loop.unknowns.front();
       table.add({unknown.signal, loop.algebraic ? "algebraic" : "servo", std::string(kind_name(loop.kind)),
                  number(unknown.least_gain), number(unknown.least_time),
@@ -94,11 +94,12 @@ std::string loops(const std::vector<LoopReport>& loops) {
          table.text(3);
 }
 
-std::string mode_text(const char* whose, const std::optional<WorstMode>& worst, const Program& program) {
+std::string mode_text(const char* whose, const std::optional<solve::WorstMode>& worst,
+                      const network::Program& program) {
   if (!worst) return fmt::format("  no mode of {}\n", whose);
-  const Mode& mode = worst->mode;
+  const solve::Mode& mode = worst->mode;
   std::string text =
-      fmt::format("  {}: {}, ω₀ = {} rad/s, ζ = {}, pole {}", whose, verdict_name(verdict_on(*worst)),
+      fmt::format("  {}: {}, ω₀ = {} rad/s, ζ = {}, pole {}", whose, verdict_name(solve::verdict_on(*worst)),
                   number(mode.natural_frequency()), number(mode.damping_ratio()), number(mode.pole.real()));
   if (mode.pole.imag() != 0) text += fmt::format(" ± {}i", number(mode.pole.imag()));
   text += fmt::format(" 1/s at t = {} s\n    elements:", number(worst->time));
@@ -114,39 +115,39 @@ std::string mode_text(const char* whose, const std::optional<WorstMode>& worst, 
   return text + "\n";
 }
 
-std::string growth_text(const DisturbanceGrowth& growth) {
+std::string growth_text(const solve::DisturbanceGrowth& growth) {
   return fmt::format(
       "a small disturbance of the start is {:.3g} times as large at the end, {:+.3g} 1/s in the "
       "second half",
       growth.factor, growth.exponent);
 }
 
-std::string verdict_text(const StabilityReport& report) {
-  const auto pole = [](const WorstMode& worst) {
-    const Mode& mode = worst.mode;
+std::string verdict_text(const solve::StabilityReport& report) {
+  const auto pole = [](const solve::WorstMode& worst) {
+    const solve::Mode& mode = worst.mode;
     return mode.pole.imag() == 0
                ? fmt::format("{:+.3g} 1/s", mode.pole.real())
                : fmt::format("{:+.3g} ± {}i 1/s", mode.pole.real(), number(mode.pole.imag()));
   };
   switch (report.verdict) {
-    case StabilityVerdict::no_feedback:
+    case solve::StabilityVerdict::no_feedback:
       return report.switches ? "no state acts back on itself between events; what switches and stores bring "
                                "back is not told"
                              : "no state acts back on itself, so that nothing grows or decays by itself";
-    case StabilityVerdict::stable:
+    case solve::StabilityVerdict::stable:
       if (!report.proven) return "stable as far as was found: no mode that grows, which is no proof";
       return report.varies
                  ? "stable along this run: every frozen mode decays, and small disturbances do not grow"
                  : "stable: every mode of the closed system decays";
-    case StabilityVerdict::stable_when_frozen:
+    case solve::StabilityVerdict::stable_when_frozen:
       return "every frozen mode decays; the equations vary along the run, and whether small disturbances "
              "grow "
              "on it is not known";
-    case StabilityVerdict::undamped:
+    case solve::StabilityVerdict::undamped:
       if (!report.proven) return "undamped as far as was found: no mode that grows, which is no proof";
       return "undamped: a mode neither decays nor grows, and none grows";
-    case StabilityVerdict::grows:
-      if (report.rightmost && verdict_on(*report.rightmost) == ModeVerdict::grows) {
+    case solve::StabilityVerdict::grows:
+      if (report.rightmost && solve::verdict_on(*report.rightmost) == solve::ModeVerdict::grows) {
         const auto& ideal = report.rightmost->ideal_pole;
         const bool by_the_machine = ideal && ideal->real() < report.rightmost->mode.pole.real() / 2;
         return fmt::format("the problem itself grows{}: {}",
@@ -154,22 +155,23 @@ std::string verdict_text(const StabilityReport& report) {
                            pole(*report.rightmost));
       }
       return "the problem itself grows along the run, although no frozen mode does";
-    case StabilityVerdict::grows_at_times:
+    case solve::StabilityVerdict::grows_at_times:
       return fmt::format("a mode of the problem itself grows at times, {} at t = {} s, {}",
                          pole(*report.rightmost), number(report.rightmost->time),
                          !report.growth                   ? "and the growth along the run is not known"
                          : report.growth->does_not_grow() ? "and small disturbances do not grow along the run"
                                                           : "and along the run hardly or not for long");
-    case StabilityVerdict::servos_unstable:
+    case solve::StabilityVerdict::servos_unstable:
       return fmt::format("unstable by the servo loops, not by the problem: {} at t = {} s",
                          pole(*report.slowest_servo), number(report.slowest_servo->time));
-    case StabilityVerdict::not_told:
+    case solve::StabilityVerdict::not_told:
       break;
   }
   return "not told by what was looked at";
 }
 
-std::string stability(const StabilityReport& report, const Program& program, bool has_servo_loops) {
+std::string stability(const solve::StabilityReport& report, const network::Program& program,
+                      bool has_servo_loops) {
   std::string text = fmt::format("\nstability (worst modes of the frozen equations at {})\n",
                                  count(report.instants, "instant", "instants"));
   text += fmt::format("  verdict: {}\n", verdict_text(report));
@@ -190,7 +192,7 @@ std::string stability(const StabilityReport& report, const Program& program, boo
   text += mode_text("the problem itself", report.problem_mode, program);
   if (!report.margins.empty()) {
     Table table({"servo amplifier", "phase margin [°]", "crossover [rad/s]", "at t [s]"});
-    for (const ServoMargin& servo : report.margins) {
+    for (const solve::ServoMargin& servo : report.margins) {
       const std::string& name = program.states()[servo.state].name;
       if (servo.margin) {
         table.add({name, fmt::format("{:.1f}", servo.margin->degrees), number(servo.margin->frequency),
@@ -210,7 +212,7 @@ std::string overloads(const DiagramCheck& check) {
   if (found.empty()) return "\noverloads: none, every signal stays within ±1 machine unit\n";
   Table table({"signal", "first at t [s]", "peak", "at t [s]", "duration [s]", "cured by a scale of"});
   for (std::size_t k = 0; k < std::min(found.size(), kMostRows); ++k) {
-    const OverloadRecord& o = found[k];
+    const solve::OverloadRecord& o = found[k];
     table.add({check.program.signal_names()[o.signal], short_number(o.first), short_number(o.peak.value),
                short_number(o.peak.time), short_number(o.duration), short_number(o.cure)});
   }
@@ -229,7 +231,7 @@ std::string scaling(const DiagramCheck& check) {
   std::size_t scaled = 0;
   for (std::size_t s = 0; s < proposal.signals.size(); ++s) {
     if (proposal.signals[s] == 1 || ++scaled > kMostRows) continue;
-    const Peak& peak = check.in_full().run->peaks[s];
+    const solve::Peak& peak = check.in_full().run->peaks[s];
     table.add({check.program.signal_names()[s], short_number(peak.value), short_number(peak.time),
                short_number(proposal.signals[s]), short_number(proposal.signals[s] * peak.value)});
   }
@@ -244,49 +246,49 @@ std::string scaling(const DiagramCheck& check) {
 
 }  // namespace
 
-std::string_view verdict_name(ModeVerdict verdict) {
+std::string_view verdict_name(solve::ModeVerdict verdict) {
   switch (verdict) {
-    case ModeVerdict::grows:
+    case solve::ModeVerdict::grows:
       return "grows";
-    case ModeVerdict::undamped:
+    case solve::ModeVerdict::undamped:
       return "undamped";
-    case ModeVerdict::badly_damped:
+    case solve::ModeVerdict::badly_damped:
       return "badly damped";
-    case ModeVerdict::well_damped:
+    case solve::ModeVerdict::well_damped:
       break;
   }
   return "well damped";
 }
 
-std::string_view verdict_name(StabilityVerdict verdict) {
+std::string_view verdict_name(solve::StabilityVerdict verdict) {
   switch (verdict) {
-    case StabilityVerdict::no_feedback:
+    case solve::StabilityVerdict::no_feedback:
       return "no feedback";
-    case StabilityVerdict::stable:
+    case solve::StabilityVerdict::stable:
       return "stable";
-    case StabilityVerdict::stable_when_frozen:
+    case solve::StabilityVerdict::stable_when_frozen:
       return "stable when frozen";
-    case StabilityVerdict::undamped:
+    case solve::StabilityVerdict::undamped:
       return "undamped";
-    case StabilityVerdict::grows:
+    case solve::StabilityVerdict::grows:
       return "grows";
-    case StabilityVerdict::grows_at_times:
+    case solve::StabilityVerdict::grows_at_times:
       return "grows at times";
-    case StabilityVerdict::servos_unstable:
+    case solve::StabilityVerdict::servos_unstable:
       return "servo loops unstable";
-    case StabilityVerdict::not_told:
+    case solve::StabilityVerdict::not_told:
       break;
   }
   return "not told";
 }
 
-std::string_view kind_name(LoopKind kind) {
+std::string_view kind_name(solve::LoopKind kind) {
   switch (kind) {
-    case LoopKind::linear:
+    case solve::LoopKind::linear:
       return "linear";
-    case LoopKind::varying:
+    case solve::LoopKind::varying:
       return "varying";
-    case LoopKind::non_linear:
+    case solve::LoopKind::non_linear:
       break;
   }
   return "non-linear";
@@ -297,9 +299,9 @@ std::string to_text(const DiagramCheck& check) {
   if (check.bill) text += "\n" + to_text(*check.bill);
   text += trial(check);
   if (!check.analysis.instants.empty()) {
-    const std::vector<LoopReport>& found = check.analysis.loops;
-    const bool servos =
-        std::any_of(found.begin(), found.end(), [](const LoopReport& loop) { return !loop.algebraic; });
+    const std::vector<solve::LoopReport>& found = check.analysis.loops;
+    const bool servos = std::any_of(found.begin(), found.end(),
+                                    [](const solve::LoopReport& loop) { return !loop.algebraic; });
     text += loops(found) + stability(check.analysis.stability, check.program, servos);
   }
   if (check.analysis.run) text += overloads(check) + scaling(check);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
-#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/mechanism/model/read_mechanism.h>
 #include <oblique/text/document.h>
 
 #include "command.h"
@@ -15,10 +15,11 @@
 namespace oblique::cli {
 namespace {
 
-Picture mechanism_picture(const Session& session, const Mechanism& read, const DrawRequest& request) {
-  if (!request.plots.empty()) return draw_chart(point_plots(point_history(read, request.plots)));
+draw::Picture mechanism_picture(const Session& session, const mechanism::Mechanism& read,
+                                const DrawRequest& request) {
+  if (!request.plots.empty()) return draw::draw_chart(draw::point_plots(point_history(read, request.plots)));
   const std::optional<double> magnification = magnify_option(request.magnify);
-  const Mechanism mechanism = magnification ? within_range(read) : read;
+  const mechanism::Mechanism mechanism = magnification ? patch::within_range(read) : read;
   const std::vector<std::size_t> traces = trace_option(mechanism, request.trace);
   TimedScene timed = linkage_scene(mechanism, request.at, request.positions);
   if (!timed.scene.motion.empty()) timed.scene.traces = traces;
@@ -28,13 +29,13 @@ Picture mechanism_picture(const Session& session, const Mechanism& read, const D
     timed.scene.analog = analog.overlay(timed);
     note(analog.remark());
   }
-  return draw_linkage(mechanism, timed.scene);
+  return draw::draw_linkage(mechanism, timed.scene);
 }
 
 void refuse(bool given, const std::string& option, const std::string& file, const char* kind,
             const char* other) {
   if (!given) return;
-  throw ReadError(Diagnostic{
+  throw text::ReadError(text::Diagnostic{
       {file, {}}, fmt::format("{} is for {}s, and this is a {}", option, other, kind), {}, "leave it out"});
 }
 
@@ -60,20 +61,20 @@ void check_options_of_mechanism(const DrawRequest& request) {
 ExitStatus draw_file(const Session& session, const DrawRequest& request) {
   if (!request.layout) {
     if (request.output.empty())
-      throw ReadError(
-          Diagnostic{{}, "--output is required", "-o PICTURE.svg or PICTURE.png, or --layout", {}});
+      throw text::ReadError(
+          text::Diagnostic{{}, "--output is required", "-o PICTURE.svg or PICTURE.png, or --layout", {}});
     check_picture_output(request.output);
   }
-  const Theme theme = theme_option(request.theme);
-  const std::string text = read_file(request.file);  // once: it may be a pipe
+  const draw::Theme theme = theme_option(request.theme);
+  const std::string text = text::read_file(request.file);  // once: it may be a pipe
   const bool is_diagram = kind_of_file(text, request.file) == FileKind::diagram;
   if (is_diagram) {
     check_options_of_diagram(request);
     return draw_diagram_file(session, request, text);
   }
   check_options_of_mechanism(request);
-  save_picture(mechanism_picture(session, parse_mechanism(text, request.file), request), request.output,
-               theme);
+  save_picture(mechanism_picture(session, mechanism::parse_mechanism(text, request.file), request),
+               request.output, theme);
   return ExitStatus::done;
 }
 

@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include <oblique/mechanism/drive_law.h>
-#include <oblique/mechanism/motion.h>
+#include <oblique/mechanism/model/drive_law.h>
+#include <oblique/mechanism/motion/motion.h>
 
 #include "terminal.h"
 
@@ -22,27 +22,28 @@ std::string shown_number(double value) {
 
 }  // namespace
 
-double time_option_at(const Mechanism& mechanism, const std::string& at) {
+double time_option_at(const mechanism::Mechanism& mechanism, const std::string& at) {
   if (at.empty()) return 0;
   if (mechanism.drives.empty()) {
-    throw ReadError(
-        Diagnostic{{mechanism.file, {}}, "--at: the mechanism has no drive", "a file with [drives]", {}});
+    throw text::ReadError(text::Diagnostic{
+        {mechanism.file, {}}, "--at: the mechanism has no drive", "a file with [drives]", {}});
   }
-  const Drive& drive = mechanism.drives.front();
+  const mechanism::Drive& drive = mechanism.drives.front();
   const double value = quantity_option("--at", at, drive.slide ? mechanism.length_unit : "rad");
-  const auto there = time_at_value(mechanism, value);
+  const auto there = mechanism::time_at_value(mechanism, value);
   if (!there) {
-    throw ReadError(Diagnostic{{},
-                               fmt::format("--at {}: drive '{}' does not come there", at, drive.name),
-                               "a value that it reaches",
-                               {}});
+    throw text::ReadError(
+        text::Diagnostic{{},
+                         fmt::format("--at {}: drive '{}' does not come there", at, drive.name),
+                         "a value that it reaches",
+                         {}});
   }
   return *there;
 }
 
-std::string drive_caption(const Mechanism& mechanism, double time) {
-  const Drive& drive = mechanism.drives.front();
-  const double value = DriveClock(mechanism).at(0, time).value;
+std::string drive_caption(const mechanism::Mechanism& mechanism, double time) {
+  const mechanism::Drive& drive = mechanism.drives.front();
+  const double value = mechanism::DriveClock(mechanism).at(0, time).value;
   if (drive.slide) return fmt::format("{} = {} {}", drive.name, shown_number(value), mechanism.length_unit);
   const double degrees = std::round(value * 180 / std::numbers::pi * 1e4) / 1e4;
   return fmt::format("{} = {}°", drive.name, shown_number(degrees));

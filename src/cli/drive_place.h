@@ -3,15 +3,15 @@
 
 #include <string>
 
-#include <oblique/mechanism/mechanism.h>
+#include <oblique/mechanism/model/mechanism.h>
 
 namespace oblique::cli {
 
 /// The moment [s] at which the first drive stands where --at says ("80 deg"); 0 for an empty text. Throws
 /// ReadError for a mechanism without a drive and where the drive does not come there.
-double time_option_at(const Mechanism& mechanism, const std::string& at);
+double time_option_at(const mechanism::Mechanism& mechanism, const std::string& at);
 
 /// "crank = 80°", "lift = 12.5 mm": where the first drive stands at a moment [s].
-std::string drive_caption(const Mechanism& mechanism, double time);
+std::string drive_caption(const mechanism::Mechanism& mechanism, double time);
 
 }  // namespace oblique::cli

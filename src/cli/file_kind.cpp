@@ -6,16 +6,16 @@
 namespace oblique::cli {
 
 FileKind kind_of_file(const std::string& text, const std::string& file) {
-  const Document document = parse_document(text, file);
-  const Value* const format = document.root.find("format");
+  const text::Document document = text::parse_document(text, file);
+  const text::Value* const format = document.root.find("format");
   const std::string name = format != nullptr ? format->text : "";
   if (name == "oblique-diagram/1") return FileKind::diagram;
   if (name == "oblique-mechanism/1") return FileKind::mechanism;
-  throw ReadError(
-      Diagnostic{{file, {1, 1}},
-                 "this is neither a diagram nor a mechanism",
-                 R"(format = "oblique-diagram/1" or "oblique-mechanism/1" at the head of the file)",
-                 {}});
+  throw text::ReadError(
+      text::Diagnostic{{file, {1, 1}},
+                       "this is neither a diagram nor a mechanism",
+                       R"(format = "oblique-diagram/1" or "oblique-mechanism/1" at the head of the file)",
+                       {}});
 }
 
 }  // namespace oblique::cli

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/mechanism/model/read_mechanism.h>
 #include <oblique/text/document.h>
 
 #include "command.h"
@@ -13,16 +13,16 @@
 namespace oblique::cli {
 namespace {
 
-std::string table_of_errors(const Fit& fit, const std::string& unit) {
+std::string table_of_errors(const synthesis::Fit& fit, const std::string& unit) {
   Table table({fmt::format("distance [{}]", unit), "before", "after"});
   table.add({"root mean square", short_number(fit.before.rms), short_number(fit.after.rms)});
   table.add({"largest", short_number(fit.before.largest), short_number(fit.after.largest)});
   return table.text(1);
 }
 
-std::string table_of_dimensions(const Fit& fit, const std::string& unit) {
+std::string table_of_dimensions(const synthesis::Fit& fit, const std::string& unit) {
   Table table({fmt::format("dimension [{}]", unit), "old", "new", "lower bound", "upper bound", ""});
-  for (const FittedDimension& d : fit.dimensions) {
+  for (const synthesis::FittedDimension& d : fit.dimensions) {
     std::string remark = d.changed() ? "" : "unchanged";
     if (d.at_bound()) {
       remark += fmt::format("{}at its {} bound", remark.empty() ? "" : ", ",
@@ -34,7 +34,8 @@ std::string table_of_dimensions(const Fit& fit, const std::string& unit) {
   return table.text(1);
 }
 
-std::string report(const Fit& fit, const Mechanism& mechanism, const TargetPath& target) {
+std::string report(const synthesis::Fit& fit, const mechanism::Mechanism& mechanism,
+                   const synthesis::TargetPath& target) {
   const std::string& unit = mechanism.length_unit;
   std::string text = fmt::format("{}\npath of {}: {} points of {}, {}; {} tried\n\n", mechanism.title,
                                  mechanism.points[target.point].name, target.positions.size(), target.file,
@@ -60,16 +61,17 @@ ExitStatus fit_mechanism(const Session&, const FitRequest& request) {
   if (!request.output.empty()) {
     check_output(request.output, ".toml");
   }
-  const std::string text = read_file(request.mechanism);
-  const Mechanism mechanism = parse_mechanism(text, request.mechanism);
-  const TargetPath target = read_target_path(read_file(request.path), request.path, mechanism);
-  FitOptions options;
+  const std::string text = text::read_file(request.mechanism);
+  const mechanism::Mechanism mechanism = mechanism::parse_mechanism(text, request.mechanism);
+  const synthesis::TargetPath target =
+      synthesis::read_target_path(text::read_file(request.path), request.path, mechanism);
+  synthesis::FitOptions options;
   options.starts = request.starts;
-  Fit fit;
+  synthesis::Fit fit;
   {
     Progress progress("fitting");
     options.progress = [&](double fraction) { progress.show(fraction); };
-    fit = fit_path(text, request.mechanism, request.free, target, options);
+    fit = synthesis::fit_path(text, request.mechanism, request.free, target, options);
   }
   print(report(fit, mechanism, target));
   if (!fit.improved) {

@@ -6,8 +6,8 @@
 #include <thread>
 #include <vector>
 
-#include <oblique/draw/gif.h>
-#include <oblique/draw/svg.h>
+#include <oblique/draw/picture/gif.h>
+#include <oblique/draw/picture/svg.h>
 
 #include "picture_output.h"
 #include "png_reader.h"
@@ -15,9 +15,9 @@
 
 namespace oblique::cli {
 
-std::string gif_of(const Mechanism& mechanism, const LinkageAnimation& animation, Theme theme, int delay,
-                   const std::string& path) {
-  const AnimationFrames frames(mechanism, animation);
+std::string gif_of(const mechanism::Mechanism& mechanism, const draw::LinkageAnimation& animation,
+                   draw::Theme theme, int delay, const std::string& path) {
+  const draw::AnimationFrames frames(mechanism, animation);
   const std::size_t n = animation.frames.size() - 1;
   const std::size_t at_a_time = std::max(1U, std::thread::hardware_concurrency());
   std::vector<std::string> pngs;  // small beside their dots
@@ -27,15 +27,15 @@ std::string gif_of(const Mechanism& mechanism, const LinkageAnimation& animation
     for (std::size_t k = pngs.size(); k < std::min(n, pngs.size() + at_a_time); ++k) {
       // Deferred where no thread can be had.
       batch.push_back(std::async(std::launch::async | std::launch::deferred, [&, k] {
-        const Picture picture = frames.picture(k);
+        const draw::Picture picture = frames.picture(k);
         const double zoom = animation.width > 0 ? animation.width / picture.width : 1;
-        return png_of(to_svg(picture, theme, zoom), path);
+        return png_of(draw::to_svg(picture, theme, zoom), path);
       }));
     }
     for (std::future<std::string>& png : batch) pngs.push_back(png.get());
     progress.show(static_cast<double>(pngs.size()) / static_cast<double>(n));
   }
-  return encode_gif(
+  return draw::encode_gif(
       n, [&](std::size_t k) { return read_png(pngs[k], path); }, delay);
 }
 

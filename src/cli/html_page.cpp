@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include <oblique/draw/svg.h>
+#include <oblique/draw/picture/svg.h>
 
 namespace oblique::cli {
 namespace {
@@ -53,14 +53,14 @@ constexpr double kBroad = 900;
 constexpr std::size_t kShort = 32;
 
 std::string ground(bool dark) {
-  return fmt::format("body {{ background: {}; color: {} }}\n", colour_of(Ink::paper, dark),
-                     colour_of(Ink::line, dark));
+  return fmt::format("body {{ background: {}; color: {} }}\n", draw::colour_of(draw::Ink::paper, dark),
+                     draw::colour_of(draw::Ink::line, dark));
 }
 
 /// The colours of the page on the screen.
-std::string colours(Theme theme) {
-  if (theme != Theme::automatic) {
-    const bool dark = theme == Theme::dark;
+std::string colours(draw::Theme theme) {
+  if (theme != draw::Theme::automatic) {
+    const bool dark = theme == draw::Theme::dark;
     return fmt::format("  :root {{ color-scheme: {} }}\n  ", dark ? "dark" : "light") + ground(dark);
   }
   return "  :root { color-scheme: light dark }\n  " + ground(false) +
@@ -76,25 +76,25 @@ bool is_number(std::string_view cell) {
 }  // namespace
 
 void HtmlPage::heading(std::string_view text) {
-  sections_.push_back(escape_xml(text));
+  sections_.push_back(draw::escape_xml(text));
   body_ += fmt::format("<h2 id=\"section-{}\">{}</h2>\n", sections_.size(), sections_.back());
 }
 
 void HtmlPage::subheading(std::string_view text) {
-  body_ += fmt::format("<h3>{}</h3>\n", escape_xml(text));
+  body_ += fmt::format("<h3>{}</h3>\n", draw::escape_xml(text));
 }
 
 void HtmlPage::paragraph(std::string_view text) {
-  body_ += fmt::format("<p>{}</p>\n", escape_xml(text));
+  body_ += fmt::format("<p>{}</p>\n", draw::escape_xml(text));
 }
 
 void HtmlPage::introduction(std::string_view text) {
-  body_ += fmt::format("<p class=\"lead\">{}</p>\n", escape_xml(text));
+  body_ += fmt::format("<p class=\"lead\">{}</p>\n", draw::escape_xml(text));
 }
 
 void HtmlPage::list(const std::vector<std::string>& items) {
   body_ += "<ul>\n";
-  for (const std::string& item : items) body_ += fmt::format("  <li>{}</li>\n", escape_xml(item));
+  for (const std::string& item : items) body_ += fmt::format("  <li>{}</li>\n", draw::escape_xml(item));
   body_ += "</ul>\n";
 }
 
@@ -109,7 +109,7 @@ void HtmlPage::table(const std::vector<std::string>& header,
   const auto line = [&](const std::vector<std::string>& cells, const char* tag) {
     body_ += "<tr>";
     for (std::size_t c = 0; c < cells.size(); ++c)
-      body_ += fmt::format("<{0}{1}>{2}</{0}>", tag, marks[c], escape_xml(cells[c]));
+      body_ += fmt::format("<{0}{1}>{2}</{0}>", tag, marks[c], draw::escape_xml(cells[c]));
     body_ += "</tr>\n";
   };
   body_ += fmt::format("<div class=\"scroll{}\"><table>\n<thead>", rows.size() <= kShort ? " short" : "");
@@ -123,27 +123,28 @@ void HtmlPage::table(const std::vector<std::vector<std::string>>& rows) {
   table(rows.front(), {rows.begin() + 1, rows.end()});
 }
 
-void HtmlPage::picture(const Picture& picture) {
-  const std::string width = svg_number(picture.width), height = svg_number(picture.height);
+void HtmlPage::picture(const draw::Picture& picture) {
+  const std::string width = draw::svg_number(picture.width), height = draw::svg_number(picture.height);
   body_ += fmt::format(
       "<figure{}><svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{}\" viewBox=\"0 0 {} {}\" "
       "role=\"img\">\n<title>{}</title>\n",
       picture.width > kBroad ? " class=\"broad\"" : "", width, height, width, height,
-      escape_xml(picture.title));
-  for (Mark mark : picture.marks) {
+      draw::escape_xml(picture.title));
+  for (draw::Mark mark : picture.marks) {
     mark.id.clear();  // several pictures of a page would share them
-    body_ += svg_element(mark) + "\n";
+    body_ += draw::svg_element(mark) + "\n";
   }
   body_ += "</svg></figure>\n";
 }
 
-std::string HtmlPage::text(Theme theme) const {
-  const std::string title = escape_xml(title_);
+std::string HtmlPage::text(draw::Theme theme) const {
+  const std::string title = draw::escape_xml(title_);
   std::string contents;
   for (std::size_t k = 0; k < sections_.size(); ++k)
     contents += fmt::format("<li><a href=\"#section-{}\">{}</a></li>\n", k + 1, sections_[k]);
-  const std::string style = fmt::format("{}{}{}{}    {}{}  }}\n", kStyle, colours(theme), svg_style(theme),
-                                        kPrint, ground(false), svg_style(Theme::light));
+  const std::string style =
+      fmt::format("{}{}{}{}    {}{}  }}\n", kStyle, colours(theme), draw::svg_style(theme), kPrint,
+                  ground(false), draw::svg_style(draw::Theme::light));
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{}</title>\n"

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include <oblique/draw/picture.h>
-#include <oblique/draw/svg.h>
+#include <oblique/draw/picture/picture.h>
+#include <oblique/draw/picture/svg.h>
 
 namespace oblique::cli {
 
@@ -28,9 +28,9 @@ class HtmlPage {
   void table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows);
   /// The same, with the header as the first of `rows`.
   void table(const std::vector<std::vector<std::string>>& rows);
-  void picture(const Picture& picture);
+  void picture(const draw::Picture& picture);
 
-  std::string text(Theme theme) const;
+  std::string text(draw::Theme theme) const;
 
  private:
   std::string title_;

@@ -6,9 +6,9 @@
 
 #include <fmt/format.h>
 
-#include <oblique/mechanism/follower.h>
-#include <oblique/mechanism/motion.h>
-#include <oblique/mechanism/tour.h>
+#include <oblique/mechanism/motion/follower.h>
+#include <oblique/mechanism/motion/motion.h>
+#include <oblique/mechanism/motion/tour.h>
 
 #include "drive_place.h"
 
@@ -17,16 +17,17 @@ namespace {
 
 constexpr int kRows = 721;  // of a path: a moment in every half degree of the crank
 
-std::size_t point_named(const Mechanism& mechanism, const std::string& option, const std::string& name) {
+std::size_t point_named(const mechanism::Mechanism& mechanism, const std::string& option,
+                        const std::string& name) {
   if (const auto point = mechanism.find_point(name)) return *point;
-  throw ReadError(Diagnostic{{mechanism.file, {}},
-                             fmt::format("{}: there is no point '{}'", option, name),
-                             {},
-                             suggest(name, names_of(mechanism.points))});
+  throw text::ReadError(text::Diagnostic{{mechanism.file, {}},
+                                         fmt::format("{}: there is no point '{}'", option, name),
+                                         {},
+                                         text::suggest(name, mechanism::names_of(mechanism.points))});
 }
 
 /// Whether all points lie where they lay, to what can be seen.
-bool same_place(const Configuration& one, const Configuration& other, double size) {
+bool same_place(const mechanism::Configuration& one, const mechanism::Configuration& other, double size) {
   constexpr double kSeen = 1e-6;
   for (std::size_t p = 0; p < one.points.size(); ++p) {
     if (!((one.points[p].position - other.points[p].position).norm() <= kSeen * size)) return false;
@@ -35,40 +36,44 @@ bool same_place(const Configuration& one, const Configuration& other, double siz
 }
 
 /// Whether a motion meets a limit at which its drives do not turn back, be it between two of its rows.
-bool ends_at_limit(const Mechanism& mechanism, const Motion& motion) {
-  const AtLimit way_on =
-      mechanism.motion.at_limit.value_or(mechanism.drives.front().slide ? AtLimit::reverse : AtLimit::open);
-  return way_on == AtLimit::open && std::any_of(motion.events.begin(), motion.events.end(),
-                                                [](const MotionEvent& event) { return event.ends(); });
+bool ends_at_limit(const mechanism::Mechanism& mechanism, const mechanism::Motion& motion) {
+  const mechanism::AtLimit way_on = mechanism.motion.at_limit.value_or(
+      mechanism.drives.front().slide ? mechanism::AtLimit::reverse : mechanism::AtLimit::open);
+  return way_on == mechanism::AtLimit::open &&
+         std::any_of(motion.events.begin(), motion.events.end(),
+                     [](const mechanism::MotionEvent& event) { return event.ends(); });
 }
 
 /// The positions beside the one that is shown, the last one just before it.
-std::vector<Configuration> other_positions(const Mechanism& mechanism, const Structure& structure,
-                                           const DrawnMotion& motion, double shown, int positions) {
+std::vector<mechanism::Configuration> other_positions(const mechanism::Mechanism& mechanism,
+                                                      const mechanism::Structure& structure,
+                                                      const DrawnMotion& motion, double shown,
+                                                      int positions) {
   if (positions < 2) return {};
   if (!motion.closed) {
-    std::vector<Configuration> rows = drawn_motion(mechanism, structure, positions - 1).rows;
+    std::vector<mechanism::Configuration> rows = drawn_motion(mechanism, structure, positions - 1).rows;
     rows.resize(static_cast<std::size_t>(positions - 1));
     return rows;
   }
   const double turn = motion.times.back() - motion.times.front();
   std::vector<double> times;
   for (int k = 1; k < positions; ++k) times.push_back(shown + turn * k / positions);
-  return solve_motion(mechanism, structure, times).configurations;
+  return mechanism::solve_motion(mechanism, structure, times).configurations;
 }
 
 }  // namespace
 
-DrawnMotion drawn_motion(const Mechanism& mechanism, const Structure& structure, int rows) {
-  MotionOptions options;
+DrawnMotion drawn_motion(const mechanism::Mechanism& mechanism, const mechanism::Structure& structure,
+                         int rows) {
+  mechanism::MotionOptions options;
   options.positions = std::max(2, rows);
-  Motion whole = solve_motion(mechanism, options);
+  mechanism::Motion whole = mechanism::solve_motion(mechanism, options);
   if (!ends_at_limit(mechanism, whole)) {
     const bool closed =
         same_place(whole.configurations.front(), whole.configurations.back(), mechanism.largest_length());
     return {std::move(whole.configurations), std::move(whole.times), closed, false};
   }
-  const Tour tour = plan_tour(mechanism, structure);
+  const mechanism::Tour tour = mechanism::plan_tour(mechanism, structure);
   constexpr double kBesideLimit = 1e-5;  // where the mechanism can surely be assembled
   const double first = tour.from_limit ? kBesideLimit : 0, last = 1 - kBesideLimit;
   DrawnMotion motion;
@@ -76,12 +81,13 @@ DrawnMotion drawn_motion(const Mechanism& mechanism, const Structure& structure,
   motion.times.reserve(static_cast<std::size_t>(options.positions));
   for (int k = 0; k < options.positions; ++k)
     motion.times.push_back(tour.time(first + (last - first) * k / (options.positions - 1)));
-  motion.rows = solve_motion(mechanism, structure, motion.times).configurations;
+  motion.rows = mechanism::solve_motion(mechanism, structure, motion.times).configurations;
   return motion;
 }
 
-std::vector<std::size_t> trace_option(const Mechanism& mechanism, const std::vector<std::string>& names) {
-  if (names.empty()) return points_to_trace(mechanism);
+std::vector<std::size_t> trace_option(const mechanism::Mechanism& mechanism,
+                                      const std::vector<std::string>& names) {
+  if (names.empty()) return draw::points_to_trace(mechanism);
   if (names.size() == 1 && names.front() == "none" && !mechanism.find_point("none")) return {};
   std::vector<std::size_t> points;
   points.reserve(names.size());
@@ -89,21 +95,21 @@ std::vector<std::size_t> trace_option(const Mechanism& mechanism, const std::vec
   return points;
 }
 
-TimedScene linkage_scene(const Mechanism& mechanism, const std::string& at, int positions) {
+TimedScene linkage_scene(const mechanism::Mechanism& mechanism, const std::string& at, int positions) {
   TimedScene timed;
-  LinkageScene& scene = timed.scene;
+  draw::LinkageScene& scene = timed.scene;
   const double time = timed.time = time_option_at(mechanism, at);
-  const Structure structure = decompose(mechanism);
-  Follower follower(mechanism, structure);
+  const mechanism::Structure structure = mechanism::decompose(mechanism);
+  mechanism::Follower follower(mechanism, structure);
   scene.shown = follower.advance(time);
   if (!mechanism.drives.empty()) scene.caption = drive_caption(mechanism, time);
-  if (scene.shown.status == oblique::Status::open) {
-    throw MechanismError(
-        MechanismError::Kind::assembly,
-        Diagnostic{{mechanism.file, {}},
-                   fmt::format("the mechanism cannot be assembled at {}", scene.caption),
-                   {},
-                   fmt::format("'oblique check {}' says how far it can go", mechanism.file)});
+  if (scene.shown.status == oblique::mechanism::Status::open) {
+    throw mechanism::MechanismError(
+        mechanism::MechanismError::Kind::assembly,
+        text::Diagnostic{{mechanism.file, {}},
+                         fmt::format("the mechanism cannot be assembled at {}", scene.caption),
+                         {},
+                         fmt::format("'oblique check {}' says how far it can go", mechanism.file)});
   }
   if (mechanism.drives.empty()) return timed;
   DrawnMotion motion = drawn_motion(mechanism, structure, kRows);
@@ -113,13 +119,13 @@ TimedScene linkage_scene(const Mechanism& mechanism, const std::string& at, int 
   return timed;
 }
 
-PointHistory point_history(const Mechanism& mechanism, const std::string& point) {
+draw::PointHistory point_history(const mechanism::Mechanism& mechanism, const std::string& point) {
   const std::size_t index = point_named(mechanism, "--plots", point);
-  if (mechanism.drives.empty()) period(mechanism);  // says that there is no drive
-  const Structure structure = decompose(mechanism);
+  if (mechanism.drives.empty()) mechanism::period(mechanism);  // says that there is no drive
+  const mechanism::Structure structure = mechanism::decompose(mechanism);
   const DrawnMotion motion = drawn_motion(mechanism, structure, kRows);
-  const Drive& drive = mechanism.drives.front();
-  PointHistory history;
+  const mechanism::Drive& drive = mechanism.drives.front();
+  draw::PointHistory history;
   history.title = mechanism.title;
   history.point = point;
   history.length_unit = mechanism.length_unit;
@@ -128,7 +134,7 @@ PointHistory point_history(const Mechanism& mechanism, const std::string& point)
   history.drive_unit = drive.slide ? mechanism.length_unit : "°";
   history.size = mechanism.largest_length();
   history.rate = 2 * std::numbers::pi / (motion.times.back() - motion.times.front());
-  DriveClock clock(mechanism);
+  mechanism::DriveClock clock(mechanism);
   for (std::size_t k = 0; k < motion.rows.size(); ++k) {
     const double value = clock.at(0, motion.times[k]).value;
     history.drives.push_back(drive.slide ? value : value * 180 / std::numbers::pi);

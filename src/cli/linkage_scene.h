@@ -4,37 +4,39 @@
 #include <string>
 #include <vector>
 
-#include <oblique/draw/linkage.h>
-#include <oblique/draw/point_plots.h>
-#include <oblique/mechanism/structure.h>
+#include <oblique/draw/chart/point_plots.h>
+#include <oblique/draw/linkage/linkage.h>
+#include <oblique/mechanism/structure/structure.h>
 
 namespace oblique::cli {
 
 /// A mechanism's motion as pictures need it: at least two moments, both ends included. Where limits forbid
 /// the whole motion, it is the way between them.
 struct DrawnMotion {
-  std::vector<Configuration> rows;
+  std::vector<mechanism::Configuration> rows;
   std::vector<double> times;  ///< [s]
   bool closed = false;        ///< it ends as it begins
   bool ends_at_limit = false;
 };
-DrawnMotion drawn_motion(const Mechanism& mechanism, const Structure& structure, int rows);
+DrawnMotion drawn_motion(const mechanism::Mechanism& mechanism, const mechanism::Structure& structure,
+                         int rows);
 
 /// The points that --trace names; "none" for none, nothing for those worth it. Throws ReadError.
-std::vector<std::size_t> trace_option(const Mechanism& mechanism, const std::vector<std::string>& names);
+std::vector<std::size_t> trace_option(const mechanism::Mechanism& mechanism,
+                                      const std::vector<std::string>& names);
 
 /// A scene and when it happens.
 struct TimedScene {
-  LinkageScene scene;
+  draw::LinkageScene scene;
   double time = 0;            ///< of the position shown [s]
   std::vector<double> times;  ///< of `scene.motion` [s]
 };
 
 /// The mechanism where the first drive stands at `at`, with `positions` − 1 further positions of its motion.
 /// Throws ReadError, and MechanismError (kind `assembly`) where it cannot be assembled there.
-TimedScene linkage_scene(const Mechanism& mechanism, const std::string& at, int positions);
+TimedScene linkage_scene(const mechanism::Mechanism& mechanism, const std::string& at, int positions);
 
 /// A point along the motion for its six plots. Throws ReadError where there is no such point or no drive.
-PointHistory point_history(const Mechanism& mechanism, const std::string& point);
+draw::PointHistory point_history(const mechanism::Mechanism& mechanism, const std::string& point);
 
 }  // namespace oblique::cli

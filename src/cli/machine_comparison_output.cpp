@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string budget(const MachineComparison& machine, const Comparison& comparison) {
+std::string budget(const compare::MachineComparison& machine, const compare::Comparison& comparison) {
   const std::string& unit = comparison.unit;
   Table table({"figure", "of each", fmt::format("error it makes alone [{}]", unit),
                fmt::format("part of the largest [{}]", unit)});
@@ -20,14 +20,14 @@ std::string budget(const MachineComparison& machine, const Comparison& compariso
     table.add({figure, block, fmt::format("{:.3e}", alone), fmt::format("{:.3e}", share)});
   };
   add("the method, on ideal elements", "", machine.ideal_error, machine.ideal_share);
-  for (const FigureError& figure : machine.figures)
+  for (const compare::FigureError& figure : machine.figures)
     add(figure.figure, figure.block, figure.alone, figure.share);
   return table.text(2);
 }
 
 }  // namespace
 
-std::string to_text(const MachineComparison& machine, const Comparison& comparison) {
+std::string to_text(const compare::MachineComparison& machine, const compare::Comparison& comparison) {
   const std::string& unit = comparison.unit;
   std::string text = fmt::format("\non {}, of as many elements as it takes\n\n", machine.machine);
   Table table(
@@ -47,13 +47,13 @@ std::string to_text(const MachineComparison& machine, const Comparison& comparis
     text += fmt::format("not in this, since elements differ in it: {} (--monte-carlo draws it)\n",
                         fmt::join(machine.scatter, "; "));
   if (!machine.stable) text += "its servo loops are NOT stable everywhere\n";
-  for (const Overload& overload : machine.overloads)
+  for (const compare::Overload& overload : machine.overloads)
     text += fmt::format("overload: {} reaches {:.6g} at t = {:.6g} s\n", overload.signal, overload.peak.value,
                         overload.peak.time);
   return text;
 }
 
-Json to_json(const MachineComparison& machine) {
+Json to_json(const compare::MachineComparison& machine) {
   Json json{{"title", machine.machine},
             {"max_error", machine.max_error},
             {"rms_error", machine.rms_error},
@@ -68,7 +68,7 @@ Json to_json(const MachineComparison& machine) {
             {"absent", machine.absent},
             {"scatter", machine.scatter}};
   json["figures"] = Json::array();
-  for (const FigureError& figure : machine.figures) {
+  for (const compare::FigureError& figure : machine.figures) {
     json["figures"].push_back({{"figure", figure.figure},
                                {"block", figure.block},
                                {"alone", figure.alone},

@@ -10,9 +10,9 @@
 namespace oblique::cli {
 
 /// What `compare --machine` prints below the comparison; lengths are in the comparison's unit.
-std::string to_text(const MachineComparison& machine, const Comparison& comparison);
+std::string to_text(const compare::MachineComparison& machine, const compare::Comparison& comparison);
 
 /// The same for `--json` (docs/trust.md).
-nlohmann::ordered_json to_json(const MachineComparison& machine);
+nlohmann::ordered_json to_json(const compare::MachineComparison& machine);
 
 }  // namespace oblique::cli

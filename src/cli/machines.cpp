@@ -18,7 +18,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// "20", "any" for as many as it takes, "?" where that is unknown, "–" for none.
-std::string cell_of(const ElementCount* element) {
+std::string cell_of(const diagram::ElementCount* element) {
   if (element == nullptr) return "–";
   if (!element->count) return "?";
   return std::isinf(*element->count) ? "any" : short_number(*element->count);
@@ -26,12 +26,13 @@ std::string cell_of(const ElementCount* element) {
 
 std::string list_of_machines() {
   Table table({"name", "machine", "unit", "amplifiers", "integrators", "summers", "multipliers", "pots"});
-  for (const std::string& name : machine_names()) {
-    const MachineProfile& machine = *find_machine(name);
-    const auto cell = [&](ElementKind kind) { return cell_of(machine.find(kind)); };
+  for (const std::string& name : diagram::machine_names()) {
+    const diagram::MachineProfile& machine = *diagram::find_machine(name);
+    const auto cell = [&](diagram::ElementKind kind) { return cell_of(machine.find(kind)); };
     table.add({name, machine.title, machine.unit ? short_number(*machine.unit) + " V" : "?",
-               cell(ElementKind::amplifier), cell(ElementKind::integrator), cell(ElementKind::summer),
-               cell(ElementKind::multiplier), cell(ElementKind::potentiometer)});
+               cell(diagram::ElementKind::amplifier), cell(diagram::ElementKind::integrator),
+               cell(diagram::ElementKind::summer), cell(diagram::ElementKind::multiplier),
+               cell(diagram::ElementKind::potentiometer)});
   }
   return table.text(2) +
          "\nany: as many as it takes; ?: unknown; –: none. Amplifiers are uncommitted: they become summers,\n"
@@ -46,22 +47,22 @@ std::string text_of(const std::vector<double>& steps, bool known) {
 }
 
 /// A figure's value with the unit of its parameter.
-std::string value_of(const BlockFigure& figure, const BlockLibrary& library) {
-  const BlockDefinition& block = *library.find(figure.block);
+std::string value_of(const diagram::BlockFigure& figure, const diagram::BlockLibrary& library) {
+  const diagram::BlockDefinition& block = *library.find(figure.block);
   const std::string& unit = block.parameters[*block.find_parameter(figure.parameter)].unit;
   return unit == "1" ? short_number(figure.value) : short_number(figure.value) + " " + unit;
 }
 
-std::string actions_of(const MachineProfile& machine, const BlockLibrary& library) {
+std::string actions_of(const diagram::MachineProfile& machine, const diagram::BlockLibrary& library) {
   Table table({"acts on", "parameter", "value", "from the figure"});
-  for (const BlockFigure& f : machine.errors)
+  for (const diagram::BlockFigure& f : machine.errors)
     table.add({f.block, f.parameter, value_of(f, library), f.figure});
-  for (const BlockFigure& f : machine.scatters)
+  for (const diagram::BlockFigure& f : machine.scatters)
     table.add({f.block, f.parameter, "each its own within ± " + value_of(f, library), f.figure});
   return table.text(4);
 }
 
-std::string page_of(const MachineProfile& machine, const BlockLibrary& library) {
+std::string page_of(const diagram::MachineProfile& machine, const diagram::BlockLibrary& library) {
   std::string text = fmt::format("{} ({})\n", machine.title, machine.name);
   if (!machine.comment.empty()) text += machine.comment + (machine.comment.ends_with('\n') ? "" : "\n");
   Table facts({"machine unit", machine.unit ? short_number(*machine.unit) + " V" : "unknown"});
@@ -73,14 +74,14 @@ std::string page_of(const MachineProfile& machine, const BlockLibrary& library) 
   facts.add({"coefficients", machine.signed_coefficients ? "−1 … 1" : "0 … 1"});
   text += "\n" + facts.text(2) + "\n";
   Table elements({"element", "count", ""});
-  for (const ElementCount& element : machine.elements) {
-    elements.add({std::string(element_name(element.kind)), element.count ? cell_of(&element) : "unknown",
-                  element.note});
+  for (const diagram::ElementCount& element : machine.elements) {
+    elements.add({std::string(diagram::element_name(element.kind)),
+                  element.count ? cell_of(&element) : "unknown", element.note});
   }
   text += elements.text(3);
   if (!machine.figures.empty()) {
     Table figures({"figure", "published", ""});
-    for (const MachineFigure& f : machine.figures) {
+    for (const diagram::MachineFigure& f : machine.figures) {
       const bool elsewhere = !f.source.empty() && f.source != machine.source;
       figures.add({f.name, f.value, elsewhere ? "[" + f.source + "]" : ""});
     }
@@ -94,22 +95,22 @@ Json steps_json(const std::vector<double>& steps, bool known) {
   return known && !steps.empty() ? Json(steps) : Json(known ? "any" : "unknown");
 }
 
-Json json_of(const std::vector<BlockFigure>& figures) {
+Json json_of(const std::vector<diagram::BlockFigure>& figures) {
   Json list = Json::array();
-  for (const BlockFigure& f : figures)
+  for (const diagram::BlockFigure& f : figures)
     list.push_back(
         {{"block", f.block}, {"parameter", f.parameter}, {"value", f.value}, {"figure", f.figure}});
   return list;
 }
 
-Json json_of(const MachineProfile& machine) {
+Json json_of(const diagram::MachineProfile& machine) {
   Json elements = Json::array();
-  for (const ElementCount& e : machine.elements) {
+  for (const diagram::ElementCount& e : machine.elements) {
     const Json count = !e.count ? Json("unknown") : std::isinf(*e.count) ? Json("any") : Json(*e.count);
-    elements.push_back({{"element", element_name(e.kind)}, {"count", count}, {"note", e.note}});
+    elements.push_back({{"element", diagram::element_name(e.kind)}, {"count", count}, {"note", e.note}});
   }
   Json figures = Json::array();
-  for (const MachineFigure& f : machine.figures)
+  for (const diagram::MachineFigure& f : machine.figures)
     figures.push_back({{"name", f.name}, {"value", f.value}, {"source", f.source}});
   return {{"name", machine.name},
           {"title", machine.title},
@@ -133,16 +134,17 @@ ExitStatus show_machines(const Session&, const MachinesRequest& request) {
   if (request.name.empty()) {
     if (request.json) {
       Json all = Json::array();
-      for (const std::string& name : machine_names()) all.push_back(json_of(*find_machine(name)));
+      for (const std::string& name : diagram::machine_names())
+        all.push_back(json_of(*diagram::find_machine(name)));
       print(json_text(all));
     } else {
       print(list_of_machines());
     }
     return ExitStatus::done;
   }
-  const MachineProfile* const machine = find_machine(request.name);
-  if (machine == nullptr) throw DiagramError(unknown_machine(request.name));
-  print(request.json ? json_text(json_of(*machine)) : page_of(*machine, BlockLibrary::shipped()));
+  const diagram::MachineProfile* const machine = diagram::find_machine(request.name);
+  if (machine == nullptr) throw diagram::DiagramError(diagram::unknown_machine(request.name));
+  print(request.json ? json_text(json_of(*machine)) : page_of(*machine, diagram::BlockLibrary::shipped()));
   return ExitStatus::done;
 }
 

@@ -24,11 +24,11 @@ std::vector<double> moments_of(const TimedScene& timed, std::vector<double> mome
   return moments;
 }
 
-AnalogPlaces run_patch(const Mechanism& mechanism, const BlockLibrary& library, const PatchOptions& options,
-                       const std::vector<double>& moments) {
+compare::AnalogPlaces run_patch(const mechanism::Mechanism& mechanism, const diagram::BlockLibrary& library,
+                                const patch::PatchOptions& options, const std::vector<double>& moments) {
   Progress progress("running the patch");
-  return analog_places(mechanism, library, options, moments,
-                       [&](double fraction) { progress.show(fraction); });
+  return compare::analog_places(mechanism, library, options, moments,
+                                [&](double fraction) { progress.show(fraction); });
 }
 
 /// "1000", "1e+12".
@@ -51,9 +51,9 @@ std::optional<double> magnify_option(const std::string& text) {
   return positive_option("--magnify", text, "1");
 }
 
-MagnifiedAnalog::MagnifiedAnalog(const Mechanism& mechanism, const BlockLibrary& library,
-                                 const PatchOptions& options, double magnification, const TimedScene& timed,
-                                 const std::vector<double>& moments)
+MagnifiedAnalog::MagnifiedAnalog(const mechanism::Mechanism& mechanism, const diagram::BlockLibrary& library,
+                                 const patch::PatchOptions& options, double magnification,
+                                 const TimedScene& timed, const std::vector<double>& moments)
     : mechanism_(mechanism),
       magnification_(magnification),
       moments_(moments_of(timed, moments)),
@@ -62,7 +62,7 @@ MagnifiedAnalog::MagnifiedAnalog(const Mechanism& mechanism, const BlockLibrary&
   for (std::size_t k = 0; k < timed.times.size(); ++k) measure(timed.times[k], timed.scene.motion[k]);
 }
 
-std::vector<Vector2d> MagnifiedAnalog::points(double time, const Configuration& exact) const {
+std::vector<Vector2d> MagnifiedAnalog::points(double time, const mechanism::Configuration& exact) const {
   const auto row = std::lower_bound(moments_.begin(), moments_.end(), time) - moments_.begin();
   std::vector<Vector2d> points = places_[static_cast<std::size_t>(row)];
   for (std::size_t p = 0; p < points.size(); ++p) {
@@ -72,7 +72,7 @@ std::vector<Vector2d> MagnifiedAnalog::points(double time, const Configuration& 
   return points;
 }
 
-void MagnifiedAnalog::measure(double time, const Configuration& exact) {
+void MagnifiedAnalog::measure(double time, const mechanism::Configuration& exact) {
   const std::vector<Vector2d> here = points(time, exact);
   for (std::size_t p = 0; p < here.size(); ++p) {
     const double error = (here[p] - exact.points[p].position).norm() / magnification_;
@@ -83,8 +83,8 @@ void MagnifiedAnalog::measure(double time, const Configuration& exact) {
   }
 }
 
-AnalogOverlay MagnifiedAnalog::overlay(const TimedScene& timed) const {
-  AnalogOverlay overlay;
+draw::AnalogOverlay MagnifiedAnalog::overlay(const TimedScene& timed) const {
+  draw::AnalogOverlay overlay;
   for (std::size_t k = 0; k < timed.times.size(); ++k)
     overlay.motion.push_back(points(timed.times[k], timed.scene.motion[k]));
   overlay.shown = points(timed.time, timed.scene.shown);

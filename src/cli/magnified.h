@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <oblique/compare/analog_motion.h>
-#include <oblique/draw/linkage.h>
+#include <oblique/draw/linkage/linkage.h>
 
 #include "command.h"
 #include "linkage_scene.h"
@@ -21,25 +21,26 @@ class MagnifiedAnalog {
  public:
   /// Patches and runs it for a scene; `moments` [s], in any order, are further ones for which it will be
   /// asked. Throws as `analog_places`.
-  MagnifiedAnalog(const Mechanism& mechanism, const BlockLibrary& library, const PatchOptions& options,
-                  double magnification, const TimedScene& timed, const std::vector<double>& moments = {});
+  MagnifiedAnalog(const mechanism::Mechanism& mechanism, const diagram::BlockLibrary& library,
+                  const patch::PatchOptions& options, double magnification, const TimedScene& timed,
+                  const std::vector<double>& moments = {});
 
   /// exact + magnification · (analog − exact) of all points at a moment [length unit].
-  std::vector<Eigen::Vector2d> points(double time, const Configuration& exact) const;
+  std::vector<Eigen::Vector2d> points(double time, const mechanism::Configuration& exact) const;
 
   /// What is drawn over the scene, with the largest error of its motion in the caption.
-  AnalogOverlay overlay(const TimedScene& timed) const;
+  draw::AnalogOverlay overlay(const TimedScene& timed) const;
 
   /// A remark where the magnified errors are too small to be seen, or larger than the mechanism; or nothing.
   std::string remark() const;
 
  private:
-  void measure(double time, const Configuration& exact);
+  void measure(double time, const mechanism::Configuration& exact);
 
-  const Mechanism& mechanism_;
+  const mechanism::Mechanism& mechanism_;
   double magnification_;
   std::vector<double> moments_;
-  AnalogPlaces places_;
+  compare::AnalogPlaces places_;
   double largest_ = 0;  ///< error [length unit]
   double worst_time_ = 0;
   std::size_t worst_point_ = 0;

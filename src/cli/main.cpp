@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include <oblique/mechanism/mechanism.h>
+#include <oblique/mechanism/model/mechanism.h>
 #include <oblique/patch/patch.h>
 #include <oblique/solve/solve_error.h>
 #include <oblique/synthesis/synthesis_error.h>
@@ -21,11 +21,11 @@ namespace oblique::cli {
 namespace {
 
 /// The first findings, in the order of the file: who has more mends these first.
-ExitStatus report(const Error& error, ExitStatus status) {
+ExitStatus report(const text::Error& error, ExitStatus status) {
   constexpr std::size_t kMostFindings = 20;
-  const std::vector<Diagnostic>& all = error.diagnostics();
+  const std::vector<text::Diagnostic>& all = error.diagnostics();
   const std::size_t shown = std::min(all.size(), kMostFindings);
-  for (std::size_t i = 0; i < shown; ++i) print_error(to_string(all[i]));
+  for (std::size_t i = 0; i < shown; ++i) print_error(text::to_string(all[i]));
   if (shown < all.size()) print_error(fmt::format("… and {} more", all.size() - shown));
   return status;
 }
@@ -35,18 +35,18 @@ ExitStatus run_program(int argc, char** argv) {
   if (const auto status = parse_arguments(argc, argv, chosen)) return *status;
   try {
     return chosen.work();
-  } catch (const SolveError& error) {
+  } catch (const solve::SolveError& error) {
     return report(error, ExitStatus::solver_failed);
-  } catch (const MechanismError& error) {
-    return report(error,
-                  error.kind() == MechanismError::Kind::assembly ? ExitStatus::no : ExitStatus::bad_request);
-  } catch (const SynthesisError& error) {
-    return report(error,
-                  error.kind() == SynthesisError::Kind::nowhere ? ExitStatus::no : ExitStatus::bad_request);
-  } catch (const PatchError& error) {
-    return report(error,
-                  error.kind() == PatchError::Kind::obstacle ? ExitStatus::no : ExitStatus::bad_request);
-  } catch (const Error& error) {
+  } catch (const mechanism::MechanismError& error) {
+    return report(error, error.kind() == mechanism::MechanismError::Kind::assembly ? ExitStatus::no
+                                                                                   : ExitStatus::bad_request);
+  } catch (const synthesis::SynthesisError& error) {
+    return report(error, error.kind() == synthesis::SynthesisError::Kind::nowhere ? ExitStatus::no
+                                                                                  : ExitStatus::bad_request);
+  } catch (const patch::PatchError& error) {
+    return report(
+        error, error.kind() == patch::PatchError::Kind::obstacle ? ExitStatus::no : ExitStatus::bad_request);
+  } catch (const text::Error& error) {
     return report(error, ExitStatus::bad_request);
   }
 }
@@ -76,8 +76,8 @@ ExitStatus run_and_report(int argc, char** argv) {
 
 }  // namespace
 
-BlockLibrary Session::blocks() const {
-  BlockLibrary library = BlockLibrary::shipped();
+diagram::BlockLibrary Session::blocks() const {
+  diagram::BlockLibrary library = diagram::BlockLibrary::shipped();
   for (const auto& directory : block_directories) library.add_directory(directory);
   return library;
 }

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <oblique/mechanism/analysis.h>
+#include <oblique/mechanism/analysis/analysis.h>
 
 #include "terminal.h"
 
@@ -14,17 +14,17 @@ namespace oblique::cli {
 /// What `check` finds out about a mechanism.
 struct MechanismCheck {
   std::string file;
-  Mechanism mechanism;
-  Structure structure;
-  MechanismAnalysis analysis;
+  mechanism::Mechanism mechanism;
+  mechanism::Structure structure;
+  mechanism::MechanismAnalysis analysis;
   std::optional<std::string> finding;  ///< what keeps it from moving
 };
 
 /// Looks at a mechanism from the file `file`. Throws as `decompose` and `analyse`.
-MechanismCheck examine(Mechanism mechanism, const std::string& file);
+MechanismCheck examine(mechanism::Mechanism mechanism, const std::string& file);
 
 /// "dyad BC-CD (class II, RRR): C lies left of B → D".
-std::string describe(const Mechanism& mechanism, const Group& group);
+std::string describe(const mechanism::Mechanism& mechanism, const mechanism::Group& group);
 
 /// What a designer would look at again.
 std::vector<std::string> remarks(const MechanismCheck& check);

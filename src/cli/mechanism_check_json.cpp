@@ -20,7 +20,7 @@ Json point(const std::optional<Eigen::Vector2d>& value) {
   return value ? Json{value->x(), value->y()} : Json(nullptr);
 }
 
-Json reading(const Reading& reading) {
+Json reading(const mechanism::Reading& reading) {
   return {{"value", reading.value}, {"drive", reading.drive}, {"time", reading.time}};
 }
 
@@ -31,7 +31,7 @@ class JsonReport {
 
   Json write() const {
     Json groups = Json::array();
-    for (const Group& group : check_.structure.groups)
+    for (const mechanism::Group& group : check_.structure.groups)
       groups.push_back({{"name", group.name}, {"description", describe(mechanism_, group)}});
     Json json{{"file", check_.file},
               {"kind", "mechanism"},
@@ -62,7 +62,7 @@ class JsonReport {
 
   Json mobility() const {
     constexpr std::array kVerdicts{"agrees", "shaky", "overconstrained"};
-    const MobilityReport& report = analysis_.mobility;
+    const mechanism::MobilityReport& report = analysis_.mobility;
     return {{"mobility", report.start.mobility()},
             {"rank", report.start.rank},
             {"conditions", report.start.conditions},
@@ -75,9 +75,9 @@ class JsonReport {
 
   Json four_bars() const {
     Json all = Json::array();
-    for (const FourBarLoop& loop : analysis_.four_bars) {
+    for (const mechanism::FourBarLoop& loop : analysis_.four_bars) {
       Json links = Json::array(), shortest = Json::array();
-      for (const LoopLink& link : loop.links) {
+      for (const mechanism::LoopLink& link : loop.links) {
         links.push_back({{"body", link.body ? Json(body(*link.body)) : Json(nullptr)},
                          {"from", mechanism_.points[link.from].name},
                          {"to", mechanism_.points[link.to].name},
@@ -85,7 +85,7 @@ class JsonReport {
       }
       for (const std::size_t i : loop.shortest) shortest.push_back(i);
       all.push_back({{"group", group(loop.group)},
-                     {"class", grashof_name(loop.type)},
+                     {"class", mechanism::grashof_name(loop.type)},
                      {"links", std::move(links)},
                      {"shortest", std::move(shortest)},
                      {"shortest_and_longest", loop.shortest_and_longest},
@@ -96,7 +96,7 @@ class JsonReport {
 
   Json sliders() const {
     Json all = Json::array();
-    for (const SliderLoop& loop : analysis_.sliders) {
+    for (const mechanism::SliderLoop& loop : analysis_.sliders) {
       all.push_back({{"group", group(loop.group)},
                      {"kind", loop.is_lever ? "slotted lever" : "slider-crank"},
                      {"crank", body(loop.crank)},
@@ -104,23 +104,23 @@ class JsonReport {
                      {"radius", loop.radius},
                      {"length", loop.length},
                      {"offset", loop.offset},
-                     {"rotation", slider_loop_name(loop.type)}});
+                     {"rotation", mechanism::slider_loop_name(loop.type)}});
     }
     return all;
   }
 
-  Json event(const std::optional<MotionEvent>& event) const {
+  Json event(const std::optional<mechanism::MotionEvent>& event) const {
     if (!event) return nullptr;
-    return {{"drive", DriveClock(mechanism_).at(0, event->time).value},
+    return {{"drive", mechanism::DriveClock(mechanism_).at(0, event->time).value},
             {"time", event->time},
             {"group", group(event->group)}};
   }
 
   Json tour() const {
     constexpr std::array kKinds{"turn", "until", "limits", "to limit"};
-    const Tour& tour = *analysis_.tour;
+    const mechanism::Tour& tour = *analysis_.tour;
     Json changes = Json::array();
-    for (const MotionEvent& change : tour.changes) changes.push_back(event(change));
+    for (const mechanism::MotionEvent& change : tour.changes) changes.push_back(event(change));
     return {{"kind", kKinds[static_cast<std::size_t>(tour.kind)]},
             {"begin", tour.begin},
             {"end", tour.end},
@@ -132,9 +132,9 @@ class JsonReport {
 
   Json transmissions() const {
     Json all = Json::array();
-    for (const Transmission& t : analysis_.transmissions) {
+    for (const mechanism::Transmission& t : analysis_.transmissions) {
       all.push_back({{"group", group(t.group)},
-                     {"measure", measure_name(t.measure)},
+                     {"measure", mechanism::measure_name(t.measure)},
                      {"least", reading(t.least)},
                      {"greatest", reading(t.greatest)},
                      {"poor", t.is_poor()}});
@@ -142,9 +142,9 @@ class JsonReport {
     return all;
   }
 
-  static Json dwells(const std::vector<Dwell>& dwells) {
+  static Json dwells(const std::vector<mechanism::Dwell>& dwells) {
     Json all = Json::array();
-    for (const Dwell& dwell : dwells) {
+    for (const mechanism::Dwell& dwell : dwells) {
       all.push_back({{"begin", dwell.begin},
                      {"end", dwell.end},
                      {"begin_drive", dwell.begin_drive},
@@ -156,7 +156,7 @@ class JsonReport {
   Json swings() const {
     constexpr std::array kKinds{"turns", "wavers", "swings", "progresses", "rests"};
     Json all = Json::array();
-    for (const Swing& swing : analysis_.swings) {
+    for (const mechanism::Swing& swing : analysis_.swings) {
       all.push_back({{swing.is_slide ? "slide" : "body",
                       swing.is_slide ? mechanism_.slides[swing.index].name : body(swing.index)},
                      {"motion", kKinds[static_cast<std::size_t>(swing.kind)]},
@@ -175,7 +175,7 @@ class JsonReport {
 
   Json paths() const {
     Json all = Json::array();
-    for (const PathReport& path : analysis_.paths) {
+    for (const mechanism::PathReport& path : analysis_.paths) {
       all.push_back({{"point", mechanism_.points[path.measure.point].name},
                      {"length", path.measure.length},
                      {"area", or_null(path.measure.area)},
@@ -190,7 +190,7 @@ class JsonReport {
 
   Json centres() const {
     Json all = Json::array();
-    for (const InstantCentre& centre : analysis_.centres) {
+    for (const mechanism::InstantCentre& centre : analysis_.centres) {
       all.push_back(
           {{"bodies", {centre.first ? Json(body(*centre.first)) : Json(nullptr), body(centre.second)}},
            {"position", point(centre.position)},
@@ -212,8 +212,8 @@ class JsonReport {
   }
 
   const MechanismCheck& check_;
-  const Mechanism& mechanism_;
-  const MechanismAnalysis& analysis_;
+  const mechanism::Mechanism& mechanism_;
+  const mechanism::MechanismAnalysis& analysis_;
 };
 
 }  // namespace

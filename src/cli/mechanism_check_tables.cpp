@@ -44,15 +44,15 @@ class Tables {
     return fmt::format("{:.2f}", shown + 0.0);
   }
   static std::string number(double value) { return fmt::format("{:.4g}", value + 0.0); }
-  std::string at(const Reading& reading) const { return bare(drive_text(check_, reading.drive)); }
+  std::string at(const mechanism::Reading& reading) const { return bare(drive_text(check_, reading.drive)); }
   /// Without its unit, which stands in the header.
   static std::string bare(const std::string& text) { return text.substr(0, text.find_first_of(" \xC2")); }
-  const Drive& drive() const { return mechanism_.drives.front(); }
+  const mechanism::Drive& drive() const { return mechanism_.drives.front(); }
   std::string at_header() const {
     return fmt::format("at {} [{}]", drive().name, drive().slide ? unit_ : "°");
   }
 
-  std::string name_of(const LoopLink& link) const {
+  std::string name_of(const mechanism::LoopLink& link) const {
     return link.body ? mechanism_.bodies[*link.body].name : "frame";
   }
 
@@ -60,11 +60,11 @@ class Tables {
     if (analysis_.four_bars.empty()) return;
     Table table({"loop", "class", "shortest link", fmt::format("s + l [{}]", unit_),
                  fmt::format("p + q [{}]", unit_)});
-    for (const FourBarLoop& loop : analysis_.four_bars) {
+    for (const mechanism::FourBarLoop& loop : analysis_.four_bars) {
       std::vector<std::string> links, shortest;
-      for (const LoopLink& link : loop.links) links.push_back(name_of(link));
+      for (const mechanism::LoopLink& link : loop.links) links.push_back(name_of(link));
       for (const std::size_t i : loop.shortest) shortest.push_back(name_of(loop.links[i]));
-      table.add({fmt::format("{}", fmt::join(links, "-")), std::string(grashof_name(loop.type)),
+      table.add({fmt::format("{}", fmt::join(links, "-")), std::string(mechanism::grashof_name(loop.type)),
                  fmt::format("{}", fmt::join(shortest, ", ")), length(loop.shortest_and_longest),
                  length(loop.others)});
     }
@@ -78,10 +78,11 @@ class Tables {
     if (analysis_.sliders.empty()) return;
     Table table({"loop", "kind", "rotation", fmt::format("r [{}]", unit_), fmt::format("l or d [{}]", unit_),
                  fmt::format("e [{}]", unit_)});
-    for (const SliderLoop& loop : analysis_.sliders) {
+    for (const mechanism::SliderLoop& loop : analysis_.sliders) {
       table.add({fmt::format("{}-{}", mechanism_.bodies[loop.crank].name, mechanism_.bodies[loop.rod].name),
-                 loop.is_lever ? "slotted lever" : "slider-crank", std::string(slider_loop_name(loop.type)),
-                 length(loop.radius), length(loop.length), length(loop.offset)});
+                 loop.is_lever ? "slotted lever" : "slider-crank",
+                 std::string(mechanism::slider_loop_name(loop.type)), length(loop.radius),
+                 length(loop.length), length(loop.offset)});
     }
     tables_.push_back({"cranks with slides (crank r, rod l or distance d of the pivots, offset e)",
                        std::move(table), 3,
@@ -91,12 +92,12 @@ class Tables {
   void transmissions() {
     if (analysis_.transmissions.empty()) return;
     Table table({"group", "measure", "least", at_header(), "greatest", at_header(), ""});
-    for (const Transmission& t : analysis_.transmissions) {
-      const bool angle = t.measure != Transmission::Measure::regularity;
+    for (const mechanism::Transmission& t : analysis_.transmissions) {
+      const bool angle = t.measure != mechanism::Transmission::Measure::regularity;
       const auto shown = [&](double value) {
         return angle ? degrees(value) + "°" : fmt::format("{:.4f}", value);
       };
-      table.add({check_.structure.groups[t.group].name, std::string(measure_name(t.measure)),
+      table.add({check_.structure.groups[t.group].name, std::string(mechanism::measure_name(t.measure)),
                  shown(t.least.value), at(t.least), shown(t.greatest.value), at(t.greatest),
                  t.is_poor() ? "poor" : ""});
     }
@@ -106,10 +107,10 @@ class Tables {
          "its best is called poor."});
   }
 
-  std::string dwells_of(const std::vector<Dwell>& dwells) const {
+  std::string dwells_of(const std::vector<mechanism::Dwell>& dwells) const {
     std::vector<std::string> texts;
     texts.reserve(dwells.size());
-    for (const Dwell& dwell : dwells) {
+    for (const mechanism::Dwell& dwell : dwells) {
       texts.push_back(fmt::format("{}–{}", bare(drive_text(check_, dwell.begin_drive)),
                                   bare(drive_text(check_, dwell.end_drive))));
     }
@@ -120,34 +121,34 @@ class Tables {
     return fmt::format("dwell, {} [{}]", drive().name, drive().slide ? unit_ : "°");
   }
 
-  static std::string motion_of(const Swing& swing) {
+  static std::string motion_of(const mechanism::Swing& swing) {
     switch (swing.kind) {
-      case Swing::Kind::turns:
-      case Swing::Kind::wavers: {
+      case mechanism::Swing::Kind::turns:
+      case mechanism::Swing::Kind::wavers: {
         const auto turns = std::lround(std::abs(swing.gain) / (360 * kDegree));
         return fmt::format("turns{}{}{}", turns == 1 ? "" : fmt::format(" {} times", turns),
                            swing.gain > 0 ? " left" : " right",
-                           swing.kind == Swing::Kind::wavers ? ", and back on the way" : "");
+                           swing.kind == mechanism::Swing::Kind::wavers ? ", and back on the way" : "");
       }
-      case Swing::Kind::progresses:
+      case mechanism::Swing::Kind::progresses:
         return swing.gain > 0 ? "rises" : "falls";
-      case Swing::Kind::rests:
+      case mechanism::Swing::Kind::rests:
         return "rests";
-      case Swing::Kind::swings:
+      case mechanism::Swing::Kind::swings:
         break;
     }
     return swing.reversals > 2 ? fmt::format("swings, {} reversals", swing.reversals) : "swings";
   }
 
-  void add_swing(Table& table, const Swing& swing, const std::string& name, bool dwells) const {
+  void add_swing(Table& table, const mechanism::Swing& swing, const std::string& name, bool dwells) const {
     const auto shown = [&](double value) { return swing.is_slide ? length(value) : degrees(value); };
     std::vector<std::string> row{name, motion_of(swing)};
-    if (swing.kind == Swing::Kind::swings || swing.kind == Swing::Kind::progresses) {
+    if (swing.kind == mechanism::Swing::Kind::swings || swing.kind == mechanism::Swing::Kind::progresses) {
       row.insert(row.end(), {shown(swing.least.value), at(swing.least), shown(swing.greatest.value),
                              at(swing.greatest), shown(swing.stroke())});
     } else {  // a place only where it rests
-      row.insert(row.end(),
-                 {swing.kind == Swing::Kind::rests ? shown(swing.least.value) : "", "", "", "", ""});
+      row.insert(row.end(), {swing.kind == mechanism::Swing::Kind::rests ? shown(swing.least.value) : "", "",
+                             "", "", ""});
     }
     const bool times = swing.time_ratio.has_value();
     row.insert(row.end(), {times ? number(swing.rising) : "", times ? number(swing.falling) : "",
@@ -158,7 +159,7 @@ class Tables {
 
   void swings(bool slides, const std::string& title, const std::string& unit, const char* explanation) {
     bool any = false, dwells = false;
-    for (const Swing& swing : analysis_.swings) {
+    for (const mechanism::Swing& swing : analysis_.swings) {
       if (swing.is_slide != slides) continue;
       any = true;
       dwells = dwells || !swing.dwells.empty();
@@ -176,7 +177,7 @@ class Tables {
                                     "time ratio"};
     if (dwells) header.push_back(dwell_header());
     Table table(header);
-    for (const Swing& swing : analysis_.swings) {
+    for (const mechanism::Swing& swing : analysis_.swings) {
       if (swing.is_slide != slides) continue;
       const auto& name = slides ? mechanism_.slides[swing.index].name : mechanism_.bodies[swing.index].name;
       add_swing(table, swing, name, dwells);
@@ -195,7 +196,7 @@ class Tables {
   void paths() {
     if (analysis_.paths.empty()) return;
     bool dwells = false, areas = false;
-    for (const PathReport& path : analysis_.paths) {
+    for (const mechanism::PathReport& path : analysis_.paths) {
       dwells = dwells || !path.dwells.empty();
       areas = areas || path.measure.area;
     }
@@ -204,10 +205,10 @@ class Tables {
     for (const char* side : {"x from", "to", "y from", "to"}) header.emplace_back(side);
     if (dwells) header.push_back(dwell_header());
     Table table(header);
-    for (const PathReport& path : analysis_.paths) {
+    for (const mechanism::PathReport& path : analysis_.paths) {
       std::vector<std::string> row{mechanism_.points[path.measure.point].name, length(path.measure.length)};
       if (areas) row.push_back(path.measure.area ? area(*path.measure.area) : "");
-      for (const Reading* side : {&path.left, &path.right, &path.bottom, &path.top})
+      for (const mechanism::Reading* side : {&path.left, &path.right, &path.bottom, &path.top})
         row.push_back(length(side->value));
       if (dwells) row.push_back(dwells_of(path.dwells));
       table.add(row);
@@ -223,7 +224,7 @@ class Tables {
 
   void centres() {
     Table table({"body", fmt::format("x [{}]", unit_), fmt::format("y [{}]", unit_), ""});
-    for (const InstantCentre& centre : analysis_.centres) {
+    for (const mechanism::InstantCentre& centre : analysis_.centres) {
       if (centre.first) continue;
       const std::string& name = mechanism_.bodies[centre.second].name;
       if (centre.position) {
@@ -241,7 +242,7 @@ class Tables {
 
   void inertia() {
     if (!analysis_.inertia) return;
-    const InertiaReport& report = *analysis_.inertia;
+    const mechanism::InertiaReport& report = *analysis_.inertia;
     Table bars({"body", "mass [kg]", "J [kg m²]"});
     for (const auto& bar : report.bars)
       bars.add({mechanism_.bodies[bar.body].name, number(bar.mass), number(bar.inertia)});
@@ -258,8 +259,8 @@ class Tables {
   }
 
   const MechanismCheck& check_;
-  const Mechanism& mechanism_;
-  const MechanismAnalysis& analysis_;
+  const mechanism::Mechanism& mechanism_;
+  const mechanism::MechanismAnalysis& analysis_;
   std::string unit_;
   double size_;  ///< largest length [length unit]
   std::vector<CheckTable> tables_;

@@ -29,22 +29,23 @@ class Report {
     text_ += fmt::format("{}: a mechanism, \"{}\"\n", check_.file, mechanism_.title);
     text_ += fmt::format("  {}, mobility {}, {}\n", count(mechanism_.bodies.size(), "body", "bodies"),
                          analysis_.mobility.gruebler, count(mechanism_.drives.size(), "drive", "drives"));
-    if (analysis_.mobility.verdict != MobilityReport::Verdict::agrees) {
-      const JacobianRank& rank = analysis_.mobility.start;
+    if (analysis_.mobility.verdict != mechanism::MobilityReport::Verdict::agrees) {
+      const mechanism::JacobianRank& rank = analysis_.mobility.start;
       text_ += fmt::format(
           "  mobility by rank {}: {} of {} conditions on {} coordinates are independent at the start ({})\n",
           rank.mobility(), rank.rank, rank.conditions, rank.coordinates,
-          analysis_.mobility.verdict == MobilityReport::Verdict::shaky ? "shaky" : "overconstrained");
+          analysis_.mobility.verdict == mechanism::MobilityReport::Verdict::shaky ? "shaky"
+                                                                                  : "overconstrained");
     }
-    for (const Group& group : check_.structure.groups)
+    for (const mechanism::Group& group : check_.structure.groups)
       text_ += fmt::format("  {}\n", describe(mechanism_, group));
     if (check_.finding) {
       text_ += fmt::format("no: {}\n", *check_.finding);
     } else if (mechanism_.drives.empty()) {
       text_ += "ok: a structure, which can be assembled and does not move\n";
-    } else if (analysis_.tour->kind == Tour::Kind::limits) {
+    } else if (analysis_.tour->kind == mechanism::Tour::Kind::limits) {
       text_ += "ok: it can be assembled between the limits of its drive\n";
-    } else if (analysis_.tour->kind == Tour::Kind::until) {
+    } else if (analysis_.tour->kind == mechanism::Tour::Kind::until) {
       text_ += "ok: it can be assembled over the whole motion, without dead centres\n";
     } else {
       text_ += "ok: it can be assembled over the whole turn, without dead centres\n";
@@ -52,20 +53,21 @@ class Report {
   }
 
   void limits() {
-    const Tour& tour = *analysis_.tour;
-    DriveClock clock(mechanism_);
-    const auto limit = [&](const char* word, const std::optional<MotionEvent>& event) {
+    const mechanism::Tour& tour = *analysis_.tour;
+    mechanism::DriveClock clock(mechanism_);
+    const auto limit = [&](const char* word, const std::optional<mechanism::MotionEvent>& event) {
       if (!event) return std::string();
-      return fmt::format(" {} {} ({}{})", word, drive_text(check_, clock.at(0, event->time).value),
-                         check_.structure.groups[event->group].name,
-                         event->kind == MotionEvent::Kind::infinity ? ", which is at infinity" : "");
+      return fmt::format(
+          " {} {} ({}{})", word, drive_text(check_, clock.at(0, event->time).value),
+          check_.structure.groups[event->group].name,
+          event->kind == mechanism::MotionEvent::Kind::infinity ? ", which is at infinity" : "");
     };
     if (tour.range.backward || tour.range.forward) {
       text_ += fmt::format("  range of '{}':{}{}; what follows is about that range\n",
                            mechanism_.drives.front().name, limit("from", tour.range.backward),
                            limit("to", tour.range.forward));
     }
-    for (const MotionEvent& change : tour.changes) {
+    for (const mechanism::MotionEvent& change : tour.changes) {
       text_ +=
           fmt::format("  change point of {} at {} = {}\n", check_.structure.groups[change.group].name,
                       mechanism_.drives.front().name, drive_text(check_, clock.at(0, change.time).value));
@@ -73,8 +75,8 @@ class Report {
   }
 
   const MechanismCheck& check_;
-  const Mechanism& mechanism_;
-  const MechanismAnalysis& analysis_;
+  const mechanism::Mechanism& mechanism_;
+  const mechanism::MechanismAnalysis& analysis_;
   std::string text_;
 };
 

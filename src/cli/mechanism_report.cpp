@@ -8,10 +8,10 @@
 #include <fmt/format.h>
 
 #include <oblique/compare/compare.h>
-#include <oblique/draw/chart.h>
-#include <oblique/draw/diagram_drawing.h>
-#include <oblique/solve/analysis.h>
+#include <oblique/draw/chart/chart.h>
+#include <oblique/draw/schematic/diagram_drawing.h>
 #include <oblique/solve/solve_error.h>
+#include <oblique/solve/stability/analysis.h>
 
 #include "command.h"
 #include "comparison_chart.h"
@@ -36,12 +36,13 @@ std::string readable(double value) {
   auto exponent = static_cast<int>(std::floor(std::log10(size)));
   std::string digits = fmt::format("{:.4g}", size / std::pow(10, exponent));
   if (digits == "10") digits = "1", ++exponent;  // rounded up
-  return digits == "1" ? sign + power_of_ten(exponent) : sign + digits + "·" + power_of_ten(exponent);
+  return digits == "1" ? sign + draw::power_of_ten(exponent)
+                       : sign + digits + "·" + draw::power_of_ten(exponent);
 }
 
 /// What a failure says, for a page: "…; expected …. Remedy: …".
-std::string words_of(const Error& error) {
-  const Diagnostic& finding = error.diagnostics().front();
+std::string words_of(const text::Error& error) {
+  const text::Diagnostic& finding = error.diagnostics().front();
   std::string text = finding.what;
   if (!finding.expected.empty()) text += "; expected " + finding.expected;
   if (!finding.remedy.empty()) text += ". Remedy: " + finding.remedy;
@@ -66,8 +67,8 @@ class Writer {
     structure();
     motion();
     try {
-      patched_ = judged_patch(mechanism_, report_.blocks, report_.options);
-    } catch (const Error& error) {
+      patched_ = commission::judged_patch(mechanism_, report_.blocks, report_.options);
+    } catch (const text::Error& error) {
       page_.heading("Patch");
       page_.paragraph("There is no patch of this mechanism. " + capitalised(words_of(error)));
       return std::move(page_);
@@ -87,11 +88,11 @@ class Writer {
                                    count(mechanism_.bodies.size(), "body", "bodies"),
                                    count(mechanism_.drives.size(), "drive", "drives"), mechanism_.file,
                                    mechanism_.source.empty() ? "" : " Source: " + mechanism_.source + "."));
-    Mechanism untitled = mechanism_;
+    mechanism::Mechanism untitled = mechanism_;
     untitled.title.clear();  // the page has it
-    LinkageScene scene = linkage_scene(untitled, "", 1).scene;
-    if (!scene.motion.empty()) scene.traces = points_to_trace(mechanism_);
-    page_.picture(draw_linkage(untitled, scene));
+    draw::LinkageScene scene = linkage_scene(untitled, "", 1).scene;
+    if (!scene.motion.empty()) scene.traces = draw::points_to_trace(mechanism_);
+    page_.picture(draw::draw_linkage(untitled, scene));
   }
 
   /// Groups, and what `check` tells of them.
@@ -103,7 +104,8 @@ class Writer {
                     "that add none; each group can be solved by itself, in this order:",
                     check.analysis.mobility.gruebler));
     std::vector<std::string> groups;
-    for (const Group& group : check.structure.groups) groups.push_back(describe(mechanism_, group));
+    for (const mechanism::Group& group : check.structure.groups)
+      groups.push_back(describe(mechanism_, group));
     page_.list(groups);
     if (check.finding)
       page_.paragraph(fmt::format("What keeps it from moving all the way: {}.", *check.finding));
@@ -122,7 +124,7 @@ class Writer {
   /// A point of the coupler, or the first one that moves.
   void motion() {
     if (mechanism_.drives.empty()) return;
-    std::vector<std::size_t> points = points_to_trace(mechanism_);
+    std::vector<std::size_t> points = draw::points_to_trace(mechanism_);
     for (std::size_t p = 0; points.empty() && p < mechanism_.points.size(); ++p) {
       if (!mechanism_.points[p].fixed && !mechanism_.bodies_at(p).empty()) points.push_back(p);
     }
@@ -133,14 +135,14 @@ class Writer {
         fmt::format("Where point {} is, how fast it moves, and how its velocity changes, over {}: exact, "
                     "from the geometry.",
                     name, mechanism_.drives.front().name));
-    Chart plots = point_plots(point_history(mechanism_, name));
+    draw::Chart plots = draw::point_plots(point_history(mechanism_, name));
     plots.title.clear();
     plots.width = kPageWidth;
-    page_.picture(draw_chart(plots));
+    page_.picture(draw::draw_chart(plots));
   }
 
   void patch() {
-    const Diagram& diagram = patched_.diagram;
+    const diagram::Diagram& diagram = patched_.diagram;
     page_.heading("Patch");
     page_.paragraph(
         "The patch is the diagram that makes an analog computer move as the mechanism does: servo amplifiers "
@@ -149,9 +151,9 @@ class Writer {
     std::replace(comment.begin(), comment.end(), '\n', ' ');
     if (!comment.empty()) page_.paragraph(comment);
     page_.paragraph("Judged before it runs: " + judgement_text(patched_.judgement));
-    page_.picture(draw_diagram(diagram, report_.blocks));
+    page_.picture(draw::draw_diagram(diagram, report_.blocks));
     std::map<std::string, std::size_t> counts;
-    for (const BlockInstance& block : diagram.blocks) ++counts[block.type];
+    for (const diagram::BlockInstance& block : diagram.blocks) ++counts[block.type];
     std::vector<std::vector<std::string>> rows;
     rows.reserve(counts.size() + 1);
     for (const auto& [type, n] : counts) rows.push_back({type, std::to_string(n)});
@@ -166,28 +168,28 @@ class Writer {
         "The patch runs over the motion with servo amplifiers of each gain; its moving points are held "
         "against "
         "the exact motion. The error falls as the gain grows.");
-    CompareOptions sweep;
+    compare::CompareOptions sweep;
     sweep.methods = {report_.options.method};
     if (report_.options.bandwidth) sweep.bandwidths = {*report_.options.bandwidth};
     sweep.progress = report_.progress;
     try {
-      errors_of(compare(mechanism_, report_.blocks, sweep));
-    } catch (const SolveError& error) {
+      errors_of(compare::compare(mechanism_, report_.blocks, sweep));
+    } catch (const solve::SolveError& error) {
       page_.paragraph("A run fails: " + words_of(error));
     }
   }
 
-  void errors_of(const Comparison& comparison) {
+  void errors_of(const compare::Comparison& comparison) {
     const std::string unit = " [" + comparison.unit + "]";
     std::vector<std::vector<std::string>> rows;
-    for (const ComparedRun& run : comparison.runs) {
-      const auto part = [&](double ErrorParts::*which) {
+    for (const compare::ComparedRun& run : comparison.runs) {
+      const auto part = [&](double compare::ErrorParts::*which) {
         return run.parts ? readable(*run.parts.*which) : std::string("unknown");
       };
       rows.push_back({readable(run.gain), readable(run.max_error), readable(run.max_error / comparison.size),
                       readable(run.rms_error), run.worst.point, drive_text(comparison, run.worst.drive),
-                      part(&ErrorParts::at_rest), part(&ErrorParts::lag), part(&ErrorParts::solver),
-                      run.stable ? "yes" : "NO"});
+                      part(&compare::ErrorParts::at_rest), part(&compare::ErrorParts::lag),
+                      part(&compare::ErrorParts::solver), run.stable ? "yes" : "NO"});
     }
     page_.introduction(
         "Largest error of any point, also as a part of the largest link; root mean square of all errors; the "
@@ -197,23 +199,24 @@ class Writer {
     page_.table({"gain", "largest error" + unit, "of the largest link", "r.m.s." + unit, "worst", "at",
                  "static" + unit, "lag" + unit, "solver" + unit, "stable"},
                 rows);
-    const GainSeries& series = comparison.series.front();
+    const compare::GainSeries& series = comparison.series.front();
     page_.introduction(series.order
                            ? fmt::format("The error falls with the gain to the power {}; −1 is what "
                                          "amplifiers of finite gain should give.",
                                          readable(*series.order))
                            : "No order of convergence: it takes two gains whose errors stand clear of "
                              "the tolerance.");
-    Chart chart = chart_of(comparison);
+    draw::Chart chart = chart_of(comparison);
     chart.title.clear();  // the heading tells it
-    page_.picture(draw_chart(chart));
+    page_.picture(draw::draw_chart(chart));
   }
 
   void stability() {
-    const FlatDiagram flat = flatten(patched_.diagram, report_.blocks);
-    const Program program(assemble(flat));
-    const Analysis analysis = analyse(program, flat, oblique::options_of(patched_.diagram.run));
-    const StabilityReport& found = analysis.stability;
+    const diagram::FlatDiagram flat = diagram::flatten(patched_.diagram, report_.blocks);
+    const network::Program program(network::assemble(flat));
+    const solve::Analysis analysis =
+        solve::analyse(program, flat, oblique::solve::options_of(patched_.diagram.run));
+    const solve::StabilityReport& found = analysis.stability;
     page_.heading("Stability");
     page_.introduction(fmt::format(
         "The eigenvalues of the patch, linearised at {} of its motion: one with a positive real part grows. "
@@ -222,7 +225,7 @@ class Writer {
         "means that they do not overshoot.",
         count(found.instants, "moment", "moments")));
     std::vector<std::vector<std::string>> rows;
-    const auto tell = [&](const char* whose, const std::optional<WorstMode>& worst) {
+    const auto tell = [&](const char* whose, const std::optional<solve::WorstMode>& worst) {
       if (!worst) return;
       rows.push_back({whose, readable(worst->mode.damping_ratio()), readable(worst->mode.natural_frequency()),
                       readable(worst->mode.pole.real()), readable(worst->time)});
@@ -235,24 +238,24 @@ class Writer {
                   rows);
     if (found.grows_from)
       page_.paragraph(fmt::format("A servo loop grows from t = {} s on.", readable(*found.grows_from)));
-    if (analysis.failure) page_.paragraph("The run fails: " + words_of(SolveError(*analysis.failure)));
+    if (analysis.failure) page_.paragraph("The run fails: " + words_of(solve::SolveError(*analysis.failure)));
     for (const std::string& what : found.left_out) page_.paragraph("Left out: " + what + ".");
-    const Chart poles = pole_chart(flat, program, analysis.instants, "");
-    page_.picture(draw_chart(poles));
+    const draw::Chart poles = pole_chart(flat, program, analysis.instants, "");
+    page_.picture(draw::draw_chart(poles));
   }
 
-  void machine(const MachineProfile& profile) {
+  void machine(const diagram::MachineProfile& profile) {
     page_.heading("On the " + profile.title);
-    MachinePatch patch;
+    commission::MachinePatch patch;
     try {
-      patch = put_on_machine(mechanism_, report_.blocks, profile, patched_);
-    } catch (const Error& error) {
+      patch = commission::put_on_machine(mechanism_, report_.blocks, profile, patched_);
+    } catch (const text::Error& error) {
       page_.paragraph("It does not run there. " + capitalised(words_of(error)));
       return;
     }
-    const Diagram& diagram = patch.realised;
-    const FlatDiagram flat = flatten(diagram, report_.blocks);
-    const Bill bill = bill_of(flat, profile);
+    const diagram::Diagram& diagram = patch.realised;
+    const diagram::FlatDiagram flat = diagram::flatten(diagram, report_.blocks);
+    const machine::Bill bill = machine::bill_of(flat, profile);
     page_.introduction(
         "The same patch in this machine's own elements. What it takes of them, and what there is:");
     page_.table(bill_table(bill).rows());
@@ -260,8 +263,8 @@ class Writer {
     if (const std::string text = bandwidth_text(patch, profile); !text.empty())
       page_.paragraph(capitalised(text));
     page_.paragraph("Judged on these elements: " + judgement_text(patch.judgement));
-    const MachineSheets sheets = sheets_of(diagram, flat, report_.blocks, profile);
-    const auto add = [&](const Sheet& sheet, const char* explanation) {
+    const machine::MachineSheets sheets = sheets_of(diagram, flat, report_.blocks, profile);
+    const auto add = [&](const machine::Sheet& sheet, const char* explanation) {
       page_.subheading("Sheet: " + sheet.title);
       page_.introduction(explanation);
       page_.table(sheet.columns, sheet.rows);
@@ -275,8 +278,8 @@ class Writer {
   }
 
   const MechanismReport& report_;
-  const Mechanism& mechanism_;
-  JudgedPatch patched_;
+  const mechanism::Mechanism& mechanism_;
+  commission::JudgedPatch patched_;
   HtmlPage page_;
 };
 

@@ -5,9 +5,9 @@
 #include <optional>
 #include <string>
 
-#include <oblique/compare/judge.h>
+#include <oblique/commission/judge.h>
 #include <oblique/diagram/machine_profile.h>
-#include <oblique/mechanism/mechanism.h>
+#include <oblique/mechanism/model/mechanism.h>
 
 #include "html_page.h"
 
@@ -16,10 +16,10 @@ namespace oblique::cli {
 /// The page that tells all about a mechanism: its drawing, groups and motion, and where it can be patched its
 /// patch, the convergence, the stability of the loops, and with a machine what that needs of it.
 struct MechanismReport {
-  const Mechanism& mechanism;
-  const BlockLibrary& blocks;
-  PatchOptions options;                     ///< of the patch
-  const MachineProfile* machine = nullptr;  ///< none: the page says nothing of machines
+  const mechanism::Mechanism& mechanism;
+  const diagram::BlockLibrary& blocks;
+  patch::PatchOptions options;                       ///< of the patch
+  const diagram::MachineProfile* machine = nullptr;  ///< none: the page says nothing of machines
   std::function<void(double fraction)> progress;
 
   /// Writes the page. What keeps the mechanism from being patched, and what a run of the patch fails at, is

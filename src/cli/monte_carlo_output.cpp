@@ -25,9 +25,9 @@ std::string percentiles(const MonteCarloReport& report) {
 }
 
 /// How many failed, and the first of them; the others are in the JSON.
-std::string failures(const MonteCarlo& result) {
+std::string failures(const compare::MonteCarlo& result) {
   if (result.failures.empty()) return {};
-  const FailedRun& first = result.failures.front();
+  const compare::FailedRun& first = result.failures.front();
   return fmt::format("FAILED {} of {}, left out above; the first, run {}: {}\n", result.failures.size(),
                      count(result.errors.size(), "run", "runs"), first.number, first.message);
 }
@@ -40,7 +40,7 @@ std::string what_scatters(const MonteCarloReport& report) {
 }  // namespace
 
 std::string to_text(const MonteCarloReport& report) {
-  const MonteCarlo& result = report.result;
+  const compare::MonteCarlo& result = report.result;
   std::string text =
       fmt::format("\nMonte Carlo: {}, {} drawn in each, uniform {}; seed {}, from run {}; {:.3g} s\n\n",
                   count(result.errors.size(), "run", "runs"), count(result.drawn, "tolerance", "tolerances"),
@@ -60,7 +60,7 @@ std::string to_text(const MonteCarloReport& report) {
 }
 
 Json to_json(const MonteCarloReport& report, bool timings) {
-  const MonteCarlo& result = report.result;
+  const compare::MonteCarlo& result = report.result;
   Json json{{"seed", report.options.seed},
             {"first_run", report.options.first_run},
             {"runs", result.errors.size()},
@@ -78,7 +78,7 @@ Json to_json(const MonteCarloReport& report, bool timings) {
   json["errors"] = Json::array();
   for (const auto& error : result.errors) json["errors"].push_back(error ? Json(*error) : Json(nullptr));
   json["failures"] = Json::array();
-  for (const FailedRun& run : result.failures)
+  for (const compare::FailedRun& run : result.failures)
     json["failures"].push_back({{"run", run.number}, {"message", run.message}});
   if (result.errors.size() == 1) {
     json["draws"] = Json::object();

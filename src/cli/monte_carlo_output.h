@@ -11,8 +11,8 @@ namespace oblique::cli {
 
 /// What was drawn, for people and with its words.
 struct MonteCarloReport {
-  MonteCarloOptions options;
-  MonteCarlo result;
+  compare::MonteCarloOptions options;
+  compare::MonteCarlo result;
   std::string unit;                                   ///< of lengths
   std::string machine;                                ///< whose elements scatter; empty: by --tolerance
   std::string tolerance;                              ///< as --tolerance has it

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/compare/judge.h>
+#include <oblique/commission/judge.h>
 
 #include <cmath>
 
 #include <fmt/format.h>
 
-#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/mechanism/model/read_mechanism.h>
 
 #include "command.h"
 #include "machine_patch.h"
@@ -19,14 +19,14 @@ namespace {
 double gain_option(const std::string& option, const std::string& text, std::string_view unit) {
   const double value = quantity_option(option, text, unit);
   if (!(value > 0))
-    throw ReadError(Diagnostic{{}, fmt::format("{} {}", option, text), "a number above 0", {}});
+    throw text::ReadError(text::Diagnostic{{}, fmt::format("{} {}", option, text), "a number above 0", {}});
   return value;
 }
 
 }  // namespace
 
-std::string judgement_text(const Judgement& judgement) {
-  if (!judgement.good()) return fmt::format("warning: {}\n", fault_of(judgement));
+std::string judgement_text(const commission::Judgement& judgement) {
+  if (!judgement.good()) return fmt::format("warning: {}\n", commission::fault_of(judgement));
   std::string text =
       std::isfinite(judgement.slowest_pole)
           ? fmt::format(
@@ -35,18 +35,18 @@ std::string judgement_text(const Judgement& judgement) {
           : std::string("no servo loops; ");
   text += fmt::format("largest signal {:.3g} ({})\n", judgement.largest, judgement.largest_signal);
   if (!judgement.well_damped())
-    text += fmt::format("warning: {}; a run takes many steps\n", fault_of(judgement));
+    text += fmt::format("warning: {}; a run takes many steps\n", commission::fault_of(judgement));
   constexpr double kErrors = 0.02;  // of real elements, by which a cosine of 1 may be passed
   if (judgement.largest > 1 + kErrors) text += "warning: it overloads the machine; choose a larger --unit\n";
   return text;
 }
 
-PatchMethod method_option(const std::string& text) {
-  if (const auto method = parse_patch_method(text)) return *method;
-  throw ReadError(Diagnostic{{},
-                             fmt::format("--method {}", text),
-                             "triangles, gradient or paper",
-                             suggest(text, {"triangles", "gradient", "paper"})});
+patch::PatchMethod method_option(const std::string& text) {
+  if (const auto method = patch::parse_patch_method(text)) return *method;
+  throw text::ReadError(text::Diagnostic{{},
+                                         fmt::format("--method {}", text),
+                                         "triangles, gradient or paper",
+                                         text::suggest(text, {"triangles", "gradient", "paper"})});
 }
 
 namespace {
@@ -54,20 +54,20 @@ namespace {
 ExitStatus patch_or_refuse(const Session& session, const PatchRequest& request) {
   if (!request.output.empty()) check_output(request.output, ".toml");
   check_machine_request(request);
-  PatchOptions options;
+  patch::PatchOptions options;
   options.method = method_option(request.method);
   options.gain = gain_option("--gain", request.gain, "1");
   if (!request.bandwidth.empty()) options.bandwidth = gain_option("--bandwidth", request.bandwidth, "Hz");
   options.derivatives = request.derivatives;
   take_apart(request.triads, {options.method}, options.split, options.slower);
   options.force = request.force;
-  const Mechanism mechanism = read_mechanism(request.mechanism);
+  const mechanism::Mechanism mechanism = mechanism::read_mechanism(request.mechanism);
   if (!request.unit.empty()) options.unit = positive_option("--unit", request.unit, mechanism.length_unit);
   if (!request.period.empty()) options.period = positive_option("--period", request.period, "s");
-  const BlockLibrary library = session.blocks();
-  const JudgedPatch patched = judged_patch(mechanism, library, options);
+  const diagram::BlockLibrary library = session.blocks();
+  const commission::JudgedPatch patched = commission::judged_patch(mechanism, library, options);
   if (!request.machine.empty()) return patch_for_machine(library, request, mechanism, patched);
-  const std::string text = write_diagram(patched.diagram);
+  const std::string text = diagram::write_diagram(patched.diagram);
   if (request.output.empty()) {
     note(judgement_text(patched.judgement));
     print(text);
@@ -84,11 +84,11 @@ ExitStatus patch_or_refuse(const Session& session, const PatchRequest& request) 
 ExitStatus patch_mechanism(const Session& session, const PatchRequest& request) {
   try {
     return patch_or_refuse(session, request);
-  } catch (const PatchError& error) {
+  } catch (const patch::PatchError& error) {
     if (!error.can_be_forced()) throw;
-    Diagnostic refusal = error.diagnostics().front();
+    text::Diagnostic refusal = error.diagnostics().front();
     refusal.remedy += "; --force writes this one all the same";
-    throw PatchError(refusal, error.kind());
+    throw patch::PatchError(refusal, error.kind());
   }
 }
 

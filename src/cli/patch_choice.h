@@ -16,10 +16,10 @@ double positive_option(const std::string& option, const std::string& text, std::
 
 /// Lets a patch by one of these methods take triads apart as --split and --slower say. Throws ReadError where
 /// none of the methods does.
-void take_apart(const TriadChoice& choice, const std::vector<PatchMethod>& methods,
+void take_apart(const TriadChoice& choice, const std::vector<patch::PatchMethod>& methods,
                 std::vector<std::string>& split, std::optional<double>& slower);
 
 /// The patch that --method, --gain, --bandwidth, --split and --slower ask for. Throws ReadError.
-PatchOptions patch_options(const PatchChoice& choice);
+patch::PatchOptions patch_options(const PatchChoice& choice);
 
 }  // namespace oblique::cli

@@ -28,10 +28,10 @@ bool is_png(const std::string& path) {
 }
 
 [[noreturn]] void fail_without_folder() {
-  throw ReadError(Diagnostic{{},
-                             "no temporary folder could be made for the conversion to pixels",
-                             {},
-                             "set TMPDIR to a folder that you may write to"});
+  throw text::ReadError(text::Diagnostic{{},
+                                         "no temporary folder could be made for the conversion to pixels",
+                                         {},
+                                         "set TMPDIR to a folder that you may write to"});
 }
 
 std::string folder_pattern() {
@@ -66,7 +66,7 @@ class ScratchFolder {
 
  private:
   std::string name_, svg_, png_;
-  std::array<Leftover, 3> leftovers_;  ///< for signals
+  std::array<text::Leftover, 3> leftovers_;  ///< for signals
 };
 
 /// A word for the shell as it stands.
@@ -80,10 +80,11 @@ std::string quoted(const std::string& path) {
 bool succeeds(const std::string& command, const std::string& path) {
   const int status = std::system(command.c_str());
   if (status < 0) {
-    throw ReadError(Diagnostic{{path, {}},
-                               fmt::format("rsvg-convert could not be started: {}", std::strerror(errno)),
-                               {},
-                               "end other programs, or write an .svg"});
+    throw text::ReadError(
+        text::Diagnostic{{path, {}},
+                         fmt::format("rsvg-convert could not be started: {}", std::strerror(errno)),
+                         {},
+                         "end other programs, or write an .svg"});
   }
   end_as_ended(status);
   return status == 0;
@@ -98,7 +99,7 @@ void check_picture_output(const std::string& path) {
 
 void require_converter(const std::string& path) {
   if (succeeds("command -v rsvg-convert >/dev/null 2>&1", path)) return;
-  throw ReadError(Diagnostic{
+  throw text::ReadError(text::Diagnostic{
       {path, {}},
       fmt::format("a {} is made by rsvg-convert, which is not installed", is_png(path) ? "PNG" : "GIF"),
       {},
@@ -107,26 +108,29 @@ void require_converter(const std::string& path) {
 
 std::string png_of(std::string_view svg, const std::string& path) {
   const ScratchFolder folder;
-  NewFile file(folder.svg());
+  text::NewFile file(folder.svg());
   file.append(svg);
-  file.commit(NewFile::Lasting::no);
+  file.commit(text::NewFile::Lasting::no);
   if (!succeeds(fmt::format("rsvg-convert {} -o {}", quoted(folder.svg()), quoted(folder.png())), path)) {
-    throw ReadError(Diagnostic{{path, {}}, "rsvg-convert could not draw this", {}, "write an .svg"});
+    throw text::ReadError(
+        text::Diagnostic{{path, {}}, "rsvg-convert could not draw this", {}, "write an .svg"});
   }
-  return read_file(folder.png());
+  return text::read_file(folder.png());
 }
 
-void save_picture(const Picture& picture, const std::string& path, Theme theme) {
-  const std::string svg = to_svg(picture, theme);
+void save_picture(const draw::Picture& picture, const std::string& path, draw::Theme theme) {
+  const std::string svg = draw::to_svg(picture, theme);
   save(path, is_png(path) ? png_of(svg, path) : svg);
 }
 
-Theme theme_option(const std::string& text) {
-  if (text == "auto") return Theme::automatic;
-  if (text == "light") return Theme::light;
-  if (text == "dark") return Theme::dark;
-  throw ReadError(Diagnostic{
-      {}, fmt::format("--theme {}", text), "auto, light or dark", suggest(text, {"auto", "light", "dark"})});
+draw::Theme theme_option(const std::string& text) {
+  if (text == "auto") return draw::Theme::automatic;
+  if (text == "light") return draw::Theme::light;
+  if (text == "dark") return draw::Theme::dark;
+  throw text::ReadError(text::Diagnostic{{},
+                                         fmt::format("--theme {}", text),
+                                         "auto, light or dark",
+                                         text::suggest(text, {"auto", "light", "dark"})});
 }
 
 }  // namespace oblique::cli

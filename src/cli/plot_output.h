@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include <oblique/draw/chart.h>
-#include <oblique/draw/svg.h>
+#include <oblique/draw/chart/chart.h>
+#include <oblique/draw/picture/svg.h>
 
 namespace oblique::cli {
 
@@ -15,9 +15,9 @@ bool plots_in_terminal(const std::string& target);
 void check_plot(const std::string& target, const std::string& theme);
 
 /// The theme that --theme names; empty: not given. Throws ReadError.
-Theme plot_theme(const std::string& theme);
+draw::Theme plot_theme(const std::string& theme);
 
 /// Prints the chart in Braille, as wide as the terminal, or writes it as a picture.
-void plot(const Chart& chart, const std::string& target, Theme theme);
+void plot(const draw::Chart& chart, const std::string& target, draw::Theme theme);
 
 }  // namespace oblique::cli

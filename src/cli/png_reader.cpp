@@ -12,10 +12,10 @@
 
 namespace oblique::cli {
 
-Raster read_png(const std::string& bytes, const std::string& path) {
+draw::Raster read_png(const std::string& bytes, const std::string& path) {
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
-  Raster raster;
+  draw::Raster raster;
   std::vector<png_byte> dots;
   if (png_image_begin_read_from_memory(&image, bytes.data(), bytes.size()) != 0) {
     image.format = PNG_FORMAT_RGBA;
@@ -26,11 +26,11 @@ Raster read_png(const std::string& bytes, const std::string& path) {
   }
   if (PNG_IMAGE_FAILED(image)) {
     if (std::strstr(static_cast<const char*>(image.message), "memory") != nullptr) throw std::bad_alloc();
-    throw ReadError(
-        Diagnostic{{path, {}},
-                   fmt::format("a frame could not be read back: {}", static_cast<const char*>(image.message)),
-                   {},
-                   "write an .svg or .html"});
+    throw text::ReadError(text::Diagnostic{
+        {path, {}},
+        fmt::format("a frame could not be read back: {}", static_cast<const char*>(image.message)),
+        {},
+        "write an .svg or .html"});
   }
   constexpr std::size_t kSamples = 4;  // red, green, blue, and how opaque it is
   raster.pixels.reserve(dots.size() / kSamples);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/mechanism/model/read_mechanism.h>
 
 #include "command.h"
 #include "mechanism_report.h"
@@ -11,13 +11,13 @@
 namespace oblique::cli {
 ExitStatus report_mechanism(const Session& session, const ReportRequest& request) {
   check_output(request.output, ".html");
-  const Theme theme = theme_option(request.theme);
-  const BlockLibrary library = session.blocks();
-  const Mechanism mechanism = read_mechanism(request.mechanism);
+  const draw::Theme theme = theme_option(request.theme);
+  const diagram::BlockLibrary library = session.blocks();
+  const mechanism::Mechanism mechanism = mechanism::read_mechanism(request.mechanism);
   MechanismReport report{mechanism, library, {}, nullptr, {}};
   if (!request.machine.empty()) {
-    report.machine = find_machine(request.machine);
-    if (report.machine == nullptr) throw ReadError(unknown_machine(request.machine));
+    report.machine = diagram::find_machine(request.machine);
+    if (report.machine == nullptr) throw text::ReadError(diagram::unknown_machine(request.machine));
   }
   report.options = patch_options(request.patch);
   Progress progress("comparing");

@@ -3,10 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <oblique/network/program.h>
+#include <oblique/network/program/program.h>
 #include <oblique/solve/expectation_check.h>
+#include <oblique/solve/operating_point/static_test.h>
 #include <oblique/solve/run.h>
-#include <oblique/solve/static_test.h>
 
 #include "command.h"
 #include "output_files.h"
@@ -19,18 +19,18 @@
 namespace oblique::cli {
 namespace {
 
-ParameterOverride parse_override(const std::string& text) {
+diagram::ParameterOverride parse_override(const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0) {
-    throw ReadError(Diagnostic{{},
-                               fmt::format("--set {}: this sets nothing", text),
-                               "block.parameter=value",
-                               "for example --set c.gain=1e4"});
+    throw text::ReadError(text::Diagnostic{{},
+                                           fmt::format("--set {}: this sets nothing", text),
+                                           "block.parameter=value",
+                                           "for example --set c.gain=1e4"});
   }
   return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
-std::string table_of(const Trajectory& trajectory) {
+std::string table_of(const solve::Trajectory& trajectory) {
   constexpr std::size_t kMostRows = 21;
   constexpr std::size_t kColumnWidth = 14;
   const std::size_t shown = std::min(trajectory.columns().size(), columns_that_fit(kColumnWidth));
@@ -54,19 +54,19 @@ std::string table_of(const Trajectory& trajectory) {
   return text;
 }
 
-std::string table_of(const std::vector<EventRecord>& events, long count) {
+std::string table_of(const std::vector<solve::EventRecord>& events, long count) {
   Table table({"t [s]", "event"});
-  for (const EventRecord& event : events) table.add({fmt::format("{:.12g}", event.time), event.what});
+  for (const solve::EventRecord& event : events) table.add({fmt::format("{:.12g}", event.time), event.what});
   std::string text = "\n" + table.text();
   if (count > static_cast<long>(events.size()))
     text += fmt::format("({} more)\n", count - static_cast<long>(events.size()));
   return text;
 }
 
-ExitStatus report_expectations(const Diagram& diagram, const Run& run) {
+ExitStatus report_expectations(const diagram::Diagram& diagram, const solve::Run& run) {
   ExitStatus status = ExitStatus::done;
   print("\n");
-  for (const ExpectationResult& result : check_expectations(diagram, run)) {
+  for (const solve::ExpectationResult& result : solve::check_expectations(diagram, run)) {
     if (!result.met) status = ExitStatus::no;
     print(fmt::format("{}  {} = {}, expected {} ± {}\n", result.met ? "ok    " : "FAILED",
                       result.expectation.text, result.actual, result.expectation.value,
@@ -75,10 +75,10 @@ ExitStatus report_expectations(const Diagram& diagram, const Run& run) {
   return status;
 }
 
-std::string table_of(const std::vector<StaticReading>& readings) {
+std::string table_of(const std::vector<solve::StaticReading>& readings) {
   Table table({"element", "", "output", "d/dt"});
   table.add({"", "", "[machine unit]", "[machine unit/s]"});
-  for (const StaticReading& reading : readings) {
+  for (const solve::StaticReading& reading : readings) {
     const char* const kind = !reading.slope ? "" : reading.at_rest ? "brought to rest" : "state";
     table.add({reading.signal, kind, short_number(reading.output),
                reading.slope ? short_number(*reading.slope) : ""});
@@ -90,7 +90,7 @@ void check_request(const RunRequest& request) {
   const bool columns_are_drawn = !request.plot.empty();
   check_table_output(request.output, columns_are_drawn ? std::vector<std::string>{} : request.columns);
   if (request.plot.empty() && !request.against.empty())
-    throw ReadError(Diagnostic{{}, "--against is about a drawing", "--plot beside it", {}});
+    throw text::ReadError(text::Diagnostic{{}, "--against is about a drawing", "--plot beside it", {}});
   check_plot(request.plot, request.theme);
   if (!request.save.empty()) check_output(request.save, ".toml");
   if (!request.static_test) return;
@@ -105,25 +105,26 @@ void check_request(const RunRequest& request) {
                             : !request.plot.empty()    ? "--plot"
                                                        : nullptr;
   if (other == nullptr) return;
-  throw ReadError(Diagnostic{{},
-                             fmt::format("--static-test runs nothing, so {} has nothing to work on", other),
-                             "one of the two",
-                             {}});
+  throw text::ReadError(
+      text::Diagnostic{{},
+                       fmt::format("--static-test runs nothing, so {} has nothing to work on", other),
+                       "one of the two",
+                       {}});
 }
 
 /// The estimate of --trust, as remarks.
-std::string trust_text(const Trust& trust) {
+std::string trust_text(const solve::Trust& trust) {
   if (trust.checks.empty())
     return fmt::format("trust: no estimate of the errors: {}\n",
                        trust.failure.empty() ? "interrupted" : trust.failure);
   std::string text = "trust: errors of the outputs, from";
   for (std::size_t k = 0; k < trust.checks.size(); ++k) {
-    const Trust::Check& check = trust.checks[k];
+    const solve::Trust::Check& check = trust.checks[k];
     text += fmt::format("{} a run at a tolerance of {:.3g} by {}", k == 0 ? "" : " and", check.tolerance,
-                        method_name(check.method));
+                        diagram::method_name(check.method));
   }
   Table table({"output", "size", "largest error", "digits", "digits at the end", "no digit from [s]"});
-  for (const OutputError& output : trust.outputs) {
+  for (const solve::OutputError& output : trust.outputs) {
     table.add({output.name, short_number(output.size), fmt::format("{:.1e}", output.largest),
                fmt::format("{}", output.digits(output.largest)),
                fmt::format("{}", output.digits(output.at_end)),
@@ -140,8 +141,8 @@ std::string trust_text(const Trust& trust) {
   return text;
 }
 
-void note_overloads(const Program& program, const Run& run) {
-  for (const OverloadRecord& o : run.overloads) {
+void note_overloads(const network::Program& program, const solve::Run& run) {
+  for (const solve::OverloadRecord& o : run.overloads) {
     const std::string& name = program.signal_names()[o.signal];
     if (run.halted) {
       note(fmt::format("overload: '{}' leaves ±1 machine unit at t = {:.10g} s; the run ends there\n", name,
@@ -157,51 +158,53 @@ void note_overloads(const Program& program, const Run& run) {
 
 ExitStatus run_diagram(const Session& session, const RunRequest& request) {
   check_request(request);
-  const BlockLibrary library = session.blocks();
-  Diagram diagram = read_diagram(request.diagram);
+  const diagram::BlockLibrary library = session.blocks();
+  diagram::Diagram diagram = diagram::read_diagram(request.diagram);
   if (!request.until.empty()) diagram.run.until = quantity_option("--until", request.until, "s");
   if (!(diagram.run.until > 0 && std::isfinite(diagram.run.until))) {
-    throw ReadError(Diagnostic{{},
-                               fmt::format("the run would end at t = {} s", diagram.run.until),
-                               "a finite time above 0",
-                               "give --until, or 'until' in [run]"});
+    throw text::ReadError(text::Diagnostic{{},
+                                           fmt::format("the run would end at t = {} s", diagram.run.until),
+                                           "a finite time above 0",
+                                           "give --until, or 'until' in [run]"});
   }
   if (request.check && diagram.expectations.empty()) {
-    throw DiagramError(
-        Diagnostic{{diagram.file, {}},
-                   "there is nothing to check: the diagram has no [expect]",
-                   R"([expect] with lines such as "side at pi" = { value = 0.7, within = 1e-4 })",
-                   {}});
+    throw diagram::DiagramError(
+        text::Diagnostic{{diagram.file, {}},
+                         "there is nothing to check: the diagram has no [expect]",
+                         R"([expect] with lines such as "side at pi" = { value = 0.7, within = 1e-4 })",
+                         {}});
   }
-  std::vector<ParameterOverride> overrides;
+  std::vector<diagram::ParameterOverride> overrides;
   for (const std::string& text : request.settings) overrides.push_back(parse_override(text));
 
-  const FlatDiagram flat = flatten(diagram, library, overrides);
-  const ColumnChoice choice(output_columns(flat), request.columns);
+  const diagram::FlatDiagram flat = diagram::flatten(diagram, library, overrides);
+  const ColumnChoice choice(solve::output_columns(flat), request.columns);
   std::optional<DrawnColumns> drawn;
-  if (!request.plot.empty()) drawn = drawn_columns(output_columns(flat), {request.columns, request.against});
-  const Program program(assemble(flat));
+  if (!request.plot.empty())
+    drawn = drawn_columns(solve::output_columns(flat), {request.columns, request.against});
+  const network::Program program(network::assemble(flat));
   if (request.static_test) {
-    print(table_of(static_test(program, diagram.file)));
+    print(table_of(solve::static_test(program, diagram.file)));
     return ExitStatus::done;
   }
-  RunOptions options = options_of(diagram.run);
+  solve::RunOptions options = solve::options_of(diagram.run);
   options.halt_on_overload = request.halt_on_overload;
   options.trust = request.trust;
   options.watch_overloads = diagram.machine.profile != "ideal";
   if (!request.from.empty()) {
-    options.from = parse_run_state(read_file(request.from), request.from);
+    options.from = solve::parse_run_state(text::read_file(request.from), request.from);
     if (!(options.until > options.from->time)) {
-      throw ReadError(Diagnostic{{request.from, {}},
-                                 fmt::format("the state is that of t = {} s, and the run ends at {} s",
-                                             options.from->time, options.until),
-                                 "a later end of the run",
-                                 "give a later --until"});
+      throw text::ReadError(
+          text::Diagnostic{{request.from, {}},
+                           fmt::format("the state is that of t = {} s, and the run ends at {} s",
+                                       options.from->time, options.until),
+                           "a later end of the run",
+                           "give a later --until"});
     }
   }
-  if (request.check) ask_for_expectations(diagram, options);
-  if (drawn) ask_for_curves(options, output_columns(flat).size());
-  Run result;
+  if (request.check) solve::ask_for_expectations(diagram, options);
+  if (drawn) ask_for_curves(options, solve::output_columns(flat).size());
+  solve::Run result;
   {
     Progress progress("running");
     std::optional<InterruptGuard> guard;
@@ -213,7 +216,7 @@ ExitStatus run_diagram(const Session& session, const RunRequest& request) {
       };
     }
     options.progress = [&](double fraction) { progress.show(fraction); };
-    result = run(program, flat, options);
+    result = solve::run(program, flat, options);
   }
   if (!plots_in_terminal(request.plot)) print(table_of(result.trajectory));
   if (drawn) {
@@ -230,27 +233,27 @@ ExitStatus run_diagram(const Session& session, const RunRequest& request) {
     table.add(result.trajectory.values());
     table.finish();
   }
-  if (!request.save.empty()) save(request.save, to_text(result.state));
+  if (!request.save.empty()) save(request.save, solve::to_text(result.state));
   if (result.state.time < options.until)
     note(fmt::format("interrupted at t = {:.6g} s\n", result.state.time));
-  const SolverStatistics& s = result.statistics;
+  const solve::SolverStatistics& s = result.statistics;
   note(fmt::format(
       "{}, {}; {} (relative tolerance {}), {:.3g} ms\n", count(program.n_states(), "state", "states"),
       count(program.loops().size(), "algebraic loop", "algebraic loops"),
       count(static_cast<std::size_t>(s.steps), "step", "steps"), options.tolerance, 1e3 * result.seconds));
   if (program.n_states() > 0) {
-    note(fmt::format("method {}: {}\n", method_name(result.method.method), result.method.reason));
+    note(fmt::format("method {}: {}\n", diagram::method_name(result.method.method), result.method.reason));
   }
   if (result.event_count > 0 && !request.events) {
     note(fmt::format("{}; --events lists them\n",
                      count(static_cast<std::size_t>(result.event_count), "event", "events")));
   }
   constexpr double kCoarseForAdams = 1e-3;
-  if (result.method.method == IntegrationMethod::adams && options.tolerance > kCoarseForAdams) {
+  if (result.method.method == diagram::IntegrationMethod::adams && options.tolerance > kCoarseForAdams) {
     note(fmt::format("warning: at a tolerance of {} Adams lets oscillations grow; 1e-3 or less is safe\n",
                      options.tolerance));
   }
-  for (const Diagnostic& warning : result.warnings) note("warning: " + to_string(warning) + "\n");
+  for (const text::Diagnostic& warning : result.warnings) note("warning: " + text::to_string(warning) + "\n");
   note_overloads(program, result);
   if (result.trust) note(trust_text(*result.trust));
   if (result.halted) return ExitStatus::no;

@@ -11,24 +11,24 @@
 namespace oblique::cli {
 namespace {
 
-std::size_t column_named(const std::vector<TableColumn>& columns, const char* option,
+std::size_t column_named(const std::vector<text::TableColumn>& columns, const char* option,
                          const std::string& name) {
-  const auto found =
-      std::find_if(columns.begin(), columns.end(), [&](const TableColumn& c) { return c.name == name; });
+  const auto found = std::find_if(columns.begin(), columns.end(),
+                                  [&](const text::TableColumn& c) { return c.name == name; });
   if (found != columns.end()) return static_cast<std::size_t>(found - columns.begin());
   std::vector<std::string> known;
   known.reserve(columns.size());
-  for (const TableColumn& column : columns) known.push_back(column.name);
-  throw ReadError(
-      Diagnostic{{}, fmt::format("{}: there is no column '{}'", option, name), {}, suggest(name, known)});
+  for (const text::TableColumn& column : columns) known.push_back(column.name);
+  throw text::ReadError(text::Diagnostic{
+      {}, fmt::format("{}: there is no column '{}'", option, name), {}, text::suggest(name, known)});
 }
 
-Axis axis_of(const TableColumn& column) {
+draw::Axis axis_of(const text::TableColumn& column) {
   return {column.name, column.unit == "1" ? "" : column.unit};
 }
 
 /// A column of a run as it is drawn.
-std::vector<double> drawn_values(const Trajectory& trajectory, std::size_t column, double rounding) {
+std::vector<double> drawn_values(const solve::Trajectory& trajectory, std::size_t column, double rounding) {
   std::vector<double> values;
   for (std::size_t row = 0; row < trajectory.rows(); ++row) values.push_back(trajectory.at(row, column));
   const bool is_zero =
@@ -42,23 +42,23 @@ constexpr double kPathHeight = 480;
 
 }  // namespace
 
-DrawnColumns drawn_columns(const std::vector<TableColumn>& columns, const RunChartRequest& request) {
+DrawnColumns drawn_columns(const std::vector<text::TableColumn>& columns, const RunChartRequest& request) {
   DrawnColumns chosen;
   if (!request.against.empty()) chosen.against = column_named(columns, "--against", request.against);
   for (const std::string& name : request.columns) {
     const std::size_t column = column_named(columns, "--columns", name);
     if (column != chosen.against && column != 0) chosen.drawn.push_back(column);
   }
-  if (chosen.drawn.size() > kMostCurves) {
-    throw ReadError(Diagnostic{{},
-                               fmt::format("{} curves cannot be told apart", chosen.drawn.size()),
-                               fmt::format("at most {} in --columns", kMostCurves),
-                               {}});
+  if (chosen.drawn.size() > draw::kMostCurves) {
+    throw text::ReadError(text::Diagnostic{{},
+                                           fmt::format("{} curves cannot be told apart", chosen.drawn.size()),
+                                           fmt::format("at most {} in --columns", draw::kMostCurves),
+                                           {}});
   }
   if (request.columns.empty()) {
     for (std::size_t c = 1; c < columns.size(); ++c) {
       if (c == chosen.against) continue;
-      if (chosen.drawn.size() < kMostCurves) {
+      if (chosen.drawn.size() < draw::kMostCurves) {
         chosen.drawn.push_back(c);
       } else {
         ++chosen.left_out;
@@ -66,16 +66,16 @@ DrawnColumns drawn_columns(const std::vector<TableColumn>& columns, const RunCha
     }
   }
   if (chosen.drawn.empty()) {
-    throw ReadError(
-        Diagnostic{{},
-                   fmt::format("nothing is left to draw against '{}'", columns[chosen.against].name),
-                   "other columns in --columns",
-                   {}});
+    throw text::ReadError(
+        text::Diagnostic{{},
+                         fmt::format("nothing is left to draw against '{}'", columns[chosen.against].name),
+                         "other columns in --columns",
+                         {}});
   }
   return chosen;
 }
 
-void ask_for_curves(RunOptions& options, std::size_t n_columns) {
+void ask_for_curves(solve::RunOptions& options, std::size_t n_columns) {
   constexpr std::size_t kMostRows = 20'000, kMostNumbers = 4'000'000;
   const std::size_t rows = std::min(kMostRows, kMostNumbers / n_columns);
   if (rows <= static_cast<std::size_t>(options.samples)) return;
@@ -89,36 +89,36 @@ void ask_for_curves(RunOptions& options, std::size_t n_columns) {
                             options.extra_times.end());
 }
 
-std::vector<double> rounding_of(const FlatDiagram& diagram, const RunOptions& options) {
+std::vector<double> rounding_of(const diagram::FlatDiagram& diagram, const solve::RunOptions& options) {
   constexpr double kOfUnit = 1e-15;
   const double of_unit = std::min(kOfUnit, options.absolute_tolerance.value_or(kOfUnit));
   std::vector<double> rounding{0};  // of the time
-  for (const FlatOutput& output : diagram.outputs)
+  for (const diagram::FlatOutput& output : diagram.outputs)
     rounding.push_back(of_unit * std::max(std::abs(output.scale), std::abs(output.offset)));
   return rounding;
 }
 
-Chart chart_of(const Run& run, const std::vector<double>& rounding, const DrawnColumns& columns,
-               const std::string& title) {
-  const Trajectory& trajectory = run.extra.rows() > run.trajectory.rows() ? run.extra : run.trajectory;
-  Chart chart;
+draw::Chart chart_of(const solve::Run& run, const std::vector<double>& rounding, const DrawnColumns& columns,
+                     const std::string& title) {
+  const solve::Trajectory& trajectory = run.extra.rows() > run.trajectory.rows() ? run.extra : run.trajectory;
+  draw::Chart chart;
   chart.title = title;
-  const TableColumn& x = trajectory.columns()[columns.against];
+  const text::TableColumn& x = trajectory.columns()[columns.against];
   const std::vector<double> xs = drawn_values(trajectory, columns.against, rounding[columns.against]);
   for (const std::size_t c : columns.drawn) {
-    const Axis axis = axis_of(trajectory.columns()[c]);
+    const draw::Axis axis = axis_of(trajectory.columns()[c]);
     auto panel = std::find_if(chart.panels.begin(), chart.panels.end(),
-                              [&](const Panel& other) { return other.y.unit == axis.unit; });
+                              [&](const draw::Panel& other) { return other.y.unit == axis.unit; });
     if (panel == chart.panels.end()) {
       chart.panels.push_back({axis_of(x), {"", axis.unit}, {}});
       panel = chart.panels.end() - 1;
     }
-    Curve curve{axis.name, {}, panel->curves.size()};
+    draw::Curve curve{axis.name, {}, panel->curves.size()};
     const std::vector<double> ys = drawn_values(trajectory, c, rounding[c]);
     for (std::size_t row = 0; row < xs.size(); ++row) curve.points.emplace_back(xs[row], ys[row]);
     panel->curves.push_back(std::move(curve));
   }
-  for (Panel& panel : chart.panels) {
+  for (draw::Panel& panel : chart.panels) {
     if (panel.curves.size() == 1) {  // the axis has its name
       panel.y.name = panel.curves.front().name;
       panel.curves.front().name.clear();

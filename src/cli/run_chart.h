@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <oblique/draw/chart.h>
+#include <oblique/draw/chart/chart.h>
 #include <oblique/solve/run.h>
 
 namespace oblique::cli {
@@ -24,18 +24,18 @@ struct DrawnColumns {
 };
 
 /// Throws ReadError for a name that is no column, for too many, and where nothing is left to draw.
-DrawnColumns drawn_columns(const std::vector<TableColumn>& columns, const RunChartRequest& request);
+DrawnColumns drawn_columns(const std::vector<text::TableColumn>& columns, const RunChartRequest& request);
 
 /// Asks a run for as many further rows as make its curves smooth, where its own would be too few.
-void ask_for_curves(RunOptions& options, std::size_t n_columns);
+void ask_for_curves(solve::RunOptions& options, std::size_t n_columns);
 
 /// What is 0 to rounding in each column of `output_columns`, in its unit: less than a few units in the last
 /// place of 1 machine unit, or than the absolute tolerance where that is finer.
-std::vector<double> rounding_of(const FlatDiagram& diagram, const RunOptions& options);
+std::vector<double> rounding_of(const diagram::FlatDiagram& diagram, const solve::RunOptions& options);
 
 /// A panel for each unit, one above the other; a column that never exceeds its `rounding` is drawn as 0.
 /// Drawn against another column than the time one panel has equal scales where both axes have one unit.
-Chart chart_of(const Run& run, const std::vector<double>& rounding, const DrawnColumns& columns,
-               const std::string& title);
+draw::Chart chart_of(const solve::Run& run, const std::vector<double>& rounding, const DrawnColumns& columns,
+                     const std::string& title);
 
 }  // namespace oblique::cli

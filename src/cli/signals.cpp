@@ -23,7 +23,7 @@ void end_in_order(int number) {
     static_cast<void>(!write(STDERR_FILENO, kText.data(), kText.size()));
     return;
   }
-  clear_away_leftovers();
+  text::clear_away_leftovers();
   std::signal(number, SIG_DFL);
   std::raise(number);
 }

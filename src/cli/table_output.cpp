@@ -13,14 +13,14 @@
 namespace oblique::cli {
 
 void check_table_output(const std::string& file, const std::vector<std::string>& columns) {
-  if (!file.empty()) check_output(file, kTableEndings);
+  if (!file.empty()) check_output(file, text::kTableEndings);
   if (file.empty() && !columns.empty()) {
-    throw ReadError(
-        Diagnostic{{}, "--columns chooses what a file holds, and there is none", "-o FILE beside it", {}});
+    throw text::ReadError(text::Diagnostic{
+        {}, "--columns chooses what a file holds, and there is none", "-o FILE beside it", {}});
   }
 }
 
-ColumnChoice::ColumnChoice(std::vector<TableColumn> all, const std::vector<std::string>& names)
+ColumnChoice::ColumnChoice(std::vector<text::TableColumn> all, const std::vector<std::string>& names)
     : width_(all.size()) {
   if (names.empty()) {
     columns_ = std::move(all);
@@ -28,13 +28,13 @@ ColumnChoice::ColumnChoice(std::vector<TableColumn> all, const std::vector<std::
   }
   for (const std::string& name : names) {
     const auto found =
-        std::find_if(all.begin(), all.end(), [&](const TableColumn& c) { return c.name == name; });
+        std::find_if(all.begin(), all.end(), [&](const text::TableColumn& c) { return c.name == name; });
     if (found == all.end()) {
       std::vector<std::string> known;
       known.reserve(all.size());
-      for (const TableColumn& column : all) known.push_back(column.name);
-      throw ReadError(
-          Diagnostic{{}, fmt::format("--columns: there is no column '{}'", name), {}, suggest(name, known)});
+      for (const text::TableColumn& column : all) known.push_back(column.name);
+      throw text::ReadError(text::Diagnostic{
+          {}, fmt::format("--columns: there is no column '{}'", name), {}, text::suggest(name, known)});
     }
     columns_.push_back(*found);
     indices_.push_back(static_cast<std::size_t>(found - all.begin()));

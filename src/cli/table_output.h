@@ -19,16 +19,16 @@ class ColumnChoice {
  public:
   /// Those of `all` with these `names`; all of them where none is named. Throws ReadError for a name that is
   /// not among them.
-  ColumnChoice(std::vector<TableColumn> all, const std::vector<std::string>& names);
+  ColumnChoice(std::vector<text::TableColumn> all, const std::vector<std::string>& names);
 
-  const std::vector<TableColumn>& columns() const { return columns_; }
+  const std::vector<text::TableColumn>& columns() const { return columns_; }
   /// Where they stand in a row of the whole table; empty: all of them, as they stand there.
   const std::vector<std::size_t>& indices() const { return indices_; }
   /// Columns of the whole table.
   std::size_t width() const { return width_; }
 
  private:
-  std::vector<TableColumn> columns_;
+  std::vector<text::TableColumn> columns_;
   std::vector<std::size_t> indices_;
   std::size_t width_;
 };
@@ -46,7 +46,7 @@ class TableOutput {
  private:
   std::filesystem::path path_;
   const ColumnChoice& choice_;
-  TableFile file_;
+  text::TableFile file_;
   std::vector<double> row_;
 };
 

@@ -86,7 +86,7 @@ std::string short_number(double value, double scale) {
 }
 
 void print(std::string_view text) {
-  print_coloured(is_visible(text) ? std::string(text) : visible(text));
+  print_coloured(text::is_visible(text) ? std::string(text) : text::visible(text));
 }
 
 void print_coloured(std::string_view text) {
@@ -111,10 +111,10 @@ std::string count(std::size_t n, std::string_view one, std::string_view many) {
 }
 
 void note(std::string_view text) {
-  if (is_visible(text)) {
+  if (text::is_visible(text)) {
     write_note(text);
   } else {
-    write_note(visible(text));
+    write_note(text::visible(text));
   }
 }
 
@@ -144,10 +144,10 @@ void Progress::show(double fraction) {
 
 double quantity_option(const std::string& option, const std::string& text, std::string_view unit) {
   try {
-    return parse_quantity(text, parse_unit(unit).value());
-  } catch (const ExpressionError& error) {
-    throw ReadError(
-        Diagnostic{{}, fmt::format("{} {}: {}", option, text, error.what), error.expected, error.remedy});
+    return text::parse_quantity(text, text::parse_unit(unit).value());
+  } catch (const text::ExpressionError& error) {
+    throw text::ReadError(text::Diagnostic{
+        {}, fmt::format("{} {}: {}", option, text, error.what), error.expected, error.remedy});
   }
 }
 

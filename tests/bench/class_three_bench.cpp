@@ -12,8 +12,8 @@
 int main(int argc, char** argv) {
   using namespace oblique;
   const long wanted = argc > 1 ? std::strtol(argv[1], nullptr, 10) : 1000;
-  const BlockLibrary library = BlockLibrary::shipped();
-  for (const PatchMethod method : {PatchMethod::triangles, PatchMethod::gradient}) {
+  const diagram::BlockLibrary library = diagram::BlockLibrary::shipped();
+  for (const patch::PatchMethod method : {patch::PatchMethod::triangles, patch::PatchMethod::gradient}) {
     const auto begin = std::chrono::steady_clock::now();
     long tracked = 0;
     double worst = 0;
@@ -24,14 +24,14 @@ int main(int argc, char** argv) {
         ++tracked;
         worst = std::max(worst, result.error);
       } else {
-        fmt::print("  seed {}, {}: {} (split {})\n", seed, method_name(method), result.explanation,
+        fmt::print("  seed {}, {}: {} (split {})\n", seed, patch::method_name(method), result.explanation,
                    result.split);
       }
     }
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     fmt::print(
         "class III by {}: {} of {} tracked at gain 1e4, errors up to {:.2g} of the largest link; {:.1f} s\n",
-        method_name(method), tracked, wanted, worst, seconds);
+        patch::method_name(method), tracked, wanted, worst, seconds);
   }
   return 0;
 }

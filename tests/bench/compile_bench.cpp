@@ -13,18 +13,18 @@ namespace oblique::bench {
 namespace {
 
 void compile(benchmark::State& state, const std::string& text, const std::string& what) {
-  const BlockLibrary library = BlockLibrary::shipped();
+  const diagram::BlockLibrary library = diagram::BlockLibrary::shipped();
   std::vector<double> parse_times, flatten_times, assemble_times, program_times, totals;
   std::size_t blocks = 0, instructions = 0;
   for (auto _ : state) {
     const double begin = cpu_seconds();
-    const Diagram diagram = parse_diagram(text, "bench");
+    const diagram::Diagram diagram = diagram::parse_diagram(text, "bench");
     const double parsed = cpu_seconds();
-    const FlatDiagram flat = flatten(diagram, library);
+    const diagram::FlatDiagram flat = diagram::flatten(diagram, library);
     const double flattened = cpu_seconds();
-    Network network = assemble(flat);
+    network::Network network = network::assemble(flat);
     const double assembled = cpu_seconds();
-    const Program program(std::move(network));
+    const network::Program program(std::move(network));
     const double compiled = cpu_seconds();
     state.SetIterationTime(compiled - begin);
     parse_times.push_back(parsed - begin);

@@ -54,7 +54,7 @@ std::string dyad_row_text(int n) {
 
 TimedRun timed_run(const CompiledDiagram& diagram) {
   TimedRun timed;
-  RunOptions options = diagram.options;
+  solve::RunOptions options = diagram.options;
   // The first row of the grid is taken when the loops have come to rest and nothing has been integrated.
   bool started = false;
   double start = 0;
@@ -63,7 +63,7 @@ TimedRun timed_run(const CompiledDiagram& diagram) {
     started = true;
   };
   const double begin = cpu_seconds();
-  timed.run = run(diagram.program, diagram.flat, options);
+  timed.run = solve::run(diagram.program, diagram.flat, options);
   timed.integration = cpu_seconds() - start;
   timed.rest = start - begin;
   return timed;

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include <oblique/diagram/flat_diagram.h>
-#include <oblique/network/program.h>
+#include <oblique/network/program/program.h>
 #include <oblique/solve/run.h>
 
 namespace oblique::bench {
@@ -25,17 +25,19 @@ std::string dyad_row_text(int n);
 
 /// A diagram with all that `run` needs. `library` must outlive it.
 struct CompiledDiagram {
-  CompiledDiagram(const Diagram& diagram, const BlockLibrary& library)
-      : flat(flatten(diagram, library)), program(assemble(flat)), options(options_of(diagram.run)) {}
+  CompiledDiagram(const diagram::Diagram& diagram, const diagram::BlockLibrary& library)
+      : flat(diagram::flatten(diagram, library)),
+        program(network::assemble(flat)),
+        options(solve::options_of(diagram.run)) {}
 
-  FlatDiagram flat;
-  Program program;
-  RunOptions options;
+  diagram::FlatDiagram flat;
+  network::Program program;
+  solve::RunOptions options;
 };
 
 /// A run and the CPU time of its parts [s].
 struct TimedRun {
-  Run run;
+  solve::Run run;
   double rest = 0;         ///< to bring the servo loops to rest
   double integration = 0;  ///< all that comes after it: integration and sampling
 };

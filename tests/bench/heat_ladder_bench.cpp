@@ -86,11 +86,11 @@ BENCHMARK(heat_ladder)->Name("heat_ladder")->UseManualTime()->Unit(benchmark::kM
 std::optional<int> heat_ladder_child(int argc, char** argv) {
   const std::string_view option = argc == 2 ? argv[1] : "";
   if (!option.starts_with(kOption)) return std::nullopt;
-  const BlockLibrary library = BlockLibrary::shipped();
-  const Diagram diagram =
-      parse_diagram(heat_ladder_text(std::atoi(option.substr(kOption.size()).data())), "heat-ladder");
+  const diagram::BlockLibrary library = diagram::BlockLibrary::shipped();
+  const diagram::Diagram diagram = diagram::parse_diagram(
+      heat_ladder_text(std::atoi(option.substr(kOption.size()).data())), "heat-ladder");
   const CompiledDiagram compiled(diagram, library);
-  const Run result = run(compiled.program, compiled.flat, compiled.options);
+  const solve::Run result = solve::run(compiled.program, compiled.flat, compiled.options);
   // The rod has settled near its hot end: T1 is near 1.
   return result.trajectory.at(10, 1) > 0.9 ? 0 : 1;
 }

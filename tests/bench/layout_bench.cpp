@@ -8,7 +8,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include <oblique/draw/diagram_drawing.h>
+#include <oblique/draw/schematic/diagram_drawing.h>
 
 #include "figures.h"
 
@@ -31,12 +31,12 @@ std::string large_diagram() {
 }
 
 void draw_large_diagram(benchmark::State& state) {
-  const BlockLibrary library = BlockLibrary::shipped();
-  const Diagram diagram = parse_diagram(large_diagram(), "bench");
+  const diagram::BlockLibrary library = diagram::BlockLibrary::shipped();
+  const diagram::Diagram diagram = diagram::parse_diagram(large_diagram(), "bench");
   std::vector<double> times;
   for (auto _ : state) {
     const double begin = cpu_seconds();
-    benchmark::DoNotOptimize(draw_diagram(diagram, library));
+    benchmark::DoNotOptimize(draw::draw_diagram(diagram, library));
     times.push_back(cpu_seconds() - begin);
     state.SetIterationTime(times.back());
   }
@@ -44,15 +44,15 @@ void draw_large_diagram(benchmark::State& state) {
 }
 
 void shipped_diagrams(benchmark::State& state) {
-  const BlockLibrary library = BlockLibrary::shipped();
-  LayoutQuality all;
+  const diagram::BlockLibrary library = diagram::BlockLibrary::shipped();
+  draw::LayoutQuality all;
   for (auto _ : state) {
     all = {};
     for (const char* const folder : {"lessons", "historical"}) {
       const auto path = std::filesystem::path(OBLIQUE_SOURCE_DIR) / "diagrams" / folder;
       for (const auto& entry : std::filesystem::directory_iterator(path)) {
         if (entry.path().extension() != ".toml") continue;
-        const LayoutQuality one = drawing_quality(read_diagram(entry.path()), library);
+        const draw::LayoutQuality one = draw::drawing_quality(diagram::read_diagram(entry.path()), library);
         all.crossings += one.crossings;
         all.bends += one.bends;
       }

@@ -9,7 +9,7 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
-#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/mechanism/model/read_mechanism.h>
 #include <oblique/patch/patch.h>
 
 #include "diagrams.h"
@@ -103,7 +103,7 @@ double largest_error(const std::vector<double>& values, const std::vector<double
   return largest;
 }
 
-std::vector<double> values_of(const Trajectory& ours, const std::vector<std::string>& points) {
+std::vector<double> values_of(const solve::Trajectory& ours, const std::vector<std::string>& points) {
   std::vector<std::size_t> columns{0};
   for (const std::string& point : points) {
     columns.push_back(ours.find(point + ".x").value());
@@ -117,29 +117,29 @@ std::vector<double> values_of(const Trajectory& ours, const std::vector<std::str
 }
 
 void linkage(benchmark::State& state, const Case& chosen) {
-  const Mechanism mechanism =
-      read_mechanism(fmt::format("{}/diagrams/mechanisms/{}.toml", OBLIQUE_SOURCE_DIR, chosen.file));
-  const BlockLibrary library = BlockLibrary::shipped();
+  const mechanism::Mechanism mechanism = mechanism::read_mechanism(
+      fmt::format("{}/diagrams/mechanisms/{}.toml", OBLIQUE_SOURCE_DIR, chosen.file));
+  const diagram::BlockLibrary library = diagram::BlockLibrary::shipped();
   const double before = cpu_seconds();
-  const Diagram diagram = patch_triangles(mechanism);
+  const diagram::Diagram diagram = patch::patch_triangles(mechanism);
   const double patched = cpu_seconds();
   CompiledDiagram compiled(diagram, library);
   const double compile_time = cpu_seconds() - patched;
   HandSettings settings;
-  settings.gain = PatchOptions{}.gain;
-  settings.bandwidth = default_bandwidth(mechanism);
+  settings.gain = patch::PatchOptions{}.gain;
+  settings.bandwidth = patch::default_bandwidth(mechanism);
   settings.crank_speed = chosen.crank_speed;
   settings.scale = chosen.metres;
   settings.until = diagram.run.until;
   settings.tolerance = diagram.run.tolerance;
-  settings.absolute_tolerance = kAbsoluteTolerance * diagram.run.tolerance;
+  settings.absolute_tolerance = solve::kAbsoluteTolerance * diagram.run.tolerance;
   settings.samples = diagram.run.samples;
   // Both begin where ours comes to rest.
   std::vector<double> start;
   compiled.options.on_sample = [&](double, std::span<const double> states, std::span<const double>) {
     if (start.empty()) start.assign(states.begin(), states.end());
   };
-  const Run first = run(compiled.program, compiled.flat, compiled.options);
+  const solve::Run first = solve::run(compiled.program, compiled.flat, compiled.options);
   compiled.options.on_sample = nullptr;
   const auto by_hand_to = [&](double tolerance) {
     HandSettings with = settings;

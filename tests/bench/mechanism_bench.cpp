@@ -8,9 +8,9 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
-#include <oblique/mechanism/kinematics.h>
-#include <oblique/mechanism/motion.h>
-#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/mechanism/model/read_mechanism.h>
+#include <oblique/mechanism/motion/motion.h>
+#include <oblique/mechanism/solver/kinematics.h>
 
 #include "figures.h"
 
@@ -97,26 +97,28 @@ struct Leg {
   }
 };
 
-Mechanism one_leg() {
-  Mechanism both = read_mechanism(OBLIQUE_SOURCE_DIR "/diagrams/mechanisms/jansen.toml");
-  std::erase_if(both.bodies, [](const Body& body) { return body.name.ends_with("2"); });
+mechanism::Mechanism one_leg() {
+  mechanism::Mechanism both =
+      mechanism::read_mechanism(OBLIQUE_SOURCE_DIR "/diagrams/mechanisms/jansen.toml");
+  std::erase_if(both.bodies, [](const mechanism::Body& body) { return body.name.ends_with("2"); });
   std::erase_if(both.bodies.front().points,
-                [&](const BodyPoint& p) { return both.points[p.point].name == "Q1"; });
-  std::erase_if(both.sketch, [&](const SketchPoint& p) { return both.points[p.point].name[0] == 'Q'; });
-  std::erase_if(both.points, [](const Point& p) { return p.name[0] == 'Q'; });
+                [&](const mechanism::BodyPoint& p) { return both.points[p.point].name == "Q1"; });
+  std::erase_if(both.sketch,
+                [&](const mechanism::SketchPoint& p) { return both.points[p.point].name[0] == 'Q'; });
+  std::erase_if(both.points, [](const mechanism::Point& p) { return p.name[0] == 'Q'; });
   // the second leg's points stand behind the first's, but for Q1, which the crank names
-  for (Body& body : both.bodies) {
-    for (BodyPoint& p : body.points) p.point -= p.point > 3 ? 1 : 0;
+  for (mechanism::Body& body : both.bodies) {
+    for (mechanism::BodyPoint& p : body.points) p.point -= p.point > 3 ? 1 : 0;
   }
-  for (SketchPoint& p : both.sketch) p.point -= p.point > 3 ? 1 : 0;
+  for (mechanism::SketchPoint& p : both.sketch) p.point -= p.point > 3 ? 1 : 0;
   return both;
 }
 
 void jansen(benchmark::State& state) {
-  const Mechanism mechanism = one_leg();
-  const Structure structure = decompose(mechanism);
-  Kinematics kinematics(mechanism, structure);
-  Configuration here = start_configuration(mechanism, structure);
+  const mechanism::Mechanism mechanism = one_leg();
+  const mechanism::Structure structure = mechanism::decompose(mechanism);
+  mechanism::Kinematics kinematics(mechanism, structure);
+  mechanism::Configuration here = mechanism::start_configuration(mechanism, structure);
   const double speed = mechanism.drives.front().speed;
   const Leg leg;
   std::array<std::size_t, 6> points{};
@@ -126,10 +128,10 @@ void jansen(benchmark::State& state) {
 
   double worst = 0;
   for (int k = 0; k < kPoses; k += 97) {
-    kinematics.place(std::array{DriveState{angle_of(k), speed, 0}}, here);
+    kinematics.place(std::array{mechanism::DriveState{angle_of(k), speed, 0}}, here);
     const auto hand = leg.at(angle_of(k), speed);
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const PointState& p = here.points[points[i]];
+      const mechanism::PointState& p = here.points[points[i]];
       worst = std::max({worst, std::abs(p.position.x() - hand[i].x), std::abs(p.position.y() - hand[i].y),
                         std::abs(p.acceleration.x() - hand[i].ax) / (speed * speed),
                         std::abs(p.acceleration.y() - hand[i].ay) / (speed * speed)});
@@ -143,7 +145,7 @@ void jansen(benchmark::State& state) {
   for (auto _ : state) {
     const double begin = cpu_seconds();
     for (int k = 0; k < kPoses; ++k) {
-      kinematics.place(std::array{DriveState{angle_of(k), speed, 0}}, here);
+      kinematics.place(std::array{mechanism::DriveState{angle_of(k), speed, 0}}, here);
       benchmark::DoNotOptimize(here.points.data());
       benchmark::ClobberMemory();
     }
@@ -167,16 +169,17 @@ void jansen(benchmark::State& state) {
 }
 
 void class_three(benchmark::State& state) {
-  const Mechanism mechanism = read_mechanism(OBLIQUE_SOURCE_DIR "/diagrams/mechanisms/class-iii.toml");
-  const Structure structure = decompose(mechanism);
-  Kinematics kinematics(mechanism, structure);
-  Configuration here = start_configuration(mechanism, structure);
+  const mechanism::Mechanism mechanism =
+      mechanism::read_mechanism(OBLIQUE_SOURCE_DIR "/diagrams/mechanisms/class-iii.toml");
+  const mechanism::Structure structure = mechanism::decompose(mechanism);
+  mechanism::Kinematics kinematics(mechanism, structure);
+  mechanism::Configuration here = mechanism::start_configuration(mechanism, structure);
   const double speed = mechanism.drives.front().speed;
   std::vector<double> times;
   for (auto _ : state) {
     const double begin = cpu_seconds();
     for (int k = 0; k < kPoses; ++k) {
-      kinematics.place(std::array{DriveState{2 * std::numbers::pi * k / kPoses, speed, 0}}, here);
+      kinematics.place(std::array{mechanism::DriveState{2 * std::numbers::pi * k / kPoses, speed, 0}}, here);
       benchmark::DoNotOptimize(here.points.data());
     }
     times.push_back((cpu_seconds() - begin) / kPoses);

@@ -3,7 +3,7 @@
 #include <benchmark/benchmark.h>
 
 #include <oblique/compare/monte_carlo.h>
-#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/mechanism/model/read_mechanism.h>
 #include <oblique/patch/patch.h>
 
 #include "figures.h"
@@ -13,16 +13,17 @@ namespace {
 
 void monte_carlo_four_bar(benchmark::State& state) {
   constexpr int kRuns = 1000, kPromised = 10'000, kThreads = 2;
-  const Mechanism mechanism = read_mechanism(OBLIQUE_SOURCE_DIR "/diagrams/mechanisms/four-bar.toml");
-  const BlockLibrary library = BlockLibrary::shipped();
-  const Diagram diagram = patch_triangles(mechanism);
-  MonteCarloOptions options;
-  options.scatters = scatters_of_tolerance(library, 1e-3);
+  const mechanism::Mechanism mechanism =
+      mechanism::read_mechanism(OBLIQUE_SOURCE_DIR "/diagrams/mechanisms/four-bar.toml");
+  const diagram::BlockLibrary library = diagram::BlockLibrary::shipped();
+  const diagram::Diagram diagram = patch::patch_triangles(mechanism);
+  compare::MonteCarloOptions options;
+  options.scatters = compare::scatters_of_tolerance(library, 1e-3);
   options.runs = kRuns;
   std::vector<double> seconds;
   for (auto _ : state) {
     const double before = cpu_seconds();
-    const MonteCarlo result = monte_carlo(mechanism, diagram, library, options);
+    const compare::MonteCarlo result = compare::monte_carlo(mechanism, diagram, library, options);
     seconds.push_back(cpu_seconds() - before);
     state.SetIterationTime(seconds.back());
     if (!result.failures.empty()) state.SkipWithError(result.failures.front().message.c_str());

@@ -26,10 +26,10 @@ constexpr int kShortest[] = {1, 4};  // from which the fixed cost of a step is t
 constexpr int kLengths[] = {10, 100, 1000, 10'000, 100'000};
 
 void servo_chain(benchmark::State& state) {
-  const BlockLibrary library = BlockLibrary::shipped();
+  const diagram::BlockLibrary library = diagram::BlockLibrary::shipped();
   std::vector<Chain> chains;
   const auto add = [&](int n) {
-    const Diagram diagram = parse_diagram(servo_chain_text(n), "servo-chain");
+    const diagram::Diagram diagram = diagram::parse_diagram(servo_chain_text(n), "servo-chain");
     chains.push_back({n, std::make_unique<CompiledDiagram>(diagram, library), {}, 0, 0});
   };
   for (const int n : kShortest) add(n);

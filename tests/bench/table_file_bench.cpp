@@ -53,10 +53,10 @@ struct Written {
 /// The same by a TableFile, row by row.
 Written time_table(const std::string& ending, std::size_t rows, const std::vector<double>& block) {
   const std::filesystem::path path = scratch_file(ending);
-  std::vector<TableColumn> columns;
+  std::vector<text::TableColumn> columns;
   for (std::size_t c = 0; c < kColumns; ++c) columns.push_back({fmt::format("P{}.x", c), "mm"});
   const double begin = cpu_seconds();
-  TableFile file(path, std::move(columns), rows);
+  text::TableFile file(path, std::move(columns), rows);
   for (std::size_t r = 0; r < rows; ++r)
     file.add(std::span(block).subspan(r % kBlockRows * kColumns, kColumns));
   file.finish();

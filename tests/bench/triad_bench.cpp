@@ -13,7 +13,7 @@
 
 #include <Eigen/Eigenvalues>
 
-#include <oblique/mechanism/triad.h>
+#include <oblique/mechanism/triad/triad.h>
 
 #include "figures.h"
 
@@ -22,7 +22,7 @@ namespace {
 
 using Complex = std::complex<double>;
 using Eigen::Vector2d;
-using Leads = std::array<Lead, 3>;
+using Leads = std::array<mechanism::Lead, 3>;
 
 /// Triads that have modes: points in a square of side 2, the lengths measured in a pose.
 std::vector<Leads> random_triads(std::size_t number) {
@@ -34,7 +34,7 @@ std::vector<Leads> random_triads(std::size_t number) {
   for (Leads& leads : all) {
     const Vector2d position(between(-1, 1), between(-1, 1));
     const Eigen::Rotation2D<double> turn(between(-std::numbers::pi, std::numbers::pi));
-    for (Lead& lead : leads) {
+    for (mechanism::Lead& lead : leads) {
       lead.local = Vector2d(between(-1, 1), between(-1, 1));
       lead.anchor = Vector2d(between(-1, 1), between(-1, 1));
       lead.length = (position + turn * lead.local - lead.anchor).norm();
@@ -56,7 +56,7 @@ Elimination eliminate(const Leads& leads, Complex z) {
   std::array<double, 2> w{};
   const double l = leads[0].length;
   for (std::size_t i = 0; i < 2; ++i) {
-    const Lead& lead = leads[i + 1];
+    const mechanism::Lead& lead = leads[i + 1];
     u[i] = complex(lead.local - leads[0].local) * z - complex(lead.anchor - leads[0].anchor);
     w[i] = (lead.length * lead.length - l * l - std::norm(u[i])) / 2;
   }
@@ -67,7 +67,7 @@ Elimination eliminate(const Leads& leads, Complex z) {
   return result;
 }
 
-int modes_by_hand(const Leads& leads, std::array<PlatformPose, 6>& poses) {
+int modes_by_hand(const Leads& leads, std::array<mechanism::PlatformPose, 6>& poses) {
   constexpr int kValues = 7;
   std::array<Complex, kValues> roots_of_one;
   std::array<double, kValues> values{};
@@ -109,11 +109,11 @@ void triad_modes(benchmark::State& state) {
   std::vector<double> ratios, ours, by_hand;
   long our_modes = 0;
   long hand_modes = 0;
-  std::array<PlatformPose, 6> poses;
+  std::array<mechanism::PlatformPose, 6> poses;
   for (auto _ : state) {
     our_modes = hand_modes = 0;
     const double start = cpu_seconds();
-    for (const Leads& leads : triads) our_modes += platform_modes(leads).count;
+    for (const Leads& leads : triads) our_modes += mechanism::platform_modes(leads).count;
     const double between = cpu_seconds();
     for (const Leads& leads : triads) hand_modes += modes_by_hand(leads, poses);
     const double end = cpu_seconds();

@@ -9,7 +9,7 @@
 
 #include "../support/compiled.h"
 
-namespace oblique {
+namespace oblique::test {
 namespace {
 
 using testing::Compiled;
@@ -42,16 +42,16 @@ const std::multimap<std::string, std::string> kImperfect{
 };
 
 /// The block "b" with each input wired to a state and each output into another.
-std::string wired(const BlockDefinition& block, const std::string& parameters) {
+std::string wired(const diagram::BlockDefinition& block, const std::string& parameters) {
   std::string states, inputs, outputs;
   int number = 0;
-  for (const InputPort& input : block.inputs) {
+  for (const diagram::InputPort& input : block.inputs) {
     const std::string state = "s" + std::to_string(number++);
     states += state + " = { type = \"integrator\", in = [\"-0.3*" + state + "\"] }\n";
     inputs +=
         input.name + (input.sum ? " = [\"1.5*" + state + "\", \"-0.5*s0\"], " : " = \"" + state + "\", ");
   }
-  for (const OutputPort& output : block.outputs) {
+  for (const diagram::OutputPort& output : block.outputs) {
     const std::string signal = block.outputs.size() > 1 ? "b." + output.name : "b";
     outputs += "o" + std::to_string(number++) + " = { type = \"integrator\", in = [\"" + signal + "\"] }\n";
   }
@@ -67,7 +67,7 @@ class Differences {
     for (int round = 0; round < 20; ++round) {
       workspace_.reset();
       workspace_.reset_memories();
-      for (const Switch& s : program_.switches())
+      for (const network::Switch& s : program_.switches())
         workspace_.set_memory(s.memory, at_random(0, 1) < 0.5 ? 0 : 1);
       std::vector<double> x(n_);
       for (double& value : x) value = at_random(0.1, 0.9);  // where roots and logarithms have values
@@ -87,7 +87,7 @@ class Differences {
   }
 
   void compare_at(double t, const std::vector<double>& x) {
-    const SparsePattern& pattern = program_.jacobian_pattern();
+    const network::SparsePattern& pattern = program_.jacobian_pattern();
     std::vector<double> values(pattern.entries());
     ASSERT_TRUE(program_.jacobian(t, x.data(), values.data(), workspace_)) << name_;
     for (std::size_t column = 0; column < n_; ++column) {
@@ -113,22 +113,22 @@ class Differences {
 
   std::string name_;
   Compiled made_;
-  const Program& program_;
-  Workspace workspace_;
+  const network::Program& program_;
+  network::Workspace workspace_;
   std::size_t n_;
   std::mt19937_64 generator_{20240501};
 };
 
 TEST(BlockJacobian, AgreesWithDifferencesForEveryShippedBlock) {
   for (const std::string& name : shipped_blocks().names()) {
-    const BlockDefinition& block = *shipped_blocks().find(name);
+    const diagram::BlockDefinition& block = *shipped_blocks().find(name);
     if (!block.is_composite()) Differences(name, wired(block, "")).compare();
   }
 }
 
 TEST(BlockJacobian, AgreesWithDifferencesWithImperfections) {
   for (const auto& [name, parameters] : kImperfect) {
-    const BlockDefinition& block = *shipped_blocks().find(name);
+    const diagram::BlockDefinition& block = *shipped_blocks().find(name);
     Differences(name + " " + parameters, wired(block, parameters + ", ")).compare();
   }
 }
@@ -146,4 +146,4 @@ b = { type = "servo-amplifier", in = ["square", "-s"], initial = 1, )") +
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::test

@@ -13,7 +13,8 @@ namespace oblique::testing {
 /// Expects a column of a run to be `form(t)` to `tolerance` at every row where `holds(t)`; rows at a jump,
 /// where the value of either side is right, are for the caller to leave out.
 template <class Form, class Holds>
-void expect_form_where(const Run& result, std::string_view column, double tolerance, Form form, Holds holds) {
+void expect_form_where(const solve::Run& result, std::string_view column, double tolerance, Form form,
+                       Holds holds) {
   const auto t = row_values(result, "t"), values = row_values(result, column);
   for (std::size_t r = 0; r < t.size(); ++r) {
     if (!holds(t[r])) continue;
@@ -22,12 +23,12 @@ void expect_form_where(const Run& result, std::string_view column, double tolera
 }
 
 template <class Form>
-void expect_form(const Run& result, std::string_view column, double tolerance, Form form) {
+void expect_form(const solve::Run& result, std::string_view column, double tolerance, Form form) {
   expect_form_where(result, column, tolerance, form, [](double) { return true; });
 }
 
 /// The last value of a column.
-inline double last(const Run& result, std::string_view column) {
+inline double last(const solve::Run& result, std::string_view column) {
   return row_values(result, column).back();
 }
 

@@ -11,24 +11,25 @@
 
 #include "../support/compiled.h"
 
-namespace oblique {
+namespace oblique::test {
 namespace {
 
 using testing::shipped_blocks;
 
 TEST(ShippedBlocks, AreDocumented) {
   for (const std::string& name : shipped_blocks().names()) {
-    const BlockDefinition& block = *shipped_blocks().find(name);
+    const diagram::BlockDefinition& block = *shipped_blocks().find(name);
     EXPECT_FALSE(block.title.empty()) << name;
     EXPECT_FALSE(block.summary.empty()) << name;
     EXPECT_TRUE(block.summary.ends_with('.')) << name << ": the summary is a sentence";
     EXPECT_FALSE(block.doc.empty()) << name;
     EXPECT_NE(block.doc.find('='), std::string::npos) << name << ": the doc has no formula";
     EXPECT_FALSE(block.symbol.empty()) << name;
-    for (const InputPort& input : block.inputs) EXPECT_FALSE(input.doc.empty()) << name << '.' << input.name;
-    for (const OutputPort& output : block.outputs)
+    for (const diagram::InputPort& input : block.inputs)
+      EXPECT_FALSE(input.doc.empty()) << name << '.' << input.name;
+    for (const diagram::OutputPort& output : block.outputs)
       EXPECT_FALSE(output.doc.empty()) << name << '.' << output.name;
-    for (const ParameterDefinition& p : block.parameters)
+    for (const diagram::ParameterDefinition& p : block.parameters)
       EXPECT_FALSE(p.doc.empty()) << name << '.' << p.name;
   }
 }
@@ -42,7 +43,7 @@ TEST(ShippedBlocks, AreEachUsedByATestOrADiagram) {
     for (const auto& entry : std::filesystem::recursive_directory_iterator(root)) {
       const auto extension = entry.path().extension();
       if (extension != ".cpp" && extension != ".h" && extension != ".toml") continue;
-      const std::string text = read_file(entry.path());
+      const std::string text = text::read_file(entry.path());
       for (std::sregex_iterator found(text.begin(), text.end(), use), end; found != end; ++found)
         used.insert((*found)[1]);
     }
@@ -53,4 +54,4 @@ TEST(ShippedBlocks, AreEachUsedByATestOrADiagram) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::test

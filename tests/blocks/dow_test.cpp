@@ -21,7 +21,7 @@
 
 #include "closed_form.h"
 
-namespace oblique {
+namespace oblique::test {
 namespace {
 
 using testing::Compiled;
@@ -30,7 +30,7 @@ using testing::run_of;
 
 /// σ + iω of a signal e^{σt} cos(ωt + φ), from its rows: such a signal obeys x₊ = p x − q x₋ with p = 2
 /// e^{σh} cos ωh and q = e^{2σh} (Prony 1795), which least squares find.
-std::complex<double> root_of(const Run& result, std::string_view column) {
+std::complex<double> root_of(const solve::Run& result, std::string_view column) {
   const auto t = row_values(result, "t"), x = row_values(result, column);
   double aa = 0, ab = 0, bb = 0, ac = 0, bc = 0;
   for (std::size_t r = 2; r + 1 < x.size(); ++r) {  // the first two rows: while the amplifiers settle
@@ -79,4 +79,4 @@ TEST(Dow, FiniteBandwidthMovesTheRoots) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::test

@@ -7,7 +7,7 @@
 
 #include "closed_form.h"
 
-namespace oblique {
+namespace oblique::test {
 namespace {
 
 using testing::Compiled;
@@ -17,7 +17,7 @@ using testing::kIntegrated;
 using testing::run_of;
 
 /// Runs a dyad on P = 0.3 (cos t, sin t).
-Run on_a_crank(const std::string& dyad) {
+solve::Run on_a_crank(const std::string& dyad) {
   const Compiled made(std::string(kCosineAndSine) + R"(one = { type = "constant", value = 1 }
 )" + dyad);
   return run_of(made, {.until = 2 * std::numbers::pi, .samples = 91});
@@ -134,4 +134,4 @@ c = { type = "dyad-prp", ax = "0*one", ay = "0.4*one", ux = "one", uy = "0*one",
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::test

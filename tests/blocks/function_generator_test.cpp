@@ -10,7 +10,7 @@
 #include "../support/runs.h"
 #include "../support/scratch_folder.h"
 
-namespace oblique {
+namespace oblique::test {
 namespace {
 
 using testing::Compiled;
@@ -52,18 +52,18 @@ TEST(Recording, FollowsAColumnOfAFile) {
   const std::string text = testing::diagram_text(
       "u = { type = \"recording\", data = { file = \"measured.csv\", x = \"t\", y = \"u\" }, scale = 0.5 }\n"
       "x = { type = \"integrator\", in = [\"u\"] }\n");
-  const Diagram diagram = parse_diagram(text, (folder / "d.toml").string());
-  const FlatDiagram flat = flatten(diagram, testing::shipped_blocks());
-  RunOptions options;
+  const diagram::Diagram diagram = diagram::parse_diagram(text, (folder / "d.toml").string());
+  const diagram::FlatDiagram flat = diagram::flatten(diagram, testing::shipped_blocks());
+  solve::RunOptions options;
   options.until = 3;
   options.samples = 2;
-  const auto result = run(Program(assemble(flat)), flat, options);
+  const auto result = solve::run(network::Program(network::assemble(flat)), flat, options);
   EXPECT_NEAR(row_values(result, "x").back(), 0.005 + 1.99,
               1e-9);  // tolerance 1e-8 of few steps of low order
 }
 
 std::string refusal(const std::string& points) {
-  return message_of<DiagramError>(
+  return message_of<diagram::DiagramError>(
       [&] { Compiled("f = { type = \"function-generator\", in = \"f\", points = " + points + " }\n"); });
 }
 
@@ -77,8 +77,9 @@ TEST(FunctionGenerator, RefusesPointsThatMakeNoFunction) {
   EXPECT_THAT(refusal("{ file = \"none.csv\", x = \"a\" }"),
               HasSubstr("parameter 'f.points' has no 'y'; expected the name of the column of the value"));
   EXPECT_THAT(refusal("{ file = \"none.csv\", x = \"a\", y = \"b\" }"), HasSubstr("none.csv"));
-  EXPECT_THAT(message_of<DiagramError>([] { Compiled("s = { type = \"summer\", in = [[0, 1]] }\n"); }),
-              HasSubstr("input 's.in' is given an array; expected the name of a signal, or a list of names"));
+  EXPECT_THAT(
+      message_of<diagram::DiagramError>([] { Compiled("s = { type = \"summer\", in = [[0, 1]] }\n"); }),
+      HasSubstr("input 's.in' is given an array; expected the name of a signal, or a list of names"));
 }
 
 TEST(FunctionGenerator, HasItsSecondValueWhereAJumpIsMetExactly) {
@@ -90,7 +91,7 @@ f = { type = "function-generator", in = "u", points = [[0, 0], [0.25, 0.5], [0.2
 }
 
 TEST(FunctionGenerator, TakesATableOfTwoPoints) {
-  const BlockLibrary library = testing::shipped_blocks_and(
+  const diagram::BlockLibrary library = testing::shipped_blocks_and(
       "line", "[inputs]\nin = {}\n[outputs]\nout = {}\n[equations]\nout = \"table(in, 0, 1, 2, 5)\"\n");
   const Compiled made("u = { type = \"constant\", value = 0.5 }\nf = { type = \"line\", in = \"u\" }\n", "",
                       library);
@@ -98,9 +99,9 @@ TEST(FunctionGenerator, TakesATableOfTwoPoints) {
 }
 
 std::string refusal_of_table(const std::string& points) {
-  const BlockLibrary library = testing::shipped_blocks_and(
+  const diagram::BlockLibrary library = testing::shipped_blocks_and(
       "fg", "[inputs]\nin = {}\n[outputs]\nout = {}\n[equations]\nout = \"table(in, " + points + ")\"\n");
-  return message_of<Error>([&] { Compiled("f = { type = \"fg\", in = \"f\" }\n", "", library); });
+  return message_of<text::Error>([&] { Compiled("f = { type = \"fg\", in = \"f\" }\n", "", library); });
 }
 
 TEST(FunctionGenerator, RefusesATableThatMakesNoFunction) {
@@ -116,9 +117,9 @@ TEST(FunctionGenerator, RefusesATableThatMakesNoFunction) {
 
 TEST(Points, AreWrittenAsTheyAreRead) {
   const Compiled made("f = { type = \"function-generator\", in = \"f\", points = [[-0.5, 1], [0, 0.25]] }\n");
-  EXPECT_EQ(parse_diagram(write_diagram(made.diagram), "d.toml"), made.diagram);
-  EXPECT_THAT(write_diagram(made.diagram), HasSubstr("points = [[-0.5, 1], [0, 0.25]]"));
+  EXPECT_EQ(diagram::parse_diagram(diagram::write_diagram(made.diagram), "d.toml"), made.diagram);
+  EXPECT_THAT(diagram::write_diagram(made.diagram), HasSubstr("points = [[-0.5, 1], [0, 0.25]]"));
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::test

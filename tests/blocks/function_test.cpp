@@ -9,7 +9,7 @@
 
 #include "../support/runs.h"
 
-namespace oblique {
+namespace oblique::test {
 namespace {
 
 using testing::Compiled;
@@ -65,7 +65,7 @@ TEST_P(FunctionBlock, HasTheDerivativeOfItsFunction) {
 f = {{ {}, in = "y" }}
 )toml",
                                   (c.from + c.to) / 2, c.block));
-  Workspace workspace(made.program);
+  network::Workspace workspace(made.program);
   const double y = 0.3 * c.from + 0.7 * c.to;
   std::vector<double> slope(1), jacobian(1);
   ASSERT_TRUE(made.program.jacobian(0, &y, jacobian.data(), workspace));
@@ -98,4 +98,4 @@ back = { type = "exponential", in = "log", scale = 0.2 }
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::test

@@ -7,7 +7,7 @@
 
 #include "../support/runs.h"
 
-namespace oblique {
+namespace oblique::test {
 namespace {
 
 using testing::Compiled;
@@ -62,7 +62,7 @@ TEST(SineCosineGenerator, HoldsItsAmplitudeAsTheLogisticCurve) {
   const Compiled made(R"toml(one   = { type = "constant" }
 angle = { type = "sine-cosine-generator", in = ["one"], rate = 3, hold = 0.7 }
 )toml");
-  Workspace workspace(made.program);
+  network::Workspace workspace(made.program);
   std::vector<double> x = made.program.start(), slope(2);
   for (const double p : {0.25, 0.9, 1.0, 1.2}) {
     for (const double angle : {0.0, 1.0, 4.0}) {
@@ -81,4 +81,4 @@ TEST(SineCosineGenerator, AddsItsInputsOnAMachineThatInvertsToo) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::test

@@ -8,7 +8,7 @@
 
 #include "closed_form.h"
 
-namespace oblique {
+namespace oblique::test {
 namespace {
 
 using testing::Compiled;
@@ -57,7 +57,7 @@ INSTANTIATE_TEST_SUITE_P(Blocks, IdealTest,
 
 TEST_P(IdealTest, CompilesToItsBareEquation) {
   const auto& [ideal, inverting] = GetParam();
-  const BlockLibrary library = shipped_blocks_and("bare", "[inputs]\n" + ideal.text);
+  const diagram::BlockLibrary library = shipped_blocks_and("bare", "[inputs]\n" + ideal.text);
   const auto made = [&](const std::string& type) {
     return Compiled("b = { type = \"" + type + "\", " + ideal.inputs + " }\n" +
                         "x = { type = \"integrator\", in = [\"y\", \"0.1*b\"], initial = 1 }\n"
@@ -160,4 +160,4 @@ shunt  = { type = "potentiometer", in = "x", setting = 1, load = 0.05 })");
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::test

@@ -6,7 +6,7 @@
 
 #include "closed_form.h"
 
-namespace oblique {
+namespace oblique::test {
 namespace {
 
 using testing::Compiled;
@@ -108,4 +108,4 @@ x = { type = "integrator", in = ["c"], set = "p", initial = 0.1 })",
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::test

@@ -8,7 +8,7 @@
 
 #include "closed_form.h"
 
-namespace oblique {
+namespace oblique::test {
 namespace {
 
 using testing::Compiled;
@@ -132,4 +132,4 @@ TEST(RealIntegrator, OfVeryLargeBandwidthIsTheOneWithout) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::test

@@ -7,7 +7,7 @@
 
 #include "../support/runs.h"
 
-namespace oblique {
+namespace oblique::test {
 namespace {
 
 using testing::Compiled;
@@ -65,4 +65,4 @@ y = { type = "transfer-lag", in = "u", initial = 0.4 }
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::test

@@ -5,7 +5,7 @@
 
 #include "closed_form.h"
 
-namespace oblique {
+namespace oblique::test {
 namespace {
 
 using testing::Compiled;
@@ -146,4 +146,4 @@ d = { type = "digital-potentiometer", in = "in", initial = 0.70710678, bits = 11
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::test

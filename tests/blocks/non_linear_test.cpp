@@ -8,7 +8,7 @@
 
 #include "closed_form.h"
 
-namespace oblique {
+namespace oblique::test {
 namespace {
 
 using testing::Compiled;
@@ -97,4 +97,4 @@ TEST(Backlash, RunsRoundItsLoop) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::test

@@ -8,7 +8,7 @@
 
 #include "../support/runs.h"
 
-namespace oblique {
+namespace oblique::test {
 namespace {
 
 using testing::Compiled;
@@ -75,4 +75,4 @@ TEST(PolarResolver, FindsTheAngleWithinHalfATurnOfItsInitialOne) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::test

@@ -9,7 +9,7 @@
 
 #include "closed_form.h"
 
-namespace oblique {
+namespace oblique::test {
 namespace {
 
 using testing::Compiled;
@@ -134,4 +134,4 @@ TEST(ServoResolver, HasTheDriveOfTheServoMultiplier) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::test

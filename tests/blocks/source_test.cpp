@@ -4,7 +4,7 @@
 
 #include "closed_form.h"
 
-namespace oblique {
+namespace oblique::test {
 namespace {
 
 using testing::Compiled;
@@ -64,7 +64,7 @@ TEST(TimeFunction, KnowsPiAndInf) {
 
 TEST(TimeFunction, RefusesWhatIsNoFormulaOfTime) {
   const auto refusal = [](const std::string& formula) {
-    return testing::message_of<DiagramError>(
+    return testing::message_of<diagram::DiagramError>(
         [&] { Compiled("u = { type = \"time-function\", formula = " + formula + " }\n"); });
   };
   EXPECT_EQ(
@@ -77,10 +77,10 @@ TEST(TimeFunction, RefusesWhatIsNoFormulaOfTime) {
             "d.toml:3:41: parameter 'u.formula' is an array; expected an expression of time, such as \"2 + "
             "sin(3*time)\"");
   EXPECT_EQ(refusal("\"2 +\"").substr(0, 14), "d.toml:3:45: p");
-  const Diagram diagram =
-      parse_diagram(testing::diagram_text("u = { type = \"time-function\" }\n"), "d.toml");
-  EXPECT_EQ(testing::message_of<DiagramError>([&] {
-              flatten(diagram, testing::shipped_blocks(), {{"u.formula", "time"}});
+  const diagram::Diagram diagram =
+      diagram::parse_diagram(testing::diagram_text("u = { type = \"time-function\" }\n"), "d.toml");
+  EXPECT_EQ(testing::message_of<diagram::DiagramError>([&] {
+              diagram::flatten(diagram, testing::shipped_blocks(), {{"u.formula", "time"}});
             }),
             "--set u.formula=time: 'formula' is a formula; expected a parameter that is a number\n  remedy: "
             "change the formula in the diagram");
@@ -140,4 +140,4 @@ TEST(NoiseSource, IsReproducibleAndFollowsItsSeed) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::test

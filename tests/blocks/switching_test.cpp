@@ -6,7 +6,7 @@
 
 #include "closed_form.h"
 
-namespace oblique {
+namespace oblique::test {
 namespace {
 
 using testing::Compiled;
@@ -22,9 +22,9 @@ using testing::run_of;
 constexpr double kPi = std::numbers::pi;
 
 /// How often the events of a block came.
-long events_of(const Run& result, std::string_view block) {
+long events_of(const solve::Run& result, std::string_view block) {
   return std::count_if(result.events.begin(), result.events.end(),
-                       [&](const EventRecord& event) { return event.what == block; });
+                       [&](const solve::EventRecord& event) { return event.what == block; });
 }
 
 TEST(Comparator, SwitchesOnceAtEachEndOfItsHysteresis) {
@@ -148,4 +148,4 @@ s = { type = "track-and-store", in = "one", track = "p", acquisition_time = 0.2 
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::test

@@ -6,7 +6,7 @@
 
 #include "closed_form.h"
 
-namespace oblique {
+namespace oblique::test {
 namespace {
 
 using testing::Compiled;
@@ -15,7 +15,7 @@ using testing::kCosineAndSine;
 using testing::run_of;
 
 /// Runs round an ellipse with the origin inside; the amplifiers have this gain.
-Run round_an_ellipse(const std::string& amplifier) {
+solve::Run round_an_ellipse(const std::string& amplifier) {
   const Compiled made(std::string(kCosineAndSine) +
                       fmt::format(R"(x = {{ type = "summer", in = ["0.8*cosine"] }}
 y = {{ type = "summer", in = ["0.5*sine"] }}
@@ -48,4 +48,4 @@ TEST(VectorDirection, HasTheStaticErrorsOfItsGain) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::test

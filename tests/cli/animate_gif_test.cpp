@@ -19,7 +19,7 @@ using testing::Not;
 
 int brightness(const ShownGif& gif, std::size_t frame, const Vector2d& at) {
   const auto x = static_cast<std::size_t>(at.x()), y = static_cast<std::size_t>(at.y());
-  const Rgb& p = gif.frames[frame].pixels[y * static_cast<std::size_t>(gif.width) + x];
+  const draw::Rgb& p = gif.frames[frame].pixels[y * static_cast<std::size_t>(gif.width) + x];
   return (p.red + p.green + p.blue) / 3;
 }
 
@@ -58,7 +58,7 @@ TEST_F(Animations, GifShowsPinsWhereTheMotionSays) {
     EXPECT_FALSE(shows_pin(gif, (k + 1) % 20, kZoom * scale.pixel(b), kZoom)) << "B in frame " << k + 1;
     // The driven link is orange: more red than blue in its middle, even under the plate of the coupler.
     const Vector2d middle = kZoom * scale.pixel(b / 2);
-    const Rgb& orange =
+    const draw::Rgb& orange =
         gif.frames[k]
             .pixels[static_cast<std::size_t>(middle.y()) * 600 + static_cast<std::size_t>(middle.x())];
     EXPECT_GT(orange.red, orange.blue + 40) << "crank in frame " << k;
@@ -85,7 +85,7 @@ TEST_F(Animations, GifDoesNotFlicker) {
       if (swept || caption) continue;
       ++still;
       const auto at = static_cast<std::size_t>(y * gif.width + x);
-      for (const Raster& frame : gif.frames)
+      for (const draw::Raster& frame : gif.frames)
         ASSERT_EQ(frame.pixels[at], gif.frames[0].pixels[at]) << x << " " << y;
     }
   }

@@ -37,7 +37,7 @@ TEST_F(ComparisonPlot, CompareDrawsErrorsAndTheirSlope) {
   const Vector2d fall = slope.back() - slope.front();
   EXPECT_NEAR(-fall.y() / decade_y / (fall.x() / decade_x), json["order"].get<double>(), 1e-3);
   bool named = false;
-  for (const Label& label : svg.labels()) named = named || label.text == "slope −1.000";
+  for (const draw::Label& label : svg.labels()) named = named || label.text == "slope −1.000";
   EXPECT_TRUE(named);
   // the largest error along the turn is the largest error
   double top = 1e300;
@@ -78,8 +78,9 @@ TEST_F(ComparisonPlot, MonteCarloHasBandsAlongTheTurn) {
   const auto along = nlohmann::json::parse(bytes_of("runs.json"))["monte_carlo"]["along"];
   const AlignedBox2d plot = svg.plot(1);
   double top = 0;
-  for (const Label& label : svg.labels()) {
-    const bool at_top = label.anchor == Anchor::end && std::abs(label.at.y() - 4 - plot.min().y()) < 0.02;
+  for (const draw::Label& label : svg.labels()) {
+    const bool at_top =
+        label.anchor == draw::Anchor::end && std::abs(label.at.y() - 4 - plot.min().y()) < 0.02;
     if (at_top) top = std::stod(label.text);
   }
   ASSERT_GT(top, 0);
@@ -110,7 +111,7 @@ TEST_F(ComparisonPlot, MethodsHaveTheirColoursAndTheirPanels) {
   EXPECT_EQ(svg.curve(1, 4).size(), svg.curve(1, 0).size());  // five gains of triangles, and of gradient
   EXPECT_FALSE(svg.curve(2, 4).empty());
   std::string texts;
-  for (const Label& label : svg.labels()) texts += label.text + "\n";
+  for (const draw::Label& label : svg.labels()) texts += label.text + "\n";
   for (const char* text :
        {"error, triangles", "error, gradient", "a tenth of what the solver's tolerance leaves"})
     EXPECT_THAT(texts, HasSubstr(text));

@@ -14,7 +14,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <oblique/draw/picture.h>
+#include <oblique/draw/picture/picture.h>
 
 #include "../support/process.h"
 #include "../support/scratch_folder.h"
@@ -48,16 +48,16 @@ class Svg {
     return points;
   }
 
-  std::vector<Label> labels() const {
-    std::vector<Label> labels;
+  std::vector<draw::Label> labels() const {
+    std::vector<draw::Label> labels;
     for (const std::string& element : elements("<text ")) {
       const std::size_t end = element.find('>');
-      Label label{{number(element, "x"), number(element, "y")},
-                  unescaped(element.substr(end + 1, element.find('<', end) - end - 1)),
-                  Anchor::start,
-                  number(element, "font-size")};
-      if (element.find("\"middle\"") != std::string::npos) label.anchor = Anchor::middle;
-      if (element.find("\"end\"") != std::string::npos) label.anchor = Anchor::end;
+      draw::Label label{{number(element, "x"), number(element, "y")},
+                        unescaped(element.substr(end + 1, element.find('<', end) - end - 1)),
+                        draw::Anchor::start,
+                        number(element, "font-size")};
+      if (element.find("\"middle\"") != std::string::npos) label.anchor = draw::Anchor::middle;
+      if (element.find("\"end\"") != std::string::npos) label.anchor = draw::Anchor::end;
       label.bold = element.find("\"bold\"") != std::string::npos;
       labels.push_back(label);
     }

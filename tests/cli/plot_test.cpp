@@ -51,15 +51,15 @@ TEST_F(Plot, ThePlottersPathGoesThroughTheExactPlaces) {
   ASSERT_EQ(oblique("solve " + four_bar + " --columns M.x,M.y -o " + file("exact.csv")).status, 0);
   const Svg svg = drawn("run " + file("patched.toml") + " --against M.x --columns M.y");
   std::map<double, double> x_numbers, y_numbers;
-  for (const Label& label : svg.labels()) {
+  for (const draw::Label& label : svg.labels()) {
     std::string text = label.text;
     if (text.starts_with("−")) text = "-" + text.substr(3);
     char* end = nullptr;
     const double value = std::strtod(text.c_str(), &end);
     if (end == text.c_str() || *end != '\0') continue;
     // numbers of y stand a little under their lines, so that they are in the middle of them
-    if (label.anchor == Anchor::middle) x_numbers[value] = label.at.x();
-    if (label.anchor == Anchor::end) y_numbers[value] = label.at.y() - 4;
+    if (label.anchor == draw::Anchor::middle) x_numbers[value] = label.at.x();
+    if (label.anchor == draw::Anchor::end) y_numbers[value] = label.at.y() - 4;
   }
   ASSERT_GE(x_numbers.size(), 2U);
   ASSERT_GE(y_numbers.size(), 2U);

@@ -2,7 +2,7 @@
 // Texts of charts stand apart, within the picture and beside the curves: in everything that is shipped.
 #include <algorithm>
 
-#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/mechanism/model/read_mechanism.h>
 
 #include "plot_reading.h"
 
@@ -15,11 +15,11 @@ void expect_texts_apart(const Svg& svg, int panels) {
   const auto labels = svg.labels();
   const AlignedBox2d paper(Vector2d(0, 0), svg.size());
   for (std::size_t a = 0; a < labels.size(); ++a) {
-    const AlignedBox2d extent = extent_of(Mark{labels[a]});
+    const AlignedBox2d extent = draw::extent_of(draw::Mark{labels[a]});
     EXPECT_TRUE(paper.contains(extent)) << labels[a].text;
     for (int p = 0; p < panels; ++p) EXPECT_FALSE(svg.plot(p).intersects(extent)) << labels[a].text;
     for (std::size_t b = 0; b < a; ++b)
-      EXPECT_FALSE(extent.intersects(extent_of(Mark{labels[b]})))
+      EXPECT_FALSE(extent.intersects(draw::extent_of(draw::Mark{labels[b]})))
           << labels[a].text << " and " << labels[b].text;
   }
 }
@@ -59,10 +59,11 @@ TEST_F(PlotTexts, TextsOfEveryShippedDiagramsRunCoverNothing) {
 TEST_F(PlotTexts, TextsOfEveryShippedMechanismsPointPlotsCoverNothing) {
   for (const std::string& name : shipped("mechanisms")) {
     SCOPED_TRACE(name);
-    const Mechanism mechanism = read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/" + name);
+    const mechanism::Mechanism mechanism =
+        mechanism::read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/" + name);
     if (mechanism.drives.empty()) continue;
     const auto moving = std::find_if(mechanism.points.rbegin(), mechanism.points.rend(),
-                                     [](const Point& point) { return !point.fixed; });
+                                     [](const mechanism::Point& point) { return !point.fixed; });
     const Outcome outcome = oblique("draw " + name + " --plots " + moving->name + " -o " + file("plots.svg"));
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     const Svg svg(bytes_of("plots.svg"));

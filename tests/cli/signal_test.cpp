@@ -141,7 +141,7 @@ TEST_F(Signalled, AskFirstWhereTheRunIsSavedAndThenEndIt) {
   const pid_t child = fork();
   if (child == 0) {
     dup2(said[1], STDERR_FILENO);
-    Leftover part;
+    text::Leftover part;
     part.remember((folder_ / "work/part").native());
     cli::end_in_order_on_signals();
     const cli::InterruptGuard guard;

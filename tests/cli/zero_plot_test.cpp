@@ -42,11 +42,12 @@ x       = { signal = "x", unit = "m" }
 };
 
 /// The numbers beside a plot, with where they stand.
-std::vector<Label> numbers_of(const Svg& svg, int panel) {
-  std::vector<Label> numbers = svg.labels();
+std::vector<draw::Label> numbers_of(const Svg& svg, int panel) {
+  std::vector<draw::Label> numbers = svg.labels();
   const AlignedBox2d plot = svg.plot(panel);
-  std::erase_if(numbers, [&](const Label& label) {
-    return label.anchor != Anchor::end || label.at.y() < plot.min().y() || label.at.y() > plot.max().y() + 8;
+  std::erase_if(numbers, [&](const draw::Label& label) {
+    return label.anchor != draw::Anchor::end || label.at.y() < plot.min().y() ||
+           label.at.y() > plot.max().y() + 8;
   });
   return numbers;
 }
@@ -61,7 +62,7 @@ void expect_zero(const Svg& svg, int panel, int curve) {
   for (const Vector2d& point : points) ASSERT_NEAR(point.y(), plot.center().y(), 0.01);
   std::vector<std::string> above, below, beside;
   constexpr double kHalfDigit = 4;  // [px]; numbers stand on their baseline
-  for (const Label& number : numbers_of(svg, panel)) {
+  for (const draw::Label& number : numbers_of(svg, panel)) {
     const double off = plot.center().y() - (number.at.y() - kHalfDigit);
     (off > 1 ? above : off < -1 ? below : beside).push_back(number.text);
   }
@@ -73,7 +74,7 @@ void expect_zero(const Svg& svg, int panel, int curve) {
 
 std::string texts_of(const Svg& svg) {
   std::string texts;
-  for (const Label& label : svg.labels()) texts += label.text + "\n";
+  for (const draw::Label& label : svg.labels()) texts += label.text + "\n";
   return texts;
 }
 

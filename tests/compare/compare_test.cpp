@@ -7,14 +7,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/mechanism/model/read_mechanism.h>
 #include <oblique/solve/run.h>
 
-namespace oblique {
+namespace oblique::compare {
 namespace {
 
-Mechanism shipped(const std::string& name) {
-  return read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/" + name + ".toml");
+mechanism::Mechanism shipped(const std::string& name) {
+  return mechanism::read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/" + name +
+                                   ".toml");
 }
 
 struct Case {
@@ -37,7 +38,7 @@ INSTANTIATE_TEST_SUITE_P(Compare, Convergence,
 
 // A servo loop errs by −x/(μ ∂r/∂x): the error of the whole falls as 1/μ, from gain 1e2 to 1e6.
 TEST_P(Convergence, ErrorFallsWithTheGainOverFourDecades) {
-  const Comparison comparison = compare(shipped(GetParam().mechanism), BlockLibrary::shipped());
+  const Comparison comparison = compare(shipped(GetParam().mechanism), diagram::BlockLibrary::shipped());
   ASSERT_EQ(comparison.runs.size(), 5U);
   ASSERT_EQ(comparison.series.size(), 1U);
   const GainSeries& series = comparison.series.front();
@@ -64,7 +65,7 @@ TEST_P(Convergence, ErrorFallsWithTheGainOverFourDecades) {
 TEST(Compare, TheOrderLeavesOutThePlateauOfTheTolerance) {
   CompareOptions options;
   options.gains = {1e5, 1e6, 1e7, 1e8, 1e9, 1e10};
-  const Comparison comparison = compare(shipped("jansen"), BlockLibrary::shipped(), options);
+  const Comparison comparison = compare(shipped("jansen"), diagram::BlockLibrary::shipped(), options);
   const GainSeries& series = comparison.series.front();
   ASSERT_TRUE(series.order);
   // the last run that counts stands ten times above the floor, so that is off by 10 % at most, and by 0.1/2
@@ -76,7 +77,7 @@ TEST(Compare, TheOrderLeavesOutThePlateauOfTheTolerance) {
 TEST(Compare, SizeIsTheLargestLink) {
   CompareOptions options;
   options.gains = {1e3};
-  const Comparison comparison = compare(shipped("six-bar"), BlockLibrary::shipped(), options);
+  const Comparison comparison = compare(shipped("six-bar"), diagram::BlockLibrary::shipped(), options);
   EXPECT_EQ(comparison.size, 150);
   EXPECT_EQ(comparison.unit, "mm");
   EXPECT_FALSE(comparison.series.front().order);  // one gain has no slope
@@ -84,14 +85,14 @@ TEST(Compare, SizeIsTheLargestLink) {
 
 TEST(Compare, RunsEveryMethodWithEveryBandwidthAndGain) {
   CompareOptions options;
-  options.methods = {PatchMethod::triangles, PatchMethod::gradient};
+  options.methods = {patch::PatchMethod::triangles, patch::PatchMethod::gradient};
   options.bandwidths = {5, 50};
   options.gains = {1e3, 1e4};
-  const Comparison comparison = compare(shipped("four-bar"), BlockLibrary::shipped(), options);
+  const Comparison comparison = compare(shipped("four-bar"), diagram::BlockLibrary::shipped(), options);
   ASSERT_EQ(comparison.runs.size(), 8U);
   ASSERT_EQ(comparison.series.size(), 4U);
   std::size_t at = 0;
-  for (const PatchMethod method : options.methods) {
+  for (const patch::PatchMethod method : options.methods) {
     for (const double bandwidth : options.bandwidths) {
       const GainSeries& series = comparison.series[at / 2];
       EXPECT_EQ(series.method, method);
@@ -112,18 +113,18 @@ TEST(Compare, RunsEveryMethodWithEveryBandwidthAndGain) {
 
 TEST(Compare, LeavesOutWhatIsRefusedAndWhatFails) {
   CompareOptions options;
-  options.methods = {PatchMethod::paper, PatchMethod::triangles};
+  options.methods = {patch::PatchMethod::paper, patch::PatchMethod::triangles};
   options.gains = {1e3, 1e4};
-  const Comparison comparison = compare(shipped("four-bar"), BlockLibrary::shipped(), options);
+  const Comparison comparison = compare(shipped("four-bar"), diagram::BlockLibrary::shipped(), options);
   ASSERT_EQ(comparison.runs.size(), 2U);
-  EXPECT_EQ(comparison.runs.front().method, PatchMethod::triangles);
+  EXPECT_EQ(comparison.runs.front().method, patch::PatchMethod::triangles);
   ASSERT_EQ(comparison.series.size(), 1U);
   ASSERT_EQ(comparison.refused.size(), 1U);
-  EXPECT_EQ(comparison.refused.front().method, PatchMethod::paper);
+  EXPECT_EQ(comparison.refused.front().method, patch::PatchMethod::paper);
   EXPECT_FALSE(comparison.refused.front().gain);
   EXPECT_THAT(comparison.refused.front().why.what, testing::HasSubstr("is not of the source's kind"));
-  options.methods = {PatchMethod::paper};
-  EXPECT_THROW(compare(shipped("four-bar"), BlockLibrary::shipped(), options), PatchError);
+  options.methods = {patch::PatchMethod::paper};
+  EXPECT_THROW(compare(shipped("four-bar"), diagram::BlockLibrary::shipped(), options), patch::PatchError);
 }
 
 TEST(Compare, ReportsProgressUpToTheEnd) {
@@ -134,7 +135,7 @@ TEST(Compare, ReportsProgressUpToTheEnd) {
     EXPECT_GE(fraction, last);
     last = fraction;
   };
-  compare(shipped("four-bar"), BlockLibrary::shipped(), options);
+  compare(shipped("four-bar"), diagram::BlockLibrary::shipped(), options);
   EXPECT_EQ(last, 1);
 }
 
@@ -158,10 +159,11 @@ C   = { type = "dyad-rrr", px = "0.1*one", py = "0.2*one", qx = "0.7*one", qy = 
 x = "C.x"
 y = "C.y"
 )";
-  const BlockLibrary library = BlockLibrary::shipped();
-  const Diagram diagram = parse_diagram(text, "dyad.toml");
-  const FlatDiagram flat = flatten(diagram, library);
-  const oblique::Run result = run(Program(assemble(flat)), flat, options_of(diagram.run));
+  const diagram::BlockLibrary library = diagram::BlockLibrary::shipped();
+  const diagram::Diagram diagram = diagram::parse_diagram(text, "dyad.toml");
+  const diagram::FlatDiagram flat = diagram::flatten(diagram, library);
+  const oblique::solve::Run result =
+      solve::run(network::Program(network::assemble(flat)), flat, solve::options_of(diagram.run));
 
   const double reach = 0.8, m = 1 / (5.0 * 200), a = 0.5 / reach, b = 0.4 / reach;
   const double dx = 0.6 / reach, dy = -0.3 / reach;
@@ -176,4 +178,4 @@ y = "C.y"
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::compare

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/mechanism/model/read_mechanism.h>
 #include <oblique/solve/solve_error.h>
 
 #include "../support/arm.h"
@@ -14,7 +14,7 @@
 #include "../support/compiled.h"
 #include "four_bar.h"
 
-namespace oblique {
+namespace oblique::compare {
 namespace {
 
 using std::numbers::pi;
@@ -25,16 +25,17 @@ using testing::kRocker;
 using testing::rocker_end;
 using testing::rocker_end_at_rest;
 
-Mechanism shipped(const std::string& name) {
-  return read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/" + name + ".toml");
+mechanism::Mechanism shipped(const std::string& name) {
+  return mechanism::read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/" + name +
+                                   ".toml");
 }
 
-ComparedRun compared(const std::string& mechanism, PatchMethod method, double gain, double bandwidth) {
+ComparedRun compared(const std::string& mechanism, patch::PatchMethod method, double gain, double bandwidth) {
   CompareOptions options;
   options.methods = {method};
   options.gains = {gain};
   options.bandwidths = {bandwidth};
-  return compare(shipped(mechanism), BlockLibrary::shipped(), options).runs.front();
+  return compare(shipped(mechanism), diagram::BlockLibrary::shipped(), options).runs.front();
 }
 
 // One loop, r = c − φ, on a ramp φ = t: τ ċ = −c − μ (c − t). With T = τ/(1 + μ) it follows
@@ -46,15 +47,15 @@ one = { type = "constant", value = 1 }
 phi = { type = "integrator", in = ["one"] }
 c   = { type = "servo-amplifier", in = ["c", "-phi"], gain = 20, bandwidth = "5 Hz" }
 )");
-  RunOptions options;
+  solve::RunOptions options;
   options.until = 0.8;
   options.tolerance = 1e-11;
   options.samples = 2;
-  Instant end;
+  solve::Instant end;
   options.on_sample = [&](double t, std::span<const double> states, std::span<const double>) {
     end = {t, {states.begin(), states.end()}, {}};
   };
-  run(ramp.program, ramp.flat, options);
+  solve::run(ramp.program, ramp.flat, options);
   const auto rest = at_rest(ramp.program, {1}, end);
   ASSERT_TRUE(rest);
   ASSERT_EQ(ramp.program.states()[1].name, "c");
@@ -79,8 +80,8 @@ c    = { type = "servo-amplifier", in = ["c", "-turn"], gain = 20 }
 // A static error falls as 1/μ: with a lag that is nearly all of it gone at rest, what is left says so.
 TEST(ErrorParts, AreKnownOfAPatchAsTheSourceDrawsIt) {
   for (const std::string name : {"class-iii", "three-rrr"}) {
-    const ComparedRun coarse = compared(name, PatchMethod::paper, 1e3, 20);
-    const ComparedRun fine = compared(name, PatchMethod::paper, 1e4, 20);
+    const ComparedRun coarse = compared(name, patch::PatchMethod::paper, 1e3, 20);
+    const ComparedRun fine = compared(name, patch::PatchMethod::paper, 1e4, 20);
     ASSERT_TRUE(coarse.parts && fine.parts);
     const auto sum = [](const ErrorParts& parts) { return parts.at_rest + parts.lag + parts.solver; };
     EXPECT_NEAR(sum(*coarse.parts), coarse.max_error, 1e-9 * coarse.max_error);
@@ -101,7 +102,7 @@ x   = { type = "integrator", in = ["-x2", "-one"], initial = 0.01 }
 
 TEST(ErrorParts, StaticPartOfTheFourBarIsThatOfItsEquations) {
   const double gain = 100;
-  const ComparedRun run = compared("four-bar", PatchMethod::triangles, gain, 20);
+  const ComparedRun run = compared("four-bar", patch::PatchMethod::triangles, gain, 20);
   ASSERT_EQ(run.worst.point, "C");
   const double expected = (rocker_end_at_rest(run.worst.drive, gain) - rocker_end(run.worst.drive)).norm();
   ASSERT_TRUE(run.parts);
@@ -113,8 +114,8 @@ TEST(ErrorParts, StaticPartOfTheFourBarIsThatOfItsEquations) {
 // lag across the error is as long as the part along it and turns the error by 7e-3 at the most: that is 1 %
 // of the lag's part along it, and 3e-5 of the static one's.
 TEST(ErrorParts, LagOfTrianglesGoesWithTheTimeConstant) {
-  const ComparedRun slow = compared("four-bar", PatchMethod::triangles, 1e3, 5);
-  const ComparedRun fast = compared("four-bar", PatchMethod::triangles, 1e3, 20);
+  const ComparedRun slow = compared("four-bar", patch::PatchMethod::triangles, 1e3, 5);
+  const ComparedRun fast = compared("four-bar", patch::PatchMethod::triangles, 1e3, 20);
   ASSERT_TRUE(slow.parts && fast.parts);
   EXPECT_EQ(slow.worst.drive, fast.worst.drive);
   EXPECT_NEAR(slow.parts->lag / fast.parts->lag, 4, 0.04);
@@ -127,7 +128,7 @@ TEST(ErrorParts, LagOfTrianglesGoesWithTheTimeConstant) {
 //     Ċ = −K (e₁e₁ᵀ + e₂e₂ᵀ) δ,     K = gain · 2π · bandwidth
 TEST(ErrorParts, OfTheGradientServoAreAllLag) {
   const double gain = 1e4, bandwidth = 20;
-  const ComparedRun run = compared("four-bar", PatchMethod::gradient, gain, bandwidth);
+  const ComparedRun run = compared("four-bar", patch::PatchMethod::gradient, gain, bandwidth);
   ASSERT_EQ(run.worst.point, "C");
   const double angle = run.worst.drive, h = 1e-5;
   const Eigen::Vector2d velocity = (rocker_end(angle + h) - rocker_end(angle - h)) / (2 * h);  // at 1 rad/s
@@ -145,7 +146,7 @@ TEST(ErrorParts, OfTheGradientServoAreAllLag) {
 // With an amplifier that leaves nothing all is the solver's, but for what a hundredth of its tolerance
 // leaves.
 TEST(ErrorParts, OfHugeGainsAreAllTheSolvers) {
-  const ComparedRun run = compared("four-bar", PatchMethod::triangles, 1e12, 20);
+  const ComparedRun run = compared("four-bar", patch::PatchMethod::triangles, 1e12, 20);
   ASSERT_TRUE(run.parts);
   EXPECT_GT(run.max_error, 1e-11);
   EXPECT_NEAR(run.parts->solver, run.max_error, 0.1 * run.max_error);
@@ -153,8 +154,8 @@ TEST(ErrorParts, OfHugeGainsAreAllTheSolvers) {
 
 // Without loops nothing lags; the error of C points to the lower left, where a product with it has a sign.
 TEST(ErrorParts, OfNothingAreZeroWithoutASign) {
-  const Mechanism arm = parse_mechanism(test::kArm, "arm.toml");
-  const Comparison comparison = compare(arm, BlockLibrary::shipped());
+  const mechanism::Mechanism arm = mechanism::parse_mechanism(test::kArm, "arm.toml");
+  const Comparison comparison = compare(arm, diagram::BlockLibrary::shipped());
   for (const ComparedRun& run : comparison.runs) {
     ASSERT_TRUE(run.parts);
     EXPECT_EQ(run.parts->lag, 0);
@@ -165,25 +166,25 @@ TEST(ErrorParts, OfNothingAreZeroWithoutASign) {
 // The loops of a long chain add up their rounding: a hundredth of the tolerance takes hundreds of times the
 // steps there, and a tenth will do.
 TEST(ErrorParts, AreKnownOfALongChain) {
-  const Mechanism chain =
-      parse_mechanism("format = \"oblique-mechanism/1\"\n" + test::chain_of_dyads(20), "chain.toml");
+  const mechanism::Mechanism chain = mechanism::parse_mechanism(
+      "format = \"oblique-mechanism/1\"\n" + test::chain_of_dyads(20), "chain.toml");
   CompareOptions options;
   options.gains = {1e4};
-  const ComparedRun run = compare(chain, BlockLibrary::shipped(), options).runs.front();
+  const ComparedRun run = compare(chain, diagram::BlockLibrary::shipped(), options).runs.front();
   ASSERT_TRUE(run.parts);
   EXPECT_GT(run.parts->at_rest, 0.9 * run.max_error);
 }
 
 TEST(ErrorParts, OfARunThatTakesStepsOfRoundingAreGivenUp) {
-  const PatchedMechanism patched(patch_named(shipped("four-bar"), {}), BlockLibrary::shipped());
-  EXPECT_THROW(run_recorded(patched, "few steps", 1e-10, {}, {}, 10), SolveError);
+  const PatchedMechanism patched(patch_named(shipped("four-bar"), {}), diagram::BlockLibrary::shipped());
+  EXPECT_THROW(run_recorded(patched, "few steps", 1e-10, {}, {}, 10), solve::SolveError);
 }
 
-class PartsOf : public ::testing::TestWithParam<std::tuple<const char*, PatchMethod>> {};
+class PartsOf : public ::testing::TestWithParam<std::tuple<const char*, patch::PatchMethod>> {};
 INSTANTIATE_TEST_SUITE_P(
     ErrorParts, PartsOf,
     ::testing::Combine(::testing::Values("jansen", "class-iii", "slider-crank", "whitworth"),
-                       ::testing::Values(PatchMethod::triangles, PatchMethod::gradient)));
+                       ::testing::Values(patch::PatchMethod::triangles, patch::PatchMethod::gradient)));
 
 // An identity, whatever the parts are: only rounding is left, of some ten operations on lengths of the size.
 TEST_P(PartsOf, AddUpToTheLargestError) {
@@ -191,7 +192,7 @@ TEST_P(PartsOf, AddUpToTheLargestError) {
   CompareOptions options;
   options.methods = {method};
   options.gains = {1e3};
-  const Comparison comparison = compare(shipped(name), BlockLibrary::shipped(), options);
+  const Comparison comparison = compare(shipped(name), diagram::BlockLibrary::shipped(), options);
   const ComparedRun& run = comparison.runs.front();
   ASSERT_TRUE(run.parts);
   EXPECT_NEAR(run.parts->at_rest + run.parts->lag + run.parts->solver, run.max_error,
@@ -199,4 +200,4 @@ TEST_P(PartsOf, AddUpToTheLargestError) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::compare

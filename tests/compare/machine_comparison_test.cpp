@@ -8,13 +8,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/mechanism/model/read_mechanism.h>
 #include <oblique/solve/solve_error.h>
 
 #include "../support/compiled.h"
 #include "four_bar.h"
 
-namespace oblique {
+namespace oblique::compare {
 namespace {
 
 using std::numbers::pi;
@@ -23,33 +23,34 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 MachineComparison compared(const std::string& mechanism, const std::string& machine, double gain,
-                           PatchMethod method = PatchMethod::triangles) {
-  PatchOptions options;
+                           patch::PatchMethod method = patch::PatchMethod::triangles) {
+  patch::PatchOptions options;
   options.gain = gain;
   options.method = method;
-  return compare_on_machine(
-      read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/" + mechanism + ".toml"),
-      testing::shipped_blocks(), *find_machine(machine), options);
+  return compare_on_machine(mechanism::read_mechanism(std::string(OBLIQUE_SOURCE_DIR) +
+                                                      "/diagrams/mechanisms/" + mechanism + ".toml"),
+                            testing::shipped_blocks(), *diagram::find_machine(machine), options);
 }
 
 struct Case {
   const char* mechanism;
   const char* machine;
-  PatchMethod method;
+  patch::PatchMethod method;
 };
 
 void PrintTo(const Case& tested, std::ostream* out) {
-  *out << tested.mechanism << " on " << tested.machine << ", " << method_name(tested.method);
+  *out << tested.mechanism << " on " << tested.machine << ", " << patch::method_name(tested.method);
 }
 
 class Budget : public ::testing::TestWithParam<Case> {};
 INSTANTIATE_TEST_SUITE_P(MachineComparison, Budget,
-                         ::testing::Values(Case{"four-bar", "ec-1", PatchMethod::triangles},
-                                           Case{"four-bar", "tr-10", PatchMethod::triangles},
-                                           Case{"four-bar", "ec-1", PatchMethod::gradient},
-                                           Case{"four-bar", "tr-10", PatchMethod::gradient},
-                                           Case{"jansen", "ec-1", PatchMethod::triangles},
-                                           Case{"class-iii", "the-analog-thing", PatchMethod::triangles}));
+                         ::testing::Values(Case{"four-bar", "ec-1", patch::PatchMethod::triangles},
+                                           Case{"four-bar", "tr-10", patch::PatchMethod::triangles},
+                                           Case{"four-bar", "ec-1", patch::PatchMethod::gradient},
+                                           Case{"four-bar", "tr-10", patch::PatchMethod::gradient},
+                                           Case{"jansen", "ec-1", patch::PatchMethod::triangles},
+                                           Case{"class-iii", "the-analog-thing",
+                                                patch::PatchMethod::triangles}));
 
 // The errors are small beside the links, up to 4 %, so they add up but for products of two of them: those are
 // smaller than the errors by as much, magnified where triangles are flat.
@@ -106,11 +107,11 @@ TEST(MachineComparison, OfTheIdealMachineIsTheMethod) {
 // A gradient servo of K = 1e6 · 2π · 20 Hz is faster than the summers in its loop, whose bandwidth is 200
 // kHz.
 TEST(MachineComparison, NamesTheRunThatFails) {
-  const std::string message =
-      testing::message_of<SolveError>([] { compared("four-bar", "tr-10", 1e6, PatchMethod::gradient); });
+  const std::string message = testing::message_of<solve::SolveError>(
+      [] { compared("four-bar", "tr-10", 1e6, patch::PatchMethod::gradient); });
   EXPECT_THAT(message,
               HasSubstr("four-bar.toml: with all figures of EAI PACE TR-10 (1959): the run stopped at t = "));
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::compare

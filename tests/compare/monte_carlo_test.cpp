@@ -11,26 +11,27 @@
 
 #include <Eigen/Core>
 
-#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/mechanism/model/read_mechanism.h>
 #include <oblique/patch/patch.h>
 
-namespace oblique {
+namespace oblique::compare {
 namespace {
 
 using std::numbers::pi;
 
-Mechanism four_bar() {
-  return read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/four-bar.toml");
+mechanism::Mechanism four_bar() {
+  return mechanism::read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/four-bar.toml");
 }
 
-MonteCarlo drawn(const Mechanism& mechanism, const MonteCarloOptions& options) {
-  PatchOptions patch_options;
+MonteCarlo drawn(const mechanism::Mechanism& mechanism, const MonteCarloOptions& options) {
+  patch::PatchOptions patch_options;
   patch_options.gain = 1e6;
-  return monte_carlo(mechanism, patch(mechanism, patch_options), BlockLibrary::shipped(), options);
+  return monte_carlo(mechanism, patch::patch(mechanism, patch_options), diagram::BlockLibrary::shipped(),
+                     options);
 }
 
-Mechanism crank() {
-  return parse_mechanism(R"(
+mechanism::Mechanism crank() {
+  return mechanism::parse_mechanism(R"(
 format = "oblique-mechanism/1"
 [frame]
 A = [0, 0]
@@ -39,14 +40,14 @@ AB = { points = ["A", "B"], length = 2 }
 [drives]
 crank = { turns = "AB", about = "A", speed = "1 rad/s" }
 )",
-                         "crank.toml");
+                                    "crank.toml");
 }
 
 // A crank alone: B = r ((1 + e) cos φ, (1 + f) sin φ), each coordinate a summer, errs most on an axis, by
 // r max(|e|, |f|): of two uniform variables on [0, 1] the larger has the mean 2/3, the variance 1/18, and is
 // below q with the probability q².
 TEST(MonteCarlo, OfACrankIsTheLargerOfTwoTolerances) {
-  const Mechanism mechanism = crank();
+  const mechanism::Mechanism mechanism = crank();
   MonteCarloOptions options;
   options.scatters = {{"summer", "tolerance", 0.01, ""}};
   options.runs = 4000;
@@ -69,14 +70,14 @@ TEST(MonteCarlo, OfACrankIsTheLargerOfTwoTolerances) {
 // The same crank errs by r √(e² cos² φ + f² sin² φ) at φ, with the e and f that `draw` tells of each run. Of
 // 200 runs the k-th smallest is the percentile 100 k/200. The solver adds 1e-5 of 2e-2.
 TEST(MonteCarlo, PercentilesAlongTheTurnAreThoseOfTheSortedRuns) {
-  const Mechanism mechanism = crank();
+  const mechanism::Mechanism mechanism = crank();
   MonteCarloOptions options;
   options.scatters = {{"summer", "tolerance", 0.01, ""}};
   options.runs = 200;
   options.threads = 2;
   const MonteCarlo result = drawn(mechanism, options);
-  const BlockLibrary library = BlockLibrary::shipped();  // which the flat diagram refers to
-  const FlatDiagram flat = flatten(patch(mechanism, {}), library);
+  const diagram::BlockLibrary library = diagram::BlockLibrary::shipped();  // which the flat diagram refers to
+  const diagram::FlatDiagram flat = diagram::flatten(patch::patch(mechanism, {}), library);
   ASSERT_EQ(result.drive.size(), 73U);
   ASSERT_EQ(result.along.size(), 200U);
   std::vector<std::array<double, 2>> scatter;
@@ -167,7 +168,7 @@ TEST(MonteCarlo, OfTheFourBarIsThatOfItsClosedForm) {
 
 TEST(MonteCarlo, IsTheSameForAnyNumberOfThreads) {
   MonteCarloOptions options;
-  options.scatters = scatters_of_tolerance(BlockLibrary::shipped(), 1e-3);
+  options.scatters = scatters_of_tolerance(diagram::BlockLibrary::shipped(), 1e-3);
   options.runs = 40;
   const MonteCarlo one = drawn(four_bar(), options);
   for (const int threads : {2, 3, 100}) {
@@ -181,7 +182,7 @@ TEST(MonteCarlo, IsTheSameForAnyNumberOfThreads) {
 
 TEST(MonteCarlo, GoesOnFromAnyRun) {
   MonteCarloOptions options;
-  options.scatters = scatters_of_tolerance(BlockLibrary::shipped(), 1e-3);
+  options.scatters = scatters_of_tolerance(diagram::BlockLibrary::shipped(), 1e-3);
   options.runs = 10;
   const MonteCarlo all = drawn(four_bar(), options);
   options.runs = 3;
@@ -233,8 +234,8 @@ TEST(MonteCarlo, PercentilesAreRunsByTheNearestRank) {
 
 // A rocker that cannot turn swings over its range, of which both the patch and the exact motion are.
 TEST(MonteCarlo, SwingsWhatCannotTurn) {
-  const Mechanism mechanism =
-      read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/double-rocker.toml");
+  const mechanism::Mechanism mechanism =
+      mechanism::read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/double-rocker.toml");
   MonteCarloOptions options;
   options.scatters = {{"summer", "tolerance", 1e-6, ""}};
   options.runs = 2;
@@ -248,7 +249,7 @@ TEST(MonteCarlo, SwingsWhatCannotTurn) {
 // good as others: it is off by about its tolerance.
 TEST(MonteCarlo, TriesFinerWhereTheSolverFindsNoStep) {
   MonteCarloOptions options;
-  options.scatters = scatters_of_tolerance(BlockLibrary::shipped(), 0.002);
+  options.scatters = scatters_of_tolerance(diagram::BlockLibrary::shipped(), 0.002);
   options.runs = 1;
   options.first_run = 5;
   const MonteCarlo result = drawn(four_bar(), options);
@@ -257,4 +258,4 @@ TEST(MonteCarlo, TriesFinerWhereTheSolverFindsNoStep) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::compare

@@ -4,20 +4,20 @@
 
 #include "../support/random_class_three.h"
 
-namespace oblique {
+namespace oblique::compare {
 namespace {
 
 TEST(RandomClassThree, IsTrackedByBothMethods) {
-  const BlockLibrary library = BlockLibrary::shipped();
+  const diagram::BlockLibrary library = diagram::BlockLibrary::shipped();
   for (std::uint64_t seed = 1; seed <= 25; ++seed) {
-    const Mechanism mechanism = testing::random_class_three(seed);
-    for (const PatchMethod method : {PatchMethod::triangles, PatchMethod::gradient}) {
+    const mechanism::Mechanism mechanism = testing::random_class_three(seed);
+    for (const patch::PatchMethod method : {patch::PatchMethod::triangles, patch::PatchMethod::gradient}) {
       const testing::Tracking result = testing::track(mechanism, method, library);
-      EXPECT_TRUE(result.tracks) << "seed " << seed << ", " << method_name(method) << ": "
+      EXPECT_TRUE(result.tracks) << "seed " << seed << ", " << patch::method_name(method) << ": "
                                  << result.explanation;
     }
   }
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::compare

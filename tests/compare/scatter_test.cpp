@@ -8,7 +8,7 @@
 
 #include "../support/compiled.h"
 
-namespace oblique {
+namespace oblique::compare {
 namespace {
 
 using Words = std::array<std::uint32_t, 4>;
@@ -22,21 +22,22 @@ TEST(Philox, GivesTheKnownAnswers) {
             (Words{0xD16CFE09, 0x94FDCCEB, 0x5001E420, 0x24126EA1}));
 }
 
-FlatDiagram two_summers_and_a_multiplier() {
-  static const Diagram diagram = parse_diagram(testing::diagram_text(R"(
+diagram::FlatDiagram two_summers_and_a_multiplier() {
+  static const diagram::Diagram diagram = diagram::parse_diagram(testing::diagram_text(R"(
 one = { type = "constant", value = 0.5 }
 a   = { type = "summer", in = ["one"] }
 b   = { type = "summer", in = ["-one"], tolerance = 0.01 }
 ab  = { type = "multiplier", in = ["a", "b"] }
 )"),
-                                               "d.toml");
-  return flatten(diagram, testing::shipped_blocks());
+                                                                 "d.toml");
+  return diagram::flatten(diagram, testing::shipped_blocks());
 }
 
-const std::vector<BlockFigure> kScatters{{"summer", "tolerance", 0.02, ""}, {"multiplier", "error", 0.3, ""}};
+const std::vector<diagram::BlockFigure> kScatters{{"summer", "tolerance", 0.02, ""},
+                                                  {"multiplier", "error", 0.3, ""}};
 
 TEST(Scatter, IsUniformAboutWhatTheElementHas) {
-  const FlatDiagram flat = two_summers_and_a_multiplier();
+  const diagram::FlatDiagram flat = two_summers_and_a_multiplier();
   constexpr int kRuns = 20'000;
   double sums[3] = {}, squares[3] = {}, product = 0, after_another = 0, last = 0;
   for (std::uint64_t run = 0; run < kRuns; ++run) {
@@ -62,7 +63,7 @@ TEST(Scatter, IsUniformAboutWhatTheElementHas) {
 }
 
 TEST(Scatter, DependsOnTheKeyAlone) {
-  const FlatDiagram flat = two_summers_and_a_multiplier();
+  const diagram::FlatDiagram flat = two_summers_and_a_multiplier();
   const auto value = [&](DrawKey key) { return draw(flat, kScatters, key).front().value; };
   EXPECT_EQ(value({5, 3}), value({5, 3}));
   EXPECT_NE(value({5, 3}), value({5, 4}));
@@ -72,15 +73,15 @@ TEST(Scatter, DependsOnTheKeyAlone) {
 }
 
 TEST(Scatter, ChangesTheEquationsOfWhatItTouches) {
-  FlatDiagram flat = two_summers_and_a_multiplier();
-  const Behaviour* const ideal = flat.blocks[3].behaviour;
+  diagram::FlatDiagram flat = two_summers_and_a_multiplier();
+  const diagram::Behaviour* const ideal = flat.blocks[3].behaviour;
   apply_draws(draw(flat, kScatters, {1, 0}), flat);
   EXPECT_NE(flat.blocks[3].behaviour, ideal);  // the case "error > 0"
   EXPECT_NE(flat.blocks[1].parameters[*flat.blocks[1].definition->find_parameter("tolerance")], 0);
 }
 
 TEST(Scatter, LeavesTheFormulasOfWhatItTouches) {
-  const BlockLibrary library = testing::shipped_blocks_and("curve", R"toml([outputs]
+  const diagram::BlockLibrary library = testing::shipped_blocks_and("curve", R"toml([outputs]
 out = {}
 [parameters]
 formula = { kind = "formula", default = "0" }
@@ -91,17 +92,17 @@ out = "formula*(1 + error)")toml");
   const std::vector<Draw> draws = draw(made.flat, {{"curve", "error", 0.3, ""}}, {1, 0});
   ASSERT_EQ(draws.size(), 1U);
   apply_draws(draws, made.flat);
-  const Program program(assemble(made.flat));
-  Workspace workspace(program);
+  const network::Program program(network::assemble(made.flat));
+  network::Workspace workspace(program);
   std::vector<double> signals(program.n_signals());
   program.signals(0.5, nullptr, signals.data(), workspace);
   EXPECT_DOUBLE_EQ(signals[made.signal("c")], 3 * 0.5 * (1 + draws[0].value));
 }
 
 TEST(Scatter, OfAToleranceTakesWeightsAndMultipliers) {
-  const std::vector<BlockFigure> scatters = scatters_of_tolerance(testing::shipped_blocks(), 1e-3);
+  const std::vector<diagram::BlockFigure> scatters = scatters_of_tolerance(testing::shipped_blocks(), 1e-3);
   std::vector<std::string> names;
-  for (const BlockFigure& scatter : scatters) {
+  for (const diagram::BlockFigure& scatter : scatters) {
     names.push_back(scatter.block + "." + scatter.parameter);
     EXPECT_EQ(scatter.value, 1e-3);
   }
@@ -111,4 +112,4 @@ TEST(Scatter, OfAToleranceTakesWeightsAndMultipliers) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::compare

@@ -10,10 +10,10 @@
 #include <gtest/gtest.h>
 
 #include <oblique/compare/compare.h>
-#include <oblique/mechanism/motion.h>
-#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/mechanism/model/read_mechanism.h>
+#include <oblique/mechanism/motion/motion.h>
 
-namespace oblique {
+namespace oblique::compare {
 namespace {
 
 const std::filesystem::path kCatalogue = std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms";
@@ -28,15 +28,15 @@ std::vector<std::string> names() {
 }
 
 /// With all lengths `factor` times as many.
-Mechanism scaled(Mechanism mechanism, double factor) {
-  for (Point& point : mechanism.points) point.position *= factor;
-  for (SketchPoint& mark : mechanism.sketch) mark.position *= factor;
-  for (Body& body : mechanism.bodies) {
-    for (BodyPoint& point : body.points) point.local *= factor;
+mechanism::Mechanism scaled(mechanism::Mechanism mechanism, double factor) {
+  for (mechanism::Point& point : mechanism.points) point.position *= factor;
+  for (mechanism::SketchPoint& mark : mechanism.sketch) mark.position *= factor;
+  for (mechanism::Body& body : mechanism.bodies) {
+    for (mechanism::BodyPoint& point : body.points) point.local *= factor;
     body.width *= factor;
   }
-  for (Slide& slide : mechanism.slides) slide.offset *= factor;
-  for (Drive& drive : mechanism.drives) {
+  for (mechanism::Slide& slide : mechanism.slides) slide.offset *= factor;
+  for (mechanism::Drive& drive : mechanism.drives) {
     if (!drive.slide) continue;
     drive.start *= factor;
     drive.speed *= factor;
@@ -53,16 +53,16 @@ struct Unit {
 constexpr Unit kUnits[] = {{"um", 1e6}, {"mm", 1e3}, {"m", 1}, {"km", 1e-3}};
 
 /// In a unit, from a catalogue that has its lengths in millimetres or metres.
-Mechanism in_unit(const Mechanism& mechanism, const Unit& unit) {
+mechanism::Mechanism in_unit(const mechanism::Mechanism& mechanism, const Unit& unit) {
   const double from = mechanism.length_unit == "mm" ? 1e3 : 1;
-  Mechanism result = scaled(mechanism, unit.per_metre / from);
+  mechanism::Mechanism result = scaled(mechanism, unit.per_metre / from);
   result.length_unit = unit.name;
   return result;
 }
 
 class Units : public testing::TestWithParam<std::string> {
  protected:
-  Mechanism read() const { return read_mechanism(kCatalogue / (GetParam() + ".toml")); }
+  mechanism::Mechanism read() const { return mechanism::read_mechanism(kCatalogue / (GetParam() + ".toml")); }
 };
 INSTANTIATE_TEST_SUITE_P(Catalogue, Units, testing::ValuesIn(names()), [](const auto& tested) {
   std::string name = tested.param;
@@ -71,11 +71,11 @@ INSTANTIATE_TEST_SUITE_P(Catalogue, Units, testing::ValuesIn(names()), [](const 
 });
 
 TEST_P(Units, ChangeNothingInTheMotion) {
-  const Mechanism original = read();
+  const mechanism::Mechanism original = read();
   ASSERT_TRUE(original.length_unit == "mm" || original.length_unit == "m") << original.length_unit;
-  const Motion motion = solve_motion(in_unit(original, kUnits[2]), 181);
+  const mechanism::Motion motion = mechanism::solve_motion(in_unit(original, kUnits[2]), 181);
   for (const Unit& unit : kUnits) {
-    const Motion same = solve_motion(in_unit(original, unit), 181);
+    const mechanism::Motion same = mechanism::solve_motion(in_unit(original, unit), 181);
     ASSERT_EQ(same.events.size(), motion.events.size()) << unit.name;
     for (std::size_t i = 0; i < motion.events.size(); ++i) {
       EXPECT_EQ(same.events[i].kind, motion.events[i].kind);
@@ -83,10 +83,10 @@ TEST_P(Units, ChangeNothingInTheMotion) {
       EXPECT_NEAR(same.events[i].time, motion.events[i].time, 1e-9) << unit.name;
     }
     for (std::size_t row = 0; row < motion.times.size(); ++row) {
-      const Configuration& here = motion.configurations[row];
-      const Configuration& there = same.configurations[row];
+      const mechanism::Configuration& here = motion.configurations[row];
+      const mechanism::Configuration& there = same.configurations[row];
       ASSERT_EQ(there.status, here.status) << unit.name << " row " << row;
-      if (here.status != Status::ok) continue;
+      if (here.status != mechanism::Status::ok) continue;
       for (std::size_t p = 0; p < here.points.size(); ++p) {
         // roundings of lengths below 10 m, many times enlarged beside a dead centre
         EXPECT_LT((there.points[p].position / unit.per_metre - here.points[p].position).norm(), 1e-9)
@@ -97,14 +97,14 @@ TEST_P(Units, ChangeNothingInTheMotion) {
 }
 
 /// What `compare` says of a mechanism at gain 100, over its size; nothing where it is not patched.
-std::optional<Comparison> compared(const Mechanism& mechanism) {
+std::optional<Comparison> compared(const mechanism::Mechanism& mechanism) {
   CompareOptions options;
-  options.methods = {PatchMethod::gradient};
+  options.methods = {patch::PatchMethod::gradient};
   options.gains = {100};
   options.positions = 91;
   try {
-    return compare(mechanism, BlockLibrary::shipped(), options);
-  } catch (const Error&) {
+    return compare(mechanism, diagram::BlockLibrary::shipped(), options);
+  } catch (const text::Error&) {
     return std::nullopt;
   }
 }
@@ -121,7 +121,7 @@ void expect_overloads_of(const ComparedRun& one, const ComparedRun& other) {
 }
 
 TEST_P(Units, ChangeNothingInTheComparison) {
-  const Mechanism original = read();
+  const mechanism::Mechanism original = read();
   const auto comparison = compared(in_unit(original, kUnits[2]));
   for (const Unit& unit : kUnits) {
     const auto same = compared(in_unit(original, unit));
@@ -140,4 +140,4 @@ TEST_P(Units, ChangeNothingInTheComparison) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::compare

@@ -7,28 +7,28 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/mechanism/model/read_mechanism.h>
 
-namespace oblique {
+namespace oblique::compare {
 namespace {
 
 using std::numbers::pi;
 using ::testing::StartsWith;
 
-ComparedRun compared(const std::string& mechanism, PatchMethod method) {
+ComparedRun compared(const std::string& mechanism, patch::PatchMethod method) {
   CompareOptions options;
   options.methods = {method};
   options.gains = {1e3};
-  return compare(
-             read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/" + mechanism + ".toml"),
-             BlockLibrary::shipped(), options)
+  return compare(mechanism::read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/" +
+                                           mechanism + ".toml"),
+                 diagram::BlockLibrary::shipped(), options)
       .runs.front();
 }
 
 // The six-bar's crank of 80 mm lies opposite to D, 200 mm away, at 180°: |BD| = 280 mm is then the longest,
 // and with |BC| = 140 mm, |CD| = 150 mm, cos γ = (140² + 280² − 150²)/(2·140·280) = 0.963, sin γ = 0.27.
 TEST(WorstReason, IsAFlatTriangle) {
-  const ComparedRun run = compared("six-bar", PatchMethod::triangles);
+  const ComparedRun run = compared("six-bar", patch::PatchMethod::triangles);
   EXPECT_EQ(run.worst.point, "C");
   EXPECT_NEAR(run.worst.drive, pi, 2 * pi / 360);  // a row
   EXPECT_EQ(run.worst.reason, "the triangle B–C–D is flattest there (sin γ = 0.27 at B)");
@@ -36,7 +36,7 @@ TEST(WorstReason, IsAFlatTriangle) {
 
 // The triangle at fault need not be the point's own: the foot Q5 hangs on Q6.
 TEST(WorstReason, IsATriangleThatThePointHangsOn) {
-  const ComparedRun run = compared("jansen", PatchMethod::triangles);
+  const ComparedRun run = compared("jansen", patch::PatchMethod::triangles);
   const std::string leg = run.worst.point.substr(0, 1);  // the two are alike, and rounding decides
   EXPECT_EQ(run.worst.point, leg + "5");
   EXPECT_THAT(run.worst.reason,
@@ -44,13 +44,13 @@ TEST(WorstReason, IsATriangleThatThePointHangsOn) {
 }
 
 TEST(WorstReason, IsAGroupNearADeadCentre) {
-  const ComparedRun run = compared("whitworth", PatchMethod::gradient);
+  const ComparedRun run = compared("whitworth", patch::PatchMethod::gradient);
   EXPECT_THAT(run.worst.reason, StartsWith("the group lever is nearest to a dead centre there (regularity "));
 }
 
 // The gains of the four-bar's loops go with |BD| over its longest, 3/5 at 0°; weight 10: L = 10 · 0.6.
 TEST(WorstReason, IsALoopOfTheLeastGain) {
-  const ComparedRun run = compared("four-bar", PatchMethod::triangles);
+  const ComparedRun run = compared("four-bar", patch::PatchMethod::triangles);
   EXPECT_NEAR(std::remainder(run.worst.drive, 2 * pi), 0, 4 * pi / 360);
   EXPECT_THAT(run.worst.reason, StartsWith("the loop of 'C.direction."));
   EXPECT_THAT(run.worst.reason,
@@ -60,13 +60,13 @@ TEST(WorstReason, IsALoopOfTheLeastGain) {
 // The static error of the centred slider-crank's root is the same all along the turn, so nothing explains
 // where rounding puts the largest.
 TEST(WorstReason, IsNotMadeUp) {
-  EXPECT_EQ(compared("slider-crank", PatchMethod::triangles).worst.reason, "");
+  EXPECT_EQ(compared("slider-crank", patch::PatchMethod::triangles).worst.reason, "");
 }
 
 // The four-bar's group is nearest to a dead centre where it errs most, but hardly nearer than elsewhere.
 TEST(WorstReason, IsNotWhatHardlyChanges) {
-  EXPECT_EQ(compared("four-bar", PatchMethod::gradient).worst.reason, "");
+  EXPECT_EQ(compared("four-bar", patch::PatchMethod::gradient).worst.reason, "");
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::compare

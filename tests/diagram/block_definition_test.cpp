@@ -9,7 +9,7 @@
 
 #include "small_library.h"
 
-namespace oblique {
+namespace oblique::diagram {
 namespace {
 
 using ::testing::ElementsAre;
@@ -83,7 +83,7 @@ out = { guess = "initial/2", at_rest = true }
   // Cases come first, the default last.
   ASSERT_EQ(block.behaviours.size(), 2U);
   ASSERT_TRUE(block.behaviours[0].when);
-  EXPECT_EQ(to_string(*block.behaviours[0].when), "gain == inf and polarity > 0");
+  EXPECT_EQ(text::to_string(*block.behaviours[0].when), "gain == inf and polarity > 0");
   ASSERT_EQ(block.behaviours[0].equations.size(), 2U);
   EXPECT_EQ(block.behaviours[0].equations[0].target, "help");
   EXPECT_EQ(block.behaviours[0].equations[0].kind, Equation::Kind::assignment);
@@ -96,7 +96,7 @@ out = { guess = "initial/2", at_rest = true }
 
   ASSERT_EQ(block.starts.size(), 1U);
   EXPECT_EQ(block.starts[0].target, "out");
-  EXPECT_EQ(to_string(block.starts[0].value), "initial/2");
+  EXPECT_EQ(text::to_string(block.starts[0].value), "initial/2");
   EXPECT_TRUE(block.starts[0].at_rest);
 }
 
@@ -113,8 +113,8 @@ c = "c - a"
   const BlockDefinition plain = parse_block(kHead + body + "[start]\nb = 2.5\n", "b.toml", "b");
   ASSERT_EQ(plain.starts.size(), 3U);
   EXPECT_EQ(plain.starts[0].target, "a");
-  EXPECT_EQ(to_string(plain.starts[0].value), "0");
-  EXPECT_EQ(to_string(plain.starts[1].value), "2.5");
+  EXPECT_EQ(text::to_string(plain.starts[0].value), "0");
+  EXPECT_EQ(text::to_string(plain.starts[1].value), "2.5");
   EXPECT_EQ(plain.starts[2].target, "c");
   EXPECT_FALSE(plain.starts[2].at_rest);
 
@@ -122,9 +122,9 @@ c = "c - a"
   const BlockDefinition named = parse_block(
       kHead + body + "[start]\nb = \"2*initial\"\nc = { at_rest = true }\n[parameters]\ninitial = {}\n",
       "b.toml", "b");
-  EXPECT_EQ(to_string(named.starts[0].value), "initial");
-  EXPECT_EQ(to_string(named.starts[1].value), "2*initial");
-  EXPECT_EQ(to_string(named.starts[2].value), "initial");
+  EXPECT_EQ(text::to_string(named.starts[0].value), "initial");
+  EXPECT_EQ(text::to_string(named.starts[1].value), "2*initial");
+  EXPECT_EQ(text::to_string(named.starts[2].value), "initial");
   EXPECT_TRUE(named.starts[2].at_rest);
 }
 
@@ -151,7 +151,7 @@ twice = { type = "adder", label = "φ̇", in = ["k*x", "x"] }
   EXPECT_EQ(block.blocks[0].label, "φ̇");
   ASSERT_EQ(block.blocks[0].settings.size(), 1U);
   EXPECT_EQ(block.blocks[0].settings[0].key, "in");
-  EXPECT_EQ(block.blocks[0].place, (Place{"b.toml", {12, 1}}));
+  EXPECT_EQ(block.blocks[0].place, (text::Place{"b.toml", {12, 1}}));
 }
 
 TEST(ParameterDefinition, KnowsItsRange) {
@@ -175,9 +175,10 @@ TEST(ParameterDefinition, KnowsItsRange) {
 }
 
 TEST(ParseBlock, BrokenTomlIsAReadError) {
-  EXPECT_THAT(message_of<ReadError>([] { parse_block("[outputs\n", "b.toml", "b"); }), HasSubstr("b.toml:"));
+  EXPECT_THAT(message_of<text::ReadError>([] { parse_block("[outputs\n", "b.toml", "b"); }),
+              HasSubstr("b.toml:"));
   EXPECT_THAT(
-      message_of<ReadError>([] { parse_block(kHead + "[outputs]\nx = {}\nx = {}\n", "b.toml", "b"); }),
+      message_of<text::ReadError>([] { parse_block(kHead + "[outputs]\nx = {}\nx = {}\n", "b.toml", "b"); }),
       HasSubstr("b.toml:5:"));
 }
 
@@ -335,10 +336,10 @@ TEST(ParseBlock, ReportsAllFindingsInTheOrderOfTheFile) {
     FAIL() << "no error";
   } catch (const DiagramError& error) {
     std::vector<int> lines;
-    for (const Diagnostic& d : error.diagnostics()) lines.push_back(d.place.position.line);
+    for (const text::Diagnostic& d : error.diagnostics()) lines.push_back(d.place.position.line);
     EXPECT_THAT(lines, ElementsAre(3, 5, 5, 8, 10)) << error.what();
   }
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::diagram

@@ -12,7 +12,7 @@
 #include "../support/scratch_folder.h"
 #include "small_library.h"
 
-namespace oblique {
+namespace oblique::diagram {
 namespace {
 
 using ::testing::ElementsAre;
@@ -24,7 +24,9 @@ const std::filesystem::path kBlocks = std::filesystem::path(OBLIQUE_SOURCE_DIR) 
 /// An empty directory that goes with the test.
 class Directory {
  public:
-  void write(const std::string& name, const std::string& text) const { write_file(folder_ / name, text); }
+  void write(const std::string& name, const std::string& text) const {
+    text::write_file(folder_ / name, text);
+  }
   const std::filesystem::path& path() const { return folder_.path(); }
 
  private:
@@ -50,7 +52,7 @@ TEST(BlockLibrary, ShipsTheFilesAsTheyStand) {
   for (const std::string& name : library.names()) {
     const BlockDefinition* const block = library.find(name);
     ASSERT_NE(block, nullptr);
-    EXPECT_EQ(block->text, read_file(kBlocks / (name + ".toml"))) << name;
+    EXPECT_EQ(block->text, text::read_file(kBlocks / (name + ".toml"))) << name;
     EXPECT_EQ(block->file, "blocks/" + name + ".toml");
     EXPECT_FALSE(block->title.empty()) << name;
     EXPECT_FALSE(block->summary.empty()) << name;
@@ -118,4 +120,4 @@ TEST(BlockLibrary, SaysWhereThereIsNoDirectory) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::diagram

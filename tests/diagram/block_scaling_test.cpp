@@ -7,7 +7,7 @@
 #include <oblique/diagram/block_scaling.h>
 #include <oblique/diagram/rescale.h>
 
-namespace oblique {
+namespace oblique::diagram {
 namespace {
 
 /// The flat block of one definition, by itself, with its default parameters.
@@ -115,4 +115,4 @@ TEST(ScaleForPeak, GoesInStepsOfOneTwoFive) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::diagram

@@ -9,7 +9,7 @@
 
 #include "small_library.h"
 
-namespace oblique {
+namespace oblique::diagram {
 namespace {
 
 using testing::diagram_text;
@@ -103,7 +103,7 @@ b = { type = "adder", in = ["a", "-2*b"] }
   EXPECT_EQ(d.blocks[0].name, "a");
   EXPECT_EQ(d.blocks[0].label, "φ̇");
   EXPECT_EQ(d.blocks[1].type, "adder");
-  EXPECT_EQ(d.blocks[1].place, (Place{"d.toml", {15, 1}}));
+  EXPECT_EQ(d.blocks[1].place, (text::Place{"d.toml", {15, 1}}));
   ASSERT_EQ(d.blocks[1].settings.size(), 1U);
   EXPECT_EQ(d.blocks[1].settings[0].value.elements[1].text, "-2*b");
 
@@ -129,10 +129,11 @@ TEST(ParseDiagram, HasUsualSettings) {
 }
 
 TEST(ParseDiagram, BrokenTomlIsAReadError) {
-  EXPECT_THAT(message_of<ReadError>([] { parse_diagram("a = = 1", "d.toml"); }), HasSubstr("d.toml:1:"));
-  EXPECT_THAT(message_of<ReadError>([] { parse_diagram(diagram_text(kBlock + kBlock), "d.toml"); }),
+  EXPECT_THAT(message_of<text::ReadError>([] { parse_diagram("a = = 1", "d.toml"); }),
+              HasSubstr("d.toml:1:"));
+  EXPECT_THAT(message_of<text::ReadError>([] { parse_diagram(diagram_text(kBlock + kBlock), "d.toml"); }),
               HasSubstr("d.toml:4:"));
-  EXPECT_THAT(message_of<ReadError>([] { read_diagram("no/such.toml"); }),
+  EXPECT_THAT(message_of<text::ReadError>([] { read_diagram("no/such.toml"); }),
               HasSubstr("no/such.toml: cannot open"));
 }
 
@@ -280,7 +281,7 @@ TEST(ParseDiagram, ReportsAllFindingsInTheOrderOfTheFile) {
     FAIL() << "no error";
   } catch (const DiagramError& error) {
     std::vector<int> lines;
-    for (const Diagnostic& d : error.diagnostics()) lines.push_back(d.place.position.line);
+    for (const text::Diagnostic& d : error.diagnostics()) lines.push_back(d.place.position.line);
     EXPECT_THAT(lines, ElementsAre(3, 4, 6, 7, 9, 10)) << error.what();
   }
 }
@@ -292,11 +293,11 @@ TEST(Settings, AreBuiltAsFilesHaveThem) {
   EXPECT_EQ(number_setting("k", 2.5).value.number, 2.5);
   EXPECT_EQ(text_setting("k", "1 Hz").value.text, "1 Hz");
   EXPECT_EQ(wire_setting("in", {{2, "a"}}).value.text, "2*a");
-  const Entry list = wire_setting("in", {{2, "a"}, {-1, "b"}});
+  const text::Entry list = wire_setting("in", {{2, "a"}, {-1, "b"}});
   ASSERT_EQ(list.value.elements.size(), 2U);
   EXPECT_EQ(list.value.elements[1].text, "-b");
   EXPECT_TRUE(wire_setting("in", {}).value.elements.empty());
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::diagram

@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-namespace oblique {
+namespace oblique::diagram {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -138,7 +138,7 @@ rc::Gen<double> positive_number() {
   return rc::gen::map(rc::gen::inRange(1, 1'000'000), [](int x) { return x / 1024.0; });
 }
 
-Entry any_setting(const std::string& key) {
+text::Entry any_setting(const std::string& key) {
   switch (*rc::gen::inRange(0, 3)) {
     case 0:
       return number_setting(key, *any_number());
@@ -254,4 +254,4 @@ TEST(WriteDiagram, DiagramsThatDifferAnywhereAreNotEqual) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::diagram

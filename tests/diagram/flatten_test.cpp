@@ -9,7 +9,7 @@
 
 #include "small_library.h"
 
-namespace oblique {
+namespace oblique::diagram {
 namespace {
 
 using testing::diagram_text;
@@ -89,7 +89,7 @@ p = { type = "product", in = ["a", "-a"] }
   EXPECT_THAT(inputs_of(d, "a"), ElementsAre());
   EXPECT_EQ(block_at(d, "a").parameters, std::vector{2.5});
   EXPECT_EQ(block_at(d, "a").definition, library_.find("reference"));
-  EXPECT_EQ(block_at(d, "a").place, (Place{"d.toml", {4, 1}}));
+  EXPECT_EQ(block_at(d, "a").place, (text::Place{"d.toml", {4, 1}}));
   EXPECT_EQ(d.file, "d.toml");
 }
 
@@ -175,7 +175,7 @@ n = { type = "inner", x = "-u", b = "4*o.i.s.out" }
   EXPECT_THAT(inputs_of(d, "q"), ElementsAre("1*o.i.t", "1*o.i.t"));
   EXPECT_THAT(inputs_of(d, "n.s"), ElementsAre("-2*u + -4*o.i.s"));
   EXPECT_THAT(block_at(d, "n.t").parameters, ElementsAre(4, 1000, 0.5, 0.5));
-  EXPECT_EQ(block_at(d, "n.t").place, (Place{"d.toml", {7, 1}}));  // where "n" stands
+  EXPECT_EQ(block_at(d, "n.t").place, (text::Place{"d.toml", {7, 1}}));  // where "n" stands
 }
 
 /// A weighted sum may reach an inner input that takes one signal from the composite's point of view.
@@ -305,4 +305,4 @@ TEST_F(Flatten, TakesThousandsOfBlocks) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::diagram

@@ -14,7 +14,7 @@
 #include "../support/scratch_folder.h"
 #include "small_library.h"
 
-namespace oblique {
+namespace oblique::diagram {
 namespace {
 
 using ::testing::ElementsAre;
@@ -46,7 +46,7 @@ std::string refusal(const std::string& block, const std::string& rest = "") {
 }
 
 /// The points of a recording of a file with this text.
-PointTable recorded(const std::string& csv, const std::string& columns, const std::string& rest = "") {
+text::PointTable recorded(const std::string& csv, const std::string& columns, const std::string& rest = "") {
   const test::ScratchFolder folder;
   std::ofstream(folder / "lab.csv", std::ios::binary) << csv;
   const FlatDiagram made =
@@ -111,7 +111,7 @@ TEST(LabFile, HasADecimalComma) {
   EXPECT_THAT(refusal("x = { type = \"integrator\", in = \"one\", initial = \"0,5\" }\n"),
               HasSubstr("a comma stands in the number; expected a decimal point"));
   EXPECT_THAT([] { parse_diagram(testing::diagram_text("x = { type = \"constant\", value = 0,5 }\n"), "d"); },
-              ::testing::ThrowsMessage<ReadError>(HasSubstr("numbers have a decimal point, no comma")));
+              ::testing::ThrowsMessage<text::ReadError>(HasSubstr("numbers have a decimal point, no comma")));
 }
 
 TEST(LabFile, HasTypesetSignsInWires) {
@@ -185,7 +185,7 @@ TEST(LabFile, RecordsInPercent) {
 }
 
 TEST(LabFile, RecordsSteps) {
-  const PointTable table = recorded("t,u\n0,0\n1,0\n1,5\n2,5\n", kTU);
+  const text::PointTable table = recorded("t,u\n0,0\n1,0\n1,5\n2,5\n", kTU);
   EXPECT_THAT(table.x, ElementsAre(0, 1, 1, 2));
   EXPECT_THAT(table.y, ElementsAre(0, 0, 5, 5));
   EXPECT_THAT(message_of([] { recorded("t,u\n0,0\n1,0\n1,5\n1,6\n2,5\n", kTU); }),
@@ -196,13 +196,13 @@ TEST(LabFile, RecordsSteps) {
 }
 
 TEST(LabFile, BeginsOrEndsWithAStep) {
-  const PointTable table = recorded("t,u\n0,0\n0,1\n2,1\n2,3\n", kTU);
+  const text::PointTable table = recorded("t,u\n0,0\n0,1\n2,1\n2,3\n", kTU);
   EXPECT_THAT(table.x, ElementsAre(-1, 0, 0, 2, 2, 4));
   EXPECT_THAT(table.y, ElementsAre(0, 0, 1, 1, 3, 3));
 }
 
 TEST(LabFile, HoldsItsEnds) {
-  const PointTable table = recorded("t,u\n1,2\n4,3\n", std::string(kTU) + ", beyond = \"hold\"");
+  const text::PointTable table = recorded("t,u\n1,2\n4,3\n", std::string(kTU) + ", beyond = \"hold\"");
   EXPECT_THAT(table.x, ElementsAre(0, 1, 4, 8));
   EXPECT_THAT(table.y, ElementsAre(2, 2, 3, 3));
   EXPECT_THAT(recorded("t,u\n1,2\n4,3\n", std::string(kTU) + ", beyond = \"extrapolate\"").x,
@@ -227,4 +227,4 @@ TEST(LabFile, NamesItsColumnsWhereOneIsNotThere) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::diagram

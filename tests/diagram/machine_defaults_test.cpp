@@ -7,7 +7,7 @@
 
 #include "small_library.h"
 
-namespace oblique {
+namespace oblique::diagram {
 namespace {
 
 using ::testing::HasSubstr;
@@ -138,4 +138,4 @@ TEST_F(OnAMachine, ItIsOneThatIsKnown) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::diagram

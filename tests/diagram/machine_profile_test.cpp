@@ -11,7 +11,7 @@
 
 #include <oblique/diagram/block_library.h>
 
-namespace oblique {
+namespace oblique::diagram {
 namespace {
 
 using ::testing::ElementsAre;
@@ -201,7 +201,7 @@ TEST(UnknownMachine, NamesTheNearestOne) {
 }
 
 TEST(UnknownMachine, KeepsThePlace) {
-  EXPECT_EQ(unknown_machine("abacus", {"d.toml", {3, 11}}).place, (Place{"d.toml", {3, 11}}));
+  EXPECT_EQ(unknown_machine("abacus", {"d.toml", {3, 11}}).place, (text::Place{"d.toml", {3, 11}}));
 }
 
 TEST(ElementName, IsAWordForPeople) {
@@ -210,4 +210,4 @@ TEST(ElementName, IsAWordForPeople) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::diagram

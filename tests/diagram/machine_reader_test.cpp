@@ -9,7 +9,7 @@
 
 #include "small_library.h"
 
-namespace oblique {
+namespace oblique::diagram {
 namespace {
 
 using ::testing::ElementsAre;
@@ -207,4 +207,4 @@ TEST(ParseMachine, CannotTurnVoltsIntoUnknownUnits) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::diagram

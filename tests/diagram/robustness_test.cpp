@@ -8,7 +8,7 @@
 
 #include "small_library.h"
 
-namespace oblique {
+namespace oblique::diagram {
 namespace {
 
 using testing::small_library;
@@ -117,7 +117,7 @@ bool survives(const std::string& block, const std::string& diagram) {
     const FlatDiagram flat = flatten(read, library);
     EXPECT_TRUE(parse_diagram(write_diagram(read), "d.toml") == read) << diagram;
     return !flat.blocks.empty();
-  } catch (const Error& error) {
+  } catch (const text::Error& error) {
     EXPECT_FALSE(error.diagnostics().empty());
     return false;
   }
@@ -160,4 +160,4 @@ TEST(Robustness, BrokenPrimitives) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::diagram

@@ -9,11 +9,11 @@
 namespace oblique::testing {
 
 /// Blocks of our own, so that these tests do not hang on the shipped ones.
-inline BlockLibrary small_library() {
-  BlockLibrary library;
+inline diagram::BlockLibrary small_library() {
+  diagram::BlockLibrary library;
   const auto add = [&](std::string name, std::string text) {
-    library.add(
-        parse_block("format = \"oblique-block/1\"\ntitle = \"" + name + "\"\n" + text, name + ".toml", name));
+    library.add(diagram::parse_block("format = \"oblique-block/1\"\ntitle = \"" + name + "\"\n" + text,
+                                     name + ".toml", name));
   };
   add("reference", R"toml(
 [outputs]
@@ -89,7 +89,7 @@ inline std::string diagram_text(std::string_view blocks, std::string_view rest =
 }
 
 /// What is thrown by `action`, as the user sees it; "" where nothing is.
-template <class Thrown = DiagramError, class Action>
+template <class Thrown = diagram::DiagramError, class Action>
 std::string message_of(Action action) {
   try {
     action();
@@ -100,9 +100,11 @@ std::string message_of(Action action) {
 }
 
 /// What `flatten` says about a diagram with these blocks, which stand from line 3 on.
-inline std::string wiring_message(std::string_view blocks, const BlockLibrary& library = small_library(),
+inline std::string wiring_message(std::string_view blocks,
+                                  const diagram::BlockLibrary& library = small_library(),
                                   std::string_view rest = "") {
-  return message_of([&] { flatten(parse_diagram(diagram_text(blocks, rest), "d.toml"), library); });
+  return message_of(
+      [&] { diagram::flatten(diagram::parse_diagram(diagram_text(blocks, rest), "d.toml"), library); });
 }
 
 }  // namespace oblique::testing

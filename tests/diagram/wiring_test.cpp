@@ -7,7 +7,7 @@
 
 #include "small_library.h"
 
-namespace oblique {
+namespace oblique::diagram {
 namespace {
 
 using testing::diagram_text;
@@ -184,7 +184,7 @@ TEST(Wiring, ReportsEveryMistakeTogetherInTheOrderOfTheFile) {
     FAIL() << "no error";
   } catch (const DiagramError& error) {
     std::vector<int> lines;
-    for (const Diagnostic& d : error.diagnostics()) lines.push_back(d.place.position.line);
+    for (const text::Diagnostic& d : error.diagnostics()) lines.push_back(d.place.position.line);
     EXPECT_THAT(lines, ElementsAre(0, 3, 4, 5, 5, 5, 6, 8)) << error.what();
   }
 }
@@ -341,4 +341,4 @@ TEST(Wiring, TheSizeOfADiagramIsBounded) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::diagram

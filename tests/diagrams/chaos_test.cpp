@@ -10,7 +10,7 @@
 
 #include <oblique/solve/run.h>
 
-namespace oblique {
+namespace oblique::test {
 namespace {
 
 struct Equilibrium {
@@ -55,16 +55,17 @@ INSTANTIATE_TEST_SUITE_P(Chaos, ChaoticDiagram, testing::ValuesIn(kEquilibria),
 
 TEST_P(ChaoticDiagram, StaysAtItsEquilibrium) {
   const Equilibrium& e = GetParam();
-  Diagram diagram = read_diagram(fmt::format("{}/diagrams/{}.toml", OBLIQUE_SOURCE_DIR, e.file));
-  const BlockLibrary library = BlockLibrary::shipped();
-  const FlatDiagram flat = flatten(diagram, library,
-                                   {{"x.initial", fmt::format("{}", e.x / e.sx)},
-                                    {"y.initial", fmt::format("{}", e.y / e.sy)},
-                                    {"z.initial", fmt::format("{}", e.z / e.sz)}});
-  RunOptions options = options_of(diagram.run);
+  diagram::Diagram diagram =
+      diagram::read_diagram(fmt::format("{}/diagrams/{}.toml", OBLIQUE_SOURCE_DIR, e.file));
+  const diagram::BlockLibrary library = diagram::BlockLibrary::shipped();
+  const diagram::FlatDiagram flat = diagram::flatten(diagram, library,
+                                                     {{"x.initial", fmt::format("{}", e.x / e.sx)},
+                                                      {"y.initial", fmt::format("{}", e.y / e.sy)},
+                                                      {"z.initial", fmt::format("{}", e.z / e.sz)}});
+  solve::RunOptions options = solve::options_of(diagram.run);
   options.until = e.until;
-  const oblique::Run result = run(Program(assemble(flat)), flat, options);
-  const Trajectory& run = result.trajectory;
+  const oblique::solve::Run result = solve::run(network::Program(network::assemble(flat)), flat, options);
+  const solve::Trajectory& run = result.trajectory;
   // The rounding of the start, and of some hundred evaluations since, grown.
   const double allowed = 1e-13 * e.growth * (1 + std::abs(e.x) + std::abs(e.y) + std::abs(e.z));
   for (std::size_t row = 0; row < run.rows(); ++row) {
@@ -74,7 +75,7 @@ TEST_P(ChaoticDiagram, StaysAtItsEquilibrium) {
   }
 }
 
-std::size_t state_of(const Program& program, std::string_view name) {
+std::size_t state_of(const network::Program& program, std::string_view name) {
   for (std::size_t i = 0; i < program.n_states(); ++i) {
     if (program.states()[i].name == name) return i;
   }
@@ -91,16 +92,16 @@ INSTANTIATE_TEST_SUITE_P(Chaos, DeviationCircuit,
 TEST_P(DeviationCircuit, IsTheLinearisation) {
   std::string file = GetParam();
   file[file.find('_')] = '/';
-  const BlockLibrary library = BlockLibrary::shipped();
-  const FlatDiagram flat =
-      flatten(read_diagram(fmt::format("{}/diagrams/{}.toml", OBLIQUE_SOURCE_DIR, file)), library);
-  const Program program(assemble(flat));
-  Workspace workspace(program);
+  const diagram::BlockLibrary library = diagram::BlockLibrary::shipped();
+  const diagram::FlatDiagram flat = diagram::flatten(
+      diagram::read_diagram(fmt::format("{}/diagrams/{}.toml", OBLIQUE_SOURCE_DIR, file)), library);
+  const network::Program program(network::assemble(flat));
+  network::Workspace workspace(program);
   const std::array<std::size_t, 3> x{state_of(program, "x"), state_of(program, "y"), state_of(program, "z")};
   const std::array<std::size_t, 3> e{state_of(program, "e1"), state_of(program, "e2"),
                                      state_of(program, "e3")};
   std::vector<double> states(program.n_states()), slopes(program.n_states());
-  const SparsePattern& pattern = program.jacobian_pattern();
+  const network::SparsePattern& pattern = program.jacobian_pattern();
   std::vector<double> entries(pattern.entries());
   for (const auto& at : {std::array{0.3, -0.5, 0.7}, std::array{-0.8, 0.2, 0.4}}) {
     for (const auto& deviation : {std::array{0.6, -0.48, 0.64}, std::array{0.0, 0.6, 0.8}}) {
@@ -129,4 +130,4 @@ TEST_P(DeviationCircuit, IsTheLinearisation) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::test

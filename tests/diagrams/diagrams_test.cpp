@@ -9,14 +9,14 @@
 #include <gtest/gtest.h>
 
 #include <oblique/compare/compare.h>
-#include <oblique/mechanism/obstacle.h>
-#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/mechanism/model/read_mechanism.h>
+#include <oblique/mechanism/motion/obstacle.h>
 #include <oblique/solve/expectation_check.h>
 #include <oblique/text/document.h>
 
 #include "../support/rate_errors.h"
 
-namespace oblique {
+namespace oblique::test {
 namespace {
 
 std::vector<std::string> files_in(const std::string& folder) {
@@ -52,7 +52,7 @@ class ShippedDiagram : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Diagrams, ShippedDiagram, testing::ValuesIn(diagrams()), test_name);
 
 TEST_P(ShippedDiagram, BeginsWithAParagraphOfItsOrigin) {
-  std::istringstream text(read_file(path_of(GetParam())));
+  std::istringstream text(text::read_file(path_of(GetParam())));
   std::size_t words = 0;
   std::string line, word;
   while (std::getline(text, line) && line.starts_with('#')) {
@@ -60,18 +60,18 @@ TEST_P(ShippedDiagram, BeginsWithAParagraphOfItsOrigin) {
     while (comment >> word) ++words;
   }
   EXPECT_GE(words, 30u);  // fewer do not say where a problem comes from and what the machine shows
-  EXPECT_FALSE(read_diagram(path_of(GetParam())).title.empty());
+  EXPECT_FALSE(diagram::read_diagram(path_of(GetParam())).title.empty());
 }
 
 TEST_P(ShippedDiagram, GivesWhatItExpects) {
-  const BlockLibrary library = BlockLibrary::shipped();
-  const Diagram diagram = read_diagram(path_of(GetParam()));
+  const diagram::BlockLibrary library = diagram::BlockLibrary::shipped();
+  const diagram::Diagram diagram = diagram::read_diagram(path_of(GetParam()));
   ASSERT_FALSE(diagram.expectations.empty());
-  const FlatDiagram flat = flatten(diagram, library);
-  RunOptions options = options_of(diagram.run);
-  ask_for_expectations(diagram, options);
-  const oblique::Run result = run(Program(assemble(flat)), flat, options);
-  for (const ExpectationResult& expectation : check_expectations(diagram, result)) {
+  const diagram::FlatDiagram flat = diagram::flatten(diagram, library);
+  solve::RunOptions options = solve::options_of(diagram.run);
+  solve::ask_for_expectations(diagram, options);
+  const oblique::solve::Run result = solve::run(network::Program(network::assemble(flat)), flat, options);
+  for (const solve::ExpectationResult& expectation : solve::check_expectations(diagram, result)) {
     EXPECT_TRUE(expectation.met) << expectation.expectation.text << " = " << expectation.actual;
   }
 }
@@ -79,14 +79,15 @@ TEST_P(ShippedDiagram, GivesWhatItExpects) {
 /// A mechanism and how it is patched.
 struct Patched {
   std::string file;
-  PatchMethod method;
+  patch::PatchMethod method;
 };
 
 /// A triad whose leads are all links.
-bool is_on_links(const Group& group) {
+bool is_on_links(const mechanism::Group& group) {
   const auto& conditions = group.equations.conditions;
-  return std::all_of(conditions.begin(), conditions.end(),
-                     [](const Condition& c) { return c.kind == Condition::Kind::distance; });
+  return std::all_of(conditions.begin(), conditions.end(), [](const mechanism::Condition& c) {
+    return c.kind == mechanism::Condition::Kind::distance;
+  });
 }
 
 /// All that meet no dead centre, or are swung over their range, by gradient servos; those without groups of
@@ -95,15 +96,16 @@ bool is_on_links(const Group& group) {
 std::vector<Patched> patchable() {
   std::vector<Patched> all;
   for (const std::string& name : files_in("mechanisms")) {
-    const Mechanism mechanism = within_range(read_mechanism(path_of(name)));
-    const Structure structure = decompose(mechanism);
-    if (find_obstacle(mechanism, structure)) continue;
-    all.push_back({name, PatchMethod::gradient});
-    const bool dyads = std::all_of(structure.groups.begin(), structure.groups.end(), [](const Group& group) {
-      if (group.kind == GroupKind::triad) return is_on_links(group);
-      return group.kind != GroupKind::general || group.bodies.size() == 1;
-    });
-    if (dyads) all.push_back({name, PatchMethod::triangles});
+    const mechanism::Mechanism mechanism = patch::within_range(mechanism::read_mechanism(path_of(name)));
+    const mechanism::Structure structure = mechanism::decompose(mechanism);
+    if (mechanism::find_obstacle(mechanism, structure)) continue;
+    all.push_back({name, patch::PatchMethod::gradient});
+    const bool dyads =
+        std::all_of(structure.groups.begin(), structure.groups.end(), [](const mechanism::Group& group) {
+          if (group.kind == mechanism::GroupKind::triad) return is_on_links(group);
+          return group.kind != mechanism::GroupKind::general || group.bodies.size() == 1;
+        });
+    if (dyads) all.push_back({name, patch::PatchMethod::triangles});
   }
   return all;
 }
@@ -111,21 +113,22 @@ std::vector<Patched> patchable() {
 class PatchedMechanism : public testing::TestWithParam<Patched> {};
 INSTANTIATE_TEST_SUITE_P(Diagrams, PatchedMechanism, testing::ValuesIn(patchable()), [](const auto& tested) {
   const testing::TestParamInfo<std::string> file(tested.param.file, tested.index);
-  return test_name(file) + std::string(method_name(tested.param.method));
+  return test_name(file) + std::string(patch::method_name(tested.param.method));
 });
 
 TEST_P(PatchedMechanism, AgreesWithItsExactMotion) {
-  const Mechanism mechanism = read_mechanism(path_of(GetParam().file));
-  CompareOptions options;
+  const mechanism::Mechanism mechanism = mechanism::read_mechanism(path_of(GetParam().file));
+  compare::CompareOptions options;
   options.methods = {GetParam().method};
   options.gains = {1e3, 1e4};
-  const Comparison comparison = compare(mechanism, BlockLibrary::shipped(), options);
-  for (const ComparedRun& run : comparison.runs) {
+  const compare::Comparison comparison =
+      compare::compare(mechanism, diagram::BlockLibrary::shipped(), options);
+  for (const compare::ComparedRun& run : comparison.runs) {
     EXPECT_LT(run.max_error, 10 / run.gain * comparison.size)
         << run.gain;  // 1/gain, magnified at most ten times
     EXPECT_TRUE(run.stable);
   }
-  const GainSeries& series = comparison.series.front();
+  const compare::GainSeries& series = comparison.series.front();
   if (!series.order) {  // the tolerance hides it: a trammel on its slide errs by 1e-8 at gain 1e4
     EXPECT_LT(comparison.runs.back().max_error, 10 * series.floor.value());
     return;
@@ -135,16 +138,19 @@ TEST_P(PatchedMechanism, AgreesWithItsExactMotion) {
 
 // The rates' matrix is that of the positions; its inverse enters once more with each derivative.
 TEST_P(PatchedMechanism, HasTheRatesOfItsExactMotion) {
-  const Mechanism mechanism = within_range(read_mechanism(path_of(GetParam().file)));
-  const BlockLibrary library = BlockLibrary::shipped();
-  PatchOptions options;
+  const mechanism::Mechanism mechanism =
+      patch::within_range(mechanism::read_mechanism(path_of(GetParam().file)));
+  const diagram::BlockLibrary library = diagram::BlockLibrary::shipped();
+  patch::PatchOptions options;
   options.method = GetParam().method;
   options.derivatives = true;
   const auto errors_at = [&](double gain) {
     options.gain = gain;
-    const Diagram diagram = patch(mechanism, options);
-    const FlatDiagram flat = flatten(diagram, library);
-    return rate_errors(mechanism, run(Program(assemble(flat)), flat, options_of(diagram.run)).trajectory);
+    const diagram::Diagram diagram = patch::patch(mechanism, options);
+    const diagram::FlatDiagram flat = diagram::flatten(diagram, library);
+    return rate_errors(
+        mechanism, solve::run(network::Program(network::assemble(flat)), flat, solve::options_of(diagram.run))
+                       .trajectory);
   };
   const RateErrors low = errors_at(1e4), high = errors_at(1e5);
   EXPECT_NEAR(std::log10(high.velocity / low.velocity), -1, 0.05);
@@ -155,11 +161,11 @@ TEST_P(PatchedMechanism, HasTheRatesOfItsExactMotion) {
 
 TEST(PatchedMechanism, IsMostOfTheCatalogue) {
   const std::vector<Patched> all = patchable();
-  const auto triangles = std::count_if(all.begin(), all.end(),
-                                       [](const Patched& p) { return p.method == PatchMethod::triangles; });
+  const auto triangles = std::count_if(
+      all.begin(), all.end(), [](const Patched& p) { return p.method == patch::PatchMethod::triangles; });
   EXPECT_GE(triangles, 30);
   EXPECT_GE(static_cast<long>(all.size()) - triangles, 33);
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::test

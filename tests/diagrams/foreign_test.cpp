@@ -8,7 +8,7 @@
 
 #include <oblique/solve/expectation_check.h>
 
-namespace oblique {
+namespace oblique::test {
 namespace {
 
 std::vector<std::string> foreign_diagrams() {
@@ -33,9 +33,9 @@ std::string test_name(const testing::TestParamInfo<std::string>& tested) {
 }
 
 /// The shipped blocks, and those that the diagrams bring with them.
-const BlockLibrary& foreign_blocks() {
-  static const BlockLibrary library = [] {
-    BlockLibrary all = BlockLibrary::shipped();
+const diagram::BlockLibrary& foreign_blocks() {
+  static const diagram::BlockLibrary library = [] {
+    diagram::BlockLibrary all = diagram::BlockLibrary::shipped();
     all.add_directory(std::filesystem::path(OBLIQUE_SOURCE_DIR) / "tests/diagrams/blocks");
     return all;
   }();
@@ -46,17 +46,17 @@ class ForeignDiagram : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Diagrams, ForeignDiagram, testing::ValuesIn(foreign_diagrams()), test_name);
 
 TEST_P(ForeignDiagram, GivesTheTruth) {
-  const BlockLibrary& library = foreign_blocks();
-  const Diagram diagram = read_diagram(GetParam());
+  const diagram::BlockLibrary& library = foreign_blocks();
+  const diagram::Diagram diagram = diagram::read_diagram(GetParam());
   ASSERT_FALSE(diagram.expectations.empty());
-  const FlatDiagram flat = flatten(diagram, library);
-  RunOptions options = options_of(diagram.run);
-  ask_for_expectations(diagram, options);
-  const oblique::Run result = run(Program(assemble(flat)), flat, options);
-  for (const ExpectationResult& expectation : check_expectations(diagram, result)) {
+  const diagram::FlatDiagram flat = diagram::flatten(diagram, library);
+  solve::RunOptions options = solve::options_of(diagram.run);
+  solve::ask_for_expectations(diagram, options);
+  const oblique::solve::Run result = solve::run(network::Program(network::assemble(flat)), flat, options);
+  for (const solve::ExpectationResult& expectation : solve::check_expectations(diagram, result)) {
     EXPECT_TRUE(expectation.met) << expectation.expectation.text << " = " << expectation.actual;
   }
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/draw/animation.h>
+#include <oblique/draw/animation/animation.h>
 
 #include <cstdlib>
 #include <regex>
@@ -8,8 +8,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <oblique/mechanism/motion.h>
-#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/mechanism/model/read_mechanism.h>
+#include <oblique/mechanism/motion/motion.h>
 
 #include "reading.h"
 
@@ -22,16 +22,17 @@ using testing::Not;
 
 constexpr int kFrames = 12;
 
-Mechanism shipped(const std::string& name) {
-  return read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/" + name + ".toml");
+mechanism::Mechanism shipped(const std::string& name) {
+  return mechanism::read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/" + name +
+                                   ".toml");
 }
 
-LinkageAnimation animation_of(const Mechanism& mechanism) {
-  LinkageAnimation animation;
-  animation.frames = solve_motion(mechanism, kFrames + 1).configurations;
-  animation.scene.motion = solve_motion(mechanism, 121).configurations;
+draw::LinkageAnimation animation_of(const mechanism::Mechanism& mechanism) {
+  draw::LinkageAnimation animation;
+  animation.frames = mechanism::solve_motion(mechanism, kFrames + 1).configurations;
+  animation.scene.motion = mechanism::solve_motion(mechanism, 121).configurations;
   animation.scene.shown = animation.frames.front();
-  animation.scene.traces = points_to_trace(mechanism);
+  animation.scene.traces = draw::points_to_trace(mechanism);
   animation.captions.assign(animation.frames.size(), "crank");
   animation.duration = 2.5;
   return animation;
@@ -52,13 +53,14 @@ std::size_t occurrences(const std::string& text, const std::string& part) {
 }
 
 /// Where the pin of a point stands in the pictures of the frames, one after the other.
-std::vector<Vector2d> pins_in_pictures(const Mechanism& mechanism, const LinkageAnimation& animation,
-                                       const std::string& point) {
+std::vector<Vector2d> pins_in_pictures(const mechanism::Mechanism& mechanism,
+                                       const draw::LinkageAnimation& animation, const std::string& point) {
   std::vector<Vector2d> pins;
-  for (const Configuration& frame : animation.frames) {
-    LinkageScene scene = animation.scene;
+  for (const mechanism::Configuration& frame : animation.frames) {
+    draw::LinkageScene scene = animation.scene;
     scene.shown = frame;
-    pins.push_back(std::get<Disc>(find_mark(draw_linkage(mechanism, scene), "pin-" + point)->shape).centre);
+    pins.push_back(
+        std::get<draw::Disc>(find_mark(draw::draw_linkage(mechanism, scene), "pin-" + point)->shape).centre);
   }
   return pins;
 }
@@ -67,9 +69,9 @@ std::vector<Vector2d> pins_in_pictures(const Mechanism& mechanism, const Linkage
 constexpr double kRounding = 0.0075;
 
 TEST(AnimatedSvg, MovesPinsThroughTheFrames) {
-  const Mechanism mechanism = shipped("four-bar");
-  const LinkageAnimation animation = animation_of(mechanism);
-  const std::string svg = animated_svg(mechanism, animation, Theme::automatic);
+  const mechanism::Mechanism mechanism = shipped("four-bar");
+  const draw::LinkageAnimation animation = animation_of(mechanism);
+  const std::string svg = draw::animated_svg(mechanism, animation, draw::Theme::automatic);
   const std::regex pattern(
       R"rx(type="translate" dur="2.5s" repeatCount="indefinite" values="([^"]*)"/>\n<circle id="pin-C")rx");
   std::smatch match;
@@ -83,9 +85,9 @@ TEST(AnimatedSvg, MovesPinsThroughTheFrames) {
 
 // A body is shifted with its first point, and turned about it so that its second point lies where it is.
 TEST(AnimatedSvg, TurnsBodiesWithTheirAngles) {
-  const Mechanism mechanism = shipped("four-bar");
-  const LinkageAnimation animation = animation_of(mechanism);
-  const std::string svg = animated_svg(mechanism, animation, Theme::automatic);
+  const mechanism::Mechanism mechanism = shipped("four-bar");
+  const draw::LinkageAnimation animation = animation_of(mechanism);
+  const std::string svg = draw::animated_svg(mechanism, animation, draw::Theme::automatic);
   const std::size_t body = svg.find("id=\"body-" + mechanism.bodies[1].name + "\"");
   ASSERT_NE(body, std::string::npos);
   const std::size_t turn = svg.rfind("type=\"rotate\"", body), begin = svg.find("values=\"", turn) + 8;
@@ -101,19 +103,19 @@ TEST(AnimatedSvg, TurnsBodiesWithTheirAngles) {
 
 TEST(AnimatedSvg, ClosesWhatItOpens) {
   for (const char* name : {"jansen", "scotch-yoke", "three-bar"}) {
-    const Mechanism mechanism = shipped(name);
-    const std::string svg = animated_svg(mechanism, animation_of(mechanism), Theme::dark);
+    const mechanism::Mechanism mechanism = shipped(name);
+    const std::string svg = draw::animated_svg(mechanism, animation_of(mechanism), draw::Theme::dark);
     EXPECT_EQ(occurrences(svg, "<g"), occurrences(svg, "</g>")) << name;
     EXPECT_TRUE(svg.ends_with("</svg>\n"));
-    EXPECT_EQ(svg, animated_svg(mechanism, animation_of(mechanism), Theme::dark));
+    EXPECT_EQ(svg, draw::animated_svg(mechanism, animation_of(mechanism), draw::Theme::dark));
   }
 }
 
 TEST(AnimatedPage, HasTheFramesAndNothingFromElsewhere) {
-  Mechanism mechanism = shipped("four-bar");
+  mechanism::Mechanism mechanism = shipped("four-bar");
   mechanism.title = "</title><script>";
-  const LinkageAnimation animation = animation_of(mechanism);
-  const std::string page = animated_page(mechanism, animation, Theme::automatic);
+  const draw::LinkageAnimation animation = animation_of(mechanism);
+  const std::string page = draw::animated_page(mechanism, animation, draw::Theme::automatic);
   EXPECT_THAT(page, Not(HasSubstr("</title><script>")));
   EXPECT_THAT(page, HasSubstr("<input id=\"place\" type=\"range\""));
   EXPECT_THAT(page, HasSubstr("const duration = 2.5;"));

@@ -14,10 +14,10 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <oblique/draw/diagram_drawing.h>
-#include <oblique/draw/svg.h>
+#include <oblique/draw/picture/svg.h>
+#include <oblique/draw/schematic/diagram_drawing.h>
 
-namespace oblique {
+namespace oblique::draw {
 namespace {
 
 const std::filesystem::path kSource = OBLIQUE_SOURCE_DIR;
@@ -32,13 +32,13 @@ std::string sum_of(const std::string& bytes) {
 
 /// By names without blanks: the file, and how it is drawn.
 std::map<std::string, std::string> sums() {
-  BlockLibrary library = BlockLibrary::shipped();
+  diagram::BlockLibrary library = diagram::BlockLibrary::shipped();
   library.add_directory(kSource / "diagrams/own-blocks/blocks");
   std::map<std::string, std::string> found;
   for (const char* const folder : {"lessons", "historical", "own-blocks"}) {
     for (const auto& entry : std::filesystem::directory_iterator(kSource / "diagrams" / folder)) {
       if (entry.path().extension() != ".toml") continue;
-      const Diagram diagram = read_diagram(entry.path());
+      const diagram::Diagram diagram = diagram::read_diagram(entry.path());
       const std::string name = fmt::format("{}/{}", folder, entry.path().stem().string());
       found[name] = sum_of(to_svg(draw_diagram(diagram, library)));
       found[name + "+din"] = sum_of(to_svg(draw_diagram(diagram, library, {.symbols = SymbolStyle::din})));
@@ -65,4 +65,4 @@ TEST(ApprovedDrawings, AreWhatIsDrawn) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::draw

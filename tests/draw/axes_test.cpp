@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/draw/axes.h>
+#include <oblique/draw/chart/axes.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-namespace oblique {
+namespace oblique::draw {
 namespace {
 
 using Eigen::Vector2d;
@@ -96,4 +96,4 @@ TEST(Curve, HasGapsWhereThereIsNoValue) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::draw

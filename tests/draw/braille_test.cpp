@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/draw/braille.h>
+#include <oblique/draw/chart/braille.h>
 
 #include <algorithm>
 #include <sstream>
@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace oblique {
+namespace oblique::draw {
 namespace {
 
 using testing::HasSubstr;
@@ -113,4 +113,4 @@ TEST(Braille, DrawsNothingAsEmptyAxes) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::draw

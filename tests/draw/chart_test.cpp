@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/draw/chart.h>
+#include <oblique/draw/chart/chart.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,9 +9,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <oblique/draw/scale.h>
+#include <oblique/draw/picture/scale.h>
 
-namespace oblique {
+namespace oblique::draw {
 namespace {
 
 using Eigen::Vector2d;
@@ -263,4 +263,4 @@ TEST(Scale, HasRoomForConstantsAndForNothing) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::draw

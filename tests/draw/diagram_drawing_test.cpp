@@ -1,28 +1,29 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/draw/diagram_drawing.h>
+#include <oblique/draw/schematic/diagram_drawing.h>
 
 #include <algorithm>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <oblique/draw/schematic.h>
-#include <oblique/draw/symbols.h>
+#include <oblique/draw/schematic/schematic.h>
+#include <oblique/draw/schematic/symbols.h>
 
-namespace oblique {
+namespace oblique::draw {
 namespace {
 
 using Eigen::Vector2d;
 using testing::HasSubstr;
 using Extent = Eigen::AlignedBox<double, 2>;
 
-const BlockLibrary& library() {
-  static const BlockLibrary shipped = BlockLibrary::shipped();
+const diagram::BlockLibrary& library() {
+  static const diagram::BlockLibrary shipped = diagram::BlockLibrary::shipped();
   return shipped;
 }
 
-Diagram diagram(const std::string& blocks, const std::string& rest = "") {
-  return parse_diagram("format = \"oblique-diagram/1\"\n" + rest + "[blocks]\n" + blocks, "test.toml");
+diagram::Diagram diagram(const std::string& blocks, const std::string& rest = "") {
+  return diagram::parse_diagram("format = \"oblique-diagram/1\"\n" + rest + "[blocks]\n" + blocks,
+                                "test.toml");
 }
 
 const Mark* find_mark(const Picture& picture, const std::string& id) {
@@ -57,23 +58,24 @@ y = { type = "integrator", in = ["x"] }
 
 // Each composite holds the one before it twice: a drawing of 2⁴⁰ blocks, were it not counted first.
 TEST(DiagramDrawing, IsNotOpenedBeyondAllMeasure) {
-  BlockLibrary own = BlockLibrary::shipped();
+  diagram::BlockLibrary own = diagram::BlockLibrary::shipped();
   for (int k = 0; k < 40; ++k) {
     const std::string name = "c" + std::to_string(k);
     const std::string inside = k == 0 ? "inverter" : "c" + std::to_string(k - 1);
     own.add(
-        parse_block("format = \"oblique-block/1\"\ntitle = \"c\"\n[inputs]\nin = { doc = \"d\" }\n"
-                    "[outputs]\nout = { wire = \"j\", doc = \"d\" }\n[blocks]\n"
-                    "i = { type = \"" +
-                        inside +
-                        "\", in = \"in\" }\n"
-                        "j = { type = \"" +
-                        inside + "\", in = \"i\" }\n",
-                    name + ".toml", name));
+        diagram::parse_block("format = \"oblique-block/1\"\ntitle = \"c\"\n[inputs]\nin = { doc = \"d\" }\n"
+                             "[outputs]\nout = { wire = \"j\", doc = \"d\" }\n[blocks]\n"
+                             "i = { type = \"" +
+                                 inside +
+                                 "\", in = \"in\" }\n"
+                                 "j = { type = \"" +
+                                 inside + "\", in = \"i\" }\n",
+                             name + ".toml", name));
   }
-  const Diagram deep = diagram("one = { type = \"constant\" }\ne = { type = \"c39\", in = \"one\" }\n");
+  const diagram::Diagram deep =
+      diagram("one = { type = \"constant\" }\ne = { type = \"c39\", in = \"one\" }\n");
   EXPECT_THAT([&] { draw_diagram(deep, own, {.depth = 100}); },
-              testing::ThrowsMessage<DiagramError>(
+              testing::ThrowsMessage<diagram::DiagramError>(
                   "test.toml: so far opened, the drawing has more than 30000 blocks\n"
                   "  remedy: open fewer levels of composites"));
   EXPECT_NO_THROW(draw_diagram(deep, own, {.depth = 3}));
@@ -128,7 +130,7 @@ c  = { type = "servo-amplifier", in = ["c2", "-a2"] }
 }
 
 TEST(DiagramDrawing, OpensCompositesToTheDepthAskedFor) {
-  const Diagram quotient = diagram(R"(
+  const diagram::Diagram quotient = diagram(R"(
 a = { type = "sine-source" }
 b = { type = "sine-source" }
 q = { type = "divider", numerator = "a", denominator = "b" }
@@ -147,7 +149,7 @@ q = { type = "divider", numerator = "a", denominator = "b" }
 
 // A signal inside a composite gets a port of its own.
 TEST(DiagramDrawing, ShowsSignalsTakenFromInside) {
-  const Diagram taken = diagram(R"(
+  const diagram::Diagram taken = diagram(R"(
 drive = { type = "crank-generator" }
 s     = { type = "summer", in = ["drive.excess"] }
 )");
@@ -159,7 +161,8 @@ s     = { type = "summer", in = ["drive.excess"] }
 }
 
 TEST(DiagramDrawing, DinSymbolsAreBoxes) {
-  const Diagram sum = diagram("a = { type = \"summer\", in = [\"b\"] }\nb = { type = \"sine-source\" }\n");
+  const diagram::Diagram sum =
+      diagram("a = { type = \"summer\", in = [\"b\"] }\nb = { type = \"sine-source\" }\n");
   EXPECT_TRUE(std::holds_alternative<Outline>(find_mark(draw_diagram(sum, library()), "block-a")->shape));
   const Picture din = draw_diagram(sum, library(), {SymbolStyle::din, 0});
   EXPECT_TRUE(std::holds_alternative<Box>(find_mark(din, "block-a")->shape));
@@ -170,8 +173,8 @@ TEST(DiagramDrawing, ReportsWhatIsWrongWithTheWiring) {
   try {
     draw_diagram(diagram("a = { type = \"summer\", in = [\"bb\"] }\n"), library());
     FAIL();
-  } catch (const DiagramError& error) {
-    EXPECT_THAT(to_string(error.diagnostics().front()), HasSubstr("there is no signal 'bb'"));
+  } catch (const diagram::DiagramError& error) {
+    EXPECT_THAT(text::to_string(error.diagnostics().front()), HasSubstr("there is no signal 'bb'"));
   }
 }
 
@@ -206,7 +209,7 @@ TEST(DiagramDrawing, ReportsOutputsOfUnknownSignals) {
   try {
     draw_diagram(diagram("a = { type = \"sine-source\" }\n[outputs]\nx = \"b\"\n"), library());
     FAIL();
-  } catch (const DiagramError& error) {
+  } catch (const diagram::DiagramError& error) {
     EXPECT_THAT(error.what(), HasSubstr("output 'x': there is no signal 'b'"));
   }
 }
@@ -245,4 +248,4 @@ j = { type = "jk-flip-flop", clock = "s", j = "s", k = "s", reset = "s" }
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::draw

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Where the blocks of a diagram stand: as its [layout] says, or alike where they are alike.
-#include <oblique/draw/diagram_drawing.h>
+#include <oblique/draw/schematic/diagram_drawing.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -8,12 +8,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/mechanism/model/read_mechanism.h>
 #include <oblique/patch/patch.h>
 
 #include "reading.h"
 
-namespace oblique {
+namespace oblique::draw {
 namespace {
 
 using Eigen::Vector2d;
@@ -23,19 +23,19 @@ using testing::HasSubstr;
 constexpr double kUnit = 16;     // of a [layout] [px]
 constexpr double kRounding = 4;  // boxes stand on a grid of 8 px: half of it [px]
 
-const BlockLibrary& library() {
-  static const BlockLibrary shipped = BlockLibrary::shipped();
+const diagram::BlockLibrary& library() {
+  static const diagram::BlockLibrary shipped = diagram::BlockLibrary::shipped();
   return shipped;
 }
 
-Diagram diagram(const std::string& text) {
-  return parse_diagram("format = \"oblique-diagram/1\"\n" + text, "test.toml");
+diagram::Diagram diagram(const std::string& text) {
+  return diagram::parse_diagram("format = \"oblique-diagram/1\"\n" + text, "test.toml");
 }
 
 std::string message_of(const std::string& text) {
   try {
     draw_diagram(diagram(text), library());
-  } catch (const DiagramError& error) {
+  } catch (const diagram::DiagramError& error) {
     return error.what();
   }
   return "no error";
@@ -70,7 +70,7 @@ TEST(DiagramLayout, PlacesAreRoundedToHalfAUnit) {
 
 // Opening c makes room for its frame: b keeps its side.
 TEST(DiagramLayout, OpenCompositesPushTheOthersAway) {
-  const Diagram placed = diagram(kPair + "[layout]\na = [4, 20]\nb = [14, 8.5]\nc = [30, 8.5]\n");
+  const diagram::Diagram placed = diagram(kPair + "[layout]\na = [4, 20]\nb = [14, 8.5]\nc = [30, 8.5]\n");
   const Picture picture = draw_diagram(placed, library(), {SymbolStyle::classic, 1});
   const auto extent = [&](const std::string& id) { return extent_of(*find_mark(picture, id)); };
   EXPECT_LT(extent("block-b").max().x(), extent("block-c").min().x());
@@ -124,11 +124,11 @@ std::vector<std::filesystem::path> shipped_diagrams() {
 // By way of the file, as a user has it; a shift of the whole is none.
 TEST(DiagramLayout, TheDrawnPlacesGiveThemselves) {
   for (const auto& path : shipped_diagrams()) {
-    Diagram shipped = read_diagram(path);
-    const std::vector<BlockPlace> places = drawn_places(shipped, library());
+    diagram::Diagram shipped = diagram::read_diagram(path);
+    const std::vector<diagram::BlockPlace> places = drawn_places(shipped, library());
     shipped.layout = places;
-    const Diagram written = parse_diagram(write_diagram(shipped), "written.toml");
-    const std::vector<BlockPlace> again = drawn_places(written, library());
+    const diagram::Diagram written = diagram::parse_diagram(diagram::write_diagram(shipped), "written.toml");
+    const std::vector<diagram::BlockPlace> again = drawn_places(written, library());
     ASSERT_EQ(again.size(), places.size());
     const Vector2d shift(again[0].x - places[0].x, again[0].y - places[0].y);
     for (std::size_t k = 0; k < places.size(); ++k) {
@@ -140,8 +140,8 @@ TEST(DiagramLayout, TheDrawnPlacesGiveThemselves) {
 }
 
 TEST(DiagramLayout, ABlockFileMayPlaceItsInnerBlocks) {
-  BlockLibrary own = library();
-  own.add(parse_block(R"(format = "oblique-block/1"
+  diagram::BlockLibrary own = library();
+  own.add(diagram::parse_block(R"(format = "oblique-block/1"
 title = "Difference of squares"
 [inputs]
 p = {}
@@ -157,8 +157,8 @@ p2  = [4, 4]
 q2  = [4, 20]
 sum = [16, 12]
 )",
-                      "own.toml", "own"));
-  const Diagram uses =
+                               "own.toml", "own"));
+  const diagram::Diagram uses =
       diagram("[blocks]\ns = { type = \"sine-source\" }\na = { type = \"own\", p = \"s\", q = \"s\" }\n");
   const Picture picture = draw_diagram(uses, own, {SymbolStyle::classic, 1});
   EXPECT_EQ(middle(picture, "block-a.q2") - middle(picture, "block-a.p2"), kUnit * Vector2d(0, 16));
@@ -183,11 +183,11 @@ std::vector<std::pair<std::string, Mark>> marks_of(const Picture& picture, const
 // The source's fig. 2: the model of a class III mechanism is two equal circuits. Each line and each block of
 // the one lies where it lies in the other, apart from one shift.
 TEST(DiagramLayout, AClassThreeMechanismIsTwoEqualHalves) {
-  const Mechanism mechanism =
-      read_mechanism(std::filesystem::path(OBLIQUE_SOURCE_DIR) / "diagrams/mechanisms/class-iii.toml");
-  const Diagram patched = patch_paper(mechanism);
+  const mechanism::Mechanism mechanism = mechanism::read_mechanism(std::filesystem::path(OBLIQUE_SOURCE_DIR) /
+                                                                   "diagrams/mechanisms/class-iii.toml");
+  const diagram::Diagram patched = patch::patch_paper(mechanism);
   std::vector<std::string> halves;
-  for (const BlockInstance& block : patched.blocks) {
+  for (const diagram::BlockInstance& block : patched.blocks) {
     if (block.type == "four-bar-circuit") halves.push_back(block.name);
   }
   ASSERT_EQ(halves.size(), 2U);
@@ -210,4 +210,4 @@ TEST(DiagramLayout, AClassThreeMechanismIsTwoEqualHalves) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::draw

@@ -7,14 +7,14 @@
 #include <gtest/gtest.h>
 
 #include <oblique/diagram/machine_profile.h>
-#include <oblique/draw/diagram_drawing.h>
+#include <oblique/draw/schematic/diagram_drawing.h>
 #include <oblique/machine/realise.h>
-#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/mechanism/model/read_mechanism.h>
 #include <oblique/patch/patch.h>
 
 #include "reading.h"
 
-namespace oblique {
+namespace oblique::draw {
 namespace {
 
 using Eigen::Vector2d;
@@ -22,9 +22,9 @@ using Extent = Eigen::AlignedBox<double, 2>;
 
 const std::filesystem::path kDiagrams = std::filesystem::path(OBLIQUE_SOURCE_DIR) / "diagrams";
 
-const BlockLibrary& library() {
-  static const BlockLibrary with_own = [] {
-    BlockLibrary blocks = BlockLibrary::shipped();
+const diagram::BlockLibrary& library() {
+  static const diagram::BlockLibrary with_own = [] {
+    diagram::BlockLibrary blocks = diagram::BlockLibrary::shipped();
     blocks.add_directory(kDiagrams / "own-blocks" / "blocks");
     return blocks;
   }();
@@ -32,8 +32,8 @@ const BlockLibrary& library() {
 }
 
 /// Diagrams with the names by which failures tell of them.
-std::vector<std::pair<std::string, Diagram>> all_diagrams() {
-  std::vector<std::pair<std::string, Diagram>> diagrams;
+std::vector<std::pair<std::string, diagram::Diagram>> all_diagrams() {
+  std::vector<std::pair<std::string, diagram::Diagram>> diagrams;
   std::vector<std::filesystem::path> paths;
   for (const char* const folder : {"lessons", "historical", "own-blocks"}) {
     for (const auto& entry : std::filesystem::directory_iterator(kDiagrams / folder)) {
@@ -41,16 +41,16 @@ std::vector<std::pair<std::string, Diagram>> all_diagrams() {
     }
   }
   std::sort(paths.begin(), paths.end());
-  for (const auto& path : paths) diagrams.push_back({path.filename().string(), read_diagram(path)});
+  for (const auto& path : paths) diagrams.push_back({path.filename().string(), diagram::read_diagram(path)});
   const auto mechanism = [](const std::string& name) {
-    return read_mechanism(kDiagrams / "mechanisms" / (name + ".toml"));
+    return mechanism::read_mechanism(kDiagrams / "mechanisms" / (name + ".toml"));
   };
-  diagrams.push_back({"patch of jansen", patch_triangles(mechanism("jansen"))});
-  diagrams.push_back({"patch of class-iii", patch_triangles(mechanism("class-iii"))});
-  diagrams.push_back({"patch of class-iii by paper", patch_paper(mechanism("class-iii"))});
-  const Diagram slider = patch_triangles(mechanism("slider-crank"));
-  diagrams.push_back(
-      {"patch of slider-crank for tr-10", realise(slider, library(), *find_machine("tr-10")).diagram});
+  diagrams.push_back({"patch of jansen", patch::patch_triangles(mechanism("jansen"))});
+  diagrams.push_back({"patch of class-iii", patch::patch_triangles(mechanism("class-iii"))});
+  diagrams.push_back({"patch of class-iii by paper", patch::patch_paper(mechanism("class-iii"))});
+  const diagram::Diagram slider = patch::patch_triangles(mechanism("slider-crank"));
+  diagrams.push_back({"patch of slider-crank for tr-10",
+                      machine::realise(slider, library(), *diagram::find_machine("tr-10")).diagram});
   return diagrams;
 }
 
@@ -115,4 +115,4 @@ TEST(DiagramTexts, OverlapsAreFound) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::draw

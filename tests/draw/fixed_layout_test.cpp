@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Boxes whose places are given, and the wires among them.
-#include <oblique/draw/layout.h>
+#include <oblique/draw/layout/layout.h>
 
 #include <random>
 
@@ -9,7 +9,7 @@
 
 #include "layout_check.h"
 
-namespace oblique {
+namespace oblique::draw {
 namespace {
 
 using Eigen::Vector2d;
@@ -121,4 +121,4 @@ TEST(Layout, LongLayoutsAreWrapped) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::draw

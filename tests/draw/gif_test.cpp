@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // GIFs, read back by giflib's decoder and put together as browsers do.
-#include <oblique/draw/gif.h>
+#include <oblique/draw/picture/gif.h>
 
 #include <algorithm>
 #include <cmath>
@@ -18,11 +18,11 @@ namespace {
 using testing::Each;
 using testing::Eq;
 
-constexpr Rgb kPaper{255, 255, 255}, kInk{26, 26, 26}, kBlue{0, 114, 178};
+constexpr draw::Rgb kPaper{255, 255, 255}, kInk{26, 26, 26}, kBlue{0, 114, 178};
 
 /// Paper with a dot of 2 × 2 px that goes to the right.
-Raster dot_at(std::size_t x) {
-  Raster raster{20, 10, std::vector<Rgb>(200, kPaper)};
+draw::Raster dot_at(std::size_t x) {
+  draw::Raster raster{20, 10, std::vector<draw::Rgb>(200, kPaper)};
   for (const std::size_t y : {4U, 5U}) {
     for (const std::size_t dx : {0U, 1U}) raster.pixels[20 * y + x + dx] = x < 8 ? kInk : kBlue;
   }
@@ -30,8 +30,8 @@ Raster dot_at(std::size_t x) {
 }
 
 /// Paper in the upper half; below it one of 4096 colours a pixel, `shift` of them farther on.
-Raster many_colours(std::size_t shift) {
-  Raster raster{64, 128, std::vector<Rgb>(std::size_t{64} * 128, kPaper)};
+draw::Raster many_colours(std::size_t shift) {
+  draw::Raster raster{64, 128, std::vector<draw::Rgb>(std::size_t{64} * 128, kPaper)};
   for (std::size_t k = 0; k < 4096; ++k) {
     const std::size_t colour = (k + shift) % 4096;
     raster.pixels[4096 + k] = {static_cast<std::uint8_t>(4 * (colour % 64)),
@@ -41,7 +41,7 @@ Raster many_colours(std::size_t shift) {
 }
 
 TEST(Gif, ShowsEveryFrameAsItWasGiven) {
-  const ShownGif gif = read_gif(encode_gif(
+  const ShownGif gif = read_gif(draw::encode_gif(
       9, [](std::size_t k) { return dot_at(2 * k); }, 7));
   EXPECT_EQ(gif.width, 20);
   EXPECT_EQ(gif.height, 10);
@@ -55,7 +55,7 @@ TEST(Gif, ShowsEveryFrameAsItWasGiven) {
 
 // The dot goes by its own width: what it leaves and where it comes to are 4 × 2 px.
 TEST(Gif, HoldsOnlyWhatChanged) {
-  const ShownGif gif = read_gif(encode_gif(
+  const ShownGif gif = read_gif(draw::encode_gif(
       5, [](std::size_t k) { return dot_at(2 * std::min(k, std::size_t{3})); }, 4));
   ASSERT_EQ(gif.patches.size(), 5U);
   EXPECT_EQ(gif.patches[0].pixels.size(), 200U);
@@ -67,7 +67,7 @@ TEST(Gif, HoldsOnlyWhatChanged) {
 }
 
 TEST(Gif, HoldsOneFrame) {
-  const ShownGif gif = read_gif(encode_gif(
+  const ShownGif gif = read_gif(draw::encode_gif(
       1, [](std::size_t) { return dot_at(3); }, 100));
   ASSERT_EQ(gif.frames.size(), 1U);
   EXPECT_EQ(gif.frames[0].pixels, dot_at(3).pixels);
@@ -76,13 +76,13 @@ TEST(Gif, HoldsOneFrame) {
 // 4096 colours, evenly over a square of 256 × 256, in 254 parts: about 16 each, 4 × 4 of them 4 apart, so
 // that the farthest in a part lie 17 apart; parts that are twice as long as wide, 31.
 TEST(Gif, KeepsNearToMoreColoursThanItHas) {
-  const ShownGif gif = read_gif(encode_gif(
+  const ShownGif gif = read_gif(draw::encode_gif(
       2, [](std::size_t k) { return many_colours(64 * k); }, 4));
   EXPECT_EQ(gif.colours, 256U);
   for (std::size_t frame = 0; frame < 2; ++frame) {
-    const Raster given = many_colours(64 * frame);
+    const draw::Raster given = many_colours(64 * frame);
     for (std::size_t k = 0; k < given.pixels.size(); ++k) {
-      const Rgb &is = gif.frames[frame].pixels[k], &was = given.pixels[k];
+      const draw::Rgb &is = gif.frames[frame].pixels[k], &was = given.pixels[k];
       if (was == kPaper) {
         ASSERT_EQ(is, kPaper);
       }
@@ -93,13 +93,13 @@ TEST(Gif, KeepsNearToMoreColoursThanItHas) {
 
 // Without dithering a colour is always shown as the same one, wherever and whenever it stands.
 TEST(Gif, ShowsAColourAlwaysTheSame) {
-  const ShownGif gif = read_gif(encode_gif(
+  const ShownGif gif = read_gif(draw::encode_gif(
       3, [](std::size_t k) { return many_colours(100 * k); }, 4));
-  std::map<int, Rgb> shown;
+  std::map<int, draw::Rgb> shown;
   for (std::size_t frame = 0; frame < 3; ++frame) {
-    const Raster given = many_colours(100 * frame);
+    const draw::Raster given = many_colours(100 * frame);
     for (std::size_t k = 0; k < given.pixels.size(); ++k) {
-      const Rgb& was = given.pixels[k];
+      const draw::Rgb& was = given.pixels[k];
       const auto known =
           shown.try_emplace(was.red << 16 | was.green << 8 | was.blue, gif.frames[frame].pixels[k]);
       ASSERT_EQ(known.first->second, gif.frames[frame].pixels[k]);
@@ -109,7 +109,7 @@ TEST(Gif, ShowsAColourAlwaysTheSame) {
 
 TEST(Gif, HasTheSameBytesForTheSameFrames) {
   const auto bytes = [] {
-    return encode_gif(
+    return draw::encode_gif(
         3, [](std::size_t k) { return many_colours(k); }, 4);
   };
   EXPECT_EQ(bytes(), bytes());
@@ -117,19 +117,19 @@ TEST(Gif, HasTheSameBytesForTheSameFrames) {
 
 TEST(Gif, IsRefusedWhereItCannotBe) {
   const auto dot = [](std::size_t) { return dot_at(0); };
-  EXPECT_THROW(encode_gif(0, dot, 4), std::invalid_argument);
-  EXPECT_THROW(encode_gif(1, dot, 0), std::invalid_argument);
-  EXPECT_THROW(encode_gif(1, dot, 65536), std::invalid_argument);
-  EXPECT_THROW(encode_gif(
-                   1, [](std::size_t) { return Raster{}; }, 4),
+  EXPECT_THROW(draw::encode_gif(0, dot, 4), std::invalid_argument);
+  EXPECT_THROW(draw::encode_gif(1, dot, 0), std::invalid_argument);
+  EXPECT_THROW(draw::encode_gif(1, dot, 65536), std::invalid_argument);
+  EXPECT_THROW(draw::encode_gif(
+                   1, [](std::size_t) { return draw::Raster{}; }, 4),
                std::invalid_argument);
-  EXPECT_THROW(encode_gif(
+  EXPECT_THROW(draw::encode_gif(
                    2, [](std::size_t k) { return k == 0 ? dot_at(0) : many_colours(0); }, 4),
                std::invalid_argument);
-  EXPECT_THROW(encode_gif(
+  EXPECT_THROW(draw::encode_gif(
                    1,
                    [](std::size_t) {
-                     return Raster{4, 4, std::vector<Rgb>(15)};
+                     return draw::Raster{4, 4, std::vector<draw::Rgb>(15)};
                    },
                    4),
                std::invalid_argument);

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace oblique {
+namespace oblique::draw {
 namespace {
 
 using Eigen::Vector2d;
@@ -96,4 +96,4 @@ void expect_sound(const LayoutGraph& graph, const DiagramLayout& layout) {
   }
 }
 
-}  // namespace oblique
+}  // namespace oblique::draw

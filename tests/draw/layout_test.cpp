@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/draw/layout.h>
+#include <oblique/draw/layout/layout.h>
 
 #include <random>
 
@@ -8,7 +8,7 @@
 
 #include "layout_check.h"
 
-namespace oblique {
+namespace oblique::draw {
 namespace {
 
 LayoutNode box(std::size_t inputs, std::size_t outputs) {
@@ -148,4 +148,4 @@ TEST(Layout, IsTheSameEveryTime) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::draw

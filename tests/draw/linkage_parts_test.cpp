@@ -1,43 +1,44 @@
 // SPDX-License-Identifier: MIT
 // The parts that mechanisms are drawn of, each in a frame of its own [px], y down.
-#include <oblique/draw/linkage_parts.h>
+#include <oblique/draw/linkage/linkage_parts.h>
 
 #include <cmath>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <oblique/mechanism/motion.h>
-#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/mechanism/model/read_mechanism.h>
+#include <oblique/mechanism/motion/motion.h>
 
 namespace oblique::test {
 namespace {
 
 using Eigen::Vector2d;
-using Carrier = LinkagePart::Carrier;
+using Carrier = draw::LinkagePart::Carrier;
 
 constexpr double kScale = 2;  // px a millimetre
 
-Mechanism shipped(const std::string& name) {
-  return read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/" + name + ".toml");
+mechanism::Mechanism shipped(const std::string& name) {
+  return mechanism::read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/" + name +
+                                   ".toml");
 }
 
-std::vector<LinkagePart> parts_of(const Mechanism& mechanism) {
+std::vector<draw::LinkagePart> parts_of(const mechanism::Mechanism& mechanism) {
   // Every third of a degree: the ends of a stroke are met within 10⁻⁵ of the crank's length.
-  return linkage_parts(mechanism, solve_motion(mechanism, 1081).configurations, kScale);
+  return draw::linkage_parts(mechanism, mechanism::solve_motion(mechanism, 1081).configurations, kScale);
 }
 
-const LinkagePart& part_of(const std::vector<LinkagePart>& parts, Carrier carrier) {
+const draw::LinkagePart& part_of(const std::vector<draw::LinkagePart>& parts, Carrier carrier) {
   const auto found = std::find_if(parts.begin(), parts.end(),
-                                  [&](const LinkagePart& part) { return part.carrier == carrier; });
+                                  [&](const draw::LinkagePart& part) { return part.carrier == carrier; });
   EXPECT_NE(found, parts.end());
   return *found;
 }
 
-std::vector<Vector2d> corners_of(const Mark& mark) {
+std::vector<Vector2d> corners_of(const draw::Mark& mark) {
   std::vector<Vector2d> corners;
-  for (const Segment& segment : std::get<Outline>(mark.shape).segments) {
-    if (segment.kind != Segment::Kind::close) corners.push_back(segment.to);
+  for (const draw::Segment& segment : std::get<draw::Outline>(mark.shape).segments) {
+    if (segment.kind != draw::Segment::Kind::close) corners.push_back(segment.to);
   }
   return corners;
 }
@@ -45,7 +46,7 @@ std::vector<Vector2d> corners_of(const Mark& mark) {
 // The piston comes to rest at √((l+r)² − e²) and at √((l−r)² − e²) from the bearing, l = 150, r = 50, e = 40.
 TEST(LinkageParts, GuideReachesAsFarBeyondBothEndsOfTheStroke) {
   const auto parts = parts_of(shipped("slider-crank-offset"));
-  const LinkagePart& guide = part_of(parts, Carrier::guide);
+  const draw::LinkagePart& guide = part_of(parts, Carrier::guide);
   const double near = kScale * std::sqrt(100 * 100 - 40 * 40), far = kScale * std::sqrt(200 * 200 - 40 * 40);
   const std::vector<Vector2d> line = corners_of(guide.marks.at(0)), ground = corners_of(guide.marks.at(1));
   ASSERT_EQ(line.size(), 2U);
@@ -57,14 +58,14 @@ TEST(LinkageParts, GuideReachesAsFarBeyondBothEndsOfTheStroke) {
   // The ground is as long, under the block.
   EXPECT_EQ(ground[0].x(), line[0].x());
   EXPECT_EQ(ground[1].x(), line[1].x());
-  const Eigen::AlignedBox<double, 2> block = extent_of(part_of(parts, Carrier::slide).marks.at(0));
+  const Eigen::AlignedBox<double, 2> block = draw::extent_of(part_of(parts, Carrier::slide).marks.at(0));
   EXPECT_GE(ground[0].y(), line[0].y() + block.max().y() - 1);
   EXPECT_LT(ground[0].y(), line[0].y() + block.max().y() + 2);
 }
 
 TEST(LinkageParts, GroundIsHatchedAllAlongOnItsLowerSide) {
   const auto parts = parts_of(shipped("slider-crank-offset"));
-  for (const LinkagePart& part : parts) {
+  for (const draw::LinkagePart& part : parts) {
     if (part.carrier != Carrier::guide && part.carrier != Carrier::frame) continue;
     const auto ground = corners_of(part.marks.at(1)), strokes = corners_of(part.marks.at(2));
     ASSERT_GE(strokes.size(), 8U);
@@ -85,7 +86,7 @@ TEST(LinkageParts, GroundIsHatchedAllAlongOnItsLowerSide) {
 
 TEST(LinkageParts, SupportIsATriangleUnderItsPin) {
   const auto parts = parts_of(shipped("four-bar"));
-  const LinkagePart& support = part_of(parts, Carrier::frame);
+  const draw::LinkagePart& support = part_of(parts, Carrier::frame);
   const auto corners = corners_of(support.marks.at(0)), ground = corners_of(support.marks.at(1));
   ASSERT_EQ(corners.size(), 3U);
   EXPECT_EQ(corners[0], Vector2d(0, 0));

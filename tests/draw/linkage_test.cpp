@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Pictures of mechanisms, measured: what a reader would read off at the axes is what the exact motion says.
-#include <oblique/draw/linkage.h>
+#include <oblique/draw/linkage/linkage.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,11 +9,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <oblique/draw/label_placer.h>
-#include <oblique/draw/rounded_hull.h>
-#include <oblique/mechanism/follower.h>
-#include <oblique/mechanism/motion.h>
-#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/draw/picture/label_placer.h>
+#include <oblique/draw/picture/rounded_hull.h>
+#include <oblique/mechanism/model/read_mechanism.h>
+#include <oblique/mechanism/motion/follower.h>
+#include <oblique/mechanism/motion/motion.h>
 
 #include "reading.h"
 
@@ -25,8 +25,9 @@ using Extent = Eigen::AlignedBox<double, 2>;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-Mechanism shipped(const std::string& name) {
-  return read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/" + name + ".toml");
+mechanism::Mechanism shipped(const std::string& name) {
+  return mechanism::read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/" + name +
+                                   ".toml");
 }
 
 std::vector<std::string> shipped_names() {
@@ -38,22 +39,23 @@ std::vector<std::string> shipped_names() {
   return names;
 }
 
-LinkageScene scene_at(const Mechanism& mechanism, double time) {
-  LinkageScene scene;
-  const Structure structure = decompose(mechanism);
-  Follower follower(mechanism, structure);
+draw::LinkageScene scene_at(const mechanism::Mechanism& mechanism, double time) {
+  draw::LinkageScene scene;
+  const mechanism::Structure structure = mechanism::decompose(mechanism);
+  mechanism::Follower follower(mechanism, structure);
   scene.shown = follower.advance(time);
-  scene.motion = mechanism.drives.empty() ? std::vector<Configuration>{scene.shown}
-                                          : solve_motion(mechanism, 121).configurations;
-  scene.traces = points_to_trace(mechanism);
+  scene.motion = mechanism.drives.empty() ? std::vector<mechanism::Configuration>{scene.shown}
+                                          : mechanism::solve_motion(mechanism, 121).configurations;
+  scene.traces = draw::points_to_trace(mechanism);
   scene.caption = "crank = 0°";
   return scene;
 }
 
 std::vector<std::string> names_of_traces(const std::string& name) {
-  const Mechanism mechanism = shipped(name);
+  const mechanism::Mechanism mechanism = shipped(name);
   std::vector<std::string> names;
-  for (const std::size_t point : points_to_trace(mechanism)) names.push_back(mechanism.points[point].name);
+  for (const std::size_t point : draw::points_to_trace(mechanism))
+    names.push_back(mechanism.points[point].name);
   return names;
 }
 
@@ -66,18 +68,18 @@ INSTANTIATE_TEST_SUITE_P(Mechanisms, Shipped, testing::ValuesIn(shipped_names())
 
 // Numbers at the axes are read as they stand; their labels lie at their ticks to rounding.
 TEST_P(Shipped, PinsLieWhereTheMotionSays) {
-  const Mechanism mechanism = shipped(GetParam());
+  const mechanism::Mechanism mechanism = shipped(GetParam());
   for (const double time : {0.0, 0.02}) {
-    const LinkageScene scene = scene_at(mechanism, time);
-    if (scene.shown.status == Status::open) continue;
-    const Picture picture = draw_linkage(mechanism, scene);
+    const draw::LinkageScene scene = scene_at(mechanism, time);
+    if (scene.shown.status == mechanism::Status::open) continue;
+    const draw::Picture picture = draw::draw_linkage(mechanism, scene);
     const Reading reading(picture.marks);
     std::size_t found = 0;
     for (std::size_t p = 0; p < mechanism.points.size(); ++p) {
-      const Mark* const pin = find_mark(picture, "pin-" + mechanism.points[p].name);
+      const draw::Mark* const pin = find_mark(picture, "pin-" + mechanism.points[p].name);
       if (pin == nullptr) continue;
       ++found;
-      const Vector2d at = std::get<Disc>(pin->shape).centre;
+      const Vector2d at = std::get<draw::Disc>(pin->shape).centre;
       EXPECT_LT((at - reading.pixel(scene.shown.points[p].position)).norm(), 0.01)
           << mechanism.points[p].name;
     }
@@ -86,38 +88,40 @@ TEST_P(Shipped, PinsLieWhereTheMotionSays) {
 }
 
 TEST_P(Shipped, EverythingLiesWithinThePicture) {
-  const Mechanism mechanism = shipped(GetParam());
-  const Picture picture = draw_linkage(mechanism, scene_at(mechanism, 0));
+  const mechanism::Mechanism mechanism = shipped(GetParam());
+  const draw::Picture picture = draw::draw_linkage(mechanism, scene_at(mechanism, 0));
   const Extent paper(Vector2d(0, 0), Vector2d(picture.width, picture.height));
-  for (const Mark& mark : picture.marks) {
-    const Extent extent = extent_of(mark);
+  for (const draw::Mark& mark : picture.marks) {
+    const Extent extent = draw::extent_of(mark);
     EXPECT_TRUE(paper.contains(extent))
         << mark.id << " " << extent.min().transpose() << " to " << extent.max().transpose();
   }
 }
 
 TEST_P(Shipped, NamesLieOnNothing) {
-  const Mechanism mechanism = shipped(GetParam());
-  const Picture picture = draw_linkage(mechanism, scene_at(mechanism, 0));
-  std::vector<const Mark*> names, things;
-  for (const Mark& mark : picture.marks) {
+  const mechanism::Mechanism mechanism = shipped(GetParam());
+  const draw::Picture picture = draw::draw_linkage(mechanism, scene_at(mechanism, 0));
+  std::vector<const draw::Mark*> names, things;
+  for (const draw::Mark& mark : picture.marks) {
     if (mark.id.starts_with("name-")) names.push_back(&mark);
     if (mark.id.starts_with("pin-") || mark.id.starts_with("body-") || mark.id.starts_with("slide-"))
       things.push_back(&mark);
   }
   for (std::size_t k = 0; k < names.size(); ++k) {
-    const Extent extent = extent_of(*names[k]);
+    const Extent extent = draw::extent_of(*names[k]);
     for (std::size_t j = 0; j < k; ++j)
-      EXPECT_TRUE(extent.intersection(extent_of(*names[j])).isEmpty()) << names[k]->id << names[j]->id;
-    for (const Mark* const thing : things)
+      EXPECT_TRUE(extent.intersection(draw::extent_of(*names[j])).isEmpty()) << names[k]->id << names[j]->id;
+    for (const draw::Mark* const thing : things)
       EXPECT_FALSE(line_meets(*thing, extent)) << names[k]->id << " on " << thing->id;
   }
 }
 
 /// The area between the points of a body [px²]; 0 for a bar.
-double area_of(const Mechanism& mechanism, const Body& body, const Picture& picture) {
+double area_of(const mechanism::Mechanism& mechanism, const mechanism::Body& body,
+               const draw::Picture& picture) {
   const auto pin = [&](std::size_t k) {
-    return std::get<Disc>(find_mark(picture, "pin-" + mechanism.points[body.points[k].point].name)->shape)
+    return std::get<draw::Disc>(
+               find_mark(picture, "pin-" + mechanism.points[body.points[k].point].name)->shape)
         .centre;
   };
   double greatest = 0;
@@ -129,21 +133,21 @@ double area_of(const Mechanism& mechanism, const Body& body, const Picture& pict
 }
 
 TEST_P(Shipped, HatchingLiesOverPlates) {
-  const Mechanism mechanism = shipped(GetParam());
-  const Picture picture = draw_linkage(mechanism, scene_at(mechanism, 0));
-  const auto place = [&](const Mark& mark) { return &mark - picture.marks.data(); };
+  const mechanism::Mechanism mechanism = shipped(GetParam());
+  const draw::Picture picture = draw::draw_linkage(mechanism, scene_at(mechanism, 0));
+  const auto place = [&](const draw::Mark& mark) { return &mark - picture.marks.data(); };
   std::ptrdiff_t lowest = static_cast<std::ptrdiff_t>(picture.marks.size());
   std::size_t supports = 0;
-  for (const Mark& mark : picture.marks) {
+  for (const draw::Mark& mark : picture.marks) {
     if (!mark.id.starts_with("ground-") && !mark.id.starts_with("guide-")) continue;
     lowest = std::min(lowest, place(mark));
     ++supports;
   }
   EXPECT_GE(supports, 1U);
-  for (const Body& body : mechanism.bodies) {
-    const Mark* const inside = find_mark(picture, "inside-" + body.name);
+  for (const mechanism::Body& body : mechanism.bodies) {
+    const draw::Mark* const inside = find_mark(picture, "inside-" + body.name);
     ASSERT_NE(inside, nullptr) << body.name;
-    EXPECT_NE(inside->fill, Ink::none);
+    EXPECT_NE(inside->fill, draw::Ink::none);
     constexpr double kSeen = 0.1;  // [px²]
     EXPECT_LT(place(*inside), place(*find_mark(picture, "body-" + body.name)));
     if (area_of(mechanism, body, picture) <= kSeen) continue;
@@ -152,50 +156,50 @@ TEST_P(Shipped, HatchingLiesOverPlates) {
 }
 
 TEST_P(Shipped, NamesThatStrayAreLedToTheirPins) {
-  const Mechanism mechanism = shipped(GetParam());
-  const Picture picture = draw_linkage(mechanism, scene_at(mechanism, 0));
-  for (const Mark& name : picture.marks) {
+  const mechanism::Mechanism mechanism = shipped(GetParam());
+  const draw::Picture picture = draw::draw_linkage(mechanism, scene_at(mechanism, 0));
+  for (const draw::Mark& name : picture.marks) {
     if (!name.id.starts_with("name-")) continue;
     const std::string point = name.id.substr(5);
-    const Mark* const leader = find_mark(picture, "leader-" + point);
-    const Mark* const pin = find_mark(picture, "pin-" + point);
-    const Vector2d centre = std::get<Disc>(pin->shape).centre;
-    const Extent extent = extent_of(name);
-    EXPECT_EQ(leader != nullptr, extent.exteriorDistance(centre) > kFarthestBeside) << point;
+    const draw::Mark* const leader = find_mark(picture, "leader-" + point);
+    const draw::Mark* const pin = find_mark(picture, "pin-" + point);
+    const Vector2d centre = std::get<draw::Disc>(pin->shape).centre;
+    const Extent extent = draw::extent_of(name);
+    EXPECT_EQ(leader != nullptr, extent.exteriorDistance(centre) > draw::kFarthestBeside) << point;
     if (leader == nullptr) continue;
-    const auto& ends = std::get<Outline>(leader->shape).segments;
+    const auto& ends = std::get<draw::Outline>(leader->shape).segments;
     ASSERT_EQ(ends.size(), 2U);
     EXPECT_LT((ends[0].to - centre).norm(), 1e-9) << point;
     EXPECT_LT(extent.exteriorDistance(ends[1].to), 1e-9) << point;
     EXPECT_NEAR((ends[1].to - centre).norm(), extent.exteriorDistance(centre), 1e-9) << point;
     EXPECT_LT(leader->pen.width, 1) << point;
     EXPECT_LT(leader, pin) << point;  // it comes out from under the pin
-    for (const Body& body : mechanism.bodies)
+    for (const mechanism::Body& body : mechanism.bodies)
       EXPECT_GT(leader, find_mark(picture, "body-" + body.name)) << point;
-    for (const Mark& other : picture.marks) {
+    for (const draw::Mark& other : picture.marks) {
       if (!other.id.starts_with("name-") || &other == &name) continue;
-      EXPECT_FALSE(line_meets(*leader, extent_of(other))) << point << " over " << other.id;
+      EXPECT_FALSE(line_meets(*leader, draw::extent_of(other))) << point << " over " << other.id;
     }
   }
 }
 
 // Jansen's bearing O2 lies under two plates, among six links.
 TEST(Linkage, AJointAmongManyLinksIsStillTold) {
-  const Mechanism mechanism = shipped("jansen");
-  const Picture picture = draw_linkage(mechanism, scene_at(mechanism, 0));
+  const mechanism::Mechanism mechanism = shipped("jansen");
+  const draw::Picture picture = draw::draw_linkage(mechanism, scene_at(mechanism, 0));
   EXPECT_NE(find_mark(picture, "leader-O2"), nullptr);
   EXPECT_EQ(find_mark(picture, "leader-P5"), nullptr);
 }
 
 // The paths of the crank's pin and of the bar's end, the crank at 79°: the closed form of the source.
 TEST(Linkage, ThreeBarPathsAreThoseOfItsFormulas) {
-  const Mechanism mechanism = shipped("three-bar");
-  LinkageScene scene = scene_at(mechanism, 79.0 / 360);
+  const mechanism::Mechanism mechanism = shipped("three-bar");
+  draw::LinkageScene scene = scene_at(mechanism, 79.0 / 360);
   scene.traces = {*mechanism.find_point("B"), *mechanism.find_point("P")};
-  const Picture picture = draw_linkage(mechanism, scene);
+  const draw::Picture picture = draw::draw_linkage(mechanism, scene);
   const Reading reading(picture.marks);
-  const auto& of_b = std::get<Outline>(find_mark(picture, "path-B")->shape).segments;
-  const auto& of_p = std::get<Outline>(find_mark(picture, "path-P")->shape).segments;
+  const auto& of_b = std::get<draw::Outline>(find_mark(picture, "path-B")->shape).segments;
+  const auto& of_p = std::get<draw::Outline>(find_mark(picture, "path-P")->shape).segments;
   ASSERT_EQ(of_b.size(), 121U);
   ASSERT_EQ(of_p.size(), 121U);
   for (std::size_t k = 0; k < 121; ++k) {
@@ -216,17 +220,17 @@ TEST(Linkage, TracesWhatIsWorthIt) {
 }
 
 TEST(Linkage, OtherPositionsAreDrawnFainterTheFartherTheyAre) {
-  const Mechanism mechanism = shipped("jansen");
-  LinkageScene scene = scene_at(mechanism, 0);
-  const std::size_t alone = draw_linkage(mechanism, scene).marks.size();
-  scene.others = solve_motion(mechanism, 25).configurations;
-  const Picture picture = draw_linkage(mechanism, scene);
+  const mechanism::Mechanism mechanism = shipped("jansen");
+  draw::LinkageScene scene = scene_at(mechanism, 0);
+  const std::size_t alone = draw::draw_linkage(mechanism, scene).marks.size();
+  scene.others = mechanism::solve_motion(mechanism, 25).configurations;
+  const draw::Picture picture = draw::draw_linkage(mechanism, scene);
   // A bar is one mark, a plate two; 13 bodies, of which the crank with its two pins and four others are
   // plates.
   EXPECT_EQ(picture.marks.size() - alone, 25U * (13 + 5));
   std::vector<double> bars;
-  for (const Mark& mark : picture.marks) {
-    if (mark.fill == Ink::blue && mark.opacity > 0.1) bars.push_back(mark.opacity);
+  for (const draw::Mark& mark : picture.marks) {
+    if (mark.fill == draw::Ink::blue && mark.opacity > 0.1) bars.push_back(mark.opacity);
   }
   EXPECT_EQ(bars.size(), 25U * 8);
   EXPECT_TRUE(std::is_sorted(bars.begin(), bars.end()));
@@ -234,25 +238,25 @@ TEST(Linkage, OtherPositionsAreDrawnFainterTheFartherTheyAre) {
 
 TEST(RoundedHull, KeepsItsDistance) {
   const std::vector<Vector2d> corners{{0, 0}, {40, 0}, {10, 30}, {15, 10}};  // the last one lies inside
-  const Outline outline = rounded_hull(corners, 5);
+  const draw::Outline outline = draw::rounded_hull(corners, 5);
   ASSERT_FALSE(outline.segments.empty());
-  for (const Segment& segment : outline.segments) {
-    if (segment.kind == Segment::Kind::close) continue;
+  for (const draw::Segment& segment : outline.segments) {
+    if (segment.kind == draw::Segment::Kind::close) continue;
     double nearest = INFINITY;
     for (const Vector2d& corner : corners) nearest = std::min(nearest, (segment.to - corner).norm());
     EXPECT_NEAR(nearest, 5, 1e-9);
   }
-  const Extent bar = extent_of({rounded_hull({{0, 0}, {20, 0}}, 3), {Ink::none, 0}});
+  const Extent bar = draw::extent_of({draw::rounded_hull({{0, 0}, {20, 0}}, 3), {draw::Ink::none, 0}});
   EXPECT_NEAR(bar.min().x(), -3, 1e-9);
   EXPECT_NEAR(bar.max().x(), 23, 1e-9);
   EXPECT_NEAR(bar.sizes().y(), 6, 1e-9);
 }
 
 TEST(LabelPlacer, GivesEachOfManyAPlaceOfItsOwn) {
-  LabelPlacer placer(Extent(Vector2d(0, 0), Vector2d(200, 200)));
+  draw::LabelPlacer placer(Extent(Vector2d(0, 0), Vector2d(200, 200)));
   std::vector<Extent> places;
   for (int k = 0; k < 8; ++k) {
-    const Extent place = extent_of(placer.place({100, 100}, "B", 13));
+    const Extent place = draw::extent_of(placer.place({100, 100}, "B", 13));
     EXPECT_TRUE(Extent(Vector2d(0, 0), Vector2d(200, 200)).contains(place));
     for (const Extent& other : places) EXPECT_TRUE(place.intersection(other).isEmpty());
     places.push_back(place);
@@ -261,17 +265,17 @@ TEST(LabelPlacer, GivesEachOfManyAPlaceOfItsOwn) {
 
 // All around the point is taken, up to 40 px from it; then a second name behind the first.
 TEST(LabelPlacer, LeadsNamesThatStrayPastOthers) {
-  LabelPlacer placer(Extent(Vector2d(0, 0), Vector2d(400, 400)));
-  placer.avoid(disc_mark({200, 200}, 40, Ink::faint), 50);
+  draw::LabelPlacer placer(Extent(Vector2d(0, 0), Vector2d(400, 400)));
+  placer.avoid(draw::disc_mark({200, 200}, 40, draw::Ink::faint), 50);
   std::vector<Extent> names;
-  std::vector<Mark> leaders;
+  std::vector<draw::Mark> leaders;
   for (int k = 0; k < 4; ++k) {
-    const Extent name = extent_of(placer.place({200, 200}, "P12", 13));
-    const auto end = leader_end(name, {200, 200});
+    const Extent name = draw::extent_of(placer.place({200, 200}, "P12", 13));
+    const auto end = draw::leader_end(name, {200, 200});
     ASSERT_TRUE(end);
-    const Mark leader = leader_mark({200, 200}, *end, "P12");
+    const draw::Mark leader = draw::leader_mark({200, 200}, *end, "P12");
     for (const Extent& other : names) EXPECT_FALSE(line_meets(leader, other)) << k;
-    for (const Mark& other : leaders) EXPECT_FALSE(line_meets(other, name)) << k;
+    for (const draw::Mark& other : leaders) EXPECT_FALSE(line_meets(other, name)) << k;
     names.push_back(name);
     leaders.push_back(leader);
   }
@@ -279,12 +283,12 @@ TEST(LabelPlacer, LeadsNamesThatStrayPastOthers) {
 
 TEST(LeaderEnd, IsTheNearestPlaceOfAFarName) {
   const Extent name(Vector2d(10, 20), Vector2d(40, 32));
-  EXPECT_FALSE(leader_end(name, {25, 26}));  // within
-  EXPECT_FALSE(leader_end(name, {40 + kFarthestBeside, 25}));
-  const auto right = leader_end(name, {41 + kFarthestBeside, 25});
+  EXPECT_FALSE(draw::leader_end(name, {25, 26}));  // within
+  EXPECT_FALSE(draw::leader_end(name, {40 + draw::kFarthestBeside, 25}));
+  const auto right = draw::leader_end(name, {41 + draw::kFarthestBeside, 25});
   ASSERT_TRUE(right);
   EXPECT_EQ(*right, Vector2d(40, 25));
-  const auto corner = leader_end(name, {-10, 50});
+  const auto corner = draw::leader_end(name, {-10, 50});
   ASSERT_TRUE(corner);
   EXPECT_EQ(*corner, Vector2d(10, 32));
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Animations frame by frame: what they show, that all of it fits, and that names stay clear of what moves.
-#include <oblique/draw/animation.h>
+#include <oblique/draw/animation/animation.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -10,8 +10,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <oblique/mechanism/motion.h>
-#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/mechanism/model/read_mechanism.h>
+#include <oblique/mechanism/motion/motion.h>
 
 #include "reading.h"
 
@@ -36,17 +36,18 @@ std::vector<std::string> shipped_names() {
 }
 
 /// A motion there and back, which every mechanism has.
-LinkageAnimation animation_of(const Mechanism& mechanism) {
-  MotionOptions options;
+draw::LinkageAnimation animation_of(const mechanism::Mechanism& mechanism) {
+  mechanism::MotionOptions options;
   options.positions = kFrames / 2 + 1;
-  options.at_limit = AtLimit::stop;
-  LinkageAnimation animation;
-  animation.frames = solve_motion(mechanism, options).configurations;
-  std::erase_if(animation.frames, [](const Configuration& here) { return here.status == Status::open; });
+  options.at_limit = mechanism::AtLimit::stop;
+  draw::LinkageAnimation animation;
+  animation.frames = mechanism::solve_motion(mechanism, options).configurations;
+  std::erase_if(animation.frames,
+                [](const mechanism::Configuration& here) { return here.status == mechanism::Status::open; });
   for (std::size_t k = animation.frames.size() - 1; k-- > 0;) animation.frames.push_back(animation.frames[k]);
   animation.scene.motion = animation.frames;
   animation.scene.shown = animation.frames.front();
-  animation.scene.traces = points_to_trace(mechanism);
+  animation.scene.traces = draw::points_to_trace(mechanism);
   for (std::size_t k = 0; k < animation.frames.size(); ++k)
     animation.captions.push_back("frame " + std::to_string(k));
   return animation;
@@ -60,19 +61,20 @@ INSTANTIATE_TEST_SUITE_P(Mechanisms, Moving, testing::ValuesIn(shipped_names()),
 });
 
 TEST_P(Moving, EverythingLiesWithinThePictureAtAllTimes) {
-  const Mechanism mechanism = read_mechanism(folder() + "/" + GetParam() + ".toml");
-  const LinkageAnimation animation = animation_of(mechanism);
-  const AnimationFrames frames(mechanism, animation);
+  const mechanism::Mechanism mechanism = mechanism::read_mechanism(folder() + "/" + GetParam() + ".toml");
+  const draw::LinkageAnimation animation = animation_of(mechanism);
+  const draw::AnimationFrames frames(mechanism, animation);
   for (std::size_t k = 0; k < animation.frames.size(); ++k) {
-    const Picture picture = frames.picture(k);
+    const draw::Picture picture = frames.picture(k);
     const Extent paper(Vector2d(0, 0), Vector2d(picture.width, picture.height));
     const Reading reading(picture.marks);
-    for (const Mark& mark : picture.marks) ASSERT_TRUE(paper.contains(extent_of(mark))) << mark.id << k;
-    EXPECT_EQ(std::get<Label>(find_mark(picture, "caption")->shape).text, animation.captions[k]);
+    for (const draw::Mark& mark : picture.marks)
+      ASSERT_TRUE(paper.contains(draw::extent_of(mark))) << mark.id << k;
+    EXPECT_EQ(std::get<draw::Label>(find_mark(picture, "caption")->shape).text, animation.captions[k]);
     for (std::size_t p = 0; p < mechanism.points.size(); ++p) {
-      const Mark* const pin = find_mark(picture, "pin-" + mechanism.points[p].name);
+      const draw::Mark* const pin = find_mark(picture, "pin-" + mechanism.points[p].name);
       if (pin == nullptr) continue;
-      const Vector2d at = std::get<Disc>(pin->shape).centre;
+      const Vector2d at = std::get<draw::Disc>(pin->shape).centre;
       ASSERT_LT((at - reading.pixel(animation.frames[k].points[p].position)).norm(), 0.01) << pin->id << k;
     }
   }
@@ -81,27 +83,28 @@ TEST_P(Moving, EverythingLiesWithinThePictureAtAllTimes) {
 // Links sweep over every place around a pin, so names have to give way; where three links and two guides meet
 // there is now and then no place. No name lies on another, and of 100 names 99 are clear.
 TEST_P(Moving, NamesStayClear) {
-  const Mechanism mechanism = read_mechanism(folder() + "/" + GetParam() + ".toml");
-  const LinkageAnimation animation = animation_of(mechanism);
-  const AnimationFrames frames(mechanism, animation);
+  const mechanism::Mechanism mechanism = mechanism::read_mechanism(folder() + "/" + GetParam() + ".toml");
+  const draw::LinkageAnimation animation = animation_of(mechanism);
+  const draw::AnimationFrames frames(mechanism, animation);
   std::size_t covered = 0, all = 0;
   for (std::size_t k = 0; k < animation.frames.size(); ++k) {
-    const Picture picture = frames.picture(k);
-    std::vector<const Mark*> names, things;
-    for (const Mark& mark : picture.marks) {
+    const draw::Picture picture = frames.picture(k);
+    std::vector<const draw::Mark*> names, things;
+    for (const draw::Mark& mark : picture.marks) {
       if (mark.id.starts_with("name-")) names.push_back(&mark);
       if (mark.id.starts_with("pin-") || mark.id.starts_with("body-") || mark.id.starts_with("slide-"))
         things.push_back(&mark);
     }
     for (std::size_t n = 0; n < names.size(); ++n) {
-      const Extent extent = extent_of(*names[n]);
+      const Extent extent = draw::extent_of(*names[n]);
       for (std::size_t j = 0; j < n; ++j) {
-        EXPECT_TRUE(extent.intersection(extent_of(*names[j])).isEmpty())
+        EXPECT_TRUE(extent.intersection(draw::extent_of(*names[j])).isEmpty())
             << names[n]->id << " on " << names[j]->id << " in frame " << k;
       }
-      covered += static_cast<std::size_t>(std::any_of(things.begin(), things.end(), [&](const Mark* thing) {
-        return extent.intersects(extent_of(*thing)) && line_meets(*thing, extent);
-      }));
+      covered +=
+          static_cast<std::size_t>(std::any_of(things.begin(), things.end(), [&](const draw::Mark* thing) {
+            return extent.intersects(draw::extent_of(*thing)) && line_meets(*thing, extent);
+          }));
       ++all;
     }
   }
@@ -111,24 +114,24 @@ TEST_P(Moving, NamesStayClear) {
 
 // A leader line comes out from under the pin while the name strays, and is hidden there while it does not.
 TEST_P(Moving, NamesThatStrayAreLedToTheirPins) {
-  const Mechanism mechanism = read_mechanism(folder() + "/" + GetParam() + ".toml");
-  const LinkageAnimation animation = animation_of(mechanism);
-  const AnimationFrames frames(mechanism, animation);
+  const mechanism::Mechanism mechanism = mechanism::read_mechanism(folder() + "/" + GetParam() + ".toml");
+  const draw::LinkageAnimation animation = animation_of(mechanism);
+  const draw::AnimationFrames frames(mechanism, animation);
   for (std::size_t k = 0; k < animation.frames.size(); ++k) {
-    const Picture picture = frames.picture(k);
-    for (const Mark& name : picture.marks) {
+    const draw::Picture picture = frames.picture(k);
+    for (const draw::Mark& name : picture.marks) {
       if (!name.id.starts_with("name-")) continue;
       const std::string point = name.id.substr(5);
-      const Mark* const leader = find_mark(picture, "leader-" + point);
-      const Mark* const pin = find_mark(picture, "pin-" + point);
-      const Vector2d centre = std::get<Disc>(pin->shape).centre;
-      const Extent extent = extent_of(name);
+      const draw::Mark* const leader = find_mark(picture, "leader-" + point);
+      const draw::Mark* const pin = find_mark(picture, "pin-" + point);
+      const Vector2d centre = std::get<draw::Disc>(pin->shape).centre;
+      const Extent extent = draw::extent_of(name);
       const double away = extent.exteriorDistance(centre);
       constexpr double kFarthestBeside = 25;  // [px]
       ASSERT_TRUE(leader != nullptr || away <= kFarthestBeside) << name.id << k;
       if (leader == nullptr) continue;
       EXPECT_LT(leader, pin);
-      const auto& ends = std::get<Outline>(leader->shape).segments;
+      const auto& ends = std::get<draw::Outline>(leader->shape).segments;
       ASSERT_EQ(ends.size(), 2U);
       EXPECT_LT((ends[0].to - centre).norm(), 1e-9) << name.id << k;
       EXPECT_NEAR((ends[1].to - centre).norm(), away > kFarthestBeside ? away : 0, 1e-9) << name.id << k;
@@ -137,9 +140,9 @@ TEST_P(Moving, NamesThatStrayAreLedToTheirPins) {
 }
 
 /// The four-bar linkage with an analog one that is off by 0.1 in x, and by 0.2 in y at the coupler's mark.
-LinkageAnimation with_analog(const Mechanism& mechanism) {
-  LinkageAnimation animation = animation_of(mechanism);
-  const auto shifted = [&](const Configuration& here) {
+draw::LinkageAnimation with_analog(const mechanism::Mechanism& mechanism) {
+  draw::LinkageAnimation animation = animation_of(mechanism);
+  const auto shifted = [&](const mechanism::Configuration& here) {
     std::vector<Vector2d> places;
     for (std::size_t p = 0; p < mechanism.points.size(); ++p) {
       places.push_back(here.points[p].position);
@@ -148,8 +151,8 @@ LinkageAnimation with_analog(const Mechanism& mechanism) {
     }
     return places;
   };
-  AnalogOverlay overlay;
-  for (const Configuration& here : animation.scene.motion) overlay.motion.push_back(shifted(here));
+  draw::AnalogOverlay overlay;
+  for (const mechanism::Configuration& here : animation.scene.motion) overlay.motion.push_back(shifted(here));
   overlay.shown = shifted(animation.scene.shown);
   overlay.legend = "analog, error ×7";
   overlay.caption = "largest error 0.03 m";
@@ -158,47 +161,47 @@ LinkageAnimation with_analog(const Mechanism& mechanism) {
   return animation;
 }
 
-std::vector<Vector2d> corners_of(const Mark& mark) {
+std::vector<Vector2d> corners_of(const draw::Mark& mark) {
   std::vector<Vector2d> corners;
-  for (const Segment& segment : std::get<Outline>(mark.shape).segments) {
-    if (segment.kind != Segment::Kind::close) corners.push_back(segment.to);
+  for (const draw::Segment& segment : std::get<draw::Outline>(mark.shape).segments) {
+    if (segment.kind != draw::Segment::Kind::close) corners.push_back(segment.to);
   }
   return corners;
 }
 
 TEST(AnalogOverlay, GoesThroughThePointsOfItsBodies) {
-  const Mechanism mechanism = read_mechanism(folder() + "/four-bar.toml");
-  const LinkageAnimation animation = with_analog(mechanism);
-  const AnimationFrames frames(mechanism, animation);
+  const mechanism::Mechanism mechanism = mechanism::read_mechanism(folder() + "/four-bar.toml");
+  const draw::LinkageAnimation animation = with_analog(mechanism);
+  const draw::AnimationFrames frames(mechanism, animation);
   for (std::size_t k = 0; k < animation.frames.size(); k += 7) {
-    const Picture picture = frames.picture(k);
+    const draw::Picture picture = frames.picture(k);
     const Reading reading(picture.marks);
-    for (const Body& body : mechanism.bodies) {
-      const Mark* const line = find_mark(picture, "analog-body-" + body.name);
+    for (const mechanism::Body& body : mechanism.bodies) {
+      const draw::Mark* const line = find_mark(picture, "analog-body-" + body.name);
       ASSERT_NE(line, nullptr) << body.name;
       const std::vector<Vector2d> corners = corners_of(*line);
       ASSERT_EQ(corners.size(), body.points.size());
-      for (const BodyPoint& point : body.points) {
+      for (const mechanism::BodyPoint& point : body.points) {
         const Vector2d place = reading.pixel(animation.analog_frames[k][point.point]);
         const bool met = std::any_of(corners.begin(), corners.end(),
                                      [&](const Vector2d& corner) { return (corner - place).norm() < 0.01; });
         EXPECT_TRUE(met) << body.name << " " << mechanism.points[point.point].name;
       }
     }
-    const Mark* const pin = find_mark(picture, "analog-pin-M");
+    const draw::Mark* const pin = find_mark(picture, "analog-pin-M");
     const std::size_t m = *mechanism.find_point("M");
-    EXPECT_LT((std::get<Disc>(pin->shape).centre - reading.pixel(animation.analog_frames[k][m])).norm(),
+    EXPECT_LT((std::get<draw::Disc>(pin->shape).centre - reading.pixel(animation.analog_frames[k][m])).norm(),
               0.01);
     EXPECT_EQ(find_mark(picture, "analog-pin-A"), nullptr);  // the frame does not err
   }
 }
 
 TEST(AnalogOverlay, IsToldInTheLegend) {
-  const Mechanism mechanism = read_mechanism(folder() + "/four-bar.toml");
-  const Picture picture = draw_linkage(mechanism, with_analog(mechanism).scene);
+  const mechanism::Mechanism mechanism = mechanism::read_mechanism(folder() + "/four-bar.toml");
+  const draw::Picture picture = draw::draw_linkage(mechanism, with_analog(mechanism).scene);
   std::vector<std::string> texts;
-  for (const Mark& mark : picture.marks) {
-    if (const auto* const label = std::get_if<Label>(&mark.shape)) texts.push_back(label->text);
+  for (const draw::Mark& mark : picture.marks) {
+    if (const auto* const label = std::get_if<draw::Label>(&mark.shape)) texts.push_back(label->text);
   }
   for (const char* text : {"exact", "analog, error ×7", "largest error 0.03 m"})
     EXPECT_THAT(texts, testing::Contains(text));
@@ -207,9 +210,9 @@ TEST(AnalogOverlay, IsToldInTheLegend) {
 
 // In the SVG its lines bend, in the page too: the numbers are those of the frames.
 TEST(AnalogOverlay, BendsInBrowsers) {
-  const Mechanism mechanism = read_mechanism(folder() + "/four-bar.toml");
-  const LinkageAnimation animation = with_analog(mechanism);
-  const std::string svg = animated_svg(mechanism, animation, Theme::light);
+  const mechanism::Mechanism mechanism = mechanism::read_mechanism(folder() + "/four-bar.toml");
+  const draw::LinkageAnimation animation = with_analog(mechanism);
+  const std::string svg = draw::animated_svg(mechanism, animation, draw::Theme::light);
   const std::regex pattern(
       R"rx(<path id="analog-body-CD"[^>]*>\n<animate attributeName="d" [^>]*values="([^"]*)"/>)rx");
   std::smatch match;
@@ -217,7 +220,7 @@ TEST(AnalogOverlay, BendsInBrowsers) {
   std::istringstream outlines(match[1]);
   std::size_t frame = 0;
   // Without a caption the head has one line, with one it has one too: both pictures are the same.
-  const AnimationFrames frames(mechanism, animation);
+  const draw::AnimationFrames frames(mechanism, animation);
   for (std::string d; std::getline(outlines, d, ';'); ++frame) {
     std::replace_if(
         d.begin(), d.end(), [](char c) { return c == 'M' || c == 'L' || c == 'Z'; }, ' ');
@@ -229,18 +232,19 @@ TEST(AnalogOverlay, BendsInBrowsers) {
     }
   }
   EXPECT_EQ(frame, animation.frames.size());
-  const std::string page = animated_page(mechanism, animation, Theme::light);
+  const std::string page = draw::animated_page(mechanism, animation, draw::Theme::light);
   EXPECT_THAT(page, testing::HasSubstr("<path data-moves=\"\" id=\"analog-body-CD\""));
   EXPECT_THAT(page, testing::HasSubstr("<path data-moves=\"closed\" id=\"analog-body-BC"));
 }
 
 TEST(Animation, IsAsWideAsAskedFor) {
-  const Mechanism mechanism = read_mechanism(folder() + "/four-bar.toml");
-  LinkageAnimation animation = animation_of(mechanism);
+  const mechanism::Mechanism mechanism = mechanism::read_mechanism(folder() + "/four-bar.toml");
+  draw::LinkageAnimation animation = animation_of(mechanism);
   animation.width = 380;  // half of 760
-  EXPECT_THAT(animated_svg(mechanism, animation, Theme::light),
+  EXPECT_THAT(draw::animated_svg(mechanism, animation, draw::Theme::light),
               testing::HasSubstr("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"380\" "));
-  EXPECT_THAT(animated_page(mechanism, animation, Theme::light), testing::HasSubstr("max-width: 380px"));
+  EXPECT_THAT(draw::animated_page(mechanism, animation, draw::Theme::light),
+              testing::HasSubstr("max-width: 380px"));
 }
 
 }  // namespace

@@ -23,26 +23,26 @@ std::optional<double> number_of(std::string text) {
 
 }  // namespace
 
-const Mark* find_mark(const Picture& picture, const std::string& id) {
-  for (const Mark& mark : picture.marks) {
+const draw::Mark* find_mark(const draw::Picture& picture, const std::string& id) {
+  for (const draw::Mark& mark : picture.marks) {
     if (mark.id == id) return &mark;
   }
   return nullptr;
 }
 
-bool line_meets(const Mark& mark, const Extent& box) {
-  if (const auto* const disc = std::get_if<Disc>(&mark.shape))
+bool line_meets(const draw::Mark& mark, const Extent& box) {
+  if (const auto* const disc = std::get_if<draw::Disc>(&mark.shape))
     return box.exteriorDistance(disc->centre) < disc->radius;
-  const auto* const outline = std::get_if<Outline>(&mark.shape);
-  if (outline == nullptr) return !box.intersection(extent_of(mark)).isEmpty();
+  const auto* const outline = std::get_if<draw::Outline>(&mark.shape);
+  if (outline == nullptr) return !box.intersection(draw::extent_of(mark)).isEmpty();
   constexpr int kSteps = 400;  // of each piece: less than 2 px apart
   Vector2d from = outline->segments.front().to;
-  for (const Segment& s : outline->segments) {
-    const Vector2d to = s.kind == Segment::Kind::close ? outline->segments.front().to : s.to;
-    const bool curved = s.kind == Segment::Kind::cubic;
+  for (const draw::Segment& s : outline->segments) {
+    const Vector2d to = s.kind == draw::Segment::Kind::close ? outline->segments.front().to : s.to;
+    const bool curved = s.kind == draw::Segment::Kind::cubic;
     const Vector2d c1 = curved ? s.control1 : Vector2d(from + (to - from) / 3);
     const Vector2d c2 = curved ? s.control2 : Vector2d(to - (to - from) / 3);
-    for (int k = 0; k <= kSteps && s.kind != Segment::Kind::move; ++k) {
+    for (int k = 0; k <= kSteps && s.kind != draw::Segment::Kind::move; ++k) {
       const double t = static_cast<double>(k) / kSteps, u = 1 - t;
       if (box.contains(Vector2d(u * u * u * from + 3 * u * u * t * c1 + 3 * u * t * t * c2 + t * t * t * to)))
         return true;
@@ -52,18 +52,19 @@ bool line_meets(const Mark& mark, const Extent& box) {
   return false;
 }
 
-Reading::Reading(const std::vector<Mark>& marks)
+Reading::Reading(const std::vector<draw::Mark>& marks)
     : Reading(marks, Extent(Vector2d::Constant(-1e9), Vector2d::Constant(1e9))) {}
 
-Reading::Reading(const std::vector<Mark>& marks, const Extent& place) {
-  for (const Mark& mark : marks) {
-    const auto* const label = std::get_if<Label>(&mark.shape);
+Reading::Reading(const std::vector<draw::Mark>& marks, const Extent& place) {
+  for (const draw::Mark& mark : marks) {
+    const auto* const label = std::get_if<draw::Label>(&mark.shape);
     if (label == nullptr || label->size > kNumberSize || !place.contains(label->at)) continue;
     const auto value = number_of(label->text);
     if (!value) continue;
-    const Vector2d centre = extent_of(mark).center();
-    if (label->anchor == Anchor::middle) x_.add(*value, centre.x());
-    if (label->anchor == Anchor::end) y_.add(*value, label->at.y() - 4);  // half a digit above the baseline
+    const Vector2d centre = draw::extent_of(mark).center();
+    if (label->anchor == draw::Anchor::middle) x_.add(*value, centre.x());
+    if (label->anchor == draw::Anchor::end)
+      y_.add(*value, label->at.y() - 4);  // half a digit above the baseline
   }
 }
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/draw/svg.h>
+#include <oblique/draw/picture/svg.h>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace oblique {
+namespace oblique::draw {
 namespace {
 
 using testing::HasSubstr;
@@ -55,4 +55,4 @@ TEST(Picture, MeasuresTexts) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::draw

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The small curves in symbols, held against what they stand for.
-#include <oblique/draw/symbols.h>
+#include <oblique/draw/schematic/symbols.h>
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace oblique::schematic {
+namespace oblique::draw::schematic {
 namespace {
 
 using Eigen::Vector2d;
@@ -243,4 +243,4 @@ TEST(Icons, OfTheDyadAreTwoLinksAndThreeJoints) {
 }
 
 }  // namespace
-}  // namespace oblique::schematic
+}  // namespace oblique::draw::schematic

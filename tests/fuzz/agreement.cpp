@@ -11,7 +11,7 @@ namespace {
 /// Moments at which the outputs of a run may not be compared.
 class Events {
  public:
-  Events(const Run& run, double time, double around) : run_(run), time_(time), around_(around) {
+  Events(const solve::Run& run, double time, double around) : run_(run), time_(time), around_(around) {
     if (run.event_count > static_cast<long>(run.events.size()) && !run.events.empty())
       last_ = run.events.back().time * time - around;
   }
@@ -19,13 +19,14 @@ class Events {
   bool hide(double t) const {
     if (t >= last_) return true;
     const auto& events = run_.events;
-    auto next = std::lower_bound(events.begin(), events.end(), (t - around_) / time_,
-                                 [](const EventRecord& event, double from) { return event.time < from; });
+    auto next =
+        std::lower_bound(events.begin(), events.end(), (t - around_) / time_,
+                         [](const solve::EventRecord& event, double from) { return event.time < from; });
     return next != events.end() && next->time * time_ <= t + around_;
   }
 
  private:
-  const Run& run_;
+  const solve::Run& run_;
   double time_, around_;
   double last_ = std::numeric_limits<double>::infinity();
 };
@@ -34,7 +35,7 @@ class Events {
 
 std::optional<Difference> find_difference(const Beside& runs, double tolerance,
                                           const std::function<double(std::size_t, std::size_t)>& allowed) {
-  const Trajectory &a = runs.a.trajectory, &b = runs.b.trajectory;
+  const solve::Trajectory &a = runs.a.trajectory, &b = runs.b.trajectory;
   // Events are as exact as the states are; a thousand tolerances leave room for slow crossings.
   const double around = 1e3 * tolerance * std::max(1.0, runs.a.state.time);
   const Events of_a(runs.a, 1, around), of_b(runs.b, 1 / runs.time, around);
@@ -51,9 +52,9 @@ std::optional<Difference> find_difference(const Beside& runs, double tolerance,
   return std::nullopt;
 }
 
-double size_of(const Run& run) {
+double size_of(const solve::Run& run) {
   double size = 0;
-  const Trajectory& table = run.trajectory;
+  const solve::Trajectory& table = run.trajectory;
   for (std::size_t row = 0; row < table.rows(); ++row) {
     for (std::size_t c = 1; c < table.columns().size(); ++c)
       size = std::max(size, std::abs(table.at(row, c)));

@@ -20,8 +20,8 @@ struct Difference {
 /// Rows of two runs that stand for the same moments: row k of `b` for row first + k of `a`, whose time is
 /// `time` times less.
 struct Beside {
-  const Run& a;
-  const Run& b;
+  const solve::Run& a;
+  const solve::Run& b;
   std::size_t first = 0;
   double time = 1;
 };
@@ -33,6 +33,6 @@ std::optional<Difference> find_difference(const Beside& runs, double tolerance,
                                           const std::function<double(std::size_t, std::size_t)>& allowed);
 
 /// The largest magnitude of any output.
-double size_of(const Run& run);
+double size_of(const solve::Run& run);
 
 }  // namespace oblique::fuzz

@@ -7,9 +7,9 @@
 
 #include <fmt/format.h>
 
-#include <oblique/mechanism/follower.h>
-#include <oblique/mechanism/motion.h>
-#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/mechanism/model/read_mechanism.h>
+#include <oblique/mechanism/motion/follower.h>
+#include <oblique/mechanism/motion/motion.h>
 #include <oblique/patch/patch.h>
 
 #include "agreement.h"
@@ -26,8 +26,8 @@ constexpr double kLeastRegularity = 0.1;
 
 /// The exact motion of a text; or why there is none.
 struct Way {
-  std::optional<Mechanism> mechanism;
-  std::optional<Motion> motion;
+  std::optional<mechanism::Mechanism> mechanism;
+  std::optional<mechanism::Motion> motion;
   std::string refusal;
   bool is_whole = false;  ///< every row stands for an assembled mechanism
 };
@@ -35,19 +35,20 @@ struct Way {
 Way go(const std::string& text) {
   Way way;
   try {
-    way.mechanism = parse_mechanism(text, "fuzz.toml");
-    way.motion = solve_motion(*way.mechanism, kPositions);
-    way.is_whole = std::all_of(way.motion->configurations.begin(), way.motion->configurations.end(),
-                               [](const Configuration& c) { return c.status == Status::ok; });
-  } catch (const MechanismError& error) {
+    way.mechanism = mechanism::parse_mechanism(text, "fuzz.toml");
+    way.motion = mechanism::solve_motion(*way.mechanism, kPositions);
+    way.is_whole =
+        std::all_of(way.motion->configurations.begin(), way.motion->configurations.end(),
+                    [](const mechanism::Configuration& c) { return c.status == mechanism::Status::ok; });
+  } catch (const mechanism::MechanismError& error) {
     way.refusal = error.what();
   }
   return way;
 }
 
-bool turns_well(const Mechanism& mechanism) {
-  const Structure structure = decompose(mechanism);
-  Follower follower(mechanism, structure);
+bool turns_well(const mechanism::Mechanism& mechanism) {
+  const mechanism::Structure structure = mechanism::decompose(mechanism);
+  mechanism::Follower follower(mechanism, structure);
   for (int k = 0; k <= 360; ++k) {
     follower.advance(2 * std::numbers::pi * k / 360);
     if (!follower.events().empty()) return false;
@@ -77,11 +78,11 @@ class MechanismExamination {
         writing.scale = 2;
         return alike(writing, "twice as large", 1e-7);
       case 3:
-        return written_back(PatchMethod::triangles) + written_back(PatchMethod::gradient);
+        return written_back(patch::PatchMethod::triangles) + written_back(patch::PatchMethod::gradient);
       case 4:
-        return against_exact(PatchMethod::triangles);
+        return against_exact(patch::PatchMethod::triangles);
       default:
-        return against_exact(PatchMethod::gradient);
+        return against_exact(patch::PatchMethod::gradient);
     }
   }
 
@@ -115,27 +116,27 @@ class MechanismExamination {
     return "";
   }
 
-  std::optional<Diagram> patched(PatchMethod method) const {
-    PatchOptions options;
+  std::optional<diagram::Diagram> patched(patch::PatchMethod method) const {
+    patch::PatchOptions options;
     options.method = method;
     options.gain = kGain;
     options.samples = kPositions;
     options.tolerance = 1e-8;
     try {
-      return patch(*base_.mechanism, options);
-    } catch (const PatchError&) {  // a triangle goes flat on the way
+      return patch::patch(*base_.mechanism, options);
+    } catch (const patch::PatchError&) {  // a triangle goes flat on the way
       return std::nullopt;
-    } catch (const MechanismError&) {
+    } catch (const mechanism::MechanismError&) {
       return std::nullopt;
     }
   }
 
-  std::string written_back(PatchMethod method) {
+  std::string written_back(patch::PatchMethod method) {
     if (!base_.is_whole) return "";
     const auto diagram = patched(method);
     if (!diagram) return "";
-    const std::string text = write_diagram(*diagram);
-    if (!(parse_diagram(text, "fuzz.toml") == *diagram))
+    const std::string text = diagram::write_diagram(*diagram);
+    if (!(diagram::parse_diagram(text, "fuzz.toml") == *diagram))
       return report("its patch is not read back as it was", text);
     const Trial here = try_diagram(*diagram), there = try_diagram(text);
     if (here.end == Trial::End::broken) return report("the run of its patch is broken: " + here.says, text);
@@ -149,16 +150,16 @@ class MechanismExamination {
     return "";
   }
 
-  std::string against_exact(PatchMethod method) {
+  std::string against_exact(patch::PatchMethod method) {
     if (!base_.is_whole || !turns_well(*base_.mechanism)) return "";
     const auto diagram = patched(method);
     if (!diagram) return "";
     const Trial trial = try_diagram(*diagram);
     if (trial.end == Trial::End::broken || trial.says == "diagram")
-      return report("the run of its patch: " + trial.says + trial.message, write_diagram(*diagram));
+      return report("the run of its patch: " + trial.says + trial.message, diagram::write_diagram(*diagram));
     if (trial.end != Trial::End::clean) return "";
     compared_ = true;
-    const Trajectory& table = trial.run->trajectory;
+    const solve::Trajectory& table = trial.run->trajectory;
     // 1/gain, magnified by the regularity, its square where residuals are squared, and by lengths.
     const double allowed = 100 / kGain / kLeastRegularity * std::max(1.0, base_.mechanism->largest_length());
     for (std::size_t p = plan_.fixed; p < plan_.points.size(); ++p) {
@@ -169,9 +170,9 @@ class MechanismExamination {
         const Eigen::Vector2d analog(table.at(row, *x), table.at(row, *x + 1));
         const double error = (analog - base_.motion->configurations[row].points[point].position).norm();
         if (error <= allowed) continue;
-        return report(fmt::format("patched by {}: {} errs by {} in row {}", method_name(method),
+        return report(fmt::format("patched by {}: {} errs by {} in row {}", patch::method_name(method),
                                   point_name(p), error, row),
-                      write_diagram(*diagram));
+                      diagram::write_diagram(*diagram));
       }
     }
     return "";

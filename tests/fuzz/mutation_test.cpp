@@ -25,7 +25,7 @@ std::vector<std::string> texts_below(const std::vector<std::string>& folders) {
   }
   std::sort(paths.begin(), paths.end());
   std::vector<std::string> texts;
-  for (const std::filesystem::path& path : paths) texts.push_back(read_file(path));
+  for (const std::filesystem::path& path : paths) texts.push_back(text::read_file(path));
   return texts;
 }
 

@@ -65,12 +65,12 @@ set = { a = "b", b = "a" }
 
 }  // namespace
 
-const BlockLibrary& library() {
-  static const BlockLibrary blocks = [] {
-    BlockLibrary made = BlockLibrary::shipped();
+const diagram::BlockLibrary& library() {
+  static const diagram::BlockLibrary blocks = [] {
+    diagram::BlockLibrary made = diagram::BlockLibrary::shipped();
     const auto add = [&](const std::string& name, const char* text) {
-      made.add(parse_block("format = \"oblique-block/1\"\ntitle = \"" + name + "\"\n" + text, name + ".toml",
-                           name));
+      made.add(diagram::parse_block("format = \"oblique-block/1\"\ntitle = \"" + name + "\"\n" + text,
+                                    name + ".toml", name));
     };
     add("ball", kBall);
     add("spiker", kSpiker);

@@ -7,6 +7,6 @@ namespace oblique::fuzz {
 
 /// The shipped blocks, and a few of our own for what none of those does: events that set states, that pile
 /// up, that exchange memories.
-const BlockLibrary& library();
+const diagram::BlockLibrary& library();
 
 }  // namespace oblique::fuzz

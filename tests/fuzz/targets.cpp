@@ -20,9 +20,9 @@ void require(bool promise, const char* what) {
   std::abort();
 }
 
-bool holds_infinite_number(const Expression& e) {
-  if (e.kind == Expression::Kind::number && !std::isfinite(e.number)) return true;
-  for (const Expression& operand : e.operands) {
+bool holds_infinite_number(const text::Expression& e) {
+  if (e.kind == text::Expression::Kind::number && !std::isfinite(e.number)) return true;
+  for (const text::Expression& operand : e.operands) {
     if (holds_infinite_number(operand)) return true;
   }
   return false;
@@ -32,8 +32,8 @@ bool holds_infinite_number(const Expression& e) {
 
 void document(std::string_view bytes) {
   try {
-    parse_document(bytes, "fuzz.toml");
-  } catch (const ReadError& error) {
+    text::parse_document(bytes, "fuzz.toml");
+  } catch (const text::ReadError& error) {
     require(error.diagnostics().size() == 1, "broken TOML is one finding");
     require(error.diagnostics()[0].place.position.line > 0, "broken TOML has a place");
   }
@@ -41,18 +41,18 @@ void document(std::string_view bytes) {
 
 void expression(std::string_view bytes) {
   try {
-    const Expression e = parse_expression(bytes);
+    const text::Expression e = text::parse_expression(bytes);
     require(!holds_infinite_number(e), "a number in the text of an expression is finite");
-    const std::string text = to_string(e);
-    require(parse_expression(text) == e, "an expression is printed and read back unchanged");
-    evaluate(e, [](std::string_view name) { return std::optional(static_cast<double>(name.size())); });
-  } catch (const ExpressionError& error) {
+    const std::string text = text::to_string(e);
+    require(text::parse_expression(text) == e, "an expression is printed and read back unchanged");
+    text::evaluate(e, [](std::string_view name) { return std::optional(static_cast<double>(name.size())); });
+  } catch (const text::ExpressionError& error) {
     require(error.column >= 1 && static_cast<std::size_t>(error.column) <= bytes.size() + 1,
             "a column lies in the text");
   }
   try {
-    parse_quantity(bytes, parse_unit("rad/s").value());
-  } catch (const ExpressionError& error) {
+    text::parse_quantity(bytes, text::parse_unit("rad/s").value());
+  } catch (const text::ExpressionError& error) {
     require(error.column >= 1 && static_cast<std::size_t>(error.column) <= bytes.size() + 1,
             "a column lies in the text");
   }

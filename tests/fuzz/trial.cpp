@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include <oblique/network/network.h>
+#include <oblique/network/assembly/network.h>
 #include <oblique/solve/solve_error.h>
 
 #include "own_blocks.h"
@@ -31,14 +31,14 @@ std::string without_particulars(std::string_view message) {
   return text;
 }
 
-bool is_finite(const Trajectory& table) {
+bool is_finite(const solve::Trajectory& table) {
   for (const double value : table.values()) {
     if (!std::isfinite(value)) return false;
   }
   return true;
 }
 
-void refuse(Trial& trial, std::string_view stage, const Error& error) {
+void refuse(Trial& trial, std::string_view stage, const text::Error& error) {
   trial.end = Trial::End::refused;
   trial.says = stage;
   trial.message = error.what();
@@ -52,16 +52,16 @@ Trial attempt(const std::function<void(Trial&)>& way) {
   Trial trial;
   try {
     way(trial);
-  } catch (const SolveError& error) {
+  } catch (const solve::SolveError& error) {
     refuse(trial, fmt::format("solve {}", static_cast<int>(error.kind())), error);
-    if (error.kind() == SolveError::Kind::step_budget) trial.end = Trial::End::over_budget;
+    if (error.kind() == solve::SolveError::Kind::step_budget) trial.end = Trial::End::over_budget;
     if (!std::isfinite(error.time())) {
       trial.end = Trial::End::broken;
       trial.says = "a refusal at no time";
     }
-  } catch (const DiagramError& error) {
+  } catch (const diagram::DiagramError& error) {
     refuse(trial, "diagram", error);
-  } catch (const NetworkError& error) {
+  } catch (const network::NetworkError& error) {
     refuse(trial, "network", error);
   } catch (const std::exception& error) {
     trial.says = fmt::format("an exception of no stage: {}", error.what());
@@ -69,10 +69,10 @@ Trial attempt(const std::function<void(Trial&)>& way) {
   return trial;
 }
 
-void run_whole(const Diagram& diagram, const TrialOptions& asked, Trial& trial) {
-  const FlatDiagram flat = flatten(diagram, library());
-  const Program program(assemble(flat));
-  RunOptions options = options_of(diagram.run);
+void run_whole(const diagram::Diagram& diagram, const TrialOptions& asked, Trial& trial) {
+  const diagram::FlatDiagram flat = diagram::flatten(diagram, library());
+  const network::Program program(network::assemble(flat));
+  solve::RunOptions options = solve::options_of(diagram.run);
   if (asked.method) options.method = *asked.method;
   if (asked.tolerance) options.tolerance = *asked.tolerance;
   if (asked.until) options.until = *asked.until;
@@ -84,8 +84,8 @@ void run_whole(const Diagram& diagram, const TrialOptions& asked, Trial& trial) 
   long asked_to_end = 0;
   options.interrupted = [&] { return ++asked_to_end > kMostAsked; };
   try {
-    trial.run = run(program, flat, options);
-  } catch (const SolveError&) {
+    trial.run = solve::run(program, flat, options);
+  } catch (const solve::SolveError&) {
     if (asked_to_end <= kMostAsked) throw;
     trial.end = Trial::End::over_budget;
     return;
@@ -103,19 +103,19 @@ void run_whole(const Diagram& diagram, const TrialOptions& asked, Trial& trial) 
     return;
   }
   trial.end = trial.run->warnings.empty() ? Trial::End::clean : Trial::End::warned;
-  for (const Diagnostic& warning : trial.run->warnings) {
+  for (const text::Diagnostic& warning : trial.run->warnings) {
     trial.says += without_particulars(warning.what.substr(0, warning.what.find(':'))) + ";";
-    trial.message += to_string(warning) + "\n";
+    trial.message += text::to_string(warning) + "\n";
   }
 }
 
 }  // namespace
 
 Trial try_diagram(const std::string& text, const TrialOptions& options) {
-  return attempt([&](Trial& trial) { run_whole(parse_diagram(text, "fuzz.toml"), options, trial); });
+  return attempt([&](Trial& trial) { run_whole(diagram::parse_diagram(text, "fuzz.toml"), options, trial); });
 }
 
-Trial try_diagram(const Diagram& diagram, const TrialOptions& options) {
+Trial try_diagram(const diagram::Diagram& diagram, const TrialOptions& options) {
   return attempt([&](Trial& trial) { run_whole(diagram, options, trial); });
 }
 

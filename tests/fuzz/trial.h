@@ -22,21 +22,21 @@ struct Trial {
   std::string says;     ///< the stage and kind of a refusal, the warnings without their numbers and names; or
                         ///< how it is broken
   std::string message;  ///< in full
-  std::optional<Run> run;
+  std::optional<solve::Run> run;
 };
 
 /// What a trial changes of the options in the text.
 struct TrialOptions {
-  std::optional<IntegrationMethod> method;
+  std::optional<diagram::IntegrationMethod> method;
   std::optional<double> tolerance;
   std::optional<double> until;
   std::optional<int> samples;
-  std::optional<RunState> from;
+  std::optional<solve::RunState> from;
 };
 
 /// Reads, flattens, assembles and runs the text of a diagram, within a budget of steps, and looks at all that
 /// comes out: numbers that are none, empty messages and exceptions of no stage are `broken`.
 Trial try_diagram(const std::string& text, const TrialOptions& options = {});
-Trial try_diagram(const Diagram& diagram, const TrialOptions& options = {});
+Trial try_diagram(const diagram::Diagram& diagram, const TrialOptions& options = {});
 
 }  // namespace oblique::fuzz

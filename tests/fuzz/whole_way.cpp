@@ -80,7 +80,7 @@ class Examination {
       case 4:
         return split();
       case 5:
-        return by_method(IntegrationMethod::adams) + by_method(IntegrationMethod::bdf);
+        return by_method(diagram::IntegrationMethod::adams) + by_method(diagram::IntegrationMethod::bdf);
       default:
         return to_tolerance();
     }
@@ -123,7 +123,7 @@ class Examination {
     const std::string text = text_of(plan_, writing);
     std::string fault = alike(try_diagram(text), text, "renamed", 1, true);
     if (!fault.empty()) return fault;
-    const std::string written = write_diagram(parse_diagram(text_, "fuzz.toml"));
+    const std::string written = diagram::write_diagram(diagram::parse_diagram(text_, "fuzz.toml"));
     return alike(try_diagram(written), written, "written and read back", 1, true);
   }
 
@@ -147,7 +147,7 @@ class Examination {
 
   std::string split() {
     if (base_.end != End::clean) return "";
-    const Run& whole = *base_.run;
+    const solve::Run& whole = *base_.run;
     const std::size_t middle = whole.trajectory.rows() / 2;
     TrialOptions options;
     options.until = whole.trajectory.at(middle, 0);
@@ -155,17 +155,17 @@ class Examination {
     const Trial first = try_diagram(text_, options);
     if (first.end == End::broken) return report("its first half is broken: " + first.says, "");
     if (first.end != End::clean) return "";
-    options.from = parse_run_state(to_text(first.run->state), "state.toml");
+    options.from = solve::parse_run_state(solve::to_text(first.run->state), "state.toml");
     options.until = plan_.until;
     const Trial second = try_diagram(text_, options);
     if (second.end == End::broken) return report("its second half is broken: " + second.says, "");
-    return agreement(second, to_text(*options.from), "from its middle", middle, 1);
+    return agreement(second, solve::to_text(*options.from), "from its middle", middle, 1);
   }
 
-  std::string by_method(IntegrationMethod method) {
+  std::string by_method(diagram::IntegrationMethod method) {
     TrialOptions options;
     options.method = method;
-    return unlike(options, fmt::format("by {}", method_name(method)));
+    return unlike(options, fmt::format("by {}", diagram::method_name(method)));
   }
 
   std::string to_tolerance() {
@@ -220,12 +220,12 @@ class Examination {
   /// such a diagram does not run clean: then this one is at an edge, and tells nothing.
   bool disturb() {
     if (!disturbed_.empty()) return true;
-    const Trajectory& table = base_.run->trajectory;
+    const solve::Trajectory& table = base_.run->trajectory;
     disturbed_.assign(table.values().size(), 0);
     for (std::uint32_t signs = 1; signs <= kDisturbances; ++signs) {
       const Trial trial = try_diagram(text_of(plan_, disturbed(signs)));
       if (trial.end != End::clean) return false;
-      const Trajectory& moved = trial.run->trajectory;
+      const solve::Trajectory& moved = trial.run->trajectory;
       for (std::size_t k = 0; k < disturbed_.size(); ++k)
         disturbed_[k] = std::max(disturbed_[k], std::abs(moved.values()[k] - table.values()[k]));
     }

@@ -5,6 +5,6 @@
 #include <oblique/text/expression.h>
 
 int main() {
-  const double value = oblique::evaluate(oblique::parse_expression("2*cos(pi/3)"));
+  const double value = oblique::text::evaluate(oblique::text::parse_expression("2*cos(pi/3)"));
   return std::abs(value - 1) < 1e-15 ? 0 : 1;
 }

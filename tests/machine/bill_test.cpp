@@ -10,7 +10,7 @@
 #include "../support/compiled.h"
 #include "profiles.h"
 
-namespace oblique {
+namespace oblique::machine {
 namespace {
 
 using ::testing::ElementsAre;
@@ -18,8 +18,10 @@ using testing::inverting_machine;
 using testing::shipped_blocks;
 using testing::signed_machine;
 
-Bill bill(const std::string& blocks, const MachineProfile& machine) {
-  return bill_of(flatten(parse_diagram(testing::diagram_text(blocks), "d.toml"), shipped_blocks()), machine);
+Bill bill(const std::string& blocks, const diagram::MachineProfile& machine) {
+  return bill_of(
+      diagram::flatten(diagram::parse_diagram(testing::diagram_text(blocks), "d.toml"), shipped_blocks()),
+      machine);
 }
 
 const BillRow& row(const Bill& bill, const std::string& element) {
@@ -29,13 +31,13 @@ const BillRow& row(const Bill& bill, const std::string& element) {
   return *found;
 }
 
-void set_count(MachineProfile& machine, ElementKind kind, std::optional<double> count) {
-  std::erase_if(machine.elements, [&](const ElementCount& e) { return e.kind == kind; });
+void set_count(diagram::MachineProfile& machine, diagram::ElementKind kind, std::optional<double> count) {
+  std::erase_if(machine.elements, [&](const diagram::ElementCount& e) { return e.kind == kind; });
   machine.elements.push_back({kind, count, {}});
 }
 
-void remove(MachineProfile& machine, ElementKind kind) {
-  std::erase_if(machine.elements, [&](const ElementCount& e) { return e.kind == kind; });
+void remove(diagram::MachineProfile& machine, diagram::ElementKind kind) {
+  std::erase_if(machine.elements, [&](const diagram::ElementCount& e) { return e.kind == kind; });
 }
 
 // An oscillator of two integrators and an inverter, with a servo amplifier and a product besides.
@@ -61,24 +63,24 @@ TEST(Bill, CountsEveryUncommittedAmplifierAndTheNetworksOfIntegrators) {
 }
 
 TEST(Bill, TakesSummersForOpenAmplifiersAndForInvertersBeyondThoseThereAre) {
-  MachineProfile machine = inverting_machine();
-  remove(machine, ElementKind::amplifier);
-  set_count(machine, ElementKind::integrator, 2);
-  set_count(machine, ElementKind::summer, 3);
+  diagram::MachineProfile machine = inverting_machine();
+  remove(machine, diagram::ElementKind::amplifier);
+  set_count(machine, diagram::ElementKind::integrator, 2);
+  set_count(machine, diagram::ElementKind::summer, 3);
   Bill counted = bill(kBlocks, machine);  // without inverters of its own
   EXPECT_EQ(row(counted, "integrators").needed, 2);
   EXPECT_EQ(row(counted, "summers").needed, 3);
   EXPECT_EQ(row(counted, "summers").note, "1 open amplifier, 1 inverter of these");
   EXPECT_EQ(counted.verdict(), Bill::Verdict::fits);
-  set_count(machine, ElementKind::inverter, 4);
+  set_count(machine, diagram::ElementKind::inverter, 4);
   counted = bill(kBlocks, machine);
   EXPECT_EQ(row(counted, "summers").needed, 2);
   EXPECT_EQ(row(counted, "inverters").needed, 1);
 }
 
 TEST(Bill, SaysWhatIsMissing) {
-  MachineProfile machine = inverting_machine();
-  set_count(machine, ElementKind::amplifier, 3);
+  diagram::MachineProfile machine = inverting_machine();
+  set_count(machine, diagram::ElementKind::amplifier, 3);
   const Bill counted = bill(kBlocks, machine);
   EXPECT_EQ(row(counted, "amplifiers").missing(), 2);
   EXPECT_EQ(row(counted, "multipliers").missing(), 0);
@@ -87,11 +89,11 @@ TEST(Bill, SaysWhatIsMissing) {
 }
 
 TEST(Bill, CannotTellWhereACountIsNotPublished) {
-  MachineProfile machine = inverting_machine();
-  set_count(machine, ElementKind::multiplier, std::nullopt);
+  diagram::MachineProfile machine = inverting_machine();
+  set_count(machine, diagram::ElementKind::multiplier, std::nullopt);
   EXPECT_EQ(bill(kBlocks, machine).verdict(), Bill::Verdict::cannot_tell);
   EXPECT_EQ(row(bill(kBlocks, machine), "multipliers").missing(), 0);
-  set_count(machine, ElementKind::amplifier, 4);  // enough to know
+  set_count(machine, diagram::ElementKind::amplifier, 4);  // enough to know
   EXPECT_EQ(bill(kBlocks, machine).verdict(), Bill::Verdict::does_not_fit);
 }
 
@@ -100,7 +102,7 @@ TEST(Bill, CannotTellWhereTheGainsOfInputsAreNotPublished) {
   const std::string blocks =
       "x = { type = \"integrator\", in = [\"0.3*x\"] }\nm = { type = \"multiplier\", in = [\"0.5*x\", \"x\"] "
       "}\n";
-  MachineProfile machine = inverting_machine();
+  diagram::MachineProfile machine = inverting_machine();
   machine.input_gains.clear();
   EXPECT_EQ(row(bill(blocks, machine), "potentiometers").needed, 1);
   EXPECT_EQ(bill(blocks, machine).verdict(), Bill::Verdict::fits);
@@ -110,8 +112,8 @@ TEST(Bill, CannotTellWhereTheGainsOfInputsAreNotPublished) {
 }
 
 TEST(Bill, NamesKindsThatTheMachineHasNot) {
-  MachineProfile machine = inverting_machine();
-  remove(machine, ElementKind::multiplier);
+  diagram::MachineProfile machine = inverting_machine();
+  remove(machine, diagram::ElementKind::multiplier);
   const std::string blocks = std::string(kBlocks) + "c = { type = \"cosine\", in = \"x\" }\n";
   const Bill counted = bill(blocks, machine);
   EXPECT_THAT(counted.absent(), ElementsAre("multipliers", "cosine"));
@@ -119,7 +121,7 @@ TEST(Bill, NamesKindsThatTheMachineHasNot) {
 }
 
 TEST(Bill, MissesTimeFactors) {
-  MachineProfile machine = inverting_machine();
+  diagram::MachineProfile machine = inverting_machine();
   machine.rates = {1, 500};
   const Bill counted = bill(
       "x = { type = \"integrator\", in = [\"y\"], rate = 6.3e7 }\ny = { type = \"integrator\", in = [\"x\"] "
@@ -168,7 +170,7 @@ TEST(Bill, TakesAGainForWhatItStandsFor) {
 }
 
 TEST(Bill, CannotTellWhereTimeFactorsAreNotPublished) {
-  MachineProfile machine = inverting_machine();
+  diagram::MachineProfile machine = inverting_machine();
   machine.rates.clear();
   machine.rates_known = false;
   const Bill fast = bill("x = { type = \"integrator\", in = \"x\", rate = 12345 }\n", machine);
@@ -178,4 +180,4 @@ TEST(Bill, CannotTellWhereTimeFactorsAreNotPublished) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::machine

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace oblique {
+namespace oblique::machine {
 namespace {
 
 const std::vector<double> kGains{1, 10};
@@ -55,4 +55,4 @@ TEST(ChooseRate, TakesTheLeastTimeFactorAtWhichOneInputSuffices) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::machine

@@ -13,14 +13,15 @@
 
 namespace oblique::testing {
 
-inline Trajectory trajectory_of(const Diagram& diagram) {
-  const FlatDiagram flat = flatten(diagram, shipped_blocks());
-  return run(Program(assemble(flat)), flat, options_of(diagram.run)).trajectory;
+inline solve::Trajectory trajectory_of(const diagram::Diagram& diagram) {
+  const diagram::FlatDiagram flat = diagram::flatten(diagram, shipped_blocks());
+  return solve::run(network::Program(network::assemble(flat)), flat, solve::options_of(diagram.run))
+      .trajectory;
 }
 
 /// The largest difference of any output at any time, relative to the largest value of all.
-inline double difference(const Diagram& one, const Diagram& other) {
-  const Trajectory a = trajectory_of(one), b = trajectory_of(other);
+inline double difference(const diagram::Diagram& one, const diagram::Diagram& other) {
+  const solve::Trajectory a = trajectory_of(one), b = trajectory_of(other);
   EXPECT_EQ(a.rows(), b.rows());
   EXPECT_EQ(a.columns().size(), b.columns().size());
   double size = 0, off = 0;
@@ -35,14 +36,14 @@ inline double difference(const Diagram& one, const Diagram& other) {
 }
 
 /// What no machine with inputs of 1 and 10 and potentiometers from 0 to 1 could do.
-inline void expect_machine_elements(const Diagram& diagram, bool with_signs) {
-  const FlatDiagram flat = flatten(diagram, shipped_blocks());
+inline void expect_machine_elements(const diagram::Diagram& diagram, bool with_signs) {
+  const diagram::FlatDiagram flat = diagram::flatten(diagram, shipped_blocks());
   EXPECT_EQ(flat.blocks.size(), diagram.blocks.size()) << "composites";
   std::set<std::pair<std::string, std::string>> settings;
-  for (const FlatBlock& b : flat.blocks) {
+  for (const diagram::FlatBlock& b : flat.blocks) {
     for (std::size_t port = 0; port < b.inputs.size(); ++port) {
       const bool sum = b.definition->inputs[port].sum;
-      for (const FlatTerm& term : b.inputs[port].terms) {
+      for (const diagram::FlatTerm& term : b.inputs[port].terms) {
         const double weight = with_signs ? std::abs(term.weight) : term.weight;
         EXPECT_TRUE(weight == 1 || weight == 0 || (weight == 10 && (sum || with_signs)))
             << b.path << ": " << term.weight;

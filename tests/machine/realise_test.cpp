@@ -10,7 +10,7 @@
 #include "machine_runs.h"
 #include "profiles.h"
 
-namespace oblique {
+namespace oblique::machine {
 namespace {
 
 using testing::diagram_text;
@@ -22,34 +22,38 @@ using testing::message_of;
 using testing::shipped_blocks;
 using testing::signed_machine;
 
-const BlockInstance& block(const Diagram& diagram, const std::string& name) {
+const diagram::BlockInstance& block(const diagram::Diagram& diagram, const std::string& name) {
   const auto found = std::find_if(diagram.blocks.begin(), diagram.blocks.end(),
-                                  [&](const BlockInstance& b) { return b.name == name; });
-  if (found == diagram.blocks.end()) throw std::out_of_range(name + " in\n" + write_diagram(diagram));
+                                  [&](const diagram::BlockInstance& b) { return b.name == name; });
+  if (found == diagram.blocks.end())
+    throw std::out_of_range(name + " in\n" + diagram::write_diagram(diagram));
   return *found;
 }
 
-Diagram realised(const std::string& blocks, const std::string& rest, const MachineProfile& machine) {
-  return realise(parse_diagram(diagram_text(blocks, rest), "d.toml"), shipped_blocks(), machine).diagram;
+diagram::Diagram realised(const std::string& blocks, const std::string& rest,
+                          const diagram::MachineProfile& machine) {
+  return realise(diagram::parse_diagram(diagram_text(blocks, rest), "d.toml"), shipped_blocks(), machine)
+      .diagram;
 }
 
-std::string line_of(const Diagram& diagram, const std::string& name) {
-  const std::string text = write_diagram(diagram);
+std::string line_of(const diagram::Diagram& diagram, const std::string& name) {
+  const std::string text = diagram::write_diagram(diagram);
   const std::size_t begin = text.find("\n" + name + " ");
   if (begin == std::string::npos) return "nothing in:\n" + text;
   return text.substr(begin + 1, text.find('\n', begin + 1) - begin - 1);
 }
 
 TEST(Realise, SharesThePotentiometerOfOneSignalAndOneSetting) {
-  const Diagram made = realised(R"(
+  const diagram::Diagram made = realised(R"(
 a = { type = "integrator", in = ["-0.3*b"] }
 b = { type = "integrator", in = ["a", "c"], initial = 1 }
 c = { type = "integrator", in = ["-3*b"] }
 )",
-                                "", inverting_machine());
+                                         "", inverting_machine());
   EXPECT_THAT(line_of(made, "pot_1"), HasSubstr("setting = 0.3"));
-  const auto potentiometers = std::count_if(made.blocks.begin(), made.blocks.end(),
-                                            [](const BlockInstance& b) { return b.type == "potentiometer"; });
+  const auto potentiometers =
+      std::count_if(made.blocks.begin(), made.blocks.end(),
+                    [](const diagram::BlockInstance& b) { return b.type == "potentiometer"; });
   EXPECT_EQ(potentiometers, 1);  // before an input of 1 and one of 10
 }
 
@@ -58,7 +62,7 @@ TEST(Realise, CarriesInitialValuesFromTheReferenceWithTheSignOfTheSignal) {
 x = { type = "integrator", in = ["-x"], initial = 0.5 }
 y = { type = "integrator", in = ["x"], initial = -1 }
 )";
-  const Diagram made = realised(blocks, "", inverting_machine());
+  const diagram::Diagram made = realised(blocks, "", inverting_machine());
   EXPECT_THAT(line_of(made, "x"), HasSubstr("in = \"x\", start = \"pot_1\""));
   EXPECT_THAT(line_of(made, "pot_1"), HasSubstr("in = \"reference\", setting = 0.5"));
   EXPECT_THAT(line_of(made, "minus_y"), HasSubstr("in = \"x\", start = \"reference\""));
@@ -69,41 +73,43 @@ y = { type = "integrator", in = ["x"], initial = -1 }
 TEST(Realise, CarriesInitialValuesFromSignalsWithTheSignOfTheSignal) {
   std::string written;
   for (const char* const inputs : {R"("x", "y")", R"("-x", "-y")"}) {
-    const Diagram diagram = parse_diagram(diagram_text(R"(
+    const diagram::Diagram diagram =
+        diagram::parse_diagram(diagram_text(R"(
 x = { type = "integrator", in = ["-y"], initial = 0.5 }
 y = { type = "integrator", in = ["x"], initial = 0.25 }
 z = { type = "integrator", in = [)" + std::string(inputs) +
-                                                       R"(], start = "0.5*x", initial = 0.125 }
+                                            R"(], start = "0.5*x", initial = 0.125 }
 )"),
-                                          "d.toml");
-    const Diagram made = realise(diagram, shipped_blocks(), inverting_machine()).diagram;
-    EXPECT_LT(difference(diagram, made), 1e-6) << write_diagram(made);
-    written += write_diagram(made);
+                               "d.toml");
+    const diagram::Diagram made = realise(diagram, shipped_blocks(), inverting_machine()).diagram;
+    EXPECT_LT(difference(diagram, made), 1e-6) << diagram::write_diagram(made);
+    written += diagram::write_diagram(made);
   }
   EXPECT_THAT(written, HasSubstr("initial = 0.125"));
   EXPECT_THAT(written, HasSubstr("initial = -0.125"));
 }
 
 TEST(Realise, LeavesInitialValuesBeyondTheReferenceToTheIntegrator) {
-  const Diagram made =
+  const diagram::Diagram made =
       realised("x = { type = \"integrator\", in = [\"-x\"], initial = 2 }\n", "", inverting_machine());
   EXPECT_THAT(line_of(made, "x"), HasSubstr("in = \"x\", initial = 2"));
 }
 
 // in.hold would become in_hold, which equations keep for themselves.
 TEST(Realise, GivesFlattenedBlocksNamesThatTheyMayHave) {
-  const BlockLibrary library =
+  const diagram::BlockLibrary library =
       testing::shipped_blocks_and("cell",
                                   "[outputs]\nout = { wire = \"hold\" }\n[blocks]\n"
                                   "hold = { type = \"integrator\", in = [\"-0.5*hold\"], initial = 1 }\n");
-  const Diagram diagram =
-      parse_diagram(diagram_text("in = { type = \"cell\" }\nin_hold_2 = { type = \"cell\" }\n"), "d.toml");
-  const Diagram made = realise(diagram, library, inverting_machine()).diagram;
-  EXPECT_NO_THROW(parse_diagram(write_diagram(made), "made.toml")) << write_diagram(made);
+  const diagram::Diagram diagram = diagram::parse_diagram(
+      diagram_text("in = { type = \"cell\" }\nin_hold_2 = { type = \"cell\" }\n"), "d.toml");
+  const diagram::Diagram made = realise(diagram, library, inverting_machine()).diagram;
+  EXPECT_NO_THROW(diagram::parse_diagram(diagram::write_diagram(made), "made.toml"))
+      << diagram::write_diagram(made);
 }
 
 TEST(Realise, KeepsWhatOutputsAdd) {
-  const Diagram made = realised(
+  const diagram::Diagram made = realised(
       "x = { type = \"integrator\", in = [\"-0.5*x\"], initial = 1 }\n",
       "[outputs]\nx = { signal = \"x\", scale = 4, offset = 65536, unit = \"m\" }\n", inverting_machine());
   EXPECT_EQ(made.outputs[0].offset, 65536);
@@ -111,7 +117,7 @@ TEST(Realise, KeepsWhatOutputsAdd) {
 }
 
 TEST(Realise, LeavesOutWhatOnlyMultipliesByAConstant) {
-  const Diagram made = realised(R"(
+  const diagram::Diagram made = realised(R"(
 two  = { type = "constant", value = 2 }
 x    = { type = "integrator", in = ["-x"], initial = 1 }
 k    = { type = "gain", in = "x", factor = 4 }
@@ -121,7 +127,7 @@ n    = { type = "inverter", in = "m" }
 s    = { type = "summer", in = ["0.25*n"] }
 out  = { type = "integrator", in = ["s", "n"] }
 )",
-                                "[outputs]\nout = \"out\"\n", inverting_machine());
+                                         "[outputs]\nout = \"out\"\n", inverting_machine());
   // s = −x and n = −4x: together −5x, which an inverting integrator takes as 10 times half of x
   EXPECT_THAT(line_of(made, "out"), HasSubstr("in = \"10*pot_1\""));
   EXPECT_THAT(line_of(made, "pot_1"), HasSubstr("in = \"x\", setting = 0.5"));
@@ -129,7 +135,7 @@ out  = { type = "integrator", in = ["s", "n"] }
 }
 
 TEST(Realise, FormsAProductOnce) {
-  const Diagram made = realised(R"(
+  const diagram::Diagram made = realised(R"(
 x = { type = "integrator", in = ["-y"], initial = 1 }
 y = { type = "integrator", in = ["x"] }
 a = { type = "multiplier", in = ["x", "y"] }
@@ -138,38 +144,38 @@ c = { type = "squarer", in = "x" }
 d = { type = "multiplier", in = ["x", "x"] }
 s = { type = "summer", in = ["a", "b", "c", "d"] }
 )",
-                                "[outputs]\ns = \"s\"\n", inverting_machine());
+                                         "[outputs]\ns = \"s\"\n", inverting_machine());
   EXPECT_EQ(std::count_if(made.blocks.begin(), made.blocks.end(),
-                          [](const BlockInstance& b) { return b.type == "multiplier"; }),
+                          [](const diagram::BlockInstance& b) { return b.type == "multiplier"; }),
             2);
 }
 
 // Above its first element; of a composite too.
 TEST(Realise, KeepsTheCommentOfABlock) {
-  Diagram diagram = parse_diagram(diagram_text(R"(
+  diagram::Diagram diagram = diagram::parse_diagram(diagram_text(R"(
 x = { type = "integrator", in = ["-x"], initial = 0.5 }
 q = { type = "divider", numerator = "x", denominator = "one" }
 one = { type = "constant" }
 )"),
-                                  "d.toml");
+                                                    "d.toml");
   diagram.blocks[0].comment = "falls";
   diagram.blocks[1].comment = "a quotient";
-  const Diagram made = realise(diagram, shipped_blocks(), inverting_machine()).diagram;
+  const diagram::Diagram made = realise(diagram, shipped_blocks(), inverting_machine()).diagram;
   for (const std::string comment : {"falls", "a quotient"}) {
     EXPECT_EQ(std::count_if(made.blocks.begin(), made.blocks.end(),
-                            [&](const BlockInstance& b) { return b.comment == comment; }),
+                            [&](const diagram::BlockInstance& b) { return b.comment == comment; }),
               1);
   }
 }
 
 // Next to nothing, but all there is.
 TEST(Realise, KeepsAWeightThatIsSmallAlone) {
-  const Diagram made = realised(R"(
+  const diagram::Diagram made = realised(R"(
 x = { type = "integrator", in = [], initial = 1 }
 y = { type = "integrator", in = ["-1e-17*x"] }
 )",
-                                "", inverting_machine());
-  EXPECT_THAT(write_diagram(made), HasSubstr("setting = 1e-17"));
+                                         "", inverting_machine());
+  EXPECT_THAT(diagram::write_diagram(made), HasSubstr("setting = 1e-17"));
 }
 
 TEST(Realise, PutsAnAmplifierBeforeAFactorAboveOne) {
@@ -177,17 +183,17 @@ TEST(Realise, PutsAnAmplifierBeforeAFactorAboveOne) {
 x = { type = "integrator", in = ["-x"], initial = 0.3 }
 m = { type = "multiplier", in = ["3*x", "-3*x"] }
 )";
-  const Diagram made = realised(blocks, "", inverting_machine());
+  const diagram::Diagram made = realised(blocks, "", inverting_machine());
   EXPECT_EQ(std::count_if(made.blocks.begin(), made.blocks.end(),
-                          [](const BlockInstance& b) { return b.type == "summer"; }),
+                          [](const diagram::BlockInstance& b) { return b.type == "summer"; }),
             1)
-      << write_diagram(made);
+      << diagram::write_diagram(made);
   expect_machine_elements(made, false);
-  EXPECT_LT(difference(parse_diagram(diagram_text(blocks), "d.toml"), made), 1e-7);
+  EXPECT_LT(difference(diagram::parse_diagram(diagram_text(blocks), "d.toml"), made), 1e-7);
 }
 
 TEST(Realise, ChoosesTheTimeFactorOfTheMachine) {
-  MachineProfile machine = inverting_machine();
+  diagram::MachineProfile machine = inverting_machine();
   machine.rates = {10, 1000};
   const std::string blocks = "x = { type = \"integrator\", in = [\"-20*x\"], rate = 50, initial = 1 }\n";
   EXPECT_THAT(line_of(realised(blocks, "", machine), "x"),
@@ -204,8 +210,8 @@ one = { type = "constant" }
 r = { type = "servo-amplifier", in = ["r2", "-x"], initial = 1, bandwidth = "1 kHz" }
 r2 = { type = "multiplier", in = ["r", "r"] }
 )";
-  const Diagram diagram = parse_diagram(diagram_text(blocks), "d.toml");
-  for (const MachineProfile& machine : {inverting_machine(), signed_machine()})
+  const diagram::Diagram diagram = diagram::parse_diagram(diagram_text(blocks), "d.toml");
+  for (const diagram::MachineProfile& machine : {inverting_machine(), signed_machine()})
     EXPECT_LT(difference(diagram, realise(diagram, shipped_blocks(), machine).diagram), 1e-6);
 }
 
@@ -214,7 +220,7 @@ TEST(Realise, LeavesTheGainOfServoAmplifiersToAMachineThatStatesIt) {
       "x = { type = \"servo-amplifier\", in = [\"x\", \"-0.5*one\"], gain = 1e5 }\none = { type = "
       "\"constant\" "
       "}\n";
-  MachineProfile machine = inverting_machine();
+  diagram::MachineProfile machine = inverting_machine();
   EXPECT_THAT(line_of(realised(blocks, "", machine), "x"), HasSubstr("gain = 100000, bandwidth = 10 "));
   machine.errors = {{"servo-amplifier", "gain", 1000, "amplifier, open-loop gain"}};
   EXPECT_THAT(line_of(realised(blocks, "", machine), "x"), Not(HasSubstr("gain")));
@@ -228,8 +234,9 @@ f = { type = "function-generator", in = "-x", points = [[-1, 1], [0, 0], [1, 0.5
 u = { type = "time-function", formula = "cos(2*time)^2", scale = 0.5 }
 v = { type = "integrator", in = ["-0.5*u", "0.1*f"] }
 )";
-  const Diagram diagram = parse_diagram(diagram_text(blocks, "[outputs]\nf = \"f\"\nv = \"v\"\n"), "d.toml");
-  const Diagram made = realise(diagram, shipped_blocks(), inverting_machine()).diagram;
+  const diagram::Diagram diagram =
+      diagram::parse_diagram(diagram_text(blocks, "[outputs]\nf = \"f\"\nv = \"v\"\n"), "d.toml");
+  const diagram::Diagram made = realise(diagram, shipped_blocks(), inverting_machine()).diagram;
   EXPECT_EQ(block(made, "f").type, "function-generator");
   EXPECT_LT(difference(diagram, made), 1e-6);
 }
@@ -247,10 +254,10 @@ c = { type = "servo-amplifier", in = ["c", "-m"], bandwidth = "1 kHz", offset = 
 z = { type = "integrator", in = ["c", "-m", "s"] }
 )";
   for (const char* const inverting : {"", "[machine]\ninverting = true\n"}) {
-    const Diagram diagram = parse_diagram(diagram_text(blocks, inverting), "d.toml");
-    const Diagram made = realise(diagram, shipped_blocks(), inverting_machine()).diagram;
-    EXPECT_THAT(write_diagram(made), HasSubstr("minus_"));  // or nothing is turned
-    EXPECT_LT(difference(diagram, made), 1e-6) << write_diagram(made);
+    const diagram::Diagram diagram = diagram::parse_diagram(diagram_text(blocks, inverting), "d.toml");
+    const diagram::Diagram made = realise(diagram, shipped_blocks(), inverting_machine()).diagram;
+    EXPECT_THAT(diagram::write_diagram(made), HasSubstr("minus_"));  // or nothing is turned
+    EXPECT_LT(difference(diagram, made), 1e-6) << diagram::write_diagram(made);
   }
 }
 
@@ -260,36 +267,37 @@ a = { type = "gain", in = "b", factor = 0.5 }
 b = { type = "summer", in = ["-a", "one"] }
 one = { type = "constant" }
 )";
-  const Diagram diagram = parse_diagram(diagram_text(blocks), "d.toml");
+  const diagram::Diagram diagram = diagram::parse_diagram(diagram_text(blocks), "d.toml");
   EXPECT_LT(difference(diagram, realise(diagram, shipped_blocks(), inverting_machine()).diagram), 1e-12);
 }
 
 // A composite has its own convention: the summers in crank-generator do not invert, whatever the diagram
 // says.
 TEST(Realise, KnowsWhichSummersOfTheDiagramInvert) {
-  Diagram diagram = parse_diagram(diagram_text(R"(
+  diagram::Diagram diagram = diagram::parse_diagram(diagram_text(R"(
 crank = { type = "crank-generator" }
 s = { type = "summer", in = ["0.5*crank.cos", "0.25*crank.sin"] }
 )"),
-                                  "d.toml");
+                                                    "d.toml");
   diagram.machine.inverting = true;
-  for (const MachineProfile& machine : {inverting_machine(), signed_machine()})
+  for (const diagram::MachineProfile& machine : {inverting_machine(), signed_machine()})
     EXPECT_LT(difference(diagram, realise(diagram, shipped_blocks(), machine).diagram), 1e-6);
 }
 
 TEST(Realise, GivesAbsoluteTolerancesToTheStatesTheyWereMeantFor) {
-  Diagram diagram =
-      parse_diagram(diagram_text("x = { type = \"integrator\", in = [\"x\"], initial = 0.1 }\n"), "d.toml");
+  diagram::Diagram diagram = diagram::parse_diagram(
+      diagram_text("x = { type = \"integrator\", in = [\"x\"], initial = 0.1 }\n"), "d.toml");
   diagram.run.tolerances = {{"x", 1e-12}};
-  const Diagram made = realise(diagram, shipped_blocks(), inverting_machine()).diagram;
+  const diagram::Diagram made = realise(diagram, shipped_blocks(), inverting_machine()).diagram;
   ASSERT_EQ(made.run.tolerances.size(), 1U);
-  EXPECT_NO_THROW(flatten(made, shipped_blocks()));
+  EXPECT_NO_THROW(diagram::flatten(made, shipped_blocks()));
   EXPECT_EQ(made.run.tolerances[0].second, 1e-12);
 }
 
 TEST(Realise, RefusesADiagramWithATimeline) {
   const std::string message = message_of<RealiseError>([] {
-    realise(read_diagram(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/lessons/repetitive-operation.toml"),
+    realise(diagram::read_diagram(std::string(OBLIQUE_SOURCE_DIR) +
+                                  "/diagrams/lessons/repetitive-operation.toml"),
             shipped_blocks(), inverting_machine());
   });
   EXPECT_THAT(message,
@@ -308,4 +316,4 @@ TEST(Realise, RefusesPotentiometersWithImperfectionsOfTheirOwn) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::machine

@@ -9,7 +9,7 @@
 #include "../support/compiled.h"
 #include "profiles.h"
 
-namespace oblique {
+namespace oblique::machine {
 namespace {
 
 using ::testing::Contains;
@@ -26,15 +26,15 @@ s   = { type = "summer", in = ["-25*xy"] }
 one = { type = "constant" }
 )";
 
-MachineSheets sheets(const MachineProfile& machine) {
-  const Diagram diagram = parse_diagram(testing::diagram_text(kBlocks), "d.toml");
-  const Diagram made = realise(diagram, shipped_blocks(), machine).diagram;
-  const FlatDiagram flat = flatten(made, shipped_blocks());
-  return make_sheets(flat, static_test(Program(assemble(flat)), "d.toml"), machine);
+MachineSheets sheets(const diagram::MachineProfile& machine) {
+  const diagram::Diagram diagram = diagram::parse_diagram(testing::diagram_text(kBlocks), "d.toml");
+  const diagram::Diagram made = realise(diagram, shipped_blocks(), machine).diagram;
+  const diagram::FlatDiagram flat = diagram::flatten(made, shipped_blocks());
+  return make_sheets(flat, solve::static_test(network::Program(network::assemble(flat)), "d.toml"), machine);
 }
 
-MachineProfile ten_volts() {
-  MachineProfile machine = inverting_machine();
+diagram::MachineProfile ten_volts() {
+  diagram::MachineProfile machine = inverting_machine();
   machine.unit = 10;
   return machine;
 }
@@ -54,12 +54,14 @@ TEST(Sheets, ListEveryConnectionWithTheGainOfItsInput) {
 }
 
 TEST(Sheets, LeaveOutWiresThatCarryNothing) {
-  const FlatDiagram flat = flatten(
-      parse_diagram(testing::diagram_text("one = { type = \"constant\" }\nx = { type = \"integrator\", in = "
-                                          "[\"0*one\"] }\n"),
-                    "d.toml"),
+  const diagram::FlatDiagram flat = diagram::flatten(
+      diagram::parse_diagram(
+          testing::diagram_text("one = { type = \"constant\" }\nx = { type = \"integrator\", in = "
+                                "[\"0*one\"] }\n"),
+          "d.toml"),
       shipped_blocks());
-  const MachineSheets made = make_sheets(flat, static_test(Program(assemble(flat)), "d.toml"), ten_volts());
+  const MachineSheets made =
+      make_sheets(flat, solve::static_test(network::Program(network::assemble(flat)), "d.toml"), ten_volts());
   EXPECT_TRUE(made.connections.rows.empty());
 }
 
@@ -96,4 +98,4 @@ TEST(Sheets, AreQuotedAsCsvWhereTheyHaveTo) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::machine

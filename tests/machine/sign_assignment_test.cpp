@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace oblique {
+namespace oblique::machine {
 namespace {
 
 /// A network of summers (with inverted sums) and multipliers, as one would draw it.
@@ -114,4 +114,4 @@ TEST(SignAssignment, LeavesFixedSignalsAsTheyAre) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::machine

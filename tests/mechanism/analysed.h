@@ -6,11 +6,11 @@
 
 #include <fmt/format.h>
 
-#include <oblique/mechanism/analysis.h>
-#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/mechanism/analysis/analysis.h>
+#include <oblique/mechanism/model/read_mechanism.h>
 
 // The mechanisms that the tests of their analysis share.
-namespace oblique::analysed {
+namespace oblique::mechanism::analysed {
 
 inline constexpr double kPi = std::numbers::pi;
 /// Zeros of a rate are found to the last bits of the place; their times carry a few roundings more.
@@ -61,4 +61,4 @@ C = [190, 40]
                                offset, speed));
 }
 
-}  // namespace oblique::analysed
+}  // namespace oblique::mechanism::analysed

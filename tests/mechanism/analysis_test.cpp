@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/mechanism/analysis.h>
+#include <oblique/mechanism/analysis/analysis.h>
 
 #include <cmath>
 #include <numbers>
@@ -11,7 +11,7 @@
 
 #include "analysed.h"
 
-namespace oblique {
+namespace oblique::mechanism {
 namespace {
 
 using namespace analysed;
@@ -294,4 +294,4 @@ TEST(Path, OfARockerIsAnArcThereAndBack) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::mechanism

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/mechanism/assembly.h>
+#include <oblique/mechanism/solver/assembly.h>
 
 #include <array>
 #include <cmath>
@@ -9,10 +9,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <oblique/mechanism/kinematics.h>
-#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/mechanism/model/read_mechanism.h>
+#include <oblique/mechanism/solver/kinematics.h>
 
-namespace oblique {
+namespace oblique::mechanism {
 namespace {
 
 using ::testing::AllOf;
@@ -187,4 +187,4 @@ TEST(AssemblyModes, AreNoneWhereTheLinksDoNotReach) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::mechanism

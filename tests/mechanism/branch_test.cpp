@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A motion stays on the branch of its positions on which it was begun.
-#include <oblique/mechanism/motion.h>
+#include <oblique/mechanism/motion/motion.h>
 
 #include <algorithm>
 #include <cmath>
@@ -8,11 +8,11 @@
 
 #include <gtest/gtest.h>
 
-#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/mechanism/model/read_mechanism.h>
 
 #include "random_sixbar.h"
 
-namespace oblique {
+namespace oblique::mechanism {
 namespace {
 
 using Eigen::Vector2d;
@@ -224,4 +224,4 @@ C = [1.5, 2.5]
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::mechanism

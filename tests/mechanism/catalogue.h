@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include <oblique/mechanism/motion.h>
-#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/mechanism/model/read_mechanism.h>
+#include <oblique/mechanism/motion/motion.h>
 
-namespace oblique {
+namespace oblique::mechanism {
 
 inline std::filesystem::path catalogue_folder() {
   return std::filesystem::path(OBLIQUE_SOURCE_DIR) / "diagrams" / "mechanisms";
@@ -49,4 +49,4 @@ struct MovingMechanism {
   }
 };
 
-}  // namespace oblique
+}  // namespace oblique::mechanism

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Every shipped mechanism, at every degree, against the natural coordinates.
-#include <oblique/mechanism/motion.h>
+#include <oblique/mechanism/motion/motion.h>
 
 #include <array>
 #include <cctype>
@@ -9,12 +9,12 @@
 
 #include <gtest/gtest.h>
 
-#include <oblique/mechanism/expectation.h>
+#include <oblique/mechanism/model/expectation.h>
 
 #include "catalogue.h"
 #include "natural_coordinates.h"
 
-namespace oblique {
+namespace oblique::mechanism {
 namespace {
 
 using Oracle = NaturalCoordinates;
@@ -261,4 +261,4 @@ TEST(CatalogueComparison, CatchesErrorsJustAboveItsTolerance) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::mechanism

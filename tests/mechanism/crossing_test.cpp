@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What a motion passes where modes meet: change points, what only looks like one, infinity.
-#include <oblique/mechanism/motion.h>
+#include <oblique/mechanism/motion/motion.h>
 
 #include <cmath>
 #include <numbers>
@@ -8,12 +8,12 @@
 
 #include <gtest/gtest.h>
 
-#include <oblique/mechanism/read_mechanism.h>
-#include <oblique/mechanism/tour.h>
+#include <oblique/mechanism/model/read_mechanism.h>
+#include <oblique/mechanism/motion/tour.h>
 
 #include "../support/tangent.h"
 
-namespace oblique {
+namespace oblique::mechanism {
 namespace {
 
 using Eigen::Vector2d;
@@ -124,4 +124,4 @@ TEST(Crossing, GoesThroughInfinity) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::mechanism

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Curves that are known exactly, at every degree: what the classical mechanisms are for.
-#include <oblique/mechanism/motion.h>
+#include <oblique/mechanism/motion/motion.h>
 
 #include <cmath>
 #include <complex>
@@ -11,7 +11,7 @@
 
 #include "catalogue.h"
 
-namespace oblique {
+namespace oblique::mechanism {
 namespace {
 
 using Complex = std::complex<double>;
@@ -415,4 +415,4 @@ TEST(ExactCurve, OfTheTipperFulfilsTheCosineRule) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::mechanism

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The shipped mechanisms against an independent solution of their loop equations.
-#include <oblique/mechanism/motion.h>
+#include <oblique/mechanism/motion/motion.h>
 
 #include <algorithm>
 #include <cmath>
@@ -8,11 +8,11 @@
 
 #include <gtest/gtest.h>
 
-#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/mechanism/model/read_mechanism.h>
 
 #include "loop_equations.h"
 
-namespace oblique {
+namespace oblique::mechanism {
 namespace {
 
 using Real = LoopEquations::Real;
@@ -228,4 +228,4 @@ TEST(ExactMotion, OfJansensFootIsFlatOnTheGround) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::mechanism

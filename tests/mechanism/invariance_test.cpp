@@ -7,10 +7,10 @@
 
 #include <gtest/gtest.h>
 
-#include <oblique/mechanism/motion.h>
-#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/mechanism/model/read_mechanism.h>
+#include <oblique/mechanism/motion/motion.h>
 
-namespace oblique {
+namespace oblique::mechanism {
 namespace {
 
 using Eigen::Vector2d;
@@ -142,4 +142,4 @@ TEST_P(Invariance, UnderAnotherOrderAndOtherNames) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::mechanism

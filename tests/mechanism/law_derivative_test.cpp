@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/mechanism/law_derivative.h>
+#include <oblique/mechanism/model/law_derivative.h>
 
 #include <array>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include <oblique/mechanism/drive_law.h>
+#include <oblique/mechanism/model/drive_law.h>
 
-namespace oblique {
+namespace oblique::mechanism {
 namespace {
 
-double at(const Expression& e, double time) {
-  return evaluate(e,
-                  [&](std::string_view name) { return name == "time" ? std::optional(time) : std::nullopt; });
+double at(const text::Expression& e, double time) {
+  return text::evaluate(
+      e, [&](std::string_view name) { return name == "time" ? std::optional(time) : std::nullopt; });
 }
 
 /// Every function and operation that a law may have.
@@ -47,12 +47,12 @@ constexpr std::array kLaws{"3*time",
 // third derivative, 1e-10 times up to some hundreds, and rounding, 1e-16/1e-5.
 TEST(LawDerivative, AgreesWithDifferences) {
   for (const char* const text : kLaws) {
-    const Expression law = parse_expression(text);
-    const Expression derivative = law_derivative(law);
+    const text::Expression law = text::parse_expression(text);
+    const text::Expression derivative = law_derivative(law);
     for (const double t : {0.3, 0.7, 1.1}) {
       constexpr double kStep = 1e-5;
       const double difference = (at(law, t + kStep) - at(law, t - kStep)) / (2 * kStep);
-      EXPECT_NEAR(at(derivative, t), difference, 1e-7) << text << " -> " << to_string(derivative);
+      EXPECT_NEAR(at(derivative, t), difference, 1e-7) << text << " -> " << text::to_string(derivative);
     }
   }
 }
@@ -62,7 +62,7 @@ TEST(LawDerivative, AgreesWithDifferences) {
 TEST(LawDerivative, IsTheAccelerationOfADrive) {
   for (const char* const text : kLaws) {
     Drive drive;
-    drive.law = parse_expression(text);
+    drive.law = text::parse_expression(text);
     drive.law_scale = 3;
     for (const double t : {0.3, 0.7, 1.1}) {
       constexpr double kStep = 1e-5;
@@ -75,7 +75,9 @@ TEST(LawDerivative, IsTheAccelerationOfADrive) {
 }
 
 TEST(LawDerivative, LeavesOutWhatIsZeroOrOne) {
-  const auto derivative = [](const char* text) { return to_string(law_derivative(parse_expression(text))); };
+  const auto derivative = [](const char* text) {
+    return text::to_string(law_derivative(text::parse_expression(text)));
+  };
   EXPECT_EQ(derivative("2 + sin(3*time)"), "cos(3*time)*3");
   EXPECT_EQ(derivative("time^2"), "2*time");
   EXPECT_EQ(derivative("time/4"), "1/4");
@@ -83,4 +85,4 @@ TEST(LawDerivative, LeavesOutWhatIsZeroOrOne) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::mechanism

@@ -7,7 +7,7 @@
 
 #include <Eigen/LU>
 
-namespace oblique {
+namespace oblique::mechanism {
 
 /// The oracle of the exact kinematics, which shares nothing with it: a mechanism as closed loops of links in
 /// the unknown link ANGLES, Σ r·e^{i(θ+δ)} = 0, solved by Newton's method in long double; rates from linear
@@ -119,4 +119,4 @@ class LoopEquations {
   }
 };
 
-}  // namespace oblique
+}  // namespace oblique::mechanism

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/mechanism/loops.h>
+#include <oblique/mechanism/structure/loops.h>
 
 #include <random>
 
@@ -7,10 +7,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <oblique/mechanism/motion.h>
-#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/mechanism/model/read_mechanism.h>
+#include <oblique/mechanism/motion/motion.h>
 
-namespace oblique {
+namespace oblique::mechanism {
 namespace {
 
 Mechanism mechanism(const std::string& text) {
@@ -172,4 +172,4 @@ crank = { turns = "AB", about = "A", speed = 1 }
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::mechanism

@@ -6,12 +6,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <oblique/mechanism/coefficients.h>
-#include <oblique/mechanism/inertia.h>
+#include <oblique/mechanism/model/coefficients.h>
+#include <oblique/mechanism/model/inertia.h>
 
 #include "analysed.h"
 
-namespace oblique {
+namespace oblique::mechanism {
 namespace {
 
 using namespace analysed;
@@ -160,4 +160,4 @@ TEST(Coefficients, HaveNoValueWhereTheDriveStands) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::mechanism

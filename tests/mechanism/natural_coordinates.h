@@ -7,9 +7,9 @@
 
 #include <Eigen/QR>
 
-#include <oblique/mechanism/mechanism.h>
+#include <oblique/mechanism/model/mechanism.h>
 
-namespace oblique {
+namespace oblique::mechanism {
 
 /// The oracle of the exact kinematics, which shares nothing with it but the mechanism as it was read: a
 /// mechanism in natural coordinates, its unknowns the coordinates of its points and nothing else (J. García
@@ -352,4 +352,4 @@ class NaturalCoordinates {
   Eigen::Index unknowns_ = 0;
 };
 
-}  // namespace oblique
+}  // namespace oblique::mechanism

@@ -7,9 +7,9 @@
 
 #include <gtest/gtest.h>
 
-#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/mechanism/model/read_mechanism.h>
 
-namespace oblique {
+namespace oblique::mechanism {
 namespace {
 
 using Oracle = NaturalCoordinates;
@@ -187,4 +187,4 @@ TEST(NaturalCoordinates, SaySoWhereNothingCloses) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::mechanism

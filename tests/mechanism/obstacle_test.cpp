@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/mechanism/obstacle.h>
+#include <oblique/mechanism/motion/obstacle.h>
 
 #include <cmath>
 #include <numbers>
@@ -8,10 +8,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <oblique/mechanism/motion.h>
-#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/mechanism/model/read_mechanism.h>
+#include <oblique/mechanism/motion/motion.h>
 
-namespace oblique {
+namespace oblique::mechanism {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -84,4 +84,4 @@ TEST(Obstacle, NeedsADrive) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::mechanism

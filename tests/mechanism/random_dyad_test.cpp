@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Laws that hold for every dyad, on random ones.
-#include <oblique/mechanism/configuration.h>
+#include <oblique/mechanism/model/configuration.h>
 
 #include <cmath>
 #include <numbers>
@@ -8,9 +8,9 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include <oblique/mechanism/kinematics.h>
+#include <oblique/mechanism/solver/kinematics.h>
 
-namespace oblique {
+namespace oblique::mechanism {
 namespace {
 
 using Eigen::Vector2d;
@@ -109,4 +109,4 @@ RC_GTEST_PROP(RandomDyad, IsPutTogetherAsItWasTakenApart, ()) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::mechanism

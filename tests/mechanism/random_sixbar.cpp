@@ -11,9 +11,9 @@
 #include <fmt/format.h>
 #include <Eigen/Core>
 
-#include <oblique/mechanism/plane.h>
+#include <oblique/mechanism/model/plane.h>
 
-namespace oblique {
+namespace oblique::mechanism {
 namespace {
 
 using Eigen::Vector2d;
@@ -91,4 +91,4 @@ RandomSixbar random_sixbar(std::uint64_t seed) {
   return mechanism;
 }
 
-}  // namespace oblique
+}  // namespace oblique::mechanism

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace oblique {
+namespace oblique::mechanism {
 
 /// A six-bar chain of hinged links at random dimensions: the text of its file, and the distances that its
 /// links keep and the sides on which their third points lie.
@@ -27,4 +27,4 @@ struct RandomSixbar {
 /// that is hinged to the frame. None has two joints of a link nearer to each other than 0.15 of 1.
 RandomSixbar random_sixbar(std::uint64_t seed);
 
-}  // namespace oblique
+}  // namespace oblique::mechanism

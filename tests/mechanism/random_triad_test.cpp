@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Random triads against a scan that shares no code with the solver. OBLIQUE_TRIADS sets how many of a kind
 // are tried, for a longer run than the usual one.
-#include <oblique/mechanism/triad.h>
+#include <oblique/mechanism/triad/triad.h>
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +15,7 @@
 
 #include "triad_scan.h"
 
-namespace oblique {
+namespace oblique::mechanism {
 namespace {
 
 using Eigen::Matrix2d;
@@ -344,4 +344,4 @@ TEST(RandomTriad, KeepsItsDeadCentre) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::mechanism

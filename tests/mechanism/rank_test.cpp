@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/mechanism/rank.h>
+#include <oblique/mechanism/structure/rank.h>
 
 #include <cmath>
 #include <numbers>
@@ -8,13 +8,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <oblique/mechanism/kinematics.h>
-#include <oblique/mechanism/read_mechanism.h>
-#include <oblique/mechanism/redundancy.h>
+#include <oblique/mechanism/model/read_mechanism.h>
+#include <oblique/mechanism/solver/kinematics.h>
+#include <oblique/mechanism/structure/redundancy.h>
 
 #include "../support/chain_of_dyads.h"
 
-namespace oblique {
+namespace oblique::mechanism {
 namespace {
 
 using ::testing::AllOf;
@@ -227,4 +227,4 @@ TEST(Redundancy, IsNotLookedForWhereNothingIsTooMuch) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::mechanism

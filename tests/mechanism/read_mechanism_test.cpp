@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/mechanism/model/read_mechanism.h>
 
 #include <cmath>
 #include <numbers>
@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace oblique {
+namespace oblique::mechanism {
 namespace {
 
 using ::testing::AllOf;
@@ -60,7 +60,7 @@ TEST(MechanismReader, ReadsPointsBodiesDrivesAndSketch) {
   const Body& coupler = mechanism.bodies[mechanism.find_body("BC").value()];
   EXPECT_EQ(coupler.find(mechanism.find_point("C").value())->local, Eigen::Vector2d(3.5, 0));
   EXPECT_EQ(coupler.find(mechanism.find_point("M").value())->local, Eigen::Vector2d(1.75, 1));
-  EXPECT_EQ(coupler.place, (Place{"four.toml", {9, 1}}));
+  EXPECT_EQ(coupler.place, (text::Place{"four.toml", {9, 1}}));
   ASSERT_EQ(mechanism.drives.size(), 1U);
   EXPECT_EQ(mechanism.drives[0].speed, 1);
   EXPECT_EQ(mechanism.drives[0].about, mechanism.find_point("A"));
@@ -436,9 +436,9 @@ TEST(MechanismReader, NeedsFrameAndBodies) {
 }
 
 TEST(MechanismReader, GivesBrokenTomlToTheTextStage) {
-  EXPECT_THROW(parse_mechanism("format = ", "bad.toml"), ReadError);
-  EXPECT_THROW(read_mechanism("no-such-file.toml"), ReadError);
+  EXPECT_THROW(parse_mechanism("format = ", "bad.toml"), text::ReadError);
+  EXPECT_THROW(read_mechanism("no-such-file.toml"), text::ReadError);
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::mechanism

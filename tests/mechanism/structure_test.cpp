@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/mechanism/structure.h>
+#include <oblique/mechanism/structure/structure.h>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/mechanism/model/read_mechanism.h>
 
-namespace oblique {
+namespace oblique::mechanism {
 namespace {
 
 using ::testing::AllOf;
@@ -243,4 +243,4 @@ push = { turns = "BC", about = "B", speed = 1 }
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::mechanism

@@ -9,7 +9,7 @@
 
 #include <Eigen/Dense>
 
-namespace oblique {
+namespace oblique::mechanism {
 namespace {
 
 using Eigen::Matrix2d;
@@ -216,4 +216,4 @@ std::vector<PlatformPose> scan_poses(const std::array<Lead, 3>& leads, int steps
   return poses;
 }
 
-}  // namespace oblique
+}  // namespace oblique::mechanism

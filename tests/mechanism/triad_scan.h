@@ -4,9 +4,9 @@
 #include <array>
 #include <vector>
 
-#include <oblique/mechanism/triad.h>
+#include <oblique/mechanism/triad/triad.h>
 
-namespace oblique {
+namespace oblique::mechanism {
 
 /// How far a lead's condition is from holding [length unit], from the geometry alone.
 double closing_error(const Lead& lead, const PlatformPose& pose);
@@ -19,4 +19,4 @@ double closing_error(const std::array<Lead, 3>& leads, const PlatformPose& pose)
 /// says where it closes.
 std::vector<PlatformPose> scan_poses(const std::array<Lead, 3>& leads, int steps);
 
-}  // namespace oblique
+}  // namespace oblique::mechanism

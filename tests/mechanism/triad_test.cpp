@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Cases whose poses are known. Random ones stand in random_triad_test.cpp.
-#include <oblique/mechanism/triad.h>
+#include <oblique/mechanism/triad/triad.h>
 
 #include <cmath>
 #include <numbers>
@@ -10,7 +10,7 @@
 
 #include "triad_scan.h"
 
-namespace oblique {
+namespace oblique::mechanism {
 namespace {
 
 using Eigen::Matrix2d;
@@ -362,4 +362,4 @@ TEST(Triad, HasNoPoseOnParallelGuidesThatLieOtherwiseThanItsPoints) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::mechanism

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/mechanism/trigonometric_zeros.h>
+#include <oblique/mechanism/triad/trigonometric_zeros.h>
 
 #include <cmath>
 #include <limits>
@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace oblique::triad {
+namespace oblique::mechanism::triad {
 namespace {
 
 using Complex = std::complex<double>;
@@ -90,4 +90,4 @@ TEST(TrigonometricZeros, AreThoseOfALowerDegree) {
 }
 
 }  // namespace
-}  // namespace oblique::triad
+}  // namespace oblique::mechanism::triad

@@ -50,7 +50,7 @@ void* aligned_alloc(std::size_t alignment, std::size_t size) {
 }
 #endif
 
-namespace oblique {
+namespace oblique::network {
 namespace {
 
 using testing::Compiled;
@@ -141,4 +141,4 @@ TEST(AllocationGuard, SeesEveryWayToMemory) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::network

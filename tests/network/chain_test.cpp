@@ -9,7 +9,7 @@
 #include "../support/chain.h"
 #include "../support/compiled.h"
 
-namespace oblique {
+namespace oblique::network {
 namespace {
 
 using testing::chain;
@@ -21,7 +21,7 @@ constexpr double kShift = 0.1;
 
 class Chain : public ::testing::TestWithParam<const char*> {
  protected:
-  BlockLibrary library_ = shipped_blocks_and("own", kOwnMagnitude);
+  diagram::BlockLibrary library_ = shipped_blocks_and("own", kOwnMagnitude);
 };
 INSTANTIATE_TEST_SUITE_P(Network, Chain,
                          ::testing::Values("\"absolute-value\"", "\"own\"", "\"sign\"",
@@ -67,7 +67,7 @@ TEST(SwitchOrder, SettlesAChainInOneGo) {
 TEST(Builder, BuildsWhatStandsInsideOnce) {
   std::string inside = "in";
   for (int k = 0; k < 60; ++k) inside = k % 2 == 0 ? "abs(" + inside + ")" : "deadzone(" + inside + ", 0.01)";
-  const BlockLibrary library = shipped_blocks_and(
+  const diagram::BlockLibrary library = shipped_blocks_and(
       "nest", "[inputs]\nin = {}\n[outputs]\nout = {}\n[equations]\nout = \"" + inside + "\"\n");
   const Compiled made("n = { type = \"nest\", in = \"x\" }\nx = { type = \"integrator\", in = \"n\" }\n", "",
                       library);
@@ -118,7 +118,7 @@ TEST(SwitchStructure, FollowsAChain) {
 
 // |x| of one's own is equal on both sides at 0 only; a step of one's own nowhere.
 TEST(Pieces, MeetWhereTheyAreEqual) {
-  const BlockLibrary library = shipped_blocks_and("own", kOwnMagnitude);
+  const diagram::BlockLibrary library = shipped_blocks_and("own", kOwnMagnitude);
   const auto meet = [&](const char* block, double x) {
     const Compiled made(
         "a = { type = " + std::string(block) + ", in = \"x\" }\nx = { type = \"integrator\", in = \"a\" }\n",
@@ -134,4 +134,4 @@ TEST(Pieces, MeetWhereTheyAreEqual) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::network

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/network/dependency_order.h>
+#include <oblique/network/graph/dependency_order.h>
 
 #include <algorithm>
 
@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-namespace oblique {
+namespace oblique::network {
 namespace {
 
 using Rows = std::vector<std::vector<std::uint32_t>>;
@@ -157,4 +157,4 @@ TEST(DependencyOrder, WalksALongChainWithoutTheStack) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::network

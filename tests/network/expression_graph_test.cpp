@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/network/expression_graph.h>
+#include <oblique/network/graph/expression_graph.h>
 
 #include <array>
 #include <cmath>
@@ -11,7 +11,7 @@
 
 #include "../support/naive_value.h"
 
-namespace oblique {
+namespace oblique::network {
 namespace {
 
 using testing::naive_value;
@@ -239,4 +239,4 @@ RC_GTEST_PROP(ExpressionGraph, GradientsAgreeWithCentralDifferences, ()) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::network

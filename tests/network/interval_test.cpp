@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/network/interval.h>
+#include <oblique/network/graph/interval.h>
 
 #include <algorithm>
 #include <array>
@@ -13,7 +13,7 @@
 
 #include "../support/naive_value.h"
 
-namespace oblique {
+namespace oblique::network {
 namespace {
 
 using testing::naive_value;
@@ -131,7 +131,7 @@ TEST(Interval, ContainsNoiseThatItSamples) {
     const std::array box{Interval{0.17 * k, 0.17 * k + 0.2}};
     const Interval range = range_of(graph, root, box);
     for (int i = 0; i <= 20; ++i) {
-      const double value = noise(box[0].low + 0.01 * i, 3, 0);
+      const double value = text::noise(box[0].low + 0.01 * i, 3, 0);
       EXPECT_GE(value, range.low) << k;
       EXPECT_LE(value, range.high) << k;
     }
@@ -139,4 +139,4 @@ TEST(Interval, ContainsNoiseThatItSamples) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::network

@@ -8,7 +8,7 @@
 
 #include "../support/compiled.h"
 
-namespace oblique {
+namespace oblique::network {
 namespace {
 
 using testing::Compiled;
@@ -260,4 +260,4 @@ INSTANTIATE_TEST_SUITE_P(Diagrams, JacobianTest, ::testing::ValuesIn(kCases),
                          [](const auto& tested) { return tested.param.name; });
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::network

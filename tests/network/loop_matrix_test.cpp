@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Long loops, whose factors are sparse, against solutions that are known beforehand and against the
 // recurrence for the determinant of a tridiagonal matrix.
-#include <oblique/network/loop_matrix.h>
+#include <oblique/network/program/loop_matrix.h>
 
 #include <cmath>
 #include <limits>
@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-namespace oblique {
+namespace oblique::network {
 namespace {
 
 constexpr std::size_t kSize = 400;
@@ -124,4 +124,4 @@ TEST(LoopMatrix, OfALongLoopTellsWhereItIsSingular) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::network

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/network/network.h>
+#include <oblique/network/assembly/network.h>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "../support/compiled.h"
 
-namespace oblique {
+namespace oblique::network {
 namespace {
 
 using testing::Compiled;
@@ -17,10 +17,12 @@ using testing::shipped_blocks_and;
 
 /// What `assemble` says about a block with these tables, wired to an integrator.
 std::string refusal_of(const std::string& tables) {
-  const BlockLibrary library = shipped_blocks_and("odd", "[inputs]\nin = {}\n[outputs]\nout = {}\n" + tables);
+  const diagram::BlockLibrary library =
+      shipped_blocks_and("odd", "[inputs]\nin = {}\n[outputs]\nout = {}\n" + tables);
   const std::string text = testing::diagram_text(
       "o = { type = \"odd\", in = \"x\" }\nx = { type = \"integrator\", in = [\"-x\"], initial = 1 }\n");
-  return message_of<NetworkError>([&] { assemble(flatten(parse_diagram(text, "d.toml"), library)); });
+  return message_of<NetworkError>(
+      [&] { assemble(diagram::flatten(diagram::parse_diagram(text, "d.toml"), library)); });
 }
 
 double slope_at(const Compiled& made, double x) {
@@ -54,7 +56,7 @@ TEST(Network, RefusesThatSignalsAreEqual) {
 }
 
 TEST(Network, FoldsSwitchingFunctionsOfConstants) {
-  const BlockLibrary library = shipped_blocks_and("odd", R"toml([inputs]
+  const diagram::BlockLibrary library = shipped_blocks_and("odd", R"toml([inputs]
 in = {}
 [outputs]
 out = {}
@@ -85,14 +87,14 @@ TEST(Network, RefusesAStartThatIsNotFinite) {
 }
 
 TEST(Network, ReportsAllFindingsTogether) {
-  const BlockLibrary library =
+  const diagram::BlockLibrary library =
       shipped_blocks_and("odd",
                          "[inputs]\nin = {}\n[outputs]\na = {}\nb = {}\n[equations]\na = \"if(in, 1, 2)\"\nb "
                          "= \"if(in == 1, 1, 2)\"\n");
   const std::string text = testing::diagram_text(
       "o = { type = \"odd\", in = \"x\" }\nx = { type = \"integrator\", in = [\"-x\"] }\n");
   try {
-    assemble(flatten(parse_diagram(text, "d.toml"), library));
+    assemble(diagram::flatten(diagram::parse_diagram(text, "d.toml"), library));
     FAIL() << "nothing was refused";
   } catch (const NetworkError& error) {
     EXPECT_EQ(error.diagnostics().size(), 2U);
@@ -121,14 +123,14 @@ store = { type = "integrator", in = ["b"], initial = 1 }
 // Block by block p feeds through to itself; path by path the only way round leads through the integrator.
 
 TEST(FeedThrough, OfACompositeIsDecidedPathByPath) {
-  const BlockLibrary library = shipped_blocks_and("two-paths", kTwoPaths);
+  const diagram::BlockLibrary library = shipped_blocks_and("two-paths", kTwoPaths);
   const Compiled made("p = { type = \"two-paths\", a = \"p.slow\", b = \"p.fast\" }\n", "", library);
   EXPECT_THAT(made.program.loops(), IsEmpty());
   EXPECT_EQ(slope_at(made, 0.5), 1.0);  // d slow/dt = fast = 2 slow
 }
 
 TEST(FeedThrough, FindsTheLoopThatIsThere) {
-  const BlockLibrary library = shipped_blocks_and("two-paths", kTwoPaths);
+  const diagram::BlockLibrary library = shipped_blocks_and("two-paths", kTwoPaths);
   const Compiled made(
       "p = { type = \"two-paths\", a = \"s\", b = \"p.fast\" }\n"
       "s = { type = \"summer\", in = [\"-p.fast\", \"p.slow\"] }\n",
@@ -140,7 +142,7 @@ TEST(FeedThrough, FindsTheLoopThatIsThere) {
 
 TEST(FeedThrough, OfTwoOutputsOfOneBlockIsApart) {
   // u = a and v = b: wiring u to b closes no loop, although it leads from the block to itself.
-  const BlockLibrary library = shipped_blocks_and(
+  const diagram::BlockLibrary library = shipped_blocks_and(
       "pair", "[inputs]\na = {}\nb = {}\n[outputs]\nu = {}\nv = {}\n[equations]\nu = \"3*a\"\nv = \"b\"\n");
   const Compiled made(
       "p = { type = \"pair\", a = \"x\", b = \"p.u\" }\nx = { type = \"integrator\", in = [\"p.v\"] }\n", "",
@@ -195,4 +197,4 @@ TEST(Polarity, TurnsALoneIntegrator) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::network

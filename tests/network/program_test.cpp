@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/network/program.h>
+#include <oblique/network/program/program.h>
 
 #include <cmath>
 #include <thread>
@@ -8,7 +8,7 @@
 
 #include "../support/compiled.h"
 
-namespace oblique {
+namespace oblique::network {
 namespace {
 
 using testing::Compiled;
@@ -46,7 +46,7 @@ y = { type = "integrator", in = ["-x"] }
 }
 
 TEST(Program, ReadsTheClock) {
-  const BlockLibrary library =
+  const diagram::BlockLibrary library =
       testing::shipped_blocks_and("clock", "[outputs]\nt = {}\n[equations]\nt = \"time\"\n");
   const Compiled made("c = { type = \"clock\" }\nx = { type = \"integrator\", in = [\"2*c\"] }\n", "",
                       library);
@@ -128,7 +128,7 @@ TEST(Workspace, SolvesANonLinearLoopFromFarAway) {
 
 /// The slope of x′ = z, where z solves `equation` (names z and x) by Newton's method from `guess`.
 double implicit_solution(const std::string& equation, double x, double guess) {
-  const BlockLibrary library = testing::shipped_blocks_and(
+  const diagram::BlockLibrary library = testing::shipped_blocks_and(
       "root", "[inputs]\nx = {}\n[outputs]\nz = {}\n[implicit]\nz = \"" + equation +
                   "\"\n[start]\nz = { guess = " + std::to_string(guess) + " }\n");
   const Compiled made("x = { type = \"integrator\", in = [\"r\"] }\nr = { type = \"root\", x = \"x\" }\n", "",
@@ -164,7 +164,7 @@ TEST(LoopNearZero, KeepsTheDigitsOfSmallSolutions) {
 /// atan y = x by an ideal amplifier that starts at 3.
 class ArcTest : public ::testing::Test {
  protected:
-  BlockLibrary library = testing::shipped_blocks_and(
+  diagram::BlockLibrary library = testing::shipped_blocks_and(
       "arc", "[inputs]\nin = {}\n[outputs]\nout = {}\n[equations]\nout = \"atan(in)\"\n");
   Compiled made{
       "a = { type = \"arc\", in = \"y\" }\n"
@@ -218,4 +218,4 @@ y = { type = "integrator", in = ["c.y"] }
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::network

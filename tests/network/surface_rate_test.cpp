@@ -6,7 +6,7 @@
 
 #include "../support/compiled.h"
 
-namespace oblique {
+namespace oblique::network {
 namespace {
 
 using testing::Compiled;
@@ -140,4 +140,4 @@ x = { type = "integrator", in = ["q", "-x"] }
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::network

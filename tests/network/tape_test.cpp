@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/network/tape.h>
+#include <oblique/network/program/tape.h>
 
 #include <array>
 #include <cmath>
@@ -10,7 +10,7 @@
 
 #include "../support/naive_value.h"
 
-namespace oblique {
+namespace oblique::network {
 namespace {
 
 using testing::naive_value;
@@ -156,4 +156,4 @@ RC_GTEST_PROP(Tape, GivesWhatTheGraphMeans, ()) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::network

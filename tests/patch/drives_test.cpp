@@ -4,13 +4,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <oblique/mechanism/motion.h>
-#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/mechanism/model/read_mechanism.h>
+#include <oblique/mechanism/motion/motion.h>
 #include <oblique/patch/patch.h>
 
 #include "patched_run.h"
 
-namespace oblique {
+namespace oblique::patch {
 namespace {
 
 using testing::HasSubstr;
@@ -20,21 +20,21 @@ using testing::HasSubstr;
 TEST(Patch, FollowsASpeedLaw) {
   const std::string text =
       replaced(kFourBar, "speed = 1", "speed = \"0.2 + cos(3*time)*30 rpm\"") + "[motion]\nuntil = 4\n";
-  const Mechanism mechanism = parse_mechanism(text, "law.toml");
-  const Diagram diagram = patch_triangles(mechanism);
+  const mechanism::Mechanism mechanism = mechanism::parse_mechanism(text, "law.toml");
+  const diagram::Diagram diagram = patch_triangles(mechanism);
   EXPECT_EQ(diagram.run.until, 4);
   EXPECT_LT(largest_error(mechanism, PatchedRun(diagram).result), 1e-6 * mechanism.largest_length());
-  const std::string written = write_diagram(diagram);
+  const std::string written = diagram::write_diagram(diagram);
   EXPECT_THAT(written, HasSubstr("Run over the 4 s of its motion."));
   EXPECT_THAT(written, HasSubstr("# crank AB: turns about A at (0.2 + cos(3*time)*30)*0.10472 rad/s"));
-  EXPECT_TRUE(parse_diagram(written, "patched.toml") == diagram);
+  EXPECT_TRUE(diagram::parse_diagram(written, "patched.toml") == diagram);
 }
 
 TEST(Patch, FollowsALawThatStartsFromRest) {
-  const Mechanism mechanism =
-      parse_mechanism(replaced(kFourBar, "speed = 1", "speed = \"sin(time/4)^2 rad/s\""), "law.toml");
-  const Diagram diagram = patch_triangles(mechanism);
-  EXPECT_NEAR(diagram.run.until, period(mechanism), 1e-12);  // a whole turn
+  const mechanism::Mechanism mechanism = mechanism::parse_mechanism(
+      replaced(kFourBar, "speed = 1", "speed = \"sin(time/4)^2 rad/s\""), "law.toml");
+  const diagram::Diagram diagram = patch_triangles(mechanism);
+  EXPECT_NEAR(diagram.run.until, mechanism::period(mechanism), 1e-12);  // a whole turn
   EXPECT_LT(largest_error(mechanism, PatchedRun(diagram).result), 1e-6 * mechanism.largest_length());
 }
 
@@ -42,7 +42,7 @@ TEST(Patch, FollowsALawThatStartsFromRest) {
 TEST(Patch, ChoosesTheBandwidthOfALawByItsGreatestSpeed) {
   EXPECT_EQ(default_bandwidth(shipped("roberts")), 50);
   const std::string from_rest = replaced(kFourBar, "speed = 1", "speed = \"10*sin(time) rad/s\"");
-  EXPECT_EQ(default_bandwidth(parse_mechanism(from_rest, "m.toml")), 200);  // 1000/(2π) = 159
+  EXPECT_EQ(default_bandwidth(mechanism::parse_mechanism(from_rest, "m.toml")), 200);  // 1000/(2π) = 159
 }
 
 /// A slider-crank that its slider drives; the slider's way counts from W, farther off than any coordinate.
@@ -69,8 +69,8 @@ Q = [0.3, 0.4]
 // motion, the scale has room for it.
 TEST(Drives, OfASlideStayWithinOneMachineUnit) {
   for (const std::string speed : {"0.1", "\"0.2*cos(time)\""}) {
-    const Mechanism mechanism =
-        parse_mechanism(replaced(kDrivenSlider, "speed = 0.1", "speed = " + speed), "ram.toml");
+    const mechanism::Mechanism mechanism =
+        mechanism::parse_mechanism(replaced(kDrivenSlider, "speed = 0.1", "speed = " + speed), "ram.toml");
     for (const PatchMethod method : {PatchMethod::triangles, PatchMethod::gradient}) {
       PatchOptions options;
       options.method = method;
@@ -90,4 +90,4 @@ TEST(Drives, OfASlideStayWithinOneMachineUnit) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::patch

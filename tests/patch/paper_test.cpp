@@ -7,20 +7,21 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <oblique/mechanism/motion.h>
-#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/mechanism/model/read_mechanism.h>
+#include <oblique/mechanism/motion/motion.h>
 #include <oblique/patch/patch.h>
 #include <oblique/solve/run.h>
 #include <oblique/text/document.h>
 
-namespace oblique {
+namespace oblique::patch {
 namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-Mechanism shipped(const std::string& name) {
-  return read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/" + name + ".toml");
+mechanism::Mechanism shipped(const std::string& name) {
+  return mechanism::read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/" + name +
+                                   ".toml");
 }
 
 PatchOptions paper(double slower = 1000) {
@@ -30,7 +31,7 @@ PatchOptions paper(double slower = 1000) {
   return options;
 }
 
-std::string message(const Mechanism& mechanism, const PatchOptions& options) {
+std::string message(const mechanism::Mechanism& mechanism, const PatchOptions& options) {
   try {
     patch(mechanism, options);
   } catch (const PatchError& error) {
@@ -41,19 +42,19 @@ std::string message(const Mechanism& mechanism, const PatchOptions& options) {
 
 // ψ, γ and α of the four-bar OABO′, ε and β of O′BDE: as the source defines them, from the exact motion.
 TEST(Paper, HasTheAnglesOfTheSource) {
-  const Mechanism mechanism = shipped("class-iii");
-  const Diagram diagram = patch(mechanism, paper());
-  const BlockLibrary library = BlockLibrary::shipped();
-  const FlatDiagram flat = flatten(diagram, library);
-  const Program program(assemble(flat));
-  const auto result = run(program, flat, options_of(diagram.run));
-  const Trajectory& table = result.trajectory;
+  const mechanism::Mechanism mechanism = shipped("class-iii");
+  const diagram::Diagram diagram = patch(mechanism, paper());
+  const diagram::BlockLibrary library = diagram::BlockLibrary::shipped();
+  const diagram::FlatDiagram flat = diagram::flatten(diagram, library);
+  const network::Program program(network::assemble(flat));
+  const auto result = solve::run(program, flat, solve::options_of(diagram.run));
+  const solve::Trajectory& table = result.trajectory;
   std::vector<double> times;
   for (std::size_t row = 0; row < table.rows(); ++row) times.push_back(table.at(row, 0));
-  const Motion exact = solve_motion(mechanism, times);
+  const mechanism::Motion exact = mechanism::solve_motion(mechanism, times);
   const auto point = [&](const char* name) {
     return static_cast<std::size_t>(std::find_if(mechanism.points.begin(), mechanism.points.end(),
-                                                 [&](const Point& p) { return p.name == name; }) -
+                                                 [&](const mechanism::Point& p) { return p.name == name; }) -
                                     mechanism.points.begin());
   };
   for (std::size_t row = 0; row < table.rows(); row += 10) {
@@ -79,15 +80,15 @@ TEST(Paper, HasTheAnglesOfTheSource) {
 }
 
 TEST(Paper, IsTwoEqualCircuitsAndALoop) {
-  const Diagram diagram = patch(shipped("class-iii"), paper());
+  const diagram::Diagram diagram = patch(shipped("class-iii"), paper());
   std::vector<std::string> circuits;
-  for (const BlockInstance& block : diagram.blocks) {
+  for (const diagram::BlockInstance& block : diagram.blocks) {
     if (block.type == "four-bar-circuit") circuits.push_back(block.name);
   }
   EXPECT_THAT(circuits, ElementsAre("circuit_ABO1", "circuit_O1BDE"));
-  EXPECT_THAT(write_diagram(diagram), HasSubstr("split AB, O1C, DE"));  // the source's
-  EXPECT_THAT(write_diagram(diagram), HasSubstr("# ε + ξ, the direction of BC: ξ = -35.1548°"));
-  EXPECT_THAT(write_diagram(diagram), HasSubstr("# the outer loop, 1000 times slower"));
+  EXPECT_THAT(diagram::write_diagram(diagram), HasSubstr("split AB, O1C, DE"));  // the source's
+  EXPECT_THAT(diagram::write_diagram(diagram), HasSubstr("# ε + ξ, the direction of BC: ξ = -35.1548°"));
+  EXPECT_THAT(diagram::write_diagram(diagram), HasSubstr("# the outer loop, 1000 times slower"));
 }
 
 TEST(Paper, RefusesOtherGroups) {
@@ -100,7 +101,7 @@ TEST(Split, IsTakenAsNamed) {
     PatchOptions options;
     options.method = method;
     options.split = {"DE", "AB", "O1C"};
-    EXPECT_THAT(write_diagram(patch(shipped("class-iii"), options)), HasSubstr("split DE, AB, O1C"))
+    EXPECT_THAT(diagram::write_diagram(patch(shipped("class-iii"), options)), HasSubstr("split DE, AB, O1C"))
         << method_name(method);
   }
 }
@@ -120,27 +121,27 @@ TEST(Split, WorthTheMostIsWhatIsChosen) {
   ASSERT_FALSE(splits.empty());
   PatchOptions options;
   options.split = splits.front();
-  std::string named = write_diagram(patch(shipped("class-iii"), options));
+  std::string named = diagram::write_diagram(patch(shipped("class-iii"), options));
   const std::string
       asked = "This split was asked for.",
       best = "Of the six splits this one keeps\n# farthest from flat triangles and from a loop without gain.";
   named.replace(named.find(asked), asked.size(), best);
-  EXPECT_EQ(named, write_diagram(patch(shipped("class-iii"))));
+  EXPECT_EQ(named, diagram::write_diagram(patch(shipped("class-iii"))));
 }
 
 // The same mechanism with a longer O1C, in which B–D–E passes through a straight line.
-Mechanism with_longer_lead() {
+mechanism::Mechanism with_longer_lead() {
   const std::string path = std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/class-iii.toml";
-  std::string text = read_file(path);
+  std::string text = text::read_file(path);
   const std::string length = "length = 1.945";
   text.replace(text.find(length), length.size(), "length = 2.1");
   text.resize(text.find("[expect]"));
-  return parse_mechanism(text, "longer.toml");
+  return mechanism::parse_mechanism(text, "longer.toml");
 }
 
 // Twice the area of the triangle B–D–E of the exact motion.
-double twice_area(const Mechanism& mechanism, double time) {
-  const Motion exact = solve_motion(mechanism, std::vector<double>{0, time});
+double twice_area(const mechanism::Mechanism& mechanism, double time) {
+  const mechanism::Motion exact = mechanism::solve_motion(mechanism, std::vector<double>{0, time});
   const auto at = [&](const char* name) {
     return exact.configurations[1].points[*mechanism.find_point(name)].position;
   };
@@ -149,7 +150,7 @@ double twice_area(const Mechanism& mechanism, double time) {
 }
 
 TEST(Split, IsRefusedWhereATriangleTurnsOver) {
-  const Mechanism mechanism = with_longer_lead();
+  const mechanism::Mechanism mechanism = with_longer_lead();
   PatchOptions options;
   options.split = {"AB", "O1C", "DE"};
   const std::string text = message(mechanism, options);
@@ -170,7 +171,7 @@ TEST(Split, IsRefusedWhereATriangleTurnsOver) {
 
 // A split that is of use is one that is not refused.
 TEST(Split, IsOfUseWhereItIsNotRefused) {
-  const Mechanism mechanism = with_longer_lead();
+  const mechanism::Mechanism mechanism = with_longer_lead();
   const std::vector<std::vector<std::string>> all{{"AB", "O1C", "DE"}, {"AB", "DE", "O1C"},
                                                   {"DE", "AB", "O1C"}, {"DE", "O1C", "AB"},
                                                   {"O1C", "AB", "DE"}, {"O1C", "DE", "AB"}};
@@ -185,11 +186,11 @@ TEST(Split, IsOfUseWhereItIsNotRefused) {
 
 // A drive may be called like one of the source's angles.
 TEST(Paper, NamesNoTwoOutputsAlike) {
-  Mechanism mechanism = shipped("class-iii");
+  mechanism::Mechanism mechanism = shipped("class-iii");
   mechanism.drives.front().name = "psi";
-  const Diagram diagram = patch(mechanism, paper());
-  EXPECT_NO_THROW(parse_diagram(write_diagram(diagram), "psi.toml"));
+  const diagram::Diagram diagram = patch(mechanism, paper());
+  EXPECT_NO_THROW(diagram::parse_diagram(diagram::write_diagram(diagram), "psi.toml"));
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::patch

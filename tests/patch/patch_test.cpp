@@ -10,15 +10,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <oblique/mechanism/motion.h>
-#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/mechanism/model/read_mechanism.h>
+#include <oblique/mechanism/motion/motion.h>
 #include <oblique/patch/scaling.h>
 #include <oblique/patch/triad_split.h>
 #include <oblique/solve/run.h>
 
 #include "patched_run.h"
 
-namespace oblique {
+namespace oblique::patch {
 namespace {
 
 using testing::HasSubstr;
@@ -38,7 +38,7 @@ TEST_P(ShippedMechanism, KeepsEverySignalWithinOneMachineUnit) {
 }
 
 TEST_P(ShippedMechanism, WithIdealAmplifiersIsExactToTheTolerance) {
-  const Mechanism mechanism = shipped(GetParam());
+  const mechanism::Mechanism mechanism = shipped(GetParam());
   PatchOptions options;
   options.gain = std::numeric_limits<double>::infinity();
   // What is left is the crank's phase: tolerance 1e-10 accumulated over a turn of some hundred steps.
@@ -47,7 +47,7 @@ TEST_P(ShippedMechanism, WithIdealAmplifiersIsExactToTheTolerance) {
 }
 
 TEST_P(ShippedMechanism, WithAlgebraicAmplifiersErrsByItsGainOnly) {
-  const Mechanism mechanism = shipped(GetParam());
+  const mechanism::Mechanism mechanism = shipped(GetParam());
   PatchOptions options;
   options.gain = 1e4;
   options.bandwidth = std::numeric_limits<double>::infinity();
@@ -59,12 +59,13 @@ TEST_P(ShippedMechanism, WithAlgebraicAmplifiersErrsByItsGainOnly) {
 }
 
 TEST_P(ShippedMechanism, WritesADiagramThatReadsBackEqual) {
-  const Diagram diagram = patch_triangles(shipped(GetParam()));
-  EXPECT_TRUE(parse_diagram(write_diagram(diagram), "patched.toml") == diagram);
+  const diagram::Diagram diagram = patch_triangles(shipped(GetParam()));
+  EXPECT_TRUE(diagram::parse_diagram(diagram::write_diagram(diagram), "patched.toml") == diagram);
 }
 
 TEST(Patch, HasACommentedSectionForTheCrankAndEachDyad) {
-  const std::string text = write_diagram(patch_triangles(parse_mechanism(kFourBar, "four-bar.toml")));
+  const std::string text =
+      diagram::write_diagram(patch_triangles(mechanism::parse_mechanism(kFourBar, "four-bar.toml")));
   EXPECT_THAT(text, HasSubstr("# Coordinates: 1 machine unit = 4 m."));
   EXPECT_THAT(text, HasSubstr("# crank AB: turns about A at 1 rad/s"));
   EXPECT_THAT(text, HasSubstr("# dyad BC-CD: C is hinged to B (3.5 m) and D (3 m), on the left of B → D."));
@@ -82,7 +83,7 @@ TEST(Patch, TracksEveryWayToDescribeACrank) {
                         R"(AB = { points = ["E", "B"], length = 1.5, marks = { A = [0.5, 0.2] } })"),
                "turns = \"AB\"", "turns = \"AB\", start = \"10 deg\"");
   for (const std::string& text : {backwards, mirrored, lever}) {
-    const Mechanism mechanism = parse_mechanism(text, "crank.toml");
+    const mechanism::Mechanism mechanism = mechanism::parse_mechanism(text, "crank.toml");
     // Error 1.7e-7 of the largest link is measured for the plain four-bar at gain 1e6.
     EXPECT_LT(largest_error(mechanism, PatchedRun(patch_triangles(mechanism)).result),
               1e-6 * mechanism.largest_length())
@@ -92,10 +93,10 @@ TEST(Patch, TracksEveryWayToDescribeACrank) {
 
 TEST(Patch, GivesClashingNamesANumber) {
   std::string text = replaced(kFourBar, "crank = {", "B_x = {");
-  const Mechanism mechanism = parse_mechanism(text, "clash.toml");
-  const Diagram diagram = patch_triangles(mechanism);
+  const mechanism::Mechanism mechanism = mechanism::parse_mechanism(text, "clash.toml");
+  const diagram::Diagram diagram = patch_triangles(mechanism);
   EXPECT_LT(largest_error(mechanism, PatchedRun(diagram).result), 1e-6 * mechanism.largest_length());
-  EXPECT_THAT(write_diagram(diagram), HasSubstr("B_x_2"));
+  EXPECT_THAT(diagram::write_diagram(diagram), HasSubstr("B_x_2"));
 }
 
 // The blocks of a dyad and of a crank are called as the hinge and the drive.
@@ -104,35 +105,39 @@ TEST(Patch, GivesBlocksOtherNamesThanThoseThatExpressionsKeep) {
                                  "and", "or", "not", "one", "if", "sin"}) {
     const std::string quoted = "\"" + name + "\"";
     const std::string hinge = replaced(replaced(kFourBar, "\"C\"", quoted), "\"C\"", quoted);
-    const Mechanism mechanism = parse_mechanism(replaced(hinge, "\nC = ", "\n" + name + " = "), "hinge.toml");
-    const Diagram diagram = parse_diagram(write_diagram(patch_triangles(mechanism)), "patched.toml");
+    const mechanism::Mechanism mechanism =
+        mechanism::parse_mechanism(replaced(hinge, "\nC = ", "\n" + name + " = "), "hinge.toml");
+    const diagram::Diagram diagram =
+        diagram::parse_diagram(diagram::write_diagram(patch_triangles(mechanism)), "patched.toml");
     EXPECT_LT(largest_error(mechanism, PatchedRun(diagram).result), 1e-6 * mechanism.largest_length())
         << name;
-    const Mechanism driven = parse_mechanism(replaced(kFourBar, "crank = {", name + " = {"), "drive.toml");
-    EXPECT_NO_THROW(parse_diagram(write_diagram(patch_triangles(driven)), "patched.toml")) << name;
+    const mechanism::Mechanism driven =
+        mechanism::parse_mechanism(replaced(kFourBar, "crank = {", name + " = {"), "drive.toml");
+    EXPECT_NO_THROW(diagram::parse_diagram(diagram::write_diagram(patch_triangles(driven)), "patched.toml"))
+        << name;
   }
 }
 
 // The same mechanism somewhere else is the same diagram: only the outputs tell where.
 TEST(Patch, DoesNotDependOnWhereTheMechanismStands) {
-  const Mechanism here = parse_mechanism(kFourBar, "here.toml");
+  const mechanism::Mechanism here = mechanism::parse_mechanism(kFourBar, "here.toml");
   const std::string text = replaced(replaced(replaced(kFourBar, "A = [0, 0]", "A = [65536, -131072]"),
                                              "D = [4, 0]", "D = [65540, -131072]"),
                                     "C = [3, 2.8]", "C = [65539, -131069]");
-  const Mechanism there = parse_mechanism(text, "there.toml");
-  const Diagram patched = patch_triangles(there);
+  const mechanism::Mechanism there = mechanism::parse_mechanism(text, "there.toml");
+  const diagram::Diagram patched = patch_triangles(there);
   EXPECT_EQ(patched.blocks, patch_triangles(here).blocks);
-  const std::string written = write_diagram(patched);
+  const std::string written = diagram::write_diagram(patched);
   EXPECT_THAT(written, HasSubstr("# Coordinates: 1 machine unit = 4 m, from A."));
   EXPECT_THAT(written, HasSubstr("\"C.x\" = { signal = \"C.x\", scale = 4, offset = 65536, unit = \"m\" }"));
-  EXPECT_TRUE(parse_diagram(written, "patched.toml") == patched);
+  EXPECT_TRUE(diagram::parse_diagram(written, "patched.toml") == patched);
   // as near the origin, and the rounding of the coordinates, 1e-11
   EXPECT_LT(largest_error(there, PatchedRun(patched).result), 1e-6 * there.largest_length());
 }
 
 TEST(Patch, RefusesATriangleThatOpensOnTheWay) {
-  const Mechanism mechanism =
-      parse_mechanism(replaced(kFourBar, "length = 1 ", "length = 2.7 "), "opens.toml");
+  const mechanism::Mechanism mechanism =
+      mechanism::parse_mechanism(replaced(kFourBar, "length = 1 ", "length = 2.7 "), "opens.toml");
   try {
     patch_triangles(mechanism);
     FAIL();
@@ -144,7 +149,7 @@ TEST(Patch, RefusesATriangleThatOpensOnTheWay) {
 
 // Crank 1, frame 4, coupler 2, rocker 3: at angle π the distance B–D is 5 = 2 + 3, the triangle is flat.
 TEST(Patch, RefusesADeadCentre) {
-  const Mechanism mechanism = parse_mechanism(
+  const mechanism::Mechanism mechanism = mechanism::parse_mechanism(
       replaced(replaced(kFourBar, "length = 3.5", "length = 2"), "C = [3, 2.8]", "C = [2.5, 2]"),
       "flat.toml");
   try {
@@ -162,13 +167,14 @@ TEST(Patch, RefusesATriangleThatOpensBetweenItsPositions) {
   std::string text = replaced(kFourBar, "length = 3.5", "length = 2.5");
   text = replaced(text, "length = 3 ", "length = 2.499996 ");
   text = replaced(text, "speed = 1", "speed = 1, start = \"0.25 deg\"");
-  const Mechanism mechanism = parse_mechanism(text, "opens.toml");
+  const mechanism::Mechanism mechanism = mechanism::parse_mechanism(text, "opens.toml");
   EXPECT_THROW(patch_triangles(mechanism), PatchError);
 }
 
 TEST(Patch, ChoosesABandwidthAHundredTimesTheFastestDrive) {
   const auto of_speed = [](const std::string& speed) {
-    return default_bandwidth(parse_mechanism(replaced(kFourBar, "speed = 1", "speed = " + speed), "m.toml"));
+    return default_bandwidth(
+        mechanism::parse_mechanism(replaced(kFourBar, "speed = 1", "speed = " + speed), "m.toml"));
   };
   EXPECT_EQ(of_speed("1"), 20);            // 100/(2π) = 15.9
   EXPECT_EQ(of_speed("-100"), 2000);       // 1591
@@ -187,23 +193,23 @@ TEST(Scaling, RoundsUpToShortNumbers) {
 
 // The class III mechanism of 003_69ea068b7b221c3d.txt: two triangles and one outer loop for the triad.
 TEST(Patch, TakesATriadApart) {
-  const Mechanism mechanism =
-      read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/class-iii.toml");
-  const Diagram diagram = patch_triangles(mechanism);
+  const mechanism::Mechanism mechanism =
+      mechanism::read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/class-iii.toml");
+  const diagram::Diagram diagram = patch_triangles(mechanism);
   const auto count = [&](const std::string& type) {
     return std::count_if(diagram.blocks.begin(), diagram.blocks.end(),
-                         [&](const BlockInstance& block) { return block.type == type; });
+                         [&](const diagram::BlockInstance& block) { return block.type == type; });
   };
   EXPECT_EQ(count("dyad-rrr-variable"), 1);
   EXPECT_EQ(count("dyad-rrr"), 1);
   EXPECT_EQ(count("servo-amplifier"), 1);
-  EXPECT_THAT(write_diagram(diagram),
+  EXPECT_THAT(diagram::write_diagram(diagram),
               HasSubstr("Of the six splits this one keeps\n# farthest from flat triangles"));
 }
 
 // Of two leads that share their anchor each has its own length.
 TEST(LeadOf, TellsLeadsOfOneAnchorApart) {
-  const Mechanism mechanism = parse_mechanism(R"(format = "oblique-mechanism/1"
+  const mechanism::Mechanism mechanism = mechanism::parse_mechanism(R"(format = "oblique-mechanism/1"
 [frame]
 O = [0, 0]
 O1 = [0, 1.2]
@@ -216,19 +222,19 @@ O1C = { points = ["O1", "C"], length = 1.9 }
 [drives]
 crank = { turns = "OA", about = "O", speed = 1 }
 )",
-                                              "meet.toml");
-  const Structure structure = find_groups(mechanism);
-  const Group& triad = structure.groups.at(1);
-  ASSERT_EQ(triad.kind, GroupKind::triad);
+                                                                    "meet.toml");
+  const mechanism::Structure structure = mechanism::find_groups(mechanism);
+  const mechanism::Group& triad = structure.groups.at(1);
+  ASSERT_EQ(triad.kind, mechanism::GroupKind::triad);
   for (std::size_t i = 0; i < 3; ++i) {
-    const Body& lead = mechanism.bodies[lead_of(triad, i)];
+    const mechanism::Body& lead = mechanism.bodies[lead_of(triad, i)];
     const double length = (lead.points[1].local - lead.points[0].local).norm();
     EXPECT_DOUBLE_EQ(length, triad.equations.conditions[i].value) << i;
   }
 }
 
 /// class-iii.toml and the same once more, 4 to its right, with a P before each name.
-Mechanism two_triads() {
+mechanism::Mechanism two_triads() {
   std::string frame, bodies, drives, sketch;
   for (const std::string p : {"", "P"}) {
     const double x = p.empty() ? 0 : 4;
@@ -245,10 +251,11 @@ Mechanism two_triads() {
     sketch += fmt::format("{0}B = [{1}, -0.54]\n{0}D = [{2}, 0.12]\n{0}C = [{3}, 0.33]\n", p, x + 1.22,
                           x + 1.17, x + 1.74);
   }
-  return parse_mechanism(fmt::format("format = \"oblique-mechanism/1\"\n[frame]\n{}[bodies]\n{}[drives]\n{}"
-                                     "[sketch]\n{}",
-                                     frame, bodies, drives, sketch),
-                         "two-triads.toml");
+  return mechanism::parse_mechanism(
+      fmt::format("format = \"oblique-mechanism/1\"\n[frame]\n{}[bodies]\n{}[drives]\n{}"
+                  "[sketch]\n{}",
+                  frame, bodies, drives, sketch),
+      "two-triads.toml");
 }
 
 // The same split may be asked for, found among those that are stable, or be worth the most.
@@ -257,11 +264,11 @@ TEST(Patch, SaysOfEachTriadWhyItHasItsSplit) {
       "Of the six splits this one keeps\n# farthest from flat triangles and from a loop without gain";
   PatchOptions options;
   options.split = {"AB", "DE", "O1C"};
-  std::string text = write_diagram(patch_triangles(two_triads(), options));
+  std::string text = diagram::write_diagram(patch_triangles(two_triads(), options));
   EXPECT_THAT(text, HasSubstr("(split AB, DE, O1C). This split was asked for."));
   EXPECT_THAT(text, HasSubstr("(split PAB, PDE, PO1C). " + best + "."));
   options.split_by_trial = true;
-  text = write_diagram(patch_triangles(two_triads(), options));
+  text = diagram::write_diagram(patch_triangles(two_triads(), options));
   EXPECT_THAT(text, HasSubstr("(split AB, DE, O1C). " + best + ", among those that are stable."));
 }
 
@@ -270,14 +277,14 @@ TEST(Patch, NamesASplitOfOneTriadOnly) {
   PatchOptions options;
   options.method = PatchMethod::paper;
   const char* const second = "triad PAB-PBDC-PDE-PO1C, split PAB, PO1C, PDE.";
-  EXPECT_THAT(write_diagram(patch(two_triads(), options)), HasSubstr(second));
+  EXPECT_THAT(diagram::write_diagram(patch(two_triads(), options)), HasSubstr(second));
   options.split = {"O1C", "DE", "AB"};
-  EXPECT_THAT(write_diagram(patch(two_triads(), options)), HasSubstr(second));
+  EXPECT_THAT(diagram::write_diagram(patch(two_triads(), options)), HasSubstr(second));
 }
 
 TEST(Patch, OffersTheGradientWhereATriadHasASlide) {
-  const Mechanism mechanism =
-      read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/class-iii-guided.toml");
+  const mechanism::Mechanism mechanism = mechanism::read_mechanism(
+      std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/class-iii-guided.toml");
   try {
     patch_triangles(mechanism);
     FAIL();
@@ -306,7 +313,7 @@ TEST(Patch, UsesTheRangeForTheWayAlongASlot) {
 TEST(Patch, TakesForABodyThePointsThatOthersUse) {
   PatchOptions options;
   options.method = PatchMethod::gradient;
-  const std::string text = write_diagram(patch(parse_mechanism(R"(
+  const std::string text = diagram::write_diagram(patch(mechanism::parse_mechanism(R"(
 format = "oblique-mechanism/1"
 [frame]
 A = [0, 0]
@@ -321,14 +328,14 @@ crank = { turns = "AB", about = "A", speed = 1 }
 [sketch]
 S = [4, 0]
 )",
-                                                               "lever.toml"),
-                                               options));
+                                                                                   "lever.toml"),
+                                                        options));
   EXPECT_THAT(text, HasSubstr("|BS| = 3.04138 m"));  // √(3² + 0.5²)
 }
 
 // scotch-yoke-inclined.toml with its guide turned by 30°.
 TEST(Patch, DescendsToAYokeOnAnInclinedGuide) {
-  const Mechanism mechanism = parse_mechanism(R"(
+  const mechanism::Mechanism mechanism = mechanism::parse_mechanism(R"(
 format = "oblique-mechanism/1"
 [frame]
 A = [0, 0]
@@ -342,7 +349,7 @@ slot  = { point = "B", along = ["C", "T"] }
 [drives]
 crank = { turns = "AB", about = "A", speed = 1 }
 )",
-                                              "inclined.toml");
+                                                                    "inclined.toml");
   PatchOptions options;
   options.method = PatchMethod::gradient;
   // It lags by |ẋ|/(K σ²) (method.md): 4e-8 is measured.
@@ -354,7 +361,8 @@ TEST(Patch, RefusesAGradientServoOfInfiniteGain) {
   options.method = PatchMethod::gradient;
   options.gain = std::numeric_limits<double>::infinity();
   try {
-    patch(read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/four-bar.toml"), options);
+    patch(mechanism::read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/four-bar.toml"),
+          options);
     FAIL();
   } catch (const PatchError& error) {
     EXPECT_THAT(error.what(), HasSubstr("a gradient servo of infinite gain has no time scale"));
@@ -362,4 +370,4 @@ TEST(Patch, RefusesAGradientServoOfInfiniteGain) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::patch

@@ -8,32 +8,33 @@
 
 #include <gtest/gtest.h>
 
-#include <oblique/mechanism/motion.h>
-#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/mechanism/model/read_mechanism.h>
+#include <oblique/mechanism/motion/motion.h>
 #include <oblique/patch/patch.h>
 #include <oblique/solve/run.h>
 
-namespace oblique {
+namespace oblique::patch {
 
 inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
   text.replace(text.find(from), from.size(), to);
   return text;
 }
 
-inline Mechanism shipped(const std::string& name) {
-  return read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/" + name + ".toml");
+inline mechanism::Mechanism shipped(const std::string& name) {
+  return mechanism::read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/" + name +
+                                   ".toml");
 }
 
 /// A patched diagram run to its end, and the program it became.
 struct PatchedRun {
-  explicit PatchedRun(const Diagram& diagram)
-      : flat(flatten(diagram, library)),
-        program(assemble(flat)),
-        result(run(program, flat, options_of(diagram.run))) {}
-  BlockLibrary library = BlockLibrary::shipped();
-  FlatDiagram flat;
-  Program program;
-  Run result;
+  explicit PatchedRun(const diagram::Diagram& diagram)
+      : flat(diagram::flatten(diagram, library)),
+        program(network::assemble(flat)),
+        result(solve::run(program, flat, solve::options_of(diagram.run))) {}
+  diagram::BlockLibrary library = diagram::BlockLibrary::shipped();
+  diagram::FlatDiagram flat;
+  network::Program program;
+  solve::Run result;
 };
 
 inline const char* const kFourBar = R"(
@@ -52,11 +53,11 @@ C = [3, 2.8]
 )";
 
 /// Largest distance of any moving point from its exact place [length unit].
-inline double largest_error(const Mechanism& mechanism, const Run& analog) {
-  const Trajectory& table = analog.trajectory;
+inline double largest_error(const mechanism::Mechanism& mechanism, const solve::Run& analog) {
+  const solve::Trajectory& table = analog.trajectory;
   std::vector<double> times;
   for (std::size_t r = 0; r < table.rows(); ++r) times.push_back(table.at(r, 0));
-  const Motion exact = solve_motion(mechanism, times);
+  const mechanism::Motion exact = mechanism::solve_motion(mechanism, times);
   double largest = 0;
   for (std::size_t p = 0; p < mechanism.points.size(); ++p) {
     if (mechanism.points[p].fixed) continue;
@@ -71,4 +72,4 @@ inline double largest_error(const Mechanism& mechanism, const Run& analog) {
   return largest;
 }
 
-}  // namespace oblique
+}  // namespace oblique::patch

@@ -7,18 +7,19 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <oblique/mechanism/motion.h>
-#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/mechanism/model/read_mechanism.h>
+#include <oblique/mechanism/motion/motion.h>
 #include <oblique/patch/patch.h>
 #include <oblique/solve/run.h>
 
-namespace oblique {
+namespace oblique::patch {
 namespace {
 
 using testing::HasSubstr;
 
-Mechanism shipped(const std::string& name) {
-  return read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/" + name + ".toml");
+mechanism::Mechanism shipped(const std::string& name) {
+  return mechanism::read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/" + name +
+                                   ".toml");
 }
 
 /// A slide-crank whose slide is driven: between its two dead centres, |x| < 1.5 − 0.5 … 1.5 + 0.5.
@@ -39,7 +40,7 @@ A = [0.1, 0.5]
 )";
 
 /// The first and last value of the first drive over a motion.
-std::pair<double, double> span_of(const Motion& motion) {
+std::pair<double, double> span_of(const mechanism::Motion& motion) {
   double least = motion.drives.front().front().value, most = least;
   for (const auto& row : motion.drives) {
     least = std::min(least, row.front().value);
@@ -50,7 +51,7 @@ std::pair<double, double> span_of(const Motion& motion) {
 
 TEST(WithinRange, LeavesWhatTurnsAsItIs) {
   for (const char* name : {"four-bar", "jansen", "whitworth", "five-bar"}) {
-    const Mechanism ranged = within_range(shipped(name));
+    const mechanism::Mechanism ranged = within_range(shipped(name));
     EXPECT_FALSE(ranged.drives.front().law) << name;
     EXPECT_FALSE(ranged.motion.until) << name;
   }
@@ -58,15 +59,15 @@ TEST(WithinRange, LeavesWhatTurnsAsItIs) {
 
 // The crank of a double rocker: both limits from the law of cosines.
 TEST(WithinRange, SwingsOverNineTenthsOfTheRange) {
-  const Mechanism mechanism = shipped("double-rocker");
-  const MotionRange range = find_range(mechanism, decompose(mechanism));
+  const mechanism::Mechanism mechanism = shipped("double-rocker");
+  const mechanism::MotionRange range = mechanism::find_range(mechanism, mechanism::decompose(mechanism));
   ASSERT_TRUE(range.forward && range.backward);
-  const Drive& drive = mechanism.drives.front();
+  const mechanism::Drive& drive = mechanism.drives.front();
   const double first = drive.start + drive.speed * range.backward->time;
   const double last = drive.start + drive.speed * range.forward->time;
-  const Mechanism ranged = within_range(mechanism);
+  const mechanism::Mechanism ranged = within_range(mechanism);
   ASSERT_TRUE(ranged.drives.front().law);
-  const Motion motion = solve_motion(ranged, 1001);
+  const mechanism::Motion motion = mechanism::solve_motion(ranged, 1001);
   EXPECT_TRUE(motion.events.empty());
   const auto [least, most] = span_of(motion);
   // a thousand positions find the ends of a sine to 1e-5
@@ -77,8 +78,8 @@ TEST(WithinRange, SwingsOverNineTenthsOfTheRange) {
 }
 
 TEST(WithinRange, SwingsADrivenSlideToo) {
-  const Mechanism ranged = within_range(parse_mechanism(kPump, "pump.toml"));
-  const Motion motion = solve_motion(ranged, 1001);
+  const mechanism::Mechanism ranged = within_range(mechanism::parse_mechanism(kPump, "pump.toml"));
+  const mechanism::Motion motion = mechanism::solve_motion(ranged, 1001);
   const auto [least, most] = span_of(motion);
   EXPECT_NEAR(least, 1.5 - 0.45, 1e-4);
   EXPECT_NEAR(most, 1.5 + 0.45, 1e-4);
@@ -90,9 +91,9 @@ TEST(WithinRange, MayStartNextToALimit) {
   std::string text = kPump;
   text.replace(text.find("start = 1.4"), 11, "start = 1.99");
   text.replace(text.find("[0.1, 0.5]"), 10, "[0.49, 0.1]");
-  const Mechanism ranged = within_range(parse_mechanism(text, "pump.toml"));
+  const mechanism::Mechanism ranged = within_range(mechanism::parse_mechanism(text, "pump.toml"));
   ASSERT_DOUBLE_EQ(ranged.drives.front().speed, 0.3);
-  const Motion motion = solve_motion(ranged, 1001);
+  const mechanism::Motion motion = mechanism::solve_motion(ranged, 1001);
   EXPECT_TRUE(motion.events.empty());
   const auto [least, most] = span_of(motion);
   EXPECT_NEAR(least, 1.01, 1e-4);
@@ -103,16 +104,17 @@ class Ranged : public testing::TestWithParam<PatchMethod> {};
 INSTANTIATE_TEST_SUITE_P(Patch, Ranged, testing::Values(PatchMethod::triangles, PatchMethod::gradient));
 
 TEST_P(Ranged, IsPatchedOverItsRange) {
-  for (const Mechanism& mechanism : {shipped("double-rocker"), parse_mechanism(kPump, "pump.toml")}) {
+  for (const mechanism::Mechanism& mechanism :
+       {shipped("double-rocker"), mechanism::parse_mechanism(kPump, "pump.toml")}) {
     PatchOptions options;
     options.method = GetParam();
-    const Diagram diagram = patch(mechanism, options);
-    const BlockLibrary library = BlockLibrary::shipped();
-    const FlatDiagram flat = flatten(diagram, library);
-    const Program program(assemble(flat));
-    const auto result = run(program, flat, options_of(diagram.run));
-    const Trajectory& table = result.trajectory;
-    const Motion exact = solve_motion(within_range(mechanism), options.samples);
+    const diagram::Diagram diagram = patch(mechanism, options);
+    const diagram::BlockLibrary library = diagram::BlockLibrary::shipped();
+    const diagram::FlatDiagram flat = diagram::flatten(diagram, library);
+    const network::Program program(network::assemble(flat));
+    const auto result = solve::run(program, flat, solve::options_of(diagram.run));
+    const solve::Trajectory& table = result.trajectory;
+    const mechanism::Motion exact = mechanism::solve_motion(within_range(mechanism), options.samples);
     for (std::size_t p = 0; p < mechanism.points.size(); ++p) {
       if (mechanism.points[p].fixed) continue;
       const std::size_t x = table.find(mechanism.points[p].name + ".x").value();
@@ -129,24 +131,25 @@ TEST_P(Ranged, IsPatchedOverItsRange) {
 // A period of machine time changes when a point is where, not where it is nor how fast the mechanism's own
 // motion is.
 TEST(Period, StretchesTimeAndKeepsRates) {
-  const Mechanism mechanism = shipped("four-bar");
+  const mechanism::Mechanism mechanism = shipped("four-bar");
   PatchOptions options;
   options.derivatives = true;
   options.samples = 37;
   const auto table_of = [&](const PatchOptions& how) {
-    const Diagram diagram = patch(mechanism, how);
-    const BlockLibrary library = BlockLibrary::shipped();
-    const FlatDiagram flat = flatten(diagram, library);
-    return run(Program(assemble(flat)), flat, options_of(diagram.run)).trajectory;
+    const diagram::Diagram diagram = patch(mechanism, how);
+    const diagram::BlockLibrary library = diagram::BlockLibrary::shipped();
+    const diagram::FlatDiagram flat = diagram::flatten(diagram, library);
+    return solve::run(network::Program(network::assemble(flat)), flat, solve::options_of(diagram.run))
+        .trajectory;
   };
-  const Trajectory usual = table_of(options);
+  const solve::Trajectory usual = table_of(options);
   options.period = 20;
-  const Trajectory stretched = table_of(options);
+  const solve::Trajectory stretched = table_of(options);
   // 0.4 m/s and 0.2 m/s² of machine time hold the rates; the mechanism goes 20/2π times as fast
-  const Diagram diagram = patch(mechanism, options);
+  const diagram::Diagram diagram = patch(mechanism, options);
   EXPECT_THAT(diagram.comment, HasSubstr("Rates: 1 machine unit = 1.27324 m/s and 2.02642 m/s^2."));
   const double faster = 20 / (2 * std::numbers::pi);
-  for (const OutputSpec& output : diagram.outputs) {
+  for (const diagram::OutputSpec& output : diagram.outputs) {
     if (output.name == "C.vx") {
       EXPECT_NEAR(output.scale, 0.4 * faster, 1e-12);
     } else if (output.name == "C.ax") {
@@ -177,4 +180,4 @@ TEST(Period, CannotStretchALaw) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::patch

@@ -9,7 +9,7 @@
 #include "../support/rate_errors.h"
 #include "patched_run.h"
 
-namespace oblique {
+namespace oblique::patch {
 namespace {
 
 using testing::HasSubstr;
@@ -37,8 +37,8 @@ PatchOptions with_rates(PatchMethod method = PatchMethod::triangles, double gain
   return options;
 }
 
-RateErrors errors_of(const Mechanism& mechanism, const PatchOptions& options) {
-  return rate_errors(mechanism, PatchedRun(patch(mechanism, options)).result.trajectory);
+test::RateErrors errors_of(const mechanism::Mechanism& mechanism, const PatchOptions& options) {
+  return test::rate_errors(mechanism, PatchedRun(patch(mechanism, options)).result.trajectory);
 }
 
 class Rates : public testing::TestWithParam<PatchMethod> {};
@@ -48,10 +48,10 @@ INSTANTIATE_TEST_SUITE_P(Patch, Rates, testing::Values(PatchMethod::triangles, P
 // A servo's static error and its lag both fall as 1/μ, in the positions that feed it as in the rates
 // themselves.
 TEST_P(Rates, ConvergeWithTheGain) {
-  const Mechanism mechanism = parse_mechanism(kFourBar, "four-bar.toml");
-  RateErrors before;
+  const mechanism::Mechanism mechanism = mechanism::parse_mechanism(kFourBar, "four-bar.toml");
+  test::RateErrors before;
   for (const double gain : {1e3, 1e4, 1e5}) {
-    const RateErrors errors = errors_of(mechanism, with_rates(GetParam(), gain));
+    const test::RateErrors errors = errors_of(mechanism, with_rates(GetParam(), gain));
     EXPECT_LT(errors.velocity, 1 / gain);  // 0.33/μ and 0.39/μ are measured
     EXPECT_LT(errors.acceleration, 1 / gain);
     if (before.velocity > 0) {
@@ -83,7 +83,8 @@ TEST_P(Rates, FollowEveryWayToDescribeACrank) {
       replaced(kFourBar, R"(AB = { points = ["A", "B"], length = 1 })",
                R"(AB = { points = ["E", "B"], length = 1.5, marks = { A = [0.5, 0.2] } })");
   for (const std::string& text : {backwards, mirrored, lever}) {
-    const RateErrors errors = errors_of(parse_mechanism(text, "crank.toml"), with_rates(GetParam()));
+    const test::RateErrors errors =
+        errors_of(mechanism::parse_mechanism(text, "crank.toml"), with_rates(GetParam()));
     EXPECT_LT(errors.velocity, 1e-6) << text;
     EXPECT_LT(errors.acceleration, 1e-6) << text;
   }
@@ -94,8 +95,8 @@ TEST_P(Rates, FollowACrankOnAMovingPivot) {
   std::string text = replaced(kFourBar, "[drives]\n",
                               "ME = { points = [\"M\", \"E\"], length = 0.5 }\n[drives]\n"
                               "second = { turns = \"ME\", about = \"M\", speed = -2 }\n");
-  const Mechanism mechanism = parse_mechanism(text, "on-coupler.toml");
-  const RateErrors errors = errors_of(mechanism, with_rates(GetParam()));
+  const mechanism::Mechanism mechanism = mechanism::parse_mechanism(text, "on-coupler.toml");
+  const test::RateErrors errors = errors_of(mechanism, with_rates(GetParam()));
   EXPECT_LT(errors.velocity, 1e-6);
   EXPECT_LT(errors.acceleration, 1e-6);
 }
@@ -104,10 +105,10 @@ TEST_P(Rates, FollowACrankOnAMovingPivot) {
 TEST_P(Rates, FollowASpeedLaw) {
   const std::string law =
       replaced(kFourBar, "speed = 1", "speed = \"0.2 + cos(3*time) rad/s\"") + "[motion]\nuntil = 4\n";
-  for (const Mechanism& mechanism :
-       {parse_mechanism(law, "law.toml"), shipped("elliptical-trammel-by-slide")}) {
+  for (const mechanism::Mechanism& mechanism :
+       {mechanism::parse_mechanism(law, "law.toml"), shipped("elliptical-trammel-by-slide")}) {
     const PatchedRun patched(patch(mechanism, with_rates(GetParam())));
-    const RateErrors errors = rate_errors(mechanism, patched.result.trajectory);
+    const test::RateErrors errors = test::rate_errors(mechanism, patched.result.trajectory);
     EXPECT_LT(errors.position, 1e-6) << mechanism.title;
     EXPECT_LT(errors.velocity, 1e-6) << mechanism.title;
     EXPECT_LT(errors.acceleration, 1e-6) << mechanism.title;
@@ -121,7 +122,7 @@ TEST_P(Rates, FollowASpeedLaw) {
 TEST(RateCircuits, HangOnThePatchOfTheSource) {
   PatchOptions options = with_rates(PatchMethod::paper, 1e5);
   options.slower = 1000;  // with the source's split the outer loop has to be
-  const RateErrors errors = errors_of(shipped("class-iii"), options);
+  const test::RateErrors errors = errors_of(shipped("class-iii"), options);
   EXPECT_LT(errors.velocity, 1e-3);  // 10/μ and more: one scale for all lengths costs gain
   EXPECT_LT(errors.acceleration, 1e-3);
 }
@@ -129,7 +130,7 @@ TEST(RateCircuits, HangOnThePatchOfTheSource) {
 TEST(RateCircuits, WithIdealAmplifiersAreExactToTheTolerance) {
   PatchOptions options = with_rates(PatchMethod::triangles, std::numeric_limits<double>::infinity());
   for (const char* const name : {"four-bar", "six-bar", "class-iii"}) {
-    const RateErrors errors = errors_of(shipped(name), options);
+    const test::RateErrors errors = errors_of(shipped(name), options);
     // the crank's phase: tolerance 1e-10 accumulated over some hundred steps
     EXPECT_LT(errors.velocity, 1e-7) << name;
     EXPECT_LT(errors.acceleration, 1e-7) << name;
@@ -141,17 +142,17 @@ TEST(RateCircuits, AreAlgebraicWithAmplifiersOfInfiniteBandwidth) {
   options.bandwidth = std::numeric_limits<double>::infinity();
   const PatchedRun patched(patch(shipped("six-bar"), options));
   EXPECT_EQ(patched.program.n_states(), 2U);  // the crank's
-  const RateErrors errors = rate_errors(shipped("six-bar"), patched.result.trajectory);
+  const test::RateErrors errors = test::rate_errors(shipped("six-bar"), patched.result.trajectory);
   EXPECT_LT(errors.velocity, 2e-4);  // 0.7/μ and 1.6/μ are measured with a bandwidth
   EXPECT_LT(errors.acceleration, 4e-4);
 }
 
 TEST(RateCircuits, CallTheirOutputsAsSolveCallsItsColumns) {
-  const Mechanism mechanism = parse_mechanism(kFourBar, "four-bar.toml");
-  const Diagram diagram = patch(mechanism, with_rates());
+  const mechanism::Mechanism mechanism = mechanism::parse_mechanism(kFourBar, "four-bar.toml");
+  const diagram::Diagram diagram = patch(mechanism, with_rates());
   std::vector<std::pair<std::string, std::string>> outputs, columns;
-  for (const OutputSpec& output : diagram.outputs) outputs.emplace_back(output.name, output.unit);
-  for (const MotionColumnName& column : motion_column_names(mechanism)) {
+  for (const diagram::OutputSpec& output : diagram.outputs) outputs.emplace_back(output.name, output.unit);
+  for (const mechanism::MotionColumnName& column : mechanism::motion_column_names(mechanism)) {
     const std::string point = column.name.substr(0, column.name.find('.'));
     if (mechanism.find_point(point)) columns.emplace_back(column.name, column.unit);
   }
@@ -159,13 +160,13 @@ TEST(RateCircuits, CallTheirOutputsAsSolveCallsItsColumns) {
 }
 
 TEST(RateCircuits, StandInTheFileWithTheirScale) {
-  const Diagram diagram = patch(parse_mechanism(kFourBar, "four-bar.toml"), with_rates());
-  const std::string text = write_diagram(diagram);
-  EXPECT_TRUE(parse_diagram(text, "patched.toml") == diagram);
+  const diagram::Diagram diagram = patch(mechanism::parse_mechanism(kFourBar, "four-bar.toml"), with_rates());
+  const std::string text = diagram::write_diagram(diagram);
+  EXPECT_TRUE(diagram::parse_diagram(text, "patched.toml") == diagram);
   EXPECT_THAT(text, HasSubstr("# Rates: 1 machine unit = 2 m/s and 2 m/s^2."));
   EXPECT_THAT(text, HasSubstr("# rates of the group BC-CD: its conditions, differentiated once and twice"));
   EXPECT_THAT(text, HasSubstr("\"C.vx\" = { signal = \"C_vx\", scale = 2, unit = \"m/s\" }"));
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::patch

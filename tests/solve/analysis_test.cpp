@@ -8,11 +8,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <oblique/solve/analysis.h>
+#include <oblique/solve/stability/analysis.h>
 
 #include "../support/runs.h"
 
-namespace oblique {
+namespace oblique::solve {
 namespace {
 
 using std::numbers::pi;
@@ -242,4 +242,4 @@ q  = { type = "servo-amplifier", in = ["q2", "x", "-0.25*one"], initial = 0.5, g
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::solve

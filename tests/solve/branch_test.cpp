@@ -9,7 +9,7 @@
 
 #include "../support/runs.h"
 
-namespace oblique {
+namespace oblique::solve {
 namespace {
 
 using ::testing::AllOf;
@@ -149,7 +149,7 @@ y = { type = "servo-amplifier", in = ["-xy", "p"], initial = 1, gain = inf, band
 )toml"));
   ASSERT_EQ(result.warnings.size(), 1U);
   EXPECT_EQ(
-      to_string(result.warnings[0]),
+      text::to_string(result.warnings[0]),
       "d.toml: from t = 0 s on the equations of 'x', 'y' are solved where a machine would not rest: its "
       "amplifiers run away from x = 2\n  remedy: turn the signs at the amplifier's inputs about, give it "
       "another 'initial', or a finite gain and bandwidth to see what a machine does");
@@ -332,4 +332,4 @@ TEST(Branch, TellsOfAChoiceThatTheAmplifiersHaveFollowed) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::solve

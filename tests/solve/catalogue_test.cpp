@@ -9,7 +9,7 @@
 
 #include "../support/runs.h"
 
-namespace oblique {
+namespace oblique::solve {
 namespace {
 
 using testing::Compiled;
@@ -36,7 +36,7 @@ const std::vector<SmoothProblem>& problems() {
   return all;
 }
 
-BlockLibrary library_with(const SmoothProblem& problem) {
+diagram::BlockLibrary library_with(const SmoothProblem& problem) {
   std::string outputs = "[outputs]\n", parameters = "[parameters]\n", start = "[start]\n",
               equations = "[equations]\n";
   for (const Equation& e : problem.equations) {
@@ -56,7 +56,7 @@ struct Found {
 };
 
 Found solve(const SmoothProblem& problem, double tolerance) {
-  const BlockLibrary library = library_with(problem);
+  const diagram::BlockLibrary library = library_with(problem);
   std::string outputs = "[outputs]\n";
   for (const std::string& state : problem.shown)
     outputs += fmt::format("{} = \"p{}\"\n", state, problem.equations.size() > 1 ? "." + state : "");
@@ -66,8 +66,8 @@ Found solve(const SmoothProblem& problem, double tolerance) {
   options.tolerance = tolerance;
   options.samples = static_cast<int>(problem.truths.size()) + 1;
   options.trust = true;
-  const oblique::Run result = run(made.program, made.flat, options);
-  EXPECT_TRUE(result.warnings.empty()) << to_string(result.warnings.front());
+  const oblique::solve::Run result = run(made.program, made.flat, options);
+  EXPECT_TRUE(result.warnings.empty()) << text::to_string(result.warnings.front());
   Found found;
   for (std::size_t c = 0; c < problem.shown.size(); ++c) {
     double size = 0, error = 0;
@@ -129,12 +129,12 @@ TEST(ErrorNorm, IsNotDilutedByOtherStates) {
   RunOptions options;
   options.until = 100;
   options.samples = 101;
-  options.method = IntegrationMethod::adams;
+  options.method = diagram::IntegrationMethod::adams;
   const auto run_with = [&](const std::string& blocks) {
     const Compiled made(blocks, "[outputs]\na = \"a\"\n");
     return run(made.program, made.flat, options);
   };
-  const oblique::Run one = run_with(alone), many = run_with(beside);
+  const oblique::solve::Run one = run_with(alone), many = run_with(beside);
   EXPECT_NEAR(static_cast<double>(many.statistics.steps), static_cast<double>(one.statistics.steps),
               0.05 * static_cast<double>(one.statistics.steps));
   for (std::size_t row = 0; row < many.trajectory.rows(); ++row)
@@ -142,4 +142,4 @@ TEST(ErrorNorm, IsNotDilutedByOtherStates) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::solve

@@ -14,7 +14,7 @@
 #include "../support/chain.h"
 #include "../support/runs.h"
 
-namespace oblique {
+namespace oblique::solve {
 namespace {
 
 using testing::chain;
@@ -91,8 +91,8 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST_P(ChainRun, GoesOnFromManySurfacesAtOnce) {
   constexpr double kUntil = 7;
-  BlockLibrary library = shipped_blocks_and("own", kOwnMagnitude);
-  library.add(parse_block(
+  diagram::BlockLibrary library = shipped_blocks_and("own", kOwnMagnitude);
+  library.add(diagram::parse_block(
       "format = \"oblique-block/1\"\ntitle = \"Rectifier\"\n[inputs]\nin = {}\n[outputs]\nout = {}\n"
       "[equations]\nout = \"max(in, 0)\"\n",
       "rectifier.toml", "rectifier"));
@@ -187,4 +187,4 @@ TEST(BendsAtOnce, RestWhileOneOfThemSlides) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::solve

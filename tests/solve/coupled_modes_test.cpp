@@ -10,14 +10,14 @@
 
 #include <Eigen/Eigenvalues>
 
-#include <oblique/solve/coupled_modes.h>
+#include <oblique/solve/stability/coupled_modes.h>
 
-namespace oblique {
+namespace oblique::solve {
 namespace {
 
 /// A full pattern: which elements act is said by the zeros.
-SparsePattern full_pattern(int n) {
-  SparsePattern pattern;
+network::SparsePattern full_pattern(int n) {
+  network::SparsePattern pattern;
   for (int column = 1; column <= n; ++column) pattern.column_starts.push_back(column * n);
   for (int k = 0; k < n * n; ++k) pattern.rows.push_back(k % n);
   return pattern;
@@ -40,7 +40,7 @@ std::vector<std::complex<double>> all_of(const std::vector<CoupledModes>& groups
 // One finder for matrices of ever other zeros and ever other states that are let go.
 TEST(CoupledModes, OfAllGroupsAreTheEigenvaluesOfTheMatrix) {
   constexpr int kSize = 5;
-  const SparsePattern pattern = full_pattern(kSize);
+  const network::SparsePattern pattern = full_pattern(kSize);
   ModeFinder finder(pattern);
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> value(-1, 1);
@@ -68,7 +68,7 @@ TEST(CoupledModes, OfAllGroupsAreTheEigenvaluesOfTheMatrix) {
 }
 
 TEST(CoupledModes, OfTwoStatesAreExact) {
-  const SparsePattern pattern = full_pattern(2);
+  const network::SparsePattern pattern = full_pattern(2);
   const auto modes = [&](double a, double b, double c, double d) {
     return all_of(ModeFinder(pattern).find(std::vector{a, c, b, d}, {true, true}));
   };
@@ -82,4 +82,4 @@ TEST(CoupledModes, OfTwoStatesAreExact) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::solve

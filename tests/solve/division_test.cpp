@@ -8,7 +8,7 @@
 
 #include "../support/runs.h"
 
-namespace oblique {
+namespace oblique::solve {
 namespace {
 
 using testing::Compiled;
@@ -145,4 +145,4 @@ TEST(Divider, IsExactWithAnIdealAmplifier) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::solve

@@ -5,7 +5,7 @@
 
 #include "../support/runs.h"
 
-namespace oblique {
+namespace oblique::solve {
 namespace {
 
 using testing::Compiled;
@@ -13,8 +13,8 @@ using testing::run_of;
 
 std::vector<std::string> warnings_of(const Compiled& made, double until) {
   std::vector<std::string> texts;
-  for (const Diagnostic& warning : run_of(made, {.until = until}).warnings)
-    texts.push_back(to_string(warning));
+  for (const text::Diagnostic& warning : run_of(made, {.until = until}).warnings)
+    texts.push_back(text::to_string(warning));
   return texts;
 }
 
@@ -88,4 +88,4 @@ TEST(EndOfATimeline, IsNotToldWhereItIsMeant) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::solve

@@ -8,7 +8,7 @@
 
 #include "../support/runs.h"
 
-namespace oblique {
+namespace oblique::solve {
 namespace {
 
 using testing::Compiled;
@@ -63,14 +63,15 @@ out = "seen"
 )";
   const std::string event =
       "[[events]]\nwhen = \"exp(-((time - 0.537)/0.001)^2) > 0.5\"\nset = { seen = \"seen + 1\" }\n";
-  const BlockLibrary library = shipped_blocks_and("watch", "check_interval = \"check\"\n" + block + event);
+  const diagram::BlockLibrary library =
+      shipped_blocks_and("watch", "check_interval = \"check\"\n" + block + event);
   const std::string rest = "x = { type = \"integrator\", in = [\"-x\"], initial = 1 }\n";
   const Compiled careful("w = { type = \"watch\", check = 0.0005 }\n" + rest, "", library);
   EXPECT_EQ(row_values(run_of(careful, {.until = 1, .samples = 3}), "w").back(), 1);
 }
 
 TEST(Events, KnownTimesAreMetExactly) {
-  const BlockLibrary library = shipped_blocks_and("pulses", R"([outputs]
+  const diagram::BlockLibrary library = shipped_blocks_and("pulses", R"([outputs]
 out = {}
 [memories]
 next = 0.1
@@ -95,7 +96,7 @@ set = { next = "next + 0.1", high = "1 - high" }
 
 TEST(Events, SecondaryEventsFollowAtTheSameInstant) {
   // A ripple counter of three stages: the eighth pulse sets all back at once.
-  const BlockLibrary library = shipped_blocks_and("stage", R"([inputs]
+  const diagram::BlockLibrary library = shipped_blocks_and("stage", R"([inputs]
 clock = {}
 [outputs]
 out = {}
@@ -127,7 +128,7 @@ c = { type = "stage", clock = "b" }
 
 TEST(Events, SimultaneousEventsSeeTheValuesBefore) {
   // Two blocks exchange their values when both clocks strike.
-  const BlockLibrary library = shipped_blocks_and("take", R"([inputs]
+  const diagram::BlockLibrary library = shipped_blocks_and("take", R"([inputs]
 clock = {}
 in = {}
 [outputs]
@@ -157,7 +158,7 @@ b = { type = "take", clock = "clock", in = "a", initial = 5 })",
 
 TEST(Events, ALoopThroughALimiterIsSolvedInEachOfItsModes) {
   // l = clip(u − 2 l, ±0.2) with u = cos t: l = u/3 within ±0.6, else ±0.2.
-  const BlockLibrary library = shipped_blocks_and(
+  const diagram::BlockLibrary library = shipped_blocks_and(
       "lim", "[inputs]\nin = {}\n[outputs]\nout = {}\n[equations]\nout = \"clip(in, -0.2, 0.2)\"\n");
   const Compiled made(R"(x = { type = "integrator", in = ["y"], initial = 1 }
 y = { type = "integrator", in = ["-x"] }
@@ -182,9 +183,10 @@ TEST(Events, ALoopWithoutAnAgreeingModeIsRefusedByName) {
 // --------------------------------------------------------------------------------------------------------
 
 TEST(Events, ATableIsFollowedAcrossItsPoints) {
-  const BlockLibrary library = shipped_blocks_and("fg",
-                                                  "[inputs]\nin = {}\n[outputs]\nout = {}\n[equations]\nout "
-                                                  "= \"table(in, -1, 0.5, 0, 0, 0.25, 1, 1, -1)\"\n");
+  const diagram::BlockLibrary library =
+      shipped_blocks_and("fg",
+                         "[inputs]\nin = {}\n[outputs]\nout = {}\n[equations]\nout "
+                         "= \"table(in, -1, 0.5, 0, 0, 0.25, 1, 1, -1)\"\n");
   const Compiled made(R"(x = { type = "integrator", in = ["y"], initial = 1 }
 y = { type = "integrator", in = ["-x"] }
 x15 = { type = "summer", in = ["1.5*x"] }
@@ -200,4 +202,4 @@ f = { type = "fg", in = "x15" })",
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::solve

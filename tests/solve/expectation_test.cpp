@@ -8,7 +8,7 @@
 
 #include "../support/runs.h"
 
-namespace oblique {
+namespace oblique::solve {
 namespace {
 
 using testing::Compiled;
@@ -69,24 +69,25 @@ TEST(Expectations, RefuseATimeOutsideOfAShorterRun) {
   const Compiled made(kCircle,
                       "[run]\nuntil = 4\n[expect]\n\"x at 3\" = { value = 0, within = 9 }\n"
                       "\"y at 1\" = { value = 0, within = 9 }\n");
-  EXPECT_EQ(message_of<DiagramError>([&] { expectation_times(made.diagram, 2); }),
+  EXPECT_EQ(message_of<diagram::DiagramError>([&] { expectation_times(made.diagram, 2); }),
             "d.toml:8:1: 'x at 3' is at t = 3 s, outside the run; expected a time from 0 to 2 s\n"
             "  remedy: let the run last longer ('until' of [run], or --until)");
 }
 
 TEST(Expectations, RefuseAnUnknownOutputAndSuggestOne) {
   const Compiled made(kCircle, "[outputs]\nheight = \"y\"\n");
-  Diagram changed = made.diagram;
-  Expectation wrong;
+  diagram::Diagram changed = made.diagram;
+  diagram::Expectation wrong;
   wrong.text = "heigth maximum";
   wrong.output = "heigth";
-  wrong.kind = Expectation::Kind::maximum;
+  wrong.kind = diagram::Expectation::Kind::maximum;
   wrong.place = {"d.toml", {9, 1}};
   changed.expectations = {wrong};
-  const std::string message = message_of<DiagramError>([&] { check_expectations(changed, run_of(made)); });
+  const std::string message =
+      message_of<diagram::DiagramError>([&] { check_expectations(changed, run_of(made)); });
   EXPECT_THAT(message, HasSubstr("d.toml:9:1: 'heigth maximum': there is no output 'heigth'"));
   EXPECT_THAT(message, HasSubstr("did you mean 'height'?"));
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::solve

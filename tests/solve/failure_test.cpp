@@ -7,7 +7,7 @@
 
 #include "../support/runs.h"
 
-namespace oblique {
+namespace oblique::solve {
 namespace {
 
 using testing::Compiled;
@@ -16,7 +16,7 @@ using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
 testing::RunFailure failure(const std::string& blocks, const testing::Request& request = {},
-                            const BlockLibrary& library = testing::shipped_blocks()) {
+                            const diagram::BlockLibrary& library = testing::shipped_blocks()) {
   const auto found = failure_of(Compiled(blocks, "", library), request);
   if (!found) throw std::runtime_error("the run did not fail");
   return *found;
@@ -154,7 +154,7 @@ slow = { type = "integrator", in = ["-1e-12*slow"], initial = 1 }
 }
 
 TEST(NotFinite, SignalAtTheStart) {
-  const BlockLibrary library = testing::shipped_blocks_and(
+  const diagram::BlockLibrary library = testing::shipped_blocks_and(
       "inverse", "[inputs]\nin = {}\n[outputs]\nout = {}\n[equations]\nout = \"1/in\"\n");
   const auto f = failure(
       "x = { type = \"integrator\", in = [\"-x\"] }\nv = { type = \"inverse\", in = \"x\" }\n", {}, library);
@@ -166,7 +166,7 @@ TEST(NotFinite, SignalAtTheStart) {
 }
 
 TEST(NotFinite, DerivativeAtTheStart) {
-  const BlockLibrary library = testing::shipped_blocks_and(
+  const diagram::BlockLibrary library = testing::shipped_blocks_and(
       "slope", "[outputs]\nout = {}\n[equations]\n\"der(out)\" = \"1/out\"\n[start]\nout = \"0\"\n");
   const auto f = failure("x = { type = \"slope\" }\n", {}, library);
   EXPECT_EQ(f.kind, SolveError::Kind::blow_up);
@@ -229,4 +229,4 @@ TEST(StepBudget, OfExactlyTheStepsNeededIsEnough) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::solve

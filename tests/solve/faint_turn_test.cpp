@@ -8,7 +8,7 @@
 
 #include "../support/runs.h"
 
-namespace oblique {
+namespace oblique::solve {
 namespace {
 
 using ::testing::IsEmpty;
@@ -24,7 +24,7 @@ c = { type = "comparator", in = "-x" }
     RunOptions options;
     options.until = 0.5;  // 500 τ: e^(−500) = 7e-218
     options.tolerance = tolerance;
-    const auto found = oblique::run(made.program, made.flat, options);
+    const auto found = oblique::solve::run(made.program, made.flat, options);
     const std::size_t last = found.trajectory.rows() - 1;
     EXPECT_NEAR(found.trajectory.at(last, 1), 0, 1e-15) << tolerance;
     EXPECT_EQ(found.trajectory.at(last, 2), 0) << tolerance;
@@ -56,7 +56,7 @@ struct Counted {
     options.until = until;
     options.tolerance = tolerance;
     options.on_restart = [this] { ++restarts; };
-    run = oblique::run(made.program, made.flat, options);
+    run = oblique::solve::run(made.program, made.flat, options);
   }
   int restarts = 0;
   Run run;
@@ -96,4 +96,4 @@ TEST(FaintTurn, WithoutAnEffectIsNoMatter) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::solve

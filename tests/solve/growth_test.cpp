@@ -8,7 +8,7 @@
 
 #include "../support/runs.h"
 
-namespace oblique {
+namespace oblique::solve {
 namespace {
 
 using testing::Compiled;
@@ -29,7 +29,7 @@ TEST(UnseenGrowth, IsSeenBySecondTry) {
   for (const char* const start : {"1e-5", "1e-9", "1e-11", "1e-20", "1e-100", "-1e-200"}) {
     const double first = std::stod(start);
     const double until = first < 0 ? 400 : std::log(1 / first) + 10;
-    const oblique::Run result = run_of(Compiled(logistic(start)), {.until = until});
+    const oblique::solve::Run result = run_of(Compiled(logistic(start)), {.until = until});
     EXPECT_TRUE(result.warnings.empty()) << start;
     const auto t = row_values(result, "t"), x = row_values(result, "x");
     for (std::size_t k = 0; k < t.size(); ++k)
@@ -38,7 +38,7 @@ TEST(UnseenGrowth, IsSeenBySecondTry) {
 }
 
 TEST(UnseenGrowth, LeavesAnEquilibriumThatIsMetExactly) {
-  const oblique::Run result = run_of(Compiled(logistic("0")), {.until = 100});
+  const oblique::solve::Run result = run_of(Compiled(logistic("0")), {.until = 100});
   EXPECT_TRUE(result.warnings.empty());
   EXPECT_EQ(row_values(result, "x").back(), 0);
   EXPECT_LT(result.statistics.steps, 10);
@@ -46,7 +46,7 @@ TEST(UnseenGrowth, LeavesAnEquilibriumThatIsMetExactly) {
 
 // x″ = x from x = 0, x′ = 1e-11: neither state grows alone. x = 1e-11 sinh t.
 TEST(UnseenGrowth, IsSeenInPairs) {
-  const oblique::Run result =
+  const oblique::solve::Run result =
       run_of(Compiled("x = { type = \"integrator\", in = [\"y\"] }\n"
                       "y = { type = \"integrator\", in = [\"x\"], initial = 1e-11 }\n"),
              {.until = 25});
@@ -57,7 +57,7 @@ TEST(UnseenGrowth, IsSeenInPairs) {
 
 // x′ = −a cos(ω t) x: x = exp(−(a/ω) sin ω t) falls to 3e-17, far below the tolerance, and comes back to 1.
 TEST(UnseenGrowth, IsSeenWhereAStateFellBelowTheToleranceDuringTheRun) {
-  const oblique::Run result =
+  const oblique::solve::Run result =
       run_of(Compiled(R"toml(a = { type = "time-function", formula = "-cos(2*pi*time/60)*4" }
 ax = { type = "multiplier", in = ["a", "x"] }
 x = { type = "integrator", in = ["ax"], initial = 1 }
@@ -75,11 +75,11 @@ x = { type = "integrator", in = ["ax"], initial = 1 }
 // at 1e-13 on the logarithms of both, 5e-9 of it from one tolerance to the other. Without a second try x
 // turns negative, and the run ends at −4e11.
 TEST(UnseenGrowth, IsSeenWhereStatesFallInTurn) {
-  const oblique::Run result = run_of(Compiled(R"toml(xy = { type = "multiplier", in = ["x", "y"] }
+  const oblique::solve::Run result = run_of(Compiled(R"toml(xy = { type = "multiplier", in = ["x", "y"] }
 x = { type = "integrator", in = ["x", "-xy"], initial = 20 }
 y = { type = "integrator", in = ["-y", "xy"], initial = 20 }
 )toml"),
-                                     {.until = 60, .samples = 61});
+                                            {.until = 60, .samples = 61});
   EXPECT_TRUE(result.warnings.empty());
   EXPECT_NEAR(row_values(result, "x").back() / 4.61143821e-09, 1, 1e-6);
   EXPECT_NEAR(row_values(result, "y").back() / 3.68505932e-07, 1, 1e-6);
@@ -101,9 +101,9 @@ x = { type = "integrator", in = ["e", "-ee"], initial = 1.00000000001 }
     ++restarts;
     rows = 0;
   };
-  const oblique::Run result = run(made.program, made.flat, options);
+  const oblique::solve::Run result = run(made.program, made.flat, options);
   ASSERT_EQ(result.warnings.size(), 1);
-  const std::string text = to_string(result.warnings.front());
+  const std::string text = text::to_string(result.warnings.front());
   EXPECT_THAT(text, HasSubstr("d.toml: 'x' grew until t = "));
   EXPECT_THAT(text,
               HasSubstr("machine units of an unstable equilibrium: too near for the finest tolerance, so "
@@ -148,7 +148,7 @@ constexpr const char* kShowY = "[outputs]\ny = \"y\"\n";
 TEST(SmallStates, AreKnownWhereAnOutputShowsThem) {
   for (const int digits : {6, 9, 12, 15, 40, 200}) {
     const std::string power = std::to_string(digits);
-    const oblique::Run result =
+    const oblique::solve::Run result =
         run_of(Compiled(small_oscillator("1e-" + power, "1e" + power), kShowY), {.until = 30});
     EXPECT_TRUE(result.warnings.empty()) << digits;
     const auto t = row_values(result, "t"), y = row_values(result, "y");
@@ -159,7 +159,7 @@ TEST(SmallStates, AreKnownWhereAnOutputShowsThem) {
 }
 
 TEST(SmallStates, AreLeftAloneWhereNothingShowsThem) {
-  const oblique::Run shown = run_of(Compiled(small_oscillator("1e-15", "1"), kShowY), {.until = 30});
+  const oblique::solve::Run shown = run_of(Compiled(small_oscillator("1e-15", "1"), kShowY), {.until = 30});
   EXPECT_TRUE(shown.warnings.empty());
   EXPECT_LT(shown.statistics.steps, 50);
 }
@@ -169,13 +169,14 @@ TEST(SmallStates, AreKnownWhereAComparisonDependsOnThem) {
   const Compiled made(
       small_oscillator("1e-11", "1") +
       "c = { type = \"comparator\", in = \"x\" }\ni = { type = \"integrator\", in = \"c\" }\n");
-  const oblique::Run result = run_of(made, {.until = 4 * std::numbers::pi});
+  const oblique::solve::Run result = run_of(made, {.until = 4 * std::numbers::pi});
   // High for half of each turn. A comparison of states is met to 1e-13, one percent of a radian here.
   EXPECT_NEAR(row_values(result, "i").back(), 2 * std::numbers::pi, 4e-2);
 }
 
 TEST(SmallStates, AreToldOfWhereNoToleranceIsFineEnough) {
-  const oblique::Run result = run_of(Compiled(small_oscillator("1e-295", "1e295"), kShowY), {.until = 30});
+  const oblique::solve::Run result =
+      run_of(Compiled(small_oscillator("1e-295", "1e295"), kShowY), {.until = 30});
   ASSERT_EQ(result.warnings.size(), 2U);
   EXPECT_EQ(
       result.warnings[1].what,
@@ -185,4 +186,4 @@ TEST(SmallStates, AreToldOfWhereNoToleranceIsFineEnough) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::solve

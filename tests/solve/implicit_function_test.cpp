@@ -8,7 +8,7 @@
 
 #include "../support/runs.h"
 
-namespace oblique {
+namespace oblique::solve {
 namespace {
 
 using testing::Compiled;
@@ -139,7 +139,7 @@ double end_of(const Circuit& circuit, const std::string& parameters) {
   for (auto at = blocks.find('@'); at != std::string::npos; at = blocks.find('@'))
     blocks.replace(at, 1, parameters);
   const Run result = run_of(Compiled(blocks), {.until = circuit.until, .samples = 201});
-  EXPECT_TRUE(result.warnings.empty()) << to_string(result.warnings.front());
+  EXPECT_TRUE(result.warnings.empty()) << text::to_string(result.warnings.front());
   return row_values(result, circuit.signal).back();
 }
 
@@ -154,4 +154,4 @@ TEST_P(ImplicitFunction, IsSolvedByEveryAmplifier) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::solve

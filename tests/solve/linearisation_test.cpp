@@ -5,11 +5,11 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <oblique/solve/linearisation.h>
+#include <oblique/solve/stability/linearisation.h>
 
 #include "../support/runs.h"
 
-namespace oblique {
+namespace oblique::solve {
 namespace {
 
 using testing::Compiled;
@@ -22,7 +22,7 @@ double share_of(const Mode& mode, std::size_t state) {
 }
 
 std::vector<Mode> modes_at_start(const Compiled& made) {
-  Workspace workspace(made.program);
+  network::Workspace workspace(made.program);
   const auto linear = Linearisation::at(made.program, workspace, {0, made.program.start()});
   std::vector<Mode> modes;
   for (const auto& group : coupled_groups(made.program)) {
@@ -100,4 +100,4 @@ v   = { type = "integrator", in = ["-x"] }
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::solve

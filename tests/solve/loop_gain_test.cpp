@@ -5,9 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include <oblique/solve/loop_gain.h>
+#include <oblique/solve/stability/loop_gain.h>
 
-namespace oblique {
+namespace oblique::solve {
 namespace {
 
 double degrees(double radians) {
@@ -76,4 +76,4 @@ TEST(OpenLoops, ThreeLagsLoseTheirMarginAtAGainOfEight) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::solve

@@ -7,7 +7,7 @@
 
 #include "../support/runs.h"
 
-namespace oblique {
+namespace oblique::solve {
 namespace {
 
 using testing::Compiled;
@@ -72,4 +72,4 @@ TEST(Machine, Tr10OffsetIsAmplifiedByTheNoiseGain) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::solve

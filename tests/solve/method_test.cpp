@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/solve/method.h>
+#include <oblique/solve/integrator/method.h>
 
 #include <cmath>
 #include <numbers>
@@ -9,15 +9,16 @@
 
 #include "../support/runs.h"
 
-namespace oblique {
+namespace oblique::solve {
 namespace {
 
 using testing::Compiled;
 using ::testing::HasSubstr;
 
-MethodChoice choice_for(const Compiled& made, IntegrationMethod asked = IntegrationMethod::automatic,
+MethodChoice choice_for(const Compiled& made,
+                        diagram::IntegrationMethod asked = diagram::IntegrationMethod::automatic,
                         double until = 1) {
-  Workspace workspace(made.program);
+  network::Workspace workspace(made.program);
   return choose_method(asked, made.program, workspace, 0, made.program.start(), until);
 }
 
@@ -31,27 +32,27 @@ std::string ring(double rate) {
 
 TEST(ChooseMethod, TakesAdamsForAnOscillator) {
   const MethodChoice choice = choice_for(Compiled(ring(3)));
-  EXPECT_EQ(choice.method, IntegrationMethod::adams);
+  EXPECT_EQ(choice.method, diagram::IntegrationMethod::adams);
   EXPECT_THAT(choice.reason, HasSubstr("the fastest mode at the start oscillates, at 3 rad/s"));
 }
 
 TEST(ChooseMethod, TakesBdfForServoLoops) {
   const MethodChoice choice =
       choice_for(Compiled(ring(1) + "q = { type = \"servo-amplifier\", in = [\"q\", \"-x\"] }\n"));
-  EXPECT_EQ(choice.method, IntegrationMethod::bdf);
+  EXPECT_EQ(choice.method, diagram::IntegrationMethod::bdf);
   EXPECT_EQ(choice.reason, "1 servo loop is faster than what it follows");
 }
 
 TEST(ChooseMethod, TakesBdfForADecayThatIsFastBesideTheRest) {
   const MethodChoice choice = choice_for(
       Compiled(ring(1) + "d = { type = \"integrator\", in = [\"-d\"], initial = 1, rate = 1000 }\n"));
-  EXPECT_EQ(choice.method, IntegrationMethod::bdf);
+  EXPECT_EQ(choice.method, diagram::IntegrationMethod::bdf);
   EXPECT_THAT(choice.reason, HasSubstr("a decay of 1e+03 1/s at the start, beside what moves at 1 1/s"));
 }
 
 TEST(ChooseMethod, TakesAdamsWhereNothingIsFast) {
   EXPECT_EQ(choice_for(Compiled("d = { type = \"integrator\", in = [\"-d\"], initial = 1 }\n")).method,
-            IntegrationMethod::adams);
+            diagram::IntegrationMethod::adams);
 }
 
 // The lag follows a sine of the clock: besides its own rate there is only that of the clock, zero.
@@ -61,10 +62,11 @@ phi = { type = "integrator", in = ["one"] }
 s = { type = "sine", in = "phi" }
 lag = { type = "integrator", in = ["1e5*s", "-1e5*lag"] }
 )toml");
-  const MethodChoice choice = choice_for(made, IntegrationMethod::automatic, 100);
-  EXPECT_EQ(choice.method, IntegrationMethod::bdf);
+  const MethodChoice choice = choice_for(made, diagram::IntegrationMethod::automatic, 100);
+  EXPECT_EQ(choice.method, diagram::IntegrationMethod::bdf);
   EXPECT_EQ(choice.reason, "a decay of 1e+05 1/s at the start of a run of 100 s");
-  EXPECT_EQ(choice_for(made, IntegrationMethod::automatic, 1e-3).method, IntegrationMethod::adams);
+  EXPECT_EQ(choice_for(made, diagram::IntegrationMethod::automatic, 1e-3).method,
+            diagram::IntegrationMethod::adams);
   // with Adams this run takes some 1e7 steps
   EXPECT_LT(testing::run_of(made, {.until = 100}).statistics.steps, 20'000);
 }
@@ -81,8 +83,8 @@ z = { type = "integrator", in = ["xy", "-2.6*z"] }
 mean = { type = "integrator", in = ["x"], rate = 1e-3 }
 mean_of_mean = { type = "integrator", in = ["mean"], rate = 1e-3 }
 )toml"),
-                 IntegrationMethod::automatic, 1e4);
-  EXPECT_EQ(choice.method, IntegrationMethod::adams);
+                 diagram::IntegrationMethod::automatic, 1e4);
+  EXPECT_EQ(choice.method, diagram::IntegrationMethod::adams);
   EXPECT_EQ(choice.reason, "nothing is fast at the start");
 }
 
@@ -94,9 +96,10 @@ TEST(ChooseMethod, TakesAChainOfIntegratorsForNoMotion) {
     blocks += "q" + std::to_string(k) + " = { type = \"integrator\", in = [\"" +
               (k == 0 ? std::string("d") : "q" + std::to_string(k - 1)) + "\"] }\n";
   }
-  EXPECT_EQ(choice_for(Compiled(blocks), IntegrationMethod::automatic, 10).reason,
+  EXPECT_EQ(choice_for(Compiled(blocks), diagram::IntegrationMethod::automatic, 10).reason,
             "nothing is fast at the start");
-  EXPECT_EQ(choice_for(Compiled(blocks), IntegrationMethod::automatic, 1000).method, IntegrationMethod::bdf);
+  EXPECT_EQ(choice_for(Compiled(blocks), diagram::IntegrationMethod::automatic, 1000).method,
+            diagram::IntegrationMethod::bdf);
 }
 
 // A damped oscillation is a decay where it is over after two turns; as fast as that it is left to BDF.
@@ -105,10 +108,10 @@ TEST(ChooseMethod, TakesStrongDampingForADecay) {
     return ring(1) + "v = { type = \"integrator\", in = [\"-p\", \"-" + damping + "*v\"], rate = 1000 }\n" +
            "p = { type = \"integrator\", in = [\"v\"], initial = 1, rate = 1000 }\n";
   };
-  EXPECT_EQ(choice_for(Compiled(beside_ring("1.4")), IntegrationMethod::automatic, 10).reason,
+  EXPECT_EQ(choice_for(Compiled(beside_ring("1.4")), diagram::IntegrationMethod::automatic, 10).reason,
             "a decay of 1e+03 1/s at the start, beside what moves at 1 1/s");
-  EXPECT_EQ(choice_for(Compiled(beside_ring("0.1")), IntegrationMethod::automatic, 10).method,
-            IntegrationMethod::adams);
+  EXPECT_EQ(choice_for(Compiled(beside_ring("0.1")), diagram::IntegrationMethod::automatic, 10).method,
+            diagram::IntegrationMethod::adams);
 }
 
 TEST(ChooseMethod, TakesBdfWhereItCannotLook) {
@@ -118,33 +121,33 @@ TEST(ChooseMethod, TakesBdfWhereItCannotLook) {
               std::to_string((k + 1) % 201) + "\"], initial = 1 }\n";
   }
   const MethodChoice choice = choice_for(Compiled(blocks));
-  EXPECT_EQ(choice.method, IntegrationMethod::bdf);
+  EXPECT_EQ(choice.method, diagram::IntegrationMethod::bdf);
   EXPECT_EQ(choice.reason, "201 states that act on each other, too many to look for fast ones");
 }
 
 TEST(ChooseMethod, ObeysTheDiagram) {
   const Compiled made(ring(1));
-  EXPECT_EQ(choice_for(made, IntegrationMethod::bdf).method, IntegrationMethod::bdf);
-  EXPECT_EQ(choice_for(made, IntegrationMethod::adams).reason, "as the diagram asks");
+  EXPECT_EQ(choice_for(made, diagram::IntegrationMethod::bdf).method, diagram::IntegrationMethod::bdf);
+  EXPECT_EQ(choice_for(made, diagram::IntegrationMethod::adams).reason, "as the diagram asks");
 }
 
 // The amplitude is a conserved quantity of x″ = −x. What a method leaves of it after 1000 turns is that
 // method's own error: at a tolerance of 10⁻⁸ BDF damps by 5·10⁻⁶, and Adams must keep it to 10⁻⁶.
 TEST(Circle, KeepsItsAmplitudeByMethod) {
   const Compiled made(ring(1));
-  const auto amplitude = [&](IntegrationMethod method) {
+  const auto amplitude = [&](diagram::IntegrationMethod method) {
     RunOptions options;
     options.until = 2000 * std::numbers::pi;
     options.samples = 2;
     options.method = method;
-    const oblique::Run result = oblique::run(made.program, made.flat, options);
+    const oblique::solve::Run result = oblique::solve::run(made.program, made.flat, options);
     return std::hypot(result.trajectory.at(1, 1), result.trajectory.at(1, 2));
   };
-  EXPECT_NEAR(amplitude(IntegrationMethod::adams), 1, 1e-6);
-  const double bdf = amplitude(IntegrationMethod::bdf);
+  EXPECT_NEAR(amplitude(diagram::IntegrationMethod::adams), 1, 1e-6);
+  const double bdf = amplitude(diagram::IntegrationMethod::bdf);
   EXPECT_NEAR(bdf, 1, 1e-4);
   EXPECT_LT(bdf, 1 - 1e-6);  // it is BDF indeed
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::solve

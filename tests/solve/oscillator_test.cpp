@@ -7,7 +7,7 @@
 
 #include "../support/runs.h"
 
-namespace oblique {
+namespace oblique::solve {
 namespace {
 
 using testing::Compiled;
@@ -101,4 +101,4 @@ y = { type = "integrator", in = ["-x"], initial = 0 }
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::solve

@@ -8,7 +8,7 @@
 
 #include "../support/runs.h"
 
-namespace oblique {
+namespace oblique::solve {
 namespace {
 
 using std::numbers::pi;
@@ -115,4 +115,4 @@ TEST(Overload, WatchingDoesNotChangeTheRun) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::solve

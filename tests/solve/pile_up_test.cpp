@@ -9,7 +9,7 @@
 
 #include "../support/runs.h"
 
-namespace oblique {
+namespace oblique::solve {
 namespace {
 
 using testing::Compiled;
@@ -49,7 +49,7 @@ double impact_time(int k, double h, double e, double g) {
 }
 
 TEST(PileUp, BouncingBallMeetsTheTwentiethImpact) {
-  const BlockLibrary library = shipped_blocks_and("ball", kBall);
+  const diagram::BlockLibrary library = shipped_blocks_and("ball", kBall);
   const Compiled made("b = { type = \"ball\" }", "", library);
   const auto result = run_of(made, {.until = 8.2, .tolerance = 1e-10, .samples = 11});
   ASSERT_GE(result.events.size(), 20U);
@@ -64,7 +64,7 @@ TEST(PileUp, BouncingBallMeetsTheTwentiethImpact) {
 }
 
 TEST(PileUp, BallThatPilesUpIsEndedByName) {
-  const BlockLibrary library = shipped_blocks_and("ball", kBall);
+  const diagram::BlockLibrary library = shipped_blocks_and("ball", kBall);
   const Compiled made("b = { type = \"ball\", e = 0.5 }", "", library);
   const std::string message = message_of<SolveError>([&] { run_of(made, {.until = 5}); });
   EXPECT_THAT(message, HasSubstr("the events of 'b' come ever faster"));
@@ -76,7 +76,7 @@ TEST(PileUp, BallThatPilesUpIsEndedByName) {
                 "'set' in its [[events]]"));
 }
 
-BlockLibrary library_with_resting_ball() {
+diagram::BlockLibrary library_with_resting_ball() {
   std::string resting = kBall;
   resting.replace(resting.find("count = 0\n"), 10, "count = 0\nrests = 0\n");
   resting.replace(resting.find("\"-g\""), 4, "\"if(rests == 1, 0, -g)\"");
@@ -86,7 +86,7 @@ BlockLibrary library_with_resting_ball() {
 // A block that says what comes after rests there: to what is left of its bounces, 1e-5 of the run, and a
 // speed of g times that, half of a flight.
 TEST(PileUp, BallThatPilesUpGoesOverIntoWhatItsBlockSays) {
-  const BlockLibrary library = library_with_resting_ball();
+  const diagram::BlockLibrary library = library_with_resting_ball();
   const Compiled made("b = { type = \"ball\", e = 0.5 }", "", library);
   const auto result = run_of(made, {.until = 5, .tolerance = 1e-10, .samples = 501});
   ASSERT_FALSE(result.events.empty());
@@ -106,7 +106,7 @@ TEST(PileUp, BallThatPilesUpGoesOverIntoWhatItsBlockSays) {
 // Where each flight is a tenth of the one before, the seventh is within the errors of the height: it rests
 // before that.
 TEST(PileUp, BallThatPilesUpQuicklyDoesNotFallThroughTheFloor) {
-  const BlockLibrary library = library_with_resting_ball();
+  const diagram::BlockLibrary library = library_with_resting_ball();
   for (const double e : {0.05, 0.1, 0.25, 0.3}) {
     const Compiled made(fmt::format("b = {{ type = \"ball\", e = {} }}", e), "", library);
     for (const double tolerance : {1e-6, 1e-8}) {
@@ -124,7 +124,7 @@ TEST(PileUp, BallThatPilesUpQuicklyDoesNotFallThroughTheFloor) {
 struct Heights {
   double least = 0, last = 0;
 };
-Heights heights_of(const oblique::Run& result) {
+Heights heights_of(const oblique::solve::Run& result) {
   Heights heights;
   for (std::size_t row = 0; row < result.trajectory.rows(); ++row)
     heights.least = std::min(heights.least, heights.last = result.trajectory.at(row, 1));
@@ -133,7 +133,7 @@ Heights heights_of(const oblique::Run& result) {
 
 // Wherever the run is cut in two, also so late that no more flights are left than tell of a pile-up.
 TEST(PileUp, IsSeenInARunThatGoesOn) {
-  const BlockLibrary library = library_with_resting_ball();
+  const diagram::BlockLibrary library = library_with_resting_ball();
   for (const double e : {0.6, 0.9}) {
     const Compiled made(fmt::format("b = {{ type = \"ball\", e = {}, g = 2.5 }}", e), "", library);
     const double rest = impact_time(400, 1, e, 2.5);
@@ -155,13 +155,13 @@ TEST(PileUp, IsSeenInARunThatGoesOn) {
 // A ball that lies on the floor from the start falls no deeper; one that is only pressed against it does not
 // either, and where the block does not say what it does there, the run ends.
 TEST(PileUp, OfFlightsOfNoLengthIsSeenAtOnce) {
-  const BlockLibrary balls = library_with_resting_ball();
+  const diagram::BlockLibrary balls = library_with_resting_ball();
   const Compiled lying("b = { type = \"ball\", height = 0 }", "", balls);
   const Heights heights = heights_of(run_of(lying));
   EXPECT_EQ(heights.least, 0);
   EXPECT_EQ(heights.last, 0);
 
-  const BlockLibrary library = shipped_blocks_and("stop", R"toml([inputs]
+  const diagram::BlockLibrary library = shipped_blocks_and("stop", R"toml([inputs]
 in = {}
 [outputs]
 x = {}
@@ -185,7 +185,7 @@ set = { x = 1 }
 // What is set may also end what led to it: then nothing comes again, and put on its level the state is not
 // above it, also where it leaves that level no faster than its third power.
 TEST(PileUp, IsNotWhereASetStateStays) {
-  const BlockLibrary library = shipped_blocks_and("stop", R"toml([inputs]
+  const diagram::BlockLibrary library = shipped_blocks_and("stop", R"toml([inputs]
 in = {}
 [outputs]
 x = {}
@@ -220,4 +220,4 @@ set = { stuck = 0 }
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::solve

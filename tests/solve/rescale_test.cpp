@@ -10,14 +10,14 @@
 
 #include "../support/runs.h"
 
-namespace oblique {
+namespace oblique::solve {
 namespace {
 
 using testing::Compiled;
 using ::testing::HasSubstr;
 using testing::shipped_blocks;
 
-Run watched(const Program& program, const FlatDiagram& flat, double until) {
+Run watched(const network::Program& program, const diagram::FlatDiagram& flat, double until) {
   RunOptions options;
   options.until = until;
   options.tolerance = 1e-10;
@@ -32,17 +32,19 @@ struct Rescaled {
   std::vector<OverloadRecord> overloads;
 };
 
-Rescaled rescaled(const Compiled& made, double until, const BlockLibrary& library = shipped_blocks()) {
-  const FlatDiagram free = without_saturation(made.flat);  // how far the signals want to go
-  const auto before = watched(Program(assemble(free)), free, until);
+Rescaled rescaled(const Compiled& made, double until,
+                  const diagram::BlockLibrary& library = shipped_blocks()) {
+  const diagram::FlatDiagram free = diagram::without_saturation(made.flat);  // how far the signals want to go
+  const auto before = watched(network::Program(network::assemble(free)), free, until);
   std::vector<double> peaks;
   for (const Peak& peak : before.peaks) peaks.push_back(peak.value);
-  const Diagram scaled = rescale(made.diagram, made.flat, propose_scaling(made.flat, peaks), library);
+  const diagram::Diagram scaled =
+      diagram::rescale(made.diagram, made.flat, diagram::propose_scaling(made.flat, peaks), library);
   Rescaled result;
-  result.text = write_diagram(scaled);
+  result.text = diagram::write_diagram(scaled);
   // By way of the file, as a user has it.
-  const FlatDiagram flat = flatten(parse_diagram(result.text, "s.toml"), library);
-  const auto after = watched(Program(assemble(flat)), flat, until);
+  const diagram::FlatDiagram flat = diagram::flatten(diagram::parse_diagram(result.text, "s.toml"), library);
+  const auto after = watched(network::Program(network::assemble(flat)), flat, until);
   result.overloads = after.overloads;
   for (std::size_t c = 1; c < before.trajectory.columns().size(); ++c) {
     EXPECT_EQ(before.trajectory.columns()[c].name, after.trajectory.columns()[c].name);
@@ -58,20 +60,20 @@ Rescaled rescaled(const Compiled& made, double until, const BlockLibrary& librar
 
 // Blocks keep their names and places; where a composite had a place, its parts have none.
 TEST(Rescale, KeepsPlacesOfBlocks) {
-  const auto layout_after = [](const std::string& blocks, const std::vector<BlockPlace>& layout) {
-    Diagram diagram = parse_diagram(
+  const auto layout_after = [](const std::string& blocks, const std::vector<diagram::BlockPlace>& layout) {
+    diagram::Diagram diagram = diagram::parse_diagram(
         "format = \"oblique-diagram/1\"\n[blocks]\none = { type = \"constant\" }\n" + blocks, "d");
     diagram.layout = layout;
-    const FlatDiagram flat = flatten(diagram, shipped_blocks());
+    const diagram::FlatDiagram flat = diagram::flatten(diagram, shipped_blocks());
     std::size_t signals = 0;
-    for (const FlatBlock& block : flat.blocks) signals += block.definition->outputs.size();
+    for (const diagram::FlatBlock& block : flat.blocks) signals += block.definition->outputs.size();
     const std::vector<double> peaks(signals, 0.5);
-    return rescale(diagram, flat, propose_scaling(flat, peaks), shipped_blocks()).layout;
+    return diagram::rescale(diagram, flat, diagram::propose_scaling(flat, peaks), shipped_blocks()).layout;
   };
-  const std::vector<BlockPlace> sum{{"a", 3, 4, {}}};
+  const std::vector<diagram::BlockPlace> sum{{"a", 3, 4, {}}};
   EXPECT_EQ(layout_after("a = { type = \"summer\", in = \"one\" }\n", sum), sum);
   EXPECT_EQ(layout_after("a = { type = \"divider\", numerator = \"one\", denominator = \"one\" }\n", sum),
-            std::vector<BlockPlace>{});
+            std::vector<diagram::BlockPlace>{});
 }
 
 // A solver's tolerance of 1e-10 a step over some thousand steps.
@@ -126,7 +128,7 @@ v     = { type = "vector-direction", x = "2*m", y = "p" }
 // What the file leaves open, the machine decides anew: the sum that feeds a multiplier and `exact` must not
 // become real.
 TEST(Rescale, AmplifiersOfAMachineStayAsTheyAre) {
-  const BlockLibrary library =
+  const diagram::BlockLibrary library =
       testing::shipped_blocks_and("squared-sum",
                                   "summary = \"x\"\n[inputs]\nin = { sum = true, doc = \"x\" "
                                   "}\n[outputs]\nout = { wire = \"m\", doc = \"x\" }\n"
@@ -157,7 +159,7 @@ s   = { type = "summer", in = ["5*c"] }
 }
 
 TEST(Rescale, ANonLinearBlockWithItsOwnGainIsFedLess) {
-  const BlockLibrary library = testing::shipped_blocks_and(
+  const diagram::BlockLibrary library = testing::shipped_blocks_and(
       "root",
       "summary = \"Twice the root.\"\n[inputs]\nx = { doc = \"x\" }\n[outputs]\nout = { doc = \"out\" }\n"
       "[equations]\nout = \"2*sqrt(x)\"\n");
@@ -191,7 +193,7 @@ TEST(Rescale, ARingOfProductsTakesThePeaks) {
 a = { type = "multiplier", in = ["u", "b"] }
 b = { type = "multiplier", in = ["u", "a"] }
 )toml");
-  const AmplitudeScaling scaling = propose_scaling(made.flat, std::vector<double>{1, 4, 4});
+  const diagram::AmplitudeScaling scaling = diagram::propose_scaling(made.flat, std::vector<double>{1, 4, 4});
   // b is fed from a, which is fed from b: by its peak, 1/5.
   EXPECT_EQ(scaling[1].outputs[0], 0.2);
   EXPECT_EQ(scaling[2].outputs[0], 0.2);
@@ -199,30 +201,30 @@ b = { type = "multiplier", in = ["u", "a"] }
 
 // What an inverting block gives with inverted inputs is the same, 0 included: a dead zone is laid out.
 TEST(Rescale, AnInvertingDeadZoneStandsOutsideItsComposite) {
-  BlockLibrary library = testing::shipped_blocks_and(
+  diagram::BlockLibrary library = testing::shipped_blocks_and(
       "dead-zone",
       "summary = \"x\"\n[inputs]\nin = { doc = \"x\" }\n[outputs]\nout = { doc = \"x\" }\n"
       "[equations]\nout = \"polarity*(max(in - 2, 0) + min(in + 2, 0))\"\n");
-  library.add(parse_block(
+  library.add(diagram::parse_block(
       "format = \"oblique-block/1\"\ntitle = \"c\"\nsummary = \"c\"\n[inputs]\nin = { doc = \"x\" }\n"
       "[outputs]\nout = { wire = \"s\", doc = \"x\" }\n[blocks]\n"
       "s = { type = \"dead-zone\", in = [\"in\"] }\n",
       "c.toml", "c"));
   const Compiled made("u = { type = \"constant\", value = 0.5 }\nc = { type = \"c\", in = \"u\" }\n",
                       "[machine]\ninverting = true\n", library);
-  EXPECT_EQ(
-      testing::message_of<DiagramError>([&] {
-        rescale(made.diagram, made.flat, propose_scaling(made.flat, std::vector<double>{1, 1}), library);
-      }),
-      "");
+  EXPECT_EQ(testing::message_of<diagram::DiagramError>([&] {
+              diagram::rescale(made.diagram, made.flat,
+                               diagram::propose_scaling(made.flat, std::vector<double>{1, 1}), library);
+            }),
+            "");
 }
 
 TEST(Rescale, SaysWhatCannotStandOutsideItsComposite) {
-  BlockLibrary library = testing::shipped_blocks_and(
+  diagram::BlockLibrary library = testing::shipped_blocks_and(
       "shifted",
       "summary = \"x\"\n[inputs]\nin = { sum = true, doc = \"x\" }\n[outputs]\nout = { doc = \"x\" }\n"
       "[equations]\nout = \"polarity*in^2\"\n");
-  library.add(parse_block(
+  library.add(diagram::parse_block(
       "format = \"oblique-block/1\"\ntitle = \"c\"\nsummary = \"c\"\n[inputs]\nin = { doc = \"x\" }\n"
       "[outputs]\nout = { wire = \"s\", doc = \"x\" }\n[blocks]\n"
       "s = { type = \"shifted\", in = [\"in\"] }\n",
@@ -230,10 +232,12 @@ TEST(Rescale, SaysWhatCannotStandOutsideItsComposite) {
   const Compiled made("u = { type = \"constant\" }\nc = { type = \"c\", in = \"u\" }\n",
                       "[machine]\ninverting = true\n", library);
   const std::vector<double> peaks{1, 1};
-  EXPECT_THAT(testing::message_of<DiagramError>(
-                  [&] { rescale(made.diagram, made.flat, propose_scaling(made.flat, peaks), library); }),
+  EXPECT_THAT(testing::message_of<diagram::DiagramError>([&] {
+                diagram::rescale(made.diagram, made.flat, diagram::propose_scaling(made.flat, peaks),
+                                 library);
+              }),
               HasSubstr("'c.s' cannot stand outside its composite"));
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::solve

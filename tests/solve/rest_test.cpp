@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/solve/rest.h>
+#include <oblique/solve/operating_point/rest.h>
 
 #include <cmath>
 #include <numbers>
@@ -10,7 +10,7 @@
 
 #include "../support/runs.h"
 
-namespace oblique {
+namespace oblique::solve {
 namespace {
 
 using testing::Compiled;
@@ -25,7 +25,7 @@ struct Rested {
 
   explicit Rested(std::string_view blocks)
       : made(blocks), states(made.program.start()), slopes(states.size()) {
-    Workspace workspace(made.program);
+    network::Workspace workspace(made.program);
     bring_to_rest(made.program, workspace, 0, states, "d.toml");
     if (!made.program.derivatives(0, states.data(), slopes.data(), workspace))
       throw std::runtime_error("no slopes");
@@ -120,7 +120,7 @@ TEST(Rest, SettlesGroupAfterGroupWhereAllAtOnceFail) {
   constexpr double kGain = 1e6;
   const Rested at(fmt::format(kTwoDyads, kGain));
   EXPECT_LT(at.residual(kGain), 1e-13);  // as kRounding, with weights of 10
-  Workspace workspace(at.made.program);
+  network::Workspace workspace(at.made.program);
   std::vector<double> signals(at.made.program.n_signals());
   ASSERT_TRUE(at.made.program.signals(0, at.states.data(), signals.data(), workspace));
   // The foot of the height of D on C–R (length 0.88) by Pythagoras.
@@ -252,7 +252,7 @@ TEST(Rest, StartsALoopUnsettledThatOnlyItsLagsHold) {
     EXPECT_NEAR(a[50], 0.00990094, 2e-8);
     ASSERT_EQ(result.warnings.size(), 1U);
     EXPECT_EQ(
-        to_string(result.warnings[0]),
+        text::to_string(result.warnings[0]),
         "d.toml: the run does not start at rest: 'a' at 0 cannot settle before the clock starts, because its "
         "loop closes through 'l', which is held until then; the closed loop is stable, and the run begins "
         "with "
@@ -279,4 +279,4 @@ TEST(Rest, RefusesALoopThatItsLagsDoNotHoldEither) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::solve

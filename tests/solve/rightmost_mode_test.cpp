@@ -7,12 +7,12 @@
 #include <gtest/gtest.h>
 #include <Eigen/Eigenvalues>
 
-#include <oblique/solve/analysis.h>
-#include <oblique/solve/rightmost_modes.h>
+#include <oblique/solve/stability/analysis.h>
+#include <oblique/solve/stability/rightmost_modes.h>
 
 #include "../support/runs.h"
 
-namespace oblique {
+namespace oblique::solve {
 namespace {
 
 using testing::Compiled;
@@ -138,4 +138,4 @@ TEST(RightmostModes, JudgeADiagramOfFiveThousandStates) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::solve

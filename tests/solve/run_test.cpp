@@ -9,12 +9,12 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <oblique/solve/interpolant.h>
-#include <oblique/solve/source_watch.h>
+#include <oblique/solve/integrator/interpolant.h>
+#include <oblique/solve/integrator/source_watch.h>
 
 #include "../support/runs.h"
 
-namespace oblique {
+namespace oblique::solve {
 namespace {
 
 using testing::column_of;
@@ -52,7 +52,7 @@ z = { type = "dead-zone", in = "u", low = -0.5, high = 0.5 }
 q = { type = "squarer", in = "z" }
 x = { type = "integrator", in = ["q"] }
 )toml");
-  const Workspace workspace(made.program);
+  const network::Workspace workspace(made.program);
   const std::string file = "d.toml";
   SourceWatch watch(made.program, workspace, false, file);
   const std::vector<double> states = made.program.start();
@@ -124,7 +124,7 @@ TEST(Run, ScalesOutputsToTheirUnits) {
 }
 
 TEST(Run, EvaluatesADiagramWithoutStates) {
-  const BlockLibrary library =
+  const diagram::BlockLibrary library =
       testing::shipped_blocks_and("clock", "[outputs]\nt = {}\n[equations]\nt = \"time\"\n");
   // q = √(t + 1) by an algebraic loop that each row continues from the last.
   const Compiled made(
@@ -185,8 +185,8 @@ TEST(Run, HoldsStatesToTheAbsoluteToleranceOfTheDiagram) {
   const std::string decay = "x = { type = \"integrator\", in = [\"-x\"], initial = 1 }\n";
   const Compiled coarse(decay, "[run]\nabsolute_tolerance = 10\ntolerance = 1e-3\n");
   const Compiled usual(decay, "[run]\ntolerance = 1e-3\n");
-  const oblique::Run a = run(coarse.program, coarse.flat, options_of(coarse.diagram.run));
-  const oblique::Run b = run(usual.program, usual.flat, options_of(usual.diagram.run));
+  const oblique::solve::Run a = run(coarse.program, coarse.flat, options_of(coarse.diagram.run));
+  const oblique::solve::Run b = run(usual.program, usual.flat, options_of(usual.diagram.run));
   EXPECT_LT(2 * a.statistics.steps, b.statistics.steps);
   EXPECT_NEAR(testing::row_values(b, "x").back(), std::exp(-1.0), 1e-3);
   EXPECT_GT(std::abs(testing::row_values(a, "x").back() - std::exp(-1.0)),
@@ -237,4 +237,4 @@ TEST(Run, GoesToAShortPulseByLongSteps) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::solve

@@ -6,13 +6,13 @@
 
 #include "../support/runs.h"
 
-namespace oblique {
+namespace oblique::solve {
 namespace {
 
 using testing::Compiled;
 using ::testing::HasSubstr;
 
-std::vector<Diagnostic> warnings_of(const std::string& blocks, double until, bool watched = false) {
+std::vector<text::Diagnostic> warnings_of(const std::string& blocks, double until, bool watched = false) {
   const Compiled made(blocks);
   RunOptions options;
   options.until = until;
@@ -69,4 +69,4 @@ TEST(Runaway, OnAMachineAnySignalThatFarOutsideIsSaid) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::solve

@@ -6,11 +6,11 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <oblique/solve/stability.h>
+#include <oblique/solve/stability/stability.h>
 
 #include "../support/runs.h"
 
-namespace oblique {
+namespace oblique::solve {
 namespace {
 
 using testing::Compiled;
@@ -29,9 +29,10 @@ std::string follower(double weight, double gain, const std::string& input) {
 /// The bare equations, from any start.
 class PlainSystem final : public OdeSystem {
  public:
-  PlainSystem(const Program& program, Workspace& workspace) : program_(program), workspace_(workspace) {}
+  PlainSystem(const network::Program& program, network::Workspace& workspace)
+      : program_(program), workspace_(workspace) {}
   std::size_t size() const override { return program_.n_states(); }
-  const SparsePattern& pattern() const override { return program_.jacobian_pattern(); }
+  const network::SparsePattern& pattern() const override { return program_.jacobian_pattern(); }
   bool derivatives(double t, const double* x, double* dxdt) override {
     return program_.derivatives(t, x, dxdt, workspace_);
   }
@@ -40,14 +41,14 @@ class PlainSystem final : public OdeSystem {
   }
 
  private:
-  const Program& program_;
-  Workspace& workspace_;
+  const network::Program& program_;
+  network::Workspace& workspace_;
 };
 
 TEST(ServoAmplifier, AnswersAStepExponentially) {
   constexpr double kWeight = 10, kGain = 5, kU = 0.4, kEnd = 0.002;
   const Compiled made(follower(kWeight, kGain, "u = { type = \"constant\", value = 0.4 }"));
-  Workspace workspace(made.program);
+  network::Workspace workspace(made.program);
   PlainSystem system(made.program, workspace);
   const std::vector<double> zero{0};  // not at rest: the step is at t = 0
   CvodesSolver solver(system, 0, zero, kEnd, kEnd, {1e-10, 1e-10, 100'000});
@@ -106,7 +107,7 @@ TEST(ServoStability, OfOneLoopIsItsPole) {
   for (const double gain : {1.0, 1e3, 1e6}) {
     for (const double weight : {3.0, -3.0}) {
       const Compiled made(follower(weight, gain, "u = { type = \"constant\", value = 0.4 }"));
-      Workspace workspace(made.program);
+      network::Workspace workspace(made.program);
       const std::vector<double> x{0.2};
       const double pole = -(1 + gain * weight) / kTau;
       const double found = servo_stability(made.program, workspace, 0, x);
@@ -122,7 +123,7 @@ TEST(ServoStability, DependsOnWhereTheLoopIs) {
 cc = { type = "multiplier", in = ["c", "c"] }
 c  = { type = "servo-amplifier", in = ["cc", "-u"], gain = 100, initial = 1 }
 )toml");
-  Workspace workspace(made.program);
+  network::Workspace workspace(made.program);
   for (const double c : {-0.5, 0.0, 0.5}) {
     const std::vector<double> x{c};
     EXPECT_NEAR(servo_stability(made.program, workspace, 0, x), -(1 + 200 * c) / kTau, 1e-9) << c;
@@ -136,7 +137,7 @@ TEST(ServoStability, SeesAPairThatRingsUp) {
         fmt::format("a = {{ type = \"servo-amplifier\", in = [\"{}\"], gain = 50 }}\n"
                     "b = {{ type = \"servo-amplifier\", in = [\"{}\"], gain = 50 }}\n",
                     first, second));
-    Workspace workspace(made.program);
+    network::Workspace workspace(made.program);
     const std::vector<double> x{0, 0};
     return servo_stability(made.program, workspace, 0, x);
   };
@@ -146,14 +147,14 @@ TEST(ServoStability, SeesAPairThatRingsUp) {
 
 TEST(ServoStability, FreezesIntegratorsAndIsMinusInfinityWithoutServos) {
   const Compiled grows("x = { type = \"integrator\", in = [\"5*x\"] }\n");
-  Workspace workspace(grows.program);
+  network::Workspace workspace(grows.program);
   const std::vector<double> x{1};
   EXPECT_EQ(servo_stability(grows.program, workspace, 0, x), -std::numeric_limits<double>::infinity());
   // out follows x, x reads out: together they would grow, the loop alone does not.
   const Compiled both(
       "out = { type = \"servo-amplifier\", in = [\"out\", \"-x\"], gain = 10 }\n"
       "x = { type = \"integrator\", in = [\"5*out\"] }\n");
-  Workspace frozen(both.program);
+  network::Workspace frozen(both.program);
   const std::vector<double> two{0, 1};
   EXPECT_NEAR(servo_stability(both.program, frozen, 0, two), -11 / kTau, 1e-9);
 }
@@ -163,7 +164,7 @@ TEST(ServoStability, IsNotANumberWhereAnAlgebraicLoopHasNoSolution) {
       "r = { type = \"square-root\", in = \"x\", bandwidth = inf }\n"
       "out = { type = \"servo-amplifier\", in = [\"out\", \"-r\"] }\n"
       "x = { type = \"integrator\", in = [\"out\"] }\n");
-  Workspace workspace(made.program);
+  network::Workspace workspace(made.program);
   const std::vector<double> x{0, -1};
   EXPECT_TRUE(std::isnan(servo_stability(made.program, workspace, 0, x)));
 }
@@ -182,7 +183,7 @@ std::string servo_ring(int n, double own) {
 
 double ring_stability(int n, double own) {
   const Compiled made(servo_ring(n, own));
-  Workspace workspace(made.program);
+  network::Workspace workspace(made.program);
   return servo_stability(made.program, workspace, 0, made.program.start());
 }
 
@@ -207,4 +208,4 @@ TEST(ServoStability, OfALargeRingCostsNoCubes) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::solve

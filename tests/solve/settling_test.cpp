@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/solve/settling.h>
+#include <oblique/solve/operating_point/settling.h>
 
 #include <cmath>
 #include <numeric>
@@ -7,12 +7,12 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <oblique/solve/linear_factors.h>
-#include <oblique/solve/rest.h>
+#include <oblique/solve/operating_point/rest.h>
+#include <oblique/solve/stability/linear_factors.h>
 
 #include "../support/compiled.h"
 
-namespace oblique {
+namespace oblique::solve {
 namespace {
 
 // r = c − b holds c at μ/(1 + μ) of b: along a chain the share to the power of the place.
@@ -24,7 +24,7 @@ TEST(Settling, FollowsAChainOfLoops) {
         k - 1);
   }
   const testing::Compiled chain(text);
-  Workspace workspace(chain.program);
+  network::Workspace workspace(chain.program);
   const StateGroups groups = servo_groups(chain.program);
   EXPECT_EQ(groups.size(), 100U);
   std::vector<double> states = chain.program.start();
@@ -46,7 +46,7 @@ TEST(Settling, FindsTheRestOfALargeRing) {
         k, k, (k + 1) % kRing);
   }
   const testing::Compiled ring(text);
-  Workspace workspace(ring.program);
+  network::Workspace workspace(ring.program);
   const StateGroups groups = servo_groups(ring.program);
   ASSERT_EQ(groups.size(), 1U);
   std::vector<double> states = ring.program.start();
@@ -60,7 +60,7 @@ TEST(Settling, IsNotDeceivedByTwoUnstableLoops) {
 a = { type = "servo-amplifier", in = ["-a"], gain = 20, bandwidth = 5, initial = 0.1 }
 b = { type = "servo-amplifier", in = ["-b"], gain = 20, bandwidth = 5, initial = 0.1 }
 )");
-  Workspace workspace(made.program);
+  network::Workspace workspace(made.program);
   std::vector<double> states = made.program.start();
   EXPECT_FALSE(settle(made.program, workspace, 0, servo_groups(made.program), states));
 }
@@ -81,4 +81,4 @@ TEST(LinearFactors, KnowTheSignOfTheDeterminant) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::solve

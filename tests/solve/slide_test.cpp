@@ -8,7 +8,7 @@
 
 #include "../support/runs.h"
 
-namespace oblique {
+namespace oblique::solve {
 namespace {
 
 using testing::Compiled;
@@ -144,7 +144,7 @@ x = { type = "integrator", in = ["-s", "ramp"], initial = 0.1 })");
 }
 
 /// One bit of memory that conditions on `in` set and clear.
-BlockLibrary library_with_bit(const std::string& set, const std::string& clear) {
+diagram::BlockLibrary library_with_bit(const std::string& set, const std::string& clear) {
   return shipped_blocks_and(
       "bit",
       "[inputs]\nin = {}\n[outputs]\nout = {}\n[memories]\nq = 0\n[equations]\nout = \"q\"\n"
@@ -153,7 +153,7 @@ BlockLibrary library_with_bit(const std::string& set, const std::string& clear) 
 }
 
 TEST(Slides, AMemoryThatUndoesItselfChatters) {
-  const BlockLibrary library = library_with_bit("in > 0", "in < 0");
+  const diagram::BlockLibrary library = library_with_bit("in > 0", "in < 0");
   const Compiled made(R"(one = { type = "constant" }
 f = { type = "bit", in = "x" }
 x = { type = "integrator", in = ["0.5*one", "-f"], initial = -1 })",
@@ -163,11 +163,11 @@ x = { type = "integrator", in = ["0.5*one", "-f"], initial = -1 })",
 }
 
 TEST(Slides, EventsThatSetEachOtherOffAreEndedByName) {
-  const BlockLibrary library = library_with_bit("in < 0.5", "in > 0.5");
+  const diagram::BlockLibrary library = library_with_bit("in < 0.5", "in > 0.5");
   const std::string message = message_of<SolveError>(
       [&] { run_of(Compiled("a = { type = \"bit\", in = \"a\" }", "", library), {.until = 1}); });
   EXPECT_THAT(message, HasSubstr("switches without end at t = 0"));
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::solve

@@ -8,9 +8,9 @@
 
 #include <nvector/nvector_serial.h>
 
-#include <oblique/solve/solver_vector.h>
+#include <oblique/solve/integrator/solver_vector.h>
 
-namespace oblique {
+namespace oblique::solve {
 namespace {
 
 class SolverVector : public ::testing::Test {
@@ -80,4 +80,4 @@ TEST_F(SolverVector, ErrorsAreTheLargest) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::solve

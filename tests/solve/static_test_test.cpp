@@ -2,12 +2,12 @@
 // Static tests of diagrams small enough to be worked out by hand.
 #include <gtest/gtest.h>
 
+#include <oblique/solve/operating_point/static_test.h>
 #include <oblique/solve/solve_error.h>
-#include <oblique/solve/static_test.h>
 
 #include "../support/runs.h"
 
-namespace oblique {
+namespace oblique::solve {
 namespace {
 
 using testing::Compiled;
@@ -67,4 +67,4 @@ c  = { type = "servo-amplifier", in = ["cc", "one"] }
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::solve

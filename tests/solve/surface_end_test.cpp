@@ -11,7 +11,7 @@
 
 #include "../support/runs.h"
 
-namespace oblique {
+namespace oblique::solve {
 namespace {
 
 using testing::Compiled;
@@ -27,7 +27,7 @@ p = { type = "multiplier", in = ["g", "x"] }
 c = { type = "sign", in = "-p" }
 x = { type = "integrator", in = ["c"], initial = 0.1 }
 )toml");
-  const oblique::Run result = run_of(made, {.until = 2, .samples = 41});  // one row at t = 0.5 itself
+  const oblique::solve::Run result = run_of(made, {.until = 2, .samples = 41});  // one row at t = 0.5 itself
   const std::vector<double> t = row_values(result, "t"), x = row_values(result, "x");
   for (std::size_t row = 0; row < t.size(); ++row) {
     const double truth = t[row] < 0.1 ? 0.1 - t[row] : std::max(t[row] - 0.5, 0.0);
@@ -58,7 +58,7 @@ TEST(Switches, OnASurfaceThatBothSidesLeaveAreToldOf) {
                     "x = {{ type = \"integrator\", in = [{}], initial = {} }}\n",
                     in, initial));
   };
-  const oblique::Run result = run_of(made(0, "\"c\""), {.until = 2, .samples = 3});
+  const oblique::solve::Run result = run_of(made(0, "\"c\""), {.until = 2, .samples = 3});
   EXPECT_NEAR(std::abs(row_values(result, "x").back()), 2,
               1e-9);  // a straight line, to rounding of the steps
   ASSERT_EQ(result.warnings.size(), 1U);
@@ -84,7 +84,7 @@ TEST(Switches, StayWhereTheyAreOnASurfaceThatRests) {
   const std::string moving = "x = { type = \"integrator\", in = [\"-0.5*s\", \"-x\"] }\n";
   for (const std::string& blocks : {rest + sign + magnitude + moving, moving + magnitude + sign + rest}) {
     const Compiled made(blocks);
-    const oblique::Run result = run_of(made, {.samples = 11});
+    const oblique::solve::Run result = run_of(made, {.samples = 11});
     EXPECT_EQ(row_values(result, "s"), std::vector<double>(11, -1)) << blocks;
     EXPECT_NEAR(row_values(result, "x").back(), 0.5 * (1 - std::exp(-1)), 1e-7);  // ten tolerances
   }
@@ -100,7 +100,7 @@ TEST(Slide, KeepsTheLimitOfOneAmplifierWhileAnotherComesToItsOwn) {
   const std::string y =
       "y = { type = \"integrator\", in = [\"-0.9*u\"], limit = 0.6, gain = 1e4, bandwidth = 1e4 }\n";
   for (const std::string& blocks : {source + x + y, source + y + x, y + x + source}) {
-    const oblique::Run result = run_of(Compiled(blocks), {.until = 4, .samples = 401});
+    const oblique::solve::Run result = run_of(Compiled(blocks), {.until = 4, .samples = 401});
     const std::vector<double> at_x = row_values(result, "x"), at_y = row_values(result, "y");
     double most_x = 0, most_y = 0;
     for (std::size_t row = 0; row < at_x.size(); ++row) {
@@ -125,7 +125,7 @@ a = {{ type = "servo-amplifier", in = ["0.3*p", "{1}*c", "x", "a"], gain = 3373.
 c = {{ type = "comparator", in = ["x"], high = 0.5 }}
 )toml",
                                     0.3 / unit, -0.5 * unit, 0.875 * unit));
-    const oblique::Run result = run_of(made, {.until = 5, .samples = 11});
+    const oblique::solve::Run result = run_of(made, {.until = 5, .samples = 11});
     for (const double x : row_values(result, "x"))
       EXPECT_NEAR(x, 0, 1e-12) << unit;  // rounding that grows e-fold
     EXPECT_EQ(row_values(result, "c"), std::vector<double>(11, 0)) << unit;
@@ -143,25 +143,25 @@ c = { type = "sign", in = "-x" }
   RunOptions options;
   options.until = 1;
   options.samples = 11;
-  const oblique::Run first = run(made.program, made.flat, options);
+  const oblique::solve::Run first = run(made.program, made.flat, options);
   options.from = first.state;
   options.from->states.front().second += 1e-9;  // by which a slide may have drifted
   options.until = 2;
-  const oblique::Run second = run(made.program, made.flat, options);
+  const oblique::solve::Run second = run(made.program, made.flat, options);
   for (const double mean : row_values(second, "c")) EXPECT_NEAR(mean, -0.5, 1e-6);
 }
 
 // x = t up to its limit of 0.5, is put back to 0 at t = 1, and rises again: nothing that happens on the way,
 // as the turn of a sign at t = 1.2, may take it for a limited one.
 TEST(Slide, IsOverWhereAnEventTakesTheStateElsewhere) {
-  const oblique::Run result = run_of(Compiled(R"toml(
+  const oblique::solve::Run result = run_of(Compiled(R"toml(
 one = { type = "constant" }
 back = { type = "pulse-train", period = 10, width = 0.1, delay = 1, low = 0, high = 1 }
 x = { type = "integrator", in = ["one"], set = "back", limit = 0.5 }
 clock = { type = "integrator", in = ["one"], initial = -1.2 }
 c = { type = "sign", in = "clock" }
 )toml"),
-                                     {.until = 2, .samples = 21});
+                                            {.until = 2, .samples = 21});
   const std::vector<double> t = row_values(result, "t"), x = row_values(result, "x");
   for (std::size_t row = 0; row < t.size(); ++row) {
     if (t[row] == 1) continue;                                                             // there it jumps
@@ -170,4 +170,4 @@ c = { type = "sign", in = "clock" }
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::solve

@@ -7,11 +7,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <oblique/solve/analysis.h>
+#include <oblique/solve/stability/analysis.h>
 
 #include "../support/runs.h"
 
-namespace oblique {
+namespace oblique::solve {
 namespace {
 
 using testing::Compiled;
@@ -378,4 +378,4 @@ z = { type = "integrator", in = ["xy", "-2.6666666666666667*z"], initial = 20 }
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::solve

@@ -8,7 +8,7 @@
 
 #include "../support/runs.h"
 
-namespace oblique {
+namespace oblique::solve {
 namespace {
 
 using testing::Compiled;
@@ -19,7 +19,7 @@ using testing::run_of;
 using testing::shipped_blocks_and;
 
 /// An integrator that knows its modes, and nothing else.
-BlockLibrary library_with_modes() {
+diagram::BlockLibrary library_with_modes() {
   return shipped_blocks_and("mode-integrator", R"toml([inputs]
 in = { sum = true }
 [outputs]
@@ -41,7 +41,7 @@ x = { type = "mode-integrator", in = ["one"], initial = 0.25 }
 )";
 
 TEST(Timeline, LeadsThroughItsPhases) {
-  const BlockLibrary library = library_with_modes();
+  const diagram::BlockLibrary library = library_with_modes();
   const Compiled made(kRamp, R"([timeline]
 phases = [{ mode = "potset", for = 1 }, { mode = "initial", for = 1 }, { mode = "operate", for = 2 }, { mode = "hold", for = 1 }]
 cycles = 2
@@ -119,7 +119,7 @@ TEST(Timeline, AStartFromAChainOfSignalsIsNoCircle) {
 
 TEST(Timeline, APhaseEndsByItsCondition) {
   // Repetitive operation: cos t until it falls below 0, π/2 each time.
-  const BlockLibrary library = library_with_modes();
+  const diagram::BlockLibrary library = library_with_modes();
   const Compiled made(R"(x = { type = "mode-integrator", in = ["y"], initial = 1 }
 y = { type = "mode-integrator", in = ["-x"] }
 )",
@@ -142,7 +142,7 @@ until = 20
 }
 
 TEST(Timeline, GroupsHaveModesOfTheirOwn) {
-  const BlockLibrary library = library_with_modes();
+  const diagram::BlockLibrary library = library_with_modes();
   const Compiled made(R"(one = { type = "constant" }
 x = { type = "mode-integrator", in = ["one"] }
 y = { type = "mode-integrator", in = ["one"] }
@@ -160,7 +160,7 @@ phases = [{ mode = "operate", slow = "hold", for = 1 }, { mode = "hold", slow = 
 
 TEST(Timeline, ModeLinesAreDrivenBySignals) {
   // y is held while the wave is above 0.5, a third of each turn, and reset while the other is.
-  const BlockLibrary library = library_with_modes();
+  const diagram::BlockLibrary library = library_with_modes();
   const Compiled made(R"(one = { type = "constant" }
 phase = { type = "integrator", in = ["one"] }
 wave = { type = "cosine", in = "phase" }
@@ -179,7 +179,7 @@ z = { type = "mode-integrator", in = ["one"], initial = 3 }
 }
 
 TEST(Timeline, APhaseThatEndsFirstLeavesKnownTimesAlone) {
-  const BlockLibrary library = library_with_modes();
+  const diagram::BlockLibrary library = library_with_modes();
   const Compiled made(
       R"(p = { type = "pulse-train", delay = 2.5, period = 10, width = 1 }
 x = { type = "mode-integrator", in = ["p"] }
@@ -189,7 +189,7 @@ x = { type = "mode-integrator", in = ["p"] }
 }
 
 TEST(Timeline, PhasesThatEndAtOnceAreRefused) {
-  const BlockLibrary library = library_with_modes();
+  const diagram::BlockLibrary library = library_with_modes();
   const std::string message = message_of<SolveError>([&] {
     run_of(Compiled(kRamp, "[timeline]\ncycles = inf\nphases = [{ mode = \"operate\", until = \"x > 0\" }]\n",
                     library));
@@ -199,8 +199,8 @@ TEST(Timeline, PhasesThatEndAtOnceAreRefused) {
 
 TEST(Timeline, ImpossibleOnesAreRefusedTogether) {
   const auto refusal = [](const std::string& tables) {
-    return message_of<DiagramError>([&] {
-      const BlockLibrary library = library_with_modes();
+    return message_of<diagram::DiagramError>([&] {
+      const diagram::BlockLibrary library = library_with_modes();
       Compiled(kRamp, tables, library);
     });
   };
@@ -227,7 +227,7 @@ cycles = 0
 }
 
 TEST(Timeline, IsWrittenAsItIsRead) {
-  const BlockLibrary library = library_with_modes();
+  const diagram::BlockLibrary library = library_with_modes();
   const Compiled made(kRamp, R"([groups]
 slow = { blocks = ["x"], hold = "one" }
 [timeline]
@@ -235,7 +235,7 @@ phases = [{ mode = "operate", slow = "hold", for = 1 }, { mode = "hold", until =
 cycles = 3
 )",
                       library);
-  const Diagram again = parse_diagram(write_diagram(made.diagram), "again.toml");
+  const diagram::Diagram again = diagram::parse_diagram(diagram::write_diagram(made.diagram), "again.toml");
   EXPECT_EQ(again, made.diagram);
 }
 
@@ -270,7 +270,7 @@ TEST(RunState, GoingOnGivesWhatAnUninterruptedRunGives) {
 }
 
 TEST(RunState, KeepsMemoriesAndPhases) {
-  const BlockLibrary library = library_with_modes();
+  const diagram::BlockLibrary library = library_with_modes();
   const Compiled made(
       kRamp,
       "[timeline]\nphases = [{ mode = \"initial\", for = 1 }, { mode = \"operate\", for = 2 }]\ncycles = 4\n",
@@ -306,7 +306,7 @@ TEST(RunState, WithConditionsThatAreNoNumbersIsRefused) {
     std::string changed = text;
     const std::string of = "conditions = [1, 0]";
     changed.replace(changed.find(of), of.size(), by);
-    return message_of<ReadError>([&] { parse_run_state(changed, "s.toml"); });
+    return message_of<text::ReadError>([&] { parse_run_state(changed, "s.toml"); });
   };
   EXPECT_EQ(refusal("conditions = [1, \"no\"]"),
             "s.toml:4:18: an element of 'conditions' is a string; expected a number");
@@ -318,12 +318,12 @@ TEST(RunState, OfAnotherDiagramIsRefused) {
   const Compiled other(
       "x = { type = \"integrator\", in = [\"z\"] }\nz = { type = \"integrator\", in = [\"-x\"] }\n");
   const auto half = run_of(made, {.until = 1, .samples = 2});
-  EXPECT_EQ(message_of<ReadError>([&] { run_from(other, half.state, 2); }),
+  EXPECT_EQ(message_of<text::ReadError>([&] { run_from(other, half.state, 2); }),
             "d.toml: this is the state of another diagram: it has the state 'y' where the diagram has 'z'; "
             "expected the state of a run of this diagram\n"
             "  remedy: parameters may change between runs, blocks and wires may not");
   EXPECT_THAT(
-      message_of<ReadError>([] { parse_run_state("format = \"oblique-diagram/1\"\n", "s.toml"); }),
+      message_of<text::ReadError>([] { parse_run_state("format = \"oblique-diagram/1\"\n", "s.toml"); }),
       HasSubstr(
           "s.toml:1:10: the format is 'oblique-diagram/1'; expected 'oblique-state/1', what --save writes"));
 }
@@ -368,13 +368,13 @@ TEST(Run, TakesTolerancesOfSingleBlocks) {
   };
   EXPECT_LT(steps("[run]\ntolerances = { b = 0.1, a = 0.1 }\n"), steps("") / 2);
   EXPECT_GT(steps("[run]\ntolerances = { b = 1e-14 }\n"), steps(""));
-  EXPECT_THAT(message_of<DiagramError>([&] { Compiled(blocks, "[run]\ntolerances = { c = 0 }\n"); }),
+  EXPECT_THAT(message_of<diagram::DiagramError>([&] { Compiled(blocks, "[run]\ntolerances = { c = 0 }\n"); }),
               HasSubstr("tolerance of 'c' in [run] is 0; expected a finite number above 0 [machine unit]"));
-  EXPECT_THAT(message_of<DiagramError>([&] { Compiled(blocks, "[run]\ntolerances = { c = 1 }\n"); }),
+  EXPECT_THAT(message_of<diagram::DiagramError>([&] { Compiled(blocks, "[run]\ntolerances = { c = 1 }\n"); }),
               HasSubstr("tolerances of [run]: there is no block 'c'"));
-  const Diagram diagram =
-      parse_diagram(testing::diagram_text(blocks, "[run]\ntolerances = { a = 0.1 }\n"), "d.toml");
-  EXPECT_EQ(parse_diagram(write_diagram(diagram), "d.toml"), diagram);
+  const diagram::Diagram diagram =
+      diagram::parse_diagram(testing::diagram_text(blocks, "[run]\ntolerances = { a = 0.1 }\n"), "d.toml");
+  EXPECT_EQ(diagram::parse_diagram(diagram::write_diagram(diagram), "d.toml"), diagram);
 }
 
 TEST(Run, FindsExtremesBetweenItsRows) {
@@ -392,4 +392,4 @@ TEST(Run, FindsExtremesBetweenItsRows) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::solve

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/solve/trajectory.h>
+#include <oblique/solve/integrator/trajectory.h>
 
 #include <array>
 
 #include <gtest/gtest.h>
 
-namespace oblique {
+namespace oblique::solve {
 namespace {
 
 TEST(Trajectory, IsATableByRowAndColumn) {
@@ -29,4 +29,4 @@ TEST(Trajectory, IsEmptyWithoutColumns) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::solve

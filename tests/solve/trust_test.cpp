@@ -10,7 +10,7 @@
 
 #include "../support/runs.h"
 
-namespace oblique {
+namespace oblique::solve {
 namespace {
 
 using testing::Compiled;
@@ -49,7 +49,7 @@ z = { type = "integrator", in = ["xy", "-2.6666666666666665*z"], initial = 1 }
                       "[outputs]\nx = \"x\"\nz = \"z\"\n");
   RunOptions options;
   options.samples = 401;
-  const oblique::Run result = trusted(made, 40, options);
+  const oblique::solve::Run result = trusted(made, 40, options);
   const std::vector<std::pair<double, double>> truths{
 #include "lorenz_truths.inc"
   };
@@ -82,7 +82,8 @@ is_above = { type = "comparator", in = "x" }
                       "[outputs]\nx = \"x\"\nis_above = \"is_above\"\n");
   RunOptions options;
   options.samples = 42;
-  const oblique::Run result = trusted(made, 20.5 * std::numbers::pi, options);  // no event at the very end
+  const oblique::solve::Run result =
+      trusted(made, 20.5 * std::numbers::pi, options);  // no event at the very end
   const Trust& trust = *result.trust;
   EXPECT_GT(trust.event_shift, 0);
   EXPECT_LT(trust.event_shift, 1e-6);
@@ -109,7 +110,7 @@ TEST(Trust, TellsWhereEventsPart) {
         "[outputs]\nis_above = \"is_above\"\n");
     RunOptions options;
     options.tolerance = 1e-3;
-    const oblique::Run result = trusted(made, 100, options);
+    const oblique::solve::Run result = trusted(made, 100, options);
     const Trust& trust = *result.trust;
     if (!trust.events_part) continue;
     parts = true;
@@ -125,8 +126,8 @@ phases = [{ mode = "initial", for = 1 }, { mode = "operate", for = 4 }]
 [outputs]
 x = "x"
 )toml");
-  const oblique::Run whole = trusted(made, 5);
-  const auto error_of = [](const oblique::Run& run) {
+  const oblique::solve::Run whole = trusted(made, 5);
+  const auto error_of = [](const oblique::solve::Run& run) {
     double error = 0;
     for (std::size_t row = 0; row < run.trajectory.rows(); ++row) {
       const double t = run.trajectory.at(row, 0);
@@ -138,7 +139,7 @@ x = "x"
   EXPECT_LT(whole.trust->outputs[0].largest, 1e-8);
   RunOptions options;
   options.from = trusted(made, 3).state;
-  const oblique::Run rest = trusted(made, 5, options);
+  const oblique::solve::Run rest = trusted(made, 5, options);
   EXPECT_LT(rest.trust->outputs[0].largest, 1e-8);
   EXPECT_EQ(rest.trust->checks.size(), 2);
 }
@@ -151,7 +152,7 @@ TEST(Trust, SaysWhyThereIsNoEstimate) {
   RunOptions options;
   options.max_steps = 60;  // enough at 1e-3, not at 1e-5
   options.tolerance = 1e-3;
-  const oblique::Run result = trusted(made, 0.9, options);
+  const oblique::solve::Run result = trusted(made, 0.9, options);
   EXPECT_TRUE(result.trust->checks.empty());
   EXPECT_THAT(result.trust->failure, HasSubstr("its budget of"));
 }
@@ -168,4 +169,4 @@ TEST(Trust, KeepsItsChecksFromThoseWhoListen) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::solve

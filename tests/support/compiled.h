@@ -5,21 +5,21 @@
 #include <string>
 #include <string_view>
 
-#include <oblique/network/program.h>
+#include <oblique/network/program/program.h>
 
 namespace oblique::testing {
 
 /// The shipped blocks.
-inline const BlockLibrary& shipped_blocks() {
-  static const BlockLibrary library = BlockLibrary::shipped();
+inline const diagram::BlockLibrary& shipped_blocks() {
+  static const diagram::BlockLibrary library = diagram::BlockLibrary::shipped();
   return library;
 }
 
 /// The shipped blocks and one more, whose file has this text below its title.
-inline BlockLibrary shipped_blocks_and(const std::string& name, std::string_view text) {
-  BlockLibrary library = BlockLibrary::shipped();
-  library.add(parse_block("format = \"oblique-block/1\"\ntitle = \"" + name + "\"\n" + std::string(text),
-                          name + ".toml", name));
+inline diagram::BlockLibrary shipped_blocks_and(const std::string& name, std::string_view text) {
+  diagram::BlockLibrary library = diagram::BlockLibrary::shipped();
+  library.add(diagram::parse_block(
+      "format = \"oblique-block/1\"\ntitle = \"" + name + "\"\n" + std::string(text), name + ".toml", name));
   return library;
 }
 
@@ -30,15 +30,15 @@ inline std::string diagram_text(std::string_view blocks, std::string_view rest =
 
 /// A diagram on its way from text to a Program. `library` must outlive it.
 struct Compiled {
-  Diagram diagram;
-  FlatDiagram flat;
-  Program program;
+  diagram::Diagram diagram;
+  diagram::FlatDiagram flat;
+  network::Program program;
 
   explicit Compiled(std::string_view blocks, std::string_view rest = "",
-                    const BlockLibrary& library = shipped_blocks())
-      : diagram(parse_diagram(diagram_text(blocks, rest), "d.toml")),
-        flat(flatten(diagram, library)),
-        program(assemble(flat)) {}
+                    const diagram::BlockLibrary& library = shipped_blocks())
+      : diagram(diagram::parse_diagram(diagram_text(blocks, rest), "d.toml")),
+        flat(diagram::flatten(diagram, library)),
+        program(network::assemble(flat)) {}
 
   /// The number of a signal among those of the program.
   std::size_t signal(std::string_view name) const {

@@ -48,7 +48,7 @@ ShownGif read_gif(const std::string& bytes) {
   shown.width = gif->SWidth;
   shown.height = gif->SHeight;
   shown.colours = static_cast<std::size_t>(gif->SColorMap->ColorCount);
-  Raster canvas{gif->SWidth, gif->SHeight, {}};
+  draw::Raster canvas{gif->SWidth, gif->SHeight, {}};
   canvas.pixels.resize(static_cast<std::size_t>(gif->SWidth) * static_cast<std::size_t>(gif->SHeight));
   for (int k = 0; k < gif->ImageCount; ++k) {
     const SavedImage& image = gif->SavedImages[k];
@@ -59,7 +59,7 @@ ShownGif read_gif(const std::string& bytes) {
     shown.one_palette = shown.one_palette && image.ImageDesc.ColorMap == nullptr;
     if (control.DisposalMode != DISPOSE_DO_NOT) throw std::runtime_error("a frame that does not stay");
     const GifImageDesc& place = image.ImageDesc;
-    Raster patch{place.Width, place.Height, {}};
+    draw::Raster patch{place.Width, place.Height, {}};
     for (int y = 0; y < place.Height; ++y) {
       for (int x = 0; x < place.Width; ++x) {
         const int index = image.RasterBits[y * place.Width + x];

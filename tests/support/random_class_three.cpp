@@ -9,9 +9,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <oblique/compare/judge.h>
-#include <oblique/mechanism/follower.h>
-#include <oblique/mechanism/motion.h>
+#include <oblique/commission/judge.h>
+#include <oblique/mechanism/motion/follower.h>
+#include <oblique/mechanism/motion/motion.h>
 #include <oblique/solve/run.h>
 
 namespace oblique::testing {
@@ -38,14 +38,14 @@ class Numbers {
 };
 
 /// Any crank and triad, assembled at the start.
-Mechanism candidate(Numbers& number) {
+mechanism::Mechanism candidate(Numbers& number) {
   const Vector2d z = number.point(), e = number.point(), b = number.point(), c = number.point(),
                  d = number.point();
   const double crank = number(0.1, 0.3);
   const Vector2d a(crank, 0), way = d - b, arm = c - b;
   const double bone = way.norm();
   const Vector2d local(way.dot(arm) / bone, (way.x() * arm.y() - way.y() * arm.x()) / bone);
-  Mechanism m;
+  mechanism::Mechanism m;
   m.length_unit = "m";
   m.points = {{"O", true, {0, 0}}, {"Z", true, z},   {"E", true, e},  {"A", false, {}},
               {"B", false, {}},    {"D", false, {}}, {"C", false, {}}};
@@ -54,7 +54,7 @@ Mechanism candidate(Numbers& number) {
               {"BDC", {{4, {0, 0}}, {5, {bone, 0}}, {6, local}}, {}},
               {"DE", {{5, {0, 0}}, {2, {(e - d).norm(), 0}}}, {}},
               {"ZC", {{1, {0, 0}}, {6, {(z - c).norm(), 0}}}, {}}};
-  Drive drive;
+  mechanism::Drive drive;
   drive.name = "crank";
   drive.body = 0;
   drive.about = 0;
@@ -64,47 +64,48 @@ Mechanism candidate(Numbers& number) {
   return m;
 }
 
-bool turns_well(const Mechanism& mechanism) {
+bool turns_well(const mechanism::Mechanism& mechanism) {
   try {
-    const Structure structure = decompose(mechanism);
-    Follower follower(mechanism, structure);
+    const mechanism::Structure structure = mechanism::decompose(mechanism);
+    mechanism::Follower follower(mechanism, structure);
     for (int k = 0; k <= 360; ++k) {
       follower.advance(2 * std::numbers::pi * k / 360);
       if (!follower.events().empty() || std::abs(follower.regularity(1)) < kLeastRegularity) return false;
     }
     return true;
-  } catch (const MechanismError&) {  // it cannot be assembled, or falls apart otherwise
+  } catch (const mechanism::MechanismError&) {  // it cannot be assembled, or falls apart otherwise
     return false;
   }
 }
 
 }  // namespace
 
-Mechanism random_class_three(std::uint64_t seed) {
+mechanism::Mechanism random_class_three(std::uint64_t seed) {
   Numbers number(seed);
   while (true) {
-    Mechanism mechanism = candidate(number);
+    mechanism::Mechanism mechanism = candidate(number);
     if (turns_well(mechanism)) return mechanism;
   }
 }
 
-Tracking track(const Mechanism& mechanism, PatchMethod method, const BlockLibrary& library) {
+Tracking track(const mechanism::Mechanism& mechanism, patch::PatchMethod method,
+               const diagram::BlockLibrary& library) {
   constexpr double kGain = 1e4;
-  PatchOptions options;
+  patch::PatchOptions options;
   options.method = method;
   options.gain = kGain;
   options.samples = 91;
   options.tolerance = 1e-8;
   Tracking result;
   try {
-    const JudgedPatch patched = judged_patch(mechanism, library, options);
+    const commission::JudgedPatch patched = commission::judged_patch(mechanism, library, options);
     result.split = fmt::format("{} /{:g}", fmt::join(patched.options.split, ","),
-                               patched.options.slower.value_or(kUsualSlower));
-    const FlatDiagram flat = flatten(patched.diagram, library);
-    const Program program(assemble(flat));
-    const Run analog = run(program, flat, options_of(patched.diagram.run));
-    const Trajectory& table = analog.trajectory;
-    const Motion exact = solve_motion(mechanism, options.samples);
+                               patched.options.slower.value_or(patch::kUsualSlower));
+    const diagram::FlatDiagram flat = diagram::flatten(patched.diagram, library);
+    const network::Program program(network::assemble(flat));
+    const solve::Run analog = solve::run(program, flat, solve::options_of(patched.diagram.run));
+    const solve::Trajectory& table = analog.trajectory;
+    const mechanism::Motion exact = mechanism::solve_motion(mechanism, options.samples);
     for (std::size_t p = 0; p < mechanism.points.size(); ++p) {
       if (mechanism.points[p].fixed) continue;
       const std::size_t x = table.find(mechanism.points[p].name + ".x").value();
@@ -116,7 +117,7 @@ Tracking track(const Mechanism& mechanism, PatchMethod method, const BlockLibrar
     result.error /= mechanism.largest_length();
     result.tracks = result.error < 10 / kGain;
     if (!result.tracks) result.explanation = fmt::format("errs by {:.2g} of the largest link", result.error);
-  } catch (const Error& error) {
+  } catch (const text::Error& error) {
     result.explanation = error.diagnostics().front().what;
   }
   return result;

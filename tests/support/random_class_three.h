@@ -7,7 +7,7 @@
 #include <string>
 
 #include <oblique/diagram/block_library.h>
-#include <oblique/mechanism/mechanism.h>
+#include <oblique/mechanism/model/mechanism.h>
 #include <oblique/patch/patch.h>
 
 namespace oblique::testing {
@@ -15,7 +15,7 @@ namespace oblique::testing {
 /// A crank and a triad on three links with anchors and joints anywhere in a square of 3 m, that turn fully
 /// and whose regularity (GroupSolver) never falls below 0.1, a tenth of the greatest there is:
 /// well-conditioned everywhere. The same seed gives the same mechanism on every machine.
-Mechanism random_class_three(std::uint64_t seed);
+mechanism::Mechanism random_class_three(std::uint64_t seed);
 
 /// How a patch of gain 1e4 follows its mechanism over a turn.
 struct Tracking {
@@ -24,6 +24,7 @@ struct Tracking {
   std::string split;        ///< that was taken, with how much slower its loop is
   std::string explanation;  ///< where it does not track
 };
-Tracking track(const Mechanism& mechanism, PatchMethod method, const BlockLibrary& library);
+Tracking track(const mechanism::Mechanism& mechanism, patch::PatchMethod method,
+               const diagram::BlockLibrary& library);
 
 }  // namespace oblique::testing

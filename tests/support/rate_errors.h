@@ -7,10 +7,10 @@
 
 #include <gtest/gtest.h>
 
-#include <oblique/mechanism/motion.h>
+#include <oblique/mechanism/motion/motion.h>
 #include <oblique/solve/run.h>
 
-namespace oblique {
+namespace oblique::test {
 
 /// Largest errors of all moving points, each in parts of the largest exact value of its kind.
 struct RateErrors {
@@ -18,14 +18,14 @@ struct RateErrors {
 };
 
 /// Holds a run whose outputs have the names of `solve`'s columns against the exact motion at its times.
-inline RateErrors rate_errors(const Mechanism& mechanism, const Trajectory& table) {
+inline RateErrors rate_errors(const mechanism::Mechanism& mechanism, const solve::Trajectory& table) {
   std::vector<double> times;
   for (std::size_t r = 0; r < table.rows(); ++r) times.push_back(table.at(r, 0));
-  const Motion exact = solve_motion(mechanism, times);
+  const mechanism::Motion exact = mechanism::solve_motion(mechanism, times);
   const auto error_of = [&](const std::string& part, auto value_of) {
     double largest_error = 0, largest = 0;
     for (std::size_t p = 0; p < mechanism.points.size(); ++p) {
-      const Point& point = mechanism.points[p];
+      const mechanism::Point& point = mechanism.points[p];
       if (point.fixed) continue;
       const auto x = table.find(point.name + "." + part + "x"), y = table.find(point.name + "." + part + "y");
       EXPECT_TRUE(x && y) << point.name << "." << part;
@@ -39,9 +39,9 @@ inline RateErrors rate_errors(const Mechanism& mechanism, const Trajectory& tabl
     }
     return largest_error / largest;
   };
-  return {error_of("", [](const PointState& p) { return p.position; }),
-          error_of("v", [](const PointState& p) { return p.velocity; }),
-          error_of("a", [](const PointState& p) { return p.acceleration; })};
+  return {error_of("", [](const mechanism::PointState& p) { return p.position; }),
+          error_of("v", [](const mechanism::PointState& p) { return p.velocity; }),
+          error_of("a", [](const mechanism::PointState& p) { return p.acceleration; })};
 }
 
-}  // namespace oblique
+}  // namespace oblique::test

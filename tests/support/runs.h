@@ -21,18 +21,18 @@ struct Request {
   std::vector<double> extra_times = {};
 };
 
-inline Run run_of(const Compiled& made, const Request& request = {}) {
-  RunOptions options;
+inline solve::Run run_of(const Compiled& made, const Request& request = {}) {
+  solve::RunOptions options;
   options.until = request.until;
   options.tolerance = request.tolerance;
   options.samples = request.samples;
   options.max_steps = request.max_steps;
   options.extra_times = request.extra_times;
-  return run(made.program, made.flat, options);
+  return solve::run(made.program, made.flat, options);
 }
 
 /// A column of a trajectory.
-inline std::vector<double> column_of(const Trajectory& trajectory, std::string_view name) {
+inline std::vector<double> column_of(const solve::Trajectory& trajectory, std::string_view name) {
   const std::size_t column = trajectory.find(name).value();
   std::vector<double> values;
   for (std::size_t r = 0; r < trajectory.rows(); ++r) values.push_back(trajectory.at(r, column));
@@ -40,13 +40,13 @@ inline std::vector<double> column_of(const Trajectory& trajectory, std::string_v
 }
 
 /// A column of a run, at the rows of its grid.
-inline std::vector<double> row_values(const Run& result, std::string_view name) {
+inline std::vector<double> row_values(const solve::Run& result, std::string_view name) {
   return column_of(result.trajectory, name);
 }
 
 /// What a run that fails says.
 struct RunFailure {
-  SolveError::Kind kind;
+  solve::SolveError::Kind kind;
   double time;
   std::string message;
 };
@@ -55,7 +55,7 @@ struct RunFailure {
 inline std::optional<RunFailure> failure_of(const Compiled& made, const Request& request = {}) {
   try {
     run_of(made, request);
-  } catch (const SolveError& error) {
+  } catch (const solve::SolveError& error) {
     return RunFailure{error.kind(), error.time(), error.what()};
   }
   return std::nullopt;

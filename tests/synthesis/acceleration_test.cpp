@@ -9,7 +9,7 @@
 
 #include "fitting.h"
 
-namespace oblique {
+namespace oblique::synthesis {
 namespace {
 
 using namespace test;
@@ -98,4 +98,4 @@ C = [1.4, 0.95]
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::synthesis

@@ -9,14 +9,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <oblique/mechanism/motion.h>
-#include <oblique/mechanism/obstacle.h>
-#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/mechanism/model/read_mechanism.h>
+#include <oblique/mechanism/motion/motion.h>
+#include <oblique/mechanism/motion/obstacle.h>
 #include <oblique/text/document.h>
 
 #include "fitting.h"
 
-namespace oblique {
+namespace oblique::synthesis {
 namespace {
 
 using namespace test;
@@ -28,8 +28,8 @@ FourBar four_bar_of(const Fit& fit) {  // of AB, BCF, CD, BCF.F
 }
 
 bool turns_fully(const std::string& text) {
-  const Mechanism mechanism = parse_mechanism(text, "fitted.toml");
-  return !find_obstacle(mechanism, decompose(mechanism));
+  const mechanism::Mechanism mechanism = mechanism::parse_mechanism(text, "fitted.toml");
+  return !mechanism::find_obstacle(mechanism, mechanism::decompose(mechanism));
 }
 
 /// The error of a four-bar by its own trigonometry.
@@ -102,8 +102,8 @@ TEST(Fit, ReportsTheErrorOfItsText) {
       fit(FourBar{}.text(), {"AB", "BCF", "CD", "BCF.F"}, csv_of(wanted, angles, Timing::given, 0, shift));
   EXPECT_NEAR(found.before.rms, rms_at(FourBar{}, angles, wanted, shift), 1e-10);
   EXPECT_NEAR(found.after.rms, rms_at(four_bar_of(found), angles, wanted, shift), 1e-10);
-  const Mechanism mechanism = parse_mechanism(found.text, "new.toml");
-  EXPECT_EQ(distance(mechanism.bodies[0], 0, 2), four_bar_of(found).crank);
+  const mechanism::Mechanism mechanism = mechanism::parse_mechanism(found.text, "new.toml");
+  EXPECT_EQ(mechanism::distance(mechanism.bodies[0], 0, 2), four_bar_of(found).crank);
 }
 
 // The optimum is one: no step of any size and direction from it leads to a smaller error.
@@ -201,11 +201,11 @@ TEST(Fit, KeepsTheAssemblyMode) {
   const std::string mirrored = FourBar{}.text("[128, -132]");
   const Fit found =
       fit(mirrored, {"AB", "BCF", "CD", "BCF.F"}, csv_of(wanted, angles_of_a_turn(24), Timing::given));
-  const Mechanism mechanism = parse_mechanism(found.text, "new.toml");
-  const Motion motion = solve_motion(mechanism, 13);
+  const mechanism::Mechanism mechanism = mechanism::parse_mechanism(found.text, "new.toml");
+  const mechanism::Motion motion = mechanism::solve_motion(mechanism, 13);
   const std::size_t b = *mechanism.find_point("B"), c = *mechanism.find_point("C"),
                     d = *mechanism.find_point("D");
-  for (const Configuration& at : motion.configurations) {
+  for (const mechanism::Configuration& at : motion.configurations) {
     const Eigen::Vector2d bd = at.points[d].position - at.points[b].position;
     const Eigen::Vector2d bc = at.points[c].position - at.points[b].position;
     EXPECT_LT(bd.x() * bc.y() - bd.y() * bc.x(), 0);  // C right of B → D
@@ -268,11 +268,11 @@ TEST(Fit, IsTheSameAtEveryCall) {
 // The mechanism of the source, with dyads that hang on each other and bodies given by their sides.
 TEST(Fit, FindsTheSidesOfJansensLeg) {
   const std::string file = std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/jansen.toml";
-  const std::string text = read_file(file);
+  const std::string text = text::read_file(file);
   std::string wanted = text;
   wanted.replace(wanted.find("[65.7, 49, 36.7]"), 16, "[66.5, 48, 36.0]");
-  const Mechanism mechanism = parse_mechanism(wanted, "wanted.toml");
-  const Motion motion = solve_motion(mechanism, 25);
+  const mechanism::Mechanism mechanism = mechanism::parse_mechanism(wanted, "wanted.toml");
+  const mechanism::Motion motion = mechanism::solve_motion(mechanism, 25);
   std::string csv = "drive,P5.x,P5.y\n";
   for (std::size_t row = 0; row < motion.times.size(); ++row) {
     const Eigen::Vector2d& p = motion.configurations[row].points[*mechanism.find_point("P5")].position;
@@ -290,11 +290,11 @@ TEST(Fit, FindsTheSidesOfJansensLeg) {
 // The exercise itself: the six-bar's F, its path wanted elsewhere, within the bounds of the source.
 TEST(Fit, BringsTheSixBarNearAShiftedTarget) {
   const std::string file = std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/six-bar-above.toml";
-  const std::string text = read_file(file);
+  const std::string text = text::read_file(file);
   const Eigen::Vector2d shift(3, 4);
   const auto angles = angles_of_a_turn(36);
   const std::string csv = csv_of(FourBar{}, angles, Timing::given, 0, shift);
-  const TargetPath target = read_target_path(csv, "target.csv", parse_mechanism(text, file));
+  const TargetPath target = read_target_path(csv, "target.csv", mechanism::parse_mechanism(text, file));
   const Fit found =
       fit_path(text, file, std::vector<std::string>{"AB=70..90", "BCF=130..150", "CD=140..160"}, target);
   EXPECT_NEAR(found.before.rms, 5, 1e-9);
@@ -314,4 +314,4 @@ TEST(Fit, BringsTheSixBarNearAShiftedTarget) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::synthesis

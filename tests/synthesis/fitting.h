@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/mechanism/model/read_mechanism.h>
 #include <oblique/synthesis/fit.h>
 
 #include "four_bar.h"
@@ -29,17 +29,18 @@ inline std::string csv_of(const FourBar& four_bar, const std::vector<double>& an
   return csv;
 }
 
-inline Fit fit(const std::string& text, const std::vector<std::string>& free, const std::string& csv,
-               int starts = 8) {
-  const TargetPath target = read_target_path(csv, "target.csv", parse_mechanism(text, "four-bar.toml"));
-  FitOptions options;
+inline synthesis::Fit fit(const std::string& text, const std::vector<std::string>& free,
+                          const std::string& csv, int starts = 8) {
+  const synthesis::TargetPath target =
+      synthesis::read_target_path(csv, "target.csv", mechanism::parse_mechanism(text, "four-bar.toml"));
+  synthesis::FitOptions options;
   options.starts = starts;
-  return fit_path(text, "four-bar.toml", free, target, options);
+  return synthesis::fit_path(text, "four-bar.toml", free, target, options);
 }
 
-inline std::vector<double> values_of(const Fit& fit) {
+inline std::vector<double> values_of(const synthesis::Fit& fit) {
   std::vector<double> values;
-  for (const FittedDimension& d : fit.dimensions) values.push_back(d.after);
+  for (const synthesis::FittedDimension& d : fit.dimensions) values.push_back(d.after);
   return values;
 }
 

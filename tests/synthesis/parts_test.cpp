@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/mechanism/model/read_mechanism.h>
 #include <oblique/synthesis/least_squares.h>
 #include <oblique/synthesis/path_curve.h>
 #include <oblique/synthesis/target_path.h>
@@ -14,7 +14,7 @@
 
 #include "four_bar.h"
 
-namespace oblique {
+namespace oblique::synthesis {
 namespace {
 
 using Eigen::MatrixXd;
@@ -79,12 +79,12 @@ TEST(Minimise, TurnsBackFromWhereThereIsNoValue) {
 // ---- PathCurve
 
 /// A point on an ellipse, with n rows over a turn of 1 rad/s.
-Motion ellipse(int n) {
-  Motion motion;
+mechanism::Motion ellipse(int n) {
+  mechanism::Motion motion;
   for (int k = 0; k <= n; ++k) {
     const double t = 2 * std::numbers::pi * k / n, c = std::cos(t), s = std::sin(t);
     motion.times.push_back(t);
-    Configuration here;
+    mechanism::Configuration here;
     here.points.push_back({{3 * c, s}, {-3 * s, c}, {-3 * c, -s}});
     motion.configurations.push_back(here);
   }
@@ -119,8 +119,8 @@ TEST(PathCurve, FindsTheNearestPlace) {
 }
 
 TEST(PathCurve, EndsWhereTheMechanismOpens) {
-  Motion motion = ellipse(360);
-  for (std::size_t row = 90; row <= 270; ++row) motion.configurations[row].status = Status::open;
+  mechanism::Motion motion = ellipse(360);
+  for (std::size_t row = 90; row <= 270; ++row) motion.configurations[row].status = mechanism::Status::open;
   const PathCurve curve(motion, 0);
   EXPECT_FALSE(curve.at(2));
   const auto foot = curve.nearest({-3, 0.5});
@@ -130,16 +130,16 @@ TEST(PathCurve, EndsWhereTheMechanismOpens) {
 }
 
 TEST(PathCurve, WithoutRowsIsNone) {
-  EXPECT_FALSE(PathCurve(Motion{}, 0).nearest({0, 0}));
+  EXPECT_FALSE(PathCurve(mechanism::Motion{}, 0).nearest({0, 0}));
 }
 
 // ---- the text
 
 std::string text_at(const std::string& text, std::initializer_list<const char*> keys) {
-  const Document document = parse_document(text, "a.toml");
-  const Value* value = &document.root;
+  const text::Document document = text::parse_document(text, "a.toml");
+  const text::Value* value = &document.root;
   for (const char* key : keys) value = value->find(key);
-  if (value->kind == Value::Kind::array) value = &value->elements.at(1);
+  if (value->kind == text::Value::Kind::array) value = &value->elements.at(1);
   const TextRange range = range_of(text, *value);
   return text.substr(range.begin, range.end - range.begin);
 }
@@ -172,7 +172,7 @@ TEST(WithComment, KeepsTheTextBehindALineOfItsOwn) {
 // ---- the target
 
 TEST(TargetPath, TurnsAnglesIntoTimesInTheirOrder) {
-  const Mechanism mechanism = parse_mechanism(test::FourBar{}.text(), "m.toml");
+  const mechanism::Mechanism mechanism = mechanism::parse_mechanism(test::FourBar{}.text(), "m.toml");
   const TargetPath path = read_target_path("F.y,crank,F.x\n1,3,2\n4,1,5\n", "p.csv", mechanism);
   EXPECT_EQ(path.timing, "crank");
   EXPECT_THAT(path.times, testing::ElementsAre(0.01, 0.03));  // at 100 rad/s
@@ -184,4 +184,4 @@ TEST(TargetPath, TurnsAnglesIntoTimesInTheirOrder) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::synthesis

@@ -3,14 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/mechanism/model/read_mechanism.h>
 #include <oblique/synthesis/fit.h>
 #include <oblique/synthesis/synthesis_error.h>
 #include <oblique/text/document.h>
 
 #include "four_bar.h"
 
-namespace oblique {
+namespace oblique::synthesis {
 namespace {
 
 const std::string kPath = "crank,F.x,F.y\n0,100,100\n1,110,110\n2,90,120\n3,60,70\n";
@@ -180,10 +180,11 @@ INSTANTIATE_TEST_SUITE_P(
 TEST_P(Refusal, SaysWhy) {
   const std::string text = mechanism_text();
   try {
-    const TargetPath target = read_target_path(GetParam().path, "path.csv", parse_mechanism(text, "m.toml"));
+    const TargetPath target =
+        read_target_path(GetParam().path, "path.csv", mechanism::parse_mechanism(text, "m.toml"));
     fit_path(text, "m.toml", GetParam().free, target);
     FAIL() << "was not refused";
-  } catch (const Error& error) {
+  } catch (const text::Error& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr(GetParam().message));
     EXPECT_EQ(error.diagnostics().size(), 1U);
   }
@@ -191,7 +192,7 @@ TEST_P(Refusal, SaysWhy) {
 
 TEST(Refusals, OfDimensionsComeTogether) {
   const std::string text = mechanism_text();
-  const TargetPath target = read_target_path(kPath, "path.csv", parse_mechanism(text, "m.toml"));
+  const TargetPath target = read_target_path(kPath, "path.csv", mechanism::parse_mechanism(text, "m.toml"));
   try {
     fit_path(text, "m.toml", std::vector<std::string>{"AX", "F", "CD=2..1"}, target);
     FAIL();
@@ -204,8 +205,8 @@ TEST(Refusals, OfDimensionsComeTogether) {
 // A crank of 112 opens at 135°; a target there cannot be compared.
 TEST(Refusals, OfATargetWhereTheMechanismIsOpen) {
   const std::string text = test::FourBar{112, 141, 151, 200, 50, 45}.text();
-  const TargetPath target =
-      read_target_path("crank,F.x,F.y\n1,100,100\n3.1,20,30\n", "path.csv", parse_mechanism(text, "m.toml"));
+  const TargetPath target = read_target_path("crank,F.x,F.y\n1,100,100\n3.1,20,30\n", "path.csv",
+                                             mechanism::parse_mechanism(text, "m.toml"));
   try {
     fit_path(text, "m.toml", std::vector<std::string>{"AB"}, target);
     FAIL();
@@ -219,4 +220,4 @@ TEST(Refusals, OfATargetWhereTheMechanismIsOpen) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::synthesis

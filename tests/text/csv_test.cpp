@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace oblique {
+namespace oblique::text {
 namespace {
 
 using ::testing::ElementsAre;
@@ -120,4 +120,4 @@ TEST(Csv, DoesNotGuessBetweenTwoColumns) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::text

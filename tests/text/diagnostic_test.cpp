@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace oblique {
+namespace oblique::text {
 namespace {
 
 TEST(Diagnostic, PrintsPlaceFindingExpectationAndRemedy) {
@@ -118,4 +118,4 @@ TEST(Suggest, KeepsALongListShort) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::text

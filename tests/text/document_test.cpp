@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace oblique {
+namespace oblique::text {
 namespace {
 
 using testing::HasSubstr;
@@ -178,4 +178,4 @@ TEST(Document, SaysWhatIsTypesetAndWhereACommaIsNoPoint) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::text

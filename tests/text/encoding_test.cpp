@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace oblique {
+namespace oblique::text {
 namespace {
 
 // The bounds of table 3-7 of the Unicode standard.
@@ -33,4 +33,4 @@ TEST(Encoding, ShowsControlCharactersAndObeysNone) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::text

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace oblique {
+namespace oblique::text {
 namespace {
 
 double fraction(double x) {
@@ -44,4 +44,4 @@ TEST(EvenPoint, EveryPartOfEveryDimensionGetsItsShare) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::text

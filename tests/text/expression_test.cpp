@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-namespace oblique {
+namespace oblique::text {
 namespace {
 
 using Kind = Expression::Kind;
@@ -422,4 +422,4 @@ TEST(Identifier, IsALetterAndThenLettersDigitsUnderscores) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::text

@@ -14,7 +14,7 @@
 #include <oblique/text/leftover.h>
 #include <oblique/text/output_claim.h>
 
-namespace oblique {
+namespace oblique::text {
 namespace {
 
 /// A folder of its own for each test, empty at the start and gone at the end.
@@ -235,4 +235,4 @@ TEST_F(File, IsADocumentWithItsPathAsName) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::text

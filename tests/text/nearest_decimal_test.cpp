@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-namespace oblique {
+namespace oblique::text {
 namespace {
 
 // The C library's own way there and back; this program never leaves the C locale.
@@ -29,4 +29,4 @@ TEST(NearestDecimal, IsWhatPrintingAndReadingGives) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::text

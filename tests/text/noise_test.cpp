@@ -6,7 +6,7 @@
 
 #include <oblique/text/expression.h>
 
-namespace oblique {
+namespace oblique::text {
 namespace {
 
 /// The polynomial of degree 5 through noise at six places from `begin` to `begin` + 1, at x (Lagrange's
@@ -56,4 +56,4 @@ TEST(Noise, HasZeroMeanAndUnitMeanSquare) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::text

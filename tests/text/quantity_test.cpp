@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-namespace oblique {
+namespace oblique::text {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -208,4 +208,4 @@ RC_GTEST_PROP(Quantity, SurvivesTheWayThroughAnotherUnit, ()) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::text

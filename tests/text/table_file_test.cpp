@@ -28,7 +28,7 @@
 
 #include "table_reading.h"
 
-namespace oblique {
+namespace oblique::text {
 namespace {
 
 using test::Folder;
@@ -263,4 +263,4 @@ TEST(TableFile, MayBeAPipeButForMat) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::text

@@ -11,7 +11,7 @@
 
 #include "table_reading.h"
 
-namespace oblique {
+namespace oblique::text {
 namespace {
 
 using test::Folder;
@@ -120,4 +120,4 @@ TEST(MatFile, SaysThatItCanHoldNoMore) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::text

@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace oblique {
+namespace oblique::text {
 namespace {
 
 using testing::ElementsAre;
@@ -220,4 +220,4 @@ TEST_F(TableReaderTest, MissesTheFormat) {
 }
 
 }  // namespace
-}  // namespace oblique
+}  // namespace oblique::text

@@ -129,17 +129,17 @@ ReadTable read_csv(const std::string& bytes) {
   return table;
 }
 
-std::vector<TableColumn> named(const std::vector<std::string>& names) {
-  std::vector<TableColumn> columns;
+std::vector<text::TableColumn> named(const std::vector<std::string>& names) {
+  std::vector<text::TableColumn> columns;
   for (const std::string& name : names) columns.push_back({name});
   return columns;
 }
 
-std::string written(const std::string& ending, const std::vector<TableColumn>& columns,
+std::string written(const std::string& ending, const std::vector<text::TableColumn>& columns,
                     const std::vector<double>& values, std::size_t block_rows) {
   const Folder folder;
   const auto path = folder / ("table" + ending);
-  TableFile file(path, columns, values.size() / columns.size());
+  text::TableFile file(path, columns, values.size() / columns.size());
   for (std::span<const double> left(values); !left.empty();) {
     const std::size_t taken = std::min(left.size(), block_rows * columns.size());
     file.add(left.first(taken));
@@ -147,7 +147,7 @@ std::string written(const std::string& ending, const std::vector<TableColumn>& c
   }
   file.finish();
   EXPECT_THAT(folder.files(), testing::ElementsAre("table" + ending));
-  return read_file(path);
+  return text::read_file(path);
 }
 
 }  // namespace oblique::test

@@ -54,10 +54,10 @@ class Folder {
   std::filesystem::path path_;
 };
 
-std::vector<TableColumn> named(const std::vector<std::string>& names);
+std::vector<text::TableColumn> named(const std::vector<std::string>& names);
 
 /// The bytes of the file of a table, its rows added in blocks of `block_rows`.
-std::string written(const std::string& ending, const std::vector<TableColumn>& columns,
+std::string written(const std::string& ending, const std::vector<text::TableColumn>& columns,
                     const std::vector<double>& values, std::size_t block_rows = 1);
 
 }  // namespace oblique::test

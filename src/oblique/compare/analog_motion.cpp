@@ -3,15 +3,15 @@
 
 #include <fmt/format.h>
 
-#include <oblique/compare/judge.h>
+#include <oblique/commission/judge.h>
 #include <oblique/compare/patched_run.h>
 
-namespace oblique {
+namespace oblique::compare {
 
-AnalogPlaces analog_places(const Mechanism& mechanism, const BlockLibrary& library,
-                           const PatchOptions& options, const std::vector<double>& moments,
+AnalogPlaces analog_places(const mechanism::Mechanism& mechanism, const diagram::BlockLibrary& library,
+                           const patch::PatchOptions& options, const std::vector<double>& moments,
                            const std::function<void(double fraction)>& progress) {
-  const JudgedPatch judged = judged_patch(mechanism, library, options);
+  const commission::JudgedPatch judged = commission::judged_patch(mechanism, library, options);
   const PatchedMechanism patched(judged.diagram, library);
   const RecordedRun recorded = run_recorded(patched, fmt::format("amplifiers of gain {:.6g}", options.gain),
                                             judged.options.tolerance, progress, moments);
@@ -19,10 +19,10 @@ AnalogPlaces analog_places(const Mechanism& mechanism, const BlockLibrary& libra
   AnalogPlaces places;
   for (std::size_t row = 0; row < moments.size(); ++row) {
     std::vector<Eigen::Vector2d>& here = places.emplace_back();
-    for (const Point& point : mechanism.points) here.push_back(point.position);
+    for (const mechanism::Point& point : mechanism.points) here.push_back(point.position);
     for (const PointOutputs& point : outputs) here[point.point] = place_of(point, recorded.run.extra, row);
   }
   return places;
 }
 
-}  // namespace oblique
+}  // namespace oblique::compare

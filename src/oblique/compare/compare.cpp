@@ -7,14 +7,14 @@
 
 #include <fmt/format.h>
 
+#include <oblique/commission/judge.h>
 #include <oblique/compare/branch.h>
 #include <oblique/compare/error_parts.h>
-#include <oblique/compare/judge.h>
 #include <oblique/compare/patched_run.h>
 #include <oblique/compare/worst_reason.h>
 #include <oblique/solve/solve_error.h>
 
-namespace oblique {
+namespace oblique::compare {
 namespace {
 
 /// Amplifiers of this gain err by far less than what the tolerance of any run leaves. Ideal ones would not do
@@ -25,8 +25,9 @@ constexpr double kFloorGain = 1e12;
 /// The runs of a comparison, one after the other.
 class Comparer {
  public:
-  Comparer(const Mechanism& mechanism, const BlockLibrary& library, const CompareOptions& options,
-           const Structure& structure, const Motion& exact, const WorstReasons& reasons)
+  Comparer(const mechanism::Mechanism& mechanism, const diagram::BlockLibrary& library,
+           const CompareOptions& options, const mechanism::Structure& structure,
+           const mechanism::Motion& exact, const WorstReasons& reasons)
       : mechanism_(mechanism),
         library_(library),
         options_(options),
@@ -34,15 +35,15 @@ class Comparer {
         exact_(exact),
         reasons_(reasons) {}
 
-  ComparedRun compared(const PatchOptions& options) {
+  ComparedRun compared(const patch::PatchOptions& options) {
     const PatchedMechanism patched(patch_named(mechanism_, options), library_);
     const RecordedRun recorded = run_recorded(patched, name_of(options), options.tolerance, progress());
     finish_run();
-    const Run& analog = recorded.run;
+    const solve::Run& analog = recorded.run;
     ComparedRun result;
     result.method = options.method;
     result.gain = options.gain;
-    result.bandwidth = options.bandwidth.value_or(default_bandwidth(mechanism_));
+    result.bandwidth = options.bandwidth.value_or(patch::default_bandwidth(mechanism_));
     result.steps = analog.statistics.steps;
     result.seconds = analog.seconds;
     result.overloads = overloads_of(patched.program, analog);
@@ -63,14 +64,14 @@ class Comparer {
     return result;
   }
 
-  std::optional<double> floor(PatchOptions options) {
+  std::optional<double> floor(patch::PatchOptions options) {
     options.gain = kFloorGain;
     try {
       const PatchedMechanism patched(patch_named(mechanism_, options), library_);
       const RecordedRun recorded = run_recorded(patched, name_of(options), options.tolerance, progress());
       finish_run();
       return distances(mechanism_, patched.flat, recorded.run.trajectory, exact_).largest;
-    } catch (const SolveError&) {  // nobody asked for this run
+    } catch (const solve::SolveError&) {  // nobody asked for this run
       finish_run();
       return std::nullopt;
     }
@@ -78,10 +79,10 @@ class Comparer {
 
  private:
   /// "amplifiers of gain 1000 and 20 Hz, method gradient": bandwidth and method where there was a choice.
-  std::string name_of(const PatchOptions& options) const {
+  std::string name_of(const patch::PatchOptions& options) const {
     std::string name = fmt::format("amplifiers of gain {:.6g}", options.gain);
     if (options.bandwidth) name += fmt::format(" and {:.6g} Hz", *options.bandwidth);
-    if (options_.methods.size() > 1) name += fmt::format(", method {}", method_name(options.method));
+    if (options_.methods.size() > 1) name += fmt::format(", method {}", patch::method_name(options.method));
     return name;
   }
 
@@ -98,11 +99,11 @@ class Comparer {
     return [this, total](double fraction) { options_.progress((done_ + fraction) / total); };
   }
 
-  const Mechanism& mechanism_;
-  const BlockLibrary& library_;
+  const mechanism::Mechanism& mechanism_;
+  const diagram::BlockLibrary& library_;
   const CompareOptions& options_;
-  const Structure& structure_;
-  const Motion& exact_;
+  const mechanism::Structure& structure_;
+  const mechanism::Motion& exact_;
   const WorstReasons& reasons_;
   double done_ = 0;  ///< runs
 };
@@ -124,43 +125,45 @@ std::optional<double> fitted_order(std::span<const ComparedRun> runs, double flo
   return (n * sxy - sx * sy) / spread;
 }
 
-Comparison compare_within_range(const Mechanism& mechanism, const BlockLibrary& library,
+Comparison compare_within_range(const mechanism::Mechanism& mechanism, const diagram::BlockLibrary& library,
                                 const CompareOptions& options) {
   Comparison comparison;
   comparison.mechanism = mechanism.title;
   comparison.unit = mechanism.length_unit;
   comparison.size = mechanism.largest_length();
-  const Structure structure = decompose(mechanism);
-  comparison.closed_form = std::none_of(structure.groups.begin(), structure.groups.end(),
-                                        [](const Group& group) { return group.kind == GroupKind::general; });
+  const mechanism::Structure structure = mechanism::decompose(mechanism);
+  comparison.closed_form =
+      std::none_of(structure.groups.begin(), structure.groups.end(),
+                   [](const mechanism::Group& group) { return group.kind == mechanism::GroupKind::general; });
   comparison.turning = mechanism.drives.empty() || !mechanism.drives.front().slide;
-  const Motion exact = solve_motion(mechanism, options.positions);
+  const mechanism::Motion exact = mechanism::solve_motion(mechanism, options.positions);
   for (const auto& drives : exact.drives) comparison.drive.push_back(drives.front().value);
   const WorstReasons reasons(mechanism, exact);
   Comparer comparer(mechanism, library, options, structure, exact, reasons);
   std::vector<std::optional<double>> bandwidths(options.bandwidths.begin(), options.bandwidths.end());
   if (bandwidths.empty()) bandwidths.emplace_back();
   std::exception_ptr first_refusal;
-  const auto refuse = [&](const PatchOptions& asked, std::optional<double> gain, const Error& error) {
+  const auto refuse = [&](const patch::PatchOptions& asked, std::optional<double> gain,
+                          const text::Error& error) {
     comparison.refused.push_back({asked.method, asked.bandwidth, gain, error.diagnostics().front()});
     if (!first_refusal) first_refusal = std::current_exception();
   };
-  for (const PatchMethod method : options.methods) {
+  for (const patch::PatchMethod method : options.methods) {
     for (const std::optional<double>& bandwidth : bandwidths) {
-      PatchOptions asked;
+      patch::PatchOptions asked;
       asked.method = method;
       asked.bandwidth = bandwidth;
       asked.samples = options.positions;
       asked.gain = *std::max_element(options.gains.begin(), options.gains.end());
-      if (method != PatchMethod::gradient) {
+      if (method != patch::PatchMethod::gradient) {
         asked.split = options.split;
         asked.slower = options.slower;
       }
-      PatchOptions patched;
+      patch::PatchOptions patched;
       try {
-        patched = judged_patch(mechanism, library, asked).options;
-      } catch (const PatchError& error) {
-        if (error.kind() == PatchError::Kind::request) throw;
+        patched = commission::judged_patch(mechanism, library, asked).options;
+      } catch (const patch::PatchError& error) {
+        if (error.kind() == patch::PatchError::Kind::request) throw;
         refuse(asked, {}, error);
         continue;
       }
@@ -169,13 +172,13 @@ Comparison compare_within_range(const Mechanism& mechanism, const BlockLibrary& 
         patched.gain = gain;
         try {
           comparison.runs.push_back(comparer.compared(patched));
-        } catch (const SolveError& error) {
+        } catch (const solve::SolveError& error) {
           refuse(asked, gain, error);
         }
       }
       if (comparison.runs.size() == first) continue;
       GainSeries series{method,
-                        bandwidth.value_or(default_bandwidth(mechanism)),
+                        bandwidth.value_or(patch::default_bandwidth(mechanism)),
                         first,
                         comparison.runs.size() - first,
                         comparer.floor(patched),
@@ -195,8 +198,9 @@ bool stands_clear(double error, double floor) {
   return error >= kAboveFloor * floor;
 }
 
-Comparison compare(const Mechanism& mechanism, const BlockLibrary& library, const CompareOptions& options) {
-  return compare_within_range(within_range(mechanism), library, options);
+Comparison compare(const mechanism::Mechanism& mechanism, const diagram::BlockLibrary& library,
+                   const CompareOptions& options) {
+  return compare_within_range(patch::within_range(mechanism), library, options);
 }
 
-}  // namespace oblique
+}  // namespace oblique::compare

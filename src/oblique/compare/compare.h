@@ -8,15 +8,15 @@
 #include <vector>
 
 #include <oblique/diagram/block_library.h>
-#include <oblique/mechanism/mechanism.h>
+#include <oblique/mechanism/model/mechanism.h>
 #include <oblique/patch/patch.h>
 #include <oblique/solve/run.h>
 
-namespace oblique {
+namespace oblique::compare {
 
 /// What to compare: every method with every bandwidth and every gain.
 struct CompareOptions {
-  std::vector<PatchMethod> methods{PatchMethod::triangles};
+  std::vector<patch::PatchMethod> methods{patch::PatchMethod::triangles};
   std::vector<double> gains{1e2, 1e3, 1e4, 1e5, 1e6};
   std::vector<double> bandwidths;       ///< [Hz]; none: the `default_bandwidth` of the mechanism alone
   std::vector<std::string> split = {};  ///< of a triad, and
@@ -28,7 +28,7 @@ struct CompareOptions {
 /// A signal that left ±1 machine unit.
 struct Overload {
   std::string signal;
-  Peak peak;
+  solve::Peak peak;
 };
 
 /// The row and the point at which a run errs most.
@@ -55,7 +55,7 @@ struct ErrorParts {
 
 /// One patched diagram held against the exact motion.
 struct ComparedRun {
-  PatchMethod method = PatchMethod::triangles;
+  patch::PatchMethod method = patch::PatchMethod::triangles;
   double gain = 0;
   double bandwidth = 0;  ///< of the amplifiers [Hz]
   double max_error = 0;  ///< largest distance of any moving point from its exact place [length unit]
@@ -76,15 +76,15 @@ struct ComparedRun {
 
 /// What was asked for and could not be had: a method that does not fit the mechanism, or a run that fails.
 struct RefusedRun {
-  PatchMethod method = PatchMethod::triangles;
+  patch::PatchMethod method = patch::PatchMethod::triangles;
   std::optional<double> bandwidth;  ///< [Hz]; nothing: the default
   std::optional<double> gain;       ///< of the run that failed; nothing: the patch was refused
-  Diagnostic why;
+  text::Diagnostic why;
 };
 
 /// What the runs of one method and one bandwidth tell together.
 struct GainSeries {
-  PatchMethod method = PatchMethod::triangles;
+  patch::PatchMethod method = patch::PatchMethod::triangles;
   double bandwidth = 0;          ///< [Hz]
   std::size_t first = 0, n = 0;  ///< its runs in Comparison::runs
   /// Largest error with amplifiers of gain 1e12: what tolerance alone leaves [length unit]; nothing where
@@ -121,7 +121,7 @@ inline constexpr double kOverloadMargin = 1e-6;
 /// Patches a mechanism with each method, bandwidth and gain, runs the diagrams over one turn, and measures
 /// them against the exact motion. What is refused, or fails, leaves the others. Where nothing is left it
 /// throws what the first one did: as `patch` or, with the gain in the message, as `run`.
-Comparison compare(const Mechanism& mechanism, const BlockLibrary& library,
+Comparison compare(const mechanism::Mechanism& mechanism, const diagram::BlockLibrary& library,
                    const CompareOptions& options = {});
 
-}  // namespace oblique
+}  // namespace oblique::compare

@@ -8,7 +8,7 @@
 
 #include <oblique/solve/solve_error.h>
 
-namespace oblique {
+namespace oblique::compare {
 namespace {
 
 /// How much tighter the run is against which the solver is judged: its errors are then a few hundredths, or
@@ -23,27 +23,27 @@ constexpr int kMostSteps = 30;
 
 /// Where the signals put a point [length unit]; nothing where a loop has no solution.
 std::optional<Eigen::Vector2d> place_in(const PatchedMechanism& patched, const PointOutputs& point,
-                                        const Instant& instant) {
-  Workspace workspace(patched.program);
+                                        const solve::Instant& instant) {
+  network::Workspace workspace(patched.program);
   std::vector<double> signals(patched.program.n_signals());
   workspace.load_memories(instant.memories);
   if (!patched.program.signals(instant.t, instant.states.data(), signals.data(), workspace))
     return std::nullopt;
   const auto value = [&](std::size_t column) {
-    const FlatOutput& output = patched.flat.outputs[column];
+    const diagram::FlatOutput& output = patched.flat.outputs[column];
     return output.scale * signals[patched.program.signal_index(output.signal)] + output.offset;
   };
   return Eigen::Vector2d(value(point.x), value(point.y));
 }
 
-std::optional<RecordedRun> tighter_run(const PatchedMechanism& patched, const Run& run,
+std::optional<RecordedRun> tighter_run(const PatchedMechanism& patched, const solve::Run& run,
                                        const std::function<void(double)>& progress) {
   for (const double part : kTighter) {
     const bool first = part == kTighter.front();  // of a second one there is no progress to be told
     try {
       return run_recorded(patched, "a tighter tolerance", part * patched.diagram.run.tolerance,
                           first ? progress : nullptr, {}, kMostTimes * run.statistics.steps);
-    } catch (const SolveError&) {
+    } catch (const solve::SolveError&) {
       continue;
     }
   }
@@ -52,14 +52,14 @@ std::optional<RecordedRun> tighter_run(const PatchedMechanism& patched, const Ru
 
 }  // namespace
 
-std::vector<std::size_t> tracking_states(const Program& program, const FlatDiagram& flat,
+std::vector<std::size_t> tracking_states(const network::Program& program, const diagram::FlatDiagram& flat,
                                          const std::vector<PointOutputs>& points) {
   const auto name_of = [&](std::size_t column) {
     return program.signal_names()[program.signal_index(flat.outputs[column].signal)];
   };
   std::vector<std::size_t> found;
   for (std::size_t i = 0; i < program.n_states(); ++i) {
-    const State& state = program.states()[i];
+    const network::State& state = program.states()[i];
     const bool is_coordinate = std::any_of(points.begin(), points.end(), [&](const PointOutputs& point) {
       return name_of(point.x) == state.name || name_of(point.y) == state.name;
     });
@@ -68,16 +68,16 @@ std::vector<std::size_t> tracking_states(const Program& program, const FlatDiagr
   return found;
 }
 
-std::optional<Instant> at_rest(const Program& program, const std::vector<std::size_t>& moving,
-                               Instant instant) {
+std::optional<solve::Instant> at_rest(const network::Program& program, const std::vector<std::size_t>& moving,
+                                      solve::Instant instant) {
   if (moving.empty()) return instant;
-  Workspace workspace(program);
+  network::Workspace workspace(program);
   std::vector<double> slopes(program.n_states());
   const auto n = static_cast<Eigen::Index>(moving.size());
   Eigen::VectorXd right(n), away = Eigen::VectorXd::Zero(n);
   double last = kFarthest;
   for (int step = 0; step < kMostSteps; ++step) {
-    const auto linear = Linearisation::at(program, workspace, instant);
+    const auto linear = solve::Linearisation::at(program, workspace, instant);
     if (!linear || !program.derivatives(instant.t, instant.states.data(), slopes.data(), workspace))
       return std::nullopt;
     for (Eigen::Index k = 0; k < n; ++k) right[k] = slopes[moving[static_cast<std::size_t>(k)]];
@@ -95,9 +95,9 @@ std::optional<Instant> at_rest(const Program& program, const std::vector<std::si
   return std::nullopt;
 }
 
-std::optional<ErrorParts> error_parts(const Mechanism& mechanism, const PatchedMechanism& patched,
-                                      const Motion& exact, const Run& analog, const Distances& error,
-                                      const std::function<void(double)>& progress) {
+std::optional<ErrorParts> error_parts(const mechanism::Mechanism& mechanism, const PatchedMechanism& patched,
+                                      const mechanism::Motion& exact, const solve::Run& analog,
+                                      const Distances& error, const std::function<void(double)>& progress) {
   const auto found_tight = tighter_run(patched, analog, progress);
   if (!found_tight) return std::nullopt;
   const RecordedRun& tight = *found_tight;
@@ -114,4 +114,4 @@ std::optional<ErrorParts> error_parts(const Mechanism& mechanism, const PatchedM
   return ErrorParts{part(*standing - there), part(moving - *standing), part(found - moving)};
 }
 
-}  // namespace oblique
+}  // namespace oblique::compare

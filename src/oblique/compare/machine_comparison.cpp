@@ -11,27 +11,28 @@
 #include <oblique/machine/role.h>
 #include <oblique/solve/solve_error.h>
 
-namespace oblique {
+namespace oblique::compare {
 namespace {
 
 /// Times the steps on ideal elements.
 constexpr long kStepsOfAFailure = 100;
 
-bool has_setting(const BlockInstance& block, const std::string& key) {
+bool has_setting(const diagram::BlockInstance& block, const std::string& key) {
   return std::any_of(block.settings.begin(), block.settings.end(),
-                     [&](const Entry& entry) { return entry.key == key; });
+                     [&](const text::Entry& entry) { return entry.key == key; });
 }
 
-void set(BlockInstance& block, const std::string& key, double value) {
-  std::erase_if(block.settings, [&](const Entry& entry) { return entry.key == key; });
-  block.settings.push_back(number_setting(key, value));
+void set(diagram::BlockInstance& block, const std::string& key, double value) {
+  std::erase_if(block.settings, [&](const text::Entry& entry) { return entry.key == key; });
+  block.settings.push_back(diagram::number_setting(key, value));
 }
 
 /// The same elements without errors; amplifiers that take their gain from the machine get that of the patch.
-Diagram on_ideal_elements(Diagram diagram, double gain) {
+diagram::Diagram on_ideal_elements(diagram::Diagram diagram, double gain) {
   diagram.machine.profile = "ideal";
-  for (BlockInstance& block : diagram.blocks) {
-    if (role_of(block.type) == Role::open_amplifier && !has_setting(block, "gain")) set(block, "gain", gain);
+  for (diagram::BlockInstance& block : diagram.blocks) {
+    if (machine::role_of(block.type) == machine::Role::open_amplifier && !has_setting(block, "gain"))
+      set(block, "gain", gain);
   }
   return diagram;
 }
@@ -43,15 +44,16 @@ struct Acting {
 };
 
 /// Whether blocks of the library have the parameter of an error: a user's own one need not.
-bool has_parameter(const BlockLibrary& library, const BlockFigure& error) {
-  const BlockDefinition* const definition = library.find(error.block);
+bool has_parameter(const diagram::BlockLibrary& library, const diagram::BlockFigure& error) {
+  const diagram::BlockDefinition* const definition = library.find(error.block);
   return definition != nullptr && definition->find_parameter(error.parameter).has_value();
 }
 
 /// Ideal elements but for one figure on one kind of block, where the diagram itself does not say otherwise.
-Diagram with_figure(const Diagram& realised, Diagram ideal, const BlockLibrary& library,
-                    const MachineProfile& machine, const Acting& acting) {
-  for (const BlockFigure& error : machine.errors) {
+diagram::Diagram with_figure(const diagram::Diagram& realised, diagram::Diagram ideal,
+                             const diagram::BlockLibrary& library, const diagram::MachineProfile& machine,
+                             const Acting& acting) {
+  for (const diagram::BlockFigure& error : machine.errors) {
     if (Acting{error.figure, error.block} != acting || !has_parameter(library, error)) continue;
     for (std::size_t b = 0; b < ideal.blocks.size(); ++b) {
       const bool acts =
@@ -63,30 +65,31 @@ Diagram with_figure(const Diagram& realised, Diagram ideal, const BlockLibrary& 
 }
 
 /// What acts on blocks of the diagram, each once.
-std::vector<Acting> acting_figures(const MachineProfile& machine, const BlockLibrary& library,
-                                   const Diagram& diagram) {
+std::vector<Acting> acting_figures(const diagram::MachineProfile& machine,
+                                   const diagram::BlockLibrary& library, const diagram::Diagram& diagram) {
   std::vector<Acting> found;
-  for (const BlockFigure& error : machine.errors) {
+  for (const diagram::BlockFigure& error : machine.errors) {
     const Acting acting{error.figure, error.block};
-    const bool used = std::any_of(diagram.blocks.begin(), diagram.blocks.end(),
-                                  [&](const BlockInstance& block) { return block.type == error.block; });
+    const bool used =
+        std::any_of(diagram.blocks.begin(), diagram.blocks.end(),
+                    [&](const diagram::BlockInstance& block) { return block.type == error.block; });
     if (used && has_parameter(library, error) && std::find(found.begin(), found.end(), acting) == found.end())
       found.push_back(acting);
   }
   return found;
 }
 
-std::vector<std::string> scatter_figures(const MachineProfile& machine) {
+std::vector<std::string> scatter_figures(const diagram::MachineProfile& machine) {
   std::vector<std::string> names;
-  for (const BlockFigure& scatter : machine.scatters) {
+  for (const diagram::BlockFigure& scatter : machine.scatters) {
     if (std::find(names.begin(), names.end(), scatter.figure) == names.end()) names.push_back(scatter.figure);
   }
   return names;
 }
 
 /// Where `points` of two runs are farthest from each other [length unit].
-double largest_distance(const Mechanism& mechanism, const PatchedMechanism& patched, const Trajectory& a,
-                        const Trajectory& b) {
+double largest_distance(const mechanism::Mechanism& mechanism, const PatchedMechanism& patched,
+                        const solve::Trajectory& a, const solve::Trajectory& b) {
   double largest = 0;
   for (const PointOutputs& point : point_outputs(mechanism, patched.flat)) {
     for (std::size_t row = 0; row < a.rows(); ++row)
@@ -106,12 +109,13 @@ double MachineComparison::explained() const {
   return sum / max_error;
 }
 
-MachineComparison compare_on_machine(const Mechanism& whole, const BlockLibrary& library,
-                                     const MachineProfile& machine, const PatchOptions& options,
+MachineComparison compare_on_machine(const mechanism::Mechanism& whole, const diagram::BlockLibrary& library,
+                                     const diagram::MachineProfile& machine,
+                                     const patch::PatchOptions& options,
                                      const std::function<void(double)>& progress) {
-  const Mechanism mechanism = within_range(whole);
-  Diagram realised = realise(patch_named(mechanism, options), library, machine).diagram;
-  const Motion exact = solve_motion(mechanism, options.samples);
+  const mechanism::Mechanism mechanism = patch::within_range(whole);
+  diagram::Diagram realised = machine::realise(patch_named(mechanism, options), library, machine).diagram;
+  const mechanism::Motion exact = mechanism::solve_motion(mechanism, options.samples);
   const std::vector<Acting> figures = acting_figures(machine, library, realised);
   double done = 0;
   const auto run_of = [&](const PatchedMechanism& diagram, const std::string& name) {
@@ -124,13 +128,13 @@ MachineComparison compare_on_machine(const Mechanism& whole, const BlockLibrary&
   };
 
   const PatchedMechanism none(on_ideal_elements(realised, options.gain), library);
-  const Run ideal_run = run_of(none, "ideal elements").run;
-  const Trajectory& on_ideal = ideal_run.trajectory;
+  const solve::Run ideal_run = run_of(none, "ideal elements").run;
+  const solve::Trajectory& on_ideal = ideal_run.trajectory;
   realised.run.max_steps = kStepsOfAFailure * ideal_run.statistics.steps;
-  const Diagram ideal = on_ideal_elements(realised, options.gain);
+  const diagram::Diagram ideal = on_ideal_elements(realised, options.gain);
   const PatchedMechanism all(realised, library);
   const RecordedRun on_machine = run_of(all, "all figures of " + machine.title);
-  const Trajectory& analog = on_machine.run.trajectory;
+  const solve::Trajectory& analog = on_machine.run.trajectory;
   const Distances error = distances(mechanism, all.flat, analog, exact);
   const Eigen::Vector2d& there = exact.configurations[error.row].points[error.worst.point].position;
   const Eigen::Vector2d along = (place_of(error.worst, analog, error.row) - there).normalized();
@@ -138,7 +142,7 @@ MachineComparison compare_on_machine(const Mechanism& whole, const BlockLibrary&
 
   MachineComparison result;
   result.machine = machine.title;
-  result.absent = bill_of(all.flat, machine).absent();
+  result.absent = machine::bill_of(all.flat, machine).absent();
   result.scatter = scatter_figures(machine);
   result.max_error = error.largest;
   result.rms_error = error.rms;
@@ -151,7 +155,7 @@ MachineComparison compare_on_machine(const Mechanism& whole, const BlockLibrary&
   result.ideal_share = along.dot(by_ideal - there);
   for (const Acting& acting : figures) {
     const PatchedMechanism one(with_figure(realised, ideal, library, machine, acting), library);
-    const Trajectory alone =
+    const solve::Trajectory alone =
         run_of(one, fmt::format("nothing but '{}' of each {}", acting.figure, acting.block)).run.trajectory;
     result.figures.push_back({acting.figure, acting.block, largest_distance(mechanism, one, alone, on_ideal),
                               along.dot(place_of(error.worst, alone, error.row) - by_ideal) + 0.0});  // no −0
@@ -161,4 +165,4 @@ MachineComparison compare_on_machine(const Mechanism& whole, const BlockLibrary&
   return result;
 }
 
-}  // namespace oblique
+}  // namespace oblique::compare

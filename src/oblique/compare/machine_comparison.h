@@ -8,7 +8,7 @@
 #include <oblique/compare/compare.h>
 #include <oblique/diagram/machine_profile.h>
 
-namespace oblique {
+namespace oblique::compare {
 
 /// What one published figure of a machine does to one kind of element, with all else ideal.
 struct FigureError {
@@ -46,8 +46,9 @@ struct MachineComparison {
 /// Scatter is not in it (see `monte_carlo`). `options.gain` is that of ideal servo amplifiers. A run that
 /// takes a hundred times the steps of the one on ideal elements has failed. Throws as `patch`, `realise`, and
 /// as `run` with the figure in the message.
-MachineComparison compare_on_machine(const Mechanism& whole, const BlockLibrary& library,
-                                     const MachineProfile& machine, const PatchOptions& options,
+MachineComparison compare_on_machine(const mechanism::Mechanism& whole, const diagram::BlockLibrary& library,
+                                     const diagram::MachineProfile& machine,
+                                     const patch::PatchOptions& options,
                                      const std::function<void(double)>& progress = {});
 
-}  // namespace oblique
+}  // namespace oblique::compare

@@ -11,16 +11,16 @@
 #include <oblique/compare/patched_run.h>
 #include <oblique/solve/solve_error.h>
 
-namespace oblique {
+namespace oblique::compare {
 namespace {
 
 constexpr double kFinerThanScatter = 1e-3;
 constexpr double kCoarsest = 1e-6, kFinest = 1e-10;  ///< of the solver's tolerance
 constexpr long kStepsOfAFailure = 100;               ///< times those of the undisturbed run
 
-double tolerance_for(const std::vector<BlockFigure>& scatters) {
+double tolerance_for(const std::vector<diagram::BlockFigure>& scatters) {
   double narrowest = 1;
-  for (const BlockFigure& scatter : scatters) {
+  for (const diagram::BlockFigure& scatter : scatters) {
     if (scatter.value > 0) narrowest = std::min(narrowest, scatter.value);
   }
   return std::clamp(kFinerThanScatter * narrowest, kFinest, kCoarsest);
@@ -28,25 +28,25 @@ double tolerance_for(const std::vector<BlockFigure>& scatters) {
 
 /// What the runs have in common; nothing in it changes while they go on.
 struct Experiment {
-  const Mechanism& mechanism;
+  const mechanism::Mechanism& mechanism;
   const MonteCarloOptions& options;
-  FlatDiagram flat;
-  Motion exact;
-  RunOptions how;
+  diagram::FlatDiagram flat;
+  mechanism::Motion exact;
+  solve::RunOptions how;
 
   /// At a coarse tolerance the solver may find no step in a stiff loop that a finer one passes: such a run is
   /// tried again, ten and a hundred times finer.
-  Distances errors_of(const FlatDiagram& diagram) const {
-    const Program program(assemble(diagram));
-    RunOptions finer = how;
+  Distances errors_of(const diagram::FlatDiagram& diagram) const {
+    const network::Program program(network::assemble(diagram));
+    solve::RunOptions finer = how;
     for (int attempt = 0; attempt < 2; ++attempt) {
       try {
-        return distances(mechanism, diagram, run(program, diagram, finer).trajectory, exact);
-      } catch (const SolveError&) {
+        return distances(mechanism, diagram, solve::run(program, diagram, finer).trajectory, exact);
+      } catch (const solve::SolveError&) {
         finer.tolerance /= 10;
       }
     }
-    return distances(mechanism, diagram, run(program, diagram, finer).trajectory, exact);
+    return distances(mechanism, diagram, solve::run(program, diagram, finer).trajectory, exact);
   }
 };
 
@@ -82,13 +82,13 @@ class Queue {
  private:
   void serve(std::size_t k) {
     const MonteCarloOptions& options = experiment_.options;
-    FlatDiagram diagram = experiment_.flat;
+    diagram::FlatDiagram diagram = experiment_.flat;
     apply_draws(draw(diagram, options.scatters, {options.seed, options.first_run + k}), diagram);
     try {
       Distances found = experiment_.errors_of(diagram);
       result_.errors[k] = found.largest;
       if (k < result_.along.size()) result_.along[k] = std::move(found.along);
-    } catch (const Error& error) {
+    } catch (const text::Error& error) {
       const std::string& what = error.diagnostics().front().what;
       messages_[k] = what.substr(0, what.find('\n'));
     }
@@ -135,14 +135,16 @@ std::vector<double> MonteCarlo::percentile_along(double percent) const {
   return percentiles;
 }
 
-MonteCarlo monte_carlo(const Mechanism& whole, const Diagram& diagram, const BlockLibrary& library,
-                       const MonteCarloOptions& options) {
-  const Mechanism mechanism = within_range(whole);
-  Experiment experiment{mechanism, options, flatten(diagram, library),
-                        solve_motion(mechanism, options.positions), options_of(diagram.run)};
+MonteCarlo monte_carlo(const mechanism::Mechanism& whole, const diagram::Diagram& diagram,
+                       const diagram::BlockLibrary& library, const MonteCarloOptions& options) {
+  const mechanism::Mechanism mechanism = patch::within_range(whole);
+  Experiment experiment{mechanism, options, diagram::flatten(diagram, library),
+                        mechanism::solve_motion(mechanism, options.positions),
+                        solve::options_of(diagram.run)};
   experiment.how.samples = options.positions;
   experiment.how.tolerance = tolerance_for(options.scatters);
-  const Run undisturbed = run(Program(assemble(experiment.flat)), experiment.flat, experiment.how);
+  const solve::Run undisturbed =
+      solve::run(network::Program(network::assemble(experiment.flat)), experiment.flat, experiment.how);
   experiment.how.max_steps = kStepsOfAFailure * std::max(undisturbed.statistics.steps, 1L);
 
   MonteCarlo result;
@@ -169,4 +171,4 @@ MonteCarlo monte_carlo(const Mechanism& whole, const Diagram& diagram, const Blo
   return result;
 }
 
-}  // namespace oblique
+}  // namespace oblique::compare

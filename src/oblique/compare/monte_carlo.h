@@ -8,13 +8,13 @@
 #include <vector>
 
 #include <oblique/compare/scatter.h>
-#include <oblique/mechanism/mechanism.h>
+#include <oblique/mechanism/model/mechanism.h>
 
-namespace oblique {
+namespace oblique::compare {
 
 /// How often, and how, the elements of a diagram are drawn anew.
 struct MonteCarloOptions {
-  std::vector<BlockFigure> scatters;
+  std::vector<diagram::BlockFigure> scatters;
   int runs = 1000;
   std::uint64_t seed = 1;
   std::uint64_t first_run = 0;  ///< number of the first run: with `runs` = 1 it repeats one
@@ -56,7 +56,7 @@ struct MonteCarlo {
 /// narrowest scatter, 1e-6 at the most, and up to a hundred times finer where it finds no step; a run that
 /// takes a hundred times the steps of the undisturbed one has failed. Throws as `flatten`, `solve_motion`,
 /// and as `run` where the undisturbed run fails.
-MonteCarlo monte_carlo(const Mechanism& whole, const Diagram& diagram, const BlockLibrary& library,
-                       const MonteCarloOptions& options);
+MonteCarlo monte_carlo(const mechanism::Mechanism& whole, const diagram::Diagram& diagram,
+                       const diagram::BlockLibrary& library, const MonteCarloOptions& options);
 
-}  // namespace oblique
+}  // namespace oblique::compare

@@ -8,25 +8,27 @@
 #include <fmt/format.h>
 
 #include <oblique/solve/solve_error.h>
-#include <oblique/solve/stability.h>
+#include <oblique/solve/stability/stability.h>
 
-namespace oblique {
+namespace oblique::compare {
 namespace {
 
 constexpr std::size_t kRowsPerStabilityCheck = 10;
 
 }  // namespace
 
-Diagram patch_named(const Mechanism& mechanism, const PatchOptions& options) {
-  Diagram diagram = patch(mechanism, options);
+diagram::Diagram patch_named(const mechanism::Mechanism& mechanism, const patch::PatchOptions& options) {
+  diagram::Diagram diagram = patch::patch(mechanism, options);
   diagram.file = mechanism.file;
   return diagram;
 }
 
-PatchedMechanism::PatchedMechanism(Diagram patched, const BlockLibrary& library)
-    : diagram(std::move(patched)), flat(flatten(diagram, library)), program(assemble(flat)) {}
+PatchedMechanism::PatchedMechanism(diagram::Diagram patched, const diagram::BlockLibrary& library)
+    : diagram(std::move(patched)),
+      flat(diagram::flatten(diagram, library)),
+      program(network::assemble(flat)) {}
 
-std::vector<Overload> overloads_of(const Program& program, const Run& run, double margin) {
+std::vector<Overload> overloads_of(const network::Program& program, const solve::Run& run, double margin) {
   std::vector<Overload> overloads;
   for (std::size_t s = 0; s < run.peaks.size(); ++s) {
     if (std::abs(run.peaks[s].value) > 1 + margin)
@@ -35,12 +37,12 @@ std::vector<Overload> overloads_of(const Program& program, const Run& run, doubl
   return overloads;
 }
 
-double slowest_pole_of(const Program& program, const std::vector<Instant>& instants) {
+double slowest_pole_of(const network::Program& program, const std::vector<solve::Instant>& instants) {
   double slowest = -std::numeric_limits<double>::infinity();
-  Workspace workspace(program);
+  network::Workspace workspace(program);
   for (std::size_t row = 0; row < instants.size(); row += kRowsPerStabilityCheck) {
     workspace.load_memories(instants[row].memories);
-    const double pole = servo_stability(program, workspace, instants[row].t, instants[row].states);
+    const double pole = solve::servo_stability(program, workspace, instants[row].t, instants[row].states);
     if (std::isnan(pole)) return pole;
     slowest = std::max(slowest, pole);
   }
@@ -51,7 +53,7 @@ RecordedRun run_recorded(const PatchedMechanism& patched, const std::string& wha
                          const std::function<void(double)>& progress, const std::vector<double>& moments,
                          std::optional<long> max_steps) {
   RecordedRun recorded;
-  RunOptions how = options_of(patched.diagram.run);
+  solve::RunOptions how = solve::options_of(patched.diagram.run);
   how.tolerance = tolerance;
   how.progress = progress;
   how.extra_times = moments;
@@ -62,36 +64,37 @@ RecordedRun run_recorded(const PatchedMechanism& patched, const std::string& wha
   };
   how.on_restart = [&] { recorded.instants.clear(); };
   try {
-    recorded.run = run(patched.program, patched.flat, how);
-  } catch (const SolveError& error) {
-    Diagnostic finding = error.diagnostics().front();
+    recorded.run = solve::run(patched.program, patched.flat, how);
+  } catch (const solve::SolveError& error) {
+    text::Diagnostic finding = error.diagnostics().front();
     finding.place = {patched.flat.file, {}};  // the diagram has no file in which its blocks stand
     finding.what = fmt::format("with {}: {}", what, finding.what);
-    throw SolveError(error.kind(), error.time(), std::move(finding));
+    throw solve::SolveError(error.kind(), error.time(), std::move(finding));
   }
   return recorded;
 }
 
-std::vector<PointOutputs> point_outputs(const Mechanism& mechanism, const FlatDiagram& flat) {
+std::vector<PointOutputs> point_outputs(const mechanism::Mechanism& mechanism,
+                                        const diagram::FlatDiagram& flat) {
   const auto column = [&](const std::string& name) {
     const auto found = std::find_if(flat.outputs.begin(), flat.outputs.end(),
-                                    [&](const FlatOutput& output) { return output.name == name; });
+                                    [&](const diagram::FlatOutput& output) { return output.name == name; });
     return static_cast<std::size_t>(found - flat.outputs.begin());
   };
   std::vector<PointOutputs> outputs;
   for (std::size_t p = 0; p < mechanism.points.size(); ++p) {
-    const Point& point = mechanism.points[p];
+    const mechanism::Point& point = mechanism.points[p];
     if (!point.fixed) outputs.push_back({p, column(point.name + ".x"), column(point.name + ".y")});
   }
   return outputs;
 }
 
-Eigen::Vector2d place_of(const PointOutputs& point, const Trajectory& analog, std::size_t row) {
+Eigen::Vector2d place_of(const PointOutputs& point, const solve::Trajectory& analog, std::size_t row) {
   return {analog.at(row, 1 + point.x), analog.at(row, 1 + point.y)};  // the first column is the time
 }
 
-Distances distances(const Mechanism& mechanism, const FlatDiagram& flat, const Trajectory& analog,
-                    const Motion& exact) {
+Distances distances(const mechanism::Mechanism& mechanism, const diagram::FlatDiagram& flat,
+                    const solve::Trajectory& analog, const mechanism::Motion& exact) {
   Distances found;
   found.along.assign(analog.rows(), 0);
   double sum = 0;
@@ -112,4 +115,4 @@ Distances distances(const Mechanism& mechanism, const FlatDiagram& flat, const T
   return found;
 }
 
-}  // namespace oblique
+}  // namespace oblique::compare

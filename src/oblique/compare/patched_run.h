@@ -8,31 +8,31 @@
 
 #include <oblique/compare/compare.h>
 #include <oblique/diagram/block_library.h>
-#include <oblique/mechanism/motion.h>
-#include <oblique/network/program.h>
+#include <oblique/mechanism/motion/motion.h>
+#include <oblique/network/program/program.h>
 #include <oblique/patch/patch.h>
-#include <oblique/solve/linearisation.h>
 #include <oblique/solve/run.h>
+#include <oblique/solve/stability/linearisation.h>
 
 // What comparisons share; not installed.
-namespace oblique {
+namespace oblique::compare {
 
 /// A mechanism's diagram with all that running it takes. The library must outlive it.
 struct PatchedMechanism {
-  PatchedMechanism(Diagram patched, const BlockLibrary& library);
+  PatchedMechanism(diagram::Diagram patched, const diagram::BlockLibrary& library);
 
-  Diagram diagram;
-  FlatDiagram flat;
-  Program program;
+  diagram::Diagram diagram;
+  diagram::FlatDiagram flat;
+  network::Program program;
 };
 
 /// The diagram of a mechanism under the mechanism's own file name: the diagram has none.
-Diagram patch_named(const Mechanism& mechanism, const PatchOptions& options);
+diagram::Diagram patch_named(const mechanism::Mechanism& mechanism, const patch::PatchOptions& options);
 
 /// A run with the states at its rows.
 struct RecordedRun {
-  Run run;
-  std::vector<Instant> instants;
+  solve::Run run;
+  std::vector<solve::Instant> instants;
 };
 
 /// Runs as the diagram asks, but with another relative tolerance; with the outputs at further `moments` [s],
@@ -43,18 +43,20 @@ RecordedRun run_recorded(const PatchedMechanism& patched, const std::string& wha
                          const std::vector<double>& moments = {}, std::optional<long> max_steps = {});
 
 /// The signals that left ±1 machine unit by more than the margin.
-std::vector<Overload> overloads_of(const Program& program, const Run& run, double margin = kOverloadMargin);
+std::vector<Overload> overloads_of(const network::Program& program, const solve::Run& run,
+                                   double margin = kOverloadMargin);
 
 /// The largest real part of the servo loops' eigenvalues at every tenth of the instants [1/s]; NaN where one
 /// of them has none.
-double slowest_pole_of(const Program& program, const std::vector<Instant>& instants);
+double slowest_pole_of(const network::Program& program, const std::vector<solve::Instant>& instants);
 
 /// The outputs that are the coordinates of a moving point.
 struct PointOutputs {
   std::size_t point = 0;  ///< index in Mechanism::points
   std::size_t x = 0, y = 0;
 };
-std::vector<PointOutputs> point_outputs(const Mechanism& mechanism, const FlatDiagram& flat);
+std::vector<PointOutputs> point_outputs(const mechanism::Mechanism& mechanism,
+                                        const diagram::FlatDiagram& flat);
 
 /// How far the moving points of a run are from their exact places.
 struct Distances {
@@ -64,10 +66,10 @@ struct Distances {
   std::size_t row = 0;
   std::vector<double> along;  ///< the largest of each row [length unit]
 };
-Distances distances(const Mechanism& mechanism, const FlatDiagram& flat, const Trajectory& analog,
-                    const Motion& exact);
+Distances distances(const mechanism::Mechanism& mechanism, const diagram::FlatDiagram& flat,
+                    const solve::Trajectory& analog, const mechanism::Motion& exact);
 
 /// Where a point stands in a row of a run [length unit].
-Eigen::Vector2d place_of(const PointOutputs& point, const Trajectory& analog, std::size_t row);
+Eigen::Vector2d place_of(const PointOutputs& point, const solve::Trajectory& analog, std::size_t row);
 
-}  // namespace oblique
+}  // namespace oblique::compare

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/compare/scatter.h>
 
-namespace oblique {
+namespace oblique::compare {
 namespace {
 
 /// Uniform in [−1, 1).
@@ -31,10 +31,11 @@ std::array<std::uint32_t, 4> philox(std::array<std::uint32_t, 4> counter, std::a
   return counter;
 }
 
-std::vector<Draw> draw(const FlatDiagram& diagram, const std::vector<BlockFigure>& scatters, DrawKey key) {
+std::vector<Draw> draw(const diagram::FlatDiagram& diagram, const std::vector<diagram::BlockFigure>& scatters,
+                       DrawKey key) {
   std::vector<Draw> draws;
   for (std::size_t b = 0; b < diagram.blocks.size(); ++b) {
-    const FlatBlock& block = diagram.blocks[b];
+    const diagram::FlatBlock& block = diagram.blocks[b];
     for (std::size_t s = 0; s < scatters.size(); ++s) {
       if (scatters[s].block != block.definition->name) continue;
       const auto parameter = block.definition->find_parameter(scatters[s].parameter);
@@ -48,20 +49,21 @@ std::vector<Draw> draw(const FlatDiagram& diagram, const std::vector<BlockFigure
   return draws;
 }
 
-void apply_draws(const std::vector<Draw>& draws, FlatDiagram& diagram) {
+void apply_draws(const std::vector<Draw>& draws, diagram::FlatDiagram& diagram) {
   for (const Draw& drawn : draws) {
-    FlatBlock& block = diagram.blocks[drawn.block];
+    diagram::FlatBlock& block = diagram.blocks[drawn.block];
     block.parameters[drawn.parameter] = drawn.value;
     block.choose_behaviour();
   }
 }
 
-std::vector<BlockFigure> scatters_of_tolerance(const BlockLibrary& library, double tolerance) {
-  std::vector<BlockFigure> scatters;
+std::vector<diagram::BlockFigure> scatters_of_tolerance(const diagram::BlockLibrary& library,
+                                                        double tolerance) {
+  std::vector<diagram::BlockFigure> scatters;
   for (const std::string& name : library.names()) {
-    const BlockDefinition& definition = *library.find(name);
+    const diagram::BlockDefinition& definition = *library.find(name);
     if (definition.is_composite()) continue;
-    for (const ParameterDefinition& parameter : definition.parameters) {
+    for (const diagram::ParameterDefinition& parameter : definition.parameters) {
       const bool scattered =
           parameter.name == "tolerance" || (name == "multiplier" && parameter.name == "error");
       if (scattered) scatters.push_back({name, parameter.name, tolerance, "tolerance"});
@@ -70,4 +72,4 @@ std::vector<BlockFigure> scatters_of_tolerance(const BlockLibrary& library, doub
   return scatters;
 }
 
-}  // namespace oblique
+}  // namespace oblique::compare

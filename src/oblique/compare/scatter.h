@@ -11,7 +11,7 @@
 #include <oblique/diagram/flat_diagram.h>
 #include <oblique/diagram/machine_profile.h>
 
-namespace oblique {
+namespace oblique::compare {
 
 /// Random bits that depend on a counter and a key alone, so that any of them can be had in any order and by
 /// any thread: Philox 4×32 with 10 rounds (Salmon, Moraes, Dror, Shaw, "Parallel random numbers: as easy as
@@ -35,13 +35,15 @@ struct Draw {
 /// one that it has, which depends on the key, the place of the block in the diagram, and the place of the
 /// scatter in the list, on nothing else. A value that the parameter may not have is mirrored at the one
 /// that it has.
-std::vector<Draw> draw(const FlatDiagram& diagram, const std::vector<BlockFigure>& scatters, DrawKey key);
+std::vector<Draw> draw(const diagram::FlatDiagram& diagram, const std::vector<diagram::BlockFigure>& scatters,
+                       DrawKey key);
 
 /// Gives the blocks what they drew; a block's equations may become another case of its definition.
-void apply_draws(const std::vector<Draw>& draws, FlatDiagram& diagram);
+void apply_draws(const std::vector<Draw>& draws, diagram::FlatDiagram& diagram);
 
 /// The scatter of elements that are all made to one relative tolerance: each parameter named `tolerance` of
 /// the library's primitive blocks but the capacitors', and the error of multipliers, as parts of full scale.
-std::vector<BlockFigure> scatters_of_tolerance(const BlockLibrary& library, double tolerance);
+std::vector<diagram::BlockFigure> scatters_of_tolerance(const diagram::BlockLibrary& library,
+                                                        double tolerance);
 
-}  // namespace oblique
+}  // namespace oblique::compare

@@ -7,11 +7,11 @@
 
 #include <fmt/format.h>
 
-#include <oblique/mechanism/follower.h>
-#include <oblique/solve/driving_states.h>
-#include <oblique/solve/loop_report.h>
+#include <oblique/mechanism/motion/follower.h>
+#include <oblique/solve/events/driving_states.h>
+#include <oblique/solve/stability/loop_report.h>
 
-namespace oblique {
+namespace oblique::compare {
 namespace {
 
 /// Part of the turn within which two positions count as the same.
@@ -22,17 +22,17 @@ constexpr double kDip = 0.75;
 constexpr std::size_t kRowsPerInstant = 5;
 
 /// sin γ at P of a dyad's triangle.
-double sine_at_pivot(const Dyad& dyad, const Configuration& here) {
+double sine_at_pivot(const mechanism::Dyad& dyad, const mechanism::Configuration& here) {
   const Eigen::Vector2d d = here.points[dyad.q].position - here.points[dyad.p].position;
   const Eigen::Vector2d e = here.points[dyad.c].position - here.points[dyad.p].position;
   return std::abs(d.x() * e.y() - d.y() * e.x()) / (d.norm() * e.norm());
 }
 
 /// Whether states act on an output: directly, or through other states.
-std::vector<bool> states_behind(const PatchedMechanism& patched, const Instant& instant,
+std::vector<bool> states_behind(const PatchedMechanism& patched, const solve::Instant& instant,
                                 const PointOutputs& point) {
-  const Program& program = patched.program;
-  Workspace workspace(program);
+  const network::Program& program = patched.program;
+  network::Workspace workspace(program);
   std::vector<double> signals(program.n_signals());
   workspace.load_memories(instant.memories);
   std::vector<bool> behind(program.n_states(), false);
@@ -47,17 +47,17 @@ std::vector<bool> states_behind(const PatchedMechanism& patched, const Instant& 
     moved[i] += 0.0371;  // an odd part of a machine unit
     behind[i] = place(std::move(moved)) != here;
   }
-  return with_driving_states(program.jacobian_pattern(), std::move(behind));
+  return solve::with_driving_states(program.jacobian_pattern(), std::move(behind));
 }
 
 }  // namespace
 
-WorstReasons::WorstReasons(const Mechanism& mechanism, const Motion& exact)
+WorstReasons::WorstReasons(const mechanism::Mechanism& mechanism, const mechanism::Motion& exact)
     : mechanism_(mechanism),
       exact_(exact),
-      structure_(decompose(mechanism)),
+      structure_(mechanism::decompose(mechanism)),
       regularities_(structure_.groups.size()) {
-  Follower follower(mechanism, structure_);
+  mechanism::Follower follower(mechanism, structure_);
   for (const double t : exact.times) {
     follower.advance(t);
     for (std::size_t g = 0; g < regularities_.size(); ++g)
@@ -71,11 +71,12 @@ bool WorstReasons::is_near(double a, double b) const {
   return std::min(apart, turn - apart) <= kNear * turn;
 }
 
-std::vector<double> WorstReasons::flatness(std::size_t group, PatchMethod method) const {
-  const auto dyad = dyad_of(structure_.groups[group]);
-  if (!dyad || method == PatchMethod::gradient) return regularities_[group];
+std::vector<double> WorstReasons::flatness(std::size_t group, patch::PatchMethod method) const {
+  const auto dyad = mechanism::dyad_of(structure_.groups[group]);
+  if (!dyad || method == patch::PatchMethod::gradient) return regularities_[group];
   std::vector<double> sines;
-  for (const Configuration& here : exact_.configurations) sines.push_back(sine_at_pivot(*dyad, here));
+  for (const mechanism::Configuration& here : exact_.configurations)
+    sines.push_back(sine_at_pivot(*dyad, here));
   return sines;
 }
 
@@ -84,17 +85,17 @@ std::vector<std::size_t> WorstReasons::groups_behind(std::size_t point) const {
   std::vector<std::size_t> behind, points{point};
   for (std::size_t k = 0; k < points.size(); ++k) {
     for (std::size_t g = 0; g < structure_.groups.size(); ++g) {
-      const Group& group = structure_.groups[g];
+      const mechanism::Group& group = structure_.groups[g];
       const bool places =
           std::find(group.points.begin(), group.points.end(), points[k]) != group.points.end();
       if (!places || group.assur_class == 1 || std::find(behind.begin(), behind.end(), g) != behind.end())
         continue;
       behind.push_back(g);
       for (const std::size_t body : group.bodies) {
-        for (const BodyPoint& p : mechanism_.bodies[body].points) points.push_back(p.point);
+        for (const mechanism::BodyPoint& p : mechanism_.bodies[body].points) points.push_back(p.point);
       }
       for (const std::size_t s : group.slides) {
-        const Slide& slide = mechanism_.slides[s];
+        const mechanism::Slide& slide = mechanism_.slides[s];
         points.insert(points.end(), {slide.point, slide.first, slide.second});
       }
     }
@@ -102,15 +103,15 @@ std::vector<std::size_t> WorstReasons::groups_behind(std::size_t point) const {
   return behind;
 }
 
-std::string WorstReasons::flat_group(std::size_t point, std::size_t row, PatchMethod method) const {
+std::string WorstReasons::flat_group(std::size_t point, std::size_t row, patch::PatchMethod method) const {
   for (const std::size_t g : groups_behind(point)) {
     const std::vector<double> values = flatness(g, method);
     const auto [least, greatest] = std::minmax_element(values.begin(), values.end());
     const auto where = static_cast<std::size_t>(least - values.begin());
     if (!is_near(exact_.times[row], exact_.times[where]) || *least > kDip * *greatest) continue;
-    const Group& group = structure_.groups[g];
-    const auto dyad = dyad_of(group);
-    if (!dyad || method == PatchMethod::gradient) {
+    const mechanism::Group& group = structure_.groups[g];
+    const auto dyad = mechanism::dyad_of(group);
+    if (!dyad || method == patch::PatchMethod::gradient) {
       return fmt::format("the group {} is nearest to a dead centre there (regularity {:.2g})", group.name,
                          *least);
     }
@@ -123,18 +124,18 @@ std::string WorstReasons::flat_group(std::size_t point, std::size_t row, PatchMe
 
 std::string WorstReasons::weak_loop(const PatchedMechanism& patched, double gain, const RecordedRun& recorded,
                                     const Distances& error) const {
-  std::vector<Instant> instants;
+  std::vector<solve::Instant> instants;
   for (std::size_t row = 0; row < recorded.instants.size(); row += kRowsPerInstant)
     instants.push_back(recorded.instants[row]);
   const std::vector<bool> behind = states_behind(patched, recorded.instants[error.row], error.worst);
-  const SignalFlow flow(patched.flat, patched.program);
-  const LoopUnknown* weakest = nullptr;
-  const std::vector<LoopReport> loops = explain_loops(patched.program, flow, instants);
-  for (const LoopReport& loop : loops) {
-    for (const LoopUnknown& unknown : loop.unknowns) {
+  const solve::SignalFlow flow(patched.flat, patched.program);
+  const solve::LoopUnknown* weakest = nullptr;
+  const std::vector<solve::LoopReport> loops = solve::explain_loops(patched.program, flow, instants);
+  for (const solve::LoopReport& loop : loops) {
+    for (const solve::LoopUnknown& unknown : loop.unknowns) {
       const auto& states = patched.program.states();
       const auto state = std::find_if(states.begin(), states.end(),
-                                      [&](const State& s) { return s.name == unknown.signal; });
+                                      [&](const network::State& s) { return s.name == unknown.signal; });
       if (state == states.end() || !behind[static_cast<std::size_t>(state - states.begin())]) continue;
       if (weakest == nullptr || std::abs(unknown.least_gain) < std::abs(weakest->least_gain))
         weakest = &unknown;
@@ -148,10 +149,10 @@ std::string WorstReasons::weak_loop(const PatchedMechanism& patched, double gain
                      weakest->signal, weakest->least_gain / gain);
 }
 
-std::string WorstReasons::reason(const PatchedMechanism& patched, const PatchOptions& options,
+std::string WorstReasons::reason(const PatchedMechanism& patched, const patch::PatchOptions& options,
                                  const RecordedRun& recorded, const Distances& error) const {
   std::string found = flat_group(error.worst.point, error.row, options.method);
   return found.empty() ? weak_loop(patched, options.gain, recorded, error) : found;
 }
 
-}  // namespace oblique
+}  // namespace oblique::compare

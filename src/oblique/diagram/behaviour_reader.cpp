@@ -7,12 +7,12 @@
 
 #include <oblique/diagram/names.h>
 
-namespace oblique {
+namespace oblique::diagram {
 namespace {
 
 class BehaviourReader {
  public:
-  BehaviourReader(TableReader& reader, BlockDefinition& definition, Diagnostics& diagnostics)
+  BehaviourReader(text::TableReader& reader, BlockDefinition& definition, text::Diagnostics& diagnostics)
       : reader_(reader), definition_(definition), diagnostics_(diagnostics) {
     for (const ParameterDefinition& parameter : definition_.parameters) {
       if (!parameter.formula) constants_.push_back(parameter.name);
@@ -22,11 +22,11 @@ class BehaviourReader {
 
   void read() {
     read_memories();
-    if (const Value* const cases = reader_.find("cases")) read_cases(*cases);
+    if (const text::Value* const cases = reader_.find("cases")) read_cases(*cases);
     read_behaviour(reader_, {}, "");
     read_starts();
-    if (const Value* const events = reader_.find("events")) read_events(*events);
-    if (const Value* const interval = reader_.find("check_interval")) {
+    if (const text::Value* const events = reader_.find("events")) read_events(*events);
+    if (const text::Value* const interval = reader_.find("check_interval")) {
       definition_.check_interval = read_expression(*interval, "'check_interval'");
       if (definition_.check_interval)
         check_names(*definition_.check_interval, *interval, "'check_interval'", constants_);
@@ -37,27 +37,28 @@ class BehaviourReader {
   /// An equation as the file has it, with the value that its positions refer to.
   struct Written {
     Equation equation;
-    const Value* value = nullptr;
+    const text::Value* value = nullptr;
     std::string key;
   };
 
-  Place place(SourcePosition position) const { return {definition_.file, position}; }
+  text::Place place(text::SourcePosition position) const { return {definition_.file, position}; }
 
-  void report(SourcePosition position, std::string what, std::string expected = {}, std::string remedy = {}) {
+  void report(text::SourcePosition position, std::string what, std::string expected = {},
+              std::string remedy = {}) {
     diagnostics_.add({place(position), std::move(what), std::move(expected), std::move(remedy)});
   }
 
-  void read_cases(const Value& cases) {
-    if (cases.kind != Value::Kind::array) {
-      report(cases.position, fmt::format("'cases' is {}", kind_name(cases.kind)),
+  void read_cases(const text::Value& cases) {
+    if (cases.kind != text::Value::Kind::array) {
+      report(cases.position, fmt::format("'cases' is {}", text::kind_name(cases.kind)),
              "[[cases]], an array of tables");
       return;
     }
-    for (const Value& element : cases.elements) {
-      TableReader reader(definition_.file, element, "[[cases]]", diagnostics_);
-      if (element.kind != Value::Kind::table) continue;
-      const Value* const when = reader.find("when");
-      std::optional<Expression> condition;
+    for (const text::Value& element : cases.elements) {
+      text::TableReader reader(definition_.file, element, "[[cases]]", diagnostics_);
+      if (element.kind != text::Value::Kind::table) continue;
+      const text::Value* const when = reader.find("when");
+      std::optional<text::Expression> condition;
       if (when == nullptr) {
         reader.report("when", "[[cases]] has no 'when'", "a condition on the parameters");
       } else {
@@ -65,19 +66,20 @@ class BehaviourReader {
         if (condition) check_names(*condition, *when, "'when'", constants_);
       }
       // Without a condition the case would pass for the default; the finding above ends the reading anyway.
-      read_behaviour(reader, condition ? std::move(condition) : Expression{},
+      read_behaviour(reader, condition ? std::move(condition) : text::Expression{},
                      when != nullptr ? fmt::format(" where {}", when->text) : " of [[cases]]");
       reader.finish();
     }
   }
 
-  void read_behaviour(TableReader& reader, std::optional<Expression> when, const std::string& which) {
+  void read_behaviour(text::TableReader& reader, std::optional<text::Expression> when,
+                      const std::string& which) {
     std::vector<Written> written;
-    if (const Value* const table = reader.table("equations")) {
-      for (const Entry& entry : table->entries) read_equation(entry, false, written);
+    if (const text::Value* const table = reader.table("equations")) {
+      for (const text::Entry& entry : table->entries) read_equation(entry, false, written);
     }
-    if (const Value* const table = reader.table("implicit")) {
-      for (const Entry& entry : table->entries) read_equation(entry, true, written);
+    if (const text::Value* const table = reader.table("implicit")) {
+      for (const text::Entry& entry : table->entries) read_equation(entry, true, written);
     }
     check_targets(written, which);
 
@@ -110,9 +112,9 @@ class BehaviourReader {
   }
 
   void read_memories() {
-    const Value* const table = reader_.table("memories");
+    const text::Value* const table = reader_.table("memories");
     if (table == nullptr) return;
-    for (const Entry& entry : table->entries) {
+    for (const text::Entry& entry : table->entries) {
       if (!check_name(entry.key, "a memory", place(entry.position), diagnostics_)) continue;
       if (definition_.find_input(entry.key) || definition_.find_parameter(entry.key) ||
           definition_.find_output(entry.key)) {
@@ -140,9 +142,9 @@ class BehaviourReader {
         });
   }
 
-  void read_events(const Value& events) {
-    if (events.kind != Value::Kind::array) {
-      report(events.position, fmt::format("'events' is {}", kind_name(events.kind)),
+  void read_events(const text::Value& events) {
+    if (events.kind != text::Value::Kind::array) {
+      report(events.position, fmt::format("'events' is {}", text::kind_name(events.kind)),
              "[[events]], an array of tables");
       return;
     }
@@ -150,16 +152,16 @@ class BehaviourReader {
     for (const Behaviour& behaviour : definition_.behaviours) {
       for (const Equation& equation : behaviour.equations) names.push_back(equation.target);
     }
-    for (const Value& element : events.elements) {
-      TableReader reader(definition_.file, element, "[[events]]", diagnostics_);
-      if (element.kind == Value::Kind::table) read_event(reader, names);
+    for (const text::Value& element : events.elements) {
+      text::TableReader reader(definition_.file, element, "[[events]]", diagnostics_);
+      if (element.kind == text::Value::Kind::table) read_event(reader, names);
     }
   }
 
-  void read_event(TableReader& reader, const std::vector<std::string>& names) {
+  void read_event(text::TableReader& reader, const std::vector<std::string>& names) {
     EventRule rule;
     rule.place = place(reader.table().position);
-    if (const Value* const when = reader.find("when")) {
+    if (const text::Value* const when = reader.find("when")) {
       if (auto condition = read_expression(*when, "'when'")) {
         check_names(*condition, *when, "'when'", names);
         rule.when = std::move(*condition);
@@ -167,31 +169,31 @@ class BehaviourReader {
     } else {
       reader.report("when", "[[events]] has no 'when'", "the condition that starts the event");
     }
-    if (const Value* const where = reader.find("where")) {
+    if (const text::Value* const where = reader.find("where")) {
       rule.where = read_expression(*where, "'where'");
       if (rule.where) check_names(*rule.where, *where, "'where'", constants_);
     }
     rule.at_start = reader.boolean("at_start").value_or(true);
-    const Value* const set = reader.table("set");
+    const text::Value* const set = reader.table("set");
     if (set == nullptr && reader.table().find("set") == nullptr) {
       reader.report("set", "[[events]] has no 'set'", "what the event changes, { memory = \"value\" }");
     }
     if (set != nullptr) rule.actions = read_actions(*set, names);
-    if (const Value* const piling_up = reader.table("piling_up"))
+    if (const text::Value* const piling_up = reader.table("piling_up"))
       rule.piling_up = read_actions(*piling_up, names);
     reader.finish();
     definition_.events.push_back(std::move(rule));
   }
 
-  std::vector<EventAction> read_actions(const Value& set, const std::vector<std::string>& names) {
+  std::vector<EventAction> read_actions(const text::Value& set, const std::vector<std::string>& names) {
     std::vector<EventAction> actions;
-    for (const Entry& entry : set.entries) {
+    for (const text::Entry& entry : set.entries) {
       if (!is_event_target(entry.key)) {
         std::vector<std::string> known;
         for (const MemoryRule& memory : definition_.memories) known.push_back(memory.name);
         report(entry.position,
                fmt::format("'{}' is no memory and not in every case a state: no event can set it", entry.key),
-               {}, suggest(entry.key, known));
+               {}, text::suggest(entry.key, known));
         continue;
       }
       const std::string what = fmt::format("event's '{}'", entry.key);
@@ -203,7 +205,7 @@ class BehaviourReader {
     return actions;
   }
 
-  void read_equation(const Entry& entry, bool implicit, std::vector<Written>& written) {
+  void read_equation(const text::Entry& entry, bool implicit, std::vector<Written>& written) {
     Equation equation;
     std::string_view target = entry.key;
     if (implicit) {
@@ -212,7 +214,7 @@ class BehaviourReader {
       equation.kind = Equation::Kind::derivative;
       target = target.substr(4, target.size() - 5);
     }
-    if (!is_identifier(target)) {
+    if (!text::is_identifier(target)) {
       report(entry.position, fmt::format("'{}' is not the left side of an equation", entry.key),
              implicit ? "the name of an unknown" : "\"name\" or \"der(name)\"");
       return;
@@ -229,7 +231,7 @@ class BehaviourReader {
     written.push_back({std::move(equation), &entry.value, entry.key});
   }
 
-  bool check_target(const std::string& target, const Entry& entry) {
+  bool check_target(const std::string& target, const text::Entry& entry) {
     if (definition_.find_input(target) || definition_.find_parameter(target) ||
         definition_.find_memory(target)) {
       report(entry.position,
@@ -268,7 +270,7 @@ class BehaviourReader {
   }
 
   void read_starts() {
-    const Value* const table = reader_.table("start");
+    const text::Value* const table = reader_.table("start");
     std::vector<std::string> targets;
     for (const Behaviour& behaviour : definition_.behaviours) {
       for (const Equation& equation : behaviour.equations) {
@@ -277,21 +279,21 @@ class BehaviourReader {
       }
     }
     for (const std::string& target : targets) {
-      const Value* const written = table != nullptr ? table->find(target) : nullptr;
+      const text::Value* const written = table != nullptr ? table->find(target) : nullptr;
       definition_.starts.push_back(written != nullptr ? read_start(target, *written) : usual_start(target));
     }
     if (table == nullptr) return;
-    for (const Entry& entry : table->entries) {
+    for (const text::Entry& entry : table->entries) {
       if (std::find(targets.begin(), targets.end(), entry.key) != targets.end()) continue;
       report(entry.position, fmt::format("[start] names '{}', which is no state and no unknown", entry.key),
-             {}, suggest(entry.key, targets));
+             {}, text::suggest(entry.key, targets));
     }
   }
 
   StartRule usual_start(const std::string& target) const {
     StartRule rule{target, {}, false};
     if (definition_.find_parameter("initial")) {
-      rule.value.kind = Expression::Kind::name;
+      rule.value.kind = text::Expression::Kind::name;
       rule.value.name = "initial";
       rule.value.column = 1;
     }
@@ -308,12 +310,12 @@ class BehaviourReader {
         });
   }
 
-  StartRule read_start(const std::string& target, const Value& written) {
+  StartRule read_start(const std::string& target, const text::Value& written) {
     StartRule rule = usual_start(target);
     const std::string what = fmt::format("start of '{}'", target);
-    const Value* value = &written;
-    if (written.kind == Value::Kind::table) {
-      TableReader reader(definition_.file, written, what, diagnostics_);
+    const text::Value* value = &written;
+    if (written.kind == text::Value::Kind::table) {
+      text::TableReader reader(definition_.file, written, what, diagnostics_);
       value = reader.find("guess");
       rule.at_rest = reader.boolean("at_rest").value_or(false);
       reader.finish();
@@ -331,47 +333,47 @@ class BehaviourReader {
     return rule;
   }
 
-  std::optional<Expression> read_expression(const Value& value, const std::string& what) {
-    if (value.kind == Value::Kind::number) {
-      Expression number;
+  std::optional<text::Expression> read_expression(const text::Value& value, const std::string& what) {
+    if (value.kind == text::Value::Kind::number) {
+      text::Expression number;
       number.number = value.number;
       number.column = 1;
       return number;
     }
-    if (value.kind != Value::Kind::string) {
-      report(value.position, fmt::format("{} is {}", what, kind_name(value.kind)),
+    if (value.kind != text::Value::Kind::string) {
+      report(value.position, fmt::format("{} is {}", what, text::kind_name(value.kind)),
              "a number or an expression");
       return std::nullopt;
     }
     try {
-      return parse_expression(value.text);
-    } catch (const ExpressionError& error) {
-      diagnostics_.add(to_diagnostic(error, definition_.file, value, what));
+      return text::parse_expression(value.text);
+    } catch (const text::ExpressionError& error) {
+      diagnostics_.add(text::to_diagnostic(error, definition_.file, value, what));
       return std::nullopt;
     }
   }
 
-  void check_names(const Expression& expression, const Value& value, const std::string& what,
+  void check_names(const text::Expression& expression, const text::Value& value, const std::string& what,
                    const std::vector<std::string>& known) {
-    for (const Expression* const name : names_in(expression)) {
+    for (const text::Expression* const name : names_in(expression)) {
       if (name->name == "pi" || name->name == "inf") continue;
       if (std::find(known.begin(), known.end(), name->name) != known.end()) continue;
       report(position_in(value, name->column), fmt::format("{}: there is no name '{}'", what, name->name), {},
-             suggest(name->name, known));
+             text::suggest(name->name, known));
     }
   }
 
-  TableReader& reader_;
+  text::TableReader& reader_;
   BlockDefinition& definition_;
-  Diagnostics& diagnostics_;
+  text::Diagnostics& diagnostics_;
   std::vector<std::string> constants_;       ///< what a condition or a start value may name
   std::vector<std::string> broken_targets_;  ///< reported already; not also "has no equation"
 };
 
 }  // namespace
 
-void read_behaviours(TableReader& reader, BlockDefinition& definition, Diagnostics& diagnostics) {
+void read_behaviours(text::TableReader& reader, BlockDefinition& definition, text::Diagnostics& diagnostics) {
   BehaviourReader(reader, definition, diagnostics).read();
 }
 
-}  // namespace oblique
+}  // namespace oblique::diagram

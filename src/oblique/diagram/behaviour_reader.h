@@ -6,10 +6,10 @@
 #include <oblique/diagram/block_definition.h>
 #include <oblique/text/table_reader.h>
 
-namespace oblique {
+namespace oblique::diagram {
 
 /// Reads `[equations]`, `[implicit]`, `[[cases]]` and `[start]` of a primitive block whose ports and
 /// parameters are known already. Afterwards every derivative and implicit target has a StartRule.
-void read_behaviours(TableReader& reader, BlockDefinition& definition, Diagnostics& diagnostics);
+void read_behaviours(text::TableReader& reader, BlockDefinition& definition, text::Diagnostics& diagnostics);
 
-}  // namespace oblique
+}  // namespace oblique::diagram

@@ -16,7 +16,7 @@
 #include <oblique/diagram/points.h>
 #include <oblique/text/table_reader.h>
 
-namespace oblique {
+namespace oblique::diagram {
 namespace {
 
 template <class Named>
@@ -29,20 +29,20 @@ std::optional<std::size_t> find_named(const std::vector<Named>& things, std::str
 
 class BlockReader {
  public:
-  BlockReader(const Document& document, BlockDefinition& definition)
+  BlockReader(const text::Document& document, BlockDefinition& definition)
       : reader_(document.file, document.root, "the block file", diagnostics_), definition_(definition) {}
 
   void read() {
-    if (!check_format(reader_, "oblique-block/1")) diagnostics_.throw_if_any<DiagramError>();
+    if (!text::check_format(reader_, "oblique-block/1")) diagnostics_.throw_if_any<DiagramError>();
     definition_.title = reader_.required_string("title", "what people call the block").value_or("");
     definition_.summary = reader_.string("summary").value_or("");
     definition_.source = reader_.string("source").value_or("");
     definition_.symbol = reader_.string("symbol").value_or("");
     definition_.doc = reader_.string("doc").value_or("");
-    const Value* const blocks = reader_.table("blocks");
-    each("inputs", [&](const Entry& entry) { read_input(entry); });
-    each("outputs", [&](const Entry& entry) { read_output(entry, blocks != nullptr); });
-    each("parameters", [&](const Entry& entry) { read_parameter(entry); });
+    const text::Value* const blocks = reader_.table("blocks");
+    each("inputs", [&](const text::Entry& entry) { read_input(entry); });
+    each("outputs", [&](const text::Entry& entry) { read_output(entry, blocks != nullptr); });
+    each("parameters", [&](const text::Entry& entry) { read_parameter(entry); });
     check_open_inputs();
     if (reader_.table().find("outputs") == nullptr) {
       reader_.report("outputs", "the block has no [outputs]", "at least one output");
@@ -61,14 +61,15 @@ class BlockReader {
  private:
   template <class Read>
   void each(std::string_view key, Read read) {
-    const Value* const table = reader_.table(key);
+    const text::Value* const table = reader_.table(key);
     if (table == nullptr) return;
-    for (const Entry& entry : table->entries) read(entry);
+    for (const text::Entry& entry : table->entries) read(entry);
   }
 
-  Place place(SourcePosition position) const { return {definition_.file, position}; }
+  text::Place place(text::SourcePosition position) const { return {definition_.file, position}; }
 
-  void check_port(const Entry& entry, std::string_view what, std::initializer_list<std::string_view> taken) {
+  void check_port(const text::Entry& entry, std::string_view what,
+                  std::initializer_list<std::string_view> taken) {
     check_name(entry.key, what, place(entry.position), diagnostics_);
     if (std::find(taken.begin(), taken.end(), entry.key) != taken.end()) {
       diagnostics_.add(
@@ -86,13 +87,13 @@ class BlockReader {
     }
   }
 
-  TableReader entry_reader(const Entry& entry, std::string_view what) {
+  text::TableReader entry_reader(const text::Entry& entry, std::string_view what) {
     return {definition_.file, entry.value, fmt::format("{} '{}'", what, entry.key), diagnostics_};
   }
 
-  void read_input(const Entry& entry) {
+  void read_input(const text::Entry& entry) {
     check_port(entry, "an input", {"type", "label"});
-    TableReader reader = entry_reader(entry, "input");
+    text::TableReader reader = entry_reader(entry, "input");
     InputPort input;
     input.name = entry.key;
     input.sum = reader.boolean("sum").value_or(false);
@@ -117,14 +118,14 @@ class BlockReader {
             {{definition_.file, {}},
              fmt::format("'open_with' of input '{}': there is no other input '{}'", input.name, other),
              {},
-             suggest(other, names)});
+             text::suggest(other, names)});
       }
     }
   }
 
-  void read_output(const Entry& entry, bool composite) {
+  void read_output(const text::Entry& entry, bool composite) {
     check_port(entry, "an output", {});
-    TableReader reader = entry_reader(entry, "output");
+    text::TableReader reader = entry_reader(entry, "output");
     OutputPort output;
     output.name = entry.key;
     output.place = place(entry.position);
@@ -139,11 +140,11 @@ class BlockReader {
     definition_.outputs.push_back(std::move(output));
   }
 
-  static void read_unit(TableReader& reader, std::string_view key, const std::string& parameter,
+  static void read_unit(text::TableReader& reader, std::string_view key, const std::string& parameter,
                         std::string& unit) {
     auto read = reader.string(key);
     if (!read) return;
-    if (parse_unit(*read)) {
+    if (text::parse_unit(*read)) {
       unit = std::move(*read);
     } else {
       reader.report(key, fmt::format("parameter '{}': there is no unit '{}'", parameter, *read),
@@ -151,9 +152,9 @@ class BlockReader {
     }
   }
 
-  void read_parameter(const Entry& entry) {
+  void read_parameter(const text::Entry& entry) {
     check_port(entry, "a parameter", {"type", "label", "in"});
-    TableReader reader = entry_reader(entry, "parameter");
+    text::TableReader reader = entry_reader(entry, "parameter");
     ParameterDefinition parameter;
     parameter.name = entry.key;
     if (const auto kind = reader.string("kind")) {
@@ -161,11 +162,11 @@ class BlockReader {
         reader.report("kind", fmt::format("parameter '{}' is of kind '{}'", entry.key, *kind),
                       "number, points or formula");
       if (*kind == "formula") {
-        parameter.formula = Expression{};
+        parameter.formula = text::Expression{};
         const std::string subject = fmt::format("default of parameter '{}'", entry.key);
-        if (const Value* const value = reader.find("default"))
+        if (const text::Value* const value = reader.find("default"))
           parameter.formula =
-              read_formula(definition_.file, *value, subject, diagnostics_).value_or(Expression{});
+              read_formula(definition_.file, *value, subject, diagnostics_).value_or(text::Expression{});
         parameter.doc = reader.string("doc").value_or("");
         reader.finish();
         definition_.parameters.push_back(std::move(parameter));
@@ -174,13 +175,13 @@ class BlockReader {
       if (*kind == "points") {
         read_unit(reader, "x_unit", parameter.name, parameter.x_unit);
         read_unit(reader, "y_unit", parameter.name, parameter.y_unit);
-        parameter.points = PointTable{{0, 1}, {0, 1}};
+        parameter.points = text::PointTable{{0, 1}, {0, 1}};
         const std::string subject = fmt::format("default of parameter '{}'", entry.key);
-        if (const Value* const value = reader.find("default"))
-          parameter.points =
-              read_points(definition_.file, *value,
-                          {parse_unit(parameter.x_unit).value(), parse_unit(parameter.y_unit).value()},
-                          subject, diagnostics_);
+        if (const text::Value* const value = reader.find("default"))
+          parameter.points = read_points(
+              definition_.file, *value,
+              {text::parse_unit(parameter.x_unit).value(), text::parse_unit(parameter.y_unit).value()},
+              subject, diagnostics_);
         parameter.doc = reader.string("doc").value_or("");
         reader.finish();
         definition_.parameters.push_back(std::move(parameter));
@@ -207,7 +208,7 @@ class BlockReader {
     definition_.parameters.push_back(std::move(parameter));
   }
 
-  void read_composite(const Value& blocks) {
+  void read_composite(const text::Value& blocks) {
     for (const std::string_view key :
          {"equations", "implicit", "cases", "start", "memories", "events", "check_interval"}) {
       if (reader_.find(key) == nullptr) continue;
@@ -215,10 +216,10 @@ class BlockReader {
                      "put the equations into a block file of their own");
     }
     definition_.blocks = read_blocks(definition_.file, blocks, diagnostics_);
-    if (const Value* const layout = reader_.table("layout"))
+    if (const text::Value* const layout = reader_.table("layout"))
       definition_.layout = read_layout(definition_.file, *layout, definition_.blocks, diagnostics_);
-    if (const Value* const machine = reader_.table("machine")) {
-      TableReader reader(definition_.file, *machine, "[machine]", diagnostics_);
+    if (const text::Value* const machine = reader_.table("machine")) {
+      text::TableReader reader(definition_.file, *machine, "[machine]", diagnostics_);
       definition_.inverting = reader.boolean("inverting").value_or(false);
       reader.finish();
     }
@@ -233,8 +234,8 @@ class BlockReader {
     }
   }
 
-  Diagnostics diagnostics_;
-  TableReader reader_;
+  text::Diagnostics diagnostics_;
+  text::TableReader reader_;
   BlockDefinition& definition_;
   std::set<std::string, std::less<>> names_;
 };
@@ -281,7 +282,7 @@ const Behaviour* BlockDefinition::choose_behaviour(const std::vector<double>& va
     return index ? std::optional(values[*index]) : std::nullopt;
   };
   for (const Behaviour& behaviour : behaviours) {
-    if (!behaviour.when || evaluate(*behaviour.when, lookup) != 0) return &behaviour;
+    if (!behaviour.when || text::evaluate(*behaviour.when, lookup) != 0) return &behaviour;
   }
   return nullptr;
 }
@@ -291,8 +292,8 @@ BlockDefinition parse_block(std::string_view text, std::string file, std::string
   definition.name = std::move(name);
   definition.file = std::move(file);
   definition.text = std::string(text);
-  BlockReader(parse_document(text, definition.file), definition).read();
+  BlockReader(text::parse_document(text, definition.file), definition).read();
   return definition;
 }
 
-}  // namespace oblique
+}  // namespace oblique::diagram

@@ -11,7 +11,7 @@
 #include <oblique/text/expression.h>
 #include <oblique/text/point_table.h>
 
-namespace oblique {
+namespace oblique::diagram {
 
 /// An input of a block. A `sum` port adds its weighted signals, as a summing junction does; any other takes
 /// one.
@@ -30,7 +30,7 @@ struct OutputPort {
   std::string name;
   std::string wire;
   std::string doc;
-  Place place;
+  text::Place place;
 };
 
 /// A parameter of a block with its default, unit and allowed range.
@@ -42,9 +42,9 @@ struct ParameterDefinition {
   std::optional<double> at_least, at_most;  ///< inclusive limits
   bool saturation = false;  ///< where it stays open it is what the amplifiers of the machine saturate at
   std::string doc;
-  std::optional<PointTable> points;  ///< the default of a parameter that is a function given by points
+  std::optional<text::PointTable> points;  ///< the default of a parameter that is a function given by points
   std::string x_unit = "machine unit", y_unit = "machine unit";  ///< of its points
-  std::optional<Expression> formula;  ///< the default of a parameter that is an expression of time
+  std::optional<text::Expression> formula;  ///< the default of a parameter that is an expression of time
 
   bool allows(double value) const;  ///< within the limits; never for "not a number"
   std::string range() const;        ///< "a number above 0 [Hz]"
@@ -61,20 +61,20 @@ struct Equation {
   };
   Kind kind = Kind::assignment;
   std::string target;
-  Expression expression;
-  Place place;
+  text::Expression expression;
+  text::Place place;
 };
 
 /// The equations of a block in one case; the first case whose condition on the parameters holds applies.
 struct Behaviour {
-  std::optional<Expression> when;  ///< none: the default, which comes last
+  std::optional<text::Expression> when;  ///< none: the default, which comes last
   std::vector<Equation> equations;
 };
 
 /// Where a state starts, or from where an implicit unknown is sought.
 struct StartRule {
   std::string target;
-  Expression value;  ///< of parameters and, for a state not brought to rest, of inputs
+  text::Expression value;  ///< of parameters and, for a state not brought to rest, of inputs
   bool at_rest =
       false;  ///< a state brought to rest (zero derivative) before the clock starts; `value` is the guess
 };
@@ -82,25 +82,25 @@ struct StartRule {
 /// A value that a block keeps until an event changes it.
 struct MemoryRule {
   std::string name;
-  Expression initial;  ///< of parameters
-  Place place;
+  text::Expression initial;  ///< of parameters
+  text::Place place;
 };
 
 /// What an event does to one memory or state; the value is that of the moment before the event.
 struct EventAction {
   std::string target;
-  Expression value;
-  Place place;
+  text::Expression value;
+  text::Place place;
 };
 
 /// What happens when a condition becomes true.
 struct EventRule {
-  Expression when;
+  text::Expression when;
   std::vector<EventAction> actions;
   std::vector<EventAction> piling_up;  ///< in their place where the event comes ever faster; none: not told
   bool at_start = true;  ///< a condition that holds when the run starts counts as having become true
-  std::optional<Expression> where;  ///< of parameters: there is no such event where it is 0
-  Place place;
+  std::optional<text::Expression> where;  ///< of parameters: there is no such event where it is 0
+  text::Place place;
 };
 
 /// One block of a diagram or of a composite as its file has it. Which key of `settings` is an input and which
@@ -108,10 +108,10 @@ struct EventRule {
 struct BlockInstance {
   std::string name;
   std::string type;
-  std::string label;            ///< any text, for people
-  std::string comment;          ///< lines that `write_diagram` puts above the block
-  std::vector<Entry> settings;  ///< every key but `type` and `label`
-  Place place;
+  std::string label;                  ///< any text, for people
+  std::string comment;                ///< lines that `write_diagram` puts above the block
+  std::vector<text::Entry> settings;  ///< every key but `type` and `label`
+  text::Place place;
 
   bool operator==(const BlockInstance& other) const;  ///< without places and comments
 };
@@ -121,7 +121,7 @@ struct BlockInstance {
 struct BlockPlace {
   std::string name;
   double x = 0, y = 0;
-  Place place;
+  text::Place place;
 
   bool operator==(const BlockPlace& other) const;  ///< without places in the file
 };
@@ -142,7 +142,8 @@ struct BlockDefinition {
   std::vector<StartRule> starts;
   std::vector<MemoryRule> memories;
   std::vector<EventRule> events;
-  std::optional<Expression> check_interval;  ///< [s] of parameters: how often at least its switches look
+  std::optional<text::Expression>
+      check_interval;  ///< [s] of parameters: how often at least its switches look
 
   std::vector<BlockInstance> blocks;
   std::vector<BlockPlace> layout;  ///< of the inner blocks, where an open composite is drawn
@@ -167,4 +168,4 @@ struct BlockDefinition {
 /// findings.
 BlockDefinition parse_block(std::string_view text, std::string file, std::string name);
 
-}  // namespace oblique
+}  // namespace oblique::diagram

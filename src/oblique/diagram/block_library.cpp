@@ -9,16 +9,16 @@
 #include <oblique/diagram/diagram.h>
 #include <oblique/diagram/shipped_files.h>
 
-namespace oblique {
+namespace oblique::diagram {
 namespace {
 
 /// A block type is called as its file: an identifier that may hold '-' too.
 bool is_type_name(std::string name) {
   std::replace(name.begin(), name.end(), '-', '_');
-  return is_identifier(name);
+  return text::is_identifier(name);
 }
 
-Diagnostic bad_file_name(const std::filesystem::path& file, const std::string& name) {
+text::Diagnostic bad_file_name(const std::filesystem::path& file, const std::string& name) {
   return {{file.string(), {}},
           fmt::format("'{}' cannot be the name of a block type", name),
           "a file name of letters, digits, '_' and '-', with a letter or '_' first",
@@ -46,14 +46,14 @@ void BlockLibrary::add_directory(const std::filesystem::path& directory) {
     if (at->path().extension() == ".toml") files.push_back(at->path());
   }
   if (error) {
-    const Place place{directory.string(), {}};
-    throw DiagramError(Diagnostic{place,
-                                  fmt::format("cannot read the blocks here: {}", error.message()),
-                                  "a directory with block files",
-                                  {}});
+    const text::Place place{directory.string(), {}};
+    throw DiagramError(text::Diagnostic{place,
+                                        fmt::format("cannot read the blocks here: {}", error.message()),
+                                        "a directory with block files",
+                                        {}});
   }
   std::sort(files.begin(), files.end());
-  Diagnostics diagnostics;
+  text::Diagnostics diagnostics;
   for (const std::filesystem::path& file : files) {
     const std::string name = file.stem().string();
     if (!is_type_name(name)) {
@@ -61,9 +61,9 @@ void BlockLibrary::add_directory(const std::filesystem::path& directory) {
       continue;
     }
     try {
-      add(parse_block(read_file(file), file.string(), name));
-    } catch (const Error& found) {
-      for (const Diagnostic& diagnostic : found.diagnostics()) diagnostics.add(diagnostic);
+      add(parse_block(text::read_file(file), file.string(), name));
+    } catch (const text::Error& found) {
+      for (const text::Diagnostic& diagnostic : found.diagnostics()) diagnostics.add(diagnostic);
     }
   }
   diagnostics.throw_if_any<DiagramError>();
@@ -85,4 +85,4 @@ std::vector<std::string> BlockLibrary::names() const {
   return names;
 }
 
-}  // namespace oblique
+}  // namespace oblique::diagram

@@ -9,7 +9,7 @@
 
 #include <oblique/diagram/block_definition.h>
 
-namespace oblique {
+namespace oblique::diagram {
 
 /// The kinds of blocks a diagram may use, by name.
 class BlockLibrary {
@@ -33,4 +33,4 @@ class BlockLibrary {
   std::map<std::string, BlockDefinition, std::less<>> definitions_;
 };
 
-}  // namespace oblique
+}  // namespace oblique::diagram

@@ -8,7 +8,7 @@
 #include <oblique/text/nearest_decimal.h>
 #include <oblique/text/quantity.h>
 
-namespace oblique {
+namespace oblique::diagram {
 
 /// Collects the equations between the logarithms of factors.
 class RuleReader {
@@ -47,7 +47,7 @@ class RuleReader {
   /// Logarithm of the factor of a value: a combination of the unknowns. Nothing: any factor will do (a zero
   /// or an infinity).
   using Scale = std::optional<Eigen::VectorXd>;
-  using Kind = Expression::Kind;
+  using Kind = text::Expression::Kind;
 
   /// Outputs first, so that elimination finds them from the rest; inputs last, which stay free where they
   /// may.
@@ -59,9 +59,9 @@ class RuleReader {
     }
     for (const MemoryRule& memory : definition.memories) hidden_.emplace_back(memory.name, rules_.columns_++);
     for (const ParameterDefinition& parameter : definition.parameters) {
-      const auto unit = parse_unit(parameter.unit);
+      const auto unit = text::parse_unit(parameter.unit);
       const bool fixed = block_.saturation == rules_.parameters_.size();
-      const bool signal = unit && unit->exponents[Unit::signal] != 0 && !fixed;
+      const bool signal = unit && unit->exponents[text::Unit::signal] != 0 && !fixed;
       rules_.parameters_.push_back(signal ? rules_.columns_++ : -1);
     }
     for (std::size_t i = 0; i < definition.inputs.size(); ++i) rules_.inputs_.push_back(rules_.columns_++);
@@ -100,34 +100,34 @@ class RuleReader {
   void unscaled(const Scale& a) { equal(a, number()); }
 
   /// The value of what the parameters alone determine; nothing for the rest.
-  std::optional<double> constant(const Expression& e) const {
+  std::optional<double> constant(const text::Expression& e) const {
     try {
-      return evaluate(e, [&](std::string_view name) -> std::optional<double> {
+      return text::evaluate(e, [&](std::string_view name) -> std::optional<double> {
         const BlockDefinition& definition = *block_.definition;
         if (const auto p = definition.find_parameter(name)) return block_.parameters[*p];
         const auto i = definition.find_input(name);
         if (i && block_.inputs[*i].terms.empty()) return block_.inputs[*i].constant;
         return std::nullopt;
       });
-    } catch (const ExpressionError&) {
+    } catch (const text::ExpressionError&) {
       return std::nullopt;
     }
   }
 
-  Scale scale_of(const Expression& e) {
+  Scale scale_of(const text::Expression& e) {
     const std::optional<double> value = constant(e);
     if (value && (*value == 0 || std::isinf(*value))) return {};
     if (e.kind == Kind::number) return number();
     if (e.kind == Kind::name && is_saturation(e.name)) return {};
     if (e.kind == Kind::name) return variable(column_of(e.name));
-    if (e.kind == Kind::call && e.function == Function::weights) return number();
-    if (e.kind == Kind::call && e.function == Function::if_) {
+    if (e.kind == Kind::call && e.function == text::Function::weights) return number();
+    if (e.kind == Kind::call && e.function == text::Function::if_) {
       scale_of(e.operands[0]);
       if (const auto condition = constant(e.operands[0]))
         return scale_of(e.operands[*condition != 0 ? 1 : 2]);
     }
     std::vector<Scale> operands;
-    for (const Expression& operand : e.operands) operands.push_back(scale_of(operand));
+    for (const text::Expression& operand : e.operands) operands.push_back(scale_of(operand));
     if (e.kind == Kind::call) return scale_of_call(e.function, operands);
     Scale a = operands[0];
     const Scale b = operands.size() > 1 ? operands[1] : Scale();
@@ -157,38 +157,38 @@ class RuleReader {
     }
   }
 
-  Scale scale_of_power(const Expression& e, const Scale& base, const Scale& exponent) {
+  Scale scale_of_power(const text::Expression& e, const Scale& base, const Scale& exponent) {
     unscaled(exponent);
     try {
-      const double n = evaluate(e.operands[1], [&](std::string_view name) -> std::optional<double> {
+      const double n = text::evaluate(e.operands[1], [&](std::string_view name) -> std::optional<double> {
         const auto parameter = block_.definition->find_parameter(name);
         return parameter ? std::optional(block_.parameters[*parameter]) : std::nullopt;
       });
       return base ? Scale(n * *base) : Scale();
-    } catch (const ExpressionError&) {  // a signal in the exponent
+    } catch (const text::ExpressionError&) {  // a signal in the exponent
       unscaled(base);
       return number();
     }
   }
 
-  Scale scale_of_call(Function function, const std::vector<Scale>& operands) {
+  Scale scale_of_call(text::Function function, const std::vector<Scale>& operands) {
     switch (function) {
-      case Function::abs:
+      case text::Function::abs:
         return operands[0];
-      case Function::sqrt:
+      case text::Function::sqrt:
         return operands[0] ? Scale(0.5 * *operands[0]) : Scale();
-      case Function::min:
-      case Function::max:
-      case Function::hypot:
-      case Function::clip:
-      case Function::deadzone:
+      case text::Function::min:
+      case text::Function::max:
+      case text::Function::hypot:
+      case text::Function::clip:
+      case text::Function::deadzone:
         return all_equal(operands);
-      case Function::atan2:
+      case text::Function::atan2:
         all_equal(operands);
         return number();
-      case Function::sign:
+      case text::Function::sign:
         return number();
-      case Function::if_:
+      case text::Function::if_:
         return equal(operands[1], operands[2]);
       default:  // sines, tables and all whose behaviour under scaling is not known here
         for (const Scale& operand : operands) unscaled(operand);
@@ -268,7 +268,7 @@ BlockScaling BlockScalingRules::scaling_of(const Eigen::VectorXd& logarithms) co
   // 14 digits: a factor of 0.2 comes out as 0.2, and the equations hold far below any tolerance.
   const auto factor = [&](Eigen::Index column) {
     if (column < 0) return 1.0;
-    return nearest_decimal(std::exp(logarithms[column]), 14);
+    return text::nearest_decimal(std::exp(logarithms[column]), 14);
   };
   BlockScaling scaling;
   for (const Eigen::Index column : inputs_) scaling.inputs.push_back(factor(column));
@@ -277,4 +277,4 @@ BlockScaling BlockScalingRules::scaling_of(const Eigen::VectorXd& logarithms) co
   return scaling;
 }
 
-}  // namespace oblique
+}  // namespace oblique::diagram

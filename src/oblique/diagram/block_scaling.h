@@ -8,7 +8,7 @@
 
 #include <oblique/diagram/flat_diagram.h>
 
-namespace oblique {
+namespace oblique::diagram {
 
 /// Factors on the signals and parameters of one block under which its equations still hold.
 struct BlockScaling {
@@ -48,4 +48,4 @@ class BlockScalingRules {
   Eigen::VectorXd whole_;      ///< a factor for all: 1 for what is scaled with the signals, 0 for numbers
 };
 
-}  // namespace oblique
+}  // namespace oblique::diagram

@@ -5,25 +5,25 @@
 
 #include <fmt/format.h>
 
-namespace oblique {
+namespace oblique::diagram {
 namespace {
 
-bool same(const Value& a, const Value& b);
+bool same(const text::Value& a, const text::Value& b);
 
-bool same_entry(const Entry& a, const Entry& b) {
+bool same_entry(const text::Entry& a, const text::Entry& b) {
   return a.key == b.key && same(a.value, b.value);
 }
 
 /// Equality without positions.
-bool same(const Value& a, const Value& b) {
+bool same(const text::Value& a, const text::Value& b) {
   return a.kind == b.kind && a.boolean == b.boolean && a.number == b.number && a.text == b.text &&
          std::equal(a.elements.begin(), a.elements.end(), b.elements.begin(), b.elements.end(), same) &&
          std::equal(a.entries.begin(), a.entries.end(), b.entries.begin(), b.entries.end(), same_entry);
 }
 
-Value text_value(std::string text) {
-  Value value;
-  value.kind = Value::Kind::string;
+text::Value text_value(std::string text) {
+  text::Value value;
+  value.kind = text::Value::Kind::string;
   value.text = std::move(text);
   return value;
 }
@@ -90,26 +90,26 @@ bool Diagram::operator==(const Diagram& other) const {
          outputs == other.outputs && expectations == other.expectations && layout == other.layout;
 }
 
-Entry number_setting(std::string key, double value) {
-  Entry entry;
+text::Entry number_setting(std::string key, double value) {
+  text::Entry entry;
   entry.key = std::move(key);
-  entry.value.kind = Value::Kind::number;
+  entry.value.kind = text::Value::Kind::number;
   entry.value.number = value;
   return entry;
 }
 
-Entry text_setting(std::string key, std::string text) {
+text::Entry text_setting(std::string key, std::string text) {
   return {std::move(key), {}, text_value(std::move(text))};
 }
 
-Entry points_setting(std::string key, const PointTable& points) {
-  const auto list = [](std::vector<Value> elements) {
-    Value value;
-    value.kind = Value::Kind::array;
+text::Entry points_setting(std::string key, const text::PointTable& points) {
+  const auto list = [](std::vector<text::Value> elements) {
+    text::Value value;
+    value.kind = text::Value::Kind::array;
     value.elements = std::move(elements);
     return value;
   };
-  std::vector<Value> all;
+  std::vector<text::Value> all;
   for (std::size_t i = 0; i < points.x.size(); ++i)
     all.push_back(list({number_setting({}, points.x[i]).value, number_setting({}, points.y[i]).value}));
   return {std::move(key), {}, list(std::move(all))};
@@ -121,13 +121,13 @@ std::string to_string(const WeightedSignal& term) {
   return fmt::format("{}*{}", term.weight, term.signal);
 }
 
-Entry wire_setting(std::string key, const std::vector<WeightedSignal>& terms) {
+text::Entry wire_setting(std::string key, const std::vector<WeightedSignal>& terms) {
   if (terms.size() == 1) return text_setting(std::move(key), to_string(terms.front()));
-  Entry entry;
+  text::Entry entry;
   entry.key = std::move(key);
-  entry.value.kind = Value::Kind::array;
+  entry.value.kind = text::Value::Kind::array;
   for (const WeightedSignal& term : terms) entry.value.elements.push_back(text_value(to_string(term)));
   return entry;
 }
 
-}  // namespace oblique
+}  // namespace oblique::diagram

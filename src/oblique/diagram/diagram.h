@@ -9,12 +9,12 @@
 
 #include <oblique/diagram/block_definition.h>
 
-namespace oblique {
+namespace oblique::diagram {
 
 /// Thrown by the `diagram` stage: a block or diagram file that is wrong, or wiring that is.
-class DiagramError : public Error {
+class DiagramError : public text::Error {
  public:
-  using Error::Error;
+  using text::Error::Error;
 };
 
 /// The machine a diagram is for.
@@ -57,7 +57,7 @@ struct OutputSpec {
   std::string signal;
   double scale = 1;
   std::string unit = "machine unit";
-  Place place;
+  text::Place place;
   double offset = 0;                               ///< in `unit`
   bool operator==(const OutputSpec& other) const;  ///< without places
 };
@@ -71,7 +71,7 @@ struct Expectation {
   double time = 0;  ///< [s], for `at_time`
   double value = 0;
   double within = 0;
-  Place place;
+  text::Place place;
   bool operator==(const Expectation& other) const;  ///< without places
 };
 
@@ -87,7 +87,7 @@ struct ModeGroup {
   std::vector<std::string> blocks;  ///< paths; a composite stands for all in it
   std::string initial;              ///< a signal: above 0.5 it holds the group in initial condition
   std::string hold;                 ///< a signal: above 0.5 it holds the group
-  Place place;
+  text::Place place;
   bool operator==(const ModeGroup& other) const;  ///< without places
 };
 
@@ -97,7 +97,7 @@ struct Phase {
   std::vector<std::pair<std::string, OperatingMode>> modes;
   double duration = 0;  ///< [s] at most; infinite where only `until` ends it
   std::string until;    ///< "signal > number" or "signal < number" that ends it earlier, or empty
-  Place place;
+  text::Place place;
   bool operator==(const Phase& other) const;  ///< without places
 };
 
@@ -141,15 +141,15 @@ std::string write_diagram(const Diagram& diagram);
 std::string write_layout(const std::vector<BlockPlace>& layout);
 
 /// Builds the value of a `settings` entry: a number, a signal, a list of weighted signals, points.
-Entry number_setting(std::string key, double value);
-Entry text_setting(std::string key, std::string text);
-Entry points_setting(std::string key, const PointTable& points);
+text::Entry number_setting(std::string key, double value);
+text::Entry text_setting(std::string key, std::string text);
+text::Entry points_setting(std::string key, const text::PointTable& points);
 struct WeightedSignal {
   double weight = 1;
   std::string signal;
 };
 /// "2*abc", "-a2": one signal with its weight, as a file writes it.
 std::string to_string(const WeightedSignal& term);
-Entry wire_setting(std::string key, const std::vector<WeightedSignal>& terms);
+text::Entry wire_setting(std::string key, const std::vector<WeightedSignal>& terms);
 
-}  // namespace oblique
+}  // namespace oblique::diagram

@@ -13,7 +13,7 @@
 #include <oblique/diagram/timeline.h>
 #include <oblique/text/table_reader.h>
 
-namespace oblique {
+namespace oblique::diagram {
 namespace {
 
 /// The largest whole number that a run setting takes; a double holds it exactly.
@@ -26,30 +26,30 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 class DiagramReader {
  public:
-  DiagramReader(const Document& document, Diagram& diagram)
+  DiagramReader(const text::Document& document, Diagram& diagram)
       : reader_(document.file, document.root, "the diagram", diagnostics_), diagram_(diagram) {}
 
   void read() {
-    if (!check_format(reader_, "oblique-diagram/1")) diagnostics_.throw_if_any<DiagramError>();
+    if (!text::check_format(reader_, "oblique-diagram/1")) diagnostics_.throw_if_any<DiagramError>();
     diagram_.title = reader_.string("title").value_or("");
     diagram_.source = reader_.string("source").value_or("");
-    if (const Value* const table = reader_.table("machine")) read_machine(*table);
-    if (const Value* const table = reader_.table("groups"))
+    if (const text::Value* const table = reader_.table("machine")) read_machine(*table);
+    if (const text::Value* const table = reader_.table("groups"))
       diagram_.groups = read_groups(diagram_.file, *table, diagnostics_);
-    if (const Value* const table = reader_.table("timeline")) {
+    if (const text::Value* const table = reader_.table("timeline")) {
       diagram_.timeline =
           read_timeline(diagram_.file, *table, diagram_.groups, diagram_.machine.profile, diagnostics_);
       const double whole = duration_of(diagram_.timeline);
       if (whole > 0 && std::isfinite(whole)) diagram_.run.until = last_time_ = whole;
     }
-    if (const Value* const table = reader_.table("run")) read_run(*table);
-    if (const Value* const table = reader_.table("blocks")) {
+    if (const text::Value* const table = reader_.table("run")) read_run(*table);
+    if (const text::Value* const table = reader_.table("blocks")) {
       diagram_.blocks = read_blocks(diagram_.file, *table, diagnostics_);
     } else if (reader_.table().find("blocks") == nullptr) {
       reader_.report("blocks", "the diagram has no [blocks]", "at least one block");
     }
-    if (const Value* const table = reader_.table("outputs")) read_outputs(*table);
-    if (const Value* const table = reader_.table("expect")) {
+    if (const text::Value* const table = reader_.table("outputs")) read_outputs(*table);
+    if (const text::Value* const table = reader_.table("expect")) {
       diagram_.expectations = read_expectations(diagram_, *table, last_time_, diagnostics_);
     }
     if (!diagram_.outputs.empty()) {
@@ -57,15 +57,15 @@ class DiagramReader {
       for (const OutputSpec& output : diagram_.outputs) names.push_back(output.name);
       check_expected_outputs(diagram_.expectations, names, diagnostics_);
     }
-    if (const Value* const table = reader_.table("layout"))
+    if (const text::Value* const table = reader_.table("layout"))
       diagram_.layout = read_layout(diagram_.file, *table, diagram_.blocks, diagnostics_);
     reader_.finish();
     diagnostics_.throw_if_any<DiagramError>();
   }
 
  private:
-  void read_machine(const Value& table) {
-    TableReader reader(diagram_.file, table, "[machine]", diagnostics_);
+  void read_machine(const text::Value& table) {
+    text::TableReader reader(diagram_.file, table, "[machine]", diagnostics_);
     MachineSettings& machine = diagram_.machine;
     machine.profile = reader.string("profile").value_or(machine.profile);
     const MachineProfile* const profile = find_machine(machine.profile);
@@ -75,7 +75,7 @@ class DiagramReader {
     reader.finish();
   }
 
-  void read_method(TableReader& reader) {
+  void read_method(text::TableReader& reader) {
     const auto name = reader.string("method");
     if (!name) return;
     std::vector<std::string> names;
@@ -87,11 +87,11 @@ class DiagramReader {
         return;
       }
     }
-    reader.report("method", fmt::format("there is no method '{}'", *name), {}, suggest(*name, names));
+    reader.report("method", fmt::format("there is no method '{}'", *name), {}, text::suggest(*name, names));
   }
 
-  void read_run(const Value& table) {
-    TableReader reader(diagram_.file, table, "[run]", diagnostics_);
+  void read_run(const text::Value& table) {
+    text::TableReader reader(diagram_.file, table, "[run]", diagnostics_);
     RunSettings& run = diagram_.run;
     if (const auto until = reader.quantity("until", "s")) {
       if (*until > 0 && std::isfinite(*until)) {
@@ -112,12 +112,12 @@ class DiagramReader {
     run.absolute_tolerance = above_zero(reader, "absolute_tolerance", "machine unit");
     run.max_step = above_zero(reader, "max_step", "s");
     read_method(reader);
-    if (const Value* const own = reader.table("tolerances")) {
-      for (const Entry& entry : own->entries) {
+    if (const text::Value* const own = reader.table("tolerances")) {
+      for (const text::Entry& entry : own->entries) {
         const std::string subject = fmt::format("tolerance of '{}' in [run]", entry.key);
         const auto number =
-            read_quantity(diagram_.file, entry.value, unit_on(diagram_.machine.profile, "machine unit"),
-                          subject, diagnostics_);
+            text::read_quantity(diagram_.file, entry.value, unit_on(diagram_.machine.profile, "machine unit"),
+                                subject, diagnostics_);
         if (!number) continue;
         if (!(*number > 0 && std::isfinite(*number))) {
           diagnostics_.add({{diagram_.file, entry.value.position},
@@ -134,7 +134,8 @@ class DiagramReader {
     reader.finish();
   }
 
-  static std::optional<double> above_zero(TableReader& reader, std::string_view key, std::string_view unit) {
+  static std::optional<double> above_zero(text::TableReader& reader, std::string_view key,
+                                          std::string_view unit) {
     const auto number = reader.quantity(key, unit);
     if (!number || (*number > 0 && std::isfinite(*number))) return number;
     reader.report(key, fmt::format("'{}' of [run] is {} {}", key, *number, unit),
@@ -142,7 +143,8 @@ class DiagramReader {
     return std::nullopt;
   }
 
-  static std::optional<long> whole(TableReader& reader, std::string_view key, double least, double most) {
+  static std::optional<long> whole(text::TableReader& reader, std::string_view key, double least,
+                                   double most) {
     const auto number = reader.quantity(key, "1");
     if (!number) return std::nullopt;
     if (*number >= least && *number <= most && *number == std::floor(*number))
@@ -152,18 +154,18 @@ class DiagramReader {
     return std::nullopt;
   }
 
-  void read_outputs(const Value& table) {
-    for (const Entry& entry : table.entries) {
+  void read_outputs(const text::Value& table) {
+    for (const text::Entry& entry : table.entries) {
       OutputSpec output;
       output.name = entry.key;
       output.place = {diagram_.file, entry.value.position};
-      if (entry.value.kind == Value::Kind::string) {
+      if (entry.value.kind == text::Value::Kind::string) {
         output.signal = entry.value.text;
-      } else if (entry.value.kind == Value::Kind::table) {
+      } else if (entry.value.kind == text::Value::Kind::table) {
         read_output(entry, output);
       } else {
         diagnostics_.add({output.place,
-                          fmt::format("output '{}' is {}", entry.key, kind_name(entry.value.kind)),
+                          fmt::format("output '{}' is {}", entry.key, text::kind_name(entry.value.kind)),
                           R"("signal" or { signal = "…", scale = 1, unit = "…" })",
                           {}});
       }
@@ -171,10 +173,11 @@ class DiagramReader {
     }
   }
 
-  void read_output(const Entry& entry, OutputSpec& output) {
-    TableReader reader(diagram_.file, entry.value, fmt::format("output '{}'", entry.key), diagnostics_);
+  void read_output(const text::Entry& entry, OutputSpec& output) {
+    text::TableReader reader(diagram_.file, entry.value, fmt::format("output '{}'", entry.key), diagnostics_);
     output.signal = reader.required_string("signal", "the name of a signal").value_or("");
-    if (const Value* const signal = entry.value.find("signal")) output.place.position = signal->position;
+    if (const text::Value* const signal = entry.value.find("signal"))
+      output.place.position = signal->position;
     output.scale = reader.quantity("scale", "1").value_or(1);
     if (!std::isfinite(output.scale)) {
       reader.report("scale", fmt::format("'scale' of output '{}' is infinite", entry.key), "a finite number");
@@ -188,8 +191,8 @@ class DiagramReader {
     reader.finish();
   }
 
-  Diagnostics diagnostics_;
-  TableReader reader_;
+  text::Diagnostics diagnostics_;
+  text::TableReader reader_;
   Diagram& diagram_;
   double last_time_ = RunSettings{}.until;  ///< of expectations; infinite where `until` is wrong
 };
@@ -199,12 +202,12 @@ class DiagramReader {
 Diagram parse_diagram(std::string_view text, std::string file) {
   Diagram diagram;
   diagram.file = std::move(file);
-  DiagramReader(parse_document(text, diagram.file), diagram).read();
+  DiagramReader(text::parse_document(text, diagram.file), diagram).read();
   return diagram;
 }
 
 Diagram read_diagram(const std::filesystem::path& path) {
-  return parse_diagram(read_file(path), path.string());
+  return parse_diagram(text::read_file(path), path.string());
 }
 
-}  // namespace oblique
+}  // namespace oblique::diagram

@@ -8,7 +8,7 @@
 #include <oblique/diagram/expectations.h>
 #include <oblique/diagram/timeline.h>
 
-namespace oblique {
+namespace oblique::diagram {
 namespace {
 
 /// Control characters have no place in a TOML text.
@@ -39,24 +39,24 @@ std::string key_text(std::string_view key) {
 }
 
 /// The value of a setting: a number, a string, or lists and tables of these.
-std::string value_text(const Value& value) {
-  if (value.kind == Value::Kind::string) return toml_string(value.text);
-  if (value.kind == Value::Kind::table) {
+std::string value_text(const text::Value& value) {
+  if (value.kind == text::Value::Kind::string) return toml_string(value.text);
+  if (value.kind == text::Value::Kind::table) {
     std::string out = "{ ";
-    for (const Entry& entry : value.entries)
+    for (const text::Entry& entry : value.entries)
       out += (out.size() > 2 ? ", " : "") + key_text(entry.key) + " = " + value_text(entry.value);
     return out + " }";
   }
-  if (value.kind != Value::Kind::array) return fmt::format("{}", value.number);
+  if (value.kind != text::Value::Kind::array) return fmt::format("{}", value.number);
   std::string out = "[";
-  for (const Value& element : value.elements) out += (out.size() > 1 ? ", " : "") + value_text(element);
+  for (const text::Value& element : value.elements) out += (out.size() > 1 ? ", " : "") + value_text(element);
   return out + "]";
 }
 
 std::string block_text(const BlockInstance& block) {
   std::string out = "{ type = " + toml_string(block.type);
   if (!block.label.empty()) out += ", label = " + toml_string(block.label);
-  for (const Entry& setting : block.settings) {
+  for (const text::Entry& setting : block.settings) {
     out += fmt::format(", {} = {}", key_text(setting.key), value_text(setting.value));
   }
   return out + " }";
@@ -190,4 +190,4 @@ std::string write_diagram(const Diagram& diagram) {
   return out;
 }
 
-}  // namespace oblique
+}  // namespace oblique::diagram

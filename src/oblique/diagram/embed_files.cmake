@@ -13,7 +13,7 @@ file(WRITE "${OUTPUT}" "// Made from text files by embed_files.cmake; edit those
 
 #include <array>
 
-namespace oblique {
+namespace oblique::diagram {
 
 std::span<const ShippedFile> ${NAME}() {
   static constexpr std::array<ShippedFile, ${count}> kFiles{{
@@ -21,5 +21,5 @@ ${entries}  }};
   return kFiles;
 }
 
-}  // namespace oblique
+}  // namespace oblique::diagram
 ")

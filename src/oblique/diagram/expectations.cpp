@@ -9,7 +9,7 @@
 
 #include <oblique/diagram/machine_profile.h>
 
-namespace oblique {
+namespace oblique::diagram {
 namespace {
 
 constexpr std::string_view kAt = " at ", kMaximum = " maximum", kMinimum = " minimum";
@@ -18,7 +18,8 @@ constexpr std::string_view kAt = " at ", kMaximum = " maximum", kMinimum = " min
 constexpr double kRounding = 1e-12;
 
 /// Splits the key of an expectation; false where it has not one of the three forms.
-bool split_key(const Entry& entry, double until, Expectation& expectation, Diagnostics& diagnostics) {
+bool split_key(const text::Entry& entry, double until, Expectation& expectation,
+               text::Diagnostics& diagnostics) {
   const std::string& key = entry.key;
   const std::string& file = expectation.place.file;
   for (const auto& [word, kind] :
@@ -38,12 +39,12 @@ bool split_key(const Entry& entry, double until, Expectation& expectation, Diagn
   }
   expectation.kind = Expectation::Kind::at_time;
   expectation.output = key.substr(0, at);
-  Value time;
-  time.kind = Value::Kind::string;
+  text::Value time;
+  time.kind = text::Value::Kind::string;
   time.text = key.substr(at + kAt.size());
   time.position = entry.position;
   time.position.column += static_cast<int>(at + kAt.size());
-  const auto seconds = read_quantity(file, time, "s", fmt::format("time of '{}'", key), diagnostics);
+  const auto seconds = text::read_quantity(file, time, "s", fmt::format("time of '{}'", key), diagnostics);
   if (!seconds) return false;
   if (!(*seconds >= 0 && *seconds <= until * (1 + kRounding))) {
     diagnostics.add({expectation.place, fmt::format("time of '{}' is {} s", key, *seconds),
@@ -56,7 +57,7 @@ bool split_key(const Entry& entry, double until, Expectation& expectation, Diagn
 }
 
 /// The unit of an output, in which what is expected of it may be given; "1" where it is any text for people.
-Unit unit_of(const Diagram& diagram, std::string_view output) {
+text::Unit unit_of(const Diagram& diagram, std::string_view output) {
   const auto found = std::find_if(diagram.outputs.begin(), diagram.outputs.end(),
                                   [&](const OutputSpec& spec) { return spec.name == output; });
   const std::string unit = found == diagram.outputs.end() ? OutputSpec{}.unit : found->unit;
@@ -65,18 +66,18 @@ Unit unit_of(const Diagram& diagram, std::string_view output) {
 
 }  // namespace
 
-std::vector<Expectation> read_expectations(const Diagram& diagram, const Value& table, double until,
-                                           Diagnostics& diagnostics) {
+std::vector<Expectation> read_expectations(const Diagram& diagram, const text::Value& table, double until,
+                                           text::Diagnostics& diagnostics) {
   const std::string& file = diagram.file;
   std::vector<Expectation> expectations;
-  for (const Entry& entry : table.entries) {
+  for (const text::Entry& entry : table.entries) {
     Expectation expectation;
     expectation.text = entry.key;
     expectation.place = {file, entry.position};
     const bool good_key = split_key(entry, until, expectation, diagnostics);
-    TableReader reader(file, entry.value, fmt::format("[expect] '{}'", entry.key), diagnostics);
-    if (entry.value.kind != Value::Kind::table) continue;
-    const auto expected = read_expected_value(reader, unit_of(diagram, expectation.output));
+    text::TableReader reader(file, entry.value, fmt::format("[expect] '{}'", entry.key), diagnostics);
+    if (entry.value.kind != text::Value::Kind::table) continue;
+    const auto expected = text::read_expected_value(reader, unit_of(diagram, expectation.output));
     if (!good_key || !expected) continue;
     expectation.value = expected->value;
     expectation.within = expected->within;
@@ -98,15 +99,15 @@ std::string expectation_key(const Expectation& expectation) {
 }
 
 void check_expected_outputs(const std::vector<Expectation>& expectations,
-                            const std::vector<std::string>& outputs, Diagnostics& diagnostics) {
+                            const std::vector<std::string>& outputs, text::Diagnostics& diagnostics) {
   const std::unordered_set<std::string_view> known(outputs.begin(), outputs.end());
   for (const Expectation& expectation : expectations) {
     if (known.contains(expectation.output)) continue;
     diagnostics.add({expectation.place,
                      fmt::format("[expect] names '{}', which is no output", expectation.output),
                      {},
-                     suggest(expectation.output, outputs)});
+                     text::suggest(expectation.output, outputs)});
   }
 }
 
-}  // namespace oblique
+}  // namespace oblique::diagram

@@ -11,7 +11,7 @@
 #include <oblique/diagram/block_library.h>
 #include <oblique/diagram/diagram.h>
 
-namespace oblique {
+namespace oblique::diagram {
 
 /// An output of a flat block: indices into FlatDiagram::blocks and BlockDefinition::outputs.
 struct SignalRef {
@@ -42,13 +42,13 @@ struct FlatBlock {
   std::shared_ptr<const Behaviour> own_behaviour;
   std::vector<double> parameters;         ///< in the order of the definition
   std::optional<std::size_t> saturation;  ///< the parameter that the machine's saturation gives its value
-  std::vector<PointTable> points;         ///< of the parameters that are functions; else empty ones
-  std::map<std::string, Expression> formulas;  ///< of the parameters that are expressions of time
-  std::vector<FlatInput> inputs;               ///< in the order of the definition
-  double polarity = 1;                         ///< −1 where summers and integrators invert
-  double tolerance = 0;                        ///< absolute, of its states [machine unit]; 0: that of the run
-  std::size_t group = 0;                       ///< of FlatTimeline::groups
-  Place place;                                 ///< of the block of the diagram that it is or is a part of
+  std::vector<text::PointTable> points;   ///< of the parameters that are functions; else empty ones
+  std::map<std::string, text::Expression> formulas;  ///< of the parameters that are expressions of time
+  std::vector<FlatInput> inputs;                     ///< in the order of the definition
+  double polarity = 1;                               ///< −1 where summers and integrators invert
+  double tolerance = 0;   ///< absolute, of its states [machine unit]; 0: that of the run
+  std::size_t group = 0;  ///< of FlatTimeline::groups
+  text::Place place;      ///< of the block of the diagram that it is or is a part of
 
   /// Takes the case that the parameters select, with the formulas in it: to be called where one has changed.
   void choose_behaviour();
@@ -118,4 +118,4 @@ struct ParameterOverride {
 FlatDiagram flatten(const Diagram& diagram, const BlockLibrary& library,
                     const std::vector<ParameterOverride>& overrides = {});
 
-}  // namespace oblique
+}  // namespace oblique::diagram

@@ -14,7 +14,7 @@
 #include <oblique/diagram/timeline.h>
 #include <oblique/diagram/wiring.h>
 
-namespace oblique {
+namespace oblique::diagram {
 namespace {
 
 using wiring::Constant;
@@ -34,7 +34,7 @@ struct Node {
   std::size_t first_child = 0;  ///< children stand side by side, in the order of `inside->blocks`
   std::size_t flat = 0;         ///< of a primitive block: its index in the flat diagram
   std::string path;
-  Place place;  ///< of the block of the diagram that it is or is a part of
+  text::Place place;  ///< of the block of the diagram that it is or is a part of
   std::vector<double> parameters;
   std::vector<bool> open;         ///< parameters that no one has given a value
   std::vector<FlatInput> inputs;  ///< of a composite
@@ -43,7 +43,7 @@ struct Node {
 class Layout {
  public:
   Layout(const Scope& diagram, wiring::MachineDefaults& machine, const wiring::Replacements& replacements,
-         FlatDiagram& flat, Diagnostics& diagnostics)
+         FlatDiagram& flat, text::Diagnostics& diagnostics)
       : machine_(machine), replacements_(replacements), flat_(flat), diagnostics_(diagnostics) {
     Node root;
     root.inside = &diagram;
@@ -58,7 +58,7 @@ class Layout {
  private:
   void report_size(std::string_view things, std::size_t most) {
     if (!too_large_) {
-      const Place place{flat_.file, {}};
+      const text::Place place{flat_.file, {}};
       diagnostics_.add({place,
                         fmt::format("the diagram has too many {}", things),
                         fmt::format("at most {}, those inside composites counted", most),
@@ -114,7 +114,7 @@ class Layout {
       if ((of_machine || wired.value.expression) && !parameter.allows(value)) {
         wiring::check_range(
             parameter, value, fmt::format("parameter '{}.{}'", node.path, parameter.name),
-            of_machine ? node.place : Place{parent.inside->file, wired.position},
+            of_machine ? node.place : text::Place{parent.inside->file, wired.position},
             of_machine ? fmt::format("it follows from the machine '{}'", machine_.profile()) : origin(parent),
             diagnostics_);
       }
@@ -133,7 +133,7 @@ class Layout {
   /// Whether a composite hands down one of its own parameters as it is, and that one is open.
   static bool is_passed_on(const Constant& constant, const Node& composite) {
     if (!constant.expression || constant.number != 1) return false;
-    if (constant.expression->kind != Expression::Kind::name) return false;
+    if (constant.expression->kind != text::Expression::Kind::name) return false;
     const auto own = composite.inside->composite->find_parameter(constant.expression->name);
     return own && composite.open[*own];
   }
@@ -144,7 +144,7 @@ class Layout {
 
   /// Where the parameters of a composite come from: the remedy for values that follow from them.
   static std::string origin(const Node& composite) {
-    const Place& place = composite.wired->instance->place;
+    const text::Place& place = composite.wired->instance->place;
     return fmt::format("it follows from the parameters of '{}' ({}:{}:{})", composite.path, place.file,
                        place.position.line, place.position.column);
   }
@@ -242,7 +242,7 @@ class Layout {
   wiring::MachineDefaults& machine_;
   const wiring::Replacements& replacements_;
   FlatDiagram& flat_;
-  Diagnostics& diagnostics_;
+  text::Diagnostics& diagnostics_;
   std::vector<Node> nodes_;
   std::size_t wires_ = 0;  ///< that composites passed on from their inputs
   bool too_large_ = false;
@@ -254,7 +254,7 @@ void add_output(const Layout& layout, const OutputSpec& spec, const Source& sour
 }
 
 void choose_outputs(const Diagram& diagram, const Scope& scope, const Layout& layout, FlatDiagram& flat,
-                    Diagnostics& diagnostics) {
+                    text::Diagnostics& diagnostics) {
   for (const OutputSpec& output : diagram.outputs) {
     const std::string subject = fmt::format("output '{}'", output.name);
     const auto source =
@@ -286,7 +286,7 @@ FlatDiagram flatten(const Diagram& diagram, const BlockLibrary& library,
                     const std::vector<ParameterOverride>& overrides) {
   FlatDiagram flat;
   flat.file = diagram.file;
-  Diagnostics diagnostics;
+  text::Diagnostics diagnostics;
   wiring::Resolver resolver(library, diagnostics);
   const Scope scope = resolver.diagram(diagram);
   const wiring::Replacements replacements = wiring::resolve_overrides(scope, overrides, diagnostics);
@@ -306,11 +306,11 @@ FlatDiagram flatten(const Diagram& diagram, const BlockLibrary& library,
     diagnostics.add({{diagram.file, {}},
                      fmt::format("tolerances of [run]: there is no block '{}'", path),
                      {},
-                     suggest(path, blocks)});
+                     text::suggest(path, blocks)});
   }
   lay_out_timeline(
       diagram, flat,
-      [&](const std::string& path, const Place& place,
+      [&](const std::string& path, const text::Place& place,
           const std::string& subject) -> std::optional<SignalRef> {
         const auto source = wiring::find_signal(scope, path, place.position, subject, diagnostics);
         return source ? layout.signal(*source) : std::nullopt;
@@ -345,4 +345,4 @@ FlatDiagram without_saturation(FlatDiagram diagram) {
   return diagram;
 }
 
-}  // namespace oblique
+}  // namespace oblique::diagram

@@ -6,38 +6,38 @@
 #include <oblique/diagram/names.h>
 #include <oblique/text/table_reader.h>
 
-namespace oblique {
+namespace oblique::diagram {
 namespace {
 
-void put_in(Expression& expression, const std::map<std::string, Expression>& formulas) {
-  if (expression.kind == Expression::Kind::name) {
+void put_in(text::Expression& expression, const std::map<std::string, text::Expression>& formulas) {
+  if (expression.kind == text::Expression::Kind::name) {
     if (const auto found = formulas.find(expression.name); found != formulas.end())
       expression = found->second;
     return;
   }
-  for (Expression& operand : expression.operands) put_in(operand, formulas);
+  for (text::Expression& operand : expression.operands) put_in(operand, formulas);
 }
 
 }  // namespace
 
-std::optional<Expression> read_formula(const std::string& file, const Value& value,
-                                       const std::string& subject, Diagnostics& diagnostics) {
-  if (value.kind == Value::Kind::number) {
-    Expression number;
+std::optional<text::Expression> read_formula(const std::string& file, const text::Value& value,
+                                             const std::string& subject, text::Diagnostics& diagnostics) {
+  if (value.kind == text::Value::Kind::number) {
+    text::Expression number;
     number.number = value.number;
     return number;
   }
-  if (value.kind != Value::Kind::string) {
+  if (value.kind != text::Value::Kind::string) {
     diagnostics.add({{file, value.position},
-                     fmt::format("{} is {}", subject, kind_name(value.kind)),
+                     fmt::format("{} is {}", subject, text::kind_name(value.kind)),
                      "an expression of time, such as \"2 + sin(3*time)\"",
                      {}});
     return std::nullopt;
   }
   try {
-    Expression formula = parse_expression(value.text);
+    text::Expression formula = text::parse_expression(value.text);
     bool known = true;
-    for (const Expression* const name : names_in(formula)) {
+    for (const text::Expression* const name : names_in(formula)) {
       if (name->name == "time" || name->name == "pi" || name->name == "inf") continue;
       diagnostics.add({{file, position_in(value, name->column)},
                        fmt::format("{}: there is no '{}' in a formula", subject, name->name),
@@ -46,16 +46,16 @@ std::optional<Expression> read_formula(const std::string& file, const Value& val
       known = false;
     }
     return known ? std::optional(std::move(formula)) : std::nullopt;
-  } catch (const ExpressionError& error) {
-    diagnostics.add(to_diagnostic(error, file, value, subject));
+  } catch (const text::ExpressionError& error) {
+    diagnostics.add(text::to_diagnostic(error, file, value, subject));
     return std::nullopt;
   }
 }
 
-Behaviour with_formulas(const Behaviour& behaviour, const std::map<std::string, Expression>& formulas) {
+Behaviour with_formulas(const Behaviour& behaviour, const std::map<std::string, text::Expression>& formulas) {
   Behaviour written = behaviour;
   for (Equation& equation : written.equations) put_in(equation.expression, formulas);
   return written;
 }
 
-}  // namespace oblique
+}  // namespace oblique::diagram

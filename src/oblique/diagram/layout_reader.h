@@ -6,10 +6,10 @@
 
 #include <oblique/diagram/block_definition.h>
 
-namespace oblique {
+namespace oblique::diagram {
 
 /// Reads a `[layout]` table, `block = [x, y]`. Reports what is no block of `blocks` and what is no place.
-std::vector<BlockPlace> read_layout(const std::string& file, const Value& table,
-                                    const std::vector<BlockInstance>& blocks, Diagnostics& diagnostics);
+std::vector<BlockPlace> read_layout(const std::string& file, const text::Value& table,
+                                    const std::vector<BlockInstance>& blocks, text::Diagnostics& diagnostics);
 
-}  // namespace oblique
+}  // namespace oblique::diagram

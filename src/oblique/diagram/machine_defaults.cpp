@@ -4,7 +4,7 @@
 #include <oblique/diagram/diagram.h>
 #include <oblique/diagram/machine_profile.h>
 
-namespace oblique::wiring {
+namespace oblique::diagram::wiring {
 
 MachineDefaults::MachineDefaults(std::string profile) : profile_(std::move(profile)) {
   if (find_machine(profile_) == nullptr) throw DiagramError(unknown_machine(profile_));
@@ -24,4 +24,4 @@ const std::vector<std::optional<double>>& MachineDefaults::of(const BlockDefinit
   return at->second;
 }
 
-}  // namespace oblique::wiring
+}  // namespace oblique::diagram::wiring

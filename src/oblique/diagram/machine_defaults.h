@@ -8,7 +8,7 @@
 
 #include <oblique/diagram/block_definition.h>
 
-namespace oblique::wiring {
+namespace oblique::diagram::wiring {
 
 /// What a machine says for the parameters that a diagram leaves open: its systematic errors, and where its
 /// amplifiers saturate.
@@ -27,4 +27,4 @@ class MachineDefaults {
   std::unordered_map<const BlockDefinition*, std::vector<std::optional<double>>> values_;
 };
 
-}  // namespace oblique::wiring
+}  // namespace oblique::diagram::wiring

@@ -10,7 +10,7 @@
 #include <oblique/diagram/machine_reader.h>
 #include <oblique/diagram/shipped_files.h>
 
-namespace oblique {
+namespace oblique::diagram {
 namespace {
 
 constexpr std::string_view kIdeal = "ideal";
@@ -56,7 +56,7 @@ std::vector<std::string> words_of(std::string_view title) {
 /// The machine that a slip of the hand, or a word of its title, may mean.
 std::optional<std::string> nearest_machine(std::string_view name) {
   const std::string small = lower(name);
-  if (auto nearest = nearest_name(small, machine_names())) return nearest;
+  if (auto nearest = text::nearest_name(small, machine_names())) return nearest;
   std::vector<std::string> words, machines;
   for (const MachineProfile& machine : shipped()) {
     for (std::string& word : words_of(machine.title)) {
@@ -64,7 +64,7 @@ std::optional<std::string> nearest_machine(std::string_view name) {
       machines.push_back(machine.name);
     }
   }
-  const auto nearest = nearest_name(small, words);
+  const auto nearest = text::nearest_name(small, words);
   if (!nearest) return std::nullopt;
   return machines[static_cast<std::size_t>(std::find(words.begin(), words.end(), *nearest) - words.begin())];
 }
@@ -112,15 +112,15 @@ std::vector<std::string> machine_names() {
   return names;
 }
 
-Unit unit_on(std::string_view profile, std::string_view unit) {
-  Unit wanted = parse_unit(unit).value_or(Unit{});
+text::Unit unit_on(std::string_view profile, std::string_view unit) {
+  text::Unit wanted = text::parse_unit(unit).value_or(text::Unit{});
   const MachineProfile* const machine = find_machine(profile);
   wanted.machine = profile;
   if (machine != nullptr && profile != kIdeal) wanted.volts = machine->unit;
   return wanted;
 }
 
-Diagnostic unknown_machine(std::string_view name, Place place) {
+text::Diagnostic unknown_machine(std::string_view name, text::Place place) {
   const auto nearest = nearest_machine(name);
   return {std::move(place),
           fmt::format("there is no machine '{}'", name),
@@ -129,4 +129,4 @@ Diagnostic unknown_machine(std::string_view name, Place place) {
                   : "`oblique machines` lists those there are"};
 }
 
-}  // namespace oblique
+}  // namespace oblique::diagram

@@ -10,7 +10,7 @@
 #include <oblique/text/diagnostic.h>
 #include <oblique/text/quantity.h>
 
-namespace oblique {
+namespace oblique::diagram {
 
 /// The elements a machine is made of. An amplifier is uncommitted: with its networks it becomes a summer, an
 /// inverter, an integrator or an open amplifier.
@@ -79,10 +79,10 @@ std::vector<std::string> machine_names();
 
 /// A unit that quantities of a diagram for that machine are wanted in: voltages stand for signals there, but
 /// on the ideal machine, whose unit is no voltage, and where a machine's is not published.
-Unit unit_on(std::string_view profile, std::string_view unit);
+text::Unit unit_on(std::string_view profile, std::string_view unit);
 
 /// What to say where there is no profile of that name: with the nearest one, which may also be meant by a
 /// word of its title ("МН-14", "Heathkit").
-Diagnostic unknown_machine(std::string_view name, Place place = {});
+text::Diagnostic unknown_machine(std::string_view name, text::Place place = {});
 
-}  // namespace oblique
+}  // namespace oblique::diagram

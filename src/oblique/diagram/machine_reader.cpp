@@ -10,7 +10,7 @@
 #include <oblique/diagram/diagram.h>
 #include <oblique/text/table_reader.h>
 
-namespace oblique {
+namespace oblique::diagram {
 namespace {
 
 constexpr std::string_view kUnknown = "unknown";
@@ -27,20 +27,20 @@ std::string key_of(ElementKind kind) {
   return key;
 }
 
-bool is_text(const Value& value, std::string_view text) {
-  return value.kind == Value::Kind::string && value.text == text;
+bool is_text(const text::Value& value, std::string_view text) {
+  return value.kind == text::Value::Kind::string && value.text == text;
 }
 
 class MachineReader {
  public:
-  MachineReader(const Document& document, const BlockLibrary& library, MachineProfile& machine)
+  MachineReader(const text::Document& document, const BlockLibrary& library, MachineProfile& machine)
       : file_(document.file),
         library_(library),
         reader_(file_, document.root, "the machine file", diagnostics_),
         machine_(machine) {}
 
   void read() {
-    if (!check_format(reader_, "oblique-machine/1")) diagnostics_.throw_if_any<DiagramError>();
+    if (!text::check_format(reader_, "oblique-machine/1")) diagnostics_.throw_if_any<DiagramError>();
     machine_.title = reader_.required_string("title", "what people call the machine").value_or("");
     machine_.source = reader_.required_string("source", "where its figures are from").value_or("");
     machine_.comment = reader_.string("comment").value_or("");
@@ -49,25 +49,26 @@ class MachineReader {
     machine_.signed_coefficients = reader_.boolean("signed_coefficients").value_or(false);
     machine_.input_gains_known = read_steps("input_gains", "1", machine_.input_gains);
     machine_.rates_known = read_steps("rates", "1/s", machine_.rates);
-    if (const Value* const table = reader_.table("elements")) {
-      for (const Entry& entry : table->entries) read_element(entry);
+    if (const text::Value* const table = reader_.table("elements")) {
+      for (const text::Entry& entry : table->entries) read_element(entry);
     } else if (reader_.table().find("elements") == nullptr) {
       reader_.report("elements", "the machine has no [elements]", "at least one kind of element");
     }
-    if (const Value* const table = reader_.table("figures")) {
-      for (const Entry& entry : table->entries) read_figure(entry);
+    if (const text::Value* const table = reader_.table("figures")) {
+      for (const text::Entry& entry : table->entries) read_figure(entry);
     }
     reader_.finish();
     diagnostics_.throw_if_any<DiagramError>();
   }
 
  private:
-  void report(SourcePosition position, std::string what, std::string expected = {}, std::string remedy = {}) {
+  void report(text::SourcePosition position, std::string what, std::string expected = {},
+              std::string remedy = {}) {
     diagnostics_.add({{file_, position}, std::move(what), std::move(expected), std::move(remedy)});
   }
 
   void read_unit() {
-    const Value* const value = reader_.find("unit");
+    const text::Value* const value = reader_.find("unit");
     if (value == nullptr) {
       reader_.report("unit", "the machine file has no 'unit'", R"(a voltage such as "10 V", or "unknown")");
     } else if (!is_text(*value, kUnknown)) {
@@ -79,7 +80,7 @@ class MachineReader {
 
   /// Reads "any", "unknown" or the values there are; false where they are unknown.
   bool read_steps(std::string_view key, std::string_view unit, std::vector<double>& steps) {
-    const Value* const value = reader_.find(key);
+    const text::Value* const value = reader_.find(key);
     const std::string expected =
         R"(a list of numbers above 0, each above the one before; "any" or "unknown")";
     if (value == nullptr) {
@@ -88,17 +89,17 @@ class MachineReader {
     }
     if (is_text(*value, kUnknown)) return false;
     if (is_text(*value, "any")) return true;
-    if (value->kind != Value::Kind::array || value->elements.empty()) {
-      reader_.report(
-          key,
-          fmt::format("'{}' is {}", key,
-                      value->kind == Value::Kind::array ? "an empty list" : kind_name(value->kind)),
-          expected);
+    if (value->kind != text::Value::Kind::array || value->elements.empty()) {
+      reader_.report(key,
+                     fmt::format("'{}' is {}", key,
+                                 value->kind == text::Value::Kind::array ? "an empty list"
+                                                                         : text::kind_name(value->kind)),
+                     expected);
       return true;
     }
     steps.reserve(value->elements.size());
-    for (const Value& element : value->elements) {
-      const auto step = read_quantity(file_, element, unit, fmt::format("'{}'", key), diagnostics_);
+    for (const text::Value& element : value->elements) {
+      const auto step = text::read_quantity(file_, element, unit, fmt::format("'{}'", key), diagnostics_);
       if (!step) continue;
       if (!(*step > (steps.empty() ? 0 : steps.back()) && std::isfinite(*step)))
         report(element.position, fmt::format("'{}' holds {} here", key, *step), expected);
@@ -107,22 +108,22 @@ class MachineReader {
     return true;
   }
 
-  void read_element(const Entry& entry) {
+  void read_element(const text::Entry& entry) {
     const auto kind = std::find_if(kElementKinds.begin(), kElementKinds.end(),
                                    [&](ElementKind k) { return key_of(k) == entry.key; });
     if (kind == kElementKinds.end()) {
       std::vector<std::string> known(kElementKinds.size());
       std::transform(kElementKinds.begin(), kElementKinds.end(), known.begin(), key_of);
       report(entry.position, fmt::format("there is no kind of element '{}'", entry.key), {},
-             suggest(entry.key, known));
+             text::suggest(entry.key, known));
       return;
     }
     ElementCount element;
     element.kind = *kind;
     const std::string subject = fmt::format("element '{}'", entry.key);
-    if (entry.value.kind == Value::Kind::table) {
-      TableReader reader(file_, entry.value, subject, diagnostics_);
-      if (const Value* const count = reader.find("count")) {
+    if (entry.value.kind == text::Value::Kind::table) {
+      text::TableReader reader(file_, entry.value, subject, diagnostics_);
+      if (const text::Value* const count = reader.find("count")) {
         element.count = read_count(*count, subject);
       } else {
         reader.report("count", subject + " has no 'count'", "a whole number, inf or \"unknown\"");
@@ -135,9 +136,9 @@ class MachineReader {
     machine_.elements.push_back(std::move(element));
   }
 
-  std::optional<double> read_count(const Value& value, const std::string& subject) {
+  std::optional<double> read_count(const text::Value& value, const std::string& subject) {
     if (is_text(value, kUnknown)) return std::nullopt;
-    const auto count = read_quantity(file_, value, "1", subject, diagnostics_);
+    const auto count = text::read_quantity(file_, value, "1", subject, diagnostics_);
     if (count && !(*count >= 1 && *count == std::floor(*count))) {
       report(value.position, fmt::format("{}: the count is {}", subject, *count),
              "a whole number from 1, inf or \"unknown\"", "leave out what the machine has none of");
@@ -145,17 +146,17 @@ class MachineReader {
     return count;
   }
 
-  void read_figure(const Entry& entry) {
+  void read_figure(const text::Entry& entry) {
     MachineFigure figure;
     figure.name = entry.key;
-    if (entry.value.kind == Value::Kind::string) {
+    if (entry.value.kind == text::Value::Kind::string) {
       figure.value = entry.value.text;
     } else {
-      TableReader reader(file_, entry.value, fmt::format("figure '{}'", entry.key), diagnostics_);
+      text::TableReader reader(file_, entry.value, fmt::format("figure '{}'", entry.key), diagnostics_);
       figure.value = reader.required_string("value", "what is published, or \"unknown\"").value_or("");
       figure.source = reader.string("source").value_or("");
-      const Value* const errors = reader.table("errors");
-      const Value* const scatters = reader.table("scatters");
+      const text::Value* const errors = reader.table("errors");
+      const text::Value* const scatters = reader.table("scatters");
       if (errors != nullptr) read_actions(*errors, figure, machine_.errors, false);
       if (scatters != nullptr) read_actions(*scatters, figure, machine_.scatters, true);
       read_saturation(reader, figure);
@@ -170,8 +171,8 @@ class MachineReader {
   }
 
   /// What all amplifiers saturate at; one figure of a machine says it.
-  void read_saturation(TableReader& reader, const MachineFigure& figure) {
-    const Value* const value = reader.find("saturation");
+  void read_saturation(text::TableReader& reader, const MachineFigure& figure) {
+    const text::Value* const value = reader.find("saturation");
     if (value == nullptr) return;
     const std::string subject = fmt::format("figure '{}': 'saturation'", figure.name);
     const auto number = read_value(*value, "machine unit", subject);
@@ -185,12 +186,12 @@ class MachineReader {
   }
 
   /// `{ summer.offset = "20 µV", … }`: what a figure is for parameters of blocks.
-  void read_actions(const Value& table, const MachineFigure& figure, std::vector<BlockFigure>& actions,
+  void read_actions(const text::Value& table, const MachineFigure& figure, std::vector<BlockFigure>& actions,
                     bool scatter) {
-    for (const Entry& block : table.entries) {
+    for (const text::Entry& block : table.entries) {
       const BlockDefinition* const definition = find_block(block, figure);
       if (definition == nullptr) continue;
-      for (const Entry& entry : block.value.entries) {
+      for (const text::Entry& entry : block.value.entries) {
         const ParameterDefinition* const parameter = find_parameter(*definition, entry, figure);
         if (parameter == nullptr) continue;
         const std::string subject = fmt::format("figure '{}': '{}.{}'", figure.name, block.key, entry.key);
@@ -206,11 +207,11 @@ class MachineReader {
     }
   }
 
-  const BlockDefinition* find_block(const Entry& entry, const MachineFigure& figure) {
+  const BlockDefinition* find_block(const text::Entry& entry, const MachineFigure& figure) {
     const BlockDefinition* const definition = library_.find(entry.key);
     if (definition == nullptr) {
       report(entry.position, fmt::format("figure '{}': there is no block '{}'", figure.name, entry.key), {},
-             suggest(entry.key, library_.names()));
+             text::suggest(entry.key, library_.names()));
       return nullptr;
     }
     if (definition->is_composite()) {
@@ -219,16 +220,17 @@ class MachineReader {
              "one of the blocks it is made of");
       return nullptr;
     }
-    if (entry.value.kind != Value::Kind::table) {
-      report(entry.value.position,
-             fmt::format("figure '{}': '{}' is {}", figure.name, entry.key, kind_name(entry.value.kind)),
-             "BLOCK.PARAMETER = VALUE");
+    if (entry.value.kind != text::Value::Kind::table) {
+      report(
+          entry.value.position,
+          fmt::format("figure '{}': '{}' is {}", figure.name, entry.key, text::kind_name(entry.value.kind)),
+          "BLOCK.PARAMETER = VALUE");
       return nullptr;
     }
     return definition;
   }
 
-  const ParameterDefinition* find_parameter(const BlockDefinition& block, const Entry& entry,
+  const ParameterDefinition* find_parameter(const BlockDefinition& block, const text::Entry& entry,
                                             const MachineFigure& figure) {
     const auto index = block.find_parameter(entry.key);
     if (index && !block.parameters[*index].points) return &block.parameters[*index];
@@ -238,20 +240,21 @@ class MachineReader {
     }
     report(entry.position,
            fmt::format("figure '{}': block '{}' has no number '{}'", figure.name, block.name, entry.key), {},
-           suggest(entry.key, names));
+           text::suggest(entry.key, names));
     return nullptr;
   }
 
   /// A quantity in the parameter's unit; where that is of a signal, it may be in volts.
-  std::optional<double> read_value(const Value& value, const std::string& unit, const std::string& subject) {
+  std::optional<double> read_value(const text::Value& value, const std::string& unit,
+                                   const std::string& subject) {
     constexpr std::string_view kSignal = "machine unit";
     const std::size_t signal = unit.find(kSignal);
-    if (signal != std::string::npos && value.kind == Value::Kind::string) {
+    if (signal != std::string::npos && value.kind == text::Value::Kind::string) {
       const std::string volts = "V" + unit.substr(signal + kSignal.size());
-      Diagnostics not_volts;
-      const auto number = read_quantity(file_, value, volts, subject, not_volts);
-      Diagnostics not_units;
-      const auto plain = read_quantity(file_, value, unit, subject, not_units);
+      text::Diagnostics not_volts;
+      const auto number = text::read_quantity(file_, value, volts, subject, not_volts);
+      text::Diagnostics not_units;
+      const auto plain = text::read_quantity(file_, value, unit, subject, not_units);
       if (number && !plain) {
         if (machine_.unit) return *number / *machine_.unit;
         report(value.position, subject + " is in volts, and the machine unit is unknown",
@@ -259,10 +262,10 @@ class MachineReader {
         return std::nullopt;
       }
     }
-    return read_quantity(file_, value, unit, subject, diagnostics_);
+    return text::read_quantity(file_, value, unit, subject, diagnostics_);
   }
 
-  void check_value(const ParameterDefinition& parameter, double value, const Entry& entry,
+  void check_value(const ParameterDefinition& parameter, double value, const text::Entry& entry,
                    const std::string& subject, bool scatter) {
     const double middle = parameter.default_value;
     const bool fits = scatter
@@ -276,8 +279,8 @@ class MachineReader {
 
   std::string file_;
   const BlockLibrary& library_;
-  Diagnostics diagnostics_;
-  TableReader reader_;
+  text::Diagnostics diagnostics_;
+  text::TableReader reader_;
   MachineProfile& machine_;
 };
 
@@ -287,8 +290,8 @@ MachineProfile parse_machine(std::string_view text, std::string file, std::strin
                              const BlockLibrary& library) {
   MachineProfile machine;
   machine.name = std::move(name);
-  MachineReader(parse_document(text, std::move(file)), library, machine).read();
+  MachineReader(text::parse_document(text, std::move(file)), library, machine).read();
   return machine;
 }
 
-}  // namespace oblique
+}  // namespace oblique::diagram

@@ -10,50 +10,51 @@
 #include <oblique/diagram/diagram.h>
 #include <oblique/text/table_reader.h>
 
-namespace oblique {
+namespace oblique::diagram {
 namespace {
 
 constexpr std::array<std::string_view, 10> kReserved{
     "time", "polarity", "in_initial", "in_operate", "in_hold", "pi", "inf", "and", "or", "not"};
 
-bool is_list_of(const Value& value, Value::Kind kind) {
-  return value.kind == Value::Kind::array &&
+bool is_list_of(const text::Value& value, text::Value::Kind kind) {
+  return value.kind == text::Value::Kind::array &&
          std::all_of(value.elements.begin(), value.elements.end(),
-                     [&](const Value& element) { return element.kind == kind; });
+                     [&](const text::Value& element) { return element.kind == kind; });
 }
 
 /// A number, a signal or several, or points.
-bool can_be_setting(const Value& value) {
-  return value.kind == Value::Kind::number || value.kind == Value::Kind::string ||
-         value.kind == Value::Kind::table || is_list_of(value, Value::Kind::string) ||
-         is_list_of(value, Value::Kind::array);
+bool can_be_setting(const text::Value& value) {
+  return value.kind == text::Value::Kind::number || value.kind == text::Value::Kind::string ||
+         value.kind == text::Value::Kind::table || is_list_of(value, text::Value::Kind::string) ||
+         is_list_of(value, text::Value::Kind::array);
 }
 
-BlockInstance read_block(const std::string& file, const Entry& entry, Diagnostics& diagnostics) {
+BlockInstance read_block(const std::string& file, const text::Entry& entry, text::Diagnostics& diagnostics) {
   BlockInstance block;
   block.name = entry.key;
   block.place = {file, entry.position};
-  TableReader reader(file, entry.value, fmt::format("block '{}'", entry.key), diagnostics);
-  if (entry.value.kind != Value::Kind::table) return block;
+  text::TableReader reader(file, entry.value, fmt::format("block '{}'", entry.key), diagnostics);
+  if (entry.value.kind != text::Value::Kind::table) return block;
   block.type = reader.required_string("type", "the name of a block type").value_or("");
   block.label = reader.string("label").value_or("");
-  for (const Entry& setting : entry.value.entries) {
+  for (const text::Entry& setting : entry.value.entries) {
     if (setting.key == "type" || setting.key == "label") continue;
     if (can_be_setting(setting.value)) {
       block.settings.push_back(setting);
       continue;
     }
-    diagnostics.add({{file, setting.value.position},
-                     fmt::format("'{}.{}' is {}", entry.key, setting.key, kind_name(setting.value.kind)),
-                     "a number, a string or a list of strings",
-                     R"(an input takes "signal" or ["signal", …], a parameter a number or a quantity)"});
+    diagnostics.add(
+        {{file, setting.value.position},
+         fmt::format("'{}.{}' is {}", entry.key, setting.key, text::kind_name(setting.value.kind)),
+         "a number, a string or a list of strings",
+         R"(an input takes "signal" or ["signal", …], a parameter a number or a quantity)"});
   }
   return block;
 }
 
-void collect_names(const Expression& expression, std::vector<const Expression*>& names) {
-  if (expression.kind == Expression::Kind::name) names.push_back(&expression);
-  for (const Expression& operand : expression.operands) collect_names(operand, names);
+void collect_names(const text::Expression& expression, std::vector<const text::Expression*>& names) {
+  if (expression.kind == text::Expression::Kind::name) names.push_back(&expression);
+  for (const text::Expression& operand : expression.operands) collect_names(operand, names);
 }
 
 }  // namespace
@@ -62,8 +63,9 @@ bool is_reserved(std::string_view name) {
   return std::find(kReserved.begin(), kReserved.end(), name) != kReserved.end();
 }
 
-bool check_name(std::string_view name, std::string_view what, const Place& place, Diagnostics& diagnostics) {
-  if (!is_identifier(name)) {
+bool check_name(std::string_view name, std::string_view what, const text::Place& place,
+                text::Diagnostics& diagnostics) {
+  if (!text::is_identifier(name)) {
     diagnostics.add({place,
                      fmt::format("'{}' cannot be the name of {}", name, what),
                      "letters, digits and '_', with a letter or '_' first",
@@ -80,11 +82,11 @@ bool check_name(std::string_view name, std::string_view what, const Place& place
   return true;
 }
 
-std::vector<BlockInstance> read_blocks(const std::string& file, const Value& table,
-                                       Diagnostics& diagnostics) {
+std::vector<BlockInstance> read_blocks(const std::string& file, const text::Value& table,
+                                       text::Diagnostics& diagnostics) {
   std::vector<BlockInstance> blocks;
   blocks.reserve(table.entries.size());
-  for (const Entry& entry : table.entries) {
+  for (const text::Entry& entry : table.entries) {
     check_name(entry.key, "a block", {file, entry.position}, diagnostics);
     blocks.push_back(read_block(file, entry, diagnostics));
   }
@@ -93,15 +95,15 @@ std::vector<BlockInstance> read_blocks(const std::string& file, const Value& tab
   return blocks;
 }
 
-std::vector<const Expression*> names_in(const Expression& expression) {
-  std::vector<const Expression*> names;
+std::vector<const text::Expression*> names_in(const text::Expression& expression) {
+  std::vector<const text::Expression*> names;
   collect_names(expression, names);
   return names;
 }
 
-SourcePosition position_in(const Value& value, int column) {
-  if (value.kind != Value::Kind::string) return value.position;
-  return to_diagnostic({column, {}, {}, {}}, {}, value, {}).place.position;
+text::SourcePosition position_in(const text::Value& value, int column) {
+  if (value.kind != text::Value::Kind::string) return value.position;
+  return text::to_diagnostic({column, {}, {}, {}}, {}, value, {}).place.position;
 }
 
-}  // namespace oblique
+}  // namespace oblique::diagram

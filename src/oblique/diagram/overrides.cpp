@@ -5,13 +5,13 @@
 
 #include <oblique/diagram/machine_profile.h>
 
-namespace oblique::wiring {
+namespace oblique::diagram::wiring {
 namespace {
 
 /// Finds one override; its findings have no place, since the text stands in no file.
 class Finder {
  public:
-  Finder(const ParameterOverride& override, const std::string& machine, Diagnostics& diagnostics)
+  Finder(const ParameterOverride& override, const std::string& machine, text::Diagnostics& diagnostics)
       : override_(override),
         machine_(machine),
         subject_(fmt::format("--set {}={}", override.path, override.value)),
@@ -33,7 +33,7 @@ class Finder {
       if (index == scope->index.end()) {
         std::vector<std::string> names;
         for (const WiredBlock& block : scope->blocks) names.push_back(block.instance->name);
-        report(fmt::format("there is no block '{}'", path.substr(0, end)), {}, suggest(name, names));
+        report(fmt::format("there is no block '{}'", path.substr(0, end)), {}, text::suggest(name, names));
         return nullptr;
       }
       found = &scope->blocks[index->second];
@@ -52,7 +52,7 @@ class Finder {
       const bool input = definition.find_input(name).has_value();
       report(fmt::format("'{}' of block type '{}' is {}", name, definition.name,
                          input ? "an input" : "not a parameter"),
-             {}, input ? "only parameters can be set" : suggest(name, names));
+             {}, input ? "only parameters can be set" : text::suggest(name, names));
       return std::nullopt;
     }
     const ParameterDefinition& parameter = definition.parameters[*index];
@@ -67,17 +67,17 @@ class Finder {
       return std::nullopt;
     }
     try {
-      const double value = parse_quantity(override_.value, unit_on(machine_, parameter.unit));
+      const double value = text::parse_quantity(override_.value, unit_on(machine_, parameter.unit));
       check_range(parameter, value, subject_ + ": the value", {}, {}, diagnostics_);
       return ReplacedParameter{*index, value};
-    } catch (const ExpressionError& error) {
+    } catch (const text::ExpressionError& error) {
       report(error.what, error.expected, error.remedy);
       return std::nullopt;
     }
   }
 
   void report(std::string what, std::string expected = {}, std::string remedy = {}) const {
-    const Place nowhere;
+    const text::Place nowhere;
     diagnostics_.add(
         {nowhere, fmt::format("{}: {}", subject_, what), std::move(expected), std::move(remedy)});
   }
@@ -86,13 +86,13 @@ class Finder {
   const ParameterOverride& override_;
   const std::string& machine_;
   std::string subject_;
-  Diagnostics& diagnostics_;
+  text::Diagnostics& diagnostics_;
 };
 
 }  // namespace
 
 Replacements resolve_overrides(const Scope& diagram, const std::vector<ParameterOverride>& overrides,
-                               Diagnostics& diagnostics) {
+                               text::Diagnostics& diagnostics) {
   Replacements replacements;
   for (const ParameterOverride& override : overrides) {
     const Finder finder(override, diagram.machine, diagnostics);
@@ -111,4 +111,4 @@ Replacements resolve_overrides(const Scope& diagram, const std::vector<Parameter
   return replacements;
 }
 
-}  // namespace oblique::wiring
+}  // namespace oblique::diagram::wiring

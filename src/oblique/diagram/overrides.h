@@ -8,7 +8,7 @@
 #include <oblique/diagram/flat_diagram.h>
 #include <oblique/diagram/scope.h>
 
-namespace oblique::wiring {
+namespace oblique::diagram::wiring {
 
 /// A parameter, by its place in the definition, and the value it gets.
 struct ReplacedParameter {
@@ -21,6 +21,6 @@ using Replacements = std::unordered_map<std::string, std::vector<ReplacedParamet
 
 /// Finds the blocks and parameters that overrides name; reports those there are not, and wrong values.
 Replacements resolve_overrides(const Scope& diagram, const std::vector<ParameterOverride>& overrides,
-                               Diagnostics& diagnostics);
+                               text::Diagnostics& diagnostics);
 
-}  // namespace oblique::wiring
+}  // namespace oblique::diagram::wiring

@@ -10,24 +10,24 @@
 #include <oblique/text/csv.h>
 #include <oblique/text/table_reader.h>
 
-namespace oblique {
+namespace oblique::diagram {
 namespace {
 
 class PointReader {
  public:
   PointReader(const std::string& file, const PointUnits& units, const std::string& subject,
-              Diagnostics& diagnostics)
+              text::Diagnostics& diagnostics)
       : file_(file), units_(units), subject_(subject), diagnostics_(diagnostics) {}
 
-  std::optional<PointTable> read(const Value& value) {
-    std::optional<PointTable> table;
+  std::optional<text::PointTable> read(const text::Value& value) {
+    std::optional<text::PointTable> table;
     bool hold = false;
-    if (value.kind == Value::Kind::array) {
+    if (value.kind == text::Value::Kind::array) {
       table = from_list(value);
-    } else if (value.kind == Value::Kind::table) {
+    } else if (value.kind == text::Value::Kind::table) {
       table = from_table(value, hold);
     } else {
-      return report(value.position, fmt::format("is {}", kind_name(value.kind)),
+      return report(value.position, fmt::format("is {}", text::kind_name(value.kind)),
                     R"([[x, y], …], or { file = "data.csv", x = "COLUMN", y = "COLUMN" })");
     }
     if (table && check(value.position, *table)) continue_ends(*table, hold);
@@ -35,20 +35,20 @@ class PointReader {
   }
 
  private:
-  std::nullopt_t report(SourcePosition position, const std::string& what, std::string expected,
+  std::nullopt_t report(text::SourcePosition position, const std::string& what, std::string expected,
                         std::string remedy = {}) {
     diagnostics_.add(
         {{file_, position}, fmt::format("{} {}", subject_, what), std::move(expected), std::move(remedy)});
     return std::nullopt;
   }
 
-  std::optional<PointTable> from_list(const Value& list) {
-    PointTable table;
-    for (const Value& point : list.elements) {
-      if (point.kind != Value::Kind::array || point.elements.size() != 2)
+  std::optional<text::PointTable> from_list(const text::Value& list) {
+    text::PointTable table;
+    for (const text::Value& point : list.elements) {
+      if (point.kind != text::Value::Kind::array || point.elements.size() != 2)
         return report(point.position, "has something else than a point", "[x, y]");
-      const auto x = read_quantity(file_, point.elements[0], units_.x, subject_, diagnostics_);
-      const auto y = read_quantity(file_, point.elements[1], units_.y, subject_, diagnostics_);
+      const auto x = text::read_quantity(file_, point.elements[0], units_.x, subject_, diagnostics_);
+      const auto y = text::read_quantity(file_, point.elements[1], units_.y, subject_, diagnostics_);
       if (!x || !y) return std::nullopt;
       table.x.push_back(*x);
       table.y.push_back(*y);
@@ -56,8 +56,8 @@ class PointReader {
     return table;
   }
 
-  std::optional<PointTable> from_table(const Value& value, bool& hold) {
-    TableReader reader(file_, value, subject_, diagnostics_);
+  std::optional<text::PointTable> from_table(const text::Value& value, bool& hold) {
+    text::TableReader reader(file_, value, subject_, diagnostics_);
     if (const auto beyond = reader.string("beyond")) {
       hold = *beyond == "hold";
       if (!hold && *beyond != "extrapolate") {
@@ -66,10 +66,10 @@ class PointReader {
                       "\"extrapolate\", the lines through the nearest two");
       }
     }
-    if (const Value* const points = reader.find("points")) {
+    if (const text::Value* const points = reader.find("points")) {
       reader.finish();
-      if (points->kind == Value::Kind::array) return from_list(*points);
-      return report(points->position, fmt::format("has points that are {}", kind_name(points->kind)),
+      if (points->kind == text::Value::Kind::array) return from_list(*points);
+      return report(points->position, fmt::format("has points that are {}", text::kind_name(points->kind)),
                     "[[x, y], …]");
     }
     const auto name = reader.required_string("file", "the name of a CSV file");
@@ -79,36 +79,37 @@ class PointReader {
     if (!name || !x || !y) return std::nullopt;
     const std::filesystem::path path = std::filesystem::path(file_).parent_path() / *name;
     try {
-      const CsvTable csv = parse_csv(read_file(path), path.string());
+      const text::CsvTable csv = text::parse_csv(text::read_file(path), path.string());
       const auto of_x = column(csv, *x, units_.x, value.find("x")->position, path);
       const auto of_y = column(csv, *y, units_.y, value.find("y")->position, path);
       if (!of_x || !of_y) return std::nullopt;
-      return PointTable{*of_x, *of_y};
-    } catch (const ReadError& error) {
-      for (const Diagnostic& finding : error.diagnostics()) diagnostics_.add(finding);
+      return text::PointTable{*of_x, *of_y};
+    } catch (const text::ReadError& error) {
+      for (const text::Diagnostic& finding : error.diagnostics()) diagnostics_.add(finding);
       return std::nullopt;
     }
   }
 
   /// A column in the unit that is wanted, where its heading tells one that can stand for it.
-  std::optional<std::vector<double>> column(const CsvTable& csv, const std::string& name, const Unit& wanted,
-                                            SourcePosition position, const std::filesystem::path& path) {
+  std::optional<std::vector<double>> column(const text::CsvTable& csv, const std::string& name,
+                                            const text::Unit& wanted, text::SourcePosition position,
+                                            const std::filesystem::path& path) {
     const auto index = csv.index_of(name);
     if (!index) {
       diagnostics_.add({{file_, position},
                         fmt::format("{}: '{}' has no column '{}'", subject_, path.string(), name),
                         {},
-                        suggest(name, csv.names)});
+                        text::suggest(name, csv.names)});
       return std::nullopt;
     }
     std::vector<double> values = csv.columns[*index];
-    const auto unit = parse_unit(split_heading(csv.names[*index]).unit);
-    const auto factor = unit ? factor_between(*unit, wanted) : std::nullopt;
+    const auto unit = text::parse_unit(text::split_heading(csv.names[*index]).unit);
+    const auto factor = unit ? text::factor_between(*unit, wanted) : std::nullopt;
     for (double& value : values) value *= factor.value_or(1);
     return values;
   }
 
-  bool check(SourcePosition position, const PointTable& table) {
+  bool check(text::SourcePosition position, const text::PointTable& table) {
     const std::vector<double>& x = table.x;
     const std::size_t before = diagnostics_.size();
     if (x.size() < 2) report(position, fmt::format("has {} points", x.size()), "at least two points");
@@ -127,7 +128,7 @@ class PointReader {
   }
 
   /// What is to hold before and after all points, where the line through the nearest two does not say it.
-  static void continue_ends(PointTable& table, bool hold) {
+  static void continue_ends(text::PointTable& table, bool hold) {
     std::vector<double>&x = table.x, &y = table.y;
     if (hold || x[0] == x[1]) {
       x.insert(x.begin(), before(x.front()));
@@ -145,14 +146,15 @@ class PointReader {
   const std::string& file_;
   const PointUnits& units_;
   const std::string& subject_;
-  Diagnostics& diagnostics_;
+  text::Diagnostics& diagnostics_;
 };
 
 }  // namespace
 
-std::optional<PointTable> read_points(const std::string& file, const Value& value, const PointUnits& units,
-                                      const std::string& subject, Diagnostics& diagnostics) {
+std::optional<text::PointTable> read_points(const std::string& file, const text::Value& value,
+                                            const PointUnits& units, const std::string& subject,
+                                            text::Diagnostics& diagnostics) {
   return PointReader(file, units, subject, diagnostics).read(value);
 }
 
-}  // namespace oblique
+}  // namespace oblique::diagram

@@ -8,18 +8,19 @@
 #include <oblique/text/point_table.h>
 #include <oblique/text/quantity.h>
 
-namespace oblique {
+namespace oblique::diagram {
 
 /// What the numbers of a function given by points are in.
 struct PointUnits {
-  Unit x, y;
+  text::Unit x, y;
 };
 
 /// Reads a function given by points: [[x, y], …], or { points = [[x, y], …], beyond = "hold" }, or, with
 /// `beyond` or without, { file = "data.csv", x = "t", y = "u" }, two columns of a file beside `file`. Numbers
 /// without a unit are in `units`; of a column whose heading tells another unit that can stand for it ("t
 /// [ms]", "u/V") all are converted. Reports what is wrong with it; `subject` names it in messages.
-std::optional<PointTable> read_points(const std::string& file, const Value& value, const PointUnits& units,
-                                      const std::string& subject, Diagnostics& diagnostics);
+std::optional<text::PointTable> read_points(const std::string& file, const text::Value& value,
+                                            const PointUnits& units, const std::string& subject,
+                                            text::Diagnostics& diagnostics);
 
-}  // namespace oblique
+}  // namespace oblique::diagram

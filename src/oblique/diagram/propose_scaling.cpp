@@ -5,7 +5,7 @@
 
 #include <oblique/diagram/rescale.h>
 
-namespace oblique {
+namespace oblique::diagram {
 namespace {
 
 /// A signal that needs more is the balance of others, such as the residual of a loop: noise, to be left
@@ -136,4 +136,4 @@ AmplitudeScaling propose_scaling(const FlatDiagram& flat, std::span<const double
   return Proposal(flat, peaks).make();
 }
 
-}  // namespace oblique
+}  // namespace oblique::diagram

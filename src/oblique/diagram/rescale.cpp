@@ -12,21 +12,22 @@
 #include <oblique/diagram/names.h>
 #include <oblique/text/nearest_decimal.h>
 
-namespace oblique {
+namespace oblique::diagram {
 namespace {
 
 /// Value of an equation for given values of its names other than parameters.
 double value_of(const BlockDefinition& definition, const std::vector<double>& parameters,
-                const Expression& expression, const NameLookup& signals) {
-  return evaluate(expression, [&](std::string_view name) -> std::optional<double> {
+                const text::Expression& expression, const text::NameLookup& signals) {
+  return text::evaluate(expression, [&](std::string_view name) -> std::optional<double> {
     if (const auto p = definition.find_parameter(name)) return parameters[*p];
     return signals(name);
   });
 }
 
-bool names_polarity(const Expression& expression) {
+bool names_polarity(const text::Expression& expression) {
   const auto names = names_in(expression);
-  return std::any_of(names.begin(), names.end(), [](const Expression* e) { return e->name == "polarity"; });
+  return std::any_of(names.begin(), names.end(),
+                     [](const text::Expression* e) { return e->name == "polarity"; });
 }
 
 /// Whether a block of one polarity with inverted inputs is the same block with the other polarity. Its
@@ -133,7 +134,7 @@ class Writer {
       add_input(instance, definition.inputs[i], block.inputs[i], sign * scaling_[b].inputs[i]);
     }
     for (const auto& [name, formula] : block.formulas)
-      instance.settings.push_back(text_setting(name, to_string(formula)));
+      instance.settings.push_back(text_setting(name, text::to_string(formula)));
     for (std::size_t k = 0; k < definition.parameters.size(); ++k) {
       if (definition.parameters[k].points) {
         instance.settings.push_back(points_setting(definition.parameters[k].name, block.points[k]));
@@ -185,7 +186,7 @@ class Writer {
   /// A number as it is, or times a ratio, without the rounding of the ratio.
   static double scaled_number(double number, double by, double over) {
     if (by == over) return number;
-    return nearest_decimal(number * by / over, 14);
+    return text::nearest_decimal(number * by / over, 14);
   }
 
   /// A block of 1 machine unit, made when it is first asked for.
@@ -197,7 +198,7 @@ class Writer {
         continue;
       const auto& equations = d.behaviours[0].equations;
       if (equations.size() != 1 || equations[0].kind != Equation::Kind::assignment) continue;
-      if (equations[0].expression.kind != Expression::Kind::name) continue;
+      if (equations[0].expression.kind != text::Expression::Kind::name) continue;
       const auto parameter = d.find_parameter(equations[0].expression.name);
       if (!parameter || !d.parameters[*parameter].allows(1)) continue;
       BlockInstance one;
@@ -221,7 +222,7 @@ class Writer {
       const auto& equations = d.choose_behaviour(defaults, polarity_)->equations;
       if (equations.size() != 1 || equations[0].kind != Equation::Kind::assignment) continue;
       const auto at = [&](double in) {
-        return evaluate(equations[0].expression, [&](std::string_view symbol) -> std::optional<double> {
+        return text::evaluate(equations[0].expression, [&](std::string_view symbol) -> std::optional<double> {
           if (symbol == "polarity") return polarity_;
           if (const auto p = d.find_parameter(symbol)) return defaults[*p];
           return symbol == d.inputs[0].name ? std::optional(in) : std::nullopt;
@@ -243,7 +244,7 @@ class Writer {
   }
 
   void lacks(std::string_view what) {
-    const Place place{diagram_.file, {}};
+    const text::Place place{diagram_.file, {}};
     diagnostics_.add({place,
                       fmt::format("the library has no block that {}, which the flat diagram needs", what),
                       {},
@@ -261,7 +262,7 @@ class Writer {
   std::vector<std::string> names_;
   std::vector<BlockInstance> helpers_;  ///< to stand before the block that needs them
   std::string reference_;
-  Diagnostics diagnostics_;
+  text::Diagnostics diagnostics_;
 };
 
 }  // namespace
@@ -269,12 +270,12 @@ class Writer {
 Diagram rescale(const Diagram& diagram, const FlatDiagram& flat, const AmplitudeScaling& scaling,
                 const BlockLibrary& library) {
   if (!diagram.groups.empty() || !diagram.timeline.phases.empty()) {
-    throw DiagramError(Diagnostic{{diagram.file, {}},
-                                  "a diagram with [groups] or a [timeline] cannot be rescaled",
-                                  "one run in the mode \"operate\"",
-                                  "scale it by hand: the report proposes the factors"});
+    throw DiagramError(text::Diagnostic{{diagram.file, {}},
+                                        "a diagram with [groups] or a [timeline] cannot be rescaled",
+                                        "one run in the mode \"operate\"",
+                                        "scale it by hand: the report proposes the factors"});
   }
   return Writer(diagram, flat, scaling, library).write();
 }
 
-}  // namespace oblique
+}  // namespace oblique::diagram

@@ -8,7 +8,7 @@
 #include <oblique/diagram/diagram.h>
 #include <oblique/diagram/flat_diagram.h>
 
-namespace oblique {
+namespace oblique::diagram {
 
 /// An excess over the machine unit below this is no overload: a signal scaled to the full range reaches it,
 /// and passes it by the static error of its amplifier and the tolerance of the solver.
@@ -38,4 +38,4 @@ AmplitudeScaling propose_scaling(const FlatDiagram& flat, std::span<const double
 Diagram rescale(const Diagram& diagram, const FlatDiagram& flat, const AmplitudeScaling& scaling,
                 const BlockLibrary& library);
 
-}  // namespace oblique
+}  // namespace oblique::diagram

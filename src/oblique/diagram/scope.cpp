@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-namespace oblique::wiring {
+namespace oblique::diagram::wiring {
 namespace {
 
 /// The first part of a dotted path, which is cut off its front.
@@ -36,7 +36,7 @@ double Constant::value(const BlockDefinition* composite, std::span<const double>
     const auto index = composite->find_parameter(name);
     return index ? std::optional(parameters[*index]) : std::nullopt;
   };
-  return number * evaluate(*expression, lookup);
+  return number * text::evaluate(*expression, lookup);
 }
 
 std::string Scope::belonging() const {
@@ -65,8 +65,8 @@ std::string describe_number(double number) {
   return std::isnan(number) ? "not a number" : fmt::format("{}", number);
 }
 
-std::optional<Source> find_signal(const Scope& scope, std::string_view path, SourcePosition position,
-                                  const std::string& subject, Diagnostics& diagnostics) {
+std::optional<Source> find_signal(const Scope& scope, std::string_view path, text::SourcePosition position,
+                                  const std::string& subject, text::Diagnostics& diagnostics) {
   const auto report = [&](std::string what, std::string expected, std::string remedy) {
     diagnostics.add({{scope.file, position},
                      fmt::format("{}: {}", subject, what),
@@ -86,7 +86,7 @@ std::optional<Source> find_signal(const Scope& scope, std::string_view path, Sou
   const auto found = scope.index.find(first);
   if (found == scope.index.end()) {
     std::string remedy;
-    if (diagnostics.size() < kMostSuggestions) remedy = suggest(first, scope.signal_names());
+    if (diagnostics.size() < kMostSuggestions) remedy = text::suggest(first, scope.signal_names());
     return report(fmt::format("there is no signal '{}'", path), {}, std::move(remedy));
   }
   Source source;
@@ -122,8 +122,8 @@ std::optional<Source> find_signal(const Scope& scope, std::string_view path, Sou
     }
     return report(fmt::format("'{}' ({}) has no output{} '{}'", block_path, block->instance->type,
                               block->inside == nullptr ? "" : " and no inner block", part),
-                  {}, suggest(part, names_inside(*block)));
+                  {}, text::suggest(part, names_inside(*block)));
   }
 }
 
-}  // namespace oblique::wiring
+}  // namespace oblique::diagram::wiring

@@ -13,14 +13,14 @@
 
 /// The wiring of one diagram or one composite block with its names resolved: made once, then laid out as
 /// often as the composite is used (flatten.cpp).
-namespace oblique::wiring {
+namespace oblique::diagram::wiring {
 
 struct Scope;
 
 /// A number of a file: fixed, or `number` times an expression of the parameters of the composite around it.
 struct Constant {
   double number = 0;
-  std::optional<Expression> expression;
+  std::optional<text::Expression> expression;
 
   double value(const BlockDefinition* composite, std::span<const double> parameters) const;
 };
@@ -37,7 +37,7 @@ struct Source {
 struct Term {
   Constant weight;
   Source source;
-  SourcePosition position;
+  text::SourcePosition position;
 };
 
 /// What a file says about one input.
@@ -49,10 +49,10 @@ struct WiredInput {
 /// What a file says about one parameter; without `given` the default applies.
 struct WiredParameter {
   bool given = false;
-  std::optional<PointTable> points;   ///< of a parameter that is a function given by points
-  std::optional<Expression> formula;  ///< of a parameter that is an expression of time
+  std::optional<text::PointTable> points;   ///< of a parameter that is a function given by points
+  std::optional<text::Expression> formula;  ///< of a parameter that is an expression of time
   Constant value;
-  SourcePosition position;
+  text::SourcePosition position;
 };
 
 /// One block of a scope.
@@ -89,20 +89,20 @@ std::string describe_block(const Scope& scope, const WiredBlock& block);
 std::string describe_number(double number);
 
 /// The signal that a path names ("c", "crank.cos", "C.direction.length"). Reports a path that names none.
-std::optional<Source> find_signal(const Scope& scope, std::string_view path, SourcePosition position,
-                                  const std::string& subject, Diagnostics& diagnostics);
+std::optional<Source> find_signal(const Scope& scope, std::string_view path, text::SourcePosition position,
+                                  const std::string& subject, text::Diagnostics& diagnostics);
 
 /// One `[sign][weight*]signal` of an input. Reports what is wrong with it.
-std::optional<Term> read_term(const Scope& scope, const Value& value, const std::string& subject,
-                              Diagnostics& diagnostics);
+std::optional<Term> read_term(const Scope& scope, const text::Value& value, const std::string& subject,
+                              text::Diagnostics& diagnostics);
 
 /// The value of a parameter in its unit. Reports what is wrong with it, also a fixed value out of range.
-std::optional<Constant> read_parameter(const Scope& scope, const Value& value,
+std::optional<Constant> read_parameter(const Scope& scope, const text::Value& value,
                                        const ParameterDefinition& parameter, const std::string& subject,
-                                       Diagnostics& diagnostics);
+                                       text::Diagnostics& diagnostics);
 
 /// Reports a value that the parameter does not allow.
 void check_range(const ParameterDefinition& parameter, double value, const std::string& subject,
-                 const Place& place, const std::string& remedy, Diagnostics& diagnostics);
+                 const text::Place& place, const std::string& remedy, text::Diagnostics& diagnostics);
 
-}  // namespace oblique::wiring
+}  // namespace oblique::diagram::wiring

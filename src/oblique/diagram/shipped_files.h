@@ -4,7 +4,7 @@
 #include <span>
 #include <string_view>
 
-namespace oblique {
+namespace oblique::diagram {
 
 /// A text file that the build embeds (embed_files.cmake).
 struct ShippedFile {
@@ -16,4 +16,4 @@ struct ShippedFile {
 std::span<const ShippedFile> shipped_blocks();
 std::span<const ShippedFile> shipped_machines();
 
-}  // namespace oblique
+}  // namespace oblique::diagram

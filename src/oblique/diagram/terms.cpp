@@ -11,10 +11,10 @@
 #include <oblique/diagram/names.h>
 #include <oblique/text/table_reader.h>
 
-namespace oblique::wiring {
+namespace oblique::diagram::wiring {
 namespace {
 
-using Kind = Expression::Kind;
+using Kind = text::Expression::Kind;
 
 bool is_number_name(std::string_view name) {
   return name == "pi" || name == "inf";
@@ -24,14 +24,14 @@ bool is_own_parameter(const Scope& scope, std::string_view name) {
   return scope.composite != nullptr && scope.composite->find_parameter(name).has_value();
 }
 
-bool depends_on_parameters(const Expression& expression) {
+bool depends_on_parameters(const text::Expression& expression) {
   const auto names = names_in(expression);
   return std::any_of(names.begin(), names.end(),
-                     [](const Expression* e) { return !is_number_name(e->name); });
+                     [](const text::Expression* e) { return !is_number_name(e->name); });
 }
 
 /// Replaces the signal in a product by 1, which leaves its weight; false where it is no plain factor.
-bool take_signal_out(Expression& expression, int column) {
+bool take_signal_out(text::Expression& expression, int column) {
   switch (expression.kind) {
     case Kind::name:
       if (expression.column != column || is_number_name(expression.name)) return false;
@@ -50,15 +50,15 @@ bool take_signal_out(Expression& expression, int column) {
   }
 }
 
-Constant fold(Expression expression, double factor) {
+Constant fold(text::Expression expression, double factor) {
   if (depends_on_parameters(expression)) return {factor, std::move(expression)};
-  return {factor * evaluate(expression), std::nullopt};
+  return {factor * text::evaluate(expression), std::nullopt};
 }
 
 }  // namespace
 
-std::optional<Term> read_term(const Scope& scope, const Value& value, const std::string& subject,
-                              Diagnostics& diagnostics) {
+std::optional<Term> read_term(const Scope& scope, const text::Value& value, const std::string& subject,
+                              text::Diagnostics& diagnostics) {
   const auto report = [&](int column, std::string what, std::string expected, std::string remedy) {
     diagnostics.add({{scope.file, position_in(value, column)},
                      fmt::format("{}: {}", subject, what),
@@ -66,22 +66,22 @@ std::optional<Term> read_term(const Scope& scope, const Value& value, const std:
                      std::move(remedy)});
     return std::nullopt;
   };
-  if (value.kind == Value::Kind::number) {
+  if (value.kind == text::Value::Kind::number) {
     diagnostics.add({{scope.file, value.position},
                      fmt::format("{} is given the number {}", subject, value.number),
                      "the name of a signal",
                      "a fixed value comes from a block that gives a constant"});
     return std::nullopt;
   }
-  Expression expression;
+  text::Expression expression;
   try {
-    expression = parse_expression(value.text);
-  } catch (const ExpressionError& error) {
-    diagnostics.add(to_diagnostic(error, scope.file, value, subject));
+    expression = text::parse_expression(value.text);
+  } catch (const text::ExpressionError& error) {
+    diagnostics.add(text::to_diagnostic(error, scope.file, value, subject));
     return std::nullopt;
   }
-  std::vector<const Expression*> signals;
-  for (const Expression* const name : names_in(expression)) {
+  std::vector<const text::Expression*> signals;
+  for (const text::Expression* const name : names_in(expression)) {
     if (!is_number_name(name->name) && !is_own_parameter(scope, name->name)) signals.push_back(name);
   }
   if (signals.empty()) {
@@ -90,7 +90,7 @@ std::optional<Term> read_term(const Scope& scope, const Value& value, const std:
   }
   std::optional<Source> source;
   bool all_known = true;
-  for (const Expression* const signal : signals) {
+  for (const text::Expression* const signal : signals) {
     source = find_signal(scope, signal->name, position_in(value, signal->column), subject, diagnostics);
     all_known = all_known && source;
   }
@@ -98,7 +98,7 @@ std::optional<Term> read_term(const Scope& scope, const Value& value, const std:
   if (signals.size() > 1) {
     std::vector<std::string> names;
     names.reserve(signals.size());
-    for (const Expression* const signal : signals) names.push_back(signal->name);
+    for (const text::Expression* const signal : signals) names.push_back(signal->name);
     return report(
         1, fmt::format("'{}' names {} signals ({})", value.text, signals.size(), fmt::join(names, ", ")),
         "[sign][weight*]signal with one signal",
@@ -119,26 +119,27 @@ std::optional<Term> read_term(const Scope& scope, const Value& value, const std:
   return term;
 }
 
-std::optional<Constant> read_parameter(const Scope& scope, const Value& value,
+std::optional<Constant> read_parameter(const Scope& scope, const text::Value& value,
                                        const ParameterDefinition& parameter, const std::string& subject,
-                                       Diagnostics& diagnostics) {
-  const Place place{scope.file, value.position};
-  if (value.kind == Value::Kind::array || value.kind == Value::Kind::table) {
-    diagnostics.add({place,
-                     fmt::format("{} is a {}", subject, value.kind == Value::Kind::array ? "list" : "table"),
-                     fmt::format("a number or a quantity in '{}'", parameter.unit),
-                     {}});
+                                       text::Diagnostics& diagnostics) {
+  const text::Place place{scope.file, value.position};
+  if (value.kind == text::Value::Kind::array || value.kind == text::Value::Kind::table) {
+    diagnostics.add(
+        {place,
+         fmt::format("{} is a {}", subject, value.kind == text::Value::Kind::array ? "list" : "table"),
+         fmt::format("a number or a quantity in '{}'", parameter.unit),
+         {}});
     return std::nullopt;
   }
-  if (value.kind == Value::Kind::number) {
+  if (value.kind == text::Value::Kind::number) {
     const std::size_t before = diagnostics.size();
     check_range(parameter, value.number, subject, place, {}, diagnostics);
     return diagnostics.size() == before ? std::optional(Constant{value.number, {}}) : std::nullopt;
   }
   try {
     std::size_t rest = 0;
-    Expression expression = parse_expression_prefix(value.text, rest);
-    for (const Expression* const name : names_in(expression)) {
+    text::Expression expression = text::parse_expression_prefix(value.text, rest);
+    for (const text::Expression* const name : names_in(expression)) {
       if (is_number_name(name->name) || is_own_parameter(scope, name->name)) continue;
       std::vector<std::string> known;
       if (scope.composite != nullptr) {
@@ -149,28 +150,28 @@ std::optional<Constant> read_parameter(const Scope& scope, const Value& value,
           {{scope.file, position_in(value, name->column)},
            fmt::format("{}: '{}' is {}", subject, name->name, signal ? "a signal" : "no known constant"),
            fmt::format("a number or a quantity in '{}'", parameter.unit),
-           signal ? "signals go to inputs, not to parameters" : suggest(name->name, known)});
+           signal ? "signals go to inputs, not to parameters" : text::suggest(name->name, known)});
       return std::nullopt;
     }
     // Whatever value the names have: in a message the text before the unit counts as a number.
-    Constant constant =
-        fold(std::move(expression), unit_factor(value.text, rest, unit_on(scope.machine, parameter.unit),
-                                                [](std::string_view) { return 1.0; }));
+    Constant constant = fold(std::move(expression),
+                             text::unit_factor(value.text, rest, unit_on(scope.machine, parameter.unit),
+                                               [](std::string_view) { return 1.0; }));
     if (constant.expression) return constant;
     const std::size_t before = diagnostics.size();
     check_range(parameter, constant.number, subject, place, {}, diagnostics);
     return diagnostics.size() == before ? std::optional(std::move(constant)) : std::nullopt;
-  } catch (const ExpressionError& error) {
-    diagnostics.add(to_diagnostic(error, scope.file, value, subject));
+  } catch (const text::ExpressionError& error) {
+    diagnostics.add(text::to_diagnostic(error, scope.file, value, subject));
     return std::nullopt;
   }
 }
 
 void check_range(const ParameterDefinition& parameter, double value, const std::string& subject,
-                 const Place& place, const std::string& remedy, Diagnostics& diagnostics) {
+                 const text::Place& place, const std::string& remedy, text::Diagnostics& diagnostics) {
   if (parameter.allows(value)) return;
   diagnostics.add(
       {place, fmt::format("{} is {}", subject, describe_number(value)), parameter.range(), remedy});
 }
 
-}  // namespace oblique::wiring
+}  // namespace oblique::diagram::wiring

@@ -11,7 +11,7 @@
 #include <oblique/diagram/machine_profile.h>
 #include <oblique/diagram/names.h>
 
-namespace oblique {
+namespace oblique::diagram {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -21,19 +21,20 @@ constexpr std::array kModes{OperatingMode::potset, OperatingMode::initial, Opera
 /// The name of the group of all blocks that stand in no other.
 constexpr std::string_view kMain = "main";
 
-std::optional<OperatingMode> mode_of(const Value& value, const std::string& file, const std::string& what,
-                                     Diagnostics& diagnostics) {
+std::optional<OperatingMode> mode_of(const text::Value& value, const std::string& file,
+                                     const std::string& what, text::Diagnostics& diagnostics) {
   std::vector<std::string> names;
   for (const OperatingMode mode : kModes) {
-    if (value.kind == Value::Kind::string && value.text == mode_name(mode)) return mode;
+    if (value.kind == text::Value::Kind::string && value.text == mode_name(mode)) return mode;
     names.emplace_back(mode_name(mode));
   }
-  diagnostics.add({{file, value.position},
-                   fmt::format("{}: {} is no mode of operation", what,
-                               value.kind == Value::Kind::string ? "'" + value.text + "'"
-                                                                 : std::string(kind_name(value.kind))),
-                   "potset, initial, operate or hold",
-                   suggest(value.text, names)});
+  diagnostics.add(
+      {{file, value.position},
+       fmt::format("{}: {} is no mode of operation", what,
+                   value.kind == text::Value::Kind::string ? "'" + value.text + "'"
+                                                           : std::string(text::kind_name(value.kind))),
+       "potset, initial, operate or hold",
+       text::suggest(value.text, names)});
   return std::nullopt;
 }
 
@@ -44,39 +45,41 @@ struct Comparison {
   double threshold = 0;
 };
 
-std::optional<Comparison> read_comparison(const std::string& text, const Place& place,
+std::optional<Comparison> read_comparison(const std::string& text, const text::Place& place,
                                           const std::string& what, const std::string& machine,
-                                          Diagnostics& diagnostics) {
+                                          text::Diagnostics& diagnostics) {
   try {
     std::size_t rest = 0;
-    const Expression e = parse_expression_prefix(text, rest);
-    const double unit = unit_factor(text, rest, unit_on(machine, "machine unit"));
-    const bool above = e.kind == Expression::Kind::greater;
-    if ((above || e.kind == Expression::Kind::less) && e.operands[0].kind == Expression::Kind::name) {
-      return Comparison{e.operands[0].name, above, unit * evaluate(e.operands[1])};
+    const text::Expression e = text::parse_expression_prefix(text, rest);
+    const double unit = text::unit_factor(text, rest, unit_on(machine, "machine unit"));
+    const bool above = e.kind == text::Expression::Kind::greater;
+    if ((above || e.kind == text::Expression::Kind::less) &&
+        e.operands[0].kind == text::Expression::Kind::name) {
+      return Comparison{e.operands[0].name, above, unit * text::evaluate(e.operands[1])};
     }
     diagnostics.add({place, fmt::format("{}: '{}' does not compare a signal with a number", what, text),
                      "'SIGNAL > NUMBER' or 'SIGNAL < NUMBER'",
                      "let blocks decide what is more complicated, and compare their output with 0.5"});
-  } catch (const ExpressionError& error) {
+  } catch (const text::ExpressionError& error) {
     diagnostics.add({place, fmt::format("{}: {}", what, error.what), error.expected, error.remedy});
   }
   return std::nullopt;
 }
 
-Phase read_phase(const std::string& file, const Value& value, const std::string& what,
-                 const std::vector<ModeGroup>& groups, const std::string& machine, Diagnostics& diagnostics) {
+Phase read_phase(const std::string& file, const text::Value& value, const std::string& what,
+                 const std::vector<ModeGroup>& groups, const std::string& machine,
+                 text::Diagnostics& diagnostics) {
   Phase phase;
   phase.place = {file, value.position};
-  TableReader reader(file, value, what, diagnostics);
-  if (value.kind != Value::Kind::table) return phase;
-  if (const Value* const mode = reader.find("mode")) {
+  text::TableReader reader(file, value, what, diagnostics);
+  if (value.kind != text::Value::Kind::table) return phase;
+  if (const text::Value* const mode = reader.find("mode")) {
     phase.mode = mode_of(*mode, file, what, diagnostics).value_or(phase.mode);
   } else {
     reader.report("mode", fmt::format("{} has no 'mode'", what), "potset, initial, operate or hold");
   }
   for (const ModeGroup& group : groups) {
-    if (const Value* const mode = reader.find(group.name)) {
+    if (const text::Value* const mode = reader.find(group.name)) {
       if (const auto read = mode_of(*mode, file, what, diagnostics))
         phase.modes.emplace_back(group.name, *read);
     }
@@ -98,9 +101,10 @@ Phase read_phase(const std::string& file, const Value& value, const std::string&
 
 }  // namespace
 
-std::vector<ModeGroup> read_groups(const std::string& file, const Value& table, Diagnostics& diagnostics) {
+std::vector<ModeGroup> read_groups(const std::string& file, const text::Value& table,
+                                   text::Diagnostics& diagnostics) {
   std::vector<ModeGroup> groups;
-  for (const Entry& entry : table.entries) {
+  for (const text::Entry& entry : table.entries) {
     const std::string what = fmt::format("group '{}'", entry.key);
     ModeGroup group;
     group.name = entry.key;
@@ -114,11 +118,12 @@ std::vector<ModeGroup> read_groups(const std::string& file, const Value& table, 
                        {}});
     }
     check_name(entry.key, "a group", group.place, diagnostics);
-    Value list;  // a bare list is short for { blocks = list }
-    list.kind = Value::Kind::table;
+    text::Value list;  // a bare list is short for { blocks = list }
+    list.kind = text::Value::Kind::table;
     list.position = entry.value.position;
     list.entries.push_back({"blocks", entry.position, entry.value});
-    TableReader reader(file, entry.value.kind == Value::Kind::table ? entry.value : list, what, diagnostics);
+    text::TableReader reader(file, entry.value.kind == text::Value::Kind::table ? entry.value : list, what,
+                             diagnostics);
     group.blocks = reader.strings("blocks", true).value_or(std::vector<std::string>{});
     if (group.blocks.empty() && reader.table().find("blocks") == nullptr)
       reader.report("blocks", fmt::format("{} has no 'blocks'", what), "the names of blocks");
@@ -130,12 +135,13 @@ std::vector<ModeGroup> read_groups(const std::string& file, const Value& table, 
   return groups;
 }
 
-Timeline read_timeline(const std::string& file, const Value& table, const std::vector<ModeGroup>& groups,
-                       const std::string& machine, Diagnostics& diagnostics) {
+Timeline read_timeline(const std::string& file, const text::Value& table,
+                       const std::vector<ModeGroup>& groups, const std::string& machine,
+                       text::Diagnostics& diagnostics) {
   Timeline timeline;
-  TableReader reader(file, table, "[timeline]", diagnostics);
-  const Value* const phases = reader.find("phases");
-  if (phases == nullptr || phases->kind != Value::Kind::array || phases->elements.empty()) {
+  text::TableReader reader(file, table, "[timeline]", diagnostics);
+  const text::Value* const phases = reader.find("phases");
+  if (phases == nullptr || phases->kind != text::Value::Kind::array || phases->elements.empty()) {
     reader.report("phases", "[timeline] has no list of 'phases'",
                   R"(phases = [{ mode = "operate", for = "1 s" }])");
   } else {
@@ -170,7 +176,7 @@ std::string to_string(const Phase& phase) {
 }
 
 void lay_out_timeline(const Diagram& diagram, FlatDiagram& flat, const FindSignal& find_signal,
-                      Diagnostics& diagnostics) {
+                      text::Diagnostics& diagnostics) {
   if (diagram.groups.empty() && diagram.timeline.phases.empty()) return;
   FlatTimeline& timeline = flat.timeline;
   timeline.cycles = diagram.timeline.cycles;
@@ -199,8 +205,10 @@ void lay_out_timeline(const Diagram& diagram, FlatDiagram& flat, const FindSigna
       if (found) continue;
       std::vector<std::string> names;
       for (const BlockInstance& block : diagram.blocks) names.push_back(block.name);
-      diagnostics.add(
-          {group.place, fmt::format("{}: there is no block '{}'", what, name), {}, suggest(name, names)});
+      diagnostics.add({group.place,
+                       fmt::format("{}: there is no block '{}'", what, name),
+                       {},
+                       text::suggest(name, names)});
     }
   }
   for (std::size_t i = 0; i < diagram.timeline.phases.size(); ++i) {
@@ -223,4 +231,4 @@ void lay_out_timeline(const Diagram& diagram, FlatDiagram& flat, const FindSigna
   }
 }
 
-}  // namespace oblique
+}  // namespace oblique::diagram

@@ -11,17 +11,17 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-namespace oblique::wiring {
+namespace oblique::diagram::wiring {
 namespace {
 
 /// Composites may stand in composites this deep.
 constexpr std::size_t kDeepest = 100;
 
 /// The wires of a setting: a list of them, or one that stands alone.
-std::vector<const Value*> wires_of(const Value& value) {
-  if (value.kind != Value::Kind::array) return {&value};
-  std::vector<const Value*> wires;
-  for (const Value& element : value.elements) wires.push_back(&element);
+std::vector<const text::Value*> wires_of(const text::Value& value) {
+  if (value.kind != text::Value::Kind::array) return {&value};
+  std::vector<const text::Value*> wires;
+  for (const text::Value& element : value.elements) wires.push_back(&element);
   return wires;
 }
 
@@ -34,7 +34,7 @@ std::vector<std::string> names_of(const std::vector<Port>& ports) {
 }
 
 bool has_word(std::string_view text, std::string_view word) {
-  const auto is_word = [](char c) { return is_identifier(std::string("_") + c); };
+  const auto is_word = [](char c) { return text::is_identifier(std::string("_") + c); };
   for (std::size_t at = text.find(word); at != std::string_view::npos; at = text.find(word, at + 1)) {
     const std::size_t end = at + word.size();
     if ((at == 0 || !is_word(text[at - 1])) && (end == text.size() || !is_word(text[end]))) return true;
@@ -46,12 +46,12 @@ bool has_word(std::string_view text, std::string_view word) {
 /// documentation has that word, as "k0" of machines that have no rate.
 std::string hint_for(const std::string& key, const BlockDefinition& definition,
                      const std::vector<std::string>& known) {
-  if (!nearest_name(key, known) && key.size() > 1) {
+  if (!text::nearest_name(key, known) && key.size() > 1) {
     for (const ParameterDefinition& parameter : definition.parameters) {
       if (has_word(parameter.doc, key)) return fmt::format("'{}' is {}", parameter.name, parameter.doc);
     }
   }
-  return suggest(key, known);
+  return text::suggest(key, known);
 }
 
 }  // namespace
@@ -65,7 +65,7 @@ Scope Resolver::diagram(const Diagram& diagram) {
   return scope;
 }
 
-const Scope* Resolver::composite(const BlockDefinition& definition, const Place& user) {
+const Scope* Resolver::composite(const BlockDefinition& definition, const text::Place& user) {
   const auto start = std::find(open_.begin(), open_.end(), &definition);
   if (start != open_.end()) {
     std::vector<std::string> circle;
@@ -126,7 +126,7 @@ void Resolver::find_definition(const Scope& scope, WiredBlock& block) {
                        fmt::format("block '{}'{}: there is no block type '{}'", instance.name,
                                    scope.belonging(), instance.type),
                        {},
-                       suggest(instance.type, library_->names())});
+                       text::suggest(instance.type, library_->names())});
     return;
   }
   if (definition->is_composite()) {
@@ -140,8 +140,8 @@ void Resolver::find_definition(const Scope& scope, WiredBlock& block) {
 
 void Resolver::read_settings(const Scope& scope, WiredBlock& block) {
   const BlockDefinition& definition = *block.definition;
-  std::vector<const Entry*> drivers(definition.inputs.size());
-  for (const Entry& entry : block.instance->settings) {
+  std::vector<const text::Entry*> drivers(definition.inputs.size());
+  for (const text::Entry& entry : block.instance->settings) {
     if (const auto parameter = definition.find_parameter(entry.key)) {
       WiredParameter& wired = block.parameters[*parameter];
       const std::string subject = describe_port(scope, "parameter", block, entry.key);
@@ -177,8 +177,8 @@ void Resolver::read_settings(const Scope& scope, WiredBlock& block) {
   check_open_inputs(scope, block);
 }
 
-void Resolver::read_input_list(const Scope& scope, WiredBlock& block, const Entry& entry,
-                               std::vector<const Entry*>& drivers) {
+void Resolver::read_input_list(const Scope& scope, WiredBlock& block, const text::Entry& entry,
+                               std::vector<const text::Entry*>& drivers) {
   const std::vector<InputPort>& inputs = block.definition->inputs;
   const auto wires = wires_of(entry.value);
   if (inputs.size() == 1) {
@@ -200,15 +200,15 @@ void Resolver::read_input_list(const Scope& scope, WiredBlock& block, const Entr
   for (std::size_t i = 0; i < wires.size(); ++i) connect(scope, block, i, entry, {wires[i]}, drivers);
 }
 
-void Resolver::connect(const Scope& scope, WiredBlock& block, std::size_t input, const Entry& entry,
-                       std::vector<const Value*> wires, std::vector<const Entry*>& drivers) {
+void Resolver::connect(const Scope& scope, WiredBlock& block, std::size_t input, const text::Entry& entry,
+                       std::vector<const text::Value*> wires, std::vector<const text::Entry*>& drivers) {
   const InputPort& port = block.definition->inputs[input];
   WiredInput& wired = block.inputs[input];
   const std::string subject = describe_port(scope, "input", block, port.name);
-  for (const Value* const wire : wires) {
-    if (wire->kind == Value::Kind::string || wire->kind == Value::Kind::number) continue;
+  for (const text::Value* const wire : wires) {
+    if (wire->kind == text::Value::Kind::string || wire->kind == text::Value::Kind::number) continue;
     diagnostics_->add({{scope.file, wire->position},
-                       fmt::format("{} is given {}", subject, kind_name(wire->kind)),
+                       fmt::format("{} is given {}", subject, text::kind_name(wire->kind)),
                        "the name of a signal, or a list of names",
                        {}});
     wired.connected = true;
@@ -233,7 +233,7 @@ void Resolver::connect(const Scope& scope, WiredBlock& block, std::size_t input,
   }
   wired.connected = !wires.empty() || port.sum;  // an empty list says that nothing is to be added
   if (wired.connected) drivers[input] = &entry;
-  for (const Value* const wire : wires) {
+  for (const text::Value* const wire : wires) {
     if (auto term = read_term(scope, *wire, subject, *diagnostics_)) wired.terms.push_back(std::move(*term));
   }
 }
@@ -280,4 +280,4 @@ void Resolver::read_outputs(Scope& scope) {
   }
 }
 
-}  // namespace oblique::wiring
+}  // namespace oblique::diagram::wiring

@@ -14,7 +14,7 @@
 #include <oblique/machine/input_weight.h>
 #include <oblique/machine/role.h>
 
-namespace oblique {
+namespace oblique::machine {
 namespace {
 
 std::string counted(double n, std::string_view one, std::string_view many) {
@@ -23,16 +23,16 @@ std::string counted(double n, std::string_view one, std::string_view many) {
 
 class Counter {
  public:
-  Counter(const FlatDiagram& diagram, const MachineProfile& machine)
+  Counter(const diagram::FlatDiagram& diagram, const diagram::MachineProfile& machine)
       : diagram_(diagram), machine_(machine), signed_(has_signed_weights(machine)) {
-    for (const FlatBlock& block : diagram.blocks) count(block);
+    for (const diagram::FlatBlock& block : diagram.blocks) count(block);
     inverters_ += static_cast<double>(inverted_.size());
     potentiometers_ += static_cast<double>(weighted_.size());
   }
 
   Bill bill() {
     bill_.machine = machine_.title;
-    if (machine_.find(ElementKind::amplifier) != nullptr) {
+    if (machine_.find(diagram::ElementKind::amplifier) != nullptr) {
       add_uncommitted();
     } else {
       add_committed();
@@ -47,9 +47,9 @@ class Counter {
                             fmt::format("k0 on this machine: {:g} 1/s", fmt::join(machine_.rates, ", "))});
     }
     add_potentiometers();
-    add(ElementKind::multiplier, "multipliers", multipliers_);
-    add(ElementKind::comparator, "comparators", others_["comparator"]);
-    add(ElementKind::function_generator, "function generators", others_["function-generator"]);
+    add(diagram::ElementKind::multiplier, "multipliers", multipliers_);
+    add(diagram::ElementKind::comparator, "comparators", others_["comparator"]);
+    add(diagram::ElementKind::function_generator, "function generators", others_["function-generator"]);
     for (const auto& [block, needed] : others_) {
       if (needed > 0 && block != "comparator" && block != "function-generator")
         bill_.rows.push_back({block, needed, false, {}, {}});
@@ -58,7 +58,7 @@ class Counter {
   }
 
  private:
-  void count(const FlatBlock& block) {
+  void count(const diagram::FlatBlock& block) {
     const Role role = role_of(*block.definition);
     if (role == Role::reference) {
       const double value = std::abs(parameter_of(block, "value"));
@@ -93,11 +93,11 @@ class Counter {
     if (factor < 0 && !signed_) ++inverters_;
   }
 
-  void count_weights(const FlatInput& input, bool sum) {
+  void count_weights(const diagram::FlatInput& input, bool sum) {
     const std::vector<double> unit{1};
-    for (const FlatTerm& term : input.terms) {
+    for (const diagram::FlatTerm& term : input.terms) {
       if (term.weight == 0) continue;
-      const FlatBlock& from = diagram_.blocks[term.signal.block];
+      const diagram::FlatBlock& from = diagram_.blocks[term.signal.block];
       const Role role = role_of(*from.definition);
       const auto key = std::pair(term.signal.block, term.signal.output);
       if (term.weight < 0 && !signed_ && role != Role::reference) inverted_.insert(key);
@@ -109,9 +109,9 @@ class Counter {
     }
   }
 
-  void add(ElementKind kind, std::string element, double needed, std::string note = {}) {
+  void add(diagram::ElementKind kind, std::string element, double needed, std::string note = {}) {
     if (needed == 0) return;
-    const ElementCount* const has = machine_.find(kind);
+    const diagram::ElementCount* const has = machine_.find(kind);
     bill_.rows.push_back({std::move(element), needed, has != nullptr,
                           has != nullptr ? has->count : std::optional<double>(), std::move(note), false});
   }
@@ -119,7 +119,7 @@ class Counter {
   void add_potentiometers() {
     const bool at_least = weights_inputs_ && !machine_.input_gains_known;
     if (potentiometers_ == 0 && !at_least) return;
-    const ElementCount* const has = machine_.find(ElementKind::potentiometer);
+    const diagram::ElementCount* const has = machine_.find(diagram::ElementKind::potentiometer);
     bill_.rows.push_back({"potentiometers", potentiometers_, has != nullptr || potentiometers_ == 0,
                           has != nullptr ? has->count : std::optional<double>(),
                           at_least ? "the gains of inputs are not published" : "", at_least});
@@ -134,16 +134,16 @@ class Counter {
     part(inverters_, "inverter", "inverters");
     part(integrators_, "integrator", "integrators");
     part(open_, "open amplifier", "open amplifiers");
-    add(ElementKind::amplifier, "amplifiers", summers_ + inverters_ + integrators_ + open_,
+    add(diagram::ElementKind::amplifier, "amplifiers", summers_ + inverters_ + integrators_ + open_,
         fmt::format("{}", fmt::join(parts, ", ")));
-    if (machine_.find(ElementKind::integrator) != nullptr)
-      add(ElementKind::integrator, "integrator networks", integrators_);
+    if (machine_.find(diagram::ElementKind::integrator) != nullptr)
+      add(diagram::ElementKind::integrator, "integrator networks", integrators_);
   }
 
   void add_committed() {
-    add(ElementKind::integrator, "integrators", integrators_);
+    add(diagram::ElementKind::integrator, "integrators", integrators_);
     double inverters = inverters_, summers = summers_ + open_;
-    const ElementCount* const has = machine_.find(ElementKind::inverter);
+    const diagram::ElementCount* const has = machine_.find(diagram::ElementKind::inverter);
     const double free = has == nullptr ? 0 : has->count.value_or(inverters);
     const double beyond = std::max(0.0, inverters - free);
     summers += beyond;
@@ -151,13 +151,13 @@ class Counter {
     std::vector<std::string> parts;
     if (open_ > 0) parts.push_back(counted(open_, "open amplifier", "open amplifiers"));
     if (beyond > 0) parts.push_back(counted(beyond, "inverter", "inverters"));
-    add(ElementKind::summer, "summers", summers,
+    add(diagram::ElementKind::summer, "summers", summers,
         parts.empty() ? "" : fmt::format("{} of these", fmt::join(parts, ", ")));
-    add(ElementKind::inverter, "inverters", inverters);
+    add(diagram::ElementKind::inverter, "inverters", inverters);
   }
 
-  const FlatDiagram& diagram_;
-  const MachineProfile& machine_;
+  const diagram::FlatDiagram& diagram_;
+  const diagram::MachineProfile& machine_;
   bool signed_;
   bool weights_inputs_ = false;  ///< some sum has a weight other than ±1
   Bill bill_;
@@ -191,8 +191,8 @@ std::vector<std::string> Bill::absent() const {
   return kinds;
 }
 
-Bill bill_of(const FlatDiagram& diagram, const MachineProfile& machine) {
+Bill bill_of(const diagram::FlatDiagram& diagram, const diagram::MachineProfile& machine) {
   return Counter(diagram, machine).bill();
 }
 
-}  // namespace oblique
+}  // namespace oblique::machine

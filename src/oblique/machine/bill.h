@@ -8,7 +8,7 @@
 #include <oblique/diagram/flat_diagram.h>
 #include <oblique/diagram/machine_profile.h>
 
-namespace oblique {
+namespace oblique::machine {
 
 /// One kind of element: what a diagram needs of it and what the machine has.
 struct BillRow {
@@ -45,6 +45,6 @@ struct Bill {
 /// Where amplifiers are uncommitted every summer, inverter, integrator and open amplifier is one, and the
 /// integrator takes a network besides. Elsewhere open amplifiers are summers, and so are inverters beyond
 /// those that the machine has.
-Bill bill_of(const FlatDiagram& diagram, const MachineProfile& machine);
+Bill bill_of(const diagram::FlatDiagram& diagram, const diagram::MachineProfile& machine);
 
-}  // namespace oblique
+}  // namespace oblique::machine

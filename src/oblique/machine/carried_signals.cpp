@@ -7,7 +7,7 @@
 
 #include <oblique/diagram/diagram.h>
 
-namespace oblique {
+namespace oblique::machine {
 namespace {
 
 std::size_t variables_of(Role role) {
@@ -17,11 +17,11 @@ std::size_t variables_of(Role role) {
 
 }  // namespace
 
-bool has_signed_weights(const MachineProfile& machine) {
+bool has_signed_weights(const diagram::MachineProfile& machine) {
   return machine.signed_coefficients || !machine.inverting;
 }
 
-CarriedSignals::CarriedSignals(const Circuit& circuit, const MachineProfile& machine)
+CarriedSignals::CarriedSignals(const Circuit& circuit, const diagram::MachineProfile& machine)
     : circuit_(circuit), polarity_(machine.inverting ? -1 : 1) {
   const SignProblem signs = problem();
   signs_ = has_signed_weights(machine) ? signs_of(signs, std::vector<bool>(signs.variables, false))
@@ -40,7 +40,7 @@ CarriedSignals::Orientation CarriedSignals::orientation(std::size_t index, std::
     case Role::summer:
       return {element.polarity * polarity_, variable};
     case Role::integrator: {
-      const InputPort& input = element.definition->inputs[port];
+      const diagram::InputPort& input = element.definition->inputs[port];
       if (input.sum) return {element.polarity * polarity_ * parameter_of(*element.block, "rate"), variable};
       if (input.name == "start") return {1, variable};
       return {};
@@ -96,7 +96,7 @@ void CarriedSignals::choose_names() {
   }
 }
 
-std::string CarriedSignals::output_name(SignalRef signal) const {
+std::string CarriedSignals::output_name(diagram::SignalRef signal) const {
   const auto& outputs = circuit_.elements[signal.block].definition->outputs;
   const std::string& name = names_[signal.block];
   return outputs.size() == 1 ? name : name + "." + outputs[signal.output].name;
@@ -111,7 +111,7 @@ std::vector<std::pair<std::string, std::string>> CarriedSignals::inverters(std::
   return found;
 }
 
-std::string CarriedSignals::source(const std::optional<SignalRef>& signal, bool negative) {
+std::string CarriedSignals::source(const std::optional<diagram::SignalRef>& signal, bool negative) {
   if (signal) return negative == is_negative(*signal) ? output_name(*signal) : inverse_.at(index_of(*signal));
   std::string& name = references_[negative ? 1 : 0];
   if (name.empty()) name = free_name(negative ? "minus_reference" : "reference");
@@ -121,8 +121,9 @@ std::string CarriedSignals::source(const std::optional<SignalRef>& signal, bool 
 std::string CarriedSignals::free_name(std::string path) {
   std::replace(path.begin(), path.end(), '.', '_');
   std::string name = path;
-  for (int k = 2; is_reserved(name) || !taken_.insert(name).second; ++k) name = fmt::format("{}_{}", path, k);
+  for (int k = 2; diagram::is_reserved(name) || !taken_.insert(name).second; ++k)
+    name = fmt::format("{}_{}", path, k);
   return name;
 }
 
-}  // namespace oblique
+}  // namespace oblique::machine

@@ -13,16 +13,16 @@
 #include <oblique/machine/circuit.h>
 #include <oblique/machine/sign_assignment.h>
 
-namespace oblique {
+namespace oblique::machine {
 
 /// Whether weights on the machine may be negative, so that nothing needs an inverter.
-bool has_signed_weights(const MachineProfile& machine);
+bool has_signed_weights(const diagram::MachineProfile& machine);
 
 /// The signals of a circuit on a machine: which are carried as their negatives, where inverters stand, and
 /// what everything is called. The circuit must outlive it.
 class CarriedSignals {
  public:
-  CarriedSignals(const Circuit& circuit, const MachineProfile& machine);
+  CarriedSignals(const Circuit& circuit, const diagram::MachineProfile& machine);
 
   /// What the weights of an input are to be multiplied by: for the sign of what the element gives and
   /// whether it inverts on the machine, and, of what an integrator adds up, its rate [1/s].
@@ -31,7 +31,7 @@ class CarriedSignals {
   /// Whether the element itself gives the negative of its signal.
   bool is_negative(std::size_t element) const { return signs_.negative[first_signal_[element]]; }
   /// The sign with which a meter sees a signal without an inverter.
-  bool is_negative(SignalRef signal) const { return signs_.negative[index_of(signal)]; }
+  bool is_negative(diagram::SignalRef signal) const { return signs_.negative[index_of(signal)]; }
 
   const std::string& name(std::size_t element) const { return names_[element]; }
   /// The inverters behind an element: the name of each, and of what it inverts.
@@ -39,7 +39,7 @@ class CarriedSignals {
   std::size_t inverter_count() const { return signs_.inverters; }
 
   /// The name under which a signal, or its negative, is to be had; of the reference without a signal.
-  std::string source(const std::optional<SignalRef>& signal, bool negative);
+  std::string source(const std::optional<diagram::SignalRef>& signal, bool negative);
   /// The names of +1 and −1 machine unit, empty while nobody has asked for them.
   const std::array<std::string, 2>& references() const { return references_; }
 
@@ -55,8 +55,10 @@ class CarriedSignals {
   Orientation orientation(std::size_t index, std::size_t port) const;
   SignProblem problem();
   void choose_names();
-  std::string output_name(SignalRef signal) const;
-  std::size_t index_of(SignalRef signal) const { return first_signal_[signal.block] + signal.output; }
+  std::string output_name(diagram::SignalRef signal) const;
+  std::size_t index_of(diagram::SignalRef signal) const {
+    return first_signal_[signal.block] + signal.output;
+  }
 
   const Circuit& circuit_;
   double polarity_;                                         ///< of the machine's summers and integrators
@@ -68,4 +70,4 @@ class CarriedSignals {
   std::array<std::string, 2> references_;
 };
 
-}  // namespace oblique
+}  // namespace oblique::machine

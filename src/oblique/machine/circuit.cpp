@@ -11,7 +11,7 @@
 
 #include <oblique/machine/realise.h>
 
-namespace oblique {
+namespace oblique::machine {
 namespace {
 
 /// What is left of a difference of equal weights is rounding.
@@ -22,7 +22,7 @@ constexpr double kUnit = 1 + 1e-12;
 
 class Reducer {
  public:
-  Reducer(const FlatDiagram& flat, const BlockLibrary& library, double most_weight)
+  Reducer(const diagram::FlatDiagram& flat, const diagram::BlockLibrary& library, double most_weight)
       : flat_(flat),
         summer_(library.find("summer")),
         multiplier_(library.find("multiplier")),
@@ -30,7 +30,8 @@ class Reducer {
         blocks_(flat.blocks.size()) {}
 
   Circuit make() {
-    for (const FlatOutput& output : flat_.outputs) circuit_.outputs.push_back(resolve(output.signal));
+    for (const diagram::FlatOutput& output : flat_.outputs)
+      circuit_.outputs.push_back(resolve(output.signal));
     // What an element is fed with may keep further elements, behind it.
     for (std::size_t e = 0; e < order_.size(); ++e) {
       if (circuit_.elements[e].inputs.empty()) connect(e);
@@ -50,7 +51,7 @@ class Reducer {
   using Factor = std::tuple<std::size_t, std::size_t, double>;
 
   /// A signal as a weight of an element's output or of the reference.
-  CircuitTerm resolve(SignalRef signal) {
+  CircuitTerm resolve(diagram::SignalRef signal) {
     Block& block = blocks_[signal.block];
     if (block.state == State::visiting) keep(signal.block);  // on a loop of its kind: it stays
     if (block.state == State::untouched) {
@@ -70,7 +71,7 @@ class Reducer {
 
   /// What a block amounts to that need not stay as an element.
   std::optional<CircuitTerm> reduced(std::size_t index) {
-    const FlatBlock& block = flat_.blocks[index];
+    const diagram::FlatBlock& block = flat_.blocks[index];
     switch (role_of(*block.definition)) {
       case Role::reference:
         return CircuitTerm{parameter_of(block, "value"), std::nullopt};
@@ -87,7 +88,7 @@ class Reducer {
     }
   }
 
-  double factor_of(const FlatBlock& block) {
+  double factor_of(const diagram::FlatBlock& block) {
     if (block.definition->name == "gain") return parameter_of(block, "factor");
     if (!has_defaults(block, {"setting"})) {
       diagnostics_.add(
@@ -123,7 +124,7 @@ class Reducer {
     return blocks_[found->second].value;
   }
 
-  std::pair<CircuitInput, CircuitInput> factors(const FlatBlock& block) {
+  std::pair<CircuitInput, CircuitInput> factors(const diagram::FlatBlock& block) {
     const CircuitInput x = gathered(block, 0);
     return {x, block.inputs.size() > 1 ? gathered(block, 1) : x};  // a squarer has one input
   }
@@ -133,8 +134,8 @@ class Reducer {
   }
 
   /// The terms of an input, each signal once.
-  CircuitInput gathered(const FlatBlock& block, std::size_t port) {
-    const FlatInput& input = block.inputs[port];
+  CircuitInput gathered(const diagram::FlatBlock& block, std::size_t port) {
+    const diagram::FlatInput& input = block.inputs[port];
     CircuitInput gathered;
     gathered.open =
         input.terms.empty() && block.definition->inputs[port].default_value == std::optional(input.constant);
@@ -152,7 +153,7 @@ class Reducer {
       }
     };
     add({input.constant, std::nullopt});
-    for (const FlatTerm& term : input.terms) {
+    for (const diagram::FlatTerm& term : input.terms) {
       CircuitTerm value = resolve(term.signal);
       value.weight *= term.weight;
       add(value);
@@ -163,7 +164,7 @@ class Reducer {
   }
 
   void keep(std::size_t index) {
-    const FlatBlock& block = flat_.blocks[index];
+    const diagram::FlatBlock& block = flat_.blocks[index];
     CircuitElement element;
     element.role = role_of(*block.definition);
     element.path = block.path;
@@ -180,14 +181,14 @@ class Reducer {
     blocks_[index].value = {1, add(std::move(element), index)};
   }
 
-  SignalRef add(CircuitElement element, std::size_t block) {
+  diagram::SignalRef add(CircuitElement element, std::size_t block) {
     circuit_.elements.push_back(std::move(element));
     order_.push_back(block);
     return {circuit_.elements.size() - 1, 0};
   }
 
   void connect(std::size_t index) {
-    const FlatBlock& block = flat_.blocks[order_[index]];
+    const diagram::FlatBlock& block = flat_.blocks[order_[index]];
     std::vector<CircuitInput> inputs;
     const Role role = role_of(*block.definition);
     if (role == Role::multiplier) {
@@ -230,7 +231,7 @@ class Reducer {
                       : circuit_.elements[index].path + "." + port;
     scaler.definition = summer_;
     scaler.inputs = {std::move(input)};
-    const SignalRef signal = add(std::move(scaler), order_[index]);
+    const diagram::SignalRef signal = add(std::move(scaler), order_[index]);
     if (key) scalers_.emplace(*key, signal);
     input = {false, {{sign, signal}}};
   }
@@ -260,22 +261,22 @@ class Reducer {
     circuit_.elements = std::move(elements);
   }
 
-  const FlatDiagram& flat_;
-  const BlockDefinition* summer_;
-  const BlockDefinition* multiplier_;
+  const diagram::FlatDiagram& flat_;
+  const diagram::BlockDefinition* summer_;
+  const diagram::BlockDefinition* multiplier_;
   double most_weight_;
   std::vector<Block> blocks_;
   Circuit circuit_;
   std::vector<std::size_t> order_;  ///< of each element the flat block that asked for it
   std::map<std::pair<Factor, Factor>, std::size_t> products_;  ///< with the flat blocks that form them
-  std::map<Factor, SignalRef> scalers_;
-  Diagnostics diagnostics_;
+  std::map<Factor, diagram::SignalRef> scalers_;
+  text::Diagnostics diagnostics_;
 };
 
 }  // namespace
 
-Circuit reduce(const FlatDiagram& flat, const BlockLibrary& library, double most_weight) {
+Circuit reduce(const diagram::FlatDiagram& flat, const diagram::BlockLibrary& library, double most_weight) {
   return Reducer(flat, library, most_weight).make();
 }
 
-}  // namespace oblique
+}  // namespace oblique::machine

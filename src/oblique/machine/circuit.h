@@ -9,12 +9,12 @@
 #include <oblique/diagram/flat_diagram.h>
 #include <oblique/machine/role.h>
 
-namespace oblique {
+namespace oblique::machine {
 
 /// weight · signal, of the reference (1 machine unit) where there is no signal.
 struct CircuitTerm {
   double weight = 1;
-  std::optional<SignalRef> signal;  ///< an element of the circuit and an output of it
+  std::optional<diagram::SignalRef> signal;  ///< an element of the circuit and an output of it
 };
 
 /// What arrives at an input, each signal once.
@@ -26,11 +26,11 @@ struct CircuitInput {
 /// An active element: all that only multiplies by a constant has become part of the weights.
 struct CircuitElement {
   Role role = Role::summer;
-  std::string path;                   ///< in the flat diagram; of a scaler the signal that it scales
-  const FlatBlock* block = nullptr;   ///< whose parameters it has; none for a scaler
-  const BlockDefinition* definition;  ///< what it is now: of a gain on a loop that of the summer
-  double polarity = 1;                ///< of the equation as the diagram means it
-  std::vector<CircuitInput> inputs;   ///< in the order of the definition
+  std::string path;                            ///< in the flat diagram; of a scaler the signal that it scales
+  const diagram::FlatBlock* block = nullptr;   ///< whose parameters it has; none for a scaler
+  const diagram::BlockDefinition* definition;  ///< what it is now: of a gain on a loop that of the summer
+  double polarity = 1;                         ///< of the equation as the diagram means it
+  std::vector<CircuitInput> inputs;            ///< in the order of the definition
 };
 
 /// A diagram in active elements and weighted connections, with no machine in mind.
@@ -45,6 +45,6 @@ struct Circuit {
 /// most `most_weight` gets an amplifier, a scaler, where the weight is greater. Elements with imperfections
 /// of their own stay. `flat` and `library` must outlive the result. Throws RealiseError for potentiometers
 /// with imperfections of their own.
-Circuit reduce(const FlatDiagram& flat, const BlockLibrary& library, double most_weight);
+Circuit reduce(const diagram::FlatDiagram& flat, const diagram::BlockLibrary& library, double most_weight);
 
-}  // namespace oblique
+}  // namespace oblique::machine

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace oblique {
+namespace oblique::machine {
 namespace {
 
 /// What a weight may exceed a gain by: the rounding of the products that it comes from.
@@ -32,4 +32,4 @@ double choose_rate(double largest, double own, std::span<const double> rates, st
   return suffices(own) ? own : std::pow(10, std::ceil(std::log10(largest / most * (1 - kRounding))));
 }
 
-}  // namespace oblique
+}  // namespace oblique::machine

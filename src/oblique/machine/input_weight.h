@@ -3,7 +3,7 @@
 
 #include <span>
 
-namespace oblique {
+namespace oblique::machine {
 
 /// A weight as a machine makes it: setting · gain, at `inputs` inputs in parallel.
 struct InputWeight {
@@ -21,4 +21,4 @@ InputWeight split_weight(double weight, std::span<const double> gains);
 /// that is enough.
 double choose_rate(double largest, double own, std::span<const double> rates, std::span<const double> gains);
 
-}  // namespace oblique
+}  // namespace oblique::machine

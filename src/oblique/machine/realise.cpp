@@ -14,7 +14,7 @@
 #include <oblique/machine/circuit.h>
 #include <oblique/machine/input_weight.h>
 
-namespace oblique {
+namespace oblique::machine {
 namespace {
 
 /// Parameters that change their sign with the signal: voltages at the output or at the summing junction.
@@ -23,14 +23,14 @@ bool turns_with_the_signal(std::string_view parameter) {
 }
 
 /// What an input can weigh that takes one signal alone.
-std::vector<double> gains_of_one(const MachineProfile& machine) {
+std::vector<double> gains_of_one(const diagram::MachineProfile& machine) {
   return has_signed_weights(machine) ? machine.input_gains : std::vector<double>{1};
 }
 
 class Writer {
  public:
-  Writer(const Diagram& diagram, const FlatDiagram& flat, const MachineProfile& machine,
-         const Circuit& circuit)
+  Writer(const diagram::Diagram& diagram, const diagram::FlatDiagram& flat,
+         const diagram::MachineProfile& machine, const Circuit& circuit)
       : diagram_(diagram),
         flat_(flat),
         machine_(machine),
@@ -51,17 +51,17 @@ class Writer {
   }
 
  private:
-  using Terms = std::vector<WeightedSignal>;
+  using Terms = std::vector<diagram::WeightedSignal>;
 
   void write_element(std::size_t e) {
     const CircuitElement& element = circuit_.elements[e];
     const std::size_t first = result_.blocks.size();
-    std::vector<Entry> settings;
+    std::vector<text::Entry> settings;
     double rate = 1;
     bool starts_by_wire = false;
     Terms factors;  // of a multiplier
     for (std::size_t port = 0; port < element.inputs.size(); ++port) {
-      const InputPort& input = element.definition->inputs[port];
+      const diagram::InputPort& input = element.definition->inputs[port];
       double factor = signals_.input_factor(e, port);
       if (element.role == Role::integrator && input.sum) {
         rate = rate_for(element.inputs[port], std::abs(factor));
@@ -75,11 +75,11 @@ class Writer {
       if (element.role == Role::multiplier) {
         factors.push_back(terms.front());
       } else if (!terms.empty()) {
-        settings.push_back(wire_setting(input.name, terms));
+        settings.push_back(diagram::wire_setting(input.name, terms));
       }
     }
-    if (element.role == Role::multiplier) settings.push_back(wire_setting("in", factors));
-    if (rate != 1) settings.push_back(number_setting("rate", rate));
+    if (element.role == Role::multiplier) settings.push_back(diagram::wire_setting("in", factors));
+    if (rate != 1) settings.push_back(diagram::number_setting("rate", rate));
     if (element.block != nullptr) {
       add_parameters(e, starts_by_wire, settings);
       if (element.block->tolerance > 0)
@@ -87,12 +87,12 @@ class Writer {
     }
     add_block(signals_.name(e), element.definition->name, std::move(settings));
     for (const auto& [inverter, inverted] : signals_.inverters(e))
-      add_block(inverter, "inverter", {wire_setting("in", {{1, inverted}})});
+      add_block(inverter, "inverter", {diagram::wire_setting("in", {{1, inverted}})});
     result_.blocks[first].comment = comment_of(element.path);
   }
 
-  void add_block(std::string name, std::string type, std::vector<Entry> settings) {
-    BlockInstance block;
+  void add_block(std::string name, std::string type, std::vector<text::Entry> settings) {
+    diagram::BlockInstance block;
     block.name = std::move(name);
     block.type = std::move(type);
     block.settings = std::move(settings);
@@ -113,14 +113,14 @@ class Writer {
   }
 
   /// Adds weight · signal to an input, through a potentiometer where the weight is no gain of the machine.
-  void connect(Terms& terms, double weight, const std::optional<SignalRef>& signal,
+  void connect(Terms& terms, double weight, const std::optional<diagram::SignalRef>& signal,
                std::span<const double> gains) {
     const bool negative = weight < 0;
     const InputWeight split = split_weight(std::abs(weight), gains);
     std::string from = signals_.source(signal, negative && !signed_);
     if (split.setting != 1) from = potentiometer(from, split.setting);
     const double gain = negative && signed_ ? -split.gain : split.gain;
-    terms.insert(terms.end(), static_cast<std::size_t>(split.inputs), WeightedSignal{gain, from});
+    terms.insert(terms.end(), static_cast<std::size_t>(split.inputs), diagram::WeightedSignal{gain, from});
   }
 
   const std::string& potentiometer(const std::string& from, double setting) {
@@ -128,7 +128,8 @@ class Writer {
     std::string& name = potentiometers_[{from, fmt::format("{:.12g}", setting)}];
     if (name.empty()) {
       name = signals_.free_name(fmt::format("pot_{}", potentiometers_.size()));
-      add_block(name, "potentiometer", {wire_setting("in", {{1, from}}), number_setting("setting", setting)});
+      add_block(name, "potentiometer",
+                {diagram::wire_setting("in", {{1, from}}), diagram::number_setting("setting", setting)});
     }
     return name;
   }
@@ -141,18 +142,19 @@ class Writer {
     return true;
   }
 
-  void add_parameters(std::size_t e, bool starts_by_wire, std::vector<Entry>& settings) const {
+  void add_parameters(std::size_t e, bool starts_by_wire, std::vector<text::Entry>& settings) const {
     const CircuitElement& element = circuit_.elements[e];
-    const FlatBlock& block = *element.block;
+    const diagram::FlatBlock& block = *element.block;
     for (std::size_t k = 0; k < block.definition->parameters.size(); ++k) {
-      const ParameterDefinition& parameter = block.definition->parameters[k];
+      const diagram::ParameterDefinition& parameter = block.definition->parameters[k];
       if (parameter.points) {
         if (block.points[k] != *parameter.points)
-          settings.push_back(points_setting(parameter.name, block.points[k]));
+          settings.push_back(diagram::points_setting(parameter.name, block.points[k]));
         continue;
       }
       if (parameter.formula) {
-        settings.push_back(text_setting(parameter.name, to_string(block.formulas.at(parameter.name))));
+        settings.push_back(
+            diagram::text_setting(parameter.name, text::to_string(block.formulas.at(parameter.name))));
         continue;
       }
       if (element.role == Role::integrator && parameter.name == "rate") continue;
@@ -163,14 +165,16 @@ class Writer {
       const bool turns =
           element.role != Role::other && signals_.is_negative(e) && turns_with_the_signal(parameter.name);
       const double value = turns ? -block.parameters[k] : block.parameters[k];
-      if (loop || value != parameter.default_value) settings.push_back(number_setting(parameter.name, value));
+      if (loop || value != parameter.default_value)
+        settings.push_back(diagram::number_setting(parameter.name, value));
     }
   }
 
   bool machine_states_gain() const {
-    return std::any_of(machine_.errors.begin(), machine_.errors.end(), [](const BlockFigure& figure) {
-      return role_of(figure.block) == Role::open_amplifier && figure.parameter == "gain";
-    });
+    return std::any_of(machine_.errors.begin(), machine_.errors.end(),
+                       [](const diagram::BlockFigure& figure) {
+                         return role_of(figure.block) == Role::open_amplifier && figure.parameter == "gain";
+                       });
   }
 
   /// The comment of the block of the diagram that an element is a part of, above its first element.
@@ -178,13 +182,13 @@ class Writer {
     const std::string name = path.substr(0, path.find('.'));
     if (!commented_.insert(name).second) return {};
     const auto block = std::find_if(diagram_.blocks.begin(), diagram_.blocks.end(),
-                                    [&](const BlockInstance& b) { return b.name == name; });
+                                    [&](const diagram::BlockInstance& b) { return b.name == name; });
     return block == diagram_.blocks.end() ? std::string() : block->comment;
   }
 
   /// A meter reads either sign: an output takes no inverter.
   void write_output(std::size_t k) {
-    const FlatOutput& output = flat_.outputs[k];
+    const diagram::FlatOutput& output = flat_.outputs[k];
     const CircuitTerm& term = circuit_.outputs[k];
     const bool negative = term.signal && signals_.is_negative(*term.signal);
     const double scale = (negative ? -output.scale : output.scale) * term.weight;
@@ -193,18 +197,18 @@ class Writer {
   }
 
   void write_references() {
-    std::vector<BlockInstance> elements = std::move(result_.blocks);
+    std::vector<diagram::BlockInstance> elements = std::move(result_.blocks);
     result_.blocks.clear();
     const auto& [plus, minus] = signals_.references();
-    if (!plus.empty()) add_block(plus, "constant", {number_setting("value", 1)});
-    if (!minus.empty()) add_block(minus, "constant", {number_setting("value", -1)});
+    if (!plus.empty()) add_block(plus, "constant", {diagram::number_setting("value", 1)});
+    if (!minus.empty()) add_block(minus, "constant", {diagram::number_setting("value", -1)});
     if (!result_.blocks.empty()) result_.blocks.front().comment = "the reference: 1 machine unit";
     std::move(elements.begin(), elements.end(), std::back_inserter(result_.blocks));
   }
 
   void number() {
     ElementNumbers numbers;
-    for (BlockInstance& block : result_.blocks) block.label = numbers.next(block.type);
+    for (diagram::BlockInstance& block : result_.blocks) block.label = numbers.next(block.type);
   }
 
   void describe() {
@@ -218,36 +222,37 @@ class Writer {
     result_.expectations = diagram_.expectations;
   }
 
-  const Diagram& diagram_;
-  const FlatDiagram& flat_;
-  const MachineProfile& machine_;
+  const diagram::Diagram& diagram_;
+  const diagram::FlatDiagram& flat_;
+  const diagram::MachineProfile& machine_;
   const Circuit& circuit_;
   bool signed_;
   std::vector<double> gains_of_one_;
   CarriedSignals signals_;
   std::map<std::pair<std::string, std::string>, std::string> potentiometers_;  ///< by source and setting
   std::set<std::string> commented_;
-  Diagram result_;
+  diagram::Diagram result_;
 };
 
 }  // namespace
 
-Realisation realise(const Diagram& diagram, const BlockLibrary& library, const MachineProfile& machine) {
+Realisation realise(const diagram::Diagram& diagram, const diagram::BlockLibrary& library,
+                    const diagram::MachineProfile& machine) {
   if (!diagram.groups.empty() || !diagram.timeline.phases.empty()) {
     throw RealiseError(
-        Diagnostic{{diagram.file, {}},
-                   "a diagram with [groups] or a [timeline] is not put into a machine's elements",
-                   "one run in the mode \"operate\"",
-                   "take them out"});
+        text::Diagnostic{{diagram.file, {}},
+                         "a diagram with [groups] or a [timeline] is not put into a machine's elements",
+                         "one run in the mode \"operate\"",
+                         "take them out"});
   }
   // What the diagram itself says of its blocks counts, not what another machine would add.
-  Diagram ideal = diagram;
+  diagram::Diagram ideal = diagram;
   ideal.machine.profile = "ideal";
-  const FlatDiagram flat = flatten(ideal, library);
+  const diagram::FlatDiagram flat = diagram::flatten(ideal, library);
   const std::vector<double> gains = gains_of_one(machine);
   const double most_weight = gains.empty() ? std::numeric_limits<double>::infinity() : gains.back();
   const Circuit circuit = reduce(flat, library, most_weight);
   return Writer(diagram, flat, machine, circuit).write();
 }
 
-}  // namespace oblique
+}  // namespace oblique::machine

@@ -7,17 +7,17 @@
 #include <oblique/diagram/diagram.h>
 #include <oblique/diagram/machine_profile.h>
 
-namespace oblique {
+namespace oblique::machine {
 
 /// Thrown by the `machine` stage: a diagram that cannot be put into a machine's elements.
-class RealiseError : public Error {
+class RealiseError : public text::Error {
  public:
-  using Error::Error;
+  using text::Error::Error;
 };
 
 /// A diagram in the elements of a machine.
 struct Realisation {
-  Diagram diagram;            ///< of primitive blocks alone; `profile` and `inverting` are the machine's
+  diagram::Diagram diagram;   ///< of primitive blocks alone; `profile` and `inverting` are the machine's
   std::size_t inverters = 0;  ///< elements that only change a sign
 };
 
@@ -39,6 +39,7 @@ struct Realisation {
 ///
 /// `[expect]` is kept. Throws DiagramError as `flatten`; RealiseError for [groups], a [timeline], and
 /// potentiometers with imperfections of their own.
-Realisation realise(const Diagram& diagram, const BlockLibrary& library, const MachineProfile& machine);
+Realisation realise(const diagram::Diagram& diagram, const diagram::BlockLibrary& library,
+                    const diagram::MachineProfile& machine);
 
-}  // namespace oblique
+}  // namespace oblique::machine

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-namespace oblique {
+namespace oblique::machine {
 
 Role role_of(std::string_view block) {
   constexpr std::array<std::pair<std::string_view, Role>, 9> kRoles{
@@ -25,7 +25,7 @@ Role role_of(std::string_view block) {
   return found == kRoles.end() ? Role::other : found->second;
 }
 
-Role role_of(const BlockDefinition& definition) {
+Role role_of(const diagram::BlockDefinition& definition) {
   const Role role = role_of(definition.name);
   const auto has = [&](std::initializer_list<std::string_view> names) {
     return std::all_of(names.begin(), names.end(),
@@ -43,7 +43,7 @@ Role role_of(const BlockDefinition& definition) {
   }
 }
 
-bool has_defaults(const FlatBlock& block, std::initializer_list<std::string_view> but) {
+bool has_defaults(const diagram::FlatBlock& block, std::initializer_list<std::string_view> but) {
   const auto& parameters = block.definition->parameters;
   for (std::size_t k = 0; k < parameters.size(); ++k) {
     if (std::find(but.begin(), but.end(), parameters[k].name) != but.end()) continue;
@@ -52,7 +52,7 @@ bool has_defaults(const FlatBlock& block, std::initializer_list<std::string_view
   return true;
 }
 
-double parameter_of(const FlatBlock& block, std::string_view name) {
+double parameter_of(const diagram::FlatBlock& block, std::string_view name) {
   return block.parameters[block.definition->find_parameter(name).value()];
 }
 
@@ -74,4 +74,4 @@ std::string ElementNumbers::next(std::string_view block) {
   return fmt::format("{}{}", kind, ++last_[kind]);
 }
 
-}  // namespace oblique
+}  // namespace oblique::machine

@@ -8,7 +8,7 @@
 
 #include <oblique/diagram/flat_diagram.h>
 
-namespace oblique {
+namespace oblique::machine {
 
 /// What a block is on a machine.
 enum class Role {
@@ -24,17 +24,17 @@ enum class Role {
 
 /// What blocks of a definition are. One of a user's own under a shipped name is `other` where it has not the
 /// parameters of the role.
-Role role_of(const BlockDefinition& definition);
+Role role_of(const diagram::BlockDefinition& definition);
 
 /// What the shipped blocks of the name are.
 Role role_of(std::string_view block);
 
 /// Whether the block's parameters, but those of the names given, have their defaults: whether it is free of
 /// imperfections of its own.
-bool has_defaults(const FlatBlock& block, std::initializer_list<std::string_view> but = {});
+bool has_defaults(const diagram::FlatBlock& block, std::initializer_list<std::string_view> but = {});
 
 /// The value of a parameter of the block; the definition must have it.
-double parameter_of(const FlatBlock& block, std::string_view name);
+double parameter_of(const diagram::FlatBlock& block, std::string_view name);
 
 /// Numbers elements as a patch panel does: A1, A2 … amplifiers, P1 … potentiometers, M1 … multipliers, K1 …
 /// comparators, F1 … function generators, X1 … others; nothing for a reference.
@@ -47,4 +47,4 @@ class ElementNumbers {
   std::map<char, int> last_;
 };
 
-}  // namespace oblique
+}  // namespace oblique::machine

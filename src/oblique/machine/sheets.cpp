@@ -10,12 +10,12 @@
 
 #include <oblique/machine/role.h>
 
-namespace oblique {
+namespace oblique::machine {
 namespace {
 
 /// Inputs of one block that one signal goes to with one weight.
 struct Connection {
-  SignalRef from;
+  diagram::SignalRef from;
   std::size_t to = 0;    ///< block
   std::size_t port = 0;  ///< of it
   double weight = 1;
@@ -24,16 +24,16 @@ struct Connection {
 
 class SheetMaker {
  public:
-  SheetMaker(const FlatDiagram& diagram, const MachineProfile& machine)
+  SheetMaker(const diagram::FlatDiagram& diagram, const diagram::MachineProfile& machine)
       : diagram_(diagram), volts_(machine.unit.value_or(1)), unit_(machine.unit ? "V" : "machine unit") {
     ElementNumbers numbers;
     for (std::size_t b = 0; b < diagram.blocks.size(); ++b) {
-      const FlatBlock& block = diagram.blocks[b];
+      const diagram::FlatBlock& block = diagram.blocks[b];
       const bool reference = role_of(*block.definition) == Role::reference;
       numbers_.push_back(reference ? (parameter_of(block, "value") < 0 ? "−REF" : "+REF")
                                    : numbers.next(block.definition->name));
       for (std::size_t port = 0; port < block.inputs.size(); ++port) {
-        for (const FlatTerm& term : block.inputs[port].terms) connect(b, port, term);
+        for (const diagram::FlatTerm& term : block.inputs[port].terms) connect(b, port, term);
       }
     }
   }
@@ -70,19 +70,19 @@ class SheetMaker {
     return sheet;
   }
 
-  Sheet static_test(const std::vector<StaticReading>& readings) const {
+  Sheet static_test(const std::vector<solve::StaticReading>& readings) const {
     Sheet sheet{
         "static test",
         {"element", "signal", "kind", fmt::format("output [{}]", unit_), fmt::format("slope [{}/s]", unit_)},
         {}};
-    std::unordered_map<std::string_view, const StaticReading*> by_name;
-    for (const StaticReading& reading : readings) by_name.emplace(reading.signal, &reading);
+    std::unordered_map<std::string_view, const solve::StaticReading*> by_name;
+    for (const solve::StaticReading& reading : readings) by_name.emplace(reading.signal, &reading);
     for (std::size_t b = 0; b < diagram_.blocks.size(); ++b) {
-      const BlockDefinition& definition = *diagram_.blocks[b].definition;
+      const diagram::BlockDefinition& definition = *diagram_.blocks[b].definition;
       if (role_of(definition) == Role::reference) continue;
       for (std::size_t k = 0; k < definition.outputs.size(); ++k) {
         const std::string signal = diagram_.signal_name({b, k});
-        const StaticReading& reading = *by_name.at(signal);
+        const solve::StaticReading& reading = *by_name.at(signal);
         const bool integrates = role_of(definition) == Role::integrator && reading.slope;
         sheet.rows.push_back({numbers_[b], signal, kind_text(diagram_.blocks[b]), voltage(reading.output),
                               integrates ? voltage(*reading.slope) : ""});
@@ -92,7 +92,7 @@ class SheetMaker {
   }
 
  private:
-  void connect(std::size_t block, std::size_t port, const FlatTerm& term) {
+  void connect(std::size_t block, std::size_t port, const diagram::FlatTerm& term) {
     if (term.weight == 0) return;
     const auto same = std::find_if(connections_.begin(), connections_.end(), [&](const Connection& c) {
       return c.to == block && c.port == port && c.from == term.signal && c.weight == term.weight;
@@ -105,7 +105,7 @@ class SheetMaker {
   }
 
   /// "summer", "integrator, k0 = 500 1/s", "open amplifier".
-  static std::string kind_text(const FlatBlock& block) {
+  static std::string kind_text(const diagram::FlatBlock& block) {
     switch (role_of(*block.definition)) {
       case Role::integrator:
         return fmt::format("integrator, k0 = {:.6g} 1/s", parameter_of(block, "rate"));
@@ -118,8 +118,8 @@ class SheetMaker {
 
   /// "×10", "3 inputs ×10", "x", "initial value": where a wire ends.
   std::string input_text(const Connection& c) const {
-    const FlatBlock& block = diagram_.blocks[c.to];
-    const InputPort& port = block.definition->inputs[c.port];
+    const diagram::FlatBlock& block = diagram_.blocks[c.to];
+    const diagram::InputPort& port = block.definition->inputs[c.port];
     if (role_of(*block.definition) == Role::integrator && port.name == "start") return "initial value";
     const std::string gain = fmt::format("{}×{:.6g}", c.weight < 0 ? "−" : "", std::abs(c.weight));
     if (!port.sum) return c.weight == 1 ? port.name : port.name + " " + gain;
@@ -127,10 +127,10 @@ class SheetMaker {
   }
 
   /// "2.5 1/s of y in x", "−0.2 in a sum", "x starts at 0.6": what a potentiometer does at one input.
-  std::string meaning_of(const Connection& c, double setting, SignalRef source) const {
-    const FlatBlock& block = diagram_.blocks[c.to];
-    const InputPort& port = block.definition->inputs[c.port];
-    const FlatBlock& from = diagram_.blocks[source.block];
+  std::string meaning_of(const Connection& c, double setting, diagram::SignalRef source) const {
+    const diagram::FlatBlock& block = diagram_.blocks[c.to];
+    const diagram::InputPort& port = block.definition->inputs[c.port];
+    const diagram::FlatBlock& from = diagram_.blocks[source.block];
     const bool integrator = role_of(*block.definition) == Role::integrator;
     const bool reference = role_of(*from.definition) == Role::reference;
     double factor = setting * c.weight * c.inputs;
@@ -148,7 +148,7 @@ class SheetMaker {
     return fmt::format("{:.4f}", std::round(value * volts_ * kDigits) / kDigits + 0.0);
   }
 
-  const FlatDiagram& diagram_;
+  const diagram::FlatDiagram& diagram_;
   double volts_;  ///< 1 machine unit [V]
   std::string unit_;
   std::vector<std::string> numbers_;  ///< of each block
@@ -178,10 +178,11 @@ std::string to_csv(const Sheet& sheet) {
   return text;
 }
 
-MachineSheets make_sheets(const FlatDiagram& diagram, const std::vector<StaticReading>& readings,
-                          const MachineProfile& machine) {
+MachineSheets make_sheets(const diagram::FlatDiagram& diagram,
+                          const std::vector<solve::StaticReading>& readings,
+                          const diagram::MachineProfile& machine) {
   const SheetMaker maker(diagram, machine);
   return {maker.connections(), maker.potentiometers(), maker.static_test(readings)};
 }
 
-}  // namespace oblique
+}  // namespace oblique::machine

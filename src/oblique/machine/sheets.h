@@ -6,9 +6,9 @@
 
 #include <oblique/diagram/flat_diagram.h>
 #include <oblique/diagram/machine_profile.h>
-#include <oblique/solve/static_test.h>
+#include <oblique/solve/operating_point/static_test.h>
 
-namespace oblique {
+namespace oblique::machine {
 
 /// A table for a machine room, of cells as they are read.
 struct Sheet {
@@ -31,7 +31,8 @@ struct MachineSheets {
 };
 
 /// `diagram` is flattened from one that `realise` has made; `readings` are its `static_test`.
-MachineSheets make_sheets(const FlatDiagram& diagram, const std::vector<StaticReading>& readings,
-                          const MachineProfile& machine);
+MachineSheets make_sheets(const diagram::FlatDiagram& diagram,
+                          const std::vector<solve::StaticReading>& readings,
+                          const diagram::MachineProfile& machine);
 
-}  // namespace oblique
+}  // namespace oblique::machine

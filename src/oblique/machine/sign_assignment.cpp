@@ -7,7 +7,7 @@
 #include <random>
 #include <utility>
 
-namespace oblique {
+namespace oblique::machine {
 namespace {
 
 /// The present choice with what it costs, kept up to date flip by flip.
@@ -143,4 +143,4 @@ SignChoice choose_signs(const SignProblem& problem) {
   return signs_of(problem, std::move(best));
 }
 
-}  // namespace oblique
+}  // namespace oblique::machine

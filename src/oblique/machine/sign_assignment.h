@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-namespace oblique {
+namespace oblique::machine {
 
 /// Which signals a machine whose summers invert should carry as their negatives. Every variable is a choice
 /// between two ways to run an element: of a summer, an integrator or an open amplifier the sign of all its
@@ -43,4 +43,4 @@ SignChoice signs_of(const SignProblem& problem, std::vector<bool> variables);
 /// problem itself is hard.
 SignChoice choose_signs(const SignProblem& problem);
 
-}  // namespace oblique
+}  // namespace oblique::machine

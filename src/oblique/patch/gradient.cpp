@@ -8,23 +8,24 @@
 
 #include <oblique/patch/patch_builder.h>
 
-namespace oblique {
+namespace oblique::patch {
 namespace {
 
 class GradientPatch : private PatchBuilder {
  public:
-  GradientPatch(const Mechanism& mechanism, const PatchOptions& options) : PatchBuilder(mechanism, options) {
+  GradientPatch(const mechanism::Mechanism& mechanism, const PatchOptions& options)
+      : PatchBuilder(mechanism, options) {
     if (!std::isfinite(options.gain * bandwidth_)) {
-      throw PatchError(Diagnostic{{mechanism.file, {}},
-                                  "a gradient servo of infinite gain has no time scale",
-                                  "a finite --gain and --bandwidth",
-                                  {}},
+      throw PatchError(text::Diagnostic{{mechanism.file, {}},
+                                        "a gradient servo of infinite gain has no time scale",
+                                        "a finite --gain and --bandwidth",
+                                        {}},
                        PatchError::Kind::request);
     }
     rate_ = options.gain * 2 * std::numbers::pi * bandwidth_;
   }
 
-  Diagram make() {
+  diagram::Diagram make() {
     describe(
         "patched as gradient servos",
         fmt::format(
@@ -32,9 +33,9 @@ class GradientPatch : private PatchBuilder {
             "conditions of its group, at K = {:.6g} 1/s (gain {} times the bandwidth of {} Hz). Run over {}.",
             rate_, options_.gain, bandwidth_, span_text()));
     add_reference();
-    start_ = start_configuration(mechanism_, structure_);
-    for (const Group& group : structure_.groups) {
-      if (group.kind == GroupKind::crank) {
+    start_ = mechanism::start_configuration(mechanism_, structure_);
+    for (const mechanism::Group& group : structure_.groups) {
+      if (group.kind == mechanism::GroupKind::crank) {
         add_crank(group);
         for (const std::size_t point : group.points) set_known(point);
       } else {
@@ -47,7 +48,7 @@ class GradientPatch : private PatchBuilder {
   }
 
  private:
-  void add_group(const Group& group) {
+  void add_group(const mechanism::Group& group) {
     const std::size_t first = diagram_.blocks.size();
     for (const std::size_t d : group.drives) add_drive(group, d);
     unknowns_.clear();
@@ -60,7 +61,7 @@ class GradientPatch : private PatchBuilder {
     if (first < diagram_.blocks.size()) {
       diagram_.blocks[first].comment =
           fmt::format("group {} ({}): {} conditions for {} coordinates{}{}", group.name,
-                      kind_name(group.kind), conditions.size(), unknowns_.size(),
+                      mechanism::kind_name(group.kind), conditions.size(), unknowns_.size(),
                       diagram_.blocks[first].comment.empty() ? "" : "\n", diagram_.blocks[first].comment);
     }
     for (const std::size_t point : group.points) {
@@ -79,8 +80,8 @@ class GradientPatch : private PatchBuilder {
                            scaled(start_.points[point].position.y() - scaling_.origin.y()));
   }
 
-  void add_drive(const Group& group, std::size_t d) {
-    const Drive& drive = mechanism_.drives[d];
+  void add_drive(const mechanism::Group& group, std::size_t d) {
+    const mechanism::Drive& drive = mechanism_.drives[d];
     if (drive.slide) {
       add_way(d);
     } else {
@@ -96,12 +97,12 @@ class GradientPatch : private PatchBuilder {
     for (const Residual& residual : residuals) write(residual, gradients);
     for (const auto& [name, initial] : unknowns_) {
       Terms& descent = gradients[name];
-      for (WeightedSignal& term : descent) term.weight = -term.weight;
-      BlockInstance block;
+      for (diagram::WeightedSignal& term : descent) term.weight = -term.weight;
+      diagram::BlockInstance block;
       block.name = name;
       block.type = "integrator";
-      block.settings = {wire_setting("in", descent), number_setting("rate", rate_),
-                        number_setting("initial", initial)};
+      block.settings = {diagram::wire_setting("in", descent), diagram::number_setting("rate", rate_),
+                        diagram::number_setting("initial", initial)};
       diagram_.blocks.push_back(std::move(block));
     }
   }
@@ -118,24 +119,24 @@ class GradientPatch : private PatchBuilder {
     for (const Residual::Product& product : residual.products) {
       const std::string block = add_block(
           product.a == product.b ? forms[product.a] + "2" : forms[product.a] + "_" + forms[product.b],
-          "multiplier", {wire_setting("in", {{1, forms[product.a]}, {1, forms[product.b]}})});
+          "multiplier", {diagram::wire_setting("in", {{1, forms[product.a]}, {1, forms[product.b]}})});
       sum.push_back({product.weight, block});
     }
-    const std::string gap = add_block(residual.name + "_gap", "summer", {wire_setting("in", sum)},
+    const std::string gap = add_block(residual.name + "_gap", "summer", {diagram::wire_setting("in", sum)},
                                       forms.empty() ? residual.comment : std::string());
     add_gradients(residual, forms, gap, gradients);
   }
 
   double rate_ = 0;  ///< K [1/s]
-  Configuration start_;
+  mechanism::Configuration start_;
   std::vector<std::pair<std::string, double>>
       unknowns_;  ///< signals of the present group and where they start
 };
 
 }  // namespace
 
-Diagram patch_gradient(const Mechanism& mechanism, const PatchOptions& options) {
+diagram::Diagram patch_gradient(const mechanism::Mechanism& mechanism, const PatchOptions& options) {
   return GradientPatch(mechanism, options).make();
 }
 
-}  // namespace oblique
+}  // namespace oblique::patch

@@ -9,7 +9,7 @@
 
 #include <oblique/patch/unit_vector.h>
 
-namespace oblique {
+namespace oblique::patch {
 
 GroupResiduals::GroupResiduals(PointForms& places, const Scaling& scaling,
                                const std::vector<DriveForms>& drives, Unknown unknown)
@@ -19,7 +19,7 @@ GroupResiduals::GroupResiduals(PointForms& places, const Scaling& scaling,
       drives_(drives),
       unknown_(std::move(unknown)) {}
 
-std::vector<Residual> GroupResiduals::of(const Group& group) {
+std::vector<Residual> GroupResiduals::of(const mechanism::Group& group) {
   residuals_.clear();
   std::vector<std::size_t> left = group.bodies;
   for (const std::size_t slide : group.slides) {  // a point that slides by itself
@@ -40,13 +40,13 @@ std::vector<Residual> GroupResiduals::of(const Group& group) {
 
 std::size_t GroupResiduals::known_count(std::size_t body) const {
   const auto& points = mechanism_.bodies[body].points;
-  return static_cast<std::size_t>(std::count_if(points.begin(), points.end(), [&](const BodyPoint& p) {
-    return places_.points_[p.point].has_value();
-  }));
+  return static_cast<std::size_t>(
+      std::count_if(points.begin(), points.end(),
+                    [&](const mechanism::BodyPoint& p) { return places_.points_[p.point].has_value(); }));
 }
 
 /// How much a point matters to others: the bodies of the group and the slides that use it.
-long GroupResiduals::uses(const Group& group, std::size_t point) const {
+long GroupResiduals::uses(const mechanism::Group& group, std::size_t point) const {
   return std::count_if(group.bodies.begin(), group.bodies.end(),
                        [&](std::size_t body) { return mechanism_.bodies[body].find(point) != nullptr; }) +
          std::count_if(group.slides.begin(), group.slides.end(),
@@ -54,15 +54,17 @@ long GroupResiduals::uses(const Group& group, std::size_t point) const {
 }
 
 /// Two points stand for a body, at their distance; the others follow from them.
-void GroupResiduals::add_body(const Group& group, std::size_t index) {
-  const Body& body = mechanism_.bodies[index];
-  std::vector<BodyPoint> order = body.points;
-  std::stable_sort(order.begin(), order.end(), [&](const BodyPoint& a, const BodyPoint& b) {
-    const bool known_a = places_.points_[a.point].has_value(), known_b = places_.points_[b.point].has_value();
-    return known_a != known_b ? known_a : uses(group, a.point) > uses(group, b.point);
-  });
-  const BodyPoint p = order[0], c = order[1];
-  for (const BodyPoint& base : {p, c}) {
+void GroupResiduals::add_body(const mechanism::Group& group, std::size_t index) {
+  const mechanism::Body& body = mechanism_.bodies[index];
+  std::vector<mechanism::BodyPoint> order = body.points;
+  std::stable_sort(order.begin(), order.end(),
+                   [&](const mechanism::BodyPoint& a, const mechanism::BodyPoint& b) {
+                     const bool known_a = places_.points_[a.point].has_value(),
+                                known_b = places_.points_[b.point].has_value();
+                     return known_a != known_b ? known_a : uses(group, a.point) > uses(group, b.point);
+                   });
+  const mechanism::BodyPoint p = order[0], c = order[1];
+  for (const mechanism::BodyPoint& base : {p, c}) {
     if (!places_.points_[base.point]) places_.points_[base.point] = unknown_(base.point);
   }
   const double r = places_.scaled((c.local - p.local).norm());
@@ -98,15 +100,15 @@ void GroupResiduals::add_body(const Group& group, std::size_t index) {
 
 /// The largest distance of a slide's point from where its line begins, over the motion: it scales the
 /// products.
-double GroupResiduals::reach_of(const Slide& slide) const {
+double GroupResiduals::reach_of(const mechanism::Slide& slide) const {
   const auto s = static_cast<std::size_t>(&slide - mechanism_.slides.data());
   return round_up(
       places_.scaled(std::max(scaling_.slides[s] + std::abs(slide.offset), scaling_.length / 1000)));
 }
 
 /// g = n·(P − A), or along the line u·(P − A).
-Residual GroupResiduals::offset_of(const Slide& slide, const std::string& name, bool along) {
-  const PointForms::LineForm line = places_.line_form(slide.carrier, line_of(mechanism_, slide));
+Residual GroupResiduals::offset_of(const mechanism::Slide& slide, const std::string& name, bool along) {
+  const PointForms::LineForm line = places_.line_form(slide.carrier, mechanism::line_of(mechanism_, slide));
   const VectorForm& point = *places_.points_[slide.point];
   const double reach = reach_of(slide);
   const LinearForm dx = combined({{1 / reach, &point.x}, {-1 / reach, &line.at.x}});
@@ -131,13 +133,13 @@ Residual GroupResiduals::offset_of(const Slide& slide, const std::string& name, 
   return residual;
 }
 
-void GroupResiduals::add_slide(const Slide& slide) {
+void GroupResiduals::add_slide(const mechanism::Slide& slide) {
   Residual on_line = offset_of(slide, slide.name, false);
   on_line.comment = fmt::format("{} stays on the line of {}", places_.name_of(slide.point), slide.name);
   residuals_.push_back(std::move(on_line));
   if (!slide.of) return;
   const VectorForm guided = places_.direction_of(*slide.of, unit_vector(-slide.angle));
-  const PointForms::LineForm line = places_.line_form(slide.carrier, line_of(mechanism_, slide));
+  const PointForms::LineForm line = places_.line_form(slide.carrier, mechanism::line_of(mechanism_, slide));
   const double size = places_.scaled(largest_of(*slide.of));
   Residual angle;
   angle.name = slide.name + "_angle";
@@ -157,14 +159,15 @@ void GroupResiduals::add_slide(const Slide& slide) {
 
 double GroupResiduals::largest_of(std::size_t body) const {
   double largest = 0;
-  for (const BodyPoint& p : mechanism_.bodies[body].points) largest = std::max(largest, p.local.norm());
+  for (const mechanism::BodyPoint& p : mechanism_.bodies[body].points)
+    largest = std::max(largest, p.local.norm());
   return largest;
 }
 
 void GroupResiduals::add_drive(std::size_t d) {
-  const Drive& drive = mechanism_.drives[d];
+  const mechanism::Drive& drive = mechanism_.drives[d];
   if (drive.slide) {
-    const Slide& slide = mechanism_.slides[*drive.slide];
+    const mechanism::Slide& slide = mechanism_.slides[*drive.slide];
     Residual along = offset_of(slide, drive.name + "_along", true);
     along.comment = fmt::format("{} stands where {} says", places_.name_of(slide.point), drive.name);
     along.rest.add(drives_[d].way, -1);
@@ -184,4 +187,4 @@ void GroupResiduals::add_drive(std::size_t d) {
   }
 }
 
-}  // namespace oblique
+}  // namespace oblique::patch

@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include <oblique/mechanism/structure.h>
+#include <oblique/mechanism/structure/structure.h>
 #include <oblique/patch/point_forms.h>
 
-namespace oblique {
+namespace oblique::patch {
 
 /// A condition g = Σ weight · a · b + rest = 0 [machine unit], whose forms a, b stay within ±1.
 struct Residual {
@@ -43,24 +43,24 @@ class GroupResiduals {
                  Unknown unknown);
 
   /// The residuals of a group; calls `unknown` for each of its points that is no form of others.
-  std::vector<Residual> of(const Group& group);
+  std::vector<Residual> of(const mechanism::Group& group);
 
  private:
   std::size_t known_count(std::size_t body) const;
-  long uses(const Group& group, std::size_t point) const;
-  void add_body(const Group& group, std::size_t index);
-  double reach_of(const Slide& slide) const;
-  Residual offset_of(const Slide& slide, const std::string& name, bool along);
-  void add_slide(const Slide& slide);
+  long uses(const mechanism::Group& group, std::size_t point) const;
+  void add_body(const mechanism::Group& group, std::size_t index);
+  double reach_of(const mechanism::Slide& slide) const;
+  Residual offset_of(const mechanism::Slide& slide, const std::string& name, bool along);
+  void add_slide(const mechanism::Slide& slide);
   double largest_of(std::size_t body) const;
   void add_drive(std::size_t d);
 
   PointForms& places_;
-  const Mechanism& mechanism_;
+  const mechanism::Mechanism& mechanism_;
   const Scaling& scaling_;
   const std::vector<DriveForms>& drives_;
   Unknown unknown_;
   std::vector<Residual> residuals_;  ///< of the present group
 };
 
-}  // namespace oblique
+}  // namespace oblique::patch

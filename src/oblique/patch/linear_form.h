@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-namespace oblique {
+namespace oblique::patch {
 
 /// A weighted sum of signals and a constant [machine unit].
 struct LinearForm {
@@ -37,4 +37,4 @@ struct VectorForm {
   LinearForm x, y;
 };
 
-}  // namespace oblique
+}  // namespace oblique::patch

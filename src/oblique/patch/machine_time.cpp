@@ -3,16 +3,17 @@
 
 #include <fmt/format.h>
 
-#include <oblique/mechanism/motion.h>
+#include <oblique/mechanism/motion/motion.h>
 
-namespace oblique {
+namespace oblique::patch {
 
-MachineTime::MachineTime(const Mechanism& mechanism, const PatchOptions& options) : slowed(mechanism) {
+MachineTime::MachineTime(const mechanism::Mechanism& mechanism, const PatchOptions& options)
+    : slowed(mechanism) {
   if (!options.period) return;
-  factor = period(within_range(mechanism)) / *options.period;
-  for (Drive& drive : slowed.drives) {
+  factor = mechanism::period(within_range(mechanism)) / *options.period;
+  for (mechanism::Drive& drive : slowed.drives) {
     if (drive.law) {
-      throw PatchError(Diagnostic{
+      throw PatchError(text::Diagnostic{
           drive.place,
           fmt::format("drive '{}' has a speed that varies with time, which --period cannot stretch",
                       drive.name),
@@ -23,4 +24,4 @@ MachineTime::MachineTime(const Mechanism& mechanism, const PatchOptions& options
   if (slowed.motion.until) *slowed.motion.until /= factor;
 }
 
-}  // namespace oblique
+}  // namespace oblique::patch

@@ -7,19 +7,19 @@
 
 #include <fmt/format.h>
 
-#include <oblique/mechanism/plane.h>
+#include <oblique/mechanism/model/plane.h>
 #include <oblique/patch/triad_patch.h>
 
-namespace oblique {
+namespace oblique::patch {
 namespace {
 
 class PaperPatch : private TriadPatch {
  public:
   using TriadPatch::TriadPatch;
 
-  Diagram make() {
-    for (const Group& group : structure_.groups) {
-      if (group.kind == GroupKind::crank || can_be_split(group)) continue;
+  diagram::Diagram make() {
+    for (const mechanism::Group& group : structure_.groups) {
+      if (group.kind == mechanism::GroupKind::crank || can_be_split(group)) continue;
       refuse(group, "is not of the source's kind", "cranks and triads on three links, as the source has them",
              group.assur_class == 2 ? "patch it with --method triangles"
                                     : "patch it with --method gradient, which takes any group");
@@ -32,8 +32,8 @@ class PaperPatch : private TriadPatch {
                          options_.gain, bandwidth_, span_text()));
     add_reference();
     std::size_t triad = 0;
-    for (const Group& group : structure_.groups) {
-      if (group.kind == GroupKind::crank) {
+    for (const mechanism::Group& group : structure_.groups) {
+      if (group.kind == mechanism::GroupKind::crank) {
         const std::string generator = add_crank(group);
         add_output(angles_.empty() ? "phi" : generator, generator + ".cos", generator + ".sin");
         for (const std::size_t point : group.points) set_known(point);
@@ -44,7 +44,7 @@ class PaperPatch : private TriadPatch {
     }
     if (options_.derivatives) add_rates();
     add_outputs();
-    for (OutputSpec& angle : angles_) diagram_.outputs.push_back(std::move(angle));
+    for (diagram::OutputSpec& angle : angles_) diagram_.outputs.push_back(std::move(angle));
     return std::move(diagram_);
   }
 
@@ -52,7 +52,7 @@ class PaperPatch : private TriadPatch {
   /// The source's split, unless the options name one; and the scale grows to hold the variable lengths.
   void choose_splits() {
     double longest = scaling_.length;
-    for (const Group& group : structure_.groups) {
+    for (const mechanism::Group& group : structure_.groups) {
       if (!can_be_split(group)) continue;
       PatchOptions options = options_;
       if (!names_leads_of(group)) options.split = split_of_the_source(group);
@@ -63,7 +63,7 @@ class PaperPatch : private TriadPatch {
     set_scale(scaling_);
   }
 
-  bool names_leads_of(const Group& group) const {
+  bool names_leads_of(const mechanism::Group& group) const {
     std::vector<std::string> leads;
     for (std::size_t k = 0; k < group.equations.conditions.size(); ++k)
       leads.push_back(mechanism_.bodies[lead_of(group, k)].name);
@@ -72,7 +72,7 @@ class PaperPatch : private TriadPatch {
 
   /// The lead on a moving point carries the variable length, as AB does; of the others the last one in the
   /// file closes the loop, as O′C does.
-  std::vector<std::string> split_of_the_source(const Group& group) const {
+  std::vector<std::string> split_of_the_source(const mechanism::Group& group) const {
     const auto& conditions = group.equations.conditions;
     std::size_t tracked = 0;
     for (std::size_t k = conditions.size(); k-- > 0;) {
@@ -87,17 +87,17 @@ class PaperPatch : private TriadPatch {
             mechanism_.bodies[others[0]].name};
   }
 
-  void add_circuits(const Group& group, const TriadSplit& split) {
+  void add_circuits(const mechanism::Group& group, const TriadSplit& split) {
     const auto& conditions = group.equations.conditions;
-    const Condition& tracked = conditions[split.tracked];
-    const Condition& closing = conditions[split.closing];
-    const Condition& third = conditions[split.third];
+    const mechanism::Condition& tracked = conditions[split.tracked];
+    const mechanism::Condition& closing = conditions[split.closing];
+    const mechanism::Condition& third = conditions[split.third];
     const std::size_t a = tracked.b.point, b = tracked.a.point;
     const std::size_t z = closing.b.point, c = closing.a.point;
     const std::size_t e = third.b.point, d = third.a.point;
     const std::string length = free_name(name_of(z) + name_of(b));
     const Eigen::Vector2d bone = third.a.local - tracked.a.local, arm = closing.a.local - tracked.a.local;
-    const double xi = std::atan2(cross(bone, arm), bone.dot(arm));
+    const double xi = std::atan2(mechanism::cross(bone, arm), bone.dot(arm));
     const std::string first = add_circuit(
         "circuit_" + name_of(a) + name_of(b) + name_of(z), a, z, b, {{1, length}}, tracked.value,
         split.first_side,
@@ -138,12 +138,12 @@ class PaperPatch : private TriadPatch {
                           const Terms& rocker, double coupler, int side, const std::string& comment) {
     const TriangleStart start = triangle_start(p, q, joint);
     // ψ is the direction of O′A, clockwise
-    std::vector<Entry> settings;
+    std::vector<text::Entry> settings;
     for (const auto& [port, term] : {std::pair("px", x_of(p, 1)), std::pair("py", y_of(p, 1)),
                                      std::pair("qx", x_of(q, 1)), std::pair("qy", y_of(q, 1))}) {
-      if (term.weight != 0) settings.push_back(wire_setting(port, {term}));
+      if (term.weight != 0) settings.push_back(diagram::wire_setting(port, {term}));
     }
-    settings.push_back(wire_setting("rocker", rocker));
+    settings.push_back(diagram::wire_setting("rocker", rocker));
     const std::initializer_list<std::pair<const char*, double>> numbers{
         {"coupler", scaled(coupler)},
         {"side", side},
@@ -152,7 +152,8 @@ class PaperPatch : private TriadPatch {
         {"start_sin_psi", start.sine},
         {"start_cos_gamma", start.angle_cosine},
         {"start_sin_gamma", start.angle_sine}};
-    for (const auto& [parameter, value] : numbers) settings.push_back(number_setting(parameter, value));
+    for (const auto& [parameter, value] : numbers)
+      settings.push_back(diagram::number_setting(parameter, value));
     return add_block(name, "four-bar-circuit", with_amplifiers(std::move(settings)), comment);
   }
 
@@ -161,7 +162,7 @@ class PaperPatch : private TriadPatch {
     std::string name = angle + suffix_;  // a drive may be called like an angle
     for (int k = 2; !angle_names_.insert(name).second; ++k) name = fmt::format("{}{}_{}", angle, suffix_, k);
     for (const auto& [function, signal] : {std::pair("cos", cosine), std::pair("sin", sine)}) {
-      OutputSpec output;
+      diagram::OutputSpec output;
       output.name = fmt::format("{} {}", function, name);
       output.signal = signal;
       output.unit = "1";
@@ -183,28 +184,28 @@ class PaperPatch : private TriadPatch {
   }
 
   /// |ZC|² − x_C² − y_C², in the frame of Z, drives the variable length.
-  void close(const Condition& closing, const TriadSplit& split, const std::string& length) {
+  void close(const mechanism::Condition& closing, const TriadSplit& split, const std::string& length) {
     const std::size_t z = closing.b.point, c = closing.a.point;
     const std::string dx = add_block(length + "_dx", "summer", {sum_of({x_of(c, 1), x_of(z, -1)})});
     const std::string dy = add_block(length + "_dy", "summer", {sum_of({y_of(c, 1), y_of(z, -1)})});
     const std::string dx2 =
-        add_block(length + "_dx2", "multiplier", {wire_setting("in", {{1, dx}, {1, dx}})});
+        add_block(length + "_dx2", "multiplier", {diagram::wire_setting("in", {{1, dx}, {1, dx}})});
     const std::string dy2 =
-        add_block(length + "_dy2", "multiplier", {wire_setting("in", {{1, dy}, {1, dy}})});
+        add_block(length + "_dy2", "multiplier", {diagram::wire_setting("in", {{1, dy}, {1, dy}})});
     const double l = scaled(closing.value), sign = split.sign;
     add_outer_loop(length, {{sign, dx2}, {sign, dy2}, {-sign * l * l, one_}}, scaled(split.first_w));
   }
 
   std::vector<TriadSplit> splits_;  ///< of the triads, in the order of the groups
-  std::vector<OutputSpec> angles_;
+  std::vector<diagram::OutputSpec> angles_;
   std::set<std::string> angle_names_;
   std::string suffix_;  ///< of the names of angles, from the second triad on
 };
 
 }  // namespace
 
-Diagram patch_paper(const Mechanism& mechanism, const PatchOptions& options) {
+diagram::Diagram patch_paper(const mechanism::Mechanism& mechanism, const PatchOptions& options) {
   return PaperPatch(mechanism, options).make();
 }
 
-}  // namespace oblique
+}  // namespace oblique::patch

@@ -8,10 +8,10 @@
 
 #include <fmt/format.h>
 
-#include <oblique/mechanism/motion.h>
+#include <oblique/mechanism/motion/motion.h>
 #include <oblique/patch/machine_time.h>
 
-namespace oblique {
+namespace oblique::patch {
 
 std::string_view method_name(PatchMethod method) {
   constexpr std::array<std::string_view, 3> kNames{"triangles", "gradient", "paper"};
@@ -29,23 +29,24 @@ namespace {
 
 /// The greatest speed of a drive over the motion [rad/s], of one that moves a slide as that of a crank as
 /// long as the longest link; of a law, at a thousand moments.
-double greatest_speed(const Mechanism& mechanism, const Drive& drive) {
+double greatest_speed(const mechanism::Mechanism& mechanism, const mechanism::Drive& drive) {
   double fastest = std::abs(drive.speed);
   if (drive.law) {
     constexpr int kMoments = 1000;
-    const double until = period(mechanism);
+    const double until = mechanism::period(mechanism);
     fastest = 0;
     for (int k = 0; k <= kMoments; ++k)
-      fastest = std::max(fastest, std::abs(law_at(drive, until * k / kMoments).rate));
+      fastest = std::max(fastest, std::abs(mechanism::law_at(drive, until * k / kMoments).rate));
   }
   return drive.slide ? fastest / mechanism.largest_length() : fastest;
 }
 
 }  // namespace
 
-double default_bandwidth(const Mechanism& mechanism) {
+double default_bandwidth(const mechanism::Mechanism& mechanism) {
   double fastest = 0;
-  for (const Drive& drive : mechanism.drives) fastest = std::max(fastest, greatest_speed(mechanism, drive));
+  for (const mechanism::Drive& drive : mechanism.drives)
+    fastest = std::max(fastest, greatest_speed(mechanism, drive));
   const double wanted = 100 * fastest / (2 * std::numbers::pi);
   const double decade = std::pow(10, std::floor(std::log10(wanted)));
   for (const double step : {1.0, 2.0, 5.0}) {
@@ -54,13 +55,13 @@ double default_bandwidth(const Mechanism& mechanism) {
   return 10 * decade;
 }
 
-double bandwidth_of(const Mechanism& mechanism, const PatchOptions& options) {
+double bandwidth_of(const mechanism::Mechanism& mechanism, const PatchOptions& options) {
   if (options.bandwidth) return *options.bandwidth;
   return default_bandwidth(MachineTime(mechanism, options).slowed);
 }
 
-Diagram patch(const Mechanism& mechanism, const PatchOptions& options) {
-  const Mechanism ranged = within_range(mechanism);
+diagram::Diagram patch(const mechanism::Mechanism& mechanism, const PatchOptions& options) {
+  const mechanism::Mechanism ranged = within_range(mechanism);
   switch (options.method) {
     case PatchMethod::gradient:
       return patch_gradient(ranged, options);
@@ -72,4 +73,4 @@ Diagram patch(const Mechanism& mechanism, const PatchOptions& options) {
   return patch_triangles(ranged, options);
 }
 
-}  // namespace oblique
+}  // namespace oblique::patch

@@ -7,20 +7,20 @@
 #include <vector>
 
 #include <oblique/diagram/diagram.h>
-#include <oblique/mechanism/mechanism.h>
+#include <oblique/mechanism/model/mechanism.h>
 
-namespace oblique {
+namespace oblique::patch {
 
 /// Thrown by the `patch` stage: a mechanism that cannot be turned into a diagram.
-class PatchError : public Error {
+class PatchError : public text::Error {
  public:
   enum class Kind {
     obstacle,  ///< the mechanism, or what its patch would do, stands in the way
     request,   ///< the options contradict the mechanism or each other
   };
 
-  explicit PatchError(Diagnostic diagnostic, Kind kind = Kind::obstacle)
-      : Error(std::move(diagnostic)), kind_(kind) {}
+  explicit PatchError(text::Diagnostic diagnostic, Kind kind = Kind::obstacle)
+      : text::Error(std::move(diagnostic)), kind_(kind) {}
 
   Kind kind() const { return kind_; }
 
@@ -75,17 +75,17 @@ struct PatchOptions {
 /// A hundred times the frequency of the fastest drive, rounded up to 1, 2 or 5 times a power of ten [Hz]: the
 /// pole of the open loop then turns the phase of a signal at crank frequency by half a degree. A drive that
 /// moves a slide counts as a crank of the longest link's length.
-double default_bandwidth(const Mechanism& mechanism);
+double default_bandwidth(const mechanism::Mechanism& mechanism);
 
 /// The bandwidth of the servo amplifiers of `patch` with these options [Hz of machine time].
-double bandwidth_of(const Mechanism& mechanism, const PatchOptions& options);
+double bandwidth_of(const mechanism::Mechanism& mechanism, const PatchOptions& options);
 
 /// The diagram that simulates a mechanism by servo-tracked triangles over one turn of its first drive: a
 /// crank generator for each drive and a dyad of oblique triangles for each pair of links (method:
 /// 003_69ea068b7b221c3d.txt). All signals are scaled by the exact motion to stay within ±1 machine unit;
 /// `[outputs]` scale back and carry the names of `solve`'s columns ("C.x"). Throws PatchError where a
 /// triangle does not close or goes flat on the way, MechanismError as `decompose`.
-Diagram patch_triangles(const Mechanism& mechanism, const PatchOptions& options = {});
+diagram::Diagram patch_triangles(const mechanism::Mechanism& mechanism, const PatchOptions& options = {});
 
 /// The diagram that simulates any mechanism by the gradient servo: with the unknown coordinates x of the
 /// points that a group places and its conditions g = 0 [length],
@@ -95,26 +95,26 @@ Diagram patch_triangles(const Mechanism& mechanism, const PatchOptions& options 
 /// which is stable in every assembly mode, since Σ g² can only fall; its price is a lag of about |ẋ|/(K σ²),
 /// σ the least singular value of ∂g/∂x. Multipliers, summers and integrators alone. Scaled, and throws, as
 /// above.
-Diagram patch_gradient(const Mechanism& mechanism, const PatchOptions& options = {});
+diagram::Diagram patch_gradient(const mechanism::Mechanism& mechanism, const PatchOptions& options = {});
 
 /// The diagram of 003_69ea068b7b221c3d.txt for a mechanism of cranks and triads on three links, so that it
 /// can be read beside the source: two equal circuits `four-bar-circuit` with one scale for all lengths, an
 /// outer loop that tracks the variable length, and the source's angles among the outputs. The split is the
 /// source's unless the options name one: the first lead, that hangs on a crank, carries the variable length,
 /// the second one in the file closes the loop. Scaled, and throws, as above.
-Diagram patch_paper(const Mechanism& mechanism, const PatchOptions& options = {});
+diagram::Diagram patch_paper(const mechanism::Mechanism& mechanism, const PatchOptions& options = {});
 
 /// The splits of a mechanism's triad that never flip and keep their gain, the most worth first, as
 /// PatchOptions::split names them; none where it has no triad on three links, or several.
-std::vector<std::vector<std::string>> useful_splits(const Mechanism& mechanism);
+std::vector<std::vector<std::string>> useful_splits(const mechanism::Mechanism& mechanism);
 
 /// The mechanism as it is patched: one that can turn is left as it is, and so is one with several drives, a
 /// drive with a law, or a duration in its file. Any other with a range is swung over nine tenths of it: its
 /// drive gets the law of a sine, with the speed of the file in the middle, for one swing there and back.
-Mechanism within_range(const Mechanism& mechanism);
+mechanism::Mechanism within_range(const mechanism::Mechanism& mechanism);
 
 /// By the method of the options, of the mechanism within its range. Throws PatchError for a period where a
 /// drive has a law of its own.
-Diagram patch(const Mechanism& mechanism, const PatchOptions& options = {});
+diagram::Diagram patch(const mechanism::Mechanism& mechanism, const PatchOptions& options = {});
 
-}  // namespace oblique
+}  // namespace oblique::patch

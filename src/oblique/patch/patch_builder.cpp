@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-namespace oblique {
+namespace oblique::patch {
 namespace {
 
 /// Positions over the turn from which the scaling is taken: half a degree apart.
@@ -15,19 +15,19 @@ constexpr int kScalingPositions = 721;
 
 }  // namespace
 
-Motion patch_motion(const Mechanism& mechanism, const Structure& structure) {
+mechanism::Motion patch_motion(const mechanism::Mechanism& mechanism, const mechanism::Structure& structure) {
   std::vector<double> times;
   times.reserve(kScalingPositions);
-  const double turn = period(mechanism);
+  const double turn = mechanism::period(mechanism);
   for (int k = 0; k < kScalingPositions; ++k) times.push_back(turn * k / (kScalingPositions - 1));
-  return solve_motion(mechanism, structure, times);
+  return mechanism::solve_motion(mechanism, structure, times);
 }
 
-PatchBuilder::PatchBuilder(const Mechanism& mechanism, const PatchOptions& options)
+PatchBuilder::PatchBuilder(const mechanism::Mechanism& mechanism, const PatchOptions& options)
     : MachineTime(mechanism, options),
       PointForms(slowed),
       options_(options),
-      structure_(decompose(mechanism_)),
+      structure_(mechanism::decompose(mechanism_)),
       motion_(patch_motion(mechanism_, structure_)),
       scaling_(find_scaling(mechanism_, structure_, motion_)),
       bandwidth_(options.bandwidth.value_or(default_bandwidth(mechanism_))),
@@ -47,7 +47,7 @@ void PatchBuilder::describe(const std::string& method, const std::string& remark
                   scaling_.origin.isZero(0) ? "" : fmt::format(", from {}", name_of(0)), remarks);
   if (options_.period)
     diagram_.comment += fmt::format("\nTime: 1 s of the machine is {:.6g} s of the mechanism.", factor);
-  diagram_.run.until = period(mechanism_);
+  diagram_.run.until = mechanism::period(mechanism_);
   diagram_.run.tolerance = options_.tolerance;
   diagram_.run.samples = options_.samples;
 }
@@ -58,19 +58,19 @@ std::string PatchBuilder::span_text() const {
 }
 
 void PatchBuilder::add_reference() {
-  one_ = add_block("one", "constant", {number_setting("value", 1)}, "the reference: 1 machine unit");
+  one_ = add_block("one", "constant", {diagram::number_setting("value", 1)}, "the reference: 1 machine unit");
 }
 
 std::string PatchBuilder::free_name(const std::string& wanted) {
   std::string name = wanted;
-  for (int k = 2; is_reserved(name) || !names_.insert(name).second; ++k)
+  for (int k = 2; diagram::is_reserved(name) || !names_.insert(name).second; ++k)
     name = fmt::format("{}_{}", wanted, k);
   return name;
 }
 
-std::string PatchBuilder::add_block(const std::string& wanted, std::string type, std::vector<Entry> settings,
-                                    std::string comment) {
-  BlockInstance block;
+std::string PatchBuilder::add_block(const std::string& wanted, std::string type,
+                                    std::vector<text::Entry> settings, std::string comment) {
+  diagram::BlockInstance block;
   block.name = free_name(wanted);
   block.type = std::move(type);
   block.settings = std::move(settings);
@@ -79,25 +79,25 @@ std::string PatchBuilder::add_block(const std::string& wanted, std::string type,
   return diagram_.blocks.back().name;
 }
 
-WeightedSignal PatchBuilder::x_of(std::size_t point, double weight) const {
-  const Point& p = mechanism_.points[point];
-  return p.fixed ? WeightedSignal{weight * scaled(p.position.x() - scaling_.origin.x()), one_}
-                 : WeightedSignal{weight, signals_[point].x};
+diagram::WeightedSignal PatchBuilder::x_of(std::size_t point, double weight) const {
+  const mechanism::Point& p = mechanism_.points[point];
+  return p.fixed ? diagram::WeightedSignal{weight * scaled(p.position.x() - scaling_.origin.x()), one_}
+                 : diagram::WeightedSignal{weight, signals_[point].x};
 }
 
-WeightedSignal PatchBuilder::y_of(std::size_t point, double weight) const {
-  const Point& p = mechanism_.points[point];
-  return p.fixed ? WeightedSignal{weight * scaled(p.position.y() - scaling_.origin.y()), one_}
-                 : WeightedSignal{weight, signals_[point].y};
+diagram::WeightedSignal PatchBuilder::y_of(std::size_t point, double weight) const {
+  const mechanism::Point& p = mechanism_.points[point];
+  return p.fixed ? diagram::WeightedSignal{weight * scaled(p.position.y() - scaling_.origin.y()), one_}
+                 : diagram::WeightedSignal{weight, signals_[point].y};
 }
 
-Entry PatchBuilder::sum_of(const Terms& terms) {
+text::Entry PatchBuilder::sum_of(const Terms& terms) {
   Terms kept;
-  for (const WeightedSignal& term : terms) {
+  for (const diagram::WeightedSignal& term : terms) {
     if (term.weight != 0) kept.push_back(term);
   }
   if (kept.empty()) kept.push_back(terms.front());
-  return wire_setting("in", kept);
+  return diagram::wire_setting("in", kept);
 }
 
 void PatchBuilder::add_summed_point(std::size_t point, const Terms& x, const Terms& y,
@@ -106,9 +106,9 @@ void PatchBuilder::add_summed_point(std::size_t point, const Terms& x, const Ter
   signals_[point].y = add_block(name_of(point) + "_y", "summer", {sum_of(y)});
 }
 
-VectorForm PatchBuilder::crank_point(const Group& crank, const BodyPoint& point) const {
+VectorForm PatchBuilder::crank_point(const mechanism::Group& crank, const mechanism::BodyPoint& point) const {
   const std::size_t d = crank.drives.front();
-  const std::size_t pivot = pivot_of(crank);
+  const std::size_t pivot = mechanism::pivot_of(crank);
   const Eigen::Vector2d arm = point.local - mechanism_.bodies[mechanism_.drives[d].body].find(pivot)->local;
   const double along = scaled(arm.x()), left = scaled(arm.y());
   const VectorForm& at = *points_[pivot];
@@ -117,14 +117,14 @@ VectorForm PatchBuilder::crank_point(const Group& crank, const BodyPoint& point)
           combined({{1, &at.y}, {along, &axis.y}, {left, &axis.x}})};
 }
 
-std::string PatchBuilder::add_crank(const Group& crank) {
+std::string PatchBuilder::add_crank(const mechanism::Group& crank) {
   const std::size_t d = crank.drives.front();
-  const Drive& drive = mechanism_.drives[d];
-  const Body& body = mechanism_.bodies[drive.body];
-  const std::size_t pivot = pivot_of(crank);
+  const mechanism::Drive& drive = mechanism_.drives[d];
+  const mechanism::Body& body = mechanism_.bodies[drive.body];
+  const std::size_t pivot = mechanism::pivot_of(crank);
   std::string generator = add_generator(
       d, fmt::format("crank {}: turns about {} at {}", body.name, name_of(pivot), speed_text(drive)));
-  for (const BodyPoint& point : body.points) {
+  for (const mechanism::BodyPoint& point : body.points) {
     if (point.point == pivot || is_known(point.point)) continue;
     const VectorForm form = crank_point(crank, point);
     add_summed_point(point.point, terms_of(form.x), terms_of(form.y), {});
@@ -132,12 +132,12 @@ std::string PatchBuilder::add_crank(const Group& crank) {
   return generator;
 }
 
-void PatchBuilder::add_carried_points(const Body& body, std::size_t p, std::size_t c) {
+void PatchBuilder::add_carried_points(const mechanism::Body& body, std::size_t p, std::size_t c) {
   const auto local = [&](std::size_t point) {
     const Eigen::Vector2d& at = body.find(point)->local;
     return std::complex<double>(at.x(), at.y());
   };
-  for (const BodyPoint& point : body.points) {
+  for (const mechanism::BodyPoint& point : body.points) {
     if (is_known(point.point)) continue;
     const std::complex<double> ratio = (local(point.point) - local(p)) / (local(c) - local(p));
     const double a = ratio.real(), b = ratio.imag();
@@ -188,12 +188,13 @@ PatchBuilder::Terms PatchBuilder::terms_of(const LinearForm& form) const {
   return terms;
 }
 
-void PatchBuilder::refuse(const Group& group, const std::string& why, const std::string& expected,
+void PatchBuilder::refuse(const mechanism::Group& group, const std::string& why, const std::string& expected,
                           const std::string& remedy) const {
-  throw PatchError(Diagnostic{group.bodies.empty() ? mechanism_.slides[group.slides.front()].place
-                                                   : mechanism_.bodies[group.bodies.front()].place,
-                              fmt::format("the group {} ({}) {}", group.name, kind_name(group.kind), why),
-                              expected, remedy});
+  throw PatchError(
+      text::Diagnostic{group.bodies.empty() ? mechanism_.slides[group.slides.front()].place
+                                            : mechanism_.bodies[group.bodies.front()].place,
+                       fmt::format("the group {} ({}) {}", group.name, mechanism::kind_name(group.kind), why),
+                       expected, remedy});
 }
 
-}  // namespace oblique
+}  // namespace oblique::patch

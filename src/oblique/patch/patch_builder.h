@@ -7,30 +7,30 @@
 #include <vector>
 
 #include <oblique/diagram/diagram.h>
-#include <oblique/mechanism/motion.h>
-#include <oblique/mechanism/structure.h>
+#include <oblique/mechanism/motion/motion.h>
+#include <oblique/mechanism/structure/structure.h>
 #include <oblique/patch/group_residuals.h>
 #include <oblique/patch/machine_time.h>
 #include <oblique/patch/patch.h>
 
-namespace oblique {
+namespace oblique::patch {
 
 /// The weight of a residual at the inputs of its servo amplifier: that of the greater inputs of most
 /// machines.
 inline constexpr double kInputGain = 10;
 
 /// The exact motion over one turn, half a degree apart, from which a patch takes its ranges.
-Motion patch_motion(const Mechanism& mechanism, const Structure& structure);
+mechanism::Motion patch_motion(const mechanism::Mechanism& mechanism, const mechanism::Structure& structure);
 
 /// What all methods of patching share: scaled signals for points, drives, points that bodies carry, rates,
 /// outputs.
 class PatchBuilder : private MachineTime, protected PointForms {
  public:
   /// Throws as `MachineTime`, `decompose`, `period` and `find_scaling`.
-  PatchBuilder(const Mechanism& mechanism, const PatchOptions& options);
+  PatchBuilder(const mechanism::Mechanism& mechanism, const PatchOptions& options);
 
  protected:
-  using Terms = std::vector<WeightedSignal>;
+  using Terms = std::vector<diagram::WeightedSignal>;
   struct PointSignals {
     std::string x, y;
   };
@@ -51,20 +51,20 @@ class PatchBuilder : private MachineTime, protected PointForms {
 
   /// Adds a block under `wanted`, or under the next free name that a block may have, and returns the name it
   /// has.
-  std::string add_block(const std::string& wanted, std::string type, std::vector<Entry> settings,
+  std::string add_block(const std::string& wanted, std::string type, std::vector<text::Entry> settings,
                         std::string comment = {});
 
   /// weight · coordinate as a term; a fixed point is a weight on the reference.
-  WeightedSignal x_of(std::size_t point, double weight) const;
-  WeightedSignal y_of(std::size_t point, double weight) const;
+  diagram::WeightedSignal x_of(std::size_t point, double weight) const;
+  diagram::WeightedSignal y_of(std::size_t point, double weight) const;
 
-  static Entry sum_of(const Terms& terms);
+  static text::Entry sum_of(const Terms& terms);
   void add_summed_point(std::size_t point, const Terms& x, const Terms& y, const std::string& comment);
   /// Gives the name of its crank generator.
-  std::string add_crank(const Group& crank);
+  std::string add_crank(const mechanism::Group& crank);
 
   /// "2 rad/s", or the law, for comments.
-  std::string speed_text(const Drive& drive) const;
+  std::string speed_text(const mechanism::Drive& drive) const;
 
   /// A block that gives the direction of the body that a drive turns: its name; `drives_` keeps the form.
   std::string add_generator(std::size_t drive, const std::string& comment);
@@ -79,7 +79,7 @@ class PatchBuilder : private MachineTime, protected PointForms {
 
   /// Points of a body of which P and C are known: M − P = (a + i b)(C − P), with a + i b from the body's own
   /// frame.
-  void add_carried_points(const Body& body, std::size_t p, std::size_t c);
+  void add_carried_points(const mechanism::Body& body, std::size_t p, std::size_t c);
 
   /// Takes a point's signals, or its place in the frame, as its form.
   void set_known(std::size_t point);
@@ -93,19 +93,19 @@ class PatchBuilder : private MachineTime, protected PointForms {
   void add_gradients(const Residual& residual, const std::vector<std::string>& forms, const std::string& gap,
                      Gradients& gradients);
 
-  [[noreturn]] void refuse(const Group& group, const std::string& why, const std::string& expected,
+  [[noreturn]] void refuse(const mechanism::Group& group, const std::string& why, const std::string& expected,
                            const std::string& remedy) const;
 
   const PatchOptions& options_;
-  Structure structure_;
-  Motion motion_;  ///< exact, half a degree apart: for ranges
+  mechanism::Structure structure_;
+  mechanism::Motion motion_;  ///< exact, half a degree apart: for ranges
   Scaling scaling_;
   double bandwidth_;
   std::vector<PointSignals> signals_;
   std::vector<DriveForms> drives_;
   std::vector<std::pair<LinearForm, std::string>> form_blocks_;  ///< forms that have a block
   std::string one_;
-  Diagram diagram_;
+  diagram::Diagram diagram_;
 
  private:
   class Rates;
@@ -120,7 +120,7 @@ class PatchBuilder : private MachineTime, protected PointForms {
   struct RateSignals {
     std::string vx, vy, ax, ay;
   };
-  VectorForm crank_point(const Group& crank, const BodyPoint& point) const;
+  VectorForm crank_point(const mechanism::Group& crank, const mechanism::BodyPoint& point) const;
 
   std::vector<Speed> speeds_;              ///< of the drives
   std::vector<RateSignals> rate_signals_;  ///< of the points, once they have rates
@@ -129,4 +129,4 @@ class PatchBuilder : private MachineTime, protected PointForms {
   std::set<std::string> names_;
 };
 
-}  // namespace oblique
+}  // namespace oblique::patch

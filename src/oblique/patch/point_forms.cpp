@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/patch/point_forms.h>
 
-namespace oblique {
+namespace oblique::patch {
 
 void PointForms::set_scale(const Scaling& scaling) {
   origin_ = scaling.origin;
   unit_ = scaling.length;
   for (std::size_t point = 0; point < points_.size(); ++point) {
-    const Point& p = mechanism_.points[point];
+    const mechanism::Point& p = mechanism_.points[point];
     if (!p.fixed) continue;
     VectorForm form;
     form.x.constant = scaled(p.position.x() - origin_.x());
@@ -20,7 +20,7 @@ void PointForms::set_signals(std::size_t point, const std::string& x, const std:
   points_[point] = VectorForm{weighted(x), weighted(y)};
 }
 
-const std::pair<BodyPoint, BodyPoint>& PointForms::base_of(std::size_t body) {
+const std::pair<mechanism::BodyPoint, mechanism::BodyPoint>& PointForms::base_of(std::size_t body) {
   const auto& points = mechanism_.bodies[body].points;
   return bases_.try_emplace(body, points[0], points[1]).first->second;
 }
@@ -44,7 +44,8 @@ VectorForm PointForms::point_of(std::size_t body, const Eigen::Vector2d& local) 
   return way;
 }
 
-PointForms::LineForm PointForms::line_form(const std::optional<std::size_t>& carrier, const LineRef& line) {
+PointForms::LineForm PointForms::line_form(const std::optional<std::size_t>& carrier,
+                                           const mechanism::LineRef& line) {
   if (carrier) return {point_of(*carrier, line.point), direction_of(*carrier, line.direction)};
   LineForm form;
   form.at.x.constant = scaled(line.point.x() - origin_.x());
@@ -54,4 +55,4 @@ PointForms::LineForm PointForms::line_form(const std::optional<std::size_t>& car
   return form;
 }
 
-}  // namespace oblique
+}  // namespace oblique::patch

@@ -6,16 +6,17 @@
 #include <utility>
 #include <vector>
 
-#include <oblique/mechanism/group_equations.h>
+#include <oblique/mechanism/solver/group_equations.h>
 #include <oblique/patch/linear_form.h>
 #include <oblique/patch/scaling.h>
 
-namespace oblique {
+namespace oblique::patch {
 
 /// Where the points of a mechanism are, and what its bodies carry, as forms of signals [machine unit].
 class PointForms {
  public:
-  explicit PointForms(const Mechanism& mechanism) : mechanism_(mechanism), points_(mechanism.points.size()) {}
+  explicit PointForms(const mechanism::Mechanism& mechanism)
+      : mechanism_(mechanism), points_(mechanism.points.size()) {}
 
   /// Takes the scale and gives the points of the frame their place: before anything else is asked.
   void set_scale(const Scaling& scaling);
@@ -34,17 +35,18 @@ class PointForms {
   struct LineForm {
     VectorForm at, direction;
   };
-  LineForm line_form(const std::optional<std::size_t>& carrier, const LineRef& line);
+  LineForm line_form(const std::optional<std::size_t>& carrier, const mechanism::LineRef& line);
 
-  const Mechanism& mechanism_;
-  std::vector<std::optional<VectorForm>> points_;                 ///< of those that have a place
-  std::map<std::size_t, std::pair<BodyPoint, BodyPoint>> bases_;  ///< the two points that stand for a body
+  const mechanism::Mechanism& mechanism_;
+  std::vector<std::optional<VectorForm>> points_;  ///< of those that have a place
+  std::map<std::size_t, std::pair<mechanism::BodyPoint, mechanism::BodyPoint>>
+      bases_;  ///< the two points that stand for a body
 
  private:
-  const std::pair<BodyPoint, BodyPoint>& base_of(std::size_t body);
+  const std::pair<mechanism::BodyPoint, mechanism::BodyPoint>& base_of(std::size_t body);
 
   Eigen::Vector2d origin_ = Eigen::Vector2d::Zero();
   double unit_ = 1;  ///< 1 machine unit [length unit]
 };
 
-}  // namespace oblique
+}  // namespace oblique::patch

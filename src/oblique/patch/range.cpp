@@ -7,10 +7,10 @@
 
 #include <fmt/format.h>
 
-#include <oblique/mechanism/drive_law.h>
-#include <oblique/mechanism/motion.h>
+#include <oblique/mechanism/model/drive_law.h>
+#include <oblique/mechanism/motion/motion.h>
 
-namespace oblique {
+namespace oblique::patch {
 namespace {
 
 /// How much of its range a mechanism is swung over: at the ends a triangle goes flat, and the loop that
@@ -19,12 +19,14 @@ constexpr double kPartOfRange = 0.9;
 
 }  // namespace
 
-Mechanism within_range(const Mechanism& mechanism) {
+mechanism::Mechanism within_range(const mechanism::Mechanism& mechanism) {
   if (mechanism.drives.size() != 1 || mechanism.drives.front().law || mechanism.motion.until)
     return mechanism;
-  const Drive& drive = mechanism.drives.front();
-  const MotionRange range = find_range(mechanism, decompose(mechanism));
-  const auto is_limit = [](const std::optional<MotionEvent>& event) { return event && event->ends(); };
+  const mechanism::Drive& drive = mechanism.drives.front();
+  const mechanism::MotionRange range = mechanism::find_range(mechanism, mechanism::decompose(mechanism));
+  const auto is_limit = [](const std::optional<mechanism::MotionEvent>& event) {
+    return event && event->ends();
+  };
   if (!is_limit(range.forward) || !is_limit(range.backward)) return mechanism;
   const double first = range.backward->time * drive.speed, last = range.forward->time * drive.speed;
   const double middle = (first + last) / 2;  // from the start
@@ -34,12 +36,12 @@ Mechanism within_range(const Mechanism& mechanism) {
   double phase = std::asin(std::clamp(-middle / amplitude, -1.0, 1.0));
   if (drive.speed < 0) phase = std::numbers::pi - phase;
 
-  Mechanism swung = mechanism;
-  Drive& swing = swung.drives.front();
-  SpeedLaw law =
-      parse_law(fmt::format("{:.17g}*cos({:.17g}*time + {:.17g})", std::abs(drive.speed), rate, phase),
-                Unit{})
-          .value();
+  mechanism::Mechanism swung = mechanism;
+  mechanism::Drive& swing = swung.drives.front();
+  mechanism::SpeedLaw law = mechanism::parse_law(fmt::format("{:.17g}*cos({:.17g}*time + {:.17g})",
+                                                             std::abs(drive.speed), rate, phase),
+                                                 text::Unit{})
+                                .value();
   swing.law = std::move(law.speed);
   swing.law_scale = law.scale;
   // its `speed` stays the greatest of the law: from the end of its way a swing sets off with none
@@ -47,4 +49,4 @@ Mechanism within_range(const Mechanism& mechanism) {
   return swung;
 }
 
-}  // namespace oblique
+}  // namespace oblique::patch

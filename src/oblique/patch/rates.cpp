@@ -17,11 +17,11 @@
 
 #include <fmt/format.h>
 
-#include <oblique/mechanism/law_derivative.h>
+#include <oblique/mechanism/model/law_derivative.h>
 #include <oblique/patch/patch_builder.h>
 #include <oblique/patch/signal_rates.h>
 
-namespace oblique {
+namespace oblique::patch {
 namespace {
 
 /// Between two positions of the motion a signal may rise a little more.
@@ -35,8 +35,8 @@ class PatchBuilder::Rates {
     places_.set_scale(patch.scaling_);
     const Scaling& scaling = patch.scaling_;
     double fastest = 0, largest = 0;
-    for (const Configuration& here : patch.motion_.configurations) {
-      for (const PointState& point : here.points) {
+    for (const mechanism::Configuration& here : patch.motion_.configurations) {
+      for (const mechanism::PointState& point : here.points) {
         fastest = std::max(fastest, point.velocity.cwiseAbs().maxCoeff());
         largest = std::max(largest, point.acceleration.cwiseAbs().maxCoeff());
       }
@@ -53,8 +53,8 @@ class PatchBuilder::Rates {
         "\nRates: 1 machine unit = {:.6g} {}/s and {:.6g} {}/s^2.", patch_.velocity_unit_ / patch_.factor,
         length, patch_.acceleration_unit_ / (patch_.factor * patch_.factor), length);
     for (std::size_t d = 0; d < patch_.drives_.size(); ++d) add_drive(d);
-    for (const Group& group : patch_.structure_.groups) {
-      if (group.kind == GroupKind::crank) {
+    for (const mechanism::Group& group : patch_.structure_.groups) {
+      if (group.kind == mechanism::GroupKind::crank) {
         add_crank(group);
       } else {
         add_group(group);
@@ -87,7 +87,7 @@ class PatchBuilder::Rates {
       of_way[first] = weighted(speed.signal, patch_.scaled(speed.unit) / reach / units_[first]);
       if (!acceleration.empty())
         of_way[second] = weighted(acceleration, patch_.scaled(acceleration_unit) / reach / units_[second]);
-      for (const std::vector<DriveState>& row : patch_.motion_.drives) {
+      for (const std::vector<mechanism::DriveState>& row : patch_.motion_.drives) {
         exact[first].push_back(patch_.scaled(row[d].rate) / reach);
         exact[second].push_back(patch_.scaled(row[d].acceleration) / reach);
       }
@@ -109,7 +109,7 @@ class PatchBuilder::Rates {
       of_cos[second].add(weighted(product(acceleration, sin), -acceleration_unit / units_[second]));
       of_sin[second].add(weighted(product(acceleration, cos), acceleration_unit / units_[second]));
     }
-    for (const std::vector<DriveState>& row : patch_.motion_.drives) {
+    for (const std::vector<mechanism::DriveState>& row : patch_.motion_.drives) {
       const double rate = row[d].rate, alpha = row[d].acceleration;
       const double c = std::cos(row[d].value), s = std::sin(row[d].value);
       exact_cos[first].push_back(-rate * s);
@@ -122,15 +122,16 @@ class PatchBuilder::Rates {
   /// The derivative of a drive's law: its signal and what 1 machine unit of it is. No signal where it
   /// vanishes.
   std::pair<std::string, double> add_acceleration(std::size_t d) {
-    const Drive& drive = patch_.mechanism_.drives[d];
+    const mechanism::Drive& drive = patch_.mechanism_.drives[d];
     double largest = 0;
-    for (const std::vector<DriveState>& row : patch_.motion_.drives)
+    for (const std::vector<mechanism::DriveState>& row : patch_.motion_.drives)
       largest = std::max(largest, std::abs(row[d].acceleration));
     if (largest == 0) return {};
     const double unit = round_up(kMargin * largest);
-    return {patch_.add_block(drive.name + "_acceleration", "time-function",
-                             {text_setting("formula", to_string(law_derivative(*drive.law))),
-                              number_setting("scale", drive.law_scale / unit)}),
+    return {patch_.add_block(
+                drive.name + "_acceleration", "time-function",
+                {diagram::text_setting("formula", text::to_string(mechanism::law_derivative(*drive.law))),
+                 diagram::number_setting("scale", drive.law_scale / unit)}),
             unit};
   }
 
@@ -142,14 +143,14 @@ class PatchBuilder::Rates {
   std::string product(const std::string& a, const std::string& b) {
     std::string name = a + "_" + b;
     std::replace(name.begin(), name.end(), '.', '_');
-    return patch_.add_block(name, "multiplier", {wire_setting("in", {{1, a}, {1, b}})});
+    return patch_.add_block(name, "multiplier", {diagram::wire_setting("in", {{1, a}, {1, b}})});
   }
 
-  void add_crank(const Group& crank) {
+  void add_crank(const mechanism::Group& crank) {
     const std::size_t d = crank.drives.front();
-    const Body& body = patch_.mechanism_.bodies[patch_.mechanism_.drives[d].body];
+    const mechanism::Body& body = patch_.mechanism_.bodies[patch_.mechanism_.drives[d].body];
     const std::size_t begin = patch_.diagram_.blocks.size();
-    for (const BodyPoint& point : body.points) {
+    for (const mechanism::BodyPoint& point : body.points) {
       if (places_.points_[point.point]) continue;
       name_rates(point.point);
       add_summed_rates(point.point, patch_.crank_point(crank, point));
@@ -175,8 +176,8 @@ class PatchBuilder::Rates {
     SignalRates::Rates &x = rates_[at.x], &y = rates_[at.y];
     x.forms = {weighted(names.vx), weighted(names.ax)};
     y.forms = {weighted(names.vy), weighted(names.ay)};
-    for (const Configuration& here : patch_.motion_.configurations) {
-      const PointState& exact = here.points[point];
+    for (const mechanism::Configuration& here : patch_.motion_.configurations) {
+      const mechanism::PointState& exact = here.points[point];
       x.exact[first].push_back(patch_.scaled(exact.velocity.x()));
       y.exact[first].push_back(patch_.scaled(exact.velocity.y()));
       x.exact[second].push_back(patch_.scaled(exact.acceleration.x()));
@@ -184,8 +185,8 @@ class PatchBuilder::Rates {
     }
   }
 
-  void add_named(const std::string& name, std::string type, std::vector<Entry> settings) {
-    BlockInstance block;
+  void add_named(const std::string& name, std::string type, std::vector<text::Entry> settings) {
+    diagram::BlockInstance block;
     block.name = name;
     block.type = std::move(type);
     block.settings = std::move(settings);
@@ -202,7 +203,7 @@ class PatchBuilder::Rates {
 
   // --- groups
 
-  void add_group(const Group& group) {
+  void add_group(const mechanism::Group& group) {
     std::vector<std::size_t> unknowns;
     GroupResiduals residuals(places_, patch_.scaling_, patch_.drives_, [&](std::size_t point) {
       unknowns.push_back(point);
@@ -265,17 +266,17 @@ class PatchBuilder::Rates {
         sum.push_back({2 * p.weight * unit, product(va.signal, vb.signal)});
       }
       const std::string gap = patch_.add_block(residual.name + (order == first ? "_v_gap" : "_a_gap"),
-                                               "summer", {wire_setting("in", sum)});
+                                               "summer", {diagram::wire_setting("in", sum)});
       patch_.add_gradients(residual, forms, gap, gradients[order]);
     }
   }
 
   void add_servo(const std::string& name, const Terms& gradient) {
     Terms in = gradient;
-    for (WeightedSignal& term : in) term.weight *= kInputGain;
+    for (diagram::WeightedSignal& term : in) term.weight *= kInputGain;
     add_named(name, "servo-amplifier",
-              {wire_setting("in", in), number_setting("gain", patch_.options_.gain),
-               number_setting("bandwidth", patch_.bandwidth_)});
+              {diagram::wire_setting("in", in), diagram::number_setting("gain", patch_.options_.gain),
+               diagram::number_setting("bandwidth", patch_.bandwidth_)});
   }
 
   // --- forms
@@ -314,4 +315,4 @@ void PatchBuilder::add_rates() {
   Rates(*this).add();
 }
 
-}  // namespace oblique
+}  // namespace oblique::patch

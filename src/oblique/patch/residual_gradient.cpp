@@ -2,7 +2,7 @@
 // The gradient of squared residuals as blocks: gradient servos and rate circuits run down it.
 #include <oblique/patch/patch_builder.h>
 
-namespace oblique {
+namespace oblique::patch {
 namespace {
 
 double slope(const LinearForm& form, const std::string& unknown) {
@@ -25,7 +25,7 @@ void PatchBuilder::add_gradients(const Residual& residual, const std::vector<std
       if (weight == 0) continue;
       if (!pulls.contains(form)) {
         pulls[form] = add_block(gap + "_pull_" + std::to_string(form + 1), "multiplier",
-                                {wire_setting("in", {{1, gap}, {1, forms[form]}})});
+                                {diagram::wire_setting("in", {{1, gap}, {1, forms[form]}})});
       }
       gradient.push_back({weight, pulls[form]});
     }
@@ -33,4 +33,4 @@ void PatchBuilder::add_gradients(const Residual& residual, const std::vector<std
   }
 }
 
-}  // namespace oblique
+}  // namespace oblique::patch

@@ -8,20 +8,21 @@
 
 #include <fmt/format.h>
 
-#include <oblique/mechanism/drive_law.h>
-#include <oblique/mechanism/obstacle.h>
+#include <oblique/mechanism/model/drive_law.h>
+#include <oblique/mechanism/motion/obstacle.h>
 #include <oblique/patch/patch.h>
 
-namespace oblique {
+namespace oblique::patch {
 namespace {
 
-[[noreturn]] void refuse(const Mechanism& mechanism, const Structure& structure, const Obstacle& obstacle) {
-  const bool open = obstacle.status == Status::open;
-  const Drive& drive = mechanism.drives.front();
-  const double value = DriveClock(mechanism).at(0, obstacle.time).value;
+[[noreturn]] void refuse(const mechanism::Mechanism& mechanism, const mechanism::Structure& structure,
+                         const mechanism::Obstacle& obstacle) {
+  const bool open = obstacle.status == mechanism::Status::open;
+  const mechanism::Drive& drive = mechanism.drives.front();
+  const double value = mechanism::DriveClock(mechanism).at(0, obstacle.time).value;
   const std::string stand = drive.slide ? fmt::format("{:.6g} {}", value, mechanism.length_unit)
                                         : fmt::format("{:.6g}°", value * 180 / std::numbers::pi);
-  throw PatchError(Diagnostic{
+  throw PatchError(text::Diagnostic{
       {mechanism.file, {}},
       fmt::format(
           "the {} {} {} at t = {:.6g} s, where drive '{}' stands at {}, so no servo loop can track it",
@@ -52,19 +53,21 @@ double round_up(double value) {
   return std::ceil(value / unit) * unit;
 }
 
-Scaling find_scaling(const Mechanism& mechanism, const Structure& structure, const Motion& motion) {
-  if (const auto obstacle = find_obstacle(mechanism, structure)) refuse(mechanism, structure, *obstacle);
+Scaling find_scaling(const mechanism::Mechanism& mechanism, const mechanism::Structure& structure,
+                     const mechanism::Motion& motion) {
+  if (const auto obstacle = mechanism::find_obstacle(mechanism, structure))
+    refuse(mechanism, structure, *obstacle);
   Scaling scaling;
   scaling.triangles.resize(structure.groups.size());
   for (TriangleRange& range : scaling.triangles) range.shortest = std::numeric_limits<double>::infinity();
   scaling.origin = mechanism.points.front().position;  // points of the frame come first
   double farthest = 0;
-  for (const Configuration& configuration : motion.configurations) {
-    for (const PointState& point : configuration.points) {
+  for (const mechanism::Configuration& configuration : motion.configurations) {
+    for (const mechanism::PointState& point : configuration.points) {
       farthest = std::max(farthest, (point.position - scaling.origin).cwiseAbs().maxCoeff());
     }
     for (std::size_t g = 0; g < structure.groups.size(); ++g) {
-      const auto dyad = dyad_of(structure.groups[g]);
+      const auto dyad = mechanism::dyad_of(structure.groups[g]);
       if (!dyad) continue;
       const double length =
           (configuration.points[dyad->q].position - configuration.points[dyad->p].position).norm();
@@ -77,7 +80,7 @@ Scaling find_scaling(const Mechanism& mechanism, const Structure& structure, con
     }
   }
   scaling.slides.assign(mechanism.slides.size(), 0);
-  for (const Configuration& configuration : motion.configurations) {
+  for (const mechanism::Configuration& configuration : motion.configurations) {
     for (std::size_t s = 0; s < scaling.slides.size(); ++s)
       scaling.slides[s] = std::max(scaling.slides[s], std::abs(configuration.slides[s].position));
   }
@@ -85,4 +88,4 @@ Scaling find_scaling(const Mechanism& mechanism, const Structure& structure, con
   return scaling;
 }
 
-}  // namespace oblique
+}  // namespace oblique::patch

@@ -3,10 +3,10 @@
 
 #include <vector>
 
-#include <oblique/mechanism/motion.h>
-#include <oblique/mechanism/structure.h>
+#include <oblique/mechanism/motion/motion.h>
+#include <oblique/mechanism/structure/structure.h>
 
-namespace oblique {
+namespace oblique::patch {
 
 /// What the exact motion tells about one dyad's triangle P–Q–C over the turn.
 struct TriangleRange {
@@ -35,6 +35,7 @@ double round_up(double value);
 
 /// Finds the scaling from a motion over one turn. Throws PatchError where there is an obstacle on the way:
 /// there a triangle is flat or open.
-Scaling find_scaling(const Mechanism& mechanism, const Structure& structure, const Motion& motion);
+Scaling find_scaling(const mechanism::Mechanism& mechanism, const mechanism::Structure& structure,
+                     const mechanism::Motion& motion);
 
-}  // namespace oblique
+}  // namespace oblique::patch

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace oblique {
+namespace oblique::patch {
 
 LinearForm SignalRates::of(const LinearForm& form, Order order) const {
   LinearForm rate;
@@ -24,4 +24,4 @@ double SignalRates::largest(const LinearForm& form, Order order) const {
   return largest;
 }
 
-}  // namespace oblique
+}  // namespace oblique::patch

@@ -8,7 +8,7 @@
 
 #include <oblique/patch/linear_form.h>
 
-namespace oblique {
+namespace oblique::patch {
 
 /// The rates of signals by time: as forms of further signals, in machine units of velocity and acceleration,
 /// and as they are along the exact motion.
@@ -35,4 +35,4 @@ class SignalRates {
   std::map<std::string, Rates> rates_;
 };
 
-}  // namespace oblique
+}  // namespace oblique::patch

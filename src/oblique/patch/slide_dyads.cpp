@@ -7,27 +7,28 @@
 
 #include <oblique/patch/unit_vector.h>
 
-namespace oblique {
+namespace oblique::patch {
 
-std::optional<SlideDyadPatch::Parts> SlideDyadPatch::parts_of(const GroupEquations& equations) {
+std::optional<SlideDyadPatch::Parts> SlideDyadPatch::parts_of(const mechanism::GroupEquations& equations) {
   if (equations.unknowns() > 3) return std::nullopt;
   Parts parts;
-  for (const Condition& c : equations.conditions) {
-    const bool is_line = c.kind == Condition::Kind::on_line || c.kind == Condition::Kind::along;
-    const bool point_known = c.a.kind == PointRef::Kind::known;
-    const bool line_known = c.line.kind != LineRef::Kind::carried;
-    if (c.kind == Condition::Kind::orientation ? !line_known
-        : is_line                              ? point_known == line_known
-                                               : c.b.kind != PointRef::Kind::known)
+  for (const mechanism::Condition& c : equations.conditions) {
+    const bool is_line =
+        c.kind == mechanism::Condition::Kind::on_line || c.kind == mechanism::Condition::Kind::along;
+    const bool point_known = c.a.kind == mechanism::PointRef::Kind::known;
+    const bool line_known = c.line.kind != mechanism::LineRef::Kind::carried;
+    if (c.kind == mechanism::Condition::Kind::orientation ? !line_known
+        : is_line                                         ? point_known == line_known
+                                                          : c.b.kind != mechanism::PointRef::Kind::known)
       return std::nullopt;
     switch (c.kind) {
-      case Condition::Kind::coincidence:
+      case mechanism::Condition::Kind::coincidence:
         parts.hinge = &c;
         break;
-      case Condition::Kind::orientation:
+      case mechanism::Condition::Kind::orientation:
         parts.angle = &c;
         break;
-      case Condition::Kind::along:
+      case mechanism::Condition::Kind::along:
         parts.along = &c;
         break;
       default:
@@ -38,11 +39,13 @@ std::optional<SlideDyadPatch::Parts> SlideDyadPatch::parts_of(const GroupEquatio
   const std::size_t wanted = parts.hinge != nullptr ? (parts.angle != nullptr ? 0 : 1) : 2;
   const std::size_t found = parts.loci.size() + (parts.along != nullptr ? 1 : 0);
   if (found != wanted || (is_body && parts.angle == nullptr && parts.hinge == nullptr)) return std::nullopt;
-  const auto circles = std::count_if(parts.loci.begin(), parts.loci.end(),
-                                     [](const Condition* c) { return c->kind == Condition::Kind::distance; });
+  const auto circles = std::count_if(parts.loci.begin(), parts.loci.end(), [](const mechanism::Condition* c) {
+    return c->kind == mechanism::Condition::Kind::distance;
+  });
   if (parts.hinge != nullptr && wanted == 1) {  // only a line of its own has a block
-    const bool own_line = parts.loci.size() == 1 && parts.loci[0]->line.kind == LineRef::Kind::carried &&
-                          parts.loci[0]->kind == Condition::Kind::on_line;
+    const bool own_line = parts.loci.size() == 1 &&
+                          parts.loci[0]->line.kind == mechanism::LineRef::Kind::carried &&
+                          parts.loci[0]->kind == mechanism::Condition::Kind::on_line;
     return own_line ? std::optional(parts) : std::nullopt;
   }
   return circles <= 1 ? std::optional(parts) : std::nullopt;
@@ -59,7 +62,7 @@ VectorForm SlideDyadPatch::arm(const Eigen::Vector2d& local) const {
   return {combined({{x, &axis_.x}, {-y, &axis_.y}}), combined({{x, &axis_.y}, {y, &axis_.x}})};
 }
 
-Eigen::Vector2d SlideDyadPatch::turned(const Eigen::Vector2d& v, const BodyState& by) {
+Eigen::Vector2d SlideDyadPatch::turned(const Eigen::Vector2d& v, const mechanism::BodyState& by) {
   return {by.cosine * v.x() - by.sine * v.y(), by.sine * v.x() + by.cosine * v.y()};
 }
 
@@ -67,79 +70,84 @@ VectorForm SlideDyadPatch::sum(const VectorForm& a, double factor, const VectorF
   return {combined({{1, &a.x}, {factor, &b.x}}), combined({{1, &a.y}, {factor, &b.y}})};
 }
 
-SlideDyadPatch::Locus SlideDyadPatch::locus(const Group& group, const Condition& c) {
+SlideDyadPatch::Locus SlideDyadPatch::locus(const mechanism::Group& group, const mechanism::Condition& c) {
   Locus locus;
   const bool is_body = !group.equations.cores.empty();
   const std::size_t core = is_body ? group.equations.cores.front() : 0;
-  const auto body = [core](const Configuration& here) -> const BodyState& { return here.bodies[core]; };
-  if (c.kind == Condition::Kind::distance) {
+  const auto body = [core](const mechanism::Configuration& here) -> const mechanism::BodyState& {
+    return here.bodies[core];
+  };
+  if (c.kind == mechanism::Condition::Kind::distance) {
     locus.circle = true;
     locus.radius = c.value;
     locus.at = *points_[c.b.point];
     if (is_body) locus.at = sum(locus.at, -1, arm(c.a.local));
-    locus.place = [=](const Configuration& here) -> Eigen::Vector2d {
+    locus.place = [=](const mechanism::Configuration& here) -> Eigen::Vector2d {
       const Eigen::Vector2d at = here.points[c.b.point].position;
       return is_body ? Eigen::Vector2d(at - turned(c.a.local, body(here))) : at;
     };
     return locus;
   }
-  if (c.line.kind == LineRef::Kind::carried) {
+  if (c.line.kind == mechanism::LineRef::Kind::carried) {
     const VectorForm unit = arm(c.line.direction);
     locus.direction = {combined({{scaling_.length, &unit.x}}), combined({{scaling_.length, &unit.y}})};
     locus.at = sum(*points_[c.a.point], -1, arm(c.line.point));
-    locus.place = [=](const Configuration& here) -> Eigen::Vector2d {
+    locus.place = [=](const mechanism::Configuration& here) -> Eigen::Vector2d {
       return here.points[c.a.point].position - turned(c.line.point, body(here));
     };
-    locus.heading = [=](const Configuration& here) { return turned(c.line.direction, body(here)); };
+    locus.heading = [=](const mechanism::Configuration& here) {
+      return turned(c.line.direction, body(here));
+    };
     return locus;
   }
-  const auto carrier = c.line.kind == LineRef::Kind::known ? std::optional(c.line.body) : std::nullopt;
+  const auto carrier =
+      c.line.kind == mechanism::LineRef::Kind::known ? std::optional(c.line.body) : std::nullopt;
   const LineForm line = line_form(carrier, c.line);
   locus.at = line.at;
   locus.direction = line.direction;
   if (is_body) locus.at = sum(locus.at, -1, arm(c.a.local));
   const std::size_t base = carrier ? mechanism_.bodies[*carrier].points.front().point : 0;
-  locus.place = [=](const Configuration& here) -> Eigen::Vector2d {
+  locus.place = [=](const mechanism::Configuration& here) -> Eigen::Vector2d {
     Eigen::Vector2d at = c.line.point;
     if (carrier) at = here.points[base].position + turned(at, here.bodies[*carrier]);
     return is_body ? Eigen::Vector2d(at - turned(c.a.local, body(here))) : at;
   };
-  locus.heading = [=](const Configuration& here) -> Eigen::Vector2d {
+  locus.heading = [=](const mechanism::Configuration& here) -> Eigen::Vector2d {
     return carrier ? turned(c.line.direction, here.bodies[*carrier]) : c.line.direction;
   };
   return locus;
 }
 
-void SlideDyadPatch::set_axis(const Condition& angle) {
+void SlideDyadPatch::set_axis(const mechanism::Condition& angle) {
   if (angle.drive) {
-    const Drive& drive = mechanism_.drives[*angle.drive];
+    const mechanism::Drive& drive = mechanism_.drives[*angle.drive];
     add_generator(*angle.drive, fmt::format("drive {}: the direction of {}", drive.name,
                                             mechanism_.bodies[drive.body].name));
     axis_ = drives_[*angle.drive].axis;
     return;
   }
   const Eigen::Vector2d heading = unit_vector(angle.value);
-  if (angle.line.kind == LineRef::Kind::known) {
+  if (angle.line.kind == mechanism::LineRef::Kind::known) {
     axis_ = direction_of(angle.line.body, heading);
   } else {
     axis_ = {constant(heading.x()), constant(heading.y())};
   }
 }
 
-std::vector<Entry> SlideDyadPatch::with_amplifiers(std::vector<Entry> settings) const {
-  settings.push_back(number_setting("gain", options_.gain));
-  settings.push_back(number_setting("bandwidth", bandwidth_));
+std::vector<text::Entry> SlideDyadPatch::with_amplifiers(std::vector<text::Entry> settings) const {
+  settings.push_back(diagram::number_setting("gain", options_.gain));
+  settings.push_back(diagram::number_setting("bandwidth", bandwidth_));
   return settings;
 }
 
-Entry SlideDyadPatch::wire(const std::string& block, const char* port, const LinearForm& form) {
+text::Entry SlideDyadPatch::wire(const std::string& block, const char* port, const LinearForm& form) {
   const Terms terms = terms_of(form);
-  if (terms.size() == 1) return wire_setting(port, terms);
-  return wire_setting(port, {{1, add_block(block + "_" + port, "summer", {sum_of(terms)})}});
+  if (terms.size() == 1) return diagram::wire_setting(port, terms);
+  return diagram::wire_setting(port, {{1, add_block(block + "_" + port, "summer", {sum_of(terms)})}});
 }
 
-void SlideDyadPatch::add_group(const Group& group) {
-  const GroupEquations& equations = group.equations;
+void SlideDyadPatch::add_group(const mechanism::Group& group) {
+  const mechanism::GroupEquations& equations = group.equations;
   const Parts parts = *parts_of(equations);
   const bool is_body = !equations.cores.empty();
   const std::string& name =
@@ -159,15 +167,15 @@ void SlideDyadPatch::add_group(const Group& group) {
   } else {
     carry(equations.cores.front(), mechanism_.bodies[equations.cores.front()].points.front().point, unknown);
   }
-  for (const Link& link : equations.links) {
-    const Body& body = mechanism_.bodies[link.body];
+  for (const mechanism::Link& link : equations.links) {
+    const mechanism::Body& body = mechanism_.bodies[link.body];
     bases_[link.body] = {*body.find(link.from), *body.find(link.to)};
-    for (const BodyPoint& p : body.points) {
+    for (const mechanism::BodyPoint& p : body.points) {
       if (!points_[p.point]) points_[p.point] = point_of(link.body, p.local);
     }
   }
   const VectorForm core_axis = axis_;
-  for (const Block& block : equations.blocks) {
+  for (const mechanism::Block& block : equations.blocks) {
     const bool on_core = block.on && is_body && *block.on == equations.cores.front();
     const VectorForm on = on_core    ? core_axis
                           : block.on ? direction_of(*block.on, Eigen::Vector2d::UnitX())
@@ -183,27 +191,28 @@ void SlideDyadPatch::add_group(const Group& group) {
 }
 
 void SlideDyadPatch::carry(std::size_t index, std::size_t base, const VectorForm& at) {
-  const Body& body = mechanism_.bodies[index];
-  for (const BodyPoint& p : body.points) {
+  const mechanism::Body& body = mechanism_.bodies[index];
+  for (const mechanism::BodyPoint& p : body.points) {
     if (!points_[p.point]) points_[p.point] = sum(at, 1, arm(p.local - body.find(base)->local));
   }
 }
 
-void SlideDyadPatch::add_own_line(const Group& group, const Condition& hinge, const Condition& on_line,
-                                  const std::string& name) {
+void SlideDyadPatch::add_own_line(const mechanism::Group& group, const mechanism::Condition& hinge,
+                                  const mechanism::Condition& on_line, const std::string& name) {
   const Eigen::Vector2d& u = on_line.line.direction;
   const Eigen::Vector2d normal(-u.y(), u.x());
   const VectorForm& p = *points_[hinge.b.point];
   const VectorForm& q = *points_[on_line.a.point];
-  const double reach = largest_over_motion([&](const Configuration& here) {
+  const double reach = largest_over_motion([&](const mechanism::Configuration& here) {
     return (here.points[on_line.a.point].position - here.points[hinge.b.point].position).norm();
   });
   const std::string block = add_block(
       name + "_line", "dyad-rpr",
-      with_amplifiers({wire(name + "_line", "px", p.x), wire(name + "_line", "py", p.y),
-                       wire(name + "_line", "qx", q.x), wire(name + "_line", "qy", q.y),
-                       number_setting("offset", scaled(normal.dot(on_line.line.point - hinge.a.local))),
-                       number_setting("side", group.side), number_setting("reach", reach)}),
+      with_amplifiers(
+          {wire(name + "_line", "px", p.x), wire(name + "_line", "py", p.y), wire(name + "_line", "qx", q.x),
+           wire(name + "_line", "qy", q.y),
+           diagram::number_setting("offset", scaled(normal.dot(on_line.line.point - hinge.a.local))),
+           diagram::number_setting("side", group.side), diagram::number_setting("reach", reach)}),
       fmt::format("dyad {} (RPR): {} turns about {}, and its line passes through {}", group.name, name,
                   name_of(hinge.b.point), name_of(on_line.a.point)));
   LinearForm cosine, sine;
@@ -212,35 +221,35 @@ void SlideDyadPatch::add_own_line(const Group& group, const Condition& hinge, co
   axis_ = {combined({{u.x(), &cosine}, {u.y(), &sine}}), combined({{u.x(), &sine}, {-u.y(), &cosine}})};
 }
 
-VectorForm SlideDyadPatch::add_crossing(const Group& group, Locus first, Locus second,
+VectorForm SlideDyadPatch::add_crossing(const mechanism::Group& group, Locus first, Locus second,
                                         const std::string& name) {
   if (!first.circle && second.circle) std::swap(first, second);
   const bool is_body = !group.equations.cores.empty();
   const std::size_t point = is_body ? mechanism_.bodies[group.equations.cores.front()].points.front().point
                                     : group.equations.free_points.front();
-  const auto place = [&](const Configuration& here) { return here.points[point].position; };
+  const auto place = [&](const mechanism::Configuration& here) { return here.points[point].position; };
   std::string block;
   if (first.circle) {
-    const double reach = largest_over_motion([&](const Configuration& here) {
+    const double reach = largest_over_motion([&](const mechanism::Configuration& here) {
       const Eigen::Vector2d a = second.place(here);
       return std::max({first.radius, (first.place(here) - a).norm(), (place(here) - a).norm()});
     });
     block = add_block(
         name + "_slide", "dyad-rrp",
-        with_amplifiers({wire(name + "_slide", "px", first.at.x), wire(name + "_slide", "py", first.at.y),
-                         wire(name + "_slide", "ax", second.at.x), wire(name + "_slide", "ay", second.at.y),
-                         wire(name + "_slide", "ux", second.direction.x),
-                         wire(name + "_slide", "uy", second.direction.y),
-                         number_setting("r", scaled(first.radius)), number_setting("side", group.side),
-                         number_setting("reach", reach)}),
+        with_amplifiers(
+            {wire(name + "_slide", "px", first.at.x), wire(name + "_slide", "py", first.at.y),
+             wire(name + "_slide", "ax", second.at.x), wire(name + "_slide", "ay", second.at.y),
+             wire(name + "_slide", "ux", second.direction.x), wire(name + "_slide", "uy", second.direction.y),
+             diagram::number_setting("r", scaled(first.radius)), diagram::number_setting("side", group.side),
+             diagram::number_setting("reach", reach)}),
         fmt::format("dyad {} (RRP): at {:.6g} {} from a point, and on a line", group.name, first.radius,
                     mechanism_.length_unit));
   } else {
-    const double reach = largest_over_motion([&](const Configuration& here) {
+    const double reach = largest_over_motion([&](const mechanism::Configuration& here) {
       const Eigen::Vector2d a = first.place(here);
       return std::max((second.place(here) - a).norm(), (place(here) - a).norm());
     });
-    const Configuration& start = motion_.configurations.front();
+    const mechanism::Configuration& start = motion_.configurations.front();
     const Eigen::Vector2d u = first.heading(start), v = second.heading(start);
     block = add_block(
         name + "_slide", "dyad-prp",
@@ -249,9 +258,9 @@ VectorForm SlideDyadPatch::add_crossing(const Group& group, Locus first, Locus s
              wire(name + "_slide", "ux", first.direction.x), wire(name + "_slide", "uy", first.direction.y),
              wire(name + "_slide", "bx", second.at.x), wire(name + "_slide", "by", second.at.y),
              wire(name + "_slide", "vx", second.direction.x), wire(name + "_slide", "vy", second.direction.y),
-             number_setting("side", u.x() * v.y() - u.y() * v.x() > 0 ? 1 : -1),
-             number_setting("reach", reach)}),
-        fmt::format("dyad {} ({}): where two lines meet", group.name, kind_name(group.kind)));
+             diagram::number_setting("side", u.x() * v.y() - u.y() * v.x() > 0 ? 1 : -1),
+             diagram::number_setting("reach", reach)}),
+        fmt::format("dyad {} ({}): where two lines meet", group.name, mechanism::kind_name(group.kind)));
   }
   VectorForm unknown;
   unknown.x.weights[block + ".x"] = 1;
@@ -259,7 +268,8 @@ VectorForm SlideDyadPatch::add_crossing(const Group& group, Locus first, Locus s
   return unknown;
 }
 
-VectorForm SlideDyadPatch::add_slider(const Group& group, const Condition& along, const std::string& name) {
+VectorForm SlideDyadPatch::add_slider(const mechanism::Group& group, const mechanism::Condition& along,
+                                      const std::string& name) {
   const std::string way = add_way(*along.drive);
   const double reach = drives_[*along.drive].way.weights.at(way);
   const Locus line = locus(group, along);
@@ -271,7 +281,7 @@ VectorForm SlideDyadPatch::add_slider(const Group& group, const Condition& along
     } else {
       const std::string heading = add_block(name + "_u" + axis, "summer", {sum_of(terms_of(direction))});
       product.weights[add_block(name + "_way_" + axis, "multiplier",
-                                {wire_setting("in", {{1, way}, {1, heading}})})] = reach;
+                                {diagram::wire_setting("in", {{1, way}, {1, heading}})})] = reach;
     }
     to.add(product);
   };
@@ -280,4 +290,4 @@ VectorForm SlideDyadPatch::add_slider(const Group& group, const Condition& along
   return unknown;
 }
 
-}  // namespace oblique
+}  // namespace oblique::patch

@@ -7,7 +7,7 @@
 #include <oblique/patch/slide_dyads.h>
 #include <oblique/patch/triad_split.h>
 
-namespace oblique {
+namespace oblique::patch {
 
 /// Class III groups as two triangles and an outer loop.
 class TriadPatch : protected SlideDyadPatch {
@@ -15,10 +15,10 @@ class TriadPatch : protected SlideDyadPatch {
   using SlideDyadPatch::SlideDyadPatch;
 
   /// By blocks `dyad-rrr-variable` and `dyad-rrr`, each triangle in a scale of its own.
-  void add_triad(const Group& group, const TriadSplit& split);
+  void add_triad(const mechanism::Group& group, const TriadSplit& split);
 
   /// Places all that the group carries, once the platform's points b and d have signals.
-  void carry_triad(const Group& group, std::size_t b, std::size_t d);
+  void carry_triad(const mechanism::Group& group, std::size_t b, std::size_t d);
 
   /// Where the loops of a triangle on P, Q with the apex C stand at the start: a group of loops that hang on
   /// each other finds its rest from there.
@@ -33,9 +33,10 @@ class TriadPatch : protected SlideDyadPatch {
   void add_outer_loop(const std::string& length, const Terms& residual, double initial);
 
  private:
-  std::vector<Entry> with_start(std::vector<Entry> settings, const TriangleStart& start, double reach) const;
-  void add_closing_loop(const Condition& closing, const TriadSplit& split, const std::string& length,
-                        double reach);
+  std::vector<text::Entry> with_start(std::vector<text::Entry> settings, const TriangleStart& start,
+                                      double reach) const;
+  void add_closing_loop(const mechanism::Condition& closing, const TriadSplit& split,
+                        const std::string& length, double reach);
 };
 
-}  // namespace oblique
+}  // namespace oblique::patch

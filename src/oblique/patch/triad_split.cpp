@@ -10,11 +10,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <oblique/mechanism/plane.h>
-#include <oblique/mechanism/triangle.h>
+#include <oblique/mechanism/model/plane.h>
+#include <oblique/mechanism/triad/triangle.h>
 #include <oblique/patch/patch_builder.h>
 
-namespace oblique {
+namespace oblique::patch {
 namespace {
 
 using Eigen::Vector2d;
@@ -22,26 +22,27 @@ using Eigen::Vector2d;
 Vector2d apex(const Vector2d& from, const Vector2d& to, double first, double second, int side) {
   const Vector2d d = to - from;
   const double base = d.norm();
-  const Triangle shape = triangle(base, first, second);
-  return from + shape.along / base * d + side * shape.height / base * left_normal(d);
+  const mechanism::Triangle shape = mechanism::triangle(base, first, second);
+  return from + shape.along / base * d + side * shape.height / base * mechanism::left_normal(d);
 }
 
 /// Sine of the angle at the apex of a triangle, with its side of first → second.
 double apex_sine(const Vector2d& first, const Vector2d& apex, const Vector2d& second) {
   const Vector2d a = first - apex, b = second - apex;
-  return cross(a, b) / (a.norm() * b.norm());
+  return mechanism::cross(a, b) / (a.norm() * b.norm());
 }
 
 /// Measures one split along the motion.
-TriadSplit measure(const Group& group, const Motion& motion, std::array<std::size_t, 3> order) {
+TriadSplit measure(const mechanism::Group& group, const mechanism::Motion& motion,
+                   std::array<std::size_t, 3> order) {
   const auto& conditions = group.equations.conditions;
-  const Condition &tracked = conditions[order[0]], &closing = conditions[order[1]],
-                  &third = conditions[order[2]];
+  const mechanism::Condition &tracked = conditions[order[0]], &closing = conditions[order[1]],
+                             &third = conditions[order[2]];
   const Vector2d bone = third.a.local - tracked.a.local;
   const double platform = bone.norm();
   const Vector2d arm = closing.a.local - tracked.a.local;
   // C − B = (a + i b)(D − B)
-  const double a = bone.dot(arm) / bone.squaredNorm(), b = cross(bone, arm) / bone.squaredNorm();
+  const double a = bone.dot(arm) / bone.squaredNorm(), b = mechanism::cross(bone, arm) / bone.squaredNorm();
 
   TriadSplit split;
   split.tracked = order[0];
@@ -50,8 +51,8 @@ TriadSplit measure(const Group& group, const Motion& motion, std::array<std::siz
   split.flattest = std::numeric_limits<double>::infinity();
   double least_slope = split.flattest;
   for (std::size_t row = 0; row < motion.times.size(); ++row) {
-    const Configuration& here = motion.configurations[row];
-    const auto at = [&](const PointRef& point) { return here.points[point.point].position; };
+    const mechanism::Configuration& here = motion.configurations[row];
+    const auto at = [&](const mechanism::PointRef& point) { return here.points[point.point].position; };
     const Vector2d start = at(tracked.b), anchor = at(closing.b), end = at(third.b);
     const Vector2d apex1 = at(tracked.a), apex2 = at(third.a);
     const double w = (apex1 - anchor).norm();
@@ -61,7 +62,7 @@ TriadSplit measure(const Group& group, const Motion& motion, std::array<std::siz
       const Vector2d first = apex(start, anchor, tracked.value, length, side1);
       const Vector2d second = apex(first, end, platform, third.value, side2);
       const Vector2d way = second - first;
-      const Vector2d c = first + a * way + b * left_normal(way);
+      const Vector2d c = first + a * way + b * mechanism::left_normal(way);
       return (c - anchor).squaredNorm() / (closing.value * closing.value);
     };
     const double step = 1e-5 * w;
@@ -90,7 +91,8 @@ TriadSplit measure(const Group& group, const Motion& motion, std::array<std::siz
   return split;
 }
 
-std::vector<std::string> leads_of(const Mechanism& mechanism, const Group& triad, const TriadSplit& split) {
+std::vector<std::string> leads_of(const mechanism::Mechanism& mechanism, const mechanism::Group& triad,
+                                  const TriadSplit& split) {
   std::vector<std::string> names;
   for (const std::size_t lead : {split.tracked, split.closing, split.third})
     names.push_back(mechanism.bodies[lead_of(triad, lead)].name);
@@ -107,14 +109,15 @@ double TriadSplit::worth() const {
   return flip == Flip::none ? std::min(flattest, least_gain) : 0;
 }
 
-bool can_be_split(const Group& group) {
+bool can_be_split(const mechanism::Group& group) {
   const auto& conditions = group.equations.conditions;
-  return group.kind == GroupKind::triad &&
-         std::all_of(conditions.begin(), conditions.end(),
-                     [](const Condition& c) { return c.kind == Condition::Kind::distance; });
+  return group.kind == mechanism::GroupKind::triad &&
+         std::all_of(conditions.begin(), conditions.end(), [](const mechanism::Condition& c) {
+           return c.kind == mechanism::Condition::Kind::distance;
+         });
 }
 
-std::vector<TriadSplit> splits_of(const Group& group, const Motion& motion) {
+std::vector<TriadSplit> splits_of(const mechanism::Group& group, const mechanism::Motion& motion) {
   std::vector<TriadSplit> splits;
   std::array<std::size_t, 3> order{0, 1, 2};
   do {
@@ -125,40 +128,42 @@ std::vector<TriadSplit> splits_of(const Group& group, const Motion& motion) {
   return splits;
 }
 
-std::size_t lead_of(const Group& triad, std::size_t condition) {
-  const Condition& c = triad.equations.conditions[condition];
-  for (const Link& link : triad.equations.links) {
+std::size_t lead_of(const mechanism::Group& triad, std::size_t condition) {
+  const mechanism::Condition& c = triad.equations.conditions[condition];
+  for (const mechanism::Link& link : triad.equations.links) {
     if (link.from == c.b.point && link.to == c.a.point) return link.body;
   }
   throw std::logic_error("a distance condition without its link");
 }
 
-std::string split_name(const Mechanism& mechanism, const Group& triad, const TriadSplit& split) {
+std::string split_name(const mechanism::Mechanism& mechanism, const mechanism::Group& triad,
+                       const TriadSplit& split) {
   return fmt::format("{}", fmt::join(leads_of(mechanism, triad, split), ", "));
 }
 
-TriadSplit choose_split(const Mechanism& mechanism, const Group& triad, const Motion& motion,
-                        const PatchOptions& options) {
+TriadSplit choose_split(const mechanism::Mechanism& mechanism, const mechanism::Group& triad,
+                        const mechanism::Motion& motion, const PatchOptions& options) {
   std::vector<TriadSplit> splits = splits_of(triad, motion);
-  const Place& place = mechanism.bodies[triad.equations.cores.front()].place;
+  const text::Place& place = mechanism.bodies[triad.equations.cores.front()].place;
   const auto named = std::find_if(splits.begin(), splits.end(), [&](const TriadSplit& split) {
     return leads_of(mechanism, triad, split) == options.split;
   });
   if (named == splits.end()) {
     if (splits.front().worth() > kLeastWorth || options.force) return splits.front();
     throw PatchError(
-        Diagnostic{place,
-                   fmt::format(
-                       "the group {} ({}) has no split into two triangles that never go flat and a loop that "
-                       "keeps its gain on the way",
-                       triad.name, kind_name(triad.kind)),
-                   "a triad on three links with such a split",
-                   "patch it with --method gradient, which takes any group"})
+        text::Diagnostic{
+            place,
+            fmt::format(
+                "the group {} ({}) has no split into two triangles that never go flat and a loop that "
+                "keeps its gain on the way",
+                triad.name, mechanism::kind_name(triad.kind)),
+            "a triad on three links with such a split",
+            "patch it with --method gradient, which takes any group"})
         .forcible();
   }
   if (named->flip != TriadSplit::Flip::none && !options.force) {
     throw PatchError(
-        Diagnostic{
+        text::Diagnostic{
             place,
             fmt::format(
                 "with the split {} of the triad {}, {} at t = {:.6g} s", split_name(mechanism, triad, *named),
@@ -178,36 +183,38 @@ TriadSplit choose_split(const Mechanism& mechanism, const Group& triad, const Mo
   return *named;
 }
 
-void check_split_options(const Mechanism& mechanism, const Structure& structure,
+void check_split_options(const mechanism::Mechanism& mechanism, const mechanism::Structure& structure,
                          const PatchOptions& options) {
   const bool splits = std::any_of(structure.groups.begin(), structure.groups.end(), can_be_split);
   if (options.slower && !splits) {
-    throw PatchError(Diagnostic{{mechanism.file, {}},
-                                fmt::format("--slower {:g}: this patch has no outer loop", *options.slower),
-                                "a mechanism with a triad on three links",
-                                "leave it out"},
-                     PatchError::Kind::request);
+    throw PatchError(
+        text::Diagnostic{{mechanism.file, {}},
+                         fmt::format("--slower {:g}: this patch has no outer loop", *options.slower),
+                         "a mechanism with a triad on three links",
+                         "leave it out"},
+        PatchError::Kind::request);
   }
   if (options.split.empty()) return;
   std::vector<std::string> triads;
-  for (const Group& group : structure.groups) {
+  for (const mechanism::Group& group : structure.groups) {
     if (!can_be_split(group)) continue;
     std::vector<std::string> leads = leads_of(mechanism, group, TriadSplit{});
     triads.push_back(joined(leads));
     if (std::is_permutation(leads.begin(), leads.end(), options.split.begin(), options.split.end())) return;
   }
-  throw PatchError(Diagnostic{{mechanism.file, {}},
-                              fmt::format("--split {}: no triad has these leads", joined(options.split)),
-                              triads.empty() ? "a triad on three links, which this mechanism has not"
-                                             : fmt::format("the three leads of a triad in any order: {}",
-                                                           fmt::join(triads, "; ")),
-                              {}},
-                   PatchError::Kind::request);
+  throw PatchError(
+      text::Diagnostic{{mechanism.file, {}},
+                       fmt::format("--split {}: no triad has these leads", joined(options.split)),
+                       triads.empty() ? "a triad on three links, which this mechanism has not"
+                                      : fmt::format("the three leads of a triad in any order: {}",
+                                                    fmt::join(triads, "; ")),
+                       {}},
+      PatchError::Kind::request);
 }
 
-std::vector<std::vector<std::string>> useful_splits(const Mechanism& mechanism) {
-  const Structure structure = decompose(mechanism);
-  const auto is_triad = [](const Group& group) { return can_be_split(group); };
+std::vector<std::vector<std::string>> useful_splits(const mechanism::Mechanism& mechanism) {
+  const mechanism::Structure structure = mechanism::decompose(mechanism);
+  const auto is_triad = [](const mechanism::Group& group) { return can_be_split(group); };
   const auto triad = std::find_if(structure.groups.begin(), structure.groups.end(), is_triad);
   if (triad == structure.groups.end() || std::any_of(triad + 1, structure.groups.end(), is_triad)) return {};
   std::vector<std::vector<std::string>> names;
@@ -217,4 +224,4 @@ std::vector<std::vector<std::string>> useful_splits(const Mechanism& mechanism) 
   return names;
 }
 
-}  // namespace oblique
+}  // namespace oblique::patch

@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include <oblique/mechanism/motion.h>
-#include <oblique/mechanism/structure.h>
+#include <oblique/mechanism/motion/motion.h>
+#include <oblique/mechanism/structure/structure.h>
 #include <oblique/patch/patch.h>
 
-namespace oblique {
+namespace oblique::patch {
 
 /// A triad on three links taken apart into two triangles and an outer loop (003_69ea068b7b221c3d.txt): the
 /// distance w from the closing lead's anchor Z to the platform's point B of the tracked lead is taken for
@@ -38,28 +38,30 @@ struct TriadSplit {
 };
 
 /// Whether a group is a triad on three links, which can be split.
-bool can_be_split(const Group& group);
+bool can_be_split(const mechanism::Group& group);
 
 /// The six splits of such a triad, the most worth first.
-std::vector<TriadSplit> splits_of(const Group& group, const Motion& motion);
+std::vector<TriadSplit> splits_of(const mechanism::Group& group, const mechanism::Motion& motion);
 
 /// A split of less worth is as good as flat, or without gain, at some position.
 inline constexpr double kLeastWorth = 0.02;
 
 /// The body of a lead, by its condition: its index in Mechanism::bodies.
-std::size_t lead_of(const Group& triad, std::size_t condition);
+std::size_t lead_of(const mechanism::Group& triad, std::size_t condition);
 
 /// "AB, O1C, DE": the leads of a split, the one that carries the variable length first, then the one that
 /// closes the loop.
-std::string split_name(const Mechanism& mechanism, const Group& triad, const TriadSplit& split);
+std::string split_name(const mechanism::Mechanism& mechanism, const mechanism::Group& triad,
+                       const TriadSplit& split);
 
 /// The split that the options name for this triad, otherwise the one that is worth the most. Throws
 /// PatchError where that one flips, or none is worth kLeastWorth, unless the options force it.
-TriadSplit choose_split(const Mechanism& mechanism, const Group& triad, const Motion& motion,
-                        const PatchOptions& options);
+TriadSplit choose_split(const mechanism::Mechanism& mechanism, const mechanism::Group& triad,
+                        const mechanism::Motion& motion, const PatchOptions& options);
 
 /// Throws PatchError where the options name a split and no triad of the structure has these three leads, or
 /// an outer loop's speed and there is no triad.
-void check_split_options(const Mechanism& mechanism, const Structure& structure, const PatchOptions& options);
+void check_split_options(const mechanism::Mechanism& mechanism, const mechanism::Structure& structure,
+                         const PatchOptions& options);
 
-}  // namespace oblique
+}  // namespace oblique::patch

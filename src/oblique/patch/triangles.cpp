@@ -9,14 +9,14 @@
 
 #include <oblique/patch/triad_patch.h>
 
-namespace oblique {
+namespace oblique::patch {
 namespace {
 
 class TrianglePatch : private TriadPatch {
  public:
   using TriadPatch::TriadPatch;
 
-  Diagram make() {
+  diagram::Diagram make() {
     check_groups();
     describe(
         "patched as servo-tracked triangles",
@@ -25,10 +25,10 @@ class TrianglePatch : private TriadPatch {
                     options_.gain, bandwidth_, span_text()));
     add_reference();
     for (std::size_t g = 0; g < structure_.groups.size(); ++g) {
-      const Group& group = structure_.groups[g];
-      if (group.kind == GroupKind::crank) {
+      const mechanism::Group& group = structure_.groups[g];
+      if (group.kind == mechanism::GroupKind::crank) {
         add_crank(group);
-      } else if (const auto dyad = dyad_of(group)) {
+      } else if (const auto dyad = mechanism::dyad_of(group)) {
         add_dyad(group.name, *dyad, scaling_.triangles[g]);
       } else if (can_be_split(group)) {
         add_triad(group, choose_split(mechanism_, group, motion_, options_));
@@ -45,12 +45,12 @@ class TrianglePatch : private TriadPatch {
  private:
   void check_groups() const {
     check_split_options(mechanism_, structure_, options_);
-    for (const Group& group : structure_.groups) {
-      if (group.kind == GroupKind::crank || dyad_of(group) || can_be_split(group) ||
+    for (const mechanism::Group& group : structure_.groups) {
+      if (group.kind == mechanism::GroupKind::crank || mechanism::dyad_of(group) || can_be_split(group) ||
           parts_of(group.equations))
         continue;
       refuse(group,
-             group.kind == GroupKind::triad
+             group.kind == mechanism::GroupKind::triad
                  ? "has a slide among its leads, so that it cannot be taken apart into triangles"
                  : "is no drive, no dyad and no triad, so that it cannot be taken apart into triangles",
              "drives, dyads, and triads on three links",
@@ -58,7 +58,7 @@ class TrianglePatch : private TriadPatch {
     }
   }
 
-  void add_dyad(const std::string& name, const Dyad& dyad, const TriangleRange& range) {
+  void add_dyad(const std::string& name, const mechanism::Dyad& dyad, const TriangleRange& range) {
     const std::string& unit = mechanism_.length_unit;
     const std::string comment = fmt::format(
         "dyad {}: {} is hinged to {} ({:.6g} {}) and {} ({:.6g} {}), on the {} of {} → {}.\n"
@@ -68,11 +68,12 @@ class TrianglePatch : private TriadPatch {
         range.shortest, range.longest, unit, name_of(dyad.p), range.flattest);
     const std::string block = add_block(
         name_of(dyad.c), "dyad-rrr",
-        {wire_setting("px", {x_of(dyad.p, 1)}), wire_setting("py", {y_of(dyad.p, 1)}),
-         wire_setting("qx", {x_of(dyad.q, 1)}), wire_setting("qy", {y_of(dyad.q, 1)}),
-         number_setting("r1", scaled(dyad.r1)), number_setting("r2", scaled(dyad.r2)),
-         number_setting("side", dyad.side), number_setting("reach", round_up(scaled(range.longest))),
-         number_setting("gain", options_.gain), number_setting("bandwidth", bandwidth_)},
+        {diagram::wire_setting("px", {x_of(dyad.p, 1)}), diagram::wire_setting("py", {y_of(dyad.p, 1)}),
+         diagram::wire_setting("qx", {x_of(dyad.q, 1)}), diagram::wire_setting("qy", {y_of(dyad.q, 1)}),
+         diagram::number_setting("r1", scaled(dyad.r1)), diagram::number_setting("r2", scaled(dyad.r2)),
+         diagram::number_setting("side", dyad.side),
+         diagram::number_setting("reach", round_up(scaled(range.longest))),
+         diagram::number_setting("gain", options_.gain), diagram::number_setting("bandwidth", bandwidth_)},
         comment);
     signals_[dyad.c] = {block + ".x", block + ".y"};
     add_carried_points(mechanism_.bodies[dyad.body1], dyad.p, dyad.c);
@@ -82,8 +83,8 @@ class TrianglePatch : private TriadPatch {
 
 }  // namespace
 
-Diagram patch_triangles(const Mechanism& mechanism, const PatchOptions& options) {
+diagram::Diagram patch_triangles(const mechanism::Mechanism& mechanism, const PatchOptions& options) {
   return TrianglePatch(mechanism, options).make();
 }
 
-}  // namespace oblique
+}  // namespace oblique::patch

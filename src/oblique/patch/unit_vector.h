@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 
 // Not installed.
-namespace oblique {
+namespace oblique::patch {
 
 /// The direction at an angle [rad]. At right angles a component is 0, and not the 6e-17 that the rounding of
 /// π leaves: it becomes a weight that a schematic shows.
@@ -16,4 +16,4 @@ inline Eigen::Vector2d unit_vector(double angle) {
   return {whole(std::cos(angle)), whole(std::sin(angle))};
 }
 
-}  // namespace oblique
+}  // namespace oblique::patch

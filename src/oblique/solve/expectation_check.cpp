@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-namespace oblique {
+namespace oblique::solve {
 namespace {
 
 double value_at(const Trajectory& extra, double time, std::size_t column) {
@@ -17,13 +17,13 @@ double value_at(const Trajectory& extra, double time, std::size_t column) {
 }
 
 /// `column` counts the time too.
-double actual_value(const Expectation& expectation, const Run& run, std::size_t column) {
+double actual_value(const diagram::Expectation& expectation, const Run& run, std::size_t column) {
   switch (expectation.kind) {
-    case Expectation::Kind::maximum:
+    case diagram::Expectation::Kind::maximum:
       return run.extremes.at(column - 1).maximum.value;
-    case Expectation::Kind::minimum:
+    case diagram::Expectation::Kind::minimum:
       return run.extremes.at(column - 1).minimum.value;
-    case Expectation::Kind::at_time:
+    case diagram::Expectation::Kind::at_time:
       break;
   }
   return value_at(run.extra, expectation.time, column);
@@ -31,24 +31,25 @@ double actual_value(const Expectation& expectation, const Run& run, std::size_t 
 
 }  // namespace
 
-void ask_for_expectations(const Diagram& diagram, RunOptions& options) {
+void ask_for_expectations(const diagram::Diagram& diagram, RunOptions& options) {
   options.extra_times = expectation_times(diagram, options.until);
   if (options.from && !options.extra_times.empty() && options.extra_times.front() < options.from->time) {
-    throw DiagramError(Diagnostic{{diagram.file, {}},
-                                  fmt::format("[expect] asks for t = {} s, and the run goes on from t = {} s",
-                                              options.extra_times.front(), options.from->time),
-                                  "expectations at later times",
-                                  "check the whole run, without a saved state"});
+    throw diagram::DiagramError(
+        text::Diagnostic{{diagram.file, {}},
+                         fmt::format("[expect] asks for t = {} s, and the run goes on from t = {} s",
+                                     options.extra_times.front(), options.from->time),
+                         "expectations at later times",
+                         "check the whole run, without a saved state"});
   }
-  for (const Expectation& e : diagram.expectations)
-    options.extremes = options.extremes || e.kind != Expectation::Kind::at_time;
+  for (const diagram::Expectation& e : diagram.expectations)
+    options.extremes = options.extremes || e.kind != diagram::Expectation::Kind::at_time;
 }
 
-std::vector<double> expectation_times(const Diagram& diagram, double until) {
+std::vector<double> expectation_times(const diagram::Diagram& diagram, double until) {
   std::vector<double> times;
-  Diagnostics diagnostics;
-  for (const Expectation& e : diagram.expectations) {
-    if (e.kind != Expectation::Kind::at_time) continue;
+  text::Diagnostics diagnostics;
+  for (const diagram::Expectation& e : diagram.expectations) {
+    if (e.kind != diagram::Expectation::Kind::at_time) continue;
     if (e.time < 0 || e.time > until) {
       diagnostics.add({e.place, fmt::format("'{}' is at t = {} s, outside the run", e.text, e.time),
                        fmt::format("a time from 0 to {} s", until),
@@ -56,31 +57,31 @@ std::vector<double> expectation_times(const Diagram& diagram, double until) {
     }
     times.push_back(e.time);
   }
-  diagnostics.throw_if_any<DiagramError>();
+  diagnostics.throw_if_any<diagram::DiagramError>();
   std::sort(times.begin(), times.end());
   times.erase(std::unique(times.begin(), times.end()), times.end());
   return times;
 }
 
-std::vector<ExpectationResult> check_expectations(const Diagram& diagram, const Run& run) {
+std::vector<ExpectationResult> check_expectations(const diagram::Diagram& diagram, const Run& run) {
   std::vector<ExpectationResult> results;
-  Diagnostics diagnostics;
+  text::Diagnostics diagnostics;
   std::vector<std::string> names;
   for (const auto& column : run.trajectory.columns()) names.push_back(column.name);
-  for (const Expectation& e : diagram.expectations) {
+  for (const diagram::Expectation& e : diagram.expectations) {
     const auto column = run.trajectory.find(e.output);
     if (!column) {
       diagnostics.add({e.place,
                        fmt::format("'{}': there is no output '{}'", e.text, e.output),
                        {},
-                       suggest(e.output, names)});
+                       text::suggest(e.output, names)});
       continue;
     }
     const double actual = actual_value(e, run, *column);
     results.push_back({e, actual, std::abs(actual - e.value) <= e.within});
   }
-  diagnostics.throw_if_any<DiagramError>();
+  diagnostics.throw_if_any<diagram::DiagramError>();
   return results;
 }
 
-}  // namespace oblique
+}  // namespace oblique::solve

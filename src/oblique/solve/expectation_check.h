@@ -6,24 +6,24 @@
 #include <oblique/diagram/diagram.h>
 #include <oblique/solve/run.h>
 
-namespace oblique {
+namespace oblique::solve {
 
 /// One line of `[expect]` held against a run.
 struct ExpectationResult {
-  Expectation expectation;
+  diagram::Expectation expectation;
   double actual = 0;
   bool met = false;
 };
 
 /// The times that `[expect]` asks for, ascending: the `extra_times` of the run. Throws DiagramError for a
 /// time outside [0, until].
-std::vector<double> expectation_times(const Diagram& diagram, double until);
+std::vector<double> expectation_times(const diagram::Diagram& diagram, double until);
 
 /// Lets a run keep what `check_expectations` looks at. Throws DiagramError as above.
-void ask_for_expectations(const Diagram& diagram, RunOptions& options);
+void ask_for_expectations(const diagram::Diagram& diagram, RunOptions& options);
 
 /// Checks every expectation; `run` was made after `ask_for_expectations`. Throws DiagramError for an output
 /// that is not among the columns.
-std::vector<ExpectationResult> check_expectations(const Diagram& diagram, const Run& run);
+std::vector<ExpectationResult> check_expectations(const diagram::Diagram& diagram, const Run& run);
 
-}  // namespace oblique
+}  // namespace oblique::solve

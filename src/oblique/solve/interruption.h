@@ -5,7 +5,7 @@
 #include <functional>
 #include <utility>
 
-namespace oblique {
+namespace oblique::solve {
 
 /// Thrown within a run that is asked to end; `run` catches it.
 class Interrupted : public std::exception {
@@ -29,4 +29,4 @@ class Interruption {
   std::function<bool()> asked_;
 };
 
-}  // namespace oblique
+}  // namespace oblique::solve

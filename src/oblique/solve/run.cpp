@@ -11,13 +11,13 @@
 #include <oblique/solve/runner.h>
 #include <oblique/solve/solve_error.h>
 
-namespace oblique {
+namespace oblique::solve {
 namespace {
 
 /// Runs, and where states matter that the tolerance hides, anew and finer. Where no run is fine enough,
 /// the last one says so.
-Run run_seeing(const Program& program, const FlatDiagram& diagram, const RunOptions& options,
-               const LoopStart& loop_start) {
+Run run_seeing(const network::Program& program, const diagram::FlatDiagram& diagram,
+               const RunOptions& options, const LoopStart& loop_start) {
   constexpr int kMostTries = 5;
   constexpr long kMostTimesFirst = 100, kAlwaysAllowed = 100'000;  // steps of a finer run
   Refinement refinement;
@@ -34,7 +34,7 @@ Run run_seeing(const Program& program, const FlatDiagram& diagram, const RunOpti
     }
     if (observed.unseen.empty()) return result;
     if (options.interrupted && options.interrupted()) {  // no finer one comes
-      for (Diagnostic& warning : warnings_of(observed.unseen, program, diagram))
+      for (text::Diagnostic& warning : warnings_of(observed.unseen, program, diagram))
         result.warnings.push_back(std::move(warning));
       return result;
     }
@@ -48,7 +48,7 @@ Run run_seeing(const Program& program, const FlatDiagram& diagram, const RunOpti
     if (options.on_restart) options.on_restart();
     Observed observed;
     Run result = run_once(program, diagram, with, loop_start, how, false, observed);
-    for (Diagnostic& warning : warnings_of(observed.unseen, program, diagram))
+    for (text::Diagnostic& warning : warnings_of(observed.unseen, program, diagram))
       result.warnings.push_back(std::move(warning));
     return result;
   };
@@ -60,7 +60,8 @@ Run run_seeing(const Program& program, const FlatDiagram& diagram, const RunOpti
 }
 
 /// Chooses where the loops of elements without memory start; a run that goes on has chosen already.
-StartChoice start_of(const Program& program, const FlatDiagram& diagram, const RunOptions& options) {
+StartChoice start_of(const network::Program& program, const diagram::FlatDiagram& diagram,
+                     const RunOptions& options) {
   if (options.from) return {};
   const auto start = [&](const LoopStart& from) -> std::optional<StartOutcome> {
     try {
@@ -74,7 +75,7 @@ StartChoice start_of(const Program& program, const FlatDiagram& diagram, const R
 
 /// A longest step that would use up the budget of steps is refused at once, and so is one that the clock
 /// cannot show.
-void check_longest_step(const FlatDiagram& diagram, const RunOptions& options) {
+void check_longest_step(const diagram::FlatDiagram& diagram, const RunOptions& options) {
   const double span = options.until - (options.from ? options.from->time : 0);
   if (span / options.max_step <= static_cast<double>(options.max_steps)) return;
   throw SolveError(SolveError::Kind::step_budget, options.until - span,
@@ -87,13 +88,13 @@ void check_longest_step(const FlatDiagram& diagram, const RunOptions& options) {
 
 }  // namespace
 
-std::vector<TableColumn> output_columns(const FlatDiagram& diagram) {
-  std::vector<TableColumn> columns{{"t", "s"}};
-  for (const FlatOutput& output : diagram.outputs) columns.push_back({output.name, output.unit});
+std::vector<text::TableColumn> output_columns(const diagram::FlatDiagram& diagram) {
+  std::vector<text::TableColumn> columns{{"t", "s"}};
+  for (const diagram::FlatOutput& output : diagram.outputs) columns.push_back({output.name, output.unit});
   return columns;
 }
 
-RunOptions options_of(const RunSettings& settings) {
+RunOptions options_of(const diagram::RunSettings& settings) {
   RunOptions options;
   options.until = settings.until;
   options.tolerance = settings.tolerance;
@@ -106,18 +107,18 @@ RunOptions options_of(const RunSettings& settings) {
   return options;
 }
 
-Run run(const Program& program, const FlatDiagram& diagram, const RunOptions& options) {
+Run run(const network::Program& program, const diagram::FlatDiagram& diagram, const RunOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   if (options.from) check_run_state(*options.from, program, diagram.file);
   check_longest_step(diagram, options);
   StartChoice start = start_of(program, diagram, options);
   Run result = run_seeing(program, diagram, options, start.from);
   std::move(start.warnings.begin(), start.warnings.end(), std::back_inserter(result.warnings));
-  for (Diagnostic& warning : warnings_at_end(diagram, options, result))
+  for (text::Diagnostic& warning : warnings_at_end(diagram, options, result))
     result.warnings.push_back(std::move(warning));
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   if (options.trust) result.trust = estimate_error(program, diagram, options, result);
   return result;
 }
 
-}  // namespace oblique
+}  // namespace oblique::solve

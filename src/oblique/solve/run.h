@@ -9,16 +9,16 @@
 #include <vector>
 
 #include <oblique/diagram/flat_diagram.h>
-#include <oblique/network/program.h>
-#include <oblique/solve/cvodes_solver.h>
-#include <oblique/solve/method.h>
-#include <oblique/solve/overload.h>
+#include <oblique/network/program/program.h>
+#include <oblique/solve/events/switching.h>
+#include <oblique/solve/integrator/cvodes_solver.h>
+#include <oblique/solve/integrator/method.h>
+#include <oblique/solve/integrator/overload.h>
+#include <oblique/solve/integrator/trajectory.h>
 #include <oblique/solve/run_state.h>
-#include <oblique/solve/switching.h>
-#include <oblique/solve/trajectory.h>
 #include <oblique/solve/trust.h>
 
-namespace oblique {
+namespace oblique::solve {
 
 /// The absolute tolerance in machine units over the relative one. At 1 the zero crossings of an oscillation
 /// would be integrated more coarsely than the rest: a circle of 1000 turns then loses 100 times as much of
@@ -31,7 +31,7 @@ struct RunOptions {
   double tolerance = 1e-8;                   ///< relative, of the results; the solver's own is finer
   std::optional<double> absolute_tolerance;  ///< [machine unit]; else kAbsoluteTolerance of the relative one
   double max_step = std::numeric_limits<double>::infinity();  ///< [s]
-  IntegrationMethod method = IntegrationMethod::automatic;
+  diagram::IntegrationMethod method = diagram::IntegrationMethod::automatic;
   int samples = 1001;  ///< rows, evenly spaced, both ends included
   long max_steps = 10'000'000;
   bool settle = true;                 ///< bring servo loops to rest before the clock starts
@@ -50,7 +50,7 @@ struct RunOptions {
 };
 
 /// The options that a diagram states.
-RunOptions options_of(const RunSettings& settings);
+RunOptions options_of(const diagram::RunSettings& settings);
 
 /// The extremes of an output over the run.
 struct Extremes {
@@ -59,7 +59,7 @@ struct Extremes {
 };
 
 /// The columns of a run: `t`, then the outputs of the diagram.
-std::vector<TableColumn> output_columns(const FlatDiagram& diagram);
+std::vector<text::TableColumn> output_columns(const diagram::FlatDiagram& diagram);
 
 /// What came out of a run.
 struct Run {
@@ -72,7 +72,8 @@ struct Run {
   std::vector<Peak> peaks;         ///< of every signal of the program, in its order; at the rows, or watched
   std::vector<OverloadRecord> overloads;  ///< the first one first, where they were watched
   bool halted = false;                    ///< it ended at the first overload
-  std::vector<Diagnostic> warnings;  ///< what the run may not have seen, or did in another way than asked
+  std::vector<text::Diagnostic>
+      warnings;  ///< what the run may not have seen, or did in another way than asked
   SolverStatistics statistics;
   MethodChoice method;         ///< with which method, and why; nothing for a diagram without states
   std::optional<Trust> trust;  ///< how many digits stand, where asked for
@@ -82,6 +83,6 @@ struct Run {
 /// Runs a compiled diagram from t = 0: brings servo loops to rest, integrates with BDF or Adams and KLU, and
 /// samples the solver's own interpolant on an exact grid. A diagram without states is evaluated on that grid.
 /// Throws SolveError.
-Run run(const Program& program, const FlatDiagram& diagram, const RunOptions& options);
+Run run(const network::Program& program, const diagram::FlatDiagram& diagram, const RunOptions& options);
 
-}  // namespace oblique
+}  // namespace oblique::solve

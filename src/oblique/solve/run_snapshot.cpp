@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/solve/run_snapshot.h>
 
-namespace oblique {
+namespace oblique::solve {
 namespace {
 
 std::vector<double> values_of(const RunState::Named& named) {
@@ -48,7 +48,7 @@ void RunSnapshot::restore(const RunParts& parts) const {
   parts.switching.restore(conditions_);
 }
 
-RunState RunSnapshot::named(const Program& program) const {
+RunState RunSnapshot::named(const network::Program& program) const {
   RunState state;
   state.time = time_;
   state.states = named_by(program.states(), states_);
@@ -59,4 +59,4 @@ RunState RunSnapshot::named(const Program& program) const {
   return state;
 }
 
-}  // namespace oblique
+}  // namespace oblique::solve

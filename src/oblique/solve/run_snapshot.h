@@ -3,17 +3,17 @@
 
 #include <vector>
 
-#include <oblique/solve/phase_clock.h>
+#include <oblique/solve/events/switching.h>
+#include <oblique/solve/integrator/phase_clock.h>
 #include <oblique/solve/run_state.h>
-#include <oblique/solve/switching.h>
 
-namespace oblique {
+namespace oblique::solve {
 
 /// The parts of a run that make its state. Not installed.
 struct RunParts {
-  const Program& program;
+  const network::Program& program;
   std::vector<double>& states;
-  Workspace& workspace;
+  network::Workspace& workspace;
   Switching& switching;
   PhaseClock& clock;
 };
@@ -29,7 +29,7 @@ class RunSnapshot {
   double time() const { return time_; }
   /// Brings the parts back to this state; what slides is to be settled.
   void restore(const RunParts& parts) const;
-  RunState named(const Program& program) const;
+  RunState named(const network::Program& program) const;
 
  private:
   double time_ = 0;
@@ -38,4 +38,4 @@ class RunSnapshot {
   PhaseClock::Position position_;
 };
 
-}  // namespace oblique
+}  // namespace oblique::solve

@@ -8,7 +8,7 @@
 
 #include <oblique/text/table_reader.h>
 
-namespace oblique {
+namespace oblique::solve {
 namespace {
 
 void write_numbers(std::string_view table, const RunState::Named& values, std::string& out) {
@@ -23,18 +23,18 @@ void write_numbers(std::string_view table, const RunState::Named& values, std::s
   }
 }
 
-RunState::Named read_numbers(TableReader& reader, std::string_view name, const std::string& file,
-                             Diagnostics& diagnostics) {
+RunState::Named read_numbers(text::TableReader& reader, std::string_view name, const std::string& file,
+                             text::Diagnostics& diagnostics) {
   RunState::Named values;
-  const Value* const table = reader.table(name);
+  const text::Value* const table = reader.table(name);
   if (table == nullptr) {
     if (reader.table().find(name) == nullptr) reader.report(name, fmt::format("the state has no [{}]", name));
     return values;
   }
-  for (const Entry& entry : table->entries) {
-    if (entry.value.kind != Value::Kind::number) {
+  for (const text::Entry& entry : table->entries) {
+    if (entry.value.kind != text::Value::Kind::number) {
       diagnostics.add({{file, entry.value.position},
-                       fmt::format("'{}' is {}", entry.key, kind_name(entry.value.kind)),
+                       fmt::format("'{}' is {}", entry.key, text::kind_name(entry.value.kind)),
                        "a number",
                        {}});
     }
@@ -44,18 +44,19 @@ RunState::Named read_numbers(TableReader& reader, std::string_view name, const s
 }
 
 /// An array of numbers; empty where there is none.
-std::vector<double> read_list(TableReader& reader, std::string_view key, Diagnostics& diagnostics) {
+std::vector<double> read_list(text::TableReader& reader, std::string_view key,
+                              text::Diagnostics& diagnostics) {
   std::vector<double> values;
-  const Value* const list = reader.find(key);
+  const text::Value* const list = reader.find(key);
   if (list == nullptr) return values;
-  if (list->kind != Value::Kind::array) {
-    reader.report(key, fmt::format("'{}' is {}", key, kind_name(list->kind)), "an array of numbers");
+  if (list->kind != text::Value::Kind::array) {
+    reader.report(key, fmt::format("'{}' is {}", key, text::kind_name(list->kind)), "an array of numbers");
     return values;
   }
-  for (const Value& element : list->elements) {
-    if (element.kind != Value::Kind::number)
+  for (const text::Value& element : list->elements) {
+    if (element.kind != text::Value::Kind::number)
       diagnostics.add({reader.place(element.position),
-                       fmt::format("an element of '{}' is {}", key, kind_name(element.kind)),
+                       fmt::format("an element of '{}' is {}", key, text::kind_name(element.kind)),
                        "a number",
                        {}});
     values.push_back(element.number);
@@ -79,10 +80,10 @@ void compare_names(const RunState::Named& saved, const Things& things, std::stri
   } else {
     difference = fmt::format("no {} '{}'", what, things[i].name);
   }
-  throw ReadError(Diagnostic{{file, {}},
-                             "this is the state of another diagram: it has " + difference,
-                             "the state of a run of this diagram",
-                             "parameters may change between runs, blocks and wires may not"});
+  throw text::ReadError(text::Diagnostic{{file, {}},
+                                         "this is the state of another diagram: it has " + difference,
+                                         "the state of a run of this diagram",
+                                         "parameters may change between runs, blocks and wires may not"});
 }
 
 }  // namespace
@@ -102,20 +103,20 @@ std::string to_text(const RunState& state) {
 }
 
 RunState parse_run_state(std::string_view text, const std::string& file) {
-  const Document document = parse_document(text, file);
-  Diagnostics diagnostics;
-  TableReader reader(file, document.root, "the state", diagnostics);
+  const text::Document document = text::parse_document(text, file);
+  text::Diagnostics diagnostics;
+  text::TableReader reader(file, document.root, "the state", diagnostics);
   const auto format = reader.required_string("format", "format = \"oblique-state/1\"");
   if (format && *format != "oblique-state/1")
     reader.report("format", fmt::format("the format is '{}'", *format),
                   "'oblique-state/1', what --save writes");
-  diagnostics.throw_if_any<ReadError>();
+  diagnostics.throw_if_any<text::ReadError>();
   RunState state;
   state.time = reader.required_quantity("time", "s").value_or(0);
   for (const double condition : read_list(reader, "conditions", diagnostics))
     state.conditions.push_back(condition != 0);
-  if (const Value* const table = reader.table("timeline")) {
-    TableReader timeline(file, *table, "[timeline]", diagnostics);
+  if (const text::Value* const table = reader.table("timeline")) {
+    text::TableReader timeline(file, *table, "[timeline]", diagnostics);
     state.position.phase = static_cast<std::size_t>(timeline.required_quantity("phase", "1").value_or(0));
     state.position.cycle = timeline.required_quantity("cycle", "1").value_or(0);
     state.position.begin = timeline.required_quantity("begin", "s").value_or(0);
@@ -125,16 +126,16 @@ RunState parse_run_state(std::string_view text, const std::string& file) {
   state.unknowns = read_numbers(reader, "unknowns", file, diagnostics);
   state.memories = read_numbers(reader, "memories", file, diagnostics);
   reader.finish();
-  diagnostics.throw_if_any<ReadError>();
+  diagnostics.throw_if_any<text::ReadError>();
   return state;
 }
 
-void check_run_state(const RunState& state, const Program& program, const std::string& file) {
+void check_run_state(const RunState& state, const network::Program& program, const std::string& file) {
   compare_names(state.states, program.states(), "state", file);
   compare_names(state.unknowns, program.unknowns(), "unknown", file);
   compare_names(state.memories, program.memories(), "memory", file);
   if (state.conditions.size() == program.events().size()) return;
-  throw ReadError(Diagnostic{
+  throw text::ReadError(text::Diagnostic{
       {file, {}},
       fmt::format("this is the state of another diagram: it has {} conditions of events, the diagram {}",
                   state.conditions.size(), program.events().size()),
@@ -142,4 +143,4 @@ void check_run_state(const RunState& state, const Program& program, const std::s
       {}});
 }
 
-}  // namespace oblique
+}  // namespace oblique::solve

@@ -6,11 +6,11 @@
 #include <utility>
 #include <vector>
 
-#include <oblique/network/program.h>
-#include <oblique/solve/phase_clock.h>
+#include <oblique/network/program/program.h>
+#include <oblique/solve/integrator/phase_clock.h>
 #include <oblique/text/diagnostic.h>
 
-namespace oblique {
+namespace oblique::solve {
 
 /// All that a run needs to be gone on with: the solver's own past is not kept, so that what follows agrees
 /// with an uninterrupted run to the solver's tolerance.
@@ -31,6 +31,6 @@ std::string to_text(const RunState& state);
 RunState parse_run_state(std::string_view text, const std::string& file);
 
 /// Whether the state is one of this program: throws ReadError where names differ, with the first that do.
-void check_run_state(const RunState& state, const Program& program, const std::string& file);
+void check_run_state(const RunState& state, const network::Program& program, const std::string& file);
 
-}  // namespace oblique
+}  // namespace oblique::solve

@@ -6,29 +6,31 @@
 
 #include <fmt/format.h>
 
-namespace oblique {
+namespace oblique::solve {
 namespace {
 
 /// Ends that differ by rounding are one: "300 ms" is not quite 0.3 s.
 constexpr double kRounding = 1e-12;
 
 /// The points that the expression takes at the time of the run; nothing where it holds no such table.
-const PointTable* points_over_time(const FlatBlock& block, const Expression& expression) {
-  const bool table = expression.kind == Expression::Kind::call && expression.function == Function::table &&
-                     expression.operands.size() == 2 && expression.operands[0].name == "time";
+const text::PointTable* points_over_time(const diagram::FlatBlock& block,
+                                         const text::Expression& expression) {
+  const bool table = expression.kind == text::Expression::Kind::call &&
+                     expression.function == text::Function::table && expression.operands.size() == 2 &&
+                     expression.operands[0].name == "time";
   if (table && !block.points.empty()) {
     if (const auto parameter = block.definition->find_parameter(expression.operands[1].name))
       return &block.points[*parameter];
   }
-  for (const Expression& operand : expression.operands) {
-    if (const PointTable* const found = points_over_time(block, operand)) return found;
+  for (const text::Expression& operand : expression.operands) {
+    if (const text::PointTable* const found = points_over_time(block, operand)) return found;
   }
   return nullptr;
 }
 
 /// A line that does not change says what holds beyond the points; of another nobody knows whether it goes on.
-void warn_of_points(const FlatBlock& block, const PointTable& points, double begin, double end,
-                    std::vector<Diagnostic>& warnings) {
+void warn_of_points(const diagram::FlatBlock& block, const text::PointTable& points, double begin, double end,
+                    std::vector<text::Diagnostic>& warnings) {
   const std::vector<double>&x = points.x, &y = points.y;
   const std::size_t last = x.size() - 1;
   const auto warn = [&](std::string_view what, double point, double run, std::string_view which) {
@@ -48,10 +50,11 @@ void warn_of_points(const FlatBlock& block, const PointTable& points, double beg
     warn("end", x[last], end, "last");
 }
 
-void warn_of_timeline(const FlatTimeline& timeline, const std::string& file, const RunState& state,
-                      std::vector<Diagnostic>& warnings) {
-  const bool by_condition = std::any_of(timeline.phases.begin(), timeline.phases.end(),
-                                        [](const FlatPhase& phase) { return std::isinf(phase.duration); });
+void warn_of_timeline(const diagram::FlatTimeline& timeline, const std::string& file, const RunState& state,
+                      std::vector<text::Diagnostic>& warnings) {
+  const bool by_condition =
+      std::any_of(timeline.phases.begin(), timeline.phases.end(),
+                  [](const diagram::FlatPhase& phase) { return std::isinf(phase.duration); });
   const PhaseClock::Position& at = state.position;
   const bool in_last = at.phase + 1 == timeline.phases.size() && at.cycle + 1 >= timeline.cycles;
   // Phases of known length were cut off on purpose, and who repeats without end knows that the run ends.
@@ -72,13 +75,13 @@ void warn_of_timeline(const FlatTimeline& timeline, const std::string& file, con
 
 }  // namespace
 
-std::vector<Diagnostic> warnings_at_end(const FlatDiagram& diagram, const RunOptions& options,
-                                        const Run& run) {
-  std::vector<Diagnostic> warnings;
+std::vector<text::Diagnostic> warnings_at_end(const diagram::FlatDiagram& diagram, const RunOptions& options,
+                                              const Run& run) {
+  std::vector<text::Diagnostic> warnings;
   const double begin = options.from ? options.from->time : 0;
-  for (const FlatBlock& block : diagram.blocks) {
-    for (const Equation& equation : block.behaviour->equations) {
-      const PointTable* const points = points_over_time(block, equation.expression);
+  for (const diagram::FlatBlock& block : diagram.blocks) {
+    for (const diagram::Equation& equation : block.behaviour->equations) {
+      const text::PointTable* const points = points_over_time(block, equation.expression);
       if (points != nullptr) warn_of_points(block, *points, begin, run.state.time, warnings);
     }
   }
@@ -87,4 +90,4 @@ std::vector<Diagnostic> warnings_at_end(const FlatDiagram& diagram, const RunOpt
   return warnings;
 }
 
-}  // namespace oblique
+}  // namespace oblique::solve

@@ -5,11 +5,11 @@
 
 #include <oblique/solve/run.h>
 
-namespace oblique {
+namespace oblique::solve {
 
 /// What the end of a run leaves of what its diagram asks for: points over the time that the run goes beyond,
 /// and cycles of a timeline that it does not come to.
-std::vector<Diagnostic> warnings_at_end(const FlatDiagram& diagram, const RunOptions& options,
-                                        const Run& run);
+std::vector<text::Diagnostic> warnings_at_end(const diagram::FlatDiagram& diagram, const RunOptions& options,
+                                              const Run& run);
 
-}  // namespace oblique
+}  // namespace oblique::solve

@@ -8,26 +8,26 @@
 
 #include <fmt/format.h>
 
-#include <oblique/solve/branch_end.h>
-#include <oblique/solve/phase_clock.h>
-#include <oblique/solve/rest.h>
+#include <oblique/solve/events/branch_end.h>
+#include <oblique/solve/integrator/phase_clock.h>
+#include <oblique/solve/integrator/sampler.h>
+#include <oblique/solve/integrator/short_steps.h>
+#include <oblique/solve/integrator/source_watch.h>
+#include <oblique/solve/operating_point/rest.h>
+#include <oblique/solve/operating_point/singular_start.h>
 #include <oblique/solve/run_snapshot.h>
-#include <oblique/solve/sampler.h>
-#include <oblique/solve/short_steps.h>
-#include <oblique/solve/singular_start.h>
 #include <oblique/solve/solve_error.h>
-#include <oblique/solve/source_watch.h>
 
-namespace oblique {
+namespace oblique::solve {
 namespace {
 
 /// The equations of a diagram with its switches.
 class SwitchedSystem final : public OdeSystem {
  public:
-  SwitchedSystem(const Program& program, Switching& switching, const Interruption& interruption)
+  SwitchedSystem(const network::Program& program, Switching& switching, const Interruption& interruption)
       : program_(program), switching_(switching), interruption_(interruption) {}
   std::size_t size() const override { return program_.n_states(); }
-  const SparsePattern& pattern() const override { return program_.jacobian_pattern(); }
+  const network::SparsePattern& pattern() const override { return program_.jacobian_pattern(); }
   bool derivatives(double t, const double* x, double* dxdt) override {
     return switching_.derivatives(t, x, dxdt);
   }
@@ -37,7 +37,7 @@ class SwitchedSystem final : public OdeSystem {
   bool is_to_end() const override { return interruption_.is_asked(); }
 
  private:
-  const Program& program_;
+  const network::Program& program_;
   Switching& switching_;
   const Interruption& interruption_;
 };
@@ -45,7 +45,7 @@ class SwitchedSystem final : public OdeSystem {
 /// One run from its start to its end: smooth stretches, and events between them.
 class Runner {
  public:
-  Runner(const Program& program, const FlatDiagram& diagram, const RunOptions& options,
+  Runner(const network::Program& program, const diagram::FlatDiagram& diagram, const RunOptions& options,
          const LoopStart& loop_start, const Refinement& refinement, bool may_end_unseen)
       : program_(program),
         diagram_(diagram),
@@ -102,7 +102,8 @@ class Runner {
     sampler_.result.warnings = std::move(warnings_at_start_);
     for (const auto* warnings : {&branches_.warnings(), &switching_.warnings()})
       sampler_.result.warnings.insert(sampler_.result.warnings.end(), warnings->begin(), warnings->end());
-    for (Diagnostic& warning : sampler_.warnings()) sampler_.result.warnings.push_back(std::move(warning));
+    for (text::Diagnostic& warning : sampler_.warnings())
+      sampler_.result.warnings.push_back(std::move(warning));
     if (overloads_) {
       sampler_.result.peaks = overloads_->peaks();
       sampler_.result.overloads = overloads_->overloads();
@@ -164,7 +165,7 @@ class Runner {
     settle_start();
     std::vector<double> slopes(states_.size());
     if (switching_.derivatives(begin_, states_.data(), slopes.data())) refuse_singular_rates(slopes);
-    for (Diagnostic& warning : unstable_branches(program_, workspace_, begin_, diagram_.file))
+    for (text::Diagnostic& warning : unstable_branches(program_, workspace_, begin_, diagram_.file))
       warnings_at_start_.push_back(std::move(warning));
   }
 
@@ -344,7 +345,7 @@ class Runner {
     const std::vector<double> states = states_;
     settle(at, false);
     if (!known || switching_.slides() || states_ != states) return false;
-    for (const Switch& s : program_.switches()) memories[s.memory] = workspace_.memory(s.memory);
+    for (const network::Switch& s : program_.switches()) memories[s.memory] = workspace_.memory(s.memory);
     if (!std::equal(memories.begin(), memories.end(), workspace_.memories().begin())) return false;
     for (std::size_t k = 0; k < looks.size(); ++k) {
       if (!switching_.derivatives(looks[k], states_there[k].data(), after.data()) || before[k] != after)
@@ -367,7 +368,7 @@ class Runner {
   bool read(double t, const double* x, double* values) {
     std::vector<double> signals(program_.n_signals());
     if (!switching_.signals(t, x, signals.data())) return false;
-    for (const FlatOutput& output : diagram_.outputs)
+    for (const diagram::FlatOutput& output : diagram_.outputs)
       *values++ = output.scale * signals[program_.signal_index(output.signal)];
     return program_.surfaces(t, x, values, workspace_);
   }
@@ -476,14 +477,14 @@ class Runner {
 
   static constexpr double kShortest = 1e-15;  ///< of the time: the clock cannot show less
 
-  const Program& program_;
-  const FlatDiagram& diagram_;
+  const network::Program& program_;
+  const diagram::FlatDiagram& diagram_;
   const RunOptions& options_;
   const LoopStart& loop_start_;
   const Refinement& refinement_;
   bool may_end_unseen_;
   double begin_, end_ = 0;  ///< [s]
-  Workspace workspace_;
+  network::Workspace workspace_;
   Switching switching_;
   PhaseClock clock_;
   Interruption interruption_;
@@ -494,7 +495,7 @@ class Runner {
   BranchWatch branches_;
   std::optional<OverloadWatch> overloads_;
   std::vector<double> states_;
-  std::vector<Diagnostic> warnings_at_start_;
+  std::vector<text::Diagnostic> warnings_at_start_;
   SolverSettings settings_;
   std::optional<GrowthWatch> growth_;
   std::optional<SmallStates> small_;
@@ -503,7 +504,7 @@ class Runner {
   RunSnapshot last_whole_;  ///< the last whole step, where the run may be interrupted
 };
 
-SolveError interrupted_start(const FlatDiagram& diagram, const RunOptions& options) {
+SolveError interrupted_start(const diagram::FlatDiagram& diagram, const RunOptions& options) {
   return {SolveError::Kind::other,
           options.from ? options.from->time : 0,
           {{diagram.file, {}}, "interrupted before the run had begun: it has no state yet", {}, {}}};
@@ -511,7 +512,7 @@ SolveError interrupted_start(const FlatDiagram& diagram, const RunOptions& optio
 
 }  // namespace
 
-Run run_once(const Program& program, const FlatDiagram& diagram, const RunOptions& options,
+Run run_once(const network::Program& program, const diagram::FlatDiagram& diagram, const RunOptions& options,
              const LoopStart& loop_start, const Refinement& refinement, bool may_end_unseen,
              Observed& observed) {
   Runner runner(program, diagram, options, loop_start, refinement, may_end_unseen);
@@ -528,8 +529,8 @@ Run run_once(const Program& program, const FlatDiagram& diagram, const RunOption
   }
 }
 
-StartOutcome start_once(const Program& program, const FlatDiagram& diagram, const RunOptions& options,
-                        const LoopStart& loop_start) {
+StartOutcome start_once(const network::Program& program, const diagram::FlatDiagram& diagram,
+                        const RunOptions& options, const LoopStart& loop_start) {
   const Refinement refinement;
   try {
     return Runner(program, diagram, options, loop_start, refinement, false).outcome_of_start();
@@ -538,4 +539,4 @@ StartOutcome start_once(const Program& program, const FlatDiagram& diagram, cons
   }
 }
 
-}  // namespace oblique
+}  // namespace oblique::solve

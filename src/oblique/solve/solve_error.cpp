@@ -7,13 +7,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-namespace oblique {
+namespace oblique::solve {
 namespace {
 
 constexpr std::size_t kMostNamed = 5;
 
 /// "a → b → c → a", shortened in the middle where the loop is long.
-std::string loop_path(const Loop& loop) {
+std::string loop_path(const network::Loop& loop) {
   std::vector<std::string> names = loop.members;
   if (names.size() > 2 * kMostNamed) {
     names.erase(names.begin() + kMostNamed, names.end() - kMostNamed);
@@ -23,7 +23,7 @@ std::string loop_path(const Loop& loop) {
   return fmt::format("{}", fmt::join(names, " → "));
 }
 
-std::string worst_blocks(const Program& program, const CvodesSolver& solver) {
+std::string worst_blocks(const network::Program& program, const CvodesSolver& solver) {
   const std::vector<double> errors = solver.weighted_errors();
   const auto states = solver.states();
   std::vector<std::size_t> order(errors.size());
@@ -48,9 +48,9 @@ std::size_t largest_state(const CvodesSolver& solver) {
 
 }  // namespace
 
-SolveError loop_error(const Program& program, const Workspace::Trouble& trouble, double t,
+SolveError loop_error(const network::Program& program, const network::Workspace::Trouble& trouble, double t,
                       const std::string& file) {
-  if (trouble.failure == LoopFailure::none) {  // what fails is no loop but a slide
+  if (trouble.failure == network::LoopFailure::none) {  // what fails is no loop but a slide
     return {
         SolveError::Kind::chatter,
         t,
@@ -61,16 +61,16 @@ SolveError loop_error(const Program& program, const Workspace::Trouble& trouble,
          {},
          "give the switch a hysteresis"}};
   }
-  const Loop& loop = program.loops()[trouble.loop];
-  const Unknown& unknown = program.unknowns()[loop.unknowns.front()];
+  const network::Loop& loop = program.loops()[trouble.loop];
+  const network::Unknown& unknown = program.unknowns()[loop.unknowns.front()];
   const std::string path = loop_path(loop);
-  const Place place{unknown.place.file.empty() ? file : unknown.place.file, unknown.place.position};
+  const text::Place place{unknown.place.file.empty() ? file : unknown.place.file, unknown.place.position};
   std::string what, remedy;
-  if (trouble.failure == LoopFailure::singular && loop.unknowns.size() == 1 && unknown.torn) {
+  if (trouble.failure == network::LoopFailure::singular && loop.unknowns.size() == 1 && unknown.torn) {
     what = fmt::format("the algebraic loop {} is singular at t = {:.6g} s: its gain is {:.6g}", path, t,
                        trouble.slope + 1);
     remedy = "change a weight so that the gain of the loop is not 1, or put an integrator into it";
-  } else if (trouble.failure == LoopFailure::singular && loop.unknowns.size() == 1) {
+  } else if (trouble.failure == network::LoopFailure::singular && loop.unknowns.size() == 1) {
     what = fmt::format(
         "the algebraic loop {} is singular at t = {:.6g} s: its gain is {:.6g}, "
         "the inputs of '{}' do not respond to its output",
@@ -79,13 +79,13 @@ SolveError loop_error(const Program& program, const Workspace::Trouble& trouble,
         "wire the output back so that the residual changes with it, start it at another 'initial', or give "
         "the "
         "amplifier a finite gain and bandwidth";
-  } else if (trouble.failure == LoopFailure::singular) {
+  } else if (trouble.failure == network::LoopFailure::singular) {
     what = fmt::format(
         "the algebraic loop {} is singular at t = {:.6g} s: its {} equations determine no unique "
         "solution (a combination of its gains is 1)",
         path, t, loop.unknowns.size());
     remedy = "change a weight, or put an integrator or a servo amplifier of finite bandwidth into the loop";
-  } else if (trouble.failure == LoopFailure::lost) {
+  } else if (trouble.failure == network::LoopFailure::lost) {
     what = fmt::format(
         "the algebraic loop {} loses its solution at t = {:.6g} s: the branch that it was on ends near {} = "
         "{:.6g}, and its amplifiers find no other rest",
@@ -105,10 +105,11 @@ SolveError loop_error(const Program& program, const Workspace::Trouble& trouble,
   return {SolveError::Kind::singular_loop, t, {place, what, {}, remedy}};
 }
 
-SolveError run_error(const Program& program, const SolverFailure& failure, const CvodesSolver& solver,
-                     const Workspace& workspace, const std::string& file) {
+SolveError run_error(const network::Program& program, const SolverFailure& failure,
+                     const CvodesSolver& solver, const network::Workspace& workspace,
+                     const std::string& file) {
   using Kind = SolverFailure::Kind;
-  if (failure.kind == Kind::no_value && workspace.trouble().failure != LoopFailure::none) {
+  if (failure.kind == Kind::no_value && workspace.trouble().failure != network::LoopFailure::none) {
     return loop_error(program, workspace.trouble(), failure.time, file);
   }
   const std::size_t largest = largest_state(solver);
@@ -166,7 +167,7 @@ std::string shortened(std::vector<std::string> names) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-SolveError rest_error(const Program& program, const std::vector<std::size_t>& worst,
+SolveError rest_error(const network::Program& program, const std::vector<std::size_t>& worst,
                       const std::vector<double>& states, const std::vector<std::size_t>& loop,
                       const std::string& file) {
   std::string names;
@@ -185,4 +186,4 @@ SolveError rest_error(const Program& program, const std::vector<std::size_t>& wo
        "'initial'; or let the run begin unsettled, with settle = false in [run]"}};
 }
 
-}  // namespace oblique
+}  // namespace oblique::solve

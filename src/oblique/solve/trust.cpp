@@ -8,7 +8,7 @@
 #include <oblique/solve/run.h>
 #include <oblique/solve/solve_error.h>
 
-namespace oblique {
+namespace oblique::solve {
 namespace {
 
 constexpr double kFiner = 100, kLeastFiner = 3;  ///< times finer than the run
@@ -105,8 +105,8 @@ int OutputError::digits(double error) const {
   return static_cast<int>(std::clamp(std::floor(std::log10(size / error)), 0.0, kMost));
 }
 
-Trust estimate_error(const Program& program, const FlatDiagram& diagram, const RunOptions& options,
-                     const Run& done) {
+Trust estimate_error(const network::Program& program, const diagram::FlatDiagram& diagram,
+                     const RunOptions& options, const Run& done) {
   Trust trust;
   for (std::size_t c = 0; c < diagram.outputs.size(); ++c) {
     OutputError& output = trust.outputs.emplace_back();
@@ -133,8 +133,8 @@ Trust estimate_error(const Program& program, const FlatDiagram& diagram, const R
     trust.failure = error.diagnostics().front().what;
   }
   if (program.n_states() == 0) return trust;
-  const bool adams = done.method.method == IntegrationMethod::adams;
-  check.method = adams ? IntegrationMethod::bdf : IntegrationMethod::adams;
+  const bool adams = done.method.method == diagram::IntegrationMethod::adams;
+  check.method = adams ? diagram::IntegrationMethod::bdf : diagram::IntegrationMethod::adams;
   check.max_steps = std::min(options.max_steps, std::max(kLeastSteps, kMostEffort * done.statistics.steps));
   try {
     hold_beside();
@@ -143,4 +143,4 @@ Trust estimate_error(const Program& program, const FlatDiagram& diagram, const R
   return trust;
 }
 
-}  // namespace oblique
+}  // namespace oblique::solve

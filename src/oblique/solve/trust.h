@@ -8,10 +8,15 @@
 
 #include <oblique/diagram/diagram.h>
 
-namespace oblique {
-
-class Program;
+namespace oblique::diagram {
 struct FlatDiagram;
+}
+namespace oblique::network {
+class Program;
+}
+
+namespace oblique::solve {
+
 struct Run;
 struct RunOptions;
 
@@ -32,7 +37,8 @@ struct OutputError {
 struct Trust {
   struct Check {
     double tolerance = 0;
-    IntegrationMethod method = IntegrationMethod::adams;  ///< for a diagram without states of no meaning
+    diagram::IntegrationMethod method =
+        diagram::IntegrationMethod::adams;  ///< for a diagram without states of no meaning
   };
   std::vector<Check> checks;          ///< the runs that were held beside it; none: there is no estimate
   std::vector<OutputError> outputs;   ///< in the order of the diagram
@@ -48,7 +54,7 @@ struct Trust {
 /// between the times at which two runs have the same event are left out: there an output that jumps has
 /// jumped in one of them. Whatever all the runs miss alike (a pulse between their steps) is not in the
 /// estimate.
-Trust estimate_error(const Program& program, const FlatDiagram& diagram, const RunOptions& options,
-                     const Run& done);
+Trust estimate_error(const network::Program& program, const diagram::FlatDiagram& diagram,
+                     const RunOptions& options, const Run& done);
 
-}  // namespace oblique
+}  // namespace oblique::solve

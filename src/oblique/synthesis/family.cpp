@@ -7,43 +7,44 @@
 
 #include <fmt/format.h>
 
-#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/mechanism/model/read_mechanism.h>
 #include <oblique/synthesis/synthesis_error.h>
 #include <oblique/text/quantity.h>
 #include <oblique/text/table_reader.h>
 
-namespace oblique {
+namespace oblique::synthesis {
 namespace {
 
 /// A number that could be freed.
 struct Number {
   std::string name;
-  const Value* value;
+  const text::Value* value;
   bool is_length;  ///< above zero; otherwise a coordinate
 };
 
-void add_coordinates(const std::string& name, const Value& pair, std::vector<Number>& numbers) {
+void add_coordinates(const std::string& name, const text::Value& pair, std::vector<Number>& numbers) {
   numbers.push_back({name + ".x", &pair.elements[0], false});
   numbers.push_back({name + ".y", &pair.elements[1], false});
 }
 
 /// All numbers of a document that has been read as a mechanism without findings.
-std::vector<Number> numbers_of(const Document& document) {
+std::vector<Number> numbers_of(const text::Document& document) {
   std::vector<Number> numbers;
-  for (const Entry& body : document.root.find("bodies")->entries) {
-    if (const Value* const length = body.value.find("length")) numbers.push_back({body.key, length, true});
-    if (const Value* const sides = body.value.find("sides")) {
+  for (const text::Entry& body : document.root.find("bodies")->entries) {
+    if (const text::Value* const length = body.value.find("length"))
+      numbers.push_back({body.key, length, true});
+    if (const text::Value* const sides = body.value.find("sides")) {
       for (std::size_t i = 0; i < sides->elements.size(); ++i) {
         numbers.push_back({fmt::format("{}.sides.{}", body.key, i + 1), &sides->elements[i], true});
       }
     }
-    const Value* const marks = body.value.find("marks");
+    const text::Value* const marks = body.value.find("marks");
     if (marks == nullptr) continue;
-    for (const Entry& mark : marks->entries) {
+    for (const text::Entry& mark : marks->entries) {
       add_coordinates(body.key + "." + mark.key, mark.value, numbers);
     }
   }
-  for (const Entry& point : document.root.find("frame")->entries) {
+  for (const text::Entry& point : document.root.find("frame")->entries) {
     add_coordinates(point.key, point.value, numbers);
   }
   return numbers;
@@ -51,7 +52,8 @@ std::vector<Number> numbers_of(const Document& document) {
 
 class DimensionReader {
  public:
-  DimensionReader(std::string_view text, const Document& document, const Mechanism& mechanism)
+  DimensionReader(std::string_view text, const text::Document& document,
+                  const mechanism::Mechanism& mechanism)
       : text_(text), document_(document), mechanism_(mechanism), numbers_(numbers_of(document)) {}
 
   std::vector<Dimension> read(std::span<const std::string> free) {
@@ -124,8 +126,8 @@ class DimensionReader {
   std::optional<double> read_bound(const std::string& wanted, const std::string& text, const Number& number) {
     double bound = 0;
     try {
-      bound = parse_quantity(text, parse_unit(mechanism_.length_unit).value());
-    } catch (const ExpressionError& error) {
+      bound = text::parse_quantity(text, text::parse_unit(mechanism_.length_unit).value());
+    } catch (const text::ExpressionError& error) {
       report(fmt::format("bound '{}' of '{}': {}", text, wanted, error.what), error.expected,
              error.remedy.empty() ? fmt::format("{}=lower..upper", number.name) : error.remedy);
       return std::nullopt;
@@ -147,9 +149,9 @@ class DimensionReader {
       report(fmt::format("'{}' is freed twice", number.name), {}, "name it once");
       return;
     }
-    Diagnostics none;  // the mechanism has been read already
+    text::Diagnostics none;  // the mechanism has been read already
     const double value =
-        read_quantity(document_.file, *number.value, mechanism_.length_unit, number.name, none).value();
+        text::read_quantity(document_.file, *number.value, mechanism_.length_unit, number.name, none).value();
     if (!bounds) {
       const double reach = mechanism_.largest_length() / 2;
       bounds = number.is_length ? Bounds{value / 2, 2 * value} : Bounds{value - reach, value + reach};
@@ -176,7 +178,7 @@ class DimensionReader {
                            : fmt::format("as a mark it is called '{}'", marks.front()));
       return;
     }
-    report(fmt::format("'{}' is no dimension of the mechanism", name), {}, suggest(name, names()));
+    report(fmt::format("'{}' is no dimension of the mechanism", name), {}, text::suggest(name, names()));
   }
 
   /// What may be freed, the short names first.
@@ -199,18 +201,18 @@ class DimensionReader {
   }
 
   std::string_view text_;
-  const Document& document_;
-  const Mechanism& mechanism_;
+  const text::Document& document_;
+  const mechanism::Mechanism& mechanism_;
   std::vector<Number> numbers_;
   std::vector<Dimension> dimensions_;
-  std::vector<Diagnostic> findings_;
+  std::vector<text::Diagnostic> findings_;
 };
 
 }  // namespace
 
 Family::Family(std::string text, const std::string& file, std::span<const std::string> free)
-    : text_(std::move(text)), original_(parse_mechanism(text_, file)) {
-  const Document document = parse_document(text_, file);
+    : text_(std::move(text)), original_(mechanism::parse_mechanism(text_, file)) {
+  const text::Document document = text::parse_document(text_, file);
   dimensions_ = DimensionReader(text_, document, original_).read(free);
 }
 
@@ -242,8 +244,8 @@ std::string Family::text(const Eigen::VectorXd& values) const {
   return replace_ranges(text_, std::move(replacements));
 }
 
-Mechanism Family::mechanism(const Eigen::VectorXd& values) const {
-  return parse_mechanism(text(values), original_.file);
+mechanism::Mechanism Family::mechanism(const Eigen::VectorXd& values) const {
+  return mechanism::parse_mechanism(text(values), original_.file);
 }
 
-}  // namespace oblique
+}  // namespace oblique::synthesis

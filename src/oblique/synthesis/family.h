@@ -7,10 +7,10 @@
 
 #include <Eigen/Core>
 
-#include <oblique/mechanism/mechanism.h>
+#include <oblique/mechanism/model/mechanism.h>
 #include <oblique/synthesis/text_edit.h>
 
-namespace oblique {
+namespace oblique::synthesis {
 
 /// A number of a mechanism file that may change.
 struct Dimension {
@@ -31,7 +31,7 @@ class Family {
   /// `request`) with a finding for each name or bound that makes no sense.
   Family(std::string text, const std::string& file, std::span<const std::string> free);
 
-  const Mechanism& original() const { return original_; }
+  const mechanism::Mechanism& original() const { return original_; }
   const std::vector<Dimension>& dimensions() const { return dimensions_; }
   Eigen::VectorXd values() const;  ///< of the dimensions as the file has them
   Eigen::VectorXd lower() const;
@@ -42,12 +42,12 @@ class Family {
 
   /// The mechanism of `text(values)`. Throws MechanismError where that is none (a length below zero, three
   /// sides that make no triangle).
-  Mechanism mechanism(const Eigen::VectorXd& values) const;
+  mechanism::Mechanism mechanism(const Eigen::VectorXd& values) const;
 
  private:
   std::string text_;
-  Mechanism original_;
+  mechanism::Mechanism original_;
   std::vector<Dimension> dimensions_;
 };
 
-}  // namespace oblique
+}  // namespace oblique::synthesis

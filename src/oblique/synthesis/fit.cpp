@@ -16,7 +16,7 @@
 #include <oblique/text/even_point.h>
 #include <oblique/text/nearest_decimal.h>
 
-namespace oblique {
+namespace oblique::synthesis {
 namespace {
 
 using Eigen::Index;
@@ -42,7 +42,8 @@ PathError error_of(const VectorXd& residuals) {
 
 [[noreturn]] void fail(SynthesisError::Kind kind, const std::string& file, std::string what,
                        std::string expected, std::string remedy) {
-  throw SynthesisError(kind, Diagnostic{{file, {}}, std::move(what), std::move(expected), std::move(remedy)});
+  throw SynthesisError(kind,
+                       text::Diagnostic{{file, {}}, std::move(what), std::move(expected), std::move(remedy)});
 }
 
 class Fitter {
@@ -101,7 +102,7 @@ class Fitter {
       }
       for (int trial = 0; trial < kTriesForAStart; ++trial) {
         const std::vector<double> even =
-            even_point(++tried, static_cast<std::size_t>(family_.values().size()));
+            text::even_point(++tried, static_cast<std::size_t>(family_.values().size()));
         const VectorXd point = VectorXd::Map(even.data(), family_.values().size());
         if (search_from(family_.lower() + point.cwiseProduct(family_.upper() - family_.lower()))) break;
       }
@@ -174,9 +175,9 @@ class Fitter {
     VectorXd rounded = values;
     for (Index i = 0; i < values.size(); ++i) {
       const Dimension& dimension = family_.dimensions()[static_cast<std::size_t>(i)];
-      const double decimal = nearest_decimal(values[i], 10);
+      const double decimal = text::nearest_decimal(values[i], 10);
       rounded[i] = std::clamp(decimal, dimension.lower, dimension.upper);
-      if (decimal == nearest_decimal(dimension.value, 10)) rounded[i] = dimension.value;
+      if (decimal == text::nearest_decimal(dimension.value, 10)) rounded[i] = dimension.value;
     }
     return rounded;
   }
@@ -243,4 +244,4 @@ Fit fit_path(const std::string& text, const std::string& file, std::span<const s
   return Fitter(family, target, options).run();
 }
 
-}  // namespace oblique
+}  // namespace oblique::synthesis

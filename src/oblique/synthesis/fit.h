@@ -9,7 +9,7 @@
 
 #include <oblique/synthesis/target_path.h>
 
-namespace oblique {
+namespace oblique::synthesis {
 
 struct FitOptions {
   /// Searches begun: the first at the dimensions of the file, the others spread over the bounds, the same at
@@ -65,4 +65,4 @@ struct Fit {
 Fit fit_path(const std::string& text, const std::string& file, std::span<const std::string> free,
              const TargetPath& target, const FitOptions& options = {});
 
-}  // namespace oblique
+}  // namespace oblique::synthesis

@@ -5,10 +5,10 @@
 
 #include <fmt/format.h>
 
-#include <oblique/mechanism/read_mechanism.h>
+#include <oblique/mechanism/model/read_mechanism.h>
 #include <oblique/synthesis/synthesis_error.h>
 
-namespace oblique {
+namespace oblique::synthesis {
 namespace {
 
 /// Two modes are farther apart than this part of the mechanism's size, or they are one.
@@ -16,27 +16,28 @@ constexpr double kSameWithin = 1e-7;
 
 bool picks(const std::string& text, const Family& family, const Stance& stance) {
   try {
-    const auto picked = stance_of(parse_mechanism(text, family.original().file));
+    const auto picked = stance_of(mechanism::parse_mechanism(text, family.original().file));
     const double within = kSameWithin * family.original().largest_length();
     return picked && std::equal(picked->begin(), picked->end(), stance.begin(), stance.end(),
-                                [&](const SketchPoint& a, const SketchPoint& b) {
+                                [&](const mechanism::SketchPoint& a, const mechanism::SketchPoint& b) {
                                   return (a.position - b.position).norm() <= within;
                                 });
-  } catch (const MechanismError&) {  // the sketch is as far from the one mode as from the other
+  } catch (const mechanism::MechanismError&) {  // the sketch is as far from the one mode as from the other
     return false;
   }
 }
 
 /// The text with the points of its sketch where they stand in `stance`.
-std::string with_sketch(const std::string& text, const Mechanism& mechanism, const Stance& stance) {
-  const Document document = parse_document(text, mechanism.file);
-  const Value* const sketch = document.root.find("sketch");
+std::string with_sketch(const std::string& text, const mechanism::Mechanism& mechanism,
+                        const Stance& stance) {
+  const text::Document document = text::parse_document(text, mechanism.file);
+  const text::Value* const sketch = document.root.find("sketch");
   if (sketch == nullptr) return text;
   std::vector<Replacement> replacements;
-  for (const Entry& entry : sketch->entries) {
+  for (const text::Entry& entry : sketch->entries) {
     const auto point = mechanism.find_point(entry.key);
-    const auto stands =
-        std::find_if(stance.begin(), stance.end(), [&](const SketchPoint& p) { return p.point == point; });
+    const auto stands = std::find_if(stance.begin(), stance.end(),
+                                     [&](const mechanism::SketchPoint& p) { return p.point == point; });
     if (stands == stance.end()) continue;
     for (std::size_t i = 0; i < 2; ++i) {
       const double coordinate = stands->position[static_cast<Eigen::Index>(i)];
@@ -55,10 +56,10 @@ FittedText fitted_text(const Family& family, const Eigen::VectorXd& values, cons
   if (picks(text, family, stance)) return {std::move(text), true};
   throw SynthesisError(
       SynthesisError::Kind::nowhere,
-      Diagnostic{{family.original().file, {}},
-                 "the points of [sketch] cannot tell the assembly modes of the fitted mechanism apart",
-                 {},
-                 "sketch further points of the mechanism, and fit again"});
+      text::Diagnostic{{family.original().file, {}},
+                       "the points of [sketch] cannot tell the assembly modes of the fitted mechanism apart",
+                       {},
+                       "sketch further points of the mechanism, and fit again"});
 }
 
-}  // namespace oblique
+}  // namespace oblique::synthesis

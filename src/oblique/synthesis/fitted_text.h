@@ -8,7 +8,7 @@
 #include <oblique/synthesis/family.h>
 #include <oblique/synthesis/path_problem.h>
 
-namespace oblique {
+namespace oblique::synthesis {
 
 struct FittedText {
   std::string text;
@@ -20,4 +20,4 @@ struct FittedText {
 /// picks the mode.
 FittedText fitted_text(const Family& family, const Eigen::VectorXd& values, const Stance& stance);
 
-}  // namespace oblique
+}  // namespace oblique::synthesis

@@ -7,7 +7,7 @@
 
 #include <Eigen/Cholesky>
 
-namespace oblique {
+namespace oblique::synthesis {
 namespace {
 
 using Eigen::Index;
@@ -121,4 +121,4 @@ std::optional<Minimum> minimise(const LeastSquares& problem, const VectorXd& sta
   return Search(problem, start, std::move(*residuals)).run();
 }
 
-}  // namespace oblique
+}  // namespace oblique::synthesis

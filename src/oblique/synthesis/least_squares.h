@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-namespace oblique {
+namespace oblique::synthesis {
 
 /// Σ rₖ(x)² to be made small within lower ≤ x ≤ upper.
 struct LeastSquares {
@@ -34,4 +34,4 @@ struct Minimum {
 /// no value is taken back and damped. Nothing where there is no value at `start`.
 std::optional<Minimum> minimise(const LeastSquares& problem, const Eigen::VectorXd& start);
 
-}  // namespace oblique
+}  // namespace oblique::synthesis

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace oblique {
+namespace oblique::synthesis {
 namespace {
 
 using Eigen::Vector2d;
@@ -17,13 +17,13 @@ constexpr double kOffsetWithin = 1e-9;
 
 }  // namespace
 
-PathCurve::PathCurve(const Motion& motion, std::size_t point) {
+PathCurve::PathCurve(const mechanism::Motion& motion, std::size_t point) {
   for (std::size_t row = 1; row < motion.times.size(); ++row) {
-    const Configuration& before = motion.configurations[row - 1];
-    const Configuration& after = motion.configurations[row];
-    if (before.status != Status::ok || after.status != Status::ok) continue;
-    const PointState& a = before.points[point];
-    const PointState& b = after.points[point];
+    const mechanism::Configuration& before = motion.configurations[row - 1];
+    const mechanism::Configuration& after = motion.configurations[row];
+    if (before.status != mechanism::Status::ok || after.status != mechanism::Status::ok) continue;
+    const mechanism::PointState& a = before.points[point];
+    const mechanism::PointState& b = after.points[point];
     Piece piece;
     piece.begin = motion.times[row - 1];
     piece.duration = motion.times[row] - piece.begin;
@@ -113,4 +113,4 @@ std::optional<Vector2d> PathCurve::at(double time) const {
   return piece.position(s);
 }
 
-}  // namespace oblique
+}  // namespace oblique::synthesis

@@ -7,9 +7,9 @@
 
 #include <Eigen/Core>
 
-#include <oblique/mechanism/motion.h>
+#include <oblique/mechanism/motion/motion.h>
 
-namespace oblique {
+namespace oblique::synthesis {
 
 /// The path of a point between the rows of a motion: polynomials of fifth degree in time with the rows'
 /// positions, velocities and accelerations (Hermite). Their error is h⁶ p⁽⁶⁾/46080 for rows h apart; with 360
@@ -17,7 +17,7 @@ namespace oblique {
 /// are not both `ok`.
 class PathCurve {
  public:
-  PathCurve(const Motion& motion, std::size_t point);
+  PathCurve(const mechanism::Motion& motion, std::size_t point);
 
   /// The place of the path nearest to a target.
   struct Foot {
@@ -48,4 +48,4 @@ class PathCurve {
   std::vector<Piece> pieces_;  ///< in the order of time
 };
 
-}  // namespace oblique
+}  // namespace oblique::synthesis

@@ -6,10 +6,10 @@
 
 #include <fmt/format.h>
 
-#include <oblique/mechanism/obstacle.h>
+#include <oblique/mechanism/motion/obstacle.h>
 #include <oblique/synthesis/synthesis_error.h>
 
-namespace oblique {
+namespace oblique::synthesis {
 namespace {
 
 using Eigen::Index;
@@ -25,11 +25,11 @@ constexpr double kModeStep = 0.05;
 /// 1e-10 of the derivative.
 constexpr double kDifference = 1e-5;
 
-bool is_assembled(const Configuration& configuration) {
-  return configuration.status != Status::open;
+bool is_assembled(const mechanism::Configuration& configuration) {
+  return configuration.status != mechanism::Status::open;
 }
 
-Stance stance_in(const Mechanism& mechanism, const Configuration& configuration) {
+Stance stance_in(const mechanism::Mechanism& mechanism, const mechanism::Configuration& configuration) {
   Stance stance;
   for (std::size_t i = 0; i < mechanism.points.size(); ++i) {
     if (!mechanism.points[i].fixed) stance.push_back({i, configuration.points[i].position});
@@ -48,44 +48,46 @@ VectorXd two_columns(const std::vector<PathCurve::Foot>& feet, const VectorXd& a
 
 }  // namespace
 
-std::optional<Stance> stance_of(const Mechanism& mechanism) {
-  const Configuration start = solve_motion(mechanism, std::vector<double>{0}).configurations.front();
+std::optional<Stance> stance_of(const mechanism::Mechanism& mechanism) {
+  const mechanism::Configuration start =
+      mechanism::solve_motion(mechanism, std::vector<double>{0}).configurations.front();
   if (!is_assembled(start)) return std::nullopt;
   return stance_in(mechanism, start);
 }
 
 PathProblem::PathProblem(const Family& family, const TargetPath& target) : family_(family), target_(target) {
-  const Mechanism& mechanism = family.original();
+  const mechanism::Mechanism& mechanism = family.original();
   size_ = mechanism.largest_length();
-  must_turn_ = !find_obstacle(mechanism, decompose(mechanism));
+  must_turn_ = !mechanism::find_obstacle(mechanism, mechanism::decompose(mechanism));
   original_ = {family.values(), stance_in(mechanism, turn_of(mechanism).configurations.front())};
   restart();
   if (residuals(original_.values)) return;
   throw SynthesisError(
       SynthesisError::Kind::request,
-      Diagnostic{{target.file, {}},
-                 fmt::format("point '{}' cannot be followed: the mechanism does not close where column '{}' "
-                             "wants it",
-                             mechanism.points[target.point].name, target.timing),
-                 "targets within the motion of the mechanism",
-                 fmt::format("oblique solve {} tells where it is open", mechanism.file)});
+      text::Diagnostic{
+          {target.file, {}},
+          fmt::format("point '{}' cannot be followed: the mechanism does not close where column '{}' "
+                      "wants it",
+                      mechanism.points[target.point].name, target.timing),
+          "targets within the motion of the mechanism",
+          fmt::format("oblique solve {} tells where it is open", mechanism.file)});
 }
 
 void PathProblem::restart() {
   here_ = original_;
 }
 
-Motion PathProblem::turn_of(const Mechanism& mechanism) const {
-  return solve_motion(mechanism, kRows);
+mechanism::Motion PathProblem::turn_of(const mechanism::Mechanism& mechanism) const {
+  return mechanism::solve_motion(mechanism, kRows);
 }
 
-VectorXd PathProblem::accelerations_in(const Motion& turn) const {
-  const Mechanism& mechanism = family_.original();
+VectorXd PathProblem::accelerations_in(const mechanism::Motion& turn) const {
+  const mechanism::Mechanism& mechanism = family_.original();
   const double speed = mechanism.drives.front().speed;
   VectorXd accelerations(std::ssize(mechanism.bodies) * std::ssize(turn.configurations));
   Index at = 0;
-  for (const Configuration& configuration : turn.configurations) {
-    for (const BodyState& body : configuration.bodies) {
+  for (const mechanism::Configuration& configuration : turn.configurations) {
+    for (const mechanism::BodyState& body : configuration.bodies) {
       accelerations[at++] = body.alpha / (speed * speed);
     }
   }
@@ -102,7 +104,7 @@ std::optional<Stance> PathProblem::walk_to(const VectorXd& values) const {
   const auto steps = static_cast<long>(std::ceil(way.cwiseAbs().maxCoeff() / (kModeStep * size_)));
   Stance stance = here_.stance;
   for (long k = 1; k < steps; ++k) {
-    Mechanism between =
+    mechanism::Mechanism between =
         family_.mechanism(here_.values + static_cast<double>(k) / static_cast<double>(steps) * way);
     between.sketch = stance;
     const auto next = stance_of(between);
@@ -112,10 +114,11 @@ std::optional<Stance> PathProblem::walk_to(const VectorXd& values) const {
   return stance;
 }
 
-std::optional<std::vector<PathCurve::Foot>> PathProblem::timed_feet(const Mechanism& mechanism) const {
+std::optional<std::vector<PathCurve::Foot>> PathProblem::timed_feet(
+    const mechanism::Mechanism& mechanism) const {
   std::vector<double> times{0};  // the motion begins at the start, where the mode is known
   times.insert(times.end(), target_.times.begin(), target_.times.end());
-  const Motion motion = solve_motion(mechanism, times);
+  const mechanism::Motion motion = mechanism::solve_motion(mechanism, times);
   std::vector<PathCurve::Foot> feet;
   for (std::size_t k = 0; k < target_.times.size(); ++k) {
     if (!is_assembled(motion.configurations[k + 1])) return std::nullopt;
@@ -128,14 +131,15 @@ std::optional<std::vector<PathCurve::Foot>> PathProblem::timed_feet(const Mechan
 
 std::optional<PathProblem::Solved> PathProblem::solve(const VectorXd& values, const Stance& near) {
   ++members_tried_;
-  Mechanism mechanism = family_.mechanism(values);
+  mechanism::Mechanism mechanism = family_.mechanism(values);
   mechanism.sketch = near;
-  const Motion turn = turn_of(mechanism);
+  const mechanism::Motion turn = turn_of(mechanism);
   if (!is_assembled(turn.configurations.front())) return std::nullopt;
   if (must_turn_) {
-    const bool turns = std::all_of(turn.configurations.begin(), turn.configurations.end(),
-                                   [](const Configuration& c) { return c.status == Status::ok; }) &&
-                       !find_obstacle(mechanism, decompose(mechanism));
+    const bool turns =
+        std::all_of(turn.configurations.begin(), turn.configurations.end(),
+                    [](const mechanism::Configuration& c) { return c.status == mechanism::Status::ok; }) &&
+        !mechanism::find_obstacle(mechanism, mechanism::decompose(mechanism));
     if (!turns) return std::nullopt;
   }
   Solved solved{stance_in(mechanism, turn.configurations.front()), {}, {}};
@@ -163,7 +167,7 @@ std::optional<VectorXd> PathProblem::residuals(const VectorXd& values) {
     if (!solved) return std::nullopt;
     here_ = {values, std::move(solved->stance)};
     return two_columns(solved->feet, solved->accelerations);
-  } catch (const MechanismError&) {  // no such mechanism, or it cannot be assembled at the start
+  } catch (const mechanism::MechanismError&) {  // no such mechanism, or it cannot be assembled at the start
     return std::nullopt;
   }
 }
@@ -172,7 +176,7 @@ std::optional<PathProblem::Perturbed> PathProblem::perturb(const VectorXd& value
                                                            const std::vector<PathCurve::Foot>& feet) {
   try {
     ++members_tried_;
-    Mechanism mechanism = family_.mechanism(values);
+    mechanism::Mechanism mechanism = family_.mechanism(values);
     mechanism.sketch = here_.stance;
     Perturbed perturbed;
     if (!target_.times.empty()) {
@@ -183,7 +187,7 @@ std::optional<PathProblem::Perturbed> PathProblem::perturb(const VectorXd& value
       }
       if (barrier_ == 0) return perturbed;
     }
-    const Motion turn = turn_of(mechanism);
+    const mechanism::Motion turn = turn_of(mechanism);
     if (barrier_ > 0) perturbed.accelerations = weight_of_an_acceleration() * accelerations_in(turn);
     if (!perturbed.accelerations.allFinite()) return std::nullopt;
     if (!target_.times.empty()) return perturbed;
@@ -194,7 +198,7 @@ std::optional<PathProblem::Perturbed> PathProblem::perturb(const VectorXd& value
       perturbed.places.push_back(*place);
     }
     return perturbed;
-  } catch (const MechanismError&) {
+  } catch (const mechanism::MechanismError&) {
     return std::nullopt;
   }
 }
@@ -234,7 +238,7 @@ MatrixXd PathProblem::jacobian(const VectorXd& values) {
 }
 
 VectorXd PathProblem::accelerations(const VectorXd& values, const Stance& stance) const {
-  Mechanism mechanism = family_.mechanism(values);
+  mechanism::Mechanism mechanism = family_.mechanism(values);
   mechanism.sketch = stance;
   return accelerations_in(turn_of(mechanism));
 }
@@ -242,25 +246,25 @@ VectorXd PathProblem::accelerations(const VectorXd& values, const Stance& stance
 std::optional<double> PathProblem::effect_of(Index dimension) {
   constexpr double kStep = 1e-3;  // of the width of the bounds
   restart();
-  const auto path = [&](double change) -> std::optional<Motion> {
+  const auto path = [&](double change) -> std::optional<mechanism::Motion> {
     VectorXd values = original_.values;
     values[dimension] += change * (family_.upper()[dimension] - family_.lower()[dimension]);
     try {
-      Mechanism mechanism = family_.mechanism(values);
+      mechanism::Mechanism mechanism = family_.mechanism(values);
       mechanism.sketch = original_.stance;
       return turn_of(mechanism);
-    } catch (const MechanismError&) {
+    } catch (const mechanism::MechanismError&) {
       return std::nullopt;
     }
   };
   auto moved = path(kStep);
   if (!moved) moved = path(-kStep);
   if (!moved) return std::nullopt;
-  const Motion still = turn_of(family_.original());
+  const mechanism::Motion still = turn_of(family_.original());
   double largest = 0;
   for (std::size_t row = 0; row < still.configurations.size(); ++row) {
-    const Configuration& a = still.configurations[row];
-    const Configuration& b = moved->configurations[row];
+    const mechanism::Configuration& a = still.configurations[row];
+    const mechanism::Configuration& b = moved->configurations[row];
     // a row that opens or closes is an effect too
     if (is_assembled(a) != is_assembled(b)) return size_;
     if (!is_assembled(a)) continue;
@@ -270,4 +274,4 @@ std::optional<double> PathProblem::effect_of(Index dimension) {
   return largest;
 }
 
-}  // namespace oblique
+}  // namespace oblique::synthesis

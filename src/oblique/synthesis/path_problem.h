@@ -10,13 +10,13 @@
 #include <oblique/synthesis/path_curve.h>
 #include <oblique/synthesis/target_path.h>
 
-namespace oblique {
+namespace oblique::synthesis {
 
 /// Where all moving points stand at the start; as a sketch it picks the assembly mode nearest to it.
-using Stance = std::vector<SketchPoint>;
+using Stance = std::vector<mechanism::SketchPoint>;
 
 /// The stance of a mechanism as its sketch picks it, or nothing where it cannot be assembled there.
-std::optional<Stance> stance_of(const Mechanism& mechanism);
+std::optional<Stance> stance_of(const mechanism::Mechanism& mechanism);
 
 /// How far the members of a family are from a target path.
 ///
@@ -82,9 +82,9 @@ class PathProblem {
   std::optional<Stance> walk_to(const Eigen::VectorXd& values) const;
   std::optional<Solved> solve(const Eigen::VectorXd& values, const Stance& near);
   std::optional<Perturbed> perturb(const Eigen::VectorXd& values, const std::vector<PathCurve::Foot>& feet);
-  std::optional<std::vector<PathCurve::Foot>> timed_feet(const Mechanism& mechanism) const;
-  Motion turn_of(const Mechanism& mechanism) const;
-  Eigen::VectorXd accelerations_in(const Motion& turn) const;
+  std::optional<std::vector<PathCurve::Foot>> timed_feet(const mechanism::Mechanism& mechanism) const;
+  mechanism::Motion turn_of(const mechanism::Mechanism& mechanism) const;
+  Eigen::VectorXd accelerations_in(const mechanism::Motion& turn) const;
   double weight_of_an_acceleration() const;
 
   const Family& family_;
@@ -97,4 +97,4 @@ class PathProblem {
   std::size_t members_tried_ = 0;
 };
 
-}  // namespace oblique
+}  // namespace oblique::synthesis

@@ -8,11 +8,11 @@
 
 #include <fmt/format.h>
 
-#include <oblique/mechanism/motion.h>
+#include <oblique/mechanism/motion/motion.h>
 #include <oblique/synthesis/synthesis_error.h>
 #include <oblique/text/csv.h>
 
-namespace oblique {
+namespace oblique::synthesis {
 namespace {
 
 /// Times may span a turn and the rounding of a table with few digits (6.2832 for 2π).
@@ -20,7 +20,8 @@ constexpr double kOneTurn = 1 + 1e-4;
 
 class TargetPathReader {
  public:
-  TargetPathReader(const CsvTable& table, const std::string& file, const Mechanism& mechanism)
+  TargetPathReader(const text::CsvTable& table, const std::string& file,
+                   const mechanism::Mechanism& mechanism)
       : table_(table), mechanism_(mechanism) {
     path_.file = file;
   }
@@ -39,14 +40,14 @@ class TargetPathReader {
 
   bool is_timing(const std::string& name) const {
     return name == "t" || std::any_of(mechanism_.drives.begin(), mechanism_.drives.end(),
-                                      [&](const Drive& drive) { return drive.name == name; });
+                                      [&](const mechanism::Drive& drive) { return drive.name == name; });
   }
 
   void check_columns() const {
     const auto& names = table_.names;
     for (const std::string& name : names) {
       if (!is_coordinate(name) && !is_timing(name)) {
-        fail(fmt::format("column '{}' belongs to no path", name), expected(), suggest(name, known()));
+        fail(fmt::format("column '{}' belongs to no path", name), expected(), text::suggest(name, known()));
       }
       if (std::count(names.begin(), names.end(), name) > 1)
         fail(fmt::format("there are two columns '{}'", name), "one of each", {});
@@ -64,15 +65,15 @@ class TargetPathReader {
       }
       point = owner;
     }
-    if (!point) fail("there are no columns of a point", expected(), suggest({}, known()));
+    if (!point) fail("there are no columns of a point", expected(), text::suggest({}, known()));
     const auto index = mechanism_.find_point(*point);
     if (!index) {
       fail(fmt::format("column '{}.x': the mechanism has no point '{}'", *point, *point), expected(),
-           suggest(*point, moving_points()));
+           text::suggest(*point, moving_points()));
     }
     if (mechanism_.points[*index].fixed) {
       fail(fmt::format("point '{}' is fixed in the frame and has no path", *point), expected(),
-           suggest({}, moving_points()));
+           text::suggest({}, moving_points()));
     }
     path_.point = *index;
     const std::vector<double>& x = column(*point + ".x");
@@ -96,9 +97,9 @@ class TargetPathReader {
       path_.times = *table_.find(name);
     }
     if (path_.timing.empty() || path_.timing == "t") return;
-    const Drive& drive =
+    const mechanism::Drive& drive =
         *std::find_if(mechanism_.drives.begin(), mechanism_.drives.end(),
-                      [&](const Drive& candidate) { return candidate.name == path_.timing; });
+                      [&](const mechanism::Drive& candidate) { return candidate.name == path_.timing; });
     for (double& value : path_.times) value = (value - drive.start) / drive.speed;
   }
 
@@ -110,7 +111,7 @@ class TargetPathReader {
     }
     if (path_.times.empty()) return;
     const auto [first, last] = std::minmax_element(path_.times.begin(), path_.times.end());
-    const double turns = (*last - *first) / period(mechanism_);
+    const double turns = (*last - *first) / mechanism::period(mechanism_);
     if (turns <= kOneTurn) return;
     fail(fmt::format("column '{}' spans {:.6g} turns of drive '{}'", path_.timing, turns,
                      mechanism_.drives.front().name),
@@ -134,7 +135,7 @@ class TargetPathReader {
 
   std::vector<std::string> moving_points() const {
     std::vector<std::string> names;
-    for (const Point& point : mechanism_.points) {
+    for (const mechanism::Point& point : mechanism_.points) {
       if (!point.fixed) names.push_back(point.name);
     }
     return names;
@@ -146,7 +147,7 @@ class TargetPathReader {
       names.push_back(point + ".x");
       names.push_back(point + ".y");
     }
-    for (const Drive& drive : mechanism_.drives) names.push_back(drive.name);
+    for (const mechanism::Drive& drive : mechanism_.drives) names.push_back(drive.name);
     names.emplace_back("t");
     return names;
   }
@@ -158,19 +159,20 @@ class TargetPathReader {
   [[noreturn]] void fail(std::string what, std::string expected, std::string remedy) const {
     throw SynthesisError(
         SynthesisError::Kind::request,
-        Diagnostic{{path_.file, {}}, std::move(what), std::move(expected), std::move(remedy)});
+        text::Diagnostic{{path_.file, {}}, std::move(what), std::move(expected), std::move(remedy)});
   }
 
-  const CsvTable& table_;
-  const Mechanism& mechanism_;
+  const text::CsvTable& table_;
+  const mechanism::Mechanism& mechanism_;
   TargetPath path_;
 };
 
 }  // namespace
 
-TargetPath read_target_path(std::string_view csv, const std::string& file, const Mechanism& mechanism) {
-  const CsvTable table = parse_csv(csv, file);
+TargetPath read_target_path(std::string_view csv, const std::string& file,
+                            const mechanism::Mechanism& mechanism) {
+  const text::CsvTable table = text::parse_csv(csv, file);
   return TargetPathReader(table, file, mechanism).read();
 }
 
-}  // namespace oblique
+}  // namespace oblique::synthesis

@@ -8,9 +8,9 @@
 
 #include <Eigen/Core>
 
-#include <oblique/mechanism/mechanism.h>
+#include <oblique/mechanism/model/mechanism.h>
 
-namespace oblique {
+namespace oblique::synthesis {
 
 /// Where a point of a mechanism is wanted.
 struct TargetPath {
@@ -24,6 +24,7 @@ struct TargetPath {
 /// Reads a table (CSV) with the columns `P.x` and `P.y` [length unit] of one moving point P, and at most one
 /// of `t` [s] and the name of a drive [rad]. Throws ReadError, and SynthesisError (kind `request`) where
 /// columns or numbers make no such path, or where its times span more than one turn of the first drive.
-TargetPath read_target_path(std::string_view csv, const std::string& file, const Mechanism& mechanism);
+TargetPath read_target_path(std::string_view csv, const std::string& file,
+                            const mechanism::Mechanism& mechanism);
 
-}  // namespace oblique
+}  // namespace oblique::synthesis

@@ -3,13 +3,13 @@
 
 #include <algorithm>
 
-namespace oblique {
+namespace oblique::synthesis {
 namespace {
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 /// Positions count characters, each of which may be several bytes of UTF-8.
-std::size_t byte_of(std::string_view text, SourcePosition position) {
+std::size_t byte_of(std::string_view text, text::SourcePosition position) {
   std::size_t at = text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
   for (int line = 1; line < position.line; ++line) at = text.find('\n', at) + 1;
   const auto goes_on = [&] {
@@ -24,8 +24,8 @@ std::size_t byte_of(std::string_view text, SourcePosition position) {
 
 bool is_utf8(std::string_view text) {
   try {
-    parse_document("# " + std::string(text) + "\n", {});
-  } catch (const ReadError&) {
+    text::parse_document("# " + std::string(text) + "\n", {});
+  } catch (const text::ReadError&) {
     return false;
   }
   return true;
@@ -33,9 +33,9 @@ bool is_utf8(std::string_view text) {
 
 }  // namespace
 
-TextRange range_of(std::string_view text, const Value& value) {
+TextRange range_of(std::string_view text, const text::Value& value) {
   const std::size_t begin = byte_of(text, value.position);
-  if (value.kind != Value::Kind::string) {
+  if (value.kind != text::Value::Kind::string) {
     return {begin, std::min(text.find_first_of(",]}# \t\r\n", begin), text.size())};
   }
   const std::string_view quote =
@@ -70,4 +70,4 @@ std::string with_comment(std::string_view text, std::string comment) {
   return result += text.substr(begin);
 }
 
-}  // namespace oblique
+}  // namespace oblique::synthesis

@@ -8,7 +8,7 @@
 
 #include <oblique/text/document.h>
 
-namespace oblique {
+namespace oblique::synthesis {
 
 /// The bytes [begin, end) of a text.
 struct TextRange {
@@ -17,7 +17,7 @@ struct TextRange {
 };
 
 /// Where a number or a string (with its quotes) stands in the text that it was read from.
-TextRange range_of(std::string_view text, const Value& value);
+TextRange range_of(std::string_view text, const text::Value& value);
 
 /// What shall stand in a range.
 struct Replacement {
@@ -32,4 +32,4 @@ std::string replace_ranges(std::string_view text, std::vector<Replacement> repla
 /// What cannot stand in a comment is replaced by '?'.
 std::string with_comment(std::string_view text, std::string comment);
 
-}  // namespace oblique
+}  // namespace oblique::synthesis

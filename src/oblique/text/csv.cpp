@@ -10,7 +10,7 @@
 #include <oblique/text/expression_grammar.h>
 #include <oblique/text/quantity.h>
 
-namespace oblique {
+namespace oblique::text {
 namespace {
 
 constexpr std::string_view kSpace = " \t\r\x1a";  // with the end of a DOS file
@@ -242,4 +242,4 @@ CsvTable parse_csv(std::string_view text, const std::string& file) {
   return CsvReader(utf8_of_latin1(text), file).read();
 }
 
-}  // namespace oblique
+}  // namespace oblique::text

@@ -9,7 +9,7 @@
 
 #include <oblique/text/diagnostic.h>
 
-namespace oblique {
+namespace oblique::text {
 
 /// The name of a column and, where it tells one, its unit: "t [ms]", "t (ms)", "t/ms" and "t in ms" are t in
 /// ms. Of "u/V" V is the unit, of "a/b" (where b is none) nothing; in brackets any text is.
@@ -39,4 +39,4 @@ struct CsvTable {
 /// with the place of what is no number.
 CsvTable parse_csv(std::string_view text, const std::string& file);
 
-}  // namespace oblique
+}  // namespace oblique::text

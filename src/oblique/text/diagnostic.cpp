@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-namespace oblique {
+namespace oblique::text {
 
 std::string to_string(const Diagnostic& diagnostic) {
   std::string text;
@@ -101,4 +101,4 @@ std::string suggest(std::string_view name, const std::vector<std::string>& candi
   return text;
 }
 
-}  // namespace oblique
+}  // namespace oblique::text

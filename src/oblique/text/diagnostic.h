@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace oblique {
+namespace oblique::text {
 
 /// Where something stands in a text; lines and columns count from 1, 0 means "not known".
 struct SourcePosition {
@@ -83,4 +83,4 @@ std::optional<std::string> nearest_name(std::string_view name, const std::vector
 /// "did you mean 'x'?" for a near candidate, otherwise "known: a, b, c" (or nothing without candidates).
 std::string suggest(std::string_view name, const std::vector<std::string>& candidates);
 
-}  // namespace oblique
+}  // namespace oblique::text

@@ -9,7 +9,7 @@
 
 #include <oblique/text/diagnostic.h>
 
-namespace oblique {
+namespace oblique::text {
 
 struct Entry;
 
@@ -59,4 +59,4 @@ Document parse_document(std::string_view text, std::string file);
 /// `read_file` and `parse_document`.
 Document read_document(const std::filesystem::path& path);
 
-}  // namespace oblique
+}  // namespace oblique::text

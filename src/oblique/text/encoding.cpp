@@ -6,7 +6,7 @@
 
 #include <oblique/text/diagnostic.h>
 
-namespace oblique {
+namespace oblique::text {
 namespace {
 
 unsigned char byte_at(std::string_view text, std::size_t at) {
@@ -109,4 +109,4 @@ std::string utf8_of_latin1(std::string_view text) {
   return out;
 }
 
-}  // namespace oblique
+}  // namespace oblique::text

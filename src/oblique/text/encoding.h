@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace oblique {
+namespace oblique::text {
 
 /// The text behind its byte order mark, where it has one. Throws ReadError for a text in UTF-16; `file` is
 /// the name that the message gives.
@@ -23,4 +23,4 @@ bool is_visible(std::string_view text);
 /// A text in Latin-1 as UTF-8.
 std::string utf8_of_latin1(std::string_view text);
 
-}  // namespace oblique
+}  // namespace oblique::text

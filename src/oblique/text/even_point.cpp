@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace oblique {
+namespace oblique::text {
 
 std::vector<double> even_point(int k, std::size_t dimensions) {
   double g = 2;
@@ -16,4 +16,4 @@ std::vector<double> even_point(int k, std::size_t dimensions) {
   return point;
 }
 
-}  // namespace oblique
+}  // namespace oblique::text

@@ -11,7 +11,7 @@
 
 #include <oblique/text/expression_grammar.h>
 
-namespace oblique {
+namespace oblique::text {
 namespace {
 
 constexpr std::size_t kAny = 1000;
@@ -191,4 +191,4 @@ bool is_identifier(std::string_view text) {
          std::all_of(text.begin(), text.end(), [](char c) { return is_letter(c) || is_digit(c); });
 }
 
-}  // namespace oblique
+}  // namespace oblique::text

@@ -10,7 +10,7 @@
 
 #include <oblique/text/diagnostic.h>
 
-namespace oblique {
+namespace oblique::text {
 
 /// The functions of the expression language.
 // clang-format off
@@ -90,4 +90,4 @@ double evaluate(Function function, std::span<const double> arguments);
 /// True for an identifier: `[A-Za-z_][A-Za-z0-9_]*`.
 bool is_identifier(std::string_view text);
 
-}  // namespace oblique
+}  // namespace oblique::text

@@ -7,7 +7,7 @@
 #include <oblique/text/expression.h>
 
 // What the parser and the printer of expressions must agree on; not installed.
-namespace oblique {
+namespace oblique::text {
 
 /// Binary operators by precedence; `^` binds tightest and to the right, everything else to the left.
 enum Precedence { kOr = 1, kAnd, kNot, kComparison, kSum, kProduct, kNegation, kPower, kAtom };
@@ -59,4 +59,4 @@ inline bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-}  // namespace oblique
+}  // namespace oblique::text

@@ -9,7 +9,7 @@
 
 #include <oblique/text/expression_grammar.h>
 
-namespace oblique {
+namespace oblique::text {
 namespace {
 
 [[noreturn]] void fail(std::size_t offset, std::string what, std::string expected = {},
@@ -264,4 +264,4 @@ Expression parse_expression(std::string_view text) {
   return expression;
 }
 
-}  // namespace oblique
+}  // namespace oblique::text

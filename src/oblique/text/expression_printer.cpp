@@ -7,7 +7,7 @@
 
 #include <oblique/text/expression_grammar.h>
 
-namespace oblique {
+namespace oblique::text {
 namespace {
 
 int precedence_of(const Expression& e) {
@@ -84,4 +84,4 @@ std::string to_string(const Expression& expression) {
   return out;
 }
 
-}  // namespace oblique
+}  // namespace oblique::text

@@ -16,7 +16,7 @@
 #include <oblique/text/new_file.h>
 #include <oblique/text/output_claim.h>
 
-namespace oblique {
+namespace oblique::text {
 namespace {
 
 constexpr std::size_t kPiece = 16'384;      ///< read at once [bytes]
@@ -91,4 +91,4 @@ void check_ending(const std::filesystem::path& path, std::span<const std::string
                              {}});
 }
 
-}  // namespace oblique
+}  // namespace oblique::text

@@ -7,7 +7,7 @@
 #include <atomic>
 #include <cerrno>
 
-namespace oblique {
+namespace oblique::text {
 namespace {
 
 constexpr std::size_t kMost = 512, kLongest = 511;
@@ -57,4 +57,4 @@ void clear_away_leftovers() noexcept {
   errno = before;
 }
 
-}  // namespace oblique
+}  // namespace oblique::text

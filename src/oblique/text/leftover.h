@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <string_view>
 
-namespace oblique {
+namespace oblique::text {
 
 /// A file or a folder that is to go before the program ends, however it ends: as long as this lives,
 /// `clear_away_leftovers` deletes it. Takes no memory. Not installed.
@@ -28,4 +28,4 @@ class Leftover {
 /// called.
 void clear_away_leftovers() noexcept;
 
-}  // namespace oblique
+}  // namespace oblique::text

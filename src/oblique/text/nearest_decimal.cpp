@@ -4,7 +4,7 @@
 #include <array>
 #include <charconv>
 
-namespace oblique {
+namespace oblique::text {
 
 double nearest_decimal(double value, int digits) {
   std::array<char, 32> text{};  // a sign, 17 digits, a point and an exponent
@@ -16,4 +16,4 @@ double nearest_decimal(double value, int digits) {
   return rounded;
 }
 
-}  // namespace oblique
+}  // namespace oblique::text

@@ -16,7 +16,7 @@
 #include <oblique/text/diagnostic.h>
 #include <oblique/text/output_claim.h>
 
-namespace oblique {
+namespace oblique::text {
 namespace {
 
 /// What is smaller is collected: large enough that the system's work for a call does not count, small enough
@@ -153,4 +153,4 @@ void NewFile::fail(int reason) const {
                              std::move(remedy)});
 }
 
-}  // namespace oblique
+}  // namespace oblique::text

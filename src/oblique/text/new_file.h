@@ -11,7 +11,7 @@
 
 #include <oblique/text/leftover.h>
 
-namespace oblique {
+namespace oblique::text {
 
 /// A file that is written out of sight and takes its name when it is complete. Before that, or where it never
 /// comes to that, the file that had the name stands untouched and nothing new stands beside it: the bytes go
@@ -53,4 +53,4 @@ class NewFile {
   std::string buffer_;
 };
 
-}  // namespace oblique
+}  // namespace oblique::text

@@ -7,7 +7,7 @@
 
 #include <oblique/text/expression.h>
 
-namespace oblique {
+namespace oblique::text {
 namespace {
 
 /// ∫ (quintic B-spline)², which is the value of the B-spline of degree 11 at its centre.
@@ -70,4 +70,4 @@ double noise(double x, double seed, int derivative) {
   return sum / std::sqrt(kMeanSquare);
 }
 
-}  // namespace oblique
+}  // namespace oblique::text

@@ -13,7 +13,7 @@
 
 #include <oblique/text/diagnostic.h>
 
-namespace oblique {
+namespace oblique::text {
 namespace {
 
 /// What is claimed in this program, by any of its threads.
@@ -89,4 +89,4 @@ void OutputClaim::refuse_input(int descriptor, const std::filesystem::path& path
   }
 }
 
-}  // namespace oblique
+}  // namespace oblique::text

@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-namespace oblique {
+namespace oblique::text {
 
 /// Where a name for a file leads: links are followed, also one to a file that is not there yet. Throws
 /// std::system_error for links in a circle.
@@ -45,4 +45,4 @@ class OutputClaim {
   std::optional<FileIdentity> identity_;
 };
 
-}  // namespace oblique
+}  // namespace oblique::text

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-namespace oblique {
+namespace oblique::text {
 
 /// A function given by points, joined by straight lines of which the first and the last go on: `x` ascending,
 /// at least two, and as many `y`. Two points of one x are a jump there, after which the second holds; never
@@ -13,4 +13,4 @@ struct PointTable {
   bool operator==(const PointTable&) const = default;
 };
 
-}  // namespace oblique
+}  // namespace oblique::text

@@ -10,7 +10,7 @@
 
 #include <oblique/text/expression_grammar.h>
 
-namespace oblique {
+namespace oblique::text {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -211,4 +211,4 @@ double unit_factor(std::string_view text, std::size_t rest, const Unit& wanted, 
                         std::move(remedy)};
 }
 
-}  // namespace oblique
+}  // namespace oblique::text

@@ -8,7 +8,7 @@
 
 #include <oblique/text/expression.h>
 
-namespace oblique {
+namespace oblique::text {
 
 /// A unit of measure: its name, its size in coherent base units (m, s, rad, kg, V, machine unit), and its
 /// dimension. An angle is a dimension of its own, so that "60 rpm" in rad/s is never mistaken for 1; where
@@ -46,4 +46,4 @@ double parse_quantity(std::string_view text, const Unit& wanted, const NameLooku
 double unit_factor(std::string_view text, std::size_t rest, const Unit& wanted,
                    const NameLookup& lookup = {});
 
-}  // namespace oblique
+}  // namespace oblique::text

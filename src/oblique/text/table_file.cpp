@@ -10,7 +10,7 @@
 #include <oblique/text/document.h>
 #include <oblique/text/table_format.h>
 
-namespace oblique {
+namespace oblique::text {
 namespace {
 
 static_assert(std::endian::native == std::endian::little,
@@ -64,4 +64,4 @@ void TableFile::finish() {
   file_->commit();
 }
 
-}  // namespace oblique
+}  // namespace oblique::text

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-namespace oblique {
+namespace oblique::text {
 
 /// A column of a table of numbers.
 struct TableColumn {
@@ -68,4 +68,4 @@ class TableFile {
   std::unique_ptr<TableFormat> format_;
 };
 
-}  // namespace oblique
+}  // namespace oblique::text

@@ -12,7 +12,7 @@
 #include <oblique/text/new_file.h>
 #include <oblique/text/table_file.h>
 
-namespace oblique {
+namespace oblique::text {
 
 /// How the rows of a table become the bytes of a file; what stands before the rows is written when it is
 /// made. Not installed.
@@ -37,4 +37,4 @@ std::string_view bytes_of(std::span<const double> numbers);
 /// with its number; it is taken then.
 std::string take_name(const std::string& name, std::set<std::string>& taken, std::size_t most);
 
-}  // namespace oblique
+}  // namespace oblique::text

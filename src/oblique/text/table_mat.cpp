@@ -12,7 +12,7 @@
 #include <oblique/text/diagnostic.h>
 #include <oblique/text/table_format.h>
 
-namespace oblique {
+namespace oblique::text {
 namespace {
 
 /// `namelengthmax` of MATLAB.
@@ -175,4 +175,4 @@ std::unique_ptr<TableFormat> make_mat_format(NewFile& file, const std::vector<Ta
   return std::make_unique<MatFormat>(file, columns, rows);
 }
 
-}  // namespace oblique
+}  // namespace oblique::text

@@ -10,7 +10,7 @@
 
 #include <oblique/text/table_format.h>
 
-namespace oblique {
+namespace oblique::text {
 namespace {
 
 /// A string of Python.
@@ -80,4 +80,4 @@ std::unique_ptr<TableFormat> make_npy_format(NewFile& file, const std::vector<Ta
   return std::make_unique<NpyFormat>(file);
 }
 
-}  // namespace oblique
+}  // namespace oblique::text

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-namespace oblique {
+namespace oblique::text {
 
 TableReader::TableReader(std::string file, const Value& table, std::string what, Diagnostics& diagnostics)
     : file_(std::move(file)), table_(&table), what_(std::move(what)), diagnostics_(&diagnostics) {
@@ -197,4 +197,4 @@ bool check_format(TableReader& reader, std::string_view expected) {
   return kind == kKinds.end();
 }
 
-}  // namespace oblique
+}  // namespace oblique::text

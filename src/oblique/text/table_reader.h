@@ -9,7 +9,7 @@
 #include <oblique/text/document.h>
 #include <oblique/text/quantity.h>
 
-namespace oblique {
+namespace oblique::text {
 
 /// Reads the keys of one table, adding every finding to a `Diagnostics` instead of stopping at the first.
 /// Each getter marks its key as known; `finish` reports the keys nobody asked for, with the nearest known
@@ -89,4 +89,4 @@ std::optional<ExpectedValue> read_expected_value(TableReader& reader, const Unit
 /// kind, of which nothing else is worth a finding.
 [[nodiscard]] bool check_format(TableReader& reader, std::string_view expected);
 
-}  // namespace oblique
+}  // namespace oblique::text

@@ -10,7 +10,7 @@
 #include <oblique/text/encoding.h>
 #include <oblique/text/table_format.h>
 
-namespace oblique {
+namespace oblique::text {
 namespace {
 
 /// A field of a CSV file; quoted where it has to be (RFC 4180). What a spreadsheet would take for a formula
@@ -154,4 +154,4 @@ std::unique_ptr<TableFormat> make_json_format(NewFile& file, const std::vector<T
   return std::make_unique<JsonFormat>(file, columns);
 }
 
-}  // namespace oblique
+}  // namespace oblique::text

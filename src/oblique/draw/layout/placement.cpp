@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <oblique/draw/layout/layers.h>
+
+namespace oblique::draw::layered {
+namespace {
+
+constexpr int kMeanSweeps = 12;
+constexpr int kMedianSweeps = 24;
+
+/// Where something should be, and how much it matters.
+struct Wish {
+  double y;
+  double weight;
+};
+
+double mean(const std::vector<Wish>& wishes) {
+  double sum = 0, weights = 0;
+  for (const Wish& wish : wishes) {
+    sum += wish.weight * wish.y;
+    weights += wish.weight;
+  }
+  return sum / weights;
+}
+
+double median(std::vector<Wish> wishes) {
+  std::sort(wishes.begin(), wishes.end(), [](const Wish& a, const Wish& b) { return a.y < b.y; });
+  double half = 0;
+  for (const Wish& wish : wishes) half += wish.weight / 2;
+  for (const Wish& wish : wishes) {
+    half -= wish.weight;
+    if (half <= 0) return wish.y;
+  }
+  return wishes.back().y;
+}
+
+/// The rising sequence nearest to the wishes, by pooling adjacent violators (R. Barlow and others,
+/// "Statistical inference under order restrictions", 1972): nearest in the mean square with `mean`, in the
+/// sum of distances with `median`.
+template <class Centre>
+std::vector<double> rising(std::vector<std::vector<Wish>> wishes, const Centre& centre) {
+  struct Pool {
+    double y;
+    std::size_t members;
+    std::vector<Wish> wishes;
+  };
+  std::vector<Pool> pools;
+  for (auto& own : wishes) {
+    const double y = centre(own);
+    pools.push_back({y, 1, std::move(own)});
+    while (pools.size() > 1 && pools[pools.size() - 2].y > pools.back().y) {
+      Pool last = std::move(pools.back());
+      pools.pop_back();
+      Pool& pool = pools.back();
+      pool.wishes.insert(pool.wishes.end(), last.wishes.begin(), last.wishes.end());
+      pool.members += last.members;
+      pool.y = centre(pool.wishes);
+    }
+  }
+  std::vector<double> result;
+  for (const Pool& pool : pools) result.insert(result.end(), pool.members, pool.y);
+  return result;
+}
+
+class Placement {
+ public:
+  explicit Placement(Plan& plan) : plan_(plan), links_(links_of(plan)) {}
+
+  void run() {
+    for (const auto& layer : plan_.layers) {
+      double y = 0;
+      for (std::size_t k = 0; k < layer.size(); ++k) {
+        if (k > 0) y += distance(plan_, layer[k - 1], layer[k]);
+        plan_.slots[layer[k]].y = y;
+      }
+    }
+    for (int sweep = 0; sweep < kMeanSweeps; ++sweep)
+      sweep_layers(sweep % 2 == 0, sweep < kMeanSweeps / 2, &mean);
+    for (Slot& slot : plan_.slots) slot.y = std::round(slot.y / kLayoutGrid) * kLayoutGrid;
+    for (int sweep = 0; sweep < kMedianSweeps; ++sweep) sweep_layers(sweep % 2 == 0, false, &median);
+    straighten(plan_);
+    double least = std::numeric_limits<double>::max();
+    for (const Slot& slot : plan_.slots) least = std::min(least, slot.y);
+    for (Slot& slot : plan_.slots) slot.y -= least;
+  }
+
+ private:
+  /// Moves the slots of every layer to where their wires are shortest; with `one_side` only those to the
+  /// layer that the sweep comes from.
+  template <class Centre>
+  void sweep_layers(bool to_the_right, bool one_side, const Centre& centre) {
+    const std::size_t n = plan_.layers.size();
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto& layer = plan_.layers[to_the_right ? i : n - 1 - i];
+      std::vector<double> stacked;  // where the slots are when they stand as close as they may
+      std::vector<std::vector<Wish>> wishes;
+      for (std::size_t k = 0; k < layer.size(); ++k) {
+        stacked.push_back(k == 0 ? 0 : stacked.back() + distance(plan_, layer[k - 1], layer[k]));
+        std::vector<Wish> own;
+        for (const SlotLink& link : links_[layer[k]]) {
+          if (one_side && link.before != to_the_right) continue;
+          own.push_back({plan_.slots[link.other].y + link.shift - stacked.back(), link.weight});
+        }
+        if (own.empty()) own.push_back({plan_.slots[layer[k]].y - stacked.back(), 0.01});
+        wishes.push_back(std::move(own));
+      }
+      const std::vector<double> places = rising(std::move(wishes), centre);
+      for (std::size_t k = 0; k < layer.size(); ++k) plan_.slots[layer[k]].y = places[k] + stacked[k];
+    }
+  }
+
+  Plan& plan_;
+  std::vector<std::vector<SlotLink>> links_;  ///< of each slot
+};
+
+void add_link(const Plan& plan, const Branch& branch, const Pin& a, const Pin& b,
+              std::vector<std::vector<SlotLink>>& links) {
+  if (a.slot == b.slot) return;
+  const bool a_passes = plan.slots[a.slot].passes(), b_passes = plan.slots[b.slot].passes();
+  // A long wire is to be straight above all, then a way that no other wire shares.
+  double weight = a_passes && b_passes ? 8 : a_passes || b_passes ? 2 : 3;
+  weight *= branch.weight;
+  const bool same_side = a.left == b.left;
+  if (same_side) {
+    weight = 0.25;  // near, but it has to turn anyway
+  } else if (branch.pins.size() == 2) {
+    weight *= 1.5;
+  }
+  links[a.slot].push_back({b.slot, b.offset - a.offset, weight, !same_side && b.left, same_side});
+  links[b.slot].push_back({a.slot, a.offset - b.offset, weight, !same_side && a.left, same_side});
+}
+
+}  // namespace
+
+std::vector<std::vector<SlotLink>> links_of(const Plan& plan) {
+  std::vector<std::vector<SlotLink>> links(plan.slots.size());
+  for (const auto& channel : plan.channels) {
+    for (const Branch& branch : channel) {
+      for (std::size_t k = 1; k < branch.pins.size(); ++k)
+        add_link(plan, branch, branch.pins[0], branch.pins[k], links);
+    }
+  }
+  return links;
+}
+
+double distance(const Plan& plan, std::size_t upper, std::size_t lower) {
+  constexpr double kBoxGap = 2 * kLayoutGrid;  // between boxes, and between a box and a wire
+  const Slot& above = plan.slots[upper];
+  return above.height + (above.passes() && plan.slots[lower].passes() ? kLayoutGrid : kBoxGap);
+}
+
+void place_slots(Plan& plan) {
+  Placement(plan).run();
+}
+
+}  // namespace oblique::draw::layered

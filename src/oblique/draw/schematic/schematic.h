@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <oblique/diagram/block_library.h>
+#include <oblique/diagram/diagram.h>
+
+/// A diagram as it is drawn: with composites folded or open, and constants at the inputs that they feed. Not
+/// installed.
+namespace oblique::draw::schematic {
+
+/// An output of a block of the same schematic.
+struct Signal {
+  std::size_t block = 0;
+  std::size_t output = 0;
+};
+
+/// A connected input: one term of a sum, or a port that takes one signal.
+struct Input {
+  std::string port;  ///< its name in the block's file
+  std::size_t port_index = 0;
+  double weight = 1;
+  std::optional<Signal> signal;     ///< none where a constant feeds it
+  std::string constant;             ///< what stands at the wire's end then: "+1", "a = 0.3"
+  bool in_loop = false;             ///< the wire is a part of the servo loop that the block is in
+  std::optional<std::size_t> loop;  ///< that the wire's net is a part of
+};
+
+struct Schematic;
+
+/// A block, or on the frame of an open composite one of its ports.
+struct Block {
+  enum class Kind { block, input, output };
+  Kind kind = Kind::block;
+  std::string name;
+  std::string label;                                     ///< may be empty
+  const diagram::BlockDefinition* definition = nullptr;  ///< none for a port
+  std::vector<double> parameters;                        ///< in the order of the definition
+  std::vector<bool> given;                               ///< whether the file gives it
+  std::vector<Input> inputs;
+  std::vector<std::string> outputs;  ///< names: those of the definition, then signals inside that are used
+  std::vector<bool> wired;           ///< whether a wire starts at an output
+  std::vector<std::string> records;  ///< of each output, where it is measured: under what name, in what unit
+  bool inverts = false;
+  std::optional<std::size_t> loop;  ///< the servo loop that it is a part of
+  std::vector<Schematic> inside;    ///< of an open composite: one
+};
+
+/// The blocks of a diagram or of an open composite.
+struct Schematic {
+  std::vector<Block> blocks;
+  std::size_t loops = 0;                                     ///< servo loops
+  const std::vector<diagram::BlockPlace>* layout = nullptr;  ///< as the file has it
+};
+
+/// Resolves the names of a diagram; composites are open `depth` levels deep. Throws DiagramError with all
+/// findings about its wiring and outputs. `diagram` and `library` must outlive the result.
+Schematic make_schematic(const diagram::Diagram& diagram, const diagram::BlockLibrary& library, int depth);
+
+/// Gives every servo loop a number: a block with an open amplifier, and what lies on a way from its output
+/// back to its inputs that leads through no other amplifier with a memory of its own.
+void find_servo_loops(Schematic& schematic);
+
+/// "0.3142": four significant digits, with a true minus sign.
+std::string number_text(double value);
+
+}  // namespace oblique::draw::schematic

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <oblique/mechanism/model/mechanism.h>
+#include <oblique/text/document.h>
+
+namespace oblique::mechanism {
+
+/// Reads one entry of [slides] and adds it to the mechanism, whose points and bodies are known already; a
+/// finding leaves it out.
+void read_slide(const text::Entry& entry, Mechanism& mechanism, text::Diagnostics& diagnostics);
+
+}  // namespace oblique::mechanism

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+#include <oblique/mechanism/motion/tour.h>
+
+namespace oblique::mechanism {
+
+/// A quantity and its rate by time.
+struct SignalValue {
+  double value = 0;
+  double rate = 0;
+};
+
+/// Something that is followed over a tour.
+struct Signal {
+  std::function<SignalValue(const TourWalk&)> at;
+  double scale = 1;      ///< differences far below this are rounding
+  bool has_rate = true;  ///< otherwise extremes are found from values alone
+};
+
+/// A place of a tour and a value there.
+struct Reading {
+  double value = 0;
+  double place = 0;  ///< u
+  double time = 0;   ///< [s]
+  double drive = 0;  ///< value of the first drive [rad] or [length unit]
+};
+
+/// A place where the rate of a signal changes its sign.
+struct TurningPoint : Reading {
+  bool is_greatest = false;  ///< of its neighbourhood; otherwise least
+};
+
+struct SignalScan {
+  std::vector<double> values;       ///< at u = k/samples
+  std::vector<TurningPoint> turns;  ///< in order; of a closed tour one at its beginning is at its end
+  Reading first, last;              ///< at the ends of the tour
+  Reading least, greatest;          ///< ends included
+};
+
+/// Follows signals over a whole tour. Where a rate changes its sign between two samples its zero is found
+/// to the last bits of u; of signals without a rate only the least and the greatest value are refined, to
+/// about 1e-8 of u.
+std::vector<SignalScan> scan(TourWalk& walk, const std::vector<Signal>& signals);
+
+/// A reading of a value where the walk stands.
+Reading read(const TourWalk& walk, double value);
+
+}  // namespace oblique::mechanism

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <oblique/mechanism/motion/follower.h>
+#include <oblique/mechanism/motion/motion.h>
+
+namespace oblique::mechanism {
+
+/// The stretch of a motion that an analysis looks at. Its instants are named by a place u from 0 to 1, in
+/// which the motion is smooth up to its limits: there the velocities grow as 1/√(limit − t), and dt/du falls
+/// as fast.
+struct Tour {
+  enum class Kind {
+    turn,      ///< one turn of the first drive
+    until,     ///< the time that the file gives
+    limits,    ///< from one limit to the other
+    to_limit,  ///< there is a limit on one side only, or before the time that the file gives
+  };
+  Kind kind = Kind::turn;
+  double begin = 0, end = 0;              ///< [s]
+  bool from_limit = false;                ///< it begins at a limit
+  bool at_limit = false;                  ///< it ends at one
+  bool closed = false;                    ///< at its end all points are where they were at its beginning
+  MotionRange range;                      ///< the limits that were found
+  std::vector<MotionEvent> changes = {};  ///< the change points on the way
+  std::size_t samples = 0;                ///< intervals of u in which extremes are looked for
+
+  double duration() const { return end - begin; }
+  double time(double u) const;  ///< [s]
+  double rate(double u) const;  ///< dt/du [s]
+};
+
+/// A turn of the first drive; where limits forbid that, the way between them; where the file says how long it
+/// moves, that. Throws as `find_range` and `cycle`.
+Tour plan_tour(const Mechanism& mechanism, const Structure& structure);
+
+/// A follower that goes by places of a tour. The mechanism and the structure have to outlive it.
+class TourWalk {
+ public:
+  TourWalk(const Mechanism& mechanism, const Structure& structure, Tour tour);
+
+  /// Goes to place `u` in [0, 1]. A dead centre, where rates have no value, is passed by as closely as they
+  /// still have one.
+  const Configuration& go(double u);
+
+  const Mechanism& mechanism() const { return mechanism_; }
+  const Structure& structure() const { return structure_; }
+  const Tour& tour() const { return tour_; }
+  const Configuration& here() const { return *here_; }
+  double place() const { return place_; }
+  double time() const { return time_; }
+  const std::vector<DriveState>& drives() const { return drives_; }
+  double regularity(std::size_t group) const { return follower_.regularity(group); }
+
+ private:
+  const Mechanism& mechanism_;
+  const Structure& structure_;
+  Tour tour_;
+  Follower follower_;
+  DriveClock clock_;
+  const Configuration* here_ = nullptr;
+  std::vector<DriveState> drives_;
+  double place_ = 0, time_ = 0;
+};
+
+}  // namespace oblique::mechanism

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <oblique/mechanism/model/mechanism.h>
+#include <oblique/mechanism/solver/group_equations.h>
+
+namespace oblique::mechanism {
+
+/// What is known about putting a group together. The letters of a class II group are its pairs, from one
+/// known element to the other: R a hinge, P a slide.
+enum class GroupKind : std::uint8_t {
+  crank,    ///< class I: a body turned by a drive about a known point
+  slider,   ///< class I: a point or a body moved by a drive along a known line
+  rrr,      ///< a point at two distances
+  rrp,      ///< a point at a distance and on a line
+  prp,      ///< a point on two lines
+  rpr,      ///< a body hinged to a known point, whose line passes through another
+  rpp,      ///< a body that keeps its direction, whose line passes through a known point
+  triad,    ///< class III: a body on three leads
+  general,  ///< everything else
+};
+
+/// "crank", "RRR", "class III triad" …
+std::string_view kind_name(GroupKind kind);
+
+/// Bodies that only together have a definite place, once the groups before have theirs: a drive, or an Assur
+/// group.
+struct Group {
+  std::string name;  ///< "BC-CD": of its bodies
+  GroupKind kind = GroupKind::general;
+  /// Assur's and Artobolevsky's class, 1 for drives: the number of pairs in its largest closed contour, which
+  /// is a body or a loop of bodies.
+  int assur_class = 2;
+  int order = 2;                    ///< pairs by which it hangs on what is placed before
+  std::vector<std::size_t> bodies;  ///< in file order
+  std::vector<std::size_t> points;  ///< that it places, in the order of Mechanism::points
+  std::vector<std::size_t> slides;  ///< whose pairs belong to it
+  std::vector<std::size_t> drives;
+  GroupEquations equations;
+  /// Which of two assembly modes: +1 or −1; 0 where there is one mode or more than two, and before
+  /// `choose_modes`. RRR: +1 where the hinge lies left of P → Q; other kinds: as in closed_forms.cpp.
+  int side = 0;
+  GroupPose start;  ///< at time 0, as `choose_modes` picked it
+};
+
+/// An RRR dyad by its triangle: body1 hinged to the known P, body2 to the known Q, both to each other in C.
+///
+///            C             C lies left of P → Q: side = +1
+///      r₁  /   \  r₂
+///     P ---- L ---- Q
+struct Dyad {
+  std::size_t body1 = 0, p = 0;  ///< body1 stands before body2 in the file
+  std::size_t body2 = 0, q = 0;
+  std::size_t c = 0;
+  double r1 = 0, r2 = 0;  ///< |PC|, |QC| [length unit]
+  int side = 0;
+};
+
+/// The triangle of a group of kind `rrr`, nothing for other kinds.
+std::optional<Dyad> dyad_of(const Group& group);
+
+/// The known point that a crank turns about (kind `crank`), index in Mechanism::points.
+std::size_t pivot_of(const Group& crank);
+
+/// The groups of a mechanism in an order in which each needs only the ones before it.
+struct Structure {
+  std::vector<Group> groups;
+};
+
+/// Degrees of freedom by Chebyshev's and Grübler's formula W = 3n − 2p − q: n moving bodies; p hinges, where
+/// a point that k bodies share (the frame is one of them) counts as k − 1; q slides, of which one that keeps
+/// an angle counts twice.
+int mobility(const Mechanism& mechanism);
+
+/// Takes a mechanism apart into drives and Assur groups, in file order wherever there is a choice: a perfect
+/// matching of conditions with unknowns orients the graph of bodies and points, and its strongly connected
+/// components are the groups, whatever the matching (A. Shai, A. Sljoka, W. Whiteley, "Directed graphs,
+/// decompositions, and spatial linkages", 2013; A. Dulmage, N. Mendelsohn 1958). No assembly modes are
+/// chosen. Throws MechanismError: kind `mobility` where mobility and drives do not match, in the whole or in
+/// a part.
+Structure find_groups(const Mechanism& mechanism);
+
+/// `find_groups`, and the assembly mode of each group as the sketch picks it at the start position
+/// (`choose_modes`). Throws MechanismError: as both; of conditions that are too many it says whether they
+/// hold all the same (`redundancy_findings`).
+Structure decompose(const Mechanism& mechanism);
+
+}  // namespace oblique::mechanism

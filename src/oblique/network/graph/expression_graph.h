@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+namespace oblique::network {
+
+/// Index of a node of an ExpressionGraph; operands always have smaller indices than the nodes that use them.
+using NodeId = std::uint32_t;
+
+/// What a node computes from its operands.
+enum class Op : std::uint8_t {
+  constant,
+  variable,
+  memory,  ///< held between events: no derivative
+  add,
+  subtract,
+  multiply,
+  divide,
+  power,
+  negate,
+  sin,
+  cos,
+  tan,
+  asin,
+  acos,
+  atan,
+  atan2,
+  exp,
+  log,
+  sqrt,
+  hypot,
+  noise,
+  noise_slope,  ///< d noise/dx
+  select,       ///< a ≠ 0: b, else c; between b and c where 0 < a < 1 (a sliding switch)
+  gate,         ///< a·b, and 0 where a is, even if b is no number: the way a derivative passes `select`
+  less,         ///< 1 or 0; these three are for what changes with events only
+  less_equal,
+  equal,
+  table_value,    ///< straight line of segment b of the table c at a
+  table_slope,    ///< its slope; segment a of table b
+  table_end,      ///< where segment a of table b ends; infinite for the last
+  table_begin,    ///< where it begins; −infinite for the first
+  table_segment,  ///< which segment of table b holds a
+};
+
+/// Number of operands of an operation: 0 to 3.
+int operand_count(Op op);
+
+/// One node: an operation on up to three others, a constant, or a variable or memory known by its number.
+struct Node {
+  Op op = Op::constant;
+  NodeId a = 0;
+  NodeId b = 0;
+  NodeId c = 0;
+  double value = 0;            ///< of a constant
+  std::uint32_t variable = 0;  ///< number of a variable or memory
+  bool continuous = false;     ///< depends on a variable: may change between events
+
+  NodeId operand(int i) const { return i == 0 ? a : i == 1 ? b : c; }
+};
+
+/// Expressions as a directed acyclic graph in which equal sub-expressions are one node. Constants are folded
+/// and neutral operands dropped (x+0, x·1, x·0, x/1, x^1, x^2 = x·x, −−x) as the nodes are made.
+class ExpressionGraph {
+ public:
+  NodeId constant(double value);
+  NodeId variable(std::uint32_t number);
+  NodeId memory(std::uint32_t number);
+
+  /// Applies an operation; the operands beyond its number are ignored. Operands that are tables are constants
+  /// that hold the table's number.
+  NodeId apply(Op op, NodeId a, NodeId b = 0, NodeId c = 0);
+
+  const Node& operator[](NodeId id) const { return nodes_[id]; }
+  std::size_t size() const { return nodes_.size(); }
+
+  bool is_constant(NodeId id) const { return nodes_[id].op == Op::constant; }
+  bool is_constant(NodeId id, double value) const { return is_constant(id) && nodes_[id].value == value; }
+
+  /// Partial derivatives of `root` with respect to every variable it depends on, by variable number, zeros
+  /// left out. Reverse accumulation: the cost is proportional to the sub-graph below `root`. Adds nodes to
+  /// the graph.
+  std::vector<std::pair<std::uint32_t, NodeId>> gradient(NodeId root);
+
+  /// Partial derivative of a node by one of its operands. Adds nodes to the graph.
+  NodeId partial(NodeId id, int operand);
+  /// Whether `slope`, a partial derivative of a node, is a finite number wherever there is one at all.
+  bool has_value_everywhere(NodeId id, NodeId slope) const;
+
+ private:
+  struct Key {
+    Op op;
+    NodeId a, b, c;
+    std::uint64_t bits;  ///< of a constant's value or a variable's number
+    bool operator==(const Key&) const = default;
+  };
+  struct Hash {
+    std::size_t operator()(const Key& key) const;
+  };
+
+  NodeId intern(const Node& node);
+  NodeId simplified(Op op, NodeId a, NodeId b, NodeId c, bool& done);
+  /// adjoint · (partial derivative of a node by one of its operands).
+  NodeId passed_on(NodeId adjoint, NodeId id, int operand);
+
+  std::vector<Node> nodes_;
+  std::unordered_map<Key, NodeId, Hash> index_;
+};
+
+/// The value of an operation on up to two numbers; not of `select` and tables.
+double evaluate(Op op, double a, double b);
+
+/// The value of Op::select.
+double select(double chosen, double b, double c);
+
+}  // namespace oblique::network

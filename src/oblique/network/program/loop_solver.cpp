@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/network/program/loop_solver.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace oblique::network {
+namespace {
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+constexpr int kMostIterations = 100;
+constexpr double kSmallestFraction = 1e-9;  ///< of a Newton step, below which the search along it gives up
+
+/// A step below this, of 1 + |z|, that does not bring the residual down is led by the residual's rounding:
+/// the terms of an equation may be a hundred million times its slope. (A Newton step leads downhill, so along
+/// a longer one that does not, there is no solution.)
+constexpr double kNoise = 1e-8;
+
+/// Size of an unknown for relative tests; the floor only keeps a zero from dividing.
+double magnitude(double z) {
+  return std::abs(z) + std::numeric_limits<double>::min();
+}
+
+Eigen::Index index(std::size_t i) {
+  return static_cast<Eigen::Index>(i);
+}
+
+}  // namespace
+
+LoopWorkspace::LoopWorkspace(std::size_t size)
+    : matrix_(size),
+      step_(index(size), 1),
+      start_(index(size)),
+      origin_(index(size)),
+      target_(index(size)),
+      held_(size) {}
+
+void LoopWorkspace::reset() {
+  solved_ = false;
+  branch_ = 0;
+}
+
+void LoopWorkspace::hold(double t, std::vector<double> unknowns, bool whatever) {
+  held_time_ = t;
+  if (!unknowns.empty()) held_ = std::move(unknowns);
+  held_whatever_ = whatever;
+}
+
+/// Puts start + fraction · step into the unknowns' slots; the largest relative change.
+double LoopWorkspace::move(const LoopCode& loop, double* slots, double fraction) const {
+  double change = 0;
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    const double by = fraction * step_(index(i), 0);
+    slots[loop.unknown_slots[i]] = start_[index(i)] + by;
+    change = std::max(change, std::abs(by) / magnitude(start_[index(i)]));
+  }
+  return change;
+}
+
+void LoopWorkspace::read(const LoopCode& loop, const double* slots, Eigen::VectorXd& unknowns) const {
+  for (std::size_t i = 0; i < loop.size(); ++i) unknowns[index(i)] = slots[loop.unknown_slots[i]];
+}
+
+void LoopWorkspace::write(const LoopCode& loop, double* slots, const Eigen::VectorXd& unknowns) const {
+  for (std::size_t i = 0; i < loop.size(); ++i) slots[loop.unknown_slots[i]] = unknowns[index(i)];
+}
+
+LoopFailure LoopWorkspace::solve_loop(const LoopCode& loop, std::span<const Instruction> tape,
+                                      double* slots) {
+  const auto body = tape.subspan(loop.body.begin, loop.body.end - loop.body.begin);
+  const double t = slots[0];
+  if (t == held_time_ && solves(loop, body, slots, held_)) return LoopFailure::none;
+  if (loop.linear) return solve_linear(loop, body, slots);
+  if (loop.has_branches()) return solve_branched(loop, body, slots);
+  return newton(loop, body, slots).failure;
+}
+
+/// Whether these unknowns solve the loop, as far as an equation tells that has lost its slope.
+bool LoopWorkspace::solves(const LoopCode& loop, std::span<const Instruction> body, double* slots,
+                           std::span<const double> unknowns) {
+  constexpr double kConsistent = 1e-7;  // of the terms of an equation: what is told where a slope is lost
+  for (std::size_t i = 0; i < loop.size(); ++i) slots[loop.unknown_slots[i]] = unknowns[i];
+  run_tape(body, slots);
+  if (held_whatever_) return true;
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    const double residual = slots[loop.residual_slots[i]];
+    double rest = residual, terms = 0;
+    for (const MatrixEntry& entry : loop.slopes) {
+      if (entry.row != i) continue;
+      const double term = slots[entry.slot] * unknowns[entry.column];
+      rest -= term;
+      terms += std::abs(term);
+    }
+    if (!(std::abs(residual) <= kConsistent * (terms + std::abs(rest)))) return false;
+  }
+  return true;
+}
+
+/// One LU. Where the equations are singular for a moment, and are solved by what solved them before, that is
+/// the solution: it passes there smoothly. (For longer than a moment they determine nothing.)
+LoopFailure LoopWorkspace::solve_linear(const LoopCode& loop, std::span<const Instruction> body,
+                                        double* slots) {
+  read(loop, slots, origin_);
+  for (const std::uint32_t slot : loop.unknown_slots) slots[slot] = 0;  // the step rounds as its start does
+  run_tape(body, slots);
+  for (const std::uint32_t slot : loop.residual_slots) {
+    if (!std::isfinite(slots[slot])) return LoopFailure::not_finite;
+  }
+  if (!matrix_.factor(loop, slots)) {
+    if (!solved_) return LoopFailure::singular;
+    held_time_ = slots[0];
+    std::copy(origin_.begin(), origin_.end(), held_.begin());
+    held_whatever_ = false;
+    solved_ = false;
+    return solves(loop, body, slots, held_) ? LoopFailure::none : LoopFailure::singular;
+  }
+  solved_ = true;
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    step_(index(i), 0) = -slots[loop.residual_slots[i]];
+    start_[index(i)] = 0;
+  }
+  if (matrix_.residual_norm(loop, slots) == 0) return LoopFailure::none;
+  matrix_.solve(step_);
+  move(loop, slots, 1);
+  run_tape(body, slots);
+  return step_.allFinite() ? LoopFailure::none : LoopFailure::not_finite;
+}
+
+/// Newton's method from what the slots hold, damped where the residual would grow.
+LoopWorkspace::Search LoopWorkspace::newton(const LoopCode& loop, std::span<const Instruction> body,
+                                            double* slots) {
+  Search search;
+  run_tape(body, slots);
+  double last_change = std::numeric_limits<double>::infinity();
+  bool small = false;
+  int halvings = 0;
+  constexpr int kFewestHalvings = 5;
+  const auto ended = [&](LoopFailure failure) {
+    search.failure = failure;
+    return search;
+  };
+  for (int iteration = 0; iteration < kMostIterations; ++iteration) {
+    for (const std::uint32_t slot : loop.residual_slots) {
+      if (!std::isfinite(slots[slot])) return ended(LoopFailure::not_finite);
+    }
+    // Singular where it started: the loop itself. Singular on the way: a search that found no solution.
+    if (!matrix_.factor(loop, slots))
+      return ended(iteration == 0 ? LoopFailure::singular : LoopFailure::diverged);
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      step_(index(i), 0) = -slots[loop.residual_slots[i]];
+      start_[index(i)] = slots[loop.unknown_slots[i]];
+    }
+    const double norm = matrix_.residual_norm(loop, slots);
+    if (norm == 0) return search;
+    matrix_.solve(step_);
+    small = (step_.col(0).array().abs() < kNoise * (1 + start_.array().abs())).all();
+
+    double fraction = 1;
+    double change = move(loop, slots, fraction);
+    run_tape(body, slots);
+    // Steps at the level of rounding are not judged by the residual, which is noise there.
+    while (change > 1e-13 && !(matrix_.residual_norm(loop, slots) < (1 - 1e-4 * fraction) * norm)) {
+      search.damped = search.damped || !small;
+      fraction /= 2;
+      if (fraction < kSmallestFraction) {
+        if (!small) return ended(LoopFailure::diverged);
+        move(loop, slots, 0);
+        run_tape(body, slots);
+        return search;
+      }
+      change = move(loop, slots, fraction);
+      run_tape(body, slots);
+    }
+    halvings = change > 0.4 * last_change && change < 0.6 * last_change ? halvings + 1 : 0;
+    search.even_order = halvings > kFewestHalvings;
+    const bool stagnates = change < 1e-10 && change > last_change / 2;
+    if (change < 2 * kEpsilon || stagnates) return search;
+    last_change = change;
+  }
+  // rounding that a step now and then makes smaller
+  return ended(small ? LoopFailure::none : LoopFailure::diverged);
+}
+
+LoopFailure LoopWorkspace::solve_branched(const LoopCode& loop, std::span<const Instruction> body,
+                                          double* slots) {
+  constexpr double kLongWay = 0.05;  // of 1 + |z|: a way along which another branch may lie
+  read(loop, slots, origin_);
+  const auto accept = [&] {
+    branch_ = matrix_.determinant_sign();
+    solved_ = true;
+    return LoopFailure::none;
+  };
+  const auto rests = [&] {  // at a root of even order, where it has lost its slope
+    return std::all_of(loop.residual_slots.begin(), loop.residual_slots.end(),
+                       [&](std::uint32_t slot) { return slots[slot] == 0; });
+  };
+  const auto is_on_branch =
+      [&](const Search& found) {  // at a root of even order the sign is that of rounding
+        return (found.even_order || matrix_.determinant_sign() == branch_) &&
+               (way(loop, slots) < kLongWay || keeps_sign(loop, body, slots));
+      };
+  Search search = newton(loop, body, slots);
+  const bool straight = search.failure == LoopFailure::none && !search.damped;
+  if (solved_) {
+    if (straight && is_on_branch(search)) return LoopFailure::none;
+    if (search.failure == LoopFailure::singular && rests()) return LoopFailure::none;
+  } else if (straight && way(loop, slots) < kLongWay) {
+    return accept();
+  }
+  write(loop, slots, origin_);
+  if (relax(loop, body, slots)) {
+    read(loop, slots, target_);
+    search = newton(loop, body, slots);
+    if (search.failure == LoopFailure::none) {
+      if (!following_ || !solved_) return accept();
+      return is_on_branch(search) ? LoopFailure::none : LoopFailure::lost;
+    }
+    write(loop, slots, target_);
+    run_tape(body, slots);
+    if (search.failure == LoopFailure::singular && rests() && solved_) return LoopFailure::none;
+  }
+  if (following_ && solved_) return LoopFailure::lost;
+  write(loop, slots, origin_);
+  search = newton(loop, body, slots);
+  return search.failure == LoopFailure::none ? accept() : search.failure;
+}
+
+/// The largest change of an unknown since the search began, of 1 + |z|.
+double LoopWorkspace::way(const LoopCode& loop, const double* slots) const {
+  double longest = 0;
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    const double from = origin_[index(i)];
+    longest = std::max(longest, std::abs(slots[loop.unknown_slots[i]] - from) / (1 + std::abs(from)));
+  }
+  return longest;
+}
+
+/// Whether the determinant of dg/dz has the sign of the branch along the straight line from where the search
+/// began: between two branches that amplifiers hold there lies one that they do not.
+bool LoopWorkspace::keeps_sign(const LoopCode& loop, std::span<const Instruction> body, double* slots) {
+  constexpr int kParts = 4;
+  read(loop, slots, target_);
+  bool keeps = true;
+  for (int part = 1; part < kParts && keeps; ++part) {
+    start_ = origin_ + (target_ - origin_) * part / kParts;
+    write(loop, slots, start_);
+    run_tape(body, slots);
+    keeps = matrix_.factor(loop, slots) && matrix_.determinant_sign() == branch_;
+  }
+  write(loop, slots, target_);
+  run_tape(body, slots);
+  return keeps;
+}
+
+/// Lets the amplifiers run, each at −g, while the rest of the loop follows without delay, until they rest:
+/// implicit Euler steps, short at first so that they go where the amplifiers go, then ever longer until they
+/// are Newton's method. False where the amplifiers do not come to rest; the slots then hold where they were
+/// last.
+bool LoopWorkspace::relax(const LoopCode& loop, std::span<const Instruction> body, double* slots) {
+  constexpr double kMostChange = 0.2;  // of 1 + |z|, in a step
+  constexpr double kSmallChange = 0.02;
+  constexpr double kLongest = 1e18;   // of a step, in time constants of the fastest loop
+  constexpr double kShortest = 1e-9;  // of the first step
+  constexpr double kAtRest = 1e-12;
+  constexpr double kFarAway = 1e6;  // [machine unit]
+  constexpr double kInstant = 1e15;
+  constexpr int kMostSteps = 1000;
+  const std::size_t n = loop.size();
+  const bool all_held = std::find(loop.held_by_amplifier.begin(), loop.held_by_amplifier.end(), false) ==
+                        loop.held_by_amplifier.end();
+  const auto finite = [&] {
+    return std::all_of(loop.residual_slots.begin(), loop.residual_slots.end(),
+                       [&](std::uint32_t slot) { return std::isfinite(slots[slot]); });
+  };
+  run_tape(body, slots);
+  if (!finite()) return false;
+  const auto fastest = [&] {
+    double rate = 0;
+    for (const MatrixEntry& entry : loop.slopes) rate = std::max(rate, std::abs(slots[entry.slot]));
+    return rate;
+  };
+  // Where a branch ends, slopes are near zero, and say nothing about how fast the amplifiers move later.
+  const auto natural_step = [&] {
+    double rate = fastest();
+    for (std::size_t i = 0; i < n; ++i) {
+      const double z = std::abs(slots[loop.unknown_slots[i]]);
+      if (loop.held_by_amplifier[i])
+        rate = std::max(rate, std::abs(slots[loop.residual_slots[i]]) / (1 + z) / kMostChange);
+    }
+    return rate > 0 ? 1 / rate : 1;
+  };
+  double h = natural_step();
+  if (!(h > 0)) return false;
+  double unit = h, shortest = kShortest * h, last = 1;
+  for (int step = 0; step < kMostSteps && h > shortest; ++step) {
+    read(loop, slots, target_);
+    // The determinant changes its sign across the step where the amplifiers run away from rest.
+    const int rising = all_held                                            ? 1
+                       : matrix_.factor(loop, slots, kInstant * fastest()) ? matrix_.determinant_sign()
+                                                                           : 0;
+    bool good = rising != 0 && matrix_.factor(loop, slots, 1 / h) && matrix_.determinant_sign() == rising;
+    double change = 0;
+    if (good) {
+      for (std::size_t i = 0; i < n; ++i) step_(index(i), 0) = -slots[loop.residual_slots[i]];
+      matrix_.solve(step_);
+      change = (step_.col(0).array().abs() / (1 + target_.array().abs())).maxCoeff();
+      start_ = target_ + step_.col(0);
+      good = change < kMostChange;
+    }
+    if (good) {
+      write(loop, slots, start_);
+      run_tape(body, slots);
+      good = finite();
+    }
+    if (!good) {
+      write(loop, slots, target_);
+      run_tape(body, slots);
+      h /= 4;
+      continue;
+    }
+    if (h >= kLongest * unit && change < kAtRest && (change >= last || change < kEpsilon)) return true;
+    if (start_.cwiseAbs().maxCoeff() > kFarAway) return false;
+    last = change;
+    const double natural = natural_step();
+    unit = std::min(unit, natural);
+    shortest = kShortest * natural;
+    if (change < kSmallChange) {
+      h *= 10;
+    } else if (change < kMostChange / 2) {
+      h *= 2;
+    }
+  }
+  return false;
+}
+
+}  // namespace oblique::network

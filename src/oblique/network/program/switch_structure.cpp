@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/network/program/switch_structure.h>
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+namespace oblique::network {
+namespace {
+
+class Finder {
+ public:
+  explicit Finder(const Network& network)
+      : network_(network),
+        loop_of_(network.unknowns.size(), 0),
+        switch_of_(network.memories.size(), SwitchStructure::kNone) {
+    for (std::size_t l = 0; l < network.loops.size(); ++l) {
+      for (const std::size_t u : network.loops[l].unknowns) loop_of_[u] = static_cast<std::uint32_t>(l);
+    }
+    for (std::size_t s = 0; s < network.switches.size(); ++s)
+      switch_of_[network.switches[s].memory] = static_cast<std::uint32_t>(s);
+  }
+
+  SwitchStructure find() {
+    find_units();
+    find_operands();
+    find_couplings();
+    return std::move(structure_);
+  }
+
+ private:
+  bool is_unknown(const Node& node) const {
+    return node.op == Op::variable && node.variable > network_.states.size();
+  }
+  std::size_t loop_of(const Node& node) const { return loop_of_[node.variable - 1 - network_.states.size()]; }
+
+  /// a − b and b − a, x and −x are one surface.
+  void find_units() {
+    std::map<std::pair<NodeId, NodeId>, std::uint32_t> units;
+    for (std::size_t s = 0; s < network_.switches.size(); ++s) {
+      NodeId id = network_.switches[s].surface;
+      bool opposite = false;
+      if (network_.graph[id].op == Op::negate) {
+        id = network_.graph[id].a;
+        opposite = true;
+      }
+      std::pair<NodeId, NodeId> key{id, id};
+      if (const Node& node = network_.graph[id]; node.op == Op::subtract) {
+        opposite = opposite != (node.a > node.b);
+        key = std::minmax(node.a, node.b);
+      }
+      const auto [found, inserted] =
+          units.try_emplace(key, static_cast<std::uint32_t>(structure_.members.size()));
+      if (inserted) structure_.members.emplace_back();
+      structure_.members[found->second].push_back(static_cast<std::uint32_t>(s));
+      structure_.unit.push_back(found->second);
+      structure_.opposite.push_back(opposite);
+    }
+  }
+
+  void find_operands() {
+    const ExpressionGraph& graph = network_.graph;
+    for (const Switch& s : network_.switches) structure_.surfaces.push_back(s.surface);
+    structure_.switch_at.assign(graph.size(), SwitchStructure::kNone);
+    // The residuals of a loop stand with the first of its unknowns, and the others lead there.
+    std::vector<std::uint32_t> first_unknown(network_.loops.size(), SwitchStructure::kNone);
+    structure_.first_operand.push_back(0);
+    for (NodeId id = 0; id < graph.size(); ++id) {
+      const Node& node = graph[id];
+      if (node.op == Op::memory) structure_.switch_at[id] = switch_of_[node.variable];
+      std::vector<std::uint32_t>& operands = structure_.operands;
+      for (int i = 0; i < operand_count(node.op); ++i) operands.push_back(node.operand(i));
+      if (is_unknown(node)) {
+        std::uint32_t& first = first_unknown[loop_of(node)];
+        if (first == SwitchStructure::kNone) {
+          first = id;
+          for (const std::size_t u : network_.loops[loop_of(node)].unknowns)
+            operands.push_back(network_.unknowns[u].residual);
+        } else {
+          operands.push_back(first);
+        }
+      }
+      structure_.first_operand.push_back(static_cast<std::uint32_t>(operands.size()));
+    }
+  }
+
+  /// Goes up the graph with the units below each node: what is no sum couples those of its operands. Loop by
+  /// loop, each after those it depends on: first without what its own unknowns bring.
+  void find_couplings() {
+    const ExpressionGraph& graph = network_.graph;
+    std::vector<std::vector<NodeId>> by_level(network_.loops.size() + 1);
+    std::vector<std::uint32_t> levels(graph.size(), 0);
+    for (NodeId id = 0; id < graph.size(); ++id) {
+      const Node& node = graph[id];
+      if (is_unknown(node)) levels[id] = static_cast<std::uint32_t>(loop_of(node)) + 1;
+      for (int i = 0; i < operand_count(node.op); ++i)
+        levels[id] = std::max(levels[id], levels[node.operand(i)]);
+      by_level[levels[id]].push_back(id);
+    }
+    std::vector<std::uint64_t> below(graph.size(), 0);
+    std::uint64_t below_loop = 0;
+    const auto gather = [&](const std::vector<NodeId>& nodes) {
+      for (const NodeId id : nodes) {
+        const Node& node = graph[id];
+        if (const std::uint32_t s = structure_.switch_at[id]; s != SwitchStructure::kNone)
+          below[id] = std::uint64_t{1} << (structure_.unit[s] % 64);
+        if (is_unknown(node)) below[id] = below_loop;
+        for (int i = 0; i < operand_count(node.op); ++i) below[id] |= below[node.operand(i)];
+      }
+    };
+    for (std::size_t level = 0; level < by_level.size(); ++level) {
+      below_loop = 0;
+      gather(by_level[level]);
+      if (level > 0) {
+        for (const std::size_t u : network_.loops[level - 1].unknowns)
+          below_loop |= below[network_.unknowns[u].residual];
+        couple(below_loop, below_loop);
+        gather(by_level[level]);
+      }
+    }
+    for (NodeId id = 0; id < graph.size(); ++id) couple_operands(graph[id], below);
+  }
+
+  void couple_operands(const Node& node, const std::vector<std::uint64_t>& below) {
+    const ExpressionGraph& graph = network_.graph;
+    const bool sum = node.op == Op::add || node.op == Op::subtract || node.op == Op::negate ||
+                     (node.op == Op::multiply && (graph.is_constant(node.a) || graph.is_constant(node.b))) ||
+                     (node.op == Op::divide && graph.is_constant(node.b));
+    if (sum) return;
+    for (int i = 0; i < operand_count(node.op); ++i) {
+      const std::uint64_t own = below[node.operand(i)];
+      // A product and a choice are linear in each operand, whatever else is not even that.
+      if (node.op != Op::multiply && node.op != Op::select && node.op != Op::gate) couple(own, own);
+      for (int k = 0; k < i; ++k) couple(own, below[node.operand(k)]);
+    }
+  }
+
+  void couple(std::uint64_t units, std::uint64_t with) {
+    if (units == 0 || with == 0) return;
+    for (std::size_t bit = 0; bit < 64; ++bit) {
+      if ((units >> bit & 1U) != 0) structure_.coupled[bit] |= with;
+      if ((with >> bit & 1U) != 0) structure_.coupled[bit] |= units;
+    }
+  }
+
+  const Network& network_;
+  std::vector<std::uint32_t> loop_of_;    ///< of each unknown
+  std::vector<std::uint32_t> switch_of_;  ///< of each memory
+  SwitchStructure structure_;
+};
+
+/// All nodes below `root`, itself included.
+template <class Visit>
+void visit_below(const SwitchStructure& structure, NodeId root, const Visit& visit) {
+  std::vector<bool> seen(structure.switch_at.size(), false);
+  std::vector<NodeId> pending{root};
+  seen[root] = true;
+  while (!pending.empty()) {
+    const NodeId id = pending.back();
+    pending.pop_back();
+    visit(id);
+    for (std::uint32_t k = structure.first_operand[id]; k < structure.first_operand[id + 1]; ++k) {
+      const NodeId operand = structure.operands[k];
+      if (!seen[operand]) pending.push_back(operand);
+      seen[operand] = true;
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> SwitchStructure::positions_below(std::size_t s) const {
+  std::vector<std::uint32_t> found;
+  visit_below(*this, surfaces[s], [&](NodeId id) {
+    if (switch_at[id] != kNone) found.push_back(switch_at[id]);
+  });
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+bool SwitchStructure::depends(std::size_t s, std::size_t other) const {
+  bool found = false;
+  visit_below(*this, surfaces[s], [&](NodeId id) { found = found || switch_at[id] == other; });
+  return found;
+}
+
+std::vector<bool> SwitchStructure::followers_of(const std::vector<bool>& these) const {
+  // What is read by whom: the operands turned round, and positions that read their surfaces.
+  const std::size_t size = switch_at.size();
+  std::vector<std::uint32_t> first_reader(size + 2, 0), readers(operands.size() + surfaces.size());
+  std::vector<NodeId> position_of(surfaces.size(), kNone);
+  for (NodeId id = 0; id < size; ++id) {
+    if (switch_at[id] != kNone) position_of[switch_at[id]] = id;
+  }
+  for (const NodeId operand : operands) ++first_reader[operand + 2];
+  for (std::size_t i = 2; i < first_reader.size(); ++i) first_reader[i] += first_reader[i - 1];
+  for (NodeId id = 0; id < size; ++id) {
+    for (std::uint32_t k = first_operand[id]; k < first_operand[id + 1]; ++k)
+      readers[first_reader[operands[k] + 1]++] = id;
+  }
+  std::vector<std::vector<std::uint32_t>> switches_on(size);  // those with this node as their surface
+  for (std::uint32_t s = 0; s < surfaces.size(); ++s) switches_on[surfaces[s]].push_back(s);
+
+  std::vector<bool> seen(size, false), follows(surfaces.size(), false);
+  std::vector<NodeId> pending;
+  const auto reach = [&](NodeId id) {
+    if (id == kNone || seen[id]) return;
+    seen[id] = true;
+    pending.push_back(id);
+  };
+  for (std::size_t s = 0; s < surfaces.size(); ++s) {
+    if (these[s]) reach(position_of[s]);
+  }
+  while (!pending.empty()) {
+    const NodeId id = pending.back();
+    pending.pop_back();
+    for (const std::uint32_t s : switches_on[id]) {
+      follows[s] = true;
+      reach(position_of[s]);
+    }
+    for (std::uint32_t k = first_reader[id]; k < first_reader[id + 1]; ++k) reach(readers[k]);
+  }
+  return follows;
+}
+
+SwitchStructure find_switch_structure(const Network& network) {
+  return Finder(network).find();
+}
+
+}  // namespace oblique::network

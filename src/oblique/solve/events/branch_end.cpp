@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/solve/events/branch_end.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <Eigen/LU>
+
+#include <oblique/solve/stability/eigenvalues.h>
+
+#include <oblique/solve/solve_error.h>
+
+namespace oblique::solve {
+namespace {
+
+constexpr double kJump = 1e-3;  ///< of 1 + |z|: a smooth way does not change by this in a moment
+
+bool held_by_amplifier(const network::Program& program, std::size_t unknown) {
+  return program.unknowns()[unknown].held_by_amplifier;
+}
+
+/// Smallest real part of the eigenvalues of dg/dz of the amplifiers' equations, the rest of the loop solved,
+/// over the largest: below 0 where the amplifiers do not rest.
+double least_rise(const network::Program& program, const network::Workspace& workspace, std::size_t loop) {
+  const std::vector<std::size_t>& unknowns = program.loops()[loop].unknowns;
+  std::vector<Eigen::Index> amplifiers, others;
+  for (std::size_t i = 0; i < unknowns.size(); ++i)
+    (held_by_amplifier(program, unknowns[i]) ? amplifiers : others).push_back(static_cast<Eigen::Index>(i));
+  const Eigen::MatrixXd slopes = program.loop_slopes(loop, workspace);
+  Eigen::MatrixXd own = slopes(amplifiers, amplifiers);
+  if (!others.empty()) {
+    const Eigen::MatrixXd inner = slopes(others, others);
+    own -=
+        slopes(amplifiers, others) * inner.partialPivLu().solve(Eigen::MatrixXd(slopes(others, amplifiers)));
+  }
+  if (!own.allFinite()) return 0;
+  const Eigen::VectorXcd values = eigenvalues_of(own);
+  return values.real().minCoeff() /
+         std::max(values.cwiseAbs().maxCoeff(), std::numeric_limits<double>::min());
+}
+
+bool rests(const network::Program& program, const network::Workspace& workspace, std::size_t loop) {
+  constexpr double kRounding = 1e-9;  // a root of even order has no slope but that of its rounding
+  return least_rise(program, workspace, loop) > -kRounding;
+}
+
+std::string amplifier_names(const network::Program& program, std::size_t loop) {
+  std::vector<std::string> names;
+  for (const std::size_t u : program.loops()[loop].unknowns) {
+    if (held_by_amplifier(program, u)) names.push_back(fmt::format("'{}'", program.unknowns()[u].name));
+  }
+  return shortened(names);
+}
+
+text::Diagnostic unstable_warning(const network::Program& program, const network::Workspace& workspace,
+                                  std::size_t loop, double t, const std::string& file) {
+  const std::size_t first = program.loops()[loop].unknowns.front();
+  return {{file, {}},
+          fmt::format(
+              "from t = {:.6g} s on the equations of {} are solved where a machine would not rest: its "
+              "amplifiers run away from {} = {:.6g}",
+              t, amplifier_names(program, loop), program.unknowns()[first].name, workspace.unknown(first)),
+          {},
+          "turn the signs at the amplifier's inputs about, give it another 'initial', or a finite gain and "
+          "bandwidth to see what a machine does"};
+}
+
+/// The largest change of an unknown of a loop, of 1 + |z|.
+double change_of(const network::Program& program, const network::Workspace& workspace, std::size_t loop,
+                 const std::vector<double>& before) {
+  double change = 0;
+  for (const std::size_t u : program.loops()[loop].unknowns)
+    change = std::max(change, std::abs(workspace.unknown(u) - before[u]) / (1 + std::abs(before[u])));
+  return change;
+}
+
+}  // namespace
+
+BranchWatch::BranchWatch(const network::Program& program, network::Workspace& workspace, double begin,
+                         const RunOptions& options, const std::string& file)
+    : program_(program),
+      workspace_(workspace),
+      file_(file),
+      span_(options.until - begin),
+      row_(span_ / std::max(1, options.samples - 1)),
+      resolution_(1e-10 * span_),
+      tried_(begin - 1) {
+  for (std::size_t loop = 0; loop < program.loops().size(); ++loop) {
+    if (!program.loop_has_branches(loop)) continue;
+    any_ = true;
+    unseen_ = unseen_ || !program.derivatives_need(loop);
+  }
+}
+
+std::optional<double> BranchWatch::find(double from, double to, const Interpolant& solution) {
+  return unseen_ ? search(from, to, row_, solution) : std::nullopt;
+}
+
+std::optional<double> BranchWatch::search(double from, double to, double longest,
+                                          const Interpolant& solution) {
+  std::vector<double> states(program_.n_states()), signals(program_.n_signals());
+  double t = from, step = std::min(longest, to - from);
+  while (t < to) {
+    const double target = step < to - t ? t + step : to;
+    solution.states_at(target, states);
+    if (program_.signals(target, states.data(), signals.data(), workspace_)) {
+      t = target;
+      step = std::min(2 * step, longest);
+    } else if (workspace_.trouble().failure != network::LoopFailure::lost) {
+      break;  // whoever looks there next says what is wrong
+    } else if (target - t <= resolution_) {
+      return target;
+    } else {
+      step = (target - t) / 2;
+    }
+  }
+  return std::nullopt;
+}
+
+BranchWatch::Ahead BranchWatch::look_ahead(double& t, double stretch_end, std::vector<double>& states,
+                                           const Interpolant& solution) {
+  if (!any_ || workspace_.trouble().failure != network::LoopFailure::lost) return Ahead::nothing;
+  std::vector<double> slopes(states.size());
+  // Next to the end dx/dt itself may have no value any more.
+  if (!program_.derivatives(t, states.data(), slopes.data(), workspace_)) solution.rates_at(t, slopes);
+  const StraightLine ahead(t, states, slopes);
+  // Of the run: the square of the farther one, the error of a straight line, is below every tolerance.
+  const bool twice = t <= tried_;
+  tried_ = t;
+  const double sight = (twice ? 1e-6 : 1e-9) * span_;
+  const auto end = search(t, std::min(t + sight, stretch_end), sight, ahead);
+  if (!end) return twice ? Ahead::nothing : Ahead::not_yet;
+  ahead.states_at(*end, states);
+  t = *end;
+  return Ahead::end;
+}
+
+void BranchWatch::pass(double t, const std::vector<double>& states) {
+  std::vector<double> before, signals(program_.n_signals());
+  for (std::size_t u = 0; u < program_.unknowns().size(); ++u) before.push_back(workspace_.unknown(u));
+  if (!program_.signals(t, states.data(), signals.data(), workspace_)) {
+    network::Workspace::Trouble trouble = workspace_.trouble();
+    if (program_.loop_has_branches(trouble.loop)) trouble.failure = network::LoopFailure::lost;
+    throw loop_error(program_, trouble, t, file_);
+  }
+  for (std::size_t loop = 0; loop < program_.loops().size(); ++loop) {
+    if (!program_.loop_has_branches(loop)) continue;
+    const bool jumps = change_of(program_, workspace_, loop, before) > kJump;
+    if (rests(program_, workspace_, loop)) {
+      if (!jumps) continue;
+      std::vector<std::string> ways;
+      for (const std::size_t u : program_.loops()[loop].unknowns) {
+        if (held_by_amplifier(program_, u))
+          ways.push_back(fmt::format("{} from {:.6g} to {:.6g}", program_.unknowns()[u].name, before[u],
+                                     workspace_.unknown(u)));
+      }
+      jumps_.push_back({t, "jumps where its branch ends: " + shortened(ways)});
+    } else if (jumps) {
+      const std::size_t first = program_.loops()[loop].unknowns.front();
+      throw loop_error(program_, {loop, network::LoopFailure::lost, 0, before[first]}, t, file_);
+    } else {
+      warnings_.push_back(unstable_warning(program_, workspace_, loop, t, file_));
+    }
+  }
+}
+
+std::vector<EventRecord> BranchWatch::merged_with(std::vector<EventRecord> events) const {
+  const auto middle = static_cast<std::ptrdiff_t>(events.size());
+  events.insert(events.end(), jumps_.begin(), jumps_.end());
+  std::inplace_merge(events.begin(), events.begin() + middle, events.end(),
+                     [](const EventRecord& a, const EventRecord& b) { return a.time < b.time; });
+  return events;
+}
+
+std::vector<text::Diagnostic> unstable_branches(const network::Program& program,
+                                                const network::Workspace& workspace, double t,
+                                                const std::string& file) {
+  std::vector<text::Diagnostic> warnings;
+  for (std::size_t loop = 0; loop < program.loops().size(); ++loop) {
+    if (program.loop_has_branches(loop) && !rests(program, workspace, loop))
+      warnings.push_back(unstable_warning(program, workspace, loop, t, file));
+  }
+  return warnings;
+}
+
+}  // namespace oblique::solve

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <oblique/network/program/program.h>
+#include <oblique/solve/integrator/interpolant.h>
+#include <oblique/solve/run.h>
+
+namespace oblique::solve {
+
+/// States that go on from a moment as they moved there.
+class StraightLine final : public Interpolant {
+ public:
+  StraightLine(double t, std::vector<double> states, std::vector<double> rates)
+      : t_(t), states_(std::move(states)), rates_(std::move(rates)) {}
+  void states_at(double t, std::span<double> x) const override {
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] = states_[i] + (t - t_) * rates_[i];
+  }
+  void rates_at(double, std::span<double> dxdt) const override {
+    std::copy(rates_.begin(), rates_.end(), dxdt.begin());
+  }
+
+ private:
+  double t_;
+  std::vector<double> states_, rates_;
+};
+
+/// A warning for each loop whose amplifiers, at equal speeds, do not rest at the solution that they have been
+/// given, though the loop has or had others. `signals` must have been evaluated at t.
+std::vector<text::Diagnostic> unstable_branches(const network::Program& program,
+                                                const network::Workspace& workspace, double t,
+                                                const std::string& file);
+
+/// Watches during a run for ends of the branches on which ideal amplifiers solve their algebraic loops.
+class BranchWatch {
+ public:
+  /// All must outlive this.
+  BranchWatch(const network::Program& program, network::Workspace& workspace, double begin,
+              const RunOptions& options, const std::string& file);
+
+  /// The first time in (from, to] without a solution on its branch, to 1e-10 of the run, of loops that no
+  /// derivative needs (of others the solver finds no step across it); nothing where there is none.
+  std::optional<double> find(double from, double to, const Interpolant& solution);
+
+  /// The last time that is sure to lie before an end that was found.
+  double before(double end) const { return end - resolution_; }
+
+  enum class Ahead {
+    nothing,
+    end,     ///< in sight
+    not_yet  ///< lost farther on: the solver may come nearer, starting anew from here
+  };
+  /// What lies ahead where the solver has found no step from (t, states), which go on beyond an end in sight
+  /// along a straight line.
+  Ahead look_ahead(double& t, double stretch_end, std::vector<double>& states, const Interpolant& solution);
+
+  /// Lets the amplifiers of all loops go, infinitely fast, to where they rest at (t, states), after a branch
+  /// has ended there. A loop that has no rest in reach but a solution that goes on smoothly keeps to that.
+  /// Throws SolveError for any other. The workspace must not follow branches.
+  void pass(double t, const std::vector<double>& states);
+
+  /// To another branch, where the amplifiers rest.
+  const std::vector<EventRecord>& jumps() const { return jumps_; }
+  /// All events by time.
+  std::vector<EventRecord> merged_with(std::vector<EventRecord> events) const;
+  /// Of loops that go on where their amplifiers run away.
+  const std::vector<text::Diagnostic>& warnings() const { return warnings_; }
+
+ private:
+  std::optional<double> search(double from, double to, double longest, const Interpolant& solution);
+
+  const network::Program& program_;
+  network::Workspace& workspace_;
+  const std::string& file_;
+  double span_, row_, resolution_;  ///< [s]
+  bool any_ = false;                ///< any loop has branches
+  bool unseen_ = false;             ///< one that no derivative needs
+  double tried_;                    ///< [s] where the solver was let to start anew
+  std::vector<EventRecord> jumps_;
+  std::vector<text::Diagnostic> warnings_;
+};
+
+}  // namespace oblique::solve

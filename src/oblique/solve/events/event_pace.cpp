@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/solve/events/event_pace.h>
+
+#include <cmath>
+
+namespace oblique::solve {
+namespace {
+
+constexpr int kMostShorter = 10;
+constexpr double kPilingUp = 1e-5;  ///< of the run
+/// Three intervals are enough where they shorten this quickly, and their two ratios are the same to such a
+/// part of them: they are soon within the errors of the states, where no event can be told.
+constexpr double kQuickly = 0.7;
+constexpr double kSameRatio = 0.01;
+constexpr double kSteadyOver = 4;
+constexpr double kSteady = 0.75;
+
+}  // namespace
+
+std::optional<EventPace::PileUp> EventPace::come(double t, double span, double end) {
+  const double now = t - last;
+  shorter = now > 0 && now < interval ? shorter + 1 : 0;
+  const double present = interval > 0 ? now / interval : 1;
+  const double left = now * present / (1 - present);  // Σ now · presentᵏ
+  if (shorter == 0) {
+    steady = false;
+    longer = 0;
+  } else if (longer == 0 || kSteadyOver * now < longer) {
+    steady = longer > 0 && 1 - present > kSteady * approach;
+    longer = now;
+    approach = 1 - present;
+  }
+  const bool quick = shorter > 1 && present < kQuickly && std::abs(present - ratio) < kSameRatio * present;
+  const bool many = steady && shorter >= kMostShorter && now < kPilingUp * span;
+  ratio = present;
+  if ((many || quick) && left < kPilingUp * span && t + left < end) return PileUp{now, t + left};
+  last = t;
+  interval = now;
+  return std::nullopt;
+}
+
+}  // namespace oblique::solve

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+
+namespace oblique::solve {
+
+/// How quickly an event comes again: ever faster is how events pile up (Zeno).
+///
+/// Events that come sooner and sooner, often enough in a row, pile up where the times left to them, at the
+/// present ratio, are together a vanishing part of the run, and the ratio is not on its way to 1: events that
+/// crowd together and thin out again (two balls between a heavy one and a wall). That is seen over intervals
+/// that become shorter by a factor: 1 less the ratio is then not much smaller than it was.
+struct EventPace {
+  double last = 0;      ///< when it came last [s]
+  double interval = 0;  ///< between its last two times [s]; 0: it has not come twice
+  double ratio = 1;     ///< of the interval to the one before
+  int shorter = 0;      ///< how often in a row the interval has become shorter
+  /// An interval of the row [s], 0 where there is none; 1 less the ratio of it to the one before, and whether
+  /// that is still so.
+  double longer = 0, approach = 0;
+  bool steady = false;
+
+  /// The event comes at t in a run as long as `span` that ends at `end` [s]. Its interval [s] where the
+  /// events pile up before that end, and when they do [s]; this one is then not counted.
+  struct PileUp {
+    double interval, at;
+  };
+  std::optional<PileUp> come(double t, double span, double end);
+};
+
+}  // namespace oblique::solve

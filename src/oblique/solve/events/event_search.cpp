@@ -1,0 +1,320 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/solve/events/event_search.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include <oblique/solve/events/along_branch.h>
+#include <oblique/solve/solve_error.h>
+
+namespace oblique::solve {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// At least so often over a run, however smooth the states are: nothing is known of what is made of them.
+constexpr double kFewestLooks = 1000;
+
+/// No further from look to look than a periodic function of the states turns by this [rad].
+constexpr double kMostTurn = 0.5;
+constexpr double kMostLooks = 1e6;  ///< in a step
+
+/// How far beyond 0 and 1 the shares of a slide are where it ends.
+constexpr double kEdge = 1e-5;
+
+constexpr int kDeepest = 60;
+constexpr int kMostSplits = 1000;  ///< of a part between two looks: more is asked for by rounding alone
+
+constexpr double kRounding = 1e-13;  ///< of what a switch compares, or of a machine unit
+
+/// Nearer than this no two times are told apart.
+double resolution(double t) {
+  return 4 * std::numeric_limits<double>::epsilon() * std::abs(t);
+}
+
+/// A cubic over [0, 1] by its values at the ends and its slopes there.
+struct Cubic {
+  double begin, end, begin_slope, end_slope;
+
+  double value(double u) const {
+    const double v = 1 - u;
+    return v * v * (1 + 2 * u) * begin + u * u * (3 - 2 * u) * end +
+           u * v * (v * begin_slope - u * end_slope);
+  }
+
+  /// Where it has its top; nothing where it has none inside.
+  std::optional<double> top() const {
+    // d/du = begin_slope + 2 b u + 3 c u²
+    const double rise = end - begin;
+    const double b = 3 * rise - 2 * begin_slope - end_slope, c = begin_slope + end_slope - 2 * rise;
+    const double discriminant = b * b - 3 * c * begin_slope;
+    if (!(discriminant > 0)) return std::nullopt;
+    const double root = std::sqrt(discriminant);
+    // Of the two zeros the one where the slope falls, by the form that loses no digits.
+    const double at = b > 0 ? (3 * c == 0 ? kInfinity : (-b - root) / (3 * c)) : begin_slope / (-b + root);
+    if (!(at > 0 && at < 1)) return std::nullopt;
+    return at;
+  }
+};
+
+/// From one look to another; without rates a straight line.
+Cubic cubic_of(double from, double to, double from_rate, double to_rate, double length) {
+  const double secant = to - from;
+  const bool known = std::isfinite(from_rate) && std::isfinite(to_rate);
+  return {from, to, known ? from_rate * length : secant, known ? to_rate * length : secant};
+}
+
+}  // namespace
+
+EventSearch::EventSearch(const network::Program& program, network::Workspace& workspace, SlidingMode& slide,
+                         Thresholds& thresholds, double span, const std::string& file)
+    : program_(program),
+      workspace_(workspace),
+      slide_(slide),
+      thresholds_(thresholds),
+      span_(span),
+      file_(file),
+      check_interval_(span / kFewestLooks),
+      states_(program.n_states()),
+      rates_(program.n_states()),
+      surfaces_(program.switches().size()),
+      surface_rates_(program.switches().size()),
+      excursions_(program.switches().size(), 0),
+      of_time_(program.switches().size(), false) {
+  for (const network::Switch& s : program.switches())
+    check_interval_ = std::min(check_interval_, s.check_interval);
+  for (const network::Source& source : program.sources()) {
+    if (source.switch_index) of_time_[*source.switch_index] = true;
+  }
+}
+
+void EventSearch::look(double t, const Interpolant& solution, Look& at) {
+  interruption_.check();
+  at.time = t;
+  const double reached = evaluate_along_branch(reached_, t, workspace_, [&](double time) {
+    solution.states_at(time, states_);
+    return (!slide_.active() || slide_.evaluate(time, states_)) &&
+           program_.surfaces(time, states_.data(), surfaces_.data(), workspace_);
+  });
+  reached_ = reached;
+  if (reached != t) {
+    if (workspace_.trouble().failure != network::LoopFailure::lost)
+      throw loop_error(program_, workspace_.trouble(), t, file_);
+    // The branch may end because a switch is due that does not depend on it.
+    solution.states_at(t, states_);
+    workspace_.pass_failing_loops(true);
+    program_.surfaces(t, states_.data(), surfaces_.data(), workspace_);
+    workspace_.pass_failing_loops(false);
+  }
+  solution.rates_at(t, rates_);
+  program_.surface_rates(rates_.data(), surface_rates_.data(), workspace_);
+  at.phase_rate = program_.fastest_phase(workspace_);
+  const std::size_t n = surfaces_.size();
+  at.surfaces = surfaces_;
+  at.overdue.resize(n);
+  at.rates.resize(n);
+  for (std::size_t s = 0; s < n; ++s) {
+    const bool closed = workspace_.memory(program_.switches()[s].memory) == 1;
+    // What the time alone does is known to the rounding that it has there.
+    const double least = of_time_[s] && thresholds_.slack[s] == 0 ? rounding(s) : thresholds_.now[s];
+    at.overdue[s] = (closed ? -surfaces_[s] : surfaces_[s]) - least;
+    at.rates[s] = closed ? -surface_rates_[s] : surface_rates_[s];
+    if (slide_.rests(s)) at.overdue[s] -= SlidingMode::drift();
+    if (program_.switches()[s].rate || slide_.holds(s) || slide_.follows(s)) at.overdue[s] = -kInfinity;
+  }
+  for (const double share : slide_.shares()) {
+    at.overdue.push_back(-share - kEdge);
+    at.overdue.push_back(share - 1 - kEdge);
+  }
+  for (std::size_t unit = 0; unit < slide_.units().size(); ++unit)
+    at.overdue.push_back(slide_.repulsion(unit) - SlidingMode::kNoRepulsion);
+  for (std::size_t side = 0; side < slide_.sides(); ++side) {
+    for (std::size_t f = 0; f < slide_.followers().size(); ++f)
+      at.overdue.push_back(slide_.overdue(side, f) - thresholds_.now[slide_.followers()[f]]);
+  }
+  at.rates.resize(at.overdue.size(), std::numeric_limits<double>::quiet_NaN());
+}
+
+bool EventSearch::is_due(const Look& at) const {
+  return std::any_of(at.overdue.begin(), at.overdue.end(), [](double value) { return value > 0; });
+}
+
+std::optional<EventSearch::Found> EventSearch::search(double from, std::span<const double> looks,
+                                                      const Interpolant& solution) {
+  Look left, right;
+  reached_ = looks.empty() ? from : looks.back();  // where the solver was last
+  look(from, solution, left);
+  // Where the solver starts anew a surface may still lie within rounding of zero on the wrong side.
+  for (double& value : left.overdue) value = std::min(value, 0.0);
+  for (const double to : looks) {
+    const double begin = left.time;
+    look(to, solution, right);
+    const double turning = std::max(left.phase_rate, right.phase_rate);
+    const double longest = std::min(check_interval_, turning > 0 ? kMostTurn / turning : kInfinity);
+    if (!((to - begin) / longest <= looks_left_)) {
+      throw SolveError(
+          SolveError::Kind::step_budget, begin,
+          {{file_, {}},
+           fmt::format("from t = {:.9g} s on what a switch compares turns by {:.3g} rad a second: too fast "
+                       "to look through all turns for those at which it turns over",
+                       begin, turning),
+           {},
+           "end the run before, keep the argument of the sine or cosine small, or give more 'max_steps' "
+           "in [run]"});
+    }
+    const auto parts = static_cast<long>(std::clamp(std::ceil((to - begin) / longest), 1.0, kMostLooks));
+    looks_left_ -= static_cast<double>(parts - 1);
+    for (long k = 1; k <= parts; ++k) {
+      if (parts > 1)
+        look(k == parts ? to : begin + (to - begin) * static_cast<double>(k) / static_cast<double>(parts),
+             solution, right);
+      if (auto found = between(left, right, solution)) return found;
+      std::swap(left, right);
+      leave_behind(left);
+    }
+  }
+  return std::nullopt;
+}
+
+double EventSearch::rounding(std::size_t s) const {
+  const double size = program_.compared_size(s, workspace_);
+  if (of_time_[s] && std::isfinite(size)) return 8 * std::numeric_limits<double>::epsilon() * size;
+  return kRounding * (std::isfinite(size) ? std::max(1.0, size) : 1);
+}
+
+/// Takes its slack from every surface that is beyond the errors of the states.
+void EventSearch::leave_behind(Look& at) {
+  for (std::size_t s = 0; s < excursions_.size(); ++s) {
+    excursions_[s] = std::max(excursions_[s], std::abs(at.surfaces[s]));
+    if (thresholds_.slack[s] == 0 || excursions_[s] <= 2 * thresholds_.slack[s]) continue;
+    const double least = rounding(s);
+    at.overdue[s] += thresholds_.now[s] - least;
+    thresholds_.now[s] = least;
+    thresholds_.slack[s] = 0;
+  }
+}
+
+std::optional<EventSearch::Found> EventSearch::between(const Look& from, const Look& to,
+                                                       const Interpolant& solution) {
+  const double length = to.time - from.time;
+  const std::size_t n = to.overdue.size();
+  bool clear = true;
+  for (std::size_t k = 0; k < n && clear; ++k) {
+    const double reach = length * std::max(std::abs(from.rates[k]), std::abs(to.rates[k]));
+    const double nearest = std::max(from.overdue[k], to.overdue[k]);
+    clear = nearest == -kInfinity || nearest + reach < 0;
+  }
+  if (clear) return std::nullopt;
+  Look middle;
+  look(from.time + length / 2, solution, middle);
+  std::vector<double> errors(n, 0.0);
+  for (std::size_t k = 0; k < n; ++k) {
+    if (to.overdue[k] == -kInfinity || from.overdue[k] == -kInfinity) continue;
+    const Cubic cubic = cubic_of(from.overdue[k], to.overdue[k], from.rates[k], to.rates[k], length);
+    // Half a part has a sixteenth of the error of a cubic; twice that to be safe.
+    errors[k] = std::abs(cubic.value(0.5) - middle.overdue[k]) / 8;
+  }
+  splits_left_ = kMostSplits;
+  if (auto found = split(from, middle, errors, 0, solution)) return found;
+  for (double& value : middle.overdue) value = std::min(value, 0.0);
+  return split(middle, to, errors, 0, solution);
+}
+
+/// `errors` is of each surface how far it may be from its cubic between the two.
+std::optional<EventSearch::Found> EventSearch::split(const Look& from, const Look& to,
+                                                     const std::vector<double>& errors, int depth,
+                                                     const Interpolant& solution) {
+  const double length = to.time - from.time;
+  const bool due = is_due(to);
+  if (depth > kDeepest || --splits_left_ < 0 || length <= resolution(to.time)) {
+    if (due) return locate(from, to, solution);
+    return std::nullopt;
+  }
+  double highest = 0, at = 0.5;
+  bool hides = false;
+  for (std::size_t k = 0; k < to.overdue.size(); ++k) {
+    const double a = from.overdue[k], b = to.overdue[k];
+    if (a == -kInfinity || b == -kInfinity || b > 0) continue;
+    const Cubic cubic = cubic_of(a, b, from.rates[k], to.rates[k], length);
+    const auto top = cubic.top();
+    // The error of a cubic through values and slopes is none at the ends, and goes as u² (1 − u)².
+    const auto bound = [&](double u) { return cubic.value(u) + 16 * errors[k] * u * u * (1 - u) * (1 - u); };
+    double height = top ? bound(*top) : -kInfinity;
+    for (const double u : {1.0 / 32, 0.125, 0.25, 0.5, 0.75, 0.875, 31.0 / 32})
+      height = std::max(height, bound(u));
+    if (!(height > 0)) continue;
+    if (!hides || height > highest) {
+      highest = height;
+      at = top ? std::clamp(*top, 0.02, 0.98) : 0.5;
+    }
+    hides = true;
+  }
+  if (!hides) {
+    if (due) return locate(from, to, solution);
+    return std::nullopt;
+  }
+  Look between;
+  look(from.time + at * length, solution, between);
+  if (!(between.time > from.time && between.time < to.time)) {
+    if (due) return locate(from, to, solution);
+    return std::nullopt;
+  }
+  // The error that the cubics have here tells those of the two parts, which fall with the fourth power of
+  // their lengths; twice that to be safe.
+  std::vector<double> before(errors.size(), 0.0), after(errors.size(), 0.0);
+  for (std::size_t k = 0; k < errors.size(); ++k) {
+    const double a = from.overdue[k], b = to.overdue[k];
+    if (a == -kInfinity || b == -kInfinity) continue;
+    const double off =
+        std::abs(cubic_of(a, b, from.rates[k], to.rates[k], length).value(at) - between.overdue[k]);
+    if (off <= 4 * std::numeric_limits<double>::epsilon() * (std::abs(a) + std::abs(b))) continue;
+    const double largest = std::min(errors[k], off / (16 * at * at * (1 - at) * (1 - at)));
+    before[k] = std::min(2 * std::pow(at, 4), 1.0) * largest;
+    after[k] = std::min(2 * std::pow(1 - at, 4), 1.0) * largest;
+  }
+  if (auto found = split(from, between, before, depth + 1, solution)) return found;
+  for (double& value : between.overdue) value = std::min(value, 0.0);
+  return split(between, to, after, depth + 1, solution);
+}
+
+/// The first crossing between a look at which nothing is due and one at which something is: secants, and
+/// halves where they do not close the bracket.
+EventSearch::Found EventSearch::locate(Look from, Look to, const Interpolant& solution) {
+  Look middle;
+  bool halve = false;
+  while (to.time - from.time > resolution(to.time)) {
+    double at = kInfinity;
+    for (std::size_t s = 0; s < to.overdue.size(); ++s) {
+      if (to.overdue[s] <= 0 || !std::isfinite(from.overdue[s])) continue;
+      const double part = from.overdue[s] / (from.overdue[s] - to.overdue[s]);
+      at = std::min(at, from.time + part * (to.time - from.time));
+    }
+    const double half = from.time + (to.time - from.time) / 2;
+    if (halve || !(at > from.time && at < to.time)) at = half;
+    // A little beyond the secant's zero, so that the bracket closes from both sides.
+    if (!halve) at = std::min(at + 0.01 * (at - from.time) * (to.time - at) / (to.time - from.time), to.time);
+    if (!(at > from.time && at < to.time)) break;
+    const double width = to.time - from.time;
+    look(at, solution, middle);
+    std::swap(is_due(middle) ? to : from, middle);
+    halve = to.time - from.time > width / 2;
+  }
+  Found found;
+  found.time = to.time;
+  const std::size_t n = surfaces_.size();
+  for (std::size_t k = 0; k < to.overdue.size(); ++k) {
+    if (!(to.overdue[k] > 0)) continue;
+    if (k < n) {
+      found.turned.emplace_back(static_cast<std::uint32_t>(k),
+                                1 - workspace_.memory(program_.switches()[k].memory));
+    } else {
+      found.slide_changes = true;
+    }
+  }
+  return found;
+}
+
+}  // namespace oblique::solve

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <oblique/network/program/program.h>
+#include <oblique/solve/events/sliding_mode.h>
+#include <oblique/solve/integrator/interpolant.h>
+#include <oblique/solve/interruption.h>
+
+namespace oblique::solve {
+
+/// Finds the first time in a step at which a switch turns over, a slide ends, or what follows a slide turns
+/// over.
+///
+/// Of every surface the value and the exact rate along the solution are known at each look. Between two looks
+/// the cubic through these bounds the surface, and its error is known from a third look in the middle: where
+/// the bound stays below zero nothing happens, else the part is split, at the top of the cubic where there is
+/// one, until it is below zero or a crossing is bracketed. So an extremum that passes zero for a moment is
+/// found, not guessed.
+class EventSearch {
+ public:
+  /// What is due at a time.
+  struct Found {
+    double time = 0;
+    std::vector<std::pair<std::uint32_t, double>> turned;  ///< switches, and the positions that they go to
+    bool slide_changes = false;                            ///< it ends, or what follows it turns over
+  };
+
+  /// How far its surface must have passed zero, of every switch.
+  struct Thresholds {
+    std::vector<double> now;
+    /// Of it, how far the surface may go back by the errors of the states alone; nothing once it has left
+    /// them behind.
+    std::vector<double> slack;
+  };
+
+  /// All must outlive this.
+  EventSearch(const network::Program& program, network::Workspace& workspace, SlidingMode& slide,
+              Thresholds& thresholds, double span, const std::string& file);
+
+  /// Rounding of the surface of a switch: of what it compares, at least of a machine unit.
+  double rounding(std::size_t s) const;
+
+  /// In (from, to]; all is in place at `from`. `looks` are times at which to look at least, the last one
+  /// `to`.
+  std::optional<Found> search(double from, std::span<const double> looks, const Interpolant& solution);
+
+  /// How often to look between steps in all, where something turns fast.
+  void limit_looks(double looks) { looks_left_ = looks; }
+  /// `search` then throws Interrupted.
+  void end_when(const Interruption& interruption) { interruption_ = interruption; }
+
+  /// How far the surface of a switch has been from zero since `forget`.
+  double excursion(std::size_t s) const { return excursions_[s]; }
+  void forget(std::size_t s) { excursions_[s] = 0; }
+
+ private:
+  /// Of all that is watched: above 0 where it is due, and its rate. Switches first, then the lower and the
+  /// upper edge of each unit that slides, then what follows on each side.
+  struct Look {
+    double time = 0;
+    std::vector<double> surfaces, overdue, rates;
+    double phase_rate = 0;  ///< [rad/s]
+  };
+
+  void look(double t, const Interpolant& solution, Look& at);
+  bool is_due(const Look& at) const;
+  std::optional<Found> between(const Look& from, const Look& to, const Interpolant& solution);
+  std::optional<Found> split(const Look& from, const Look& to, const std::vector<double>& errors, int depth,
+                             const Interpolant& solution);
+  Found locate(Look from, Look to, const Interpolant& solution);
+  void leave_behind(Look& at);
+
+  const network::Program& program_;
+  network::Workspace& workspace_;
+  SlidingMode& slide_;
+  Thresholds& thresholds_;
+  double span_;
+  const std::string& file_;
+  double check_interval_;
+  int splits_left_ = 0;
+  double reached_ = 0;  ///< [s] where the surfaces were evaluated last
+  double looks_left_ = std::numeric_limits<double>::infinity();
+  Interruption interruption_;
+  std::vector<double> states_, rates_, surfaces_, surface_rates_, excursions_;
+  std::vector<bool> of_time_;  ///< of each switch: its surface follows the time alone, to rounding
+};
+
+}  // namespace oblique::solve

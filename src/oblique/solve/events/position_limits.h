@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+// What counts as a rate where the positions of switches are chosen; not installed.
+namespace oblique::solve {
+
+/// How far the states are moved to see what a surface does a moment later [machine unit]: its square is above
+/// rounding, its cube below.
+inline constexpr double kProbe = 1e-6;
+
+/// A rate below this part of the largest among the trials is none.
+inline constexpr double kNoRate = 1e-9;
+inline constexpr double kNoLaterRate = 1e-6;
+/// A rate that is this small a part of its change over the moment is about to turn, within rounding of the
+/// surface.
+inline constexpr double kAboutToTurn = 0.05;
+/// Rounding of a rate, of the fastest state's; and of a surface [machine unit].
+inline constexpr double kRounding = 1e-13;
+
+}  // namespace oblique::solve

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <oblique/network/program/program.h>
+
+namespace oblique::solve {
+
+/// Filippov's solution along the surfaces of switches that both of their sides drive to.
+///
+/// A unit of switches that slides is in neither position: dx/dt is the mixture α f₁ + (1 − α) f₀ of what it
+/// is with the unit on either side, and so is every signal; never is a switch's own position mixed, which
+/// would go wrong through whatever is not linear downstream. Switches whose surfaces depend on such a
+/// position follow it: they are settled anew on each side. The shares α are those that keep all the surfaces
+/// where they are (Filippov 1960; the equivalent control of Utkin 1992). Of several units that are coupled
+/// all combinations of sides are mixed, each with the product of its shares (Alexander and Seidman 1998);
+/// units that are not coupled are each mixed by themselves, and what they do is added.
+class SlidingMode {
+ public:
+  /// Both must outlive this; `span` is the length of the run [s].
+  SlidingMode(const network::Program& program, network::Workspace& workspace, double span);
+
+  /// Of each of these units, up to 64, the others (as bits) whose positions break its surface: a unit whose
+  /// surface jumps or bends with its own position, or jumps with that of another, is none to slide on.
+  static std::vector<std::uint64_t> broken_by(const network::Program& program,
+                                              const std::vector<std::uint32_t>& units);
+
+  bool active() const { return !units_.empty(); }
+  const std::vector<std::uint32_t>& units() const { return units_; }
+  /// Whether the unit of a switch slides.
+  bool holds(std::size_t s) const;
+  /// Whether a switch follows one that slides.
+  bool follows(std::size_t s) const { return follows_[s]; }
+  /// Whether the surface of a switch stays at zero along with the slide, though it is not slid along.
+  bool rests(std::size_t s) const { return rests_[s]; }
+  void let_rest(std::size_t s) { rests_[s] = true; }
+  /// The switches that follow.
+  const std::vector<std::uint32_t>& followers() const { return followers_; }
+
+  /// Begins to slide along the surfaces of `units` from (t, x), all other switches where they are. False,
+  /// with nothing changed, where no shares keep them there, now and a moment later.
+  bool begin(std::vector<std::uint32_t> units, double t, std::span<const double> x);
+  /// Ends; the positions stay what they were to events.
+  void end();
+
+  /// As those of Program. False where a loop has no solution on one of the sides.
+  bool derivatives(double t, const double* x, double* dxdt);
+  bool jacobian(double t, const double* x, double* values);
+  bool signals(double t, const double* x, double* values);
+
+  /// Evaluates all sides and the shares at (t, x). False as above, or where no shares are found.
+  bool evaluate(double t, std::span<const double> x);
+  // As the last `evaluate` left them:
+  /// Of each unit, that of its upper side: outside 0 and 1 where the slide is over.
+  const std::vector<double>& shares() const { return shares_; }
+  /// Of a unit that nothing couples, how much more its upper side drives up than its lower one does, over the
+  /// most by which they have ever driven together: above 0 both drive away from the surface. Else −1.
+  double repulsion(std::size_t unit) const;
+  /// Rounding of it.
+  static constexpr double kNoRepulsion = 1e-8;
+  /// Sides that drive together or apart by less than this part of what they drove together do neither: a
+  /// magnitude in the surface may be about to turn over.
+  static constexpr double kNoDrive = 1e-6;
+  /// d surface/dt of every switch in the mixture.
+  void mixed_rates(std::span<double> rates) const;
+  /// Whether a switch that follows is in one position on one side and in the other on another.
+  bool is_torn(std::size_t s) const;
+  /// How far from zero a surface that has been slid along may have drifted [as the surface].
+  static double drift() { return 1e-7; }
+  std::size_t sides() const { return sides_.size(); }
+  /// By how much a follower's surface has passed zero against its position on a side.
+  double overdue(std::size_t side, std::size_t follower) const;
+
+ private:
+  /// One combination of sides: bit u of `bits` for unit u.
+  struct Side {
+    std::uint64_t bits = 0;
+    std::uint32_t cluster = 0;
+    std::vector<std::pair<std::uint32_t, double>> positions;  ///< memories, of what slides and what follows
+    std::vector<double> dxdt;
+    std::vector<double> surfaces, rates;  ///< of every switch
+    double weight = 0;
+  };
+
+  void find_followers();
+  void make_sides();
+  bool settle(Side& side, double t, std::span<const double> x);
+  void load(const Side& side);
+  void load_base();
+  bool evaluate(Side& side, double t, std::span<const double> x);
+  bool find_shares();
+  double unit_value(const std::vector<double>& of_switches, std::size_t unit) const;
+  double way_back(std::size_t unit, double fastest) const;
+  double drive_apart(std::size_t unit) const;
+  double weigh(std::span<const double> shares);
+  bool lasts(double t, std::span<const double> x);
+
+  const network::Program& program_;
+  network::Workspace& workspace_;
+  double span_;
+  std::vector<std::uint32_t> units_;
+  std::vector<bool> follows_, rests_;
+  std::vector<std::uint32_t> followers_;
+  std::vector<std::uint32_t> cluster_of_;               ///< of each unit here
+  std::vector<Side> sides_;                             ///< the first one with all units below
+  std::vector<std::pair<std::uint32_t, double>> base_;  ///< positions that events see
+  std::vector<double> shares_;
+  std::vector<double> strongest_;  ///< drive together of each unit of the program in all slides of the run
+  bool begun_ = false;
+  std::vector<double> scratch_, moved_;
+};
+
+}  // namespace oblique::solve

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/solve/integrator/growth_watch.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace oblique::solve {
+namespace {
+
+/// Over the relative tolerance: as many tolerances from an equilibrium the solver keeps the distance to some
+/// hundred times the tolerance of the run.
+constexpr double kNear = 1e-4;
+
+/// In powers of e: what has grown more is judged. Less is the growth of every step that turns away.
+constexpr double kMuch = 2;
+
+/// A Jacobian is looked at after so many steps, or where the step has become longer by so much.
+constexpr int kStepsBetween = 8;
+constexpr double kLonger = 1.5;
+
+}  // namespace
+
+GrowthWatch::GrowthWatch(OdeSystem& system, const SolverSettings& settings)
+    : system_(system),
+      settings_(settings),
+      change_(system.size()),
+      jacobian_(system.pattern().entries()),
+      modes_(system.pattern()),
+      growth_(system.size()),
+      distance_(system.size()),
+      near_(system.size()),
+      told_(system.size()),
+      held_since_(system.size()) {}
+
+void GrowthWatch::restart(double t, std::span<const double> x) {
+  before_.assign(x.begin(), x.end());
+  time_ = judged_ = t;
+  steps_ = 0;
+}
+
+double GrowthWatch::near_distance(std::size_t i, double x) const {
+  const double absolute =
+      settings_.own_tolerances.empty() ? settings_.absolute_tolerance : settings_.own_tolerances[i];
+  return kNear * (std::abs(x) + absolute / settings_.relative_tolerance);
+}
+
+/// Whether any state has moved, and by little.
+bool GrowthWatch::is_near_rest(std::span<const double> x) {
+  bool any = false;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    change_[i] = std::abs(x[i] - before_[i]);
+    near_[i] = change_[i] > 0 && change_[i] < near_distance(i, x[i]);
+    any = any || near_[i];
+  }
+  return any;
+}
+
+void GrowthWatch::advance(double t, std::span<const double> x) {
+  const double step = t - time_;
+  const bool near = is_near_rest(x);
+  time_ = t;
+  if (!near) {
+    std::fill(growth_.begin(), growth_.end(), 0.0);
+    judged_ = t;
+  } else if (++steps_ >= kStepsBetween || step > kLonger * judged_step_) {
+    judge(t, x, step);
+    judged_ = t;
+    judged_step_ = step;
+    steps_ = 0;
+  }
+  std::copy(x.begin(), x.end(), before_.begin());
+}
+
+void GrowthWatch::judge(double t, std::span<const double> x, double step) {
+  if (!system_.jacobian(t, x.data(), jacobian_.data())) return;
+  ++looked_;
+  std::vector<bool> unstable(x.size(), false);
+  for (const CoupledModes& group : modes_.find(jacobian_, near_)) {
+    double rate = 0;
+    for (const std::complex<double>& mode : group.eigenvalues) rate = std::max(rate, mode.real());
+    if (rate == 0) continue;
+    // The equilibrium is as far as the states would go back in a time constant of their growth.
+    const double part = std::min(1.0, rate * step);
+    double distance = 0, size = 0;
+    bool near = true;
+    for (const std::size_t i : group.states) {
+      distance = std::max(distance, change_[i] / part);
+      size = std::max(size, std::abs(x[i]));
+      near = near && change_[i] < part * near_distance(i, x[i]);
+    }
+    if (!near) continue;
+    const bool in_relative = size > 2 * distance;
+    double least = distance;
+    bool much = false, told = false;
+    for (const std::size_t i : group.states) {
+      unstable[i] = true;
+      distance_[i] = growth_[i] == 0 ? distance : std::min(distance_[i], distance);
+      growth_[i] += rate * (t - judged_);
+      much = much || growth_[i] > kMuch;
+      told = told || told_[i];
+      least = std::min(least, distance_[i]);
+    }
+    if (!much || told) continue;
+    // Near may be the part of a loop that the rest of it holds. That is asked ever more seldom.
+    const std::size_t first = group.states.front();
+    if (held_since_[first] > 0 && looked_ < 2 * held_since_[first]) {
+      for (const std::size_t i : group.states) growth_[i] = 0;
+      continue;
+    }
+    const CoupledModes closed = closed_modes(system_.pattern(), jacobian_, first);
+    const bool held = !closed.eigenvalues.empty() &&
+                      std::all_of(closed.eigenvalues.begin(), closed.eigenvalues.end(),
+                                  [&](const std::complex<double>& mode) { return mode.real() < rate / 2; });
+    if (held) {
+      held_since_[first] = looked_;
+      for (const std::size_t i : group.states) growth_[i] = 0;
+      continue;
+    }
+    found_.push_back({t, group.states, least, in_relative});
+    for (const std::size_t i : group.states) told_[i] = true;
+  }
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (!unstable[i]) growth_[i] = 0;
+  }
+}
+
+}  // namespace oblique::solve

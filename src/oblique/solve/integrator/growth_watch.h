@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <oblique/solve/integrator/cvodes_solver.h>
+#include <oblique/solve/integrator/ode_system.h>
+#include <oblique/solve/stability/coupled_modes.h>
+
+namespace oblique::solve {
+
+/// States that grew out of what the solver does not tell from an unstable equilibrium.
+struct UnseenGrowth {
+  double time = 0;                  ///< [s] when it was noticed
+  std::vector<std::size_t> states;  ///< those that act on each other there
+  double distance = 0;              ///< [machine unit] from the equilibrium: the least that was seen
+  bool in_relative = false;         ///< the equilibrium is not zero, so that the relative tolerance hides it
+};
+
+/// Watches the steps of a solver for growth that it does not see. A solver holds states to their tolerances
+/// and no finer: near an unstable equilibrium (x = 0 of x′ = x − x²) an error of that size grows as the
+/// solution does, and a long implicit step even takes it back to the equilibrium. So wherever states that act
+/// on each other are nearer to an equilibrium than some of their tolerances, and a mode of theirs grows, by
+/// more than e² in a row, what they do later is not known to the run's tolerance. An equilibrium that is met
+/// exactly is none of these: nothing moves there. Not installed.
+class GrowthWatch {
+ public:
+  /// All must outlive the watch.
+  GrowthWatch(OdeSystem& system, const SolverSettings& settings);
+
+  /// Begins a smooth stretch at (t, x).
+  void restart(double t, std::span<const double> x);
+
+  /// Looks at the step to (t, x).
+  void advance(double t, std::span<const double> x);
+
+  /// The first growth of each state that was not seen.
+  const std::vector<UnseenGrowth>& found() const { return found_; }
+
+ private:
+  double near_distance(std::size_t i, double x) const;  ///< [machine unit]
+  bool is_near_rest(std::span<const double> x);
+  void judge(double t, std::span<const double> x, double step);
+
+  OdeSystem& system_;
+  const SolverSettings& settings_;
+  std::vector<double> before_, change_, jacobian_;
+  ModeFinder modes_;
+  std::vector<double> growth_;    ///< of each state, in powers of e, while it is near an unstable equilibrium
+  std::vector<double> distance_;  ///< the least since then
+  std::vector<bool> near_;
+  double time_ = 0, judged_ = 0, judged_step_ = 0;
+  int steps_ = 0;                 ///< since it was judged
+  long looked_ = 0;               ///< Jacobians
+  std::vector<bool> told_;        ///< of each state, whether it is among `found_`
+  std::vector<long> held_since_;  ///< Jacobian at which its growth was last found to be held by other states
+  std::vector<UnseenGrowth> found_;
+};
+
+}  // namespace oblique::solve

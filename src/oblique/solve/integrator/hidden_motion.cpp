@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/solve/integrator/hidden_motion.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace oblique::solve {
+namespace {
+
+/// Errors above this many tolerances are not what an accepted step leaves between its points.
+constexpr double kMostErrors = 100;
+
+}  // namespace
+
+HiddenMotion::HiddenMotion(OdeSystem& system, double relative_tolerance,
+                           std::vector<double> absolute_tolerances)
+    : system_(system),
+      relative_(relative_tolerance),
+      absolute_(std::move(absolute_tolerances)),
+      x_(system.size()),
+      rates_(system.size()),
+      slopes_(system.size()) {}
+
+bool HiddenMotion::misses(double t, double part, const Interpolant& solution) {
+  solution.states_at(t, x_);
+  solution.rates_at(t, rates_);
+  if (!system_.derivatives(t, x_.data(), slopes_.data())) return true;
+  bool suspicious = false;
+  const auto error = [&](std::size_t i) {
+    return part * std::abs(rates_[i] - slopes_[i]) /
+           (kMostErrors * (relative_ * std::abs(x_[i]) + absolute_[i]));
+  };
+  for (std::size_t i = 0; i < x_.size() && !suspicious; ++i) suspicious = error(i) > 1;
+  if (!suspicious) return false;
+  // A state that is pulled back at once errs by less.
+  const network::SparsePattern& pattern = system_.pattern();
+  jacobian_.resize(pattern.entries());
+  if (!system_.jacobian(t, x_.data(), jacobian_.data())) return true;
+  for (std::size_t i = 0; i < x_.size(); ++i) {
+    double own = 0;
+    for (auto k = pattern.column_starts[i]; k < pattern.column_starts[i + 1]; ++k) {
+      if (pattern.rows[static_cast<std::size_t>(k)] == static_cast<std::int64_t>(i))
+        own = std::abs(jacobian_[static_cast<std::size_t>(k)]);
+    }
+    if (error(i) > 1 + part * own) return true;
+  }
+  return false;
+}
+
+std::optional<double> HiddenMotion::find(double from, std::span<const double> looks,
+                                         const Interpolant& solution) {
+  double before = from;
+  for (std::size_t k = 0; k + 1 < looks.size(); ++k) {
+    const double part = looks[k] - before;
+    if (misses(looks[k], part, solution)) {
+      longest_ = std::min(part, looks[k + 1] - looks[k]);
+      seen_until_ = before;
+      return looks[k];
+    }
+    before = looks[k];
+  }
+  return std::nullopt;
+}
+
+}  // namespace oblique::solve

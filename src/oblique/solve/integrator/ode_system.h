@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+
+#include <oblique/network/program/program.h>
+
+namespace oblique::solve {
+
+/// A system dx/dt = f(t, x) as the solver sees it.
+class OdeSystem {
+ public:
+  virtual ~OdeSystem() = default;
+  virtual std::size_t size() const = 0;
+  virtual const network::SparsePattern& pattern() const = 0;
+  /// False where f has no value at (t, x); the solver then tries a shorter step.
+  virtual bool derivatives(double t, const double* x, double* dxdt) = 0;
+  /// df/dx in the order of `pattern`; false as above.
+  virtual bool jacobian(double t, const double* x, double* values) = 0;
+  /// Whether the solver is to end, also in the midst of a step.
+  virtual bool is_to_end() const { return false; }
+};
+
+}  // namespace oblique::solve

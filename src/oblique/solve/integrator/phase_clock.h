@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+
+#include <oblique/diagram/flat_diagram.h>
+#include <oblique/network/program/program.h>
+
+namespace oblique::solve {
+
+/// Leads a run through the phases of its timeline: sets the modes of operation of all groups.
+class PhaseClock {
+ public:
+  /// Where a run stands in its timeline.
+  struct Position {
+    std::size_t phase = 0;
+    double cycle = 0;  ///< number of those that are over
+    double begin = 0;  ///< of the phase [s]
+  };
+
+  /// The first phase begins at time t. All arguments must outlive the clock.
+  PhaseClock(const network::Program& program, const diagram::FlatTimeline& timeline,
+             network::Workspace& workspace, double t);
+
+  /// When the phase ends at the latest [s]; infinite for the last one.
+  double end() const;
+
+  /// Whether the phase is over at t: its time, or, as the workspace has it, its condition. The last phase is
+  /// never over.
+  bool is_over(double t) const;
+
+  /// Begins the next phase at t.
+  void advance(double t);
+
+  const Position& position() const { return position_; }
+  /// Goes on from a position of an earlier run.
+  void restore(const Position& position);
+
+ private:
+  bool is_last() const;
+  void set_modes();
+
+  const network::Program& program_;
+  const diagram::FlatTimeline& timeline_;
+  network::Workspace& workspace_;
+  Position position_;
+};
+
+}  // namespace oblique::solve

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include <oblique/solve/events/faint_turns.h>
+#include <oblique/solve/integrator/cvodes_solver.h>
+#include <oblique/solve/integrator/growth_watch.h>
+#include <oblique/solve/integrator/small_states.h>
+#include <oblique/solve/run.h>
+
+namespace oblique::solve {
+
+/// What a run did not see.
+struct Unseen {
+  std::vector<UnseenGrowth> growth;
+  std::vector<SmallState> small;
+  std::vector<FaintTurn> faint;
+
+  bool empty() const { return growth.empty() && small.empty() && faint.empty(); }
+};
+
+/// Where a run is to be finer than its tolerance asks, because states that matter are smaller.
+struct Refinement {
+  /// [machine unit] of each state: the size at which its absolute tolerance is as much as the relative one;
+  /// 0: as usual.
+  std::vector<double> reach;
+  bool finest = false;  ///< relative tolerance down to rounding
+
+  bool operator==(const Refinement&) const = default;
+};
+
+/// Adds what a run did not see.
+void refine(const Unseen& unseen, std::size_t n_states, Refinement& refinement);
+
+/// The tolerances and bounds with which a solver meets what a run is asked for.
+SolverSettings solver_settings(const std::vector<network::State>& states, const RunOptions& options,
+                               diagram::IntegrationMethod method, const Refinement& refinement);
+
+/// The warnings of a run that is not fine enough.
+std::vector<text::Diagnostic> warnings_of(const Unseen& unseen, const network::Program& program,
+                                          const diagram::FlatDiagram& diagram);
+
+}  // namespace oblique::solve

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/solve/integrator/sampler.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <oblique/solve/events/along_branch.h>
+#include <oblique/solve/solve_error.h>
+
+namespace oblique::solve {
+namespace {
+
+[[noreturn]] void throw_not_finite(const std::string& file, const std::string& signal, double time) {
+  throw SolveError(SolveError::Kind::blow_up, time,
+                   {{file, {}},
+                    fmt::format("the signal '{}' is not a finite number at t = {:.6g} s", signal, time),
+                    {},
+                    "look for a division by zero or a root or logarithm of a negative signal"});
+}
+
+}  // namespace
+
+Sampler::Sampler(const network::Program& program, const diagram::FlatDiagram& diagram,
+                 const RunOptions& options, network::Workspace& workspace, Switching& switching)
+    : program_(program),
+      diagram_(diagram),
+      options_(options),
+      workspace_(workspace),
+      switching_(switching),
+      runaway_(program, options.from ? options.from->time : 0, options.until, options.watch_overloads),
+      states_(program.n_states()),
+      signals_(program.n_signals()),
+      row_(diagram.outputs.size() + 1) {
+  result.trajectory = Trajectory(output_columns(diagram));
+  result.extra = result.trajectory;
+  result.peaks.resize(program.n_signals());
+  if (options.extremes) result.extremes.resize(diagram.outputs.size());
+}
+
+void Sampler::advance(double t, const Interpolant& solution) {
+  double last = t;
+  while (true) {
+    const bool grid_left = next_sample_ < options_.samples;
+    const bool extra_left = next_extra_ < options_.extra_times.size();
+    const double grid_time = grid_left ? sample_time(next_sample_) : options_.until + 1;
+    const double extra_time = extra_left ? options_.extra_times[next_extra_] : options_.until + 1;
+    const double time = std::min(grid_time, extra_time);
+    if ((!grid_left && !extra_left) || time > t) return;
+    evaluate(last, time, solution);
+    last = time;
+    runaway_.look_at(time, signals_);
+    if (grid_left && grid_time == time) {
+      result.trajectory.add_row(row_);
+      if (options_.on_sample) options_.on_sample(time, states_, workspace_.memories());
+      ++next_sample_;
+    }
+    if (extra_left && extra_time == time) {
+      result.extra.add_row(row_);
+      ++next_extra_;
+    }
+  }
+}
+
+/// In the middle of the stretch and at its ends, and once more where a parabola through these has its top:
+/// what is missed is of third order in the solver's step.
+void Sampler::watch(double from, double to, const Interpolant& solution) {
+  if (!options_.extremes) return;
+  double last = to;
+  const auto at = [&](double time) {
+    evaluate(last, time, solution);
+    last = time;
+    keep_extremes(time);
+  };
+  at(from);
+  begin_ = row_;
+  at((from + to) / 2);
+  middle_ = row_;
+  at(to);
+  const std::vector<double> end = row_;
+  for (std::size_t c = 1; c < end.size(); ++c) {
+    const double curvature = begin_[c] - 2 * middle_[c] + end[c];
+    if (curvature == 0) continue;
+    const double top = 0.5 - (end[c] - begin_[c]) / (4 * curvature);
+    if (top > 0 && top < 1 && top != 0.5) at(from + top * (to - from));
+  }
+}
+
+void Sampler::keep_extremes(double time) {
+  for (std::size_t i = 0; i < result.extremes.size(); ++i) {
+    Extremes& extremes = result.extremes[i];
+    const double value = row_[i + 1];
+    if (value > extremes.maximum.value) extremes.maximum = {value, time};
+    if (value < extremes.minimum.value) extremes.minimum = {value, time};
+  }
+}
+
+double Sampler::sample_time(int k) const {
+  const double begin = options_.from ? options_.from->time : 0;
+  if (k + 1 == options_.samples) return options_.until;
+  return begin + (options_.until - begin) * k / (options_.samples - 1);
+}
+
+/// `last` is where something was evaluated last.
+void Sampler::evaluate(double last, double time, const Interpolant& solution) {
+  constexpr double kSameTime = 1e-9;  // of the run: at the end of a branch stands the last value on it
+  const auto signals_at = [&](double at) {
+    solution.states_at(at, states_);
+    return switching_.signals(at, states_.data(), signals_.data());
+  };
+  const double reached = evaluate_along_branch(last, time, workspace_, signals_at);
+  const double span = options_.until - (options_.from ? options_.from->time : 0);
+  if (reached != time && (std::abs(time - reached) > kSameTime * span || !signals_at(reached)))
+    throw loop_error(program_, workspace_.trouble(), time, diagram_.file);
+  row_[0] = time;
+  for (std::size_t i = 0; i < diagram_.outputs.size(); ++i) {
+    const diagram::FlatOutput& output = diagram_.outputs[i];
+    row_[i + 1] = output.scale * signals_[program_.signal_index(output.signal)] + output.offset;
+  }
+  for (std::size_t s = 0; s < signals_.size(); ++s) {
+    if (!std::isfinite(signals_[s])) throw_not_finite(diagram_.file, program_.signal_names()[s], time);
+    if (std::abs(signals_[s]) > std::abs(result.peaks[s].value)) result.peaks[s] = {signals_[s], time};
+  }
+}
+
+}  // namespace oblique::solve

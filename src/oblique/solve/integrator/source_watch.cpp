@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/solve/integrator/source_watch.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include <oblique/solve/solve_error.h>
+
+namespace oblique::solve {
+namespace {
+
+/// A source that varies within a part of a step by this much of its size is told by its values at the ends.
+constexpr double kSmooth = 0.25;
+
+/// What is below this part of the largest value that a source has had is nothing.
+constexpr double kNothing = 1e-9;
+
+constexpr int kDeepest = 40;
+constexpr int kDeepestUnknown = 6;  ///< of a source by states that may be any number, as a quotient of zeros
+constexpr std::size_t kMostLooks = 1'000'000;  ///< in a step
+
+}  // namespace
+
+SourceWatch::SourceWatch(const network::Program& program, const network::Workspace& workspace, bool outputs,
+                         const std::string& file)
+    : program_(program), workspace_(workspace), file_(file) {
+  for (const network::Source& source : program.sources()) {
+    if (source.acts || outputs) watched_.push_back(source);
+  }
+  if (!watched_.empty()) slots_ = program.source_slots();
+  largest_.assign(watched_.size(), 0);
+  if (!active()) return;
+  ranges_.resize(program.source_states().size());
+  states_.resize(program.n_states());
+  rates_.resize(program.n_states());
+}
+
+/// The ranges of all sources over a part of the step.
+void SourceWatch::bound(double from, const Values& at_from, double to, const Values& at_to) {
+  constexpr double kBend =
+      2 * 4.0 / 27;  // a cubic goes 4/27 of the slopes' difference off its chord, at most
+  for (std::size_t k = 0; k < ranges_.size(); ++k) {
+    const double a = at_from.states[k], b = at_to.states[k];
+    double off = 0;
+    if (k >= program_.clocks() && to > from) {
+      const double chord = (b - a) / (to - from);
+      off = kBend * (to - from) * (std::abs(at_from.rates[k] - chord) + std::abs(at_to.rates[k] - chord));
+    }
+    ranges_[k] = {std::min(a, b) - off, std::max(a, b) + off};
+  }
+  program_.source_ranges({from, to}, ranges_, workspace_, slots_);
+}
+
+SourceWatch::Values SourceWatch::values_at(double t) {
+  Values values;
+  if (!ranges_.empty()) {
+    solution_->states_at(t, states_);
+    if (ranges_.size() > program_.clocks()) solution_->rates_at(t, rates_);
+    for (const std::size_t i : program_.source_states()) {
+      values.states.push_back(states_[i]);
+      values.rates.push_back(rates_[i]);
+    }
+  }
+  bound(t, values, t, values);
+  values.sources.reserve(watched_.size());
+  for (std::size_t k = 0; k < watched_.size(); ++k) {
+    const double value = slots_[watched_[k].slot].low;
+    values.sources.push_back(value);
+    if (std::isfinite(value)) largest_[k] = std::max(largest_[k], std::abs(value));
+  }
+  return values;
+}
+
+/// Whether every source goes from `from` to `to` as its values there tell.
+bool SourceWatch::is_plain(double from, const Values& at_from, double to, const Values& at_to, int depth) {
+  bound(from, at_from, to, at_to);
+  for (std::size_t k = 0; k < watched_.size(); ++k) {
+    const double a = at_from.sources[k], b = at_to.sources[k];
+    network::Interval value = slots_[watched_[k].slot];
+    if (!watched_[k].by_states) {
+      const network::Interval slope = slots_[watched_[k].slope_slot];
+      if (slope.low >= 0 || slope.high <= 0) continue;
+      // From the value at the beginning no further than the slopes lead: tighter where the part is short.
+      value.low = std::max(value.low, a + slope.low * (to - from));
+      value.high = std::min(value.high, a + slope.high * (to - from));
+    }
+    if (watched_[k].switch_index) {
+      if (value.contains(0)) return false;
+      continue;
+    }
+    const double shown =
+        2 * std::abs(b - a) + kSmooth * std::min(std::abs(a), std::abs(b)) + kNothing * largest_[k];
+    if (watched_[k].by_states && depth >= kDeepestUnknown && !std::isfinite(value.width())) continue;
+    if (!(value.width() <= shown)) return false;
+  }
+  return true;
+}
+
+void SourceWatch::part(double from, const Values& at_from, double to, const Values& at_to, int depth) {
+  if (--looks_left_ < 0) {
+    throw SolveError(
+        SolveError::Kind::step_budget, from,
+        {{file_, {}},
+         fmt::format("from t = {:.9g} s on the signals change too fast to look at all that they do", from),
+         {},
+         "end the run before, keep what is fast out of it, or give more 'max_steps' in [run]"});
+  }
+  const double middle = from + (to - from) / 2;
+  const double resolution = 16 * std::numeric_limits<double>::epsilon() * std::abs(to);
+  if (depth >= kDeepest || to - from <= resolution || times_.size() >= kMostLooks ||
+      is_plain(from, at_from, to, at_to, depth)) {
+    times_.push_back(to);
+    return;
+  }
+  const Values at_middle = values_at(middle);
+  part(from, at_from, middle, at_middle, depth + 1);
+  part(middle, at_middle, to, at_to, depth + 1);
+}
+
+const std::vector<double>& SourceWatch::looks(double from, double to, const Interpolant& solution) {
+  times_.clear();
+  if (!active() || !(to > from)) {
+    times_.push_back(to);
+    return times_;
+  }
+  solution_ = &solution;
+  const Values at_from = values_at(from);
+  part(from, at_from, to, values_at(to), 0);
+  return times_;
+}
+
+}  // namespace oblique::solve

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <oblique/network/program/program.h>
+#include <oblique/solve/integrator/interpolant.h>
+
+namespace oblique::solve {
+
+/// Sees to it that no step hides what the time alone does, or a clock (an integrator of a constant), or what
+/// a function makes of the states that is next to nothing here and a peak there.
+///
+/// A pulse may lie between two times at which a solver looks, and a fast sine may look slow. Whether it does
+/// is not guessed: interval arithmetic bounds every source over the whole of a step, and those of the time
+/// their slopes. A step is parted until over each part every source is monotone, or within what its ends
+/// show; the surface of a switch that follows the time alone, until it is monotone or has no zero. The states
+/// are bounded by the cubic through their values and rates at the ends of a part, and twice its bend.
+class SourceWatch {
+ public:
+  /// Looks at the sources that act on the states and switches, and with `outputs` at those too that are only
+  /// shown. Both must outlive this.
+  SourceWatch(const network::Program& program, const network::Workspace& workspace, bool outputs,
+              const std::string& file);
+
+  /// How often it may look at most in the whole run.
+  void limit_looks(double looks) { looks_left_ = looks; }
+
+  bool active() const { return !watched_.empty(); }
+
+  /// Times in (from, to], ascending, the last one `to`, at which to look. `to` alone where nothing is hidden.
+  /// Throws SolveError where there are more than it may look at.
+  const std::vector<double>& looks(double from, double to, const Interpolant& solution);
+
+ private:
+  /// At one time: the sources, and the source states with their rates.
+  struct Values {
+    std::vector<double> sources, states, rates;
+  };
+  void part(double from, const Values& at_from, double to, const Values& at_to, int depth);
+  bool is_plain(double from, const Values& at_from, double to, const Values& at_to, int depth);
+  Values values_at(double t);
+  void bound(double from, const Values& at_from, double to, const Values& at_to);
+
+  const network::Program& program_;
+  const network::Workspace& workspace_;
+  const std::string& file_;
+  double looks_left_ = 1e9;
+  std::vector<network::Source> watched_;
+  std::vector<network::Interval> slots_;
+  const Interpolant* solution_ = nullptr;
+  std::vector<double> states_, rates_;     ///< all of them, at a time
+  std::vector<network::Interval> ranges_;  ///< of the source states
+  std::vector<double> largest_;            ///< magnitude of each source so far
+  std::vector<double> times_;
+};
+
+}  // namespace oblique::solve

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/solve/operating_point/other_solutions.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include <oblique/solve/solve_error.h>
+#include <oblique/text/even_point.h>
+
+namespace oblique::solve {
+namespace {
+
+bool chooses_blindly(const network::Program& program, std::size_t loop) {
+  const std::vector<std::size_t>& unknowns = program.loops()[loop].unknowns;
+  return !program.loop_is_linear(loop) && std::all_of(unknowns.begin(), unknowns.end(), [&](std::size_t u) {
+    return program.unknowns()[u].torn;
+  });
+}
+
+constexpr int kPoints = 24;
+constexpr double kReach = 3;  // [machine unit]
+
+LoopStart point(const network::Program& program, std::size_t loop, int k) {
+  const std::size_t n = program.loops()[loop].unknowns.size();
+  LoopStart start{loop, text::even_point(k, n)};
+  for (double& unknown : start.unknowns) unknown = kReach * (2 * unknown - 1);
+  return start;
+}
+
+/// An unknown of the loop that differs between two solutions.
+std::optional<std::size_t> changed(const network::Program& program, std::size_t loop,
+                                   const std::vector<double>& solution, const std::vector<double>& other) {
+  constexpr double kOther = 1e-4;  // of 1 + |z|: far beyond what is left of Newton's method at a double root
+  for (const std::size_t u : program.loops()[loop].unknowns) {
+    if (std::abs(other[u] - solution[u]) > kOther * (1 + std::abs(solution[u]))) return u;
+  }
+  return std::nullopt;
+}
+
+/// Whether an element of the loop is beyond the range that is searched: which of them is the unknown must not
+/// matter.
+bool leaves_reach(const network::Program& program, std::size_t loop, const std::vector<double>& signals) {
+  for (const std::string& member : program.loops()[loop].members) {
+    for (std::size_t s = 0; s < signals.size(); ++s) {
+      const std::string& name = program.signal_names()[s];
+      const bool of_member = name == member || name.starts_with(member + ".");
+      if (of_member && std::abs(signals[s]) > kReach) return true;
+    }
+  }
+  return false;
+}
+
+text::Diagnostic several_solutions(const network::Program& program, std::size_t loop, double t,
+                                   const std::string& file, const std::string& unknown, double here,
+                                   double there) {
+  std::vector<std::string> members;
+  for (const std::string& member : program.loops()[loop].members) members.push_back("'" + member + "'");
+  return {
+      {file, {}},
+      fmt::format("the algebraic loop of {} has several solutions: at t = {:.6g} s the run begins with {} = "
+                  "{:.6g}, and {:.6g} is another; nothing in the diagram chooses between them",
+                  shortened(std::move(members)), t, unknown, here, there),
+      {},
+      "put a servo amplifier with an 'initial', or a lag, into the loop: where it starts from chooses"};
+}
+
+}  // namespace
+
+StartChoice choose_start(const network::Program& program, double t, const std::string& file,
+                         const std::function<std::optional<StartOutcome>(const LoopStart&)>& start) {
+  StartChoice choice;
+  std::vector<std::size_t> blind;
+  for (std::size_t loop = 0; loop < program.loops().size(); ++loop) {
+    if (chooses_blindly(program, loop)) blind.push_back(loop);
+  }
+  if (blind.empty()) return choice;
+  std::optional<StartOutcome> solution = start({});
+  for (const std::size_t loop : blind) {
+    for (int k = 1; k <= kPoints && !solution; ++k) {
+      choice.from = point(program, loop, k);
+      solution = start(choice.from);
+    }
+  }
+  if (!solution) return {};
+  for (const std::size_t loop : blind) {
+    for (int k = 1; k <= kPoints; ++k) {
+      const auto other = start(point(program, loop, k));
+      if (!other || leaves_reach(program, loop, other->signals)) continue;
+      const auto unknown = changed(program, loop, solution->unknowns, other->unknowns);
+      if (!unknown) continue;
+      choice.warnings.push_back(several_solutions(program, loop, t, file, program.unknowns()[*unknown].name,
+                                                  solution->unknowns[*unknown], other->unknowns[*unknown]));
+      break;
+    }
+  }
+  return choice;
+}
+
+}  // namespace oblique::solve

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <oblique/network/program/program.h>
+
+namespace oblique::solve {
+
+/// From where the solution of one algebraic loop is first sought: without a loop, from the guesses of the
+/// diagram.
+struct LoopStart {
+  std::optional<std::size_t> loop;
+  std::vector<double> unknowns;  ///< of that loop
+};
+
+/// What a start leads to.
+struct StartOutcome {
+  std::vector<double> unknowns, signals;  ///< of the whole program
+};
+
+/// From where the loops of a run are to start, and what else might have been.
+struct StartChoice {
+  LoopStart from;
+  std::vector<text::Diagnostic> warnings;
+};
+
+/// A warning for each loop of elements without memory that has another solution where the run starts, at time
+/// t. Nothing in such a loop says which one is meant: a servo amplifier has its `initial`, and an equation of
+/// a block its guess, so loops with these are left out. Sought from points that fill the machine's range
+/// evenly; a solution that lies in no reach of them is not seen.
+///
+/// `start` makes a whole start of its own, with all switches settled and all amplifiers at rest, and gives
+/// the unknowns of the program as it leaves them; nothing where it fails. So only what the whole diagram
+/// agrees with is a solution, and a loop counts whose choice decides where amplifiers come to rest. Where the
+/// guesses lead to no start the first point that does is chosen.
+StartChoice choose_start(const network::Program& program, double t, const std::string& file,
+                         const std::function<std::optional<StartOutcome>(const LoopStart&)>& start);
+
+}  // namespace oblique::solve

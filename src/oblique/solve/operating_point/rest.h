@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <oblique/network/program/program.h>
+
+namespace oblique::solve {
+
+/// The states that are brought to rest before the clock starts: those of servo amplifiers.
+std::vector<std::size_t> rest_states(const network::Program& program);
+
+/// The same in groups that act on each other, each after the groups whose signals it follows.
+std::vector<std::vector<std::size_t>> servo_groups(const network::Program& program);
+
+/// Brings servo loops to rest at time t while all other states are held, as an operator waits for the loops
+/// to settle before he starts the clock: the loops run with the clock stopped, then Newton's method takes
+/// them to dx/dt = 0. Changes `states` in place. Throws SolveError where a loop does not settle, would not
+/// stay at rest (an unstable loop may balance for a moment), or an algebraic loop has no solution.
+///
+/// A loop may close through states that are held (a lag, an integrator), and be stable only when those move.
+/// It has no rest before the clock starts, on no machine. It then starts where its `initial` says, and the
+/// warnings that are given back say so.
+std::vector<text::Diagnostic> bring_to_rest(const network::Program& program, network::Workspace& workspace,
+                                            double t, std::vector<double>& states, const std::string& file);
+
+}  // namespace oblique::solve

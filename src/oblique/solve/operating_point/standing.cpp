@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/solve/operating_point/standing.h>
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <unordered_map>
+
+#include <oblique/network/assembly/network.h>
+
+namespace oblique::solve {
+
+bool is_brought_to_rest(const diagram::BlockDefinition& definition) {
+  return std::any_of(definition.starts.begin(), definition.starts.end(),
+                     [](const auto& start) { return start.at_rest; });
+}
+
+diagram::FlatDiagram with_instant_servos(diagram::FlatDiagram diagram) {
+  for (diagram::FlatBlock& block : diagram.blocks) {
+    const auto bandwidth = block.definition->find_parameter("bandwidth");
+    if (!bandwidth || !is_brought_to_rest(*block.definition)) continue;
+    block.parameters[*bandwidth] = std::numeric_limits<double>::infinity();
+    block.choose_behaviour();
+  }
+  return diagram;
+}
+
+namespace {
+
+using Values = std::unordered_map<std::string_view, double>;
+
+/// The memories of a program in these states: those with a namesake are as it is, and the switches of real
+/// amplifiers, which instant ones have not, as their surfaces tell.
+std::vector<double> memories_of(const network::Program& program, double t, const std::vector<double>& states,
+                                const Values& namesakes, network::Workspace& workspace) {
+  constexpr int kMostRounds = 100;
+  workspace.reset_memories();
+  for (std::size_t m = 0; m < program.memories().size(); ++m) {
+    const auto found = namesakes.find(program.memories()[m].name);
+    if (found != namesakes.end()) workspace.set_memory(m, found->second);
+  }
+  std::vector<double> surfaces(program.switches().size());
+  bool turned = true;
+  for (int round = 0; turned && round < kMostRounds; ++round) {
+    turned = false;
+    if (!program.surfaces(t, states.data(), surfaces.data(), workspace)) break;
+    for (std::size_t s = 0; s < surfaces.size(); ++s) {
+      const std::uint32_t memory = program.switches()[s].memory;
+      const double position = surfaces[s] > 0 ? 1 : 0;
+      if (namesakes.contains(program.memories()[memory].name) || workspace.memory(memory) == position)
+        continue;
+      workspace.set_memory(memory, position);
+      turned = true;
+    }
+  }
+  return {workspace.memories().begin(), workspace.memories().end()};
+}
+
+}  // namespace
+
+std::vector<Instant> standing_instants(const network::Program& program, const diagram::FlatDiagram& diagram,
+                                       RunOptions options, std::size_t most) {
+  const diagram::FlatDiagram instant_servos = with_instant_servos(diagram);
+  const network::Program standing(network::assemble(instant_servos));
+  std::vector<Instant> instants;
+  collect_instants(options, most, instants);
+  run(standing, instant_servos, options);
+
+  std::unordered_map<std::string_view, std::size_t> signals;
+  for (std::size_t s = 0; s < standing.n_signals(); ++s) signals.emplace(standing.signal_names()[s], s);
+  network::Workspace workspace(standing), real(program);
+  std::vector<double> values(standing.n_signals());
+  for (Instant& instant : instants) {
+    workspace.load_memories(instant.memories);
+    standing.signals(instant.t, instant.states.data(), values.data(), workspace);
+    Values held, memories;
+    for (std::size_t i = 0; i < standing.n_states(); ++i)
+      held.emplace(standing.states()[i].name, instant.states[i]);
+    std::vector<double> states(program.n_states());
+    for (std::size_t i = 0; i < states.size(); ++i) {
+      const std::string& name = program.states()[i].name;
+      const auto state = held.find(name);
+      states[i] = state != held.end() ? state->second : values[signals.at(name)];
+    }
+    for (std::size_t m = 0; m < instant.memories.size(); ++m)
+      memories.emplace(standing.memories()[m].name, instant.memories[m]);
+    instant.memories = memories_of(program, instant.t, states, memories, real);
+    instant.states = std::move(states);
+  }
+  return instants;
+}
+
+void collect_instants(RunOptions& options, std::size_t most, std::vector<Instant>& instants) {
+  const auto rows = static_cast<std::size_t>(options.samples);
+  const std::size_t shown = std::min(rows, most);
+  const auto row = std::make_shared<std::size_t>(0);
+  options.on_restart = [&instants, row] {
+    instants.clear();
+    *row = 0;
+  };
+  options.on_sample = [&instants, rows, shown, row](double t, std::span<const double> states,
+                                                    std::span<const double> memories) {
+    const std::size_t taken = instants.size();
+    const std::size_t wanted = shown < 2 ? 0 : taken * (rows - 1) / (shown - 1);
+    if ((*row)++ == wanted && taken < shown)
+      instants.push_back({t, {states.begin(), states.end()}, {memories.begin(), memories.end()}});
+  };
+}
+
+}  // namespace oblique::solve

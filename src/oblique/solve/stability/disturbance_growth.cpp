@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/solve/stability/disturbance_growth.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <unsupported/Eigen/MatrixFunctions>
+
+namespace oblique::solve {
+namespace {
+
+constexpr std::size_t kMostStates = 60;
+constexpr double kMostWork = 2e9;  ///< operations: rows times n³ times about 30
+constexpr double kGreatestLogarithm = 700;
+
+/// ln‖Φ‖ of δ′ = A(t) δ at the middle and at the end, from every `stride`-th of the matrices.
+struct Logarithms {
+  double middle = 0, end = 0;
+};
+
+Logarithms grow(const std::vector<double>& times, const std::vector<Eigen::MatrixXd>& matrices,
+                std::size_t stride) {
+  const Eigen::VectorXd scale = balance(matrices.front());
+  const Eigen::Index n = matrices.front().rows();
+  Eigen::MatrixXd solution = Eigen::MatrixXd::Identity(n, n);
+  const double middle_time = (times.front() + times.back()) / 2;
+  Logarithms result;
+  double logarithm = 0;
+  std::size_t from = 0;
+  while (from + 1 < times.size()) {
+    const std::size_t to = std::min(from + stride, times.size() - 1);
+    Eigen::MatrixXd mean = Eigen::MatrixXd::Zero(n, n);
+    mean = (matrices[from] + matrices[to]) / 2;
+    // Powers of 2 keep the numbers and make the exponential of stiff matrices better.
+    const Eigen::MatrixXd step =
+        (scale.cwiseInverse().asDiagonal() * mean * scale.asDiagonal()) * (times[to] - times[from]);
+    solution = Eigen::MatrixXd(step.exp()) * solution;
+    const double norm = solution.norm();
+    if (!std::isfinite(norm)) return {std::numeric_limits<double>::quiet_NaN(), 0};
+    if (norm == 0) return {-kGreatestLogarithm, -kGreatestLogarithm};
+    solution /= norm;
+    logarithm += std::log(norm);
+    if (times[to] <= middle_time) result.middle = logarithm;
+    from = to;
+  }
+  result.end = logarithm - std::log(std::sqrt(static_cast<double>(n)));
+  result.middle -= std::log(std::sqrt(static_cast<double>(n)));
+  return result;
+}
+
+}  // namespace
+
+std::optional<DisturbanceGrowth> disturbance_growth(const network::Program& program,
+                                                    const std::vector<Instant>& rows) {
+  constexpr std::size_t kFewest = 9;
+  if (rows.size() < kFewest) return std::nullopt;
+  std::vector<std::vector<std::size_t>> groups = coupled_groups(program);
+  std::vector<std::vector<Eigen::MatrixXd>> matrices(groups.size());
+  std::vector<bool> varies(groups.size(), false);
+  std::vector<double> times;
+  network::Workspace workspace(program);
+  // First which groups vary, at a few rows; then these at all.
+  const auto look = [&](std::size_t row) { return Linearisation::at(program, workspace, rows[row]); };
+  const auto first = look(0);
+  if (!first) return std::nullopt;
+  for (std::size_t row = rows.size() / 8; row < rows.size(); row += rows.size() / 8) {
+    const auto linear = look(row);
+    if (!linear) return std::nullopt;
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      if (varies[g]) continue;
+      if (groups[g].size() > kMostStates)
+        varies[g] = (first->sparse_block(groups[g]) - linear->sparse_block(groups[g])).norm() != 0;
+      else
+        varies[g] = first->block(groups[g]) != linear->block(groups[g]);
+    }
+  }
+  double work = 0;
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    if (!varies[g]) continue;
+    if (groups[g].size() > kMostStates) return std::nullopt;
+    work += 30 * std::pow(static_cast<double>(groups[g].size()), 3) * static_cast<double>(rows.size());
+  }
+  if (work == 0) return std::nullopt;
+  const auto stride = static_cast<std::size_t>(std::ceil(work / kMostWork));
+  for (std::size_t row = 0; row < rows.size(); row += stride) {
+    const auto linear = look(row);
+    if (!linear) return std::nullopt;
+    times.push_back(rows[row].t);
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      if (varies[g]) matrices[g].push_back(linear->block(groups[g]));
+    }
+  }
+  if (times.size() < kFewest) return std::nullopt;
+  Logarithms most{-kGreatestLogarithm, -kGreatestLogarithm};
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    if (!varies[g]) continue;
+    const Logarithms fine = grow(times, matrices[g], 1), coarse = grow(times, matrices[g], 2);
+    const double late = fine.end - fine.middle, coarse_late = coarse.end - coarse.middle;
+    constexpr double kAgree = 0.2;
+    if (!(std::abs(late - coarse_late) <= kAgree * std::max(1.0, std::abs(late)))) return std::nullopt;
+    if (fine.end - fine.middle > most.end - most.middle || most.end <= -kGreatestLogarithm) most = fine;
+  }
+  DisturbanceGrowth growth;
+  growth.from = times.front();
+  growth.to = times.back();
+  growth.factor = std::exp(std::min(most.end, kGreatestLogarithm));
+  growth.exponent = (most.end - most.middle) / ((growth.to - growth.from) / 2);
+  return growth;
+}
+
+}  // namespace oblique::solve
