@@ -250,7 +250,7 @@ TEST(ExactCurve, OfTheParallelogramGoesStraightThroughItsPointsOfChange) {
   }
 }
 
-// The seed's program: theta3, b, xB, xP in 361 positions (000_a9b9dc6702f5c157.txt, eqs. 10, 13, 16).
+// The source's program: theta3, b, xB, xP in 361 positions (Valsamos 2024, eqs. 10, 13, 16).
 TEST(ExactCurve, OfTheThreeBarFollowsTheSourcesFormulas) {
   const MovingMechanism three_bar("three-bar");
   const double a = 100, d = 150, p = 300;
@@ -267,7 +267,7 @@ TEST(ExactCurve, OfTheThreeBarFollowsTheSourcesFormulas) {
   }
 }
 
-// The seed's classes I_Rod and RRR_II_RodGroup (004_fc681cbe650dac02.txt), in mm and s throughout.
+// The source's classes I_Rod and RRR_II_RodGroup (Linkages in Python), in mm and s throughout.
 void expect_six_bar(const std::string& name, double side) {
   const MovingMechanism six_bar(name);
   const double bc = 140, cd = 150, omega = 100, arm = std::hypot(50, 45), arm_angle = std::atan2(45, 50);
@@ -310,7 +310,7 @@ double corner(double l1, double l2, double l3) {
   return std::acos((l1 * l1 + l2 * l2 - l3 * l3) / (2 * l1 * l2));
 }
 
-// The seed's chain of vector transformations (002_afba7cf1b1c08b00.txt), by its lengths a … m.
+// The source's chain of vector transformations (Ihnatyshyn et al.), by its lengths a … m.
 TEST(ExactCurve, OfJansensFootFollowsTheSourcesTransformations) {
   const MovingMechanism jansen("jansen");
   const double b = 41.5, c = 39.3, d = 40.1, e = 55.8, f = 39.4, g = 36.7, h = 65.7, i = 49, j = 50, k = 61.9,

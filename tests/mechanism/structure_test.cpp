@@ -204,7 +204,7 @@ TEST(Structure, KnowsAGroupOfClassIV) {
   EXPECT_EQ(structure.groups[1].side, 0);  // it may have more than two modes
 }
 
-// The ternary link BCD on three leads, one of them from the crank OA (method of 003_69ea068b7b221c3d.txt).
+// The ternary link BCD on three leads, one of them from the crank OA (method: AVM class III).
 TEST(Structure, KnowsATriad) {
   const Structure triad = find_groups(mechanism(R"([frame]
 O = [0, 0]

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The diagram of 003_69ea068b7b221c3d.txt, and the splits of a triad.
+// The diagram of the source (AVM class III), and the splits of a triad.
 #include <algorithm>
 #include <cmath>
 #include <numbers>

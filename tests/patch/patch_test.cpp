@@ -191,7 +191,7 @@ TEST(Scaling, RoundsUpToShortNumbers) {
   EXPECT_DOUBLE_EQ(round_up(0.071501), 0.0716);
 }
 
-// The class III mechanism of 003_69ea068b7b221c3d.txt: two triangles and one outer loop for the triad.
+// The class III mechanism of the source (AVM class III): two triangles and one outer loop for the triad.
 TEST(Patch, TakesATriadApart) {
   const mechanism::Mechanism mechanism =
       mechanism::read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/class-iii.toml");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Mechanism → diagram as 003_69ea068b7b221c3d.txt draws it: two equal four-bar circuits and a loop.
+// Mechanism → diagram as the source (AVM class III) draws it: two equal four-bar circuits and a loop.
 #include <algorithm>
 #include <cmath>
 #include <numbers>

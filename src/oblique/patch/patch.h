@@ -82,7 +82,7 @@ double bandwidth_of(const mechanism::Mechanism& mechanism, const PatchOptions& o
 
 /// The diagram that simulates a mechanism by servo-tracked triangles over one turn of its first drive: a
 /// crank generator for each drive and a dyad of oblique triangles for each pair of links (method:
-/// 003_69ea068b7b221c3d.txt). All signals are scaled by the exact motion to stay within ±1 machine unit;
+/// AVM class III). All signals are scaled by the exact motion to stay within ±1 machine unit;
 /// `[outputs]` scale back and carry the names of `solve`'s columns ("C.x"). Throws PatchError where a
 /// triangle does not close or goes flat on the way, MechanismError as `decompose`.
 diagram::Diagram patch_triangles(const mechanism::Mechanism& mechanism, const PatchOptions& options = {});
@@ -97,7 +97,7 @@ diagram::Diagram patch_triangles(const mechanism::Mechanism& mechanism, const Pa
 /// above.
 diagram::Diagram patch_gradient(const mechanism::Mechanism& mechanism, const PatchOptions& options = {});
 
-/// The diagram of 003_69ea068b7b221c3d.txt for a mechanism of cranks and triads on three links, so that it
+/// The diagram of the source (AVM class III) for a mechanism of cranks and triads on three links, so that it
 /// can be read beside the source: two equal circuits `four-bar-circuit` with one scale for all lengths, an
 /// outer loop that tracks the variable length, and the source's angles among the outputs. The split is the
 /// source's unless the options name one: the first lead, that hangs on a crank, carries the variable length,

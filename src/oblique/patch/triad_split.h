@@ -10,7 +10,7 @@
 
 namespace oblique::patch {
 
-/// A triad on three links taken apart into two triangles and an outer loop (003_69ea068b7b221c3d.txt): the
+/// A triad on three links taken apart into two triangles and an outer loop (AVM class III): the
 /// distance w from the closing lead's anchor Z to the platform's point B of the tracked lead is taken for
 /// known. Then B is the apex of A–B–Z, the third lead's point D that of B–D–E, the closing lead's point C
 /// follows rigidly, and what |ZC|² lacks drives w.

@@ -11,7 +11,7 @@ namespace oblique::mechanism {
 
 /// Columns that an analysis adds to those of a motion:
 ///
-/// * kinematic coefficients (analogues of velocity and acceleration, 002_afba7cf1b1c08b00.txt), the
+/// * kinematic coefficients (analogues of velocity and acceleration; Ihnatyshyn et al.), the
 ///   derivatives by the first drive's value s instead of time, x' = ẋ/ṡ and x″ = (ẍ − x' s̈)/ṡ²:
 ///   `P.dx P.ddx P.dy P.ddy` of every moving point, `b.dangle b.ddangle` of every body, `s.dposition
 ///   s.ddposition` of every slide; without a value where the drive stands still;

@@ -16,7 +16,7 @@ bool has_masses(const Mechanism& mechanism);
 ///
 ///     J = m (L² + S²)/12
 ///
-/// (The J(L, S, m) = ¼ (L − S) S m in the source 002_afba7cf1b1c08b00.txt is another thing: a quarter of what
+/// (The J(L, S, m) = ¼ (L − S) S m of Ihnatyshyn et al. is another thing: a quarter of what
 /// two masses at the ends of a bar have whose centre of mass lies S from one end. It is 0 for S = 0.)
 double bar_inertia(const Mechanism& mechanism, std::size_t body);
 
