@@ -18,6 +18,7 @@ set(allowed_patch text diagram mechanism)
 set(allowed_commission text diagram network solve mechanism patch machine)
 set(allowed_compare text diagram network solve mechanism patch machine commission)
 set(allowed_synthesis text mechanism)
+set(allowed_report text diagram network solve mechanism patch machine commission compare draw)
 set(allowed_draw text diagram mechanism)
 
 file(GLOB_RECURSE files RELATIVE ${SOURCE}/src ${SOURCE}/src/oblique/*.h ${SOURCE}/src/oblique/*.cpp)

@@ -8,8 +8,8 @@
 
 #include <oblique/text/diagnostic.h>
 
-#include "terminal.h"
-#include "verbs.h"
+#include "terminal/terminal.h"
+#include "verbs/verbs.h"
 
 namespace oblique::cli {
 namespace {
@@ -115,7 +115,7 @@ std::optional<ExitStatus> parse_arguments(int argc, char** argv, Chosen& chosen)
   } catch (const CLI::Success& success) {  // --help, --version
     return static_cast<ExitStatus>(app.exit(success));
   } catch (const CLI::ParseError& error) {
-    print_error(text::to_string(explain(app, error, std::vector<std::string>(argv + 1, argv + argc))));
+    print_error(message(explain(app, error, std::vector<std::string>(argv + 1, argv + argc))));
     return ExitStatus::bad_request;
   }
   return std::nullopt;

@@ -4,7 +4,7 @@
 #include <functional>
 #include <optional>
 
-#include "command.h"
+#include "verbs/command.h"
 
 namespace oblique::cli {
 

@@ -13,9 +13,9 @@
 #include <oblique/synthesis/synthesis_error.h>
 
 #include "arguments.h"
-#include "memory.h"
-#include "signals.h"
-#include "terminal.h"
+#include "terminal/memory.h"
+#include "terminal/signals.h"
+#include "terminal/terminal.h"
 
 namespace oblique::cli {
 namespace {
@@ -25,7 +25,7 @@ ExitStatus report(const text::Error& error, ExitStatus status) {
   constexpr std::size_t kMostFindings = 20;
   const std::vector<text::Diagnostic>& all = error.diagnostics();
   const std::size_t shown = std::min(all.size(), kMostFindings);
-  for (std::size_t i = 0; i < shown; ++i) print_error(text::to_string(all[i]));
+  for (std::size_t i = 0; i < shown; ++i) print_error(message(all[i]));
   if (shown < all.size()) print_error(fmt::format("… and {} more", all.size() - shown));
   return status;
 }

@@ -82,7 +82,7 @@ TEST(TimeFunction, RefusesWhatIsNoFormulaOfTime) {
   EXPECT_EQ(testing::message_of<diagram::DiagramError>([&] {
               diagram::flatten(diagram, testing::shipped_blocks(), {{"u.formula", "time"}});
             }),
-            "--set u.formula=time: 'formula' is a formula; expected a parameter that is a number\n  remedy: "
+            "set u.formula=time: 'formula' is a formula; expected a parameter that is a number\n  remedy: "
             "change the formula in the diagram");
 }
 

@@ -115,7 +115,7 @@ INSTANTIATE_TEST_SUITE_P(
                        "--split AB,DE,XY: no triad has these leads; expected the three leads of a triad"},
         BadRequestCase{"GradientOfInfiniteGain",
                        "oblique patch diagrams/mechanisms/four-bar.toml --method gradient --gain inf", 2,
-                       "a gradient servo of infinite gain has no time scale; expected a finite --gain and"},
+                       "a gradient servo of infinite gain has no time scale; expected a finite gain and"},
         BadRequestCase{"SlowerWithoutEnd", "oblique patch diagrams/mechanisms/class-iii.toml --slower inf", 2,
                        "error: --slower inf; expected a finite number above 0"},
         BadRequestCase{"UnitWithoutEnd", "oblique patch diagrams/mechanisms/four-bar.toml --unit inf", 2,
@@ -186,7 +186,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadRequestCase{
             "MechanismForADiagram", "oblique run diagrams/mechanisms/jansen.toml", 2,
             "jansen.toml:18:10: the format is 'oblique-mechanism/1'; expected 'oblique-diagram/1'\n"
-            "  remedy: this is a mechanism: `oblique solve`, `compare` and `draw` take it, `patch` makes a "
+            "  remedy: this is a mechanism: `oblique solve`, `oblique compare` and `oblique draw` take it, "
+            "`oblique patch` makes a "
             "diagram of it\n"},
         BadRequestCase{"OutputToAFullDisk",
                        "ln -s /dev/full $SCRATCH/full.npy; oblique solve diagrams/mechanisms/four-bar.toml "

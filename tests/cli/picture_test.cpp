@@ -157,7 +157,7 @@ INSTANTIATE_TEST_SUITE_P(
             "CannotBeAssembledThere", "draw diagrams/mechanisms/double-rocker.toml --at '180 deg' -o x.svg",
             1,
             "the mechanism cannot be assembled at rocker = 180°\n"
-            "  remedy: 'oblique check diagrams/mechanisms/double-rocker.toml' says how far it can go"},
+            "  remedy: `oblique check diagrams/mechanisms/double-rocker.toml` says how far it can go"},
         RefusedPicture{"NoDuration", "animate diagrams/mechanisms/four-bar.toml --duration 0 -o x.svg", 2,
                        "--duration 0; expected a time above 0"},
         RefusedPicture{"NotAMechanism", "draw README.md -o x.svg", 2, "README.md:"}),

@@ -186,7 +186,7 @@ TEST_F(Plot, MoreCurvesThanCanBeToldApartAreRefusedOrLeftOut) {
   for (int k = 1; k < 20; ++k) all += ",c" + std::to_string(k);
   const Outcome refused = oblique("run " + file("many.toml") + " --plot - --columns " + all);
   EXPECT_EQ(refused.status, 2);
-  EXPECT_THAT(refused.err, HasSubstr("20 curves cannot be told apart; expected at most 18 in --columns"));
+  EXPECT_THAT(refused.err, HasSubstr("--columns: 20 curves cannot be told apart; expected at most 18"));
 }
 
 }  // namespace

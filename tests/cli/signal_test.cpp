@@ -20,7 +20,7 @@
 
 #include <oblique/text/leftover.h>
 
-#include "../../src/cli/signals.h"
+#include "../../src/cli/terminal/signals.h"
 #include "../support/scratch_folder.h"
 
 namespace oblique::test {

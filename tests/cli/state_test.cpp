@@ -80,7 +80,7 @@ TEST_F(SavedRun, RefusesWhatIsNoState) {
   const Outcome diagram = oblique("run circle.toml --from circle.toml");
   EXPECT_EQ(diagram.status, 2);
   EXPECT_THAT(diagram.err,
-              HasSubstr("the format is 'oblique-diagram/1'; expected 'oblique-state/1', what --save writes"));
+              HasSubstr("the format is 'oblique-diagram/1'; expected 'oblique-state/1', the state of a run"));
   EXPECT_EQ(oblique("run circle.toml --from none.toml").status, 2);
 }
 

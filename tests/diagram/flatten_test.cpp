@@ -264,25 +264,25 @@ TEST_F(Overrides, ReplaceParametersAtAnyDepth) {
 }
 
 TEST_F(Overrides, SayWhatIsWrong) {
-  EXPECT_EQ(message("gain", "1"), "--set gain=1: 'gain' names no parameter; expected BLOCK.PARAMETER=VALUE");
-  EXPECT_EQ(message("x.gain", "1"), "--set x.gain=1: there is no block 'x'\n  remedy: known: a, C");
-  EXPECT_EQ(message("C.bx.k", "1"), "--set C.bx.k=1: there is no block 'C.bx'\n  remedy: known: b");
-  EXPECT_EQ(message("a.b.k", "1"), "--set a.b.k=1: 'a' (reference) has no inner blocks");
+  EXPECT_EQ(message("gain", "1"), "set gain=1: 'gain' names no parameter; expected BLOCK.PARAMETER=VALUE");
+  EXPECT_EQ(message("x.gain", "1"), "set x.gain=1: there is no block 'x'\n  remedy: known: a, C");
+  EXPECT_EQ(message("C.bx.k", "1"), "set C.bx.k=1: there is no block 'C.bx'\n  remedy: known: b");
+  EXPECT_EQ(message("a.b.k", "1"), "set a.b.k=1: 'a' (reference) has no inner blocks");
   EXPECT_EQ(message("a.valeu", "1"),
-            "--set a.valeu=1: 'valeu' of block type 'reference' is not a parameter\n  remedy: did you mean "
+            "set a.valeu=1: 'valeu' of block type 'reference' is not a parameter\n  remedy: did you mean "
             "'value'?");
   EXPECT_EQ(
       message("C.b.s.gian", "1"),
-      "--set C.b.s.gian=1: 'gian' of block type 'servo' is not a parameter\n  remedy: did you mean 'gain'?");
+      "set C.b.s.gian=1: 'gian' of block type 'servo' is not a parameter\n  remedy: did you mean 'gain'?");
   EXPECT_EQ(message("C.x", "1"),
-            "--set C.x=1: 'x' of block type 'crate' is an input\n  remedy: only parameters can be set");
-  EXPECT_EQ(message("C.b.k", "10"), "--set C.b.k=10: the value is 10; expected a number at most 9");
+            "set C.x=1: 'x' of block type 'crate' is an input\n  remedy: only parameters can be set");
+  EXPECT_EQ(message("C.b.k", "10"), "set C.b.k=10: the value is 10; expected a number at most 9");
   EXPECT_EQ(message("C.b.s.bandwidth", "3 s"),
-            "--set C.b.s.bandwidth=3 s: 's' is the wrong unit here; expected a quantity in 'Hz'\n"
+            "set C.b.s.bandwidth=3 s: 's' is the wrong unit here; expected a quantity in 'Hz'\n"
             "  remedy: give it in 'Hz', or as a number without a unit");
   EXPECT_EQ(message("a.value", "m"),
-            "--set a.value=m: 'm' is not a known constant; expected a number, 'pi' or 'inf'");
-  EXPECT_EQ(message("a..value", "1"), "--set a..value=1: 'a' (reference) has no inner blocks");
+            "set a.value=m: 'm' is not a known constant; expected a number, 'pi' or 'inf'");
+  EXPECT_EQ(message("a..value", "1"), "set a..value=1: 'a' (reference) has no inner blocks");
 }
 
 /// A chain of blocks, each of which is fed by itself and the one before.

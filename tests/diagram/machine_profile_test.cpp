@@ -186,10 +186,10 @@ TEST(FindMachine, KnowsExactNamesOnly) {
 }
 
 TEST(UnknownMachine, NamesTheNearestOne) {
-  const auto remedy = [](std::string_view name) { return unknown_machine(name).remedy; };
+  const auto remedy = [](std::string_view name) { return unknown_machine(name).remedy.words(); };
   EXPECT_EQ(unknown_machine("tr10").what, "there is no machine 'tr10'");
   for (const char* const name : {"tr10", "TR-10", "Tr_10"})
-    EXPECT_EQ(remedy(name), "did you mean 'tr-10'? `oblique machines` lists all") << name;
+    EXPECT_EQ(remedy(name), "did you mean 'tr-10'? 'machines' lists all") << name;
   EXPECT_THAT(remedy("МН-14"), HasSubstr("'mn-14'"));
   EXPECT_THAT(remedy("мн-14"), HasSubstr("'mn-14'"));
   EXPECT_THAT(remedy("МН-7"), HasSubstr("'mn-7'"));
@@ -197,7 +197,7 @@ TEST(UnknownMachine, NamesTheNearestOne) {
   EXPECT_THAT(remedy("МПТ-9"), HasSubstr("'mpt-9'"));
   EXPECT_THAT(remedy("Heathkit"), HasSubstr("'ec-1'"));
   EXPECT_THAT(remedy("telefunken"), HasSubstr("'rat-700'"));
-  EXPECT_EQ(remedy("abacus"), "`oblique machines` lists those there are");
+  EXPECT_EQ(remedy("abacus"), "'machines' lists those there are");
 }
 
 TEST(UnknownMachine, KeepsThePlace) {

@@ -11,7 +11,7 @@
 #include <oblique/compare/compare.h>
 #include <oblique/mechanism/model/read_mechanism.h>
 #include <oblique/mechanism/motion/obstacle.h>
-#include <oblique/solve/expectation_check.h>
+#include <oblique/report/expectation_check.h>
 #include <oblique/text/document.h>
 
 #include "../support/rate_errors.h"
@@ -69,9 +69,9 @@ TEST_P(ShippedDiagram, GivesWhatItExpects) {
   ASSERT_FALSE(diagram.expectations.empty());
   const diagram::FlatDiagram flat = diagram::flatten(diagram, library);
   solve::RunOptions options = solve::options_of(diagram.run);
-  solve::ask_for_expectations(diagram, options);
+  report::ask_for_expectations(diagram, options);
   const oblique::solve::Run result = solve::run(network::Program(network::assemble(flat)), flat, options);
-  for (const solve::ExpectationResult& expectation : solve::check_expectations(diagram, result)) {
+  for (const report::ExpectationResult& expectation : report::check_expectations(diagram, result)) {
     EXPECT_TRUE(expectation.met) << expectation.expectation.text << " = " << expectation.actual;
   }
 }

@@ -110,7 +110,7 @@ TEST(Split, IsRefusedWhereNoTriadHasItsLeads) {
   PatchOptions options;
   options.split = {"AB", "OA", "DE"};
   EXPECT_THAT(message(shipped("class-iii"), options),
-              HasSubstr("--split AB,OA,DE: no triad has these leads; expected the three leads of a triad in "
+              HasSubstr("split AB,OA,DE: no triad has these leads; expected the three leads of a triad in "
                         "any order: AB,"));
   EXPECT_THAT(message(shipped("four-bar"), options),
               HasSubstr("expected a triad on three links, which this mechanism has not"));
@@ -160,7 +160,7 @@ TEST(Split, IsRefusedWhereATriangleTurnsOver) {
   ASSERT_THAT(text, HasSubstr(what));
   EXPECT_THAT(
       text,
-      HasSubstr("expected triangles that never go flat and a loop that keeps its sign\n  remedy: --split "));
+      HasSubstr("expected triangles that never go flat and a loop that keeps its sign\n  remedy: split "));
   const double time = std::stod(text.substr(text.find(what) + what.size()));
   const double degree =
       std::numbers::pi / 180;  // the crank's speed is 1 rad/s; ranges are taken half a degree apart

@@ -291,7 +291,7 @@ TEST(Patch, OffersTheGradientWhereATriadHasASlide) {
   } catch (const PatchError& error) {
     EXPECT_THAT(error.what(),
                 HasSubstr("has a slide among its leads, so that it cannot be taken apart into triangles"));
-    EXPECT_THAT(error.what(), HasSubstr("remedy: patch it with --method gradient"));
+    EXPECT_THAT(error.what(), HasSubstr("remedy: patch it with method gradient"));
   }
 }
 

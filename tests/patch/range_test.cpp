@@ -175,7 +175,7 @@ TEST(Period, CannotStretchALaw) {
     FAIL();
   } catch (const PatchError& error) {
     EXPECT_THAT(error.what(),
-                HasSubstr("drive 'pump' has a speed that varies with time, which --period cannot stretch"));
+                HasSubstr("drive 'pump' has a speed that varies with time, which no period of the machine can stretch"));
   }
 }
 

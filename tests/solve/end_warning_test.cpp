@@ -70,7 +70,7 @@ TEST(EndOfATimeline, IsTold) {
           "d.toml: the run ends at t = 1 s in phase 2 of cycle 1 of its timeline; expected phase 2 of cycle "
           "1000, the last one\n"
           "  remedy: such phases have no length that is known before: give a later 'until' in [run], or "
-          "--until"));
+          "'until'"));
   // A cycle is 0.01 s + π/2, so that 3 of them are over at 5 s.
   EXPECT_THAT(warnings_of(cosine(kHalfWaves), 5),
               ::testing::ElementsAre(::testing::HasSubstr("in phase 2 of cycle 4 of its timeline")));

@@ -218,7 +218,7 @@ TEST(StepBudget, IsNotToBeRaisedWhereStepsBecomeEverShorter) {
   EXPECT_EQ(f.kind, SolveError::Kind::step_budget);
   EXPECT_THAT(
       f.message,
-      HasSubstr("remedy: end the run earlier with --until, or look at what comes to an end near t = 1"));
+      HasSubstr("remedy: end the run earlier with 'until', or look at what comes to an end near t = 1"));
 }
 
 TEST(StepBudget, OfExactlyTheStepsNeededIsEnough) {

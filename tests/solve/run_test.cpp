@@ -216,7 +216,7 @@ TEST(Run, RefusesStepsThatNoBudgetHolds) {
     EXPECT_EQ(
         testing::message_of<SolveError>([&] { run(made.program, made.flat, options_of(made.diagram.run)); }),
         "d.toml: steps of 1e-300 s at most would be more than 10000000 over a run of 1 s\n"
-        "  remedy: raise max_step or max_steps in [run], or end the run earlier with --until");
+        "  remedy: raise max_step or max_steps in [run], or end the run earlier with 'until'");
   }
 }
 

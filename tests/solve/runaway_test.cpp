@@ -28,7 +28,7 @@ TEST(Runaway, AnExponentialSaysWhichSignalWhenAndHowFar) {
       warnings[0].what,
       HasSubstr("the signal 'x' leaves the machine: it passes 100 machine units at t = 2.305 s and comes "
                 "to 2.2e+04 at t = 5 s, still growing"));
-  EXPECT_THAT(warnings[0].remedy, HasSubstr("oblique check"));
+  EXPECT_THAT(warnings[0].remedy.words(), HasSubstr("'check'"));
 }
 
 TEST(Runaway, AnOscillationThatGrowsIsSaidToo) {

@@ -325,7 +325,7 @@ TEST(RunState, OfAnotherDiagramIsRefused) {
   EXPECT_THAT(
       message_of<text::ReadError>([] { parse_run_state("format = \"oblique-diagram/1\"\n", "s.toml"); }),
       HasSubstr(
-          "s.toml:1:10: the format is 'oblique-diagram/1'; expected 'oblique-state/1', what --save writes"));
+          "s.toml:1:10: the format is 'oblique-diagram/1'; expected 'oblique-state/1', the state of a run"));
 }
 
 TEST(Run, EndsWhereItIsInterrupted) {

@@ -214,7 +214,7 @@ TEST(Refusals, OfATargetWhereTheMechanismIsOpen) {
     EXPECT_STREQ(
         error.what(),
         "path.csv: point 'F' cannot be followed: the mechanism does not close where column 'crank' wants it; "
-        "expected targets within the motion of the mechanism\n  remedy: oblique solve m.toml tells where it "
+        "expected targets within the motion of the mechanism\n  remedy: 'solve m.toml' tells where it "
         "is open");
   }
 }

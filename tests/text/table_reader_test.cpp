@@ -210,7 +210,7 @@ TEST_F(TableReaderTest, TellsWhatAFileOfAnotherKindIsFor) {
   EXPECT_EQ(
       findings(),
       "t.toml:1:10: the format is 'oblique-mechanism/1'; expected 'oblique-diagram/1'\n"
-      "  remedy: this is a mechanism: `oblique solve`, `compare` and `draw` take it, `patch` makes a diagram "
+      "  remedy: this is a mechanism: 'solve', 'compare' and 'draw' take it, 'patch' makes a diagram "
       "of it");
 }
 

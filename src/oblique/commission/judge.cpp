@@ -48,13 +48,15 @@ std::string name_some(const std::vector<std::string>& names) {
   return fmt::format("'{}'{}", fmt::join(shown, "', '"), names.size() > kMost ? " …" : "");
 }
 
-/// "--split AB,O1C,DE --slower 100", as far as the two differ.
-std::string difference(const patch::PatchOptions& from, const patch::PatchOptions& to) {
-  std::vector<std::string> words;
-  if (to.split != from.split) words.push_back(fmt::format("--split {}", fmt::join(to.split, ",")));
-  if (to.slower != from.slower)
-    words.push_back(fmt::format("--slower {:g}", to.slower.value_or(patch::kUsualSlower)));
-  return fmt::format("{}", fmt::join(words, " "));
+/// The settings in which the two differ.
+text::Remedy difference(const patch::PatchOptions& from, const patch::PatchOptions& to) {
+  text::Remedy settings;
+  if (to.split != from.split)
+    settings += {text::Setting{"split", fmt::format("{}", fmt::join(to.split, ","))}};
+  if (to.slower == from.slower) return settings;
+  if (!settings.empty()) settings += " ";
+  settings += {text::Setting{"slower", fmt::format("{:g}", to.slower.value_or(patch::kUsualSlower))}};
+  return settings;
 }
 
 /// Other ways to patch the same triad, in the order in which they are worth a trial: slower outer loops with
@@ -168,21 +170,23 @@ JudgedPatch judged_patch(const mechanism::Mechanism& mechanism, const diagram::B
     show_the_fault(first);
     return first;
   }
-  std::string help;
+  text::Remedy help;
   if (options.method != patch::PatchMethod::gradient) {
     for (const patch::PatchOptions& way : other_ways(patch::within_range(mechanism), options)) {
       JudgedPatch other = attempt(way);
       if (!other.judgement.good()) continue;
       if (may_choose(options, way)) return other;
-      help = fmt::format("{} is stable; ", difference(options, way));
+      help = difference(options, way);
+      help += " is stable; ";
       break;
     }
   }
+  help += {text::Setting{"method", "gradient"}, " patches any mechanism"};
   throw patch::PatchError(
       text::Diagnostic{{mechanism.file, {}},
                        fmt::format("this patch would not run: {}", fault_of(first.judgement)),
                        "servo loops that return to rest everywhere on the way",
-                       help + "--method gradient patches any mechanism"})
+                       help})
       .forcible();
 }
 

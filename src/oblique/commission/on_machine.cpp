@@ -85,8 +85,11 @@ MachinePatch put_on_machine(const mechanism::Mechanism& mechanism, const diagram
           fmt::format("on the machine {} this patch would not run: {}", machine.title,
                       fault_of(usual.judgement)),
           "servo loops that return to rest everywhere on the way",
-          stable ? fmt::format("--bandwidth \"{:g} Hz\" is stable", *stable->options.bandwidth)
-                 : std::string("choose a machine of faster elements (oblique machines), or a lower --gain")})
+          stable
+              ? text::Remedy{text::Setting{"bandwidth", fmt::format("{:g} Hz", *stable->options.bandwidth)},
+                             " is stable"}
+              : text::Remedy{"choose a machine of faster elements (", text::Action{"machines"},
+                             "), or a lower ", text::Setting{"gain"}}})
       .forcible();
 }
 

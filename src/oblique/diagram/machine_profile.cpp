@@ -125,8 +125,9 @@ text::Diagnostic unknown_machine(std::string_view name, text::Place place) {
   return {std::move(place),
           fmt::format("there is no machine '{}'", name),
           {},
-          nearest ? fmt::format("did you mean '{}'? `oblique machines` lists all", *nearest)
-                  : "`oblique machines` lists those there are"};
+          nearest ? text::Remedy{fmt::format("did you mean '{}'? ", *nearest), text::Action{"machines"},
+                                 " lists all"}
+                  : text::Remedy{text::Action{"machines"}, " lists those there are"}};
 }
 
 }  // namespace oblique::diagram

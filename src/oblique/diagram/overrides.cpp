@@ -8,13 +8,13 @@
 namespace oblique::diagram::wiring {
 namespace {
 
-/// Finds one override; its findings have no place, since the text stands in no file.
+/// Finds one override; the place of its findings is the setting, since its text stands in no file.
 class Finder {
  public:
   Finder(const ParameterOverride& override, const std::string& machine, text::Diagnostics& diagnostics)
       : override_(override),
         machine_(machine),
-        subject_(fmt::format("--set {}={}", override.path, override.value)),
+        place_{{}, {}, {"set", fmt::format("{}={}", override.path, override.value)}},
         diagnostics_(diagnostics) {}
 
   /// The block that a path names; nothing where there is none, or where it is broken and reported with its
@@ -68,7 +68,7 @@ class Finder {
     }
     try {
       const double value = text::parse_quantity(override_.value, unit_on(machine_, parameter.unit));
-      check_range(parameter, value, subject_ + ": the value", {}, {}, diagnostics_);
+      check_range(parameter, value, "the value", place_, {}, diagnostics_);
       return ReplacedParameter{*index, value};
     } catch (const text::ExpressionError& error) {
       report(error.what, error.expected, error.remedy);
@@ -77,15 +77,13 @@ class Finder {
   }
 
   void report(std::string what, std::string expected = {}, std::string remedy = {}) const {
-    const text::Place nowhere;
-    diagnostics_.add(
-        {nowhere, fmt::format("{}: {}", subject_, what), std::move(expected), std::move(remedy)});
+    diagnostics_.add({place_, std::move(what), std::move(expected), std::move(remedy)});
   }
 
  private:
   const ParameterOverride& override_;
   const std::string& machine_;
-  std::string subject_;
+  text::Place place_;
   text::Diagnostics& diagnostics_;
 };
 

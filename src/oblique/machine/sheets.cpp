@@ -185,4 +185,21 @@ MachineSheets make_sheets(const diagram::FlatDiagram& diagram,
   return {maker.connections(), maker.potentiometers(), maker.static_test(readings)};
 }
 
+namespace {
+
+/// Readings of the ideal machine: what the elements should show.
+std::vector<solve::StaticReading> expected_readings(diagram::Diagram diagram,
+                                                    const diagram::BlockLibrary& library) {
+  diagram.machine.profile = "ideal";
+  const diagram::FlatDiagram flat = diagram::flatten(diagram, library);
+  return solve::static_test(network::Program(network::assemble(flat)), diagram.file);
+}
+
+}  // namespace
+
+MachineSheets sheets_of(const diagram::Diagram& diagram, const diagram::FlatDiagram& flat,
+                        const diagram::BlockLibrary& library, const diagram::MachineProfile& machine) {
+  return make_sheets(flat, expected_readings(diagram, library), machine);
+}
+
 }  // namespace oblique::machine

@@ -35,4 +35,8 @@ MachineSheets make_sheets(const diagram::FlatDiagram& diagram,
                           const std::vector<solve::StaticReading>& readings,
                           const diagram::MachineProfile& machine);
 
+/// The same for a diagram in elements of the machine, with what the ideal machine would show as the readings.
+MachineSheets sheets_of(const diagram::Diagram& diagram, const diagram::FlatDiagram& flat,
+                        const diagram::BlockLibrary& library, const diagram::MachineProfile& machine);
+
 }  // namespace oblique::machine

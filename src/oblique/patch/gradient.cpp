@@ -18,7 +18,7 @@ class GradientPatch : private PatchBuilder {
     if (!std::isfinite(options.gain * bandwidth_)) {
       throw PatchError(text::Diagnostic{{mechanism.file, {}},
                                         "a gradient servo of infinite gain has no time scale",
-                                        "a finite --gain and --bandwidth",
+                                        "a finite gain and bandwidth",
                                         {}},
                        PatchError::Kind::request);
     }

@@ -15,9 +15,11 @@ MachineTime::MachineTime(const mechanism::Mechanism& mechanism, const PatchOptio
     if (drive.law) {
       throw PatchError(text::Diagnostic{
           drive.place,
-          fmt::format("drive '{}' has a speed that varies with time, which --period cannot stretch",
-                      drive.name),
-          "drives of constant speed", "leave --period out, or write the law for the machine's time"});
+          fmt::format(
+              "drive '{}' has a speed that varies with time, which no period of the machine can stretch",
+              drive.name),
+          "drives of constant speed",
+          text::Remedy{"leave ", text::Setting{"period"}, " out, or write the law for the machine's time"}});
     }
     drive.speed *= factor;
   }

@@ -21,8 +21,9 @@ class PaperPatch : private TriadPatch {
     for (const mechanism::Group& group : structure_.groups) {
       if (group.kind == mechanism::GroupKind::crank || can_be_split(group)) continue;
       refuse(group, "is not of the source's kind", "cranks and triads on three links, as the source has them",
-             group.assur_class == 2 ? "patch it with --method triangles"
-                                    : "patch it with --method gradient, which takes any group");
+             group.assur_class == 2 ? text::Remedy{"patch it with ", text::Setting{"method", "triangles"}}
+                                    : text::Remedy{"patch it with ", text::Setting{"method", "gradient"},
+                                                   ", which takes any group"});
     }
     check_split_options(mechanism_, structure_, options_);
     choose_splits();

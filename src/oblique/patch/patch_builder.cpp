@@ -189,7 +189,7 @@ PatchBuilder::Terms PatchBuilder::terms_of(const LinearForm& form) const {
 }
 
 void PatchBuilder::refuse(const mechanism::Group& group, const std::string& why, const std::string& expected,
-                          const std::string& remedy) const {
+                          const text::Remedy& remedy) const {
   throw PatchError(
       text::Diagnostic{group.bodies.empty() ? mechanism_.slides[group.slides.front()].place
                                             : mechanism_.bodies[group.bodies.front()].place,

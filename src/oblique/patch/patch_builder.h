@@ -94,7 +94,7 @@ class PatchBuilder : private MachineTime, protected PointForms {
                      Gradients& gradients);
 
   [[noreturn]] void refuse(const mechanism::Group& group, const std::string& why, const std::string& expected,
-                           const std::string& remedy) const;
+                           const text::Remedy& remedy) const;
 
   const PatchOptions& options_;
   mechanism::Structure structure_;

@@ -33,7 +33,8 @@ namespace {
                             : "is at a dead centre",
           obstacle.time, drive.name, stand),
       open ? "links that reach each other in every position" : "a group that never comes to a dead centre",
-      open ? "lengthen the links of the dyad, or shorten the crank; `oblique solve` shows where it opens"
+      open ? text::Remedy{"lengthen the links of the dyad, or shorten the crank; ", text::Action{"solve"},
+                          " shows where it opens"}
            : "change a length a little: at a dead centre the servo loops lose their gain"});
 }
 

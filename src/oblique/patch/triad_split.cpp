@@ -158,7 +158,7 @@ TriadSplit choose_split(const mechanism::Mechanism& mechanism, const mechanism::
                 "keeps its gain on the way",
                 triad.name, mechanism::kind_name(triad.kind)),
             "a triad on three links with such a split",
-            "patch it with --method gradient, which takes any group"})
+            text::Remedy{"patch it with ", text::Setting{"method", "gradient"}, ", which takes any group"}})
         .forcible();
   }
   if (named->flip != TriadSplit::Flip::none && !options.force) {
@@ -175,8 +175,10 @@ TriadSplit choose_split(const mechanism::Mechanism& mechanism, const mechanism::
                 named->flip_time),
             "triangles that never go flat and a loop that keeps its sign",
             splits.front().worth() > kLeastWorth
-                ? fmt::format("--split {} never flips", joined(leads_of(mechanism, triad, splits.front())))
-                : "patch it with --method gradient, which takes any group"})
+                ? text::Remedy{text::Setting{"split", joined(leads_of(mechanism, triad, splits.front()))},
+                               " never flips"}
+                : text::Remedy{"patch it with ", text::Setting{"method", "gradient"},
+                               ", which takes any group"}})
         .forcible();
   }
   named->asked_for = true;
@@ -187,12 +189,11 @@ void check_split_options(const mechanism::Mechanism& mechanism, const mechanism:
                          const PatchOptions& options) {
   const bool splits = std::any_of(structure.groups.begin(), structure.groups.end(), can_be_split);
   if (options.slower && !splits) {
-    throw PatchError(
-        text::Diagnostic{{mechanism.file, {}},
-                         fmt::format("--slower {:g}: this patch has no outer loop", *options.slower),
-                         "a mechanism with a triad on three links",
-                         "leave it out"},
-        PatchError::Kind::request);
+    throw PatchError(text::Diagnostic{{mechanism.file, {}, {"slower", fmt::format("{:g}", *options.slower)}},
+                                      "this patch has no outer loop",
+                                      "a mechanism with a triad on three links",
+                                      "leave it out"},
+                     PatchError::Kind::request);
   }
   if (options.split.empty()) return;
   std::vector<std::string> triads;
@@ -203,8 +204,8 @@ void check_split_options(const mechanism::Mechanism& mechanism, const mechanism:
     if (std::is_permutation(leads.begin(), leads.end(), options.split.begin(), options.split.end())) return;
   }
   throw PatchError(
-      text::Diagnostic{{mechanism.file, {}},
-                       fmt::format("--split {}: no triad has these leads", joined(options.split)),
+      text::Diagnostic{{mechanism.file, {}, {"split", joined(options.split)}},
+                       "no triad has these leads",
                        triads.empty() ? "a triad on three links, which this mechanism has not"
                                       : fmt::format("the three leads of a triad in any order: {}",
                                                     fmt::join(triads, "; ")),

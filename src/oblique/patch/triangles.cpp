@@ -54,7 +54,7 @@ class TrianglePatch : private TriadPatch {
                  ? "has a slide among its leads, so that it cannot be taken apart into triangles"
                  : "is no drive, no dyad and no triad, so that it cannot be taken apart into triangles",
              "drives, dyads, and triads on three links",
-             "patch it with --method gradient, which takes any group");
+             text::Remedy{"patch it with ", text::Setting{"method", "gradient"}, ", which takes any group"});
     }
   }
 

@@ -78,12 +78,13 @@ StartChoice start_of(const network::Program& program, const diagram::FlatDiagram
 void check_longest_step(const diagram::FlatDiagram& diagram, const RunOptions& options) {
   const double span = options.until - (options.from ? options.from->time : 0);
   if (span / options.max_step <= static_cast<double>(options.max_steps)) return;
-  throw SolveError(SolveError::Kind::step_budget, options.until - span,
-                   {{diagram.file, {}},
-                    fmt::format("steps of {} s at most would be more than {} over a run of {} s",
-                                options.max_step, options.max_steps, span),
-                    {},
-                    "raise max_step or max_steps in [run], or end the run earlier with --until"});
+  throw SolveError(
+      SolveError::Kind::step_budget, options.until - span,
+      {{diagram.file, {}},
+       fmt::format("steps of {} s at most would be more than {} over a run of {} s", options.max_step,
+                   options.max_steps, span),
+       {},
+       {"raise max_step or max_steps in [run], or end the run earlier with ", text::Setting{"until"}}});
 }
 
 }  // namespace

@@ -89,8 +89,7 @@ void compare_names(const RunState::Named& saved, const Things& things, std::stri
 }  // namespace
 
 std::string to_text(const RunState& state) {
-  std::string out =
-      "# Where a run stood: to go on, oblique run DIAGRAM --from THIS.\nformat = \"oblique-state/1\"\n";
+  std::string out = "# Where a run stood, and from where it goes on.\nformat = \"oblique-state/1\"\n";
   out += fmt::format("time = {}\n", state.time);
   out += fmt::format("conditions = [{}]\n",
                      fmt::join(std::vector<int>(state.conditions.begin(), state.conditions.end()), ", "));
@@ -109,7 +108,7 @@ RunState parse_run_state(std::string_view text, const std::string& file) {
   const auto format = reader.required_string("format", "format = \"oblique-state/1\"");
   if (format && *format != "oblique-state/1")
     reader.report("format", fmt::format("the format is '{}'", *format),
-                  "'oblique-state/1', what --save writes");
+                  "'oblique-state/1', the state of a run");
   diagnostics.throw_if_any<text::ReadError>();
   RunState state;
   state.time = reader.required_quantity("time", "s").value_or(0);

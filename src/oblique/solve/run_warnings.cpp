@@ -59,8 +59,8 @@ void warn_of_timeline(const diagram::FlatTimeline& timeline, const std::string& 
   const bool in_last = at.phase + 1 == timeline.phases.size() && at.cycle + 1 >= timeline.cycles;
   // Phases of known length were cut off on purpose, and who repeats without end knows that the run ends.
   if (!by_condition || in_last || std::isinf(timeline.cycles)) return;
-  std::string remedy =
-      "such phases have no length that is known before: give a later 'until' in [run], or --until";
+  text::Remedy remedy{"such phases have no length that is known before: give a later 'until' in [run], or ",
+                      text::Setting{"until"}};
   if (at.cycle > 0) {
     remedy +=
         fmt::format("; at the pace so far all cycles take {:.3g} s", state.time * timeline.cycles / at.cycle);

@@ -127,25 +127,26 @@ SolveError run_error(const network::Program& program, const SolverFailure& failu
           {{file, {}},
            fmt::format("{}: the solution grows without bound or jumps there, {}{}", where, value, details),
            {},
-           "look for a positive feedback, a divisor that passes zero or a servo loop whose residual falls "
-           "with its "
-           "output; or end the run earlier with --until"}};
+           {"look for a positive feedback, a divisor that passes zero or a servo loop whose residual falls "
+            "with its output; or end the run earlier with ",
+            text::Setting{"until"}}}};
     case Kind::step_budget: {
       const double last_step = solver.statistics().last_step;
       constexpr double kStuck = 1e-10;  // of the time: no number of steps leads on
       const bool stuck = last_step < kStuck * std::abs(failure.time);
-      return {
-          SolveError::Kind::step_budget,
-          failure.time,
-          {{file, {}},
-           fmt::format("{}: its budget of {} steps is used up, the last step was {:.2g} s{}", where,
-                       solver.statistics().steps, last_step, details),
-           {},
-           stuck ? fmt::format(
-                       "end the run earlier with --until, or look at what comes to an end near t = {:.6g} s: "
-                       "its steps become ever shorter there",
-                       failure.time)
-                 : "raise max_steps in [run], loosen the tolerance, or end the run earlier with --until"}};
+      return {SolveError::Kind::step_budget,
+              failure.time,
+              {{file, {}},
+               fmt::format("{}: its budget of {} steps is used up, the last step was {:.2g} s{}", where,
+                           solver.statistics().steps, last_step, details),
+               {},
+               stuck ? text::Remedy{"end the run earlier with ", text::Setting{"until"},
+                                    fmt::format(", or look at what comes to an end near t = {:.6g} s: "
+                                                "its steps become ever shorter there",
+                                                failure.time)}
+                     : text::Remedy{
+                           "raise max_steps in [run], loosen the tolerance, or end the run earlier with ",
+                           text::Setting{"until"}}}};
     }
     case Kind::interrupted:
     case Kind::other:

@@ -70,7 +70,7 @@ PathProblem::PathProblem(const Family& family, const TargetPath& target) : famil
                       "wants it",
                       mechanism.points[target.point].name, target.timing),
           "targets within the motion of the mechanism",
-          fmt::format("oblique solve {} tells where it is open", mechanism.file)});
+          {text::Action{"solve", mechanism.file}, " tells where it is open"}});
 }
 
 void PathProblem::restart() {

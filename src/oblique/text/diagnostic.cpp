@@ -2,14 +2,59 @@
 #include <oblique/text/diagnostic.h>
 
 #include <algorithm>
+#include <ostream>
 #include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 namespace oblique::text {
 
-std::string to_string(const Diagnostic& diagnostic) {
+const Vocabulary& plain_vocabulary() {
+  static const Vocabulary plain{[](const Setting& setting) {
+                                  return setting.value.empty()
+                                             ? fmt::format("'{}'", setting.name)
+                                             : fmt::format("{} {}", setting.name, setting.value);
+                                },
+                                [](const Action& action) {
+                                  return action.subject.empty()
+                                             ? fmt::format("'{}'", action.name)
+                                             : fmt::format("'{} {}'", action.name, action.subject);
+                                }};
+  return plain;
+}
+
+Remedy::Remedy(std::string words) {
+  if (!words.empty()) pieces_.emplace_back(std::move(words));
+}
+
+Remedy::Remedy(const char* words) : Remedy(std::string(words)) {}
+
+Remedy::Remedy(std::string_view words) : Remedy(std::string(words)) {}
+
+Remedy& Remedy::operator+=(const Remedy& more) {
+  pieces_.insert(pieces_.end(), more.pieces_.begin(), more.pieces_.end());
+  return *this;
+}
+
+std::string Remedy::words(const Vocabulary& vocabulary) const {
+  struct Speller {
+    const Vocabulary& vocabulary;
+    std::string operator()(const std::string& words) const { return words; }
+    std::string operator()(const Setting& setting) const { return vocabulary.setting(setting); }
+    std::string operator()(const Action& action) const { return vocabulary.action(action); }
+  };
+  std::string all;
+  for (const Piece& piece : pieces_) all += std::visit(Speller{vocabulary}, piece);
+  return all;
+}
+
+std::ostream& operator<<(std::ostream& out, const Remedy& remedy) {
+  return out << remedy.words();
+}
+
+std::string to_string(const Diagnostic& diagnostic, const Vocabulary& vocabulary) {
   std::string text;
   const SourcePosition at = diagnostic.place.position;
   if (!diagnostic.place.file.empty()) {
@@ -17,9 +62,10 @@ std::string to_string(const Diagnostic& diagnostic) {
     if (at.line > 0) text += fmt::format("{}:{}:", at.line, at.column);
     text += " ";
   }
+  if (!diagnostic.place.setting.name.empty()) text += vocabulary.setting(diagnostic.place.setting) + ": ";
   text += diagnostic.what;
   if (!diagnostic.expected.empty()) text += "; expected " + diagnostic.expected;
-  if (!diagnostic.remedy.empty()) text += "\n  remedy: " + diagnostic.remedy;
+  if (!diagnostic.remedy.empty()) text += "\n  remedy: " + diagnostic.remedy.words(vocabulary);
   return text;
 }
 

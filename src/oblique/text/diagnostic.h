@@ -2,9 +2,13 @@
 #pragma once
 
 #include <exception>
+#include <functional>
+#include <initializer_list>
+#include <iosfwd>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 namespace oblique::text {
@@ -16,10 +20,59 @@ struct SourcePosition {
   bool operator==(const SourcePosition&) const = default;
 };
 
-/// A position in a named file; `file` is empty where the text came from nowhere in particular.
+/// Something that the caller may set beside the files, by its name in the options of the library ("until",
+/// "bandwidth"), and the value that is meant, as it is written; empty for whatever value.
+struct Setting {
+  std::string name;
+  std::string value = {};
+  bool operator==(const Setting&) const = default;
+};
+
+/// Something that the caller may do, by the name of the function ("check"), with a file or a folder where it
+/// is known.
+struct Action {
+  std::string name;
+  std::string subject = {};
+  bool operator==(const Action&) const = default;
+};
+
+/// How settings and actions are spelled to the reader of a message: the program says "--until" and
+/// "oblique check", another host what its users know.
+struct Vocabulary {
+  std::function<std::string(const Setting&)> setting;
+  std::function<std::string(const Action&)> action;
+};
+
+/// "'until'", "bandwidth 20 Hz", "'check'": the words of the library itself.
+const Vocabulary& plain_vocabulary();
+
+/// What would help, in words, with the settings and actions of the caller as data.
+class Remedy {
+ public:
+  using Piece = std::variant<std::string, Setting, Action>;
+
+  Remedy() = default;
+  Remedy(std::string words);       // NOLINT(google-explicit-constructor): most are words alone
+  Remedy(const char* words);       // NOLINT(google-explicit-constructor)
+  Remedy(std::string_view words);  // NOLINT(google-explicit-constructor)
+  Remedy(std::initializer_list<Piece> pieces) : pieces_(pieces) {}
+
+  bool empty() const { return pieces_.empty(); }
+  Remedy& operator+=(const Remedy& more);
+  std::string words(const Vocabulary& vocabulary = plain_vocabulary()) const;
+
+  bool operator==(std::string_view text) const { return words() == text; }
+  friend std::ostream& operator<<(std::ostream& out, const Remedy& remedy);
+
+ private:
+  std::vector<Piece> pieces_;
+};
+
+/// A position in a named file, or a setting; `file` is empty where the text came from nowhere in particular.
 struct Place {
   std::string file;
-  SourcePosition position;
+  SourcePosition position = {};
+  Setting setting = {};
   bool operator==(const Place&) const = default;
 };
 
@@ -29,11 +82,11 @@ struct Diagnostic {
   Place place;
   std::string what;
   std::string expected;
-  std::string remedy;
+  Remedy remedy;
 };
 
 /// "file:line:column: what; expected …\n  remedy: …": the form every message of Oblique has.
-std::string to_string(const Diagnostic& diagnostic);
+std::string to_string(const Diagnostic& diagnostic, const Vocabulary& vocabulary = plain_vocabulary());
 
 /// Base of the exceptions the stages throw; carries at least one diagnostic.
 class Error : public std::exception {

@@ -95,7 +95,7 @@ void TableReader::report_absent(std::string_view key, std::string expected) {
   report(key, fmt::format("{} has no '{}'", what_, key), std::move(expected));
 }
 
-void TableReader::report(std::string_view key, std::string what, std::string expected, std::string remedy) {
+void TableReader::report(std::string_view key, std::string what, std::string expected, Remedy remedy) {
   const Value* const value = table_->find(key);
   diagnostics_->add({place(value != nullptr ? value->position : table_->position), std::move(what),
                      std::move(expected), std::move(remedy)});
@@ -176,25 +176,29 @@ std::optional<ExpectedValue> read_expected_value(TableReader& reader, const Unit
 
 bool check_format(TableReader& reader, std::string_view expected) {
   struct Kind {
-    std::string_view format, remedy;
+    std::string_view format;
+    Remedy remedy;
   };
-  constexpr std::array<Kind, 5> kKinds{
-      {{"oblique-diagram/1", "this is a diagram: `oblique run`, `check` and `draw` take it"},
+  const std::array<Kind, 5> kinds{
+      {{"oblique-diagram/1",
+        {"this is a diagram: ", Action{"run"}, ", ", Action{"check"}, " and ", Action{"draw"}, " take it"}},
        {"oblique-mechanism/1",
-        "this is a mechanism: `oblique solve`, `compare` and `draw` take it, `patch` makes a diagram of it"},
-       {"oblique-block/1", "this is a block: put its folder behind --blocks"},
+        {"this is a mechanism: ", Action{"solve"}, ", ", Action{"compare"}, " and ", Action{"draw"},
+         " take it, ", Action{"patch"}, " makes a diagram of it"}},
+       {"oblique-block/1", {"this is a block: its folder belongs among the ", Setting{"blocks"}}},
        {"oblique-machine/1", "this is a machine's profile"},
-       {"oblique-state/1", "this is a state that `oblique run --save` wrote: a run goes on with --from"}}};
+       {"oblique-state/1",
+        {"this is the state of a run: ", Action{"run"}, " goes on with it as ", Setting{"from"}}}}};
   const auto format = reader.required_string("format", fmt::format("format = \"{}\"", expected));
   if (!format || *format == expected) return true;
   const auto* const kind =
-      std::find_if(kKinds.begin(), kKinds.end(), [&](const Kind& known) { return known.format == *format; });
+      std::find_if(kinds.begin(), kinds.end(), [&](const Kind& known) { return known.format == *format; });
   reader.report(
       "format", fmt::format("the format is '{}'", *format), fmt::format("'{}'", expected),
-      kind != kKinds.end()
-          ? std::string(kind->remedy)
+      kind != kinds.end()
+          ? kind->remedy
           : "a diagram is oblique-diagram/1, a mechanism oblique-mechanism/1, a block oblique-block/1");
-  return kind == kKinds.end();
+  return kind == kinds.end();
 }
 
 }  // namespace oblique::text

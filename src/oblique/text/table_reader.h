@@ -42,7 +42,7 @@ class TableReader {
   std::optional<double> required_quantity(std::string_view key, const Unit& unit);
 
   /// Reports a finding at the value of `key`, or at the table where the key is absent.
-  void report(std::string_view key, std::string what, std::string expected = {}, std::string remedy = {});
+  void report(std::string_view key, std::string what, std::string expected = {}, Remedy remedy = {});
 
   /// Reports unknown keys.
   void finish();

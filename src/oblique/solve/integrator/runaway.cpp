@@ -54,7 +54,8 @@ std::vector<text::Diagnostic> RunawayWatch::warnings(const std::string& file) co
                        program_.signal_names()[furthest], kFarOutside, record.left, record.peak,
                        record.peak_time, grows_without_end(record) ? ", still growing" : "", others),
            {},
-           "oblique check tells which loop or mode grows, and proposes a scaling where it is only large"}};
+           {text::Action{"check"},
+            " tells which loop or mode grows, and proposes a scaling where it is only large"}}};
 }
 
 }  // namespace oblique::solve

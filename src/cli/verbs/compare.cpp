@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/compare/compare.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <oblique/commission/on_machine.h>
+#include <oblique/compare/machine_comparison.h>
+#include <oblique/compare/monte_carlo.h>
+#include <oblique/mechanism/model/read_mechanism.h>
+
+#include <oblique/report/comparison_chart.h>
+#include <oblique/report/comparison_report.h>
+#include <oblique/report/json_text.h>
+#include <oblique/report/judgement_text.h>
+#include <oblique/report/machine_comparison_report.h>
+#include <oblique/report/monte_carlo_report.h>
+#include <oblique/report/text_table.h>
+#include "terminal/output_files.h"
+#include "terminal/plot_output.h"
+#include "terminal/terminal.h"
+#include "verbs/command.h"
+#include "verbs/patch_choice.h"
+
+namespace oblique::cli {
+namespace {
+
+[[noreturn]] void refuse(const std::string& what, const std::string& expected,
+                         const std::string& remedy = {}) {
+  throw text::ReadError(text::Diagnostic{{}, what, expected, remedy});
+}
+
+/// Positive finite numbers of an option that takes several, each once.
+std::vector<double> numbers_option(const std::string& option, const std::vector<std::string>& texts,
+                                   std::string_view unit, const std::string& expected) {
+  std::vector<double> values;
+  for (const std::string& text : texts) {
+    values.push_back(quantity_option(option, text, unit));
+    if (!(values.back() > 0 && std::isfinite(values.back())))
+      refuse(fmt::format("{} {}", option, text), expected);
+    if (std::find(values.begin(), values.end() - 1, values.back()) != values.end() - 1) values.pop_back();
+  }
+  return values;
+}
+
+compare::CompareOptions options_of(const CompareRequest& request) {
+  compare::CompareOptions options;
+  options.methods.clear();
+  for (const std::string& name : request.methods) {
+    const patch::PatchMethod method = method_option(name);
+    if (std::find(options.methods.begin(), options.methods.end(), method) == options.methods.end())
+      options.methods.push_back(method);
+  }
+  if (!request.gains.empty())
+    options.gains = numbers_option("--gain", request.gains, "1", "finite gains above 0, such as 1e3,1e4,1e5");
+  options.bandwidths = numbers_option("--bandwidth", request.bandwidths, "Hz",
+                                      "finite bandwidths above 0, such as 10,100 or \"1 kHz\"");
+  take_apart(request.triads, options.methods, options.split, options.slower);
+  return options;
+}
+
+/// Says what is missing in the tables; whether a run failed.
+bool warn_of(const std::vector<compare::RefusedRun>& refused) {
+  for (const compare::RefusedRun& run : refused) {
+    std::string name = fmt::format("method {}", patch::method_name(run.method));
+    if (run.bandwidth) name += fmt::format(", {:.6g} Hz", *run.bandwidth);
+    if (run.gain) name += fmt::format(", gain {:.6g}", *run.gain);
+    note(fmt::format("warning: {} is left out: {}\n", name, message(run.why)));
+  }
+  return std::any_of(refused.begin(), refused.end(), [](const compare::RefusedRun& run) { return run.gain; });
+}
+
+/// The one patch that `option` is about: "--machine", "--monte-carlo".
+patch::PatchOptions single_patch(const std::string& option, const CompareRequest& request,
+                                 const compare::CompareOptions& options) {
+  const auto one_of = [&](const char* several, std::size_t n) {
+    if (n > 1)
+      refuse(fmt::format("{} with {} of {}", option, report::count(n, "value", "values"), several), "one");
+  };
+  one_of("--gain", request.gains.size());
+  one_of("--bandwidth", options.bandwidths.size());
+  one_of("--method", options.methods.size());
+  patch::PatchOptions patch;
+  patch.method = options.methods.front();
+  patch.split = options.split;
+  patch.slower = options.slower;
+  if (!request.gains.empty()) patch.gain = options.gains.front();
+  if (!options.bandwidths.empty()) patch.bandwidth = options.bandwidths.front();
+  return patch;
+}
+
+/// How the elements scatter: as --tolerance says, or the machine's profile.
+std::vector<diagram::BlockFigure> scatters_of(const CompareRequest& request,
+                                              const diagram::BlockLibrary& library,
+                                              const diagram::MachineProfile* machine) {
+  constexpr double kMost = 0.5;  // a factor of two is no tolerance any more
+  if (!request.tolerance.empty()) {
+    const double tolerance = quantity_option("--tolerance", request.tolerance, "1");
+    if (!(tolerance > 0 && tolerance <= kMost))
+      refuse(fmt::format("--tolerance {}", request.tolerance), "a number above 0 and up to 50%");
+    return compare::scatters_of_tolerance(library, tolerance);
+  }
+  if (machine == nullptr)
+    refuse("--monte-carlo without how far the elements scatter", "--tolerance, such as 0.1%, or a --machine");
+  if (machine->scatters.empty()) {
+    refuse(fmt::format("nothing is published of how the elements of {} scatter", machine->title),
+           "--tolerance, such as 0.1%");
+  }
+  return machine->scatters;
+}
+
+report::MonteCarloReport draw_elements(const CompareRequest& request, const mechanism::Mechanism& mechanism,
+                                       const diagram::Diagram& diagram, const diagram::BlockLibrary& library,
+                                       const diagram::MachineProfile* machine) {
+  report::MonteCarloReport report;
+  report.tolerance = request.tolerance;
+  if (request.tolerance.empty()) report.machine = machine->title;
+  report.unit = mechanism.length_unit;
+  report.options.scatters = scatters_of(request, library, machine);
+  report.options.runs = request.runs;
+  report.options.seed = request.seed;
+  report.options.first_run = request.first_run;
+  report.options.threads = request.threads > 0
+                               ? request.threads
+                               : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  if (report.options.runs == 1) {
+    const diagram::FlatDiagram flat = diagram::flatten(diagram, library);
+    for (const compare::Draw& drawn :
+         compare::draw(flat, report.options.scatters, {request.seed, request.first_run})) {
+      const diagram::FlatBlock& block = flat.blocks[drawn.block];
+      report.draws.emplace_back(block.path + "." + block.definition->parameters[drawn.parameter].name,
+                                drawn.value);
+    }
+  }
+  Progress progress("drawing elements");
+  report.options.progress = [&](double fraction) { progress.show(fraction); };
+  const auto begin = std::chrono::steady_clock::now();
+  report.result = compare::monte_carlo(mechanism, diagram, library, report.options);
+  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return report;
+}
+
+}  // namespace
+
+ExitStatus compare_mechanism(const Session& session, const CompareRequest& request) {
+  if (!request.output.empty()) check_output(request.output, ".json");
+  check_plot(request.plot, request.theme);
+  if (request.json && plots_in_terminal(request.plot))
+    refuse("--json and --plot - would both print", "one of the two", "--plot FILE.svg beside --json");
+  if (request.timings && !request.json && request.output.empty())
+    refuse("--timings is about the JSON, and none is written", "--json or -o FILE.json beside it");
+  const diagram::BlockLibrary library = session.blocks();
+  compare::CompareOptions options = options_of(request);
+  const diagram::MachineProfile* const machine =
+      request.machine.empty() ? nullptr : diagram::find_machine(request.machine);
+  if (machine == nullptr && !request.machine.empty())
+    throw text::ReadError(diagram::unknown_machine(request.machine));
+  patch::PatchOptions single;
+  if (machine != nullptr || request.runs > 0) {
+    single = single_patch(machine != nullptr ? "--machine" : "--monte-carlo", request, options);
+    options.gains = {single.gain};
+  }
+  if (request.runs > 0) scatters_of(request, library, machine);  // before the work, not after it
+  const mechanism::Mechanism mechanism = patch::within_range(mechanism::read_mechanism(request.mechanism));
+  std::optional<commission::MachinePatch> on_elements;
+  diagram::Diagram drawn;  // whose elements scatter
+  if (machine != nullptr || request.runs > 0) {
+    commission::JudgedPatch patched = commission::judged_patch(mechanism, library, single);
+    single = patched.options;
+    drawn = patched.diagram;
+    if (machine != nullptr) {
+      on_elements = commission::put_on_machine(mechanism, library, *machine, std::move(patched));
+      single = on_elements->options;
+      drawn = on_elements->realised;
+      if (single.bandwidth) options.bandwidths = {*single.bandwidth};
+    }
+  }
+  compare::Comparison comparison;
+  {
+    Progress progress("comparing");
+    options.progress = [&](double fraction) { progress.show(fraction); };
+    comparison = compare::compare(mechanism, library, options);
+  }
+  std::string text = report::to_text(comparison);
+  nlohmann::ordered_json json = report::to_json(comparison, request.timings);
+  draw::Chart chart = report::chart_of(comparison);
+  bool failed = warn_of(comparison.refused);
+  if (machine != nullptr) {
+    Progress progress("figure by figure");
+    const compare::MachineComparison on_machine = compare::compare_on_machine(
+        mechanism, library, *machine, single, [&](double fraction) { progress.show(fraction); });
+    text += report::to_text(on_machine, comparison, command_line()) +
+            report::bandwidth_text(*on_elements, *machine);
+    json["machine"] = report::to_json(on_machine);
+  }
+  if (request.runs > 0) {
+    const report::MonteCarloReport report = draw_elements(request, mechanism, drawn, library, machine);
+    text += report::to_text(report, command_line());
+    json["monte_carlo"] = report::to_json(report, request.timings);
+    for (draw::Panel& panel : report::panels_of(comparison, report)) chart.panels.push_back(std::move(panel));
+    failed = failed || !report.result.worst_run;
+  }
+  if (!plots_in_terminal(request.plot)) print(request.json ? report::json_text(json) : text);
+  if (!request.plot.empty()) plot(chart, request.plot, plot_theme(request.theme));
+  if (!request.output.empty()) save(request.output, report::json_text(json));
+  return failed ? ExitStatus::solver_failed : ExitStatus::done;
+}
+
+}  // namespace oblique::cli

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+// The verbs for diagrams and what they are made of.
+#include "verbs/verbs.h"
+
+namespace oblique::cli {
+
+void add_run(CLI::App& app, Chosen& chosen) {
+  auto request = std::make_shared<RunRequest>();
+  CLI::App* const verb = app.add_subcommand("run", "Run a diagram: its outputs over time");
+  verb->add_option("DIAGRAM", request->diagram, "diagram file (oblique-diagram/1)")->required();
+  add_table_options(verb, *request);
+  add_plot_option(verb, *request, "draw the curves of all columns, or of those of --columns");
+  verb->add_option("--against", request->against,
+                   "with --plot: draw against this column in place of t, as a machine's plotter does")
+      ->type_name("NAME");
+  verb->add_option("--until", request->until, "end of the run, for example 2*pi or \"500 ms\"")
+      ->type_name("T");
+  verb->add_option("--set", request->settings, "change a parameter: block.parameter=value; may be repeated")
+      ->type_name("SETTING")
+      ->allow_extra_args(false);
+  verb->add_option("--from", request->from,
+                   "go on from the state that an earlier run saved; --until is then later")
+      ->type_name("STATE");
+  verb->add_option("--save", request->save,
+                   "save the state at the end, or where Ctrl-C interrupts the run, to STATE.toml")
+      ->type_name("STATE");
+  verb->add_flag("--events", request->events, "list what switched, and when");
+  verb->add_flag("--check", request->check,
+                 "hold the run against the diagram's [expect]; status 1 where it fails");
+  verb->add_flag(
+      "--static-test", request->static_test,
+      "print every element's output and every integrator's input in initial condition; nothing is run");
+  verb->add_flag("--halt-on-overload", request->halt_on_overload,
+                 "end the run with status 1 where a signal first leaves ±1 machine unit");
+  verb->add_flag("--trust", request->trust,
+                 "run again, finer and by the other method, and say how many digits of each output stand");
+  choose(verb, chosen, request, run_diagram);
+}
+
+void add_check(CLI::App& app, Chosen& chosen) {
+  auto request = std::make_shared<CheckRequest>();
+  CLI::App* const verb = app.add_subcommand(
+      "check",
+      "Check a diagram (wires, loops, stability, overloads, scaling, by a trial run) or a mechanism");
+  verb->add_option("FILE", request->file, "diagram or mechanism file")->required();
+  verb->add_flag("--json", request->json, "print JSON instead of the tables (its keys: docs/check.md)");
+  add_plot_option(verb, *request, "draw the eigenvalues of a diagram along its run in the complex plane");
+  verb->add_flag("--rescale", request->rescale, "write the diagram in scaled signals to the file of -o");
+  verb->add_option("-o,--output", request->output, "with --rescale: write NEW.toml")->type_name("NEW");
+  choose(verb, chosen, request, check_file);
+}
+
+void add_blocks(CLI::App& app, Chosen& chosen) {
+  auto request = std::make_shared<BlocksRequest>();
+  CLI::App* const verb = app.add_subcommand("blocks", "List the blocks, or tell all about one");
+  verb->add_option("NAME", request->name, "block to tell about");
+  choose(verb, chosen, request, show_blocks);
+}
+
+void add_machines(CLI::App& app, Chosen& chosen) {
+  auto request = std::make_shared<MachinesRequest>();
+  CLI::App* const verb =
+      app.add_subcommand("machines", "List the machines a diagram can be for, or tell all about one");
+  verb->add_option("NAME", request->name, "machine to tell about");
+  verb->add_flag("--json", request->json, "print JSON instead of the tables (its keys: docs/machines.md)");
+  choose(verb, chosen, request, show_machines);
+}
+
+}  // namespace oblique::cli

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/report/bill_text.h>
+
+#include <cmath>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace oblique::report {
+namespace {
+
+std::string available_text(const machine::BillRow& row) {
+  if (!row.exists) return "none";
+  if (!row.available) return "not published";
+  return std::isinf(*row.available) ? "as many as it takes" : fmt::format("{}", *row.available);
+}
+
+}  // namespace
+
+std::string verdict_text(const machine::Bill& bill) {
+  std::vector<std::string> named;
+  switch (bill.verdict()) {
+    case machine::Bill::Verdict::fits:
+      return "it fits";
+    case machine::Bill::Verdict::does_not_fit:
+      for (const machine::BillRow& row : bill.rows) {
+        if (row.missing() > 0) named.push_back(fmt::format("{} ({})", row.element, row.missing()));
+      }
+      return fmt::format("it does not fit; missing: {}", fmt::join(named, ", "));
+    case machine::Bill::Verdict::cannot_tell:
+      break;
+  }
+  for (const machine::BillRow& row : bill.rows) {
+    if (row.at_least) {
+      named.emplace_back("what its inputs weigh");
+    } else if (!row.available) {
+      named.push_back("how many " + row.element);
+    }
+  }
+  return fmt::format("whether it fits cannot be told; not published: {}", fmt::join(named, ", "));
+}
+
+Table bill_table(const machine::Bill& bill) {
+  Table table({"element", "needed", "available", "missing"});
+  for (const machine::BillRow& row : bill.rows) {
+    table.add({row.note.empty() ? row.element : fmt::format("{} ({})", row.element, row.note),
+               fmt::format("{}{}", row.at_least ? "≥ " : "", row.needed), available_text(row),
+               row.missing() > 0 ? fmt::format("{}", row.missing()) : ""});
+  }
+  return table;
+}
+
+std::string to_text(const machine::Bill& bill) {
+  return fmt::format("elements of {}\n{}{}\n", bill.machine, bill_table(bill).text(1), verdict_text(bill));
+}
+
+}  // namespace oblique::report

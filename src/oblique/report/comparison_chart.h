@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <oblique/compare/compare.h>
+#include <oblique/draw/chart/chart.h>
+
+#include <oblique/report/monte_carlo_report.h>
+
+namespace oblique::report {
+
+/// The largest error over the gain with the fitted slopes, where there is more than one gain, and for each
+/// method and bandwidth the error along the way at each gain.
+draw::Chart chart_of(const compare::Comparison& comparison);
+
+/// What the runs of Monte Carlo tell: their errors along the way, as the bands of half and of 95 % of them
+/// about the median, and how often they err how much, with the errors that half and 95 % of them do not
+/// exceed.
+std::vector<draw::Panel> panels_of(const compare::Comparison& comparison, const MonteCarloReport& report);
+
+}  // namespace oblique::report

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <vector>
+
+#include <oblique/diagram/diagram.h>
+#include <oblique/solve/run.h>
+
+namespace oblique::report {
+
+/// One line of `[expect]` held against a run.
+struct ExpectationResult {
+  diagram::Expectation expectation;
+  double actual = 0;
+  bool met = false;
+};
+
+/// The times that `[expect]` asks for, ascending: the `extra_times` of the run. Throws DiagramError for a
+/// time outside [0, until].
+std::vector<double> expectation_times(const diagram::Diagram& diagram, double until);
+
+/// Lets a run keep what `check_expectations` looks at. Throws DiagramError as above.
+void ask_for_expectations(const diagram::Diagram& diagram, solve::RunOptions& options);
+
+/// Checks every expectation; `run` was made after `ask_for_expectations`. Throws DiagramError for an output
+/// that is not among the columns.
+std::vector<ExpectationResult> check_expectations(const diagram::Diagram& diagram, const solve::Run& run);
+
+}  // namespace oblique::report

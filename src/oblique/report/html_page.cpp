@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/report/html_page.h>
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include <oblique/draw/picture/svg.h>
+
+namespace oblique::report {
+namespace {
+
+constexpr std::string_view kStyle = R"(  body { margin: 2rem auto; max-width: 54rem; padding: 0 1rem;
+         font: 15px/1.5 Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif }
+  h1 { font-size: 1.7rem; line-height: 1.2; margin-bottom: .5rem }
+  h2 { font-size: 1.25rem; margin-top: 2.4rem; border-bottom: 1px solid #8886; padding-bottom: .15rem }
+  h3 { font-size: 1rem; margin: 1.5rem 0 .3rem }
+  h3::first-letter { text-transform: uppercase }
+  p { max-width: 46rem; margin: .6rem 0 }
+  nav ul { list-style: none; padding: 0; margin: 1rem 0 }
+  nav li { display: inline-block; margin-right: 1.4rem }
+  nav a { color: inherit; text-underline-offset: .2em }
+  figure { margin: 1rem 0; overflow-x: auto }
+  figure svg { max-width: 100%; height: auto }
+  figure.broad svg { max-width: none }
+  .scroll { overflow-x: auto; margin: .6rem 0 }
+  table { border-collapse: collapse; font-size: 13px; font-variant-numeric: tabular-nums }
+  th, td { padding: .15rem .8rem .15rem 0; text-align: left; vertical-align: top }
+  th { border-bottom: 1px solid #8886; font-weight: 600; vertical-align: bottom }
+  .n { text-align: right }
+  td.n { white-space: nowrap }
+)";
+constexpr std::string_view kPrint = R"(  @page { margin: 16mm }
+  @page across { size: landscape; margin: 12mm }
+  @media print {
+    body { margin: 0; padding: 0; max-width: none; font-size: 10pt }
+    h2, h3, .lead { break-after: avoid }
+    p { orphans: 3; widows: 3; max-width: none }
+    figure { break-inside: avoid; overflow: visible }
+    figure svg { max-height: 235mm }
+    figure.broad { page: across; margin: 0 }
+    figure.broad svg { max-width: 100%; max-height: 180mm }
+    .scroll { overflow: visible }
+    .short, tr, li { break-inside: avoid }
+    table { font-size: 8pt }
+    td, th { padding-right: .5rem }
+    nav a { text-decoration: none }
+)";
+
+/// Wider pictures would be too small on a sheet upright [px].
+constexpr double kBroad = 900;
+/// Rows of a table that is not divided between sheets.
+constexpr std::size_t kShort = 32;
+
+std::string ground(bool dark) {
+  return fmt::format("body {{ background: {}; color: {} }}\n", draw::colour_of(draw::Ink::paper, dark),
+                     draw::colour_of(draw::Ink::line, dark));
+}
+
+/// The colours of the page on the screen.
+std::string colours(draw::Theme theme) {
+  if (theme != draw::Theme::automatic) {
+    const bool dark = theme == draw::Theme::dark;
+    return fmt::format("  :root {{ color-scheme: {} }}\n  ", dark ? "dark" : "light") + ground(dark);
+  }
+  return "  :root { color-scheme: light dark }\n  " + ground(false) +
+         "  @media (prefers-color-scheme: dark) { " + ground(true) + "  }\n";
+}
+
+/// "12.5", "−3e-4", "80°", and cells without anything in them.
+bool is_number(std::string_view cell) {
+  return cell.find_first_not_of("0123456789+-.e °%−≥±–∞·⁰¹²³⁴⁵⁶⁷⁸⁹⁻") == std::string_view::npos ||
+         cell == "inf";
+}
+
+}  // namespace
+
+void HtmlPage::heading(std::string_view text) {
+  sections_.push_back(draw::escape_xml(text));
+  body_ += fmt::format("<h2 id=\"section-{}\">{}</h2>\n", sections_.size(), sections_.back());
+}
+
+void HtmlPage::subheading(std::string_view text) {
+  body_ += fmt::format("<h3>{}</h3>\n", draw::escape_xml(text));
+}
+
+void HtmlPage::paragraph(std::string_view text) {
+  body_ += fmt::format("<p>{}</p>\n", draw::escape_xml(text));
+}
+
+void HtmlPage::introduction(std::string_view text) {
+  body_ += fmt::format("<p class=\"lead\">{}</p>\n", draw::escape_xml(text));
+}
+
+void HtmlPage::list(const std::vector<std::string>& items) {
+  body_ += "<ul>\n";
+  for (const std::string& item : items) body_ += fmt::format("  <li>{}</li>\n", draw::escape_xml(item));
+  body_ += "</ul>\n";
+}
+
+void HtmlPage::table(const std::vector<std::string>& header,
+                     const std::vector<std::vector<std::string>>& rows) {
+  std::vector<const char*> marks;
+  for (std::size_t c = 0; c < header.size(); ++c) {
+    const bool numbers =
+        std::all_of(rows.begin(), rows.end(), [&](const auto& row) { return is_number(row[c]); });
+    marks.push_back(numbers ? " class=\"n\"" : "");
+  }
+  const auto line = [&](const std::vector<std::string>& cells, const char* tag) {
+    body_ += "<tr>";
+    for (std::size_t c = 0; c < cells.size(); ++c)
+      body_ += fmt::format("<{0}{1}>{2}</{0}>", tag, marks[c], draw::escape_xml(cells[c]));
+    body_ += "</tr>\n";
+  };
+  body_ += fmt::format("<div class=\"scroll{}\"><table>\n<thead>", rows.size() <= kShort ? " short" : "");
+  line(header, "th");
+  body_ += "</thead>\n<tbody>\n";
+  for (const auto& row : rows) line(row, "td");
+  body_ += "</tbody>\n</table></div>\n";
+}
+
+void HtmlPage::table(const std::vector<std::vector<std::string>>& rows) {
+  table(rows.front(), {rows.begin() + 1, rows.end()});
+}
+
+void HtmlPage::picture(const draw::Picture& picture) {
+  const std::string width = draw::svg_number(picture.width), height = draw::svg_number(picture.height);
+  body_ += fmt::format(
+      "<figure{}><svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{}\" viewBox=\"0 0 {} {}\" "
+      "role=\"img\">\n<title>{}</title>\n",
+      picture.width > kBroad ? " class=\"broad\"" : "", width, height, width, height,
+      draw::escape_xml(picture.title));
+  for (draw::Mark mark : picture.marks) {
+    mark.id.clear();  // several pictures of a page would share them
+    body_ += draw::svg_element(mark) + "\n";
+  }
+  body_ += "</svg></figure>\n";
+}
+
+std::string HtmlPage::text(draw::Theme theme) const {
+  const std::string title = draw::escape_xml(title_);
+  std::string contents;
+  for (std::size_t k = 0; k < sections_.size(); ++k)
+    contents += fmt::format("<li><a href=\"#section-{}\">{}</a></li>\n", k + 1, sections_[k]);
+  const std::string style =
+      fmt::format("{}{}{}{}    {}{}  }}\n", kStyle, colours(theme), draw::svg_style(theme), kPrint,
+                  ground(false), draw::svg_style(draw::Theme::light));
+  return fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{}</title>\n"
+      "<style>\n{}</style>\n</head>\n<body>\n<h1>{}</h1>\n<nav><ul>\n{}</ul></nav>\n{}</body>\n</html>\n",
+      title, style, title, contents, body_);
+}
+
+}  // namespace oblique::report

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/report/expectation_check.h>
+
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "../support/runs.h"
+
+namespace oblique::report {
+namespace {
+
+using testing::Compiled;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using testing::message_of;
+using testing::run_of;
+
+constexpr const char* kCircle = R"toml(x = { type = "integrator", in = ["-y"], initial = 1 }
+y = { type = "integrator", in = ["x"] }
+)toml";
+
+std::vector<ExpectationResult> check(const Compiled& made) {
+  solve::RunOptions options = solve::options_of(made.diagram.run);
+  ask_for_expectations(made.diagram, options);
+  return check_expectations(made.diagram, solve::run(made.program, made.flat, options));
+}
+
+TEST(Expectations, AreHeldAgainstTheRun) {
+  const Compiled made(kCircle, R"toml([run]
+until = 4
+[expect]
+"x at 2"    = { value = -0.4161468365, within = 1e-6 }
+"y at 0.05" = { value = 0.06, within = 0.01 }
+"x minimum" = { value = -1, within = 1e-5 }
+"y maximum" = { value = 1, within = 1e-5 }
+"y minimum" = { value = -0.7568024953, within = 1e-6 }
+"x at 0"    = { value = 1, within = 1e-12 }
+)toml");
+  const auto results = check(made);
+  ASSERT_EQ(results.size(), 6U);
+  const auto result_of = [&](const std::string& text) {
+    for (const auto& result : results) {
+      if (result.expectation.text == text) return result;
+    }
+    throw std::out_of_range(text);
+  };
+  for (const auto& result : results) EXPECT_EQ(result.met, result.expectation.text != "y at 0.05");
+  EXPECT_NEAR(result_of("y at 0.05").actual, std::sin(0.05), 1e-6);  // the run's tolerance, some steps
+  EXPECT_NEAR(result_of("x at 2").actual, std::cos(2), 1e-6);
+  EXPECT_EQ(result_of("x at 0").actual, 1);
+}
+
+TEST(Expectations, AskForEachTimeOnceInOrder) {
+  const Compiled made(kCircle, R"toml([run]
+until = 4
+[expect]
+"x at 3"    = { value = 0, within = 9 }
+"y at 1"    = { value = 0, within = 9 }
+"y at 3"    = { value = 0, within = 9 }
+"x maximum" = { value = 0, within = 9 }
+)toml");
+  EXPECT_THAT(expectation_times(made.diagram, 4), ElementsAre(1, 3));
+  EXPECT_EQ(check(made).size(), 4U);
+}
+
+TEST(Expectations, RefuseATimeOutsideOfAShorterRun) {
+  const Compiled made(kCircle,
+                      "[run]\nuntil = 4\n[expect]\n\"x at 3\" = { value = 0, within = 9 }\n"
+                      "\"y at 1\" = { value = 0, within = 9 }\n");
+  EXPECT_EQ(message_of<diagram::DiagramError>([&] { expectation_times(made.diagram, 2); }),
+            "d.toml:8:1: 'x at 3' is at t = 3 s, outside the run; expected a time from 0 to 2 s\n"
+            "  remedy: let the run last longer ('until' of [run], or 'until')");
+}
+
+TEST(Expectations, RefuseAnUnknownOutputAndSuggestOne) {
+  const Compiled made(kCircle, "[outputs]\nheight = \"y\"\n");
+  diagram::Diagram changed = made.diagram;
+  diagram::Expectation wrong;
+  wrong.text = "heigth maximum";
+  wrong.output = "heigth";
+  wrong.kind = diagram::Expectation::Kind::maximum;
+  wrong.place = {"d.toml", {9, 1}};
+  changed.expectations = {wrong};
+  const std::string message =
+      message_of<diagram::DiagramError>([&] { check_expectations(changed, run_of(made)); });
+  EXPECT_THAT(message, HasSubstr("d.toml:9:1: 'heigth maximum': there is no output 'heigth'"));
+  EXPECT_THAT(message, HasSubstr("did you mean 'height'?"));
+}
+
+}  // namespace
+}  // namespace oblique::report
