@@ -25,7 +25,7 @@ function(expect)
 endfunction()
 
 plant(CMakeLists.txt "")
-plant(src/oblique/text/a.h "#include <string>")
+plant(src/oblique/text/a.h "#include <string>\n// \"--help\" of the program\nnamespace oblique::text {")
 plant(src/oblique/diagram/a.cpp "#include <oblique/text/a.h>\nstd::snprintf(text)")
 plant(blocks/CMakeLists.txt "set(blocks sine.toml)")
 plant(blocks/sine.toml "")
@@ -38,6 +38,12 @@ plant(src/oblique/text/hidden.h "#include <oblique/diagram/a.h>")
 plant(src/oblique/mechanism/a.cpp "#include <oblique/diagram/a.h>\n#include \"../text/a.h\"")
 plant(src/oblique/cellar/a.cpp "")
 plant(src/oblique/solve/a.cpp "std::cerr << 1")
+plant(src/oblique/solve/b.cpp "namespace oblique {\n\"end it with --until\"")
+plant(src/oblique/solve/c.cpp "namespace oblique::text {\n\"see oblique check\"")
+plant(blocks/servo.toml "source = \"003_69ea068b7b221c3d.txt\"")
+foreach(k RANGE 32)
+  plant(src/cli/verb_${k}.cpp "")
+endforeach()
 plant(blocks/cosine.toml "")
 plant(src/machines/ec-1.toml "")
 plant(notes.txt "")
@@ -49,6 +55,12 @@ expect(
   "src/oblique/mechanism/a.cpp: stage 'mechanism' may not know stage 'diagram'"
   "src/oblique/mechanism/a.cpp: includes begin with oblique/, not with ../"
   "src/oblique/cellar/a.cpp: there is no stage 'cellar'"
+  "src/oblique/solve/b.cpp: its namespace is oblique::solve"
+  "src/oblique/solve/b.cpp: no stage spells an option or a verb"
+  "src/oblique/solve/c.cpp: its namespace is oblique::solve"
+  "src/oblique/solve/c.cpp: no stage spells an option or a verb"
+  "src/cli: more than 32 units"
+  "blocks/servo.toml: cites a file that no reader has"
   "src/oblique/solve/a.cpp: the library never prints and never exits"
   "blocks/cosine.toml: is not in the list of blocks/CMakeLists.txt"
   "src/machines/ec-1.toml: is not in the list of src/machines/CMakeLists.txt"

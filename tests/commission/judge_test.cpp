@@ -179,8 +179,7 @@ x    = { type = "servo-amplifier", in = ["x2", "clock", "-0.25*one"], initial = 
 }
 
 TEST(Judge, FindsNothingWrongWithDyads) {
-  const JudgedPatch four_bar =
-      judged_patch(shipped("four-bar"), diagram::BlockLibrary::shipped(), {});
+  const JudgedPatch four_bar = judged_patch(shipped("four-bar"), diagram::BlockLibrary::shipped(), {});
   EXPECT_TRUE(four_bar.judgement.good());
   EXPECT_THAT(four_bar.judgement.growing, ElementsAre());
   EXPECT_TRUE(four_bar.diagram.run.settle);

@@ -128,9 +128,8 @@ TEST_F(OnAMachine, SummersInvertAsItSaysUnlessTheDiagramSays) {
 }
 
 TEST_F(OnAMachine, ItIsOneThatIsKnown) {
-  EXPECT_EQ(
-      message_of([&] { flat(kSummers, "[machine]\nprofile = \"EC1\"\n"); }),
-      "d.toml:6:11: there is no machine 'EC1'\n  remedy: did you mean 'ec-1'? 'machines' lists all");
+  EXPECT_EQ(message_of([&] { flat(kSummers, "[machine]\nprofile = \"EC1\"\n"); }),
+            "d.toml:6:11: there is no machine 'EC1'\n  remedy: did you mean 'ec-1'? 'machines' lists all");
   Diagram diagram = parse_diagram(testing::diagram_text(kSummers), "d.toml");
   diagram.machine.profile = "EC1";
   EXPECT_THAT(message_of([&] { flatten(diagram, BlockLibrary::shipped()); }),

@@ -174,8 +174,10 @@ TEST(Period, CannotStretchALaw) {
     patch(shipped("hydraulic-tipper"), options);
     FAIL();
   } catch (const PatchError& error) {
-    EXPECT_THAT(error.what(),
-                HasSubstr("drive 'pump' has a speed that varies with time, which no period of the machine can stretch"));
+    EXPECT_THAT(
+        error.what(),
+        HasSubstr(
+            "drive 'pump' has a speed that varies with time, which no period of the machine can stretch"));
   }
 }
 

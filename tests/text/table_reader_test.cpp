@@ -207,11 +207,10 @@ TEST_F(TableReaderTest, ChecksTheFormat) {
 
 TEST_F(TableReaderTest, TellsWhatAFileOfAnotherKindIsFor) {
   EXPECT_FALSE(check_format(read("format = \"oblique-mechanism/1\"\n"), "oblique-diagram/1"));
-  EXPECT_EQ(
-      findings(),
-      "t.toml:1:10: the format is 'oblique-mechanism/1'; expected 'oblique-diagram/1'\n"
-      "  remedy: this is a mechanism: 'solve', 'compare' and 'draw' take it, 'patch' makes a diagram "
-      "of it");
+  EXPECT_EQ(findings(),
+            "t.toml:1:10: the format is 'oblique-mechanism/1'; expected 'oblique-diagram/1'\n"
+            "  remedy: this is a mechanism: 'solve', 'compare' and 'draw' take it, 'patch' makes a diagram "
+            "of it");
 }
 
 TEST_F(TableReaderTest, MissesTheFormat) {

@@ -46,10 +46,14 @@ constexpr int kLongestKey = 20;
 // The preprocessor header sets these itself where NDEBUG is defined, so they are replaced after it.
 #undef TOML_ASSERT
 #undef TOML_ASSERT_ASSUME
-#define TOML_ASSERT(condition) \
-  (::oblique::text::left_to_the_parser(#condition) || (condition) ? (void)0 : ::oblique::text::toml_assertion_failed())
-#define TOML_ASSERT_ASSUME(condition) \
-  (::oblique::text::left_to_the_parser(#condition) || (condition) ? (void)0 : ::oblique::text::toml_assertion_failed())
+#define TOML_ASSERT(condition)                                    \
+  (::oblique::text::left_to_the_parser(#condition) || (condition) \
+       ? (void)0                                                  \
+       : ::oblique::text::toml_assertion_failed())
+#define TOML_ASSERT_ASSUME(condition)                             \
+  (::oblique::text::left_to_the_parser(#condition) || (condition) \
+       ? (void)0                                                  \
+       : ::oblique::text::toml_assertion_failed())
 // In the unicode tables, which are noexcept, "not in the table" is the right answer.
 #undef TOML_UNREACHABLE
 #define TOML_UNREACHABLE return false
