@@ -22,22 +22,22 @@ namespace {
 
 using Complex = std::complex<double>;
 using Eigen::Vector2d;
-using Leads = std::array<mechanism::Lead, 3>;
+using Legs = std::array<mechanism::Leg, 3>;
 
 /// Triads that have modes: points in a square of side 2, the lengths measured in a pose.
-std::vector<Leads> random_triads(std::size_t number) {
+std::vector<Legs> random_triads(std::size_t number) {
   std::mt19937_64 engine(1);
   const auto between = [&](double low, double high) {
     return low + (high - low) * static_cast<double>(engine() >> 11U) * 0x1p-53;
   };
-  std::vector<Leads> all(number);
-  for (Leads& leads : all) {
+  std::vector<Legs> all(number);
+  for (Legs& legs : all) {
     const Vector2d position(between(-1, 1), between(-1, 1));
     const Eigen::Rotation2D<double> turn(between(-std::numbers::pi, std::numbers::pi));
-    for (mechanism::Lead& lead : leads) {
-      lead.local = Vector2d(between(-1, 1), between(-1, 1));
-      lead.anchor = Vector2d(between(-1, 1), between(-1, 1));
-      lead.length = (position + turn * lead.local - lead.anchor).norm();
+    for (mechanism::Leg& leg : legs) {
+      leg.local = Vector2d(between(-1, 1), between(-1, 1));
+      leg.anchor = Vector2d(between(-1, 1), between(-1, 1));
+      leg.length = (position + turn * leg.local - leg.anchor).norm();
     }
   }
   return all;
@@ -50,15 +50,15 @@ struct Elimination {
   double f = 0;
 };
 
-Elimination eliminate(const Leads& leads, Complex z) {
+Elimination eliminate(const Legs& legs, Complex z) {
   const auto complex = [](const Vector2d& v) { return Complex(v.x(), v.y()); };
   std::array<Complex, 2> u;
   std::array<double, 2> w{};
-  const double l = leads[0].length;
+  const double l = legs[0].length;
   for (std::size_t i = 0; i < 2; ++i) {
-    const mechanism::Lead& lead = leads[i + 1];
-    u[i] = complex(lead.local - leads[0].local) * z - complex(lead.anchor - leads[0].anchor);
-    w[i] = (lead.length * lead.length - l * l - std::norm(u[i])) / 2;
+    const mechanism::Leg& leg = legs[i + 1];
+    u[i] = complex(leg.local - legs[0].local) * z - complex(leg.anchor - legs[0].anchor);
+    w[i] = (leg.length * leg.length - l * l - std::norm(u[i])) / 2;
   }
   Elimination result;
   result.n = Complex(0, -1) * (w[0] * u[1] - w[1] * u[0]);
@@ -67,14 +67,14 @@ Elimination eliminate(const Leads& leads, Complex z) {
   return result;
 }
 
-int modes_by_hand(const Leads& leads, std::array<mechanism::PlatformPose, 6>& poses) {
+int modes_by_hand(const Legs& legs, std::array<mechanism::PlatformPose, 6>& poses) {
   constexpr int kValues = 7;
   std::array<Complex, kValues> roots_of_one;
   std::array<double, kValues> values{};
   for (int i = 0; i < kValues; ++i) {
     const auto at = static_cast<std::size_t>(i);
     roots_of_one[at] = std::polar(1.0, 2 * std::numbers::pi * i / kValues);
-    values[at] = eliminate(leads, roots_of_one[at]).f;
+    values[at] = eliminate(legs, roots_of_one[at]).f;
   }
   std::array<Complex, kValues> c;  // of z⁻³ … z³
   for (int k = -3; k <= 3; ++k) {
@@ -93,18 +93,18 @@ int modes_by_hand(const Leads& leads, std::array<mechanism::PlatformPose, 6>& po
   int count = 0;
   for (const Complex z : solver.eigenvalues()) {
     if (std::abs(std::abs(z) - 1) > 1e-7) continue;
-    const Elimination at = eliminate(leads, z);
+    const Elimination at = eliminate(legs, z);
     const Vector2d q(at.n.real() / at.d, at.n.imag() / at.d);
-    const Vector2d& local = leads[0].local;
+    const Vector2d& local = legs[0].local;
     const Vector2d turned(z.real() * local.x() - z.imag() * local.y(),
                           z.imag() * local.x() + z.real() * local.y());
-    poses[static_cast<std::size_t>(count++)] = {leads[0].anchor + q - turned, z.real(), z.imag()};
+    poses[static_cast<std::size_t>(count++)] = {legs[0].anchor + q - turned, z.real(), z.imag()};
   }
   return count;
 }
 
 void triad_modes(benchmark::State& state) {
-  const std::vector<Leads> triads = random_triads(4096);
+  const std::vector<Legs> triads = random_triads(4096);
   const auto number = static_cast<double>(triads.size());
   std::vector<double> ratios, ours, by_hand;
   long our_modes = 0;
@@ -113,9 +113,9 @@ void triad_modes(benchmark::State& state) {
   for (auto _ : state) {
     our_modes = hand_modes = 0;
     const double start = cpu_seconds();
-    for (const Leads& leads : triads) our_modes += mechanism::platform_modes(leads).count;
+    for (const Legs& legs : triads) our_modes += mechanism::platform_modes(legs).count;
     const double between = cpu_seconds();
-    for (const Leads& leads : triads) hand_modes += modes_by_hand(leads, poses);
+    for (const Legs& legs : triads) hand_modes += modes_by_hand(legs, poses);
     const double end = cpu_seconds();
     benchmark::DoNotOptimize(poses);
     state.SetIterationTime(end - start);

@@ -112,7 +112,7 @@ INSTANTIATE_TEST_SUITE_P(
             "triangles or paper beside it"},
         BadRequestCase{"SplitOfOtherLeads",
                        "oblique patch diagrams/mechanisms/class-iii.toml --split AB,DE,XY", 2,
-                       "--split AB,DE,XY: no triad has these leads; expected the three leads of a triad"},
+                       "--split AB,DE,XY: no triad has these legs; expected the three legs of a triad"},
         BadRequestCase{"GradientOfInfiniteGain",
                        "oblique patch diagrams/mechanisms/four-bar.toml --method gradient --gain inf", 2,
                        "a gradient servo of infinite gain has no time scale; expected a finite gain and"},

@@ -218,10 +218,11 @@ C = [100, 35]
 )";
   const Outcome outcome = oblique("check " + file("o.toml", text));
   EXPECT_EQ(outcome.status, 2);
-  EXPECT_THAT(outcome.err,
-              AllOf(HasSubstr("the mechanism has mobility 0"),
-                    HasSubstr("the hinge of 'FE' at 'E' in the loop AB-BCE-DC-FE is redundant: it closes "
-                              "all the same, and by rank the mechanism has mobility 1")));
+  EXPECT_THAT(
+      outcome.err,
+      AllOf(HasSubstr("the mechanism has mobility 0"),
+            HasSubstr("the revolute joint of 'FE' at 'E' in the loop AB-BCE-DC-FE is redundant: it closes "
+                      "all the same, and by rank the mechanism has mobility 1")));
 }
 
 /// The values of a column of a CSV file, by the name in its header.

@@ -82,7 +82,7 @@ struct Patched {
   patch::PatchMethod method;
 };
 
-/// A triad whose leads are all links.
+/// A triad whose legs are all links.
 bool is_on_links(const mechanism::Group& group) {
   const auto& conditions = group.equations.conditions;
   return std::all_of(conditions.begin(), conditions.end(), [](const mechanism::Condition& c) {
@@ -91,7 +91,7 @@ bool is_on_links(const mechanism::Group& group) {
 }
 
 /// All that meet no dead centre, or are swung over their range, by gradient servos; those without groups of
-/// class IV and higher, without slides in the leads of triads, and without drives inside groups of several
+/// class IV and higher, without slides in the legs of triads, and without drives inside groups of several
 /// bodies, by triangles too.
 std::vector<Patched> patchable() {
   std::vector<Patched> all;

@@ -35,10 +35,10 @@ TEST(Transmission, ExtremesOfAFourBarAreWhereCrankAndFrameLieOnALine) {
 
 // At a limit the places go as the square of the time to it; `rate` is the derivative of `time`, here by
 // differences, which err by the step's square and by 1e-16 over it.
-TEST(Tour, HasSmoothPlacesUpToItsLimits) {
+TEST(MotionRange, HasSmoothPlacesUpToItsLimits) {
   for (const bool from_limit : {false, true}) {
     for (const bool at_limit : {false, true}) {
-      Tour tour;
+      MotionRange tour;
       tour.begin = 1;
       tour.end = 3;
       tour.from_limit = from_limit;
@@ -80,10 +80,10 @@ TEST(Transmission, IsPoorBeyondWhatTextbooksAllow) {
 TEST(Scan, RefinesTheExtremesOfASignalWithoutARate) {
   const Mechanism crank = four_bar(1, 3.5, 3, 4);
   const Structure structure = decompose(crank);
-  TourWalk walk(crank, structure, plan_tour(crank, structure));
+  RangeWalk walk(crank, structure, plan_motion_range(crank, structure));
   Signal wave;
   wave.has_rate = false;
-  wave.at = [](const TourWalk& at) {
+  wave.at = [](const RangeWalk& at) {
     return SignalValue{std::sin(2 * kPi * (at.place() + 0.1137)), std::nan("")};
   };
   const SignalScan found = scan(walk, {wave}).front();
@@ -103,10 +103,10 @@ TEST(Transmission, PressureAngleOfASliderCrank) {
   EXPECT_NEAR(t.least.value, 0, 1e-9);
 }
 
-TEST(Swing, RockerOfACrankRockerHasItsEndsWhereCrankAndCouplerLieOnALine) {
+TEST(Sweep, RockerOfACrankRockerHasItsEndsWhereCrankAndCouplerLieOnALine) {
   const MechanismAnalysis analysis = analysis_of(four_bar(1, 3.5, 3, 4));
-  const Swing& rocker = analysis.swings.at(1);
-  EXPECT_EQ(rocker.kind, Swing::Kind::swings);
+  const Sweep& rocker = analysis.swings.at(1);
+  EXPECT_EQ(rocker.kind, Sweep::Kind::oscillates);
   EXPECT_EQ(rocker.reversals, 2U);
   // |AC| = 3.5 ± 1; the angle of the rocker from D, seen from C: turned by π
   const double out = angle_opposite(4.5, 4, 3), in = angle_opposite(2.5, 4, 3);
@@ -120,7 +120,7 @@ TEST(Swing, RockerOfACrankRockerHasItsEndsWhereCrankAndCouplerLieOnALine) {
 }
 
 // (180° + 2α)/(180° − 2α) with sin α = |AB|/|AD|.
-TEST(Swing, CrankShaperReturnsQuickly) {
+TEST(Sweep, CrankShaperReturnsQuickly) {
   const Mechanism shaper = mechanism(R"([frame]
 A = [0, 300]
 D = [0, 0]
@@ -136,11 +136,11 @@ E = [158, 474]
 )");
   const MechanismAnalysis analysis = analysis_of(shaper);
   const double alpha = std::asin(1.0 / 3);
-  const Swing& lever = analysis.swings.at(0);
+  const Sweep& lever = analysis.swings.at(0);
   EXPECT_NEAR(lever.time_ratio.value(), (kPi + 2 * alpha) / (kPi - 2 * alpha), kExact);
   EXPECT_NEAR(lever.stroke(), 2 * alpha, 1e-12);
   EXPECT_NEAR(lever.rising, (kPi + 2 * alpha) / (2 * kPi), kExact);
-  const Swing& slot = analysis.swings.at(1);
+  const Sweep& slot = analysis.swings.at(1);
   EXPECT_TRUE(slot.is_slide);
   EXPECT_NEAR(slot.least.value, 200, 1e-9);
   EXPECT_NEAR(slot.greatest.value, 400, 1e-9);
@@ -148,8 +148,8 @@ E = [158, 474]
   EXPECT_EQ(analysis.transmissions.at(0).measure, Transmission::Measure::regularity);
 }
 
-TEST(Swing, StrokeOfAnOffsetSliderCrank) {
-  const Swing piston = analysis_of(slider_crank(40)).swings.at(1);
+TEST(Sweep, StrokeOfAnOffsetSliderCrank) {
+  const Sweep piston = analysis_of(slider_crank(40)).swings.at(1);
   EXPECT_NEAR(piston.greatest.value, std::sqrt(200.0 * 200 - 40 * 40), 1e-10);
   EXPECT_NEAR(piston.least.value, std::sqrt(100.0 * 100 - 40 * 40), 1e-10);
   EXPECT_NEAR(piston.greatest.drive, std::asin(40.0 / 200), kExact);
@@ -159,20 +159,20 @@ TEST(Swing, StrokeOfAnOffsetSliderCrank) {
 }
 
 // The start is an end of the swing: there the turning point lies at both ends of the turn.
-TEST(Swing, ThatBeginsAtItsEndIsCountedOnce) {
-  const Swing piston = analysis_of(slider_crank(0)).swings.at(1);
+TEST(Sweep, ThatBeginsAtItsEndIsCountedOnce) {
+  const Sweep piston = analysis_of(slider_crank(0)).swings.at(1);
   EXPECT_EQ(piston.reversals, 2U);
   EXPECT_NEAR(piston.time_ratio.value(), 1, kExact);
   EXPECT_NEAR(piston.stroke(), 100, 1e-10);
 }
 
-TEST(Swing, TellsTurningFromSwingingAndRest) {
+TEST(Sweep, TellsTurningFromSwingingAndRest) {
   const MechanismAnalysis drag_link = analysis_of(four_bar(3, 3.5, 3, 1, "0 deg", "[0, 2]"));
-  EXPECT_EQ(drag_link.swings.at(1).kind, Swing::Kind::turns);
+  EXPECT_EQ(drag_link.swings.at(1).kind, Sweep::Kind::turns);
   EXPECT_NEAR(drag_link.swings.at(1).gain, 2 * kPi, 1e-12);
   const MechanismAnalysis parallel = analysis_of(four_bar(1, 3, 1, 3, "60.5 deg", "[3.5, 1]"));
-  EXPECT_EQ(parallel.swings.at(0).kind, Swing::Kind::rests);
-  EXPECT_EQ(parallel.swings.at(1).kind, Swing::Kind::turns);
+  EXPECT_EQ(parallel.swings.at(0).kind, Sweep::Kind::stationary);
+  EXPECT_EQ(parallel.swings.at(1).kind, Sweep::Kind::turns);
   EXPECT_EQ(parallel.tour->changes.size(), 2U);
 }
 
@@ -181,7 +181,7 @@ TEST(Swing, TellsTurningFromSwingingAndRest) {
 TEST(Dwell, IsFoundWhereverItLies) {
   const Mechanism four = four_bar(1, 3.5, 3, 4);
   const Structure structure = decompose(four);
-  const TourWalk walk(four, structure, plan_tour(four, structure));
+  const RangeWalk walk(four, structure, plan_motion_range(four, structure));
   std::vector<double> values;
   const std::size_t samples = walk.tour().samples;
   for (std::size_t k = 0; k <= samples; ++k) {
@@ -201,7 +201,7 @@ TEST(Dwell, IsFoundWhereverItLies) {
 TEST(Dwell, HarmonicMotionHasNone) {
   const Mechanism four = four_bar(1, 3.5, 3, 4);
   const Structure structure = decompose(four);
-  const TourWalk walk(four, structure, plan_tour(four, structure));
+  const RangeWalk walk(four, structure, plan_motion_range(four, structure));
   std::vector<double> values;
   for (std::size_t k = 0; k <= walk.tour().samples; ++k)
     values.push_back(std::cos(2 * kPi * static_cast<double>(k) / static_cast<double>(walk.tour().samples)));
@@ -212,15 +212,15 @@ TEST(Dwell, HarmonicMotionHasNone) {
 TEST(Range, LimitsOfADoubleRockerFollowFromTheLawOfCosines) {
   const MechanismAnalysis analysis = analysis_of(four_bar(60, 70, 80, 100, "30 deg", "[100, 80]"));
   const double limit = angle_opposite(150, 60, 100);
-  const Tour& tour = *analysis.tour;
-  EXPECT_EQ(tour.kind, Tour::Kind::limits);
+  const MotionRange& tour = *analysis.tour;
+  EXPECT_EQ(tour.kind, MotionRange::Kind::limits);
   EXPECT_FALSE(tour.closed);
   EXPECT_NEAR(tour.range.forward->time + kPi / 6, limit, 1e-9);
   EXPECT_NEAR(tour.range.backward->time + kPi / 6, -limit, 1e-9);
   // at a limit the velocities are infinite, and positions known to the root of its sharpness
-  const Swing& right = analysis.swings.at(1);
+  const Sweep& right = analysis.swings.at(1);
   EXPECT_NEAR(right.greatest.value, angle_opposite(60, 100, 150), 1e-5);
-  EXPECT_EQ(right.kind, Swing::Kind::swings);
+  EXPECT_EQ(right.kind, Sweep::Kind::oscillates);
   EXPECT_FALSE(right.time_ratio);
   EXPECT_NEAR(analysis.paths.at(0).measure.length, 60 * 2 * limit, 1e-6);
 }

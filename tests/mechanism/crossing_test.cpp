@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <oblique/mechanism/model/read_mechanism.h>
-#include <oblique/mechanism/motion/tour.h>
+#include <oblique/mechanism/motion/motion_range.h>
 
 #include "../support/tangent.h"
 
@@ -57,7 +57,7 @@ C = [2, 1.5]
       EXPECT_LT((motion.configurations[row].points[3].position - c).norm(), 1e-9) << row;
     }
   }
-  EXPECT_EQ(plan_tour(mechanism, decompose(mechanism)).changes.size(), 1U);
+  EXPECT_EQ(plan_motion_range(mechanism, decompose(mechanism)).changes.size(), 1U);
 }
 
 // A rocker that is longer than the parallelogram's by 1e-13 makes it a crank and rocker: C never changes its
@@ -117,7 +117,7 @@ TEST(Crossing, GoesThroughInfinity) {
   const Motion stopped = solve_motion(mechanism, options);
   EXPECT_NEAR(stopped.times.back(), kPi / 2 - 1e-3, 1e-9);
   EXPECT_EQ(stopped.configurations.back().status, Status::ok);
-  const Tour tour = plan_tour(mechanism, decompose(mechanism));
+  const MotionRange tour = plan_motion_range(mechanism, decompose(mechanism));
   ASSERT_TRUE(tour.range.forward && tour.range.backward);
   EXPECT_EQ(tour.range.forward->kind, Kind::infinity);
   EXPECT_NEAR(tour.range.backward->time, -kPi / 2, 1e-9);

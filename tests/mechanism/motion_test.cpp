@@ -410,7 +410,7 @@ TEST(MotionColumns, HaveNoRatesAtADeadCentre) {
 TEST(FindRange, OfAParallelogramHasNoLimits) {
   const Mechanism mechanism =
       read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/parallelogram.toml");
-  const MotionRange range = find_range(mechanism, decompose(mechanism));
+  const MotionLimits range = find_range(mechanism, decompose(mechanism));
   EXPECT_FALSE(range.forward);
   EXPECT_FALSE(range.backward);
 }

@@ -20,7 +20,7 @@ namespace {
 
 using Eigen::Matrix2d;
 using Eigen::Vector2d;
-using Kind = Lead::Kind;
+using Kind = Leg::Kind;
 
 constexpr double kPi = std::numbers::pi;
 
@@ -51,7 +51,7 @@ class Dice {
   std::mt19937_64 engine_;
 };
 
-/// Random points for three leads of the given kinds.
+/// Random points for three legs of the given kinds.
 struct Sketch {
   std::array<Kind, 3> kinds{};
   std::array<Vector2d, 3> locals, anchors, directions;
@@ -74,29 +74,29 @@ PlatformPose random_pose(Dice& dice) {
 }
 
 /// Leads that close in `pose`: lengths are measured there, lines moved there.
-std::array<Lead, 3> closed_in(const Sketch& sketch, const PlatformPose& pose) {
+std::array<Leg, 3> closed_in(const Sketch& sketch, const PlatformPose& pose) {
   const Matrix2d turn = (Matrix2d() << pose.cosine, -pose.sine, pose.sine, pose.cosine).finished();
-  std::array<Lead, 3> leads;
+  std::array<Leg, 3> legs;
   for (std::size_t i = 0; i < 3; ++i) {
-    Lead& lead = leads[i];
-    lead = {sketch.kinds[i], sketch.locals[i], sketch.anchors[i], sketch.directions[i], 0};
-    const Vector2d offset = pose.position + turn * lead.local - lead.anchor;
-    const Vector2d normal = quarter_turn(lead.direction);
-    if (lead.kind == Kind::circle) lead.length = offset.norm();
-    if (lead.kind == Kind::fixed_line) lead.anchor += normal * normal.dot(offset);
-    if (lead.kind == Kind::platform_line) lead.local -= normal * normal.dot(turn.transpose() * offset);
+    Leg& leg = legs[i];
+    leg = {sketch.kinds[i], sketch.locals[i], sketch.anchors[i], sketch.directions[i], 0};
+    const Vector2d offset = pose.position + turn * leg.local - leg.anchor;
+    const Vector2d normal = quarter_turn(leg.direction);
+    if (leg.kind == Kind::circle) leg.length = offset.norm();
+    if (leg.kind == Kind::fixed_line) leg.anchor += normal * normal.dot(offset);
+    if (leg.kind == Kind::platform_line) leg.local -= normal * normal.dot(turn.transpose() * offset);
   }
-  return leads;
+  return legs;
 }
 
-std::string listing(const std::array<Lead, 3>& leads) {
+std::string listing(const std::array<Leg, 3>& legs) {
   std::string text;
-  for (const Lead& lead : leads) {
+  for (const Leg& leg : legs) {
     char line[400];
     std::snprintf(line, sizeof line,
                   "kind %d local %.17g %.17g anchor %.17g %.17g direction %.17g %.17g length %.17g\n",
-                  static_cast<int>(lead.kind), lead.local.x(), lead.local.y(), lead.anchor.x(),
-                  lead.anchor.y(), lead.direction.x(), lead.direction.y(), lead.length);
+                  static_cast<int>(leg.kind), leg.local.x(), leg.local.y(), leg.anchor.x(),
+                  leg.anchor.y(), leg.direction.x(), leg.direction.y(), leg.length);
     text += line;
   }
   return text;
@@ -119,11 +119,11 @@ bool is_far(const PlatformPose& pose) {
 }
 
 /// Says what is wrong with the modes, "" for nothing.
-std::string complaint(const std::array<Lead, 3>& leads, const PlatformModes& modes) {
+std::string complaint(const std::array<Leg, 3>& legs, const PlatformModes& modes) {
   if (modes.movable) return "movable";
   for (std::size_t i = 0; i < static_cast<std::size_t>(modes.count); ++i) {
     // nearly parallel lines meet far out, where coordinates round by more
-    if (!(closing_error(leads, modes.poses[i]) < 1e-10 * (1 + modes.poses[i].position.norm())))
+    if (!(closing_error(legs, modes.poses[i]) < 1e-10 * (1 + modes.poses[i].position.norm())))
       return "a mode does not close";
     for (std::size_t j = 0; j < i; ++j) {
       if (distance(modes.poses[i], modes.poses[j]) < 1e-8) return "a mode is named twice";
@@ -131,11 +131,11 @@ std::string complaint(const std::array<Lead, 3>& leads, const PlatformModes& mod
   }
   std::string wrong;
   for (const int steps : {256, 16384}) {  // the finer scan only where the coarse one does not agree
-    const std::vector<PlatformPose> scanned = scan_poses(leads, steps);
+    const std::vector<PlatformPose> scanned = scan_poses(legs, steps);
     wrong.clear();
     int closing = 0;
     for (const PlatformPose& pose : scanned) {
-      if (is_far(pose) || closing_error(leads, pose) > 1e-8) continue;  // parallel lines cross nowhere
+      if (is_far(pose) || closing_error(legs, pose) > 1e-8) continue;  // parallel lines cross nowhere
       ++closing;
       if (!found_by(modes, pose)) wrong = "a mode is missed";
     }
@@ -159,20 +159,20 @@ void expect_all_found(unsigned seed, int number, const std::array<Kind, 3>& kind
     Sketch sketch = random_sketch(dice, kinds);
     shape(dice, sketch);
     const PlatformPose pose = random_pose(dice);
-    std::array<Lead, 3> leads = closed_in(sketch, pose);
+    std::array<Leg, 3> legs = closed_in(sketch, pose);
     const bool built = i % 2 == 0;
     if (!built) {
-      for (Lead& lead : leads) lead.length *= dice.between(0.7, 1.4);
+      for (Leg& leg : legs) leg.length *= dice.between(0.7, 1.4);
     }
-    const PlatformModes modes = platform_modes(leads);
+    const PlatformModes modes = platform_modes(legs);
     ++counts[static_cast<std::size_t>(modes.count)];
-    std::string wrong = complaint(leads, modes);
+    std::string wrong = complaint(legs, modes);
     const bool three_circles = kinds == std::array{Kind::circle, Kind::circle, Kind::circle};
     if (wrong.empty() && three_circles && modes.count % 2 != 0) wrong = "an odd number of modes";
     if (wrong.empty() && built && !found_by(modes, pose)) wrong = "the pose it was built about is missed";
     if (wrong.empty()) continue;
     ++complaints;
-    ADD_FAILURE() << "triad " << i << ": " << wrong << "\n" << listing(leads);
+    ADD_FAILURE() << "triad " << i << ": " << wrong << "\n" << listing(legs);
   }
   EXPECT_EQ(counts[7] + counts[8], 0);
 }
@@ -289,18 +289,18 @@ TEST(RandomTriad, NearAParallelogramMissesNoMode) {
     if (std::abs(area) < 0.3) continue;
     const double off = std::pow(10, dice.between(-7, -1));
     const PlatformPose pose{dice.point(), std::cos(off), std::sin(off)};
-    const std::array<Lead, 3> leads = closed_in(sketch, pose);
-    const PlatformModes modes = platform_modes(leads);
-    EXPECT_FALSE(modes.movable) << off << "\n" << listing(leads);
-    EXPECT_TRUE(found_by(modes, pose)) << off << "\n" << listing(leads);
-    EXPECT_EQ(modes.count % 2, 0) << off << "\n" << listing(leads);
+    const std::array<Leg, 3> legs = closed_in(sketch, pose);
+    const PlatformModes modes = platform_modes(legs);
+    EXPECT_FALSE(modes.movable) << off << "\n" << listing(legs);
+    EXPECT_TRUE(found_by(modes, pose)) << off << "\n" << listing(legs);
+    EXPECT_EQ(modes.count % 2, 0) << off << "\n" << listing(legs);
     for (std::size_t k = 0; k < static_cast<std::size_t>(modes.count); ++k)
-      EXPECT_LT(closing_error(leads, modes.poses[k]), 1e-10);
+      EXPECT_LT(closing_error(legs, modes.poses[k]), 1e-10);
     if (testing::Test::HasFailure()) return;
   }
 }
 
-// All three leads let the platform turn about one point C to first order: two modes meet. It must stay in the
+// All three legs let the platform turn about one point C to first order: two modes meet. It must stay in the
 // list, once or twice, although rounding decides whether its zero is double, two, or none.
 TEST(RandomTriad, KeepsItsDeadCentre) {
   Dice dice(500);
@@ -320,13 +320,13 @@ TEST(RandomTriad, KeepsItsDeadCentre) {
       if (sketch.kinds[k] == Kind::platform_line)
         sketch.directions[k] = turn.transpose() * quarter_turn(sketch.anchors[k] - centre).normalized();
     }
-    const std::array<Lead, 3> leads = closed_in(sketch, pose);
-    const PlatformModes modes = platform_modes(leads);
+    const std::array<Leg, 3> legs = closed_in(sketch, pose);
+    const PlatformModes modes = platform_modes(legs);
     int times = 0;
     bool third_near = false;  // three modes nearly meet: rounding parts them by its third root
     double nearest = INFINITY;
     for (std::size_t k = 0; k < static_cast<std::size_t>(modes.count); ++k) {
-      EXPECT_LT(closing_error(leads, modes.poses[k]), 1e-10);
+      EXPECT_LT(closing_error(legs, modes.poses[k]), 1e-10);
       const double off = distance(modes.poses[k], pose);
       nearest = std::min(nearest, off);
       if (off < 1e-5)
@@ -334,10 +334,10 @@ TEST(RandomTriad, KeepsItsDeadCentre) {
       else if (off < 1e-2)
         third_near = true;
     }
-    EXPECT_FALSE(modes.movable) << i << "\n" << listing(leads);
-    EXPECT_LT(nearest, third_near ? 1e-4 : 1e-5) << i << "\n" << listing(leads);
+    EXPECT_FALSE(modes.movable) << i << "\n" << listing(legs);
+    EXPECT_LT(nearest, third_near ? 1e-4 : 1e-5) << i << "\n" << listing(legs);
     if (!third_near) {
-      EXPECT_LE(times, 2) << i << "\n" << listing(leads);
+      EXPECT_LE(times, 2) << i << "\n" << listing(legs);
     }
     if (testing::Test::HasFailure()) return;
   }

@@ -174,9 +174,11 @@ TEST(Redundancy, OfACrankThatIsTooLongIsContradictory) {
   EXPECT_NEAR(redundancy.excesses.at(0).miss_at_start, 2.5, 1e-12);
   EXPECT_THAT(
       refusal(three_cranks(42.5)),
-      AllOf(HasSubstr("test.toml:12:1: the hinge of 'FE' at 'E' in the loop AB-BCE-DC-FE is contradictory: "
-                      "without it the others leave 2.5 mm there"),
-            HasSubstr("leave it out, or mend a length")));
+      AllOf(
+          HasSubstr(
+              "test.toml:12:1: the revolute joint of 'FE' at 'E' in the loop AB-BCE-DC-FE is contradictory: "
+              "without it the others leave 2.5 mm there"),
+          HasSubstr("leave it out, or mend a length")));
 }
 
 // |FE| fits at the start and nowhere else: its pivot lies beside the line of the others'.

@@ -159,10 +159,11 @@ CX = { points = ["C", "X"], length = 1 }
 crank = { turns = "AB", about = "A", speed = 1 }
 )");
   EXPECT_EQ(kind, MechanismError::Kind::mobility);
-  EXPECT_THAT(text,
-              AllOf(HasSubstr("test.toml:10:1: body 'GM' is over-constrained"),
-                    HasSubstr("its hinge at 'M' is too much, since bodies 'AB', 'BC', 'CD' fix it already"),
-                    HasSubstr("test.toml:11:1: body 'CX' can move freely (mobility 1 after the drives)")));
+  EXPECT_THAT(
+      text,
+      AllOf(HasSubstr("test.toml:10:1: body 'GM' is over-constrained"),
+            HasSubstr("its revolute joint at 'M' is too much, since bodies 'AB', 'BC', 'CD' fix it already"),
+            HasSubstr("test.toml:11:1: body 'CX' can move freely (mobility 1 after the drives)")));
 }
 
 // The four-bar stands still without K, which has 3 freedoms and 6 conditions: three too many, of two hinges.
@@ -181,7 +182,8 @@ FX = { points = ["F", "X"], length = 1 }
 crank = { turns = "AB", about = "A", speed = 1 }
 )");
   EXPECT_EQ(kind, MechanismError::Kind::mobility);
-  for (const std::string hinge : {"its hinge at 'M' is too much", "its hinge at 'N' is too much"}) {
+  for (const std::string hinge :
+       {"its revolute joint at 'M' is too much", "its revolute joint at 'N' is too much"}) {
     EXPECT_NE(text.find(hinge), std::string::npos) << text;
     EXPECT_EQ(text.find(hinge), text.rfind(hinge)) << text;
   }
@@ -204,7 +206,7 @@ TEST(Structure, KnowsAGroupOfClassIV) {
   EXPECT_EQ(structure.groups[1].side, 0);  // it may have more than two modes
 }
 
-// The ternary link BCD on three leads, one of them from the crank OA (method: AVM class III).
+// The ternary link BCD on three legs, one of them from the crank OA (method: AVM class III).
 TEST(Structure, KnowsATriad) {
   const Structure triad = find_groups(mechanism(R"([frame]
 O = [0, 0]

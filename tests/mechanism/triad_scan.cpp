@@ -28,25 +28,25 @@ Matrix2d rotation(const PlatformPose& pose) {
 /// A motion of the platform, closed: a pose for each τ in [0, 2π).
 using Motion = std::function<PlatformPose(double tau)>;
 
-/// The motions that a circle and a second lead leave. The circle's point P lies at along·d ± height·d⊥ from
-/// its anchor, with d and `along` given by the second lead. That needs h = h₀ + h₁cos(θ − θ₀) in [low, high].
+/// The motions that a circle and a second leg leave. The circle's point P lies at along·d ± height·d⊥ from
+/// its anchor, with d and `along` given by the second leg. That needs h = h₀ + h₁cos(θ − θ₀) in [low, high].
 /// Where θ turns round at the end of such an interval the two signs meet, so θ = middle − half·cos τ with the
 /// sign of sin τ walks through both smoothly.
 class TwoLeads {
  public:
-  TwoLeads(const Lead& circle, const Lead& other) : circle_(circle), other_(other) {
+  TwoLeads(const Leg& circle, const Leg& other) : circle_(circle), other_(other) {
     const Vector2d a = other.anchor - circle.anchor;
     const Vector2d b = circle.local - other.local;
     const double l = circle.length;
     Vector2d wave;                           // h = h₀ + wave·(cos θ, sin θ)
-    if (other.kind == Lead::Kind::circle) {  // h = the squared distance of the two centres
+    if (other.kind == Leg::Kind::circle) {  // h = the squared distance of the two centres
       h0_ = a.squaredNorm() + b.squaredNorm();
       wave = 2 * Vector2d(a.dot(b), a.dot(quarter_turn(b)));
       low_ = (l - other.length) * (l - other.length);
       high_ = (l + other.length) * (l + other.length);
     } else {  // h = the distance of the line from the circle's anchor
       const Vector2d n = quarter_turn(other.direction);
-      const bool fixed = other.kind == Lead::Kind::fixed_line;
+      const bool fixed = other.kind == Leg::Kind::fixed_line;
       h0_ = n.dot(fixed ? a : b);
       wave = fixed ? Vector2d(n.dot(b), n.dot(quarter_turn(b))) : Vector2d(a.dot(n), a.dot(quarter_turn(n)));
       low_ = -l;
@@ -94,14 +94,14 @@ class TwoLeads {
     const double l = circle_.length;
     Vector2d d;
     double along = 0;
-    if (other_.kind == Lead::Kind::circle) {
+    if (other_.kind == Leg::Kind::circle) {
       const Vector2d centre = other_.anchor - circle_.anchor + turn * (circle_.local - other_.local);
       const double distance = centre.norm();
       d = centre / distance;
       along = (l * l - other_.length * other_.length + distance * distance) / (2 * distance);
     } else {
       const Vector2d n = quarter_turn(other_.direction);
-      d = other_.kind == Lead::Kind::fixed_line ? n : turn * n;
+      d = other_.kind == Leg::Kind::fixed_line ? n : turn * n;
       along = d.dot(other_.anchor - circle_.anchor + turn * (circle_.local - other_.local));
     }
     const double height = std::sqrt(std::max(0.0, (l - along) * (l + along)));
@@ -109,7 +109,7 @@ class TwoLeads {
     return pose;
   }
 
-  Lead circle_, other_;
+  Leg circle_, other_;
   double h0_ = 0, h1_ = 0, start_ = 0, low_ = 0, high_ = 0;
 };
 
@@ -160,16 +160,16 @@ std::vector<double> periodic_zeros(const std::function<double(double)>& g, int s
 }
 
 /// Lines only: the three of them cross in one point where the determinant of [normal, distance] vanishes.
-std::vector<PlatformPose> scan_lines(const std::array<Lead, 3>& leads, int steps) {
+std::vector<PlatformPose> scan_lines(const std::array<Leg, 3>& legs, int steps) {
   const auto rows = [&](double theta) {
     const PlatformPose pose{Vector2d::Zero(), std::cos(theta), std::sin(theta)};
     const Matrix2d turn = rotation(pose);
     Eigen::Matrix3d m;
     for (int i = 0; i < 3; ++i) {
-      const Lead& lead = leads[static_cast<std::size_t>(i)];
-      const Vector2d n = quarter_turn(lead.direction);
-      const Vector2d normal = lead.kind == Lead::Kind::fixed_line ? n : turn * n;
-      m.row(i) << normal.x(), normal.y(), normal.dot(lead.anchor - turn * lead.local);
+      const Leg& leg = legs[static_cast<std::size_t>(i)];
+      const Vector2d n = quarter_turn(leg.direction);
+      const Vector2d normal = leg.kind == Leg::Kind::fixed_line ? n : turn * n;
+      m.row(i) << normal.x(), normal.y(), normal.dot(leg.anchor - turn * leg.local);
     }
     return m;
   };
@@ -184,30 +184,30 @@ std::vector<PlatformPose> scan_lines(const std::array<Lead, 3>& leads, int steps
 
 }  // namespace
 
-double closing_error(const Lead& lead, const PlatformPose& pose) {
+double closing_error(const Leg& leg, const PlatformPose& pose) {
   const Matrix2d turn = rotation(pose);
-  const Vector2d offset = pose.position + turn * lead.local - lead.anchor;
-  switch (lead.kind) {
-    case Lead::Kind::circle:
-      return offset.norm() - lead.length;
-    case Lead::Kind::fixed_line:
-      return quarter_turn(lead.direction).dot(offset);
-    case Lead::Kind::platform_line:
-      return quarter_turn(turn * lead.direction).dot(offset);
+  const Vector2d offset = pose.position + turn * leg.local - leg.anchor;
+  switch (leg.kind) {
+    case Leg::Kind::circle:
+      return offset.norm() - leg.length;
+    case Leg::Kind::fixed_line:
+      return quarter_turn(leg.direction).dot(offset);
+    case Leg::Kind::platform_line:
+      return quarter_turn(turn * leg.direction).dot(offset);
   }
   return INFINITY;
 }
 
-double closing_error(const std::array<Lead, 3>& leads, const PlatformPose& pose) {
+double closing_error(const std::array<Leg, 3>& legs, const PlatformPose& pose) {
   double largest = 0;
-  for (const Lead& lead : leads) largest = std::max(largest, std::abs(closing_error(lead, pose)));
+  for (const Leg& leg : legs) largest = std::max(largest, std::abs(closing_error(leg, pose)));
   return largest;
 }
 
-std::vector<PlatformPose> scan_poses(const std::array<Lead, 3>& leads, int steps) {
-  std::array<Lead, 3> order = leads;
-  std::sort(order.begin(), order.end(), [](const Lead& a, const Lead& b) { return a.kind < b.kind; });
-  if (order[0].kind != Lead::Kind::circle) return scan_lines(leads, steps);
+std::vector<PlatformPose> scan_poses(const std::array<Leg, 3>& legs, int steps) {
+  std::array<Leg, 3> order = legs;
+  std::sort(order.begin(), order.end(), [](const Leg& a, const Leg& b) { return a.kind < b.kind; });
+  if (order[0].kind != Leg::Kind::circle) return scan_lines(legs, steps);
   std::vector<PlatformPose> poses;
   for (const Motion& motion : TwoLeads(order[0], order[1]).motions()) {
     const auto error = [&](double tau) { return closing_error(order[2], motion(tau)); };

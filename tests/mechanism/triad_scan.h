@@ -8,15 +8,15 @@
 
 namespace oblique::mechanism {
 
-/// How far a lead's condition is from holding [length unit], from the geometry alone.
-double closing_error(const Lead& lead, const PlatformPose& pose);
+/// How far a leg's condition is from holding [length unit], from the geometry alone.
+double closing_error(const Leg& leg, const PlatformPose& pose);
 
 /// The largest of the three, without its sign.
-double closing_error(const std::array<Lead, 3>& leads, const PlatformPose& pose);
+double closing_error(const std::array<Leg, 3>& legs, const PlatformPose& pose);
 
-/// The poses of a platform, found without any characteristic equation: two leads are held, which leaves a
-/// one-dimensional motion in closed form; it is walked through in `steps` places, and the third lead's error
+/// The poses of a platform, found without any characteristic equation: two legs are held, which leaves a
+/// one-dimensional motion in closed form; it is walked through in `steps` places, and the third leg's error
 /// says where it closes.
-std::vector<PlatformPose> scan_poses(const std::array<Lead, 3>& leads, int steps);
+std::vector<PlatformPose> scan_poses(const std::array<Leg, 3>& legs, int steps);
 
 }  // namespace oblique::mechanism

@@ -18,20 +18,20 @@ using Eigen::Vector2d;
 
 constexpr double kPi = std::numbers::pi;
 
-Lead circle(const Vector2d& local, const Vector2d& anchor, double length) {
-  return {Lead::Kind::circle, local, anchor, Vector2d::UnitX(), length};
+Leg circle(const Vector2d& local, const Vector2d& anchor, double length) {
+  return {Leg::Kind::circle, local, anchor, Vector2d::UnitX(), length};
 }
 
-Lead fixed_line(const Vector2d& local, const Vector2d& anchor, double angle) {
-  return {Lead::Kind::fixed_line, local, anchor, {std::cos(angle), std::sin(angle)}, 0};
+Leg fixed_line(const Vector2d& local, const Vector2d& anchor, double angle) {
+  return {Leg::Kind::fixed_line, local, anchor, {std::cos(angle), std::sin(angle)}, 0};
 }
 
-Lead platform_line(const Vector2d& local, const Vector2d& anchor, double angle) {
-  return {Lead::Kind::platform_line, local, anchor, {std::cos(angle), std::sin(angle)}, 0};
+Leg platform_line(const Vector2d& local, const Vector2d& anchor, double angle) {
+  return {Leg::Kind::platform_line, local, anchor, {std::cos(angle), std::sin(angle)}, 0};
 }
 
-const Lead kUpright{Lead::Kind::fixed_line, {0, 0}, {0, 0}, {0, 1}, 0};
-const Lead kLevel{Lead::Kind::fixed_line, {0, 0}, {0, 0}, {1, 0}, 0};
+const Leg kUpright{Leg::Kind::fixed_line, {0, 0}, {0, 0}, {0, 1}, 0};
+const Leg kLevel{Leg::Kind::fixed_line, {0, 0}, {0, 0}, {1, 0}, 0};
 
 double angle(const PlatformPose& pose) {
   return std::atan2(pose.sine, pose.cosine);
@@ -62,18 +62,18 @@ double distance_to(const PlatformModes& modes, const PlatformPose& pose) {
   return least;
 }
 
-void expect_closed(const std::array<Lead, 3>& leads, const PlatformModes& modes, double tolerance) {
+void expect_closed(const std::array<Leg, 3>& legs, const PlatformModes& modes, double tolerance) {
   for (int i = 0; i < modes.count; ++i) {
     const PlatformPose& pose = modes.poses[static_cast<std::size_t>(i)];
-    EXPECT_LT(closing_error(leads, pose), tolerance) << "mode " << i;
+    EXPECT_LT(closing_error(legs, pose), tolerance) << "mode " << i;
     EXPECT_NEAR(std::hypot(pose.cosine, pose.sine), 1, 1e-15) << "mode " << i;
   }
 }
 
 /// Known poses must be the modes, all of them.
-void expect_modes(const std::array<Lead, 3>& leads, const std::vector<PlatformPose>& poses,
+void expect_modes(const std::array<Leg, 3>& legs, const std::vector<PlatformPose>& poses,
                   double tolerance = 1e-13) {
-  const PlatformModes modes = platform_modes(leads);
+  const PlatformModes modes = platform_modes(legs);
   EXPECT_FALSE(modes.movable);
   EXPECT_EQ(modes.count, static_cast<int>(poses.size()));
   for (const PlatformPose& pose : poses) {
@@ -84,19 +84,19 @@ void expect_modes(const std::array<Lead, 3>& leads, const std::vector<PlatformPo
 /// The platform that the literature solves with six real modes: base (0, 0), (15.91, 0), (0, 10), legs 14.98,
 /// 15.38, 12, sides P₁P₂ = 17.04, P₂P₃ = 16.54, P₁P₃ = 20.84, its corners counter-clockwise as those of the
 /// base (C. Innocenti and V. Parenti-Castelli 1992; C. Gosselin and J.-P. Merlet 1994).
-std::array<Lead, 3> six_mode_platform() {
+std::array<Leg, 3> six_mode_platform() {
   const double x = (17.04 * 17.04 + 20.84 * 20.84 - 16.54 * 16.54) / (2 * 17.04);
   const double y = std::sqrt(20.84 * 20.84 - x * x);
   return {circle({0, 0}, {0, 0}, 14.98), circle({17.04, 0}, {15.91, 0}, 15.38), circle({x, y}, {0, 10}, 12)};
 }
 
 TEST(Triad, HasTheSixModesOfTheLiterature) {
-  const auto leads = six_mode_platform();
-  const PlatformModes modes = platform_modes(leads);
+  const auto legs = six_mode_platform();
+  const PlatformModes modes = platform_modes(legs);
   EXPECT_FALSE(modes.movable);
   ASSERT_EQ(modes.count, 6);
-  expect_closed(leads, modes, 1e-13);  // lengths of 20: the promise of 1e-13 of the size leaves 2e-12
-  const auto scanned = scan_poses(leads, 1000);
+  expect_closed(legs, modes, 1e-13);  // lengths of 20: the promise of 1e-13 of the size leaves 2e-12
+  const auto scanned = scan_poses(legs, 1000);
   ASSERT_EQ(scanned.size(), 6U);
   for (const PlatformPose& pose : scanned) EXPECT_LT(distance_to(modes, pose), 1e-10);
   for (int i = 1; i < 6; ++i)
@@ -105,8 +105,8 @@ TEST(Triad, HasTheSixModesOfTheLiterature) {
 }
 
 TEST(Triad, KeepsItsModesUnderMotionsAndScales) {
-  const auto leads = six_mode_platform();
-  const PlatformModes modes = platform_modes(leads);
+  const auto legs = six_mode_platform();
+  const PlatformModes modes = platform_modes(legs);
   for (const double scale : {1e-6, 1.0, 1e6}) {
     for (const double turn : {0.0, 0.7, kPi / 2, kPi, -2.5}) {
       for (const double platform_turn : {0.0, 1.1, kPi}) {
@@ -116,11 +116,11 @@ TEST(Triad, KeepsItsModesUnderMotionsAndScales) {
             const Matrix2d base = scale * rotation(turn) * reflection;
             const Matrix2d own = scale * rotation(platform_turn) * reflection;
             const Vector2d shift = scale * far * Vector2d(20, -13);
-            std::array<Lead, 3> changed = leads;
-            for (Lead& lead : changed) {
-              lead.anchor = base * lead.anchor + shift;
-              lead.local = own * lead.local;
-              lead.length *= scale;
+            std::array<Leg, 3> changed = legs;
+            for (Leg& leg : changed) {
+              leg.anchor = base * leg.anchor + shift;
+              leg.local = own * leg.local;
+              leg.length *= scale;
             }
             const PlatformModes found = platform_modes(changed);
             EXPECT_FALSE(found.movable);
@@ -148,7 +148,7 @@ TEST(Triad, HangsOnAHingeAndARod) {
   expect_modes({kUpright, kLevel, circle({2, 0}, {3, 0}, 1.5)},
                {{{0, 0}, std::cos(theta), std::sin(theta)}, {{0, 0}, std::cos(theta), -std::sin(theta)}});
   // the rod stretched: a dead centre, double
-  const std::array<Lead, 3> stretched = {kUpright, kLevel, circle({2, 0}, {3.5, 0}, 1.5)};
+  const std::array<Leg, 3> stretched = {kUpright, kLevel, circle({2, 0}, {3.5, 0}, 1.5)};
   const PlatformModes modes = platform_modes(stretched);
   EXPECT_THAT(modes.count, testing::AnyOf(1, 2));
   EXPECT_LT(distance_to(modes, {{0, 0}, 1, 0}), 1e-7);
@@ -171,36 +171,35 @@ TEST(Triad, KnowsHalfATurn) {
   const std::array<Vector2d, 3> locals = {Vector2d(0, 0), Vector2d(2, 0.5), Vector2d(0.5, 1.5)};
   const std::array<Vector2d, 3> anchors = {Vector2d(4, 0), Vector2d(-3, -1), Vector2d(0, 5)};
   for (int kinds = 0; kinds < 27; ++kinds) {
-    std::array<Lead, 3> leads;
+    std::array<Leg, 3> legs;
     int rest = kinds;
     for (std::size_t i = 0; i < 3; ++i, rest /= 3) {
       const Vector2d arm = world(half_turn, locals[i]) - anchors[i];
-      if (rest % 3 == 0) leads[i] = circle(locals[i], anchors[i], arm.norm());
-      if (rest % 3 == 1) leads[i] = {Lead::Kind::fixed_line, locals[i], anchors[i], arm.normalized(), 0};
-      if (rest % 3 == 2) leads[i] = {Lead::Kind::platform_line, locals[i], anchors[i], arm.normalized(), 0};
+      if (rest % 3 == 0) legs[i] = circle(locals[i], anchors[i], arm.norm());
+      if (rest % 3 == 1) legs[i] = {Leg::Kind::fixed_line, locals[i], anchors[i], arm.normalized(), 0};
+      if (rest % 3 == 2) legs[i] = {Leg::Kind::platform_line, locals[i], anchors[i], arm.normalized(), 0};
     }
-    const PlatformModes modes = platform_modes(leads);
+    const PlatformModes modes = platform_modes(legs);
     EXPECT_FALSE(modes.movable) << kinds;
     EXPECT_LT(distance_to(modes, half_turn), 1e-13) << kinds;
-    expect_closed(leads, modes, 1e-13);
+    expect_closed(legs, modes, 1e-13);
   }
 }
 
 TEST(Triad, DoesNotMindWhichPointNamesALine) {
   const double along = 1e4;  // costs four digits of 1e-16
   for (int lines = 1; lines < 8; ++lines) {
-    std::array<Lead, 3> leads = {fixed_line({0.2, 0.1}, {0, 0.3}, 0.4),
-                                 platform_line({0.5, -0.2}, {1, 1}, 1.9),
-                                 fixed_line({-0.4, 0.8}, {0.3, 1}, 2.5)};
+    std::array<Leg, 3> legs = {fixed_line({0.2, 0.1}, {0, 0.3}, 0.4), platform_line({0.5, -0.2}, {1, 1}, 1.9),
+                               fixed_line({-0.4, 0.8}, {0.3, 1}, 2.5)};
     for (std::size_t i = 0; i < 3; ++i) {
-      if ((lines >> i & 1) == 0) leads[i] = circle(leads[i].local, leads[i].anchor, 0.9);
+      if ((lines >> i & 1) == 0) legs[i] = circle(legs[i].local, legs[i].anchor, 0.9);
     }
-    std::array<Lead, 3> slid = leads;
-    for (Lead& lead : slid) {
-      if (lead.kind == Lead::Kind::fixed_line) lead.anchor += along * lead.direction;
-      if (lead.kind == Lead::Kind::platform_line) lead.local -= along * lead.direction;
+    std::array<Leg, 3> slid = legs;
+    for (Leg& leg : slid) {
+      if (leg.kind == Leg::Kind::fixed_line) leg.anchor += along * leg.direction;
+      if (leg.kind == Leg::Kind::platform_line) leg.local -= along * leg.direction;
     }
-    const PlatformModes modes = platform_modes(leads);
+    const PlatformModes modes = platform_modes(legs);
     const PlatformModes same = platform_modes(slid);
     EXPECT_EQ(modes.count, same.count) << lines;
     for (int i = 0; i < modes.count; ++i)
@@ -214,17 +213,17 @@ TEST(Triad, FindsTwoModesInOneDirection) {
   // q = N/D says nothing, and F has a double zero that is no dead centre.
   const std::array<Vector2d, 3> locals = {Vector2d(1, -0.5), Vector2d(-0.3, 2), Vector2d(0.2, 0.7)};
   const std::array<double, 3> centres = {-2, 0.5, 4};
-  std::array<Lead, 3> leads;
+  std::array<Leg, 3> legs;
   for (std::size_t i = 0; i < 3; ++i) {
     const Vector2d centre(centres[i], centres[i]);
-    leads[i] = circle(locals[i], centre + locals[i], (Vector2d(1, 3) - centre).norm());
+    legs[i] = circle(locals[i], centre + locals[i], (Vector2d(1, 3) - centre).norm());
   }
-  const PlatformModes modes = platform_modes(leads);
+  const PlatformModes modes = platform_modes(legs);
   EXPECT_FALSE(modes.movable);
   EXPECT_LT(distance_to(modes, {{1, 3}, 1, 0}), 1e-13);
   EXPECT_LT(distance_to(modes, {{3, 1}, 1, 0}), 1e-13);
-  expect_closed(leads, modes, 1e-13);
-  EXPECT_EQ(static_cast<std::size_t>(modes.count), scan_poses(leads, 1000).size());
+  expect_closed(legs, modes, 1e-13);
+  EXPECT_EQ(static_cast<std::size_t>(modes.count), scan_poses(legs, 1000).size());
 }
 
 TEST(Triad, RunsOnParallelGuides) {
@@ -260,33 +259,33 @@ TEST(Triad, RunsOnParallelGuidesToADeadCentre) {
 TEST(Triad, TakesAPlatformThatMirrorsItsBase) {
   // Radical axes parallel in every direction: D = 0 throughout, F a square.
   const PlatformPose known{{0.4, -0.9}, std::cos(2.0), std::sin(2.0)};
-  std::array<Lead, 3> leads;
+  std::array<Leg, 3> legs;
   const std::array<Vector2d, 3> corners = {Vector2d(0, 0), Vector2d(3, 0), Vector2d(1, 2)};
   for (std::size_t i = 0; i < 3; ++i) {
     const Vector2d local(corners[i].x(), -corners[i].y());
-    leads[i] = circle(local, corners[i], (world(known, local) - corners[i]).norm());
+    legs[i] = circle(local, corners[i], (world(known, local) - corners[i]).norm());
   }
-  const PlatformModes modes = platform_modes(leads);
+  const PlatformModes modes = platform_modes(legs);
   EXPECT_FALSE(modes.movable);
   EXPECT_LT(distance_to(modes, known), 1e-13);
-  expect_closed(leads, modes, 1e-13);
-  EXPECT_EQ(static_cast<std::size_t>(modes.count), scan_poses(leads, 1000).size());
+  expect_closed(legs, modes, 1e-13);
+  EXPECT_EQ(static_cast<std::size_t>(modes.count), scan_poses(legs, 1000).size());
 }
 
 TEST(Triad, IsMovableAsAParallelogram) {
   const std::array<Vector2d, 3> corners = {Vector2d(0, 0), Vector2d(3, 0), Vector2d(1, 2)};
   for (const double turn : {0.0, 0.4, kPi}) {
-    std::array<Lead, 3> leads;
-    for (std::size_t i = 0; i < 3; ++i) leads[i] = circle(corners[i], rotation(turn) * corners[i], 1.7);
-    EXPECT_TRUE(platform_modes(leads).movable) << turn;
+    std::array<Leg, 3> legs;
+    for (std::size_t i = 0; i < 3; ++i) legs[i] = circle(corners[i], rotation(turn) * corners[i], 1.7);
+    EXPECT_TRUE(platform_modes(legs).movable) << turn;
     // its isolated modes, turned about, remain: they close and are no translations
-    const PlatformModes modes = platform_modes(leads);
-    expect_closed(leads, modes, 1e-13);
+    const PlatformModes modes = platform_modes(legs);
+    expect_closed(legs, modes, 1e-13);
     for (const double theta : angles(modes)) EXPECT_GT(std::abs(std::remainder(theta - turn, 2 * kPi)), 1e-3);
 
-    leads[2].length += 1e-5;  // no parallelogram any more
-    EXPECT_FALSE(platform_modes(leads).movable) << turn;
-    EXPECT_EQ(platform_modes(leads).count, 4) << turn;  // two of them within 1e-5 of parallel
+    legs[2].length += 1e-5;  // no parallelogram any more
+    EXPECT_FALSE(platform_modes(legs).movable) << turn;
+    EXPECT_EQ(platform_modes(legs).count, 4) << turn;  // two of them within 1e-5 of parallel
   }
 }
 
@@ -298,12 +297,12 @@ TEST(Triad, FindsAPoseNextToAParallelogram) {
       const Vector2d place = rotation(0.157 * k) * Vector2d(1.3 + 0.03 * k, 0);
       const double theta = 0.4 + (k % 2 == 0 ? delta : -delta);
       const PlatformPose known{place, std::cos(theta), std::sin(theta)};
-      std::array<Lead, 3> leads;
+      std::array<Leg, 3> legs;
       for (std::size_t i = 0; i < 3; ++i) {
         const Vector2d anchor = rotation(0.4) * corners[i];
-        leads[i] = circle(corners[i], anchor, (world(known, corners[i]) - anchor).norm());
+        legs[i] = circle(corners[i], anchor, (world(known, corners[i]) - anchor).norm());
       }
-      const PlatformModes modes = platform_modes(leads);
+      const PlatformModes modes = platform_modes(legs);
       EXPECT_FALSE(modes.movable);
       // The conditions see the place by δ; 1e-13 is what a pose closes to.
       EXPECT_LT(distance_to(modes, known), 1e-13 / delta) << delta << " " << k;
@@ -312,7 +311,7 @@ TEST(Triad, FindsAPoseNextToAParallelogram) {
 }
 
 TEST(Triad, IsMovableWhereLeadsRepeat) {
-  const Lead rod = circle({1, 0}, {4, 0}, 2.5);
+  const Leg rod = circle({1, 0}, {4, 0}, 2.5);
   EXPECT_TRUE(platform_modes({rod, rod, circle({0, 1}, {0, 0}, 2)}).movable);
   EXPECT_TRUE(platform_modes({rod, kLevel, kLevel}).movable);
   EXPECT_TRUE(platform_modes({kUpright, kLevel, fixed_line({0, 0}, {0, 0}, 1)}).movable);
@@ -328,22 +327,22 @@ TEST(Triad, IsMovableWhereLeadsRepeat) {
 
 TEST(Triad, IsMovableAsATrammel) {
   // Cardan's circles: points on a circle through the crossing of their lines, at half the angles.
-  std::array<Lead, 3> leads;
+  std::array<Leg, 3> legs;
   for (std::size_t i = 0; i < 3; ++i) {
     const double at = 0.4 + 0.9 * static_cast<double>(i);
-    leads[i] = fixed_line({std::cos(2 * at), std::sin(2 * at)}, {5, 3}, at);
+    legs[i] = fixed_line({std::cos(2 * at), std::sin(2 * at)}, {5, 3}, at);
   }
-  EXPECT_TRUE(platform_modes(leads).movable);
+  EXPECT_TRUE(platform_modes(legs).movable);
   // moved aside it is rigid
-  leads[0].anchor.x() += 0.1;
-  EXPECT_FALSE(platform_modes(leads).movable);
+  legs[0].anchor.x() += 0.1;
+  EXPECT_FALSE(platform_modes(legs).movable);
 }
 
 TEST(Triad, IsMovableOnThreeParallelGuides) {
-  const std::array<Lead, 3> leads = {fixed_line({0, 0}, {0, 0}, 0), fixed_line({2, 0}, {0, 1}, 0),
-                                     fixed_line({4, 0}, {0, 2}, 0)};
-  EXPECT_TRUE(platform_modes(leads).movable);
-  std::array<Lead, 3> apart = leads;
+  const std::array<Leg, 3> legs = {fixed_line({0, 0}, {0, 0}, 0), fixed_line({2, 0}, {0, 1}, 0),
+                                   fixed_line({4, 0}, {0, 2}, 0)};
+  EXPECT_TRUE(platform_modes(legs).movable);
+  std::array<Leg, 3> apart = legs;
   apart[2].anchor.y() = 2.5;
   EXPECT_FALSE(platform_modes(apart).movable);
   EXPECT_EQ(platform_modes(apart).count, 0);

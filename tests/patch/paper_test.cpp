@@ -110,7 +110,7 @@ TEST(Split, IsRefusedWhereNoTriadHasItsLeads) {
   PatchOptions options;
   options.split = {"AB", "OA", "DE"};
   EXPECT_THAT(message(shipped("class-iii"), options),
-              HasSubstr("split AB,OA,DE: no triad has these leads; expected the three leads of a triad in "
+              HasSubstr("split AB,OA,DE: no triad has these legs; expected the three legs of a triad in "
                         "any order: AB,"));
   EXPECT_THAT(message(shipped("four-bar"), options),
               HasSubstr("expected a triad on three links, which this mechanism has not"));
@@ -122,9 +122,10 @@ TEST(Split, WorthTheMostIsWhatIsChosen) {
   PatchOptions options;
   options.split = splits.front();
   std::string named = diagram::write_diagram(patch(shipped("class-iii"), options));
-  const std::string
-      asked = "This split was asked for.",
-      best = "Of the six splits this one keeps\n# farthest from flat triangles and from a loop without gain.";
+  const std::string asked = "This split was asked for.",
+                    best =
+                        "Of the six splits this one keeps\n# farthest from collinear triangles and from a "
+                        "loop without gain.";
   named.replace(named.find(asked), asked.size(), best);
   EXPECT_EQ(named, diagram::write_diagram(patch(shipped("class-iii"))));
 }
@@ -155,12 +156,13 @@ TEST(Split, IsRefusedWhereATriangleTurnsOver) {
   options.split = {"AB", "O1C", "DE"};
   const std::string text = message(mechanism, options);
   const std::string what =
-      "with the split AB, O1C, DE of the triad AB-BDC-DE-O1C, the second triangle goes flat and "
+      "with the split AB, O1C, DE of the triad AB-BDC-DE-O1C, the second triangle becomes collinear and "
       "turns over at t = ";
   ASSERT_THAT(text, HasSubstr(what));
   EXPECT_THAT(
       text,
-      HasSubstr("expected triangles that never go flat and a loop that keeps its sign\n  remedy: split "));
+      HasSubstr(
+          "expected triangles that never become collinear and a loop that keeps its sign\n  remedy: split "));
   const double time = std::stod(text.substr(text.find(what) + what.size()));
   const double degree =
       std::numbers::pi / 180;  // the crank's speed is 1 rad/s; ranges are taken half a degree apart

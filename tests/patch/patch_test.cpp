@@ -204,10 +204,10 @@ TEST(Patch, TakesATriadApart) {
   EXPECT_EQ(count("dyad-rrr"), 1);
   EXPECT_EQ(count("servo-amplifier"), 1);
   EXPECT_THAT(diagram::write_diagram(diagram),
-              HasSubstr("Of the six splits this one keeps\n# farthest from flat triangles"));
+              HasSubstr("Of the six splits this one keeps\n# farthest from collinear triangles"));
 }
 
-// Of two leads that share their anchor each has its own length.
+// Of two legs that share their anchor each has its own length.
 TEST(LeadOf, TellsLeadsOfOneAnchorApart) {
   const mechanism::Mechanism mechanism = mechanism::parse_mechanism(R"(format = "oblique-mechanism/1"
 [frame]
@@ -227,8 +227,8 @@ crank = { turns = "OA", about = "O", speed = 1 }
   const mechanism::Group& triad = structure.groups.at(1);
   ASSERT_EQ(triad.kind, mechanism::GroupKind::triad);
   for (std::size_t i = 0; i < 3; ++i) {
-    const mechanism::Body& lead = mechanism.bodies[lead_of(triad, i)];
-    const double length = (lead.points[1].local - lead.points[0].local).norm();
+    const mechanism::Body& leg = mechanism.bodies[leg_of(triad, i)];
+    const double length = (leg.points[1].local - leg.points[0].local).norm();
     EXPECT_DOUBLE_EQ(length, triad.equations.conditions[i].value) << i;
   }
 }
@@ -261,7 +261,7 @@ mechanism::Mechanism two_triads() {
 // The same split may be asked for, found among those that are stable, or be worth the most.
 TEST(Patch, SaysOfEachTriadWhyItHasItsSplit) {
   const std::string best =
-      "Of the six splits this one keeps\n# farthest from flat triangles and from a loop without gain";
+      "Of the six splits this one keeps\n# farthest from collinear triangles and from a loop without gain";
   PatchOptions options;
   options.split = {"AB", "DE", "O1C"};
   std::string text = diagram::write_diagram(patch_triangles(two_triads(), options));
@@ -290,7 +290,7 @@ TEST(Patch, OffersTheGradientWhereATriadHasASlide) {
     FAIL();
   } catch (const PatchError& error) {
     EXPECT_THAT(error.what(),
-                HasSubstr("has a slide among its leads, so that it cannot be taken apart into triangles"));
+                HasSubstr("has a slide among its legs, so that it cannot be taken apart into triangles"));
     EXPECT_THAT(error.what(), HasSubstr("remedy: patch it with method gradient"));
   }
 }

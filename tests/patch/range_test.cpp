@@ -60,7 +60,7 @@ TEST(WithinRange, LeavesWhatTurnsAsItIs) {
 // The crank of a double rocker: both limits from the law of cosines.
 TEST(WithinRange, SwingsOverNineTenthsOfTheRange) {
   const mechanism::Mechanism mechanism = shipped("double-rocker");
-  const mechanism::MotionRange range = mechanism::find_range(mechanism, mechanism::decompose(mechanism));
+  const mechanism::MotionLimits range = mechanism::find_range(mechanism, mechanism::decompose(mechanism));
   ASSERT_TRUE(range.forward && range.backward);
   const mechanism::Drive& drive = mechanism.drives.front();
   const double first = drive.start + drive.speed * range.backward->time;

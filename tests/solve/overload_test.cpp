@@ -52,7 +52,7 @@ TEST(Overload, OfASineHasItsPeakTimeAndDuration) {
   EXPECT_NEAR(std::abs(x.peak.value), kAmplitude, 3e-7);
   // A sine is flat at its peak: where it is is known to the square root of twice that.
   EXPECT_NEAR(std::remainder(x.peak.time, pi), std::copysign(pi / 2, std::remainder(x.peak.time, pi)), 8e-4);
-  EXPECT_EQ(x.cure, 0.5);
+  EXPECT_EQ(x.suggested_scale, 0.5);
 }
 
 TEST(Overload, InsideOneStepIsFound) {
@@ -80,7 +80,7 @@ p   = { type = "summer", in = ["16*hh", "-2*one"] }
   // Outside over [0, 1/2] and [√3/2, 1].
   EXPECT_NEAR(p.duration, 1.5 - std::sqrt(3) / 2, 1e-9);
   EXPECT_NEAR(std::abs(p.peak.value), 2, 1e-9);
-  EXPECT_EQ(p.cure, 0.5);
+  EXPECT_EQ(p.suggested_scale, 0.5);
 }
 
 TEST(Overload, HaltsTheRunAtItsTime) {

@@ -58,11 +58,11 @@ void add_method(CLI::App* verb, Request& request) {
 inline void add_triad_choice(CLI::App* verb, TriadChoice& choice) {
   verb->add_option(
           "--split", choice.split,
-          "how to take a triad apart: the lead whose triangle carries the variable length, the lead that "
+          "how to take a triad apart: the leg whose triangle carries the variable length, the leg that "
           "closes the loop, the third (default: the split that is worth the most)")
       ->delimiter(',')
       ->allow_extra_args(false)
-      ->type_name("LEAD,LEAD,LEAD");
+      ->type_name("LEG,LEG,LEG");
   verb->add_option(
       "--slower", choice.slower,
       "how many times slower the outer loop of a triad is (default: 100, or more where it takes it)");

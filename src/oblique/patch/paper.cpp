@@ -65,10 +65,10 @@ class PaperPatch : private TriadPatch {
   }
 
   bool names_leads_of(const mechanism::Group& group) const {
-    std::vector<std::string> leads;
+    std::vector<std::string> legs;
     for (std::size_t k = 0; k < group.equations.conditions.size(); ++k)
-      leads.push_back(mechanism_.bodies[lead_of(group, k)].name);
-    return std::is_permutation(leads.begin(), leads.end(), options_.split.begin(), options_.split.end());
+      legs.push_back(mechanism_.bodies[leg_of(group, k)].name);
+    return std::is_permutation(legs.begin(), legs.end(), options_.split.begin(), options_.split.end());
   }
 
   /// The lead on a moving point carries the variable length, as AB does; of the others the last one in the
@@ -81,10 +81,10 @@ class PaperPatch : private TriadPatch {
     }
     std::vector<std::size_t> others;
     for (std::size_t k = 0; k < conditions.size(); ++k) {
-      if (k != tracked) others.push_back(lead_of(group, k));
+      if (k != tracked) others.push_back(leg_of(group, k));
     }
     std::sort(others.begin(), others.end());
-    return {mechanism_.bodies[lead_of(group, tracked)].name, mechanism_.bodies[others[1]].name,
+    return {mechanism_.bodies[leg_of(group, tracked)].name, mechanism_.bodies[others[1]].name,
             mechanism_.bodies[others[0]].name};
   }
 

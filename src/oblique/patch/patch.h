@@ -59,7 +59,7 @@ struct PatchOptions {
   /// How many times slower than the loops inside it an outer loop is: next to their speed several splits of a
   /// triad are unstable. Default: kUsualSlower, or what a stable patch takes (`judged_patch`).
   std::optional<double> slower = {};
-  /// Names of the three leads of a triad: the one whose triangle carries the variable length, the one that
+  /// Names of the three legs of a triad: the one whose triangle carries the variable length, the one that
   /// closes the loop, the third; empty: the split that is worth the most.
   std::vector<std::string> split = {};
   bool split_by_trial = false;  ///< nobody asked for `split`: those that are worth more were unstable
@@ -100,7 +100,7 @@ diagram::Diagram patch_gradient(const mechanism::Mechanism& mechanism, const Pat
 /// The diagram of the source (AVM class III) for a mechanism of cranks and triads on three links, so that it
 /// can be read beside the source: two equal circuits `four-bar-circuit` with one scale for all lengths, an
 /// outer loop that tracks the variable length, and the source's angles among the outputs. The split is the
-/// source's unless the options name one: the first lead, that hangs on a crank, carries the variable length,
+/// source's unless the options name one: the first leg, that hangs on a crank, carries the variable length,
 /// the second one in the file closes the loop. Scaled, and throws, as above.
 diagram::Diagram patch_paper(const mechanism::Mechanism& mechanism, const PatchOptions& options = {});
 

@@ -23,7 +23,7 @@ mechanism::Mechanism within_range(const mechanism::Mechanism& mechanism) {
   if (mechanism.drives.size() != 1 || mechanism.drives.front().law || mechanism.motion.until)
     return mechanism;
   const mechanism::Drive& drive = mechanism.drives.front();
-  const mechanism::MotionRange range = mechanism::find_range(mechanism, mechanism::decompose(mechanism));
+  const mechanism::MotionLimits range = mechanism::find_range(mechanism, mechanism::decompose(mechanism));
   const auto is_limit = [](const std::optional<mechanism::MotionEvent>& event) {
     return event && event->ends();
   };

@@ -175,7 +175,7 @@ void SlideDyadPatch::add_group(const mechanism::Group& group) {
     }
   }
   const VectorForm core_axis = axis_;
-  for (const mechanism::Block& block : equations.blocks) {
+  for (const mechanism::SliderBlock& block : equations.blocks) {
     const bool on_core = block.on && is_body && *block.on == equations.cores.front();
     const VectorForm on = on_core    ? core_axis
                           : block.on ? direction_of(*block.on, Eigen::Vector2d::UnitX())

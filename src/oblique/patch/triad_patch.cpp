@@ -14,7 +14,7 @@ namespace {
 std::string reason_of(const TriadSplit& split, const PatchOptions& options) {
   if (split.asked_for && !options.split_by_trial) return "This split was asked for.";
   return fmt::format(
-      "Of the six splits this one keeps\nfarthest from flat triangles and from a loop without gain{}.",
+      "Of the six splits this one keeps\nfarthest from collinear triangles and from a loop without gain{}.",
       split.asked_for ? ", among those that are stable" : "");
 }
 

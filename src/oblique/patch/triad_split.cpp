@@ -91,16 +91,16 @@ TriadSplit measure(const mechanism::Group& group, const mechanism::Motion& motio
   return split;
 }
 
-std::vector<std::string> leads_of(const mechanism::Mechanism& mechanism, const mechanism::Group& triad,
-                                  const TriadSplit& split) {
+std::vector<std::string> legs_of(const mechanism::Mechanism& mechanism, const mechanism::Group& triad,
+                                 const TriadSplit& split) {
   std::vector<std::string> names;
-  for (const std::size_t lead : {split.tracked, split.closing, split.third})
-    names.push_back(mechanism.bodies[lead_of(triad, lead)].name);
+  for (const std::size_t leg : {split.tracked, split.closing, split.third})
+    names.push_back(mechanism.bodies[leg_of(triad, leg)].name);
   return names;
 }
 
-std::string joined(const std::vector<std::string>& leads) {
-  return fmt::format("{}", fmt::join(leads, ","));
+std::string joined(const std::vector<std::string>& legs) {
+  return fmt::format("{}", fmt::join(legs, ","));
 }
 
 }  // namespace
@@ -128,7 +128,7 @@ std::vector<TriadSplit> splits_of(const mechanism::Group& group, const mechanism
   return splits;
 }
 
-std::size_t lead_of(const mechanism::Group& triad, std::size_t condition) {
+std::size_t leg_of(const mechanism::Group& triad, std::size_t condition) {
   const mechanism::Condition& c = triad.equations.conditions[condition];
   for (const mechanism::Link& link : triad.equations.links) {
     if (link.from == c.b.point && link.to == c.a.point) return link.body;
@@ -138,7 +138,7 @@ std::size_t lead_of(const mechanism::Group& triad, std::size_t condition) {
 
 std::string split_name(const mechanism::Mechanism& mechanism, const mechanism::Group& triad,
                        const TriadSplit& split) {
-  return fmt::format("{}", fmt::join(leads_of(mechanism, triad, split), ", "));
+  return fmt::format("{}", fmt::join(legs_of(mechanism, triad, split), ", "));
 }
 
 TriadSplit choose_split(const mechanism::Mechanism& mechanism, const mechanism::Group& triad,
@@ -146,19 +146,18 @@ TriadSplit choose_split(const mechanism::Mechanism& mechanism, const mechanism::
   std::vector<TriadSplit> splits = splits_of(triad, motion);
   const text::Place& place = mechanism.bodies[triad.equations.cores.front()].place;
   const auto named = std::find_if(splits.begin(), splits.end(), [&](const TriadSplit& split) {
-    return leads_of(mechanism, triad, split) == options.split;
+    return legs_of(mechanism, triad, split) == options.split;
   });
   if (named == splits.end()) {
     if (splits.front().worth() > kLeastWorth || options.force) return splits.front();
-    throw PatchError(
-        text::Diagnostic{
-            place,
-            fmt::format(
-                "the group {} ({}) has no split into two triangles that never go flat and a loop that "
-                "keeps its gain on the way",
-                triad.name, mechanism::kind_name(triad.kind)),
-            "a triad on three links with such a split",
-            text::Remedy{"patch it with ", text::Setting{"method", "gradient"}, ", which takes any group"}})
+    throw PatchError(text::Diagnostic{place,
+                                      fmt::format("the group {} ({}) has no split into two triangles that "
+                                                  "never become collinear and a loop that "
+                                                  "keeps its gain on the way",
+                                                  triad.name, mechanism::kind_name(triad.kind)),
+                                      "a triad on three links with such a split",
+                                      text::Remedy{"patch it with ", text::Setting{"method", "gradient"},
+                                                   ", which takes any group"}})
         .forcible();
   }
   if (named->flip != TriadSplit::Flip::none && !options.force) {
@@ -170,12 +169,12 @@ TriadSplit choose_split(const mechanism::Mechanism& mechanism, const mechanism::
                 triad.name,
                 named->flip == TriadSplit::Flip::loop
                     ? fmt::format("the loop that tracks the variable length changes the sign of its gain")
-                    : fmt::format("the {} triangle goes flat and turns over",
+                    : fmt::format("the {} triangle becomes collinear and turns over",
                                   named->flip == TriadSplit::Flip::first_triangle ? "first" : "second"),
                 named->flip_time),
-            "triangles that never go flat and a loop that keeps its sign",
+            "triangles that never become collinear and a loop that keeps its sign",
             splits.front().worth() > kLeastWorth
-                ? text::Remedy{text::Setting{"split", joined(leads_of(mechanism, triad, splits.front()))},
+                ? text::Remedy{text::Setting{"split", joined(legs_of(mechanism, triad, splits.front()))},
                                " never flips"}
                 : text::Remedy{"patch it with ", text::Setting{"method", "gradient"},
                                ", which takes any group"}})
@@ -199,18 +198,17 @@ void check_split_options(const mechanism::Mechanism& mechanism, const mechanism:
   std::vector<std::string> triads;
   for (const mechanism::Group& group : structure.groups) {
     if (!can_be_split(group)) continue;
-    std::vector<std::string> leads = leads_of(mechanism, group, TriadSplit{});
-    triads.push_back(joined(leads));
-    if (std::is_permutation(leads.begin(), leads.end(), options.split.begin(), options.split.end())) return;
+    std::vector<std::string> legs = legs_of(mechanism, group, TriadSplit{});
+    triads.push_back(joined(legs));
+    if (std::is_permutation(legs.begin(), legs.end(), options.split.begin(), options.split.end())) return;
   }
-  throw PatchError(
-      text::Diagnostic{{mechanism.file, {}, {"split", joined(options.split)}},
-                       "no triad has these leads",
-                       triads.empty() ? "a triad on three links, which this mechanism has not"
-                                      : fmt::format("the three leads of a triad in any order: {}",
-                                                    fmt::join(triads, "; ")),
-                       {}},
-      PatchError::Kind::request);
+  throw PatchError(text::Diagnostic{{mechanism.file, {}, {"split", joined(options.split)}},
+                                    "no triad has these legs",
+                                    triads.empty() ? "a triad on three links, which this mechanism has not"
+                                                   : fmt::format("the three legs of a triad in any order: {}",
+                                                                 fmt::join(triads, "; ")),
+                                    {}},
+                   PatchError::Kind::request);
 }
 
 std::vector<std::vector<std::string>> useful_splits(const mechanism::Mechanism& mechanism) {
@@ -220,7 +218,7 @@ std::vector<std::vector<std::string>> useful_splits(const mechanism::Mechanism& 
   if (triad == structure.groups.end() || std::any_of(triad + 1, structure.groups.end(), is_triad)) return {};
   std::vector<std::vector<std::string>> names;
   for (const TriadSplit& split : splits_of(*triad, patch_motion(mechanism, structure))) {
-    if (split.worth() > kLeastWorth) names.push_back(leads_of(mechanism, *triad, split));
+    if (split.worth() > kLeastWorth) names.push_back(legs_of(mechanism, *triad, split));
   }
   return names;
 }

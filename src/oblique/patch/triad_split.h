@@ -11,8 +11,8 @@
 namespace oblique::patch {
 
 /// A triad on three links taken apart into two triangles and an outer loop (AVM class III): the
-/// distance w from the closing lead's anchor Z to the platform's point B of the tracked lead is taken for
-/// known. Then B is the apex of A–B–Z, the third lead's point D that of B–D–E, the closing lead's point C
+/// distance w from the closing leg's anchor Z to the platform's point B of the tracked leg is taken for
+/// known. Then B is the apex of A–B–Z, the third leg's point D that of B–D–E, the closing leg's point C
 /// follows rigidly, and what |ZC|² lacks drives w.
 struct TriadSplit {
   std::size_t tracked = 0, closing = 1, third = 2;  ///< indices of Group::equations.conditions
@@ -46,10 +46,10 @@ std::vector<TriadSplit> splits_of(const mechanism::Group& group, const mechanism
 /// A split of less worth is as good as flat, or without gain, at some position.
 inline constexpr double kLeastWorth = 0.02;
 
-/// The body of a lead, by its condition: its index in Mechanism::bodies.
-std::size_t lead_of(const mechanism::Group& triad, std::size_t condition);
+/// The body of a leg, by its condition: its index in Mechanism::bodies.
+std::size_t leg_of(const mechanism::Group& triad, std::size_t condition);
 
-/// "AB, O1C, DE": the leads of a split, the one that carries the variable length first, then the one that
+/// "AB, O1C, DE": the legs of a split, the one that carries the variable length first, then the one that
 /// closes the loop.
 std::string split_name(const mechanism::Mechanism& mechanism, const mechanism::Group& triad,
                        const TriadSplit& split);
@@ -59,7 +59,7 @@ std::string split_name(const mechanism::Mechanism& mechanism, const mechanism::G
 TriadSplit choose_split(const mechanism::Mechanism& mechanism, const mechanism::Group& triad,
                         const mechanism::Motion& motion, const PatchOptions& options);
 
-/// Throws PatchError where the options name a split and no triad of the structure has these three leads, or
+/// Throws PatchError where the options name a split and no triad of the structure has these three legs, or
 /// an outer loop's speed and there is no triad.
 void check_split_options(const mechanism::Mechanism& mechanism, const mechanism::Structure& structure,
                          const PatchOptions& options);

@@ -51,7 +51,7 @@ class TrianglePatch : private TriadPatch {
         continue;
       refuse(group,
              group.kind == mechanism::GroupKind::triad
-                 ? "has a slide among its leads, so that it cannot be taken apart into triangles"
+                 ? "has a slide among its legs, so that it cannot be taken apart into triangles"
                  : "is no drive, no dyad and no triad, so that it cannot be taken apart into triangles",
              "drives, dyads, and triads on three links",
              text::Remedy{"patch it with ", text::Setting{"method", "gradient"}, ", which takes any group"});

@@ -106,7 +106,7 @@ Json overloads_json(const DiagramCheck& check) {
                     {"peak", o.peak.value},
                     {"peak_time", o.peak.time},
                     {"duration", o.duration},
-                    {"scale", o.cure}});
+                    {"scale", o.suggested_scale}});
   }
   return list;
 }

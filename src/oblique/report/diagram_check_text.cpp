@@ -211,11 +211,11 @@ std::string stability(const solve::StabilityReport& report, const network::Progr
 std::string overloads(const DiagramCheck& check, const text::Vocabulary& vocabulary) {
   const auto& found = check.in_full().run->overloads;
   if (found.empty()) return "\noverloads: none, every signal stays within ±1 machine unit\n";
-  Table table({"signal", "first at t [s]", "peak", "at t [s]", "duration [s]", "cured by a scale of"});
+  Table table({"signal", "first at t [s]", "peak", "at t [s]", "duration [s]", "suggested scale factor"});
   for (std::size_t k = 0; k < std::min(found.size(), kMostRows); ++k) {
     const solve::OverloadRecord& o = found[k];
     table.add({check.program.signal_names()[o.signal], short_number(o.first), short_number(o.peak.value),
-               short_number(o.peak.time), short_number(o.duration), short_number(o.cure)});
+               short_number(o.peak.time), short_number(o.duration), short_number(o.suggested_scale)});
   }
   std::string text =
       fmt::format("\noverloads{}\n",

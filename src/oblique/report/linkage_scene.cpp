@@ -8,7 +8,7 @@
 
 #include <oblique/mechanism/motion/follower.h>
 #include <oblique/mechanism/motion/motion.h>
-#include <oblique/mechanism/motion/tour.h>
+#include <oblique/mechanism/motion/motion_range.h>
 
 #include <oblique/report/drive_caption.h>
 
@@ -73,7 +73,7 @@ DrawnMotion drawn_motion(const mechanism::Mechanism& mechanism, const mechanism:
         same_place(whole.configurations.front(), whole.configurations.back(), mechanism.largest_length());
     return {std::move(whole.configurations), std::move(whole.times), closed, false};
   }
-  const mechanism::Tour tour = mechanism::plan_tour(mechanism, structure);
+  const mechanism::MotionRange tour = mechanism::plan_motion_range(mechanism, structure);
   constexpr double kBesideLimit = 1e-5;  // where the mechanism can surely be assembled
   const double first = tour.from_limit ? kBesideLimit : 0, last = 1 - kBesideLimit;
   DrawnMotion motion;

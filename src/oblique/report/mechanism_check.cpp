@@ -101,7 +101,7 @@ std::string drive_text(const MechanismCheck& check, double value) {
   }
   constexpr double kShown = 0.005;  // half of the last digit
   double degrees = value / kDegree;
-  if (check.analysis.tour->kind == mechanism::Tour::Kind::turn) {
+  if (check.analysis.tour->kind == mechanism::MotionRange::Kind::turn) {
     degrees = std::fmod(std::fmod(degrees, 360) + 360, 360);
     if (degrees > 360 - kShown) degrees = 0;
   }

@@ -120,7 +120,7 @@ class JsonReport {
 
   Json tour() const {
     constexpr std::array kKinds{"turn", "until", "limits", "to limit"};
-    const mechanism::Tour& tour = *analysis_.tour;
+    const mechanism::MotionRange& tour = *analysis_.tour;
     Json changes = Json::array();
     for (const mechanism::MotionEvent& change : tour.changes) changes.push_back(event(change));
     return {{"kind", kKinds[static_cast<std::size_t>(tour.kind)]},
@@ -158,7 +158,7 @@ class JsonReport {
   Json swings() const {
     constexpr std::array kKinds{"turns", "wavers", "swings", "progresses", "rests"};
     Json all = Json::array();
-    for (const mechanism::Swing& swing : analysis_.swings) {
+    for (const mechanism::Sweep& swing : analysis_.swings) {
       all.push_back({{swing.is_slide ? "slide" : "body",
                       swing.is_slide ? mechanism_.slides[swing.index].name : body(swing.index)},
                      {"motion", kKinds[static_cast<std::size_t>(swing.kind)]},

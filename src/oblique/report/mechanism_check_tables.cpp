@@ -121,34 +121,35 @@ class Tables {
     return fmt::format("dwell, {} [{}]", drive().name, drive().slide ? unit_ : "°");
   }
 
-  static std::string motion_of(const mechanism::Swing& swing) {
+  static std::string motion_of(const mechanism::Sweep& swing) {
     switch (swing.kind) {
-      case mechanism::Swing::Kind::turns:
-      case mechanism::Swing::Kind::wavers: {
+      case mechanism::Sweep::Kind::turns:
+      case mechanism::Sweep::Kind::turns_with_reversals: {
         const auto turns = std::lround(std::abs(swing.gain) / (360 * kDegree));
-        return fmt::format("turns{}{}{}", turns == 1 ? "" : fmt::format(" {} times", turns),
-                           swing.gain > 0 ? " left" : " right",
-                           swing.kind == mechanism::Swing::Kind::wavers ? ", and back on the way" : "");
+        return fmt::format(
+            "turns{}{}{}", turns == 1 ? "" : fmt::format(" {} times", turns),
+            swing.gain > 0 ? " left" : " right",
+            swing.kind == mechanism::Sweep::Kind::turns_with_reversals ? ", and back on the way" : "");
       }
-      case mechanism::Swing::Kind::progresses:
+      case mechanism::Sweep::Kind::monotone:
         return swing.gain > 0 ? "rises" : "falls";
-      case mechanism::Swing::Kind::rests:
+      case mechanism::Sweep::Kind::stationary:
         return "rests";
-      case mechanism::Swing::Kind::swings:
+      case mechanism::Sweep::Kind::oscillates:
         break;
     }
     return swing.reversals > 2 ? fmt::format("swings, {} reversals", swing.reversals) : "swings";
   }
 
-  void add_swing(Table& table, const mechanism::Swing& swing, const std::string& name, bool dwells) const {
+  void add_swing(Table& table, const mechanism::Sweep& swing, const std::string& name, bool dwells) const {
     const auto shown = [&](double value) { return swing.is_slide ? length(value) : degrees(value); };
     std::vector<std::string> row{name, motion_of(swing)};
-    if (swing.kind == mechanism::Swing::Kind::swings || swing.kind == mechanism::Swing::Kind::progresses) {
+    if (swing.kind == mechanism::Sweep::Kind::oscillates || swing.kind == mechanism::Sweep::Kind::monotone) {
       row.insert(row.end(), {shown(swing.least.value), at(swing.least), shown(swing.greatest.value),
                              at(swing.greatest), shown(swing.stroke())});
     } else {  // a place only where it rests
-      row.insert(row.end(), {swing.kind == mechanism::Swing::Kind::rests ? shown(swing.least.value) : "", "",
-                             "", "", ""});
+      row.insert(row.end(), {swing.kind == mechanism::Sweep::Kind::stationary ? shown(swing.least.value) : "",
+                             "", "", "", ""});
     }
     const bool times = swing.time_ratio.has_value();
     row.insert(row.end(), {times ? number(swing.rising) : "", times ? number(swing.falling) : "",
@@ -159,7 +160,7 @@ class Tables {
 
   void swings(bool slides, const std::string& title, const std::string& unit, const char* explanation) {
     bool any = false, dwells = false;
-    for (const mechanism::Swing& swing : analysis_.swings) {
+    for (const mechanism::Sweep& swing : analysis_.swings) {
       if (swing.is_slide != slides) continue;
       any = true;
       dwells = dwells || !swing.dwells.empty();
@@ -177,7 +178,7 @@ class Tables {
                                     "time ratio"};
     if (dwells) header.push_back(dwell_header());
     Table table(header);
-    for (const mechanism::Swing& swing : analysis_.swings) {
+    for (const mechanism::Sweep& swing : analysis_.swings) {
       if (swing.is_slide != slides) continue;
       const auto& name = slides ? mechanism_.slides[swing.index].name : mechanism_.bodies[swing.index].name;
       add_swing(table, swing, name, dwells);

@@ -45,9 +45,9 @@ class Report {
       text_ += fmt::format("no: {}\n", *check_.finding);
     } else if (mechanism_.drives.empty()) {
       text_ += "ok: a structure, which can be assembled and does not move\n";
-    } else if (analysis_.tour->kind == mechanism::Tour::Kind::limits) {
+    } else if (analysis_.tour->kind == mechanism::MotionRange::Kind::limits) {
       text_ += "ok: it can be assembled between the limits of its drive\n";
-    } else if (analysis_.tour->kind == mechanism::Tour::Kind::until) {
+    } else if (analysis_.tour->kind == mechanism::MotionRange::Kind::until) {
       text_ += "ok: it can be assembled over the whole motion, without dead centres\n";
     } else {
       text_ += "ok: it can be assembled over the whole turn, without dead centres\n";
@@ -55,7 +55,7 @@ class Report {
   }
 
   void limits() {
-    const mechanism::Tour& tour = *analysis_.tour;
+    const mechanism::MotionRange& tour = *analysis_.tour;
     mechanism::DriveClock clock(mechanism_);
     const auto limit = [&](const char* word, const std::optional<mechanism::MotionEvent>& event) {
       if (!event) return std::string();

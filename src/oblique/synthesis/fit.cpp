@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include <oblique/synthesis/family.h>
+#include <oblique/synthesis/design_space.h>
 #include <oblique/synthesis/fitted_text.h>
 #include <oblique/synthesis/least_squares.h>
 #include <oblique/synthesis/path_problem.h>
@@ -48,12 +48,12 @@ PathError error_of(const VectorXd& residuals) {
 
 class Fitter {
  public:
-  Fitter(const Family& family, const TargetPath& target, const FitOptions& options)
-      : family_(family), target_(target), options_(options), problem_(family, target) {
+  Fitter(const DesignSpace& space, const TargetPath& target, const FitOptions& options)
+      : family_(space), target_(target), options_(options), problem_(space, target) {
     least_squares_.residuals = [this](const VectorXd& x) { return problem_.residuals(x); };
     least_squares_.jacobian = [this](const VectorXd& x) { return problem_.jacobian(x); };
-    least_squares_.lower = family.lower();
-    least_squares_.upper = family.upper();
+    least_squares_.lower = space.lower();
+    least_squares_.upper = space.upper();
     const double nothing = kNothing * problem_.size();
     least_squares_.floor = nothing * nothing * static_cast<double>(problem_.targets());
   }
@@ -228,7 +228,7 @@ class Fitter {
     Stance stance;
   };
 
-  const Family& family_;
+  const DesignSpace& family_;
   const TargetPath& target_;
   const FitOptions& options_;
   PathProblem problem_;
@@ -240,8 +240,8 @@ class Fitter {
 
 Fit fit_path(const std::string& text, const std::string& file, std::span<const std::string> free,
              const TargetPath& target, const FitOptions& options) {
-  const Family family(text, file, free);
-  return Fitter(family, target, options).run();
+  const DesignSpace space(text, file, free);
+  return Fitter(space, target, options).run();
 }
 
 }  // namespace oblique::synthesis

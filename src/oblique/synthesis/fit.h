@@ -58,7 +58,7 @@ struct Fit {
 /// squares over the distances: with the times of the targets, or else to the nearest place of the path. The
 /// mechanism keeps its assembly mode, and if it turns fully it still does (PathProblem).
 ///
-/// `text` is the mechanism file, `file` its name; `free` as in Family. Throws as `parse_mechanism` and
+/// `text` is the mechanism file, `file` its name; `free` as in DesignSpace. Throws as `parse_mechanism` and
 /// `solve_motion`, and SynthesisError: kind `request` where a free dimension makes no sense or has no effect
 /// on the path, or where there are fewer targets than free dimensions ask for; kind `nowhere` where no start
 /// within the bounds can be assembled and turns.

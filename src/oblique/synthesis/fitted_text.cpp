@@ -14,10 +14,10 @@ namespace {
 /// Two modes are farther apart than this part of the mechanism's size, or they are one.
 constexpr double kSameWithin = 1e-7;
 
-bool picks(const std::string& text, const Family& family, const Stance& stance) {
+bool picks(const std::string& text, const DesignSpace& space, const Stance& stance) {
   try {
-    const auto picked = stance_of(mechanism::parse_mechanism(text, family.original().file));
-    const double within = kSameWithin * family.original().largest_length();
+    const auto picked = stance_of(mechanism::parse_mechanism(text, space.original().file));
+    const double within = kSameWithin * space.original().largest_length();
     return picked && std::equal(picked->begin(), picked->end(), stance.begin(), stance.end(),
                                 [&](const mechanism::SketchPoint& a, const mechanism::SketchPoint& b) {
                                   return (a.position - b.position).norm() <= within;
@@ -49,14 +49,14 @@ std::string with_sketch(const std::string& text, const mechanism::Mechanism& mec
 
 }  // namespace
 
-FittedText fitted_text(const Family& family, const Eigen::VectorXd& values, const Stance& stance) {
-  std::string text = family.text(values);
-  if (picks(text, family, stance)) return {std::move(text), false};
-  text = with_sketch(text, family.original(), stance);
-  if (picks(text, family, stance)) return {std::move(text), true};
+FittedText fitted_text(const DesignSpace& space, const Eigen::VectorXd& values, const Stance& stance) {
+  std::string text = space.text(values);
+  if (picks(text, space, stance)) return {std::move(text), false};
+  text = with_sketch(text, space.original(), stance);
+  if (picks(text, space, stance)) return {std::move(text), true};
   throw SynthesisError(
       SynthesisError::Kind::nowhere,
-      text::Diagnostic{{family.original().file, {}},
+      text::Diagnostic{{space.original().file, {}},
                        "the points of [sketch] cannot tell the assembly modes of the fitted mechanism apart",
                        {},
                        "sketch further points of the mechanism, and fit again"});

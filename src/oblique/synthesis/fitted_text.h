@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include <oblique/synthesis/family.h>
+#include <oblique/synthesis/design_space.h>
 #include <oblique/synthesis/path_problem.h>
 
 namespace oblique::synthesis {
@@ -15,9 +15,9 @@ struct FittedText {
   bool sketch_moved = false;
 };
 
-/// The file of a family with other values. Its sketch stays as it is where it still picks the mode of
+/// The file of a space with other values. Its sketch stays as it is where it still picks the mode of
 /// `stance`; otherwise its points are put where they stand in it. Throws SynthesisError where not even that
 /// picks the mode.
-FittedText fitted_text(const Family& family, const Eigen::VectorXd& values, const Stance& stance);
+FittedText fitted_text(const DesignSpace& space, const Eigen::VectorXd& values, const Stance& stance);
 
 }  // namespace oblique::synthesis

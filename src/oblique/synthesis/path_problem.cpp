@@ -55,11 +55,12 @@ std::optional<Stance> stance_of(const mechanism::Mechanism& mechanism) {
   return stance_in(mechanism, start);
 }
 
-PathProblem::PathProblem(const Family& family, const TargetPath& target) : family_(family), target_(target) {
-  const mechanism::Mechanism& mechanism = family.original();
+PathProblem::PathProblem(const DesignSpace& space, const TargetPath& target)
+    : family_(space), target_(target) {
+  const mechanism::Mechanism& mechanism = space.original();
   size_ = mechanism.largest_length();
   must_turn_ = !mechanism::find_obstacle(mechanism, mechanism::decompose(mechanism));
-  original_ = {family.values(), stance_in(mechanism, turn_of(mechanism).configurations.front())};
+  original_ = {space.values(), stance_in(mechanism, turn_of(mechanism).configurations.front())};
   restart();
   if (residuals(original_.values)) return;
   throw SynthesisError(

@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-#include <oblique/synthesis/family.h>
+#include <oblique/synthesis/design_space.h>
 #include <oblique/synthesis/path_curve.h>
 #include <oblique/synthesis/target_path.h>
 
@@ -18,7 +18,7 @@ using Stance = std::vector<mechanism::SketchPoint>;
 /// The stance of a mechanism as its sketch picks it, or nothing where it cannot be assembled there.
 std::optional<Stance> stance_of(const mechanism::Mechanism& mechanism);
 
-/// How far the members of a family are from a target path.
+/// How far the members of a space are from a target path.
 ///
 /// With timing, residual k is P(tₖ) − target k. Without, it is the difference from the target to the nearest
 /// place of the path, whose derivative is that of the path at this place, as far as it is normal to the path:
@@ -32,7 +32,7 @@ class PathProblem {
  public:
   /// Throws SynthesisError (kind `request`) where the original itself has no path at a target's time; throws
   /// as `solve_motion` where it cannot be assembled or has no drive.
-  PathProblem(const Family& family, const TargetPath& target);
+  PathProblem(const DesignSpace& space, const TargetPath& target);
 
   /// Puts the search back to the original.
   void restart();
@@ -52,7 +52,7 @@ class PathProblem {
   /// drive.
   Eigen::VectorXd accelerations(const Eigen::VectorXd& values, const Stance& stance) const;
 
-  const Family& family() const { return family_; }
+  const DesignSpace& space() const { return family_; }
   bool must_turn() const { return must_turn_; }
   double size() const { return size_; }  ///< largest length of the original
   std::size_t targets() const { return target_.positions.size(); }
@@ -87,7 +87,7 @@ class PathProblem {
   Eigen::VectorXd accelerations_in(const mechanism::Motion& turn) const;
   double weight_of_an_acceleration() const;
 
-  const Family& family_;
+  const DesignSpace& family_;
   const TargetPath& target_;
   double size_ = 0;
   bool must_turn_ = false;

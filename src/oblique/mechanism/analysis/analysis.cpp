@@ -14,7 +14,7 @@ bool drives_slide(const Mechanism& mechanism, std::size_t slide) {
 }
 
 Signal coordinate(const Mechanism& mechanism, std::size_t point, int axis) {
-  return {[point, axis](const TourWalk& walk) {
+  return {[point, axis](const RangeWalk& walk) {
             const PointState& state = walk.here().points[point];
             return SignalValue{state.position(axis), state.velocity(axis)};
           },
@@ -24,7 +24,8 @@ Signal coordinate(const Mechanism& mechanism, std::size_t point, int axis) {
 /// All signals of an analysis in one pass, and what becomes of their scans.
 class Study {
  public:
-  Study(const Mechanism& mechanism, const Structure& structure, const Tour& tour, MechanismAnalysis& analysis)
+  Study(const Mechanism& mechanism, const Structure& structure, const MotionRange& tour,
+        MechanismAnalysis& analysis)
       : mechanism_(mechanism),
         structure_(structure),
         walk_(mechanism, structure, tour),
@@ -35,7 +36,7 @@ class Study {
     scans_ = scan(walk_, signals_);
     std::size_t at = 0;
     for (const auto& [is_slide, index] : movers_)
-      analysis_.swings.push_back(swing_of(walk_, scans_[at++], is_slide, index));
+      analysis_.swings.push_back(sweep_of(walk_, scans_[at++], is_slide, index));
     for (Transmission& transmission : analysis_.transmissions) {
       transmission.least = scans_[at].least;
       transmission.greatest = scans_[at++].greatest;
@@ -71,11 +72,11 @@ class Study {
     }
     if (!has_masses(mechanism_)) return;
     signals_.push_back(
-        {[](const TourWalk& walk) {
+        {[](const RangeWalk& walk) {
            return SignalValue{reduced_inertia(walk.mechanism(), walk.here(), walk.drives().front()), 0};
          },
          1, false});
-    signals_.push_back({[](const TourWalk& walk) {
+    signals_.push_back({[](const RangeWalk& walk) {
                           return SignalValue{kinetic_energy(walk.mechanism(), walk.here()), 0};
                         },
                         1, false});
@@ -105,7 +106,7 @@ class Study {
 
   const Mechanism& mechanism_;
   const Structure& structure_;
-  TourWalk walk_;
+  RangeWalk walk_;
   MechanismAnalysis& analysis_;
   std::vector<std::pair<bool, std::size_t>> movers_;  ///< whether a slide, and its index
   std::vector<Signal> signals_;
@@ -130,7 +131,7 @@ MechanismAnalysis analyse(const Mechanism& mechanism, const Structure& structure
   analysis.four_bars = four_bar_loops(mechanism, structure);
   analysis.sliders = slider_loops(mechanism, structure);
   if (mechanism.drives.empty()) return analysis;
-  analysis.tour = plan_tour(mechanism, structure);
+  analysis.tour = plan_motion_range(mechanism, structure);
   Study(mechanism, structure, *analysis.tour, analysis).run();
   analysis.centres = centres_at_start(mechanism, structure);
   return analysis;

@@ -6,9 +6,9 @@
 
 #include <oblique/mechanism/analysis/instant_centre.h>
 #include <oblique/mechanism/analysis/transmission.h>
+#include <oblique/mechanism/motion/motion_range.h>
 #include <oblique/mechanism/motion/path_measure.h>
-#include <oblique/mechanism/motion/swing.h>
-#include <oblique/mechanism/motion/tour.h>
+#include <oblique/mechanism/motion/sweep.h>
 #include <oblique/mechanism/structure/loops.h>
 #include <oblique/mechanism/structure/rank.h>
 
@@ -32,21 +32,21 @@ struct InertiaReport {
   Reading least_energy, greatest_energy;  ///< kinetic [J]
 };
 
-/// What a mechanism does over its tour (plan_tour): what can be said without moving is there for structures
-/// too.
+/// What a mechanism does over its tour (plan_motion_range): what can be said without moving is there for
+/// structures too.
 struct MechanismAnalysis {
   MobilityReport mobility;
   std::vector<FourBarLoop> four_bars;
   std::vector<SliderLoop> sliders;
-  std::optional<Tour> tour;                 ///< none: it has no drive
+  std::optional<MotionRange> tour;          ///< none: it has no drive
   std::vector<Transmission> transmissions;  ///< of all groups that have a measure
-  std::vector<Swing> swings;                ///< of all bodies and slides that no drive moves itself
+  std::vector<Sweep> swings;                ///< of all bodies and slides that no drive moves itself
   std::vector<PathReport> paths;            ///< of all moving points
   std::vector<InstantCentre> centres;       ///< at the start; against the frame first
   std::optional<InertiaReport> inertia;
 };
 
-/// Everything above. Throws as `plan_tour`.
+/// Everything above. Throws as `plan_motion_range`.
 MechanismAnalysis analyse(const Mechanism& mechanism, const Structure& structure);
 
 }  // namespace oblique::mechanism

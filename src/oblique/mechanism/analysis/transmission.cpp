@@ -107,12 +107,12 @@ Signal transmission_signal(const Structure& structure, std::size_t g) {
   const Group& group = structure.groups[g];
   if (const auto needles = needles_of(group)) {
     const bool guide = group.kind == GroupKind::rrp;
-    return {[needles = *needles, guide](const TourWalk& walk) {
+    return {[needles = *needles, guide](const RangeWalk& walk) {
               return angle_between(needles, guide, walk.here());
             },
             1, true};
   }
-  return {[g](const TourWalk& walk) { return SignalValue{std::abs(walk.regularity(g)), 0}; }, 1, false};
+  return {[g](const RangeWalk& walk) { return SignalValue{std::abs(walk.regularity(g)), 0}; }, 1, false};
 }
 
 std::optional<double> transmission_in(const Group& group, const Configuration& here) {

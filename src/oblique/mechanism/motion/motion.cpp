@@ -90,7 +90,7 @@ double period(const Mechanism& mechanism) {
 double cycle(const Mechanism& mechanism, const Structure& structure) {
   const Drive& drive = first_drive(mechanism);
   if (!drive.slide || mechanism.motion.until) return period(mechanism);
-  const MotionRange range = find_range(mechanism, structure);
+  const MotionLimits range = find_range(mechanism, structure);
   if (!range.backward || !range.forward) {
     refuse(mechanism, fmt::format("drive '{}' moves a slide that meets no limit", drive.name),
            "an end of the motion", "give its time, until in [motion]");
@@ -118,10 +118,10 @@ void check_travel(const Mechanism& mechanism, double duration) {
   }
 }
 
-MotionRange find_range(const Mechanism& mechanism, const Structure& structure) {
+MotionLimits find_range(const Mechanism& mechanism, const Structure& structure) {
   const double time = search_time(mechanism);
   check_travel(mechanism, time);
-  MotionRange range;
+  MotionLimits range;
   range.forward = Follower(mechanism, structure).advance_to_limit(time);
   range.backward = Follower(mechanism, structure).advance_to_limit(-time);
   return range;
@@ -154,7 +154,7 @@ std::vector<MotionEvent> visit_motion(const Mechanism& mechanism, const Structur
   const auto until = options.until ? options.until : mechanism.motion.until;
   AtLimit at_limit = options.at_limit.value_or(mechanism.motion.at_limit.value_or(AtLimit::open));
   if (drive.slide && !until && at_limit == AtLimit::open) at_limit = AtLimit::reverse;
-  MotionRange range;
+  MotionLimits range;
   if (at_limit != AtLimit::open) range = find_range(mechanism, structure);
   const double high = range.forward ? end_of(mechanism, *range.forward) : 0;
   const double low =

@@ -31,7 +31,7 @@ struct MotionOptions {
 
 /// How far a mechanism can go from its start, within one turn of its first drive each way: nothing where it
 /// meets no limit.
-struct MotionRange {
+struct MotionLimits {
   std::optional<MotionEvent> backward, forward;
 };
 
@@ -49,7 +49,7 @@ void check_travel(const Mechanism& mechanism, double duration);
 inline constexpr double kMostTurns = 1e4;
 
 /// The limits before and after the start.
-MotionRange find_range(const Mechanism& mechanism, const Structure& structure);
+MotionLimits find_range(const Mechanism& mechanism, const Structure& structure);
 
 /// The moment at which the first drive first stands at `value` [rad] or [length unit]: whole turns are taken
 /// off or added where it lies behind. Nothing where it does not come there within a hundred turns (or longest

@@ -27,7 +27,7 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 
 class Quadrature {
  public:
-  Quadrature(TourWalk& walk, std::vector<std::size_t> points)
+  Quadrature(RangeWalk& walk, std::vector<std::size_t> points)
       : walk_(walk),
         points_(std::move(points)),
         size_(walk.mechanism().largest_length()),
@@ -83,7 +83,7 @@ class Quadrature {
   struct Sums {
     double length = 0, area = 0, coarse_length = 0, coarse_area = 0;
   };
-  TourWalk& walk_;
+  RangeWalk& walk_;
   std::vector<std::size_t> points_;
   double size_;
   std::vector<double> lengths_, areas_;
@@ -92,7 +92,7 @@ class Quadrature {
 
 }  // namespace
 
-std::vector<PathMeasure> measure_paths(TourWalk& walk) {
+std::vector<PathMeasure> measure_paths(RangeWalk& walk) {
   const Mechanism& mechanism = walk.mechanism();
   std::vector<PathMeasure> paths;
   std::vector<std::size_t> points;

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include <oblique/mechanism/motion/tour.h>
+#include <oblique/mechanism/motion/motion_range.h>
 
 namespace oblique::mechanism {
 
@@ -20,6 +20,6 @@ struct PathMeasure {
 
 /// Lengths and areas of the paths of all moving points, by Gauss and Kronrod's rule with 7 and 15 points in
 /// u, on intervals that are halved until both agree to 1e-10 of the largest link.
-std::vector<PathMeasure> measure_paths(TourWalk& walk);
+std::vector<PathMeasure> measure_paths(RangeWalk& walk);
 
 }  // namespace oblique::mechanism

@@ -21,7 +21,7 @@ int direction(const Signal& signal, const SignalValue& value, double duration) {
 
 /// The zero of the rate between two places at which it has different signs: false position with the Illinois
 /// rule, then halving.
-TurningPoint turning_point(TourWalk& walk, const Signal& signal, double a, double b, double rate_a,
+TurningPoint turning_point(RangeWalk& walk, const Signal& signal, double a, double b, double rate_a,
                            double rate_b) {
   constexpr int kSecants = 16, kMost = 80;
   TurningPoint found;
@@ -50,7 +50,7 @@ TurningPoint turning_point(TourWalk& walk, const Signal& signal, double a, doubl
 }
 
 /// The least value (`sign` = +1) or the greatest (−1) within a bracket, by the golden section.
-Reading golden(TourWalk& walk, const Signal& signal, double a, double b, double sign) {
+Reading golden(RangeWalk& walk, const Signal& signal, double a, double b, double sign) {
   constexpr double kGolden = 0.6180339887498949;
   constexpr double kEnough = 1e-9;
   const auto value = [&](double u) {
@@ -104,11 +104,11 @@ void take(Reading& least, Reading& greatest, const Reading& reading) {
 
 }  // namespace
 
-Reading read(const TourWalk& walk, double value) {
+Reading read(const RangeWalk& walk, double value) {
   return {value, walk.place(), walk.time(), walk.drives().front().value};
 }
 
-std::vector<SignalScan> scan(TourWalk& walk, const std::vector<Signal>& signals) {
+std::vector<SignalScan> scan(RangeWalk& walk, const std::vector<Signal>& signals) {
   const std::size_t samples = walk.tour().samples;
   const double duration = walk.tour().duration();
   std::vector<SignalScan> scans(signals.size());

@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include <oblique/mechanism/motion/tour.h>
+#include <oblique/mechanism/motion/motion_range.h>
 
 namespace oblique::mechanism {
 
@@ -17,7 +17,7 @@ struct SignalValue {
 
 /// Something that is followed over a tour.
 struct Signal {
-  std::function<SignalValue(const TourWalk&)> at;
+  std::function<SignalValue(const RangeWalk&)> at;
   double scale = 1;      ///< differences far below this are rounding
   bool has_rate = true;  ///< otherwise extremes are found from values alone
 };
@@ -45,9 +45,9 @@ struct SignalScan {
 /// Follows signals over a whole tour. Where a rate changes its sign between two samples its zero is found
 /// to the last bits of u; of signals without a rate only the least and the greatest value are refined, to
 /// about 1e-8 of u.
-std::vector<SignalScan> scan(TourWalk& walk, const std::vector<Signal>& signals);
+std::vector<SignalScan> scan(RangeWalk& walk, const std::vector<Signal>& signals);
 
 /// A reading of a value where the walk stands.
-Reading read(const TourWalk& walk, double value);
+Reading read(const RangeWalk& walk, double value);
 
 }  // namespace oblique::mechanism

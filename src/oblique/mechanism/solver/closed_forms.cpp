@@ -165,30 +165,30 @@ GroupPoses GroupSolver::poses(std::span<const DriveState> drives, const Configur
       if (status == Status::dead_centre || single) break;
     }
   } else if (group_.kind == GroupKind::triad) {
-    std::array<Lead, 3> leads;
-    for (std::size_t i = 0; i < leads.size(); ++i) {
+    std::array<Leg, 3> legs;
+    for (std::size_t i = 0; i < legs.size(); ++i) {
       const Condition& c = equations_.conditions[i];
-      Lead& lead = leads[i];
-      lead.length = c.value;
+      Leg& leg = legs[i];
+      leg.length = c.value;
       if (c.kind == Condition::Kind::distance) {
-        lead.kind = Lead::Kind::circle;
-        lead.local = c.a.local;
-        lead.anchor = here.points[c.b.point].position;
+        leg.kind = Leg::Kind::circle;
+        leg.local = c.a.local;
+        leg.anchor = here.points[c.b.point].position;
       } else if (c.line.kind == LineRef::Kind::carried) {
-        lead.kind = Lead::Kind::platform_line;
-        lead.local = c.line.point;
-        lead.direction = c.line.direction;
-        lead.anchor = here.points[c.a.point].position;
+        leg.kind = Leg::Kind::platform_line;
+        leg.local = c.line.point;
+        leg.direction = c.line.direction;
+        leg.anchor = here.points[c.a.point].position;
       } else {
         const LineState line = state(c.line, here);
-        lead.kind = Lead::Kind::fixed_line;
-        lead.local = c.a.local;
-        lead.anchor = line.at.position;
-        lead.direction = line.direction;
+        leg.kind = Leg::Kind::fixed_line;
+        leg.local = c.a.local;
+        leg.anchor = line.at.position;
+        leg.direction = line.direction;
       }
-      if (!given({lead.anchor, {}, {}})) return found;
+      if (!given({leg.anchor, {}, {}})) return found;
     }
-    const PlatformModes modes = platform_modes(leads);
+    const PlatformModes modes = platform_modes(legs);
     found.movable = modes.movable;
     for (int i = 0; i < modes.count; ++i) {
       const PlatformPose& platform = modes.poses[static_cast<std::size_t>(i)];

@@ -64,7 +64,7 @@ struct Link {
 };
 
 /// A block of a group: a body that slides without turning on another and is hinged in one point.
-struct Block {
+struct SliderBlock {
   std::size_t body = 0;           ///< index in Mechanism::bodies
   std::size_t hinge = 0;          ///< index in Mechanism::points
   std::optional<std::size_t> on;  ///< the body it slides on; none: the frame
@@ -79,7 +79,7 @@ struct GroupEquations {
   std::vector<std::size_t> free_points;  ///< points of links and blocks alone
   std::vector<Condition> conditions;
   std::vector<Link> links;
-  std::vector<Block> blocks;
+  std::vector<SliderBlock> blocks;
 
   std::size_t unknowns() const { return 3 * cores.size() + 2 * free_points.size(); }
 };

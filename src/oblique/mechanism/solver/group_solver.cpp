@@ -104,7 +104,7 @@ void GroupSolver::plan_bodies() {
     rigid_cores_.push_back(plan(core, base));
   }
   for (const Link& link : equations_.links) rigid_links_.push_back(plan(link.body, link.from));
-  for (const Block& block : equations_.blocks) rigid_blocks_.push_back(plan(block.body, block.hinge));
+  for (const SliderBlock& block : equations_.blocks) rigid_blocks_.push_back(plan(block.body, block.hinge));
 }
 
 void GroupSolver::place_arms(const Rigid& rigid, double cosine, double sine, double omega, double alpha,
@@ -267,7 +267,7 @@ Status GroupSolver::finish(std::span<const DriveState> drives, Configuration& he
     place_arms(rigid_links_[i], cosine, sine, omega, alpha, here);
   }
   for (std::size_t i = 0; i < equations_.blocks.size(); ++i) {
-    const Block& block = equations_.blocks[i];
+    const SliderBlock& block = equations_.blocks[i];
     const BodyState on = block.on ? here.bodies[*block.on] : BodyState{0, 0, 0, 1, 0};
     const double cosine = on.cosine * block.cosine - on.sine * block.sine;
     const double sine = on.sine * block.cosine + on.cosine * block.sine;

@@ -29,7 +29,7 @@ std::string loose_ends(const Mechanism& mechanism) {
     if (mechanism.bodies_at(i).size() < needed && !slides) names.push_back(mechanism.points[i].name);
   }
   if (names.empty()) return {};
-  return fmt::format("; no hinge at {}: is a name misspelt?", fmt::join(names, ", "));
+  return fmt::format("; no joint at {}: is a name misspelt?", fmt::join(names, ", "));
 }
 
 /// "3·3 bodies − 2·3 hinges − 1 slide".
@@ -64,11 +64,11 @@ void check_mobility(const Mechanism& mechanism) {
                              mobility_formula(mechanism), drives, drives == 1 ? "drive" : "drives");
   finding.expected = "one drive for each degree of freedom";
   if (freedom > drives) {
-    finding.remedy = fmt::format("under-driven: add {} or join bodies by hinges",
+    finding.remedy = fmt::format("under-driven: add {} or join bodies by revolute joints",
                                  freedom - drives == 1 ? "a drive" : "drives") +
                      loose_ends(mechanism);
   } else {
-    finding.remedy = freedom < 0 ? "over-constrained: leave out bodies or hinges"
+    finding.remedy = freedom < 0 ? "over-constrained: leave out bodies or joints"
                                  : "over-driven: leave out drives, or hinges that are too many";
   }
   throw MechanismError(MechanismError::Kind::mobility, std::move(finding));
@@ -94,16 +94,16 @@ void check_parts(const Mechanism& mechanism, const ConstraintGraph& graph) {
         std::erase(others, edge.index);
         finding.place = mechanism.bodies[edge.index].place;
         finding.what = fmt::format(
-            "body '{}' is over-constrained: its hinge at '{}' is too much, since {} fix it already",
+            "body '{}' is over-constrained: its revolute joint at '{}' is too much, since {} fix it already",
             mechanism.bodies[edge.index].name, mechanism.points[edge.point].name,
             others.empty() ? "its other points" : quoted_bodies(mechanism, others));
-        finding.remedy = "leave the body out, or remove another hinge, slide or drive of these bodies";
+        finding.remedy = "leave the body out, or remove another joint or drive of these bodies";
         break;
       case ConstraintGraph::Edge::Kind::on_line:
       case ConstraintGraph::Edge::Kind::angle:
         finding.place = mechanism.slides[edge.index].place;
         finding.what = follows(fmt::format("slide '{}' is", mechanism.slides[edge.index].name));
-        finding.remedy = "leave the slide out, or remove another hinge, slide or drive of these bodies";
+        finding.remedy = "leave the slide out, or remove another joint or drive of these bodies";
         break;
       case ConstraintGraph::Edge::Kind::turn:
       case ConstraintGraph::Edge::Kind::along:
@@ -121,7 +121,7 @@ void check_parts(const Mechanism& mechanism, const ConstraintGraph& graph) {
     finding.what = fmt::format("{} can move freely (mobility {} after the drives)",
                                quoted_bodies(mechanism, bodies), graph.freedom());
     finding.expected = "every body held by drives and pairs";
-    finding.remedy = "hinge to the rest, or drive" + loose_ends(mechanism);
+    finding.remedy = "join to the rest, or drive" + loose_ends(mechanism);
     findings.push_back(std::move(finding));
   }
   if (!findings.empty()) throw MechanismError(MechanismError::Kind::mobility, std::move(findings));

@@ -65,7 +65,7 @@ class Loosened {
     excess.bodies = loops_[c];
     excess.is_hinge = is_hinge(cut.edge);
     if (excess.is_hinge) {
-      excess.pair = fmt::format("the hinge of '{}' at '{}'", original_.bodies[cut.edge.index].name,
+      excess.pair = fmt::format("the revolute joint of '{}' at '{}'", original_.bodies[cut.edge.index].name,
                                 original_.points[cut.edge.point].name);
       excess.place = original_.bodies[cut.edge.index].place;
     } else {

@@ -11,7 +11,7 @@ namespace oblique::mechanism {
 
 /// A condition too much, and whether it holds without being asked for.
 struct Excess {
-  std::string pair;                 ///< "the hinge of 'EF' at 'E'"
+  std::string pair;                 ///< "the revolute joint of 'EF' at 'E'"
   std::vector<std::size_t> bodies;  ///< of its loop: those that it competes with, in file order
   text::Place place;
   double miss_at_start = 0;  ///< [length unit], of an angle [rad]

@@ -23,7 +23,7 @@ enum class GroupKind : std::uint8_t {
   prp,      ///< a point on two lines
   rpr,      ///< a body hinged to a known point, whose line passes through another
   rpp,      ///< a body that keeps its direction, whose line passes through a known point
-  triad,    ///< class III: a body on three leads
+  triad,    ///< class III: a body on three legs
   general,  ///< everything else
 };
 

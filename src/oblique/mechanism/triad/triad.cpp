@@ -29,41 +29,41 @@ struct Normalised {
   Vector2d origin;        ///< the reference point's place q = 0
   Vector2d local;         ///< the reference point in the platform's frame
 
-  explicit Normalised(const std::array<Lead, 3>& leads);
+  explicit Normalised(const std::array<Leg, 3>& legs);
   PlatformPose placed(const Pose& pose) const;
 };
 
-Normalised::Normalised(const std::array<Lead, 3>& leads) {
+Normalised::Normalised(const std::array<Leg, 3>& legs) {
   // the longest circle for reference: a short one would leave F a difference of nearly equal squares
   std::size_t reference = 2;
   for (std::size_t i = 0; i < 3; ++i) {
-    if (leads[i].kind != Lead::Kind::circle) continue;
-    if (!circular || leads[i].length > leads[reference].length) reference = i;
+    if (legs[i].kind != Leg::Kind::circle) continue;
+    if (!circular || legs[i].length > legs[reference].length) reference = i;
     circular = true;
   }
-  origin = leads[reference].anchor;
-  local = leads[reference].local;
-  for (const Lead& lead : leads) {  // rather a point of the group than one that only names a line
+  origin = legs[reference].anchor;
+  local = legs[reference].local;
+  for (const Leg& leg : legs) {  // rather a point of the group than one that only names a line
     if (circular) break;
-    (lead.kind == Lead::Kind::platform_line ? origin : local) =
-        lead.kind == Lead::Kind::platform_line ? lead.anchor : lead.local;
+    (leg.kind == Leg::Kind::platform_line ? origin : local) =
+        leg.kind == Leg::Kind::platform_line ? leg.anchor : leg.local;
   }
 
   double extent = 0;
   double largest = 0;
   for (std::size_t i = 0; i < 3; ++i) {
-    const Lead& lead = leads[(reference + 1 + i) % 3];  // the reference comes last
+    const Leg& leg = legs[(reference + 1 + i) % 3];  // the reference comes last
     Condition& condition = conditions[i];
-    condition = {lead.kind, complex(lead.local - local), complex(lead.anchor - origin),
-                 kQuarterTurn * complex(lead.direction), 0};
-    if (lead.kind == Lead::Kind::circle) {
-      condition.length = lead.length;
+    condition = {leg.kind, complex(leg.local - local), complex(leg.anchor - origin),
+                 kQuarterTurn * complex(leg.direction), 0};
+    if (leg.kind == Leg::Kind::circle) {
+      condition.length = leg.length;
     } else {  // of a line only its distance counts
-      Complex& on_line = lead.kind == Lead::Kind::fixed_line ? condition.anchor : condition.local;
+      Complex& on_line = leg.kind == Leg::Kind::fixed_line ? condition.anchor : condition.local;
       on_line = condition.normal * dot(condition.normal, on_line);
     }
     extent = std::max({extent, std::abs(condition.local), std::abs(condition.anchor), condition.length});
-    largest = std::max({largest, lead.local.cwiseAbs().maxCoeff(), lead.anchor.cwiseAbs().maxCoeff()});
+    largest = std::max({largest, leg.local.cwiseAbs().maxCoeff(), leg.anchor.cwiseAbs().maxCoeff()});
   }
   size = extent > 0 ? extent : 1;
   rounding = std::numeric_limits<double>::epsilon() * (1 + largest / size);
@@ -84,7 +84,7 @@ PlatformPose Normalised::placed(const Pose& pose) const {
 /// The search for the modes of one group.
 class Triad {
  public:
-  explicit Triad(const std::array<Lead, 3>& leads);
+  explicit Triad(const std::array<Leg, 3>& legs);
 
   PlatformModes modes();
 
@@ -107,8 +107,8 @@ class Triad {
   bool movable_ = false;
 };
 
-Triad::Triad(const std::array<Lead, 3>& leads)
-    : group_(leads), closure_(group_.conditions, group_.rounding), radius_(group_.conditions[2].length) {
+Triad::Triad(const std::array<Leg, 3>& legs)
+    : group_(legs), closure_(group_.conditions, group_.rounding), radius_(group_.conditions[2].length) {
   for (const Condition& condition : std::span(group_.conditions).first(group_.circular ? 2 : 3))
     add_line(condition);
 }
@@ -116,9 +116,9 @@ Triad::Triad(const std::array<Lead, 3>& leads)
 void Triad::add_line(const Condition& condition) {
   const auto& [kind, b, a, n, length] = condition;
   Line& line = lines_[n_lines_++];
-  if (kind == Lead::Kind::fixed_line) {
+  if (kind == Leg::Kind::fixed_line) {
     line = {n, 0, dot(n, a), -std::conj(n) * b};
-  } else if (kind == Lead::Kind::platform_line) {
+  } else if (kind == Leg::Kind::platform_line) {
     line = {0, n, -dot(n, b), std::conj(a) * n};
   } else {
     const double squares = std::norm(a) + std::norm(b) + (radius_ - length) * (radius_ + length);
@@ -241,8 +241,8 @@ PlatformModes Triad::modes() {
 }  // namespace
 }  // namespace triad
 
-PlatformModes platform_modes(const std::array<Lead, 3>& leads) {
-  return triad::Triad(leads).modes();
+PlatformModes platform_modes(const std::array<Leg, 3>& legs) {
+  return triad::Triad(legs).modes();
 }
 
 }  // namespace oblique::mechanism

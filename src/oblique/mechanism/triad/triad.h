@@ -7,8 +7,8 @@
 
 namespace oblique::mechanism {
 
-/// One condition that a lead puts on the pose of a platform. World points p = position + R·local.
-struct Lead {
+/// One condition that a leg puts on the pose of a platform. World points p = position + R·local.
+struct Leg {
   enum class Kind {
     circle,         ///< RR: the platform's point `local` lies at `length` from `anchor`
     fixed_line,     ///< PR: the platform's point `local` lies on the line through `anchor` along `direction`
@@ -36,8 +36,8 @@ struct PlatformModes {
   bool movable = false;
 };
 
-/// Every pose that three leads allow a platform (the assembly modes of a triad, Assur's group of class III):
-/// up to 6 with circles among the leads, up to 4 without.
+/// Every pose that three legs allow a platform (the assembly modes of a triad, Assur's group of class III):
+/// up to 6 with circles among the legs, up to 4 without.
 ///
 /// Each condition but one is linear in the position q(θ) of the reference point: uᵢ(θ)·q = wᵢ(θ); circles
 /// become so by subtracting the reference circle |q| = l. By Cramer's rule q = N/D, and the angles are the
@@ -55,6 +55,6 @@ struct PlatformModes {
 /// where one of them is singular and within 1e-5 (of the size, or rad) of the other. So a dead centre is not
 /// lost: it is named once or twice. Where more than two modes meet they are known, and told apart, to some
 /// 1e-4 only. Poses farther out than 1e4 sizes, where lines are as good as parallel, are left out.
-PlatformModes platform_modes(const std::array<Lead, 3>& leads);
+PlatformModes platform_modes(const std::array<Leg, 3>& legs);
 
 }  // namespace oblique::mechanism

@@ -39,7 +39,7 @@ Complex turned(Complex z, double delta) {
 Closure::Closure(const std::array<Condition, 3>& conditions, double rounding)
     : conditions_(conditions), rounding_(rounding) {
   for (const Condition& condition : conditions) {
-    if (condition.kind == Lead::Kind::circle) shortest_ = std::min(shortest_, condition.length);
+    if (condition.kind == Leg::Kind::circle) shortest_ = std::min(shortest_, condition.length);
   }
 }
 
@@ -50,7 +50,7 @@ void Closure::differentiate(const Pose& pose, Vector3d& residual, Matrix3d& jaco
     const Complex arm = pose.z * local;
     Complex gradient;
     double by_angle = 0;
-    if (kind == Lead::Kind::platform_line) {
+    if (kind == Leg::Kind::platform_line) {
       const Complex across = pose.z * normal;
       const Complex offset = anchor - pose.q;
       residual[i] = dot(across, offset) - dot(normal, local);
@@ -58,7 +58,7 @@ void Closure::differentiate(const Pose& pose, Vector3d& residual, Matrix3d& jaco
       by_angle = dot(kQuarterTurn * across, offset);
     } else {
       const Complex offset = pose.q + arm - anchor;
-      if (kind == Lead::Kind::circle) {  // (|p|² − l²)/2l is |p| − l as it goes to zero
+      if (kind == Leg::Kind::circle) {  // (|p|² − l²)/2l is |p| − l as it goes to zero
         const double inverse = length > 0 ? 1 / length : 1;
         residual[i] = (std::norm(offset) - length * length) * inverse / 2;
         gradient = offset * inverse;

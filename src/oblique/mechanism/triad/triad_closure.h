@@ -11,9 +11,9 @@
 
 namespace oblique::mechanism::triad {
 
-/// A lead seen from the reference point, lengths divided by the group's size.
+/// A leg seen from the reference point, lengths divided by the group's size.
 struct Condition {
-  Lead::Kind kind = Lead::Kind::circle;
+  Leg::Kind kind = Leg::Kind::circle;
   Complex local, anchor;
   Complex normal;  ///< of a line, in its own frame
   double length = 0;

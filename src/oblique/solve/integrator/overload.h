@@ -25,7 +25,7 @@ struct OverloadRecord {
   double first = 0;        ///< [s] when it left the range for the first time
   double duration = 0;     ///< [s] outside the range, all times together
   Peak peak;
-  double cure = 1;  ///< the factor that brings it back into the range: 1/2, 1/5, 1/10, …
+  double suggested_scale = 1;  ///< the factor that brings it back into the range: 1/2, 1/5, 1/10, …
 };
 
 /// Watches every signal of a run against the machine unit, as the overload lamps of a real machine do. Each

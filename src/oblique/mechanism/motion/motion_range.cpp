@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/mechanism/motion/tour.h>
+#include <oblique/mechanism/motion/motion_range.h>
 
 #include <algorithm>
 #include <cmath>
@@ -24,7 +24,7 @@ double fastest_rate(const Mechanism& mechanism) {
 }
 
 /// The longest way that a drive makes, to and fro counted [rad, largest lengths].
-double longest_way(const Mechanism& mechanism, const Tour& tour) {
+double longest_way(const Mechanism& mechanism, const MotionRange& tour) {
   constexpr int kParts = 256;
   DriveClock clock(mechanism);
   double longest = 0;
@@ -52,7 +52,7 @@ bool closes(const Mechanism& mechanism, const Configuration& first, const Config
 
 }  // namespace
 
-double Tour::time(double u) const {
+double MotionRange::time(double u) const {
   const double way = end - begin;
   if (from_limit && at_limit)
     return u == 1 ? end : begin + way * std::pow(std::sin(u * std::numbers::pi / 2), 2);
@@ -60,19 +60,19 @@ double Tour::time(double u) const {
   return begin + way * (from_limit ? u * u : u);
 }
 
-double Tour::rate(double u) const {
+double MotionRange::rate(double u) const {
   const double way = end - begin;
   if (from_limit && at_limit) return way * std::numbers::pi / 2 * std::sin(u * std::numbers::pi);
   if (at_limit) return 2 * way * (1 - u);
   return from_limit ? 2 * way * u : way;
 }
 
-Tour plan_tour(const Mechanism& mechanism, const Structure& structure) {
-  Tour tour;
+MotionRange plan_motion_range(const Mechanism& mechanism, const Structure& structure) {
+  MotionRange tour;
   const MotionSettings& settings = mechanism.motion;
   if (settings.until && settings.at_limit.value_or(AtLimit::open) != AtLimit::reverse) {
     check_travel(mechanism, *settings.until);
-    tour.kind = Tour::Kind::until;
+    tour.kind = MotionRange::Kind::until;
     tour.end = *settings.until;
     tour.range.forward = Follower(mechanism, structure).advance_to_limit(*settings.until);
   } else {
@@ -92,7 +92,7 @@ Tour plan_tour(const Mechanism& mechanism, const Structure& structure) {
     tour.end = tour.range.forward->time - margin(*tour.range.forward);
   }
   if (tour.from_limit || tour.at_limit) {
-    tour.kind = tour.from_limit && tour.at_limit ? Tour::Kind::limits : Tour::Kind::to_limit;
+    tour.kind = tour.from_limit && tour.at_limit ? MotionRange::Kind::limits : MotionRange::Kind::to_limit;
   }
   Follower follower(mechanism, structure);
   const Configuration first = follower.advance(tour.begin);
@@ -108,7 +108,7 @@ Tour plan_tour(const Mechanism& mechanism, const Structure& structure) {
   return tour;
 }
 
-TourWalk::TourWalk(const Mechanism& mechanism, const Structure& structure, Tour tour)
+RangeWalk::RangeWalk(const Mechanism& mechanism, const Structure& structure, MotionRange tour)
     : mechanism_(mechanism),
       structure_(structure),
       tour_(std::move(tour)),
@@ -118,7 +118,7 @@ TourWalk::TourWalk(const Mechanism& mechanism, const Structure& structure, Tour 
   go(0);
 }
 
-const Configuration& TourWalk::go(double u) {
+const Configuration& RangeWalk::go(double u) {
   place_ = u;
   time_ = tour_.time(u);
   here_ = &follower_.advance(time_);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/synthesis/family.h>
+#include <oblique/synthesis/design_space.h>
 
 #include <algorithm>
 #include <cmath>
@@ -210,31 +210,31 @@ class DimensionReader {
 
 }  // namespace
 
-Family::Family(std::string text, const std::string& file, std::span<const std::string> free)
+DesignSpace::DesignSpace(std::string text, const std::string& file, std::span<const std::string> free)
     : text_(std::move(text)), original_(mechanism::parse_mechanism(text_, file)) {
   const text::Document document = text::parse_document(text_, file);
   dimensions_ = DimensionReader(text_, document, original_).read(free);
 }
 
-Eigen::VectorXd Family::values() const {
+Eigen::VectorXd DesignSpace::values() const {
   Eigen::VectorXd values(std::ssize(dimensions_));
   for (Eigen::Index i = 0; i < values.size(); ++i) values[i] = dimensions_[static_cast<std::size_t>(i)].value;
   return values;
 }
 
-Eigen::VectorXd Family::lower() const {
+Eigen::VectorXd DesignSpace::lower() const {
   Eigen::VectorXd bounds(std::ssize(dimensions_));
   for (Eigen::Index i = 0; i < bounds.size(); ++i) bounds[i] = dimensions_[static_cast<std::size_t>(i)].lower;
   return bounds;
 }
 
-Eigen::VectorXd Family::upper() const {
+Eigen::VectorXd DesignSpace::upper() const {
   Eigen::VectorXd bounds(std::ssize(dimensions_));
   for (Eigen::Index i = 0; i < bounds.size(); ++i) bounds[i] = dimensions_[static_cast<std::size_t>(i)].upper;
   return bounds;
 }
 
-std::string Family::text(const Eigen::VectorXd& values) const {
+std::string DesignSpace::text(const Eigen::VectorXd& values) const {
   std::vector<Replacement> replacements;
   for (std::size_t i = 0; i < dimensions_.size(); ++i) {
     const double value = values[static_cast<Eigen::Index>(i)];
@@ -244,7 +244,7 @@ std::string Family::text(const Eigen::VectorXd& values) const {
   return replace_ranges(text_, std::move(replacements));
 }
 
-mechanism::Mechanism Family::mechanism(const Eigen::VectorXd& values) const {
+mechanism::Mechanism DesignSpace::mechanism(const Eigen::VectorXd& values) const {
   return mechanism::parse_mechanism(text(values), original_.file);
 }
 

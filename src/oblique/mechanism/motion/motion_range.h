@@ -12,7 +12,7 @@ namespace oblique::mechanism {
 /// The stretch of a motion that an analysis looks at. Its instants are named by a place u from 0 to 1, in
 /// which the motion is smooth up to its limits: there the velocities grow as 1/√(limit − t), and dt/du falls
 /// as fast.
-struct Tour {
+struct MotionRange {
   enum class Kind {
     turn,      ///< one turn of the first drive
     until,     ///< the time that the file gives
@@ -24,7 +24,7 @@ struct Tour {
   bool from_limit = false;                ///< it begins at a limit
   bool at_limit = false;                  ///< it ends at one
   bool closed = false;                    ///< at its end all points are where they were at its beginning
-  MotionRange range;                      ///< the limits that were found
+  MotionLimits range;                     ///< the limits that were found
   std::vector<MotionEvent> changes = {};  ///< the change points on the way
   std::size_t samples = 0;                ///< intervals of u in which extremes are looked for
 
@@ -35,12 +35,12 @@ struct Tour {
 
 /// A turn of the first drive; where limits forbid that, the way between them; where the file says how long it
 /// moves, that. Throws as `find_range` and `cycle`.
-Tour plan_tour(const Mechanism& mechanism, const Structure& structure);
+MotionRange plan_motion_range(const Mechanism& mechanism, const Structure& structure);
 
 /// A follower that goes by places of a tour. The mechanism and the structure have to outlive it.
-class TourWalk {
+class RangeWalk {
  public:
-  TourWalk(const Mechanism& mechanism, const Structure& structure, Tour tour);
+  RangeWalk(const Mechanism& mechanism, const Structure& structure, MotionRange tour);
 
   /// Goes to place `u` in [0, 1]. A dead centre, where rates have no value, is passed by as closely as they
   /// still have one.
@@ -48,7 +48,7 @@ class TourWalk {
 
   const Mechanism& mechanism() const { return mechanism_; }
   const Structure& structure() const { return structure_; }
-  const Tour& tour() const { return tour_; }
+  const MotionRange& tour() const { return tour_; }
   const Configuration& here() const { return *here_; }
   double place() const { return place_; }
   double time() const { return time_; }
@@ -58,7 +58,7 @@ class TourWalk {
  private:
   const Mechanism& mechanism_;
   const Structure& structure_;
-  Tour tour_;
+  MotionRange tour_;
   Follower follower_;
   DriveClock clock_;
   const Configuration* here_ = nullptr;

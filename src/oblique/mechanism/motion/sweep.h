@@ -19,7 +19,7 @@ struct Dwell {
 };
 
 /// How a body or a slide moves over a tour: values are angles [rad] or positions [length unit].
-struct Swing {
+struct Sweep {
   enum class Kind {
     turns,       ///< a body that gains whole turns and never turns back
     wavers,      ///< a body that gains whole turns, and turns back on the way
@@ -27,7 +27,7 @@ struct Swing {
     progresses,  ///< from one end of the tour to the other without turning back
     rests,       ///< it keeps its direction or its place
   };
-  Kind kind = Kind::swings;
+  Kind kind = Kind::oscillates;
   bool is_slide = false;
   std::size_t index = 0;  ///< in Mechanism::bodies or Mechanism::slides
   Reading least, greatest;
@@ -46,12 +46,12 @@ Signal body_signal(std::size_t body);
 Signal slide_signal(const Mechanism& mechanism, std::size_t slide);
 
 /// A swing from its scan.
-Swing swing_of(const TourWalk& walk, const SignalScan& scan, bool is_slide, std::size_t index);
+Sweep sweep_of(const RangeWalk& walk, const SignalScan& scan, bool is_slide, std::size_t index);
 
 /// The dwells of something with one or two coordinates, given at u = k/samples; `stroke` is the way between
 /// the extremes of the coordinate that goes farthest, and a dwell stays within 1 % of it in each. None in a
 /// tour that is no turn, or does not close.
-std::vector<Dwell> find_dwells(const TourWalk& walk,
+std::vector<Dwell> find_dwells(const RangeWalk& walk,
                                const std::vector<const std::vector<double>*>& coordinates, double stroke);
 
 }  // namespace oblique::mechanism

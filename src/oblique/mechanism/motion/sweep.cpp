@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/mechanism/motion/swing.h>
+#include <oblique/mechanism/motion/sweep.h>
 
 #include <algorithm>
 #include <cmath>
@@ -84,7 +84,7 @@ bool overlap(const Stretch& a, const Stretch& b, std::size_t samples) {
 }  // namespace
 
 Signal body_signal(std::size_t body) {
-  return {[body](const TourWalk& walk) {
+  return {[body](const RangeWalk& walk) {
             const BodyState& state = walk.here().bodies[body];
             return SignalValue{state.angle, state.omega};
           },
@@ -92,16 +92,16 @@ Signal body_signal(std::size_t body) {
 }
 
 Signal slide_signal(const Mechanism& mechanism, std::size_t slide) {
-  return {[slide](const TourWalk& walk) {
+  return {[slide](const RangeWalk& walk) {
             const SlideState& state = walk.here().slides[slide];
             return SignalValue{state.position, state.velocity};
           },
           mechanism.largest_length(), true};
 }
 
-std::vector<Dwell> find_dwells(const TourWalk& walk,
+std::vector<Dwell> find_dwells(const RangeWalk& walk,
                                const std::vector<const std::vector<double>*>& coordinates, double stroke) {
-  if (!walk.tour().closed || walk.tour().kind != Tour::Kind::turn) return {};
+  if (!walk.tour().closed || walk.tour().kind != MotionRange::Kind::turn) return {};
   const std::size_t samples = walk.tour().samples;
   std::vector<Stretch> candidates = stretches(coordinates, kBand * stroke);
   std::stable_sort(candidates.begin(), candidates.end(),
@@ -129,9 +129,9 @@ std::vector<Dwell> find_dwells(const TourWalk& walk,
   return dwells;
 }
 
-Swing swing_of(const TourWalk& walk, const SignalScan& scan, bool is_slide, std::size_t index) {
+Sweep sweep_of(const RangeWalk& walk, const SignalScan& scan, bool is_slide, std::size_t index) {
   const double scale = is_slide ? walk.mechanism().largest_length() : 1;
-  Swing swing;
+  Sweep swing;
   swing.is_slide = is_slide;
   swing.index = index;
   swing.least = scan.least;
@@ -141,14 +141,14 @@ Swing swing_of(const TourWalk& walk, const SignalScan& scan, bool is_slide, std:
   const bool closed = walk.tour().closed;
   const double whole = is_slide ? 0 : std::round(swing.gain / kTurn);
   if (swing.stroke() < kRests * scale) {
-    swing.kind = Swing::Kind::rests;
+    swing.kind = Sweep::Kind::stationary;
     swing.reversals = 0;
     return swing;
   }
   if (closed && whole != 0) {
-    swing.kind = swing.reversals == 0 ? Swing::Kind::turns : Swing::Kind::wavers;
+    swing.kind = swing.reversals == 0 ? Sweep::Kind::turns : Sweep::Kind::turns_with_reversals;
   } else if (!closed && swing.reversals == 0) {
-    swing.kind = Swing::Kind::progresses;
+    swing.kind = Sweep::Kind::monotone;
   }
   // the times between turning points, those before the first and after the last one as well
   double before = walk.tour().begin;
@@ -159,7 +159,7 @@ Swing swing_of(const TourWalk& walk, const SignalScan& scan, bool is_slide, std:
     rises = !turn.is_greatest;
   }
   (rises ? swing.rising : swing.falling) += walk.tour().end - before;
-  if (closed && swing.kind == Swing::Kind::swings) {
+  if (closed && swing.kind == Sweep::Kind::oscillates) {
     if (swing.reversals == 2) {
       swing.time_ratio = std::max(swing.rising, swing.falling) / std::min(swing.rising, swing.falling);
     }
