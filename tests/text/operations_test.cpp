@@ -3,8 +3,10 @@
 
 #include <array>
 #include <cmath>
+#include <fstream>
 #include <set>
 #include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -96,6 +98,27 @@ TEST(Operations, AreTheSmoothFunctionsOfTheLanguage) {
     EXPECT_EQ(static_cast<std::size_t>(info_of(*operation).operands), info.min_arguments) << info.name;
     EXPECT_EQ(evaluate(info.function, std::array{0.6, 0.8}), evaluate(*operation, 0.6, 0.8)) << info.name;
   }
+}
+
+// The words in the first column of the page's table.
+TEST(Operations, AreDocumented) {
+  std::ifstream page(std::string(OBLIQUE_SOURCE_DIR) + "/docs/blocks.md");
+  std::set<std::string> documented;
+  bool in_table = false;
+  for (std::string line; std::getline(page, line);) {
+    in_table = line.starts_with("| function |") || (in_table && line.starts_with("|"));
+    if (!in_table) continue;
+    std::string word;
+    for (const char c : line.substr(1, line.find('|', 1))) {
+      if (is_identifier(word + c)) {
+        word += c;
+        continue;
+      }
+      documented.insert(std::exchange(word, {}));
+    }
+  }
+  for (const FunctionInfo& info : functions())
+    EXPECT_TRUE(documented.contains(std::string(info.name))) << info.name << " is not in docs/blocks.md";
 }
 
 TEST(Operations, AreAtTheRootOfSmoothExpressions) {
