@@ -23,7 +23,8 @@ set(allowed_draw text diagram mechanism)
 
 set(verbs "run|check|solve|modes|patch|compare|fit|draw|animate|report|blocks|machines")
 set(most_units 33)
-file(GLOB_RECURSE files RELATIVE ${SOURCE}/src ${SOURCE}/src/oblique/*.h ${SOURCE}/src/oblique/*.cpp)
+file(GLOB_RECURSE files RELATIVE ${SOURCE}/src ${SOURCE}/src/oblique/*.h ${SOURCE}/src/oblique/*.cpp
+     ${SOURCE}/src/oblique/*.def)
 foreach(file IN LISTS files)
   string(REGEX REPLACE "^oblique/([^/]+)/.*" "\\1" stage ${file})
   if(NOT DEFINED allowed_${stage})

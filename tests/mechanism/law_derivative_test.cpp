@@ -3,10 +3,14 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
+#include <string>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <oblique/mechanism/model/drive_law.h>
+#include <oblique/text/quantity.h>
 
 namespace oblique::mechanism {
 namespace {
@@ -72,6 +76,56 @@ TEST(LawDerivative, IsTheAccelerationOfADrive) {
       EXPECT_NEAR(law_at(drive, t).acceleration, difference, 3e-7) << text;
     }
   }
+}
+
+// Whatever function is added to the language is known here too, or refused.
+TEST(LawDerivative, KnowsEveryFunctionThatALawMayHave) {
+  const auto unit = text::parse_unit("rad/s");
+  for (const text::FunctionInfo& info : text::functions()) {
+    const std::string arguments = info.min_arguments == 1 ? "0.3 + time/4" : "0.3 + time/4, 1.2 - time/5";
+    const auto law = [&]() -> std::optional<SpeedLaw> {
+      try {
+        return parse_law(fmt::format("{}({}) rad/s", info.name, arguments), *unit);
+      } catch (const text::ExpressionError&) {
+        return std::nullopt;
+      }
+    }();
+    const bool lawful = !info.switches && info.name != "noise" && info.name != "weights";
+    EXPECT_EQ(law.has_value(), lawful) << info.name;
+    if (!law) continue;
+    Drive drive;
+    drive.law = law->speed;
+    const text::Expression derivative = law_derivative(law->speed);
+    for (const double t : {0.3, 0.7, 1.1}) {
+      constexpr double kStep = 1e-5;
+      const double difference = (at(law->speed, t + kStep) - at(law->speed, t - kStep)) / (2 * kStep);
+      // the third derivative of a function of time/4 is below 1: 2e-11, and rounding 1e-11
+      EXPECT_NEAR(at(derivative, t), difference, 1e-9) << info.name;
+      EXPECT_NEAR(law_at(drive, t).acceleration, difference, 1e-9) << info.name;
+    }
+  }
+}
+
+TEST(LawDerivative, RefusesWhatHasNone) {
+  const auto message = [](const char* text) -> std::string {
+    try {
+      return text::to_string(law_derivative(text::parse_expression(text)));
+    } catch (const text::ExpressionError& error) {
+      return fmt::format("{}: {}", error.column, error.what);
+    }
+  };
+  EXPECT_EQ(message("2*noise(time, 1)"), "3: the slope of noise has no expression");
+  EXPECT_EQ(message("1 + abs(time)"), "5: what switches has no derivative");
+  EXPECT_EQ(message("time < 1"), "6: what switches has no derivative");
+}
+
+// As in the graph, where x^0 is 1: at a base of 0 there is no infinity times zero.
+TEST(LawDerivative, IsZeroOfAPowerThatIsConstant) {
+  Drive drive;
+  drive.law = text::parse_expression("time^0");
+  EXPECT_EQ(law_at(drive, 0).acceleration, 0);
+  drive.law = text::parse_expression("(time - 2)^3");  // whose logarithm is no number
+  EXPECT_EQ(law_at(drive, 1).acceleration, 3);
 }
 
 TEST(LawDerivative, LeavesOutWhatIsZeroOrOne) {

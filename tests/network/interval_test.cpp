@@ -33,18 +33,15 @@ Interval range_of(const ExpressionGraph& graph, NodeId root, std::span<const Int
 }
 
 TEST(Interval, ContainsTheValuesOfEveryOperation) {
-  constexpr std::array kOne{Op::negate, Op::sin,  Op::cos, Op::tan, Op::asin,
-                            Op::acos,   Op::atan, Op::exp, Op::log, Op::sqrt};
-  constexpr std::array kTwo{Op::add, Op::subtract, Op::multiply, Op::divide, Op::power, Op::atan2, Op::hypot};
   rc::check([&] {
     ExpressionGraph graph;
     const NodeId x = graph.variable(0), y = graph.variable(1);
     const auto number = [] { return *rc::gen::inRange(-4000, 4000) / 1000.0; };
     const double a = number(), b = number(), c = number(), d = number();
     const std::array box{Interval{std::min(a, b), std::max(a, b)}, Interval{std::min(c, d), std::max(c, d)}};
-    const bool unary = *rc::gen::arbitrary<bool>();
-    const NodeId root = unary ? graph.apply(kOne[*rc::gen::inRange<std::size_t>(0, kOne.size())], x)
-                              : graph.apply(kTwo[*rc::gen::inRange<std::size_t>(0, kTwo.size())], x, y);
+    const text::OperationInfo& info =
+        text::operations()[*rc::gen::inRange<std::size_t>(0, text::operations().size())];
+    const NodeId root = graph.apply(op_of(info.operation), x, y);
     const Interval range = range_of(graph, root, box);
     constexpr int kPoints = 7;
     for (int i = 0; i <= kPoints; ++i) {

@@ -114,14 +114,14 @@ TEST_F(TapeTest, DoesNotFuseAcrossStretches) {
 
 TEST(Tape, RunsEveryOperation) {
   const std::array point{0.6, 0.8};
-  for (auto code = static_cast<int>(Op::add); code <= static_cast<int>(Op::hypot); ++code) {
+  for (const text::OperationInfo& info : text::operations()) {
     ExpressionGraph g;
     const NodeId a = g.variable(0), b = g.variable(1);
-    const NodeId root = g.apply(static_cast<Op>(code), a, b);
+    const NodeId root = g.apply(op_of(info.operation), a, b);
     TapeWriter writer(g, 2, 0, {}, uses_of(g, {root}));
     writer.write(all_of(g));
     const std::uint32_t slot = writer.slot(root);
-    EXPECT_EQ(run_all(writer, point)[slot], naive_value(g, root, point)) << code;
+    EXPECT_EQ(run_all(writer, point)[slot], naive_value(g, root, point)) << info.name;
   }
 }
 

@@ -151,10 +151,16 @@ class RuleReader {
       case Kind::equal:
       case Kind::not_equal:
         equal(a, b);
-        return number();
-      default:
-        return number();
+        break;
+      case Kind::logical_and:
+      case Kind::logical_or:
+      case Kind::logical_not:
+      case Kind::number:
+      case Kind::name:
+      case Kind::call:
+        break;
     }
+    return number();
   }
 
   Scale scale_of_power(const text::Expression& e, const Scale& base, const Scale& exponent) {
@@ -172,28 +178,23 @@ class RuleReader {
   }
 
   Scale scale_of_call(text::Function function, const std::vector<Scale>& operands) {
-    switch (function) {
-      case text::Function::abs:
-        return operands[0];
-      case text::Function::sqrt:
-        return operands[0] ? Scale(0.5 * *operands[0]) : Scale();
-      case text::Function::min:
-      case text::Function::max:
-      case text::Function::hypot:
-      case text::Function::clip:
-      case text::Function::deadzone:
+    switch (text::info_of(function).scaling) {
+      case text::Scaling::alike:
         return all_equal(operands);
-      case text::Function::atan2:
+      case text::Scaling::root:
+        return operands[0] ? Scale(0.5 * *operands[0]) : Scale();
+      case text::Scaling::ratio:
         all_equal(operands);
         return number();
-      case text::Function::sign:
+      case text::Scaling::indifferent:
         return number();
-      case text::Function::if_:
+      case text::Scaling::branches:
         return equal(operands[1], operands[2]);
-      default:  // sines, tables and all whose behaviour under scaling is not known here
-        for (const Scale& operand : operands) unscaled(operand);
-        return number();
+      case text::Scaling::pure:
+        break;
     }
+    for (const Scale& operand : operands) unscaled(operand);
+    return number();
   }
 
   Scale all_equal(const std::vector<Scale>& operands) {

@@ -3,35 +3,14 @@
 
 #include <functional>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <oblique/text/diagnostic.h>
+#include <oblique/text/operations.h>
 
 namespace oblique::text {
-
-/// The functions of the expression language.
-// clang-format off
-enum class Function {
-  sin, cos, tan, asin, acos, atan, atan2, exp, log, sqrt, abs, min, max, hypot,
-  sign, clip, deadzone, step, table, if_, noise, weights,
-};
-// clang-format on
-
-/// What the language knows of one function.
-struct FunctionInfo {
-  Function function;
-  std::string_view name;
-  std::size_t min_arguments;
-  std::size_t max_arguments;
-  bool switches;  ///< has a kink or a jump: an event where its argument varies, never part of a smooth step
-  std::string_view doc;
-};
-
-/// All functions, in the order of `Function`.
-std::span<const FunctionInfo> functions();
 
 /// A parsed expression; a value type, one node and its operands.
 struct Expression {
@@ -51,6 +30,10 @@ struct Expression {
 
   bool operator==(const Expression& other) const;
 };
+
+/// The smooth operation at the root of an expression; nothing of a number, a name, a condition and what
+/// switches.
+std::optional<Operation> smooth_operation(const Expression& expression);
 
 /// A malformed expression or one that has no value; `column` counts from 1 in the expression's text.
 struct ExpressionError {
@@ -77,15 +60,6 @@ using NameLookup = std::function<std::optional<double>(std::string_view)>;
 
 /// Value of an expression of constants. Throws ExpressionError for a name that `lookup` does not know.
 double evaluate(const Expression& expression, const NameLookup& lookup = {});
-
-/// Smooth noise, the same at every call: of unit root mean square over x, without a repeat, correlated over a
-/// distance of about 3. The quintic B-spline through Gaussian random numbers at the whole numbers, which
-/// follow from `seed` (rounded) alone; its spectrum is that of white noise times sinc(f)¹², with the −3 dB
-/// point at f = 0.186. `derivative` 1 gives d noise/dx.
-double noise(double x, double seed, int derivative = 0);
-
-/// Value of one function; `arguments` has the number that FunctionInfo allows.
-double evaluate(Function function, std::span<const double> arguments);
 
 /// True for an identifier: `[A-Za-z_][A-Za-z0-9_]*`.
 bool is_identifier(std::string_view text);

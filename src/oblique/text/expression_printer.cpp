@@ -48,7 +48,7 @@ void print(const Expression& e, std::string& out) {
       out += e.name;
       return;
     case Expression::Kind::call:
-      out += functions()[static_cast<std::size_t>(e.function)].name;
+      out += info_of(e.function).name;
       for (std::size_t i = 0; i < e.operands.size(); ++i) {
         out += i == 0 ? "(" : ", ";
         print(e.operands[i], out);

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include <oblique/text/expression.h>
+#include <oblique/text/operations.h>
 
 namespace oblique::text {
 namespace {

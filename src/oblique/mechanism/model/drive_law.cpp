@@ -9,12 +9,28 @@
 
 #include <fmt/format.h>
 
+#include <oblique/text/partial_derivative.h>
+
 namespace oblique::mechanism {
 namespace {
 
 bool names_time(const text::Expression& e) {
   return (e.kind == text::Expression::Kind::name && e.name == "time") ||
          std::any_of(e.operands.begin(), e.operands.end(), names_time);
+}
+
+/// Noise is smooth, but its slope has no expression that a patch could hold.
+bool is_lawful(text::Function function) {
+  return text::smooth_operation(function) && function != text::Function::noise;
+}
+
+/// "sin, cos or hypot": all functions that a law may have.
+std::string lawful_functions() {
+  std::vector<std::string_view> names;
+  for (const text::FunctionInfo& info : text::functions()) {
+    if (is_lawful(info.function)) names.push_back(info.name);
+  }
+  return fmt::format("{} or {}", fmt::join(names.begin(), names.end() - 1, ", "), names.back());
 }
 
 /// Refuses what has no smooth value.
@@ -26,83 +42,61 @@ void check(const text::Expression& e) {
                                 "numbers, pi, time and smooth functions of them",
                                 {}};
   }
-  const bool smooth_call = e.kind == Kind::call &&
-                           !text::functions()[static_cast<std::size_t>(e.function)].switches &&
-                           e.function != text::Function::table && e.function != text::Function::noise &&
-                           e.function != text::Function::weights;
-  if (e.kind >= Kind::less || (e.kind == Kind::call && !smooth_call)) {
+  if (e.kind >= Kind::less || (e.kind == Kind::call && !is_lawful(e.function))) {
     throw text::ExpressionError{e.column, "the speed of a drive may have no kinks or jumps",
-                                "sin, cos, tan, asin, acos, atan, atan2, exp, log, sqrt or hypot",
+                                lawful_functions(),
                                 "give a smooth law: where the speed jumps the acceleration has no value"};
   }
   for (const text::Expression& operand : e.operands) check(operand);
 }
+
+/// A number as what the table of operations writes derivatives of. Zero times what is not known is zero.
+struct Number {
+  double value;
+
+  Number number(double other) const { return {other}; }
+  Number apply(text::Operation operation, const Number& second) const {
+    if (operation == text::Operation::multiply && (value == 0 || second.value == 0)) return {0};
+    return {text::evaluate(operation, value, second.value)};
+  }
+};
 
 /// A value and its derivative by time.
 struct Dual {
   double value, rate;
 };
 
-Dual call(text::Function function, std::span<const Dual> x) {
-  const double v = x[0].value, r = x[0].rate;
-  switch (function) {
-    case text::Function::sin:
-      return {std::sin(v), std::cos(v) * r};
-    case text::Function::cos:
-      return {std::cos(v), -std::sin(v) * r};
-    case text::Function::tan:
-      return {std::tan(v), r / (std::cos(v) * std::cos(v))};
-    case text::Function::asin:
-      return {std::asin(v), r / std::sqrt(1 - v * v)};
-    case text::Function::acos:
-      return {std::acos(v), -r / std::sqrt(1 - v * v)};
-    case text::Function::atan:
-      return {std::atan(v), r / (1 + v * v)};
-    case text::Function::exp:
-      return {std::exp(v), std::exp(v) * r};
-    case text::Function::log:
-      return {std::log(v), r / v};
-    case text::Function::sqrt:
-      return {std::sqrt(v), r / (2 * std::sqrt(v))};
-    case text::Function::atan2: {
-      const double w = x[1].value;
-      return {std::atan2(v, w), (w * r - v * x[1].rate) / (v * v + w * w)};
-    }
-    case text::Function::hypot: {
-      const double h = std::hypot(v, x[1].value);
-      return {h, (v * r + x[1].value * x[1].rate) / h};
-    }
-    default:
-      return {std::numeric_limits<double>::quiet_NaN(), 0};  // `check` lets none through
-  }
+double value_of_name(const text::Expression& e, double time) {
+  return e.name == "time" ? time : std::numbers::pi;
+}
+
+/// The operation at the root of a call or an operator: `check` lets nothing through that has none.
+text::Operation operation_of(const text::Expression& e) {
+  return text::smooth_operation(e).value();
+}
+
+double value_at(const text::Expression& e, double time) {
+  using Kind = text::Expression::Kind;
+  if (e.kind == Kind::number) return e.number;
+  if (e.kind == Kind::name) return value_of_name(e, time);
+  const double a = value_at(e.operands[0], time);
+  return text::evaluate(operation_of(e), a, e.operands.size() > 1 ? value_at(e.operands[1], time) : 0);
 }
 
 Dual evaluate_at(const text::Expression& e, double time) {
   using Kind = text::Expression::Kind;
   if (e.kind == Kind::number) return {e.number, 0};
-  if (e.kind == Kind::name) return e.name == "time" ? Dual{time, 1} : Dual{std::numbers::pi, 0};
+  if (e.kind == Kind::name) return {value_of_name(e, time), e.name == "time" ? 1.0 : 0.0};
   std::array<Dual, 2> x{};
   for (std::size_t i = 0; i < e.operands.size() && i < x.size(); ++i) x[i] = evaluate_at(e.operands[i], time);
-  const auto& [a, b] = x;
-  switch (e.kind) {
-    case Kind::negate:
-      return {-a.value, -a.rate};
-    case Kind::add:
-      return {a.value + b.value, a.rate + b.rate};
-    case Kind::subtract:
-      return {a.value - b.value, a.rate - b.rate};
-    case Kind::multiply:
-      return {a.value * b.value, a.rate * b.value + a.value * b.rate};
-    case Kind::divide:
-      return {a.value / b.value, (a.rate * b.value - a.value * b.rate) / (b.value * b.value)};
-    case Kind::power: {
-      const double value = std::pow(a.value, b.value);
-      const double base_part = b.value == 0 ? 0 : b.value * std::pow(a.value, b.value - 1) * a.rate;
-      return {value, base_part + (b.rate == 0 ? 0 : value * std::log(a.value) * b.rate)};
-    }
-    default:
-      return call(e.function, x);
+  const text::Operation operation = operation_of(e);
+  const Number a{x[0].value}, b{x[1].value}, f{text::evaluate(operation, a.value, b.value)};
+  Dual result{f.value, 0};
+  for (int i = 0; i < 2; ++i) {
+    const double rate = x[static_cast<std::size_t>(i)].rate;
+    if (rate != 0) result.rate += text::partial_derivative(operation, i, a, b, f).value * rate;
   }
+  return result;
 }
 
 /// Gauss and Kronrod's rule with 7 and 15 points on [a, b]; both sums.
@@ -120,8 +114,8 @@ std::array<double, 2> gauss_kronrod(const Drive& drive, double a, double b) {
   const double middle = (a + b) / 2, half = (b - a) / 2;
   double kronrod = 0, gauss = 0;
   for (std::size_t i = 0; i < kNodes.size(); ++i) {
-    double sum = evaluate_at(*drive.law, middle + half * kNodes[i]).value;
-    if (kNodes[i] != 0) sum += evaluate_at(*drive.law, middle - half * kNodes[i]).value;
+    double sum = value_at(*drive.law, middle + half * kNodes[i]);
+    if (kNodes[i] != 0) sum += value_at(*drive.law, middle - half * kNodes[i]);
     kronrod += kKronrod[i] * sum;
     if (i % 2 == 1) gauss += kGauss[i / 2] * sum;
   }

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/mechanism/model/law_derivative.h>
 
+#include <utility>
+
+#include <oblique/text/partial_derivative.h>
+
 namespace oblique::mechanism {
 namespace {
 
@@ -23,12 +27,16 @@ text::Expression node(Kind kind, text::Expression a, text::Expression b) {
   return e;
 }
 
-text::Expression call(text::Function function, text::Expression of) {
+text::Expression call(text::Function function, std::vector<text::Expression> operands) {
   text::Expression e;
   e.kind = Kind::call;
   e.function = function;
-  e.operands = {std::move(of)};
+  e.operands = std::move(operands);
   return e;
+}
+
+bool is_negation(const text::Expression& e) {
+  return e.kind == Kind::negate;
 }
 
 text::Expression negative(text::Expression a) {
@@ -39,22 +47,18 @@ text::Expression negative(text::Expression a) {
   return e;
 }
 
-text::Expression sum(text::Expression a, text::Expression b) {
-  if (is(a, 0)) return b;
-  if (is(b, 0)) return a;
-  return node(Kind::add, std::move(a), std::move(b));
-}
-
 text::Expression difference(text::Expression a, text::Expression b) {
-  if (is(a, 0)) return negative(std::move(b));
   if (is(b, 0)) return a;
+  if (a.kind == Kind::number && b.kind == Kind::number) return number(a.number - b.number);
+  if (is(a, 0)) return negative(std::move(b));
   return node(Kind::subtract, std::move(a), std::move(b));
 }
 
-text::Expression product(text::Expression a, text::Expression b) {
-  if (is(a, 0) || is(b, 1)) return a;
-  if (is(b, 0) || is(a, 1)) return b;
-  return node(Kind::multiply, std::move(a), std::move(b));
+text::Expression sum(text::Expression a, text::Expression b) {
+  if (is(a, 0)) return b;
+  if (is(b, 0)) return a;
+  if (is_negation(b)) return difference(std::move(a), std::move(b.operands[0]));
+  return node(Kind::add, std::move(a), std::move(b));
 }
 
 text::Expression quotient(text::Expression a, text::Expression b) {
@@ -62,80 +66,80 @@ text::Expression quotient(text::Expression a, text::Expression b) {
   return node(Kind::divide, std::move(a), std::move(b));
 }
 
-text::Expression square(const text::Expression& a) {
-  return node(Kind::power, a, number(2));
+text::Expression power(text::Expression a, text::Expression b) {
+  if (is(b, 1)) return a;
+  return node(Kind::power, std::move(a), std::move(b));
 }
 
-text::Expression derivative_of_call(const text::Expression& e) {
-  const text::Expression& x = e.operands[0];
-  const text::Expression rate = law_derivative(x);
-  switch (e.function) {
-    case text::Function::sin:
-      return product(call(text::Function::cos, x), rate);
-    case text::Function::cos:
-      return negative(product(call(text::Function::sin, x), rate));
-    case text::Function::tan:
-      return quotient(rate, square(call(text::Function::cos, x)));
-    case text::Function::asin:
-      return quotient(rate, call(text::Function::sqrt, difference(number(1), square(x))));
-    case text::Function::acos:
-      return negative(quotient(rate, call(text::Function::sqrt, difference(number(1), square(x)))));
-    case text::Function::atan:
-      return quotient(rate, sum(number(1), square(x)));
-    case text::Function::exp:
-      return product(e, rate);
-    case text::Function::log:
-      return quotient(rate, x);
-    case text::Function::sqrt:
-      return quotient(rate, product(number(2), e));
-    case text::Function::atan2: {
-      const text::Expression& w = e.operands[1];
-      return quotient(difference(product(w, rate), product(x, law_derivative(w))), sum(square(x), square(w)));
-    }
-    default: {  // hypot, the last that `parse_law` lets through
-      const text::Expression& w = e.operands[1];
-      return quotient(sum(product(x, rate), product(w, law_derivative(w))), e);
-    }
-  }
+/// What is negative or a quotient stays so: (1/x)·y is y/x.
+text::Expression product(text::Expression a, text::Expression b) {
+  if (is(a, 0) || is(b, 1)) return a;
+  if (is(b, 0) || is(a, 1)) return b;
+  if (is(a, -1)) return negative(std::move(b));
+  if (is_negation(a)) return negative(product(std::move(a.operands[0]), std::move(b)));
+  if (b.kind == Kind::divide && is(b.operands[0], 1)) return quotient(std::move(a), std::move(b.operands[1]));
+  if (a.kind == Kind::divide && a.operands[0].kind == Kind::number)
+    return quotient(product(std::move(a.operands[0]), std::move(b)), std::move(a.operands[1]));
+  if (a.kind != Kind::number && a == b) return power(std::move(a), number(2));
+  return node(Kind::multiply, std::move(a), std::move(b));
 }
 
-text::Expression derivative_of_power(const text::Expression& e) {
-  const text::Expression &base = e.operands[0], &exponent = e.operands[1];
-  const text::Expression rate = law_derivative(exponent);
-  text::Expression of_base = law_derivative(base);
-  if (!is(of_base, 0)) {
-    const text::Expression less =
-        exponent.kind == Kind::number ? number(exponent.number - 1) : difference(exponent, number(1));
-    const text::Expression lowered = is(less, 1) ? base : node(Kind::power, base, less);
-    of_base = product(product(exponent, lowered), of_base);
+/// An expression as what the table of operations writes derivatives of.
+struct Formula {
+  text::Expression e;
+  int column;  ///< of what is differentiated
+
+  Formula number(double value) const { return {mechanism::number(value), column}; }
+  Formula apply(text::Operation operation, const Formula& second) const {
+    return {applied(operation, second.e), column};
   }
-  if (is(rate, 0)) return of_base;
-  return sum(of_base, product(product(e, call(text::Function::log, base)), rate));
+
+ private:
+  text::Expression applied(text::Operation operation, const text::Expression& b) const;
+};
+
+text::Expression Formula::applied(text::Operation operation, const text::Expression& b) const {
+  switch (operation) {
+    case text::Operation::add:
+      return sum(e, b);
+    case text::Operation::subtract:
+      return difference(e, b);
+    case text::Operation::multiply:
+      return product(e, b);
+    case text::Operation::divide:
+      return quotient(e, b);
+    case text::Operation::power:
+      return power(e, b);
+    case text::Operation::negate:
+      return negative(e);
+    case text::Operation::noise_slope:
+      break;
+#define OBLIQUE_FUNCTION(name, operands, ...) \
+  case text::Operation::name:                 \
+    return operands == 1 ? call(text::Function::name, {e}) : call(text::Function::name, {e, b});
+#include <oblique/text/operations.def>
+  }
+  throw text::ExpressionError{column, "the slope of noise has no expression", {}, {}};
 }
 
 }  // namespace
 
 text::Expression law_derivative(const text::Expression& law) {
-  if (law.kind == Kind::number) return number(0);
-  if (law.kind == Kind::name) return number(law.name == "time" ? 1 : 0);
-  if (law.kind == Kind::call) return derivative_of_call(law);
-  if (law.kind == Kind::power) return derivative_of_power(law);
-  const text::Expression& a = law.operands[0];
-  const text::Expression rate = law_derivative(a);
-  if (law.kind == Kind::negate) return negative(rate);
-  const text::Expression& b = law.operands[1];
-  const text::Expression other = law_derivative(b);
-  switch (law.kind) {
-    case Kind::add:
-      return sum(rate, other);
-    case Kind::subtract:
-      return difference(rate, other);
-    case Kind::multiply:
-      return sum(product(rate, b), product(a, other));
-    default:  // a quotient
-      if (is(other, 0)) return quotient(rate, b);
-      return quotient(difference(product(rate, b), product(a, other)), square(b));
+  const auto operation = text::smooth_operation(law);
+  if (!operation) {
+    if (law.kind != Kind::number && law.kind != Kind::name)
+      throw text::ExpressionError{law.column, "what switches has no derivative", {}, {}};
+    return number(law.kind == Kind::name && law.name == "time" ? 1 : 0);
   }
+  const Formula f{law, law.column}, a{law.operands.front(), law.column}, b{law.operands.back(), law.column};
+  text::Expression derivative = number(0);
+  for (std::size_t i = 0; i < law.operands.size(); ++i) {
+    const text::Expression rate = law_derivative(law.operands[i]);
+    if (is(rate, 0)) continue;
+    const Formula slope = text::partial_derivative(*operation, static_cast<int>(i), a, b, f);
+    derivative = sum(std::move(derivative), product(slope.e, rate));
+  }
+  return derivative;
 }
 
 }  // namespace oblique::mechanism

@@ -12,57 +12,6 @@
 namespace oblique::network {
 namespace {
 
-/// The graph's operation for a smooth function.
-std::optional<Op> smooth_operation(text::Function function) {
-  switch (function) {
-    case text::Function::sin:
-      return Op::sin;
-    case text::Function::cos:
-      return Op::cos;
-    case text::Function::tan:
-      return Op::tan;
-    case text::Function::asin:
-      return Op::asin;
-    case text::Function::acos:
-      return Op::acos;
-    case text::Function::atan:
-      return Op::atan;
-    case text::Function::atan2:
-      return Op::atan2;
-    case text::Function::exp:
-      return Op::exp;
-    case text::Function::log:
-      return Op::log;
-    case text::Function::sqrt:
-      return Op::sqrt;
-    case text::Function::hypot:
-      return Op::hypot;
-    case text::Function::noise:
-      return Op::noise;
-    default:
-      return std::nullopt;
-  }
-}
-
-std::optional<Op> smooth_operation(text::Expression::Kind kind) {
-  switch (kind) {
-    case text::Expression::Kind::add:
-      return Op::add;
-    case text::Expression::Kind::subtract:
-      return Op::subtract;
-    case text::Expression::Kind::multiply:
-      return Op::multiply;
-    case text::Expression::Kind::divide:
-      return Op::divide;
-    case text::Expression::Kind::power:
-      return Op::power;
-    case text::Expression::Kind::negate:
-      return Op::negate;
-    default:
-      return std::nullopt;
-  }
-}
-
 /// A tree of the operands of an n-ary function: f(a, f(b, …)).
 text::Expression call(text::Function function, std::vector<text::Expression> operands) {
   text::Expression e;
@@ -89,7 +38,7 @@ class Builder {
     if (e.kind == Kind::name) return name(e);
     if (is_comparison(e.kind) || is_logical(e.kind)) return condition(e);
     if (e.kind == Kind::call) return function(e);
-    return smooth(*smooth_operation(e.kind), e);
+    return smooth(*text::smooth_operation(e), e);
   }
 
  private:
@@ -106,9 +55,9 @@ class Builder {
     return context_.node_of_name(e.name);
   }
 
-  NodeId smooth(Op op, const text::Expression& e) {
+  NodeId smooth(text::Operation operation, const text::Expression& e) {
     const NodeId a = build(e.operands[0]);
-    return graph_.apply(op, a, e.operands.size() > 1 ? build(e.operands[1]) : 0);
+    return graph_.apply(op_of(operation), a, e.operands.size() > 1 ? build(e.operands[1]) : 0);
   }
 
   /// Whether only a switch keeps an expression from being negative, as max(x, 0): before it turns over, the
@@ -133,45 +82,7 @@ class Builder {
     return found;
   }
 
-  NodeId function(const text::Expression& e) {
-    if (e.function == text::Function::sqrt && is_kept_positive(e.operands[0]))
-      return graph_.apply(Op::sqrt, graph_.apply(Op::hypot, build(e.operands[0]), graph_.constant(0)));
-    if (const auto op = smooth_operation(e.function)) return smooth(*op, e);
-    if (e.function == text::Function::weights) return graph_.constant(context_.weights(e));
-    if (e.function == text::Function::table &&
-        (e.operands.size() == 2 || change_of(e, context_) != Change::never))
-      return context_.interpolated(e);
-    if (change_of(e, context_) == Change::never && e.function != text::Function::if_) return constant_of(e);
-    const std::vector<text::Expression>& x = e.operands;
-    switch (e.function) {
-      case text::Function::abs: {
-        const NodeId positive = bend(x[0], zero());
-        const NodeId inner = build(x[0]);  // once: magnitudes may stand in magnitudes
-        return graph_.apply(Op::select, positive, inner, graph_.apply(Op::negate, inner));
-      }
-      case text::Function::sign:
-        return graph_.apply(Op::select, greater(x[0], zero()), graph_.constant(1), graph_.constant(-1));
-      case text::Function::step:
-        return greater(x[0], zero());
-      case text::Function::min:
-      case text::Function::max:
-        return extreme(e);
-      case text::Function::clip:
-        return graph_.apply(Op::select, greater(x[0], x[2], Turning::limits), build(x[2]),
-                            choose(greater(x[1], x[0], Turning::limits), x[1], x[0]));
-      case text::Function::deadzone: {
-        const NodeId above = bend(x[0], x[1]), below = bend(negative(x[1]), x[0]);
-        const NodeId inner = build(x[0]), width = build(x[1]);
-        return graph_.apply(
-            Op::select, above, graph_.apply(Op::subtract, inner, width),
-            graph_.apply(Op::select, below, graph_.apply(Op::add, inner, width), graph_.constant(0)));
-      }
-      case text::Function::if_:
-        return choose(condition(x[0]), x[1], x[2]);
-      default:
-        return constant_of(e);
-    }
-  }
+  NodeId function(const text::Expression& e);
 
   NodeId choose(NodeId chosen, const text::Expression& a, const text::Expression& b) {
     if (graph_.is_constant(chosen)) return build(graph_[chosen].value != 0 ? a : b);
@@ -274,6 +185,52 @@ class Builder {
   ExpressionGraph& graph_;
   ExpressionContext& context_;
 };
+
+NodeId Builder::function(const text::Expression& e) {
+  if (e.function == text::Function::sqrt && is_kept_positive(e.operands[0]))
+    return graph_.apply(Op::sqrt, graph_.apply(Op::hypot, build(e.operands[0]), graph_.constant(0)));
+  if (const auto operation = text::smooth_operation(e.function)) return smooth(*operation, e);
+  if (e.function == text::Function::weights) return graph_.constant(context_.weights(e));
+  if (e.function == text::Function::table &&
+      (e.operands.size() == 2 || change_of(e, context_) != Change::never))
+    return context_.interpolated(e);
+  if (change_of(e, context_) == Change::never && e.function != text::Function::if_) return constant_of(e);
+  const std::vector<text::Expression>& x = e.operands;
+  switch (e.function) {
+    case text::Function::abs: {
+      const NodeId positive = bend(x[0], zero());
+      const NodeId inner = build(x[0]);  // once: magnitudes may stand in magnitudes
+      return graph_.apply(Op::select, positive, inner, graph_.apply(Op::negate, inner));
+    }
+    case text::Function::sign:
+      return graph_.apply(Op::select, greater(x[0], zero()), graph_.constant(1), graph_.constant(-1));
+    case text::Function::step:
+      return greater(x[0], zero());
+    case text::Function::min:
+    case text::Function::max:
+      return extreme(e);
+    case text::Function::clip:
+      return graph_.apply(Op::select, greater(x[0], x[2], Turning::limits), build(x[2]),
+                          choose(greater(x[1], x[0], Turning::limits), x[1], x[0]));
+    case text::Function::deadzone: {
+      const NodeId above = bend(x[0], x[1]), below = bend(negative(x[1]), x[0]);
+      const NodeId inner = build(x[0]), width = build(x[1]);
+      return graph_.apply(
+          Op::select, above, graph_.apply(Op::subtract, inner, width),
+          graph_.apply(Op::select, below, graph_.apply(Op::add, inner, width), graph_.constant(0)));
+    }
+    case text::Function::if_:
+      return choose(condition(x[0]), x[1], x[2]);
+    case text::Function::table:
+    case text::Function::weights:
+      break;  // done above, as are the smooth ones
+#define OBLIQUE_FUNCTION(name, ...) \
+  case text::Function::name:        \
+    break;
+#include <oblique/text/operations.def>
+  }
+  return constant_of(e);
+}
 
 }  // namespace
 

@@ -7,25 +7,68 @@
 #include <limits>
 #include <map>
 
-#include <oblique/text/expression.h>
+#include <oblique/text/partial_derivative.h>
 
 namespace oblique::network {
+namespace {
 
-int operand_count(Op op) {
+/// A node as what the table of operations writes derivatives of.
+struct Term {
+  ExpressionGraph* graph;
+  NodeId id;
+
+  Term number(double value) const { return {graph, graph->constant(value)}; }
+  Term apply(text::Operation operation, const Term& second) const {
+    return {graph, graph->apply(op_of(operation), id, second.id)};
+  }
+};
+
+}  // namespace
+
+Op op_of(text::Operation operation) {
+  switch (operation) {
+#define OBLIQUE_OPERATION(name, ...) \
+  case text::Operation::name:        \
+    return Op::name;
+#include <oblique/text/operations.def>
+  }
+  return Op::constant;  // there is no other operation
+}
+
+std::optional<text::Operation> smooth_operation(Op op) {
   switch (op) {
+#define OBLIQUE_OPERATION(name, ...) \
+  case Op::name:                     \
+    return text::Operation::name;
+#include <oblique/text/operations.def>
     case Op::constant:
     case Op::variable:
     case Op::memory:
-      return 0;
-    case Op::add:
-    case Op::subtract:
-    case Op::multiply:
-    case Op::divide:
-    case Op::power:
-    case Op::atan2:
-    case Op::hypot:
-    case Op::noise:
-    case Op::noise_slope:
+    case Op::select:
+    case Op::gate:
+    case Op::less:
+    case Op::less_equal:
+    case Op::equal:
+    case Op::table_value:
+    case Op::table_slope:
+    case Op::table_end:
+    case Op::table_begin:
+    case Op::table_segment:
+      break;
+  }
+  return std::nullopt;
+}
+
+int operand_count(Op op) {
+  switch (op) {
+#define OBLIQUE_OPERATION(name, operands, ...) \
+  case Op::name:                               \
+    return operands;
+#include <oblique/text/operations.def>
+    case Op::constant:
+    case Op::variable:
+    case Op::memory:
+      break;
     case Op::gate:
     case Op::less:
     case Op::less_equal:
@@ -38,51 +81,16 @@ int operand_count(Op op) {
     case Op::select:
     case Op::table_value:
       return 3;
-    default:
-      return 1;
   }
+  return 0;
 }
 
 double evaluate(Op op, double a, double b) {
   switch (op) {
-    case Op::add:
-      return a + b;
-    case Op::subtract:
-      return a - b;
-    case Op::multiply:
-      return a * b;
-    case Op::divide:
-      return a / b;
-    case Op::power:
-      return std::pow(a, b);
-    case Op::negate:
-      return -a;
-    case Op::sin:
-      return std::sin(a);
-    case Op::cos:
-      return std::cos(a);
-    case Op::tan:
-      return std::tan(a);
-    case Op::asin:
-      return std::asin(a);
-    case Op::acos:
-      return std::acos(a);
-    case Op::atan:
-      return std::atan(a);
-    case Op::atan2:
-      return std::atan2(a, b);
-    case Op::exp:
-      return std::exp(a);
-    case Op::log:
-      return std::log(a);
-    case Op::sqrt:
-      return std::sqrt(a);
-    case Op::hypot:
-      return std::hypot(a, b);
-    case Op::noise:
-      return text::noise(a, b, 0);
-    case Op::noise_slope:
-      return text::noise(a, b, 1);
+#define OBLIQUE_OPERATION(name, ...) \
+  case Op::name:                     \
+    return text::evaluate(text::Operation::name, a, b);
+#include <oblique/text/operations.def>
     case Op::gate:
       return a == 0 ? 0 : a * b;
     case Op::less:
@@ -91,7 +99,15 @@ double evaluate(Op op, double a, double b) {
       return a <= b ? 1 : 0;
     case Op::equal:
       return a == b ? 1 : 0;
-    default:
+    case Op::constant:
+    case Op::variable:
+    case Op::memory:
+    case Op::select:
+    case Op::table_value:
+    case Op::table_slope:
+    case Op::table_end:
+    case Op::table_begin:
+    case Op::table_segment:
       break;
   }
   return std::numeric_limits<double>::quiet_NaN();
@@ -189,7 +205,7 @@ NodeId ExpressionGraph::simplified(Op op, NodeId a, NodeId b, NodeId c, bool& do
       if (nodes_[a].op == Op::negate) return nodes_[a].a;
       if (nodes_[a].op == Op::subtract) return apply(Op::subtract, nodes_[a].b, nodes_[a].a);
       break;
-    default:
+    default:  // nothing is known of the rest that would make it shorter
       break;
   }
   done = false;
@@ -205,7 +221,8 @@ NodeId ExpressionGraph::apply(Op op, NodeId a, NodeId b, NodeId c) {
     return constant(evaluate(op, nodes_[a].value, nodes_[b].value));
   }
   // A product keeps its constant in front and a commutative pair has one order, so that equal ones meet.
-  const bool commutative = op == Op::add || op == Op::multiply || op == Op::hypot;
+  const auto smooth = smooth_operation(op);
+  const bool commutative = smooth && text::info_of(*smooth).is(text::kCommutative);
   if (commutative && !is_constant(a) && (is_constant(b) || b < a)) std::swap(a, b);
   bool done = false;
   const NodeId simple = simplified(op, a, b, c, done);
@@ -239,59 +256,13 @@ bool ExpressionGraph::has_value_everywhere(NodeId id, NodeId slope) const {
 
 NodeId ExpressionGraph::partial(NodeId id, int operand) {
   const Node node = nodes_[id];  // a copy: new nodes may move the array
-  const NodeId a = node.a, b = node.b;
-  const bool first = operand == 0;
-  switch (node.op) {
-    case Op::add:
-      return constant(1);
-    case Op::subtract:
-      return constant(first ? 1 : -1);
-    case Op::multiply:
-      return first ? b : a;
-    case Op::divide: {
-      const NodeId inverse = apply(Op::divide, constant(1), b);
-      return first ? inverse : apply(Op::negate, apply(Op::multiply, id, inverse));
-    }
-    case Op::power: {
-      if (first) return apply(Op::multiply, b, apply(Op::power, a, apply(Op::subtract, b, constant(1))));
-      return apply(Op::multiply, id, apply(Op::log, a));
-    }
-    case Op::negate:
-      return constant(-1);
-    case Op::sin:
-      return apply(Op::cos, a);
-    case Op::cos:
-      return apply(Op::negate, apply(Op::sin, a));
-    case Op::tan:
-      return apply(Op::add, constant(1), apply(Op::multiply, id, id));
-    case Op::asin:
-    case Op::acos: {
-      const NodeId root = apply(Op::sqrt, apply(Op::subtract, constant(1), apply(Op::multiply, a, a)));
-      return apply(Op::divide, constant(node.op == Op::asin ? 1 : -1), root);
-    }
-    case Op::atan:
-      return apply(Op::divide, constant(1), apply(Op::add, constant(1), apply(Op::multiply, a, a)));
-    case Op::atan2: {
-      const NodeId square = apply(Op::add, apply(Op::multiply, a, a), apply(Op::multiply, b, b));
-      return first ? apply(Op::divide, b, square) : apply(Op::negate, apply(Op::divide, a, square));
-    }
-    case Op::exp:
-      return id;
-    case Op::log:
-      return apply(Op::divide, constant(1), a);
-    case Op::sqrt:
-      return apply(Op::divide, constant(0.5), id);
-    case Op::hypot:
-      return apply(Op::divide, first ? a : b, id);
-    case Op::noise:
-      return first ? apply(Op::noise_slope, a, b) : constant(0);
-    case Op::table_value:
-      return first ? apply(Op::table_slope, b, node.c) : constant(0);
-    default:  // switches, steps and tables: nothing but events changes them; of `noise_slope` nothing is
-              // asked
-      break;
+  if (const auto operation = smooth_operation(node.op)) {
+    return text::partial_derivative(*operation, operand, Term{this, node.a}, Term{this, node.b},
+                                    Term{this, id})
+        .id;
   }
-  return constant(0);
+  if (node.op == Op::table_value && operand == 0) return apply(Op::table_slope, node.b, node.c);
+  return constant(0);  // switches, steps and tables: nothing but events changes them
 }
 
 std::vector<std::pair<std::uint32_t, NodeId>> ExpressionGraph::gradient(NodeId root) {

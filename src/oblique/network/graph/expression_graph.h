@@ -2,8 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <unordered_map>
 #include <vector>
+
+#include <oblique/text/operations.h>
 
 namespace oblique::network {
 
@@ -15,28 +18,12 @@ enum class Op : std::uint8_t {
   constant,
   variable,
   memory,  ///< held between events: no derivative
-  add,
-  subtract,
-  multiply,
-  divide,
-  power,
-  negate,
-  sin,
-  cos,
-  tan,
-  asin,
-  acos,
-  atan,
-  atan2,
-  exp,
-  log,
-  sqrt,
-  hypot,
-  noise,
-  noise_slope,  ///< d noise/dx
-  select,       ///< a ≠ 0: b, else c; between b and c where 0 < a < 1 (a sliding switch)
-  gate,         ///< a·b, and 0 where a is, even if b is no number: the way a derivative passes `select`
-  less,         ///< 1 or 0; these three are for what changes with events only
+// the smooth operations
+#define OBLIQUE_OPERATION(name, ...) name,
+#include <oblique/text/operations.def>
+  select,  ///< a ≠ 0: b, else c; between b and c where 0 < a < 1 (a sliding switch)
+  gate,    ///< a·b, and 0 where a is, even if b is no number: the way a derivative passes `select`
+  less,    ///< 1 or 0; these three are for what changes with events only
   less_equal,
   equal,
   table_value,    ///< straight line of segment b of the table c at a
@@ -45,6 +32,10 @@ enum class Op : std::uint8_t {
   table_begin,    ///< where it begins; −infinite for the first
   table_segment,  ///< which segment of table b holds a
 };
+
+/// A smooth operation in the graph, and what of the graph is one.
+Op op_of(text::Operation operation);
+std::optional<text::Operation> smooth_operation(Op op);
 
 /// Number of operands of an operation: 0 to 3.
 int operand_count(Op op);

@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include <oblique/text/expression.h>
+#include <oblique/text/operations.h>
 
 namespace oblique::network {
 namespace {

@@ -44,7 +44,7 @@ Follows follows_of(const ExpressionGraph& graph, const Node& node, const std::ve
       return operands[1] == Follows::nothing ? most : Follows::time;
     case Op::select:
       return graph[node.a].continuous ? Follows::time : most;
-    default:
+    default:  // whatever there is besides bends a straight line
       return Follows::time;
   }
 }
@@ -102,8 +102,8 @@ void ProgramCompiler::find_phases(Tangents& rates) {
     seen[id] = true;
     const Node& node = graph[id];
     for (int i = 0; i < operand_count(node.op); ++i) pending.push_back(node.operand(i));
-    const bool periodic =
-        node.op == Op::sin || node.op == Op::cos || node.op == Op::tan || node.op == Op::noise;
+    const auto operation = smooth_operation(node.op);
+    const bool periodic = operation && text::info_of(*operation).is(text::kPeriodic);
     if (periodic && graph[node.a].continuous) arguments.push_back(node.a);
   }
   for (const NodeId argument : arguments) phase_rates_.push_back(rates.of(argument));
@@ -122,18 +122,10 @@ void ProgramCompiler::find_peaks(const std::vector<bool>& acts, const std::vecto
       by_unknowns[id] = by_unknowns[id] || by_unknowns[node.operand(i)];
   }
   const auto makes_peaks = [&](const Node& node) {
-    switch (node.op) {
-      case Op::divide:
-        return follows_states(node.b);
-      case Op::power:
-      case Op::tan:
-      case Op::atan:
-      case Op::atan2:
-      case Op::exp:
-        return true;
-      default:
-        return false;
-    }
+    const auto operation = smooth_operation(node.op);
+    if (!operation) return false;
+    const text::OperationInfo& info = text::info_of(*operation);
+    return info.is(text::kPeaks) || (info.is(text::kPeaksByDivisor) && follows_states(node.b));
   };
   for (auto id = static_cast<NodeId>(graph.size()); id-- > 0;) {
     const Node& node = graph[id];

@@ -4,55 +4,23 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
-#include <oblique/text/expression.h>
+#include <oblique/text/operations.h>
 
 namespace oblique::network {
 namespace {
 
 constexpr std::uint32_t kNoSlot = std::numeric_limits<std::uint32_t>::max();
 
-Instruction::Code code_of(Op op) {
+/// Nothing of constants, variables and memories, which are never written.
+std::optional<Instruction::Code> code_of(Op op) {
   using Code = Instruction::Code;
   switch (op) {
-    case Op::add:
-      return Code::add;
-    case Op::subtract:
-      return Code::subtract;
-    case Op::multiply:
-      return Code::multiply;
-    case Op::divide:
-      return Code::divide;
-    case Op::power:
-      return Code::power;
-    case Op::negate:
-      return Code::negate;
-    case Op::sin:
-      return Code::sin;
-    case Op::cos:
-      return Code::cos;
-    case Op::tan:
-      return Code::tan;
-    case Op::asin:
-      return Code::asin;
-    case Op::acos:
-      return Code::acos;
-    case Op::atan:
-      return Code::atan;
-    case Op::atan2:
-      return Code::atan2;
-    case Op::exp:
-      return Code::exp;
-    case Op::log:
-      return Code::log;
-    case Op::sqrt:
-      return Code::sqrt;
-    case Op::hypot:
-      return Code::hypot;
-    case Op::noise:
-      return Code::noise;
-    case Op::noise_slope:
-      return Code::noise_slope;
+#define OBLIQUE_OPERATION(name, ...) \
+  case Op::name:                     \
+    return Code::name;
+#include <oblique/text/operations.def>
     case Op::select:
       return Code::select;
     case Op::gate:
@@ -78,7 +46,7 @@ Instruction::Code code_of(Op op) {
     case Op::memory:
       break;
   }
-  return Code::add;  // constants and variables are never written
+  return std::nullopt;
 }
 
 /// A PointTable on slots: the number of points, then for each segment its begin, the value there, the slope.
@@ -120,63 +88,11 @@ void run_tape(std::span<const Instruction> instructions, double* slots) {
     const double b = slots[i.b];
     double value = 0;
     switch (i.code) {
-      case Code::add:
-        value = a + b;
-        break;
-      case Code::subtract:
-        value = a - b;
-        break;
-      case Code::multiply:
-        value = a * b;
-        break;
-      case Code::divide:
-        value = a / b;
-        break;
-      case Code::power:
-        value = std::pow(a, b);
-        break;
-      case Code::negate:
-        value = -a;
-        break;
-      case Code::sin:
-        value = std::sin(a);
-        break;
-      case Code::cos:
-        value = std::cos(a);
-        break;
-      case Code::tan:
-        value = std::tan(a);
-        break;
-      case Code::asin:
-        value = std::asin(a);
-        break;
-      case Code::acos:
-        value = std::acos(a);
-        break;
-      case Code::atan:
-        value = std::atan(a);
-        break;
-      case Code::atan2:
-        value = std::atan2(a, b);
-        break;
-      case Code::exp:
-        value = std::exp(a);
-        break;
-      case Code::log:
-        value = std::log(a);
-        break;
-      case Code::sqrt:
-        value = std::sqrt(a);
-        break;
-      case Code::hypot:
-        value = std::hypot(a, b);
-        break;
-      case Code::noise:
-        value = text::noise(a, b, 0);
-        break;
-      case Code::noise_slope:
-        value = text::noise(a, b, 1);
-        break;
+#define OBLIQUE_OPERATION(name, operands, traits, value_of_ab, by_a, by_b) \
+  case Code::name:                                                         \
+    value = value_of_ab;                                                   \
+    break;
+#include <oblique/text/operations.def>
       case Code::select:
         value = select(a, b, slots[i.c]);
         break;
@@ -296,7 +212,8 @@ TapeRange TapeWriter::write(std::span<const NodeId> nodes) {
   TapeRange range{static_cast<std::uint32_t>(instructions_.size()), 0};
   for (const NodeId id : nodes) {
     const Node& node = (*graph_)[id];
-    if (operand_count(node.op) == 0 || fused_[id] == current_stretch_) continue;
+    const auto code = code_of(node.op);
+    if (!code || fused_[id] == current_stretch_) continue;
     Instruction instruction{};
     const int operand = fused_operand(node);
     if (operand != 0) {
@@ -307,7 +224,7 @@ TapeRange TapeWriter::write(std::span<const NodeId> nodes) {
       instruction.b = slot(product.b);
       instruction.c = slot(operand == 1 ? node.b : node.a);
     } else {
-      instruction.code = code_of(node.op);
+      instruction.code = *code;
       const int operands = operand_count(node.op);
       instruction.a = operand_slot(node, 0);
       instruction.b = operands >= 2 ? operand_slot(node, 1) : instruction.a;

@@ -13,25 +13,9 @@ namespace oblique::network {
 /// One instruction of a tape: slots of the operands and of the result.
 struct Instruction {
   enum class Code : std::uint32_t {
-    add,
-    subtract,
-    multiply,
-    divide,
-    power,
-    negate,
-    sin,
-    cos,
-    tan,
-    asin,
-    acos,
-    atan,
-    atan2,
-    exp,
-    log,
-    sqrt,
-    hypot,
-    noise,
-    noise_slope,
+// the smooth operations
+#define OBLIQUE_OPERATION(name, ...) name,
+#include <oblique/text/operations.def>
     select,  ///< a ? b : c
     gate,
     less,
