@@ -360,8 +360,8 @@ class Runner {
   bool ends_unseen() {
     constexpr long kMore = 1000;
     if (!may_end_unseen_ || growth_->found().empty()) return false;
-    if (steps_unseen_ == 0) steps_unseen_ = steps_;
-    return steps_ > 2 * steps_unseen_ + kMore;
+    if (!steps_unseen_) steps_unseen_ = steps_;
+    return steps_ > 2 * *steps_unseen_ + kMore;
   }
 
   /// What shows that a state is not known: the outputs, then the surfaces of the switches.
@@ -499,7 +499,8 @@ class Runner {
   SolverSettings settings_;
   std::optional<GrowthWatch> growth_;
   std::optional<SmallStates> small_;
-  long steps_ = 0, steps_unseen_ = 0;  ///< in all, and until growth was first unseen
+  long steps_ = 0;
+  std::optional<long> steps_unseen_;  ///< until growth was first unseen
 
   RunSnapshot last_whole_;  ///< the last whole step, where the run may be interrupted
 };
