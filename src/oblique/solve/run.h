@@ -10,7 +10,7 @@
 
 #include <oblique/diagram/flat_diagram.h>
 #include <oblique/network/program/program.h>
-#include <oblique/solve/events/switching.h>
+#include <oblique/solve/events/event_record.h>
 #include <oblique/solve/integrator/cvodes_solver.h>
 #include <oblique/solve/integrator/method.h>
 #include <oblique/solve/integrator/overload.h>

@@ -96,11 +96,11 @@ class Runner {
       end_ = last_whole_.time();
       last_whole_.restore(parts());
     }
-    sampler_.result.events = branches_.merged_with(switching_.records());
-    sampler_.result.event_count = switching_.count() + static_cast<long>(branches_.jumps().size());
+    sampler_.result.events = branches_.merged_with(switching_.log().records());
+    sampler_.result.event_count = switching_.log().count() + static_cast<long>(branches_.jumps().size());
     sampler_.result.state = RunSnapshot(end_, parts()).named(program_);
     sampler_.result.warnings = std::move(warnings_at_start_);
-    for (const auto* warnings : {&branches_.warnings(), &switching_.warnings()})
+    for (const auto* warnings : {&branches_.warnings(), &switching_.log().warnings()})
       sampler_.result.warnings.insert(sampler_.result.warnings.end(), warnings->begin(), warnings->end());
     for (text::Diagnostic& warning : sampler_.warnings())
       sampler_.result.warnings.push_back(std::move(warning));
@@ -239,10 +239,10 @@ class Runner {
 
   /// Sets the end of the smooth stretch that begins at t; settles what turns over at t itself.
   void begin_stretch(double t) {
-    double wait = std::numeric_limits<double>::infinity();
+    std::optional<double> wait;
     if (switching_.active()) {
       wait = switching_.known_wait(t, states_);
-      for (int settled = 0; !(wait > 0); ++settled) {
+      for (int settled = 0; wait && !(*wait > 0); ++settled) {
         constexpr int kMostSettled = 1000;
         if (settled > kMostSettled) switching_.throw_endless(t);
         settle(t, false);
@@ -250,8 +250,8 @@ class Runner {
       }
     }
     const double last = std::min(clock_.end(), options_.until);
-    stretch_end_ = std::min(t + wait, last);
-    stretch_length_ = std::min(wait, last - t);
+    stretch_end_ = wait ? std::min(t + *wait, last) : last;
+    stretch_length_ = wait ? std::min(*wait, last - t) : last - t;
   }
 
   /// Samples the step from `from` to t, and settles an event that cuts it short (t is then the time of the
@@ -360,8 +360,8 @@ class Runner {
   bool ends_unseen() {
     constexpr long kMore = 1000;
     if (!may_end_unseen_ || growth_->found().empty()) return false;
-    if (steps_unseen_ == 0) steps_unseen_ = steps_;
-    return steps_ > 2 * steps_unseen_ + kMore;
+    if (!steps_unseen_) steps_unseen_ = steps_;
+    return steps_ > 2 * *steps_unseen_ + kMore;
   }
 
   /// What shows that a state is not known: the outputs, then the surfaces of the switches.
@@ -499,7 +499,8 @@ class Runner {
   SolverSettings settings_;
   std::optional<GrowthWatch> growth_;
   std::optional<SmallStates> small_;
-  long steps_ = 0, steps_unseen_ = 0;  ///< in all, and until growth was first unseen
+  long steps_ = 0;
+  std::optional<long> steps_unseen_;  ///< until growth was first unseen
 
   RunSnapshot last_whole_;  ///< the last whole step, where the run may be interrupted
 };

@@ -87,8 +87,7 @@ BranchWatch::BranchWatch(const network::Program& program, network::Workspace& wo
       file_(file),
       span_(options.until - begin),
       row_(span_ / std::max(1, options.samples - 1)),
-      resolution_(1e-10 * span_),
-      tried_(begin - 1) {
+      resolution_(1e-10 * span_) {
   for (std::size_t loop = 0; loop < program.loops().size(); ++loop) {
     if (!program.loop_has_branches(loop)) continue;
     any_ = true;
@@ -129,7 +128,7 @@ BranchWatch::Ahead BranchWatch::look_ahead(double& t, double stretch_end, std::v
   if (!program_.derivatives(t, states.data(), slopes.data(), workspace_)) solution.rates_at(t, slopes);
   const StraightLine ahead(t, states, slopes);
   // Of the run: the square of the farther one, the error of a straight line, is below every tolerance.
-  const bool twice = t <= tried_;
+  const bool twice = tried_ && t <= *tried_;
   tried_ = t;
   const double sight = (twice ? 1e-6 : 1e-9) * span_;
   const auto end = search(t, std::min(t + sight, stretch_end), sight, ahead);

@@ -78,7 +78,7 @@ class BranchWatch {
   double span_, row_, resolution_;  ///< [s]
   bool any_ = false;                ///< any loop has branches
   bool unseen_ = false;             ///< one that no derivative needs
-  double tried_;                    ///< [s] where the solver was let to start anew
+  std::optional<double> tried_;     ///< [s] where the solver was let to start anew
   std::vector<EventRecord> jumps_;
   std::vector<text::Diagnostic> warnings_;
 };

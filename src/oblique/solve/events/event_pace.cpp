@@ -19,14 +19,14 @@ constexpr double kSteady = 0.75;
 
 std::optional<EventPace::PileUp> EventPace::come(double t, double span, double end) {
   const double now = t - last;
-  shorter = now > 0 && now < interval ? shorter + 1 : 0;
-  const double present = interval > 0 ? now / interval : 1;
+  shorter = now > 0 && interval && now < *interval ? shorter + 1 : 0;
+  const double present = interval ? now / *interval : 1;
   const double left = now * present / (1 - present);  // Σ now · presentᵏ
   if (shorter == 0) {
     steady = false;
-    longer = 0;
-  } else if (longer == 0 || kSteadyOver * now < longer) {
-    steady = longer > 0 && 1 - present > kSteady * approach;
+    longer.reset();
+  } else if (!longer || kSteadyOver * now < *longer) {
+    steady = longer && 1 - present > kSteady * approach;
     longer = now;
     approach = 1 - present;
   }
@@ -35,7 +35,7 @@ std::optional<EventPace::PileUp> EventPace::come(double t, double span, double e
   ratio = present;
   if ((many || quick) && left < kPilingUp * span && t + left < end) return PileUp{now, t + left};
   last = t;
-  interval = now;
+  interval = now > 0 ? std::optional(now) : std::nullopt;
   return std::nullopt;
 }
 

@@ -12,13 +12,13 @@ namespace oblique::solve {
 /// crowd together and thin out again (two balls between a heavy one and a wall). That is seen over intervals
 /// that become shorter by a factor: 1 less the ratio is then not much smaller than it was.
 struct EventPace {
-  double last = 0;      ///< when it came last [s]
-  double interval = 0;  ///< between its last two times [s]; 0: it has not come twice
-  double ratio = 1;     ///< of the interval to the one before
-  int shorter = 0;      ///< how often in a row the interval has become shorter
-  /// An interval of the row [s], 0 where there is none; 1 less the ratio of it to the one before, and whether
-  /// that is still so.
-  double longer = 0, approach = 0;
+  double last = 0;                 ///< when it came last [s]
+  std::optional<double> interval;  ///< since it came before [s]; nothing where it came at once
+  double ratio = 1;                ///< of the interval to the one before
+  int shorter = 0;                 ///< how often in a row the interval has become shorter
+  /// An interval of the row [s]; 1 less the ratio of it to the one before, and whether that is still so.
+  std::optional<double> longer;
+  double approach = 0;
   bool steady = false;
 
   /// The event comes at t in a run as long as `span` that ends at `end` [s]. Its interval [s] where the

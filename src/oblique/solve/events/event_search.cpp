@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <oblique/solve/events/along_branch.h>
+#include <oblique/solve/events/time_resolution.h>
 #include <oblique/solve/solve_error.h>
 
 namespace oblique::solve {
@@ -25,15 +26,12 @@ constexpr double kMostLooks = 1e6;  ///< in a step
 /// How far beyond 0 and 1 the shares of a slide are where it ends.
 constexpr double kEdge = 1e-5;
 
+/// The repulsion of a unit of which none is known: as if its sides drove together as strongly as they ever
+/// did.
+constexpr double kAttracted = -1;
+
 constexpr int kDeepest = 60;
 constexpr int kMostSplits = 1000;  ///< of a part between two looks: more is asked for by rounding alone
-
-constexpr double kRounding = 1e-13;  ///< of what a switch compares, or of a machine unit
-
-/// Nearer than this no two times are told apart.
-double resolution(double t) {
-  return 4 * std::numeric_limits<double>::epsilon() * std::abs(t);
-}
 
 /// A cubic over [0, 1] by its values at the ends and its slopes there.
 struct Cubic {
@@ -81,14 +79,9 @@ EventSearch::EventSearch(const network::Program& program, network::Workspace& wo
       states_(program.n_states()),
       rates_(program.n_states()),
       surfaces_(program.switches().size()),
-      surface_rates_(program.switches().size()),
-      excursions_(program.switches().size(), 0),
-      of_time_(program.switches().size(), false) {
+      surface_rates_(program.switches().size()) {
   for (const network::Switch& s : program.switches())
     check_interval_ = std::min(check_interval_, s.check_interval);
-  for (const network::Source& source : program.sources()) {
-    if (source.switch_index) of_time_[*source.switch_index] = true;
-  }
 }
 
 void EventSearch::look(double t, const Interpolant& solution, Look& at) {
@@ -118,9 +111,7 @@ void EventSearch::look(double t, const Interpolant& solution, Look& at) {
   at.rates.resize(n);
   for (std::size_t s = 0; s < n; ++s) {
     const bool closed = workspace_.memory(program_.switches()[s].memory) == 1;
-    // What the time alone does is known to the rounding that it has there.
-    const double least = of_time_[s] && thresholds_.slack[s] == 0 ? rounding(s) : thresholds_.now[s];
-    at.overdue[s] = (closed ? -surfaces_[s] : surfaces_[s]) - least;
+    at.overdue[s] = (closed ? -surfaces_[s] : surfaces_[s]) - thresholds_.along_solution(s);
     at.rates[s] = closed ? -surface_rates_[s] : surface_rates_[s];
     if (slide_.rests(s)) at.overdue[s] -= SlidingMode::drift();
     if (program_.switches()[s].rate || slide_.holds(s) || slide_.follows(s)) at.overdue[s] = -kInfinity;
@@ -130,10 +121,10 @@ void EventSearch::look(double t, const Interpolant& solution, Look& at) {
     at.overdue.push_back(share - 1 - kEdge);
   }
   for (std::size_t unit = 0; unit < slide_.units().size(); ++unit)
-    at.overdue.push_back(slide_.repulsion(unit) - SlidingMode::kNoRepulsion);
+    at.overdue.push_back(slide_.repulsion(unit).value_or(kAttracted) - SlidingMode::kNoRepulsion);
   for (std::size_t side = 0; side < slide_.sides(); ++side) {
     for (std::size_t f = 0; f < slide_.followers().size(); ++f)
-      at.overdue.push_back(slide_.overdue(side, f) - thresholds_.now[slide_.followers()[f]]);
+      at.overdue.push_back(slide_.overdue(side, f) - thresholds_[slide_.followers()[f]]);
   }
   at.rates.resize(at.overdue.size(), std::numeric_limits<double>::quiet_NaN());
 }
@@ -179,21 +170,10 @@ std::optional<EventSearch::Found> EventSearch::search(double from, std::span<con
   return std::nullopt;
 }
 
-double EventSearch::rounding(std::size_t s) const {
-  const double size = program_.compared_size(s, workspace_);
-  if (of_time_[s] && std::isfinite(size)) return 8 * std::numeric_limits<double>::epsilon() * size;
-  return kRounding * (std::isfinite(size) ? std::max(1.0, size) : 1);
-}
-
 /// Takes its slack from every surface that is beyond the errors of the states.
 void EventSearch::leave_behind(Look& at) {
-  for (std::size_t s = 0; s < excursions_.size(); ++s) {
-    excursions_[s] = std::max(excursions_[s], std::abs(at.surfaces[s]));
-    if (thresholds_.slack[s] == 0 || excursions_[s] <= 2 * thresholds_.slack[s]) continue;
-    const double least = rounding(s);
-    at.overdue[s] += thresholds_.now[s] - least;
-    thresholds_.now[s] = least;
-    thresholds_.slack[s] = 0;
+  for (std::size_t s = 0; s < at.surfaces.size(); ++s) {
+    if (const auto less = thresholds_.leave_behind(s, at.surfaces[s])) at.overdue[s] += *less;
   }
 }
 
@@ -229,7 +209,7 @@ std::optional<EventSearch::Found> EventSearch::split(const Look& from, const Loo
                                                      const Interpolant& solution) {
   const double length = to.time - from.time;
   const bool due = is_due(to);
-  if (depth > kDeepest || --splits_left_ < 0 || length <= resolution(to.time)) {
+  if (depth > kDeepest || --splits_left_ < 0 || length <= time_resolution(to.time)) {
     if (due) return locate(from, to, solution);
     return std::nullopt;
   }
@@ -285,7 +265,7 @@ std::optional<EventSearch::Found> EventSearch::split(const Look& from, const Loo
 EventSearch::Found EventSearch::locate(Look from, Look to, const Interpolant& solution) {
   Look middle;
   bool halve = false;
-  while (to.time - from.time > resolution(to.time)) {
+  while (to.time - from.time > time_resolution(to.time)) {
     double at = kInfinity;
     for (std::size_t s = 0; s < to.overdue.size(); ++s) {
       if (to.overdue[s] <= 0 || !std::isfinite(from.overdue[s])) continue;

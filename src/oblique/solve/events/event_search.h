@@ -10,6 +10,7 @@
 
 #include <oblique/network/program/program.h>
 #include <oblique/solve/events/sliding_mode.h>
+#include <oblique/solve/events/thresholds.h>
 #include <oblique/solve/integrator/interpolant.h>
 #include <oblique/solve/interruption.h>
 
@@ -32,20 +33,9 @@ class EventSearch {
     bool slide_changes = false;                            ///< it ends, or what follows it turns over
   };
 
-  /// How far its surface must have passed zero, of every switch.
-  struct Thresholds {
-    std::vector<double> now;
-    /// Of it, how far the surface may go back by the errors of the states alone; nothing once it has left
-    /// them behind.
-    std::vector<double> slack;
-  };
-
   /// All must outlive this.
   EventSearch(const network::Program& program, network::Workspace& workspace, SlidingMode& slide,
               Thresholds& thresholds, double span, const std::string& file);
-
-  /// Rounding of the surface of a switch: of what it compares, at least of a machine unit.
-  double rounding(std::size_t s) const;
 
   /// In (from, to]; all is in place at `from`. `looks` are times at which to look at least, the last one
   /// `to`.
@@ -55,10 +45,6 @@ class EventSearch {
   void limit_looks(double looks) { looks_left_ = looks; }
   /// `search` then throws Interrupted.
   void end_when(const Interruption& interruption) { interruption_ = interruption; }
-
-  /// How far the surface of a switch has been from zero since `forget`.
-  double excursion(std::size_t s) const { return excursions_[s]; }
-  void forget(std::size_t s) { excursions_[s] = 0; }
 
  private:
   /// Of all that is watched: above 0 where it is due, and its rate. Switches first, then the lower and the
@@ -88,8 +74,7 @@ class EventSearch {
   double reached_ = 0;  ///< [s] where the surfaces were evaluated last
   double looks_left_ = std::numeric_limits<double>::infinity();
   Interruption interruption_;
-  std::vector<double> states_, rates_, surfaces_, surface_rates_, excursions_;
-  std::vector<bool> of_time_;  ///< of each switch: its surface follows the time alone, to rounding
+  std::vector<double> states_, rates_, surfaces_, surface_rates_;
 };
 
 }  // namespace oblique::solve

@@ -5,6 +5,19 @@
 #include <cmath>
 
 namespace oblique::solve {
+namespace {
+
+/// Whether so much more than errors of this size lies between two values of the signals.
+bool jumps(const std::vector<double>& before, const std::vector<double>& after, double error) {
+  constexpr double kTimes = 1e4, kLeast = 1e-6;  // of the errors; of 1 + the signal
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const double jump = std::abs(after[i] - before[i]);
+    if (jump > kTimes * error && jump > kLeast * (1 + std::abs(before[i]))) return true;
+  }
+  return false;
+}
+
+}  // namespace
 
 FaintTurns::FaintTurns(const network::Program& program, network::Workspace& workspace, double span)
     : program_(program),
@@ -21,39 +34,50 @@ void FaintTurns::approach(double from, double at, const std::vector<std::pair<st
   for (const auto& [s, position] : turned) {
     if (!program_.switches()[s].rate) approaches_.push_back({s});  // the others follow the time alone
   }
-  if (approaches_.empty() || states_.empty()) return leave();
+  if (approaches_.empty() || states_.empty()) return approaches_.clear();
   solution.states_at(from, states_);
-  if (!program_.surfaces(from, states_.data(), surfaces_.data(), workspace_)) return leave();
+  if (!program_.surfaces(from, states_.data(), surfaces_.data(), workspace_)) return approaches_.clear();
   for (Approach& a : approaches_) a.before = std::abs(surfaces_[a.number]);
   solution.states_at(at, states_);
   solution.rates_at(at, rates_);
-  if (!program_.surfaces(at, states_.data(), surfaces_.data(), workspace_)) return leave();
+  if (!program_.surfaces(at, states_.data(), surfaces_.data(), workspace_)) return approaches_.clear();
   program_.surface_rates(rates_.data(), surfaces_.data(), workspace_);
   for (Approach& a : approaches_) a.speed = std::abs(surfaces_[a.number]);
 }
 
-std::vector<std::uint32_t> FaintTurns::faint(const std::function<Past(std::uint32_t)>& past) {
+/// By the error of the surface, how far it has been from zero since it turned over last, and how long that is
+/// ago [s].
+bool FaintTurns::is_faint(const Approach& approach, double error, double excursion, double since) const {
   constexpr double kAfar = 1e3, kSlow = 10;  // errors
   constexpr double kPileUp = 1e-4;  // of the run: turns that come more quickly may be those of a ball
-  std::vector<std::uint32_t> found;
-  for (const Approach& a : approaches_) {
-    const Past p = past(a.number);
-    farthest_[a.number] = std::max(farthest_[a.number], p.excursion);
-    const bool has_decayed = p.excursion <= kSlow * p.error && p.since >= kPileUp * span_;
-    const bool decays = p.excursion >= kAfar * p.error && a.speed * p.since <= kSlow * p.error;
-    if (a.before <= p.error && farthest_[a.number] >= kAfar * p.error && (decays || has_decayed))
-      found.push_back(a.number);
+  const bool has_decayed = excursion <= kSlow * error && since >= kPileUp * span_;
+  const bool decays = excursion >= kAfar * error && approach.speed * since <= kSlow * error;
+  return approach.before <= error && farthest_[approach.number] >= kAfar * error && (decays || has_decayed);
+}
+
+std::vector<FaintTurn> FaintTurns::due(double t, const Announced& announced, SwitchSurfaces& surfaces,
+                                       const std::function<double(std::uint32_t)>& last_turn) {
+  if (approaches_.empty()) return {};
+  const SurfaceErrors& errors = surfaces.weigh_errors();
+  std::vector<FaintTurn> found;
+  for (const Approach& approach : approaches_) {
+    const std::uint32_t s = approach.number;
+    const double excursion = surfaces.thresholds().excursion(s);
+    farthest_[s] = std::max(farthest_[s], excursion);
+    const bool told =
+        std::any_of(found_.begin(), found_.end(), [s](const FaintTurn& turn) { return turn.number == s; });
+    if (!told && announced[s] && is_faint(approach, errors[s], excursion, t - last_turn(s)))
+      found.push_back({s, t, errors[s], surfaces.states_behind(s)});
   }
+  approaches_.clear();
   return found;
 }
 
-bool FaintTurns::jumps(const std::vector<double>& before, const std::vector<double>& after, double error) {
-  constexpr double kTimes = 1e4, kLeast = 1e-6;  // of the errors; of 1 + the signal
-  for (std::size_t i = 0; i < before.size(); ++i) {
-    const double jump = std::abs(after[i] - before[i]);
-    if (jump > kTimes * error && jump > kLeast * (1 + std::abs(before[i]))) return true;
+void FaintTurns::keep(std::vector<FaintTurn> turns, const std::vector<double>& before,
+                      const std::vector<double>& after) {
+  for (FaintTurn& turn : turns) {
+    if (jumps(before, after, turn.error)) found_.push_back(std::move(turn));
   }
-  return false;
 }
 
 }  // namespace oblique::solve

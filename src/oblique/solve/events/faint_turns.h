@@ -7,24 +7,17 @@
 #include <vector>
 
 #include <oblique/network/program/program.h>
+#include <oblique/solve/events/faint_turn.h>
+#include <oblique/solve/events/switch_surfaces.h>
 #include <oblique/solve/integrator/interpolant.h>
 
 namespace oblique::solve {
-
-/// A switch that turned over, with an effect, where the errors of the states do not tell its surface from
-/// zero: whether it turns over at all, rounding has decided.
-struct FaintTurn {
-  std::uint32_t number = 0;         ///< in Program::switches
-  double time = 0;                  ///< [s]
-  double error = 0;                 ///< of its surface
-  std::vector<std::size_t> states;  ///< that decide about it, and would be known better by a finer run
-};
 
 /// Tells turns that are faint. The surface of a switch that reads a decay comes from afar, ever nearer to
 /// zero, and never passes it; its states are known to the absolute tolerance, and one of their errors lets it
 /// pass. It is then within its error during the whole step in which it passes, and so slow that in all the
 /// time that it took to come it would not have moved by more than some errors. So is each half-wave of an
-/// oscillation that has decayed.
+/// oscillation that has decayed. Not installed.
 class FaintTurns {
  public:
   /// `span` is the length of the run [s]. All must outlive this.
@@ -33,21 +26,18 @@ class FaintTurns {
   /// Looks how the surfaces of the switches that turn over at `at` come there in a step that began at `from`.
   void approach(double from, double at, const std::vector<std::pair<std::uint32_t, double>>& turned,
                 const Interpolant& solution);
-  /// What was looked at lies behind.
-  void leave() { approaches_.clear(); }
 
-  /// What is known of a surface besides.
-  struct Past {
-    double error = 0;      ///< by those of the states
-    double excursion = 0;  ///< how far it has been from zero since it turned over last
-    double since = 0;      ///< [s] how long that is ago
-  };
-  /// Those of the switches that are faint.
-  std::vector<std::uint32_t> faint(const std::function<Past(std::uint32_t)>& past);
-  bool any() const { return !approaches_.empty(); }
+  /// Of the switches that were looked at those that are faint, still announced, and not found before; they
+  /// then lie behind. The surfaces were evaluated last at t; `last_turn` gives when a switch turned over last
+  /// [s].
+  std::vector<FaintTurn> due(double t, const Announced& announced, SwitchSurfaces& surfaces,
+                             const std::function<double(std::uint32_t)>& last_turn);
 
-  /// Whether so much more than errors of this size lies between two values of the signals.
-  static bool jumps(const std::vector<double>& before, const std::vector<double>& after, double error);
+  /// Keeps those of the turns that have an effect on the signals, by their values before and after.
+  void keep(std::vector<FaintTurn> turns, const std::vector<double>& before,
+            const std::vector<double>& after);
+  /// The first of each switch.
+  const std::vector<FaintTurn>& found() const { return found_; }
 
  private:
   struct Approach {
@@ -56,12 +46,15 @@ class FaintTurns {
     double speed = 0;   ///< magnitude of its rate at the turn [1/s]
   };
 
+  bool is_faint(const Approach& approach, double error, double excursion, double since) const;
+
   const network::Program& program_;
   network::Workspace& workspace_;
   double span_;
   std::vector<Approach> approaches_;
   std::vector<double> farthest_;  ///< of each surface: how far from zero it has been
   std::vector<double> states_, rates_, surfaces_;
+  std::vector<FaintTurn> found_;
 };
 
 }  // namespace oblique::solve

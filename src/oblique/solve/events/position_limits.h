@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <span>
+
 // What counts as a rate where the positions of switches are chosen; not installed.
 namespace oblique::solve {
 
@@ -16,5 +20,17 @@ inline constexpr double kNoLaterRate = 1e-6;
 inline constexpr double kAboutToTurn = 0.05;
 /// Rounding of a rate, of the fastest state's; and of a surface [machine unit].
 inline constexpr double kRounding = 1e-13;
+
+/// Whether a rate takes a surface out of its rounding at all in a run as long as `span` [s]: where all is at
+/// rest there is no faster state beside which to see that it is rounding.
+inline bool leaves_rounding(double rate, double span) {
+  return std::abs(rate) * span > kRounding;
+}
+
+/// The rate of the fastest state, at least `least`.
+inline double fastest_of(std::span<const double> slopes, double least) {
+  for (const double slope : slopes) least = std::max(least, std::abs(slope));
+  return least;
+}
 
 }  // namespace oblique::solve

@@ -76,7 +76,6 @@ void SlidingMode::make_sides() {
     }
   }
   sides_.assign(1, Side{});
-  sides_.front().cluster = std::numeric_limits<std::uint32_t>::max();  // it is of all
   for (std::uint32_t cluster = 0; cluster < n; ++cluster) {
     std::vector<std::uint32_t> members;
     for (std::uint32_t u = 0; u < n; ++u) {
@@ -174,7 +173,8 @@ bool SlidingMode::begin(std::vector<std::uint32_t> units, double t, std::span<co
   const auto within = [](double share) { return share >= -kEdge && share <= 1 + kEdge; };
   if (possible && evaluate(t, x) && std::all_of(shares_.begin(), shares_.end(), within) && lasts(t, x)) {
     bool attracts = true;
-    for (std::size_t u = 0; u < units_.size(); ++u) attracts = attracts && !(repulsion(u) > kNoRepulsion);
+    for (std::size_t u = 0; u < units_.size(); ++u)
+      attracts = attracts && !(repulsion(u).value_or(0) > kNoRepulsion);
     if (attracts) {
       load_base();
       begun_ = true;
@@ -231,11 +231,11 @@ double SlidingMode::drive_apart(std::size_t unit) const {
   return std::min(weaker, std::abs(above - below)) > kDrives * stronger ? above - below : 0;
 }
 
-double SlidingMode::repulsion(std::size_t unit) const {
+std::optional<double> SlidingMode::repulsion(std::size_t unit) const {
   const double strongest = strongest_[units_[unit]];
-  if (!(strongest > 0)) return -1;
+  if (!(strongest > 0)) return std::nullopt;
   const double apart = drive_apart(unit);
-  if (apart == 0) return -1;
+  if (apart == 0) return std::nullopt;
   const double part = apart / strongest;
   return part > kNoDrive ? part : std::min(part, 0.0);
 }
@@ -263,7 +263,7 @@ double SlidingMode::weigh(std::span<const double> shares) {
   };
   double others = 0;
   for (std::size_t k = 1; k < sides_.size(); ++k)
-    others += sides_[k].weight = product(sides_[k].bits, sides_[k].cluster);
+    others += sides_[k].weight = product(sides_[k].bits, *sides_[k].cluster);
   return sides_.front().weight = 1 - others;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -58,8 +59,9 @@ class SlidingMode {
   /// Of each unit, that of its upper side: outside 0 and 1 where the slide is over.
   const std::vector<double>& shares() const { return shares_; }
   /// Of a unit that nothing couples, how much more its upper side drives up than its lower one does, over the
-  /// most by which they have ever driven together: above 0 both drive away from the surface. Else −1.
-  double repulsion(std::size_t unit) const;
+  /// most by which they have ever driven together: above 0 both drive away from the surface. Nothing of
+  /// another, or where that tells nothing.
+  std::optional<double> repulsion(std::size_t unit) const;
   /// Rounding of it.
   static constexpr double kNoRepulsion = 1e-8;
   /// Sides that drive together or apart by less than this part of what they drove together do neither: a
@@ -79,7 +81,7 @@ class SlidingMode {
   /// One combination of sides: bit u of `bits` for unit u.
   struct Side {
     std::uint64_t bits = 0;
-    std::uint32_t cluster = 0;
+    std::optional<std::uint32_t> cluster;                     ///< nothing for the first side, which is of all
     std::vector<std::pair<std::uint32_t, double>> positions;  ///< memories, of what slides and what follows
     std::vector<double> dxdt;
     std::vector<double> surfaces, rates;  ///< of every switch

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include <oblique/solve/events/switching.h>
 #include <oblique/solve/solve_error.h>
 
 namespace oblique::solve {

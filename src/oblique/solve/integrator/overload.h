@@ -8,10 +8,11 @@
 
 #include <oblique/diagram/rescale.h>
 #include <oblique/network/program/program.h>
-#include <oblique/solve/events/switching.h>
 #include <oblique/solve/integrator/interpolant.h>
 
 namespace oblique::solve {
+
+class Switching;
 
 /// The largest magnitude that a signal had in a run.
 struct Peak {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <oblique/solve/events/faint_turns.h>
+#include <oblique/solve/events/faint_turn.h>
 #include <oblique/solve/integrator/cvodes_solver.h>
 #include <oblique/solve/integrator/growth_watch.h>
 #include <oblique/solve/integrator/small_states.h>

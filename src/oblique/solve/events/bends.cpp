@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/solve/events/bends.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <oblique/solve/events/position_limits.h>
+
+namespace oblique::solve {
+
+bool only_bends(const network::Program& program, const network::Workspace& workspace, std::uint32_t unit) {
+  const auto& members = program.switch_structure().members[unit];
+  return std::all_of(members.begin(), members.end(), [&](std::uint32_t s) {
+    return program.is_ordered(s) &&
+           (program.switches()[s].turning != network::Turning::jumps || program.pieces_meet(s, workspace));
+  });
+}
+
+Bends::Bends(const network::Program& program, network::Workspace& workspace, double span)
+    : program_(program),
+      workspace_(workspace),
+      span_(span),
+      is_one_(program.switches().size(), false),
+      first_rates_(program.switches().size()),
+      surfaces_(program.switches().size()),
+      slopes_(program.n_states()),
+      moved_(program.n_states()) {}
+
+void Bends::clear() {
+  positions_.clear();
+  resting_.clear();
+  std::fill(is_one_.begin(), is_one_.end(), false);
+}
+
+void Bends::add(std::uint32_t unit, bool prefers_above) {
+  const network::SwitchStructure& structure = program_.switch_structure();
+  for (const std::uint32_t s : structure.members[unit]) {
+    is_one_[s] = true;
+    positions_.emplace_back(s, prefers_above != structure.opposite[s] ? 1 : 0);
+  }
+}
+
+bool Bends::follow(double t, std::span<const double> x, std::vector<double>& surfaces) {
+  const network::SwitchStructure& structure = program_.switch_structure();
+  resting_.clear();
+  program_.last_derivatives(slopes_.data(), workspace_);
+  const double fastest = fastest_of(slopes_, std::numeric_limits<double>::min());
+  const auto moves = [&](double rate, double rounding) {
+    return std::abs(rate) > rounding * fastest && leaves_rounding(rate, span_);
+  };
+  const auto go = [&](std::uint32_t s, double rate) {
+    workspace_.set_memory(program_.switches()[s].memory, rate > 0 ? 1 : 0);
+  };
+  program_.decide_in_order(t, x.data(), slopes_.data(), workspace_,
+                           [&](std::uint32_t s, double /*surface*/, double rate) {
+                             if (!is_one_[s]) return;
+                             first_rates_[s] = rate;
+                             if (moves(rate, kRounding)) go(s, rate);
+                           });
+  // What stands still to first order, or is about to turn, goes where it goes a moment later.
+  std::vector<bool> at_once(is_one_.size(), false), by_later(is_one_.size(), false);
+  const double step = std::min(kProbe / fastest, kProbe * span_);
+  for (std::size_t i = 0; i < x.size(); ++i) moved_[i] = x[i] + step * slopes_[i];
+  if (program_.surfaces(t + step, moved_.data(), surfaces_.data(), workspace_)) {
+    program_.last_derivatives(slopes_.data(), workspace_);
+    program_.decide_in_order(
+        t + step, moved_.data(), slopes_.data(), workspace_,
+        [&](std::uint32_t s, double /*surface*/, double later) {
+          if (!is_one_[s]) return;
+          const double rate = first_rates_[s];
+          if (moves(rate, kRounding) && std::abs(rate) > kAboutToTurn * std::abs(later - rate)) {
+            go(s, rate);
+            at_once[s] = true;
+          } else if (moves(later, 10 * kRounding)) {
+            go(s, later);
+            by_later[s] = true;
+          } else if (s == structure.members[structure.unit[s]].front()) {
+            resting_.push_back(structure.unit[s]);
+          }
+        });
+    keep_where_both_sides_lead_back(t + step, moved_, by_later);
+    keep_where_both_sides_lead_back(t, x, at_once);
+  }
+  return program_.surfaces(t, x.data(), surfaces.data(), workspace_);
+}
+
+/// Looks at those `decided` at (t, x) where they have gone: where that side leads back as well, the solution
+/// goes along the surface within less than what can be told, and both sides are right to the rounding of the
+/// surface. (What multiplies this rounding may change dx/dt.) Such a one takes the side that it prefers.
+void Bends::keep_where_both_sides_lead_back(double t, std::span<const double> x,
+                                            const std::vector<bool>& decided) {
+  if (std::find(decided.begin(), decided.end(), true) == decided.end()) return;
+  if (!program_.surfaces(t, x.data(), surfaces_.data(), workspace_)) return;
+  program_.last_derivatives(slopes_.data(), workspace_);
+  std::vector<double> preferred(is_one_.size());
+  for (const auto& [s, position] : positions_) preferred[s] = position;
+  program_.decide_in_order(t, x.data(), slopes_.data(), workspace_,
+                           [&](std::uint32_t s, double /*surface*/, double rate) {
+                             const std::uint32_t memory = program_.switches()[s].memory;
+                             const bool back = workspace_.memory(memory) == 1 ? rate < 0 : rate > 0;
+                             if (decided[s] && back) workspace_.set_memory(memory, preferred[s]);
+                           });
+}
+
+bool Bends::rest_with(SlidingMode& slide, const std::vector<double>& rates, double fastest) const {
+  return std::all_of(positions_.begin(), positions_.end(), [&](const auto& placed) {
+    const std::uint32_t s = placed.first;
+    const double largest = std::max(kRounding * fastest, std::abs(first_rates_[s]));
+    if (std::abs(rates[s]) > kNoLaterRate * largest)
+      return (rates[s] > 0) == (workspace_.memory(program_.switches()[s].memory) == 1);
+    slide.let_rest(s);
+    return true;
+  });
+}
+
+}  // namespace oblique::solve

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <oblique/network/program/program.h>
+#include <oblique/solve/events/sliding_mode.h>
+
+namespace oblique::solve {
+
+/// Whether the equations only bend with a unit of switches, where the surfaces were evaluated last.
+bool only_bends(const network::Program& program, const network::Workspace& workspace, std::uint32_t unit);
+
+/// Units of switches at which the equations only bend. Wherever these stand, dx/dt at that instant is the
+/// same, so that they need no trials: each goes where its surface goes, in the order in which the slopes of
+/// the surfaces depend on their positions (lexicographic derivatives: Nesterov 2005). Not installed.
+class Bends {
+ public:
+  /// All must outlive this; `span` is the length of the run [s].
+  Bends(const network::Program& program, network::Workspace& workspace, double span);
+
+  void clear();
+  /// Adds a unit; `prefers_above` tells the side that it takes where both are right.
+  void add(std::uint32_t unit, bool prefers_above);
+  bool any() const { return !positions_.empty(); }
+
+  /// The switches, and the positions that they prefer.
+  const std::vector<std::pair<std::uint32_t, double>>& positions() const { return positions_; }
+
+  /// Turns them to where their surfaces go from (t, x), all others where they are and the surfaces evaluated
+  /// there; then evaluates the surfaces anew. One that stays at zero keeps its position. False where a loop
+  /// has no solution.
+  bool follow(double t, std::span<const double> x, std::vector<double>& surfaces);
+  /// The units that the last `follow` found to stay at zero.
+  const std::vector<std::uint32_t>& resting() const { return resting_; }
+
+  /// Lets those rest whose surfaces stay at zero along with a slide that has begun; `rates` are those of its
+  /// mixture, and `fastest` is the rate of the fastest state. False where one would go to the other side.
+  bool rest_with(SlidingMode& slide, const std::vector<double>& rates, double fastest) const;
+
+ private:
+  void keep_where_both_sides_lead_back(double t, std::span<const double> x, const std::vector<bool>& decided);
+
+  const network::Program& program_;
+  network::Workspace& workspace_;
+  double span_;
+  std::vector<std::pair<std::uint32_t, double>> positions_;  ///< see `positions`
+  std::vector<bool> is_one_;                                 ///< of each switch: it is one of them
+  std::vector<std::uint32_t> resting_;
+  std::vector<double> first_rates_;  ///< of their surfaces
+  std::vector<double> surfaces_, slopes_, moved_;
+};
+
+}  // namespace oblique::solve

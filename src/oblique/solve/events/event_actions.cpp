@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/solve/events/event_actions.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <oblique/solve/solve_error.h>
+
+namespace oblique::solve {
+namespace {
+
+bool sets_states(const network::Event& event) {
+  return std::any_of(event.actions.begin(), event.actions.end(),
+                     [](const network::Event::Action& action) { return action.on_state; });
+}
+
+}  // namespace
+
+EventActions::EventActions(const network::Program& program, network::Workspace& workspace,
+                           const SwitchSurfaces& surfaces, const SlidingMode& slide,
+                           const SwitchSettling& settling, EventLog& log, double span,
+                           const std::string& file)
+    : program_(program),
+      workspace_(workspace),
+      surfaces_(surfaces),
+      slide_(slide),
+      settling_(settling),
+      log_(log),
+      span_(span),
+      file_(file),
+      held_(program.events().size(), false),
+      came_(program.events().size(), false),
+      paces_(program.events().size()),
+      signals_(program.n_signals()) {}
+
+/// Whether an event piles up, so that the one that takes its place is to come. Throws SolveError where none
+/// does.
+bool EventActions::piles_up(const Come& come, double t) {
+  const auto pile_up = paces_[come.event].come(t, span_, end_);
+  if (!pile_up && !come.at_once) return false;
+  const network::Event& what = program_.events()[come.event];
+  if (what.piling_up) return true;
+  const std::string told =
+      pile_up
+          ? fmt::format(
+                "come ever faster: at t = {:.9g} s again after {:.3g} s, and they pile up at t = "
+                "{:.9g} s",
+                t, pile_up->interval, pile_up->at)
+          : fmt::format("come again at once at t = {:.9g} s: what they set leads back to their condition", t);
+  throw SolveError(SolveError::Kind::chatter, t,
+                   {{file_, {}},
+                    fmt::format("the events of '{}' {}", what.block, told),
+                    {},
+                    "end the run before, or tell the block what happens there: 'piling_up' beside 'set' in "
+                    "its [[events]]"});
+}
+
+/// Whether the condition of an event that came at this instant holds because what it set leads back to it: it
+/// hangs on a switch whose surface is at zero, and does not stay there.
+bool EventActions::comes_at_once(std::size_t event, double t, std::span<const double> x) {
+  if (!came_[event]) return false;
+  std::vector<double> others(surfaces_.size());
+  bool hangs = false;
+  for (std::size_t s = 0; s < surfaces_.size() && !hangs; ++s) {
+    if (surfaces_.is_known(s) || settling_.stays(s) || slide_.rests(s) || surfaces_.is_off_zero(s)) continue;
+    const std::uint32_t memory = program_.switches()[s].memory;
+    const double position = workspace_.memory(memory);
+    workspace_.set_memory(memory, 1 - position);
+    hangs =
+        program_.surfaces(t, x.data(), others.data(), workspace_) && !program_.condition(event, workspace_);
+    workspace_.set_memory(memory, position);
+  }
+  program_.surfaces(t, x.data(), others.data(), workspace_);  // leaves everything as it was
+  return hangs;
+}
+
+/// Looks at all conditions; the events that have come.
+std::vector<EventActions::Come> EventActions::look(double t, std::span<const double> x, bool starting) {
+  std::vector<Come> found;
+  for (std::size_t e = 0; e < held_.size(); ++e) {
+    const network::Event& event = program_.events()[e];
+    const bool holds = program_.condition(e, workspace_);
+    const bool at_once = holds && comes_at_once(e, t, x);
+    const bool comes = holds && (!held_[e] || event.repeats || at_once) && (!starting || event.at_start);
+    held_[e] = holds;
+    if (comes) found.push_back({e, at_once});
+  }
+  return found;
+}
+
+/// What an event sets, by the signals that were evaluated last.
+void EventActions::add_changes(std::size_t event, double t, std::vector<Change>& changes) const {
+  const network::Event& what = program_.events()[event];
+  for (std::size_t a = 0; a < what.actions.size(); ++a) {
+    const double value = program_.action_value(event, a, workspace_);
+    if (!std::isfinite(value)) {
+      throw SolveError(SolveError::Kind::blow_up, t,
+                       {{file_, {}},
+                        fmt::format("an event of '{}' would set a value that is no finite number at t = "
+                                    "{:.6g} s",
+                                    what.block, t),
+                        {},
+                        {}});
+    }
+    changes.push_back({&what.actions[a], value});
+  }
+}
+
+std::optional<EventActions::Effect> EventActions::serve(double t, std::vector<double>& x, bool starting) {
+  const std::vector<Come> served = look(t, x, starting);
+  if (served.empty()) return std::nullopt;
+  if (!program_.signals(t, x.data(), signals_.data(), workspace_))
+    throw loop_error(program_, workspace_.trouble(), t, file_);
+  std::vector<Change> changes;
+  for (const Come& come : served) {
+    const network::Event& event = program_.events()[come.event];
+    came_[come.event] = sets_states(event);
+    if (piles_up(come, t)) {
+      came_[come.event] = false;
+      log_.record(t, program_.events()[*event.piling_up].block + ": its events pile up");
+      add_changes(*event.piling_up, t, changes);
+    } else {
+      log_.record(t, event.block);
+      add_changes(come.event, t, changes);
+    }
+  }
+  Effect effect;
+  for (const Change& change : changes) {
+    if (change.action->on_state) {
+      effect.sets_states = true;
+      effect.jumps = effect.jumps || x[change.action->index] != change.value;
+      x[change.action->index] = change.value;
+    } else {
+      workspace_.set_memory(change.action->index, change.value);
+    }
+  }
+  return effect;
+}
+
+}  // namespace oblique::solve

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <oblique/network/program/program.h>
+#include <oblique/solve/events/event_log.h>
+#include <oblique/solve/events/event_pace.h>
+#include <oblique/solve/events/sliding_mode.h>
+#include <oblique/solve/events/switch_settling.h>
+#include <oblique/solve/events/switch_surfaces.h>
+
+namespace oblique::solve {
+
+/// Serves events: which have come, what they set, and how they pile up. Not installed.
+class EventActions {
+ public:
+  /// All must outlive this; `span` is the length of the run [s], and `file` names the diagram in messages.
+  EventActions(const network::Program& program, network::Workspace& workspace, const SwitchSurfaces& surfaces,
+               const SlidingMode& slide, const SwitchSettling& settling, EventLog& log, double span,
+               const std::string& file);
+
+  /// Where the run ends [s]: events that would pile up later do not.
+  void end_at(double t) { end_ = t; }
+
+  /// A new instant: no event has come at it yet.
+  void begin_instant() { came_.assign(came_.size(), false); }
+
+  /// What events have done at one instant.
+  struct Effect {
+    bool sets_states = false;
+    bool jumps = false;  ///< a state has another value now
+  };
+  /// Serves all events whose conditions have become true at (t, x), where the surfaces were evaluated last;
+  /// while `starting` only those that come at a start. Nothing where there are none. Throws SolveError.
+  std::optional<Effect> serve(double t, std::vector<double>& x, bool starting);
+
+  /// Whether the condition of each event held when it was last looked at: what must be kept to go on later.
+  const std::vector<bool>& conditions() const { return held_; }
+  void restore(std::vector<bool> conditions) { held_ = std::move(conditions); }
+
+ private:
+  /// An event that has come, and whether its own actions have led back to its condition.
+  struct Come {
+    std::size_t event;
+    bool at_once;
+  };
+  struct Change {
+    const network::Event::Action* action;
+    double value;
+  };
+
+  std::vector<Come> look(double t, std::span<const double> x, bool starting);
+  bool comes_at_once(std::size_t event, double t, std::span<const double> x);
+  bool piles_up(const Come& come, double t);
+  void add_changes(std::size_t event, double t, std::vector<Change>& changes) const;
+
+  const network::Program& program_;
+  network::Workspace& workspace_;
+  const SwitchSurfaces& surfaces_;
+  const SlidingMode& slide_;
+  const SwitchSettling& settling_;
+  EventLog& log_;
+  double span_;
+  double end_ = std::numeric_limits<double>::infinity();  ///< [s] of the run
+  const std::string& file_;
+  std::vector<bool> held_;  ///< see `conditions`
+  std::vector<bool> came_;  ///< of each event that sets states: whether it came at this instant
+  std::vector<EventPace> paces_;
+  std::vector<double> signals_;
+};
+
+}  // namespace oblique::solve

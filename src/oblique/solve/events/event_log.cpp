@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/solve/events/event_log.h>
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace oblique::solve {
+namespace {
+
+constexpr std::size_t kMostRecords = 1000;
+
+bool contains(const std::vector<std::uint32_t>& units, std::uint32_t unit) {
+  return std::find(units.begin(), units.end(), unit) != units.end();
+}
+
+}  // namespace
+
+const network::Switch& EventLog::first_of(std::uint32_t unit) const {
+  return program_.switches()[program_.switch_structure().members[unit].front()];
+}
+
+void EventLog::record(double t, std::string what) {
+  ++count_;
+  if (records_.size() < kMostRecords) records_.push_back({t, std::move(what)});
+}
+
+void EventLog::record_turn(std::size_t s, double position, double t) {
+  record(t, fmt::format("{}: {} {}", program_.switches()[s].block, program_.switches()[s].comparison,
+                        position > 0 ? "from now on" : "no longer"));
+}
+
+void EventLog::record_slides(const std::vector<std::uint32_t>& before,
+                             const std::vector<std::uint32_t>& repelled, const SlidingMode& slide, double t) {
+  const auto tell = [&](std::uint32_t unit, const char* what) {
+    const network::Switch& s = first_of(unit);
+    record(t, fmt::format("{}: {} {} = 0", s.block, what, s.comparison));
+  };
+  for (const std::uint32_t unit : before) {
+    if (contains(slide.units(), unit)) continue;
+    tell(unit, "leaves");
+    if (contains(repelled, unit)) warn_of_repulsion(unit, t);
+  }
+  for (const std::uint32_t unit : slide.units()) {
+    if (!contains(before, unit)) tell(unit, "slides along");
+  }
+  warn_of_torn(slide, t);
+}
+
+void EventLog::warn(text::Diagnostic warning) {
+  const bool told = std::any_of(warnings_.begin(), warnings_.end(),
+                                [&](const text::Diagnostic& other) { return other.what == warning.what; });
+  if (!told) warnings_.push_back(std::move(warning));
+}
+
+/// A warning about a unit that is the same each time but for what follows `what`; once for each unit: it may
+/// come back.
+void EventLog::warn_of_unit(std::uint32_t unit, const char* what, const std::string& rest,
+                            const char* remedy) {
+  const network::Switch& s = first_of(unit);
+  const std::string begin = fmt::format("'{}' ({}) {}", s.block, s.comparison, what);
+  const bool told = std::any_of(warnings_.begin(), warnings_.end(), [&](const text::Diagnostic& warning) {
+    return warning.what.starts_with(begin);
+  });
+  if (!told) warnings_.push_back({{file_, {}}, begin + rest, {}, remedy});
+}
+
+/// Tells that rounding decides where the solution goes.
+void EventLog::warn_of_repulsion(std::uint32_t unit, double t) {
+  warn_of_unit(
+      unit, "leaves the surface that it slides along",
+      fmt::format(" at t = {:.9g} s, since both of its sides drive away from it from then on: rounding "
+                  "decides to which side it goes",
+                  t),
+      "end the run before, or add the disturbance that decides it on the machine");
+}
+
+void EventLog::warn_of_no_side(std::uint32_t unit, double t) {
+  warn_of_unit(
+      unit, "stands on its surface",
+      fmt::format(" at t = {:.9g} s, and both of its sides drive away from it: nothing decides to which "
+                  "side it goes",
+                  t),
+      "begin a little to the side that is meant, or add the disturbance that decides it on the machine");
+}
+
+/// Tells of switches with events that follow what slides: what these would do is not counted.
+void EventLog::warn_of_torn(const SlidingMode& slide, double t) {
+  constexpr std::string_view kWhen = " from t = ";
+  for (const std::uint32_t s : slide.followers()) {
+    if (!slide.is_torn(s)) continue;
+    const network::Switch& follower = program_.switches()[s];
+    const std::string what = fmt::format(
+        "'{}' ({}) depends on '{}', which slides along its surface{}{:.9g} s: it switches "
+        "without end, which is not counted and not stored",
+        follower.block, follower.comparison, first_of(slide.units().front()).block, kWhen, t);
+    const bool told = std::any_of(warnings_.begin(), warnings_.end(), [&](const text::Diagnostic& warning) {
+      return warning.what.substr(0, warning.what.find(kWhen)) == what.substr(0, what.find(kWhen));
+    });
+    const bool acts = std::any_of(program_.events().begin(), program_.events().end(),
+                                  [&](const network::Event& event) { return event.block == follower.block; });
+    if (acts && !told)
+      warnings_.push_back({{file_, {}}, what, {}, "give the switch that slides a hysteresis"});
+  }
+}
+
+SolveError EventLog::endless(const std::string& block, const std::string& what, double t) const {
+  return {SolveError::Kind::chatter,
+          t,
+          {{file_, {}},
+           fmt::format("'{}' switches without end at t = {:.9g} s ({})", block, t, what),
+           {},
+           "give the switch a hysteresis, or end what it repeats before it becomes endlessly fast"}};
+}
+
+SolveError EventLog::endless(const std::string& what, double t) const {
+  return endless(records_.empty() ? "" : records_.back().what, what, t);
+}
+
+}  // namespace oblique::solve

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <oblique/network/program/program.h>
+#include <oblique/solve/events/event_record.h>
+#include <oblique/solve/events/sliding_mode.h>
+#include <oblique/solve/solve_error.h>
+
+namespace oblique::solve {
+
+/// What a run reports of its switches and events: what happened, and what could not be seen. Not installed.
+class EventLog {
+ public:
+  /// `file` names the diagram in messages. Both must outlive this.
+  EventLog(const network::Program& program, const std::string& file) : program_(program), file_(file) {}
+
+  void record(double t, std::string what);
+  /// That the comparison of a switch holds from now on, or no longer.
+  void record_turn(std::size_t s, double position, double t);
+  /// Which slides have begun and ended since the units `before` slid; of those that have ended some were
+  /// `repelled`.
+  void record_slides(const std::vector<std::uint32_t>& before, const std::vector<std::uint32_t>& repelled,
+                     const SlidingMode& slide, double t);
+
+  /// A warning; once, however often it comes.
+  void warn(text::Diagnostic warning);
+  /// Tells that nothing decides where the solution goes.
+  void warn_of_no_side(std::uint32_t unit, double t);
+
+  /// The error of a run in which this block switches without end.
+  SolveError endless(const std::string& block, const std::string& what, double t) const;
+  /// The same of what was recorded last.
+  SolveError endless(const std::string& what, double t) const;
+
+  /// The first thousand events, and how many there were.
+  const std::vector<EventRecord>& records() const { return records_; }
+  long count() const { return count_; }
+  /// What could not be seen.
+  const std::vector<text::Diagnostic>& warnings() const { return warnings_; }
+
+ private:
+  const network::Switch& first_of(std::uint32_t unit) const;
+  void warn_of_unit(std::uint32_t unit, const char* what, const std::string& rest, const char* remedy);
+  void warn_of_repulsion(std::uint32_t unit, double t);
+  void warn_of_torn(const SlidingMode& slide, double t);
+
+  const network::Program& program_;
+  const std::string& file_;
+  std::vector<EventRecord> records_;
+  long count_ = 0;
+  std::vector<text::Diagnostic> warnings_;
+};
+
+}  // namespace oblique::solve

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/solve/events/self_consistent.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <oblique/solve/events/combinations.h>
+#include <oblique/solve/events/position_limits.h>
+
+namespace oblique::solve {
+namespace {
+
+/// Whether every switch stands where its surface asks for it, or goes to.
+bool agrees(const network::Program& program, network::Workspace& workspace, const SlidingMode& slide,
+            const Thresholds& thresholds, double span, double t, std::span<const double> x) {
+  std::vector<double> surfaces(program.switches().size()), rates(surfaces.size()), slopes(x.size());
+  if (!program.surfaces(t, x.data(), surfaces.data(), workspace)) return false;
+  program.last_derivatives(slopes.data(), workspace);
+  program.surface_rates(slopes.data(), rates.data(), workspace);
+  const double fastest = fastest_of(slopes, 0);
+  for (std::size_t s = 0; s < surfaces.size(); ++s) {
+    if (program.switches()[s].rate || slide.holds(s) || slide.follows(s)) continue;
+    const bool closed = workspace.memory(program.switches()[s].memory) == 1;
+    const auto goes_there = [&](double towards) { return closed ? towards > 0 : towards < 0; };
+    if (std::abs(surfaces[s]) <= thresholds[s]) {
+      const bool moves = leaves_rounding(rates[s], span) && std::abs(rates[s]) > kNoRate * fastest;
+      if (moves && !goes_there(rates[s])) return false;
+    } else if (!goes_there(surfaces[s])) {
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+bool place_others(const network::Program& program, network::Workspace& workspace,
+                  const Thresholds& thresholds, const std::vector<bool>& placed, double t,
+                  std::span<const double> x, std::vector<double>& surfaces) {
+  constexpr std::size_t kInOrder = 2;  // rounds before what is left goes in one
+  bool turned = false;
+  const auto settle = [&](std::size_t s, double surface) {
+    if (placed[s] || program.switches()[s].rate || std::abs(surface) <= thresholds[s]) return;
+    const std::uint32_t memory = program.switches()[s].memory;
+    const double position = surface > 0 ? 1 : 0;
+    turned = turned || workspace.memory(memory) != position;
+    workspace.set_memory(memory, position);
+  };
+  for (std::size_t round = 0; round <= 2 * surfaces.size() + 1; ++round) {
+    if (!program.surfaces(t, x.data(), surfaces.data(), workspace)) return false;
+    turned = false;
+    for (std::size_t s = 0; s < surfaces.size(); ++s) settle(s, surfaces[s]);
+    if (!turned) return true;
+    if (round == kInOrder) {
+      const std::vector<double> still(x.size(), 0.0);
+      program.decide_in_order(t, x.data(), still.data(), workspace,
+                              [&](std::uint32_t s, double surface, double /*rate*/) { settle(s, surface); });
+    }
+  }
+  return false;
+}
+
+bool choose_any(const network::Program& program, network::Workspace& workspace, const SlidingMode& slide,
+                const Thresholds& thresholds, double span, std::vector<std::uint32_t> restless, double t,
+                std::span<const double> x) {
+  constexpr std::size_t kMostTogether = 12;  // switches of which all combinations are tried
+  const network::SwitchStructure& structure = program.switch_structure();
+  for (std::size_t k = 0; k < restless.size(); ++k) {
+    for (const std::uint32_t other : structure.positions_below(restless[k])) {
+      const bool mutual = structure.depends(other, restless[k]);
+      if (mutual && std::find(restless.begin(), restless.end(), other) == restless.end())
+        restless.push_back(other);
+    }
+  }
+  std::sort(restless.begin(), restless.end());
+  restless.erase(std::unique(restless.begin(), restless.end()), restless.end());
+  if (restless.size() > kMostTogether) return false;
+  const std::vector<double> before(workspace.memories().begin(), workspace.memories().end());
+  Combination present = 0;
+  std::vector<bool> placed(program.switches().size(), false);
+  for (std::size_t k = 0; k < restless.size(); ++k) {
+    placed[restless[k]] = true;
+    if (workspace.memory(program.switches()[restless[k]].memory) == 1) present |= 1U << k;
+  }
+  std::vector<double> surfaces(program.switches().size());
+  for (const Combination sides : nearest_first(present, restless.size())) {
+    workspace.load_memories(before);
+    for (std::size_t k = 0; k < restless.size(); ++k)
+      workspace.set_memory(program.switches()[restless[k]].memory, has(sides, k) ? 1 : 0);
+    if (place_others(program, workspace, thresholds, placed, t, x, surfaces) &&
+        agrees(program, workspace, slide, thresholds, span, t, x))
+      return true;
+  }
+  workspace.load_memories(before);
+  return false;
+}
+
+}  // namespace oblique::solve

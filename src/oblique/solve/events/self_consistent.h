@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <oblique/network/program/program.h>
+#include <oblique/solve/events/sliding_mode.h>
+#include <oblique/solve/events/thresholds.h>
+
+// Positions of switches that agree with the surfaces that follow from them. Not installed.
+namespace oblique::solve {
+
+/// Puts every switch but those that are `placed` where its surface asks for it at (t, x), and leaves the
+/// surfaces that follow, one a switch. False where they go on turning over, or a loop has no solution.
+bool place_others(const network::Program& program, network::Workspace& workspace,
+                  const Thresholds& thresholds, const std::vector<bool>& placed, double t,
+                  std::span<const double> x, std::vector<double>& surfaces);
+
+/// Tries all combinations of `restless` and of the switches that share their algebraic loops, the nearest to
+/// the present one first, until one agrees with itself at (t, x); false, with nothing changed, where none
+/// does, or they are too many. `span` is the length of the run [s].
+bool choose_any(const network::Program& program, network::Workspace& workspace, const SlidingMode& slide,
+                const Thresholds& thresholds, double span, std::vector<std::uint32_t> restless, double t,
+                std::span<const double> x);
+
+}  // namespace oblique::solve

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/solve/events/side_trials.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <oblique/solve/events/position_limits.h>
+#include <oblique/solve/events/self_consistent.h>
+#include <oblique/solve/events/sliding_mode.h>
+
+namespace oblique::solve {
+namespace {
+
+int sign_of(double value) {
+  return value > 0 ? 1 : value < 0 ? -1 : 0;
+}
+
+}  // namespace
+
+SideTrials::SideTrials(const network::Program& program, network::Workspace& workspace,
+                       const Thresholds& thresholds, double span)
+    : program_(program),
+      workspace_(workspace),
+      thresholds_(thresholds),
+      span_(span),
+      surfaces_(program.switches().size()),
+      rates_(program.switches().size()),
+      slopes_(program.n_states()),
+      moved_(program.n_states()) {}
+
+void SideTrials::run(std::vector<std::uint32_t> units, Bends& bends, double t, std::span<const double> x) {
+  units_ = std::move(units);
+  broken_by_ = SlidingMode::broken_by(program_, units_);
+  before_.assign(workspace_.memories().begin(), workspace_.memories().end());
+  fastest_ = 0;
+  trials_.clear();
+  for (Combination sides = 0; sides < combinations(); ++sides) trials_.push_back(attempt(sides, bends, t, x));
+}
+
+double SideTrials::of_unit(const std::vector<double>& of_switches, std::size_t unit) const {
+  const network::SwitchStructure& structure = program_.switch_structure();
+  const std::uint32_t s = structure.members[units_[unit]].front();
+  return structure.opposite[s] ? -of_switches[s] : of_switches[s];
+}
+
+std::vector<double> SideTrials::of_units(const std::vector<double>& of_switches) const {
+  std::vector<double> values(units_.size());
+  for (std::size_t u = 0; u < values.size(); ++u) values[u] = of_unit(of_switches, u);
+  return values;
+}
+
+bool SideTrials::place(Combination sides, Bends& bends, double t, std::span<const double> x) {
+  const network::SwitchStructure& structure = program_.switch_structure();
+  take_back();
+  std::vector<bool> placed(surfaces_.size(), false);
+  const auto put = [&](std::uint32_t s, double position) {
+    placed[s] = true;
+    workspace_.set_memory(program_.switches()[s].memory, position);
+  };
+  for (std::size_t u = 0; u < units_.size(); ++u) {
+    for (const std::uint32_t s : structure.members[units_[u]])
+      put(s, has(sides, u) != structure.opposite[s] ? 1 : 0);
+  }
+  for (const auto& [s, position] : bends.positions()) put(s, position);
+  return place_others(program_, workspace_, thresholds_, placed, t, x, surfaces_) &&
+         (!bends.any() || bends.follow(t, x, surfaces_));
+}
+
+std::optional<SideTrials::Trial> SideTrials::attempt(Combination sides, Bends& bends, double t,
+                                                     std::span<const double> x) {
+  if (!place(sides, bends, t, x)) return std::nullopt;
+  Trial trial;
+  trial.surfaces = of_units(surfaces_);
+  program_.last_derivatives(slopes_.data(), workspace_);
+  program_.surface_rates(slopes_.data(), rates_.data(), workspace_);
+  trial.rates = of_units(rates_);
+  const double fastest = fastest_of(slopes_, std::numeric_limits<double>::min());
+  fastest_ = std::max(fastest_, fastest);
+  const double step = std::min(kProbe / fastest, kProbe * span_);
+  for (std::size_t i = 0; i < x.size(); ++i) moved_[i] = x[i] + step * slopes_[i];
+  if (!program_.surfaces(t + step, moved_.data(), surfaces_.data(), workspace_)) return std::nullopt;
+  program_.last_derivatives(slopes_.data(), workspace_);
+  program_.surface_rates(slopes_.data(), rates_.data(), workspace_);
+  trial.later = of_units(rates_);
+  return trial;
+}
+
+double SideTrials::largest_rate(std::size_t unit) const {
+  double largest = kRounding * fastest_;
+  for (const auto& trial : trials_) {
+    if (trial) largest = std::max(largest, std::abs(trial->rates[unit]));
+  }
+  return largest;
+}
+
+/// To which side the surface of a unit goes in a trial: 1, −1, or 0 where it stays at zero.
+int SideTrials::direction(Combination sides, std::size_t unit) const {
+  const auto& trial = trials_[sides];
+  if (!trial) return 0;
+  const std::uint32_t s = program_.switch_structure().members[units_[unit]].front();
+  if (std::abs(trial->surfaces[unit]) > std::max(thresholds_[s], SlidingMode::drift()))
+    return sign_of(trial->surfaces[unit]);
+  const double rate = trial->rates[unit], later = trial->later[unit];
+  if (!leaves_rounding(rate, span_) && !leaves_rounding(later, span_)) return 0;
+  if (std::abs(rate) > kNoRate * largest_rate(unit) && std::abs(rate) > kRounding * fastest_ &&
+      std::abs(rate) > kAboutToTurn * std::abs(later - rate))
+    return sign_of(rate);
+  double largest_later = 0;
+  for (const auto& other : trials_) {
+    if (other) largest_later = std::max(largest_later, std::abs(other->later[unit]));
+  }
+  const bool moves = std::abs(later) > kNoLaterRate * largest_later &&
+                     std::abs(later) > 10 * kRounding * fastest_ &&
+                     largest_later > std::numeric_limits<double>::min();
+  return moves ? sign_of(later) : 0;
+}
+
+/// Whether the equations jump with a unit.
+bool SideTrials::jumps(std::size_t unit) const {
+  const auto& members = program_.switch_structure().members[units_[unit]];
+  return std::any_of(members.begin(), members.end(), [&](std::uint32_t s) {
+    return program_.switches()[s].turning == network::Turning::jumps;
+  });
+}
+
+bool SideTrials::any_jumps(Combination units) const {
+  for (std::size_t u = 0; u < units_.size(); ++u) {
+    if (has(units, u) && jumps(u)) return true;
+  }
+  return false;
+}
+
+bool SideTrials::is_independent(Combination units) const {
+  for (std::size_t u = 0; u < units_.size(); ++u) {
+    if (has(units, u) && (broken_by_[u] & units) != 0) return false;
+  }
+  return true;
+}
+
+bool SideTrials::stands(Combination sides, bool strictly) const {
+  if (!trials_[sides]) return false;
+  for (std::size_t u = 0; u < units_.size(); ++u) {
+    if (!strictly && !jumps(u) && is_independent(1U << u)) continue;
+    const int side = has(sides, u) ? 1 : -1;
+    const int goes = direction(sides, u);
+    if (goes == side) continue;
+    if (goes != 0) return false;
+    const bool other_drives_here = direction(sides ^ (1U << u), u) == side;
+    if (other_drives_here && jumps(u) && is_independent(1U << u)) return false;
+  }
+  return true;
+}
+
+bool SideTrials::keeps(Combination sides, Combination preferred) const {
+  for (std::size_t u = 0; u < units_.size(); ++u) {
+    if (has(sides, u) != has(preferred, u) && rests(sides, u)) return false;
+  }
+  return true;
+}
+
+bool SideTrials::is_undecided(Combination sides, std::size_t unit) const {
+  const Combination other = sides ^ (1U << unit);
+  if (!jumps(unit) || !is_independent(1U << unit)) return false;
+  const int side = has(sides, unit) ? 1 : -1;
+  return direction(sides, unit) == side && direction(other, unit) == -side;
+}
+
+}  // namespace oblique::solve

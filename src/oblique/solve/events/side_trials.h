@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <oblique/network/program/program.h>
+#include <oblique/solve/events/bends.h>
+#include <oblique/solve/events/combinations.h>
+#include <oblique/solve/events/thresholds.h>
+
+namespace oblique::solve {
+
+/// What follows from every combination of the sides on which units of switches may stand that lie on their
+/// surfaces: where these surfaces go. In a combination the bit of a unit is set where it stands on its upper
+/// side. Not installed.
+class SideTrials {
+ public:
+  /// All must outlive this; `span` is the length of the run [s].
+  SideTrials(const network::Program& program, network::Workspace& workspace, const Thresholds& thresholds,
+             double span);
+
+  /// Tries all combinations of the sides of `units` at (t, x), each with every other switch where it then
+  /// goes: `bends` where they follow, the rest where their surfaces ask for it.
+  void run(std::vector<std::uint32_t> units, Bends& bends, double t, std::span<const double> x);
+
+  const std::vector<std::uint32_t>& units() const { return units_; }
+  Combination combinations() const { return 1U << units_.size(); }
+
+  /// Places all switches as a combination has them, from where they were before `run`. False where nothing
+  /// agrees with it.
+  bool place(Combination sides, Bends& bends, double t, std::span<const double> x);
+  /// Places them as they were.
+  void take_back() { workspace_.load_memories(before_); }
+
+  /// Whether the solution goes from every surface to the side that its unit stands on. Where the equations
+  /// only bend there, both sides are right to the rounding of the surface, unless it is asked for strictly.
+  bool stands(Combination sides, bool strictly) const;
+  /// Whether every unit whose surface stays at zero is where it is preferred: nothing asks it to turn over.
+  bool keeps(Combination sides, Combination preferred) const;
+  /// Whether the surface of a unit stays at zero.
+  bool rests(Combination sides, std::size_t unit) const { return direction(sides, unit) == 0; }
+  /// Whether both sides of the surface of a unit lead away from it: then either is a solution.
+  bool is_undecided(Combination sides, std::size_t unit) const;
+
+  /// Whether the equations jump with any of these units.
+  bool any_jumps(Combination units) const;
+  /// Whether the surfaces of these units do not depend on their own positions.
+  bool is_independent(Combination units) const;
+
+  /// The largest rate of the surface of a unit in any trial, at least rounding.
+  double largest_rate(std::size_t unit) const;
+  /// Of all dx/dt in the trials.
+  double fastest() const { return fastest_; }
+  /// Of values of switches, that of a unit: above zero on its upper side.
+  double of_unit(const std::vector<double>& of_switches, std::size_t unit) const;
+
+ private:
+  /// What one combination of sides leads to.
+  struct Trial {
+    std::vector<double> surfaces, rates, later;  ///< of each unit; `later` is the rate a moment on
+  };
+
+  std::optional<Trial> attempt(Combination sides, Bends& bends, double t, std::span<const double> x);
+  int direction(Combination sides, std::size_t unit) const;
+  bool jumps(std::size_t unit) const;
+  std::vector<double> of_units(const std::vector<double>& of_switches) const;
+
+  const network::Program& program_;
+  network::Workspace& workspace_;
+  const Thresholds& thresholds_;
+  double span_;
+  std::vector<std::uint32_t> units_;
+  std::vector<std::uint64_t> broken_by_;      ///< of each of them, see SlidingMode
+  std::vector<double> before_;                ///< memories
+  std::vector<std::optional<Trial>> trials_;  ///< of each combination; nothing where it has no values
+  double fastest_ = 0;
+  std::vector<double> surfaces_, rates_, slopes_, moved_;
+};
+
+}  // namespace oblique::solve

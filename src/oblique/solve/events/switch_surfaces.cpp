@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/solve/events/switch_surfaces.h>
+
+#include <oblique/solve/solve_error.h>
+
+namespace oblique::solve {
+
+SwitchSurfaces::SwitchSurfaces(const network::Program& program, network::Workspace& workspace,
+                               double tolerance, double absolute_tolerance, const std::string& file)
+    : program_(program),
+      workspace_(workspace),
+      file_(file),
+      thresholds_(program, workspace),
+      errors_(program, workspace, tolerance, absolute_tolerance),
+      values_(program.switches().size()) {}
+
+void SwitchSurfaces::evaluate(double t, std::span<const double> x, const Announced& announced) {
+  interruption_.check();
+  states_.assign(x.begin(), x.end());
+  weighed_ = false;
+  const bool known = program_.surfaces(t, x.data(), values_.data(), workspace_);
+  if (!known) {
+    workspace_.pass_failing_loops(true);
+    program_.surfaces(t, x.data(), values_.data(), workspace_);
+    workspace_.pass_failing_loops(false);
+  }
+  thresholds_.update(t);
+  if (!known && !is_any_due(announced)) throw loop_error(program_, workspace_.trouble(), t, file_);
+}
+
+double SwitchSurfaces::against(std::size_t s) const {
+  return workspace_.memory(program_.switches()[s].memory) == 1 ? -values_[s] : values_[s];
+}
+
+/// Whether a switch is on the wrong side of its surface, or has not turned over though it was announced.
+bool SwitchSurfaces::is_any_due(const Announced& announced) const {
+  for (std::size_t s = 0; s < values_.size(); ++s) {
+    const double position = workspace_.memory(program_.switches()[s].memory);
+    if (announced[s] ? *announced[s] != position : against(s) > thresholds_[s]) return true;
+  }
+  return false;
+}
+
+const SurfaceErrors& SwitchSurfaces::weigh_errors() {
+  if (!weighed_) errors_.weigh(states_);
+  weighed_ = true;
+  return errors_;
+}
+
+}  // namespace oblique::solve

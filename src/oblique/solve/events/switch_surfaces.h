@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cmath>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <oblique/network/program/program.h>
+#include <oblique/solve/events/surface_errors.h>
+#include <oblique/solve/events/thresholds.h>
+#include <oblique/solve/interruption.h>
+
+namespace oblique::solve {
+
+/// Of each switch the position that it takes when everything is settled next; nothing: as its surface is.
+using Announced = std::vector<std::optional<double>>;
+
+/// The surfaces of all switches at one instant, and how well they are known there. Not installed.
+class SwitchSurfaces {
+ public:
+  /// The tolerances are those of SurfaceErrors. All but these must outlive this.
+  SwitchSurfaces(const network::Program& program, network::Workspace& workspace, double tolerance,
+                 double absolute_tolerance, const std::string& file);
+
+  /// Evaluates all at (t, x). Throws SolveError where an algebraic loop has no solution; but it may have one
+  /// only where the switches that are due, announced or not, have turned over.
+  void evaluate(double t, std::span<const double> x, const Announced& announced);
+  /// `evaluate` then throws Interrupted.
+  void end_when(const Interruption& interruption) { interruption_ = interruption; }
+  void know_states(std::span<const double> reach) { errors_.know_states(reach); }
+
+  // As `evaluate` has found them:
+  std::size_t size() const { return values_.size(); }
+  double operator[](std::size_t s) const { return values_[s]; }
+  bool is_off_zero(std::size_t s) const { return std::abs(values_[s]) > thresholds_[s]; }
+  /// How far a surface lies on the side on which its switch does not stand.
+  double against(std::size_t s) const;
+  /// d surface/dt of a switch whose surface depends on time alone, linearly; nothing for another.
+  std::optional<double> known_rate(std::size_t s) const { return program_.known_rate(s, workspace_); }
+  bool is_known(std::size_t s) const { return program_.switches()[s].rate.has_value(); }
+
+  /// The errors there, weighed when they are first asked for.
+  const SurfaceErrors& weigh_errors();
+  /// Those that were weighed last, here or where a switch turned over before.
+  const SurfaceErrors& last_errors() const { return errors_; }
+  std::vector<std::size_t> states_behind(std::uint32_t s) { return errors_.states_behind(s, states_); }
+
+  const Thresholds& thresholds() const { return thresholds_; }
+  Thresholds& thresholds() { return thresholds_; }
+
+ private:
+  bool is_any_due(const Announced& announced) const;
+
+  const network::Program& program_;
+  network::Workspace& workspace_;
+  const std::string& file_;
+  Interruption interruption_;
+  Thresholds thresholds_;
+  SurfaceErrors errors_;
+  std::vector<double> values_, states_;
+  bool weighed_ = false;  ///< whether the errors are those of `states_`
+};
+
+}  // namespace oblique::solve

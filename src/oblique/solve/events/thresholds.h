@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include <oblique/network/program/program.h>
+
+namespace oblique::solve {
+
+/// How far the surface of each switch must have passed zero to have passed it: by more than rounding and,
+/// where the switch has just turned over, by more than the errors of the states. Not installed.
+class Thresholds {
+ public:
+  /// Both must outlive this.
+  Thresholds(const network::Program& program, const network::Workspace& workspace);
+
+  /// Takes them from where the surfaces were evaluated last, at time t.
+  void update(double t);
+
+  double operator[](std::size_t s) const { return now_[s]; }
+
+  /// That of a search along a solution: what the time alone does is known to the rounding that it has there.
+  double along_solution(std::size_t s) const { return of_time_[s] && slack_[s] == 0 ? rounding(s) : now_[s]; }
+
+  /// Rounding of the surface of a switch, where the surfaces were evaluated last: of what it compares, at
+  /// least of a machine unit.
+  double rounding(std::size_t s) const;
+
+  /// Lets a surface go back so far by the errors of the states, until it has left them behind; from the next
+  /// `update` on.
+  void give_slack(std::size_t s, double slack) { slack_[s] = slack; }
+  /// The same, at once.
+  void widen(std::size_t s, double slack) { now_[s] = slack_[s] = slack; }
+  void take_all_slack() { std::fill(slack_.begin(), slack_.end(), 0.0); }
+  /// Notes how far off a surface is, and takes its slack where that is beyond the errors of the states: by
+  /// how much its threshold has become smaller then.
+  std::optional<double> leave_behind(std::size_t s, double surface);
+
+  /// How far the surface of a switch has been from zero since `forget`.
+  double excursion(std::size_t s) const { return excursions_[s]; }
+  void forget(std::size_t s) { excursions_[s] = 0; }
+
+ private:
+  const network::Program& program_;
+  const network::Workspace& workspace_;
+  std::vector<double> now_;
+  std::vector<double> slack_;  ///< of them, for the errors of the states
+  std::vector<double> excursions_;
+  std::vector<bool> of_time_;  ///< the surface follows the time alone, to rounding
+};
+
+}  // namespace oblique::solve
