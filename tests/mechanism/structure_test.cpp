@@ -125,7 +125,7 @@ crank = { turns = "AB", about = "A", speed = 1 }
   EXPECT_THAT(
       text,
       AllOf(HasSubstr("test.toml:10:1: the mechanism has mobility 3 (3·3 bodies − 2·3 hinges) but 1 drive"),
-            HasSubstr("under-driven: add drives"), HasSubstr("no hinge at c, C")));
+            HasSubstr("under-driven: add drives"), HasSubstr("no joint at c, C")));
 }
 
 TEST(Structure, IsRefusedWhenOverDriven) {

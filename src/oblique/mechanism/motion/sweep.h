@@ -21,11 +21,11 @@ struct Dwell {
 /// How a body or a slide moves over a tour: values are angles [rad] or positions [length unit].
 struct Sweep {
   enum class Kind {
-    turns,       ///< a body that gains whole turns and never turns back
-    wavers,      ///< a body that gains whole turns, and turns back on the way
-    swings,      ///< between two ends
-    progresses,  ///< from one end of the tour to the other without turning back
-    rests,       ///< it keeps its direction or its place
+    turns,                 ///< a body that gains whole turns and never turns back
+    turns_with_reversals,  ///< a body that gains whole turns, and turns back on the way
+    oscillates,            ///< between two ends
+    monotone,              ///< from one end of the tour to the other without turning back
+    stationary,            ///< it keeps its direction or its place
   };
   Kind kind = Kind::oscillates;
   bool is_slide = false;
