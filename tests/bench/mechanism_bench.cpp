@@ -11,6 +11,7 @@
 #include <oblique/mechanism/model/read_mechanism.h>
 #include <oblique/mechanism/motion/motion.h>
 #include <oblique/mechanism/solver/kinematics.h>
+#include <oblique/mechanism/structure/structure.h>
 
 #include "figures.h"
 

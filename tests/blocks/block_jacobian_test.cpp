@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <oblique/network/program/program.h>
 #include "../support/compiled.h"
 
 namespace oblique::test {

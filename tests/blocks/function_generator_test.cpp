@@ -7,6 +7,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <oblique/network/assembly/network.h>
+#include <oblique/network/program/program.h>
 #include "../support/runs.h"
 #include "../support/scratch_folder.h"
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <oblique/network/program/program.h>
 #include "../support/runs.h"
 
 namespace oblique::test {

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <oblique/network/program/program.h>
 #include "../support/runs.h"
 
 namespace oblique::test {

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <oblique/mechanism/structure/structure.h>
 #include "plot_reading.h"
 
 namespace oblique::test {

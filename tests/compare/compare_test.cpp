@@ -8,6 +8,8 @@
 #include <gtest/gtest.h>
 
 #include <oblique/mechanism/model/read_mechanism.h>
+#include <oblique/network/assembly/network.h>
+#include <oblique/network/program/program.h>
 #include <oblique/solve/run.h>
 
 namespace oblique::compare {

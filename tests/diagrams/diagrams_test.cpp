@@ -11,6 +11,9 @@
 #include <oblique/compare/compare.h>
 #include <oblique/mechanism/model/read_mechanism.h>
 #include <oblique/mechanism/motion/obstacle.h>
+#include <oblique/mechanism/structure/structure.h>
+#include <oblique/network/assembly/network.h>
+#include <oblique/network/program/program.h>
 #include <oblique/report/expectation_check.h>
 #include <oblique/text/document.h>
 

@@ -9,6 +9,7 @@
 #include <oblique/mechanism/model/read_mechanism.h>
 #include <oblique/mechanism/motion/follower.h>
 #include <oblique/mechanism/motion/motion.h>
+#include <oblique/mechanism/structure/structure.h>
 
 #include "reading.h"
 

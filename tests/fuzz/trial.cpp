@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <oblique/network/assembly/network.h>
+#include <oblique/network/program/program.h>
 #include <oblique/solve/solve_error.h>
 
 #include "own_blocks.h"

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <oblique/machine/realise.h>
+#include <oblique/network/assembly/network.h>
+#include <oblique/network/program/program.h>
 
 #include "../support/compiled.h"
 #include "profiles.h"

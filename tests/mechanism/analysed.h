@@ -8,6 +8,7 @@
 
 #include <oblique/mechanism/analysis/analysis.h>
 #include <oblique/mechanism/model/read_mechanism.h>
+#include <oblique/mechanism/structure/structure.h>
 
 // The mechanisms that the tests of their analysis share.
 namespace oblique::mechanism::analysed {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/mechanism/analysis/analysis.h>
+#include <oblique/mechanism/structure/structure.h>
 
 #include <cmath>
 #include <numbers>

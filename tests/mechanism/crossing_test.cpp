@@ -10,6 +10,7 @@
 
 #include <oblique/mechanism/model/read_mechanism.h>
 #include <oblique/mechanism/motion/motion_range.h>
+#include <oblique/mechanism/structure/structure.h>
 
 #include "../support/tangent.h"
 

@@ -8,6 +8,7 @@
 
 #include <oblique/mechanism/model/coefficients.h>
 #include <oblique/mechanism/model/inertia.h>
+#include <oblique/mechanism/structure/structure.h>
 
 #include "analysed.h"
 

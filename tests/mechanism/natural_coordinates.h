@@ -8,6 +8,7 @@
 #include <Eigen/QR>
 
 #include <oblique/mechanism/model/mechanism.h>
+#include <oblique/mechanism/structure/structure.h>
 
 namespace oblique::mechanism {
 

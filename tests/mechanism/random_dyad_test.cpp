@@ -9,6 +9,7 @@
 #include <rapidcheck/gtest.h>
 
 #include <oblique/mechanism/solver/kinematics.h>
+#include <oblique/mechanism/structure/structure.h>
 
 namespace oblique::mechanism {
 namespace {

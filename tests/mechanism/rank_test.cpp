@@ -11,6 +11,7 @@
 #include <oblique/mechanism/model/read_mechanism.h>
 #include <oblique/mechanism/solver/kinematics.h>
 #include <oblique/mechanism/structure/redundancy.h>
+#include <oblique/mechanism/structure/structure.h>
 
 #include "../support/chain_of_dyads.h"
 

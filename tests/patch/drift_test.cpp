@@ -7,6 +7,8 @@
 
 #include <oblique/mechanism/model/read_mechanism.h>
 #include <oblique/mechanism/motion/motion.h>
+#include <oblique/network/assembly/network.h>
+#include <oblique/network/program/program.h>
 #include <oblique/patch/patch.h>
 #include <oblique/solve/run.h>
 

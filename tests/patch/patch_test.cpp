@@ -12,6 +12,7 @@
 
 #include <oblique/mechanism/model/read_mechanism.h>
 #include <oblique/mechanism/motion/motion.h>
+#include <oblique/mechanism/structure/structure.h>
 #include <oblique/patch/scaling.h>
 #include <oblique/patch/triad_split.h>
 #include <oblique/solve/run.h>

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <oblique/solve/stability/analysis.h>
+#include <oblique/solve/stability/stability_report.h>
 
 #include "../support/runs.h"
 

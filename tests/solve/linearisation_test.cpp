@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <oblique/network/program/program.h>
 #include <oblique/solve/stability/linearisation.h>
 
 #include "../support/runs.h"

@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 
 #include <oblique/diagram/rescale.h>
+#include <oblique/network/assembly/network.h>
+#include <oblique/network/program/program.h>
 
 #include "../support/runs.h"
 

@@ -9,6 +9,7 @@
 
 #include <oblique/solve/stability/analysis.h>
 #include <oblique/solve/stability/rightmost_modes.h>
+#include <oblique/solve/stability/stability_report.h>
 
 #include "../support/runs.h"
 

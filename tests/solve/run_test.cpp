@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <oblique/network/program/program.h>
 #include <oblique/solve/integrator/interpolant.h>
 #include <oblique/solve/integrator/source_watch.h>
 

@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <oblique/network/program/program.h>
+#include <oblique/solve/integrator/cvodes_solver.h>
 #include <oblique/solve/stability/stability.h>
 
 #include "../support/runs.h"

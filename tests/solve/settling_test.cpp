@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <oblique/network/program/program.h>
 #include <oblique/solve/operating_point/rest.h>
 #include <oblique/solve/stability/linear_factors.h>
 

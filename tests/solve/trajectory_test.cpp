@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/solve/integrator/trajectory.h>
+#include <oblique/solve/trajectory.h>
 
 #include <array>
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include <oblique/network/assembly/network.h>
 #include <oblique/network/program/program.h>
 
 namespace oblique::testing {

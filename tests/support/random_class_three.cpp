@@ -12,6 +12,9 @@
 #include <oblique/commission/judge.h>
 #include <oblique/mechanism/motion/follower.h>
 #include <oblique/mechanism/motion/motion.h>
+#include <oblique/mechanism/structure/structure.h>
+#include <oblique/network/assembly/network.h>
+#include <oblique/network/program/program.h>
 #include <oblique/solve/run.h>
 
 namespace oblique::testing {

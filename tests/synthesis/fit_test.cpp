@@ -12,6 +12,7 @@
 #include <oblique/mechanism/model/read_mechanism.h>
 #include <oblique/mechanism/motion/motion.h>
 #include <oblique/mechanism/motion/obstacle.h>
+#include <oblique/mechanism/structure/structure.h>
 #include <oblique/text/document.h>
 
 #include "fitting.h"

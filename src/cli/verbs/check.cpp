@@ -3,6 +3,8 @@
 
 #include <oblique/mechanism/model/read_mechanism.h>
 
+#include <oblique/network/assembly/network.h>
+#include <oblique/network/program/program.h>
 #include <oblique/report/diagram_check.h>
 #include <oblique/report/diagram_check_json.h>
 #include <oblique/report/diagram_check_text.h>

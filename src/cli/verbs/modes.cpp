@@ -3,6 +3,7 @@
 
 #include <oblique/mechanism/model/read_mechanism.h>
 
+#include <oblique/mechanism/structure/structure.h>
 #include <oblique/report/mode_list.h>
 #include "terminal/terminal.h"
 #include "verbs/command.h"

@@ -11,6 +11,7 @@
 #include <oblique/mechanism/model/read_mechanism.h>
 #include <oblique/mechanism/motion/motion.h>
 
+#include <oblique/mechanism/structure/structure.h>
 #include <oblique/report/text_table.h>
 #include "terminal/table_output.h"
 #include "terminal/terminal.h"

@@ -8,9 +8,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <oblique/network/assembly/network.h>
+#include <oblique/network/program/program.h>
 #include <oblique/solve/operating_point/standing.h>
 #include <oblique/solve/solve_error.h>
 #include <oblique/solve/stability/loop_report.h>
+#include <oblique/solve/stability/stability_report.h>
 
 namespace oblique::commission {
 namespace {
@@ -114,6 +117,10 @@ std::string fault_of(const Judgement& judgement) {
                         judgement.flips.front().time);
   }
   return text;
+}
+
+bool Judgement::well_damped() const {
+  return good() && damping >= solve::kBadDamping;
 }
 
 Judgement judge(const diagram::Diagram& diagram, const diagram::BlockLibrary& library) {

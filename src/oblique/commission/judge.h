@@ -8,7 +8,6 @@
 #include <oblique/diagram/block_library.h>
 #include <oblique/mechanism/model/mechanism.h>
 #include <oblique/patch/patch.h>
-#include <oblique/solve/stability/stability_report.h>
 
 namespace oblique::commission {
 
@@ -40,7 +39,7 @@ struct Judgement {
   /// Whether it tracks: its loops stand at rest everywhere and come back to rest.
   bool good() const { return no_rest.empty() && !grows_from; }
   /// Whether errors die within about two swings, too.
-  bool well_damped() const { return good() && damping >= solve::kBadDamping; }
+  bool well_damped() const;
 };
 
 /// What is wrong with a patch that is not good or not well damped, in words.

@@ -6,6 +6,7 @@
 
 #include <oblique/compare/patched_run.h>
 #include <oblique/mechanism/solver/group_solver.h>
+#include <oblique/mechanism/structure/structure.h>
 
 namespace oblique::compare {
 namespace {

@@ -8,7 +8,7 @@
 #include <oblique/diagram/flat_diagram.h>
 #include <oblique/mechanism/motion/motion.h>
 #include <oblique/mechanism/structure/structure.h>
-#include <oblique/solve/integrator/trajectory.h>
+#include <oblique/solve/trajectory.h>
 
 namespace oblique::compare {
 

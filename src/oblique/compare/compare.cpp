@@ -12,6 +12,7 @@
 #include <oblique/compare/error_parts.h>
 #include <oblique/compare/patched_run.h>
 #include <oblique/compare/worst_reason.h>
+#include <oblique/mechanism/structure/structure.h>
 #include <oblique/solve/solve_error.h>
 
 namespace oblique::compare {

@@ -6,6 +6,7 @@
 
 #include <Eigen/LU>
 
+#include <oblique/network/program/program.h>
 #include <oblique/solve/solve_error.h>
 
 namespace oblique::compare {

@@ -6,6 +6,7 @@
 
 #include <oblique/compare/compare.h>
 #include <oblique/compare/patched_run.h>
+#include <oblique/network/program/program.h>
 
 // Not installed.
 namespace oblique::compare {

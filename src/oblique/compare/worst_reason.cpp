@@ -8,8 +8,11 @@
 #include <fmt/format.h>
 
 #include <oblique/mechanism/motion/follower.h>
+#include <oblique/mechanism/structure/structure.h>
+#include <oblique/network/program/program.h>
 #include <oblique/solve/events/driving_states.h>
 #include <oblique/solve/stability/loop_report.h>
+#include <oblique/solve/stability/stability_report.h>
 
 namespace oblique::compare {
 namespace {

@@ -9,6 +9,8 @@
 #include <fmt/ranges.h>
 
 #include <oblique/machine/role.h>
+#include <oblique/network/assembly/network.h>
+#include <oblique/network/program/program.h>
 
 namespace oblique::machine {
 namespace {

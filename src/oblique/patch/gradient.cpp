@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <oblique/mechanism/solver/kinematics.h>
+#include <oblique/mechanism/structure/structure.h>
 #include <oblique/patch/patch_builder.h>
 
 namespace oblique::patch {

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <oblique/mechanism/model/plane.h>
+#include <oblique/mechanism/structure/structure.h>
 #include <oblique/patch/triad_patch.h>
 
 namespace oblique::patch {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <oblique/mechanism/structure/structure.h>
 #include <oblique/patch/patch_builder.h>
 
 #include <algorithm>

@@ -9,6 +9,7 @@
 
 #include <oblique/mechanism/model/drive_law.h>
 #include <oblique/mechanism/motion/motion.h>
+#include <oblique/mechanism/structure/structure.h>
 
 namespace oblique::patch {
 namespace {

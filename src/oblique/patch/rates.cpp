@@ -18,6 +18,7 @@
 #include <fmt/format.h>
 
 #include <oblique/mechanism/model/law_derivative.h>
+#include <oblique/mechanism/structure/structure.h>
 #include <oblique/patch/patch_builder.h>
 #include <oblique/patch/signal_rates.h>
 

@@ -10,6 +10,7 @@
 
 #include <oblique/mechanism/model/drive_law.h>
 #include <oblique/mechanism/motion/obstacle.h>
+#include <oblique/mechanism/structure/structure.h>
 #include <oblique/patch/patch.h>
 
 namespace oblique::patch {

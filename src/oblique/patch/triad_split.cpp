@@ -11,6 +11,7 @@
 #include <fmt/ranges.h>
 
 #include <oblique/mechanism/model/plane.h>
+#include <oblique/mechanism/structure/structure.h>
 #include <oblique/mechanism/triad/triangle.h>
 #include <oblique/patch/patch_builder.h>
 

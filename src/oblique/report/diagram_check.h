@@ -8,6 +8,7 @@
 
 #include <oblique/diagram/rescale.h>
 #include <oblique/machine/bill.h>
+#include <oblique/network/program/program.h>
 #include <oblique/solve/stability/analysis.h>
 
 namespace oblique::report {

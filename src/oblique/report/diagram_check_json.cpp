@@ -5,6 +5,7 @@
 
 #include <oblique/solve/operating_point/rest.h>
 
+#include <oblique/network/program/program.h>
 #include <oblique/report/diagram_check_text.h>
 #include <oblique/report/json_text.h>
 

@@ -9,6 +9,7 @@
 
 #include <oblique/solve/operating_point/rest.h>
 
+#include <oblique/network/program/program.h>
 #include <oblique/report/bill_text.h>
 #include <oblique/report/text_table.h>
 

@@ -10,6 +10,7 @@
 #include <oblique/mechanism/motion/motion.h>
 #include <oblique/mechanism/motion/motion_range.h>
 
+#include <oblique/mechanism/structure/structure.h>
 #include <oblique/report/drive_caption.h>
 
 namespace oblique::report {

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <oblique/mechanism/motion/obstacle.h>
+#include <oblique/mechanism/structure/structure.h>
 
 namespace oblique::report {
 namespace {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <oblique/mechanism/analysis/analysis.h>
+#include <oblique/mechanism/structure/structure.h>
 
 namespace oblique::report {
 

@@ -14,6 +14,9 @@
 #include <oblique/solve/solve_error.h>
 #include <oblique/solve/stability/analysis.h>
 
+#include <oblique/mechanism/structure/structure.h>
+#include <oblique/network/assembly/network.h>
+#include <oblique/network/program/program.h>
 #include <oblique/report/bill_text.h>
 #include <oblique/report/comparison_chart.h>
 #include <oblique/report/comparison_report.h>

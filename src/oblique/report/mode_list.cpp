@@ -9,6 +9,7 @@
 #include <oblique/mechanism/model/drive_law.h>
 #include <oblique/mechanism/motion/follower.h>
 
+#include <oblique/mechanism/structure/structure.h>
 #include <oblique/report/json_text.h>
 #include <oblique/report/text_table.h>
 

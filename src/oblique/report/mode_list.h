@@ -6,6 +6,7 @@
 
 #include <oblique/mechanism/model/drive_law.h>
 #include <oblique/mechanism/solver/assembly.h>
+#include <oblique/mechanism/structure/structure.h>
 
 namespace oblique::report {
 

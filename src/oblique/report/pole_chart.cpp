@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <oblique/network/program/program.h>
 #include <oblique/report/pole_chart.h>
 
 #include <algorithm>

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <oblique/network/assembly/network.h>
+#include <oblique/network/program/program.h>
 #include <oblique/solve/run_warnings.h>
 #include <oblique/solve/runner.h>
 #include <oblique/solve/solve_error.h>
@@ -120,6 +122,15 @@ Run run(const network::Program& program, const diagram::FlatDiagram& diagram, co
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   if (options.trust) result.trust = estimate_error(program, diagram, options, result);
   return result;
+}
+
+Run run(const diagram::Diagram& diagram, const diagram::BlockLibrary& library) {
+  return run(diagram, library, options_of(diagram.run));
+}
+
+Run run(const diagram::Diagram& diagram, const diagram::BlockLibrary& library, const RunOptions& options) {
+  const diagram::FlatDiagram flat = diagram::flatten(diagram, library);
+  return run(network::Program(network::assemble(flat)), flat, options);
 }
 
 }  // namespace oblique::solve

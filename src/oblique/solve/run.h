@@ -8,15 +8,16 @@
 #include <string>
 #include <vector>
 
+#include <oblique/diagram/block_library.h>
 #include <oblique/diagram/flat_diagram.h>
-#include <oblique/network/program/program.h>
-#include <oblique/solve/events/event_record.h>
-#include <oblique/solve/integrator/cvodes_solver.h>
-#include <oblique/solve/integrator/method.h>
-#include <oblique/solve/integrator/overload.h>
-#include <oblique/solve/integrator/trajectory.h>
+#include <oblique/solve/run_records.h>
 #include <oblique/solve/run_state.h>
+#include <oblique/solve/trajectory.h>
 #include <oblique/solve/trust.h>
+
+namespace oblique::network {
+class Program;
+}
 
 namespace oblique::solve {
 
@@ -84,5 +85,10 @@ struct Run {
 /// samples the solver's own interpolant on an exact grid. A diagram without states is evaluated on that grid.
 /// Throws SolveError.
 Run run(const network::Program& program, const diagram::FlatDiagram& diagram, const RunOptions& options);
+
+/// All of it for a diagram as it was read: flattens, assembles and compiles it, and runs it as its [run]
+/// says, or as `options` do. Throws DiagramError, NetworkError and SolveError.
+Run run(const diagram::Diagram& diagram, const diagram::BlockLibrary& library);
+Run run(const diagram::Diagram& diagram, const diagram::BlockLibrary& library, const RunOptions& options);
 
 }  // namespace oblique::solve

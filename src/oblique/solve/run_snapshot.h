@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include <oblique/network/program/program.h>
 #include <oblique/solve/events/switching.h>
 #include <oblique/solve/integrator/phase_clock.h>
 #include <oblique/solve/run_state.h>

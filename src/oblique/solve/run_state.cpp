@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <oblique/network/program/program.h>
 #include <oblique/text/table_reader.h>
 
 namespace oblique::solve {

@@ -6,9 +6,12 @@
 #include <utility>
 #include <vector>
 
-#include <oblique/network/program/program.h>
-#include <oblique/solve/integrator/phase_clock.h>
+#include <oblique/solve/run_records.h>
 #include <oblique/text/diagnostic.h>
+
+namespace oblique::network {
+class Program;
+}
 
 namespace oblique::solve {
 
@@ -21,7 +24,7 @@ struct RunState {
   Named unknowns;  ///< of algebraic loops: where the next search begins
   Named memories;
   std::vector<bool> conditions;  ///< of events, in the program's order
-  PhaseClock::Position position;
+  PhasePosition position;
 };
 
 /// The text of a state file (oblique-state/1); `parse_run_state` gives the same numbers back.

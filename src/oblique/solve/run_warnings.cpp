@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <oblique/solve/integrator/phase_clock.h>
 #include <oblique/solve/run_warnings.h>
 
 #include <algorithm>

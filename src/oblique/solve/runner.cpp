@@ -8,13 +8,18 @@
 
 #include <fmt/format.h>
 
+#include <oblique/network/program/program.h>
 #include <oblique/solve/events/branch_end.h>
+#include <oblique/solve/integrator/cvodes_solver.h>
+#include <oblique/solve/integrator/method.h>
+#include <oblique/solve/integrator/overload.h>
 #include <oblique/solve/integrator/phase_clock.h>
 #include <oblique/solve/integrator/sampler.h>
 #include <oblique/solve/integrator/short_steps.h>
 #include <oblique/solve/integrator/source_watch.h>
 #include <oblique/solve/operating_point/rest.h>
 #include <oblique/solve/operating_point/singular_start.h>
+#include <oblique/solve/run_errors.h>
 #include <oblique/solve/run_snapshot.h>
 #include <oblique/solve/solve_error.h>
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <oblique/network/program/program.h>
 #include <oblique/solve/integrator/refinement.h>
 #include <oblique/solve/operating_point/other_solutions.h>
 #include <oblique/solve/run.h>

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 
+#include <oblique/network/program/program.h>
 #include <oblique/solve/run.h>
 #include <oblique/solve/solve_error.h>
 

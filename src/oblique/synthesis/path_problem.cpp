@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <oblique/mechanism/motion/obstacle.h>
+#include <oblique/mechanism/structure/structure.h>
 #include <oblique/synthesis/synthesis_error.h>
 
 namespace oblique::synthesis {

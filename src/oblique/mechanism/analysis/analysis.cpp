@@ -4,6 +4,8 @@
 #include <algorithm>
 
 #include <oblique/mechanism/model/inertia.h>
+#include <oblique/mechanism/motion/follower.h>
+#include <oblique/mechanism/structure/structure.h>
 
 namespace oblique::mechanism {
 namespace {

@@ -11,6 +11,7 @@
 #include <oblique/mechanism/motion/sweep.h>
 #include <oblique/mechanism/structure/loops.h>
 #include <oblique/mechanism/structure/rank.h>
+#include <oblique/mechanism/structure/structure.h>
 
 namespace oblique::mechanism {
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/mechanism/analysis/transmission.h>
+#include <oblique/mechanism/structure/structure.h>
 
 #include <algorithm>
 #include <array>

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <oblique/mechanism/motion/scan.h>
+#include <oblique/mechanism/structure/structure.h>
 
 namespace oblique::mechanism {
 

@@ -9,6 +9,7 @@
 #include <oblique/mechanism/analysis/instant_centre.h>
 #include <oblique/mechanism/analysis/transmission.h>
 #include <oblique/mechanism/model/inertia.h>
+#include <oblique/mechanism/structure/structure.h>
 
 namespace oblique::mechanism {
 namespace {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <oblique/mechanism/motion/motion.h>
+#include <oblique/mechanism/structure/structure.h>
 
 namespace oblique::mechanism {
 

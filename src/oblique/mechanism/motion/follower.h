@@ -7,25 +7,10 @@
 
 #include <oblique/mechanism/model/configuration.h>
 #include <oblique/mechanism/model/drive_law.h>
+#include <oblique/mechanism/motion/motion_event.h>
 #include <oblique/mechanism/solver/kinematics.h>
 
 namespace oblique::mechanism {
-
-/// Something that happens to a group on the way.
-struct MotionEvent {
-  enum class Kind {
-    limit,     ///< a dead centre beyond which the group cannot be assembled
-    return_,   ///< from beyond it, onto the same branch
-    change,    ///< two of its modes cross: it passes by its velocity
-    infinity,  ///< its bodies go away without end, and come back from the other side
-  };
-  Kind kind = Kind::limit;
-  double time = 0;        ///< [s]
-  std::size_t group = 0;  ///< index in Structure::groups
-
-  /// Whether no mechanism goes on there.
-  bool ends() const { return kind == Kind::limit || kind == Kind::infinity; }
-};
 
 /// A motion that ends at infinity stops this far before it, where the mechanism is a thousand times its size
 /// away [rad of the fastest drive].

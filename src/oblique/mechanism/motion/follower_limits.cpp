@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include <oblique/mechanism/motion/follower.h>
+#include <oblique/mechanism/structure/structure.h>
 
 namespace oblique::mechanism {
 namespace {

@@ -9,9 +9,11 @@
 
 #include <oblique/mechanism/model/configuration.h>
 #include <oblique/mechanism/model/drive_law.h>
-#include <oblique/mechanism/motion/follower.h>
+#include <oblique/mechanism/motion/motion_event.h>
 
 namespace oblique::mechanism {
+
+struct Structure;
 
 /// An exact motion as a table: row k stands for times[k], drives[k] and configurations[k]. Angles of bodies
 /// are continuous from row to row, not wrapped; those of the start are in (−π, π], except for driven bodies,

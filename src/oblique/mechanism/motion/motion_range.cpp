@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
+#include <oblique/mechanism/motion/follower.h>
 #include <oblique/mechanism/motion/motion_range.h>
+#include <oblique/mechanism/structure/structure.h>
 
 #include <algorithm>
 #include <cmath>

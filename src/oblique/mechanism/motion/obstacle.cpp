@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/mechanism/motion/obstacle.h>
 
+#include <oblique/mechanism/motion/follower.h>
 #include <oblique/mechanism/motion/motion.h>
+#include <oblique/mechanism/structure/structure.h>
 
 namespace oblique::mechanism {
 

@@ -12,6 +12,7 @@
 
 #include <oblique/mechanism/solver/kinematics.h>
 #include <oblique/mechanism/structure/rank.h>
+#include <oblique/mechanism/structure/structure.h>
 
 namespace oblique::mechanism {
 namespace {

@@ -6,6 +6,7 @@
 
 #include <oblique/mechanism/model/plane.h>
 #include <oblique/mechanism/solver/group_solver.h>
+#include <oblique/mechanism/structure/structure.h>
 #include <oblique/mechanism/triad/triad.h>
 #include <oblique/mechanism/triad/triangle.h>
 

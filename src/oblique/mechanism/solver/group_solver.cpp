@@ -8,6 +8,7 @@
 #include <limits>
 
 #include <oblique/mechanism/model/plane.h>
+#include <oblique/mechanism/structure/structure.h>
 #include <oblique/mechanism/triad/triangle.h>
 
 namespace oblique::mechanism {

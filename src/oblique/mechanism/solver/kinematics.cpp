@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <oblique/mechanism/model/plane.h>
+#include <oblique/mechanism/structure/structure.h>
 
 namespace oblique::mechanism {
 

@@ -8,6 +8,7 @@
 #include <oblique/mechanism/model/plane.h>
 #include <oblique/mechanism/motion/follower.h>
 #include <oblique/mechanism/structure/singular_values.h>
+#include <oblique/mechanism/structure/structure.h>
 
 namespace oblique::mechanism {
 namespace {

@@ -12,6 +12,7 @@
 #include <oblique/mechanism/motion/follower.h>
 #include <oblique/mechanism/structure/constraint_graph.h>
 #include <oblique/mechanism/structure/rank.h>
+#include <oblique/mechanism/structure/structure.h>
 
 namespace oblique::mechanism {
 namespace {

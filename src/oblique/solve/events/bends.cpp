@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include <oblique/network/program/program.h>
 #include <oblique/solve/events/position_limits.h>
 
 namespace oblique::solve {

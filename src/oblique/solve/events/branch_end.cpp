@@ -12,6 +12,8 @@
 
 #include <oblique/solve/stability/eigenvalues.h>
 
+#include <oblique/network/program/program.h>
+#include <oblique/solve/run_errors.h>
 #include <oblique/solve/solve_error.h>
 
 namespace oblique::solve {

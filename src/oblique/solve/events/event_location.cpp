@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include <oblique/network/program/program.h>
 #include <oblique/solve/events/time_resolution.h>
 
 namespace oblique::solve {

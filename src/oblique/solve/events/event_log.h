@@ -6,8 +6,8 @@
 #include <vector>
 
 #include <oblique/network/program/program.h>
-#include <oblique/solve/events/event_record.h>
 #include <oblique/solve/events/sliding_mode.h>
+#include <oblique/solve/run_records.h>
 #include <oblique/solve/solve_error.h>
 
 namespace oblique::solve {

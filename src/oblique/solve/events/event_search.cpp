@@ -7,8 +7,10 @@
 
 #include <fmt/format.h>
 
+#include <oblique/network/program/program.h>
 #include <oblique/solve/events/along_branch.h>
 #include <oblique/solve/events/time_resolution.h>
+#include <oblique/solve/run_errors.h>
 #include <oblique/solve/solve_error.h>
 
 namespace oblique::solve {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include <oblique/network/program/program.h>
 #include <oblique/solve/events/position_limits.h>
 
 namespace oblique::solve {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <oblique/network/program/program.h>
 #include <oblique/solve/events/combinations.h>
 #include <oblique/solve/events/position_limits.h>
 

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include <oblique/network/program/program.h>
 #include <oblique/solve/events/position_limits.h>
 #include <oblique/solve/events/self_consistent.h>
 #include <oblique/solve/events/sliding_mode.h>

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include <oblique/network/program/program.h>
 #include <oblique/solve/events/driving_states.h>
 
 namespace oblique::solve {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include <oblique/network/program/program.h>
 #include <oblique/solve/events/self_consistent.h>
 
 namespace oblique::solve {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/solve/events/switch_surfaces.h>
 
+#include <oblique/network/program/program.h>
+#include <oblique/solve/run_errors.h>
 #include <oblique/solve/solve_error.h>
 
 namespace oblique::solve {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include <oblique/network/program/program.h>
 #include <oblique/solve/events/switching_start.h>
 #include <oblique/solve/solve_error.h>
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <oblique/network/program/program.h>
 #include <oblique/solve/events/thresholds.h>
 
 #include <limits>

@@ -8,6 +8,7 @@
 
 #include <oblique/solve/integrator/interpolant.h>
 #include <oblique/solve/integrator/ode_system.h>
+#include <oblique/solve/run_records.h>
 
 namespace oblique::solve {
 
@@ -18,15 +19,6 @@ struct SolverSettings {
   double max_step = std::numeric_limits<double>::infinity();  ///< [s] the longest step
   bool adams = false;                                         ///< Adams–Moulton formulas in place of BDF
   std::vector<double> own_tolerances = {};  ///< [machine unit] of each state, where not all have that one
-};
-
-struct SolverStatistics {
-  long steps = 0;
-  long evaluations = 0;  ///< of dx/dt
-  long jacobians = 0;    ///< evaluations of the Jacobian
-  long factorizations = 0;
-  long error_test_failures = 0;
-  double last_step = 0;  ///< [s]
 };
 
 /// Why a solver could not go on.

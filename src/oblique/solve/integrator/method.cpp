@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include <oblique/network/program/program.h>
 #include <oblique/solve/operating_point/rest.h>
 #include <oblique/solve/stability/coupled_modes.h>
 

@@ -6,14 +6,9 @@
 
 #include <oblique/diagram/diagram.h>
 #include <oblique/network/program/program.h>
+#include <oblique/solve/run_records.h>
 
 namespace oblique::solve {
-
-/// The method of a run and why.
-struct MethodChoice {
-  diagram::IntegrationMethod method = diagram::IntegrationMethod::bdf;  ///< bdf or adams
-  std::string reason;
-};
 
 /// Chooses between BDF and Adams where the diagram leaves it open (`automatic`), from the equations
 /// linearised at the start (t, states): BDF for servo loops, for decays that are fast beside what oscillates

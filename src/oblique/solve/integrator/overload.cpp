@@ -5,7 +5,9 @@
 #include <array>
 #include <cmath>
 
+#include <oblique/network/program/program.h>
 #include <oblique/solve/events/switching.h>
+#include <oblique/solve/run_errors.h>
 #include <oblique/solve/solve_error.h>
 
 namespace oblique::solve {

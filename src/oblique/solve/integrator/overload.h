@@ -9,25 +9,11 @@
 #include <oblique/diagram/rescale.h>
 #include <oblique/network/program/program.h>
 #include <oblique/solve/integrator/interpolant.h>
+#include <oblique/solve/run_records.h>
 
 namespace oblique::solve {
 
 class Switching;
-
-/// The largest magnitude that a signal had in a run.
-struct Peak {
-  double value = 0;  ///< with its sign [machine unit]
-  double time = 0;   ///< [s]
-};
-
-/// A signal that left the range ±1 machine unit.
-struct OverloadRecord {
-  std::size_t signal = 0;  ///< number among the signals of the program
-  double first = 0;        ///< [s] when it left the range for the first time
-  double duration = 0;     ///< [s] outside the range, all times together
-  Peak peak;
-  double suggested_scale = 1;  ///< the factor that brings it back into the range: 1/2, 1/5, 1/10, …
-};
 
 /// Watches every signal of a run against the machine unit, as the overload lamps of a real machine do. Each
 /// step is looked at in its ends and its middle. Where the parabola through the three has an extreme between

@@ -5,19 +5,14 @@
 
 #include <oblique/diagram/flat_diagram.h>
 #include <oblique/network/program/program.h>
+#include <oblique/solve/run_records.h>
 
 namespace oblique::solve {
 
 /// Leads a run through the phases of its timeline: sets the modes of operation of all groups.
 class PhaseClock {
  public:
-  /// Where a run stands in its timeline.
-  struct Position {
-    std::size_t phase = 0;
-    double cycle = 0;  ///< number of those that are over
-    double begin = 0;  ///< of the phase [s]
-  };
-
+  using Position = PhasePosition;
   /// The first phase begins at time t. All arguments must outlive the clock.
   PhaseClock(const network::Program& program, const diagram::FlatTimeline& timeline,
              network::Workspace& workspace, double t);

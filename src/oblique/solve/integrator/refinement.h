@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <oblique/network/program/program.h>
 #include <oblique/solve/events/faint_turn.h>
 #include <oblique/solve/integrator/cvodes_solver.h>
 #include <oblique/solve/integrator/growth_watch.h>

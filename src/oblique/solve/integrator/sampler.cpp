@@ -6,7 +6,9 @@
 
 #include <fmt/format.h>
 
+#include <oblique/network/program/program.h>
 #include <oblique/solve/events/along_branch.h>
+#include <oblique/solve/run_errors.h>
 #include <oblique/solve/solve_error.h>
 
 namespace oblique::solve {

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include <oblique/network/program/program.h>
 #include <oblique/solve/events/switching.h>
 #include <oblique/solve/integrator/runaway.h>
 #include <oblique/solve/run.h>

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <oblique/network/program/program.h>
 #include <oblique/solve/solve_error.h>
 
 namespace oblique::solve {

@@ -13,6 +13,7 @@
 #include <oblique/solve/stability/sparse_factors.h>
 
 #include <oblique/network/assembly/network.h>
+#include <oblique/network/program/program.h>
 #include <oblique/solve/operating_point/standing.h>
 
 namespace oblique::solve {

@@ -8,6 +8,7 @@
 #include <Eigen/Dense>
 #include <Eigen/SparseCore>
 
+#include <oblique/network/program/program.h>
 #include <oblique/solve/stability/linearisation.h>
 #include <oblique/solve/stability/signal_flow.h>
 

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <oblique/network/program/program.h>
+#include <oblique/solve/run_errors.h>
 #include <oblique/solve/solve_error.h>
 #include <oblique/text/even_point.h>
 

@@ -9,7 +9,9 @@
 #include <fmt/ranges.h>
 
 #include <oblique/network/graph/dependency_order.h>
+#include <oblique/network/program/program.h>
 #include <oblique/solve/operating_point/settling.h>
+#include <oblique/solve/run_errors.h>
 #include <oblique/solve/solve_error.h>
 #include <oblique/solve/stability/coupled_modes.h>
 #include <oblique/solve/stability/stability.h>

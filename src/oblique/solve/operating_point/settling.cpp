@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include <oblique/network/program/program.h>
 #include <oblique/solve/stability/linear_factors.h>
 
 namespace oblique::solve {

@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include <oblique/network/assembly/network.h>
+#include <oblique/network/program/program.h>
 
 namespace oblique::solve {
 

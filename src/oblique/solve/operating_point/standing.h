@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <oblique/diagram/flat_diagram.h>
+#include <oblique/network/program/program.h>
 #include <oblique/solve/run.h>
 #include <oblique/solve/stability/linearisation.h>
 

@@ -4,9 +4,11 @@
 #include <string_view>
 #include <unordered_map>
 
+#include <oblique/network/program/program.h>
 #include <oblique/solve/events/switching.h>
 #include <oblique/solve/operating_point/rest.h>
 #include <oblique/solve/operating_point/singular_start.h>
+#include <oblique/solve/run_errors.h>
 #include <oblique/solve/solve_error.h>
 
 namespace oblique::solve {

@@ -5,7 +5,9 @@
 #include <string>
 #include <vector>
 
-#include <oblique/network/program/program.h>
+namespace oblique::network {
+class Program;
+}
 
 namespace oblique::solve {
 

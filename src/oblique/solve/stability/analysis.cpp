@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <oblique/network/program/program.h>
 #include <oblique/solve/operating_point/standing.h>
 
 namespace oblique::solve {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include <oblique/network/program/program.h>
 #include <oblique/solve/run.h>
 #include <oblique/solve/solve_error.h>
 #include <oblique/solve/stability/loop_report.h>

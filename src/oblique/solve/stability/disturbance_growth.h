@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include <oblique/network/program/program.h>
 #include <oblique/solve/stability/linearisation.h>
 
 namespace oblique::solve {

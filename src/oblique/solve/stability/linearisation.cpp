@@ -10,6 +10,7 @@
 #include <oblique/solve/stability/eigenvalues.h>
 
 #include <oblique/network/graph/dependency_order.h>
+#include <oblique/network/program/program.h>
 
 namespace oblique::solve {
 namespace {

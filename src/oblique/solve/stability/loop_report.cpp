@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include <oblique/network/program/program.h>
 #include <oblique/solve/stability/loop_gain.h>
 #include <oblique/solve/stability/servo_loops.h>
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <oblique/network/program/program.h>
 #include <oblique/solve/stability/linearisation.h>
 #include <oblique/solve/stability/signal_flow.h>
 

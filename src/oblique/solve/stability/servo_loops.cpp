@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <oblique/network/program/program.h>
 #include <oblique/solve/operating_point/rest.h>
 
 namespace oblique::solve {

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include <oblique/network/program/program.h>
 #include <oblique/solve/operating_point/ideal_machine.h>
 
 namespace oblique::solve {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include <oblique/network/graph/dependency_order.h>
+#include <oblique/network/program/program.h>
 
 namespace oblique::solve {
 namespace {

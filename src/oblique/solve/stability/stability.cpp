@@ -7,6 +7,7 @@
 
 #include <oblique/solve/stability/eigenvalues.h>
 
+#include <oblique/network/program/program.h>
 #include <oblique/solve/operating_point/rest.h>
 #include <oblique/solve/stability/rightmost_modes.h>
 

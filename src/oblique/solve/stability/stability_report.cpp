@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <oblique/network/program/program.h>
 #include <oblique/solve/operating_point/ideal_machine.h>
 #include <oblique/solve/stability/rightmost_modes.h>
 #include <oblique/solve/stability/servo_loops.h>

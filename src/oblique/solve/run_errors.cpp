@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/solve/solve_error.h>
+#include <oblique/network/program/program.h>
+#include <oblique/solve/integrator/cvodes_solver.h>
+#include <oblique/solve/run_errors.h>
 
 #include <algorithm>
 #include <numeric>

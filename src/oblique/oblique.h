@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+// The library in one header: docs/library.md has an example for each part of it. What is not reached from
+// here is not installed.
+#pragma once
+
+#include <oblique/commission/judge.h>
+#include <oblique/commission/on_machine.h>
+#include <oblique/compare/analog_motion.h>
+#include <oblique/compare/compare.h>
+#include <oblique/compare/machine_comparison.h>
+#include <oblique/compare/monte_carlo.h>
+#include <oblique/diagram/block_library.h>
+#include <oblique/diagram/diagram.h>
+#include <oblique/diagram/machine_profile.h>
+#include <oblique/diagram/rescale.h>
+#include <oblique/draw/animation/animation.h>
+#include <oblique/draw/chart/braille.h>
+#include <oblique/draw/chart/chart.h>
+#include <oblique/draw/chart/point_plots.h>
+#include <oblique/draw/linkage/linkage.h>
+#include <oblique/draw/picture/gif.h>
+#include <oblique/draw/picture/svg.h>
+#include <oblique/draw/schematic/diagram_drawing.h>
+#include <oblique/machine/bill.h>
+#include <oblique/machine/realise.h>
+#include <oblique/machine/sheets.h>
+#include <oblique/mechanism/model/read_mechanism.h>
+#include <oblique/mechanism/motion/motion.h>
+#include <oblique/mechanism/solver/assembly.h>
+#include <oblique/mechanism/structure/structure.h>
+#include <oblique/patch/patch.h>
+#include <oblique/patch/scaling.h>
+#include <oblique/report/bill_text.h>
+#include <oblique/report/comparison_chart.h>
+#include <oblique/report/comparison_report.h>
+#include <oblique/report/expectation_check.h>
+#include <oblique/report/html_page.h>
+#include <oblique/report/judgement_text.h>
+#include <oblique/report/linkage_scene.h>
+#include <oblique/report/machine_comparison_report.h>
+#include <oblique/report/machine_list.h>
+#include <oblique/report/magnified.h>
+#include <oblique/report/mechanism_report.h>
+#include <oblique/report/mode_list.h>
+#include <oblique/report/monte_carlo_report.h>
+#include <oblique/report/run_chart.h>
+#include <oblique/solve/run.h>
+#include <oblique/solve/run_state.h>
+#include <oblique/solve/solve_error.h>
+#include <oblique/solve/trust.h>
+#include <oblique/synthesis/fit.h>
+#include <oblique/synthesis/synthesis_error.h>
+#include <oblique/text/diagnostic.h>
+#include <oblique/text/quantity.h>
+#include <oblique/text/table_file.h>
