@@ -95,8 +95,8 @@ std::string listing(const std::array<Leg, 3>& legs) {
     char line[400];
     std::snprintf(line, sizeof line,
                   "kind %d local %.17g %.17g anchor %.17g %.17g direction %.17g %.17g length %.17g\n",
-                  static_cast<int>(leg.kind), leg.local.x(), leg.local.y(), leg.anchor.x(),
-                  leg.anchor.y(), leg.direction.x(), leg.direction.y(), leg.length);
+                  static_cast<int>(leg.kind), leg.local.x(), leg.local.y(), leg.anchor.x(), leg.anchor.y(),
+                  leg.direction.x(), leg.direction.y(), leg.length);
     text += line;
   }
   return text;

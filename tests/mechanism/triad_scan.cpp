@@ -38,7 +38,7 @@ class TwoLeads {
     const Vector2d a = other.anchor - circle.anchor;
     const Vector2d b = circle.local - other.local;
     const double l = circle.length;
-    Vector2d wave;                           // h = h₀ + wave·(cos θ, sin θ)
+    Vector2d wave;                          // h = h₀ + wave·(cos θ, sin θ)
     if (other.kind == Leg::Kind::circle) {  // h = the squared distance of the two centres
       h0_ = a.squaredNorm() + b.squaredNorm();
       wave = 2 * Vector2d(a.dot(b), a.dot(quarter_turn(b)));

@@ -117,5 +117,26 @@ TEST(Suggest, KeepsALongListShort) {
             "and 3 more");
 }
 
+// A host that is no command line: what it is told are names, and it spells them.
+TEST(Remedy, IsSpelledByWhoeverSpeaksToTheReader) {
+  const Vocabulary buttons{
+      [](const Setting& setting) { return "[" + setting.name + "|" + setting.value + "]"; },
+      [](const Action& action) { return "<" + action.name + "|" + action.subject + ">"; }};
+  Remedy remedy{"end it with ", Setting{"until"}, " or ", Setting{"gain", "1e4"}};
+  remedy += {"; ", Action{"check", "a.toml"}, " tells why"};
+  EXPECT_EQ(remedy.words(), "end it with 'until' or gain 1e4; 'check a.toml' tells why");
+  EXPECT_EQ(remedy.words(buttons), "end it with [until|] or [gain|1e4]; <check|a.toml> tells why");
+  EXPECT_TRUE(Remedy().empty());
+  EXPECT_TRUE(Remedy("").empty());
+  EXPECT_FALSE(remedy.empty());
+}
+
+TEST(Diagnostic, OfASettingNamesItBehindTheFile) {
+  const Diagnostic of_file{{"m.toml", {}, {"split", "AB,CD"}}, "no triad has these legs", {}, {}};
+  EXPECT_EQ(to_string(of_file), "m.toml: split AB,CD: no triad has these legs");
+  const Diagnostic of_none{{{}, {}, {"columns"}}, "20 curves cannot be told apart", "at most 18", {}};
+  EXPECT_EQ(to_string(of_none), "'columns': 20 curves cannot be told apart; expected at most 18");
+}
+
 }  // namespace
 }  // namespace oblique::text
