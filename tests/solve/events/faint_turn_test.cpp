@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -11,7 +12,11 @@
 namespace oblique::solve {
 namespace {
 
+using ::testing::AllOf;
+using ::testing::EndsWith;
+using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::SizeIs;
 
 // x = e^(−t/τ)/2 never passes zero, so that the comparator never drives it to −1/2.
 TEST(FaintTurn, OfADecayIsNone) {
@@ -83,6 +88,30 @@ x = { type = "integrator", in = "v", initial = 1 }
 v = { type = "integrator", in = ["-101*x", "-2*v"], initial = -1 }
 c = { type = "%s", in = "x" }
 )";
+
+// x = 1 + e^(−t)/2 never passes 1, and no tolerance knows it better than by an error of 1: where one of these
+// errors has let it pass, and so to 1/2, the run says so.
+TEST(FaintTurn, OfADecayToALevelIsToldOf) {
+  const testing::Compiled made(R"(
+one = { type = "constant", value = 1 }
+x = { type = "integrator", in = ["one", "-0.5*c", "-x"], initial = 1.5 }
+c = { type = "comparator", in = ["one", "-x"] }
+)",
+                               "[outputs]\nx = { signal = \"x\" }\nc = { signal = \"c\" }\n");
+  for (const double tolerance : {1e-3, 1e-4, 1e-6, 1e-8, 1e-10}) {
+    const Counted counted(made, 60, tolerance);
+    const std::size_t last = counted.run.trajectory.rows() - 1;
+    ASSERT_EQ(counted.run.trajectory.at(last, 2), 1) << tolerance << ": it did not pass, so nothing is shown";
+    ASSERT_THAT(counted.run.warnings, SizeIs(1)) << tolerance;
+    EXPECT_THAT(text::to_string(counted.run.warnings.front()),
+                AllOf(HasSubstr("'c' (in > 0) turns over at t = "),
+                      EndsWith(fmt::format(
+                          " s, where what it compares is equal to within {:.2g}, which is its error: "
+                          "what follows may be wrong\n  remedy: compare with a level that is passed, "
+                          "give the comparison a hysteresis, or end the run before",
+                          tolerance))));
+  }
+}
 
 // A kink is passed without an effect: |x| of a decay is as exact on both sides. A jump is not.
 TEST(FaintTurn, WithoutAnEffectIsNoMatter) {

@@ -8,12 +8,13 @@
 namespace oblique::solve {
 namespace {
 
-/// Whether so much more than errors of this size lies between two values of the signals.
+/// Whether so much more than errors of this size lies between two values of the signals: a kink, also behind
+/// a high gain, changes them by some errors, unless these are so large that what they do cannot be told.
 bool jumps(const std::vector<double>& before, const std::vector<double>& after, double error) {
-  constexpr double kTimes = 1e4, kLeast = 1e-6;  // of the errors; of 1 + the signal
+  constexpr double kTimes = 1e4, kLeast = 1e-6, kClear = 0.03;  // of the errors; of 1 + the signal, twice
   for (std::size_t i = 0; i < before.size(); ++i) {
-    const double jump = std::abs(after[i] - before[i]);
-    if (jump > kTimes * error && jump > kLeast * (1 + std::abs(before[i]))) return true;
+    const double jump = std::abs(after[i] - before[i]), size = 1 + std::abs(before[i]);
+    if (jump > kLeast * size && jump > std::min(kTimes * error, kClear * size)) return true;
   }
   return false;
 }
@@ -49,8 +50,8 @@ void FaintTurns::approach(double from, double at, const std::vector<std::pair<st
 /// By the error of the surface, how far it has been from zero since it turned over last, and how long that is
 /// ago [s].
 bool FaintTurns::is_faint(const Approach& approach, double error, double excursion, double since) const {
-  constexpr double kAfar = 1e3, kSlow = 10;  // errors
-  constexpr double kPileUp = 1e-4;  // of the run: turns that come more quickly may be those of a ball
+  constexpr double kAfar = 30, kSlow = 10;  // errors
+  constexpr double kPileUp = 1e-4;          // of the run: turns that come more quickly may be those of a ball
   const bool has_decayed = excursion <= kSlow * error && since >= kPileUp * span_;
   const bool decays = excursion >= kAfar * error && approach.speed * since <= kSlow * error;
   return approach.before <= error && farthest_[approach.number] >= kAfar * error && (decays || has_decayed);
