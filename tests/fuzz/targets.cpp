@@ -7,6 +7,7 @@
 #include <string>
 
 #include <oblique/text/document.h>
+#include <oblique/text/expression_parser.h>
 #include <oblique/text/quantity.h>
 
 #include "whole_way.h"
