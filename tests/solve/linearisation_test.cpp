@@ -77,6 +77,28 @@ TEST(Modes, ParticipationDependsOnNoScaling) {
   }
 }
 
+// Three pairs, each of which sees only the other half of itself: alike from the start, apart by 4, by 2⁴⁰.
+// What rounds to the nearest power of 2 leaves at most a factor of √2 each way.
+TEST(Balance, LeavesRowsAndColumnsAboutAlike) {
+  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(6, 6);
+  a.diagonal() << -1, 1e9, 0, 3, -7, 0;
+  a(0, 1) = a(1, 0) = 1;
+  a(2, 3) = 4;
+  a(3, 2) = 1;
+  a(4, 5) = 0x1p40;
+  a(5, 4) = 1;
+  const Eigen::VectorXd scale = balance(a);
+  const Eigen::MatrixXd balanced = scale.cwiseInverse().asDiagonal() * a * scale.asDiagonal();
+  for (Eigen::Index i = 0; i < 6; ++i) {
+    int power = 0;
+    EXPECT_EQ(std::frexp(scale[i], &power), 0.5) << i;  // a power of 2
+    const double own = std::abs(balanced(i, i));
+    const double row = balanced.row(i).lpNorm<1>() - own, column = balanced.col(i).lpNorm<1>() - own;
+    EXPECT_LE(row, 2 * column) << i;
+    EXPECT_LE(column, 2 * row) << i;
+  }
+}
+
 TEST(Modes, LeaveOutIntegratorsWithoutFeedback) {
   const Compiled made(R"toml(one = { type = "constant" }
 phi = { type = "integrator", in = ["one"] }
