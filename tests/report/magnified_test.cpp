@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <oblique/mechanism/model/read_mechanism.h>
+#include <oblique/mechanism/motion/motion.h>
 
 #include "../support/compiled.h"
 
@@ -68,6 +69,24 @@ TEST_F(Magnified, TellsWhereTheyAreTooSmallOrTooLarge) {
                                       magnification)));
     EXPECT_THAT(remark, EndsWith(proposal));
   }
+}
+
+// A crank alone, before it moves: cosine 1 and sine 0 are exact.
+TEST(MagnifiedAnalog, HasNothingToTellOfNoError) {
+  const mechanism::Mechanism crank = mechanism::parse_mechanism(R"(format = "oblique-mechanism/1"
+[frame]
+A = [0, 0]
+[bodies]
+AB = { points = ["A", "B"], length = 1 }
+[drives]
+crank = { turns = "AB", about = "A", speed = 1 }
+)",
+                                                                "crank.toml");
+  TimedScene timed;
+  timed.scene.shown = mechanism::solve_motion(crank, std::vector<double>{0}).configurations.front();
+  const MagnifiedAnalog analog(crank, testing::shipped_blocks(), {}, 10, timed, {}, {});
+  EXPECT_EQ((analog.points(0, timed.scene.shown).back() - Eigen::Vector2d(1, 0)).norm(), 0);
+  EXPECT_EQ(analog.remark(), "");
 }
 
 }  // namespace
