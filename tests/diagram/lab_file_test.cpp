@@ -18,6 +18,7 @@ namespace oblique::diagram {
 namespace {
 
 using ::testing::ElementsAre;
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using testing::message_of;
 
@@ -224,6 +225,10 @@ TEST(LabFile, HasPointsWithUnits) {
 TEST(LabFile, NamesItsColumnsWhereOneIsNotThere) {
   EXPECT_THAT(message_of([] { recorded("Zeit;Spannung\n0;0\n1;1\n", kTU); }),
               HasSubstr("has no column 't'\n  remedy: known: Zeit, Spannung"));
+  EXPECT_THAT(message_of([] { recorded("t,Spannung\n0,0\n1,1\n", kTU); }),
+              EndsWith("has no column 'u'\n  remedy: known: t, Spannung"));
+  EXPECT_THAT(message_of([] { recorded("Zeit,u\n0,0\n1,1\n", kTU); }),
+              EndsWith("has no column 't'\n  remedy: known: Zeit, u"));
 }
 
 }  // namespace

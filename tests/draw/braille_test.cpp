@@ -107,6 +107,40 @@ TEST(Braille, DrawsTheEdgesOfTheWidestBandOnly) {
   EXPECT_EQ(text.find("half"), std::string::npos);
 }
 
+// A circle in dots of a terminal, of which two stand beside and four above each other in a letter that is
+// twice as high as wide: in equal scales it is as wide as it is high, and touches the edges that are nearer.
+TEST(Braille, DrawsACircleAsACircle) {
+  Curve circle{"", {}};
+  for (int degree = 0; degree <= 360; ++degree) {
+    const double angle = degree * 3.14159265358979 / 180;
+    circle.points.emplace_back(std::cos(angle), std::sin(angle));
+  }
+  Chart chart{"", {{{"x", "m"}, {"y", "m"}, {circle}}}};
+  chart.panels[0].equal = true;
+  const auto lines = lines_of(to_braille(chart, 60, false));
+  std::size_t left = 1000, right = 0, top = 1000, bottom = 0, rows = 0;
+  for (std::size_t r = 0; r < lines.size(); ++r) {
+    if (lines[r].find(U'│') != std::u32string::npos || lines[r].find(U'┤') != std::u32string::npos) ++rows;
+    for (std::size_t c = 0; c < lines[r].size(); ++c) {
+      if (!is_dots(lines[r][c])) continue;
+      for (std::size_t bit = 0; bit < 8; ++bit) {
+        if ((lines[r][c] >> bit & 1U) == 0) continue;
+        // Dots 1 2 3 7 of the left column, 4 5 6 8 of the right one, from above.
+        const std::size_t x = 2 * c + (bit == 7 || (bit >= 3 && bit < 6) ? 1 : 0);
+        const std::size_t y = 4 * r + (bit >= 6 ? 3 : bit % 3);
+        left = std::min(left, x);
+        right = std::max(right, x);
+        top = std::min(top, y);
+        bottom = std::max(bottom, y);
+      }
+    }
+  }
+  ASSERT_GT(right, left);
+  const double width = static_cast<double>(right - left), height = static_cast<double>(bottom - top);
+  EXPECT_NEAR(width, height, 2);  // a dot is rounded at each end
+  EXPECT_NEAR(height, 4 * static_cast<double>(rows), 4);
+}
+
 TEST(Braille, DrawsNothingAsEmptyAxes) {
   const std::string text = to_braille({"Nothing", {{{"t", "s"}, {"y"}, {{"y", {}}}}}}, 50, false);
   EXPECT_THAT(text, HasSubstr("└"));

@@ -52,6 +52,9 @@ TEST(ChooseRate, TakesTheLeastTimeFactorAtWhichOneInputSuffices) {
   EXPECT_EQ(choose_rate(6.3e7, 6.3e7, rates, kGains), 6.3e7);  // none: the bill will say so
   EXPECT_EQ(choose_rate(5, 2, {}, kGains), 2);                 // any can be had
   EXPECT_DOUBLE_EQ(choose_rate(157, 1, {}, kGains), 100);
+  EXPECT_DOUBLE_EQ(choose_rate(700, 1, {}, kGains), 100);
+  EXPECT_DOUBLE_EQ(choose_rate(1000 * (1 + 1e-15), 1, {}, kGains), 100);  // rounding asks for no more
+  EXPECT_DOUBLE_EQ(choose_rate(1001, 1, {}, kGains), 1000);
 }
 
 }  // namespace

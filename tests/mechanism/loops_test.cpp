@@ -80,6 +80,34 @@ TEST(FourBarLoops, OfJansensLegWithAndWithoutTheFrame) {
   EXPECT_NEAR(loops[2].shortest_and_longest, 36.7 + 40.1, 1e-12);
 }
 
+// A five-bar by two drives, and on its coupler BC the loop B–E–F–C, whose links BE and CF its dyad joins:
+// class by class.
+TEST(FourBarLoops, OnALinkThatMovesKeepTheNamesThatNeedNoFrame) {
+  const auto type = [](double be, double ef, double cf) {
+    const Mechanism made = mechanism(fmt::format(R"([frame]
+A = [0, 0]
+D = [4, 0]
+[bodies]
+AB = {{ points = ["A", "B"], length = 1 }}
+BC = {{ points = ["B", "C"], length = 3.5 }}
+CD = {{ points = ["C", "D"], length = 3 }}
+BE = {{ points = ["B", "E"], length = {} }}
+EF = {{ points = ["E", "F"], length = {} }}
+CF = {{ points = ["C", "F"], length = {} }}
+[drives]
+crank = {{ turns = "AB", about = "A", speed = 1, start = "60 deg" }}
+second = {{ turns = "BE", about = "B", speed = 1, start = "90 deg" }}
+)",
+                                                 be, ef, cf));
+    const auto loops = four_bar_loops(made, find_groups(made));
+    EXPECT_EQ(loops.size(), 2U);
+    return loops.back().type;
+  };
+  EXPECT_EQ(type(1, 3, 3), GrashofClass::grashof);         // 1 + 3.5 < 3 + 3
+  EXPECT_EQ(type(1, 3, 1.5), GrashofClass::change_point);  // 1 + 3.5 = 3 + 1.5
+  EXPECT_EQ(type(2, 2, 2), GrashofClass::triple_rocker);   // 2 + 3.5 < 2 + 2 does not hold
+}
+
 Mechanism slider_crank(double r, double l, double offset) {
   return mechanism(fmt::format(R"([frame]
 A = [0, 0]

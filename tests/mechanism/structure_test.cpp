@@ -196,6 +196,29 @@ TEST(Structure, KnowsADrivenSlider) {
   EXPECT_EQ(trammel.groups.at(1).kind, GroupKind::rrp);
 }
 
+// Two blocks hinged to each other at P, one in a slot of the crank and one in a slot of the frame; the yoke
+// has a slot of its own.
+TEST(Structure, TellsAPinInTwoSlotsFromAYoke) {
+  const Structure pin = find_groups(mechanism(R"([frame]
+A = [0, 0]
+D = [0, 3]
+E = [9, 3]
+[bodies]
+AB = { points = ["A", "B"], length = 5 }
+S = { points = ["P", "K"], length = 1 }
+T = { points = ["P", "L"], length = 1 }
+[slides]
+ray  = { point = "K", along = ["A", "B"], of = "S", angle = "0 deg" }
+line = { point = "L", along = ["D", "E"], of = "T", angle = "0 deg" }
+[drives]
+crank = { turns = "AB", about = "A", speed = 1, start = "45 deg" }
+)"));
+  ASSERT_EQ(pin.groups.size(), 2U);
+  EXPECT_EQ(pin.groups[1].kind, GroupKind::prp);
+  const Structure yoke = find_groups(shipped("scotch-yoke.toml"));
+  EXPECT_EQ(yoke.groups.at(1).kind, GroupKind::rpp);
+}
+
 // Four links in a closed loop, of which one is hinged to the crank and one to the frame (Artobolevsky calls a
 // group by the number of pairs in the loop of most pairs, where no link has more).
 TEST(Structure, KnowsAGroupOfClassIV) {

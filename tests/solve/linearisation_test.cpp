@@ -77,6 +77,30 @@ TEST(Modes, ParticipationDependsOnNoScaling) {
   }
 }
 
+// Two pairs, each of which sees only the other half of itself, one alike from the start and one apart by 2⁴⁰;
+// then three of which only the first is to be doubled, as 8 to 2 (the others are 101 to 104). What rounds to
+// the nearest power of 2 leaves at most a factor of √2 each way.
+TEST(Balance, LeavesRowsAndColumnsAboutAlike) {
+  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(7, 7);
+  a.diagonal() << -1, 1e9, 0, 3, -7, 0, 2;
+  a(0, 1) = a(1, 0) = 1;
+  a(2, 3) = 0x1p40;
+  a(3, 2) = 1;
+  a(4, 5) = a(4, 6) = 4;
+  a(5, 4) = a(6, 4) = 1;
+  a(5, 6) = a(6, 5) = 100;
+  const Eigen::VectorXd scale = balance(a);
+  const Eigen::MatrixXd balanced = scale.cwiseInverse().asDiagonal() * a * scale.asDiagonal();
+  for (Eigen::Index i = 0; i < a.rows(); ++i) {
+    int power = 0;
+    EXPECT_EQ(std::frexp(scale[i], &power), 0.5) << i;  // a power of 2
+    const double own = std::abs(balanced(i, i));
+    const double row = balanced.row(i).lpNorm<1>() - own, column = balanced.col(i).lpNorm<1>() - own;
+    EXPECT_LE(row, 2 * column) << i;
+    EXPECT_LE(column, 2 * row) << i;
+  }
+}
+
 TEST(Modes, LeaveOutIntegratorsWithoutFeedback) {
   const Compiled made(R"toml(one = { type = "constant" }
 phi = { type = "integrator", in = ["one"] }

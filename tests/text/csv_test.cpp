@@ -77,6 +77,17 @@ TEST(Csv, NumbersColumnsThatHaveNoNames) {
   EXPECT_THAT(*table.find("2"), ElementsAre(0.5, 2));
 }
 
+// Whether spaces part the columns the line below the names tells, and no later one; a file may end with
+// either.
+TEST(Csv, LooksAtTheNextLineForSpaces) {
+  EXPECT_THAT(parse_csv("time of day\n1 2 3\n", "d.csv").names, ElementsAre("time", "of", "day"));
+  EXPECT_EQ(refusal("time of day\n1\n2 3 4\n"),
+            "d.csv:3:1: '2 3 4' is no number; expected a number in every cell");
+  EXPECT_THAT(parse_csv("time of day\n", "d.csv").names, ElementsAre("time of day"));
+  EXPECT_THAT(parse_csv("1 2\n", "d.csv").names, ElementsAre("1", "2"));
+  EXPECT_THAT(parse_csv("# t u\n1 2\n", "d.csv").names, ElementsAre("t", "u"));
+}
+
 TEST(Csv, TakesLatin1) {
   const CsvTable table = parse_csv("phi [\xB0],u\n0,1\n", "d.csv");
   EXPECT_THAT(table.names, ElementsAre("phi [°]", "u"));

@@ -26,7 +26,6 @@ mechanism::GroupPose pose_in(const mechanism::Mechanism& mechanism, const mechan
   }
   for (const std::size_t point : group.equations.free_points)
     pose.points.push_back(here.points[point].position);
-  pose.side = group.side;
   return pose;
 }
 

@@ -243,10 +243,9 @@ std::string to_text(const compare::Comparison& comparison) {
   for (const compare::ComparedRun& run : comparison.runs) {
     if (!run.left_branch) continue;
     text += fmt::format(
-        "wrong branch at {}: its loops hold another assembly mode at {}; that is no error of the gain, and "
-        "not "
-        "in its order\n",
-        head.run_name(run), drive_text(comparison, run.worst.drive));
+        "wrong branch at {}: its loops hold another assembly mode from {} on; that is no error of the gain, "
+        "and not in its order\n",
+        head.run_name(run), drive_text(comparison, *run.left_branch));
   }
   for (const compare::ComparedRun& run : comparison.runs) {
     for (const compare::Overload& overload : run.overloads) {

@@ -118,7 +118,7 @@ class CsvReader {
       if (cells_of(line, separator).size() > 1) return separator;
     }
     const std::vector<Cell> words = cells_of(line, ' ');
-    const std::vector<Cell> next = at_ + 1 < lines_.size() ? cells_of(lines_[at_ + 1], ' ') : words;
+    const std::vector<Cell> next = cells_of(lines_[std::min(at_ + 1, lines_.size() - 1)], ' ');
     const bool same = next.size() == words.size() && all_numbers(next);
     return words.size() > 1 && (same || all_numbers(words)) ? ' ' : ',';
   }

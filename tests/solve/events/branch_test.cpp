@@ -270,6 +270,28 @@ q = { type = "divider", numerator = "one", denominator = "x", gain = inf, bandwi
   EXPECT_EQ(failure->time, 0);
 }
 
+// An ideal amplifier is one that is fast: from x₀ it goes down along −sin 5x, to the nearest multiple of
+// 2π/5. A root between, to which Newton's method would go as well, repels it, and a long step would leap to a
+// root behind the next. (A root within a twentieth of 1 + |x₀| counts as the one at `initial`, even if it
+// repels: none of these is tried.)
+TEST(Branch, GoesWhereAFastAmplifierGoes) {
+  const double period = 2 * std::numbers::pi / 5;
+  int tried = 0;
+  for (int k = -60; k <= 60; ++k) {
+    const double start = 0.1 * k, root = std::round(start / period) * period;
+    if (std::abs(start - root) > period / 2 - 0.06 * (1 + std::abs(start))) continue;
+    ++tried;
+    const auto result = run_of(
+        Compiled(fmt::format("s = {{ type = \"sine\", in = \"5*x\" }}\n"
+                             "x = {{ type = \"servo-amplifier\", in = [\"s\"], gain = inf, bandwidth = inf, "
+                             "initial = {} }}\n",
+                             start)),
+        {.until = 1});
+    EXPECT_NEAR(row_values(result, "x").front(), root, 1e-9) << start;  // Newton's method, to rounding
+  }
+  EXPECT_GT(tried, 50);
+}
+
 // cos 3y = y at 0.3901, −0.8876 and −0.9795 (Newton's method on a pocket calculator, to the digits given).
 TEST(Branch, TellsThatALoopHasOtherSolutions) {
   const auto result = run_of(Compiled("y = { type = \"cosine\", in = \"3*y\" }\n"), {.until = 1});

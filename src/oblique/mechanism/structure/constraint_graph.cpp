@@ -154,7 +154,7 @@ std::vector<std::vector<std::size_t>> ConstraintGraph::components() const {
     components.push_back(std::move(component));
   };
   for (std::size_t v = 0; v < capacity_.size(); ++v) {
-    if (capacity_[v] > 0 && order[v] == kUnseen) visit(visit, v);
+    if (exists(v) && order[v] == kUnseen) visit(visit, v);
   }
   return components;
 }

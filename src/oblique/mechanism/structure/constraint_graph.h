@@ -52,7 +52,7 @@ class ConstraintGraph {
  private:
   void add(Edge edge);
   bool find_unknown(std::size_t vertex, std::vector<bool>& seen);
-  bool exists(std::size_t vertex) const { return vertex != kFrame && capacity_[vertex] > 0; }
+  bool exists(std::size_t vertex) const { return vertex != kFrame && capacity_[vertex] != 0; }
 
   std::size_t bodies_ = 0;
   std::vector<int> capacity_;                       ///< unknowns of a vertex

@@ -219,13 +219,13 @@ std::vector<FourBarLoop> four_bar_loops(const Mechanism& mechanism, const Struct
 
 std::vector<SliderLoop> slider_loops(const Mechanism& mechanism, const Structure& structure) {
   std::vector<SliderLoop> loops;
-  for (std::size_t g = 0; g < structure.groups.size(); ++g) {
-    const GroupKind kind = structure.groups[g].kind;
-    if (kind == GroupKind::rrp) {
+  for (std::size_t g = 0; const Group& group : structure.groups) {
+    if (group.kind == GroupKind::rrp) {
       if (auto loop = slider_crank(mechanism, structure, g)) loops.push_back(*loop);
-    } else if (kind == GroupKind::rpr) {
+    } else if (group.kind == GroupKind::rpr) {
       if (auto loop = slotted_lever(mechanism, structure, g)) loops.push_back(*loop);
     }
+    ++g;
   }
   return loops;
 }

@@ -2,6 +2,7 @@
 #include <oblique/mechanism/structure/mobility_report.h>
 
 #include <algorithm>
+#include <tuple>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -76,12 +77,10 @@ void check_mobility(const Mechanism& mechanism) {
 
 void check_parts(const Mechanism& mechanism, const ConstraintGraph& graph) {
   std::vector<text::Diagnostic> findings;
-  std::vector<std::pair<ConstraintGraph::Edge::Kind, std::size_t>> told;
+  std::vector<std::tuple<ConstraintGraph::Edge::Kind, std::size_t, std::size_t>> told;
   for (const std::size_t index : graph.redundant()) {
     const ConstraintGraph::Edge& edge = graph.edges()[index];
-    const auto pair = std::pair(edge.kind, edge.kind == ConstraintGraph::Edge::Kind::hinge
-                                               ? edge.index * mechanism.points.size() + edge.point
-                                               : edge.index);
+    const std::tuple pair(edge.kind, edge.index, edge.point);
     if (std::find(told.begin(), told.end(), pair) != told.end()) continue;
     told.push_back(pair);
     auto others = bodies_among(graph, graph.competitors(index));

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/report/diagram_check.h>
+
+#include <gtest/gtest.h>
+
+#include "../support/compiled.h"
+
+namespace oblique::report {
+namespace {
+
+using testing::Compiled;
+
+DiagramCheck checked(const Compiled& made) {
+  return examine(made.diagram, made.flat, made.program, {});
+}
+
+// x = 0.4 cos 30t, y = 0.4 sin 30t: scaled by 2, the next step of 1-2-5, they are 0.8, and their integrators
+// are fed with 2 · 0.4 · 30 = 24 machine units, which 50 times slower are less than 1, and 20 times slower
+// are not. z = 0.05 t stays far behind: scaled by 10 it is fed with 0.5.
+TEST(DiagramCheck, SlowsDownUntilTheFastestIntegratorIsFedWithOneUnit) {
+  const Compiled made(R"toml(x = { type = "integrator", in = ["-30*y"], initial = 0.4 }
+y = { type = "integrator", in = ["30*x"] }
+one = { type = "constant" }
+z = { type = "integrator", in = ["0.05*one"] }
+)toml",
+                      "[run]\nuntil = 2\n");
+  const DiagramCheck check = checked(made);
+  ASSERT_TRUE(check.scaling);
+  EXPECT_EQ(check.scaling->signals.at(made.signal("x")), 2);
+  EXPECT_EQ(check.scaling->signals.at(made.signal("z")), 10);
+  EXPECT_EQ(check.scaling->time_scale, 50);
+}
+
+}  // namespace
+}  // namespace oblique::report

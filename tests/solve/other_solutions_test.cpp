@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/solve/operating_point/other_solutions.h>
+
+#include <set>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "../support/compiled.h"
+
+namespace oblique::solve {
+namespace {
+
+using testing::Compiled;
+using ::testing::HasSubstr;
+
+/// A program with one loop, of one unknown, in which nothing chooses; how its starts end is up to each test.
+const network::Program& blind_loop() {
+  static const Compiled made("y = { type = \"cosine\", in = \"3*y\" }\n");
+  return made.program;
+}
+
+StartOutcome at(double y) {
+  return {{y}, {y}};
+}
+
+/// All points at which a start of the loop itself is tried, where none but the guess has a solution.
+std::set<double> points_tried() {
+  std::set<double> points;
+  const auto start = [&](const LoopStart& from) -> std::optional<StartOutcome> {
+    if (!from.loop) return at(0);
+    points.insert(from.unknowns.at(0));
+    return std::nullopt;
+  };
+  EXPECT_TRUE(choose_start(blind_loop(), 0, "d.toml", start).warnings.empty());
+  return points;
+}
+
+// The page on runs says: 24 points within ±3 machine units.
+TEST(OtherSolutions, AreSoughtFromAsManyPointsAsIsSaid) {
+  const std::set<double> points = points_tried();
+  EXPECT_EQ(points.size(), 24U);
+  EXPECT_GE(*points.begin(), -3);
+  EXPECT_LE(*points.rbegin(), 3);
+}
+
+TEST(OtherSolutions, AreToldWhicheverPointFindsOne) {
+  for (const double point : points_tried()) {
+    const auto start = [&](const LoopStart& from) -> std::optional<StartOutcome> {
+      if (!from.loop) return at(0.25);
+      return from.unknowns.at(0) == point ? std::optional(at(-0.75)) : std::nullopt;
+    };
+    const StartChoice choice = choose_start(blind_loop(), 2, "d.toml", start);
+    EXPECT_FALSE(choice.from.loop);
+    ASSERT_EQ(choice.warnings.size(), 1U) << point;
+    EXPECT_EQ(choice.warnings[0].what,
+              "the algebraic loop of 'y' has several solutions: at t = 2 s the run begins with y = 0.25, and "
+              "-0.75 is "
+              "another; nothing in the diagram chooses between them");
+  }
+}
+
+TEST(OtherSolutions, AreNotTheSameOneNorBeyondTheReach) {
+  for (const double other : {0.25, 0.25 + 1e-6, 3.5}) {
+    const auto start = [&](const LoopStart& from) { return std::optional(at(from.loop ? other : 0.25)); };
+    EXPECT_TRUE(choose_start(blind_loop(), 0, "d.toml", start).warnings.empty()) << other;
+  }
+}
+
+// Where the guesses lead to none, the first point that leads to one is what the run is to start from.
+TEST(OtherSolutions, GiveTheStartWhereTheGuessesGiveNone) {
+  for (const double point : points_tried()) {
+    const auto start = [&](const LoopStart& from) -> std::optional<StartOutcome> {
+      return from.loop && from.unknowns.at(0) == point ? std::optional(at(1)) : std::nullopt;
+    };
+    const StartChoice choice = choose_start(blind_loop(), 0, "d.toml", start);
+    EXPECT_TRUE(choice.warnings.empty());
+    EXPECT_EQ(choice.from.unknowns, std::vector<double>{point});
+  }
+  const auto none = [](const LoopStart&) -> std::optional<StartOutcome> { return std::nullopt; };
+  EXPECT_FALSE(choose_start(blind_loop(), 0, "d.toml", none).from.loop);
+}
+
+}  // namespace
+}  // namespace oblique::solve

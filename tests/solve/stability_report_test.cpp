@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/solve/stability/stability_report.h>
+
+#include <gtest/gtest.h>
+
+#include "../support/compiled.h"
+
+namespace oblique::solve {
+namespace {
+
+using testing::Compiled;
+
+/// A mode of 1 rad/s with so much damping, which an ideal machine would have undamped.
+WorstMode undamped_by_design(double damping) {
+  WorstMode worst;
+  worst.mode.pole = {-damping, std::sqrt(1 - damping * damping)};
+  worst.ideal_pole = {0, 1};
+  return worst;
+}
+
+TEST(ModeVerdict, OfAnOscillatorAllowsAMillionthARadian) {
+  for (const double sign : {1.0, -1.0})
+    EXPECT_EQ(verdict_on(undamped_by_design(sign * 0.9e-6)), ModeVerdict::undamped) << sign;
+  EXPECT_EQ(verdict_on(undamped_by_design(1.1e-6)), ModeVerdict::badly_damped);
+  EXPECT_EQ(verdict_on(undamped_by_design(-1.1e-6)), ModeVerdict::grows);
+}
+
+TEST(ModeVerdict, OfAModeThatIsDampedByDesignAllowsNothing) {
+  WorstMode worst = undamped_by_design(-0.5e-6);
+  worst.ideal_pole = {-0.01, 1};
+  EXPECT_EQ(verdict_on(worst), ModeVerdict::grows);
+  worst.ideal_pole.reset();
+  EXPECT_EQ(verdict_on(worst), ModeVerdict::grows);
+}
+
+// dx/dt = a x: x grows where a > 0, whatever it did at the instant before.
+TEST(StabilityReport, TellsGrowthAtTimesFromGrowthThroughout) {
+  const Compiled made(R"toml(one = { type = "constant" }
+a = { type = "integrator", in = ["-one"], initial = 0.5 }
+p = { type = "multiplier", in = ["a", "x"] }
+x = { type = "integrator", in = ["p"], initial = 1 }
+)toml");
+  const SignalFlow flow(made.flat, made.program);
+  const auto verdict_along = [&](const std::vector<double>& values_of_a) {
+    std::vector<Instant> instants;
+    for (const double a : values_of_a) {
+      Instant& instant = instants.emplace_back(Instant{0, made.program.start()});
+      for (std::size_t i = 0; i < made.program.n_states(); ++i) {
+        if (made.program.states()[i].name == "a") instant.states[i] = a;
+      }
+    }
+    return judge_stability(made.program, flow, instants).verdict;
+  };
+  EXPECT_EQ(verdict_along({0.5, 0.4}), StabilityVerdict::grows);
+  EXPECT_EQ(verdict_along({0.5, -0.5}), StabilityVerdict::grows_at_times);
+  EXPECT_EQ(verdict_along({-0.5, 0.5}), StabilityVerdict::grows_at_times);
+  EXPECT_EQ(verdict_along({-0.5, -0.4}), StabilityVerdict::stable_when_frozen);
+  EXPECT_EQ(verdict_along({-0.5, -0.5}), StabilityVerdict::stable);
+}
+
+}  // namespace
+}  // namespace oblique::solve
