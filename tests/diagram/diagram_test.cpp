@@ -97,7 +97,7 @@ b = { type = "adder", in = ["a", "-2*b"] }
   EXPECT_EQ(d.title, "A title");
   EXPECT_EQ(d.source, "a book");
   EXPECT_EQ(d.machine, (MachineSettings{"ideal", true}));
-  EXPECT_EQ(d.run, (RunSettings{120, 1e-6, IntegrationMethod::adams, 11, 5000, true, {}}));
+  EXPECT_EQ(d.run, (RunSettings{120, 1e-6, IntegrationMethod::adams, 11, 5000, true, {}, {}, {}}));
 
   ASSERT_EQ(d.blocks.size(), 2U);
   EXPECT_EQ(d.blocks[0].name, "a");

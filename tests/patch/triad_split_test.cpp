@@ -10,6 +10,7 @@
 
 #include <oblique/mechanism/model/read_mechanism.h>
 #include <oblique/text/document.h>
+#include <oblique/text/file.h>
 
 namespace oblique::patch {
 namespace {
