@@ -13,6 +13,7 @@
 #include <oblique/diagram/diagram.h>
 #include <oblique/diagram/machine_profile.h>
 #include <oblique/diagram/rescale.h>
+#include <oblique/draw/animation/animated_page.h>
 #include <oblique/draw/animation/animation.h>
 #include <oblique/draw/chart/braille.h>
 #include <oblique/draw/chart/chart.h>
@@ -20,6 +21,7 @@
 #include <oblique/draw/linkage/linkage.h>
 #include <oblique/draw/picture/gif.h>
 #include <oblique/draw/picture/svg.h>
+#include <oblique/draw/picture/text_width.h>
 #include <oblique/draw/schematic/diagram_drawing.h>
 #include <oblique/machine/bill.h>
 #include <oblique/machine/realise.h>
@@ -51,5 +53,7 @@
 #include <oblique/synthesis/fit.h>
 #include <oblique/synthesis/synthesis_error.h>
 #include <oblique/text/diagnostic.h>
+#include <oblique/text/expression_parser.h>
+#include <oblique/text/expression_printer.h>
 #include <oblique/text/quantity.h>
 #include <oblique/text/table_file.h>

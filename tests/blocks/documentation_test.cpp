@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <oblique/text/document.h>
+#include <oblique/text/file.h>
 
 #include "../support/compiled.h"
 

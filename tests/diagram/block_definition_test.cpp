@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/diagram/block_definition.h>
+#include <oblique/text/expression_printer.h>
 
 #include <cmath>
 #include <limits>

@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <oblique/text/document.h>
+#include <oblique/text/file.h>
 
 #include "../support/scratch_folder.h"
 #include "small_library.h"

@@ -15,7 +15,7 @@
 #include <oblique/network/assembly/network.h>
 #include <oblique/network/program/program.h>
 #include <oblique/report/expectation_check.h>
-#include <oblique/text/document.h>
+#include <oblique/text/file.h>
 
 #include "../support/rate_errors.h"
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/draw/picture/svg.h>
+#include <oblique/draw/picture/text_width.h>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <oblique/text/document.h>
+#include <oblique/text/file.h>
 
 #include "targets.h"
 

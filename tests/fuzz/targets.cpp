@@ -7,6 +7,8 @@
 #include <string>
 
 #include <oblique/text/document.h>
+#include <oblique/text/expression_parser.h>
+#include <oblique/text/expression_printer.h>
 #include <oblique/text/quantity.h>
 
 #include "whole_way.h"

@@ -2,7 +2,7 @@
 // One stage alone, without those after it.
 #include <cmath>
 
-#include <oblique/text/expression.h>
+#include <oblique/text/expression_parser.h>
 
 int main() {
   const double value = oblique::text::evaluate(oblique::text::parse_expression("2*cos(pi/3)"));

@@ -10,6 +10,8 @@
 #include <gtest/gtest.h>
 
 #include <oblique/mechanism/model/drive_law.h>
+#include <oblique/text/expression_parser.h>
+#include <oblique/text/expression_printer.h>
 #include <oblique/text/quantity.h>
 
 namespace oblique::mechanism {

@@ -10,6 +10,7 @@
 #include <rapidcheck/gtest.h>
 
 #include <oblique/text/expression.h>
+#include <oblique/text/noise.h>
 
 #include "../support/naive_value.h"
 

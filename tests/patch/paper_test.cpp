@@ -13,7 +13,7 @@
 #include <oblique/network/program/program.h>
 #include <oblique/patch/patch.h>
 #include <oblique/solve/run.h>
-#include <oblique/text/document.h>
+#include <oblique/text/file.h>
 
 namespace oblique::patch {
 namespace {

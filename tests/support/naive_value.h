@@ -6,6 +6,7 @@
 #include <span>
 
 #include <oblique/network/graph/expression_graph.h>
+#include <oblique/text/noise.h>
 #include <oblique/text/operations.h>
 
 namespace oblique::testing {

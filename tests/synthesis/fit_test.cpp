@@ -14,6 +14,7 @@
 #include <oblique/mechanism/motion/obstacle.h>
 #include <oblique/mechanism/structure/structure.h>
 #include <oblique/text/document.h>
+#include <oblique/text/file.h>
 
 #include "fitting.h"
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/text/expression.h>
+#include <oblique/text/expression_parser.h>
+#include <oblique/text/expression_printer.h>
 
 #include <cmath>
 #include <limits>

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include <oblique/text/document.h>
+#include <oblique/text/file.h>
 #include <oblique/text/leftover.h>
 #include <oblique/text/output_claim.h>
 

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <oblique/text/expression.h>
+#include <oblique/text/noise.h>
 
 namespace oblique::text {
 namespace {

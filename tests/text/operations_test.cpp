@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include <oblique/text/expression.h>
+#include <oblique/text/expression_parser.h>
 #include <oblique/text/partial_derivative.h>
 
 namespace oblique::text {

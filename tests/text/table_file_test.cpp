@@ -24,7 +24,7 @@
 #include <nlohmann/json.hpp>
 
 #include <oblique/text/csv.h>
-#include <oblique/text/document.h>
+#include <oblique/text/file.h>
 
 #include "table_reading.h"
 

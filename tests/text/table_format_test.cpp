@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include <oblique/text/csv.h>
-#include <oblique/text/document.h>
 
 #include "table_reading.h"
 

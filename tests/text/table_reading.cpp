@@ -11,7 +11,7 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
-#include <oblique/text/document.h>
+#include <oblique/text/file.h>
 
 namespace oblique::test {
 namespace {

@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include <oblique/text/document.h>
+#include <oblique/text/file.h>
 #include <oblique/text/new_file.h>
 #include <oblique/text/output_claim.h>
 

@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include <oblique/text/document.h>
+#include <oblique/text/file.h>
 #include <oblique/text/leftover.h>
 #include <oblique/text/new_file.h>
 

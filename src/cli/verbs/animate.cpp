@@ -8,6 +8,7 @@
 #include <oblique/mechanism/model/read_mechanism.h>
 #include <oblique/mechanism/motion/motion.h>
 
+#include <oblique/draw/animation/animated_page.h>
 #include <oblique/mechanism/structure/structure.h>
 #include <oblique/report/drive_caption.h>
 #include <oblique/report/linkage_scene.h>

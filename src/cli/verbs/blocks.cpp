@@ -6,6 +6,7 @@
 #include <oblique/diagram/diagram.h>
 
 #include <oblique/report/text_table.h>
+#include <oblique/text/expression_printer.h>
 #include "terminal/terminal.h"
 #include "verbs/command.h"
 

@@ -12,6 +12,7 @@
 #include <oblique/report/mechanism_check_text.h>
 #include <oblique/report/pole_chart.h>
 #include <oblique/report/text_table.h>
+#include <oblique/text/file.h>
 #include "terminal/file_kind.h"
 #include "terminal/output_files.h"
 #include "terminal/plot_output.h"

@@ -2,10 +2,10 @@
 #include <fmt/format.h>
 
 #include <oblique/mechanism/model/read_mechanism.h>
-#include <oblique/text/document.h>
 
 #include <oblique/report/linkage_scene.h>
 #include <oblique/report/magnified.h>
+#include <oblique/text/file.h>
 #include "terminal/file_kind.h"
 #include "terminal/picture_output.h"
 #include "terminal/terminal.h"

@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include <oblique/mechanism/model/read_mechanism.h>
-#include <oblique/text/document.h>
 
 #include <oblique/report/text_table.h>
+#include <oblique/text/file.h>
 #include "terminal/output_files.h"
 #include "terminal/terminal.h"
 #include "verbs/command.h"

@@ -11,6 +11,7 @@
 #include <oblique/network/assembly/network.h>
 #include <oblique/report/run_chart.h>
 #include <oblique/report/text_table.h>
+#include <oblique/text/file.h>
 #include "terminal/output_files.h"
 #include "terminal/plot_output.h"
 #include "terminal/signals.h"

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <oblique/diagram/names.h>
+#include <oblique/text/expression_parser.h>
 
 namespace oblique::diagram {
 namespace {

@@ -8,6 +8,7 @@
 
 #include <oblique/diagram/diagram.h>
 #include <oblique/diagram/shipped_files.h>
+#include <oblique/text/file.h>
 
 namespace oblique::diagram {
 namespace {

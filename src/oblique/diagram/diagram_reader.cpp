@@ -11,6 +11,7 @@
 #include <oblique/diagram/machine_profile.h>
 #include <oblique/diagram/names.h>
 #include <oblique/diagram/timeline.h>
+#include <oblique/text/file.h>
 #include <oblique/text/table_reader.h>
 
 namespace oblique::diagram {

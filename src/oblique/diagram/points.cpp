@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <oblique/text/csv.h>
+#include <oblique/text/file.h>
 #include <oblique/text/table_reader.h>
 
 namespace oblique::diagram {

@@ -9,6 +9,7 @@
 
 #include <oblique/diagram/machine_profile.h>
 #include <oblique/diagram/names.h>
+#include <oblique/text/expression_parser.h>
 #include <oblique/text/table_reader.h>
 
 namespace oblique::diagram::wiring {

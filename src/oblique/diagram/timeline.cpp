@@ -10,6 +10,7 @@
 
 #include <oblique/diagram/machine_profile.h>
 #include <oblique/diagram/names.h>
+#include <oblique/text/expression_parser.h>
 
 namespace oblique::diagram {
 namespace {

@@ -13,6 +13,7 @@
 #include <oblique/machine/carried_signals.h>
 #include <oblique/machine/circuit.h>
 #include <oblique/machine/input_weight.h>
+#include <oblique/text/expression_printer.h>
 
 namespace oblique::machine {
 namespace {

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <oblique/patch/patch_builder.h>
+#include <oblique/text/expression_printer.h>
 
 namespace oblique::patch {
 namespace {

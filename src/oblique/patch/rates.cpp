@@ -21,6 +21,7 @@
 #include <oblique/mechanism/structure/structure.h>
 #include <oblique/patch/patch_builder.h>
 #include <oblique/patch/signal_rates.h>
+#include <oblique/text/expression_printer.h>
 
 namespace oblique::patch {
 namespace {

@@ -9,6 +9,7 @@
 
 #include <oblique/text/encoding.h>
 #include <oblique/text/expression_grammar.h>
+#include <oblique/text/file.h>
 
 // This is the only translation unit of toml++ 3.3, which asserts or assumes away things that malformed text
 // can bring about. Here an assertion that fails throws. It throws from a function because many asserts stand

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -43,15 +42,6 @@ struct Document {
 
 /// "a string", "a table": the kind of a value as a message names it.
 std::string_view kind_name(Value::Kind kind);
-
-/// Reads a file whole. Throws ReadError where it cannot be opened.
-std::string read_file(const std::filesystem::path& path);
-
-/// Writes a file whole or not at all. Throws ReadError where that fails; the old file is then untouched.
-void write_file(const std::filesystem::path& path, std::string_view text);
-
-/// Throws ReadError that names the endings (".csv" …; at least one) where the path has none of them.
-void check_ending(const std::filesystem::path& path, std::span<const std::string_view> endings);
 
 /// Parses TOML 1.0; `file` is the name that messages give. Throws ReadError.
 Document parse_document(std::string_view text, std::string file);

@@ -11,18 +11,6 @@
 
 namespace oblique::text {
 
-const FunctionInfo* find_function(std::string_view name) {
-  const auto found = std::find_if(functions().begin(), functions().end(),
-                                  [&](const FunctionInfo& f) { return f.name == name; });
-  return found == functions().end() ? nullptr : &*found;
-}
-
-const BinaryOperator* operator_of(Expression::Kind kind) {
-  const auto* const found = std::find_if(kBinaryOperators.begin(), kBinaryOperators.end(),
-                                         [&](const BinaryOperator& op) { return op.kind == kind; });
-  return found == kBinaryOperators.end() ? nullptr : found;
-}
-
 bool Expression::operator==(const Expression& other) const {
   return kind == other.kind && name == other.name && operands == other.operands &&
          (kind != Kind::number || number == other.number) &&

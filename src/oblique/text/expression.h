@@ -43,18 +43,6 @@ struct ExpressionError {
   std::string remedy;
 };
 
-/// Parses a whole text. Grammar, loosest first: `or`, `and`, `not`, comparisons (which do not chain), `+ -`,
-/// `* /`, unary `-`, `^` (right associative), calls, names, numbers, parentheses. A minus before a lone
-/// number makes a negative number. At most 200 levels and 1000 operators. Throws ExpressionError.
-Expression parse_expression(std::string_view text);
-
-/// Parses the longest expression at the front of `text` and sets `rest` to where it ends (for "30 deg").
-Expression parse_expression_prefix(std::string_view text, std::size_t& rest);
-
-/// Prints with as few parentheses as the grammar needs; `parse_expression` reads it back unchanged (an
-/// infinite number as the name `inf`; not-a-number has no text).
-std::string to_string(const Expression& expression);
-
 /// Value of a name inside a constant expression; `pi` and `inf` need no entry.
 using NameLookup = std::function<std::optional<double>(std::string_view)>;
 

@@ -6,7 +6,7 @@
 
 #include <oblique/text/expression.h>
 
-// What the parser and the printer of expressions must agree on; not installed.
+// What the parser and the printer of expressions must agree on. Not installed.
 namespace oblique::text {
 
 /// Binary operators by precedence; `^` binds tightest and to the right, everything else to the left.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/text/expression.h>
+#include <oblique/text/expression_parser.h>
 
 #include <algorithm>
 #include <charconv>
@@ -25,16 +25,6 @@ std::string excerpt(std::string_view text) {
   std::size_t end = kMost;
   while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
   return std::string(text.substr(0, end)) + "…";
-}
-
-/// The bytes of the first of `spellings` that begins at `at`.
-std::size_t length_at(std::string_view text, std::size_t at,
-                      std::initializer_list<std::string_view> spellings) {
-  const std::string_view rest = text.substr(std::min(at, text.size()));
-  for (const std::string_view spelling : spellings) {
-    if (rest.starts_with(spelling)) return spelling.size();
-  }
-  return 0;
 }
 
 class Parser {
@@ -237,14 +227,6 @@ class Parser {
 };
 
 }  // namespace
-
-std::size_t minus_at(std::string_view text, std::size_t at) {
-  return length_at(text, at, {"-", "\u2212", "\u2013"});
-}
-
-std::size_t space_at(std::string_view text, std::size_t at) {
-  return length_at(text, at, {" ", "\t", "\n", "\r", "\u00a0", "\u2009", "\u202f"});
-}
 
 Expression parse_expression_prefix(std::string_view text, std::size_t& rest) {
   Parser parser(text);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/text/expression.h>
+#include <oblique/text/expression_printer.h>
 
 #include <cmath>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/text/document.h>
+#include <oblique/text/file.h>
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include <oblique/text/diagnostic.h>
 #include <oblique/text/encoding.h>
 #include <oblique/text/new_file.h>
 #include <oblique/text/output_claim.h>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
+#include <oblique/text/noise.h>
+
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <numbers>
-
-#include <oblique/text/operations.h>
 
 namespace oblique::text {
 namespace {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include <oblique/text/noise.h>
+
 namespace oblique::text {
 namespace {
 

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <oblique/text/expression_grammar.h>
+#include <oblique/text/expression_parser.h>
 
 namespace oblique::text {
 namespace {

@@ -2,19 +2,18 @@
 #include <oblique/text/table_file.h>
 
 #include <algorithm>
-#include <bit>
 #include <stdexcept>
 
 #include <fmt/format.h>
 
-#include <oblique/text/document.h>
-#include <oblique/text/table_format.h>
+#include <oblique/text/file.h>
+#include <oblique/text/new_file.h>
+#include <oblique/text/table_mat.h>
+#include <oblique/text/table_npy.h>
+#include <oblique/text/table_text.h>
 
 namespace oblique::text {
 namespace {
-
-static_assert(std::endian::native == std::endian::little,
-              "the binary formats are written as they stand here");
 
 MakeTableFormat& format_of(const std::filesystem::path& path) {
   constexpr std::array<MakeTableFormat*, kTableEndings.size()> kFormats{make_csv_format, make_npy_format,
@@ -25,19 +24,6 @@ MakeTableFormat& format_of(const std::filesystem::path& path) {
 }
 
 }  // namespace
-
-std::string_view bytes_of(std::span<const double> numbers) {
-  return {reinterpret_cast<const char*>(numbers.data()), numbers.size_bytes()};
-}
-
-std::string take_name(const std::string& name, std::set<std::string>& taken, std::size_t most) {
-  std::string free = name.substr(0, most);
-  for (int k = 1; !taken.insert(free).second; ++k) {
-    const std::string number = fmt::format("_{}", k);
-    free = name.substr(0, most - number.size()) + number;
-  }
-  return free;
-}
 
 TableFile::TableFile(const std::filesystem::path& path, std::vector<TableColumn> columns, std::size_t rows)
     : columns_(std::move(columns)), values_left_(columns_.size() * rows) {

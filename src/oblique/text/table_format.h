@@ -25,10 +25,9 @@ class TableFormat {
   virtual void finish() = 0;
 };
 
-// The columns and the file must outlive what these make.
+/// Makes a format; the columns and the file must outlive it.
 using MakeTableFormat = std::unique_ptr<TableFormat>(NewFile& file, const std::vector<TableColumn>& columns,
                                                      std::size_t rows);
-MakeTableFormat make_csv_format, make_json_format, make_npy_format, make_mat_format;
 
 /// Numbers as they stand in memory and in the binary formats, least significant byte first.
 std::string_view bytes_of(std::span<const double> numbers);

@@ -2,6 +2,8 @@
 // The MAT-file of MATLAB, level 4 ("MAT-File Format", chapter "Level 4 MAT-File Format"): for each variable
 // five integers of 4 bytes (type, rows, columns, imaginary part, length of the name), the name with a zero
 // behind it, then the numbers column by column.
+#include <oblique/text/table_mat.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -10,7 +12,6 @@
 #include <limits>
 
 #include <oblique/text/diagnostic.h>
-#include <oblique/text/table_format.h>
 
 namespace oblique::text {
 namespace {

@@ -2,13 +2,13 @@
 // The .npy format of NumPy (numpy.lib.format, "NPY format"): a magic string, the version, the length of the
 // header, the header (a Python dictionary, padded with blanks so that the data begin at a multiple of 64
 // bytes), then the records.
+#include <oblique/text/table_npy.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <limits>
 
 #include <fmt/format.h>
-
-#include <oblique/text/table_format.h>
 
 namespace oblique::text {
 namespace {

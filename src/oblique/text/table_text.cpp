@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Tables as text: comma-separated values and JSON. Numbers have the fewest digits that read back to the same
 // bits.
+#include <oblique/text/table_text.h>
+
 #include <cmath>
 #include <iterator>
 
@@ -8,7 +10,6 @@
 #include <fmt/format.h>
 
 #include <oblique/text/encoding.h>
-#include <oblique/text/table_format.h>
 
 namespace oblique::text {
 namespace {

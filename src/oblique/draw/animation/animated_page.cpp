@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
+#include <oblique/draw/animation/animated_page.h>
+
 #include <string_view>
 
 #include <fmt/format.h>
 
-#include <oblique/draw/animation/animation.h>
 #include <oblique/draw/animation/moving_svg.h>
 
 namespace oblique::draw {

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <oblique/draw/animation/moving_svg.h>
+#include <oblique/draw/picture/text_width.h>
 
 namespace oblique::draw {
 namespace {

@@ -26,11 +26,6 @@ struct LinkageAnimation {
 std::string animated_svg(const mechanism::Mechanism& mechanism, const LinkageAnimation& animation,
                          Theme theme);
 
-/// One HTML file with the same picture, a button to play and pause, and a slider. Nothing is loaded from
-/// elsewhere; it stands still at first for readers who want less motion.
-std::string animated_page(const mechanism::Mechanism& mechanism, const LinkageAnimation& animation,
-                          Theme theme);
-
 struct MovingGroup;
 
 /// The same picture frame by frame, each with its caption. What stands still is the same in all of them.

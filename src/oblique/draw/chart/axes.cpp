@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <oblique/draw/picture/text_width.h>
+
 namespace oblique::draw {
 namespace {
 

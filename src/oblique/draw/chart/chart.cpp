@@ -8,6 +8,7 @@
 
 #include <oblique/draw/chart/axes.h>
 #include <oblique/draw/chart/chart_layout.h>
+#include <oblique/draw/picture/text_width.h>
 
 namespace oblique::draw {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
+#include <oblique/draw/layout/channel.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
-
-#include <oblique/draw/layout/layers.h>
 
 namespace oblique::draw::layered {
 namespace {

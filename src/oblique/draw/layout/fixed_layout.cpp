@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
+#include <oblique/draw/layout/fixed_layout.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 
-#include <oblique/draw/layout/layers.h>
-#include <oblique/draw/layout/layout_steps.h>
-#include <oblique/draw/layout/wire_router.h>
+#include <oblique/draw/layout/layered_layout.h>
+#include <oblique/draw/layout/route_all.h>
 
 namespace oblique::draw {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
+#include <oblique/draw/layout/layering.h>
+
 #include <algorithm>
 #include <limits>
 #include <numeric>
-
-#include <oblique/draw/layout/layers.h>
 
 namespace oblique::draw::layered {
 namespace {

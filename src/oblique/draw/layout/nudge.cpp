@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
+#include <oblique/draw/layout/nudge.h>
+
 #include <algorithm>
 #include <cmath>
 #include <set>
 
-#include <oblique/draw/layout/layout_steps.h>
-#include <oblique/draw/layout/wire_router.h>
+#include <oblique/draw/layout/route_all.h>
 
 namespace oblique::draw {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
+#include <oblique/draw/layout/ordering.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <numeric>
 #include <optional>
-
-#include <oblique/draw/layout/layers.h>
 
 namespace oblique::draw::layered {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
+#include <oblique/draw/layout/plan.h>
+
 #include <algorithm>
 #include <map>
-
-#include <oblique/draw/layout/layers.h>
 
 namespace oblique::draw::layered {
 namespace {

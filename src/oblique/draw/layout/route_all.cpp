@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
+#include <oblique/draw/layout/route_all.h>
+
 #include <algorithm>
 #include <map>
-
-#include <oblique/draw/layout/wire_router.h>
 
 namespace oblique::draw {
 namespace {

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
+#include <oblique/draw/layout/straighten.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
 
-#include <oblique/draw/layout/layers.h>
+#include <oblique/draw/layout/slot_links.h>
 
 namespace oblique::draw::layered {
 namespace {

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
+#include <oblique/draw/layout/tidy.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <set>
 
-#include <oblique/draw/layout/layout_steps.h>
-#include <oblique/draw/layout/wire_router.h>
-#include <oblique/draw/schematic/wire_pieces.h>
+#include <oblique/draw/layout/measure.h>
+#include <oblique/draw/layout/nudge.h>
+#include <oblique/draw/layout/route_all.h>
 
 namespace oblique::draw {
 namespace {
@@ -15,16 +17,6 @@ using Eigen::Vector2d;
 
 /// Points of the grid up to which wires are laid anew: the grid of 1000 blocks would fill the memory.
 constexpr double kMostPoints = 3e5;
-
-Vector2d extent(const LayoutGraph& graph, const DiagramLayout& layout) {
-  Vector2d size(0, 0);
-  for (std::size_t v = 0; v < layout.corners.size(); ++v)
-    size = size.cwiseMax(layout.corners[v] + graph.nodes[v].size);
-  for (const RoutedNet& net : layout.nets) {
-    for (const WirePiece& piece : net.pieces) size = size.cwiseMax(piece.to);
-  }
-  return size;
-}
 
 void route_anew(const LayoutGraph& graph, DiagramLayout& layout, const Vector2d& size) {
   WireRouter router(graph, layout.corners, nets_of(graph, layout.corners, layout.nets),
@@ -87,29 +79,13 @@ void squeeze(const LayoutGraph& graph, DiagramLayout& layout) {
 }  // namespace
 
 void tidy(const LayoutGraph& graph, DiagramLayout& layout) {
-  const Vector2d size = extent(graph, layout);
+  const Vector2d size = extent_of(graph, layout);
   if (size.x() / kLayoutGrid * size.y() / kLayoutGrid <= kMostPoints) {
     route_anew(graph, layout, size);
     nudge(graph, layout, size);
     route_anew(graph, layout, size);
   }
   squeeze(graph, layout);
-}
-
-void measure(const LayoutGraph& graph, DiagramLayout& layout) {
-  layout.quality = {};
-  for (RoutedNet& net : layout.nets) {
-    WireJoints joints = joints_of(net.pieces);
-    net.junctions = std::move(joints.junctions);
-    layout.quality.bends += joints.bends;
-    for (const WirePiece& piece : net.pieces) layout.quality.wire_length += (piece.to - piece.from).norm();
-  }
-  layout.quality.crossings = count_crossings(layout.nets);
-  for (const LayoutWire& wire : graph.wires) {
-    const double from = layout.corners[wire.from].x() + graph.nodes[wire.from].size.x();
-    if (layout.corners[wire.to].x() <= from) ++layout.quality.feedbacks;
-  }
-  layout.size = extent(graph, layout);
 }
 
 }  // namespace oblique::draw

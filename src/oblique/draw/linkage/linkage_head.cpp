@@ -5,6 +5,7 @@
 
 #include <oblique/draw/animation/analog_overlay.h>
 #include <oblique/draw/linkage/linkage_parts.h>
+#include <oblique/draw/picture/text_width.h>
 
 namespace oblique::draw {
 namespace {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <oblique/draw/picture/text_width.h>
+
 namespace oblique::draw {
 namespace {
 

@@ -94,9 +94,6 @@ Mark disc_mark(const Eigen::Vector2d& centre, double radius, Ink fill, const Pen
 Mark box_mark(const Eigen::Vector2d& corner, const Eigen::Vector2d& size, Ink fill, const Pen& pen = {});
 Mark label_mark(const Eigen::Vector2d& at, std::string text, Anchor anchor = Anchor::start, double size = 12);
 
-/// Width of a text in the widest of the pictures' fonts [px]; in others it takes up to a sixth less.
-double text_width(const std::string& text, double size, bool bold = false);
-
 /// The rectangle that a mark covers, its pen included.
 Eigen::AlignedBox<double, 2> extent_of(const Mark& mark);
 

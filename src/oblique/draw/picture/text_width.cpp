@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include <array>
+#include <oblique/draw/picture/text_width.h>
 
-#include <oblique/draw/picture/picture.h>
+#include <array>
 
 // Advance widths of DejaVu Sans, in thousandths of the font's size. It is the widest of the fonts that a
 // reader of our pictures is likely to have, a sixth wider than Helvetica: what fits in it fits everywhere.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include <oblique/draw/picture/text_width.h>
 #include <oblique/draw/schematic/schematic.h>
 #include <oblique/draw/schematic/sheet.h>
 #include <oblique/draw/schematic/symbols.h>

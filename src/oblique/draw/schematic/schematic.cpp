@@ -10,6 +10,7 @@
 
 #include <oblique/diagram/names.h>
 #include <oblique/diagram/wiring.h>
+#include <oblique/draw/schematic/servo_loops.h>
 
 namespace oblique::draw::schematic {
 namespace {

@@ -61,10 +61,6 @@ struct Schematic {
 /// findings about its wiring and outputs. `diagram` and `library` must outlive the result.
 Schematic make_schematic(const diagram::Diagram& diagram, const diagram::BlockLibrary& library, int depth);
 
-/// Gives every servo loop a number: a block with an open amplifier, and what lies on a way from its output
-/// back to its inputs that leads through no other amplifier with a memory of its own.
-void find_servo_loops(Schematic& schematic);
-
 /// "0.3142": four significant digits, with a true minus sign.
 std::string number_text(double value);
 

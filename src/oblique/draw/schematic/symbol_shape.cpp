@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
+#include <oblique/draw/schematic/symbol_shape.h>
+
 #include <algorithm>
 #include <cmath>
 
-#include <oblique/draw/schematic/symbols.h>
+#include <oblique/draw/picture/text_width.h>
 
 namespace oblique::draw::schematic {
 namespace {

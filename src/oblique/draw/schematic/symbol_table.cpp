@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
+#include <oblique/draw/schematic/symbol_table.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
-
-#include <oblique/draw/schematic/symbols.h>
 
 namespace oblique::draw::schematic {
 namespace {
@@ -202,10 +202,6 @@ Lines icon_lines(const std::string& icon) {
     if (icon == entry.name) return entry.lines;
   }
   return {};
-}
-
-Ink loop_ink(std::size_t loop) {
-  return kAccents[loop % std::size(kAccents)];
 }
 
 }  // namespace oblique::draw::schematic

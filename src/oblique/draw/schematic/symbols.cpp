@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <oblique/draw/picture/text_width.h>
+
 namespace oblique::draw::schematic {
 namespace {
 
@@ -240,6 +242,10 @@ class Artist {
 void draw_symbol(const Block& block, const Shape& shape, const std::string& path, const Vector2d& at,
                  Picture& picture) {
   Artist(block, shape, path, at, picture).draw();
+}
+
+Ink loop_ink(std::size_t loop) {
+  return kAccents[loop % std::size(kAccents)];
 }
 
 }  // namespace oblique::draw::schematic

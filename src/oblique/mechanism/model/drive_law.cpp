@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include <oblique/text/expression_parser.h>
 #include <oblique/text/partial_derivative.h>
 
 namespace oblique::mechanism {

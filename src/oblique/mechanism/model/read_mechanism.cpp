@@ -13,6 +13,7 @@
 #include <oblique/mechanism/model/expectation.h>
 #include <oblique/mechanism/model/slide_reader.h>
 #include <oblique/text/document.h>
+#include <oblique/text/file.h>
 #include <oblique/text/quantity.h>
 #include <oblique/text/table_reader.h>
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <oblique/network/assembly/assembler.h>
+#include <oblique/text/expression_printer.h>
 
 namespace oblique::network {
 

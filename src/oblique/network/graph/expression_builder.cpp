@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include <oblique/text/expression_printer.h>
+
 namespace oblique::network {
 namespace {
 

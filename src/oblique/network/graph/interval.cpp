@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include <oblique/text/noise.h>
 #include <oblique/text/operations.h>
 
 namespace oblique::network {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 
+#include <oblique/text/noise.h>
 #include <oblique/text/operations.h>
 
 namespace oblique::network {

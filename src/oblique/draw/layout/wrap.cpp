@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
+#include <oblique/draw/layout/wrap.h>
+
 #include <algorithm>
 #include <limits>
 #include <set>
 
-#include <oblique/draw/layout/layers.h>
-#include <oblique/draw/layout/layout_steps.h>
-#include <oblique/draw/layout/wire_router.h>
+#include <oblique/draw/layout/layering.h>
+#include <oblique/draw/layout/route_all.h>
 
 namespace oblique::draw {
 namespace {

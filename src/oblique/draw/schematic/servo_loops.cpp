@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include <map>
+#include <oblique/draw/schematic/servo_loops.h>
 
-#include <oblique/draw/schematic/schematic.h>
+#include <map>
 
 namespace oblique::draw::schematic {
 namespace {
