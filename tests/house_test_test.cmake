@@ -27,6 +27,15 @@ endfunction()
 plant(CMakeLists.txt "")
 plant(src/oblique/text/a.h "#include <string>\n// \"--help\" of the program\nnamespace oblique::text {")
 plant(src/oblique/diagram/a.cpp "#include <oblique/text/a.h>\nstd::snprintf(text)")
+plant(src/oblique/diagram/a.h "")
+plant(src/oblique/solve/events/tested.h "")
+plant(src/oblique/solve/events/tested.cpp "")
+plant(src/oblique/solve/events/covered.h "")
+plant(src/oblique/solve/events/covered.cpp "")
+plant(tests/solve/tested_test.cpp "")
+plant(tests/solve/events/other_test.cpp "")
+plant(tests/covered_by.txt "# which test covers which unit\nsolve/events/covered: solve/events/other_test.cpp")
+plant(tests/CMakeLists.txt "oblique_test(solve SOURCES events/other_test.cpp tested_test.cpp)")
 plant(blocks/CMakeLists.txt "set(blocks sine.toml)")
 plant(blocks/sine.toml "")
 plant(src/machines/CMakeLists.txt "set(machines tr-10.toml)")
@@ -40,6 +49,12 @@ plant(src/oblique/cellar/a.cpp "")
 plant(src/oblique/solve/a.cpp "std::cerr << 1")
 plant(src/oblique/solve/b.cpp "namespace oblique {\n\"end it with --until\"")
 plant(src/oblique/solve/c.cpp "namespace oblique::text {\n\"see oblique check\"")
+plant(src/oblique/solve/events/stray.cpp "")
+plant(tests/solve/events/forgotten_test.cpp "")
+plant(tests/covered_by.txt "solve/events/gone: solve/events/other_test.cpp
+solve/events/tested: solve/tested_test.cpp
+solve/events/covered: solve/events/gone_test.cpp
+solve/events/covered other_test.cpp")
 plant(blocks/servo.toml "source = \"003_69ea068b7b221c3d.txt\"")
 foreach(k RANGE 32)
   plant(src/cli/verb_${k}.cpp "")
@@ -60,6 +75,13 @@ expect(
   "src/oblique/solve/c.cpp: its namespace is oblique::solve"
   "src/oblique/solve/c.cpp: no stage spells an option or a verb"
   "src/cli: more than 32 units"
+  "src/oblique/solve/events/stray.cpp: a unit has a header of its name"
+  "src/oblique/solve/events/stray.cpp: has no test of its name, and no line in tests/covered_by.txt"
+  "tests/covered_by.txt: there is no unit 'solve/events/gone'"
+  "tests/covered_by.txt: 'solve/events/tested' has a test of its name"
+  "tests/covered_by.txt: solve/events/covered: there is no test 'solve/events/gone_test.cpp'"
+  "tests/covered_by.txt: 'solve/events/covered other_test.cpp' is not of the form UNIT: TEST"
+  "tests/solve/events/forgotten_test.cpp: is not in the list of tests/CMakeLists.txt"
   "blocks/servo.toml: cites a file that no reader has"
   "src/oblique/solve/a.cpp: the library never prints and never exits"
   "blocks/cosine.toml: is not in the list of blocks/CMakeLists.txt"
