@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -10,6 +11,7 @@
 
 #include <oblique/network/assembly/network.h>
 #include <oblique/report/run_chart.h>
+#include <oblique/report/run_text.h>
 #include <oblique/report/text_table.h>
 #include <oblique/text/file.h>
 #include "terminal/output_files.h"
@@ -33,60 +35,17 @@ diagram::ParameterOverride parse_override(const std::string& text) {
   return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
+/// The columns that fit on a terminal, and what became of the others.
 std::string table_of(const solve::Trajectory& trajectory) {
-  constexpr std::size_t kMostRows = 21;
   constexpr std::size_t kColumnWidth = 14;
-  const std::size_t shown = std::min(trajectory.columns().size(), columns_that_fit(kColumnWidth));
-  std::vector<std::string> header, units;
-  for (std::size_t c = 0; c < shown; ++c) {
-    header.push_back(trajectory.columns()[c].name);
-    units.push_back("[" + trajectory.columns()[c].unit + "]");
-  }
-  report::Table table(header);
-  table.add(units);
-  for (const std::size_t row : report::spread_rows(trajectory.rows(), kMostRows)) {
-    std::vector<std::string> cells;
-    for (std::size_t c = 0; c < shown; ++c) cells.push_back(report::short_number(trajectory.at(row, c)));
-    table.add(cells);
-  }
-  std::string text = table.text();
-  if (shown < trajectory.columns().size()) {
-    text += fmt::format("({} more columns; -o FILE.csv writes all of them, and all {} rows)\n",
-                        trajectory.columns().size() - shown, trajectory.rows());
+  const std::size_t all = trajectory.columns().size();
+  const std::size_t shown = std::min(all, columns_that_fit(kColumnWidth));
+  std::string text = report::rows_of(trajectory, shown).text();
+  if (shown < all) {
+    text += fmt::format("({} more columns; -o FILE.csv writes all of them, and all {} rows)\n", all - shown,
+                        trajectory.rows());
   }
   return text;
-}
-
-std::string table_of(const std::vector<solve::EventRecord>& events, long count) {
-  report::Table table({"t [s]", "event"});
-  for (const solve::EventRecord& event : events) table.add({fmt::format("{:.12g}", event.time), event.what});
-  std::string text = "\n" + table.text();
-  if (count > static_cast<long>(events.size()))
-    text += fmt::format("({} more)\n", count - static_cast<long>(events.size()));
-  return text;
-}
-
-ExitStatus report_expectations(const diagram::Diagram& diagram, const solve::Run& run) {
-  ExitStatus status = ExitStatus::done;
-  print("\n");
-  for (const report::ExpectationResult& result : report::check_expectations(diagram, run)) {
-    if (!result.met) status = ExitStatus::no;
-    print(fmt::format("{}  {} = {}, expected {} ± {}\n", result.met ? "ok    " : "FAILED",
-                      result.expectation.text, result.actual, result.expectation.value,
-                      result.expectation.within));
-  }
-  return status;
-}
-
-std::string table_of(const std::vector<solve::StaticReading>& readings) {
-  report::Table table({"element", "", "output", "d/dt"});
-  table.add({"", "", "[machine unit]", "[machine unit/s]"});
-  for (const solve::StaticReading& reading : readings) {
-    const char* const kind = !reading.slope ? "" : reading.at_rest ? "brought to rest" : "state";
-    table.add({reading.signal, kind, report::short_number(reading.output),
-               reading.slope ? report::short_number(*reading.slope) : ""});
-  }
-  return table.text(2);
 }
 
 void check_request(const RunRequest& request) {
@@ -113,49 +72,6 @@ void check_request(const RunRequest& request) {
                        fmt::format("--static-test runs nothing, so {} has nothing to work on", other),
                        "one of the two",
                        {}});
-}
-
-/// The estimate of --trust, as remarks.
-std::string trust_text(const solve::Trust& trust) {
-  if (trust.checks.empty())
-    return fmt::format("trust: no estimate of the errors: {}\n",
-                       trust.failure.empty() ? "interrupted" : trust.failure);
-  std::string text = "trust: errors of the outputs, from";
-  for (std::size_t k = 0; k < trust.checks.size(); ++k) {
-    const solve::Trust::Check& check = trust.checks[k];
-    text += fmt::format("{} a run at a tolerance of {:.3g} by {}", k == 0 ? "" : " and", check.tolerance,
-                        diagram::method_name(check.method));
-  }
-  report::Table table(
-      {"output", "size", "largest error", "digits", "digits at the end", "no digit from [s]"});
-  for (const solve::OutputError& output : trust.outputs) {
-    table.add({output.name, report::short_number(output.size), fmt::format("{:.1e}", output.largest),
-               fmt::format("{}", output.digits(output.largest)),
-               fmt::format("{}", output.digits(output.at_end)),
-               output.lost ? report::short_number(*output.lost) : ""});
-  }
-  text += "\n" + table.text();
-  if (trust.event_shift > 0)
-    text += fmt::format("trust: the times of events differ by {:.1e} s at most\n", trust.event_shift);
-  if (trust.events_part) {
-    text += fmt::format("warning: from t = {:.6g} s on the runs do not have the same events\n",
-                        *trust.events_part);
-  }
-  if (!trust.failure.empty()) text += fmt::format("trust: one more run ended early: {}\n", trust.failure);
-  return text;
-}
-
-void note_overloads(const network::Program& program, const solve::Run& run) {
-  for (const solve::OverloadRecord& o : run.overloads) {
-    const std::string& name = program.signal_names()[o.signal];
-    if (run.halted) {
-      note(fmt::format("overload: '{}' leaves ±1 machine unit at t = {:.10g} s; the run ends there\n", name,
-                       o.first));
-      return;
-    }
-    note(fmt::format("overload: '{}' leaves ±1 machine unit at t = {:.6g} s, peak {:.6g}, {:.6g} s in all\n",
-                     name, o.first, o.peak.value, o.duration));
-  }
 }
 
 }  // namespace
@@ -188,7 +104,7 @@ ExitStatus run_diagram(const Session& session, const RunRequest& request) {
     drawn = report::drawn_columns(solve::output_columns(flat), {request.columns, request.against});
   const network::Program program(network::assemble(flat));
   if (request.static_test) {
-    print(table_of(solve::static_test(program, diagram.file)));
+    print(report::static_test_text(solve::static_test(program, diagram.file)));
     return ExitStatus::done;
   }
   solve::RunOptions options = solve::options_of(diagram.run);
@@ -231,7 +147,7 @@ ExitStatus run_diagram(const Session& session, const RunRequest& request) {
                        drawn->drawn.size(), drawn->left_out));
     }
   }
-  if (request.events) print(table_of(result.events, result.event_count));
+  if (request.events) print("\n" + report::events_text(result.events, result.event_count));
   if (!request.output.empty()) {
     TableOutput table(request.output, choice, result.trajectory.rows());
     table.add(result.trajectory.values());
@@ -240,29 +156,20 @@ ExitStatus run_diagram(const Session& session, const RunRequest& request) {
   if (!request.save.empty()) save(request.save, solve::to_text(result.state));
   if (result.state.time < options.until)
     note(fmt::format("interrupted at t = {:.6g} s\n", result.state.time));
-  const solve::SolverStatistics& s = result.statistics;
-  note(fmt::format("{}, {}; {} (relative tolerance {}), {:.3g} ms\n",
-                   report::count(program.n_states(), "state", "states"),
-                   report::count(program.loops().size(), "algebraic loop", "algebraic loops"),
-                   report::count(static_cast<std::size_t>(s.steps), "step", "steps"), options.tolerance,
-                   1e3 * result.seconds));
-  if (program.n_states() > 0) {
-    note(fmt::format("method {}: {}\n", diagram::method_name(result.method.method), result.method.reason));
-  }
+  note(report::solver_text(program, result, options));
   if (result.event_count > 0 && !request.events) {
     note(fmt::format("{}; --events lists them\n",
                      report::count(static_cast<std::size_t>(result.event_count), "event", "events")));
   }
-  constexpr double kCoarseForAdams = 1e-3;
-  if (result.method.method == diagram::IntegrationMethod::adams && options.tolerance > kCoarseForAdams) {
-    note(fmt::format("warning: at a tolerance of {} Adams lets oscillations grow; 1e-3 or less is safe\n",
-                     options.tolerance));
-  }
-  for (const text::Diagnostic& warning : result.warnings) note("warning: " + message(warning) + "\n");
-  note_overloads(program, result);
-  if (result.trust) note(trust_text(*result.trust));
+  note(report::warnings_text(result, options, command_line()));
+  note(report::overloads_text(program, result));
+  if (result.trust) note(report::trust_text(*result.trust));
   if (result.halted) return ExitStatus::no;
-  return request.check ? report_expectations(diagram, result) : ExitStatus::done;
+  if (!request.check) return ExitStatus::done;
+  const std::vector<report::ExpectationResult> checked = report::check_expectations(diagram, result);
+  print("\n" + report::to_text(checked));
+  const bool all_met = std::all_of(checked.begin(), checked.end(), [](const auto& r) { return r.met; });
+  return all_met ? ExitStatus::done : ExitStatus::no;
 }
 
 }  // namespace oblique::cli

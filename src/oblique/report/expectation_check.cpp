@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <oblique/mechanism/model/expectation.h>
+
 namespace oblique::report {
 namespace {
 
@@ -27,6 +29,17 @@ double actual_value(const diagram::Expectation& expectation, const solve::Run& r
       break;
   }
   return value_at(run.extra, expectation.time, column);
+}
+
+template <class Result>
+std::string lines_of(const std::vector<Result>& results) {
+  std::string text;
+  for (const Result& result : results) {
+    text += fmt::format("{}  {} = {}, expected {} ± {}\n", result.met ? "ok    " : "FAILED",
+                        result.expectation.text, result.actual, result.expectation.value,
+                        result.expectation.within);
+  }
+  return text;
 }
 
 }  // namespace
@@ -83,6 +96,14 @@ std::vector<ExpectationResult> check_expectations(const diagram::Diagram& diagra
   }
   diagnostics.throw_if_any<diagram::DiagramError>();
   return results;
+}
+
+std::string to_text(const std::vector<ExpectationResult>& results) {
+  return lines_of(results);
+}
+
+std::string to_text(const std::vector<mechanism::MechanismFinding>& findings) {
+  return lines_of(findings);
 }
 
 }  // namespace oblique::report

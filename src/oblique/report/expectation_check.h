@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include <oblique/diagram/diagram.h>
 #include <oblique/solve/run.h>
+
+namespace oblique::mechanism {
+struct MechanismFinding;
+}
 
 namespace oblique::report {
 
@@ -25,5 +30,9 @@ void ask_for_expectations(const diagram::Diagram& diagram, solve::RunOptions& op
 /// Checks every expectation; `run` was made after `ask_for_expectations`. Throws DiagramError for an output
 /// that is not among the columns.
 std::vector<ExpectationResult> check_expectations(const diagram::Diagram& diagram, const solve::Run& run);
+
+/// A line for each: whether it was met, what came out and what was expected.
+std::string to_text(const std::vector<ExpectationResult>& results);
+std::string to_text(const std::vector<mechanism::MechanismFinding>& findings);
 
 }  // namespace oblique::report
