@@ -6,6 +6,18 @@
 #include <map>
 #include <set>
 
+// How vertical pieces share a channel. Every net in it that does not run straight has one vertical piece,
+// between its highest and its lowest pin. Two pins of different nets at one height, left and right of the
+// channel, would lie on each other's horizontal pieces: the piece of the left one must stand left of the
+// other's. So:
+//
+// 1. These conditions are collected.
+// 2. A sequence is built from the left, each time with the piece, of those whose conditions are met, that
+//    crosses least. Where the conditions run in a circle, one piece is split into two that a link joins
+//    between the rows of the grid.
+// 3. Neighbours in the sequence change places where that takes crossings away and no condition forbids it.
+// 4. Pieces take columns in this sequence, each the leftmost that is free at its heights.
+
 namespace oblique::draw::layered {
 namespace {
 

@@ -5,6 +5,18 @@
 #include <limits>
 #include <numeric>
 
+// How boxes come into layers. Signals are to run from left to right, but a diagram with feedback has loops,
+// so some wires must run back. The fewer, the easier it is to read; to find the fewest is NP-hard. So:
+//
+// 1. Two sequences of the boxes are made: one that follows the signals from their sources, and one by the
+//    heuristic of Eades, Lin and Smyth. The one with less weight of wires running back is taken; the wires
+//    that run back in it are left out from here on. What remains has no loop.
+// 2. Each box goes into the layer after the last one that feeds it (longest way), which gives the fewest
+//    layers.
+// 3. Boxes that have room to move go to where their wires are shortest, until none moves (thirty rounds at
+// most).
+// 4. Wide boxes go into layers that are wide already; terminals go to the two ends.
+
 namespace oblique::draw::layered {
 namespace {
 

@@ -8,6 +8,20 @@
 #include <oblique/draw/layout/slot_links.h>
 #include <oblique/draw/layout/straighten.h>
 
+// How slots come to their heights. Their order in each layer is settled; now wires are to run straight. In
+// one layer, with the others held, that is a problem with an exact solution: each slot has wishes (the
+// heights at which its wires would be straight, weighted), and the heights must rise by at least the
+// distances between neighbours. With these distances subtracted it is a monotone regression, which pooling
+// of adjacent violators solves in one pass. So the layers are solved one by one, in sweeps to the right and
+// to the left:
+//
+// 1. Six sweeps with means, and wishes only towards the side that the sweep comes from: that settles
+//    quickly.
+// 2. Six with means towards both sides. Then everything is put on the grid.
+// 3. Twenty-four with medians: a median takes the height of one wire, which is then quite straight, where a
+//    mean leaves all of them a little bent; and it stays on the grid.
+// 4. `straighten`, for what the sweeps cannot do one layer at a time.
+
 namespace oblique::draw::layered {
 namespace {
 

@@ -8,6 +8,13 @@
 
 #include <oblique/draw/layout/slot_links.h>
 
+// Why this after the sweeps: they move one layer at a time, so a net that passes several layers moves only
+// if each of its slots gains by itself; and the sum of distances, which they make least, does not know that
+// a bend is a bend however small it is. Here a unit moves as a whole, a box or as much of a passing net as
+// has room at one height, to whichever of the heights that its wires propose costs least, with a price on
+// each bend. Only what lies between its neighbours is tried, so that the order stays; and only what is
+// better is taken, so that it ends.
+
 namespace oblique::draw::layered {
 namespace {
 

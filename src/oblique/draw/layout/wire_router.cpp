@@ -9,6 +9,18 @@
 
 #include <oblique/draw/schematic/wire_pieces.h>
 
+// How a net finds its way. The grid has a line wherever a box, a pin or a wire can lie, and gaps where there
+// is nothing for long. A point of it is blocked by a box, taken by a wire across or down, or reserved in
+// front of a pin, so that no other net can shut the pin in.
+//
+// A net grows pin by pin, the nearest first: each pin is reached from anywhere on what is laid already, or
+// from the source at the start. One search is A* over (point, direction of arrival), since a bend costs more
+// than a step straight on: cost = length + bends + crossings + junctions, and the estimate of the rest is
+// the distance along the grid with the bends that cannot be avoided. It is never more than the true rest, so
+// the first way found is the cheapest. A net that is laid anew keeps its old wires where the new ones are no
+// better, and its search gives up as soon as nothing better is possible; so repeating it over all nets comes
+// to an end.
+
 namespace oblique::draw {
 namespace {
 

@@ -8,6 +8,12 @@
 #include <oblique/draw/layout/layering.h>
 #include <oblique/draw/layout/route_all.h>
 
+// How a long layout is broken into rows, as a text is into lines. A layered diagram is as long as its signal
+// path. The layers are broken where the widest row becomes as narrow as it can be with that number of rows,
+// and the number is the least that makes the picture no longer a strip. Boxes and the wires within a row
+// move with their row; only nets between rows are laid anew, by the router, in gaps that are wide enough for
+// all of them. Where one of them finds no way, or where it would take too long, the layout stays as it was.
+
 namespace oblique::draw {
 namespace {
 
