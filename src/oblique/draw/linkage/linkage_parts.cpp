@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <oblique/draw/linkage/slider_blocks.h>
 #include <oblique/draw/picture/rounded_hull.h>
-#include <oblique/draw/schematic/block_parts.h>
 #include <oblique/mechanism/model/plane.h>
 
 namespace oblique::draw {
@@ -104,7 +104,7 @@ LinkagePart frame_guide(const mechanism::Mechanism& mechanism,
   const double y = -mechanism.slides[index].offset * scale;
   LinkagePart part{Carrier::guide, index};
   part.marks.push_back(line_mark({from, y}, {to, y}, {Ink::line, 1, {8, 3, 2, 3}}));
-  add_ground(part.marks, from, to, y + kBlockHeight / 2 + 1, "guide-" + mechanism.slides[index].name);
+  add_ground(part.marks, from, to, y + kSliderHeight / 2 + 1, "guide-" + mechanism.slides[index].name);
   return part;
 }
 
@@ -239,7 +239,7 @@ std::vector<LinkagePart> linkage_parts(const mechanism::Mechanism& mechanism,
   }
   for (std::size_t b = 0; b < mechanism.bodies.size(); ++b)
     parts.push_back(body_part(mechanism, motion, b, scale));
-  for (LinkagePart& part : block_parts(mechanism)) parts.push_back(std::move(part));
+  for (LinkagePart& part : slider_blocks(mechanism)) parts.push_back(std::move(part));
   for (std::size_t p = 0; p < mechanism.points.size(); ++p) {
     if (is_drawn(mechanism, p)) parts.push_back(pin_part(mechanism, p));
   }

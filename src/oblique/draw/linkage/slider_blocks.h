@@ -9,14 +9,14 @@
 // Not installed.
 namespace oblique::draw {
 
-inline constexpr double kBlockLength = 30, kBlockHeight = 18;  ///< [px]
-inline constexpr double kThinLine = 1.3;                       ///< of edges [px]
+inline constexpr double kSliderLength = 30, kSliderHeight = 18;  ///< [px]
+inline constexpr double kThinLine = 1.3;                         ///< of edges [px]
 /// Of the inside of a body, and of the colour of what is driven.
 inline constexpr double kInsideOpacity = 0.6;
 
-/// The blocks of all slides. Those that are driven lie over the others, for a point may slide on several
-/// lines; they have the colour of drives, and an arrow.
-std::vector<LinkagePart> block_parts(const mechanism::Mechanism& mechanism);
+/// The slider blocks of all slides. Those that are driven lie over the others, for a point may slide on
+/// several lines; they have the colour of drives, and an arrow.
+std::vector<LinkagePart> slider_blocks(const mechanism::Mechanism& mechanism);
 
 /// Whether the drive of a driven slide moves it towards the first point of its line. Where it rests, that is
 /// as it sets off.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/draw/schematic/block_parts.h>
+#include <oblique/draw/linkage/slider_blocks.h>
 
 #include <algorithm>
 #include <cmath>
@@ -29,7 +29,7 @@ void add_driven(std::vector<Mark>& marks, const std::vector<Vector2d>& corners, 
 }
 
 LinkagePart block_part(const mechanism::Mechanism& mechanism, std::size_t index) {
-  const Vector2d half(kBlockLength / 2, kBlockHeight / 2);
+  const Vector2d half(kSliderLength / 2, kSliderHeight / 2);
   const std::vector<Vector2d> corners{-half, {half.x(), -half.y()}, half, {-half.x(), half.y()}};
   constexpr double kEdge = 1.5;  // [px]
   LinkagePart part{Carrier::slide, index};
@@ -46,8 +46,8 @@ LinkagePart block_part(const mechanism::Mechanism& mechanism, std::size_t index)
 
 /// Before a driven block, on its line.
 LinkagePart arrow_part(const mechanism::Mechanism& mechanism, std::size_t index) {
-  constexpr double kTail = kBlockLength / 2 + 4, kNeck = kTail + 12, kTip = kNeck + 11;  // [px]
-  constexpr double kHalfShaft = 2.5, kHalfHead = 7;                                      // [px]
+  constexpr double kTail = kSliderLength / 2 + 4, kNeck = kTail + 12, kTip = kNeck + 11;  // [px]
+  constexpr double kHalfShaft = 2.5, kHalfHead = 7;                                       // [px]
   const std::vector<Vector2d> corners{
       {kTail, -kHalfShaft}, {kNeck, -kHalfShaft}, {kNeck, -kHalfHead}, {kTip, 0},
       {kNeck, kHalfHead},   {kNeck, kHalfShaft},  {kTail, kHalfShaft}};
@@ -60,7 +60,7 @@ LinkagePart arrow_part(const mechanism::Mechanism& mechanism, std::size_t index)
 
 }  // namespace
 
-std::vector<LinkagePart> block_parts(const mechanism::Mechanism& mechanism) {
+std::vector<LinkagePart> slider_blocks(const mechanism::Mechanism& mechanism) {
   std::vector<LinkagePart> parts;
   for (const bool driven : {false, true}) {
     for (std::size_t s = 0; s < mechanism.slides.size(); ++s) {
