@@ -74,7 +74,7 @@ TEST(FunctionGenerator, RefusesPointsThatMakeNoFunction) {
             "d.toml:3:55: parameter 'f.points' has 1 points; expected at least two points");
   EXPECT_THAT(refusal("[[0, 0], [-1, 1]]"),
               HasSubstr("has x = -1 after x = 0; expected points whose x rises from one to the next"));
-  EXPECT_THAT(refusal("[[0, 0], [1]]"), HasSubstr("has something else than a point; expected [x, y]"));
+  EXPECT_THAT(refusal("[[0, 0], [1]]"), HasSubstr("has something other than a point; expected [x, y]"));
   EXPECT_THAT(refusal("3"), HasSubstr("parameter 'f.points' is a number; expected [[x, y], …], or"));
   EXPECT_THAT(refusal("{ file = \"none.csv\", x = \"a\" }"),
               HasSubstr("parameter 'f.points' has no 'y'; expected the name of the column of the value"));

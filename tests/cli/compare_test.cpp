@@ -51,7 +51,7 @@ TEST_F(CompareVerb, LeavesOutAMethodThatDoesNotFit) {
   EXPECT_THAT(table.err,
               testing::StartsWith(
                   "warning: method paper is left out: diagrams/mechanisms/four-bar.toml:23:1: the group "
-                  "BCM-CD (RRR) is not of the source's kind"));
+                  "BCM-CD (RRR) is of a kind that the source does not have"));
   EXPECT_THAT(table.out, HasSubstr("servo-tracked triangles"));
   const auto json = nlohmann::json::parse(oblique(command + " --json").out);
   EXPECT_EQ(json.at("runs").size(), 1U);
@@ -79,8 +79,9 @@ TEST_F(CompareVerb, HoldsMethodsAndBandwidthsAgainstEachOther) {
   ASSERT_EQ(table.status, 0) << table.err;
   EXPECT_THAT(table.out, HasSubstr("   method     Hz   gain  max error [mm]"));
   EXPECT_THAT(table.out, testing::Not(HasSubstr("wrong branch")));
-  EXPECT_THAT(table.out,
-              HasSubstr("worst at C, 180°: the triangle B–C–D is flattest there (sin γ = 0.27 at B)"));
+  EXPECT_THAT(
+      table.out,
+      HasSubstr("worst at C, 180°: the triangle B–C–D is nearest to collinear there (sin γ = 0.27 at B)"));
   EXPECT_THAT(table.out, HasSubstr("   method     Hz  power of the gain  left at gain 1e12 [mm]"));
   const Outcome outcome = oblique(command + " --json");
   const auto json = nlohmann::json::parse(outcome.out);
@@ -110,7 +111,7 @@ TEST_F(CompareVerb, JsonHoldsSecondsWhereTheyAreAskedFor) {
   const Outcome refused = oblique(command + "--timings");
   EXPECT_EQ(refused.status, 2);
   EXPECT_EQ(refused.err,
-            "error: --timings is about the JSON, and none is written; expected --json or -o FILE.json beside "
+            "error: --timings adds to the JSON, and none is written; expected --json or -o FILE.json beside "
             "it\n");
 }
 

@@ -113,7 +113,7 @@ TEST_F(DrawDiagram, RefusesLayoutsThatDoNotFit) {
       "\"a\" }\n";
   std::ofstream(folder_ / "close.toml") << head << "[layout]\na = [3, 3]\nb = [4, 3]\n";
   expect_refusal("oblique draw close.toml",
-                 "close.toml:7:1: 'b' stands over 'a' or too close to it in [layout]");
+                 "close.toml:7:1: 'b' overlaps 'a' or is too close to it in [layout]");
   std::ofstream(folder_ / "unknown.toml") << head << "[layout]\nbb = [3, 3]\n";
   expect_refusal("oblique draw unknown.toml", "unknown.toml:6:1: [layout] gives a place to 'bb'");
   const Outcome mechanism = run("oblique draw " + kDiagrams + "mechanisms/four-bar.toml --layout");

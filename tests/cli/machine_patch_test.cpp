@@ -110,8 +110,8 @@ TEST_F(PatchForMachine, WarnsOfBadDamping) {
       patch("slider-crank", "--machine the-analog-thing --gain 1e4 --bandwidth 5000 -o made.toml");
   EXPECT_EQ(asked.status, 0);
   EXPECT_THAT(asked.err,
-              HasSubstr("warning: it is badly damped: the loops 'C_slide_half2', 'C_slide_half' swing "
-                        "long before they rest (ζ = 0.016); a run takes many steps\n"));
+              HasSubstr("warning: it is badly damped: the loops 'C_slide_half2', 'C_slide_half' oscillate "
+                        "for long before they settle (ζ = 0.016); a run takes many steps\n"));
   const Outcome chosen = patch("slider-crank", "--machine the-analog-thing --gain 1e4 -o made.toml");
   EXPECT_THAT(chosen.err,
               AllOf(HasSubstr("servo amplifiers of 10 Hz here: with 5000 Hz"), Not(HasSubstr("warning"))));
@@ -148,7 +148,10 @@ TEST_F(PatchForMachine, RefusesWhatCannotBeBeforeAnythingIsWritten) {
   EXPECT_THAT(unknown.err, HasSubstr("did you mean 'tr-10'?"));
   const Outcome alone = patch("four-bar", "-o made.toml --sheets made");
   EXPECT_EQ(alone.status, 2);
-  EXPECT_THAT(alone.err, HasSubstr("--sheets is for a machine; expected --machine NAME beside it"));
+  EXPECT_THAT(
+      alone.err,
+      HasSubstr(
+          "--sheets writes the sheets of a machine, and none is named; expected --machine NAME beside it"));
   const Outcome nowhere = patch("four-bar", "--machine tr-10 -o made.toml --sheets no/made");
   EXPECT_EQ(nowhere.status, 2);
   EXPECT_THAT(nowhere.err, HasSubstr("no/made-patch.csv: the folder of this file does not exist"));

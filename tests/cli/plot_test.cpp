@@ -145,7 +145,8 @@ TEST_F(Plot, BadRequestsAreRefusedBeforeTheWork) {
   const std::string side = "diagrams/lessons/triangle-side.toml",
                     four_bar = "diagrams/mechanisms/four-bar.toml";
   for (const Bad& bad :
-       {Bad{"run " + side + " --against side", "--against is about a drawing; expected --plot beside it"},
+       {Bad{"run " + side + " --against side",
+            "--against chooses the axis of a drawing, and none is asked for; expected --plot beside it"},
         Bad{"run " + side + " --plot - --against sid", "--against: there is no column 'sid'"},
         Bad{"run " + side + " --plot - --columns t", "nothing is left to draw against 't'"},
         Bad{"run " + side + " --plot x.gif", "cannot write a '.gif' file"},
@@ -155,11 +156,13 @@ TEST_F(Plot, BadRequestsAreRefusedBeforeTheWork) {
         Bad{"check " + side + " --json --plot -", "--json and --plot - would both print"},
         Bad{"check " + four_bar + " --plot -", "a mechanism has no eigenvalues to plot"},
         Bad{"run " + side + " --theme dark",
-            "--theme is about a drawing; expected --plot FILE.svg beside it"},
+            "--theme chooses the colours of a drawing, and none is asked for; expected --plot FILE.svg "
+            "beside it"},
         Bad{"run " + side + " --plot - --theme dark",
-            "--theme is about a picture, and the terminal has its own colours"},
+            "--theme chooses the colours of a picture; the terminal has its own"},
         Bad{"check " + side + " --plot x.svg --theme drak", "--theme drak; expected auto, light or dark"},
-        Bad{"compare " + four_bar + " --theme dark", "--theme is about a drawing"},
+        Bad{"compare " + four_bar + " --theme dark",
+            "--theme chooses the colours of a drawing, and none is asked for"},
         Bad{"report " + four_bar + " -o " + file("x.html") + " --theme paper", "auto, light or dark"},
         Bad{"report " + four_bar + " -o x.pdf", "cannot write a '.pdf' file"},
         Bad{"report " + four_bar + " -o " + file("x.html") + " --machine nosuch", "nosuch"},
@@ -181,7 +184,8 @@ TEST_F(Plot, MoreCurvesThanCanBeToldApartAreRefusedOrLeftOut) {
   }();
   const Outcome outcome = oblique("run " + file("many.toml") + " --plot -");
   EXPECT_EQ(outcome.status, 0);
-  EXPECT_THAT(outcome.err, HasSubstr("drawn are the first 18 columns; --columns names others of the 2 more"));
+  EXPECT_THAT(outcome.err,
+              HasSubstr("only the first 18 columns are drawn; --columns chooses others of the 2 more"));
   std::string all = "c0";
   for (int k = 1; k < 20; ++k) all += ",c" + std::to_string(k);
   const Outcome refused = oblique("run " + file("many.toml") + " --plot - --columns " + all);

@@ -124,7 +124,8 @@ TEST(Compare, LeavesOutWhatIsRefusedAndWhatFails) {
   ASSERT_EQ(comparison.refused.size(), 1U);
   EXPECT_EQ(comparison.refused.front().method, patch::PatchMethod::paper);
   EXPECT_FALSE(comparison.refused.front().gain);
-  EXPECT_THAT(comparison.refused.front().why.what, testing::HasSubstr("is not of the source's kind"));
+  EXPECT_THAT(comparison.refused.front().why.what,
+              testing::HasSubstr("is of a kind that the source does not have"));
   options.methods = {patch::PatchMethod::paper};
   EXPECT_THROW(compare(shipped("four-bar"), diagram::BlockLibrary::shipped(), options), patch::PatchError);
 }

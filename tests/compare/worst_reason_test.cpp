@@ -31,7 +31,7 @@ TEST(WorstReason, IsAFlatTriangle) {
   const ComparedRun run = compared("six-bar", patch::PatchMethod::triangles);
   EXPECT_EQ(run.worst.point, "C");
   EXPECT_NEAR(run.worst.drive, pi, 2 * pi / 360);  // a row
-  EXPECT_EQ(run.worst.reason, "the triangle B–C–D is flattest there (sin γ = 0.27 at B)");
+  EXPECT_EQ(run.worst.reason, "the triangle B–C–D is nearest to collinear there (sin γ = 0.27 at B)");
 }
 
 // The triangle at fault need not be the point's own: the foot Q5 hangs on Q6.
@@ -39,13 +39,14 @@ TEST(WorstReason, IsATriangleThatThePointHangsOn) {
   const ComparedRun run = compared("jansen", patch::PatchMethod::triangles);
   const std::string leg = run.worst.point.substr(0, 1);  // the two are alike, and rounding decides
   EXPECT_EQ(run.worst.point, leg + "5");
-  EXPECT_THAT(run.worst.reason,
-              StartsWith("the triangle " + leg + "1–" + leg + "6–O2 is flattest there (sin γ = "));
+  EXPECT_THAT(run.worst.reason, StartsWith("the triangle " + leg + "1–" + leg +
+                                           "6–O2 is nearest to collinear there (sin γ = "));
 }
 
 TEST(WorstReason, IsAGroupNearADeadCentre) {
   const ComparedRun run = compared("whitworth", patch::PatchMethod::gradient);
-  EXPECT_THAT(run.worst.reason, StartsWith("the group lever is nearest to a dead centre there (regularity "));
+  EXPECT_THAT(run.worst.reason,
+              StartsWith("the group lever is nearest to a dead centre there (normalised determinant "));
 }
 
 // The gains of the four-bar's loops go with |BD| over its longest, 3/5 at 0°; weight 10: L = 10 · 0.6.

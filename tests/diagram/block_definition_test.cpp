@@ -224,12 +224,10 @@ TEST(ParseBlock, RefusesNamesThatEquationsCannotUse) {
           "time, polarity, in_initial, in_operate, in_hold, pi, inf, and, or, not"));
   EXPECT_THAT(
       block_message("[parameters]\nin = {}\n[outputs]\ny = {}\n[equations]\ny = 1\n"),
-      HasSubstr(
-          "'in' cannot be the name of a parameter: a block in a diagram has that key for itself; expected "
-          "another name than type, label, in"));
-  EXPECT_THAT(
-      block_message("[inputs]\nlabel = {}\n[outputs]\ny = {}\n[equations]\ny = 1\n"),
-      HasSubstr("'label' cannot be the name of an input: a block in a diagram has that key for itself"));
+      HasSubstr("'in' cannot be the name of a parameter: a block in a diagram uses that key itself; expected "
+                "another name than type, label, in"));
+  EXPECT_THAT(block_message("[inputs]\nlabel = {}\n[outputs]\ny = {}\n[equations]\ny = 1\n"),
+              HasSubstr("'label' cannot be the name of an input: a block in a diagram uses that key itself"));
   EXPECT_THAT(
       block_message("[inputs]\ny = {}\n[outputs]\ny = {}\n[equations]\ny = 1\n"),
       HasSubstr("b.toml:6:1: the name 'y' is used twice; expected different names for inputs, outputs and "

@@ -23,6 +23,7 @@ struct Lone {
     block.behaviour = &definition.behaviours.front();
     for (const ParameterDefinition& p : definition.parameters) block.parameters.push_back(p.default_value);
     block.inputs.resize(definition.inputs.size());
+    for (FlatInput& input : block.inputs) input.terms.emplace_back();  // fed by a signal: not a constant
   }
   Lone(const Lone&) = delete;
   Lone& operator=(const Lone&) = delete;

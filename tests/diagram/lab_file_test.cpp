@@ -110,9 +110,10 @@ TEST(LabFile, CallsTheTimeFactorK0) {
 
 TEST(LabFile, HasADecimalComma) {
   EXPECT_THAT(refusal("x = { type = \"integrator\", in = \"one\", initial = \"0,5\" }\n"),
-              HasSubstr("a comma stands in the number; expected a decimal point"));
-  EXPECT_THAT([] { parse_diagram(testing::diagram_text("x = { type = \"constant\", value = 0,5 }\n"), "d"); },
-              ::testing::ThrowsMessage<text::ReadError>(HasSubstr("numbers have a decimal point, no comma")));
+              HasSubstr("there is a comma in the number; expected a decimal point"));
+  EXPECT_THAT(
+      [] { parse_diagram(testing::diagram_text("x = { type = \"constant\", value = 0,5 }\n"), "d"); },
+      ::testing::ThrowsMessage<text::ReadError>(HasSubstr("numbers have a decimal point, not a comma")));
 }
 
 TEST(LabFile, HasTypesetSignsInWires) {

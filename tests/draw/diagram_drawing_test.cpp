@@ -76,7 +76,7 @@ TEST(DiagramDrawing, IsNotOpenedBeyondAllMeasure) {
       diagram("one = { type = \"constant\" }\ne = { type = \"c39\", in = \"one\" }\n");
   EXPECT_THAT([&] { draw_diagram(deep, own, {.depth = 100}); },
               testing::ThrowsMessage<diagram::DiagramError>(
-                  "test.toml: so far opened, the drawing has more than 30000 blocks\n"
+                  "test.toml: opened that far, the drawing has more than 30000 blocks\n"
                   "  remedy: open fewer levels of composites"));
   EXPECT_NO_THROW(draw_diagram(deep, own, {.depth = 3}));
 }

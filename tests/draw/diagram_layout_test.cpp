@@ -81,11 +81,11 @@ TEST(DiagramLayout, OpenCompositesPushTheOthersAway) {
 TEST(DiagramLayout, RefusesBlocksOverEachOther) {
   EXPECT_EQ(
       message_of(kPair + "[layout]\na = [4, 20]\nb = [14, 8.5]\nc = [15, 9]\n"),
-      "test.toml:9:1: 'c' stands over 'b' or too close to it in [layout]; expected blocks apart from each "
+      "test.toml:9:1: 'c' overlaps 'b' or is too close to it in [layout]; expected blocks apart from each "
       "other: 'c' with its texts takes 7.5 by 4\n  remedy: move it by 4 down");
   EXPECT_EQ(
       message_of(kPair + "[layout]\na = [4, 20]\nb = [14, 8.5]\nc = [14, 12]\n"),
-      "test.toml:9:1: 'c' stands over 'b' or too close to it in [layout]; expected blocks apart from each "
+      "test.toml:9:1: 'c' overlaps 'b' or is too close to it in [layout]; expected blocks apart from each "
       "other: 'c' with its texts takes 7.5 by 4\n  remedy: move it by 1 down");
 }
 

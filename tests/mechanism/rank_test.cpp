@@ -179,7 +179,7 @@ TEST(Redundancy, OfACrankThatIsTooLongIsContradictory) {
           HasSubstr(
               "test.toml:12:1: the revolute joint of 'FE' at 'E' in the loop AB-BCE-DC-FE is contradictory: "
               "without it the others leave 2.5 mm there"),
-          HasSubstr("leave it out, or mend a length")));
+          HasSubstr("leave it out, or correct a length")));
 }
 
 // |FE| fits at the start and nowhere else: its pivot lies beside the line of the others'.

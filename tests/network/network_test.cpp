@@ -42,7 +42,7 @@ TEST(Network, RefusesASignalAsACondition) {
 
 TEST(Network, RefusesATableWithoutWholePoints) {
   const std::string message =
-      ": table() has no whole points; expected table(x, x1, y1, x2, y2, …), or table(x, points) with a "
+      ": table() has an incomplete point; expected table(x, x1, y1, x2, y2, …), or table(x, points) with a "
       "parameter of kind points";
   EXPECT_EQ(refusal_of("[equations]\nout = \"table(in, in)\"\n"), "odd.toml:8:7: equation of 'o'" + message);
   EXPECT_EQ(refusal_of("[parameters]\nk = { default = 2 }\n[equations]\nout = \"table(in, k)\"\n"),
@@ -51,7 +51,7 @@ TEST(Network, RefusesATableWithoutWholePoints) {
 
 TEST(Network, RefusesThatSignalsAreEqual) {
   EXPECT_EQ(refusal_of("[equations]\nout = \"if(in == 1, in, 1)\"\n"),
-            "odd.toml:8:7: equation of 'o': a varying signal equals another for no length of time; "
+            "odd.toml:8:7: equation of 'o': a varying signal equals another only at single instants; "
             "expected '<' or '>' of signals; '==' of parameters and memories");
 }
 

@@ -94,8 +94,9 @@ TEST(Paper, IsTwoEqualCircuitsAndALoop) {
 }
 
 TEST(Paper, RefusesOtherGroups) {
-  EXPECT_THAT(message(shipped("six-bar"), paper()),
-              HasSubstr("is not of the source's kind; expected cranks and triads on three links"));
+  EXPECT_THAT(
+      message(shipped("six-bar"), paper()),
+      HasSubstr("is of a kind that the source does not have; expected cranks and triads on three links"));
 }
 
 TEST(Split, IsTakenAsNamed) {
@@ -115,7 +116,7 @@ TEST(Split, IsRefusedWhereNoTriadHasItsLeads) {
               HasSubstr("split AB,OA,DE: no triad has these legs; expected the three legs of a triad in "
                         "any order: AB,"));
   EXPECT_THAT(message(shipped("four-bar"), options),
-              HasSubstr("expected a triad on three links, which this mechanism has not"));
+              HasSubstr("expected a triad on three links, which this mechanism does not have"));
 }
 
 TEST(Split, WorthTheMostIsWhatIsChosen) {

@@ -69,7 +69,7 @@ TEST(EndOfATimeline, IsTold) {
       ::testing::ElementsAre(
           "d.toml: the run ends at t = 1 s in phase 2 of cycle 1 of its timeline; expected phase 2 of cycle "
           "1000, the last one\n"
-          "  remedy: such phases have no length that is known before: give a later 'until' in [run], or "
+          "  remedy: the length of such phases is not known in advance: give a later 'until' in [run], or "
           "'until'"));
   // A cycle is 0.01 s + π/2, so that 3 of them are over at 5 s.
   EXPECT_THAT(warnings_of(cosine(kHalfWaves), 5),

@@ -188,10 +188,9 @@ TEST(StepBudget, OfLooksAtTurnsIsTold) {
   EXPECT_EQ(f.kind, SolveError::Kind::step_budget);
   EXPECT_THAT(
       f.message,
-      HasSubstr(
-          " rad a second: too fast to look through all turns for those at which it turns over\n  remedy: end "
-          "the run before, keep the argument of the sine or cosine small, or give more 'max_steps' in "
-          "[run]"));
+      HasSubstr(" rad a second: too fast for every turn to be examined for a crossing\n  remedy: end "
+                "the run before, keep the argument of the sine or cosine small, or give more 'max_steps' in "
+                "[run]"));
 }
 
 TEST(StepBudget, IsKept) {

@@ -257,7 +257,7 @@ TEST(Rest, StartsALoopUnsettledThatOnlyItsLagsHold) {
         "d.toml: the run does not start at rest: 'a' at 0 cannot settle before the clock starts, because its "
         "loop closes through 'l', which is held until then; the closed loop is stable, and the run begins "
         "with "
-        "its transient\n  remedy: give the amplifier the 'initial' that it shall start from");
+        "its transient\n  remedy: give the amplifier the 'initial' from which it is to start");
   }
 }
 

@@ -218,8 +218,7 @@ cycles = 0
   EXPECT_THAT(refusal("[groups]\nfast = [\"y\"]\n"), HasSubstr("group 'fast': there is no block 'y'"));
   EXPECT_THAT(refusal("[groups]\na = [\"x\"]\nb = [\"x\"]\n"),
               HasSubstr("group 'b': 'x' is in group 'a' already"));
-  EXPECT_THAT(refusal("[groups]\nmain = [\"x\"]\n"),
-              HasSubstr("group 'main': a phase has that key for itself"));
+  EXPECT_THAT(refusal("[groups]\nmain = [\"x\"]\n"), HasSubstr("group 'main': a phase uses that key itself"));
   EXPECT_THAT(refusal("[groups]\na = { blocks = [\"x\"], hold = \"z\" }\n"),
               HasSubstr("group 'a': there is no signal 'z'"));
   EXPECT_THAT(refusal("[timeline]\nphases = [{ mode = \"hold\", until = \"z > 1\" }]\n"),

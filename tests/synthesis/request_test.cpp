@@ -77,7 +77,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"BoundsTheWrongWayRound",
                 {"CD=150..130"},
                 kPath,
-                "free dimensions: the bounds of 'CD=150..130' stand the wrong way round; expected "
+                "free dimensions: the bounds of 'CD=150..130' are the wrong way round; expected "
                 "lower..upper\n  "
                 "remedy: CD=130..150"},
         Refused{"BoundsWithoutRoom",
@@ -86,7 +86,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "the bounds of 'CD=150..150' leave no room; expected a lower bound below the upper one\n  "
                 "remedy: "
                 "leave 'CD' out and write 150 into the file"},
-        Refused{"OneBound", {"CD=150"}, kPath, "'CD=150' has no two bounds; expected CD=lower..upper"},
+        Refused{"OneBound", {"CD=150"}, kPath, "'CD=150' does not have two bounds; expected CD=lower..upper"},
         Refused{"NoNumberForABound",
                 {"CD=a..150"},
                 kPath,
@@ -213,7 +213,8 @@ TEST(Refusals, OfATargetWhereTheMechanismIsOpen) {
   } catch (const SynthesisError& error) {
     EXPECT_STREQ(
         error.what(),
-        "path.csv: point 'F' cannot be followed: the mechanism does not close where column 'crank' wants it; "
+        "path.csv: point 'F' cannot be followed: the mechanism cannot be assembled where column 'crank' "
+        "wants it; "
         "expected targets within the motion of the mechanism\n  remedy: 'solve m.toml' tells where it "
         "is open");
   }

@@ -172,7 +172,8 @@ TEST(Document, TakesAByteOrderMarkAndTypesetSigns) {
 
 TEST(Document, SaysWhatIsTypesetAndWhereACommaIsNoPoint) {
   EXPECT_THAT(message_of("a = 1\nb = \u201cx\u201d\n"), HasSubstr("the quotes here are typeset"));
-  EXPECT_THAT(message_of("a = { x = 0,5 }\n"), HasSubstr("remedy: numbers have a decimal point, no comma"));
+  EXPECT_THAT(message_of("a = { x = 0,5 }\n"),
+              HasSubstr("remedy: numbers have a decimal point, not a comma"));
   EXPECT_THAT(message_of("a = [0,5, x]\n"), HasSubstr("words, and numbers with a unit, stand in quotes"));
   EXPECT_THAT(message_of("\xFE\xFFx"), HasSubstr("the file is in UTF-16"));
 }

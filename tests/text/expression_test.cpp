@@ -165,7 +165,7 @@ TEST(ExpressionMessages, KnowTheFunctions) {
   EXPECT_EQ(message_of("atan2(1)"),
             "1: atan2 was given 1 argument; expected 2; atan2(y, x): angle of the vector (x, y)");
   EXPECT_EQ(message_of("min()"), "1: min was given 0 arguments; expected 1 to 1000; smallest argument");
-  EXPECT_EQ(message_of("sin(1"), "6: the arguments of sin are not closed; expected ',' or ')'");
+  EXPECT_EQ(message_of("sin(1"), "6: the parenthesis after sin is not closed; expected ',' or ')'");
   EXPECT_EQ(message_of("table(1, 0,0, 1)"),
             "1: the table has no two points; table(x, x1, y1, x2, y2, …) or table(x, points): straight lines "
             "through the points");

@@ -164,7 +164,7 @@ TEST(Quantity, TakesTypesetSignsAndSpaces) {
 
 TEST(Quantity, AsksForADecimalPoint) {
   EXPECT_EQ(message_of("0,5 mm", "m"),
-            "2: a comma stands in the number; expected a decimal point; write 0.5 mm");
+            "2: there is a comma in the number; expected a decimal point; write 0.5 mm");
 }
 
 TEST(Quantity, RefusesTheWrongDimension) {

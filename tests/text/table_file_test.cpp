@@ -249,9 +249,8 @@ TEST(TableFile, MayBeAPipeButForMat) {
     };
     if (std::string(format.ending) == ".mat") {
       EXPECT_THAT(write, testing::ThrowsMessage<ReadError>(
-                             path.string() +
-                             ": cannot write the file: Illegal seek\n  remedy: name a file on a disk: this "
-                             "kind is not written from its start to its end"));
+                             path.string() + ": cannot write the file: Illegal seek\n  remedy: name a file "
+                                             "on a disk: this format is not written in one pass"));
     } else {
       write();
       std::string bytes(4096, '\0');

@@ -15,12 +15,12 @@ bool plots_in_terminal(const std::string& target) {
 
 void check_plot(const std::string& target, const std::string& theme) {
   if (!theme.empty() && (target.empty() || plots_in_terminal(target))) {
-    throw text::ReadError(
-        text::Diagnostic{{},
-                         target.empty() ? "--theme is about a drawing"
-                                        : "--theme is about a picture, and the terminal has its own colours",
-                         "--plot FILE.svg beside it",
-                         {}});
+    throw text::ReadError(text::Diagnostic{
+        {},
+        target.empty() ? "--theme chooses the colours of a drawing, and none is asked for"
+                       : "--theme chooses the colours of a picture; the terminal has its own",
+        "--plot FILE.svg beside it",
+        {}});
   }
   if (!target.empty() && !plots_in_terminal(target)) check_picture_output(target);
   plot_theme(theme);

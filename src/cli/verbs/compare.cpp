@@ -153,7 +153,7 @@ ExitStatus compare_mechanism(const Session& session, const CompareRequest& reque
   if (request.json && plots_in_terminal(request.plot))
     refuse("--json and --plot - would both print", "one of the two", "--plot FILE.svg beside --json");
   if (request.timings && !request.json && request.output.empty())
-    refuse("--timings is about the JSON, and none is written", "--json or -o FILE.json beside it");
+    refuse("--timings adds to the JSON, and none is written", "--json or -o FILE.json beside it");
   const diagram::BlockLibrary library = session.blocks();
   compare::CompareOptions options = options_of(request);
   const diagram::MachineProfile* const machine =

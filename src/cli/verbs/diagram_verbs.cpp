@@ -32,8 +32,9 @@ void add_run(CLI::App& app, Chosen& chosen) {
       "print every element's output and every integrator's input in initial condition; nothing is run");
   verb->add_flag("--halt-on-overload", request->halt_on_overload,
                  "end the run with status 1 where a signal first leaves ±1 machine unit");
-  verb->add_flag("--trust", request->trust,
-                 "run again, finer and by the other method, and say how many digits of each output stand");
+  verb->add_flag(
+      "--trust", request->trust,
+      "run again, finer and by the other method, and say how many digits of each output can be trusted");
   choose(verb, chosen, request, run_diagram);
 }
 

@@ -25,7 +25,7 @@ double time_option_at(const mechanism::Mechanism& mechanism, const std::string& 
   if (!there) {
     throw text::ReadError(
         text::Diagnostic{{},
-                         fmt::format("--at {}: drive '{}' does not come there", at, drive.name),
+                         fmt::format("--at {}: drive '{}' does not reach it", at, drive.name),
                          "a value that it reaches",
                          {}});
   }

@@ -51,7 +51,8 @@ std::vector<Written> sheet_files(const PatchRequest& request, const diagram::Dia
 void check_machine_request(const PatchRequest& request) {
   if (request.machine.empty()) {
     if (request.sheets.empty()) return;
-    throw text::ReadError(text::Diagnostic{{}, "--sheets is for a machine", "--machine NAME beside it", {}});
+    throw text::ReadError(text::Diagnostic{
+        {}, "--sheets writes the sheets of a machine, and none is named", "--machine NAME beside it", {}});
   }
   if (diagram::find_machine(request.machine) == nullptr)
     throw text::ReadError(diagram::unknown_machine(request.machine));

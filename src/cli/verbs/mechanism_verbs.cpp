@@ -47,7 +47,7 @@ void add_patch(CLI::App& app, Chosen& chosen) {
   verb->add_option(
       "--bandwidth", request->bandwidth,
       "bandwidth of the servo amplifiers, in Hz or with a unit; inf: algebraic loops "
-      "(default: 100 times the crank's frequency; with --machine less where its elements take it)");
+      "(default: 100 times the crank's frequency; with --machine less where its elements need it)");
   add_method(verb, *request);
   verb->add_flag("--derivatives", request->derivatives,
                  "velocities and accelerations too, as further circuits");
@@ -61,11 +61,11 @@ void add_patch(CLI::App& app, Chosen& chosen) {
       ->type_name("T");
   verb->add_flag("--force", request->force,
                  "patch it even where it is unstable, flips on the way, or needs a kind of element that the "
-                 "machine has not");
+                 "machine does not have");
   verb->add_option("-o,--output", request->output, "write the diagram to FILE.toml")->type_name("FILE");
-  verb->add_option(
-          "--machine", request->machine,
-          "write it in the elements of this machine, with a bill of what it needs and what is missing")
+  verb->add_option("--machine", request->machine,
+                   "write it in the elements of this machine, with a component list: what it needs and what "
+                   "is missing")
       ->type_name("NAME");
   verb->add_option("--sheets", request->sheets,
                    "with --machine: write PREFIX-patch.csv (connections), PREFIX-pots.csv (settings), "
@@ -86,12 +86,12 @@ void add_compare(CLI::App& app, Chosen& chosen) {
   verb->add_option(
           "--bandwidth", request->bandwidths,
           "bandwidths of the servo amplifiers, in Hz or with a unit; each is run with each gain "
-          "(default: 100 times the crank's frequency; with --machine less where its elements take it)")
+          "(default: 100 times the crank's frequency; with --machine less where its elements need it)")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("B,B,…");
   verb->add_option("--method", request->methods,
-                   "of triangles, gradient and paper those to hold against each other, as `patch` has them "
+                   "which of triangles, gradient and paper to compare, as in `patch` "
                    "(default triangles)")
       ->delimiter(',')
       ->allow_extra_args(false)
@@ -112,7 +112,7 @@ void add_compare(CLI::App& app, Chosen& chosen) {
                    "uniformly on both sides, for example 0.1% (default with --machine: as its profile says)")
       ->type_name("X")
       ->needs(monte_carlo);
-  verb->add_option("--seed", request->seed, "chooses the draws")
+  verb->add_option("--seed", request->seed, "chooses the random numbers")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber)
       ->needs(monte_carlo);
@@ -128,10 +128,10 @@ void add_compare(CLI::App& app, Chosen& chosen) {
       ->needs(monte_carlo);
   add_plot_option(verb, *request,
                   "draw the error over the gain with its slope, the error along the turn, and of "
-                  "--monte-carlo the bands of the error along the turn and how often it errs how much");
+                  "--monte-carlo the bands of the error along the turn and how often which error occurs");
   verb->add_flag("--json", request->json, "print JSON instead of the table");
   verb->add_flag("--timings", request->timings,
-                 "write into the JSON how many seconds it took, which are others each time");
+                 "write into the JSON how many seconds it took, which differ from run to run");
   verb->add_option("-o,--output", request->output, "write the JSON to FILE.json")->type_name("FILE");
   choose(verb, chosen, request, compare_mechanism);
 }
@@ -177,7 +177,7 @@ void add_fit(CLI::App& app, Chosen& chosen) {
       ->allow_extra_args(false)
       ->type_name("NAME,…");
   verb->add_option("--starts", request->starts,
-                   "searches begun, spread over the bounds; 1: from the file only")
+                   "number of searches, spread over the bounds; 1: from the file only")
       ->capture_default_str()
       ->check(CLI::Range(1, 10'000));
   verb->add_option("-o,--output", request->output, "write the fitted mechanism to NEW.toml")

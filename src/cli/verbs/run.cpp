@@ -52,7 +52,8 @@ void check_request(const RunRequest& request) {
   const bool columns_are_drawn = !request.plot.empty();
   check_table_output(request.output, columns_are_drawn ? std::vector<std::string>{} : request.columns);
   if (request.plot.empty() && !request.against.empty())
-    throw text::ReadError(text::Diagnostic{{}, "--against is about a drawing", "--plot beside it", {}});
+    throw text::ReadError(text::Diagnostic{
+        {}, "--against chooses the axis of a drawing, and none is asked for", "--plot beside it", {}});
   check_plot(request.plot, request.theme);
   if (!request.save.empty()) check_output(request.save, ".toml");
   if (!request.static_test) return;
@@ -143,7 +144,7 @@ ExitStatus run_diagram(const Session& session, const RunRequest& request) {
     plot(report::chart_of(result, report::rounding_of(flat, options), *drawn, diagram.title), request.plot,
          plot_theme(request.theme));
     if (drawn->left_out > 0) {
-      note(fmt::format("drawn are the first {} columns; --columns names others of the {} more\n",
+      note(fmt::format("only the first {} columns are drawn; --columns chooses others of the {} more\n",
                        drawn->drawn.size(), drawn->left_out));
     }
   }

@@ -59,13 +59,13 @@ inline void add_triad_choice(CLI::App* verb, TriadChoice& choice) {
   verb->add_option(
           "--split", choice.split,
           "how to take a triad apart: the leg whose triangle carries the variable length, the leg that "
-          "closes the loop, the third (default: the split that is worth the most)")
+          "closes the loop, the third (default: the best split)")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("LEG,LEG,LEG");
   verb->add_option(
       "--slower", choice.slower,
-      "how many times slower the outer loop of a triad is (default: 100, or more where it takes it)");
+      "how many times slower the outer loop of a triad is (default: 100, or more where that is needed)");
 }
 
 /// --gain, --bandwidth, --method, --split and --slower of a verb that runs one patch beside other work;

@@ -107,10 +107,10 @@ void show_the_fault(JudgedPatch& patched) {
 std::string fault_of(const Judgement& judgement) {
   if (!judgement.no_rest.empty()) return fmt::format("its loops cannot follow: {}", judgement.no_rest);
   if (judgement.good()) {
-    return fmt::format("it is badly damped: the loops {} swing long before they rest (ζ = {:.2g})",
+    return fmt::format("it is badly damped: the loops {} oscillate for long before they settle (ζ = {:.2g})",
                        name_some(judgement.swinging), judgement.damping);
   }
-  std::string text = fmt::format("it is unstable: the loops {} swing up, at {:.3g} 1/s at t = {:.6g} s",
+  std::string text = fmt::format("it is unstable: the loops {} diverge, at {:.3g} 1/s at t = {:.6g} s",
                                  name_some(judgement.growing), judgement.slowest_pole, judgement.pole_time);
   if (!judgement.flips.empty()) {
     text += fmt::format("; the gain of '{}' changes its sign at t = {:.6g} s", judgement.flips.front().loop,
@@ -192,7 +192,7 @@ JudgedPatch judged_patch(const mechanism::Mechanism& mechanism, const diagram::B
   throw patch::PatchError(
       text::Diagnostic{{mechanism.file, {}},
                        fmt::format("this patch would not run: {}", fault_of(first.judgement)),
-                       "servo loops that return to rest everywhere on the way",
+                       "servo loops that settle everywhere along the motion",
                        help})
       .forcible();
 }

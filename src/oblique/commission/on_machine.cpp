@@ -84,11 +84,11 @@ MachinePatch put_on_machine(const mechanism::Mechanism& mechanism, const diagram
           {mechanism.file, {}},
           fmt::format("on the machine {} this patch would not run: {}", machine.title,
                       fault_of(usual.judgement)),
-          "servo loops that return to rest everywhere on the way",
+          "servo loops that settle everywhere along the motion",
           stable
               ? text::Remedy{text::Setting{"bandwidth", fmt::format("{:g} Hz", *stable->options.bandwidth)},
                              " is stable"}
-              : text::Remedy{"choose a machine of faster elements (", text::Action{"machines"},
+              : text::Remedy{"choose a machine with faster elements (", text::Action{"machines"},
                              "), or a lower ", text::Setting{"gain"}}})
       .forcible();
 }

@@ -115,12 +115,12 @@ std::string WorstReasons::flat_group(std::size_t point, std::size_t row, patch::
     const mechanism::Group& group = structure_.groups[g];
     const auto dyad = mechanism::dyad_of(group);
     if (!dyad || method == patch::PatchMethod::gradient) {
-      return fmt::format("the group {} is nearest to a dead centre there (regularity {:.2g})", group.name,
-                         *least);
+      return fmt::format("the group {} is nearest to a dead centre there (normalised determinant {:.2g})",
+                         group.name, *least);
     }
     const auto name = [&](std::size_t p) { return mechanism_.points[p].name; };
-    return fmt::format("the triangle {}–{}–{} is flattest there (sin γ = {:.2g} at {})", name(dyad->p),
-                       name(dyad->c), name(dyad->q), *least, name(dyad->p));
+    return fmt::format("the triangle {}–{}–{} is nearest to collinear there (sin γ = {:.2g} at {})",
+                       name(dyad->p), name(dyad->c), name(dyad->q), *least, name(dyad->p));
   }
   return {};
 }

@@ -18,9 +18,9 @@ class WorstReasons {
   WorstReasons(const mechanism::Mechanism& mechanism, const mechanism::Motion& exact);
 
   /// Of the groups and the servo loops that the worst point hangs on, the one whose own worst position lies
-  /// near the error's, in words: "the triangle B–C–D is flattest there (sin γ = 0.19)". A group nearest to
-  /// its dead centre goes before a loop of the least gain, and the point's own group before others. Empty
-  /// where none is near, or changes little along the turn.
+  /// near the error's, in words: "the triangle B–C–D is nearest to collinear there (sin γ = 0.19)". A group
+  /// nearest to its dead centre goes before a loop of the least gain, and the point's own group before
+  /// others. Empty where none is near, or changes little along the turn.
   std::string reason(const PatchedMechanism& patched, const patch::PatchOptions& options,
                      const RecordedRun& recorded, const Distances& error) const;
 

@@ -74,8 +74,8 @@ class BlockReader {
     if (std::find(taken.begin(), taken.end(), entry.key) != taken.end()) {
       diagnostics_.add(
           {place(entry.position),
-           fmt::format("'{}' cannot be the name of {}: a block in a diagram has that key for itself",
-                       entry.key, what),
+           fmt::format("'{}' cannot be the name of {}: a block in a diagram uses that key itself", entry.key,
+                       what),
            fmt::format("another name than {}", fmt::join(taken, ", ")),
            {}});
     }

@@ -47,7 +47,7 @@ class PointReader {
     text::PointTable table;
     for (const text::Value& point : list.elements) {
       if (point.kind != text::Value::Kind::array || point.elements.size() != 2)
-        return report(point.position, "has something else than a point", "[x, y]");
+        return report(point.position, "has something other than a point", "[x, y]");
       const auto x = text::read_quantity(file_, point.elements[0], units_.x, subject_, diagnostics_);
       const auto y = text::read_quantity(file_, point.elements[1], units_.y, subject_, diagnostics_);
       if (!x || !y) return std::nullopt;

@@ -114,7 +114,7 @@ std::vector<ModeGroup> read_groups(const std::string& file, const text::Value& t
          {kMain, std::string_view("mode"), std::string_view("for"), std::string_view("until")}) {
       if (entry.key != taken) continue;
       diagnostics.add({group.place,
-                       fmt::format("{}: a phase has that key for itself", what),
+                       fmt::format("{}: a phase uses that key itself", what),
                        "another name than main, mode, for, until",
                        {}});
     }

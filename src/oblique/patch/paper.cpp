@@ -21,7 +21,8 @@ class PaperPatch : private TriadPatch {
   diagram::Diagram make() {
     for (const mechanism::Group& group : structure_.groups) {
       if (group.kind == mechanism::GroupKind::crank || can_be_split(group)) continue;
-      refuse(group, "is not of the source's kind", "cranks and triads on three links, as the source has them",
+      refuse(group, "is of a kind that the source does not have",
+             "cranks and triads on three links, as the source has them",
              group.assur_class == 2 ? text::Remedy{"patch it with ", text::Setting{"method", "triangles"}}
                                     : text::Remedy{"patch it with ", text::Setting{"method", "gradient"},
                                                    ", which takes any group"});

@@ -203,13 +203,14 @@ void check_split_options(const mechanism::Mechanism& mechanism, const mechanism:
     triads.push_back(joined(legs));
     if (std::is_permutation(legs.begin(), legs.end(), options.split.begin(), options.split.end())) return;
   }
-  throw PatchError(text::Diagnostic{{mechanism.file, {}, {"split", joined(options.split)}},
-                                    "no triad has these legs",
-                                    triads.empty() ? "a triad on three links, which this mechanism has not"
-                                                   : fmt::format("the three legs of a triad in any order: {}",
-                                                                 fmt::join(triads, "; ")),
-                                    {}},
-                   PatchError::Kind::request);
+  throw PatchError(
+      text::Diagnostic{
+          {mechanism.file, {}, {"split", joined(options.split)}},
+          "no triad has these legs",
+          triads.empty() ? "a triad on three links, which this mechanism does not have"
+                         : fmt::format("the three legs of a triad in any order: {}", fmt::join(triads, "; ")),
+          {}},
+      PatchError::Kind::request);
 }
 
 std::vector<std::vector<std::string>> useful_splits(const mechanism::Mechanism& mechanism) {

@@ -81,7 +81,7 @@ std::string sign_text(const solve::LoopUnknown& unknown) {
 std::string loops(const std::vector<solve::LoopReport>& loops) {
   if (loops.empty()) return "\nloops: no servo loops and no algebraic ones\n";
   Table table({"unknown", "loop", "kind", "least gain", "at t [s]", "static error", "time constant [s]",
-               "sign of slope", "members"});
+               "sign of derivative", "members"});
   for (const solve::LoopReport& loop : loops) {
     for (const solve::LoopUnknown& unknown : loop.unknowns) {
       const bool first = &unknown == &loop.unknowns.front();
@@ -162,14 +162,14 @@ std::string verdict_text(const solve::StabilityReport& report) {
                          pole(*report.rightmost), number(report.rightmost->time),
                          !report.growth                   ? "and the growth along the run is not known"
                          : report.growth->does_not_grow() ? "and small disturbances do not grow along the run"
-                                                          : "and along the run hardly or not for long");
+                                                          : "and hardly, or not for long, along the run");
     case solve::StabilityVerdict::servos_unstable:
       return fmt::format("unstable by the servo loops, not by the problem: {} at t = {} s",
                          pole(*report.slowest_servo), number(report.slowest_servo->time));
     case solve::StabilityVerdict::not_told:
       break;
   }
-  return "not told by what was looked at";
+  return "not known from what was examined";
 }
 
 std::string stability(const solve::StabilityReport& report, const network::Program& program,

@@ -28,11 +28,11 @@ std::string event_text(mechanism::MotionEvent::Kind kind, const std::string& whe
     case mechanism::MotionEvent::Kind::return_:
       return fmt::format("from {} on {} can be assembled again, on the branch that it left\n", where, group);
     case mechanism::MotionEvent::Kind::change:
-      return fmt::format("change point at {}: the modes of {} meet, and it goes on by its velocity\n", where,
+      return fmt::format("change point at {}: the modes of {} meet, and its velocity carries it on\n", where,
                          group);
     case mechanism::MotionEvent::Kind::infinity:
-      return fmt::format("infinity at {}: {} goes away without end, and comes back from the other side\n",
-                         where, group);
+      return fmt::format("infinity at {}: {} recedes to infinity and comes back from the other side\n", where,
+                         group);
   }
   return {};
 }

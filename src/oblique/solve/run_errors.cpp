@@ -90,7 +90,7 @@ SolveError loop_error(const network::Program& program, const network::Workspace:
   } else if (trouble.failure == network::LoopFailure::lost) {
     what = fmt::format(
         "the algebraic loop {} loses its solution at t = {:.6g} s: the branch that it was on ends near {} = "
-        "{:.6g}, and its amplifiers find no other rest",
+        "{:.6g}, and its amplifiers find no other operating point",
         path, t, unknown.name, trouble.value);
     remedy =
         "check that its equation can be satisfied (a root of a negative number, a triangle that cannot "

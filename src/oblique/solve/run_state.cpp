@@ -77,7 +77,7 @@ void compare_names(const RunState::Named& saved, const Things& things, std::stri
   if (i < saved.size() && i < things.size()) {
     difference = fmt::format("the {} '{}' where the diagram has '{}'", what, saved[i].first, things[i].name);
   } else if (i < saved.size()) {
-    difference = fmt::format("a {} '{}' that the diagram has not", what, saved[i].first);
+    difference = fmt::format("a {} '{}' that the diagram does not have", what, saved[i].first);
   } else {
     difference = fmt::format("no {} '{}'", what, things[i].name);
   }

@@ -60,7 +60,7 @@ void warn_of_timeline(const diagram::FlatTimeline& timeline, const std::string& 
   const bool in_last = at.phase + 1 == timeline.phases.size() && at.cycle + 1 >= timeline.cycles;
   // Phases of known length were cut off on purpose, and who repeats without end knows that the run ends.
   if (!by_condition || in_last || std::isinf(timeline.cycles)) return;
-  text::Remedy remedy{"such phases have no length that is known before: give a later 'until' in [run], or ",
+  text::Remedy remedy{"the length of such phases is not known in advance: give a later 'until' in [run], or ",
                       text::Setting{"until"}};
   if (at.cycle > 0) {
     remedy +=

@@ -104,14 +104,14 @@ class DimensionReader {
   std::optional<Bounds> read_bounds(const std::string& wanted, std::size_t begin, const Number& number) {
     const std::size_t dots = wanted.find("..", begin);
     if (dots == std::string::npos) {
-      report(fmt::format("'{}' has no two bounds", wanted), number.name + "=lower..upper", {});
+      report(fmt::format("'{}' does not have two bounds", wanted), number.name + "=lower..upper", {});
       return std::nullopt;
     }
     const auto lower = read_bound(wanted, wanted.substr(begin, dots - begin), number);
     const auto upper = read_bound(wanted, wanted.substr(dots + 2), number);
     if (!lower || !upper) return std::nullopt;
     if (*lower > *upper) {
-      report(fmt::format("the bounds of '{}' stand the wrong way round", wanted), "lower..upper",
+      report(fmt::format("the bounds of '{}' are the wrong way round", wanted), "lower..upper",
              fmt::format("{}={}..{}", number.name, *upper, *lower));
       return std::nullopt;
     }

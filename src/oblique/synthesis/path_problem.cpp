@@ -68,7 +68,7 @@ PathProblem::PathProblem(const DesignSpace& space, const TargetPath& target)
       SynthesisError::Kind::request,
       text::Diagnostic{
           {target.file, {}},
-          fmt::format("point '{}' cannot be followed: the mechanism does not close where column '{}' "
+          fmt::format("point '{}' cannot be followed: the mechanism cannot be assembled where column '{}' "
                       "wants it",
                       mechanism.points[target.point].name, target.timing),
           "targets within the motion of the mechanism",

@@ -198,7 +198,7 @@ std::string remedy_for(std::string_view text, int line) {
     while (first > 0 && is_digit(text[first - 1])) --first;
     const std::size_t before = text.substr(0, first).find_last_not_of(" -+");
     if (before != std::string_view::npos && text[before] == '=')
-      return "numbers have a decimal point, no comma";
+      return "numbers have a decimal point, not a comma";
   }
   return "words, and numbers with a unit, stand in quotes (\"60 rpm\"); the syntax is at "
          "https://toml.io/en/v1.0.0";

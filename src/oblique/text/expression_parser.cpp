@@ -200,7 +200,8 @@ class Parser {
     if (!take(')')) {
       do node.operands.push_back(parse());
       while (take(','));
-      if (!take(')')) fail(at_, fmt::format("the arguments of {} are not closed", info->name), "',' or ')'");
+      if (!take(')'))
+        fail(at_, fmt::format("the parenthesis after {} is not closed", info->name), "',' or ')'");
     }
     const std::size_t count = node.operands.size();
     if (count < info->min_arguments || count > info->max_arguments) {

@@ -146,7 +146,7 @@ void NewFile::fail(int reason) const {
   if (reason == ENOSPC || reason == EDQUOT) remedy = "make room on the disk";
   if (reason == ELOOP) remedy = "name a file: this link leads back to itself";
   if (reason == EISDIR) remedy = "name a file in it";
-  if (reason == ESPIPE) remedy = "name a file on a disk: this kind is not written from its start to its end";
+  if (reason == ESPIPE) remedy = "name a file on a disk: this format is not written in one pass";
   throw ReadError(Diagnostic{{path_.string(), {}},
                              fmt::format("cannot write the file: {}", std::strerror(reason)),
                              {},

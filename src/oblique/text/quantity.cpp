@@ -186,7 +186,7 @@ double unit_factor(std::string_view text, std::size_t rest, const Unit& wanted, 
     if (unit_text.front() == ',' && unit_text.size() > 1 && is_digit(unit_text[1])) {
       std::string point(text);
       std::replace(point.begin(), point.end(), ',', '.');
-      throw ExpressionError{column, "a comma stands in the number", "a decimal point", "write " + point};
+      throw ExpressionError{column, "there is a comma in the number", "a decimal point", "write " + point};
     }
     const std::string number_text(trim(text.substr(0, rest)));
     std::string remedy = has_value(unit_text, lookup)

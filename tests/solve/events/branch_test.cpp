@@ -131,9 +131,10 @@ y = { type = "servo-amplifier", in = ["yy", "-u"], initial = 1, gain = inf, band
     EXPECT_THAT(failure->message,
                 HasSubstr("the algebraic loop yy → y → yy loses its solution at t = 1 s: the branch "
                           "that it was on ends near y = "));
-    EXPECT_THAT(failure->message,
-                HasSubstr("and its amplifiers find no other rest\n  remedy: check that its equation "
-                          "can be satisfied"));
+    EXPECT_THAT(
+        failure->message,
+        HasSubstr("and its amplifiers find no other operating point\n  remedy: check that its equation "
+                  "can be satisfied"));
     EXPECT_THAT(failure->message,
                 HasSubstr("or give its amplifier a finite gain and bandwidth, or a 'limit'"));
   }
@@ -150,8 +151,8 @@ y = { type = "servo-amplifier", in = ["-xy", "p"], initial = 1, gain = inf, band
   ASSERT_EQ(result.warnings.size(), 1U);
   EXPECT_EQ(
       text::to_string(result.warnings[0]),
-      "d.toml: from t = 0 s on the equations of 'x', 'y' are solved where a machine would not rest: its "
-      "amplifiers run away from x = 2\n  remedy: turn the signs at the amplifier's inputs about, give it "
+      "d.toml: from t = 0 s on the equations of 'x', 'y' are solved where a machine would not settle: its "
+      "amplifiers run away from x = 2\n  remedy: reverse the signs at the amplifier's inputs, give it "
       "another 'initial', or a finite gain and bandwidth to see what a machine does");
 }
 

@@ -5,7 +5,8 @@
 
 namespace oblique::draw::layered {
 
-/// All these steps, one after the other; nothing of the result's quality is measured yet.
+/// Layers, order, heights and wires of a graph, one step after the other; nothing of the result's quality is
+/// measured yet.
 DiagramLayout lay_out_in_layers(const LayoutGraph& graph);
 
 }  // namespace oblique::draw::layered

@@ -302,7 +302,7 @@ Schematic make_schematic(const diagram::Diagram& diagram, const diagram::BlockLi
   if (blocks_seen(scope, depth, known) > kMostBlocks) {
     throw diagram::DiagramError(
         text::Diagnostic{{diagram.file, {}},
-                         fmt::format("so far opened, the drawing has more than {} blocks", kMostBlocks),
+                         fmt::format("opened that far, the drawing has more than {} blocks", kMostBlocks),
                          {},
                          "open fewer levels of composites"});
   }

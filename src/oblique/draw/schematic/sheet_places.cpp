@@ -53,7 +53,7 @@ void check_distances(const std::vector<Placed>& placed, const LayoutGraph& graph
           sideways ? (further ? "to the right" : "to the left") : (further ? "down" : "up");
       diagnostics.add(
           {placed[k].given->place,
-           fmt::format("'{}' stands over '{}' or too close to it in [layout]", placed[k].given->name,
+           fmt::format("'{}' overlaps '{}' or is too close to it in [layout]", placed[k].given->name,
                        placed[j].given->name),
            fmt::format("blocks apart from each other: '{}' with its texts takes {} by {}",
                        placed[k].given->name, own.size.x() / kPlaceUnit, own.size.y() / kPlaceUnit),

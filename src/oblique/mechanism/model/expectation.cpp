@@ -64,12 +64,13 @@ bool read_key(const Mechanism& mechanism, MechanismExpectation& expectation, tex
 double time_of(const Mechanism& mechanism, const MechanismExpectation& expectation) {
   if (expectation.kind == Kind::at_time) return expectation.at;
   if (const auto time = time_at_value(mechanism, expectation.at)) return *time;
-  throw MechanismError(MechanismError::Kind::request,
-                       text::Diagnostic{expectation.place,
-                                        fmt::format("drive '{}' does not come to where '{}' is expected",
-                                                    mechanism.drives.front().name, expectation.text),
-                                        "a value that it reaches",
-                                        {}});
+  throw MechanismError(
+      MechanismError::Kind::request,
+      text::Diagnostic{expectation.place,
+                       fmt::format("drive '{}' does not reach the value at which '{}' is expected",
+                                   mechanism.drives.front().name, expectation.text),
+                       "a value that it reaches",
+                       {}});
 }
 
 const MotionColumn& column(const std::vector<MotionColumn>& columns,

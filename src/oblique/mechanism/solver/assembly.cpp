@@ -133,10 +133,11 @@ class ModeChooser {
     const GroupPoses poses = solver.poses(drives_, here_, &hint);
     if (poses.movable) {
       add(MechanismError::Kind::constraint, group,
-          fmt::format("the conditions of the group {} depend on each other: it moves while the drives stand",
-                      group.name),
+          fmt::format(
+              "the conditions of the group {} depend on each other: it moves while the drives stand still",
+              group.name),
           "a group with a definite place",
-          "a parallelogram more than is needed? leave out the superfluous link, or change a length");
+          "is there one parallelogram too many? leave out the superfluous link, or change a length");
       return;
     }
     std::vector<Candidate> all = candidates(solver, drives_, poses, here_);

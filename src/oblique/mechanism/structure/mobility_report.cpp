@@ -33,13 +33,13 @@ std::string loose_ends(const Mechanism& mechanism) {
   return fmt::format("; no joint at {}: is a name misspelt?", fmt::join(names, ", "));
 }
 
-/// "3·3 bodies − 2·3 hinges − 1 slide".
+/// "3·3 bodies − 2·3 revolute joints − 1 slide".
 std::string mobility_formula(const Mechanism& mechanism) {
   int slides = 0;
   for (const Slide& slide : mechanism.slides) slides += slide.of ? 2 : 1;
   const int bodies = static_cast<int>(mechanism.bodies.size());
   const int hinges = (3 * bodies - slides - mobility(mechanism)) / 2;
-  std::string text = fmt::format("3·{} bodies − 2·{} hinges", bodies, hinges);
+  std::string text = fmt::format("3·{} bodies − 2·{} revolute joints", bodies, hinges);
   if (slides > 0) text += fmt::format(" − {} for slides", slides);
   return text;
 }
@@ -70,7 +70,7 @@ void check_mobility(const Mechanism& mechanism) {
                      loose_ends(mechanism);
   } else {
     finding.remedy = freedom < 0 ? "over-constrained: leave out bodies or joints"
-                                 : "over-driven: leave out drives, or hinges that are too many";
+                                 : "over-driven: leave out drives or superfluous joints";
   }
   throw MechanismError(MechanismError::Kind::mobility, std::move(finding));
 }
@@ -86,14 +86,15 @@ void check_parts(const Mechanism& mechanism, const ConstraintGraph& graph) {
     auto others = bodies_among(graph, graph.competitors(index));
     text::Diagnostic finding;
     const auto follows = [&](const std::string& what) {
-      return fmt::format("{} too much: {} fix it already", what, quoted_bodies(mechanism, others));
+      return fmt::format("{} superfluous: {} fix it already", what, quoted_bodies(mechanism, others));
     };
     switch (edge.kind) {
       case ConstraintGraph::Edge::Kind::hinge:
         std::erase(others, edge.index);
         finding.place = mechanism.bodies[edge.index].place;
         finding.what = fmt::format(
-            "body '{}' is over-constrained: its revolute joint at '{}' is too much, since {} fix it already",
+            "body '{}' is over-constrained: its revolute joint at '{}' is superfluous, since {} fix it "
+            "already",
             mechanism.bodies[edge.index].name, mechanism.points[edge.point].name,
             others.empty() ? "its other points" : quoted_bodies(mechanism, others));
         finding.remedy = "leave the body out, or remove another joint or drive of these bodies";

@@ -267,13 +267,14 @@ std::vector<text::Diagnostic> redundancy_findings(const Mechanism& mechanism) {
       finding.what = fmt::format("{} is contradictory: without it the others leave {} there", loop,
                                  quantity(mechanism, excess, excess.miss_at_start));
       finding.expected = "lengths with which it closes";
-      finding.remedy = "leave it out, or mend a length";
+      finding.remedy = "leave it out, or correct a length";
     } else if (!redundancy->closes_beside) {
       finding.what = fmt::format(
-          "{} closes at the start only: 5° of the drive on the others leave {} there, so it locks the "
+          "{} closes at the start only: 5° of the drive further on, the others leave {} there, so it locks "
+          "the "
           "mechanism",
           loop, quantity(mechanism, excess, excess.miss_beside));
-      finding.remedy = "leave it out, or mend a length";
+      finding.remedy = "leave it out, or correct a length";
     } else {
       finding.what =
           fmt::format("{} is redundant: it closes all the same, and by rank the mechanism has mobility {}",

@@ -152,7 +152,7 @@ class Assembler::BlockContext final : public ExpressionContext {
     const diagram::FlatBlock& flat = assembler_.diagram_.blocks[block_];
     const auto input = flat.definition->find_input(call.operands[0].name);
     if (!input)
-      throw text::ExpressionError{call.column, "weights() is of an input", "the name of an input", {}};
+      throw text::ExpressionError{call.column, "weights() takes an input", "the name of an input", {}};
     double sum = 0;
     for (const diagram::FlatTerm& term : flat.inputs[*input].terms) sum += std::abs(term.weight);
     return sum;

@@ -246,7 +246,7 @@ NodeId Assembler::interpolated(std::size_t block, const text::Expression& call) 
   if (call.operands.size() < 5 || call.operands.size() % 2 == 0) {
     throw text::ExpressionError{
         call.column,
-        "table() has no whole points",
+        "table() has an incomplete point",
         "table(x, x1, y1, x2, y2, …), or table(x, points) with a parameter of kind points",
         {}};
   }

@@ -172,7 +172,7 @@ class Builder {
 
   [[noreturn]] static void refuse_equality(const text::Expression& e) {
     throw text::ExpressionError{e.column,
-                                "a varying signal equals another for no length of time",
+                                "a varying signal equals another only at single instants",
                                 "'<' or '>' of signals; '==' of parameters and memories",
                                 {}};
   }

@@ -63,11 +63,11 @@ text::Diagnostic unstable_warning(const network::Program& program, const network
   const std::size_t first = program.loops()[loop].unknowns.front();
   return {{file, {}},
           fmt::format(
-              "from t = {:.6g} s on the equations of {} are solved where a machine would not rest: its "
+              "from t = {:.6g} s on the equations of {} are solved where a machine would not settle: its "
               "amplifiers run away from {} = {:.6g}",
               t, amplifier_names(program, loop), program.unknowns()[first].name, workspace.unknown(first)),
           {},
-          "turn the signs at the amplifier's inputs about, give it another 'initial', or a finite gain and "
+          "reverse the signs at the amplifier's inputs, give it another 'initial', or a finite gain and "
           "bandwidth to see what a machine does"};
 }
 

@@ -152,7 +152,7 @@ std::optional<EventSearch::Found> EventSearch::search(double from, std::span<con
           SolveError::Kind::step_budget, begin,
           {{file_, {}},
            fmt::format("from t = {:.9g} s on what a switch compares turns by {:.3g} rad a second: too fast "
-                       "to look through all turns for those at which it turns over",
+                       "for every turn to be examined for a crossing",
                        begin, turning),
            {},
            "end the run before, keep the argument of the sine or cosine small, or give more 'max_steps' "

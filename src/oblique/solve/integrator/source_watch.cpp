@@ -105,9 +105,10 @@ void SourceWatch::part(double from, const Values& at_from, double to, const Valu
     throw SolveError(
         SolveError::Kind::step_budget, from,
         {{file_, {}},
-         fmt::format("from t = {:.9g} s on the signals change too fast to look at all that they do", from),
+         fmt::format("from t = {:.9g} s on the signals change too fast for every change to be examined",
+                     from),
          {},
-         "end the run before, keep what is fast out of it, or give more 'max_steps' in [run]"});
+         "end the run before, leave fast signals out, or give more 'max_steps' in [run]"});
   }
   const double middle = from + (to - from) / 2;
   const double resolution = 16 * std::numeric_limits<double>::epsilon() * std::abs(to);

@@ -101,7 +101,7 @@ text::Diagnostic loose_start(const network::Program& program, const std::vector<
                       fmt::join(servos, ", "), group.size() == 1 ? "its loop" : "their loop",
                       shortened(through), through.size() == 1 ? "is" : "are"),
           {},
-          "give the amplifier the 'initial' that it shall start from"};
+          "give the amplifier the 'initial' from which it is to start"};
 }
 
 }  // namespace

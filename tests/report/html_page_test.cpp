@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/report/html_page.h>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace oblique::report {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+TEST(HtmlPage, ListsItsSectionsAndLeadsToThem) {
+  HtmlPage page("A & B");
+  page.heading("First < second");
+  page.subheading("no section");
+  page.heading("Last");
+  const std::string text = page.text(draw::Theme::automatic);
+  EXPECT_THAT(text, HasSubstr("<title>A &amp; B</title>"));
+  EXPECT_THAT(text, HasSubstr("<nav><ul>\n<li><a href=\"#section-1\">First &lt; second</a></li>\n"
+                              "<li><a href=\"#section-2\">Last</a></li>\n</ul></nav>"));
+  EXPECT_THAT(text, HasSubstr("<h2 id=\"section-1\">First &lt; second</h2>"));
+  EXPECT_THAT(text, HasSubstr("<h2 id=\"section-2\">Last</h2>"));
+}
+
+TEST(HtmlPage, EscapesEveryText) {
+  HtmlPage page("page");
+  page.paragraph("a < b");
+  page.introduction("b < c");
+  page.list({"c < d"});
+  page.table({"d < e"}, {{"e < f"}});
+  for (const char* const text : {"<p>a &lt; b</p>", "<p class=\"lead\">b &lt; c</p>", "<li>c &lt; d</li>",
+                                 "<th>d &lt; e</th>", "<td>e &lt; f</td>"})
+    EXPECT_THAT(page.text(draw::Theme::light), HasSubstr(text));
+}
+
+TEST(HtmlPage, PutsColumnsOfNumbersToTheRight) {
+  HtmlPage page("page");
+  page.table({{"name", "size", "mixed"}, {"a", "-1.5e-3", "2"}, {"b", "4", "two"}});
+  EXPECT_THAT(page.text(draw::Theme::light),
+              HasSubstr("<tr><th>name</th><th class=\"n\">size</th><th>mixed</th></tr>"));
+  EXPECT_THAT(page.text(draw::Theme::light),
+              HasSubstr("<tr><td>b</td><td class=\"n\">4</td><td>two</td></tr>"));
+}
+
+TEST(HtmlPage, HasPicturesWithoutIdsAndIsLightOnPaper) {
+  draw::Picture picture{40, 30, "a disc", {draw::disc_mark({20, 15}, 5, draw::Ink::blue)}};
+  picture.marks.front().id = "disc";
+  HtmlPage page("page");
+  page.picture(picture);
+  page.picture(picture);
+  const std::string dark = page.text(draw::Theme::dark);
+  EXPECT_THAT(dark, HasSubstr("viewBox=\"0 0 40 30\" role=\"img\">\n<title>a disc</title>"));
+  EXPECT_THAT(dark, Not(HasSubstr("id=\"disc\"")));
+  const std::string print = dark.substr(dark.find("@media print"));
+  EXPECT_THAT(print, HasSubstr(draw::svg_style(draw::Theme::light)));
+  EXPECT_THAT(dark.substr(0, dark.find("@media print")), HasSubstr(draw::svg_style(draw::Theme::dark)));
+}
+
+}  // namespace
+}  // namespace oblique::report
