@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/report/diagram_check.h>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <oblique/report/diagram_check_text.h>
 
 #include "../support/compiled.h"
 
@@ -9,6 +12,7 @@ namespace oblique::report {
 namespace {
 
 using testing::Compiled;
+using ::testing::ContainsRegex;
 
 DiagramCheck checked(const Compiled& made) {
   return examine(made.diagram, made.flat, made.program, {});
@@ -29,6 +33,14 @@ z = { type = "integrator", in = ["0.05*one"] }
   EXPECT_EQ(check.scaling->signals.at(made.signal("x")), 2);
   EXPECT_EQ(check.scaling->signals.at(made.signal("z")), 10);
   EXPECT_EQ(check.scaling->time_scale, 50);
+}
+
+// A loop of gain ½ never passes 1: it has no crossover, and any phase to lose.
+TEST(DiagramCheck, TellsOfAnAmplifierWithoutACrossover) {
+  const Compiled made(R"toml(u = { type = "constant", value = 0.1 }
+a = { type = "servo-amplifier", in = ["a", "-u"], gain = 0.5, bandwidth = 10 }
+)toml");
+  EXPECT_THAT(to_text(checked(made)), ContainsRegex("\na +∞ +– +–\n"));
 }
 
 }  // namespace
