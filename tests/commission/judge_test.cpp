@@ -84,6 +84,24 @@ TEST_P(Split, IsRefusedWhereItIsUnstable) {
   }
 }
 
+// The split that is asked for runs away with an outer loop as fast as the others: another one, with a slower
+// loop, does not.
+TEST(JudgedPatch, NamesAllSettingsThatWouldHelp) {
+  patch::PatchOptions options = options_of({"AB", "O1C", "DE", 1, 6.3e5});
+  options.method = patch::PatchMethod::triangles;
+  const mechanism::Mechanism mechanism = shipped("class-iii");
+  const std::vector<std::string> best = patch::useful_splits(mechanism).front();
+  ASSERT_NE(best, options.split);
+  try {
+    judged_patch(mechanism, diagram::BlockLibrary::shipped(), options);
+    FAIL() << "an unstable patch was made";
+  } catch (const patch::PatchError& error) {
+    EXPECT_THAT(std::string(error.what()),
+                HasSubstr("remedy: split " + best[0] + "," + best[1] + "," + best[2] +
+                          " slower 100 is stable; method gradient patches any mechanism"));
+  }
+}
+
 class UnstableSplit : public testing::TestWithParam<SplitPole> {};
 INSTANTIATE_TEST_SUITE_P(Paper, UnstableSplit,
                          testing::Values(SplitPole{"AB", "O1C", "DE", 1, 6.3e5},

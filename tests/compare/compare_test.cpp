@@ -53,11 +53,20 @@ TEST_P(Convergence, ErrorFallsWithTheGainOverFourDecades) {
   EXPECT_LT(comparison.runs.back().max_error, GetParam().relative_error * comparison.size);
   // The tolerance must not hide the last run: 1e-10 over some hundred steps against 1e-7.
   EXPECT_LT(series.floor.value(), 0.1 * comparison.runs.back().max_error);
+  const std::vector<mechanism::Point> points = shipped(GetParam().mechanism).points;
+  const auto moving = static_cast<double>(std::count_if(
+      points.begin(), points.end(), [](const mechanism::Point& point) { return !point.fixed; }));
   for (const ComparedRun& run : comparison.runs) {
     EXPECT_TRUE(run.stable) << run.gain;
     EXPECT_LT(run.slowest_pole, 0);
     EXPECT_TRUE(run.overloads.empty()) << run.gain << " " << run.overloads.front().signal;
     EXPECT_LE(run.rms_error, run.max_error);
+    // The largest of each row is one of those whose mean square it is.
+    double sum = 0;
+    for (const double error : run.error_along) sum += error * error;
+    const double rows = static_cast<double>(run.error_along.size());
+    EXPECT_LE(run.rms_error, std::sqrt(sum / rows) * (1 + 1e-12));  // roundings of a thousand terms
+    EXPECT_GE(run.rms_error, std::sqrt(sum / rows / moving) * (1 - 1e-12));
     EXPECT_GT(run.steps, 0);
   }
 }

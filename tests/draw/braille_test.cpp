@@ -69,6 +69,20 @@ TEST(Braille, NamesCurvesAtTheirEndsAndNumbersTheAxes) {
   EXPECT_TRUE(line.ends_with(" up")) << line;
 }
 
+TEST(Braille, PutsTheTitleOfTheAxisUnderItsMiddle) {
+  const auto lines = lines_of(to_braille(ramp(), 70, false));
+  const auto axis = std::find_if(lines.begin(), lines.end(), [](const std::u32string& line) {
+    return line.find(U'└') != std::u32string::npos;
+  });
+  ASSERT_NE(axis, lines.end());
+  const std::u32string& title = *(axis + 2);
+  const std::size_t begin = title.find(U't');
+  const double middle = (static_cast<double>(begin) + static_cast<double>(title.size() - 1)) / 2;
+  const double of_axis =
+      (static_cast<double>(axis->find(U'└') + 1) + static_cast<double>(axis->size() - 1)) / 2;
+  EXPECT_NEAR(middle, of_axis, 1);  // of whole letters
+}
+
 TEST(Braille, KeepsToTheWidth) {
   Chart chart = ramp();
   chart.title = std::string(200, 'x');

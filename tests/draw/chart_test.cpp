@@ -83,6 +83,19 @@ TEST(Chart, PutsPointsWhereTheNumbersSay) {
   }
 }
 
+// What is shaded is measured from 0, which the axis therefore shows.
+TEST(Chart, ShadesFromZero) {
+  const auto shows_zero = [](Curve::Style style) {
+    const Curve curve{"", {{0, 5}, {1, 6}, {2, 5.5}}, 0, style};
+    const auto labels = labels_of(draw_chart({"", {{{"t", "s"}, {"", "m"}, {curve}}}}));
+    return std::count_if(labels.begin(), labels.end(),
+                         [](const Label& label) { return label.text == "0" || label.text == "0.0"; });
+  };
+  // One is that of the time.
+  EXPECT_EQ(shows_zero(Curve::Style::area), 2);
+  EXPECT_EQ(shows_zero(Curve::Style::line), 1);
+}
+
 TEST(Chart, TakesLogarithmsOfBothAxes) {
   Curve curve{"", {}, 0, Curve::Style::line};
   for (const double gain : {1e2, 1e3, 1e4, 1e5, 1e6}) curve.points.emplace_back(gain, 3 / gain);

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <string>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <oblique/mechanism/model/read_mechanism.h>
@@ -59,6 +60,45 @@ C = [2, 1.5]
     }
   }
   EXPECT_EQ(plan_motion_range(mechanism, decompose(mechanism)).changes.size(), 1U);
+}
+
+// The same places, whatever the clock: a thousand times faster or slower they are passed at other times.
+TEST(Crossing, IsPassedAtAnySpeed) {
+  for (const double speed : {1e-3, 1.0, 1e3}) {
+    const Mechanism kite = parse_mechanism(fmt::format(R"(format = "oblique-mechanism/1"
+[frame]
+A = [0, 0]
+D = [1, 0]
+[bodies]
+AB = {{ points = ["A", "B"], length = 1 }}
+BC = {{ points = ["B", "C"], length = 2 }}
+DC = {{ points = ["D", "C"], length = 2 }}
+[drives]
+crank = {{ turns = "AB", about = "A", speed = {}, start = "40 deg" }}
+[sketch]
+C = [2, 1.5]
+)",
+                                                       speed),
+                                           "kite.toml");
+    MotionOptions options;
+    options.positions = 91;
+    options.until = 4 * kPi / speed;
+    const Motion motion = solve_motion(kite, options);
+    ASSERT_EQ(motion.events.size(), 2U) << speed;
+    for (std::size_t k = 0; k < 2; ++k) {
+      EXPECT_EQ(motion.events[k].kind, Kind::change);
+      EXPECT_NEAR(motion.events[k].time * speed, 2 * kPi * static_cast<double>(k + 1) - 40 * kDegree, 1e-9)
+          << speed;
+    }
+    const double half = motion.drives.back()[0].value / 2;
+    const double reach = std::cos(half) + std::sqrt(4 - std::pow(std::sin(half), 2));
+    // as above
+    EXPECT_LT(
+        (motion.configurations.back().points[3].position - reach * Vector2d(std::cos(half), std::sin(half)))
+            .norm(),
+        1e-9)
+        << speed;
+  }
 }
 
 // A rocker that is longer than the parallelogram's by 1e-13 makes it a crank and rocker: C never changes its

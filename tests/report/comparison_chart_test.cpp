@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/report/comparison_chart.h>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace oblique::report {
@@ -36,6 +37,43 @@ TEST(ComparisonChart, DrawsTheRunsOfEachSeriesWhereOneIsLeftOut) {
   ASSERT_EQ(chart.panels[2].curves.size(), 2U);
   EXPECT_EQ(chart.panels[2].curves[0].points[1].y(), 1e-3);
   EXPECT_EQ(chart.panels[2].curves[1].points[1].y(), 1e-4);
+}
+
+/// So many drawn machines, of which number k errs by k + 1 in both rows.
+MonteCarloReport drawn(std::size_t runs) {
+  MonteCarloReport report;
+  report.unit = "m";
+  report.result.drive = {0, 1};
+  report.result.worst_run = runs - 1;
+  for (std::size_t k = 0; k < runs; ++k) {
+    const double error = static_cast<double>(k + 1);
+    report.result.errors.emplace_back(error);
+    report.result.along.push_back({error, error});
+  }
+  return report;
+}
+
+// Two are enough for bands, and one is itself.
+TEST(ComparisonChart, DrawsBandsOfSeveralRunsAndTheRunOfOne) {
+  const auto names = [](const draw::Panel& panel) {
+    std::vector<std::string> found;
+    for (const draw::Curve& curve : panel.curves) found.push_back(curve.name);
+    return found;
+  };
+  const compare::Comparison comparison;
+  EXPECT_EQ(names(panels_of(comparison, drawn(2)).at(0)),
+            (std::vector<std::string>{"95 % of the runs", "half of them", "median"}));
+  EXPECT_EQ(names(panels_of(comparison, drawn(1)).at(0)), (std::vector<std::string>{"the run"}));
+}
+
+TEST(MonteCarloReport, ListsWhatASingleRunHasDrawn) {
+  MonteCarloReport one = drawn(1);
+  one.draws = {{"C.cx.tolerance", 0.25}};
+  EXPECT_THAT(to_text(one), ::testing::HasSubstr("C.cx.tolerance   0.25"));
+  EXPECT_THAT(to_text(one), ::testing::HasSubstr("\nlargest error with these 1.000e+00 m\n"));
+  MonteCarloReport two = drawn(2);
+  two.draws = one.draws;
+  EXPECT_THAT(to_text(two), ::testing::Not(::testing::HasSubstr("with these")));
 }
 
 }  // namespace

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/report/diagram_check.h>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <oblique/report/diagram_check_text.h>
 
 #include "../support/compiled.h"
 
@@ -9,6 +12,7 @@ namespace oblique::report {
 namespace {
 
 using testing::Compiled;
+using ::testing::ContainsRegex;
 
 DiagramCheck checked(const Compiled& made) {
   return examine(made.diagram, made.flat, made.program, {});
@@ -29,6 +33,27 @@ z = { type = "integrator", in = ["0.05*one"] }
   EXPECT_EQ(check.scaling->signals.at(made.signal("x")), 2);
   EXPECT_EQ(check.scaling->signals.at(made.signal("z")), 10);
   EXPECT_EQ(check.scaling->time_scale, 50);
+}
+
+// The argument of an exponential cannot be scaled, nor what it gives: e^0.9 stays beyond the machine unit.
+TEST(DiagramCheck, CountsTheOverloadsThatScalingLeaves) {
+  const auto overloads = [](const Compiled& made) {
+    return scaled_by(checked(made), testing::shipped_blocks()).overloads;
+  };
+  EXPECT_EQ(overloads(Compiled(R"toml(one = { type = "constant" }
+x = { type = "integrator", in = ["0.9*one"] }
+e = { type = "exponential", in = "x" }
+)toml")),
+            1U);
+  EXPECT_EQ(overloads(Compiled("x = { type = \"integrator\", in = [\"-x\"], initial = 3 }\n")), 0U);
+}
+
+// A loop of gain ½ never passes 1: it has no crossover, and any phase to lose.
+TEST(DiagramCheck, TellsOfAnAmplifierWithoutACrossover) {
+  const Compiled made(R"toml(u = { type = "constant", value = 0.1 }
+a = { type = "servo-amplifier", in = ["a", "-u"], gain = 0.5, bandwidth = 10 }
+)toml");
+  EXPECT_THAT(to_text(checked(made)), ContainsRegex("\na +∞ +– +–\n"));
 }
 
 }  // namespace

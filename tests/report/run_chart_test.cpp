@@ -31,8 +31,8 @@ TEST(DrawnColumns, AreAsManyAsCanBeToldApart) {
   const auto all = columns(draw::kMostCurves + 3);
   EXPECT_EQ(drawn_columns(all, first(draw::kMostCurves)).drawn.size(), draw::kMostCurves);
   EXPECT_EQ(message_of<text::ReadError>([&] { drawn_columns(all, first(draw::kMostCurves + 1)); }),
-            fmt::format("'columns': {} curves cannot be told apart; expected at most {}", draw::kMostCurves + 1,
-                        draw::kMostCurves));
+            fmt::format("'columns': {} curves cannot be told apart; expected at most {}",
+                        draw::kMostCurves + 1, draw::kMostCurves));
   const DrawnColumns unasked = drawn_columns(all, {});
   EXPECT_EQ(unasked.drawn.size(), draw::kMostCurves);
   EXPECT_EQ(unasked.left_out, 3U);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/solve/stability/stability_report.h>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "../support/compiled.h"
@@ -56,6 +57,24 @@ x = { type = "integrator", in = ["p"], initial = 1 }
   EXPECT_EQ(verdict_along({-0.5, 0.5}), StabilityVerdict::grows_at_times);
   EXPECT_EQ(verdict_along({-0.5, -0.4}), StabilityVerdict::stable_when_frozen);
   EXPECT_EQ(verdict_along({-0.5, -0.5}), StabilityVerdict::stable);
+}
+
+// x = 1/a has no slope where a is 0.
+TEST(StabilityReport, TellsOfAnInstantWithoutALinearisation) {
+  const Compiled made(R"toml(one = { type = "constant" }
+a = { type = "integrator", in = ["-one"], initial = 0 }
+q = { type = "divider", numerator = "one", denominator = "a", gain = inf, bandwidth = inf }
+x = { type = "integrator", in = ["-x", "q"] }
+)toml");
+  const SignalFlow flow(made.flat, made.program);
+  std::vector<Instant> instants(2, Instant{0, made.program.start()});
+  for (std::size_t i = 0; i < made.program.n_states(); ++i) {
+    if (made.program.states()[i].name == "a") instants[1].states[i] = 1;
+  }
+  const StabilityReport report = judge_stability(made.program, flow, instants);
+  EXPECT_EQ(report.instants, 1U);
+  EXPECT_THAT(report.left_out,
+              ::testing::ElementsAre("1 of 2 instants, at which the equations have no linearisation"));
 }
 
 }  // namespace

@@ -91,7 +91,6 @@ std::optional<solve::Instant> at_rest(const network::Program& program, const std
     away -= change;
     if (away.cwiseAbs().maxCoeff() > kFarthest) return std::nullopt;
     for (Eigen::Index k = 0; k < n; ++k) instant.states[moving[static_cast<std::size_t>(k)]] -= change[k];
-    if (size == 0) return instant;
   }
   return std::nullopt;
 }

@@ -73,15 +73,14 @@ class Study {
       for (const int axis : {0, 1}) signals_.push_back(coordinate(mechanism_, p, axis));
     }
     if (!has_masses(mechanism_)) return;
-    signals_.push_back(
-        {[](const RangeWalk& walk) {
-           return SignalValue{reduced_inertia(walk.mechanism(), walk.here(), walk.drives().front()), 0};
-         },
-         1, false});
     signals_.push_back({[](const RangeWalk& walk) {
-                          return SignalValue{kinetic_energy(walk.mechanism(), walk.here()), 0};
+                          return SignalValue{
+                              reduced_inertia(walk.mechanism(), walk.here(), walk.drives().front())};
                         },
                         1, false});
+    signals_.push_back(
+        {[](const RangeWalk& walk) { return SignalValue{kinetic_energy(walk.mechanism(), walk.here())}; }, 1,
+         false});
   }
 
   void report_path(const PathMeasure& measure, const SignalScan& x, const SignalScan& y) {
