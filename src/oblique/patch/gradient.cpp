@@ -37,7 +37,7 @@ class GradientPatch : private PatchBuilder {
     add_reference();
     start_ = mechanism::start_configuration(mechanism_, structure_);
     for (const mechanism::Group& group : structure_.groups) {
-      if (group.kind == mechanism::GroupKind::crank) {
+      if (group.form.placing == mechanism::Placing::rotation) {
         add_crank(group);
         for (const std::size_t point : group.points) set_known(point);
       } else {
@@ -63,7 +63,7 @@ class GradientPatch : private PatchBuilder {
     if (first < diagram_.blocks.size()) {
       diagram_.blocks[first].comment =
           fmt::format("group {} ({}): {} conditions for {} coordinates{}{}", group.name,
-                      mechanism::kind_name(group.kind), conditions.size(), unknowns_.size(),
+                      mechanism::kind_name(group.form.kind), conditions.size(), unknowns_.size(),
                       diagram_.blocks[first].comment.empty() ? "" : "\n", diagram_.blocks[first].comment);
     }
     for (const std::size_t point : group.points) {

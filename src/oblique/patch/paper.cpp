@@ -20,7 +20,7 @@ class PaperPatch : private TriadPatch {
 
   diagram::Diagram make() {
     for (const mechanism::Group& group : structure_.groups) {
-      if (group.kind == mechanism::GroupKind::crank || can_be_split(group)) continue;
+      if (group.form.placing == mechanism::Placing::rotation || group.form.is_triad_on_links()) continue;
       refuse(group, "is not of the source's kind", "cranks and triads on three links, as the source has them",
              group.assur_class == 2 ? text::Remedy{"patch it with ", text::Setting{"method", "triangles"}}
                                     : text::Remedy{"patch it with ", text::Setting{"method", "gradient"},
@@ -35,7 +35,7 @@ class PaperPatch : private TriadPatch {
     add_reference();
     std::size_t triad = 0;
     for (const mechanism::Group& group : structure_.groups) {
-      if (group.kind == mechanism::GroupKind::crank) {
+      if (group.form.placing == mechanism::Placing::rotation) {
         const std::string generator = add_crank(group);
         add_output(angles_.empty() ? "phi" : generator, generator + ".cos", generator + ".sin");
         for (const std::size_t point : group.points) set_known(point);
@@ -55,7 +55,7 @@ class PaperPatch : private TriadPatch {
   void choose_splits() {
     double longest = scaling_.length;
     for (const mechanism::Group& group : structure_.groups) {
-      if (!can_be_split(group)) continue;
+      if (!group.form.is_triad_on_links()) continue;
       PatchOptions options = options_;
       if (!names_leads_of(group)) options.split = split_of_the_source(group);
       splits_.push_back(choose_split(mechanism_, group, motion_, options));

@@ -191,11 +191,11 @@ PatchBuilder::Terms PatchBuilder::terms_of(const LinearForm& form) const {
 
 void PatchBuilder::refuse(const mechanism::Group& group, const std::string& why, const std::string& expected,
                           const text::Remedy& remedy) const {
-  throw PatchError(
-      text::Diagnostic{group.bodies.empty() ? mechanism_.slides[group.slides.front()].place
-                                            : mechanism_.bodies[group.bodies.front()].place,
-                       fmt::format("the group {} ({}) {}", group.name, mechanism::kind_name(group.kind), why),
-                       expected, remedy});
+  throw PatchError(text::Diagnostic{
+      group.bodies.empty() ? mechanism_.slides[group.slides.front()].place
+                           : mechanism_.bodies[group.bodies.front()].place,
+      fmt::format("the group {} ({}) {}", group.name, mechanism::kind_name(group.form.kind), why), expected,
+      remedy});
 }
 
 }  // namespace oblique::patch

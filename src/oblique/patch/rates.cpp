@@ -55,7 +55,7 @@ class PatchBuilder::Rates {
         length, patch_.acceleration_unit_ / (patch_.factor * patch_.factor), length);
     for (std::size_t d = 0; d < patch_.drives_.size(); ++d) add_drive(d);
     for (const mechanism::Group& group : patch_.structure_.groups) {
-      if (group.kind == mechanism::GroupKind::crank) {
+      if (group.form.placing == mechanism::Placing::rotation) {
         add_crank(group);
       } else {
         add_group(group);

@@ -9,46 +9,25 @@
 
 namespace oblique::patch {
 
-std::optional<SlideDyadPatch::Parts> SlideDyadPatch::parts_of(const mechanism::GroupEquations& equations) {
-  if (equations.unknowns() > 3) return std::nullopt;
-  Parts parts;
-  for (const mechanism::Condition& c : equations.conditions) {
-    const bool is_line =
-        c.kind == mechanism::Condition::Kind::on_line || c.kind == mechanism::Condition::Kind::along;
-    const bool point_known = c.a.kind == mechanism::PointRef::Kind::known;
-    const bool line_known = c.line.kind != mechanism::LineRef::Kind::carried;
-    if (c.kind == mechanism::Condition::Kind::orientation ? !line_known
-        : is_line                                         ? point_known == line_known
-                                                          : c.b.kind != mechanism::PointRef::Kind::known)
-      return std::nullopt;
-    switch (c.kind) {
-      case mechanism::Condition::Kind::coincidence:
-        parts.hinge = &c;
-        break;
-      case mechanism::Condition::Kind::orientation:
-        parts.angle = &c;
-        break;
-      case mechanism::Condition::Kind::along:
-        parts.along = &c;
-        break;
-      default:
-        parts.loci.push_back(&c);
+bool SlideDyadPatch::has_circuit(const mechanism::Group& group) {
+  const mechanism::GroupForm& form = group.form;
+  switch (form.placing) {
+    case mechanism::Placing::hinged:
+      return true;
+    case mechanism::Placing::crossing:
+      return form.circles < 2;
+    case mechanism::Placing::about_pivot: {  // a line of its own
+      const mechanism::Condition& c = group.equations.conditions[form.loci.front()];
+      return c.kind == mechanism::Condition::Kind::on_line &&
+             c.line.kind == mechanism::LineRef::Kind::carried;
     }
+    case mechanism::Placing::rotation:
+    case mechanism::Placing::triangle:
+    case mechanism::Placing::platform:
+    case mechanism::Placing::iteration:
+      break;
   }
-  const bool is_body = !equations.cores.empty();
-  const std::size_t wanted = parts.hinge != nullptr ? (parts.angle != nullptr ? 0 : 1) : 2;
-  const std::size_t found = parts.loci.size() + (parts.along != nullptr ? 1 : 0);
-  if (found != wanted || (is_body && parts.angle == nullptr && parts.hinge == nullptr)) return std::nullopt;
-  const auto circles = std::count_if(parts.loci.begin(), parts.loci.end(), [](const mechanism::Condition* c) {
-    return c->kind == mechanism::Condition::Kind::distance;
-  });
-  if (parts.hinge != nullptr && wanted == 1) {  // only a line of its own has a block
-    const bool own_line = parts.loci.size() == 1 &&
-                          parts.loci[0]->line.kind == mechanism::LineRef::Kind::carried &&
-                          parts.loci[0]->kind == mechanism::Condition::Kind::on_line;
-    return own_line ? std::optional(parts) : std::nullopt;
-  }
-  return circles <= 1 ? std::optional(parts) : std::nullopt;
+  return false;
 }
 
 LinearForm SlideDyadPatch::constant(double value) {
@@ -148,19 +127,24 @@ text::Entry SlideDyadPatch::wire(const std::string& block, const char* port, con
 
 void SlideDyadPatch::add_group(const mechanism::Group& group) {
   const mechanism::GroupEquations& equations = group.equations;
-  const Parts parts = *parts_of(equations);
+  const mechanism::GroupForm& form = group.form;
+  const auto condition = [&](std::size_t index) -> const mechanism::Condition& {
+    return equations.conditions[index];
+  };
   const bool is_body = !equations.cores.empty();
   const std::string& name =
       is_body ? mechanism_.bodies[equations.cores.front()].name : name_of(equations.free_points.front());
-  if (parts.angle != nullptr) set_axis(*parts.angle);
+  if (form.angle) set_axis(condition(*form.angle));
   VectorForm unknown;
-  if (parts.hinge != nullptr) {
-    if (parts.angle == nullptr) add_own_line(group, *parts.hinge, *parts.loci[0], name);
-    unknown = sum(*points_[parts.hinge->b.point], -1, arm(parts.hinge->a.local));
-  } else if (parts.along != nullptr) {
-    unknown = add_slider(group, *parts.along, name);
+  if (form.hinge) {
+    const mechanism::Condition& hinge = condition(*form.hinge);
+    if (!form.angle) add_own_line(group, hinge, condition(form.loci.front()), name);
+    unknown = sum(*points_[hinge.b.point], -1, arm(hinge.a.local));
+  } else if (condition(form.loci.back()).kind == mechanism::Condition::Kind::along) {
+    unknown = add_slider(group, condition(form.loci.back()), name);
   } else {
-    unknown = add_crossing(group, locus(group, *parts.loci[0]), locus(group, *parts.loci[1]), name);
+    unknown = add_crossing(group, locus(group, condition(form.loci[0])),
+                           locus(group, condition(form.loci[1])), name);
   }
   if (!is_body) {
     points_[equations.free_points.front()] = unknown;
@@ -221,9 +205,8 @@ void SlideDyadPatch::add_own_line(const mechanism::Group& group, const mechanism
   axis_ = {combined({{u.x(), &cosine}, {u.y(), &sine}}), combined({{u.x(), &sine}, {-u.y(), &cosine}})};
 }
 
-VectorForm SlideDyadPatch::add_crossing(const mechanism::Group& group, Locus first, Locus second,
-                                        const std::string& name) {
-  if (!first.circle && second.circle) std::swap(first, second);
+VectorForm SlideDyadPatch::add_crossing(const mechanism::Group& group, const Locus& first,
+                                        const Locus& second, const std::string& name) {
   const bool is_body = !group.equations.cores.empty();
   const std::size_t point = is_body ? mechanism_.bodies[group.equations.cores.front()].points.front().point
                                     : group.equations.free_points.front();
@@ -260,7 +243,7 @@ VectorForm SlideDyadPatch::add_crossing(const mechanism::Group& group, Locus fir
              wire(name + "_slide", "vx", second.direction.x), wire(name + "_slide", "vy", second.direction.y),
              diagram::number_setting("side", u.x() * v.y() - u.y() * v.x() > 0 ? 1 : -1),
              diagram::number_setting("reach", reach)}),
-        fmt::format("dyad {} ({}): where two lines meet", group.name, mechanism::kind_name(group.kind)));
+        fmt::format("dyad {} ({}): where two lines meet", group.name, mechanism::kind_name(group.form.kind)));
   }
   VectorForm unknown;
   unknown.x.weights[block + ".x"] = 1;

@@ -17,16 +17,8 @@ class SlideDyadPatch : protected PatchBuilder {
  protected:
   using PatchBuilder::PatchBuilder;
 
-  /// The conditions of a group of one unknown point or body, by what they do.
-  struct Parts {
-    const mechanism::Condition* hinge = nullptr;
-    const mechanism::Condition* angle = nullptr;
-    const mechanism::Condition* along = nullptr;
-    std::vector<const mechanism::Condition*> loci;
-  };
-
-  /// Nothing where the conditions are others than those of a dyad or a drive.
-  static std::optional<Parts> parts_of(const mechanism::GroupEquations& equations);
+  /// Whether there is a block for a group of one unknown point or body.
+  static bool has_circuit(const mechanism::Group& group);
 
   static LinearForm constant(double value);
 
@@ -74,7 +66,8 @@ class SlideDyadPatch : protected PatchBuilder {
                     const mechanism::Condition& on_line, const std::string& name);
 
   /// RRP and PRP: where a circle or a line meets a line.
-  VectorForm add_crossing(const mechanism::Group& group, Locus first, Locus second, const std::string& name);
+  VectorForm add_crossing(const mechanism::Group& group, const Locus& first, const Locus& second,
+                          const std::string& name);
 
   /// A point that a drive moves along a line.
   VectorForm add_slider(const mechanism::Group& group, const mechanism::Condition& along,

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -100,6 +99,10 @@ std::vector<std::string> legs_of(const mechanism::Mechanism& mechanism, const me
   return names;
 }
 
+bool is_on_links(const mechanism::Group& group) {
+  return group.form.is_triad_on_links();
+}
+
 std::string joined(const std::vector<std::string>& legs) {
   return fmt::format("{}", fmt::join(legs, ","));
 }
@@ -108,14 +111,6 @@ std::string joined(const std::vector<std::string>& legs) {
 
 double TriadSplit::worth() const {
   return flip == Flip::none ? std::min(flattest, least_gain) : 0;
-}
-
-bool can_be_split(const mechanism::Group& group) {
-  const auto& conditions = group.equations.conditions;
-  return group.kind == mechanism::GroupKind::triad &&
-         std::all_of(conditions.begin(), conditions.end(), [](const mechanism::Condition& c) {
-           return c.kind == mechanism::Condition::Kind::distance;
-         });
 }
 
 std::vector<TriadSplit> splits_of(const mechanism::Group& group, const mechanism::Motion& motion) {
@@ -130,11 +125,7 @@ std::vector<TriadSplit> splits_of(const mechanism::Group& group, const mechanism
 }
 
 std::size_t leg_of(const mechanism::Group& triad, std::size_t condition) {
-  const mechanism::Condition& c = triad.equations.conditions[condition];
-  for (const mechanism::Link& link : triad.equations.links) {
-    if (link.from == c.b.point && link.to == c.a.point) return link.body;
-  }
-  throw std::logic_error("a distance condition without its link");
+  return triad.equations.links[triad.equations.conditions[condition].link].body;
 }
 
 std::string split_name(const mechanism::Mechanism& mechanism, const mechanism::Group& triad,
@@ -155,7 +146,7 @@ TriadSplit choose_split(const mechanism::Mechanism& mechanism, const mechanism::
                                       fmt::format("the group {} ({}) has no split into two triangles that "
                                                   "never become collinear and a loop that "
                                                   "keeps its gain on the way",
-                                                  triad.name, mechanism::kind_name(triad.kind)),
+                                                  triad.name, mechanism::kind_name(triad.form.kind)),
                                       "a triad on three links with such a split",
                                       text::Remedy{"patch it with ", text::Setting{"method", "gradient"},
                                                    ", which takes any group"}})
@@ -187,7 +178,7 @@ TriadSplit choose_split(const mechanism::Mechanism& mechanism, const mechanism::
 
 void check_split_options(const mechanism::Mechanism& mechanism, const mechanism::Structure& structure,
                          const PatchOptions& options) {
-  const bool splits = std::any_of(structure.groups.begin(), structure.groups.end(), can_be_split);
+  const bool splits = std::any_of(structure.groups.begin(), structure.groups.end(), is_on_links);
   if (options.slower && !splits) {
     throw PatchError(text::Diagnostic{{mechanism.file, {}, {"slower", fmt::format("{:g}", *options.slower)}},
                                       "this patch has no outer loop",
@@ -198,7 +189,7 @@ void check_split_options(const mechanism::Mechanism& mechanism, const mechanism:
   if (options.split.empty()) return;
   std::vector<std::string> triads;
   for (const mechanism::Group& group : structure.groups) {
-    if (!can_be_split(group)) continue;
+    if (!is_on_links(group)) continue;
     std::vector<std::string> legs = legs_of(mechanism, group, TriadSplit{});
     triads.push_back(joined(legs));
     if (std::is_permutation(legs.begin(), legs.end(), options.split.begin(), options.split.end())) return;
@@ -214,9 +205,9 @@ void check_split_options(const mechanism::Mechanism& mechanism, const mechanism:
 
 std::vector<std::vector<std::string>> useful_splits(const mechanism::Mechanism& mechanism) {
   const mechanism::Structure structure = mechanism::decompose(mechanism);
-  const auto is_triad = [](const mechanism::Group& group) { return can_be_split(group); };
-  const auto triad = std::find_if(structure.groups.begin(), structure.groups.end(), is_triad);
-  if (triad == structure.groups.end() || std::any_of(triad + 1, structure.groups.end(), is_triad)) return {};
+  const auto triad = std::find_if(structure.groups.begin(), structure.groups.end(), is_on_links);
+  if (triad == structure.groups.end() || std::any_of(triad + 1, structure.groups.end(), is_on_links))
+    return {};
   std::vector<std::vector<std::string>> names;
   for (const TriadSplit& split : splits_of(*triad, patch_motion(mechanism, structure))) {
     if (split.worth() > kLeastWorth) names.push_back(legs_of(mechanism, *triad, split));

@@ -37,10 +37,7 @@ struct TriadSplit {
   double worth() const;
 };
 
-/// Whether a group is a triad on three links, which can be split.
-bool can_be_split(const mechanism::Group& group);
-
-/// The six splits of such a triad, the most worth first.
+/// The six splits of a triad on links, the most worth first.
 std::vector<TriadSplit> splits_of(const mechanism::Group& group, const mechanism::Motion& motion);
 
 /// A split of less worth is as good as flat, or without gain, at some position.

@@ -45,29 +45,35 @@ GroupSolver::Locus GroupSolver::locus(const Condition& c, std::span<const DriveS
   return line;
 }
 
+/// The direction of the unknown body, where there is one.
+void GroupSolver::set_direction(std::span<const DriveState> drives, const Configuration& here) {
+  if (cores_.empty()) return;
+  const Condition& c = condition(form_.angle);
+  const double angle = c.drive ? drives[*c.drive].value : c.value;
+  Vector2d axis = Vector2d::UnitX();
+  if (c.line.kind == LineRef::Kind::known)
+    axis = {here.bodies[c.line.body].cosine, here.bodies[c.line.body].sine};
+  const Vector2d direction = turned(axis, std::cos(angle), std::sin(angle));
+  cores_.front().cosine = direction.x();
+  cores_.front().sine = direction.y();
+}
+
+Status GroupSolver::find_hinged(std::span<const DriveState> drives, const Configuration& here) {
+  set_direction(drives, here);
+  const Condition& c = condition(form_.hinge);
+  Core& core = cores_.front();
+  core.origin.position = here.points[c.b.point].position - turned(c.a.local, core.cosine, core.sine);
+  return std::isfinite(core.origin.position.x()) ? Status::ok : Status::open;
+}
+
 /// Two circles: the triangle over their centres, on the left of first → second for `side` +1. A circle and a
 /// line: the foot of the centre on the line, and half the chord from there, forwards for +1. Two lines:
 /// Cramer.
-Status GroupSolver::find_by_loci(std::span<const DriveState> drives, int side, const Configuration& here) {
-  if (!cores_.empty()) {
-    const Condition& c = equations_.conditions[angle_conditions_.front()];
-    const double angle = c.drive ? drives[*c.drive].value : c.value;
-    Vector2d axis = Vector2d::UnitX();
-    if (c.line.kind == LineRef::Kind::known)
-      axis = {here.bodies[c.line.body].cosine, here.bodies[c.line.body].sine};
-    const Vector2d direction = turned(axis, std::cos(angle), std::sin(angle));
-    cores_.front().cosine = direction.x();
-    cores_.front().sine = direction.y();
-  }
+Status GroupSolver::find_crossing(std::span<const DriveState> drives, int side, const Configuration& here) {
+  set_direction(drives, here);
   Vector2d& unknown = cores_.empty() ? free_.front().position : cores_.front().origin.position;
-  if (hinge_) {
-    const Condition& c = equations_.conditions[*hinge_];
-    unknown = here.points[c.b.point].position - turned(c.a.local, cores_.front().cosine, cores_.front().sine);
-    return std::isfinite(unknown.x()) ? Status::ok : Status::open;
-  }
-  Locus first = locus(equations_.conditions[scalars_[0]], drives, here);
-  Locus second = locus(equations_.conditions[scalars_[1]], drives, here);
-  if (!first.circle && second.circle) std::swap(first, second);
+  const Locus first = locus(equations_.conditions[form_.loci[0]], drives, here);
+  const Locus second = locus(equations_.conditions[form_.loci[1]], drives, here);
   const double rounding =
       flat_within(std::max({first.radius + second.radius, largest(first.at), largest(second.at)}));
   if (first.circle && second.circle) {
@@ -105,8 +111,8 @@ Status GroupSolver::find_by_loci(std::span<const DriveState> drives, int side, c
 /// θ is the direction of (a, b), ± arccos(c/√(a² + b²)), left for `side` +1.
 Status GroupSolver::find_about_pivot(std::span<const DriveState> drives, int side,
                                      const Configuration& here) {
-  const Condition& hinge = equations_.conditions[*hinge_];
-  const Condition& c = equations_.conditions[scalars_.front()];
+  const Condition& hinge = condition(form_.hinge);
+  const Condition& c = equations_.conditions[form_.loci.front()];
   const Vector2d p = here.points[hinge.b.point].position;
   Vector2d m, w;
   double constant = 0;
@@ -143,64 +149,78 @@ Status GroupSolver::find_about_pivot(std::span<const DriveState> drives, int sid
 GroupPoses GroupSolver::poses(std::span<const DriveState> drives, const Configuration& here,
                               const GroupPose* hint) {
   GroupPoses found;
-  const auto given = [](const PointState& state) { return std::isfinite(state.position.x()); };
-  if (form_ == Form::crank) {
-    found.poses.push_back(pose(0));
-  } else if (form_ == Form::dyad) {
-    Configuration copy = here;
-    for (const int side : {+1, -1}) {
-      const Status status = place_dyad(side, copy);
-      if (status == Status::open) break;
-      GroupPose pose;
-      pose.points.push_back(copy.points[dyad_->c].position);
-      pose.side = side;
-      found.poses.push_back(std::move(pose));
-      if (status == Status::dead_centre) break;
-    }
-  } else if (form_ != Form::newton) {
-    const bool single = is_single();
-    for (const int side : {+1, -1}) {
-      const Status status = find(drives, single ? 0 : side, here);
-      if (status == Status::open) break;
-      found.poses.push_back(pose(single ? 0 : side));
-      if (status == Status::dead_centre || single) break;
-    }
-  } else if (group_.kind == GroupKind::triad) {
-    std::array<Leg, 3> legs;
-    for (std::size_t i = 0; i < legs.size(); ++i) {
-      const Condition& c = equations_.conditions[i];
-      Leg& leg = legs[i];
-      leg.length = c.value;
-      if (c.kind == Condition::Kind::distance) {
-        leg.kind = Leg::Kind::circle;
-        leg.local = c.a.local;
-        leg.anchor = here.points[c.b.point].position;
-      } else if (c.line.kind == LineRef::Kind::carried) {
-        leg.kind = Leg::Kind::platform_line;
-        leg.local = c.line.point;
-        leg.direction = c.line.direction;
-        leg.anchor = here.points[c.a.point].position;
-      } else {
-        const LineState line = state(c.line, here);
-        leg.kind = Leg::Kind::fixed_line;
-        leg.local = c.a.local;
-        leg.anchor = line.at.position;
-        leg.direction = line.direction;
+  switch (form_.placing) {
+    case Placing::rotation:
+      found.poses.push_back(pose(0));
+      break;
+    case Placing::triangle: {
+      Configuration copy = here;
+      for (const int side : {+1, -1}) {
+        const Status status = place_dyad(side, copy);
+        if (status == Status::open) break;
+        GroupPose pose;
+        pose.points.push_back(copy.points[form_.dyad->c].position);
+        pose.side = side;
+        found.poses.push_back(std::move(pose));
+        if (status == Status::dead_centre) break;
       }
-      if (!given({leg.anchor, {}, {}})) return found;
+      break;
     }
-    const PlatformModes modes = platform_modes(legs);
-    found.movable = modes.movable;
-    for (int i = 0; i < modes.count; ++i) {
-      const PlatformPose& platform = modes.poses[static_cast<std::size_t>(i)];
-      GroupPose pose;
-      pose.cores.push_back({platform.position, platform.cosine, platform.sine});
-      found.poses.push_back(std::move(pose));
+    case Placing::hinged:
+    case Placing::crossing:
+    case Placing::about_pivot: {
+      const bool single = is_single();
+      for (const int side : {+1, -1}) {
+        const Status status = find(drives, single ? 0 : side, here);
+        if (status == Status::open) break;
+        found.poses.push_back(pose(single ? 0 : side));
+        if (status == Status::dead_centre || single) break;
+      }
+      break;
     }
-  } else {
-    search(drives, here, hint, found);
+    case Placing::platform:
+      platform_poses(here, found);
+      break;
+    case Placing::iteration:
+      search(drives, here, hint, found);
+      break;
   }
   return found;
+}
+
+/// The poses of a triad.
+void GroupSolver::platform_poses(const Configuration& here, GroupPoses& found) const {
+  std::array<Leg, 3> legs;
+  for (std::size_t i = 0; i < legs.size(); ++i) {
+    const Condition& c = equations_.conditions[form_.loci[i]];
+    Leg& leg = legs[i];
+    leg.length = c.value;
+    if (c.kind == Condition::Kind::distance) {
+      leg.kind = Leg::Kind::circle;
+      leg.local = c.a.local;
+      leg.anchor = here.points[c.b.point].position;
+    } else if (c.line.kind == LineRef::Kind::carried) {
+      leg.kind = Leg::Kind::platform_line;
+      leg.local = c.line.point;
+      leg.direction = c.line.direction;
+      leg.anchor = here.points[c.a.point].position;
+    } else {
+      const LineState line = state(c.line, here);
+      leg.kind = Leg::Kind::fixed_line;
+      leg.local = c.a.local;
+      leg.anchor = line.at.position;
+      leg.direction = line.direction;
+    }
+    if (!std::isfinite(leg.anchor.x())) return;
+  }
+  const PlatformModes modes = platform_modes(legs);
+  found.movable = modes.movable;
+  for (int i = 0; i < modes.count; ++i) {
+    const PlatformPose& platform = modes.poses[static_cast<std::size_t>(i)];
+    GroupPose pose;
+    pose.cores.push_back({platform.position, platform.cosine, platform.sine});
+    found.poses.push_back(std::move(pose));
+  }
 }
 
 }  // namespace oblique::mechanism

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include <oblique/mechanism/model/plane.h>
 #include <oblique/mechanism/structure/structure.h>
@@ -21,7 +22,7 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 }  // namespace
 
 GroupSolver::GroupSolver(const Mechanism& mechanism, const Group& group)
-    : mechanism_(mechanism), group_(group), equations_(group.equations), dyad_(dyad_of(group)) {
+    : mechanism_(mechanism), group_(group), form_(group.form), equations_(group.equations) {
   const auto n = static_cast<Eigen::Index>(equations_.unknowns());
   cores_.resize(equations_.cores.size());
   free_.resize(equations_.free_points.size());
@@ -30,11 +31,10 @@ GroupSolver::GroupSolver(const Mechanism& mechanism, const Group& group)
   right_.setZero(n);
   solution_.setZero(n);
   size_ = size_of_group();
-  if (dyad_) {
-    inverse_r1_ = 1 / dyad_->r1;
-    inverse_r2_ = 1 / dyad_->r2;
+  if (form_.dyad) {
+    inverse_r1_ = 1 / form_.dyad->r1;
+    inverse_r2_ = 1 / form_.dyad->r2;
   }
-  choose_form();
   plan_bodies();
 }
 
@@ -48,41 +48,35 @@ double GroupSolver::size_of_group() const {
   return size > 0 ? size : std::max(mechanism_.largest_length(), std::numeric_limits<double>::min());
 }
 
-void GroupSolver::choose_form() {
-  if (dyad_) form_ = Form::dyad;
-  if (group_.kind == GroupKind::crank) form_ = Form::crank;
-  if (form_ != Form::newton || equations_.unknowns() > 3) return;
-  const bool is_body = !equations_.cores.empty();
-  for (std::size_t i = 0; i < equations_.conditions.size(); ++i) {
-    const Condition& c = equations_.conditions[i];
-    const bool line = c.kind == Condition::Kind::on_line || c.kind == Condition::Kind::along;
-    const bool point_known = c.a.kind == PointRef::Kind::known;
-    const bool line_known = c.line.kind != LineRef::Kind::carried;
-    if (c.kind == Condition::Kind::orientation ? !line_known
-        : line                                 ? point_known == line_known
-                                               : c.b.kind != PointRef::Kind::known)
-      return;  // both ends are unknown
-    if (c.kind == Condition::Kind::orientation) {
-      angle_conditions_.push_back(i);
-    } else if (c.kind == Condition::Kind::coincidence) {
-      hinge_ = i;
-    } else {
-      scalars_.push_back(i);
-    }
+bool GroupSolver::is_tracked() const {
+  switch (form_.placing) {
+    case Placing::platform:
+    case Placing::iteration:
+      return true;
+    case Placing::rotation:
+    case Placing::triangle:
+    case Placing::hinged:
+    case Placing::crossing:
+    case Placing::about_pivot:
+      break;
   }
-  if (!is_body || angle_conditions_.size() == 1) {
-    form_ = Form::loci;
-  } else if (hinge_ && angle_conditions_.empty()) {
-    form_ = Form::pivot;
-  }
+  return false;
 }
 
 bool GroupSolver::is_single() const {
-  if (form_ == Form::crank) return true;
-  if (form_ != Form::loci) return false;
-  return hinge_ || std::none_of(scalars_.begin(), scalars_.end(), [&](std::size_t i) {
-           return equations_.conditions[i].kind == Condition::Kind::distance;
-         });
+  switch (form_.placing) {
+    case Placing::rotation:
+    case Placing::hinged:
+      return true;
+    case Placing::crossing:
+      return form_.circles == 0;
+    case Placing::triangle:
+    case Placing::about_pivot:
+    case Placing::platform:
+    case Placing::iteration:
+      break;
+  }
+  return false;
 }
 
 void GroupSolver::plan_bodies() {
@@ -121,39 +115,48 @@ void GroupSolver::place_arms(const Rigid& rigid, double cosine, double sine, dou
 }
 
 Status GroupSolver::place(std::span<const DriveState> drives, int side, Configuration& here) {
-  if (form_ == Form::crank) return place_crank(drives, here);
-  if (form_ == Form::dyad) return place_dyad(side, here);
+  if (form_.placing == Placing::rotation) return place_crank(drives, here);
+  if (form_.placing == Placing::triangle) return place_dyad(side, here);
   const Status status = find(drives, side, here);
   return status == Status::open ? status : finish(drives, here, status == Status::dead_centre);
 }
 
 Status GroupSolver::place(std::span<const DriveState> drives, const GroupPose& pose, Configuration& here) {
-  if (form_ != Form::newton) return place(drives, pose.side, here);
+  if (!is_tracked()) return place(drives, pose.side, here);
   load(pose);
   return finish(drives, here, false);
 }
 
 Status GroupSolver::find(std::span<const DriveState> drives, int side, const Configuration& here) {
-  if (form_ == Form::loci) return find_by_loci(drives, side, here);
-  if (form_ == Form::pivot) return find_about_pivot(drives, side, here);
+  switch (form_.placing) {
+    case Placing::hinged:
+      return find_hinged(drives, here);
+    case Placing::crossing:
+      return find_crossing(drives, side, here);
+    case Placing::about_pivot:
+      return find_about_pivot(drives, side, here);
+    case Placing::rotation:
+    case Placing::triangle:
+      throw std::logic_error("cranks and triangles are placed with their rates at once");
+    case Placing::platform:
+    case Placing::iteration:
+      break;
+  }
   load(here);
   constexpr double kFarthest = 0.5;  // of the group's size: no guess of a step is so wrong
   return newton(drives, here, kFarthest) ? Status::ok : Status::open;
 }
 
 Status GroupSolver::place_crank(std::span<const DriveState> drives, Configuration& here) {
-  const auto turns = std::find_if(equations_.conditions.begin(), equations_.conditions.end(),
-                                  [](const Condition& c) { return c.drive.has_value(); });
-  const DriveState& drive = drives[*turns->drive];
+  const DriveState& drive = drives[condition(form_.angle).drive.value()];
   const std::size_t body = equations_.cores.front();
   const Rigid& rigid = rigid_cores_.front();
   const double cosine = std::cos(drive.value), sine = std::sin(drive.value);
   here.bodies[body] = {drive.value, drive.rate, drive.acceleration, cosine, sine};
-  const auto hinge = std::find_if(equations_.conditions.begin(), equations_.conditions.end(),
-                                  [](const Condition& c) { return c.kind == Condition::Kind::coincidence; });
-  if (hinge->a.point != rigid.base) {  // the pivot is not the body's first point
-    const PointState& pivot = here.points[hinge->b.point];
-    const Vector2d way = turned(-hinge->a.local, cosine, sine);
+  const Condition& hinge = condition(form_.hinge);
+  if (hinge.a.point != rigid.base) {  // the pivot is not the body's first point
+    const PointState& pivot = here.points[hinge.b.point];
+    const Vector2d way = turned(-hinge.a.local, cosine, sine);
     here.points[rigid.base] = {
         pivot.position + way, pivot.velocity + drive.rate * left_normal(way),
         pivot.acceleration + drive.acceleration * left_normal(way) - drive.rate * drive.rate * way};
@@ -163,7 +166,7 @@ Status GroupSolver::place_crank(std::span<const DriveState> drives, Configuratio
 }
 
 Status GroupSolver::place_dyad(int side, Configuration& here) {
-  const Dyad& dyad = *dyad_;
+  const Dyad& dyad = *form_.dyad;
   const PointState& p = here.points[dyad.p];
   const PointState& q = here.points[dyad.q];
   const Vector2d d = q.position - p.position;
@@ -234,7 +237,7 @@ Status GroupSolver::finish(std::span<const DriveState> drives, Configuration& he
   apply(false);
   // Two modes that meet do so like square roots of the rounding.
   constexpr double kFlat = 1e-7;
-  flat = flat || !(std::abs(regularity_) > (form_ == Form::newton ? kFlat : 0));
+  flat = flat || !(std::abs(regularity_) > (is_tracked() ? kFlat : 0));
   apply(true);
   if (flat) {
     const Vector2d nothing = Vector2d::Constant(kNaN);

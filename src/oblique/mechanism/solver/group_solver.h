@@ -54,7 +54,7 @@ class GroupSolver {
                                  const GroupPose& guess);
 
   /// Whether `place` starts from the pose in the configuration.
-  bool is_tracked() const { return form_ == Form::newton; }
+  bool is_tracked() const;
 
   /// Whether the group has one assembly mode only, for which `side` is 0.
   bool is_single() const;
@@ -88,8 +88,6 @@ class GroupSolver {
   double distance(const Configuration& here) const;
 
  private:
-  enum class Form { crank, dyad, loci, pivot, newton };
-
   struct Arm {
     std::size_t point;
     Eigen::Vector2d local;  ///< from the body's base point, in the body's frame
@@ -114,15 +112,20 @@ class GroupSolver {
     double omega, alpha;
   };
 
-  void choose_form();
   void plan_bodies();
   double size_of_group() const;
 
   Status place_crank(std::span<const DriveState> drives, Configuration& here);
   Status place_dyad(int side, Configuration& here);
+  const Condition& condition(const std::optional<std::size_t>& index) const {
+    return equations_.conditions[index.value()];
+  }
   Status find(std::span<const DriveState> drives, int side, const Configuration& here);
-  Status find_by_loci(std::span<const DriveState> drives, int side, const Configuration& here);
+  void set_direction(std::span<const DriveState> drives, const Configuration& here);
+  Status find_hinged(std::span<const DriveState> drives, const Configuration& here);
+  Status find_crossing(std::span<const DriveState> drives, int side, const Configuration& here);
   Status find_about_pivot(std::span<const DriveState> drives, int side, const Configuration& here);
+  void platform_poses(const Configuration& here, GroupPoses& found) const;
   bool newton(std::span<const DriveState> drives, const Configuration& here, double longest_step);
   void search(std::span<const DriveState> drives, const Configuration& here, const GroupPose* hint,
               GroupPoses& found);
@@ -147,15 +150,11 @@ class GroupSolver {
 
   const Mechanism& mechanism_;
   const Group& group_;
+  const GroupForm& form_;
   const GroupEquations& equations_;
-  Form form_ = Form::newton;
   double size_ = 1;
-  std::optional<Dyad> dyad_;
   double inverse_r1_ = 0, inverse_r2_ = 0;  ///< of the dyad's links
   std::vector<Rigid> rigid_cores_, rigid_links_, rigid_blocks_;
-  std::vector<std::size_t> angle_conditions_;  ///< of a single core body: what gives its direction
-  std::vector<std::size_t> scalars_;           ///< its other conditions
-  std::optional<std::size_t> hinge_;           ///< its hinge to a known point
 
   std::vector<Core> cores_;
   std::vector<PointState> free_;
