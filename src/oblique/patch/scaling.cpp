@@ -11,7 +11,7 @@
 #include <oblique/mechanism/model/drive_law.h>
 #include <oblique/mechanism/motion/obstacle.h>
 #include <oblique/mechanism/structure/structure.h>
-#include <oblique/patch/patch.h>
+#include <oblique/patch/patch_error.h>
 
 namespace oblique::patch {
 namespace {

@@ -12,7 +12,8 @@
 #include <oblique/mechanism/model/plane.h>
 #include <oblique/mechanism/structure/structure.h>
 #include <oblique/mechanism/triad/triangle.h>
-#include <oblique/patch/patch_builder.h>
+#include <oblique/patch/patch_error.h>
+#include <oblique/patch/patch_setup.h>
 
 namespace oblique::patch {
 namespace {

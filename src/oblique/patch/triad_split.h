@@ -6,7 +6,7 @@
 
 #include <oblique/mechanism/motion/motion.h>
 #include <oblique/mechanism/structure/structure.h>
-#include <oblique/patch/patch.h>
+#include <oblique/patch/patch_options.h>
 
 namespace oblique::patch {
 
@@ -55,6 +55,10 @@ std::string split_name(const mechanism::Mechanism& mechanism, const mechanism::G
 /// PatchError where that one flips, or none is worth kLeastWorth, unless the options force it.
 TriadSplit choose_split(const mechanism::Mechanism& mechanism, const mechanism::Group& triad,
                         const mechanism::Motion& motion, const PatchOptions& options);
+
+/// The splits of a mechanism's triad that never flip and keep their gain, the most worth first, as
+/// PatchOptions::split names them; none where it has no triad on three links, or several.
+std::vector<std::vector<std::string>> useful_splits(const mechanism::Mechanism& mechanism);
 
 /// Throws PatchError where the options name a split and no triad of the structure has these three legs, or
 /// an outer loop's speed and there is no triad.
