@@ -32,6 +32,18 @@ struct Part {
   std::vector<std::size_t> carried;  ///< points that its bodies carry along
 };
 
+/// Takes a mechanism apart and orders the groups:
+///
+/// 1. `ConstraintGraph` matches each condition with an unknown that it determines. An edge then leads from
+/// the
+///    vertex that owns a condition to what the condition needs, and the strongly connected components are
+///    the parts that only together have a place.
+/// 2. A component that is nothing but a point of one body goes to the part of that body, which carries it.
+/// 3. Of the parts that have all they need, the next is always the one whose drive stands first in the file,
+///    then whose first body does. So the order does not depend on the matching, of which there are many, and
+///    files that say the same give the same rows and names.
+/// 4. In that order each part is reduced to equations, whose form then is known: what earlier groups place
+///    counts as given.
 class Decomposition {
  public:
   explicit Decomposition(const Mechanism& mechanism)
