@@ -50,7 +50,7 @@ TriadSplit measure(const mechanism::Group& group, const mechanism::Motion& motio
   split.closing = order[1];
   split.third = order[2];
   split.flattest = std::numeric_limits<double>::infinity();
-  double least_slope = split.flattest;
+  double least_derivative = split.flattest;
   for (std::size_t row = 0; row < motion.times.size(); ++row) {
     const mechanism::Configuration& here = motion.configurations[row];
     const auto at = [&](const mechanism::PointRef& point) { return here.points[point.point].position; };
@@ -67,8 +67,8 @@ TriadSplit measure(const mechanism::Group& group, const mechanism::Motion& motio
       return (c - anchor).squaredNorm() / (closing.value * closing.value);
     };
     const double step = 1e-5 * w;
-    const double slope = (closed(w + step) - closed(w - step)) / (2 * step);
-    const int sign = slope > 0 ? 1 : -1;
+    const double derivative = (closed(w + step) - closed(w - step)) / (2 * step);
+    const int sign = derivative > 0 ? 1 : -1;
     if (row == 0) {
       split.first_side = side1;
       split.second_side = side2;
@@ -86,9 +86,9 @@ TriadSplit measure(const mechanism::Group& group, const mechanism::Motion& motio
     split.longest = std::max(split.longest, w);
     split.reach = std::max({split.reach, w, (anchor - start).norm()});
     split.second_reach = std::max(split.second_reach, (end - apex1).norm());
-    least_slope = std::min(least_slope, std::abs(slope));
+    least_derivative = std::min(least_derivative, std::abs(derivative));
   }
-  split.least_gain = least_slope * split.reach;
+  split.least_gain = least_derivative * split.reach;
   return split;
 }
 

@@ -27,8 +27,8 @@ struct TriadSplit {
   double first_w = 0;                               ///< w at the start [length unit]
   bool asked_for = false;                           ///< by the options, for this triad
 
-  /// A moment at which a triangle goes flat or the loop loses its gain, so that the analog does not come past
-  /// it.
+  /// A moment at which a triangle becomes collinear or the loop loses its gain, so that the analog does not
+  /// come past it.
   enum class Flip { none, first_triangle, second_triangle, loop };
   Flip flip = Flip::none;
   double flip_time = 0;  ///< [s]
@@ -40,7 +40,7 @@ struct TriadSplit {
 /// The six splits of a triad on links, the most worth first.
 std::vector<TriadSplit> splits_of(const mechanism::Group& group, const mechanism::Motion& motion);
 
-/// A split of less worth is as good as flat, or without gain, at some position.
+/// A split of less worth is as good as collinear, or without gain, at some position.
 inline constexpr double kLeastWorth = 0.02;
 
 /// The body of a leg, by its condition: its index in Mechanism::bodies.
