@@ -105,8 +105,8 @@ std::vector<Patched> patchable() {
     all.push_back({name, patch::PatchMethod::gradient});
     const bool dyads =
         std::all_of(structure.groups.begin(), structure.groups.end(), [](const mechanism::Group& group) {
-          if (group.kind == mechanism::GroupKind::triad) return is_on_links(group);
-          return group.kind != mechanism::GroupKind::general || group.bodies.size() == 1;
+          if (group.form.kind == mechanism::GroupKind::triad) return is_on_links(group);
+          return group.form.kind != mechanism::GroupKind::general || group.bodies.size() == 1;
         });
     if (dyads) all.push_back({name, patch::PatchMethod::triangles});
   }

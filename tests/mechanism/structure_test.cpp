@@ -71,19 +71,47 @@ TEST(Structure, TakesAFourBarApart) {
   const Mechanism four_bar = shipped("four-bar.toml");
   const Structure structure = decompose(four_bar);
   EXPECT_THAT(names(structure), ElementsAre("AB", "BCM-CD"));
-  EXPECT_EQ(structure.groups[0].kind, GroupKind::crank);
+  EXPECT_EQ(structure.groups[0].form.kind, GroupKind::crank);
   EXPECT_EQ(structure.groups[0].assur_class, 1);
   EXPECT_EQ(four_bar.points[pivot_of(structure.groups[0])].name, "A");
   EXPECT_EQ(structure.groups[1].assur_class, 2);
   EXPECT_EQ(structure.groups[1].order, 2);
-  const Dyad dyad = dyad_of(structure.groups[1]).value();
+  const Dyad dyad = structure.groups[1].form.dyad.value();
   EXPECT_EQ(four_bar.points[dyad.p].name, "B");
   EXPECT_EQ(four_bar.points[dyad.q].name, "D");
   EXPECT_EQ(four_bar.points[dyad.c].name, "C");
   EXPECT_EQ(dyad.r1, 3.5);
   EXPECT_EQ(dyad.r2, 3);
-  EXPECT_EQ(dyad.side, 1);
+  EXPECT_EQ(structure.groups[1].side, 1);
   EXPECT_THAT(structure.groups[1].bodies, ElementsAre(1U, 2U));
+}
+
+// By the pairs of each group, as its drawing in the file shows them.
+TEST(GroupForm, SaysHowEachGroupIsPlaced) {
+  struct Case {
+    const char* file;
+    GroupKind kind;
+    Placing placing;
+    std::size_t circles;
+  };
+  for (const auto& [file, kind, placing, circles] :
+       {Case{"four-bar.toml", GroupKind::rrr, Placing::triangle, 2},
+        Case{"slider-crank.toml", GroupKind::rrp, Placing::crossing, 1},
+        Case{"whitworth.toml", GroupKind::rpr, Placing::about_pivot, 0},
+        Case{"oldham.toml", GroupKind::rpp, Placing::crossing, 0},
+        Case{"class-iii.toml", GroupKind::triad, Placing::platform, 3},
+        Case{"class-iii-guided.toml", GroupKind::triad, Placing::platform, 1},
+        Case{"class-iv.toml", GroupKind::general, Placing::iteration, 0}}) {
+    SCOPED_TRACE(file);
+    const Structure structure = find_groups(shipped(file));
+    EXPECT_EQ(structure.groups.at(0).form.placing, Placing::rotation);
+    const GroupForm& form = structure.groups.at(1).form;
+    EXPECT_EQ(form.kind, kind);
+    EXPECT_EQ(form.placing, placing);
+    EXPECT_EQ(form.circles, circles);
+    EXPECT_EQ(form.is_triad_on_links(), circles == 3);
+    EXPECT_EQ(form.dyad.has_value(), placing == Placing::triangle);
+  }
 }
 
 TEST(Structure, TakesAnEightBarApartWhateverTheOrderOfItsBodies) {
@@ -195,8 +223,8 @@ crank = { turns = "AB", about = "A", speed = 1 }
 // The drive pushes the bar's end A across: what is left of it follows in closed form.
 TEST(Structure, KnowsADrivenSlider) {
   const Structure trammel = find_groups(shipped("elliptical-trammel-by-slide.toml"));
-  EXPECT_EQ(trammel.groups.at(0).kind, GroupKind::slider);
-  EXPECT_EQ(trammel.groups.at(1).kind, GroupKind::rrp);
+  EXPECT_EQ(trammel.groups.at(0).form.kind, GroupKind::slider);
+  EXPECT_EQ(trammel.groups.at(1).form.kind, GroupKind::rrp);
 }
 
 // Two blocks hinged to each other at P, one in a slot of the crank and one in a slot of the frame; the yoke
@@ -248,7 +276,7 @@ PC  = { points = ["P", "C"], length = 1.945 }
 crank = { turns = "OA", about = "O", speed = 1 }
 )"));
   EXPECT_THAT(names(triad), ElementsAre("OA", "AB-BCD-DE-PC"));
-  EXPECT_EQ(triad.groups[1].kind, GroupKind::triad);
+  EXPECT_EQ(triad.groups[1].form.kind, GroupKind::triad);
   EXPECT_EQ(triad.groups[1].assur_class, 3);
   EXPECT_EQ(triad.groups[1].order, 3);
 }
@@ -266,7 +294,7 @@ CD = { points = ["C", "D"], length = 3 }
 push = { turns = "BC", about = "B", speed = 1 }
 )"));
   EXPECT_THAT(names(structure), ElementsAre("AB-BC-CD"));
-  EXPECT_EQ(structure.groups[0].kind, GroupKind::general);
+  EXPECT_EQ(structure.groups[0].form.kind, GroupKind::general);
   EXPECT_THAT(structure.groups[0].drives, ElementsAre(0U));
 }
 

@@ -12,6 +12,7 @@
 #include <oblique/network/assembly/network.h>
 #include <oblique/network/program/program.h>
 #include <oblique/patch/patch.h>
+#include <oblique/patch/triad_split.h>
 #include <oblique/solve/run.h>
 #include <oblique/text/file.h>
 

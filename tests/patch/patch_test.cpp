@@ -226,7 +226,7 @@ crank = { turns = "OA", about = "O", speed = 1 }
                                                                     "meet.toml");
   const mechanism::Structure structure = mechanism::find_groups(mechanism);
   const mechanism::Group& triad = structure.groups.at(1);
-  ASSERT_EQ(triad.kind, mechanism::GroupKind::triad);
+  ASSERT_EQ(triad.form.kind, mechanism::GroupKind::triad);
   for (std::size_t i = 0; i < 3; ++i) {
     const mechanism::Body& leg = mechanism.bodies[leg_of(triad, i)];
     const double length = (leg.points[1].local - leg.points[0].local).norm();

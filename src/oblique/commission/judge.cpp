@@ -10,6 +10,7 @@
 
 #include <oblique/network/assembly/network.h>
 #include <oblique/network/program/program.h>
+#include <oblique/patch/triad_split.h>
 #include <oblique/solve/operating_point/standing.h>
 #include <oblique/solve/solve_error.h>
 #include <oblique/solve/stability/loop_report.h>

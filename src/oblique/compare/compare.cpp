@@ -133,9 +133,9 @@ Comparison compare_within_range(const mechanism::Mechanism& mechanism, const dia
   comparison.unit = mechanism.length_unit;
   comparison.size = mechanism.largest_length();
   const mechanism::Structure structure = mechanism::decompose(mechanism);
-  comparison.closed_form =
-      std::none_of(structure.groups.begin(), structure.groups.end(),
-                   [](const mechanism::Group& group) { return group.kind == mechanism::GroupKind::general; });
+  comparison.closed_form = std::none_of(
+      structure.groups.begin(), structure.groups.end(),
+      [](const mechanism::Group& group) { return group.form.kind == mechanism::GroupKind::general; });
   comparison.turning = mechanism.drives.empty() || !mechanism.drives.front().slide;
   const mechanism::Motion exact = mechanism::solve_motion(mechanism, options.positions);
   for (const auto& drives : exact.drives) comparison.drive.push_back(drives.front().value);

@@ -75,7 +75,7 @@ bool WorstReasons::is_near(double a, double b) const {
 }
 
 std::vector<double> WorstReasons::flatness(std::size_t group, patch::PatchMethod method) const {
-  const auto dyad = mechanism::dyad_of(structure_.groups[group]);
+  const auto& dyad = structure_.groups[group].form.dyad;
   if (!dyad || method == patch::PatchMethod::gradient) return regularities_[group];
   std::vector<double> sines;
   for (const mechanism::Configuration& here : exact_.configurations)
@@ -113,7 +113,7 @@ std::string WorstReasons::flat_group(std::size_t point, std::size_t row, patch::
     const auto where = static_cast<std::size_t>(least - values.begin());
     if (!is_near(exact_.times[row], exact_.times[where]) || *least > kDip * *greatest) continue;
     const mechanism::Group& group = structure_.groups[g];
-    const auto dyad = mechanism::dyad_of(group);
+    const auto& dyad = group.form.dyad;
     if (!dyad || method == patch::PatchMethod::gradient) {
       return fmt::format("the group {} is nearest to a dead centre there (normalised determinant {:.2g})",
                          group.name, *least);

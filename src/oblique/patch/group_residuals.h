@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <oblique/mechanism/structure/structure.h>
-#include <oblique/patch/point_forms.h>
+#include <oblique/patch/point_book.h>
 
 namespace oblique::patch {
 
@@ -30,37 +30,13 @@ struct DriveForms {
   LinearForm way;   ///< of the slide that it moves [machine unit]
 };
 
+/// Gives a point whose place is unknown its signals, in the book.
+using GiveSignals = std::function<void(std::size_t point)>;
+
 /// The conditions of one group of any class: bodies keep their lengths, are hinged to each other, slides stay
-/// on their lines, drives are where they say.
-class GroupResiduals {
- public:
-  /// Gives a point whose place is unknown its form.
-  using Unknown = std::function<VectorForm(std::size_t point)>;
-
-  /// Needs the forms of all points that the groups before place, and adds those of this group; `drives` as in
-  /// the mechanism. All arguments have to outlive it.
-  GroupResiduals(PointForms& places, const Scaling& scaling, const std::vector<DriveForms>& drives,
-                 Unknown unknown);
-
-  /// The residuals of a group; calls `unknown` for each of its points that is no form of others.
-  std::vector<Residual> of(const mechanism::Group& group);
-
- private:
-  std::size_t known_count(std::size_t body) const;
-  long uses(const mechanism::Group& group, std::size_t point) const;
-  void add_body(const mechanism::Group& group, std::size_t index);
-  double reach_of(const mechanism::Slide& slide) const;
-  Residual offset_of(const mechanism::Slide& slide, const std::string& name, bool along);
-  void add_slide(const mechanism::Slide& slide);
-  double largest_of(std::size_t body) const;
-  void add_drive(std::size_t d);
-
-  PointForms& places_;
-  const mechanism::Mechanism& mechanism_;
-  const Scaling& scaling_;
-  const std::vector<DriveForms>& drives_;
-  Unknown unknown_;
-  std::vector<Residual> residuals_;  ///< of the present group
-};
+/// on their lines, drives are where they say. The book has all points that the groups before place, and gets
+/// those of this group: signals for the points that are unknowns, forms of those for the others.
+std::vector<Residual> residuals_of(const mechanism::Group& group, PointBook& places, const Scaling& scaling,
+                                   const std::vector<DriveForms>& drives, const GiveSignals& give_signals);
 
 }  // namespace oblique::patch

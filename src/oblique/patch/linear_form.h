@@ -27,6 +27,12 @@ inline LinearForm weighted(const std::string& signal, double weight = 1) {
   return form;
 }
 
+inline LinearForm constant(double value) {
+  LinearForm form;
+  form.constant = value;
+  return form;
+}
+
 inline LinearForm combined(std::initializer_list<std::pair<double, const LinearForm*>> parts) {
   LinearForm sum;
   for (const auto& [factor, form] : parts) sum.add(*form, factor);
@@ -36,5 +42,10 @@ inline LinearForm combined(std::initializer_list<std::pair<double, const LinearF
 struct VectorForm {
   LinearForm x, y;
 };
+
+/// a + factor · b.
+inline VectorForm sum(const VectorForm& a, double factor, const VectorForm& b) {
+  return {combined({{1, &a.x}, {factor, &b.x}}), combined({{1, &a.y}, {factor, &b.y}})};
+}
 
 }  // namespace oblique::patch

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <oblique/mechanism/motion/motion.h>
+#include <oblique/patch/patch_error.h>
+#include <oblique/patch/range.h>
 
 namespace oblique::patch {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <oblique/mechanism/model/mechanism.h>
-#include <oblique/patch/patch.h>
+#include <oblique/patch/patch_options.h>
 
 namespace oblique::patch {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/patch/patch.h>
+#include <oblique/patch/range.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,8 +14,8 @@
 namespace oblique::patch {
 namespace {
 
-/// How much of its range a mechanism is swung over: at the ends a triangle goes flat, and the loop that
-/// tracks its angle loses its gain.
+/// How much of its range a mechanism is swung over: at the ends a triangle is collinear, and the loop
+/// that tracks its angle loses its gain.
 constexpr double kPartOfRange = 0.9;
 
 }  // namespace

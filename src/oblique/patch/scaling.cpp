@@ -11,7 +11,7 @@
 #include <oblique/mechanism/model/drive_law.h>
 #include <oblique/mechanism/motion/obstacle.h>
 #include <oblique/mechanism/structure/structure.h>
-#include <oblique/patch/patch.h>
+#include <oblique/patch/patch_error.h>
 
 namespace oblique::patch {
 namespace {
@@ -69,7 +69,7 @@ Scaling find_scaling(const mechanism::Mechanism& mechanism, const mechanism::Str
       farthest = std::max(farthest, (point.position - scaling.origin).cwiseAbs().maxCoeff());
     }
     for (std::size_t g = 0; g < structure.groups.size(); ++g) {
-      const auto dyad = mechanism::dyad_of(structure.groups[g]);
+      const auto& dyad = structure.groups[g].form.dyad;
       if (!dyad) continue;
       const double length =
           (configuration.points[dyad->q].position - configuration.points[dyad->p].position).norm();

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -13,7 +12,8 @@
 #include <oblique/mechanism/model/plane.h>
 #include <oblique/mechanism/structure/structure.h>
 #include <oblique/mechanism/triad/triangle.h>
-#include <oblique/patch/patch_builder.h>
+#include <oblique/patch/patch_error.h>
+#include <oblique/patch/patch_setup.h>
 
 namespace oblique::patch {
 namespace {
@@ -50,7 +50,7 @@ TriadSplit measure(const mechanism::Group& group, const mechanism::Motion& motio
   split.closing = order[1];
   split.third = order[2];
   split.flattest = std::numeric_limits<double>::infinity();
-  double least_slope = split.flattest;
+  double least_derivative = split.flattest;
   for (std::size_t row = 0; row < motion.times.size(); ++row) {
     const mechanism::Configuration& here = motion.configurations[row];
     const auto at = [&](const mechanism::PointRef& point) { return here.points[point.point].position; };
@@ -67,8 +67,8 @@ TriadSplit measure(const mechanism::Group& group, const mechanism::Motion& motio
       return (c - anchor).squaredNorm() / (closing.value * closing.value);
     };
     const double step = 1e-5 * w;
-    const double slope = (closed(w + step) - closed(w - step)) / (2 * step);
-    const int sign = slope > 0 ? 1 : -1;
+    const double derivative = (closed(w + step) - closed(w - step)) / (2 * step);
+    const int sign = derivative > 0 ? 1 : -1;
     if (row == 0) {
       split.first_side = side1;
       split.second_side = side2;
@@ -86,9 +86,9 @@ TriadSplit measure(const mechanism::Group& group, const mechanism::Motion& motio
     split.longest = std::max(split.longest, w);
     split.reach = std::max({split.reach, w, (anchor - start).norm()});
     split.second_reach = std::max(split.second_reach, (end - apex1).norm());
-    least_slope = std::min(least_slope, std::abs(slope));
+    least_derivative = std::min(least_derivative, std::abs(derivative));
   }
-  split.least_gain = least_slope * split.reach;
+  split.least_gain = least_derivative * split.reach;
   return split;
 }
 
@@ -100,6 +100,10 @@ std::vector<std::string> legs_of(const mechanism::Mechanism& mechanism, const me
   return names;
 }
 
+bool is_on_links(const mechanism::Group& group) {
+  return group.form.is_triad_on_links();
+}
+
 std::string joined(const std::vector<std::string>& legs) {
   return fmt::format("{}", fmt::join(legs, ","));
 }
@@ -108,14 +112,6 @@ std::string joined(const std::vector<std::string>& legs) {
 
 double TriadSplit::worth() const {
   return flip == Flip::none ? std::min(flattest, least_gain) : 0;
-}
-
-bool can_be_split(const mechanism::Group& group) {
-  const auto& conditions = group.equations.conditions;
-  return group.kind == mechanism::GroupKind::triad &&
-         std::all_of(conditions.begin(), conditions.end(), [](const mechanism::Condition& c) {
-           return c.kind == mechanism::Condition::Kind::distance;
-         });
 }
 
 std::vector<TriadSplit> splits_of(const mechanism::Group& group, const mechanism::Motion& motion) {
@@ -130,11 +126,7 @@ std::vector<TriadSplit> splits_of(const mechanism::Group& group, const mechanism
 }
 
 std::size_t leg_of(const mechanism::Group& triad, std::size_t condition) {
-  const mechanism::Condition& c = triad.equations.conditions[condition];
-  for (const mechanism::Link& link : triad.equations.links) {
-    if (link.from == c.b.point && link.to == c.a.point) return link.body;
-  }
-  throw std::logic_error("a distance condition without its link");
+  return triad.equations.links[triad.equations.conditions[condition].link].body;
 }
 
 std::string split_name(const mechanism::Mechanism& mechanism, const mechanism::Group& triad,
@@ -155,7 +147,7 @@ TriadSplit choose_split(const mechanism::Mechanism& mechanism, const mechanism::
                                       fmt::format("the group {} ({}) has no split into two triangles that "
                                                   "never become collinear and a loop that "
                                                   "keeps its gain on the way",
-                                                  triad.name, mechanism::kind_name(triad.kind)),
+                                                  triad.name, mechanism::kind_name(triad.form.kind)),
                                       "a triad on three links with such a split",
                                       text::Remedy{"patch it with ", text::Setting{"method", "gradient"},
                                                    ", which takes any group"}})
@@ -187,7 +179,7 @@ TriadSplit choose_split(const mechanism::Mechanism& mechanism, const mechanism::
 
 void check_split_options(const mechanism::Mechanism& mechanism, const mechanism::Structure& structure,
                          const PatchOptions& options) {
-  const bool splits = std::any_of(structure.groups.begin(), structure.groups.end(), can_be_split);
+  const bool splits = std::any_of(structure.groups.begin(), structure.groups.end(), is_on_links);
   if (options.slower && !splits) {
     throw PatchError(text::Diagnostic{{mechanism.file, {}, {"slower", fmt::format("{:g}", *options.slower)}},
                                       "this patch has no outer loop",
@@ -198,7 +190,7 @@ void check_split_options(const mechanism::Mechanism& mechanism, const mechanism:
   if (options.split.empty()) return;
   std::vector<std::string> triads;
   for (const mechanism::Group& group : structure.groups) {
-    if (!can_be_split(group)) continue;
+    if (!is_on_links(group)) continue;
     std::vector<std::string> legs = legs_of(mechanism, group, TriadSplit{});
     triads.push_back(joined(legs));
     if (std::is_permutation(legs.begin(), legs.end(), options.split.begin(), options.split.end())) return;
@@ -215,9 +207,9 @@ void check_split_options(const mechanism::Mechanism& mechanism, const mechanism:
 
 std::vector<std::vector<std::string>> useful_splits(const mechanism::Mechanism& mechanism) {
   const mechanism::Structure structure = mechanism::decompose(mechanism);
-  const auto is_triad = [](const mechanism::Group& group) { return can_be_split(group); };
-  const auto triad = std::find_if(structure.groups.begin(), structure.groups.end(), is_triad);
-  if (triad == structure.groups.end() || std::any_of(triad + 1, structure.groups.end(), is_triad)) return {};
+  const auto triad = std::find_if(structure.groups.begin(), structure.groups.end(), is_on_links);
+  if (triad == structure.groups.end() || std::any_of(triad + 1, structure.groups.end(), is_on_links))
+    return {};
   std::vector<std::vector<std::string>> names;
   for (const TriadSplit& split : splits_of(*triad, patch_motion(mechanism, structure))) {
     if (split.worth() > kLeastWorth) names.push_back(legs_of(mechanism, *triad, split));

@@ -6,7 +6,7 @@
 
 #include <oblique/mechanism/motion/motion.h>
 #include <oblique/mechanism/structure/structure.h>
-#include <oblique/patch/patch.h>
+#include <oblique/patch/patch_options.h>
 
 namespace oblique::patch {
 
@@ -27,8 +27,8 @@ struct TriadSplit {
   double first_w = 0;                               ///< w at the start [length unit]
   bool asked_for = false;                           ///< by the options, for this triad
 
-  /// A moment at which a triangle goes flat or the loop loses its gain, so that the analog does not come past
-  /// it.
+  /// A moment at which a triangle becomes collinear or the loop loses its gain, so that the analog does not
+  /// come past it.
   enum class Flip { none, first_triangle, second_triangle, loop };
   Flip flip = Flip::none;
   double flip_time = 0;  ///< [s]
@@ -37,13 +37,10 @@ struct TriadSplit {
   double worth() const;
 };
 
-/// Whether a group is a triad on three links, which can be split.
-bool can_be_split(const mechanism::Group& group);
-
-/// The six splits of such a triad, the most worth first.
+/// The six splits of a triad on links, the most worth first.
 std::vector<TriadSplit> splits_of(const mechanism::Group& group, const mechanism::Motion& motion);
 
-/// A split of less worth is as good as flat, or without gain, at some position.
+/// A split of less worth is as good as collinear, or without gain, at some position.
 inline constexpr double kLeastWorth = 0.02;
 
 /// The body of a leg, by its condition: its index in Mechanism::bodies.
@@ -58,6 +55,10 @@ std::string split_name(const mechanism::Mechanism& mechanism, const mechanism::G
 /// PatchError where that one flips, or none is worth kLeastWorth, unless the options force it.
 TriadSplit choose_split(const mechanism::Mechanism& mechanism, const mechanism::Group& triad,
                         const mechanism::Motion& motion, const PatchOptions& options);
+
+/// The splits of a mechanism's triad that never flip and keep their gain, the most worth first, as
+/// PatchOptions::split names them; none where it has no triad on three links, or several.
+std::vector<std::vector<std::string>> useful_splits(const mechanism::Mechanism& mechanism);
 
 /// Throws PatchError where the options name a split and no triad of the structure has these three legs, or
 /// an outer loop's speed and there is no triad.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
 #include <fmt/format.h>
 
@@ -66,33 +67,39 @@ MechanismCheck examine(mechanism::Mechanism mechanism, const std::string& file) 
 }
 
 std::string describe(const mechanism::Mechanism& mechanism, const mechanism::Group& group) {
-  if (group.kind == mechanism::GroupKind::crank) {
-    return fmt::format("crank {}: turns about {} with drive '{}'", group.name,
-                       mechanism.points[mechanism::pivot_of(group)].name,
-                       mechanism.drives[group.drives.front()].name);
+  using mechanism::GroupKind;
+  const auto drive = [&] { return mechanism.drives[group.drives.front()].name; };
+  const auto of_higher_class = [&](const char* how) {
+    constexpr std::array<const char*, 9> kRoman{"", "I", "II", "III", "IV", "V", "VI", "VII", "VIII"};
+    const auto number = static_cast<std::size_t>(group.assur_class);
+    return fmt::format("group {} (class {}, order {}): {}{}", group.name,
+                       number < kRoman.size() ? kRoman[number] : std::to_string(number), group.order, how,
+                       group.drives.empty() ? "" : fmt::format(", driven inside by '{}'", drive()));
+  };
+  switch (group.form.kind) {
+    case GroupKind::crank:
+      return fmt::format("crank {}: turns about {} with drive '{}'", group.name,
+                         mechanism.points[mechanism::pivot_of(group)].name, drive());
+    case GroupKind::slider:
+      return fmt::format("slider {}: moved along '{}' by drive '{}'", group.name,
+                         mechanism.slides[group.slides.front()].name, drive());
+    case GroupKind::rrr:
+    case GroupKind::rrp:
+    case GroupKind::prp:
+    case GroupKind::rpr:
+    case GroupKind::rpp:
+      if (const auto& dyad = group.form.dyad) {
+        return fmt::format("dyad {} (class II, RRR): {} lies {} of {} → {}", group.name,
+                           mechanism.points[dyad->c].name, group.side > 0 ? "left" : "right",
+                           mechanism.points[dyad->p].name, mechanism.points[dyad->q].name);
+      }
+      return fmt::format("dyad {} (class II, {})", group.name, mechanism::kind_name(group.form.kind));
+    case GroupKind::triad:
+      return of_higher_class("a triad, in closed form");
+    case GroupKind::general:
+      return of_higher_class("by Newton's method");
   }
-  if (group.kind == mechanism::GroupKind::slider) {
-    return fmt::format("slider {}: moved along '{}' by drive '{}'", group.name,
-                       mechanism.slides[group.slides.front()].name,
-                       mechanism.drives[group.drives.front()].name);
-  }
-  constexpr std::array<const char*, 9> kRoman{"", "I", "II", "III", "IV", "V", "VI", "VII", "VIII"};
-  const auto number = static_cast<std::size_t>(group.assur_class);
-  const std::string assur_class = number < kRoman.size() ? kRoman[number] : std::to_string(number);
-  const std::string driven = group.drives.empty() ? ""
-                                                  : fmt::format(", driven inside by '{}'",
-                                                                mechanism.drives[group.drives.front()].name);
-  if (const auto dyad = mechanism::dyad_of(group)) {
-    return fmt::format("dyad {} (class II, RRR): {} lies {} of {} → {}", group.name,
-                       mechanism.points[dyad->c].name, dyad->side > 0 ? "left" : "right",
-                       mechanism.points[dyad->p].name, mechanism.points[dyad->q].name);
-  }
-  if (group.assur_class == 2 && group.kind != mechanism::GroupKind::general) {
-    return fmt::format("dyad {} (class II, {})", group.name, mechanism::kind_name(group.kind));
-  }
-  return fmt::format(
-      "group {} (class {}, order {}): {}{}", group.name, assur_class, group.order,
-      group.kind == mechanism::GroupKind::triad ? "a triad, in closed form" : "by Newton's method", driven);
+  throw std::logic_error("a group of no kind");
 }
 
 std::string drive_text(const MechanismCheck& check, double value) {

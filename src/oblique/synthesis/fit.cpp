@@ -49,7 +49,7 @@ PathError error_of(const VectorXd& residuals) {
 class Fitter {
  public:
   Fitter(const DesignSpace& space, const TargetPath& target, const FitOptions& options)
-      : family_(space), target_(target), options_(options), problem_(space, target) {
+      : space_(space), target_(target), options_(options), problem_(space, target) {
     least_squares_.residuals = [this](const VectorXd& x) { return problem_.residuals(x); };
     least_squares_.jacobian = [this](const VectorXd& x) { return problem_.jacobian(x); };
     least_squares_.lower = space.lower();
@@ -61,7 +61,7 @@ class Fitter {
   Fit run() {
     check_request();
     Fit fit;
-    fit.before = error_of(problem_.residuals(family_.values()).value());
+    fit.before = error_of(problem_.residuals(space_.values()).value());
     fit.turns_fully = problem_.must_turn();
     search();
     finish(fit);
@@ -71,16 +71,16 @@ class Fitter {
 
  private:
   void check_request() {
-    const std::string& point = family_.original().points[target_.point].name;
-    for (std::size_t i = 0; i < family_.dimensions().size(); ++i) {
+    const std::string& point = space_.original().points[target_.point].name;
+    for (std::size_t i = 0; i < space_.dimensions().size(); ++i) {
       const auto effect = problem_.effect_of(static_cast<Index>(i));
       if (!effect || *effect > kNoEffect * problem_.size()) continue;
-      fail(SynthesisError::Kind::request, family_.original().file,
-           fmt::format("free dimensions: '{}' has no effect on the path of '{}'",
-                       family_.dimensions()[i].name, point),
+      fail(SynthesisError::Kind::request, space_.original().file,
+           fmt::format("free dimensions: '{}' has no effect on the path of '{}'", space_.dimensions()[i].name,
+                       point),
            "dimensions that the path depends on", "leave it out");
     }
-    const std::size_t numbers = family_.dimensions().size();
+    const std::size_t numbers = space_.dimensions().size();
     // without timing a target only says how far the path is beside it, with timing where the point is
     const std::size_t asked = target_.times.empty() ? problem_.targets() : 2 * problem_.targets();
     if (asked >= numbers) return;
@@ -96,19 +96,19 @@ class Fitter {
     for (int k = 0; k < options_.starts && !is_nothing(); ++k) {
       if (options_.progress) options_.progress(static_cast<double>(k) / options_.starts);
       if (k == 0) {
-        const VectorXd values = family_.values();
-        search_from(values.cwiseMax(family_.lower()).cwiseMin(family_.upper()));
+        const VectorXd values = space_.values();
+        search_from(values.cwiseMax(space_.lower()).cwiseMin(space_.upper()));
         continue;
       }
       for (int trial = 0; trial < kTriesForAStart; ++trial) {
         const std::vector<double> even =
-            text::even_point(++tried, static_cast<std::size_t>(family_.values().size()));
-        const VectorXd point = VectorXd::Map(even.data(), family_.values().size());
-        if (search_from(family_.lower() + point.cwiseProduct(family_.upper() - family_.lower()))) break;
+            text::even_point(++tried, static_cast<std::size_t>(space_.values().size()));
+        const VectorXd point = VectorXd::Map(even.data(), space_.values().size());
+        if (search_from(space_.lower() + point.cwiseProduct(space_.upper() - space_.lower()))) break;
       }
     }
     if (best_) return;
-    fail(SynthesisError::Kind::nowhere, family_.original().file,
+    fail(SynthesisError::Kind::nowhere, space_.original().file,
          fmt::format("no mechanism was found within the bounds that {}",
                      problem_.must_turn() ? "turns fully, as the given one does" : "can be assembled"),
          {}, "widen the bounds, free other dimensions, or search from more starts");
@@ -135,7 +135,7 @@ class Fitter {
     constexpr int kStages = 6;
     if (sum <= least_squares_.floor) return false;
     problem_.restart();
-    const VectorXd accelerations = problem_.accelerations(family_.values(), problem_.stance());
+    const VectorXd accelerations = problem_.accelerations(space_.values(), problem_.stance());
     double weight =
         kFirstPart * sum * static_cast<double>(accelerations.size()) / accelerations.squaredNorm();
     Minimum minimum{start, sum, true};
@@ -174,7 +174,7 @@ class Fitter {
   VectorXd rounded_values(const VectorXd& values) const {
     VectorXd rounded = values;
     for (Index i = 0; i < values.size(); ++i) {
-      const Dimension& dimension = family_.dimensions()[static_cast<std::size_t>(i)];
+      const Dimension& dimension = space_.dimensions()[static_cast<std::size_t>(i)];
       const double decimal = text::nearest_decimal(values[i], 10);
       rounded[i] = std::clamp(decimal, dimension.lower, dimension.upper);
       if (decimal == text::nearest_decimal(dimension.value, 10)) rounded[i] = dimension.value;
@@ -185,13 +185,13 @@ class Fitter {
   void finish(Fit& fit) {
     const double gain = fit.before.rms - best_->error.rms;
     fit.improved = gain > kNothing * problem_.size();
-    const VectorXd values = fit.improved ? best_->x : family_.values();
+    const VectorXd values = fit.improved ? best_->x : space_.values();
     fit.after = fit.improved ? best_->error : fit.before;
-    for (std::size_t i = 0; i < family_.dimensions().size(); ++i) {
-      const Dimension& d = family_.dimensions()[i];
+    for (std::size_t i = 0; i < space_.dimensions().size(); ++i) {
+      const Dimension& d = space_.dimensions()[i];
       fit.dimensions.push_back({d.name, d.value, values[static_cast<Index>(i)], d.lower, d.upper});
     }
-    fit.text = family_.text(values);
+    fit.text = space_.text(values);
     if (!fit.improved) return;
     if (fit.turns_fully) {
       const auto largest = [&](const VectorXd& member, const Stance& stance) {
@@ -199,9 +199,9 @@ class Fitter {
       };
       fit.acceleration_after = largest(values, best_->stance);
       problem_.restart();
-      fit.acceleration_before = largest(family_.values(), problem_.stance());
+      fit.acceleration_before = largest(space_.values(), problem_.stance());
     }
-    FittedText fitted = fitted_text(family_, values, best_->stance);
+    FittedText fitted = fitted_text(space_, values, best_->stance);
     fit.sketch_moved = fitted.sketch_moved;
     fit.text = with_comment(fitted.text, comment(fit));
   }
@@ -216,8 +216,8 @@ class Fitter {
     }
     return fmt::format(
         "Fitted from {}: {} changed so that {} follows the {} points of {}, rms {:.4g} {} (before {:.4g}).",
-        file_name(family_.original().file), changed, family_.original().points[target_.point].name,
-        problem_.targets(), file_name(target_.file), fit.after.rms, family_.original().length_unit,
+        file_name(space_.original().file), changed, space_.original().points[target_.point].name,
+        problem_.targets(), file_name(target_.file), fit.after.rms, space_.original().length_unit,
         fit.before.rms);
   }
 
@@ -228,7 +228,7 @@ class Fitter {
     Stance stance;
   };
 
-  const DesignSpace& family_;
+  const DesignSpace& space_;
   const TargetPath& target_;
   const FitOptions& options_;
   PathProblem problem_;

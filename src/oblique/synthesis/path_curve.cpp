@@ -59,13 +59,13 @@ Vector2d PathCurve::Piece::tangent(double s) const {
 /// A root of (p(s) − target)·p′(s) by bisection, or the end from which the distance only grows.
 double PathCurve::Piece::nearest(const Vector2d& target) const {
   constexpr int kHalvings = 52;  // to the last bit of s
-  const auto slope = [&](double s) { return (position(s) - target).dot(tangent(s)); };
-  if (slope(0) >= 0) return 0;
-  if (slope(1) <= 0) return 1;
+  const auto derivative = [&](double s) { return (position(s) - target).dot(tangent(s)); };
+  if (derivative(0) >= 0) return 0;
+  if (derivative(1) <= 0) return 1;
   double nearing = 0, leaving = 1;
   for (int k = 0; k < kHalvings; ++k) {
     const double middle = (nearing + leaving) / 2;
-    (slope(middle) < 0 ? nearing : leaving) = middle;
+    (derivative(middle) < 0 ? nearing : leaving) = middle;
   }
   return (nearing + leaving) / 2;
 }

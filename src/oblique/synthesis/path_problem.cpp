@@ -57,7 +57,7 @@ std::optional<Stance> stance_of(const mechanism::Mechanism& mechanism) {
 }
 
 PathProblem::PathProblem(const DesignSpace& space, const TargetPath& target)
-    : family_(space), target_(target) {
+    : space_(space), target_(target) {
   const mechanism::Mechanism& mechanism = space.original();
   size_ = mechanism.largest_length();
   must_turn_ = !mechanism::find_obstacle(mechanism, mechanism::decompose(mechanism));
@@ -84,7 +84,7 @@ mechanism::Motion PathProblem::turn_of(const mechanism::Mechanism& mechanism) co
 }
 
 VectorXd PathProblem::accelerations_in(const mechanism::Motion& turn) const {
-  const mechanism::Mechanism& mechanism = family_.original();
+  const mechanism::Mechanism& mechanism = space_.original();
   const double speed = mechanism.drives.front().speed;
   VectorXd accelerations(std::ssize(mechanism.bodies) * std::ssize(turn.configurations));
   Index at = 0;
@@ -97,7 +97,7 @@ VectorXd PathProblem::accelerations_in(const mechanism::Motion& turn) const {
 }
 
 double PathProblem::weight_of_an_acceleration() const {
-  return std::sqrt(barrier_ / static_cast<double>(family_.original().bodies.size() * kRows));
+  return std::sqrt(barrier_ / static_cast<double>(space_.original().bodies.size() * kRows));
 }
 
 /// The stance from which the member with these values takes its mode.
@@ -107,7 +107,7 @@ std::optional<Stance> PathProblem::walk_to(const VectorXd& values) const {
   Stance stance = here_.stance;
   for (long k = 1; k < steps; ++k) {
     mechanism::Mechanism between =
-        family_.mechanism(here_.values + static_cast<double>(k) / static_cast<double>(steps) * way);
+        space_.mechanism(here_.values + static_cast<double>(k) / static_cast<double>(steps) * way);
     between.sketch = stance;
     const auto next = stance_of(between);
     if (!next) return std::nullopt;
@@ -133,7 +133,7 @@ std::optional<std::vector<PathCurve::Foot>> PathProblem::timed_feet(
 
 std::optional<PathProblem::Solved> PathProblem::solve(const VectorXd& values, const Stance& near) {
   ++members_tried_;
-  mechanism::Mechanism mechanism = family_.mechanism(values);
+  mechanism::Mechanism mechanism = space_.mechanism(values);
   mechanism.sketch = near;
   const mechanism::Motion turn = turn_of(mechanism);
   if (!is_assembled(turn.configurations.front())) return std::nullopt;
@@ -178,7 +178,7 @@ std::optional<PathProblem::Perturbed> PathProblem::perturb(const VectorXd& value
                                                            const std::vector<PathCurve::Foot>& feet) {
   try {
     ++members_tried_;
-    mechanism::Mechanism mechanism = family_.mechanism(values);
+    mechanism::Mechanism mechanism = space_.mechanism(values);
     mechanism.sketch = here_.stance;
     Perturbed perturbed;
     if (!target_.times.empty()) {
@@ -217,7 +217,7 @@ MatrixXd PathProblem::jacobian(const VectorXd& values) {
   middle.accelerations = base->accelerations;
   const auto n_places = 2 * std::ssize(base->feet);
   MatrixXd jacobian = MatrixXd::Zero(n_places + base->accelerations.size(), values.size());
-  const VectorXd steps = kDifference * (family_.upper() - family_.lower());
+  const VectorXd steps = kDifference * (space_.upper() - space_.lower());
   for (Index i = 0; i < values.size(); ++i) {
     VectorXd moved = values;
     moved[i] = values[i] + steps[i];
@@ -240,7 +240,7 @@ MatrixXd PathProblem::jacobian(const VectorXd& values) {
 }
 
 VectorXd PathProblem::accelerations(const VectorXd& values, const Stance& stance) const {
-  mechanism::Mechanism mechanism = family_.mechanism(values);
+  mechanism::Mechanism mechanism = space_.mechanism(values);
   mechanism.sketch = stance;
   return accelerations_in(turn_of(mechanism));
 }
@@ -250,9 +250,9 @@ std::optional<double> PathProblem::effect_of(Index dimension) {
   restart();
   const auto path = [&](double change) -> std::optional<mechanism::Motion> {
     VectorXd values = original_.values;
-    values[dimension] += change * (family_.upper()[dimension] - family_.lower()[dimension]);
+    values[dimension] += change * (space_.upper()[dimension] - space_.lower()[dimension]);
     try {
-      mechanism::Mechanism mechanism = family_.mechanism(values);
+      mechanism::Mechanism mechanism = space_.mechanism(values);
       mechanism.sketch = original_.stance;
       return turn_of(mechanism);
     } catch (const mechanism::MechanismError&) {
@@ -262,7 +262,7 @@ std::optional<double> PathProblem::effect_of(Index dimension) {
   auto moved = path(kStep);
   if (!moved) moved = path(-kStep);
   if (!moved) return std::nullopt;
-  const mechanism::Motion still = turn_of(family_.original());
+  const mechanism::Motion still = turn_of(space_.original());
   double largest = 0;
   for (std::size_t row = 0; row < still.configurations.size(); ++row) {
     const mechanism::Configuration& a = still.configurations[row];

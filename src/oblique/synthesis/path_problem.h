@@ -52,7 +52,7 @@ class PathProblem {
   /// drive.
   Eigen::VectorXd accelerations(const Eigen::VectorXd& values, const Stance& stance) const;
 
-  const DesignSpace& space() const { return family_; }
+  const DesignSpace& space() const { return space_; }
   bool must_turn() const { return must_turn_; }
   double size() const { return size_; }  ///< largest length of the original
   std::size_t targets() const { return target_.positions.size(); }
@@ -87,7 +87,7 @@ class PathProblem {
   Eigen::VectorXd accelerations_in(const mechanism::Motion& turn) const;
   double weight_of_an_acceleration() const;
 
-  const DesignSpace& family_;
+  const DesignSpace& space_;
   const TargetPath& target_;
   double size_ = 0;
   bool must_turn_ = false;

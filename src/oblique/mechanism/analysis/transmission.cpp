@@ -37,35 +37,25 @@ struct Needles {
   Needle first, second;
 };
 
-/// The bar of an RRP dyad and its guide; nothing where the dyad has another form.
-std::optional<Needles> bar_and_guide(const Group& group) {
-  using Kind = Condition::Kind;
-  const Condition* guide = nullptr;
-  for (const Condition& c : group.equations.conditions) {
-    if (c.kind == Kind::on_line && c.line.kind != LineRef::Kind::carried) guide = &c;
-  }
-  if (guide == nullptr) return std::nullopt;
+/// The bar of an RRP dyad and its guide.
+Needles bar_and_guide(const Group& group) {
+  const auto& conditions = group.equations.conditions;
+  const Condition& guide = conditions[group.form.loci.back()];
   Needle line;
-  line.line = &guide->line;
-  for (const Condition& c : group.equations.conditions) {
-    if (c.kind == Kind::distance) {
-      for (const Link& link : group.equations.links) {
-        if (link.from == c.b.point && link.to == c.a.point)
-          return Needles{{link.from, link.to, link.body, nullptr}, line};
-      }
-    }
-    if (c.kind == Kind::coincidence && c.b.kind == PointRef::Kind::known) {
-      return Needles{{c.b.point, guide->a.point, group.equations.cores[c.a.member], nullptr}, line};
-    }
+  line.line = &guide.line;
+  if (group.form.hinge) {
+    const Condition& hinge = conditions[*group.form.hinge];
+    return {{hinge.b.point, guide.a.point, group.equations.cores[hinge.a.member], nullptr}, line};
   }
-  return std::nullopt;
+  const Condition& bar = conditions[group.form.loci.front()];
+  return {{bar.b.point, bar.a.point, group.equations.links[bar.link].body, nullptr}, line};
 }
 
 std::optional<Needles> needles_of(const Group& group) {
-  if (const auto dyad = dyad_of(group)) {
+  if (const auto& dyad = group.form.dyad) {
     return Needles{{dyad->c, dyad->p, dyad->body1, nullptr}, {dyad->c, dyad->q, dyad->body2, nullptr}};
   }
-  if (group.kind == GroupKind::rrp) return bar_and_guide(group);
+  if (group.form.kind == GroupKind::rrp) return bar_and_guide(group);
   return std::nullopt;
 }
 
@@ -100,14 +90,14 @@ std::string_view measure_name(Transmission::Measure measure) {
 std::optional<Transmission::Measure> measure_of(const Group& group) {
   if (group.assur_class == 1) return std::nullopt;
   if (!needles_of(group)) return Transmission::Measure::regularity;
-  return group.kind == GroupKind::rrp ? Transmission::Measure::pressure_angle
-                                      : Transmission::Measure::transmission_angle;
+  return group.form.kind == GroupKind::rrp ? Transmission::Measure::pressure_angle
+                                           : Transmission::Measure::transmission_angle;
 }
 
 Signal transmission_signal(const Structure& structure, std::size_t g) {
   const Group& group = structure.groups[g];
   if (const auto needles = needles_of(group)) {
-    const bool guide = group.kind == GroupKind::rrp;
+    const bool guide = group.form.kind == GroupKind::rrp;
     return {[needles = *needles, guide](const RangeWalk& walk) {
               return angle_between(needles, guide, walk.here());
             },
@@ -119,7 +109,7 @@ Signal transmission_signal(const Structure& structure, std::size_t g) {
 std::optional<double> transmission_in(const Group& group, const Configuration& here) {
   const auto needles = needles_of(group);
   if (!needles || here.status == Status::open) return std::nullopt;
-  return angle_between(*needles, group.kind == GroupKind::rrp, here).value;
+  return angle_between(*needles, group.form.kind == GroupKind::rrp, here).value;
 }
 
 }  // namespace oblique::mechanism

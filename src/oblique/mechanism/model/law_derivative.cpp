@@ -136,8 +136,8 @@ text::Expression law_derivative(const text::Expression& law) {
   for (std::size_t i = 0; i < law.operands.size(); ++i) {
     const text::Expression rate = law_derivative(law.operands[i]);
     if (is(rate, 0)) continue;
-    const Formula slope = text::partial_derivative(*operation, static_cast<int>(i), a, b, f);
-    derivative = sum(std::move(derivative), product(slope.e, rate));
+    const Formula by_operand = text::partial_derivative(*operation, static_cast<int>(i), a, b, f);
+    derivative = sum(std::move(derivative), product(by_operand.e, rate));
   }
   return derivative;
 }

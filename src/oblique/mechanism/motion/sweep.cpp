@@ -131,41 +131,41 @@ std::vector<Dwell> find_dwells(const RangeWalk& walk,
 
 Sweep sweep_of(const RangeWalk& walk, const SignalScan& scan, bool is_slide, std::size_t index) {
   const double scale = is_slide ? walk.mechanism().largest_length() : 1;
-  Sweep swing;
-  swing.is_slide = is_slide;
-  swing.index = index;
-  swing.least = scan.least;
-  swing.greatest = scan.greatest;
-  swing.gain = scan.last.value - scan.first.value;
-  swing.reversals = scan.turns.size();
+  Sweep sweep;
+  sweep.is_slide = is_slide;
+  sweep.index = index;
+  sweep.least = scan.least;
+  sweep.greatest = scan.greatest;
+  sweep.gain = scan.last.value - scan.first.value;
+  sweep.reversals = scan.turns.size();
   const bool closed = walk.tour().closed;
-  const double whole = is_slide ? 0 : std::round(swing.gain / kTurn);
-  if (swing.stroke() < kRests * scale) {
-    swing.kind = Sweep::Kind::stationary;
-    swing.reversals = 0;
-    return swing;
+  const double whole = is_slide ? 0 : std::round(sweep.gain / kTurn);
+  if (sweep.stroke() < kRests * scale) {
+    sweep.kind = Sweep::Kind::stationary;
+    sweep.reversals = 0;
+    return sweep;
   }
   if (closed && whole != 0) {
-    swing.kind = swing.reversals == 0 ? Sweep::Kind::turns : Sweep::Kind::turns_with_reversals;
-  } else if (!closed && swing.reversals == 0) {
-    swing.kind = Sweep::Kind::monotone;
+    sweep.kind = sweep.reversals == 0 ? Sweep::Kind::turns : Sweep::Kind::turns_with_reversals;
+  } else if (!closed && sweep.reversals == 0) {
+    sweep.kind = Sweep::Kind::monotone;
   }
   // the times between turning points, those before the first and after the last one as well
   double before = walk.tour().begin;
-  bool rises = scan.turns.empty() ? swing.gain > 0 : scan.turns.front().is_greatest;
+  bool rises = scan.turns.empty() ? sweep.gain > 0 : scan.turns.front().is_greatest;
   for (const TurningPoint& turn : scan.turns) {
-    (turn.is_greatest ? swing.rising : swing.falling) += turn.time - before;
+    (turn.is_greatest ? sweep.rising : sweep.falling) += turn.time - before;
     before = turn.time;
     rises = !turn.is_greatest;
   }
-  (rises ? swing.rising : swing.falling) += walk.tour().end - before;
-  if (closed && swing.kind == Sweep::Kind::oscillates) {
-    if (swing.reversals == 2) {
-      swing.time_ratio = std::max(swing.rising, swing.falling) / std::min(swing.rising, swing.falling);
+  (rises ? sweep.rising : sweep.falling) += walk.tour().end - before;
+  if (closed && sweep.kind == Sweep::Kind::oscillates) {
+    if (sweep.reversals == 2) {
+      sweep.time_ratio = std::max(sweep.rising, sweep.falling) / std::min(sweep.rising, sweep.falling);
     }
-    swing.dwells = find_dwells(walk, {&scan.values}, swing.stroke());
+    sweep.dwells = find_dwells(walk, {&scan.values}, sweep.stroke());
   }
-  return swing;
+  return sweep;
 }
 
 }  // namespace oblique::mechanism

@@ -125,7 +125,7 @@ class ModeChooser {
   void choose(std::size_t g) {
     Group& group = structure_.groups[g];
     GroupSolver& solver = kinematics_.solver(g);
-    if (group.kind == GroupKind::crank) {
+    if (group.form.placing == Placing::rotation) {
       solver.place(drives_, 0, here_);
       return;
     }
@@ -208,15 +208,13 @@ class ModeChooser {
     return std::nullopt;
   }
 
-  static std::string noun(const Group& group) {
-    return group.assur_class == 2 && dyad_of(group) ? "dyad" : "group";
-  }
+  static std::string noun(const Group& group) { return group.form.dyad ? "dyad" : "group"; }
 
   /// A line for [sketch]: of the point that the modes place most differently.
   std::string sketch_line(const Group& group, const Candidate& candidate,
                           const std::vector<Candidate>& all) const {
     std::size_t telling = group.points.front();
-    if (const auto dyad = dyad_of(group)) {
+    if (const auto& dyad = group.form.dyad) {
       telling = dyad->c;
     } else {
       double widest = -1;
@@ -236,7 +234,7 @@ class ModeChooser {
     }
     const Eigen::Vector2d& at = candidate.configuration.points[telling].position;
     std::string line = fmt::format("{} = [{:.6g}, {:.6g}]", point_name(telling), at.x(), at.y());
-    if (const auto dyad = dyad_of(group)) {
+    if (const auto& dyad = group.form.dyad) {
       line += fmt::format("   # {} of {} → {}", candidate.pose.side > 0 ? "left" : "right",
                           point_name(dyad->p), point_name(dyad->q));
     }
@@ -245,7 +243,7 @@ class ModeChooser {
 
   void report_open(const Group& group, bool complete) {
     const std::string& unit = mechanism_.length_unit;
-    if (const auto dyad = dyad_of(group)) {
+    if (const auto& dyad = group.form.dyad) {
       const double distance = (here_.points[dyad->q].position - here_.points[dyad->p].position).norm();
       add(MechanismError::Kind::assembly, group,
           fmt::format("dyad '{}' cannot be assembled at the start: its pivots '{}' and '{}' are {:.6g} {} "

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// The part of GroupSolver that finds positions: by closed forms where there are any.
+#include <oblique/mechanism/solver/closed_forms.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <stdexcept>
 
 #include <oblique/mechanism/model/plane.h>
-#include <oblique/mechanism/solver/group_solver.h>
-#include <oblique/mechanism/structure/structure.h>
 #include <oblique/mechanism/triad/triad.h>
 #include <oblique/mechanism/triad/triangle.h>
 
@@ -19,186 +19,217 @@ double largest(const Vector2d& v) {
   return v.lpNorm<Eigen::Infinity>();
 }
 
-}  // namespace
+/// A circle or a line.
+struct Locus {
+  bool circle;
+  Vector2d at, direction;
+  double radius;
+};
 
-/// Where the unknown point lies: the free point, or the origin of the core body, whose direction is known.
-GroupSolver::Locus GroupSolver::locus(const Condition& c, std::span<const DriveState> drives,
-                                      const Configuration& here) const {
-  const auto arm = [&](const Vector2d& local) {
-    return turned(local, cores_.front().cosine, cores_.front().sine);
-  };
-  const Vector2d shift = c.a.kind == PointRef::Kind::carried ? arm(c.a.local) : Vector2d::Zero();
-  if (c.kind == Condition::Kind::distance) {
-    return {true, here.points[c.b.point].position - shift, Vector2d::Zero(), c.value};
-  }
-  const double along = c.kind == Condition::Kind::along ? drives[*c.drive].value : 0;
-  Locus line{false, {}, {}, 0};
-  if (c.line.kind == LineRef::Kind::carried) {
-    line.direction = arm(c.line.direction);
-    line.at = here.points[c.a.point].position - arm(c.line.point) - along * line.direction;
-  } else {
-    const LineState state_here = state(c.line, here);
-    line.direction = state_here.direction;
-    line.at = state_here.at.position + along * line.direction - shift;
-  }
-  if (c.kind == Condition::Kind::along) line.direction = left_normal(line.direction);
-  return line;
-}
+class ClosedForm {
+ public:
+  ClosedForm(const Mechanism& mechanism, const Group& group, std::span<const DriveState> drives,
+             const Configuration& here, GroupState& state)
+      : mechanism_(mechanism),
+        form_(group.form),
+        conditions_(group.equations.conditions),
+        drives_(drives),
+        here_(here),
+        state_(state) {}
 
-/// Two circles: the triangle over their centres, on the left of first → second for `side` +1. A circle and a
-/// line: the foot of the centre on the line, and half the chord from there, forwards for +1. Two lines:
-/// Cramer.
-Status GroupSolver::find_by_loci(std::span<const DriveState> drives, int side, const Configuration& here) {
-  if (!cores_.empty()) {
-    const Condition& c = equations_.conditions[angle_conditions_.front()];
-    const double angle = c.drive ? drives[*c.drive].value : c.value;
+  Status find(int side) {
+    switch (form_.placing) {
+      case Placing::hinged:
+        return find_hinged();
+      case Placing::crossing:
+        return find_crossing(side);
+      case Placing::about_pivot:
+        return find_about_pivot(side);
+      case Placing::rotation:
+      case Placing::triangle:
+      case Placing::platform:
+      case Placing::iteration:
+        break;
+    }
+    throw std::logic_error("a group that is placed in another way");
+  }
+
+ private:
+  const Condition& condition(const std::optional<std::size_t>& index) const {
+    return conditions_[index.value()];
+  }
+
+  /// Where the unknown point lies: the free point, or the origin of the core body, whose direction is known.
+  Locus locus(const Condition& c) const {
+    const auto arm = [&](const Vector2d& local) {
+      return turned(local, state_.cores.front().cosine, state_.cores.front().sine);
+    };
+    const Vector2d shift = c.a.kind == PointRef::Kind::carried ? arm(c.a.local) : Vector2d::Zero();
+    if (c.kind == Condition::Kind::distance) {
+      return {true, here_.points[c.b.point].position - shift, Vector2d::Zero(), c.value};
+    }
+    const double along = c.kind == Condition::Kind::along ? drives_[*c.drive].value : 0;
+    Locus line{false, {}, {}, 0};
+    if (c.line.kind == LineRef::Kind::carried) {
+      line.direction = arm(c.line.direction);
+      line.at = here_.points[c.a.point].position - arm(c.line.point) - along * line.direction;
+    } else {
+      const LineState state_here = state_of(mechanism_, c.line, state_, here_);
+      line.direction = state_here.direction;
+      line.at = state_here.at.position + along * line.direction - shift;
+    }
+    if (c.kind == Condition::Kind::along) line.direction = left_normal(line.direction);
+    return line;
+  }
+
+  /// The direction of the unknown body, where there is one.
+  void set_direction() {
+    if (state_.cores.empty()) return;
+    const Condition& c = condition(form_.angle);
+    const double angle = c.drive ? drives_[*c.drive].value : c.value;
     Vector2d axis = Vector2d::UnitX();
     if (c.line.kind == LineRef::Kind::known)
-      axis = {here.bodies[c.line.body].cosine, here.bodies[c.line.body].sine};
+      axis = {here_.bodies[c.line.body].cosine, here_.bodies[c.line.body].sine};
     const Vector2d direction = turned(axis, std::cos(angle), std::sin(angle));
-    cores_.front().cosine = direction.x();
-    cores_.front().sine = direction.y();
+    state_.cores.front().cosine = direction.x();
+    state_.cores.front().sine = direction.y();
   }
-  Vector2d& unknown = cores_.empty() ? free_.front().position : cores_.front().origin.position;
-  if (hinge_) {
-    const Condition& c = equations_.conditions[*hinge_];
-    unknown = here.points[c.b.point].position - turned(c.a.local, cores_.front().cosine, cores_.front().sine);
-    return std::isfinite(unknown.x()) ? Status::ok : Status::open;
+
+  Status find_hinged() {
+    set_direction();
+    const Condition& c = condition(form_.hinge);
+    GroupState::Core& core = state_.cores.front();
+    core.origin.position = here_.points[c.b.point].position - turned(c.a.local, core.cosine, core.sine);
+    return std::isfinite(core.origin.position.x()) ? Status::ok : Status::open;
   }
-  Locus first = locus(equations_.conditions[scalars_[0]], drives, here);
-  Locus second = locus(equations_.conditions[scalars_[1]], drives, here);
-  if (!first.circle && second.circle) std::swap(first, second);
-  const double rounding =
-      flat_within(std::max({first.radius + second.radius, largest(first.at), largest(second.at)}));
-  if (first.circle && second.circle) {
-    const Vector2d d = second.at - first.at;
-    const double base = std::hypot(d.x(), d.y());
-    const Triangle shape = triangle(base, first.radius, second.radius);
-    if (!(base > rounding && shape.slack >= -rounding)) return Status::open;
-    unknown = first.at + (shape.along / base) * d + (side * shape.height / base) * left_normal(d);
-    return shape.slack > rounding ? Status::ok : Status::dead_centre;
+
+  /// Two circles: the triangle over their centres, on the left of first → second for `side` +1. A circle and
+  /// a line: the foot of the centre on the line, and half the chord from there, forwards for +1. Two lines:
+  /// Cramer.
+  Status find_crossing(int side) {
+    set_direction();
+    Vector2d& unknown =
+        state_.cores.empty() ? state_.free.front().position : state_.cores.front().origin.position;
+    const Locus first = locus(conditions_[form_.loci[0]]);
+    const Locus second = locus(conditions_[form_.loci[1]]);
+    const double rounding =
+        flat_within(std::max({first.radius + second.radius, largest(first.at), largest(second.at)}));
+    if (first.circle && second.circle) {
+      const Vector2d d = second.at - first.at;
+      const double base = std::hypot(d.x(), d.y());
+      const Triangle shape = triangle(base, first.radius, second.radius);
+      if (!(base > rounding && shape.slack >= -rounding)) return Status::open;
+      unknown = first.at + (shape.along / base) * d + (side * shape.height / base) * left_normal(d);
+      return shape.slack > rounding ? Status::ok : Status::dead_centre;
+    }
+    if (first.circle) {
+      const Vector2d way = first.at - second.at;
+      const double height = cross(second.direction, way);
+      const double slack = first.radius - std::abs(height);
+      if (!(slack >= -rounding)) return Status::open;
+      const double half = slack > 0 ? std::sqrt(slack * (first.radius + std::abs(height))) : 0;
+      unknown = second.at + (second.direction.dot(way) + side * half) * second.direction;
+      return slack > rounding ? Status::ok : Status::dead_centre;
+    }
+    // the sine of the angle between the guides; within rounding they are parallel
+    const double sine = cross(first.direction, second.direction);
+    constexpr double kParallel = 1e-14;
+    if (!(std::abs(sine) > kParallel)) return Status::open;
+    unknown = first.at + cross(second.at - first.at, second.direction) / sine * first.direction;
+    return Status::ok;
   }
-  if (first.circle) {
-    const Vector2d way = first.at - second.at;
-    const double height = cross(second.direction, way);
-    const double slack = first.radius - std::abs(height);
-    if (!(slack >= -rounding)) return Status::open;
-    const double half = slack > 0 ? std::sqrt(slack * (first.radius + std::abs(height))) : 0;
-    unknown = second.at + (second.direction.dot(way) + side * half) * second.direction;
+
+  /// a cos θ + b sin θ = c for a body hinged to a known point P: with m from the hinge in the body's frame
+  /// and w from P in the world's,
+  ///
+  ///     distance to a known point     w·R m = (m² + w² − r²)/2
+  ///     known point on its own line   w·R n = n·m
+  ///     its point on a known line     n·R m = n·(A − P)
+  ///
+  /// θ is the direction of (a, b), ± arccos(c/√(a² + b²)), left for `side` +1.
+  Status find_about_pivot(int side) {
+    const Condition& hinge = condition(form_.hinge);
+    const Condition& c = conditions_[form_.loci.front()];
+    const Vector2d p = here_.points[hinge.b.point].position;
+    Vector2d m, w;
+    double constant = 0;
+    const bool along = c.kind == Condition::Kind::along;
+    const double way = along ? drives_[*c.drive].value : 0;
+    if (c.kind == Condition::Kind::distance) {
+      m = c.a.local - hinge.a.local;
+      w = here_.points[c.b.point].position - p;
+      constant = (m.squaredNorm() + w.squaredNorm() - c.value * c.value) / 2;
+    } else if (c.line.kind == LineRef::Kind::carried) {
+      m = along ? c.line.direction : left_normal(c.line.direction);
+      w = here_.points[c.a.point].position - p;
+      constant = m.dot(c.line.point - hinge.a.local) + way;
+    } else {
+      const LineState line = state_of(mechanism_, c.line, state_, here_);
+      m = c.a.local - hinge.a.local;
+      w = along ? line.direction : left_normal(line.direction);
+      constant = w.dot(line.at.position - p) + way;
+    }
+    const double a = w.dot(m), b = cross(m, w);
+    const double norm = std::hypot(a, b);
+    const double rounding = flat_within(std::max({norm, std::abs(constant), largest(p) * m.norm()}));
+    const double slack = norm - std::abs(constant);
+    if (!(norm > rounding && slack >= -rounding)) return Status::open;
+    const double cosine = std::clamp(constant / norm, -1.0, 1.0);
+    const double sine = slack > 0 ? side * std::sqrt(slack * (norm + std::abs(constant))) / norm : 0;
+    GroupState::Core& core = state_.cores.front();
+    core.cosine = (cosine * a - sine * b) / norm;
+    core.sine = (cosine * b + sine * a) / norm;
+    core.origin.position = p - turned(hinge.a.local, core.cosine, core.sine);
     return slack > rounding ? Status::ok : Status::dead_centre;
   }
-  // the sine of the angle between the guides; within rounding they are parallel
-  const double sine = cross(first.direction, second.direction);
-  constexpr double kParallel = 1e-14;
-  if (!(std::abs(sine) > kParallel)) return Status::open;
-  unknown = first.at + cross(second.at - first.at, second.direction) / sine * first.direction;
-  return Status::ok;
+
+  const Mechanism& mechanism_;
+  const GroupForm& form_;
+  const std::vector<Condition>& conditions_;
+  std::span<const DriveState> drives_;
+  const Configuration& here_;
+  GroupState& state_;
+};
+
+}  // namespace
+
+Status find_by_closed_form(const Mechanism& mechanism, const Group& group, std::span<const DriveState> drives,
+                           int side, const Configuration& here, GroupState& state) {
+  return ClosedForm(mechanism, group, drives, here, state).find(side);
 }
 
-/// a cos θ + b sin θ = c for a body hinged to a known point P: with m from the hinge in the body's frame and
-/// w from P in the world's,
-///
-///     distance to a known point     w·R m = (m² + w² − r²)/2
-///     known point on its own line   w·R n = n·m
-///     its point on a known line     n·R m = n·(A − P)
-///
-/// θ is the direction of (a, b), ± arccos(c/√(a² + b²)), left for `side` +1.
-Status GroupSolver::find_about_pivot(std::span<const DriveState> drives, int side,
-                                     const Configuration& here) {
-  const Condition& hinge = equations_.conditions[*hinge_];
-  const Condition& c = equations_.conditions[scalars_.front()];
-  const Vector2d p = here.points[hinge.b.point].position;
-  Vector2d m, w;
-  double constant = 0;
-  const bool along = c.kind == Condition::Kind::along;
-  const double way = along ? drives[*c.drive].value : 0;
-  if (c.kind == Condition::Kind::distance) {
-    m = c.a.local - hinge.a.local;
-    w = here.points[c.b.point].position - p;
-    constant = (m.squaredNorm() + w.squaredNorm() - c.value * c.value) / 2;
-  } else if (c.line.kind == LineRef::Kind::carried) {
-    m = along ? c.line.direction : left_normal(c.line.direction);
-    w = here.points[c.a.point].position - p;
-    constant = m.dot(c.line.point - hinge.a.local) + way;
-  } else {
-    const LineState line = state(c.line, here);
-    m = c.a.local - hinge.a.local;
-    w = along ? line.direction : left_normal(line.direction);
-    constant = w.dot(line.at.position - p) + way;
-  }
-  const double a = w.dot(m), b = cross(m, w);
-  const double norm = std::hypot(a, b);
-  const double rounding = flat_within(std::max({norm, std::abs(constant), largest(p) * m.norm()}));
-  const double slack = norm - std::abs(constant);
-  if (!(norm > rounding && slack >= -rounding)) return Status::open;
-  const double cosine = std::clamp(constant / norm, -1.0, 1.0);
-  const double sine = slack > 0 ? side * std::sqrt(slack * (norm + std::abs(constant))) / norm : 0;
-  Core& core = cores_.front();
-  core.cosine = (cosine * a - sine * b) / norm;
-  core.sine = (cosine * b + sine * a) / norm;
-  core.origin.position = p - turned(hinge.a.local, core.cosine, core.sine);
-  return slack > rounding ? Status::ok : Status::dead_centre;
-}
-
-GroupPoses GroupSolver::poses(std::span<const DriveState> drives, const Configuration& here,
-                              const GroupPose* hint) {
+GroupPoses platform_poses(const Mechanism& mechanism, const Group& group, const Configuration& here) {
   GroupPoses found;
-  const auto given = [](const PointState& state) { return std::isfinite(state.position.x()); };
-  if (form_ == Form::crank) {
-    found.poses.push_back(pose(0));
-  } else if (form_ == Form::dyad) {
-    Configuration copy = here;
-    for (const int side : {+1, -1}) {
-      const Status status = place_dyad(side, copy);
-      if (status == Status::open) break;
-      GroupPose pose;
-      pose.points.push_back(copy.points[dyad_->c].position);
-      pose.side = side;
-      found.poses.push_back(std::move(pose));
-      if (status == Status::dead_centre) break;
+  std::array<Leg, 3> legs;
+  for (std::size_t i = 0; i < legs.size(); ++i) {
+    const Condition& c = group.equations.conditions[group.form.loci[i]];
+    Leg& leg = legs[i];
+    leg.length = c.value;
+    if (c.kind == Condition::Kind::distance) {
+      leg.kind = Leg::Kind::circle;
+      leg.local = c.a.local;
+      leg.anchor = here.points[c.b.point].position;
+    } else if (c.line.kind == LineRef::Kind::carried) {
+      leg.kind = Leg::Kind::platform_line;
+      leg.local = c.line.point;
+      leg.direction = c.line.direction;
+      leg.anchor = here.points[c.a.point].position;
+    } else {
+      const LineState line = state_of(mechanism, c.line, GroupState(group.equations), here);
+      leg.kind = Leg::Kind::fixed_line;
+      leg.local = c.a.local;
+      leg.anchor = line.at.position;
+      leg.direction = line.direction;
     }
-  } else if (form_ != Form::newton) {
-    const bool single = is_single();
-    for (const int side : {+1, -1}) {
-      const Status status = find(drives, single ? 0 : side, here);
-      if (status == Status::open) break;
-      found.poses.push_back(pose(single ? 0 : side));
-      if (status == Status::dead_centre || single) break;
-    }
-  } else if (group_.kind == GroupKind::triad) {
-    std::array<Leg, 3> legs;
-    for (std::size_t i = 0; i < legs.size(); ++i) {
-      const Condition& c = equations_.conditions[i];
-      Leg& leg = legs[i];
-      leg.length = c.value;
-      if (c.kind == Condition::Kind::distance) {
-        leg.kind = Leg::Kind::circle;
-        leg.local = c.a.local;
-        leg.anchor = here.points[c.b.point].position;
-      } else if (c.line.kind == LineRef::Kind::carried) {
-        leg.kind = Leg::Kind::platform_line;
-        leg.local = c.line.point;
-        leg.direction = c.line.direction;
-        leg.anchor = here.points[c.a.point].position;
-      } else {
-        const LineState line = state(c.line, here);
-        leg.kind = Leg::Kind::fixed_line;
-        leg.local = c.a.local;
-        leg.anchor = line.at.position;
-        leg.direction = line.direction;
-      }
-      if (!given({leg.anchor, {}, {}})) return found;
-    }
-    const PlatformModes modes = platform_modes(legs);
-    found.movable = modes.movable;
-    for (int i = 0; i < modes.count; ++i) {
-      const PlatformPose& platform = modes.poses[static_cast<std::size_t>(i)];
-      GroupPose pose;
-      pose.cores.push_back({platform.position, platform.cosine, platform.sine});
-      found.poses.push_back(std::move(pose));
-    }
-  } else {
-    search(drives, here, hint, found);
+    if (!std::isfinite(leg.anchor.x())) return found;
+  }
+  const PlatformModes modes = platform_modes(legs);
+  found.movable = modes.movable;
+  for (int i = 0; i < modes.count; ++i) {
+    const PlatformPose& platform = modes.poses[static_cast<std::size_t>(i)];
+    GroupPose pose;
+    pose.cores.push_back({platform.position, platform.cosine, platform.sine});
+    found.poses.push_back(std::move(pose));
   }
   return found;
 }

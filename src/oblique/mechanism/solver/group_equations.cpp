@@ -193,6 +193,7 @@ class Reduction {
     length.a = reference(to);
     length.b = reference(from);
     length.value = distance(bar, from, to);
+    length.link = result_.links.size();
     result_.conditions.push_back(length);
     result_.links.push_back({body, from, to, bone.x() / length.value, bone.y() / length.value});
   }

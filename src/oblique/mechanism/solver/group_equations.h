@@ -53,6 +53,7 @@ struct Condition {
   LineRef line;                           ///< on_line, along; of an orientation the carrier alone
   double value = 0;                       ///< [length unit], [rad]
   std::size_t member = 0;                 ///< orientation: the core body
+  std::size_t link = 0;                   ///< distance: the link that keeps it, index in links
   std::optional<std::size_t> drive = {};  ///< index in Mechanism::drives
 };
 

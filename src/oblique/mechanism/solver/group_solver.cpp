@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-// The part of GroupSolver that knows what form a group has and moves its bodies; its positions are found in
-// closed_forms.cpp, its linear systems stand in group_newton.cpp.
 #include <oblique/mechanism/solver/group_solver.h>
 
 #include <algorithm>
@@ -8,152 +6,102 @@
 #include <limits>
 
 #include <oblique/mechanism/model/plane.h>
-#include <oblique/mechanism/structure/structure.h>
+#include <oblique/mechanism/solver/closed_forms.h>
+#include <oblique/mechanism/solver/group_singularity.h>
+#include <oblique/mechanism/solver/newton.h>
+#include <oblique/mechanism/solver/pose_search.h>
 #include <oblique/mechanism/triad/triangle.h>
 
 namespace oblique::mechanism {
-namespace {
 
+using Eigen::Index;
 using Eigen::Vector2d;
+using Eigen::VectorXd;
+
+namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
 GroupSolver::GroupSolver(const Mechanism& mechanism, const Group& group)
-    : mechanism_(mechanism), group_(group), equations_(group.equations), dyad_(dyad_of(group)) {
-  const auto n = static_cast<Eigen::Index>(equations_.unknowns());
-  cores_.resize(equations_.cores.size());
-  free_.resize(equations_.free_points.size());
-  jacobian_.setZero(n, n);
-  work_.setZero(n, n);
-  right_.setZero(n);
-  solution_.setZero(n);
-  size_ = size_of_group();
-  if (dyad_) {
-    inverse_r1_ = 1 / dyad_->r1;
-    inverse_r2_ = 1 / dyad_->r2;
+    : mechanism_(mechanism),
+      group_(group),
+      form_(group.form),
+      equations_(group.equations),
+      bodies_(mechanism, group),
+      system_(mechanism, group.equations),
+      state_(group.equations) {
+  if (form_.dyad) {
+    inverse_r1_ = 1 / form_.dyad->r1;
+    inverse_r2_ = 1 / form_.dyad->r2;
   }
-  choose_form();
-  plan_bodies();
 }
 
-double GroupSolver::size_of_group() const {
-  double size = 0;
-  for (const Condition& c : equations_.conditions) {
-    if (c.kind == Condition::Kind::distance) size = std::max(size, c.value);
-    for (const PointRef* point : {&c.a, &c.b}) size = std::max(size, point->local.norm());
-    if (c.line.kind != LineRef::Kind::fixed) size = std::max(size, c.line.point.norm());
+bool GroupSolver::is_tracked() const {
+  switch (form_.placing) {
+    case Placing::platform:
+    case Placing::iteration:
+      return true;
+    case Placing::rotation:
+    case Placing::triangle:
+    case Placing::hinged:
+    case Placing::crossing:
+    case Placing::about_pivot:
+      break;
   }
-  return size > 0 ? size : std::max(mechanism_.largest_length(), std::numeric_limits<double>::min());
-}
-
-void GroupSolver::choose_form() {
-  if (dyad_) form_ = Form::dyad;
-  if (group_.kind == GroupKind::crank) form_ = Form::crank;
-  if (form_ != Form::newton || equations_.unknowns() > 3) return;
-  const bool is_body = !equations_.cores.empty();
-  for (std::size_t i = 0; i < equations_.conditions.size(); ++i) {
-    const Condition& c = equations_.conditions[i];
-    const bool line = c.kind == Condition::Kind::on_line || c.kind == Condition::Kind::along;
-    const bool point_known = c.a.kind == PointRef::Kind::known;
-    const bool line_known = c.line.kind != LineRef::Kind::carried;
-    if (c.kind == Condition::Kind::orientation ? !line_known
-        : line                                 ? point_known == line_known
-                                               : c.b.kind != PointRef::Kind::known)
-      return;  // both ends are unknown
-    if (c.kind == Condition::Kind::orientation) {
-      angle_conditions_.push_back(i);
-    } else if (c.kind == Condition::Kind::coincidence) {
-      hinge_ = i;
-    } else {
-      scalars_.push_back(i);
-    }
-  }
-  if (!is_body || angle_conditions_.size() == 1) {
-    form_ = Form::loci;
-  } else if (hinge_ && angle_conditions_.empty()) {
-    form_ = Form::pivot;
-  }
+  return false;
 }
 
 bool GroupSolver::is_single() const {
-  if (form_ == Form::crank) return true;
-  if (form_ != Form::loci) return false;
-  return hinge_ || std::none_of(scalars_.begin(), scalars_.end(), [&](std::size_t i) {
-           return equations_.conditions[i].kind == Condition::Kind::distance;
-         });
-}
-
-void GroupSolver::plan_bodies() {
-  std::vector<bool> done(mechanism_.points.size(), true);
-  for (const std::size_t point : group_.points) done[point] = false;
-  for (const std::size_t point : equations_.free_points) done[point] = true;
-  const auto plan = [&](std::size_t body, std::size_t base) {
-    Rigid rigid{body, base, {}};
-    done[base] = true;
-    const Vector2d& origin = mechanism_.bodies[body].find(base)->local;
-    for (const BodyPoint& p : mechanism_.bodies[body].points) {
-      if (done[p.point]) continue;
-      done[p.point] = true;
-      rigid.arms.push_back({p.point, p.local - origin});
-    }
-    return rigid;
-  };
-  for (const std::size_t core : equations_.cores) {
-    const std::size_t base = mechanism_.bodies[core].points.front().point;
-    rigid_cores_.push_back(plan(core, base));
+  switch (form_.placing) {
+    case Placing::rotation:
+    case Placing::hinged:
+      return true;
+    case Placing::crossing:
+      return form_.circles == 0;
+    case Placing::triangle:
+    case Placing::about_pivot:
+    case Placing::platform:
+    case Placing::iteration:
+      break;
   }
-  for (const Link& link : equations_.links) rigid_links_.push_back(plan(link.body, link.from));
-  for (const SliderBlock& block : equations_.blocks) rigid_blocks_.push_back(plan(block.body, block.hinge));
-}
-
-void GroupSolver::place_arms(const Rigid& rigid, double cosine, double sine, double omega, double alpha,
-                             Configuration& here) const {
-  const PointState& base = here.points[rigid.base];
-  for (const Arm& arm : rigid.arms) {
-    const Vector2d way = turned(arm.local, cosine, sine);
-    PointState& state = here.points[arm.point];
-    state.position = base.position + way;
-    state.velocity = base.velocity + omega * left_normal(way);
-    state.acceleration = base.acceleration + alpha * left_normal(way) - omega * omega * way;
-  }
+  return false;
 }
 
 Status GroupSolver::place(std::span<const DriveState> drives, int side, Configuration& here) {
-  if (form_ == Form::crank) return place_crank(drives, here);
-  if (form_ == Form::dyad) return place_dyad(side, here);
+  if (form_.placing == Placing::rotation) return place_crank(drives, here);
+  if (form_.placing == Placing::triangle) return place_dyad(side, here);
   const Status status = find(drives, side, here);
   return status == Status::open ? status : finish(drives, here, status == Status::dead_centre);
 }
 
 Status GroupSolver::place(std::span<const DriveState> drives, const GroupPose& pose, Configuration& here) {
-  if (form_ != Form::newton) return place(drives, pose.side, here);
-  load(pose);
+  if (!is_tracked()) return place(drives, pose.side, here);
+  state_.load(pose);
   return finish(drives, here, false);
 }
 
+/// The unknowns of a group that is no crank and no triangle.
 Status GroupSolver::find(std::span<const DriveState> drives, int side, const Configuration& here) {
-  if (form_ == Form::loci) return find_by_loci(drives, side, here);
-  if (form_ == Form::pivot) return find_about_pivot(drives, side, here);
-  load(here);
-  constexpr double kFarthest = 0.5;  // of the group's size: no guess of a step is so wrong
-  return newton(drives, here, kFarthest) ? Status::ok : Status::open;
+  if (!is_tracked()) return find_by_closed_form(mechanism_, group_, drives, side, here, state_);
+  state_.load(mechanism_, equations_, here);
+  const Closing closing = close_by_newton(system_, state_, drives, here);
+  correction_ = closing.correction;
+  contraction_ = closing.contraction;
+  return closing.closed ? Status::ok : Status::open;
 }
 
 Status GroupSolver::place_crank(std::span<const DriveState> drives, Configuration& here) {
-  const auto turns = std::find_if(equations_.conditions.begin(), equations_.conditions.end(),
-                                  [](const Condition& c) { return c.drive.has_value(); });
-  const DriveState& drive = drives[*turns->drive];
+  const DriveState& drive = drives[*equations_.conditions[*form_.angle].drive];
   const std::size_t body = equations_.cores.front();
-  const Rigid& rigid = rigid_cores_.front();
+  const RigidBody& rigid = bodies_.cores().front();
   const double cosine = std::cos(drive.value), sine = std::sin(drive.value);
   here.bodies[body] = {drive.value, drive.rate, drive.acceleration, cosine, sine};
-  const auto hinge = std::find_if(equations_.conditions.begin(), equations_.conditions.end(),
-                                  [](const Condition& c) { return c.kind == Condition::Kind::coincidence; });
-  if (hinge->a.point != rigid.base) {  // the pivot is not the body's first point
-    const PointState& pivot = here.points[hinge->b.point];
-    const Vector2d way = turned(-hinge->a.local, cosine, sine);
+  const Condition& hinge = equations_.conditions[*form_.hinge];
+  if (hinge.a.point != rigid.base) {  // the pivot is not the body's first point
+    const PointState& pivot = here.points[hinge.b.point];
+    const Vector2d way = turned(-hinge.a.local, cosine, sine);
     here.points[rigid.base] = {
         pivot.position + way, pivot.velocity + drive.rate * left_normal(way),
         pivot.acceleration + drive.acceleration * left_normal(way) - drive.rate * drive.rate * way};
@@ -163,7 +111,7 @@ Status GroupSolver::place_crank(std::span<const DriveState> drives, Configuratio
 }
 
 Status GroupSolver::place_dyad(int side, Configuration& here) {
-  const Dyad& dyad = *dyad_;
+  const Dyad& dyad = *form_.dyad;
   const PointState& p = here.points[dyad.p];
   const PointState& q = here.points[dyad.q];
   const Vector2d d = q.position - p.position;
@@ -174,7 +122,7 @@ Status GroupSolver::place_dyad(int side, Configuration& here) {
   // P on Q: no C where r₁ ≠ r₂, and any direction of it where r₁ = r₂; neither gives a number. NaN ends here
   // too.
   if (!(base > rounding && shape.slack >= -rounding)) return Status::open;
-  const bool flat = shape.slack <= rounding;
+  const bool is_dead_centre = shape.slack <= rounding;
   const Vector2d direction = d * (1 / base);
   const Vector2d e1 = shape.along * direction + (side * shape.height) * left_normal(direction);
   PointState& c = here.points[dyad.c];
@@ -183,7 +131,7 @@ Status GroupSolver::place_dyad(int side, Configuration& here) {
   const double cross = side * shape.four_area / 2;
   regularity_ = cross * inverse_r1_ * inverse_r2_;
   double omega1 = kNaN, omega2 = kNaN, alpha1 = kNaN, alpha2 = kNaN;
-  if (!flat) {
+  if (!is_dead_centre) {
     const double inverse = 1 / cross;
     const Vector2d velocity = q.velocity - p.velocity;
     omega1 = e2.dot(velocity) * inverse;
@@ -202,108 +150,149 @@ Status GroupSolver::place_dyad(int side, Configuration& here) {
     const double sine = link.cosine * bone.y() - link.sine * bone.x();
     const double omega = first ? omega1 : omega2, alpha = first ? alpha1 : alpha2;
     here.bodies[link.body] = {kNaN, omega, alpha, cosine, sine};
-    place_arms(rigid_links_[i], cosine, sine, omega, alpha, here);
+    place_arms(bodies_.links()[i], cosine, sine, omega, alpha, here);
   }
-  return flat ? Status::dead_centre : Status::ok;
+  return is_dead_centre ? Status::dead_centre : Status::ok;
 }
 
-Status GroupSolver::finish(std::span<const DriveState> drives, Configuration& here, bool flat) {
-  const Vector2d zero = Vector2d::Zero();
-  for (Core& core : cores_) {
-    core.origin.velocity = core.origin.acceleration = zero;
-    core.omega = core.alpha = 0;
-  }
-  for (PointState& point : free_) point.velocity = point.acceleration = zero;
-  evaluate_jacobian(here);
+/// Rates of the unknowns, and all bodies and points by them.
+Status GroupSolver::finish(std::span<const DriveState> drives, Configuration& here, bool is_dead_centre) {
+  state_.stop();
+  system_.evaluate_jacobian(state_, here);
   const auto apply = [&](bool second) {
-    evaluate_rates(drives, here, second);
-    const bool solved = solve();
-    if (!second) measure_regularity();
-    const auto part = [&](std::size_t k) { return solved ? solution_(static_cast<Eigen::Index>(k)) : kNaN; };
-    std::size_t k = 0;
-    for (Core& core : cores_) {
+    system_.evaluate_rates(state_, drives, here, second);
+    const bool solved = system_.solve();
+    if (!second) regularity_ = system_.normalised_determinant();
+    const auto part = [&](Index k) { return solved ? system_.solution()(k) : kNaN; };
+    Index k = 0;
+    for (GroupState::Core& core : state_.cores) {
       (second ? core.origin.acceleration : core.origin.velocity) = {part(k), part(k + 1)};
-      (second ? core.alpha : core.omega) = part(k + 2) / size_;
+      (second ? core.alpha : core.omega) = part(k + 2) / system_.size();
       k += 3;
     }
-    for (PointState& point : free_) {
+    for (PointState& point : state_.free) {
       (second ? point.acceleration : point.velocity) = {part(k), part(k + 1)};
       k += 2;
     }
   };
   apply(false);
   // Two modes that meet do so like square roots of the rounding.
-  constexpr double kFlat = 1e-7;
-  flat = flat || !(std::abs(regularity_) > (form_ == Form::newton ? kFlat : 0));
+  constexpr double kMeeting = 1e-7;
+  is_dead_centre = is_dead_centre || !(std::abs(regularity_) > (is_tracked() ? kMeeting : 0));
   apply(true);
-  if (flat) {
+  if (is_dead_centre) {
     const Vector2d nothing = Vector2d::Constant(kNaN);
-    for (Core& core : cores_) {
+    for (GroupState::Core& core : state_.cores) {
       core.origin.velocity = core.origin.acceleration = nothing;
       core.omega = core.alpha = kNaN;
     }
-    for (PointState& point : free_) point.velocity = point.acceleration = nothing;
+    for (PointState& point : state_.free) point.velocity = point.acceleration = nothing;
   }
-  for (std::size_t i = 0; i < cores_.size(); ++i) {
-    const Core& core = cores_[i];
-    const Rigid& rigid = rigid_cores_[i];
-    here.bodies[rigid.body] = {kNaN, core.omega, core.alpha, core.cosine, core.sine};
-    if (std::binary_search(group_.points.begin(), group_.points.end(), rigid.base))
-      here.points[rigid.base] = core.origin;
-    place_arms(rigid, core.cosine, core.sine, core.omega, core.alpha, here);
-  }
-  for (std::size_t i = 0; i < free_.size(); ++i) here.points[equations_.free_points[i]] = free_[i];
-  for (std::size_t i = 0; i < equations_.links.size(); ++i) {
-    const Link& link = equations_.links[i];
-    const PointState& from = here.points[link.from];
-    const PointState& to = here.points[link.to];
-    const Vector2d e = to.position - from.position;
-    const double squared = e.squaredNorm(), length = std::sqrt(squared);
-    const Vector2d across = left_normal(e) / squared;
-    const double omega = across.dot(to.velocity - from.velocity);
-    const double alpha = across.dot(to.acceleration - from.acceleration);
-    const double cosine = (link.cosine * e.x() + link.sine * e.y()) / length;
-    const double sine = (link.cosine * e.y() - link.sine * e.x()) / length;
-    here.bodies[link.body] = {kNaN, omega, alpha, cosine, sine};
-    place_arms(rigid_links_[i], cosine, sine, omega, alpha, here);
-  }
-  for (std::size_t i = 0; i < equations_.blocks.size(); ++i) {
-    const SliderBlock& block = equations_.blocks[i];
-    const BodyState on = block.on ? here.bodies[*block.on] : BodyState{0, 0, 0, 1, 0};
-    const double cosine = on.cosine * block.cosine - on.sine * block.sine;
-    const double sine = on.sine * block.cosine + on.cosine * block.sine;
-    here.bodies[block.body] = {kNaN, on.omega, on.alpha, cosine, sine};
-    place_arms(rigid_blocks_[i], cosine, sine, on.omega, on.alpha, here);
-  }
-  return flat ? Status::dead_centre : Status::ok;
+  bodies_.place(state_, here);
+  return is_dead_centre ? Status::dead_centre : Status::ok;
 }
 
-void GroupSolver::load(const Configuration& here) {
-  for (std::size_t i = 0; i < cores_.size(); ++i) {
-    const BodyState& body = here.bodies[equations_.cores[i]];
-    cores_[i].origin.position = here.points[rigid_cores_[i].base].position;
-    cores_[i].cosine = body.cosine;
-    cores_[i].sine = body.sine;
+GroupPoses GroupSolver::poses(std::span<const DriveState> drives, const Configuration& here,
+                              const GroupPose* hint) {
+  GroupPoses found;
+  switch (form_.placing) {
+    case Placing::rotation:
+      found.poses.push_back(state_.pose(0));
+      break;
+    case Placing::triangle: {
+      Configuration copy = here;
+      for (const int side : {+1, -1}) {
+        const Status status = place_dyad(side, copy);
+        if (status == Status::open) break;
+        GroupPose pose;
+        pose.points.push_back(copy.points[form_.dyad->c].position);
+        pose.side = side;
+        found.poses.push_back(std::move(pose));
+        if (status == Status::dead_centre) break;
+      }
+      break;
+    }
+    case Placing::hinged:
+    case Placing::crossing:
+    case Placing::about_pivot: {
+      const bool single = is_single();
+      for (const int side : {+1, -1}) {
+        const Status status = find(drives, single ? 0 : side, here);
+        if (status == Status::open) break;
+        found.poses.push_back(state_.pose(single ? 0 : side));
+        if (status == Status::dead_centre || single) break;
+      }
+      break;
+    }
+    case Placing::platform:
+      return platform_poses(mechanism_, group_, here);
+    case Placing::iteration:
+      return search_poses(system_, drives, here, hint);
   }
-  for (std::size_t i = 0; i < free_.size(); ++i)
-    free_[i].position = here.points[equations_.free_points[i]].position;
+  return found;
 }
 
-void GroupSolver::load(const GroupPose& pose) {
-  for (std::size_t i = 0; i < cores_.size(); ++i) {
-    cores_[i].origin.position = pose.cores[i].position;
-    cores_[i].cosine = pose.cores[i].cosine;
-    cores_[i].sine = pose.cores[i].sine;
-  }
-  for (std::size_t i = 0; i < free_.size(); ++i) free_[i].position = pose.points[i];
+std::optional<GroupPose> GroupSolver::close(std::span<const DriveState> drives, const Configuration& here,
+                                            const GroupPose& guess) {
+  state_.load(guess);
+  if (!close_by_newton(system_, state_, drives, here).closed) return std::nullopt;
+  return state_.pose(guess.side);
 }
 
-GroupPose GroupSolver::pose(int side) const {
-  GroupPose pose;
-  for (const Core& core : cores_) pose.cores.push_back({core.origin.position, core.cosine, core.sine});
-  for (const PointState& point : free_) pose.points.push_back(point.position);
-  pose.side = side;
-  return pose;
+Singularity GroupSolver::singularity(std::span<const DriveState> drives, const Configuration& here,
+                                     double seconds) {
+  state_.load(mechanism_, equations_, here);
+  return singularity_of(system_, state_, drives, here, seconds);
+}
+
+void GroupSolver::stand(std::span<const DriveState> drives, Configuration& here) {
+  state_.load(mechanism_, equations_, here);
+  finish(drives, here, true);
+}
+
+void GroupSolver::displace(const VectorXd& step, Configuration& here) const {
+  Index k = 0;
+  for (std::size_t i = 0; i < state_.cores.size(); ++i, k += 3) {
+    const std::size_t base = bodies_.cores()[i].base;
+    if (std::binary_search(group_.points.begin(), group_.points.end(), base))
+      here.points[base].position += step.segment<2>(k);
+    BodyState& body = here.bodies[equations_.cores[i]];
+    const double angle = step(k + 2) / system_.size();
+    const Vector2d way = turned({body.cosine, body.sine}, std::cos(angle), std::sin(angle));
+    body.cosine = way.x();
+    body.sine = way.y();
+  }
+  for (const std::size_t point : equations_.free_points) {
+    here.points[point].position += step.segment<2>(k);
+    k += 2;
+  }
+}
+
+VectorXd GroupSolver::velocity(const Configuration& here) const {
+  VectorXd rates(system_.jacobian().rows());
+  Index k = 0;
+  for (std::size_t i = 0; i < state_.cores.size(); ++i, k += 3) {
+    rates.segment<2>(k) = here.points[bodies_.cores()[i].base].velocity;
+    rates(k + 2) = system_.size() * here.bodies[equations_.cores[i]].omega;
+  }
+  for (const std::size_t point : equations_.free_points) {
+    rates.segment<2>(k) = here.points[point].velocity;
+    k += 2;
+  }
+  return rates;
+}
+
+double GroupSolver::distance(const Configuration& here) const {
+  Vector2d origin = Vector2d::Zero();
+  for (std::size_t p = 0; p < mechanism_.points.size(); ++p) {
+    if (!mechanism_.points[p].fixed) continue;
+    origin = here.points[p].position;
+    break;
+  }
+  double far = 0;
+  for (const std::size_t point : group_.points)
+    far = std::max(far, (here.points[point].position - origin).norm());
+  return far / std::max(system_.size(), mechanism_.largest_length());
 }
 
 }  // namespace oblique::mechanism

@@ -8,29 +8,21 @@
 
 #include <oblique/mechanism/model/configuration.h>
 #include <oblique/mechanism/model/drive_law.h>
+#include <oblique/mechanism/solver/group_bodies.h>
+#include <oblique/mechanism/solver/group_state.h>
+#include <oblique/mechanism/solver/group_system.h>
 #include <oblique/mechanism/solver/singularity.h>
 #include <oblique/mechanism/structure/structure.h>
 
 namespace oblique::mechanism {
-
-/// All ways to put a group together.
-struct GroupPoses {
-  std::vector<GroupPose> poses;
-  bool complete = true;  ///< false: found by a search, so these are at least some
-  bool movable = false;  ///< its conditions depend on each other: it has a whole curve of poses
-};
 
 /// Puts one group together whose known elements stand in a configuration. It keeps scratch memory, so one
 /// object serves one thread; after construction nothing allocates but `poses`.
 ///
 /// Positions: a rotation for a crank; two loci (circles, lines) that intersect for a point or a body of known
 /// direction; a cos θ + b sin θ = c for a body about a known point; otherwise Newton's method from the pose
-/// that stands in the configuration. Rates: with the conditions g(q, t) = 0 of GroupEquations,
-///
-///     J q̇ = −∂g/∂t,      J q̈ = −(d²g/dt² with q̈ = 0)
-///
-/// where the right-hand sides follow from the motion of the known elements; for an RRR dyad, with D = e₁ ×
-/// e₂, e₁ = C − P, e₂ = C − Q:
+/// that stands in the configuration. Rates: from the linear systems of GroupSystem; for an
+/// RRR dyad, with D = e₁ × e₂, e₁ = C − P, e₂ = C − Q:
 ///
 ///     ω₁ = e₂·(Q̇ − Ṗ)/D,   ω₂ = e₁·(Q̇ − Ṗ)/D
 ///     α₁ = e₂·b/D,   α₂ = e₁·b/D,   b = Q̈ − P̈ + ω₁²e₁ − ω₂²e₂
@@ -54,7 +46,7 @@ class GroupSolver {
                                  const GroupPose& guess);
 
   /// Whether `place` starts from the pose in the configuration.
-  bool is_tracked() const { return form_ == Form::newton; }
+  bool is_tracked() const;
 
   /// Whether the group has one assembly mode only, for which `side` is 0.
   bool is_single() const;
@@ -88,81 +80,20 @@ class GroupSolver {
   double distance(const Configuration& here) const;
 
  private:
-  enum class Form { crank, dyad, loci, pivot, newton };
-
-  struct Arm {
-    std::size_t point;
-    Eigen::Vector2d local;  ///< from the body's base point, in the body's frame
-  };
-  struct Rigid {  ///< a body as it is placed
-    std::size_t body;
-    std::size_t base;  ///< index in Mechanism::points
-    std::vector<Arm> arms;
-  };
-  struct Core {
-    PointState origin;
-    double cosine, sine, omega, alpha;
-  };
-  struct Locus {
-    bool circle;
-    Eigen::Vector2d at, direction;
-    double radius;
-  };
-  struct LineState {
-    PointState at;
-    Eigen::Vector2d direction;
-    double omega, alpha;
-  };
-
-  void choose_form();
-  void plan_bodies();
-  double size_of_group() const;
-
   Status place_crank(std::span<const DriveState> drives, Configuration& here);
   Status place_dyad(int side, Configuration& here);
   Status find(std::span<const DriveState> drives, int side, const Configuration& here);
-  Status find_by_loci(std::span<const DriveState> drives, int side, const Configuration& here);
-  Status find_about_pivot(std::span<const DriveState> drives, int side, const Configuration& here);
-  bool newton(std::span<const DriveState> drives, const Configuration& here, double longest_step);
-  void search(std::span<const DriveState> drives, const Configuration& here, const GroupPose* hint,
-              GroupPoses& found);
-  Status finish(std::span<const DriveState> drives, Configuration& here, bool flat);
-
-  void set_rates(const Eigen::VectorXd& rates);
-  void load(const Configuration& here);
-  void load(const GroupPose& pose);
-  GroupPose pose(int side) const;
-
-  PointState state(const PointRef& point, const Configuration& here) const;
-  LineState state(const LineRef& line, const Configuration& here) const;
-  void evaluate(std::span<const DriveState> drives, const Configuration& here);
-  void evaluate_jacobian(const Configuration& here);
-  void evaluate_rates(std::span<const DriveState> drives, const Configuration& here, bool second);
-  bool solve();
-  void measure_regularity();
-  void place_arms(const Rigid& rigid, double cosine, double sine, double omega, double alpha,
-                  Configuration& here) const;
-  Locus locus(const Condition& condition, std::span<const DriveState> drives,
-              const Configuration& here) const;
+  Status finish(std::span<const DriveState> drives, Configuration& here, bool is_dead_centre);
 
   const Mechanism& mechanism_;
   const Group& group_;
+  const GroupForm& form_;
   const GroupEquations& equations_;
-  Form form_ = Form::newton;
-  double size_ = 1;
-  std::optional<Dyad> dyad_;
+  GroupBodies bodies_;
+  GroupSystem system_;
+  GroupState state_;
   double inverse_r1_ = 0, inverse_r2_ = 0;  ///< of the dyad's links
-  std::vector<Rigid> rigid_cores_, rigid_links_, rigid_blocks_;
-  std::vector<std::size_t> angle_conditions_;  ///< of a single core body: what gives its direction
-  std::vector<std::size_t> scalars_;           ///< its other conditions
-  std::optional<std::size_t> hinge_;           ///< its hinge to a known point
-
-  std::vector<Core> cores_;
-  std::vector<PointState> free_;
-  Eigen::MatrixXd jacobian_, work_;
-  Eigen::VectorXd right_, solution_;
   double regularity_ = 1;
-  double determinant_ = 1;
   double correction_ = 0;
   double contraction_ = 0;
 };

@@ -64,7 +64,7 @@ std::optional<Chain> chain(const Mechanism& mechanism, const Group& group, std::
 }
 
 std::optional<FourBarLoop> four_bar(const Mechanism& mechanism, const Structure& structure, std::size_t g) {
-  const auto dyad = dyad_of(structure.groups[g]);
+  const auto& dyad = structure.groups[g].form.dyad;
   if (!dyad) return std::nullopt;
   LoopLink coupler{dyad->body1, dyad->p, dyad->c, dyad->r1}, output{dyad->body2, dyad->c, dyad->q, dyad->r2};
   if (mechanism.points[dyad->p].fixed) {
@@ -119,57 +119,46 @@ SliderLoop::Type lever_type(double r, double d, double e) {
 
 std::optional<SliderLoop> slider_crank(const Mechanism& mechanism, const Structure& structure,
                                        std::size_t g) {
-  using Kind = Condition::Kind;
   const Group& group = structure.groups[g];
-  const Condition* line = nullptr;
-  const Condition* bar = nullptr;
-  for (const Condition& c : group.equations.conditions) {
-    if (c.kind == Kind::on_line) line = &c;
-    if (c.kind == Kind::distance || c.kind == Kind::coincidence) bar = &c;
-  }
-  if (line == nullptr || bar == nullptr || line->line.kind != LineRef::Kind::fixed) return std::nullopt;
+  const auto& conditions = group.equations.conditions;
+  const Condition& line = conditions[group.form.loci.back()];
+  if (line.line.kind != LineRef::Kind::fixed) return std::nullopt;
   SliderLoop loop;
   loop.group = g;
-  std::size_t pin = bar->b.point;
-  if (bar->kind == Kind::distance) {
-    if (bar->b.kind != PointRef::Kind::known) pin = bar->a.point;
-    const auto& links = group.equations.links;
-    const auto link =
-        std::find_if(links.begin(), links.end(), [&](const Link& l) { return l.from == pin || l.to == pin; });
-    if (link == links.end()) return std::nullopt;
-    loop.rod = link->body;
-    loop.length = bar->value;
+  std::size_t pin = 0;
+  if (group.form.hinge) {
+    const Condition& hinge = conditions[*group.form.hinge];
+    pin = hinge.b.point;
+    loop.rod = group.equations.cores[hinge.a.member];
+    loop.length = (line.a.local - hinge.a.local).norm();
   } else {
-    loop.rod = group.equations.cores[bar->a.member];
-    loop.length = (line->a.local - bar->a.local).norm();
+    const Condition& rod = conditions[group.form.loci.front()];
+    pin = rod.b.point;
+    loop.rod = group.equations.links[rod.link].body;
+    loop.length = rod.value;
   }
   const auto crank = crank_at(mechanism, group, pin);
   if (!crank) return std::nullopt;
   loop.crank = crank->first;
   loop.radius = distance(mechanism.bodies[crank->first], crank->second, pin);
   loop.offset =
-      std::abs(cross(line->line.direction, mechanism.points[crank->second].position - line->line.point));
+      std::abs(cross(line.line.direction, mechanism.points[crank->second].position - line.line.point));
   loop.type = slider_crank_type(loop.radius, loop.length, loop.offset);
   return loop;
 }
 
 std::optional<SliderLoop> slotted_lever(const Mechanism& mechanism, const Structure& structure,
                                         std::size_t g) {
-  using Kind = Condition::Kind;
   const Group& group = structure.groups[g];
-  const Condition* line = nullptr;
-  const Condition* hinge = nullptr;
-  for (const Condition& c : group.equations.conditions) {
-    if (c.kind == Kind::on_line) line = &c;
-    if (c.kind == Kind::coincidence) hinge = &c;
-  }
-  if (line == nullptr || hinge == nullptr) return std::nullopt;
+  if (group.form.placing != Placing::about_pivot) return std::nullopt;
+  const Condition& line = group.equations.conditions[group.form.loci.front()];
+  const Condition& hinge = group.equations.conditions[*group.form.hinge];
   SliderLoop loop;
   loop.group = g;
   loop.is_lever = true;
-  loop.rod = group.equations.cores[hinge->a.member];
-  loop.offset = std::abs(cross(line->line.direction, hinge->a.local - line->line.point));
-  std::size_t pin = line->a.point, fixed = hinge->b.point;
+  loop.rod = group.equations.cores[hinge.a.member];
+  loop.offset = std::abs(cross(line.line.direction, hinge.a.local - line.line.point));
+  std::size_t pin = line.a.point, fixed = hinge.b.point;
   if (mechanism.points[pin].fixed) std::swap(pin, fixed);
   const auto crank = crank_at(mechanism, group, pin);
   if (!crank || !mechanism.points[fixed].fixed) return std::nullopt;
@@ -220,9 +209,10 @@ std::vector<FourBarLoop> four_bar_loops(const Mechanism& mechanism, const Struct
 std::vector<SliderLoop> slider_loops(const Mechanism& mechanism, const Structure& structure) {
   std::vector<SliderLoop> loops;
   for (std::size_t g = 0; const Group& group : structure.groups) {
-    if (group.kind == GroupKind::rrp) {
+    const GroupKind kind = group.form.kind;
+    if (kind == GroupKind::rrp) {
       if (auto loop = slider_crank(mechanism, structure, g)) loops.push_back(*loop);
-    } else if (group.kind == GroupKind::rpr) {
+    } else if (kind == GroupKind::rpr) {
       if (auto loop = slotted_lever(mechanism, structure, g)) loops.push_back(*loop);
     }
     ++g;

@@ -50,19 +50,19 @@ class Rows {
   }
 
   /// Adds the derivative by the place of a body's material point.
-  void add_arm(std::size_t body, const Vector2d& arm, const Vector2d& slope) {
+  void add_arm(std::size_t body, const Vector2d& arm, const Vector2d& derivative) {
     const auto column = static_cast<Index>(3 * body);
-    rows_.back()(column) += slope.x();
-    rows_.back()(column + 1) += slope.y();
-    rows_.back()(column + 2) += slope.dot(left_normal(arm)) / size_;
+    rows_.back()(column) += derivative.x();
+    rows_.back()(column + 1) += derivative.y();
+    rows_.back()(column + 2) += derivative.dot(left_normal(arm)) / size_;
   }
 
   Vector2d arm(std::size_t body, std::size_t point) const {
     return turned(poses_[body], mechanism_.bodies[body].find(point)->local);
   }
 
-  void add(std::size_t body, std::size_t point, const Vector2d& slope) {
-    add_arm(body, arm(body, point), slope);
+  void add(std::size_t body, std::size_t point, const Vector2d& derivative) {
+    add_arm(body, arm(body, point), derivative);
   }
 
   void add_slide(const Slide& slide) {

@@ -168,7 +168,7 @@ bool choose(const Loosened& loosened, Structure& structure) {
   for (std::size_t g = 0; g < structure.groups.size(); ++g) {
     Group& group = structure.groups[g];
     GroupSolver& solver = kinematics.solver(g);
-    if (group.kind == GroupKind::crank) {
+    if (group.form.placing == Placing::rotation) {
       solver.place(drives, 0, here);
       continue;
     }

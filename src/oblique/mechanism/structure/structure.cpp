@@ -32,6 +32,18 @@ struct Part {
   std::vector<std::size_t> carried;  ///< points that its bodies carry along
 };
 
+/// Takes a mechanism apart and orders the groups:
+///
+/// 1. `ConstraintGraph` matches each condition with an unknown that it determines. An edge then leads from
+/// the
+///    vertex that owns a condition to what the condition needs, and the strongly connected components are
+///    the parts that only together have a place.
+/// 2. A component that is nothing but a point of one body goes to the part of that body, which carries it.
+/// 3. Of the parts that have all they need, the next is always the one whose drive stands first in the file,
+///    then whose first body does. So the order does not depend on the matching, of which there are many, and
+///    files that say the same give the same rows and names.
+/// 4. In that order each part is reduced to equations, whose form then is known: what earlier groups place
+///    counts as given.
 class Decomposition {
  public:
   explicit Decomposition(const Mechanism& mechanism)
@@ -129,9 +141,9 @@ class Decomposition {
     }
     group.name = fmt::format("{}", fmt::join(names, "-"));
     group.equations = reduce(mechanism_, part.members, known_);
-    group.kind = kind_of(group);
+    group.form = form_of(group.equations);
     group.order = order_of(mechanism_, part.members, known_);
-    group.assur_class = group.kind == GroupKind::crank || group.kind == GroupKind::slider
+    group.assur_class = group.form.kind == GroupKind::crank || group.form.kind == GroupKind::slider
                             ? 1
                             : class_of(mechanism_, part.members, known_);
     group.points = part.members.points;
@@ -139,50 +151,6 @@ class Decomposition {
     std::sort(group.points.begin(), group.points.end());
     for (const std::size_t point : group.points) known_[point] = true;
     structure_.groups.push_back(std::move(group));
-  }
-
-  static bool is_given(const PointRef& point) { return point.kind == PointRef::Kind::known; }
-  static bool is_given(const LineRef& line) { return line.kind != LineRef::Kind::carried; }
-
-  static GroupKind kind_of(const Group& group) {
-    using Kind = Condition::Kind;
-    const GroupEquations& equations = group.equations;
-    int distances = 0, on_given = 0, on_own = 0, along = 0, hinges = 0, turned = 0, angles = 0, other = 0;
-    for (const Condition& c : equations.conditions) {
-      const bool line = c.kind == Kind::on_line || c.kind == Kind::along;
-      const bool simple = c.kind == Kind::orientation ? is_given(c.line)
-                          : line                      ? is_given(c.a) != is_given(c.line)
-                                                      : is_given(c.b);
-      if (!simple) {
-        ++other;
-      } else if (c.kind == Kind::distance) {
-        ++distances;
-      } else if (c.kind == Kind::coincidence) {
-        ++hinges;
-      } else if (c.kind == Kind::on_line) {
-        ++(is_given(c.line) ? on_given : on_own);
-      } else if (c.kind == Kind::along) {
-        ++along;
-      } else {
-        ++(c.drive ? turned : angles);
-      }
-    }
-    const std::size_t unknowns = equations.unknowns();
-    if (other > 0 || unknowns > 3) return GroupKind::general;
-    if (along > 0 || turned > 0) {
-      if (hinges == 1 && turned == 1) return GroupKind::crank;
-      const bool led = along == 1 && on_given == 1;
-      return led && (unknowns == 2 || angles == 1) ? GroupKind::slider : GroupKind::general;
-    }
-    if (hinges == 1 && angles == 0) {
-      return on_own == 1 ? GroupKind::rpr : on_given == 1 ? GroupKind::rrp : GroupKind::rrr;
-    }
-    if (hinges > 0) return GroupKind::general;
-    if (unknowns == 3 && angles == 0) return GroupKind::triad;
-    if (angles > 1) return GroupKind::general;
-    if (distances == 2) return GroupKind::rrr;
-    if (distances == 1) return on_own == 1 ? GroupKind::rpr : GroupKind::rrp;
-    return on_own > 0 ? GroupKind::rpp : GroupKind::prp;
   }
 
   const Mechanism& mechanism_;
@@ -194,32 +162,8 @@ class Decomposition {
 
 }  // namespace
 
-std::string_view kind_name(GroupKind kind) {
-  constexpr std::array<std::string_view, 9> kNames{"crank", "slider", "RRR",   "RRP",    "PRP",
-                                                   "RPR",   "RPP",    "triad", "general"};
-  return kNames[static_cast<std::size_t>(kind)];
-}
-
-std::optional<Dyad> dyad_of(const Group& group) {
-  if (group.kind != GroupKind::rrr || group.equations.links.size() != 2 || !group.equations.cores.empty()) {
-    return std::nullopt;
-  }
-  const Link* first = &group.equations.links[0];
-  const Link* second = &group.equations.links[1];
-  if (second->body < first->body) std::swap(first, second);
-  const auto length = [&](const Link& link) {
-    return std::find_if(group.equations.conditions.begin(), group.equations.conditions.end(),
-                        [&](const Condition& c) { return c.b.point == link.from && c.a.point == link.to; })
-        ->value;
-  };
-  return Dyad{first->body, first->from,    second->body,    second->from,
-              first->to,   length(*first), length(*second), group.side};
-}
-
 std::size_t pivot_of(const Group& crank) {
-  return std::find_if(crank.equations.conditions.begin(), crank.equations.conditions.end(),
-                      [](const Condition& c) { return c.kind == Condition::Kind::coincidence; })
-      ->b.point;
+  return crank.equations.conditions[crank.form.hinge.value()].b.point;
 }
 
 int mobility(const Mechanism& mechanism) {

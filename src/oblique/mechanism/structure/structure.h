@@ -2,39 +2,21 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include <oblique/mechanism/model/mechanism.h>
 #include <oblique/mechanism/solver/group_equations.h>
+#include <oblique/mechanism/structure/group_form.h>
 
 namespace oblique::mechanism {
-
-/// What is known about putting a group together. The letters of a class II group are its pairs, from one
-/// known element to the other: R a hinge, P a slide.
-enum class GroupKind : std::uint8_t {
-  crank,    ///< class I: a body turned by a drive about a known point
-  slider,   ///< class I: a point or a body moved by a drive along a known line
-  rrr,      ///< a point at two distances
-  rrp,      ///< a point at a distance and on a line
-  prp,      ///< a point on two lines
-  rpr,      ///< a body hinged to a known point, whose line passes through another
-  rpp,      ///< a body that keeps its direction, whose line passes through a known point
-  triad,    ///< class III: a body on three legs
-  general,  ///< everything else
-};
-
-/// "crank", "RRR", "class III triad" …
-std::string_view kind_name(GroupKind kind);
 
 /// Bodies that only together have a definite place, once the groups before have theirs: a drive, or an Assur
 /// group.
 struct Group {
   std::string name;  ///< "BC-CD": of its bodies
-  GroupKind kind = GroupKind::general;
+  GroupForm form;
   /// Assur's and Artobolevsky's class, 1 for drives: the number of pairs in its largest closed contour, which
   /// is a body or a loop of bodies.
   int assur_class = 2;
@@ -50,23 +32,7 @@ struct Group {
   GroupPose start;  ///< at time 0, as `choose_modes` picked it
 };
 
-/// An RRR dyad by its triangle: body1 hinged to the known P, body2 to the known Q, both to each other in C.
-///
-///            C             C lies left of P → Q: side = +1
-///      r₁  /   \  r₂
-///     P ---- L ---- Q
-struct Dyad {
-  std::size_t body1 = 0, p = 0;  ///< body1 stands before body2 in the file
-  std::size_t body2 = 0, q = 0;
-  std::size_t c = 0;
-  double r1 = 0, r2 = 0;  ///< |PC|, |QC| [length unit]
-  int side = 0;
-};
-
-/// The triangle of a group of kind `rrr`, nothing for other kinds.
-std::optional<Dyad> dyad_of(const Group& group);
-
-/// The known point that a crank turns about (kind `crank`), index in Mechanism::points.
+/// The known point that a crank turns about (Placing::rotation), index in Mechanism::points.
 std::size_t pivot_of(const Group& crank);
 
 /// The groups of a mechanism in an order in which each needs only the ones before it.

@@ -160,9 +160,9 @@ class Search {
                      double value_at_high) {
     double tau = low + (high - low) * (value_at_low / (value_at_low - value_at_high));
     for (int step = 0; step < 60; ++step) {
-      const auto [value, slope] = arc.derivatives(k, tau);
+      const auto [value, derivative] = arc.derivatives(k, tau);
       ((value < 0) == (value_at_low < 0) ? low : high) = tau;
-      const double next = tau - value * (1 + tau * tau) / (2 * slope);  // dθ = 2 dτ / (1 + τ²)
+      const double next = tau - value * (1 + tau * tau) / (2 * derivative);  // dθ = 2 dτ / (1 + τ²)
       const bool inside = low <= next && next <= high;
       const double last = std::exchange(tau, inside ? next : (low + high) / 2);
       if (inside ? std::abs(tau - last) < 1e-9 : high - low < 1e-15) break;  // Newton squares it

@@ -1,15 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Velocities and accelerations as circuits of their own.
-//
-// The conditions g = Σ w·a·b + r of a group hold at every moment, so their derivatives vanish too,
-//
-//     ġ = Σ w (ȧ b + a ḃ) + ṙ = 0,      g̈ = Σ w (ä b + 2 ȧ ḃ + a b̈) + r̈ = 0,
-//
-// linear in the unknown velocities v and accelerations with the same matrix J = ∂g/∂x: ġ = J v + c. A servo
-// amplifier for each unknown is fed with Jᵀ ġ: τ v̇ = −v − μ Jᵀ (J v + c). Since Jᵀ J has no negative
-// eigenvalue that is stable in every assembly mode, for groups of any class and however the positions are
-// tracked; two amplifiers on a dyad's two equations would be so only with signs that follow the mode. What a
-// differentiating amplifier would make of the loops' noise does not arise.
+#include <oblique/patch/rate_circuits.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,8 +9,8 @@
 #include <fmt/format.h>
 
 #include <oblique/mechanism/model/law_derivative.h>
-#include <oblique/mechanism/structure/structure.h>
-#include <oblique/patch/patch_builder.h>
+#include <oblique/patch/descent.h>
+#include <oblique/patch/drive_circuits.h>
 #include <oblique/patch/signal_rates.h>
 #include <oblique/text/expression_printer.h>
 
@@ -29,40 +20,44 @@ namespace {
 /// Between two positions of the motion a signal may rise a little more.
 constexpr double kMargin = 1.001;
 
-}  // namespace
-
-class PatchBuilder::Rates {
+class RateWriter {
  public:
-  explicit Rates(PatchBuilder& patch) : patch_(patch), places_(patch.mechanism_) {
-    places_.set_scale(patch.scaling_);
-    const Scaling& scaling = patch.scaling_;
+  explicit RateWriter(Circuit& circuit)
+      : circuit_(circuit),
+        setup_(circuit.setup),
+        mechanism_(setup_.mechanism()),
+        writer_(circuit.writer),
+        places_(mechanism_, setup_.scaling) {
     double fastest = 0, largest = 0;
-    for (const mechanism::Configuration& here : patch.motion_.configurations) {
+    for (const mechanism::Configuration& here : setup_.motion.configurations) {
       for (const mechanism::PointState& point : here.points) {
         fastest = std::max(fastest, point.velocity.cwiseAbs().maxCoeff());
         largest = std::max(largest, point.acceleration.cwiseAbs().maxCoeff());
       }
     }
-    patch.velocity_unit_ = fastest > 0 ? round_scale_up(fastest) : 1;
-    patch.acceleration_unit_ = largest > 0 ? round_scale_up(largest) : 1;
-    units_ = {patch.velocity_unit_ / scaling.length, patch.acceleration_unit_ / scaling.length};
+    result_.velocity_unit = fastest > 0 ? round_scale_up(fastest) : 1;
+    result_.acceleration_unit = largest > 0 ? round_scale_up(largest) : 1;
+    result_.points.resize(mechanism_.points.size());
+    units_ = {result_.velocity_unit / setup_.scaling.length,
+              result_.acceleration_unit / setup_.scaling.length};
   }
 
-  void add() {
-    patch_.rate_signals_.resize(patch_.mechanism_.points.size());
-    const std::string& length = patch_.mechanism_.length_unit;
-    patch_.diagram_.comment += fmt::format(
-        "\nRates: 1 machine unit = {:.6g} {}/s and {:.6g} {}/s^2.", patch_.velocity_unit_ / patch_.factor,
-        length, patch_.acceleration_unit_ / (patch_.factor * patch_.factor), length);
-    for (std::size_t d = 0; d < patch_.drives_.size(); ++d) add_drive(d);
-    for (const mechanism::Group& group : patch_.structure_.groups) {
-      if (group.kind == mechanism::GroupKind::crank) {
+  RateCircuits run() {
+    const std::string& length = mechanism_.length_unit;
+    writer_.diagram().comment +=
+        fmt::format("\nRates: 1 machine unit = {:.6g} {}/s and {:.6g} {}/s^2.",
+                    result_.velocity_unit / setup_.time.factor, length,
+                    result_.acceleration_unit / (setup_.time.factor * setup_.time.factor), length);
+    for (std::size_t d = 0; d < circuit_.drives.size(); ++d) add_drive(d);
+    for (const mechanism::Group& group : setup_.structure.groups) {
+      if (group.form.placing == mechanism::Placing::rotation) {
         add_crank(group);
       } else {
         add_group(group);
       }
-      for (const std::size_t point : group.points) set_known(point);
+      for (const std::size_t point : group.points) places_.set_signals(point, circuit_.places.signals(point));
     }
+    return std::move(result_);
   }
 
  private:
@@ -78,20 +73,20 @@ class PatchBuilder::Rates {
   // --- what is known
 
   void add_drive(std::size_t d) {
-    const Speed& speed = patch_.speeds_[d];
-    const DriveForms& forms = patch_.drives_[d];
+    const DriveSpeed& speed = circuit_.speeds[d];
+    const DriveForms& forms = circuit_.drives[d];
     std::string acceleration;  // its signal, in its unit; none at constant speed
     double acceleration_unit = 0;
-    if (patch_.mechanism_.drives[d].law) std::tie(acceleration, acceleration_unit) = add_acceleration(d);
-    if (patch_.mechanism_.drives[d].slide) {
+    if (mechanism_.drives[d].law) std::tie(acceleration, acceleration_unit) = add_acceleration(d);
+    if (mechanism_.drives[d].slide) {
       const auto& [way, reach] = *forms.way.weights.begin();
       auto& [of_way, exact] = rates_[way];
-      of_way[first] = weighted(speed.signal, patch_.scaled(speed.unit) / reach / units_[first]);
+      of_way[first] = weighted(speed.signal, setup_.scaled(speed.unit) / reach / units_[first]);
       if (!acceleration.empty())
-        of_way[second] = weighted(acceleration, patch_.scaled(acceleration_unit) / reach / units_[second]);
-      for (const std::vector<mechanism::DriveState>& row : patch_.motion_.drives) {
-        exact[first].push_back(patch_.scaled(row[d].rate) / reach);
-        exact[second].push_back(patch_.scaled(row[d].acceleration) / reach);
+        of_way[second] = weighted(acceleration, setup_.scaled(acceleration_unit) / reach / units_[second]);
+      for (const std::vector<mechanism::DriveState>& row : setup_.motion.drives) {
+        exact[first].push_back(setup_.scaled(row[d].rate) / reach);
+        exact[second].push_back(setup_.scaled(row[d].acceleration) / reach);
       }
       return;
     }
@@ -111,7 +106,7 @@ class PatchBuilder::Rates {
       of_cos[second].add(weighted(product(acceleration, sin), -acceleration_unit / units_[second]));
       of_sin[second].add(weighted(product(acceleration, cos), acceleration_unit / units_[second]));
     }
-    for (const std::vector<mechanism::DriveState>& row : patch_.motion_.drives) {
+    for (const std::vector<mechanism::DriveState>& row : setup_.motion.drives) {
       const double rate = row[d].rate, alpha = row[d].acceleration;
       const double c = std::cos(row[d].value), s = std::sin(row[d].value);
       exact_cos[first].push_back(-rate * s);
@@ -124,13 +119,13 @@ class PatchBuilder::Rates {
   /// The derivative of a drive's law: its signal and what 1 machine unit of it is. No signal where it
   /// vanishes.
   std::pair<std::string, double> add_acceleration(std::size_t d) {
-    const mechanism::Drive& drive = patch_.mechanism_.drives[d];
+    const mechanism::Drive& drive = mechanism_.drives[d];
     double largest = 0;
-    for (const std::vector<mechanism::DriveState>& row : patch_.motion_.drives)
+    for (const std::vector<mechanism::DriveState>& row : setup_.motion.drives)
       largest = std::max(largest, std::abs(row[d].acceleration));
     if (largest == 0) return {};
     const double unit = round_up(kMargin * largest);
-    return {patch_.add_block(
+    return {writer_.add_block(
                 drive.name + "_acceleration", "time-function",
                 {diagram::text_setting("formula", text::to_string(mechanism::law_derivative(*drive.law))),
                  diagram::number_setting("scale", drive.law_scale / unit)}),
@@ -139,101 +134,87 @@ class PatchBuilder::Rates {
 
   /// A signal times that of a drive's speed, which is 1 where the speed is constant.
   std::string by_speed(std::size_t d, const std::string& speed, const std::string& signal) {
-    return patch_.mechanism_.drives[d].law ? product(speed, signal) : signal;
+    return mechanism_.drives[d].law ? product(speed, signal) : signal;
   }
 
   std::string product(const std::string& a, const std::string& b) {
     std::string name = a + "_" + b;
     std::replace(name.begin(), name.end(), '.', '_');
-    return patch_.add_block(name, "multiplier", {diagram::wire_setting("in", {{1, a}, {1, b}})});
+    return writer_.add_product(name, a, b);
   }
 
   void add_crank(const mechanism::Group& crank) {
     const std::size_t d = crank.drives.front();
-    const mechanism::Body& body = patch_.mechanism_.bodies[patch_.mechanism_.drives[d].body];
-    const std::size_t begin = patch_.diagram_.blocks.size();
+    const mechanism::Body& body = mechanism_.bodies[mechanism_.drives[d].body];
+    const std::size_t begin = writer_.diagram().blocks.size();
     for (const mechanism::BodyPoint& point : body.points) {
-      if (places_.points_[point.point]) continue;
+      if (places_.has(point.point)) continue;
       name_rates(point.point);
-      add_summed_rates(point.point, patch_.crank_point(crank, point));
+      add_summed_rates(point.point, crank_point(places_, circuit_.drives[d], crank, point));
     }
     comment(begin, fmt::format("rates of the crank {}", body.name));
-  }
-
-  /// Takes a point's signals as its place, and its rates as theirs.
-  void set_known(std::size_t point) {
-    const PointSignals& at = patch_.signals_[point];
-    places_.set_signals(point, at.x, at.y);
   }
 
   // --- the rates of points
 
   /// Names the signals of a point's rates, and says what they will be.
   void name_rates(std::size_t point) {
-    RateSignals& names = patch_.rate_signals_[point];
-    const std::string& name = patch_.name_of(point);
-    names = {patch_.free_name(name + "_vx"), patch_.free_name(name + "_vy"), patch_.free_name(name + "_ax"),
-             patch_.free_name(name + "_ay")};
-    const PointSignals& at = patch_.signals_[point];
+    RateSignals& names = result_.points[point];
+    const std::string& name = setup_.name_of(point);
+    names = {writer_.free_name(name + "_vx"), writer_.free_name(name + "_vy"),
+             writer_.free_name(name + "_ax"), writer_.free_name(name + "_ay")};
+    const PointSignals& at = circuit_.places.signals(point);
     SignalRates::Rates &x = rates_[at.x], &y = rates_[at.y];
     x.forms = {weighted(names.vx), weighted(names.ax)};
     y.forms = {weighted(names.vy), weighted(names.ay)};
-    for (const mechanism::Configuration& here : patch_.motion_.configurations) {
+    for (const mechanism::Configuration& here : setup_.motion.configurations) {
       const mechanism::PointState& exact = here.points[point];
-      x.exact[first].push_back(patch_.scaled(exact.velocity.x()));
-      y.exact[first].push_back(patch_.scaled(exact.velocity.y()));
-      x.exact[second].push_back(patch_.scaled(exact.acceleration.x()));
-      y.exact[second].push_back(patch_.scaled(exact.acceleration.y()));
+      x.exact[first].push_back(setup_.scaled(exact.velocity.x()));
+      y.exact[first].push_back(setup_.scaled(exact.velocity.y()));
+      x.exact[second].push_back(setup_.scaled(exact.acceleration.x()));
+      y.exact[second].push_back(setup_.scaled(exact.acceleration.y()));
     }
   }
 
-  void add_named(const std::string& name, std::string type, std::vector<text::Entry> settings) {
-    diagram::BlockInstance block;
-    block.name = name;
-    block.type = std::move(type);
-    block.settings = std::move(settings);
-    patch_.diagram_.blocks.push_back(std::move(block));
-  }
-
   void add_summed_rates(std::size_t point, const VectorForm& at) {
-    const RateSignals& names = patch_.rate_signals_[point];
-    add_named(names.vx, "summer", {sum_of(patch_.terms_of(rates_.of(at.x, first)))});
-    add_named(names.vy, "summer", {sum_of(patch_.terms_of(rates_.of(at.y, first)))});
-    add_named(names.ax, "summer", {sum_of(patch_.terms_of(rates_.of(at.x, second)))});
-    add_named(names.ay, "summer", {sum_of(patch_.terms_of(rates_.of(at.y, second)))});
+    const RateSignals& names = result_.points[point];
+    writer_.add_named(names.vx, "summer", {sum_of(writer_.terms_of(rates_.of(at.x, first)))});
+    writer_.add_named(names.vy, "summer", {sum_of(writer_.terms_of(rates_.of(at.y, first)))});
+    writer_.add_named(names.ax, "summer", {sum_of(writer_.terms_of(rates_.of(at.x, second)))});
+    writer_.add_named(names.ay, "summer", {sum_of(writer_.terms_of(rates_.of(at.y, second)))});
   }
 
   // --- groups
 
   void add_group(const mechanism::Group& group) {
     std::vector<std::size_t> unknowns;
-    GroupResiduals residuals(places_, patch_.scaling_, patch_.drives_, [&](std::size_t point) {
-      unknowns.push_back(point);
-      name_rates(point);
-      return VectorForm{weighted(patch_.signals_[point].x), weighted(patch_.signals_[point].y)};
-    });
-    const std::vector<Residual> conditions = residuals.of(group);
-    const std::size_t begin = patch_.diagram_.blocks.size();
+    const std::vector<Residual> conditions =
+        residuals_of(group, places_, setup_.scaling, circuit_.drives, [&](std::size_t point) {
+          unknowns.push_back(point);
+          name_rates(point);
+          places_.set_signals(point, circuit_.places.signals(point));
+        });
+    const std::size_t begin = writer_.diagram().blocks.size();
     Gradients gradients[2];
     for (Gradients& gradient : gradients) {
       for (const std::size_t point : unknowns) {
-        gradient[patch_.signals_[point].x];
-        gradient[patch_.signals_[point].y];
+        gradient[circuit_.places.signals(point).x];
+        gradient[circuit_.places.signals(point).y];
       }
     }
     for (const Residual& residual : conditions) add_residual(residual, gradients);
     for (const std::size_t point : unknowns) {
-      const RateSignals& names = patch_.rate_signals_[point];
-      const PointSignals& at = patch_.signals_[point];
+      const RateSignals& names = result_.points[point];
+      const PointSignals& at = circuit_.places.signals(point);
       add_servo(names.vx, gradients[first][at.x]);
       add_servo(names.vy, gradients[first][at.y]);
       add_servo(names.ax, gradients[second][at.x]);
       add_servo(names.ay, gradients[second][at.y]);
     }
     for (const std::size_t point : group.points) {
-      if (!patch_.rate_signals_[point].vx.empty()) continue;
+      if (!result_.points[point].vx.empty()) continue;
       name_rates(point);
-      add_summed_rates(point, *places_.points_[point]);
+      add_summed_rates(point, places_.at(point));
     }
     comment(begin,
             fmt::format("rates of the group {}: its conditions, differentiated once and twice", group.name));
@@ -241,7 +222,7 @@ class PatchBuilder::Rates {
 
   /// Comments on the blocks from the one with this index on, if there are any.
   void comment(std::size_t begin, const std::string& text) {
-    if (begin < patch_.diagram_.blocks.size()) patch_.diagram_.blocks[begin].comment = text;
+    if (begin < writer_.diagram().blocks.size()) writer_.diagram().blocks[begin].comment = text;
   }
 
   /// The derivatives of one condition, and what they pull at.
@@ -253,7 +234,7 @@ class PatchBuilder::Rates {
       for (const Order order : {first, second}) rates[order].push_back(add_form_rate(name, form, order));
     }
     for (const Order order : {first, second}) {
-      Terms sum = patch_.terms_of(rates_.of(residual.rest, order));
+      Terms sum = writer_.terms_of(rates_.of(residual.rest, order));
       if (sum.size() == 1 && sum.front().weight == 0) sum.clear();
       for (const Residual::Product& p : residual.products) {
         const FormRate &a = rates[order][p.a], &b = rates[order][p.b];
@@ -267,29 +248,29 @@ class PatchBuilder::Rates {
         const double unit = va.unit * vb.unit * units_[first] * units_[first] / units_[second];
         sum.push_back({2 * p.weight * unit, product(va.signal, vb.signal)});
       }
-      const std::string gap = patch_.add_block(residual.name + (order == first ? "_v_gap" : "_a_gap"),
-                                               "summer", {diagram::wire_setting("in", sum)});
-      patch_.add_gradients(residual, forms, gap, gradients[order]);
+      const std::string gap = writer_.add_block(residual.name + (order == first ? "_v_gap" : "_a_gap"),
+                                                "summer", {diagram::wire_setting("in", sum)});
+      add_gradients(writer_, residual, forms, gap, gradients[order]);
     }
   }
 
   void add_servo(const std::string& name, const Terms& gradient) {
     Terms in = gradient;
     for (diagram::WeightedSignal& term : in) term.weight *= kInputGain;
-    add_named(name, "servo-amplifier",
-              {diagram::wire_setting("in", in), diagram::number_setting("gain", patch_.options_.gain),
-               diagram::number_setting("bandwidth", patch_.bandwidth_)});
+    writer_.add_named(name, "servo-amplifier",
+                      {diagram::wire_setting("in", in), diagram::number_setting("gain", setup_.options.gain),
+                       diagram::number_setting("bandwidth", setup_.bandwidth)});
   }
 
   // --- forms
 
   /// The block of a form, which the positions may have already.
   std::string form_block(const std::string& name, const LinearForm& form) {
-    for (const auto& [known, block] : patch_.form_blocks_) {
+    for (const auto& [known, block] : circuit_.form_blocks) {
       if (known == form) return block;
     }
-    std::string block = patch_.add_block(name, "summer", {sum_of(patch_.terms_of(form))});
-    patch_.form_blocks_.emplace_back(form, block);
+    std::string block = writer_.add_summer(name, form);
+    circuit_.form_blocks.emplace_back(form, block);
     return block;
   }
 
@@ -302,19 +283,23 @@ class PatchBuilder::Rates {
     const double unit = round_up(std::max(kMargin * rates_.largest(form, order) / units_[order], kLeast));
     LinearForm scaled_rate;
     scaled_rate.add(rate, 1 / unit);
-    return {patch_.add_block(name + (order == first ? "_v" : "_a"), "summer",
-                             {sum_of(patch_.terms_of(scaled_rate))}),
-            unit};
+    return {writer_.add_summer(name + (order == first ? "_v" : "_a"), scaled_rate), unit};
   }
 
-  PatchBuilder& patch_;
-  PointForms places_;
+  Circuit& circuit_;
+  const PatchSetup& setup_;
+  const mechanism::Mechanism& mechanism_;
+  CircuitWriter& writer_;
+  PointBook places_;  ///< of the conditions: signals for unknowns, forms for what follows from them
+  RateCircuits result_;
   std::array<double, 2> units_;  ///< 1 machine unit of a rate, in machine units of a coordinate [1/s], [1/s²]
   SignalRates rates_;            ///< of the signals of points and drives
 };
 
-void PatchBuilder::add_rates() {
-  Rates(*this).add();
+}  // namespace
+
+RateCircuits add_rates(Circuit& circuit) {
+  return RateWriter(circuit).run();
 }
 
 }  // namespace oblique::patch

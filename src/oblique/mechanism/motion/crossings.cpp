@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/mechanism/motion/crossings.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace oblique::mechanism {
+namespace {
+
+using Eigen::Vector2d;
+
+/// Below this part of its largest regularity a group is at the point where its modes meet: the height of a
+/// triangle is then a few times what counts as collinear, so that rates still have a value.
+constexpr double kSingular = 1e-6;
+/// Within these ways of the fastest drive [rad] what is left out beyond the second order is rounding: of a
+/// crossing it is of third order in the way, of a fold of third order in its root.
+constexpr double kNearCrossing = 1e-5, kNearFold = 1e-9;
+/// From this many sizes away on a group may go to infinity.
+constexpr double kFar = 300;
+
+/// Group `g` in `next`, at the states of `next_drives`, in that of its modes to which its velocity leads
+/// within `dt`; false where none is near.
+bool place_next_to_velocity(BranchWalk& walk, std::size_t g, double dt) {
+  GroupSolver& solver = walk.kinematics.solver(g);
+  const Group& group = walk.kinematics.structure().groups[g];
+  for (const std::size_t point : group.points) walk.next.points[point] = walk.here.points[point];
+  for (const std::size_t body : group.bodies) walk.next.bodies[body] = walk.here.bodies[body];
+  const Eigen::VectorXd step = dt * solver.velocity(walk.here);
+  if (!step.allFinite()) return false;
+  solver.displace(step, walk.next);
+  const Configuration guess = walk.next;
+  // the modes lie as far apart as the regularity says; the right one is nearer to the guess by orders
+  double nearest = std::max(std::abs(walk.courses[g].regularity), 1e-9) * walk.mechanism.largest_length() / 2;
+  bool found = false;
+  Configuration best;
+  const std::array<int, 2> sides{1, -1};
+  const std::size_t count = solver.is_tracked() || solver.is_single() ? 1 : 2;
+  for (std::size_t i = 0; i < count; ++i) {
+    Configuration there = guess;
+    const int side = count == 1 ? 0 : sides[i];
+    if (solver.place(walk.next_drives, side, there) == Status::open) continue;
+    double far = 0;
+    for (const std::size_t point : group.points) {
+      const Vector2d way = there.points[point].position - walk.here.points[point].position;
+      far = std::max(far, (way - dt * walk.here.points[point].velocity).norm());
+    }
+    if (!(far < nearest)) continue;
+    found = true;
+    nearest = far;
+    best = std::move(there);
+    walk.regularities[g] = solver.regularity();
+    walk.courses[g].side = side;
+  }
+  if (found) walk.next = std::move(best);
+  return found;
+}
+
+/// Passes a change point of group `g` a time `zero` from here, and of all groups that pass one with it.
+Crossing cross_modes(BranchWalk& walk, std::size_t g, double t, double zero) {
+  const std::vector<BranchWalk::Course> before = walk.courses;
+  const double direction = zero > 0 ? 1 : -1;
+  const bool amidst = (t - walk.time - 2 * zero) * direction <= 0;
+  const double to = amidst ? t : walk.time + 2 * zero;
+  walk.predict(to - walk.time);
+  walk.drives_at(to, walk.next_drives);
+  walk.next.status = Status::ok;
+  walk.next.group.reset();
+  std::vector<std::size_t> passing;
+  for (std::size_t i = 0; i < walk.courses.size(); ++i) {
+    constexpr double kBeside = 1e3 * kSingular;
+    GroupSolver& solver = walk.kinematics.solver(i);
+    const bool passes = i == g || std::abs(before[i].regularity) < kBeside * before[i].peak;
+    Status status = Status::ok;
+    if (!passes) {
+      status = solver.place(walk.next_drives, walk.courses[i].side, walk.next);
+      walk.regularities[i] = solver.regularity();
+    } else if (place_next_to_velocity(walk, i, to - walk.time)) {
+      const bool is_dead_centre =
+          std::isnan(walk.next.points[walk.kinematics.structure().groups[i].points.front()].velocity.x());
+      status = is_dead_centre ? Status::dead_centre : Status::ok;
+      if ((walk.regularities[i] > 0) != (before[i].regularity > 0)) passing.push_back(i);
+    } else if (amidst) {  // a group without a place of its own there: the one that it passes
+      solver.stand(walk.next_drives, walk.next);
+      status = Status::dead_centre;
+    } else {
+      status = Status::open;
+    }
+    if (status == Status::open) {
+      walk.courses = before;
+      return Crossing::regular;
+    }
+    if (status == Status::dead_centre) {
+      if (!walk.next.group) walk.next.group = i;
+      walk.next.status = status;
+    }
+  }
+  if (amidst) {
+    walk.courses = before;
+    walk.shown = walk.next;
+    walk.show(t);
+    return Crossing::amidst;
+  }
+  if (std::find(passing.begin(), passing.end(), g) == passing.end()) {
+    walk.courses = before;
+    return Crossing::regular;
+  }
+  for (const std::size_t i : passing) walk.events.push_back({MotionEvent::Kind::change, walk.time + zero, i});
+  walk.accept(to);
+  walk.step = std::abs(zero);
+  walk.probe(1e-2 * zero);
+  return Crossing::passed;
+}
+
+/// Ends at a limit a time `tau` from here.
+Crossing end_at(BranchWalk& walk, std::size_t g, double t, double tau, const Singularity& singularity) {
+  const double dt = t - walk.time;
+  if (std::abs(dt) <= std::abs(tau)) {
+    walk.predict(dt);
+    const Structure& structure = walk.kinematics.structure();
+    for (const std::size_t point : structure.groups[g].points)
+      walk.next.points[point] = walk.here.points[point];
+    for (const std::size_t body : structure.groups[g].bodies) walk.next.bodies[body] = walk.here.bodies[body];
+    walk.kinematics.solver(g).displace(singularity.branch(dt) * singularity.along + dt * singularity.drift,
+                                       walk.next);
+    walk.drives_at(t, walk.next_drives);
+    walk.next.status = Status::ok;
+    walk.next.group.reset();
+    for (std::size_t i = 0; i < walk.courses.size() && walk.next.status != Status::open; ++i) {
+      const Status status =
+          walk.kinematics.solver(i).place(walk.next_drives, walk.courses[i].side, walk.next);
+      if (status == Status::ok) continue;
+      walk.next.status = status;
+      walk.next.group = i;
+    }
+    if (walk.next.status == Status::open) {
+      walk.show_open(t, g);
+    } else {
+      walk.shown = walk.next;
+      walk.show(t);
+    }
+    return Crossing::amidst;
+  }
+  walk.events.push_back({MotionEvent::Kind::limit, walk.time + tau, g});
+  walk.step = walk.duration_of_degree;
+  return Crossing::limit;
+}
+
+/// Passes infinity: x = c + k/(t∞ − t), so that the time to it is Δ = 2 ẋ²/(ẋ·ẍ), and a way h from here
+/// stands x + ẋ Δ h/(Δ − h), on either side.
+Crossing cross_infinity(BranchWalk& walk, std::size_t g, double t) {
+  GroupSolver& solver = walk.kinematics.solver(g);
+  const Group& group = walk.kinematics.structure().groups[g];
+  const auto farthest =
+      *std::max_element(group.points.begin(), group.points.end(), [&](std::size_t a, std::size_t b) {
+        return walk.here.points[a].position.norm() < walk.here.points[b].position.norm();
+      });
+  const PointState& point = walk.here.points[farthest];
+  const double left = 2 * point.velocity.squaredNorm() / point.velocity.dot(point.acceleration);
+  const double radian = walk.duration_of_degree * 180 / std::numbers::pi;
+  constexpr double kBrief = 0.05, kAtIt = 1e-9;  // rad
+  if (!((t - walk.time) * left > 0 && std::abs(left) < kBrief * radian)) return Crossing::regular;
+  const bool amidst = (t - walk.time - 2 * left) * left <= 0;
+  if (amidst && std::abs(t - walk.time - left) < kAtIt * radian) {
+    walk.show_open(t, g);
+    return Crossing::amidst;
+  }
+  const double to = amidst ? t : walk.time + 2 * left;
+  const double h = to - walk.time, away = solver.distance(walk.here);
+  walk.predict(h);
+  for (const std::size_t p : group.points) walk.next.points[p] = walk.here.points[p];
+  for (const std::size_t body : group.bodies) walk.next.bodies[body] = walk.here.bodies[body];
+  Eigen::VectorXd step = solver.velocity(walk.here);
+  for (double& part : step) {
+    const bool goes_far = std::abs(part * left) > 0.1 * away * walk.mechanism.largest_length();
+    part *= goes_far ? left * h / (left - h) : h;
+  }
+  solver.displace(step, walk.next);
+  walk.drives_at(to, walk.next_drives);
+  walk.next.status = Status::ok;
+  walk.next.group.reset();
+  for (std::size_t i = 0; i < walk.courses.size(); ++i) {
+    if (walk.kinematics.solver(i).place(walk.next_drives, walk.courses[i].side, walk.next) != Status::ok)
+      return Crossing::regular;
+    walk.regularities[i] = walk.kinematics.solver(i).regularity();
+  }
+  const double beyond = solver.distance(walk.next), before = std::abs(walk.courses[g].regularity);
+  const double there = std::abs(walk.regularities[g]);
+  const bool is_beyond = (h - left) * left > 0;
+  const bool other_side = walk.next.points[farthest].position.dot(point.position) < 0;
+  if (other_side != is_beyond || !(beyond > away / 2)) return Crossing::regular;
+  if (amidst) {
+    walk.shown = walk.next;
+    walk.show(t);
+    return Crossing::amidst;
+  }
+  if (!(beyond < 2 * away && there > before / 4 && there < 4 * before)) return Crossing::regular;
+  walk.events.push_back({MotionEvent::Kind::infinity, walk.time + left, g});
+  if (walk.stops_at_infinity) return Crossing::passed;
+  walk.accept(to);
+  walk.step = std::abs(left);
+  walk.probe(1e-2 * left);
+  return Crossing::passed;
+}
+
+/// What lies ahead of group `g`, whose modes meet nearby.
+Crossing cross_at(BranchWalk& walk, std::size_t g, double t, bool is_last) {
+  GroupSolver& solver = walk.kinematics.solver(g);
+  if (solver.distance(walk.here) > kFar) {
+    const Crossing crossing = cross_infinity(walk, g, t);
+    if (crossing != Crossing::regular) return crossing;
+  }
+  const double direction = t > walk.time ? 1 : -1;
+  const double radian = walk.duration_of_degree * 180 / std::numbers::pi;
+  const Singularity singularity = solver.singularity(walk.drives, walk.here, radian);
+  const auto meeting = singularity.crossing();
+  if (meeting && meeting->time * direction > 0 && std::abs(meeting->time) < kNearCrossing * radian) {
+    const Crossing crossing = cross_modes(walk, g, t, meeting->time);
+    if (crossing != Crossing::regular) return crossing;
+  }
+  const auto fold = singularity.fold(direction);
+  if (fold && std::abs(*fold) < kNearFold * radian) return end_at(walk, g, t, *fold, singularity);
+  if (!is_last) return Crossing::regular;
+  walk.events.push_back({MotionEvent::Kind::limit, walk.time, g});  // no step leads on
+  walk.step = walk.duration_of_degree;
+  return Crossing::limit;
+}
+
+}  // namespace
+
+Crossing step_towards(BranchWalk& walk, double t) {
+  const double direction = t > walk.time ? 1 : -1;
+  double dt = std::min({walk.step, walk.duration_of_degree, std::abs(t - walk.time)});
+  // nearer to where modes meet than this no pose tells them apart, so none is taken there
+  for (std::size_t g = 0; g < walk.courses.size(); ++g) {
+    const BranchWalk::Course& course = walk.courses[g];
+    if (std::abs(course.regularity) < kSingular * course.peak &&
+        course.derivative * course.regularity * direction < 0) {
+      const Crossing crossing = cross_at(walk, g, t, false);
+      if (crossing != Crossing::regular) return crossing;
+    }
+  }
+  while (true) {
+    // the last step ends at t itself
+    const double target = dt == std::abs(t - walk.time) ? t : walk.time + direction * dt;
+    if (walk.tracks) walk.predict(target - walk.time);
+    const BranchWalk::Verdict verdict = walk.attempt(target);
+    if (verdict == BranchWalk::Verdict::good) {
+      walk.accept(target);
+      walk.step = std::min(std::max(walk.step, 2 * dt),
+                           walk.duration_of_degree);  // a near row is no reason to go slower
+      return Crossing::passed;
+    }
+    if (walk.step == walk.duration_of_degree) walk.last_clear = walk.standing();
+    walk.step = dt /= 2;
+    if (dt < walk.smallest) return cross_at(walk, walk.culprit, t, true);
+  }
+}
+
+std::optional<MotionEvent> walk_to_limit(BranchWalk& walk, double t) {
+  walk.stops_at_infinity = true;
+  while (walk.time != t) {
+    const std::size_t before = walk.events.size();
+    const Crossing crossing = step_towards(walk, t);
+    if (crossing == Crossing::amidst || crossing == Crossing::limit) break;
+    if (walk.events.size() > before && walk.events.back().ends()) break;
+  }
+  for (const MotionEvent& event : walk.events) {
+    if (event.ends() && std::abs(event.time) <= std::abs(t)) return event;
+  }
+  return std::nullopt;
+}
+
+}  // namespace oblique::mechanism
