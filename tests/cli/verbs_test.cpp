@@ -283,6 +283,8 @@ TEST_F(Verbs, CheckReadsAPipe) {
 
 TEST_F(Verbs, BlocksListsAndTells) {
   EXPECT_THAT(oblique("blocks").out, ContainsRegex("servo-amplifier +Drives its output until"));
+  EXPECT_THAT(oblique("blocks multiplier").out, HasSubstr("[let]\nproduct = \"x*y + offset\"\n"))
+      << "what its equations name";
   const Outcome page = oblique("blocks servo-amplifier");
   EXPECT_THAT(page.out, HasSubstr("open-loop gain μ; inf: the ideal amplifier"));
   EXPECT_THAT(page.out, HasSubstr("\"der(out)\" = \"2*pi*bandwidth*(-out - gain*in)\""));
