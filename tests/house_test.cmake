@@ -21,6 +21,15 @@ set(allowed_synthesis text mechanism)
 set(allowed_report text diagram network solve mechanism patch machine commission compare draw)
 set(allowed_draw text diagram mechanism)
 
+# A stage asks a block for its role, its symbol, its ports, never for its name. A comparison with the name of a block, a
+# look-up of one, and a table from names to roles are found; a name that a stage *writes* (patch wires "integrator"
+# blocks) is its data and stands in none of these. Symbols and parameters may have the words of blocks.
+file(GLOB block_names RELATIVE ${SOURCE}/blocks ${SOURCE}/blocks/*.toml)
+list(TRANSFORM block_names REPLACE "\\.toml$" "")
+list(JOIN block_names "|" block_names)
+set(asks "[!=]= *\"(${block_names})\"|\"(${block_names})\" *[!=]=|[^_a-z](find|contains|at|count|role_of)\\(\"(${block_names})\"|{\"(${block_names})\", *[A-Za-z:]*Role::")
+set(asks_for_others "(symbol|parameter|parameter[.]name|key) *[!=]= *\"")
+
 set(verbs "run|check|solve|modes|patch|compare|fit|draw|animate|report|blocks|machines")
 set(most_units 33)
 file(GLOB_RECURSE files RELATIVE ${SOURCE}/src ${SOURCE}/src/oblique/*.h ${SOURCE}/src/oblique/*.cpp
@@ -50,6 +59,11 @@ foreach(file IN LISTS files)
   file(STRINGS ${SOURCE}/src/${file} namespaces REGEX "^namespace oblique")
   if(namespaces AND NOT namespaces MATCHES "namespace oblique::${stage}( |::)" OR namespaces MATCHES "namespace oblique {")
     finding("src/${file}: its namespace is oblique::${stage}")
+  endif()
+  file(STRINGS ${SOURCE}/src/${file} named REGEX "${asks}")
+  list(FILTER named EXCLUDE REGEX "${asks_for_others}")
+  if(named AND block_names)
+    finding("src/${file}: no stage knows a block by its name (role, symbol)")
   endif()
   file(STRINGS ${SOURCE}/src/${file} words REGEX "\"[^\"]*(--[a-z]|oblique (${verbs}))")
   list(FILTER words EXCLUDE REGEX "^[ \t]*//")
