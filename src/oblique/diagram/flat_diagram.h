@@ -106,9 +106,9 @@ struct FlatDiagram {
 /// The same diagram where no amplifier saturates because its machine does.
 FlatDiagram without_saturation(FlatDiagram diagram);
 
-/// A parameter to replace, by path: `--set c.gain=1e4`; the value is a quantity in the parameter's unit.
+/// A parameter to replace, by path, or the weight of a wire; the value is a quantity in the parameter's unit.
 struct ParameterOverride {
-  std::string path;  ///< "block.parameter"
+  std::string path;  ///< "block.parameter", "block.input[2]" or "block.input[signal]"
   std::string value;
 };
 

@@ -37,6 +37,7 @@ struct Source {
 struct Term {
   Constant weight;
   Source source;
+  std::string signal;  ///< the source as the file names it
   text::SourcePosition position;
 };
 
