@@ -31,6 +31,8 @@ set(asks "[!=]= *\"(${block_names})\"|\"(${block_names})\" *[!=]=|[^_a-z](find|c
 set(asks_for_others "(symbol|parameter|parameter[.]name|key) *[!=]= *\"")
 
 set(verbs "run|check|solve|modes|patch|compare|fit|draw|animate|report|blocks|machines")
+# Where every source has the header of its name.
+set(whole_stages diagram machine commission compare synthesis)
 set(most_units 33)
 file(GLOB_RECURSE files RELATIVE ${SOURCE}/src ${SOURCE}/src/oblique/*.h ${SOURCE}/src/oblique/*.cpp
      ${SOURCE}/src/oblique/*.def)
@@ -40,6 +42,10 @@ foreach(file IN LISTS files)
   if(NOT DEFINED allowed_${stage})
     finding("src/${file}: there is no stage '${stage}'")
     continue()
+  endif()
+  string(REGEX REPLACE "\\.cpp$" ".h" header ${file})
+  if(stage IN_LIST whole_stages AND NOT EXISTS ${SOURCE}/src/${header})
+    finding("src/${file}: a unit is a header and a source of one name; expected src/${header}")
   endif()
   file(STRINGS ${SOURCE}/src/${file} includes REGEX "^[ \t]*#[ \t]*include[ \t]*[<\"]oblique/")
   foreach(include IN LISTS includes)

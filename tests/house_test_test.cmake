@@ -26,6 +26,7 @@ endfunction()
 
 plant(CMakeLists.txt "")
 plant(src/oblique/text/a.h "#include <string>\n// \"--help\" of the program\nnamespace oblique::text {")
+plant(src/oblique/diagram/a.h "")
 plant(src/oblique/diagram/a.cpp "#include <oblique/text/a.h>\nstd::snprintf(text)")
 plant(src/oblique/patch/a.cpp "add_block(name, \"sine\", {})\nif (parameter.name == \"sine\" || definition.symbol == \"sine\") return")
 plant(blocks/CMakeLists.txt "set(blocks sine.toml)")
@@ -39,6 +40,7 @@ plant(src/oblique/text/hidden.h "#include <oblique/diagram/a.h>")
 plant(src/oblique/mechanism/a.cpp "#include <oblique/diagram/a.h>\n#include \"../text/a.h\"")
 plant(src/oblique/cellar/a.cpp "")
 plant(src/oblique/solve/a.cpp "std::cerr << 1")
+plant(src/oblique/diagram/b.cpp "")
 plant(src/oblique/network/a.cpp "if (block.definition->name == \"sine\") return")
 plant(src/oblique/network/b.cpp "if (\"sine\" != type) return")
 plant(src/oblique/machine/a.cpp "library.find(\"sine\")")
@@ -60,6 +62,7 @@ expect(
   "src/oblique/mechanism/a.cpp: stage 'mechanism' may not know stage 'diagram'"
   "src/oblique/mechanism/a.cpp: includes begin with oblique/, not with ../"
   "src/oblique/cellar/a.cpp: there is no stage 'cellar'"
+  "src/oblique/diagram/b.cpp: a unit is a header and a source of one name; expected src/oblique/diagram/b.h"
   "src/oblique/network/a.cpp: no stage knows a block by its name"
   "src/oblique/network/b.cpp: no stage knows a block by its name"
   "src/oblique/machine/a.cpp: no stage knows a block by its name"

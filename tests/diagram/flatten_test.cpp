@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/diagram/flat_diagram.h>
+#include <oblique/diagram/flatten.h>
 
 #include <algorithm>
 #include <limits>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <oblique/diagram/diagram_reader.h>
 
 #include "small_library.h"
 

@@ -5,6 +5,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <oblique/diagram/diagram_reader.h>
+#include <oblique/diagram/flatten.h>
+
 #include "small_library.h"
 
 namespace oblique::diagram {

@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <oblique/diagram/diagram_writer.h>
 #include <oblique/machine/bill.h>
 #include <oblique/machine/realise.h>
 #include <oblique/machine/sheets.h>

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/diagram/flat_diagram.h>
+#include <oblique/diagram/flatten.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <fmt/format.h>
 
 #include <oblique/diagram/expectations.h>
-#include <oblique/diagram/formula.h>
 #include <oblique/diagram/machine_defaults.h>
 #include <oblique/diagram/overrides.h>
+#include <oblique/diagram/terms.h>
 #include <oblique/diagram/timeline.h>
 #include <oblique/diagram/wiring.h>
 
@@ -297,12 +296,6 @@ void choose_outputs(const Diagram& diagram, const Scope& scope, const Layout& la
 
 }  // namespace
 
-std::string FlatDiagram::signal_name(SignalRef signal) const {
-  const FlatBlock& block = blocks[signal.block];
-  if (block.definition->outputs.size() == 1) return block.path;
-  return block.path + "." + block.definition->outputs[signal.output].name;
-}
-
 FlatDiagram flatten(const Diagram& diagram, const BlockLibrary& library,
                     const std::vector<ParameterOverride>& overrides) {
   FlatDiagram flat;
@@ -348,22 +341,6 @@ FlatDiagram flatten(const Diagram& diagram, const BlockLibrary& library,
   if (diagnostics.empty()) check_expected_outputs(diagram.expectations, names, diagnostics);
   diagnostics.throw_if_any<DiagramError>();
   return flat;
-}
-
-void FlatBlock::choose_behaviour() {
-  behaviour = definition->choose_behaviour(parameters, polarity);
-  if (formulas.empty()) return;
-  own_behaviour = std::make_shared<const Behaviour>(with_formulas(*behaviour, formulas));
-  behaviour = own_behaviour.get();
-}
-
-FlatDiagram without_saturation(FlatDiagram diagram) {
-  for (FlatBlock& block : diagram.blocks) {
-    if (!block.saturation) continue;
-    block.parameters[*block.saturation] = std::numeric_limits<double>::infinity();
-    block.choose_behaviour();
-  }
-  return diagram;
 }
 
 }  // namespace oblique::diagram

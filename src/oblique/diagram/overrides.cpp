@@ -7,7 +7,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <oblique/diagram/flatten.h>
 #include <oblique/diagram/machine_profile.h>
+#include <oblique/diagram/terms.h>
 
 namespace oblique::diagram::wiring {
 namespace {

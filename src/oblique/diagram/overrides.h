@@ -5,7 +5,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include <oblique/diagram/flat_diagram.h>
+#include <oblique/diagram/flatten.h>
 #include <oblique/diagram/scope.h>
 
 namespace oblique::diagram::wiring {

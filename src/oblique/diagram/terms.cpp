@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/diagram/scope.h>
+#include <oblique/diagram/terms.h>
 
 #include <algorithm>
 #include <cmath>

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include <oblique/diagram/flatten.h>
 #include <oblique/machine/carried_signals.h>
 #include <oblique/machine/circuit.h>
 #include <oblique/machine/input_weight.h>
