@@ -35,7 +35,11 @@ plant(src/oblique/solve/events/covered.cpp "")
 plant(tests/solve/tested_test.cpp "")
 plant(tests/solve/events/other_test.cpp "")
 plant(tests/covered_by.txt "# which test covers which unit\nsolve/events/covered: solve/events/other_test.cpp")
-plant(tests/CMakeLists.txt "oblique_test(solve SOURCES events/other_test.cpp tested_test.cpp)")
+plant(tests/CMakeLists.txt "oblique_test(all SOURCES a_test.cpp events/other_test.cpp tested_test.cpp)")
+plant(src/oblique/patch/a.h "")
+plant(src/oblique/patch/a.cpp "add_block(name, \"sine\", {})\nif (parameter.name == \"sine\" || definition.symbol == \"sine\") return")
+plant(tests/diagram/a_test.cpp "")
+plant(tests/patch/a_test.cpp "")
 plant(blocks/CMakeLists.txt "set(blocks sine.toml)")
 plant(blocks/sine.toml "")
 plant(src/machines/CMakeLists.txt "set(machines tr-10.toml)")
@@ -47,6 +51,10 @@ plant(src/oblique/text/hidden.h "#include <oblique/diagram/a.h>")
 plant(src/oblique/mechanism/a.cpp "#include <oblique/diagram/a.h>\n#include \"../text/a.h\"")
 plant(src/oblique/cellar/a.cpp "")
 plant(src/oblique/solve/a.cpp "std::cerr << 1")
+plant(src/oblique/network/a.cpp "if (block.definition->name == \"sine\") return")
+plant(src/oblique/network/b.cpp "if (\"sine\" != type) return")
+plant(src/oblique/machine/a.cpp "library.find(\"sine\")")
+plant(src/oblique/machine/b.cpp "kRoles{{\"sine\", Role::other}}")
 plant(src/oblique/solve/b.cpp "namespace oblique {\n\"end it with --until\"")
 plant(src/oblique/solve/c.cpp "namespace oblique::text {\n\"see oblique check\"")
 plant(src/oblique/solve/events/stray.cpp "")
@@ -70,6 +78,10 @@ expect(
   "src/oblique/mechanism/a.cpp: stage 'mechanism' may not know stage 'diagram'"
   "src/oblique/mechanism/a.cpp: includes begin with oblique/, not with ../"
   "src/oblique/cellar/a.cpp: there is no stage 'cellar'"
+  "src/oblique/network/a.cpp: no stage knows a block by its name"
+  "src/oblique/network/b.cpp: no stage knows a block by its name"
+  "src/oblique/machine/a.cpp: no stage knows a block by its name"
+  "src/oblique/machine/b.cpp: no stage knows a block by its name"
   "src/oblique/solve/b.cpp: its namespace is oblique::solve"
   "src/oblique/solve/b.cpp: no stage spells an option or a verb"
   "src/oblique/solve/c.cpp: its namespace is oblique::solve"

@@ -11,6 +11,9 @@
 #include <oblique/compare/monte_carlo.h>
 #include <oblique/diagram/block_library.h>
 #include <oblique/diagram/diagram.h>
+#include <oblique/diagram/diagram_reader.h>
+#include <oblique/diagram/diagram_writer.h>
+#include <oblique/diagram/flatten.h>
 #include <oblique/diagram/machine_profile.h>
 #include <oblique/diagram/rescale.h>
 #include <oblique/draw/animation/animated_page.h>

@@ -6,6 +6,8 @@
 
 #include <benchmark/benchmark.h>
 
+#include <oblique/diagram/diagram_reader.h>
+#include <oblique/diagram/flatten.h>
 #include <oblique/network/assembly/network.h>
 #include <oblique/network/program/program.h>
 #include "diagrams.h"

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include <oblique/diagram/flat_diagram.h>
+#include <oblique/diagram/flatten.h>
 #include <oblique/network/assembly/network.h>
 #include <oblique/network/program/program.h>
 #include <oblique/solve/run.h>

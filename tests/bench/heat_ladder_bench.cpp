@@ -14,6 +14,8 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
+#include <oblique/diagram/diagram_reader.h>
+
 #include "diagrams.h"
 #include "figures.h"
 

@@ -8,6 +8,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include <oblique/diagram/diagram_reader.h>
 #include <oblique/draw/schematic/diagram_drawing.h>
 
 #include "figures.h"

@@ -8,6 +8,8 @@
 
 #include <benchmark/benchmark.h>
 
+#include <oblique/diagram/diagram_reader.h>
+
 #include "diagrams.h"
 #include "figures.h"
 

@@ -2,6 +2,9 @@
 // ramp, step, pulse-train, noise-source, time-function.
 #include <cmath>
 
+#include <oblique/diagram/diagram_reader.h>
+#include <oblique/diagram/flatten.h>
+
 #include "closed_form.h"
 
 namespace oblique::test {

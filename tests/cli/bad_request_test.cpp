@@ -173,6 +173,12 @@ INSTANTIATE_TEST_SUITE_P(
                        "remedy: did you mean 'gain'?"},
         BadRequestCase{"SetOfAnUnknownBlock",
                        "oblique run diagrams/lessons/triangle-side.toml --set q.gain=3", 2, "'q'"},
+        BadRequestCase{"SetOfAWireThereIsNot",
+                       "oblique run diagrams/lessons/triangle-side.toml --set 'c.in[7]=1'", 2,
+                       "--set c.in[7]=1: input 'c.in' has no wire 7; expected a number from 1 to 4"},
+        BadRequestCase{"SetOfASignalThatIsNotWired",
+                       "oblique run diagrams/lessons/triangle-side.toml --set 'c.in[b3]=1'", 2,
+                       "--set c.in[b3]=1: no wire of input 'c.in' comes from 'b3'"},
         BadRequestCase{"SetWithoutValue", "oblique run diagrams/lessons/triangle-side.toml --set c.gain", 2,
                        "--set c.gain: this sets nothing"},
         BadRequestCase{

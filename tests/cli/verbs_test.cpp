@@ -57,6 +57,22 @@ TEST_F(Verbs, RunChecksExpectations) {
   EXPECT_THAT(bad.out, HasSubstr("FAILED  quotient at 0 = 0.5, expected 0.6 ± 2e-08"));
 }
 
+TEST_F(Verbs, RunTakesOtherWeightsOfInputs) {
+  const std::string run = "run diagrams/lessons/triangle-side.toml -o ";
+  const Outcome outcome = oblique(run + file("number.csv") + " --set 'c.in[4]=1.5'");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  std::string header;
+  const auto rows = csv_rows(file("number.csv"), header);
+  ASSERT_EQ(rows.size(), 1001U);
+  for (const auto& row : rows) {
+    // c² − a² − b² + w a b cos φ = 0 with w = 1.5 in place of 2; 1/(2 gain) = 5e-6 of static error, and
+    // tolerance.
+    EXPECT_NEAR(row[1], std::sqrt(0.09 + 0.16 - 1.5 * 0.12 * std::cos(row[0])), 6e-6);
+  }
+  ASSERT_EQ(oblique(run + file("signal.csv") + " --set 'c.in[abc]=3/2'").status, 0);
+  EXPECT_EQ(csv_rows(file("signal.csv"), header), rows);
+}
+
 TEST_F(Verbs, RunTellsHowManyDigitsStand) {
   const Outcome outcome = oblique("run diagrams/lessons/damped-oscillator.toml --trust --check");
   EXPECT_EQ(outcome.status, 0);
@@ -283,6 +299,8 @@ TEST_F(Verbs, CheckReadsAPipe) {
 
 TEST_F(Verbs, BlocksListsAndTells) {
   EXPECT_THAT(oblique("blocks").out, ContainsRegex("servo-amplifier +Drives its output until"));
+  EXPECT_THAT(oblique("blocks multiplier").out, HasSubstr("[let]\nproduct = \"x*y + offset\"\n"))
+      << "what its equations name";
   const Outcome page = oblique("blocks servo-amplifier");
   EXPECT_THAT(page.out, HasSubstr("open-loop gain μ; inf: the ideal amplifier"));
   EXPECT_THAT(page.out, HasSubstr("\"der(out)\" = \"2*pi*bandwidth*(-out - gain*in)\""));

@@ -11,6 +11,7 @@
 
 #include <Eigen/Core>
 
+#include <oblique/diagram/flatten.h>
 #include <oblique/mechanism/model/read_mechanism.h>
 #include <oblique/patch/patch.h>
 

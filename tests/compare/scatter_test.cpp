@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/compare/scatter.h>
+#include <oblique/diagram/diagram_reader.h>
+#include <oblique/diagram/flatten.h>
 #include <oblique/network/assembly/network.h>
 #include <oblique/network/program/program.h>
 

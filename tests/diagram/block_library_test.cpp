@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <oblique/diagram/flatten.h>
 #include <oblique/text/file.h>
 
 #include "../support/scratch_folder.h"

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <oblique/diagram/block_scaling.h>
+#include <oblique/diagram/propose_scaling.h>
 #include <oblique/diagram/rescale.h>
 
 namespace oblique::diagram {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/diagram/diagram.h>
+#include <oblique/diagram/diagram_writer.h>
 
 #include <array>
 #include <cmath>
@@ -10,6 +10,8 @@
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
+
+#include <oblique/diagram/diagram_reader.h>
 
 namespace oblique::diagram {
 namespace {

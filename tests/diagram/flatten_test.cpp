@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/diagram/flat_diagram.h>
+#include <oblique/diagram/flatten.h>
 
 #include <algorithm>
 #include <limits>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <oblique/diagram/diagram_reader.h>
 
 #include "small_library.h"
 
@@ -14,6 +16,7 @@ namespace {
 
 using testing::diagram_text;
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 using testing::message_of;
 using testing::small_library;
 
@@ -264,7 +267,9 @@ TEST_F(Overrides, ReplaceParametersAtAnyDepth) {
 }
 
 TEST_F(Overrides, SayWhatIsWrong) {
-  EXPECT_EQ(message("gain", "1"), "set gain=1: 'gain' names no parameter; expected BLOCK.PARAMETER=VALUE");
+  EXPECT_EQ(message("gain", "1"),
+            "set gain=1: 'gain' names no parameter; expected BLOCK.PARAMETER=VALUE or "
+            "BLOCK.INPUT[NUMBER]=VALUE");
   EXPECT_EQ(message("x.gain", "1"), "set x.gain=1: there is no block 'x'\n  remedy: known: a, C");
   EXPECT_EQ(message("C.bx.k", "1"), "set C.bx.k=1: there is no block 'C.bx'\n  remedy: known: b");
   EXPECT_EQ(message("a.b.k", "1"), "set a.b.k=1: 'a' (reference) has no inner blocks");
@@ -275,7 +280,9 @@ TEST_F(Overrides, SayWhatIsWrong) {
       message("C.b.s.gian", "1"),
       "set C.b.s.gian=1: 'gian' of block type 'servo' is not a parameter\n  remedy: did you mean 'gain'?");
   EXPECT_EQ(message("C.x", "1"),
-            "set C.x=1: 'x' of block type 'crate' is an input\n  remedy: only parameters can be set");
+            "set C.x=1: 'x' of block type 'crate' is an input\n  remedy: only parameters can be set, and "
+            "weights of "
+            "inputs: 'C.x[1]' is that of the first wire");
   EXPECT_EQ(message("C.b.k", "10"), "set C.b.k=10: the value is 10; expected a number at most 9");
   EXPECT_EQ(message("C.b.s.bandwidth", "3 s"),
             "set C.b.s.bandwidth=3 s: 's' is the wrong unit here; expected a quantity in 'Hz'\n"
@@ -283,6 +290,84 @@ TEST_F(Overrides, SayWhatIsWrong) {
   EXPECT_EQ(message("a.value", "m"),
             "set a.value=m: 'm' is not a known constant; expected a number, 'pi' or 'inf'");
   EXPECT_EQ(message("a..value", "1"), "set a..value=1: 'a' (reference) has no inner blocks");
+}
+
+//  a ──┬──► s (weights 1, −2 of itself, 1.5 of p, 3 of a again) ;   p = a·(−a) ;   C = crate of a
+class Weights : public Overrides {
+ protected:
+  std::vector<std::string> inputs(const std::string& block, const std::vector<ParameterOverride>& overrides) {
+    return inputs_of(flat(kWired, "", overrides), block);
+  }
+  std::string weight_message(const std::string& path, const std::string& value) const {
+    return message_of([&] { flat(kWired, "", {{path, value}}); });
+  }
+
+  const std::string kWired = R"toml(a = { type = "reference" }
+r = { type = "resolver", in = ["a", "-a"] }
+s = { type = "adder", in = ["a", "-2*s", "3/2*r.y", "3*a"] }
+p = { type = "product", in = ["a", "-r.x"] }
+C = { type = "crate", x = "a" }
+empty = { type = "adder", in = [] }
+)toml";
+};
+
+TEST_F(Weights, AreSetByNumberOrBySignal) {
+  EXPECT_THAT(inputs("s", {}), ElementsAre("1*a + -2*s + 1.5*r.y + 3*a"));
+  EXPECT_THAT(inputs("s", {{"s.in[2]", "-1/4"}}), ElementsAre("1*a + -0.25*s + 1.5*r.y + 3*a"));
+  EXPECT_THAT(inputs("s", {{"s.in[s]", "7"}}), ElementsAre("1*a + 7*s + 1.5*r.y + 3*a"));
+  EXPECT_THAT(inputs("s", {{"s.in[r.y]", "0"}}), ElementsAre("1*a + -2*s + 0*r.y + 3*a"));
+  EXPECT_THAT(inputs("s", {{"s.in[4]", "2"}, {"s.in[1]", "5"}, {"s.in[4]", "6"}}),
+              ElementsAre("5*a + -2*s + 1.5*r.y + 6*a"))
+      << "of two, the last";
+}
+
+TEST_F(Weights, OfSeveralInputsAreThoseOfTheListOrOfTheInput) {
+  EXPECT_THAT(inputs("p", {{"p.in[2]", "3"}}), ElementsAre("1*a", "3*r.x"));
+  EXPECT_THAT(inputs("p", {{"p.y[1]", "3"}}), ElementsAre("1*a", "3*r.x"));
+  EXPECT_THAT(inputs("p", {{"p.in[r.x]", "3"}}), ElementsAre("1*a", "3*r.x"));
+}
+
+TEST_F(Weights, InsideCompositesAreThoseOfOneBlock) {
+  // The inner weight k = 2 follows from the composite; a replaced one does not.
+  EXPECT_THAT(inputs("C.b.s", {}), ElementsAre("3*a"));
+  EXPECT_THAT(inputs("C.b.s", {{"C.b.s.in[1]", "0.5"}, {"C.m", "4"}}), ElementsAre("0.5*a"));
+  EXPECT_THAT(inputs("C.b.s", {{"C.b.s.in[x]", "0.5"}}), ElementsAre("0.5*a"));
+  EXPECT_THAT(inputs("C.b.s", {{"C.x[1]", "-1"}}), ElementsAre("-3*a")) << "into the composite";
+}
+
+TEST_F(Weights, SayWhatIsWrong) {
+  EXPECT_EQ(weight_message("s.in[5]", "1"),
+            "set s.in[5]=1: input 's.in' has no wire 5; expected a number from 1 to 4");
+  EXPECT_EQ(weight_message("s.in[0]", "1"),
+            "set s.in[0]=1: input 's.in' has no wire 0; expected a number from 1 to 4");
+  EXPECT_EQ(weight_message("s.in[99999999999999999999]", "1"),
+            "set s.in[99999999999999999999]=1: input 's.in' has no wire 99999999999999999999; expected a "
+            "number from 1 to 4");
+  EXPECT_EQ(weight_message("s.in[r.z]", "1"),
+            "set s.in[r.z]=1: no wire of input 's.in' comes from 'r.z'\n  remedy: did you mean 'r.y'?");
+  EXPECT_EQ(weight_message("s.in[a]", "1"),
+            "set s.in[a]=1: 2 wires of input 's.in' come from 'a'; expected one of [1], [4]");
+  EXPECT_EQ(weight_message("s.in[]", "1"),
+            "set s.in[]=1: 's.in[]' names no wire; expected a number or a signal in brackets, such as "
+            "'s.in[1]'");
+  EXPECT_EQ(weight_message("s.in[1", "1"),
+            "set s.in[1=1: 's.in[1' names no wire; expected a number or a signal in brackets, such as "
+            "'s.in[1]'");
+  EXPECT_EQ(weight_message("s.inn[1]", "1"),
+            "set s.inn[1]=1: 'inn' of block type 'adder' is not an input\n  remedy: did you mean 'in'?");
+  EXPECT_EQ(weight_message("a.value[1]", "1"),
+            "set a.value[1]=1: 'value' of block type 'reference' is a parameter, which has no weights\n"
+            "  remedy: 'a.value' sets it");
+  EXPECT_EQ(weight_message("empty.in[1]", "1"),
+            "set empty.in[1]=1: nothing is wired to input 'empty.in'; expected an input with a wire");
+  EXPECT_EQ(weight_message("q.in[1]", "1"),
+            "set q.in[1]=1: there is no block 'q'\n  remedy: known: a, r, s, "
+            "p, C, empty");
+  EXPECT_EQ(weight_message("in[1]", "1"),
+            "set in[1]=1: 'in[1]' names no parameter; expected BLOCK.PARAMETER=VALUE or "
+            "BLOCK.INPUT[NUMBER]=VALUE");
+  EXPECT_EQ(weight_message("s.in[1]", "inf"), "set s.in[1]=inf: the weight is inf; expected a finite number");
+  EXPECT_THAT(weight_message("s.in[1]", "2 m"), HasSubstr("set s.in[1]=2 m: 'm' is the wrong unit here"));
 }
 
 /// A chain of blocks, each of which is fed by itself and the one before.

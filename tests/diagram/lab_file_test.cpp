@@ -9,7 +9,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <oblique/diagram/diagram_reader.h>
 #include <oblique/diagram/flat_diagram.h>
+#include <oblique/diagram/flatten.h>
 
 #include "../support/scratch_folder.h"
 #include "small_library.h"

@@ -6,6 +6,10 @@
 
 #include <gtest/gtest.h>
 
+#include <oblique/diagram/diagram_reader.h>
+#include <oblique/diagram/diagram_writer.h>
+#include <oblique/diagram/flatten.h>
+
 #include "small_library.h"
 
 namespace oblique::diagram {

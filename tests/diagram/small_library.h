@@ -4,7 +4,9 @@
 #include <string>
 #include <string_view>
 
+#include <oblique/diagram/diagram_reader.h>
 #include <oblique/diagram/flat_diagram.h>
+#include <oblique/diagram/flatten.h>
 
 namespace oblique::testing {
 

@@ -5,6 +5,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <oblique/diagram/diagram_reader.h>
+#include <oblique/diagram/flatten.h>
+
 #include "small_library.h"
 
 namespace oblique::diagram {
@@ -283,7 +286,7 @@ TEST(Wiring, ValuesThatFollowFromAComposite) {
             "box.toml:10:40: parameter 'c.s.gain' is -1; expected a number above 0\n"
             "  remedy: it follows from the parameters of 'c' (d.toml:4:1)");
   EXPECT_EQ(wiring_message(use, with_box(ports + "s = { type = \"servo\", in = \"x/(k + 2)\" }\n")),
-            "box.toml:10:29: input 'c.s.in': a weight is inf; expected a finite number\n"
+            "box.toml:10:29: the weight 'c.s.in[1]' is inf; expected a finite number\n"
             "  remedy: it follows from the parameters of 'c' (d.toml:4:1)");
 }
 

@@ -9,6 +9,8 @@
 #include <gtest/gtest.h>
 
 #include <oblique/compare/compare.h>
+#include <oblique/diagram/diagram_reader.h>
+#include <oblique/diagram/flatten.h>
 #include <oblique/mechanism/model/read_mechanism.h>
 #include <oblique/mechanism/motion/obstacle.h>
 #include <oblique/mechanism/structure/structure.h>

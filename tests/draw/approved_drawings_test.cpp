@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <oblique/diagram/diagram_reader.h>
 #include <oblique/draw/picture/svg.h>
 #include <oblique/draw/schematic/diagram_drawing.h>
 

@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <oblique/diagram/diagram_reader.h>
 #include <oblique/draw/schematic/schematic.h>
 #include <oblique/draw/schematic/symbols.h>
 

@@ -8,6 +8,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <oblique/diagram/diagram_reader.h>
+#include <oblique/diagram/diagram_writer.h>
 #include <oblique/mechanism/model/read_mechanism.h>
 #include <oblique/patch/patch.h>
 

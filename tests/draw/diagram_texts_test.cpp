@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <oblique/diagram/diagram_reader.h>
 #include <oblique/diagram/machine_profile.h>
 #include <oblique/draw/schematic/diagram_drawing.h>
 #include <oblique/machine/realise.h>

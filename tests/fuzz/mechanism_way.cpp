@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <oblique/diagram/diagram_reader.h>
+#include <oblique/diagram/diagram_writer.h>
 #include <oblique/mechanism/model/read_mechanism.h>
 #include <oblique/mechanism/motion/follower.h>
 #include <oblique/mechanism/motion/motion.h>

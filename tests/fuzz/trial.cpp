@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include <oblique/diagram/diagram_reader.h>
+#include <oblique/diagram/flatten.h>
 #include <oblique/network/assembly/network.h>
 #include <oblique/network/program/program.h>
 #include <oblique/solve/solve_error.h>

@@ -11,6 +11,9 @@
 
 #include <fmt/format.h>
 
+#include <oblique/diagram/diagram_reader.h>
+#include <oblique/diagram/diagram_writer.h>
+
 #include "agreement.h"
 #include "random_diagram.h"
 #include "trial.h"

@@ -7,6 +7,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <oblique/diagram/diagram_reader.h>
+#include <oblique/diagram/flatten.h>
+
 #include "../support/compiled.h"
 #include "profiles.h"
 

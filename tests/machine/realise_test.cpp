@@ -6,6 +6,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <oblique/diagram/diagram_reader.h>
+#include <oblique/diagram/diagram_writer.h>
+#include <oblique/diagram/flatten.h>
+
 #include "../support/compiled.h"
 #include "machine_runs.h"
 #include "profiles.h"

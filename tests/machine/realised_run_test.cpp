@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <oblique/diagram/diagram_reader.h>
+#include <oblique/diagram/diagram_writer.h>
 #include <oblique/machine/realise.h>
 #include <oblique/mechanism/model/read_mechanism.h>
 #include <oblique/patch/patch.h>

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <oblique/diagram/diagram_reader.h>
+#include <oblique/diagram/flatten.h>
 #include <oblique/machine/realise.h>
 #include <oblique/network/assembly/network.h>
 #include <oblique/network/program/program.h>

@@ -7,6 +7,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <oblique/diagram/diagram_reader.h>
+#include <oblique/diagram/diagram_writer.h>
+#include <oblique/diagram/flatten.h>
 #include <oblique/mechanism/model/read_mechanism.h>
 #include <oblique/mechanism/motion/motion.h>
 #include <oblique/network/assembly/network.h>

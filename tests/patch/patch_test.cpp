@@ -10,6 +10,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <oblique/diagram/diagram_reader.h>
+#include <oblique/diagram/diagram_writer.h>
 #include <oblique/mechanism/model/read_mechanism.h>
 #include <oblique/mechanism/motion/motion.h>
 #include <oblique/mechanism/structure/structure.h>

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <oblique/diagram/flatten.h>
 #include <oblique/mechanism/model/read_mechanism.h>
 #include <oblique/mechanism/motion/motion.h>
 #include <oblique/network/assembly/network.h>

@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <oblique/diagram/flatten.h>
 #include <oblique/mechanism/model/read_mechanism.h>
 #include <oblique/mechanism/motion/motion.h>
 #include <oblique/mechanism/structure/structure.h>

@@ -6,6 +6,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <oblique/diagram/diagram_reader.h>
+#include <oblique/diagram/diagram_writer.h>
+#include <oblique/diagram/flatten.h>
+#include <oblique/diagram/propose_scaling.h>
 #include <oblique/diagram/rescale.h>
 #include <oblique/network/assembly/network.h>
 #include <oblique/network/program/program.h>

@@ -10,6 +10,7 @@
 #include <fmt/ranges.h>
 
 #include <oblique/commission/judge.h>
+#include <oblique/diagram/flatten.h>
 #include <oblique/mechanism/motion/follower.h>
 #include <oblique/mechanism/motion/motion.h>
 #include <oblique/mechanism/structure/structure.h>

@@ -3,6 +3,9 @@
 
 #include <oblique/mechanism/model/read_mechanism.h>
 
+#include <oblique/diagram/diagram_reader.h>
+#include <oblique/diagram/diagram_writer.h>
+#include <oblique/diagram/flatten.h>
 #include <oblique/network/assembly/network.h>
 #include <oblique/network/program/program.h>
 #include <oblique/report/diagram_check.h>

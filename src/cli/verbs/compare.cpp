@@ -14,6 +14,7 @@
 #include <oblique/compare/monte_carlo.h>
 #include <oblique/mechanism/model/read_mechanism.h>
 
+#include <oblique/diagram/flatten.h>
 #include <oblique/report/comparison_chart.h>
 #include <oblique/report/comparison_report.h>
 #include <oblique/report/json_text.h>

@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 
 #include <oblique/diagram/diagram.h>
+#include <oblique/diagram/diagram_reader.h>
+#include <oblique/diagram/diagram_writer.h>
 #include <oblique/draw/schematic/diagram_drawing.h>
 
 #include "terminal/picture_output.h"

@@ -12,6 +12,8 @@
 #include <oblique/machine/sheets.h>
 #include <oblique/network/assembly/network.h>
 
+#include <oblique/diagram/diagram_writer.h>
+#include <oblique/diagram/flatten.h>
 #include <oblique/report/bill_text.h>
 #include <oblique/report/judgement_text.h>
 #include <oblique/report/text_table.h>

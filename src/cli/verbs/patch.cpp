@@ -7,6 +7,7 @@
 
 #include <oblique/mechanism/model/read_mechanism.h>
 
+#include <oblique/diagram/diagram_writer.h>
 #include <oblique/report/judgement_text.h>
 #include "terminal/output_files.h"
 #include "terminal/terminal.h"

@@ -9,6 +9,8 @@
 #include <oblique/solve/operating_point/static_test.h>
 #include <oblique/solve/run.h>
 
+#include <oblique/diagram/diagram_reader.h>
+#include <oblique/diagram/flatten.h>
 #include <oblique/network/assembly/network.h>
 #include <oblique/report/run_chart.h>
 #include <oblique/report/run_text.h>

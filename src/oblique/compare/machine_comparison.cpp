@@ -8,7 +8,6 @@
 #include <oblique/compare/patched_run.h>
 #include <oblique/machine/bill.h>
 #include <oblique/machine/realise.h>
-#include <oblique/machine/role.h>
 #include <oblique/solve/solve_error.h>
 
 namespace oblique::compare {
@@ -28,11 +27,12 @@ void set(diagram::BlockInstance& block, const std::string& key, double value) {
 }
 
 /// The same elements without errors; amplifiers that take their gain from the machine get that of the patch.
-diagram::Diagram on_ideal_elements(diagram::Diagram diagram, double gain) {
+diagram::Diagram on_ideal_elements(diagram::Diagram diagram, const diagram::BlockLibrary& library,
+                                   double gain) {
   diagram.machine.profile = "ideal";
   for (diagram::BlockInstance& block : diagram.blocks) {
-    if (machine::role_of(block.type) == machine::Role::open_amplifier && !has_setting(block, "gain"))
-      set(block, "gain", gain);
+    const bool is_open = library.find(block.type)->role == diagram::Role::open_amplifier;
+    if (is_open && !has_setting(block, "gain")) set(block, "gain", gain);
   }
   return diagram;
 }
@@ -43,10 +43,10 @@ struct Acting {
   bool operator==(const Acting&) const = default;
 };
 
-/// Whether blocks of the library have the parameter of an error: a user's own one need not.
-bool has_parameter(const diagram::BlockLibrary& library, const diagram::BlockFigure& error) {
-  const diagram::BlockDefinition* const definition = library.find(error.block);
-  return definition != nullptr && definition->find_parameter(error.parameter).has_value();
+/// Whether an error acts on a block of a realised diagram, whose types the library has.
+bool acts_on(const diagram::BlockFigure& error, const diagram::BlockInstance& block,
+             const diagram::BlockLibrary& library) {
+  return error.acts_on(*library.find(block.type)).has_value();
 }
 
 /// Ideal elements but for one figure on one kind of block, where the diagram itself does not say otherwise.
@@ -54,10 +54,10 @@ diagram::Diagram with_figure(const diagram::Diagram& realised, diagram::Diagram 
                              const diagram::BlockLibrary& library, const diagram::MachineProfile& machine,
                              const Acting& acting) {
   for (const diagram::BlockFigure& error : machine.errors) {
-    if (Acting{error.figure, error.block} != acting || !has_parameter(library, error)) continue;
+    if (Acting{error.figure, error.block} != acting) continue;
     for (std::size_t b = 0; b < ideal.blocks.size(); ++b) {
       const bool acts =
-          ideal.blocks[b].type == error.block && !has_setting(realised.blocks[b], error.parameter);
+          acts_on(error, ideal.blocks[b], library) && !has_setting(realised.blocks[b], error.parameter);
       if (acts) set(ideal.blocks[b], error.parameter, error.value);
     }
   }
@@ -72,9 +72,8 @@ std::vector<Acting> acting_figures(const diagram::MachineProfile& machine,
     const Acting acting{error.figure, error.block};
     const bool used =
         std::any_of(diagram.blocks.begin(), diagram.blocks.end(),
-                    [&](const diagram::BlockInstance& block) { return block.type == error.block; });
-    if (used && has_parameter(library, error) && std::find(found.begin(), found.end(), acting) == found.end())
-      found.push_back(acting);
+                    [&](const diagram::BlockInstance& block) { return acts_on(error, block, library); });
+    if (used && std::find(found.begin(), found.end(), acting) == found.end()) found.push_back(acting);
   }
   return found;
 }
@@ -127,11 +126,11 @@ MachineComparison compare_on_machine(const mechanism::Mechanism& whole, const di
     return recorded;
   };
 
-  const PatchedMechanism none(on_ideal_elements(realised, options.gain), library);
+  const PatchedMechanism none(on_ideal_elements(realised, library, options.gain), library);
   const solve::Run ideal_run = run_of(none, "ideal elements").run;
   const solve::Trajectory& on_ideal = ideal_run.trajectory;
   realised.run.max_steps = kStepsOfAFailure * ideal_run.statistics.steps;
-  const diagram::Diagram ideal = on_ideal_elements(realised, options.gain);
+  const diagram::Diagram ideal = on_ideal_elements(realised, library, options.gain);
   const PatchedMechanism all(realised, library);
   const RecordedRun on_machine = run_of(all, "all figures of " + machine.title);
   const solve::Trajectory& analog = on_machine.run.trajectory;

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include <oblique/compare/patched_run.h>
+#include <oblique/diagram/flatten.h>
 #include <oblique/network/assembly/network.h>
 #include <oblique/network/program/program.h>
 #include <oblique/solve/solve_error.h>

@@ -37,8 +37,7 @@ std::vector<Draw> draw(const diagram::FlatDiagram& diagram, const std::vector<di
   for (std::size_t b = 0; b < diagram.blocks.size(); ++b) {
     const diagram::FlatBlock& block = diagram.blocks[b];
     for (std::size_t s = 0; s < scatters.size(); ++s) {
-      if (scatters[s].block != block.definition->name) continue;
-      const auto parameter = block.definition->find_parameter(scatters[s].parameter);
+      const auto parameter = scatters[s].acts_on(*block.definition);
       if (!parameter) continue;
       const double nominal = block.parameters[*parameter];
       const double away = scatters[s].value * uniform(key, b, s);
@@ -64,8 +63,8 @@ std::vector<diagram::BlockFigure> scatters_of_tolerance(const diagram::BlockLibr
     const diagram::BlockDefinition& definition = *library.find(name);
     if (definition.is_composite()) continue;
     for (const diagram::ParameterDefinition& parameter : definition.parameters) {
-      const bool scattered =
-          parameter.name == "tolerance" || (name == "multiplier" && parameter.name == "error");
+      const bool scattered = parameter.name == "tolerance" ||
+                             (definition.role == diagram::Role::multiplier && parameter.name == "error");
       if (scattered) scatters.push_back({name, parameter.name, tolerance, "tolerance"});
     }
   }

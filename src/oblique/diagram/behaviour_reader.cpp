@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <oblique/diagram/block_expressions.h>
 #include <oblique/diagram/names.h>
 #include <oblique/text/expression_parser.h>
 
@@ -14,7 +15,10 @@ namespace {
 class BehaviourReader {
  public:
   BehaviourReader(text::TableReader& reader, BlockDefinition& definition, text::Diagnostics& diagnostics)
-      : reader_(reader), definition_(definition), diagnostics_(diagnostics) {
+      : reader_(reader),
+        definition_(definition),
+        diagnostics_(diagnostics),
+        expressions_(definition, diagnostics) {
     for (const ParameterDefinition& parameter : definition_.parameters) {
       if (!parameter.formula) constants_.push_back(parameter.name);
     }
@@ -22,15 +26,16 @@ class BehaviourReader {
   }
 
   void read() {
+    read_lets();
     read_memories();
     if (const text::Value* const cases = reader_.find("cases")) read_cases(*cases);
     read_behaviour(reader_, {}, "");
     read_starts();
     if (const text::Value* const events = reader_.find("events")) read_events(*events);
     if (const text::Value* const interval = reader_.find("check_interval")) {
-      definition_.check_interval = read_expression(*interval, "'check_interval'");
+      definition_.check_interval = expressions_.read(*interval, "'check_interval'");
       if (definition_.check_interval)
-        check_names(*definition_.check_interval, *interval, "'check_interval'", constants_);
+        expressions_.resolve(*definition_.check_interval, *interval, "'check_interval'", constants_);
     }
   }
 
@@ -63,8 +68,8 @@ class BehaviourReader {
       if (when == nullptr) {
         reader.report("when", "[[cases]] has no 'when'", "a condition on the parameters");
       } else {
-        condition = read_expression(*when, "'when'");
-        if (condition) check_names(*condition, *when, "'when'", constants_);
+        condition = expressions_.read(*when, "'when'");
+        if (condition) expressions_.resolve(*condition, *when, "'when'", constants_);
       }
       // Without a condition the case would pass for the default; the finding above ends the reading anyway.
       read_behaviour(reader, condition ? std::move(condition) : text::Expression{},
@@ -95,7 +100,7 @@ class BehaviourReader {
     Behaviour behaviour;
     behaviour.when = std::move(when);
     for (Written& w : written) {
-      check_names(w.equation.expression, *w.value, fmt::format("equation '{}'", w.key), names);
+      expressions_.resolve(w.equation.expression, *w.value, fmt::format("equation '{}'", w.key), names);
       behaviour.equations.push_back(std::move(w.equation));
     }
     definition_.behaviours.push_back(std::move(behaviour));
@@ -112,21 +117,55 @@ class BehaviourReader {
     return names;
   }
 
+  /// The left side of an equation without its "der()".
+  static std::string_view target_of(std::string_view key) {
+    return key.starts_with("der(") && key.ends_with(")") ? key.substr(4, key.size() - 5) : key;
+  }
+
+  /// What has an equation in some case: `[let]` may name it, where that case has it.
+  static void add_targets(const text::Value& table, std::vector<std::string>& names) {
+    for (const std::string_view key : {"equations", "implicit"}) {
+      const text::Value* const equations = table.find(key);
+      if (equations == nullptr) continue;
+      for (const text::Entry& entry : equations->entries) {
+        const std::string_view target = target_of(entry.key);
+        if (std::find(names.begin(), names.end(), target) == names.end()) names.emplace_back(target);
+      }
+    }
+  }
+
+  void read_lets() {
+    const text::Value* const table = reader_.table("let");
+    if (table == nullptr) return;
+    std::vector<std::string> names = signal_names();
+    for (const ParameterDefinition& parameter : definition_.parameters) {
+      if (parameter.formula) names.push_back(parameter.name);
+    }
+    if (const text::Value* const memories = reader_.table().find("memories")) {
+      for (const text::Entry& entry : memories->entries) names.push_back(entry.key);
+    }
+    add_targets(reader_.table(), names);
+    if (const text::Value* const cases = reader_.find("cases")) {
+      for (const text::Value& element : cases->elements) add_targets(element, names);
+    }
+    expressions_.read_lets(*table, names);
+  }
+
   void read_memories() {
     const text::Value* const table = reader_.table("memories");
     if (table == nullptr) return;
     for (const text::Entry& entry : table->entries) {
       if (!check_name(entry.key, "a memory", place(entry.position), diagnostics_)) continue;
       if (definition_.find_input(entry.key) || definition_.find_parameter(entry.key) ||
-          definition_.find_output(entry.key)) {
+          definition_.find_output(entry.key) || expressions_.is_let(entry.key)) {
         report(entry.position, fmt::format("the name '{}' is used twice", entry.key),
-               "different names for inputs, outputs, parameters and memories");
+               "different names for inputs, outputs, parameters, memories and [let]");
         continue;
       }
       const std::string what = fmt::format("memory '{}'", entry.key);
-      auto initial = read_expression(entry.value, what);
+      auto initial = expressions_.read(entry.value, what);
       if (!initial) continue;
-      check_names(*initial, entry.value, what, constants_);
+      expressions_.resolve(*initial, entry.value, what, constants_);
       definition_.memories.push_back({entry.key, std::move(*initial), place(entry.position)});
     }
   }
@@ -163,16 +202,16 @@ class BehaviourReader {
     EventRule rule;
     rule.place = place(reader.table().position);
     if (const text::Value* const when = reader.find("when")) {
-      if (auto condition = read_expression(*when, "'when'")) {
-        check_names(*condition, *when, "'when'", names);
+      if (auto condition = expressions_.read(*when, "'when'")) {
+        expressions_.resolve(*condition, *when, "'when'", names);
         rule.when = std::move(*condition);
       }
     } else {
       reader.report("when", "[[events]] has no 'when'", "the condition that starts the event");
     }
     if (const text::Value* const where = reader.find("where")) {
-      rule.where = read_expression(*where, "'where'");
-      if (rule.where) check_names(*rule.where, *where, "'where'", constants_);
+      rule.where = expressions_.read(*where, "'where'");
+      if (rule.where) expressions_.resolve(*rule.where, *where, "'where'", constants_);
     }
     rule.at_start = reader.boolean("at_start").value_or(true);
     const text::Value* const set = reader.table("set");
@@ -198,9 +237,9 @@ class BehaviourReader {
         continue;
       }
       const std::string what = fmt::format("event's '{}'", entry.key);
-      auto value = read_expression(entry.value, what);
+      auto value = expressions_.read(entry.value, what);
       if (!value) continue;
-      check_names(*value, entry.value, what, names);
+      expressions_.resolve(*value, entry.value, what, names);
       actions.push_back({entry.key, std::move(*value), place(entry.value.position)});
     }
     return actions;
@@ -208,12 +247,11 @@ class BehaviourReader {
 
   void read_equation(const text::Entry& entry, bool implicit, std::vector<Written>& written) {
     Equation equation;
-    std::string_view target = entry.key;
+    const std::string_view target = implicit ? std::string_view(entry.key) : target_of(entry.key);
     if (implicit) {
       equation.kind = Equation::Kind::implicit;
-    } else if (target.starts_with("der(") && target.ends_with(")")) {
+    } else if (target != entry.key) {
       equation.kind = Equation::Kind::derivative;
-      target = target.substr(4, target.size() - 5);
     }
     if (!text::is_identifier(target)) {
       report(entry.position, fmt::format("'{}' is not the left side of an equation", entry.key),
@@ -223,7 +261,7 @@ class BehaviourReader {
     equation.target = std::string(target);
     equation.place = place(entry.value.position);
     const bool name_is_good = check_target(equation.target, entry);
-    auto expression = read_expression(entry.value, fmt::format("equation '{}'", entry.key));
+    auto expression = expressions_.read(entry.value, fmt::format("equation '{}'", entry.key));
     if (!expression || !name_is_good) {
       broken_targets_.push_back(equation.target);
       return;
@@ -234,12 +272,13 @@ class BehaviourReader {
 
   bool check_target(const std::string& target, const text::Entry& entry) {
     if (definition_.find_input(target) || definition_.find_parameter(target) ||
-        definition_.find_memory(target)) {
+        definition_.find_memory(target) || expressions_.is_let(target)) {
       report(entry.position,
              fmt::format("'{}' is {} and cannot have an equation", target,
                          definition_.find_input(target)       ? "an input"
                          : definition_.find_parameter(target) ? "a parameter"
-                                                              : "a memory"),
+                         : definition_.find_memory(target)    ? "a memory"
+                                                              : "an expression of [let]"),
              "an output or another name");
       return false;
     }
@@ -322,51 +361,22 @@ class BehaviourReader {
       reader.finish();
     }
     if (value == nullptr) return rule;
-    if (auto expression = read_expression(*value, what)) {
+    if (auto expression = expressions_.read(*value, what)) {
       std::vector<std::string> names = constants_;
       if (!rule.at_rest && !is_implicit(target)) {
         for (const InputPort& input : definition_.inputs) names.push_back(input.name);
         for (const std::string_view mode : {"in_initial", "in_operate", "in_hold"}) names.emplace_back(mode);
       }
-      check_names(*expression, *value, what, names);
+      expressions_.resolve(*expression, *value, what, names);
       rule.value = std::move(*expression);
     }
     return rule;
   }
 
-  std::optional<text::Expression> read_expression(const text::Value& value, const std::string& what) {
-    if (value.kind == text::Value::Kind::number) {
-      text::Expression number;
-      number.number = value.number;
-      number.column = 1;
-      return number;
-    }
-    if (value.kind != text::Value::Kind::string) {
-      report(value.position, fmt::format("{} is {}", what, text::kind_name(value.kind)),
-             "a number or an expression");
-      return std::nullopt;
-    }
-    try {
-      return text::parse_expression(value.text);
-    } catch (const text::ExpressionError& error) {
-      diagnostics_.add(text::to_diagnostic(error, definition_.file, value, what));
-      return std::nullopt;
-    }
-  }
-
-  void check_names(const text::Expression& expression, const text::Value& value, const std::string& what,
-                   const std::vector<std::string>& known) {
-    for (const text::Expression* const name : names_in(expression)) {
-      if (name->name == "pi" || name->name == "inf") continue;
-      if (std::find(known.begin(), known.end(), name->name) != known.end()) continue;
-      report(position_in(value, name->column), fmt::format("{}: there is no name '{}'", what, name->name), {},
-             text::suggest(name->name, known));
-    }
-  }
-
   text::TableReader& reader_;
   BlockDefinition& definition_;
   text::Diagnostics& diagnostics_;
+  BlockExpressions expressions_;
   std::vector<std::string> constants_;       ///< what a condition or a start value may name
   std::vector<std::string> broken_targets_;  ///< reported already; not also "has no equation"
 };

@@ -8,7 +8,7 @@
 
 namespace oblique::diagram {
 
-/// Reads `[equations]`, `[implicit]`, `[[cases]]` and `[start]` of a primitive block whose ports and
+/// Reads `[let]`, `[equations]`, `[implicit]`, `[[cases]]` and `[start]` of a primitive block whose ports and
 /// parameters are known already. Afterwards every derivative and implicit target has a StartRule.
 void read_behaviours(text::TableReader& reader, BlockDefinition& definition, text::Diagnostics& diagnostics);
 

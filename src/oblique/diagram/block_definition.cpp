@@ -38,6 +38,8 @@ class BlockReader {
     definition_.summary = reader_.string("summary").value_or("");
     definition_.source = reader_.string("source").value_or("");
     definition_.symbol = reader_.string("symbol").value_or("");
+    const auto role = reader_.string("role");
+    if (role) definition_.role = read_role(*role, role_place(), diagnostics_);
     definition_.doc = reader_.string("doc").value_or("");
     const text::Value* const blocks = reader_.table("blocks");
     each("inputs", [&](const text::Entry& entry) { read_input(entry); });
@@ -56,6 +58,9 @@ class BlockReader {
     }
     reader_.finish();
     diagnostics_.throw_if_any<DiagramError>();
+    if (!role) return;
+    check_role(definition_, role_place(), diagnostics_);
+    diagnostics_.throw_if_any<DiagramError>();
   }
 
  private:
@@ -67,6 +72,7 @@ class BlockReader {
   }
 
   text::Place place(text::SourcePosition position) const { return {definition_.file, position}; }
+  text::Place role_place() const { return place(reader_.table().find("role")->position); }
 
   void check_port(const text::Entry& entry, std::string_view what,
                   std::initializer_list<std::string_view> taken) {
@@ -210,7 +216,7 @@ class BlockReader {
 
   void read_composite(const text::Value& blocks) {
     for (const std::string_view key :
-         {"equations", "implicit", "cases", "start", "memories", "events", "check_interval"}) {
+         {"let", "equations", "implicit", "cases", "start", "memories", "events", "check_interval"}) {
       if (reader_.find(key) == nullptr) continue;
       reader_.report(key, fmt::format("a block with [blocks] has '{}' too", key), "one or the other",
                      "put the equations into a block file of their own");

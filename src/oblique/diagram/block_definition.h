@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include <oblique/diagram/role.h>
 #include <oblique/text/document.h>
 #include <oblique/text/expression.h>
 #include <oblique/text/point_table.h>
@@ -133,6 +134,7 @@ struct BlockDefinition {
   std::string summary;
   std::string source;
   std::string symbol;
+  Role role = Role::other;  ///< what a real machine makes of it
   std::string doc;
   std::vector<InputPort> inputs;
   std::vector<OutputPort> outputs;

@@ -72,12 +72,21 @@ void BlockLibrary::add_directory(const std::filesystem::path& directory) {
 
 void BlockLibrary::add(BlockDefinition definition) {
   std::string name = definition.name;
-  definitions_.insert_or_assign(std::move(name), std::move(definition));
+  const auto [at, is_new] = definitions_.insert_or_assign(std::move(name), std::move(definition));
+  if (is_new) order_.push_back(at->first);
 }
 
 const BlockDefinition* BlockLibrary::find(std::string_view name) const {
   const auto found = definitions_.find(name);
   return found == definitions_.end() ? nullptr : &found->second;
+}
+
+const BlockDefinition* BlockLibrary::find(Role role) const {
+  for (const std::string& name : order_) {
+    const BlockDefinition& definition = definitions_.find(name)->second;
+    if (definition.role == role) return &definition;
+  }
+  return nullptr;
 }
 
 std::vector<std::string> BlockLibrary::names() const {

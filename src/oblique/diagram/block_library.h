@@ -26,11 +26,15 @@ class BlockLibrary {
   void add(BlockDefinition definition);
   /// The block of that name, or nothing.
   const BlockDefinition* find(std::string_view name) const;
+  /// The block that a machine's elements of a role are written as: the one with it that was added first, so
+  /// the shipped one as long as it has the role. Nothing where no block has it.
+  const BlockDefinition* find(Role role) const;
   /// All names in alphabetical order.
   std::vector<std::string> names() const;
 
  private:
   std::map<std::string, BlockDefinition, std::less<>> definitions_;
+  std::vector<std::string> order_;  ///< the names, as they were first added
 };
 
 }  // namespace oblique::diagram

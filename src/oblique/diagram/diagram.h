@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -128,17 +127,6 @@ struct Diagram {
 
 /// Whether the expressions keep this name for themselves, so that no block can have it: `time`, `pi`, `or` …
 bool is_reserved(std::string_view name);
-
-/// Reads a diagram's text. Throws DiagramError with all findings of this one file (wiring is checked by
-/// `flatten`), ReadError for broken TOML.
-Diagram parse_diagram(std::string_view text, std::string file);
-Diagram read_diagram(const std::filesystem::path& path);
-
-/// The text of a diagram, one block a line, with its comments; `parse_diagram` gives an equal diagram back.
-std::string write_diagram(const Diagram& diagram);
-
-/// The text of a `[layout]` table, after an empty line; nothing where there are no places.
-std::string write_layout(const std::vector<BlockPlace>& layout);
 
 /// Builds the value of a `settings` entry: a number, a signal, a list of weighted signals, points.
 text::Entry number_setting(std::string key, double value);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/diagram/diagram.h>
+#include <oblique/diagram/diagram_reader.h>
 
 #include <cmath>
 #include <limits>

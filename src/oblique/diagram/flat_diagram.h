@@ -106,16 +106,4 @@ struct FlatDiagram {
 /// The same diagram where no amplifier saturates because its machine does.
 FlatDiagram without_saturation(FlatDiagram diagram);
 
-/// A parameter to replace, by path: `--set c.gain=1e4`; the value is a quantity in the parameter's unit.
-struct ParameterOverride {
-  std::string path;  ///< "block.parameter"
-  std::string value;
-};
-
-/// Expands composites, resolves types, parameters and wires. Throws DiagramError with all findings: unknown
-/// types, keys and signals (each with the nearest valid name), open and doubly driven inputs, wrong units and
-/// ranges. `library` must outlive the result.
-FlatDiagram flatten(const Diagram& diagram, const BlockLibrary& library,
-                    const std::vector<ParameterOverride>& overrides = {});
-
 }  // namespace oblique::diagram

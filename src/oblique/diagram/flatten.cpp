@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/diagram/flat_diagram.h>
+#include <oblique/diagram/flatten.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <fmt/format.h>
 
 #include <oblique/diagram/expectations.h>
-#include <oblique/diagram/formula.h>
 #include <oblique/diagram/machine_defaults.h>
 #include <oblique/diagram/overrides.h>
+#include <oblique/diagram/terms.h>
 #include <oblique/diagram/timeline.h>
 #include <oblique/diagram/wiring.h>
 
@@ -121,13 +120,32 @@ class Layout {
       node.parameters.push_back(value);
       node.open.push_back(open);
     }
-    if (replacements_.empty()) return;
-    const auto replaced = replacements_.find(node.path);
-    if (replaced == replacements_.end()) return;
-    for (const auto& [parameter, value] : replaced->second) {
+    const wiring::Replacement* const replaced = replacement_of(node);
+    if (replaced == nullptr) return;
+    for (const auto& [parameter, value] : replaced->parameters) {
       node.parameters[parameter] = value;
       node.open[parameter] = false;
     }
+  }
+
+  /// What the request replaces in a block; nothing in most.
+  const wiring::Replacement* replacement_of(const Node& node) const {
+    if (replacements_.empty()) return nullptr;
+    const auto replaced = replacements_.find(node.path);
+    return replaced == replacements_.end() ? nullptr : &replaced->second;
+  }
+
+  /// The weight of one wire of a block.
+  double weight_of(const Node& node, std::size_t input, std::size_t wire, const Node& parent) const {
+    if (const wiring::Replacement* const replaced = replacement_of(node)) {
+      // the last word counts, as it does of parameters
+      const auto& weights = replaced->weights;
+      const auto found = std::find_if(weights.rbegin(), weights.rend(), [&](const auto& weight) {
+        return weight.input == input && weight.wire == wire;
+      });
+      if (found != weights.rend()) return found->value;
+    }
+    return value_of(node.wired->inputs[input].terms[wire].weight, parent);
   }
 
   /// Whether a composite hands down one of its own parameters as it is, and that one is open.
@@ -197,13 +215,15 @@ class Layout {
     for (std::size_t k = 0; k < inputs.size(); ++k) {
       const wiring::WiredInput& wired = node.wired->inputs[k];
       if (!wired.connected) inputs[k].constant = definition.inputs[k].default_value.value_or(0);
-      for (const wiring::Term& term : wired.terms) {
-        const double weight = value_of(term.weight, nodes_[parent]);
+      for (std::size_t wire = 0; wire < wired.terms.size(); ++wire) {
+        const wiring::Term& term = wired.terms[wire];
+        const double weight = weight_of(node, k, wire, nodes_[parent]);
         if (std::isfinite(weight)) {
           add_term(inputs[k], weight, term.source, parent);
         } else {
           diagnostics_.add({{nodes_[parent].inside->file, term.position},
-                            fmt::format("input '{}.{}': a weight is {}", node.path, definition.inputs[k].name,
+                            fmt::format("the weight '{}' is {}",
+                                        wiring::weight_name(node.path, definition.inputs[k].name, wire),
                                         wiring::describe_number(weight)),
                             "a finite number",
                             origin(nodes_[parent])});
@@ -276,12 +296,6 @@ void choose_outputs(const Diagram& diagram, const Scope& scope, const Layout& la
 
 }  // namespace
 
-std::string FlatDiagram::signal_name(SignalRef signal) const {
-  const FlatBlock& block = blocks[signal.block];
-  if (block.definition->outputs.size() == 1) return block.path;
-  return block.path + "." + block.definition->outputs[signal.output].name;
-}
-
 FlatDiagram flatten(const Diagram& diagram, const BlockLibrary& library,
                     const std::vector<ParameterOverride>& overrides) {
   FlatDiagram flat;
@@ -327,22 +341,6 @@ FlatDiagram flatten(const Diagram& diagram, const BlockLibrary& library,
   if (diagnostics.empty()) check_expected_outputs(diagram.expectations, names, diagnostics);
   diagnostics.throw_if_any<DiagramError>();
   return flat;
-}
-
-void FlatBlock::choose_behaviour() {
-  behaviour = definition->choose_behaviour(parameters, polarity);
-  if (formulas.empty()) return;
-  own_behaviour = std::make_shared<const Behaviour>(with_formulas(*behaviour, formulas));
-  behaviour = own_behaviour.get();
-}
-
-FlatDiagram without_saturation(FlatDiagram diagram) {
-  for (FlatBlock& block : diagram.blocks) {
-    if (!block.saturation) continue;
-    block.parameters[*block.saturation] = std::numeric_limits<double>::infinity();
-    block.choose_behaviour();
-  }
-  return diagram;
 }
 
 }  // namespace oblique::diagram

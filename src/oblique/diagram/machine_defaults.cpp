@@ -18,8 +18,7 @@ const std::vector<std::optional<double>>& MachineDefaults::of(const BlockDefinit
     if (block.parameters[k].saturation) at->second[k] = machine.saturation;
   }
   for (const BlockFigure& figure : machine.errors) {
-    if (figure.block != block.name) continue;
-    if (const auto index = block.find_parameter(figure.parameter)) at->second[*index] = figure.value;
+    if (const auto index = figure.acts_on(block)) at->second[*index] = figure.value;
   }
   return at->second;
 }

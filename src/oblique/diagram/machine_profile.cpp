@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <oblique/diagram/block_definition.h>
 #include <oblique/diagram/block_library.h>
 #include <oblique/diagram/machine_reader.h>
 #include <oblique/diagram/shipped_files.h>
@@ -91,6 +92,11 @@ std::string_view element_name(ElementKind kind) {
       break;
   }
   return "function generator";
+}
+
+std::optional<std::size_t> BlockFigure::acts_on(const BlockDefinition& definition) const {
+  const bool same_role = role != Role::other && role == definition.role;
+  return same_role || block == definition.name ? definition.find_parameter(parameter) : std::nullopt;
 }
 
 const ElementCount* MachineProfile::find(ElementKind kind) const {

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include <oblique/diagram/role.h>
 #include <oblique/text/diagnostic.h>
 #include <oblique/text/quantity.h>
 
@@ -46,8 +47,13 @@ struct MachineFigure {
 /// how far single elements scatter about theirs.
 struct BlockFigure {
   std::string block, parameter;
-  double value = 0;    ///< of the parameter in its unit; of a scatter its half width
-  std::string figure;  ///< MachineFigure::name it comes from
+  double value = 0;         ///< of the parameter in its unit; of a scatter its half width
+  std::string figure;       ///< MachineFigure::name it comes from
+  Role role = Role::other;  ///< of the shipped block of that name
+
+  /// The parameter of a block on which it acts: that of its name, where the block is the one that the figure
+  /// names or one of a user's with the same role. Nothing where it does not act.
+  std::optional<std::size_t> acts_on(const BlockDefinition& definition) const;
 };
 
 /// An analog computer as far as it is published.

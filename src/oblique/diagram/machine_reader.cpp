@@ -202,7 +202,7 @@ class MachineReader {
           return other.block == block.key && other.parameter == entry.key;
         });
         if (twice) report(entry.position, subject + " has a value already", "one figure a parameter");
-        actions.push_back({block.key, entry.key, *value, figure.name});
+        actions.push_back({block.key, entry.key, *value, figure.name, definition->role});
       }
     }
   }

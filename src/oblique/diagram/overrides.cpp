@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/diagram/overrides.h>
 
-#include <fmt/format.h>
+#include <charconv>
+#include <cmath>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <oblique/diagram/flatten.h>
 #include <oblique/diagram/machine_profile.h>
+#include <oblique/diagram/terms.h>
 
 namespace oblique::diagram::wiring {
 namespace {
@@ -52,7 +58,11 @@ class Finder {
       const bool input = definition.find_input(name).has_value();
       report(fmt::format("'{}' of block type '{}' is {}", name, definition.name,
                          input ? "an input" : "not a parameter"),
-             {}, input ? "only parameters can be set" : text::suggest(name, names));
+             {},
+             input ? fmt::format("only parameters can be set, and weights of inputs: '{}[1]' is that of the "
+                                 "first wire",
+                                 override_.path)
+                   : text::suggest(name, names));
       return std::nullopt;
     }
     const ParameterDefinition& parameter = definition.parameters[*index];
@@ -76,11 +86,102 @@ class Finder {
     }
   }
 
+  /// The weight that a name such as "in[2]" or "in[crank.cos]" means.
+  std::optional<ReplacedWeight> weight(const WiredBlock& block, std::string_view path,
+                                       std::string_view name) const {
+    const std::size_t bracket = name.find('[');
+    const std::string_view port = name.substr(0, bracket);
+    std::string_view which = name.substr(bracket + 1);
+    if (!which.ends_with(']') || which.size() == 1) {
+      report(fmt::format("'{}' names no wire", override_.path),
+             fmt::format("a number or a signal in brackets, such as '{}.{}[1]'", path, port));
+      return std::nullopt;
+    }
+    which.remove_suffix(1);
+    const std::vector<Wire> wires = wires_at(block, port);
+    if (wires.empty()) {
+      report_no_wires(block, path, port);
+      return std::nullopt;
+    }
+    const auto wire = find_wire(wires, which, fmt::format("{}.{}", path, port));
+    if (!wire) return std::nullopt;
+    try {
+      const double value = text::parse_quantity(override_.value, text::Unit{});
+      if (std::isfinite(value)) return ReplacedWeight{wire->input, wire->index, value};
+      report(fmt::format("the weight is {}", describe_number(value)), "a finite number");
+    } catch (const text::ExpressionError& error) {
+      report(error.what, error.expected, error.remedy);
+    }
+    return std::nullopt;
+  }
+
   void report(std::string what, std::string expected = {}, std::string remedy = {}) const {
     diagnostics_.add({place_, std::move(what), std::move(expected), std::move(remedy)});
   }
 
  private:
+  struct Wire {
+    std::size_t input, index;
+    const Term* term;
+  };
+
+  /// The wires of an input in their order; where a block has several inputs and none is called "in", those of
+  /// its list `in`, one to an input.
+  static std::vector<Wire> wires_at(const WiredBlock& block, std::string_view port) {
+    const auto own = block.definition->find_input(port);
+    std::vector<Wire> wires;
+    for (std::size_t input = 0; input < block.inputs.size(); ++input) {
+      if (own ? input != *own : port != "in") continue;
+      for (std::size_t k = 0; k < block.inputs[input].terms.size(); ++k)
+        wires.push_back({input, k, &block.inputs[input].terms[k]});
+    }
+    return wires;
+  }
+
+  void report_no_wires(const WiredBlock& block, std::string_view path, std::string_view port) const {
+    const BlockDefinition& definition = *block.definition;
+    if (definition.find_input(port)) {
+      report(fmt::format("nothing is wired to input '{}.{}'", path, port), "an input with a wire");
+      return;
+    }
+    std::vector<std::string> names;
+    for (const InputPort& input : definition.inputs) names.push_back(input.name);
+    const bool parameter = definition.find_parameter(port).has_value();
+    report(fmt::format("'{}' of block type '{}' is {}", port, definition.name,
+                       parameter ? "a parameter, which has no weights" : "not an input"),
+           {}, parameter ? fmt::format("'{}.{}' sets it", path, port) : text::suggest(port, names));
+  }
+
+  /// The wire that a number from 1 or the name of a signal picks.
+  std::optional<Wire> find_wire(const std::vector<Wire>& wires, std::string_view which,
+                                const std::string& input) const {
+    if (which.find_first_not_of("0123456789") == std::string_view::npos) {
+      std::size_t number = 0;
+      const auto [end, error] = std::from_chars(which.data(), which.data() + which.size(), number);
+      if (error == std::errc() && number >= 1 && number <= wires.size()) return wires[number - 1];
+      report(fmt::format("input '{}' has no wire {}", input, which),
+             fmt::format("a number from 1 to {}", wires.size()));
+      return std::nullopt;
+    }
+    std::vector<Wire> found;
+    std::vector<std::string> signals, places;
+    for (std::size_t k = 0; k < wires.size(); ++k) {
+      signals.push_back(wires[k].term->signal);
+      if (signals.back() != which) continue;
+      found.push_back(wires[k]);
+      places.push_back(fmt::format("[{}]", k + 1));
+    }
+    if (found.size() == 1) return found.front();
+    if (found.empty()) {
+      report(fmt::format("no wire of input '{}' comes from '{}'", input, which), {},
+             text::suggest(which, signals));
+    } else {
+      report(fmt::format("{} wires of input '{}' come from '{}'", found.size(), input, which),
+             fmt::format("one of {}", fmt::join(places, ", ")));
+    }
+    return std::nullopt;
+  }
+
   const ParameterOverride& override_;
   const std::string& machine_;
   text::Place place_;
@@ -89,22 +190,32 @@ class Finder {
 
 }  // namespace
 
+std::string weight_name(std::string_view block, std::string_view input, std::size_t wire) {
+  return fmt::format("{}.{}[{}]", block, input, wire + 1);
+}
+
 Replacements resolve_overrides(const Scope& diagram, const std::vector<ParameterOverride>& overrides,
                                text::Diagnostics& diagnostics) {
   Replacements replacements;
   for (const ParameterOverride& override : overrides) {
     const Finder finder(override, diagram.machine, diagnostics);
-    const std::size_t dot = override.path.rfind('.');
+    const std::size_t bracket = override.path.find('[');  // a signal in brackets may hold dots
+    const std::size_t dot = override.path.substr(0, bracket).rfind('.');
     if (dot == std::string::npos) {
-      finder.report(fmt::format("'{}' names no parameter", override.path), "BLOCK.PARAMETER=VALUE");
+      finder.report(fmt::format("'{}' names no parameter", override.path),
+                    "BLOCK.PARAMETER=VALUE or BLOCK.INPUT[NUMBER]=VALUE");
       continue;
     }
     const std::string path = override.path.substr(0, dot);
     const WiredBlock* const block = finder.block(diagram, path);
     if (block == nullptr) continue;
-    const auto replaced =
-        finder.parameter(*block->definition, std::string_view(override.path).substr(dot + 1));
-    if (replaced) replacements[path].push_back(*replaced);
+    const std::string_view name = std::string_view(override.path).substr(dot + 1);
+    if (bracket != std::string::npos) {
+      if (const auto weight = finder.weight(*block, path, name))
+        replacements[path].weights.push_back(*weight);
+    } else if (const auto parameter = finder.parameter(*block->definition, name)) {
+      replacements[path].parameters.push_back(*parameter);
+    }
   }
   return replacements;
 }

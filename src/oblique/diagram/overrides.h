@@ -5,7 +5,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include <oblique/diagram/flat_diagram.h>
+#include <oblique/diagram/flatten.h>
 #include <oblique/diagram/scope.h>
 
 namespace oblique::diagram::wiring {
@@ -16,10 +16,28 @@ struct ReplacedParameter {
   double value = 0;
 };
 
-/// Replaced parameters by the path of their block.
-using Replacements = std::unordered_map<std::string, std::vector<ReplacedParameter>>;
+/// A weight, by the places of its input in the definition and of its wire at the input, and the value it
+/// gets.
+struct ReplacedWeight {
+  std::size_t input = 0;
+  std::size_t wire = 0;
+  double value = 0;
+};
 
-/// Finds the blocks and parameters that overrides name; reports those there are not, and wrong values.
+/// What is replaced in one block.
+struct Replacement {
+  std::vector<ReplacedParameter> parameters;
+  std::vector<ReplacedWeight> weights;
+};
+
+/// What is replaced, by the paths of the blocks.
+using Replacements = std::unordered_map<std::string, Replacement>;
+
+/// "c.in[2]": the weight of the second wire of an input.
+std::string weight_name(std::string_view block, std::string_view input, std::size_t wire);
+
+/// Finds the blocks, parameters and weights that overrides name; reports those there are not, and wrong
+/// values.
 Replacements resolve_overrides(const Scope& diagram, const std::vector<ParameterOverride>& overrides,
                                text::Diagnostics& diagnostics);
 

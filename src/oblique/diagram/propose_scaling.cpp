@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
+#include <oblique/diagram/propose_scaling.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
-
-#include <oblique/diagram/rescale.h>
 
 namespace oblique::diagram {
 namespace {

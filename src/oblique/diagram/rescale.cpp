@@ -10,6 +10,7 @@
 
 #include <oblique/diagram/machine_defaults.h>
 #include <oblique/diagram/names.h>
+#include <oblique/diagram/propose_scaling.h>
 #include <oblique/text/expression_printer.h>
 #include <oblique/text/nearest_decimal.h>
 

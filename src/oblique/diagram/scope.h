@@ -37,6 +37,7 @@ struct Source {
 struct Term {
   Constant weight;
   Source source;
+  std::string signal;  ///< the source as the file names it
   text::SourcePosition position;
 };
 
@@ -91,18 +92,5 @@ std::string describe_number(double number);
 /// The signal that a path names ("c", "crank.cos", "C.direction.length"). Reports a path that names none.
 std::optional<Source> find_signal(const Scope& scope, std::string_view path, text::SourcePosition position,
                                   const std::string& subject, text::Diagnostics& diagnostics);
-
-/// One `[sign][weight*]signal` of an input. Reports what is wrong with it.
-std::optional<Term> read_term(const Scope& scope, const text::Value& value, const std::string& subject,
-                              text::Diagnostics& diagnostics);
-
-/// The value of a parameter in its unit. Reports what is wrong with it, also a fixed value out of range.
-std::optional<Constant> read_parameter(const Scope& scope, const text::Value& value,
-                                       const ParameterDefinition& parameter, const std::string& subject,
-                                       text::Diagnostics& diagnostics);
-
-/// Reports a value that the parameter does not allow.
-void check_range(const ParameterDefinition& parameter, double value, const std::string& subject,
-                 const text::Place& place, const std::string& remedy, text::Diagnostics& diagnostics);
 
 }  // namespace oblique::diagram::wiring

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/diagram/scope.h>
+#include <oblique/diagram/terms.h>
 
 #include <algorithm>
 #include <cmath>
@@ -112,7 +112,7 @@ std::optional<Term> read_term(const Scope& scope, const text::Value& value, cons
                   "[sign][weight*]signal, such as '-2*a' or 'a/3'",
                   "functions of a signal take a block of their own");
   }
-  Term term{fold(std::move(expression), 1), std::move(*source), position_in(value, column)};
+  Term term{fold(std::move(expression), 1), std::move(*source), name, position_in(value, column)};
   if (!term.weight.expression && !std::isfinite(term.weight.number)) {
     return report(1, fmt::format("the weight of '{}' is {}", name, describe_number(term.weight.number)),
                   "a finite number", {});

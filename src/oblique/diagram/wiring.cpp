@@ -6,6 +6,7 @@
 #include <oblique/diagram/formula.h>
 #include <oblique/diagram/machine_profile.h>
 #include <oblique/diagram/points.h>
+#include <oblique/diagram/terms.h>
 #include <oblique/text/expression.h>
 
 #include <fmt/format.h>

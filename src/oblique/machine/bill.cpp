@@ -48,24 +48,23 @@ class Counter {
     }
     add_potentiometers();
     add(diagram::ElementKind::multiplier, "multipliers", multipliers_);
-    add(diagram::ElementKind::comparator, "comparators", others_["comparator"]);
-    add(diagram::ElementKind::function_generator, "function generators", others_["function-generator"]);
+    add(diagram::ElementKind::comparator, "comparators", comparators_);
+    add(diagram::ElementKind::function_generator, "function generators", generators_);
     for (const auto& [block, needed] : others_) {
-      if (needed > 0 && block != "comparator" && block != "function-generator")
-        bill_.rows.push_back({block, needed, false, {}, {}});
+      bill_.rows.push_back({block, needed, false, {}, {}});
     }
     return std::move(bill_);
   }
 
  private:
   void count(const diagram::FlatBlock& block) {
-    const Role role = role_of(*block.definition);
+    const Role role = block.definition->role;
     if (role == Role::reference) {
       const double value = std::abs(parameter_of(block, "value"));
       if (value != 1 && value != 0) ++potentiometers_;
-    } else if (block.definition->name == "gain") {
+    } else if (role == Role::gain) {
       count_gain(parameter_of(block, "factor"));
-    } else if (role == Role::coefficient) {
+    } else if (role == Role::potentiometer) {
       ++potentiometers_;
     } else if (role == Role::inverter) {
       ++inverters_;
@@ -78,8 +77,12 @@ class Counter {
       if (!signed_ && initial != 0 && initial != 1) ++potentiometers_;
     } else if (role == Role::open_amplifier) {
       ++open_;
-    } else if (role == Role::multiplier) {
+    } else if (is_product(role)) {
       ++multipliers_;
+    } else if (role == Role::comparator) {
+      ++comparators_;
+    } else if (role == Role::function_generator) {
+      ++generators_;
     } else {
       ++others_[block.definition->name];
     }
@@ -98,7 +101,7 @@ class Counter {
     for (const diagram::FlatTerm& term : input.terms) {
       if (term.weight == 0) continue;
       const diagram::FlatBlock& from = diagram_.blocks[term.signal.block];
-      const Role role = role_of(*from.definition);
+      const Role role = from.definition->role;
       const auto key = std::pair(term.signal.block, term.signal.output);
       if (term.weight < 0 && !signed_ && role != Role::reference) inverted_.insert(key);
       if (sum && std::abs(term.weight) != 1) weights_inputs_ = true;
@@ -162,8 +165,9 @@ class Counter {
   bool weights_inputs_ = false;  ///< some sum has a weight other than ±1
   Bill bill_;
   double summers_ = 0, inverters_ = 0, integrators_ = 0, open_ = 0, multipliers_ = 0, potentiometers_ = 0;
+  double comparators_ = 0, generators_ = 0;
   std::map<double, double> rates_;                          ///< how many integrators have which [1/s]
-  std::map<std::string, double> others_;                    ///< by the names of their blocks
+  std::map<std::string, double> others_;                    ///< without a role, by the names of their blocks
   std::set<std::pair<std::size_t, std::size_t>> inverted_;  ///< signals that negative weights ask for
   /// Potentiometers that weights ask for: signal, its sign, setting.
   std::set<std::tuple<std::size_t, std::size_t, bool, std::string>> weighted_;

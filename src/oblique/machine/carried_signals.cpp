@@ -11,7 +11,7 @@ namespace oblique::machine {
 namespace {
 
 std::size_t variables_of(Role role) {
-  if (role == Role::other) return 0;
+  if (stays_as_it_is(role)) return 0;
   return role == Role::multiplier ? 2 : 1;
 }
 

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <oblique/machine/realise.h>
 
@@ -20,14 +21,16 @@ constexpr double kRounding = 1e-15;
 /// A weight at which a passed-on signal still fits into the range, rounding allowed.
 constexpr double kUnit = 1 + 1e-12;
 
+/// "turns, tolerance and load"
+std::string listed(const std::vector<std::string>& names) {
+  std::string list = fmt::format("{}", fmt::join(names.begin(), names.end() - 1, ", "));
+  return list + (list.empty() ? "" : " and ") + names.back();
+}
+
 class Reducer {
  public:
   Reducer(const diagram::FlatDiagram& flat, const diagram::BlockLibrary& library, double most_weight)
-      : flat_(flat),
-        summer_(library.find("summer")),
-        multiplier_(library.find("multiplier")),
-        most_weight_(most_weight),
-        blocks_(flat.blocks.size()) {}
+      : flat_(flat), library_(library), most_weight_(most_weight), blocks_(flat.blocks.size()) {}
 
   Circuit make() {
     for (const diagram::FlatOutput& output : flat_.outputs)
@@ -72,16 +75,18 @@ class Reducer {
   /// What a block amounts to that need not stay as an element.
   std::optional<CircuitTerm> reduced(std::size_t index) {
     const diagram::FlatBlock& block = flat_.blocks[index];
-    switch (role_of(*block.definition)) {
+    switch (block.definition->role) {
       case Role::reference:
         return CircuitTerm{parameter_of(block, "value"), std::nullopt};
-      case Role::coefficient:
+      case Role::potentiometer:
+      case Role::gain:
         return single(gathered(block, 0), factor_of(block));
       case Role::inverter:
         return has_defaults(block) ? single(gathered(block, 0), -1) : std::nullopt;
       case Role::summer:
         return has_defaults(block) ? passed_on(gathered(block, 0), block.polarity) : std::nullopt;
       case Role::multiplier:
+      case Role::squarer:
         return has_defaults(block) ? product(index) : std::nullopt;
       default:
         return std::nullopt;
@@ -89,13 +94,19 @@ class Reducer {
   }
 
   double factor_of(const diagram::FlatBlock& block) {
-    if (block.definition->name == "gain") return parameter_of(block, "factor");
-    if (!has_defaults(block, {"setting"})) {
-      diagnostics_.add(
-          {block.place, fmt::format("potentiometer '{}' has imperfections of its own", block.path),
-           "a setting and nothing else", "leave turns, tolerance and load out: those of the machine apply"});
+    const std::string_view factor = block.definition->role == Role::gain ? "factor" : "setting";
+    if (!has_defaults(block, {factor})) {
+      std::vector<std::string> others;
+      for (const diagram::ParameterDefinition& parameter : block.definition->parameters) {
+        if (parameter.name != factor) others.push_back(parameter.name);
+      }
+      diagnostics_.add({block.place,
+                        fmt::format("{} '{}' has imperfections of its own",
+                                    diagram::role_name(block.definition->role), block.path),
+                        fmt::format("a {} and nothing else", factor),
+                        fmt::format("leave {} out: those of the machine apply", listed(others))});
     }
-    return parameter_of(block, "setting");
+    return parameter_of(block, factor);
   }
 
   static std::optional<CircuitTerm> single(const CircuitInput& input, double factor) {
@@ -139,7 +150,7 @@ class Reducer {
     CircuitInput gathered;
     gathered.open =
         input.terms.empty() && block.definition->inputs[port].default_value == std::optional(input.constant);
-    if (gathered.open && role_of(*block.definition) == Role::other) return gathered;
+    if (gathered.open && stays_as_it_is(block.definition->role)) return gathered;
     double largest = 0;
     const auto add = [&](CircuitTerm term) {
       if (term.weight == 0) return;
@@ -166,19 +177,35 @@ class Reducer {
   void keep(std::size_t index) {
     const diagram::FlatBlock& block = flat_.blocks[index];
     CircuitElement element;
-    element.role = role_of(*block.definition);
+    element.role = block.definition->role;
     element.path = block.path;
     element.block = &block;
     element.definition = block.definition;
     element.polarity = element.role == Role::summer || element.role == Role::integrator ? block.polarity : 1;
-    if (element.role == Role::coefficient) {
+    if (is_coefficient(element.role)) {
       element.role = Role::summer;
       element.block = nullptr;
-      element.definition = summer_;
+      element.definition = &element_block(library_, Role::summer);
+    } else if (element.role == Role::squarer) {
+      element.role = Role::multiplier;
+      element.definition = &element_block(library_, Role::multiplier);
+      check_parameters(block, *element.definition);
     }
-    if (element.role == Role::multiplier) element.definition = multiplier_;
     blocks_[index].state = State::kept;
     blocks_[index].value = {1, add(std::move(element), index)};
+  }
+
+  /// What a block says of itself is said of the multiplier that it becomes.
+  void check_parameters(const diagram::FlatBlock& block, const diagram::BlockDefinition& becomes) {
+    for (std::size_t k = 0; k < block.parameters.size(); ++k) {
+      const diagram::ParameterDefinition& own = block.definition->parameters[k];
+      if (block.parameters[k] == own.default_value || becomes.find_parameter(own.name)) continue;
+      diagnostics_.add({block.place,
+                        fmt::format("squarer '{}' sets '{}', which '{}' does not have", block.path, own.name,
+                                    becomes.name),
+                        fmt::format("parameters of '{}'", becomes.name),
+                        "a squarer is a multiplier there: leave it out, or take a block that multiplies"});
+    }
   }
 
   diagram::SignalRef add(CircuitElement element, std::size_t block) {
@@ -190,14 +217,14 @@ class Reducer {
   void connect(std::size_t index) {
     const diagram::FlatBlock& block = flat_.blocks[order_[index]];
     std::vector<CircuitInput> inputs;
-    const Role role = role_of(*block.definition);
-    if (role == Role::multiplier) {
+    const Role role = block.definition->role;
+    if (is_product(role)) {
       auto [x, y] = factors(block);
       inputs = {std::move(x), std::move(y)};
     } else {
       for (std::size_t k = 0; k < block.inputs.size(); ++k) inputs.push_back(gathered(block, k));
     }
-    if (role == Role::coefficient) {
+    if (is_coefficient(role)) {
       for (CircuitTerm& term : inputs.front().terms) term.weight *= factor_of(block);
     }
     const auto& ports = circuit_.elements[index].definition->inputs;
@@ -229,7 +256,7 @@ class Reducer {
     CircuitElement scaler;
     scaler.path = key ? circuit_.elements[input.terms.front().signal->block].path + ".scaled"
                       : circuit_.elements[index].path + "." + port;
-    scaler.definition = summer_;
+    scaler.definition = &element_block(library_, Role::summer);
     scaler.inputs = {std::move(input)};
     const diagram::SignalRef signal = add(std::move(scaler), order_[index]);
     if (key) scalers_.emplace(*key, signal);
@@ -262,8 +289,7 @@ class Reducer {
   }
 
   const diagram::FlatDiagram& flat_;
-  const diagram::BlockDefinition* summer_;
-  const diagram::BlockDefinition* multiplier_;
+  const diagram::BlockLibrary& library_;
   double most_weight_;
   std::vector<Block> blocks_;
   Circuit circuit_;

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include <oblique/diagram/flatten.h>
 #include <oblique/machine/carried_signals.h>
 #include <oblique/machine/circuit.h>
 #include <oblique/machine/input_weight.h>
@@ -31,9 +32,10 @@ std::vector<double> gains_of_one(const diagram::MachineProfile& machine) {
 class Writer {
  public:
   Writer(const diagram::Diagram& diagram, const diagram::FlatDiagram& flat,
-         const diagram::MachineProfile& machine, const Circuit& circuit)
+         const diagram::BlockLibrary& library, const diagram::MachineProfile& machine, const Circuit& circuit)
       : diagram_(diagram),
         flat_(flat),
+        library_(library),
         machine_(machine),
         circuit_(circuit),
         signed_(has_signed_weights(machine)),
@@ -86,16 +88,21 @@ class Writer {
       if (element.block->tolerance > 0)
         result_.run.tolerances.emplace_back(signals_.name(e), element.block->tolerance);
     }
-    add_block(signals_.name(e), element.definition->name, std::move(settings));
+    add_block(signals_.name(e), *element.definition, std::move(settings));
     for (const auto& [inverter, inverted] : signals_.inverters(e))
-      add_block(inverter, "inverter", {diagram::wire_setting("in", {{1, inverted}})});
+      add_block(inverter, Role::inverter, {diagram::wire_setting("in", {{1, inverted}})});
     result_.blocks[first].comment = comment_of(element.path);
   }
 
-  void add_block(std::string name, std::string type, std::vector<text::Entry> settings) {
+  void add_block(std::string name, Role role, std::vector<text::Entry> settings) {
+    add_block(std::move(name), element_block(library_, role), std::move(settings));
+  }
+
+  void add_block(std::string name, const diagram::BlockDefinition& definition,
+                 std::vector<text::Entry> settings) {
     diagram::BlockInstance block;
     block.name = std::move(name);
-    block.type = std::move(type);
+    block.type = definition.name;
     block.settings = std::move(settings);
     result_.blocks.push_back(std::move(block));
   }
@@ -129,7 +136,7 @@ class Writer {
     std::string& name = potentiometers_[{from, fmt::format("{:.12g}", setting)}];
     if (name.empty()) {
       name = signals_.free_name(fmt::format("pot_{}", potentiometers_.size()));
-      add_block(name, "potentiometer",
+      add_block(name, Role::potentiometer,
                 {diagram::wire_setting("in", {{1, from}}), diagram::number_setting("setting", setting)});
     }
     return name;
@@ -148,6 +155,9 @@ class Writer {
     const diagram::FlatBlock& block = *element.block;
     for (std::size_t k = 0; k < block.definition->parameters.size(); ++k) {
       const diagram::ParameterDefinition& parameter = block.definition->parameters[k];
+      // What a squarer has and a multiplier does not is at its default (`reduce`), and makes no difference.
+      const auto written = element.definition->find_parameter(parameter.name);
+      if (!written) continue;
       if (parameter.points) {
         if (block.points[k] != *parameter.points)
           settings.push_back(diagram::points_setting(parameter.name, block.points[k]));
@@ -162,19 +172,19 @@ class Writer {
       if (starts_by_wire && parameter.name == "initial") continue;
       const bool loop =
           element.role == Role::open_amplifier && (parameter.name == "gain" || parameter.name == "bandwidth");
-      if (loop && parameter.name == "gain" && machine_states_gain()) continue;
+      if (loop && parameter.name == "gain" && machine_states_gain(*block.definition)) continue;
       const bool turns =
-          element.role != Role::other && signals_.is_negative(e) && turns_with_the_signal(parameter.name);
+          !stays_as_it_is(element.role) && signals_.is_negative(e) && turns_with_the_signal(parameter.name);
       const double value = turns ? -block.parameters[k] : block.parameters[k];
-      if (loop || value != parameter.default_value)
+      if (loop || value != element.definition->parameters[*written].default_value)
         settings.push_back(diagram::number_setting(parameter.name, value));
     }
   }
 
-  bool machine_states_gain() const {
+  bool machine_states_gain(const diagram::BlockDefinition& amplifier) const {
     return std::any_of(machine_.errors.begin(), machine_.errors.end(),
-                       [](const diagram::BlockFigure& figure) {
-                         return role_of(figure.block) == Role::open_amplifier && figure.parameter == "gain";
+                       [&](const diagram::BlockFigure& figure) {
+                         return figure.parameter == "gain" && figure.acts_on(amplifier).has_value();
                        });
   }
 
@@ -201,15 +211,16 @@ class Writer {
     std::vector<diagram::BlockInstance> elements = std::move(result_.blocks);
     result_.blocks.clear();
     const auto& [plus, minus] = signals_.references();
-    if (!plus.empty()) add_block(plus, "constant", {diagram::number_setting("value", 1)});
-    if (!minus.empty()) add_block(minus, "constant", {diagram::number_setting("value", -1)});
+    if (!plus.empty()) add_block(plus, Role::reference, {diagram::number_setting("value", 1)});
+    if (!minus.empty()) add_block(minus, Role::reference, {diagram::number_setting("value", -1)});
     if (!result_.blocks.empty()) result_.blocks.front().comment = "the reference: 1 machine unit";
     std::move(elements.begin(), elements.end(), std::back_inserter(result_.blocks));
   }
 
   void number() {
     ElementNumbers numbers;
-    for (diagram::BlockInstance& block : result_.blocks) block.label = numbers.next(block.type);
+    for (diagram::BlockInstance& block : result_.blocks)
+      block.label = numbers.next(library_.find(block.type)->role);
   }
 
   void describe() {
@@ -225,6 +236,7 @@ class Writer {
 
   const diagram::Diagram& diagram_;
   const diagram::FlatDiagram& flat_;
+  const diagram::BlockLibrary& library_;
   const diagram::MachineProfile& machine_;
   const Circuit& circuit_;
   bool signed_;
@@ -253,7 +265,7 @@ Realisation realise(const diagram::Diagram& diagram, const diagram::BlockLibrary
   const std::vector<double> gains = gains_of_one(machine);
   const double most_weight = gains.empty() ? std::numeric_limits<double>::infinity() : gains.back();
   const Circuit circuit = reduce(flat, library, most_weight);
-  return Writer(diagram, flat, machine, circuit).write();
+  return Writer(diagram, flat, library, machine, circuit).write();
 }
 
 }  // namespace oblique::machine

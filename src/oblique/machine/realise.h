@@ -37,8 +37,10 @@ struct Realisation {
 /// - Servo amplifiers are open amplifiers and keep their bandwidth and capacitor, and their gain where the
 ///   machine's is not known.
 ///
-/// `[expect]` is kept. Throws DiagramError as `flatten`; RealiseError for [groups], a [timeline], and
-/// potentiometers with imperfections of their own.
+/// Elements are written as the blocks of the library that have their roles.
+///
+/// `[expect]` is kept. Throws DiagramError as `flatten`; RealiseError for [groups], a [timeline],
+/// potentiometers and gains with imperfections of their own, and a role that no block has.
 Realisation realise(const diagram::Diagram& diagram, const diagram::BlockLibrary& library,
                     const diagram::MachineProfile& machine);
 

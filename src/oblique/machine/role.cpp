@@ -2,45 +2,34 @@
 #include <oblique/machine/role.h>
 
 #include <algorithm>
-#include <array>
-#include <utility>
 
 #include <fmt/format.h>
 
+#include <oblique/machine/realise.h>
+
 namespace oblique::machine {
 
-Role role_of(std::string_view block) {
-  constexpr std::array<std::pair<std::string_view, Role>, 9> kRoles{
-      {{"constant", Role::reference},
-       {"potentiometer", Role::coefficient},
-       {"gain", Role::coefficient},
-       {"inverter", Role::inverter},
-       {"summer", Role::summer},
-       {"integrator", Role::integrator},
-       {"servo-amplifier", Role::open_amplifier},
-       {"multiplier", Role::multiplier},
-       {"squarer", Role::multiplier}}};
-  const auto* const found =
-      std::find_if(kRoles.begin(), kRoles.end(), [&](const auto& entry) { return entry.first == block; });
-  return found == kRoles.end() ? Role::other : found->second;
+bool is_coefficient(Role role) {
+  return role == Role::potentiometer || role == Role::gain;
 }
 
-Role role_of(const diagram::BlockDefinition& definition) {
-  const Role role = role_of(definition.name);
-  const auto has = [&](std::initializer_list<std::string_view> names) {
-    return std::all_of(names.begin(), names.end(),
-                       [&](std::string_view name) { return definition.find_parameter(name).has_value(); });
-  };
-  switch (role) {
-    case Role::reference:
-      return has({"value"}) ? role : Role::other;
-    case Role::coefficient:
-      return has({definition.name == "gain" ? "factor" : "setting"}) ? role : Role::other;
-    case Role::integrator:
-      return has({"rate", "initial"}) ? role : Role::other;
-    default:
-      return role;
-  }
+bool is_product(Role role) {
+  return role == Role::multiplier || role == Role::squarer;
+}
+
+bool stays_as_it_is(Role role) {
+  return role == Role::comparator || role == Role::function_generator || role == Role::other;
+}
+
+const diagram::BlockDefinition& element_block(const diagram::BlockLibrary& library, Role role) {
+  const diagram::BlockDefinition* const block = library.find(role);
+  if (block != nullptr) return *block;
+  const std::string_view name = diagram::role_name(role);
+  throw RealiseError(text::Diagnostic{
+      {},
+      fmt::format("no block has the role '{}', which the machine's elements are written with", name),
+      fmt::format("role = \"{}\" in a block file", name),
+      "a block in the place of a shipped one takes its role too"});
 }
 
 bool has_defaults(const diagram::FlatBlock& block, std::initializer_list<std::string_view> but) {
@@ -56,20 +45,22 @@ double parameter_of(const diagram::FlatBlock& block, std::string_view name) {
   return block.parameters[block.definition->find_parameter(name).value()];
 }
 
-std::string ElementNumbers::next(std::string_view block) {
+std::string ElementNumbers::next(Role role) {
   const auto letter = [&] {
-    switch (role_of(block)) {
-      case Role::coefficient:
-        return 'P';
-      case Role::multiplier:
-        return 'M';
+    if (is_coefficient(role)) return 'P';
+    if (is_product(role)) return 'M';
+    switch (role) {
+      case Role::comparator:
+        return 'K';
+      case Role::function_generator:
+        return 'F';
       case Role::other:
-        return block == "comparator" ? 'K' : block == "function-generator" ? 'F' : 'X';
+        return 'X';
       default:
         return 'A';
     }
   };
-  if (role_of(block) == Role::reference) return {};
+  if (role == Role::reference) return {};
   const char kind = letter();
   return fmt::format("{}{}", kind, ++last_[kind]);
 }

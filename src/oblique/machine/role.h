@@ -6,28 +6,24 @@
 #include <string>
 #include <string_view>
 
+#include <oblique/diagram/block_library.h>
 #include <oblique/diagram/flat_diagram.h>
 
 namespace oblique::machine {
 
-/// What a block is on a machine.
-enum class Role {
-  reference,       ///< a voltage that the machine has for nothing
-  coefficient,     ///< a factor alone: a potentiometer, or the gain of an input
-  inverter,        ///< inverts on every machine
-  summer,          ///< inverts where the machine does
-  integrator,      ///< likewise
-  open_amplifier,  ///< without feedback of its own; its inversion is part of its equation
-  multiplier,
-  other,  ///< comparators, function generators, and what no machine has
-};
+using diagram::Role;
 
-/// What blocks of a definition are. One of a user's own under a shipped name is `other` where it has not the
-/// parameters of the role.
-Role role_of(const diagram::BlockDefinition& definition);
+/// Whether it is a factor alone: a potentiometer, or the gain of an input.
+bool is_coefficient(Role role);
+/// Whether it forms a product, a squarer of one signal with itself.
+bool is_product(Role role);
+/// Whether a machine takes it as it is: comparators, function generators, and what no machine has. Their
+/// signals are carried as they are.
+bool stays_as_it_is(Role role);
 
-/// What the shipped blocks of the name are.
-Role role_of(std::string_view block);
+/// The block that a machine's elements of a role are written as. Throws RealiseError where the library has
+/// none: a user may have put blocks without roles in the place of the shipped ones.
+const diagram::BlockDefinition& element_block(const diagram::BlockLibrary& library, Role role);
 
 /// Whether the block's parameters, but those of the names given, have their defaults: whether it is free of
 /// imperfections of its own.
@@ -40,8 +36,8 @@ double parameter_of(const diagram::FlatBlock& block, std::string_view name);
 /// comparators, F1 … function generators, X1 … others; nothing for a reference.
 class ElementNumbers {
  public:
-  /// That of the next block of this name.
-  std::string next(std::string_view block);
+  /// That of the next block of this role.
+  std::string next(Role role);
 
  private:
   std::map<char, int> last_;

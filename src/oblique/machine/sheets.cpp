@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <oblique/diagram/flatten.h>
 #include <oblique/machine/role.h>
 #include <oblique/network/assembly/network.h>
 #include <oblique/network/program/program.h>
@@ -31,9 +32,9 @@ class SheetMaker {
     ElementNumbers numbers;
     for (std::size_t b = 0; b < diagram.blocks.size(); ++b) {
       const diagram::FlatBlock& block = diagram.blocks[b];
-      const bool reference = role_of(*block.definition) == Role::reference;
+      const bool reference = block.definition->role == Role::reference;
       numbers_.push_back(reference ? (parameter_of(block, "value") < 0 ? "−REF" : "+REF")
-                                   : numbers.next(block.definition->name));
+                                   : numbers.next(block.definition->role));
       for (std::size_t port = 0; port < block.inputs.size(); ++port) {
         for (const diagram::FlatTerm& term : block.inputs[port].terms) connect(b, port, term);
       }
@@ -52,7 +53,7 @@ class SheetMaker {
   Sheet potentiometers() const {
     Sheet sheet{"potentiometers", {"pot", "setting", "from", "to", "stands for"}, {}};
     for (std::size_t b = 0; b < diagram_.blocks.size(); ++b) {
-      if (role_of(*diagram_.blocks[b].definition) != Role::coefficient) continue;
+      if (diagram_.blocks[b].definition->role != Role::potentiometer) continue;
       const double setting = parameter_of(diagram_.blocks[b], "setting");
       const Connection& source = *std::find_if(connections_.begin(), connections_.end(),
                                                [&](const Connection& c) { return c.to == b; });
@@ -81,11 +82,11 @@ class SheetMaker {
     for (const solve::StaticReading& reading : readings) by_name.emplace(reading.signal, &reading);
     for (std::size_t b = 0; b < diagram_.blocks.size(); ++b) {
       const diagram::BlockDefinition& definition = *diagram_.blocks[b].definition;
-      if (role_of(definition) == Role::reference) continue;
+      if (definition.role == Role::reference) continue;
       for (std::size_t k = 0; k < definition.outputs.size(); ++k) {
         const std::string signal = diagram_.signal_name({b, k});
         const solve::StaticReading& reading = *by_name.at(signal);
-        const bool integrates = role_of(definition) == Role::integrator && reading.slope;
+        const bool integrates = definition.role == Role::integrator && reading.slope;
         sheet.rows.push_back({numbers_[b], signal, kind_text(diagram_.blocks[b]), voltage(reading.output),
                               integrates ? voltage(*reading.slope) : ""});
       }
@@ -108,7 +109,7 @@ class SheetMaker {
 
   /// "summer", "integrator, k0 = 500 1/s", "open amplifier".
   static std::string kind_text(const diagram::FlatBlock& block) {
-    switch (role_of(*block.definition)) {
+    switch (block.definition->role) {
       case Role::integrator:
         return fmt::format("integrator, k0 = {:.6g} 1/s", parameter_of(block, "rate"));
       case Role::open_amplifier:
@@ -122,7 +123,7 @@ class SheetMaker {
   std::string input_text(const Connection& c) const {
     const diagram::FlatBlock& block = diagram_.blocks[c.to];
     const diagram::InputPort& port = block.definition->inputs[c.port];
-    if (role_of(*block.definition) == Role::integrator && port.name == "start") return "initial value";
+    if (block.definition->role == Role::integrator && port.name == "start") return "initial value";
     const std::string gain = fmt::format("{}×{:.6g}", c.weight < 0 ? "−" : "", std::abs(c.weight));
     if (!port.sum) return c.weight == 1 ? port.name : port.name + " " + gain;
     return c.inputs == 1 ? gain : fmt::format("{} inputs {}", c.inputs, gain);
@@ -133,8 +134,8 @@ class SheetMaker {
     const diagram::FlatBlock& block = diagram_.blocks[c.to];
     const diagram::InputPort& port = block.definition->inputs[c.port];
     const diagram::FlatBlock& from = diagram_.blocks[source.block];
-    const bool integrator = role_of(*block.definition) == Role::integrator;
-    const bool reference = role_of(*from.definition) == Role::reference;
+    const bool integrator = block.definition->role == Role::integrator;
+    const bool reference = from.definition->role == Role::reference;
     double factor = setting * c.weight * c.inputs;
     if (reference) factor *= parameter_of(from, "value");
     if (integrator && port.sum) factor *= parameter_of(block, "rate");

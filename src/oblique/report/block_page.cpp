@@ -27,7 +27,7 @@ std::string range_of(const diagram::ParameterDefinition& p) {
 std::string definition_of(const diagram::BlockDefinition& block) {
   std::size_t begin = block.text.size();
   for (const std::string_view section :
-       {"\n[equations]", "\n[implicit]", "\n[[cases]]", "\n[machine]", "\n[blocks]"}) {
+       {"\n[let]", "\n[equations]", "\n[implicit]", "\n[[cases]]", "\n[machine]", "\n[blocks]"}) {
     begin = std::min(begin, block.text.find(section));
   }
   return begin < block.text.size() ? block.text.substr(begin + 1) : block.text;

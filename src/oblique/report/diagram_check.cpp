@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <oblique/diagram/flatten.h>
+#include <oblique/diagram/propose_scaling.h>
 #include <oblique/network/assembly/network.h>
 #include <oblique/network/program/program.h>
 #include <oblique/report/diagram_check.h>

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <oblique/diagram/propose_scaling.h>
 #include <oblique/diagram/rescale.h>
 #include <oblique/machine/bill.h>
 #include <oblique/network/program/program.h>

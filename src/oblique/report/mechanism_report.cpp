@@ -14,6 +14,7 @@
 #include <oblique/solve/solve_error.h>
 #include <oblique/solve/stability/analysis.h>
 
+#include <oblique/diagram/flatten.h>
 #include <oblique/mechanism/structure/structure.h>
 #include <oblique/network/assembly/network.h>
 #include <oblique/network/program/program.h>

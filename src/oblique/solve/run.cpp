@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <oblique/diagram/flatten.h>
 #include <oblique/network/assembly/network.h>
 #include <oblique/network/program/program.h>
 #include <oblique/solve/run_warnings.h>

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include <oblique/diagram/propose_scaling.h>
 #include <oblique/network/program/program.h>
 #include <oblique/solve/events/switching.h>
 #include <oblique/solve/run_errors.h>
