@@ -170,7 +170,7 @@ class Runner {
     settle_start();
     std::vector<double> slopes(states_.size());
     if (switching_.derivatives(begin_, states_.data(), slopes.data())) refuse_singular_rates(slopes);
-    for (text::Diagnostic& warning : unstable_branches(program_, workspace_, begin_, diagram_.file))
+    for (text::Diagnostic& warning : unstable_branches(program_, workspace_, begin_, states_, diagram_.file))
       warnings_at_start_.push_back(std::move(warning));
   }
 
@@ -197,7 +197,8 @@ class Runner {
   /// Begins the phases that are due at t.
   void follow_phases(double t) {
     constexpr int kMostPhases = 1000;
-    for (int begun = 0; clock_.is_over(t); ++begun) {
+    if (diagram_.timeline.phases.empty()) return;
+    for (int begun = 0; clock_.is_over(t, switching_.evaluate(t, states_)); ++begun) {
       if (begun > kMostPhases) {
         throw SolveError(
             SolveError::Kind::chatter, t,
@@ -375,7 +376,7 @@ class Runner {
     if (!switching_.signals(t, x, signals.data())) return false;
     for (const diagram::FlatOutput& output : diagram_.outputs)
       *values++ = output.scale * signals[program_.signal_index(output.signal)];
-    return program_.surfaces(t, x, values, workspace_);
+    return program_.surfaces(t, x, values, workspace_).has_value();
   }
 
   bool halted() const { return overloads_ && overloads_->halted(); }

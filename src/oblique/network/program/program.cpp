@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <oblique/network/program/program_compiler.h>
 
@@ -44,6 +43,7 @@ bool Program::run(const std::vector<Step>& steps, Workspace& workspace) const {
 }
 
 bool Program::load_and_run(double t, const double* x, Workspace& workspace) const {
+  ++workspace.generation_;
   workspace.slots_[0] = t;
   std::copy(x, x + states_.size(), workspace.slots_.begin() + 1);
   return run(derivative_steps_, workspace);
@@ -51,58 +51,32 @@ bool Program::load_and_run(double t, const double* x, Workspace& workspace) cons
 
 bool Program::derivatives(double t, const double* x, double* dxdt, Workspace& workspace) const {
   if (!load_and_run(t, x, workspace)) return false;
-  last_derivatives(dxdt, workspace);
+  copy_derivatives(workspace, dxdt);
   return true;
 }
 
-bool Program::signals(double t, const double* x, double* values, Workspace& workspace) const {
-  if (!load_and_run(t, x, workspace) || !run(surface_steps_, workspace) || !run(signal_steps_, workspace))
-    return false;
-  for (std::size_t i = 0; i < signal_slots_.size(); ++i) values[i] = workspace.slots_[signal_slots_[i]];
-  return true;
-}
-
-bool Program::surfaces(double t, const double* x, double* values, Workspace& workspace) const {
-  if (!load_and_run(t, x, workspace) || !run(surface_steps_, workspace)) return false;
-  for (std::size_t i = 0; i < surface_slots_.size(); ++i) values[i] = workspace.slots_[surface_slots_[i]];
-  return true;
-}
-
-void Program::last_derivatives(double* dxdt, const Workspace& workspace) const {
+void Program::copy_derivatives(const Workspace& workspace, double* dxdt) const {
   for (std::size_t i = 0; i < derivative_slots_.size(); ++i) dxdt[i] = workspace.slots_[derivative_slots_[i]];
 }
 
-double Program::compared_size(std::size_t s, const Workspace& workspace) const {
-  return std::abs(workspace.slots_[compared_slots_[s]]);
+std::optional<SignalEvaluation> Program::signals(double t, const double* x, double* values,
+                                                 Workspace& workspace) const {
+  if (!load_and_run(t, x, workspace) || !run(surface_steps_, workspace) || !run(signal_steps_, workspace))
+    return std::nullopt;
+  for (std::size_t i = 0; i < signal_slots_.size(); ++i) values[i] = workspace.slots_[signal_slots_[i]];
+  return SignalEvaluation(*this, workspace);
 }
 
-std::optional<double> Program::known_rate(std::size_t s, const Workspace& workspace) const {
-  return rate_slots_[s] ? std::optional(workspace.slots_[*rate_slots_[s]]) : std::nullopt;
-}
-
-void Program::surface_rates(const double* dxdt, double* values, Workspace& workspace) const {
-  if (switches_.empty()) return;
-  double* const slots = workspace.slots_.data();
-  std::copy(dxdt, dxdt + states_.size(), slots + first_rate_);
-  for (const RateStep& step : rate_steps_) {
-    run_tape(std::span(tape_).subspan(step.stretch.begin, step.stretch.end - step.stretch.begin), slots);
-    if (!step.loop) continue;
-    LoopWorkspace& loop = workspace.loops_[*step.loop];
-    Eigen::MatrixXd& rates = workspace.dz_dt_[*step.loop];
-    const bool regular = loop.matrix().factor(loop_codes_[*step.loop], slots);
-    for (std::size_t i = 0; i < step.right_sides.size(); ++i) {
-      rates(static_cast<Eigen::Index>(i), 0) =
-          regular ? -slots[step.right_sides[i]] : std::numeric_limits<double>::quiet_NaN();
-    }
-    if (regular) loop.matrix().solve(rates);
-    for (std::size_t i = 0; i < step.rates.size(); ++i)
-      slots[step.rates[i]] = rates(static_cast<Eigen::Index>(i), 0);
-  }
-  for (std::size_t s = 0; s < surface_rate_slots_.size(); ++s) values[s] = slots[surface_rate_slots_[s]];
+std::optional<Evaluation> Program::surfaces(double t, const double* x, double* values,
+                                            Workspace& workspace) const {
+  if (!load_and_run(t, x, workspace) || !run(surface_steps_, workspace)) return std::nullopt;
+  for (std::size_t i = 0; i < surface_slots_.size(); ++i) values[i] = workspace.slots_[surface_slots_[i]];
+  return Evaluation(*this, workspace);
 }
 
 void Program::decide_in_order(double t, const double* x, const double* dxdt, Workspace& workspace,
                               const Decide& decide) const {
+  ++workspace.generation_;
   double* const slots = workspace.slots_.data();
   slots[0] = t;
   std::copy(x, x + states_.size(), slots + 1);
@@ -111,21 +85,6 @@ void Program::decide_in_order(double t, const double* x, const double* dxdt, Wor
     run_tape(std::span(tape_).subspan(stretch.begin, stretch.end - stretch.begin), slots);
     decide(s, slots[surface_slots_[s]], slots[surface_rate_slots_[s]]);
   }
-}
-
-bool Program::pieces_meet(std::size_t s, const Workspace& workspace) const {
-  constexpr double kMeet = 1e-9;  // a jump that is smaller is below any tolerance of a run
-  return has_pieces_[s] && std::all_of(pieces_[s].begin(), pieces_[s].end(), [&](const auto& pieces) {
-           const double a = workspace.slots_[pieces.first], b = workspace.slots_[pieces.second];
-           return std::abs(a - b) <= kMeet * std::max({1.0, std::abs(a), std::abs(b)});
-         });
-}
-
-double Program::fastest_phase(const Workspace& workspace) const {
-  double fastest = 0;
-  for (const std::uint32_t slot : phase_rate_slots_)
-    fastest = std::max(fastest, std::abs(workspace.slots_[slot]));
-  return fastest;
 }
 
 std::vector<Interval> Program::source_slots() const {
@@ -144,32 +103,6 @@ void Program::source_ranges(const Interval& time, std::span<const Interval> stat
     slots[m] = {workspace.slots_[m], workspace.slots_[m]};
   run_tape(std::span(tape_).subspan(source_stretch_.begin, source_stretch_.end - source_stretch_.begin),
            slots);
-}
-
-bool Program::condition(std::size_t event, const Workspace& workspace) const {
-  return workspace.slots_[event_slots_[event].condition] != 0;
-}
-
-bool Program::phase_ends(std::size_t end, const Workspace& workspace) const {
-  return workspace.slots_[phase_end_slots_[end]] != 0;
-}
-
-double Program::action_value(std::size_t event, std::size_t action, const Workspace& workspace) const {
-  return workspace.slots_[event_slots_[event].values[action]];
-}
-
-std::optional<double> Program::start_value(std::size_t state, const Workspace& workspace) const {
-  return start_slots_[state] ? std::optional(workspace.slots_[*start_slots_[state]]) : std::nullopt;
-}
-
-Eigen::MatrixXd Program::loop_slopes(std::size_t loop, const Workspace& workspace) const {
-  const LoopCode& code = loop_codes_[loop];
-  const auto n = static_cast<Eigen::Index>(code.size());
-  Eigen::MatrixXd slopes = Eigen::MatrixXd::Zero(n, n);
-  for (const MatrixEntry& entry : code.slopes) {
-    slopes(entry.row, entry.column) = workspace.slots_[entry.slot];
-  }
-  return slopes;
 }
 
 bool Program::derivatives_need(std::size_t loop) const {
@@ -235,6 +168,7 @@ Workspace::Workspace(const Program& program)
 }
 
 void Workspace::set_unknown(std::size_t u, double value) {
+  ++generation_;
   solved_[u] = value;
   slots_[1 + program_->n_states() + u] = value;
 }
@@ -254,6 +188,7 @@ std::span<const double> Workspace::memories() const {
 }
 
 void Workspace::load_memories(std::span<const double> memories) {
+  ++generation_;
   std::copy(memories.begin(), memories.end(), slots_.begin() + static_cast<std::ptrdiff_t>(first_memory_));
 }
 
@@ -262,6 +197,7 @@ void Workspace::reset_memories() {
 }
 
 void Workspace::reset() {
+  ++generation_;
   solved_.clear();
   for (const Unknown& unknown : program_->unknowns_) solved_.push_back(unknown.guess);
   std::copy(solved_.begin(), solved_.end(),

@@ -12,6 +12,7 @@
 
 #include <oblique/network/assembly/network.h>
 #include <oblique/network/graph/interval.h>
+#include <oblique/network/program/evaluation.h>
 #include <oblique/network/program/loop_solver.h>
 #include <oblique/network/program/switch_structure.h>
 
@@ -68,8 +69,10 @@ class Program {
   bool jacobian(double t, const double* x, double* values, Workspace& workspace) const;
   const SparsePattern& jacobian_pattern() const { return pattern_; }
 
-  /// Every signal of every block at (t, x), `n_signals` of them. False as above.
-  bool signals(double t, const double* x, double* values, Workspace& workspace) const;
+  /// Every signal of every block at (t, x), `n_signals` of them, and what else follows from them; nothing
+  /// where `derivatives` would give false.
+  std::optional<SignalEvaluation> signals(double t, const double* x, double* values,
+                                          Workspace& workspace) const;
 
   // --- events: all of the above hold for the memories as they are in the workspace
 
@@ -79,25 +82,8 @@ class Program {
   /// Of each group of integrators, the memory with its mode of operation; empty without a timeline.
   const std::vector<std::uint32_t>& mode_memories() const { return mode_memories_; }
 
-  /// The surface of every switch at (t, x). False as above.
-  bool surfaces(double t, const double* x, double* values, Workspace& workspace) const;
-  // As the last `surfaces` left them:
-  /// dx/dt.
-  void last_derivatives(double* dxdt, const Workspace& workspace) const;
-  /// The magnitude of what the surface of a switch compares.
-  double compared_size(std::size_t s, const Workspace& workspace) const;
-  /// d surface/dt of a switch whose surface depends on time alone, linearly; nothing for another.
-  std::optional<double> known_rate(std::size_t s, const Workspace& workspace) const;
-  /// Whether the condition of an event holds.
-  bool condition(std::size_t event, const Workspace& workspace) const;
-  /// Whether the condition holds that ends phase number `end` of those with one.
-  bool phase_ends(std::size_t end, const Workspace& workspace) const;
-  /// d surface/dt of every switch where the states move with `dxdt`, `n_states` of them; not a number where
-  /// an algebraic loop is singular.
-  void surface_rates(const double* dxdt, double* values, Workspace& workspace) const;
-  /// How quickly the argument of a periodic function that a surface contains turns [rad/s]: the largest, as
-  /// the last `surface_rates` left it.
-  double fastest_phase(const Workspace& workspace) const;
+  /// The surface of every switch at (t, x), and what else follows there; nothing as above.
+  std::optional<Evaluation> surfaces(double t, const double* x, double* values, Workspace& workspace) const;
   const SwitchStructure& switch_structure() const { return switch_structure_; }
 
   /// Whether a switch follows from no algebraic loop, and its surface does not depend on its own position.
@@ -105,13 +91,9 @@ class Program {
   /// What `decide_in_order` calls: a switch, its surface, and d surface/dt.
   using Decide = std::function<void(std::uint32_t s, double surface, double rate)>;
   /// Goes once through all ordered switches at (t, x), where the states move with `dxdt`: each comes after
-  /// those on whose positions its surface depends, and sees them as `decide` has set them. The surfaces of
-  /// all must be evaluated anew after it.
+  /// those on whose positions its surface depends, and sees them as `decide` has set them.
   void decide_in_order(double t, const double* x, const double* dxdt, Workspace& workspace,
                        const Decide& decide) const;
-  /// Whether the equations and surfaces only bend where a switch turns over: as the last `surfaces` left
-  /// them, the pieces between which its position chooses are equal.
-  bool pieces_meet(std::size_t s, const Workspace& workspace) const;
 
   const std::vector<Source>& sources() const { return sources_; }
   /// The states that sources depend on. The first `clocks` of them go along a straight line between events:
@@ -125,14 +107,6 @@ class Program {
                      std::span<Interval> slots) const;
   std::vector<Interval> source_slots() const;
 
-  // As the last `signals` left them:
-  /// What an action of an event would set.
-  double action_value(std::size_t event, std::size_t action, const Workspace& workspace) const;
-  /// Where a state starts if that follows from signals; nothing for another.
-  std::optional<double> start_value(std::size_t state, const Workspace& workspace) const;
-  /// dg/dz of an algebraic loop where `signals` last evaluated it, rows and columns in the order of its
-  /// unknowns.
-  Eigen::MatrixXd loop_slopes(std::size_t loop, const Workspace& workspace) const;
   /// Whether dg/dz of a loop does not depend on its own unknowns.
   bool loop_is_linear(std::size_t loop) const { return loop_codes_[loop].linear; }
   /// Whether amplifiers choose among several solutions of a loop.
@@ -142,6 +116,8 @@ class Program {
 
  private:
   friend class Workspace;
+  friend class Evaluation;
+  friend class SignalEvaluation;
   friend class ProgramCompiler;
 
   /// A stretch of the tape, then perhaps a loop to solve.
@@ -185,6 +161,7 @@ class Program {
   bool run(const std::vector<Step>& steps, Workspace& workspace) const;
   bool load_and_run(double t, const double* x, Workspace& workspace) const;
   bool differentiate_loops(Workspace& workspace) const;
+  void copy_derivatives(const Workspace& workspace, double* dxdt) const;
 
   std::vector<State> states_;
   std::vector<Unknown> unknowns_;
@@ -283,10 +260,17 @@ class Workspace {
   /// Sets all, or none where there are none.
   void load_memories(std::span<const double> memories);
   double memory(std::size_t m) const { return slots_[first_memory_ + m]; }
-  void set_memory(std::size_t m, double value) { slots_[first_memory_ + m] = value; }
+  void set_memory(std::size_t m, double value) {
+    double& slot = slots_[first_memory_ + m];
+    if (slot == value) return;
+    slot = value;
+    ++generation_;
+  }
 
  private:
   friend class Program;
+  friend class Evaluation;
+  friend class SignalEvaluation;
   const Program* program_;
   std::size_t first_memory_;
   std::vector<double> slots_;
@@ -295,6 +279,7 @@ class Workspace {
   std::vector<Eigen::MatrixXd> dz_dx_, dz_dt_;
   bool passes_failing_loops_ = false;
   Trouble trouble_;
+  std::uint64_t generation_ = 0;  ///< goes on with whatever makes an Evaluation stale
 };
 
 }  // namespace oblique::network

@@ -203,9 +203,10 @@ bool SlidingMode::evaluate(Side& side, double t, std::span<const double> x) {
   side.dxdt.resize(program_.n_states());
   side.surfaces.resize(follows_.size());
   side.rates.resize(follows_.size());
-  if (!program_.surfaces(t, x.data(), side.surfaces.data(), workspace_)) return false;
-  program_.last_derivatives(side.dxdt.data(), workspace_);
-  program_.surface_rates(side.dxdt.data(), side.rates.data(), workspace_);
+  const auto here = program_.surfaces(t, x.data(), side.surfaces.data(), workspace_);
+  if (!here) return false;
+  here->derivatives(side.dxdt.data());
+  here->surface_rates(side.dxdt.data(), side.rates.data());
   return true;
 }
 
