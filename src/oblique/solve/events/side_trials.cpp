@@ -9,6 +9,7 @@
 #include <oblique/network/program/program.h>
 #include <oblique/solve/events/position_limits.h>
 #include <oblique/solve/events/self_consistent.h>
+#include <oblique/solve/events/slide_sides.h>
 #include <oblique/solve/events/sliding_mode.h>
 
 namespace oblique::solve {
@@ -33,7 +34,7 @@ SideTrials::SideTrials(const network::Program& program, network::Workspace& work
 
 void SideTrials::run(std::vector<std::uint32_t> units, Bends& bends, double t, std::span<const double> x) {
   units_ = std::move(units);
-  broken_by_ = SlidingMode::broken_by(program_, units_);
+  broken_by_ = broken_by(program_, units_);
   before_.assign(workspace_.memories().begin(), workspace_.memories().end());
   fastest_ = 0;
   trials_.clear();
