@@ -5,8 +5,8 @@
 
 #include <oblique/network/program/program.h>
 #include <oblique/report/expectation_check.h>
-#include <oblique/solve/operating_point/static_test.h>
 #include <oblique/solve/run.h>
+#include <oblique/solve/static_test.h>
 
 #include <oblique/network/assembly/network.h>
 #include <oblique/report/run_chart.h>
