@@ -125,8 +125,7 @@ TEST(Pieces, MeetWhereTheyAreEqual) {
         "", library);
     Workspace workspace(made.program);
     std::vector<double> surfaces(made.program.switches().size());
-    EXPECT_TRUE(made.program.surfaces(0, &x, surfaces.data(), workspace));
-    return made.program.pieces_meet(0, workspace);
+    return made.program.surfaces(0, &x, surfaces.data(), workspace).value().pieces_meet(0);
   };
   EXPECT_TRUE(meet("\"own\"", 0));
   EXPECT_FALSE(meet("\"own\"", 0.5));

@@ -24,9 +24,9 @@ double surface_at(const Program& program, double t, const std::vector<double>& x
 double rate_at(const Program& program, double t, const std::vector<double>& x) {
   Workspace workspace(program);
   std::vector<double> surfaces(program.switches().size()), rates(surfaces.size()), slopes(x.size());
-  EXPECT_TRUE(program.surfaces(t, x.data(), surfaces.data(), workspace));
-  program.last_derivatives(slopes.data(), workspace);
-  program.surface_rates(slopes.data(), rates.data(), workspace);
+  const auto here = program.surfaces(t, x.data(), surfaces.data(), workspace);
+  here.value().derivatives(slopes.data());
+  here->surface_rates(slopes.data(), rates.data());
   return rates[0];
 }
 

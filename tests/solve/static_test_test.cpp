@@ -2,8 +2,8 @@
 // Static tests of diagrams small enough to be worked out by hand.
 #include <gtest/gtest.h>
 
-#include <oblique/solve/operating_point/static_test.h>
 #include <oblique/solve/solve_error.h>
+#include <oblique/solve/static_test.h>
 
 #include "../support/runs.h"
 

@@ -6,8 +6,8 @@
 
 #include <oblique/network/program/program.h>
 #include <oblique/report/expectation_check.h>
-#include <oblique/solve/operating_point/static_test.h>
 #include <oblique/solve/run.h>
+#include <oblique/solve/static_test.h>
 
 #include <oblique/diagram/diagram_reader.h>
 #include <oblique/diagram/flatten.h>

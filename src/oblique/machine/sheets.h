@@ -6,7 +6,7 @@
 
 #include <oblique/diagram/flat_diagram.h>
 #include <oblique/diagram/machine_profile.h>
-#include <oblique/solve/operating_point/static_test.h>
+#include <oblique/solve/static_test.h>
 
 namespace oblique::machine {
 

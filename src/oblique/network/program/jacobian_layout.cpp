@@ -1,42 +1,34 @@
 // SPDX-License-Identifier: MIT
-// The part of ProgramCompiler that decides where every derivative goes.
+#include <oblique/network/program/jacobian_layout.h>
+
 #include <algorithm>
-#include <limits>
 #include <map>
 
-#include <oblique/network/program/program_compiler.h>
-
 namespace oblique::network {
-
-void ProgramCompiler::find_sensitivities() {
-  program_.sensitivities_.resize(network_.loops.size());
-  for (std::size_t l = 0; l < network_.loops.size(); ++l) {
-    if (for_derivatives_.loops[l]) find_sensitivity(l);
-  }
-}
+namespace {
 
 /// dz/dx of a loop is −(dg/dz)⁻¹ (dg/dx + Σ dg/dz′ · dz′/dx) over the loops z′ solved before it.
-void ProgramCompiler::find_sensitivity(std::size_t loop) {
-  Program::Sensitivity& sensitivity = program_.sensitivities_[loop];
-  program_.sensitivity_order_.push_back(static_cast<std::uint32_t>(loop));
-  const Loop& members = network_.loops[loop];
+void find_sensitivity(Compilation& c, std::size_t loop) {
+  ProgramCode::Sensitivity& sensitivity = c.code.sensitivities[loop];
+  c.code.sensitivity_order.push_back(static_cast<std::uint32_t>(loop));
+  const Loop& members = c.network.loops[loop];
   std::map<std::uint32_t, std::vector<MatrixEntry>> couplings;
   for (std::size_t i = 0; i < members.unknowns.size(); ++i) {
     const auto row = static_cast<std::uint32_t>(i);
-    for (const auto& [variable, node] : residual_gradients_[members.unknowns[i]]) {
-      const std::uint32_t slot = writer_->slot(node);
-      if (is_state(variable)) {
-        const auto state = static_cast<std::uint32_t>(state_of(variable));
+    for (const auto& [variable, node] : c.residual_gradients[members.unknowns[i]]) {
+      const std::uint32_t slot = c.writer->slot(node);
+      if (c.is_state(variable)) {
+        const auto state = static_cast<std::uint32_t>(c.state_of(variable));
         sensitivity.direct.push_back({row, state, slot});
         sensitivity.states.push_back(state);
-      } else if (is_unknown(variable) && loop_of_unknown_[unknown_of(variable)] != loop) {
-        const std::size_t other = unknown_of(variable);
-        couplings[loop_of_unknown_[other]].push_back({row, place_in_loop_[other], slot});
+      } else if (c.is_unknown(variable) && c.loop_of_unknown[c.unknown_of(variable)] != loop) {
+        const std::size_t other = c.unknown_of(variable);
+        couplings[c.loop_of_unknown[other]].push_back({row, c.place_in_loop[other], slot});
       }
     }
   }
   for (const auto& [other, entries] : couplings) {
-    const auto& states = program_.sensitivities_[other].states;
+    const auto& states = c.code.sensitivities[other].states;
     sensitivity.states.insert(sensitivity.states.end(), states.begin(), states.end());
   }
   std::sort(sensitivity.states.begin(), sensitivity.states.end());
@@ -48,29 +40,39 @@ void ProgramCompiler::find_sensitivity(std::size_t loop) {
   };
   for (MatrixEntry& entry : sensitivity.direct) entry.column = column_of(entry.column);
   for (auto& [other, entries] : couplings) {
-    Program::Coupling coupling{other, std::move(entries), {}};
-    for (const std::uint32_t state : program_.sensitivities_[other].states) {
+    ProgramCode::Coupling coupling{other, std::move(entries), {}};
+    for (const std::uint32_t state : c.code.sensitivities[other].states) {
       coupling.targets.push_back(column_of(state));
     }
     sensitivity.couplings.push_back(std::move(coupling));
   }
 }
 
-void ProgramCompiler::lay_out_jacobian() {
-  const std::size_t n = network_.states.size();
+void find_sensitivities(Compilation& c) {
+  c.code.sensitivities.resize(c.network.loops.size());
+  for (std::size_t l = 0; l < c.network.loops.size(); ++l) {
+    if (c.for_derivatives.loops[l]) find_sensitivity(c, l);
+  }
+}
+
+}  // namespace
+
+void lay_out_jacobian(Compilation& c) {
+  find_sensitivities(c);
+  const std::size_t n = c.network.states.size();
   // Rows of each column: the states a derivative depends on directly or through loops, and the diagonal.
   std::vector<std::vector<std::int64_t>> columns(n);
   for (std::size_t i = 0; i < n; ++i) {
     const auto row = static_cast<std::int64_t>(i);
     columns[i].push_back(row);
-    for (const auto& [variable, node] : state_gradients_[i]) {
-      if (is_state(variable)) columns[state_of(variable)].push_back(row);
-      if (!is_unknown(variable)) continue;
-      const auto& states = program_.sensitivities_[loop_of_unknown_[unknown_of(variable)]].states;
+    for (const auto& [variable, node] : c.state_gradients[i]) {
+      if (c.is_state(variable)) columns[c.state_of(variable)].push_back(row);
+      if (!c.is_unknown(variable)) continue;
+      const auto& states = c.code.sensitivities[c.loop_of_unknown[c.unknown_of(variable)]].states;
       for (const std::uint32_t state : states) columns[state].push_back(row);
     }
   }
-  SparsePattern& pattern = program_.pattern_;
+  SparsePattern& pattern = c.code.pattern;
   for (auto& rows : columns) {
     std::sort(rows.begin(), rows.end());
     rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
@@ -84,16 +86,16 @@ void ProgramCompiler::lay_out_jacobian() {
                                       pattern.rows.begin());
   };
   for (std::size_t i = 0; i < n; ++i) {
-    for (const auto& [variable, node] : state_gradients_[i]) {
-      const std::uint32_t slot = writer_->slot(node);
-      if (is_state(variable)) program_.direct_entries_.push_back({position(i, state_of(variable)), slot});
-      if (!is_unknown(variable)) continue;
-      const std::uint32_t loop = loop_of_unknown_[unknown_of(variable)];
-      const auto first = static_cast<std::uint32_t>(program_.row_positions_.size());
-      for (const std::uint32_t state : program_.sensitivities_[loop].states) {
-        program_.row_positions_.push_back(position(i, state));
+    for (const auto& [variable, node] : c.state_gradients[i]) {
+      const std::uint32_t slot = c.writer->slot(node);
+      if (c.is_state(variable)) c.code.direct_entries.push_back({position(i, c.state_of(variable)), slot});
+      if (!c.is_unknown(variable)) continue;
+      const std::uint32_t loop = c.loop_of_unknown[c.unknown_of(variable)];
+      const auto first = static_cast<std::uint32_t>(c.code.row_positions.size());
+      for (const std::uint32_t state : c.code.sensitivities[loop].states) {
+        c.code.row_positions.push_back(position(i, state));
       }
-      program_.row_couplings_.push_back({loop, place_in_loop_[unknown_of(variable)], slot, first});
+      c.code.row_couplings.push_back({loop, c.place_in_loop[c.unknown_of(variable)], slot, first});
     }
   }
 }

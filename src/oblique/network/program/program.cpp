@@ -3,31 +3,28 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <oblique/network/program/program_compiler.h>
 
 namespace oblique::network {
 
-Program::Program(Network network) {
-  ProgramCompiler(*this, std::move(network)).compile();
-}
+Program::Program(Network network) : code_(compile(std::move(network))) {}
 
 std::vector<double> Program::start() const {
   std::vector<double> x;
-  x.reserve(states_.size());
-  for (const State& state : states_) x.push_back(state.start);
+  x.reserve(code_.states.size());
+  for (const State& state : code_.states) x.push_back(state.start);
   return x;
 }
 
-bool Program::run(const std::vector<Step>& steps, Workspace& workspace) const {
+bool Program::run(const std::vector<ProgramCode::Step>& steps, Workspace& workspace) const {
   double* const slots = workspace.slots_.data();
-  const std::span<const Instruction> tape(tape_);
-  const std::size_t first_unknown = 1 + states_.size();
-  for (const Step& step : steps) {
+  const std::span<const Instruction> tape(code_.tape);
+  const std::size_t first_unknown = 1 + code_.states.size();
+  for (const ProgramCode::Step& step : steps) {
     run_tape(tape.subspan(step.stretch.begin, step.stretch.end - step.stretch.begin), slots);
     if (!step.loop) continue;
-    const LoopCode& loop = loop_codes_[*step.loop];
+    const LoopCode& loop = code_.loop_codes[*step.loop];
     const LoopFailure failure = workspace.loops_[*step.loop].solve_loop(loop, tape, slots);
     if (failure != LoopFailure::none) {
       const double slope = loop.size() == 1 && !loop.slopes.empty() ? slots[loop.slopes[0].slot] : 0;
@@ -44,147 +41,86 @@ bool Program::run(const std::vector<Step>& steps, Workspace& workspace) const {
 }
 
 bool Program::load_and_run(double t, const double* x, Workspace& workspace) const {
+  ++workspace.generation_;
   workspace.slots_[0] = t;
-  std::copy(x, x + states_.size(), workspace.slots_.begin() + 1);
-  return run(derivative_steps_, workspace);
+  std::copy(x, x + code_.states.size(), workspace.slots_.begin() + 1);
+  return run(code_.derivative_steps, workspace);
 }
 
 bool Program::derivatives(double t, const double* x, double* dxdt, Workspace& workspace) const {
   if (!load_and_run(t, x, workspace)) return false;
-  last_derivatives(dxdt, workspace);
+  copy_derivatives(workspace, dxdt);
   return true;
 }
 
-bool Program::signals(double t, const double* x, double* values, Workspace& workspace) const {
-  if (!load_and_run(t, x, workspace) || !run(surface_steps_, workspace) || !run(signal_steps_, workspace))
-    return false;
-  for (std::size_t i = 0; i < signal_slots_.size(); ++i) values[i] = workspace.slots_[signal_slots_[i]];
-  return true;
+void Program::copy_derivatives(const Workspace& workspace, double* dxdt) const {
+  for (std::size_t i = 0; i < code_.derivative_slots.size(); ++i)
+    dxdt[i] = workspace.slots_[code_.derivative_slots[i]];
 }
 
-bool Program::surfaces(double t, const double* x, double* values, Workspace& workspace) const {
-  if (!load_and_run(t, x, workspace) || !run(surface_steps_, workspace)) return false;
-  for (std::size_t i = 0; i < surface_slots_.size(); ++i) values[i] = workspace.slots_[surface_slots_[i]];
-  return true;
+std::optional<SignalEvaluation> Program::signals(double t, const double* x, double* values,
+                                                 Workspace& workspace) const {
+  if (!load_and_run(t, x, workspace) || !run(code_.surface_steps, workspace) ||
+      !run(code_.signal_steps, workspace))
+    return std::nullopt;
+  for (std::size_t i = 0; i < code_.signal_slots.size(); ++i)
+    values[i] = workspace.slots_[code_.signal_slots[i]];
+  return SignalEvaluation(*this, workspace);
 }
 
-void Program::last_derivatives(double* dxdt, const Workspace& workspace) const {
-  for (std::size_t i = 0; i < derivative_slots_.size(); ++i) dxdt[i] = workspace.slots_[derivative_slots_[i]];
-}
-
-double Program::compared_size(std::size_t s, const Workspace& workspace) const {
-  return std::abs(workspace.slots_[compared_slots_[s]]);
-}
-
-std::optional<double> Program::known_rate(std::size_t s, const Workspace& workspace) const {
-  return rate_slots_[s] ? std::optional(workspace.slots_[*rate_slots_[s]]) : std::nullopt;
-}
-
-void Program::surface_rates(const double* dxdt, double* values, Workspace& workspace) const {
-  if (switches_.empty()) return;
-  double* const slots = workspace.slots_.data();
-  std::copy(dxdt, dxdt + states_.size(), slots + first_rate_);
-  for (const RateStep& step : rate_steps_) {
-    run_tape(std::span(tape_).subspan(step.stretch.begin, step.stretch.end - step.stretch.begin), slots);
-    if (!step.loop) continue;
-    LoopWorkspace& loop = workspace.loops_[*step.loop];
-    Eigen::MatrixXd& rates = workspace.dz_dt_[*step.loop];
-    const bool regular = loop.matrix().factor(loop_codes_[*step.loop], slots);
-    for (std::size_t i = 0; i < step.right_sides.size(); ++i) {
-      rates(static_cast<Eigen::Index>(i), 0) =
-          regular ? -slots[step.right_sides[i]] : std::numeric_limits<double>::quiet_NaN();
-    }
-    if (regular) loop.matrix().solve(rates);
-    for (std::size_t i = 0; i < step.rates.size(); ++i)
-      slots[step.rates[i]] = rates(static_cast<Eigen::Index>(i), 0);
-  }
-  for (std::size_t s = 0; s < surface_rate_slots_.size(); ++s) values[s] = slots[surface_rate_slots_[s]];
+std::optional<Evaluation> Program::surfaces(double t, const double* x, double* values,
+                                            Workspace& workspace) const {
+  if (!load_and_run(t, x, workspace) || !run(code_.surface_steps, workspace)) return std::nullopt;
+  for (std::size_t i = 0; i < code_.surface_slots.size(); ++i)
+    values[i] = workspace.slots_[code_.surface_slots[i]];
+  return Evaluation(*this, workspace);
 }
 
 void Program::decide_in_order(double t, const double* x, const double* dxdt, Workspace& workspace,
                               const Decide& decide) const {
+  ++workspace.generation_;
   double* const slots = workspace.slots_.data();
   slots[0] = t;
-  std::copy(x, x + states_.size(), slots + 1);
-  std::copy(dxdt, dxdt + states_.size(), slots + first_rate_);
-  for (const auto& [stretch, s] : switch_order_) {
-    run_tape(std::span(tape_).subspan(stretch.begin, stretch.end - stretch.begin), slots);
-    decide(s, slots[surface_slots_[s]], slots[surface_rate_slots_[s]]);
+  std::copy(x, x + code_.states.size(), slots + 1);
+  std::copy(dxdt, dxdt + code_.states.size(), slots + code_.first_rate);
+  for (const auto& [stretch, s] : code_.switch_order) {
+    run_tape(std::span(code_.tape).subspan(stretch.begin, stretch.end - stretch.begin), slots);
+    decide(s, slots[code_.surface_slots[s]], slots[code_.surface_rate_slots[s]]);
   }
-}
-
-bool Program::pieces_meet(std::size_t s, const Workspace& workspace) const {
-  constexpr double kMeet = 1e-9;  // a jump that is smaller is below any tolerance of a run
-  return has_pieces_[s] && std::all_of(pieces_[s].begin(), pieces_[s].end(), [&](const auto& pieces) {
-           const double a = workspace.slots_[pieces.first], b = workspace.slots_[pieces.second];
-           return std::abs(a - b) <= kMeet * std::max({1.0, std::abs(a), std::abs(b)});
-         });
-}
-
-double Program::fastest_phase(const Workspace& workspace) const {
-  double fastest = 0;
-  for (const std::uint32_t slot : phase_rate_slots_)
-    fastest = std::max(fastest, std::abs(workspace.slots_[slot]));
-  return fastest;
 }
 
 std::vector<Interval> Program::source_slots() const {
   std::vector<Interval> slots;
-  if (sources_.empty()) return slots;
-  slots.reserve(initial_slots_.size());
-  for (const double value : initial_slots_) slots.push_back({value, value});
+  if (code_.sources.empty()) return slots;
+  slots.reserve(code_.initial_slots.size());
+  for (const double value : code_.initial_slots) slots.push_back({value, value});
   return slots;
 }
 
 void Program::source_ranges(const Interval& time, std::span<const Interval> states,
                             const Workspace& workspace, std::span<Interval> slots) const {
   slots[0] = time;
-  for (std::size_t k = 0; k < states.size(); ++k) slots[1 + source_states_[k]] = states[k];
-  for (std::size_t m = first_memory_; m < first_memory_ + memories_.size(); ++m)
+  for (std::size_t k = 0; k < states.size(); ++k) slots[1 + code_.source_states[k]] = states[k];
+  for (std::size_t m = code_.first_memory; m < code_.first_memory + code_.memories.size(); ++m)
     slots[m] = {workspace.slots_[m], workspace.slots_[m]};
-  run_tape(std::span(tape_).subspan(source_stretch_.begin, source_stretch_.end - source_stretch_.begin),
+  run_tape(std::span(code_.tape)
+               .subspan(code_.source_stretch.begin, code_.source_stretch.end - code_.source_stretch.begin),
            slots);
 }
 
-bool Program::condition(std::size_t event, const Workspace& workspace) const {
-  return workspace.slots_[event_slots_[event].condition] != 0;
-}
-
-bool Program::phase_ends(std::size_t end, const Workspace& workspace) const {
-  return workspace.slots_[phase_end_slots_[end]] != 0;
-}
-
-double Program::action_value(std::size_t event, std::size_t action, const Workspace& workspace) const {
-  return workspace.slots_[event_slots_[event].values[action]];
-}
-
-std::optional<double> Program::start_value(std::size_t state, const Workspace& workspace) const {
-  return start_slots_[state] ? std::optional(workspace.slots_[*start_slots_[state]]) : std::nullopt;
-}
-
-Eigen::MatrixXd Program::loop_slopes(std::size_t loop, const Workspace& workspace) const {
-  const LoopCode& code = loop_codes_[loop];
-  const auto n = static_cast<Eigen::Index>(code.size());
-  Eigen::MatrixXd slopes = Eigen::MatrixXd::Zero(n, n);
-  for (const MatrixEntry& entry : code.slopes) {
-    slopes(entry.row, entry.column) = workspace.slots_[entry.slot];
-  }
-  return slopes;
-}
-
 bool Program::derivatives_need(std::size_t loop) const {
-  return std::any_of(derivative_steps_.begin(), derivative_steps_.end(),
-                     [&](const Step& step) { return step.loop == loop; });
+  return std::any_of(code_.derivative_steps.begin(), code_.derivative_steps.end(),
+                     [&](const ProgramCode::Step& step) { return step.loop == loop; });
 }
 
 bool Program::differentiate_loops(Workspace& workspace) const {
   const double* const slots = workspace.slots_.data();
-  for (const std::uint32_t l : sensitivity_order_) {
-    const Sensitivity& sensitivity = sensitivities_[l];
+  for (const std::uint32_t l : code_.sensitivity_order) {
+    const ProgramCode::Sensitivity& sensitivity = code_.sensitivities[l];
     Eigen::MatrixXd& dz_dx = workspace.dz_dx_[l];
     dz_dx.setZero();
     for (const MatrixEntry& entry : sensitivity.direct) dz_dx(entry.row, entry.column) -= slots[entry.slot];
-    for (const Coupling& coupling : sensitivity.couplings) {
+    for (const ProgramCode::Coupling& coupling : sensitivity.couplings) {
       const Eigen::MatrixXd& other = workspace.dz_dx_[coupling.loop];
       for (const MatrixEntry& entry : coupling.entries) {
         for (std::size_t k = 0; k < coupling.targets.size(); ++k) {
@@ -193,8 +129,8 @@ bool Program::differentiate_loops(Workspace& workspace) const {
         }
       }
     }
-    if (!workspace.loops_[l].matrix().factor(loop_codes_[l], slots)) {
-      const std::uint32_t first = loop_codes_[l].unknown_slots.front();
+    if (!workspace.loops_[l].matrix().factor(code_.loop_codes[l], slots)) {
+      const std::uint32_t first = code_.loop_codes[l].unknown_slots.front();
       workspace.trouble_ = {l, LoopFailure::singular, 0, slots[first]};
       return false;
     }
@@ -206,15 +142,18 @@ bool Program::differentiate_loops(Workspace& workspace) const {
 bool Program::jacobian(double t, const double* x, double* values, Workspace& workspace) const {
   if (!load_and_run(t, x, workspace)) return false;
   double* const slots = workspace.slots_.data();
-  run_tape(std::span(tape_).subspan(jacobian_stretch_.begin, jacobian_stretch_.end - jacobian_stretch_.begin),
-           slots);
+  run_tape(
+      std::span(code_.tape)
+          .subspan(code_.jacobian_stretch.begin, code_.jacobian_stretch.end - code_.jacobian_stretch.begin),
+      slots);
   if (!differentiate_loops(workspace)) return false;
-  std::fill(values, values + pattern_.entries(), 0.0);
-  for (const DirectEntry& entry : direct_entries_) values[entry.position] += slots[entry.slot];
-  for (const RowCoupling& coupling : row_couplings_) {
+  std::fill(values, values + code_.pattern.entries(), 0.0);
+  for (const ProgramCode::DirectEntry& entry : code_.direct_entries)
+    values[entry.position] += slots[entry.slot];
+  for (const ProgramCode::RowCoupling& coupling : code_.row_couplings) {
     const Eigen::MatrixXd& dz_dx = workspace.dz_dx_[coupling.loop];
     for (Eigen::Index k = 0; k < dz_dx.cols(); ++k) {
-      values[row_positions_[coupling.first_position + static_cast<std::size_t>(k)]] +=
+      values[code_.row_positions[coupling.first_position + static_cast<std::size_t>(k)]] +=
           slots[coupling.slot] * dz_dx(coupling.unknown, k);
     }
   }
@@ -222,12 +161,12 @@ bool Program::jacobian(double t, const double* x, double* values, Workspace& wor
 }
 
 Workspace::Workspace(const Program& program)
-    : program_(&program), first_memory_(program.first_memory_), slots_(program.initial_slots_) {
-  for (std::size_t l = 0; l < program.loop_codes_.size(); ++l) {
-    const std::size_t size = program.loop_codes_[l].size();
+    : program_(&program), first_memory_(program.code_.first_memory), slots_(program.code_.initial_slots) {
+  for (std::size_t l = 0; l < program.code_.loop_codes.size(); ++l) {
+    const std::size_t size = program.code_.loop_codes[l].size();
     loops_.emplace_back(size);
     dz_dx_.emplace_back(static_cast<Eigen::Index>(size),
-                        static_cast<Eigen::Index>(program.sensitivities_[l].states.size()));
+                        static_cast<Eigen::Index>(program.code_.sensitivities[l].states.size()));
     dz_dt_.emplace_back(static_cast<Eigen::Index>(size), 1);
   }
   reset();
@@ -235,6 +174,7 @@ Workspace::Workspace(const Program& program)
 }
 
 void Workspace::set_unknown(std::size_t u, double value) {
+  ++generation_;
   solved_[u] = value;
   slots_[1 + program_->n_states() + u] = value;
 }
@@ -244,26 +184,29 @@ void Workspace::follow_branches(bool follow) {
 }
 
 void Workspace::hold_loop(std::size_t loop, double t, const std::vector<double>& unknowns, bool whatever) {
-  const Loop& members = program_->loops_[loop];
+  const Loop& members = program_->code_.loops[loop];
   for (std::size_t i = 0; i < unknowns.size(); ++i) set_unknown(members.unknowns[i], unknowns[i]);
   loops_[loop].hold(t, unknowns, whatever);
 }
 
 std::span<const double> Workspace::memories() const {
-  return std::span(slots_).subspan(first_memory_, program_->memories_.size());
+  return std::span(slots_).subspan(first_memory_, program_->code_.memories.size());
 }
 
 void Workspace::load_memories(std::span<const double> memories) {
+  ++generation_;
   std::copy(memories.begin(), memories.end(), slots_.begin() + static_cast<std::ptrdiff_t>(first_memory_));
 }
 
 void Workspace::reset_memories() {
-  for (std::size_t m = 0; m < program_->memories_.size(); ++m) set_memory(m, program_->memories_[m].start);
+  for (std::size_t m = 0; m < program_->code_.memories.size(); ++m)
+    set_memory(m, program_->code_.memories[m].start);
 }
 
 void Workspace::reset() {
+  ++generation_;
   solved_.clear();
-  for (const Unknown& unknown : program_->unknowns_) solved_.push_back(unknown.guess);
+  for (const Unknown& unknown : program_->code_.unknowns) solved_.push_back(unknown.guess);
   std::copy(solved_.begin(), solved_.end(),
             slots_.begin() + static_cast<std::ptrdiff_t>(1 + program_->n_states()));
   for (LoopWorkspace& loop : loops_) loop.reset();

@@ -12,31 +12,14 @@
 
 #include <oblique/network/assembly/network.h>
 #include <oblique/network/graph/interval.h>
+#include <oblique/network/program/evaluation.h>
 #include <oblique/network/program/loop_solver.h>
+#include <oblique/network/program/program_code.h>
 #include <oblique/network/program/switch_structure.h>
 
 namespace oblique::network {
 
-/// Pattern of a square sparse matrix in compressed columns: rows ascending in each column, the diagonal
-/// always there.
-struct SparsePattern {
-  std::vector<std::int64_t> column_starts{0};
-  std::vector<std::int64_t> rows;
-
-  std::size_t size() const { return column_starts.size() - 1; }
-  std::size_t entries() const { return rows.size(); }
-};
-
 class Workspace;
-
-/// A part of the equations that follows the time alone, or clocks, and not along a straight line; or one that
-/// follows states, and may be next to nothing here and a peak there.
-struct Source {
-  std::uint32_t slot = 0, slope_slot = 0;  ///< its value, and d value/dt (of one by states no use)
-  bool acts = false;                       ///< on dx/dt, or on the surface of a switch
-  bool by_states = false;
-  std::optional<std::uint32_t> switch_index;  ///< the switch whose whole surface it is
-};
 
 /// The equations of a diagram, compiled: immutable, and shared between threads as long as each has a
 /// Workspace. Nothing allocates inside `derivatives`, `jacobian` and `signals`.
@@ -45,16 +28,16 @@ class Program {
   /// Compiles a network: differentiates, shares and drops expressions, lays out the tape.
   explicit Program(Network network);
 
-  std::size_t n_states() const { return states_.size(); }
-  std::size_t n_signals() const { return signal_names_.size(); }
-  const std::vector<State>& states() const { return states_; }
-  const std::vector<Unknown>& unknowns() const { return unknowns_; }
-  const std::vector<Loop>& loops() const { return loops_; }
-  const std::vector<std::string>& signal_names() const { return signal_names_; }
+  std::size_t n_states() const { return code_.states.size(); }
+  std::size_t n_signals() const { return code_.signal_names.size(); }
+  const std::vector<State>& states() const { return code_.states; }
+  const std::vector<Unknown>& unknowns() const { return code_.unknowns; }
+  const std::vector<Loop>& loops() const { return code_.loops; }
+  const std::vector<std::string>& signal_names() const { return code_.signal_names; }
   std::size_t signal_index(diagram::SignalRef signal) const {
-    return first_signal_[signal.block] + signal.output;
+    return code_.first_signal[signal.block] + signal.output;
   }
-  std::size_t n_instructions() const { return tape_.size(); }
+  std::size_t n_instructions() const { return code_.tape.size(); }
 
   /// Start values of the states, before servo loops are brought to rest.
   std::vector<double> start() const;
@@ -66,58 +49,39 @@ class Program {
   /// d(dx/dt)/dx in the order of `jacobian_pattern`, algebraic loops included: f_x − f_z g_z⁻¹ g_x. False as
   /// above.
   bool jacobian(double t, const double* x, double* values, Workspace& workspace) const;
-  const SparsePattern& jacobian_pattern() const { return pattern_; }
+  const SparsePattern& jacobian_pattern() const { return code_.pattern; }
 
-  /// Every signal of every block at (t, x), `n_signals` of them. False as above.
-  bool signals(double t, const double* x, double* values, Workspace& workspace) const;
+  /// Every signal of every block at (t, x), `n_signals` of them, and what else follows from them; nothing
+  /// where `derivatives` would give false.
+  std::optional<SignalEvaluation> signals(double t, const double* x, double* values,
+                                          Workspace& workspace) const;
 
   // --- events: all of the above hold for the memories as they are in the workspace
 
-  const std::vector<Memory>& memories() const { return memories_; }
-  const std::vector<Switch>& switches() const { return switches_; }
-  const std::vector<Event>& events() const { return events_; }
+  const std::vector<Memory>& memories() const { return code_.memories; }
+  const std::vector<Switch>& switches() const { return code_.switches; }
+  const std::vector<Event>& events() const { return code_.events; }
   /// Of each group of integrators, the memory with its mode of operation; empty without a timeline.
-  const std::vector<std::uint32_t>& mode_memories() const { return mode_memories_; }
+  const std::vector<std::uint32_t>& mode_memories() const { return code_.mode_memories; }
 
-  /// The surface of every switch at (t, x). False as above.
-  bool surfaces(double t, const double* x, double* values, Workspace& workspace) const;
-  // As the last `surfaces` left them:
-  /// dx/dt.
-  void last_derivatives(double* dxdt, const Workspace& workspace) const;
-  /// The magnitude of what the surface of a switch compares.
-  double compared_size(std::size_t s, const Workspace& workspace) const;
-  /// d surface/dt of a switch whose surface depends on time alone, linearly; nothing for another.
-  std::optional<double> known_rate(std::size_t s, const Workspace& workspace) const;
-  /// Whether the condition of an event holds.
-  bool condition(std::size_t event, const Workspace& workspace) const;
-  /// Whether the condition holds that ends phase number `end` of those with one.
-  bool phase_ends(std::size_t end, const Workspace& workspace) const;
-  /// d surface/dt of every switch where the states move with `dxdt`, `n_states` of them; not a number where
-  /// an algebraic loop is singular.
-  void surface_rates(const double* dxdt, double* values, Workspace& workspace) const;
-  /// How quickly the argument of a periodic function that a surface contains turns [rad/s]: the largest, as
-  /// the last `surface_rates` left it.
-  double fastest_phase(const Workspace& workspace) const;
-  const SwitchStructure& switch_structure() const { return switch_structure_; }
+  /// The surface of every switch at (t, x), and what else follows there; nothing as above.
+  std::optional<Evaluation> surfaces(double t, const double* x, double* values, Workspace& workspace) const;
+  const SwitchStructure& switch_structure() const { return code_.switch_structure; }
 
   /// Whether a switch follows from no algebraic loop, and its surface does not depend on its own position.
-  bool is_ordered(std::size_t s) const { return is_ordered_[s]; }
+  bool is_ordered(std::size_t s) const { return code_.is_ordered[s]; }
   /// What `decide_in_order` calls: a switch, its surface, and d surface/dt.
   using Decide = std::function<void(std::uint32_t s, double surface, double rate)>;
   /// Goes once through all ordered switches at (t, x), where the states move with `dxdt`: each comes after
-  /// those on whose positions its surface depends, and sees them as `decide` has set them. The surfaces of
-  /// all must be evaluated anew after it.
+  /// those on whose positions its surface depends, and sees them as `decide` has set them.
   void decide_in_order(double t, const double* x, const double* dxdt, Workspace& workspace,
                        const Decide& decide) const;
-  /// Whether the equations and surfaces only bend where a switch turns over: as the last `surfaces` left
-  /// them, the pieces between which its position chooses are equal.
-  bool pieces_meet(std::size_t s, const Workspace& workspace) const;
 
-  const std::vector<Source>& sources() const { return sources_; }
+  const std::vector<Source>& sources() const { return code_.sources; }
   /// The states that sources depend on. The first `clocks` of them go along a straight line between events:
   /// integrators of what only events change.
-  const std::vector<std::size_t>& source_states() const { return source_states_; }
-  std::size_t clocks() const { return n_clocks_; }
+  const std::vector<std::size_t>& source_states() const { return code_.source_states; }
+  std::size_t clocks() const { return code_.n_clocks; }
   /// The values of all sources, and their slopes, for times within `time` and the source states within
   /// `states`, on slots of the kind that `source_slots` gives, with the memories as they are in the
   /// workspace.
@@ -125,123 +89,24 @@ class Program {
                      std::span<Interval> slots) const;
   std::vector<Interval> source_slots() const;
 
-  // As the last `signals` left them:
-  /// What an action of an event would set.
-  double action_value(std::size_t event, std::size_t action, const Workspace& workspace) const;
-  /// Where a state starts if that follows from signals; nothing for another.
-  std::optional<double> start_value(std::size_t state, const Workspace& workspace) const;
-  /// dg/dz of an algebraic loop where `signals` last evaluated it, rows and columns in the order of its
-  /// unknowns.
-  Eigen::MatrixXd loop_slopes(std::size_t loop, const Workspace& workspace) const;
   /// Whether dg/dz of a loop does not depend on its own unknowns.
-  bool loop_is_linear(std::size_t loop) const { return loop_codes_[loop].linear; }
+  bool loop_is_linear(std::size_t loop) const { return code_.loop_codes[loop].linear; }
   /// Whether amplifiers choose among several solutions of a loop.
-  bool loop_has_branches(std::size_t loop) const { return loop_codes_[loop].has_branches(); }
+  bool loop_has_branches(std::size_t loop) const { return code_.loop_codes[loop].has_branches(); }
   /// Whether derivatives depend on a loop.
   bool derivatives_need(std::size_t loop) const;
 
  private:
   friend class Workspace;
-  friend class ProgramCompiler;
+  friend class Evaluation;
+  friend class SignalEvaluation;
 
-  /// A stretch of the tape, then perhaps a loop to solve.
-  struct Step {
-    TapeRange stretch;
-    std::optional<std::uint32_t> loop;
-  };
-
-  /// A derivative of a residual or of dx/dt by an unknown of a loop: where it enters the sums over dz/dx.
-  struct Coupling {
-    std::uint32_t loop;
-    std::vector<MatrixEntry> entries;  ///< row of the target, unknown within `loop`, slot
-    std::vector<std::uint32_t>
-        targets;  ///< for a residual: column of the target for each column of dz/dx of `loop`
-  };
-
-  /// dz/dx of a loop: on which states it depends and what that is made of.
-  struct Sensitivity {
-    std::vector<std::uint32_t> states;  ///< columns of dz/dx
-    std::vector<MatrixEntry> direct;    ///< dg/dx: row, column in `states`, slot
-    std::vector<Coupling> couplings;    ///< dg/dz of loops solved earlier
-  };
-
-  struct DirectEntry {
-    std::uint32_t position, slot;
-  };
-  /// One row of f_z: entry k of dz/dx's columns goes to `positions[k]` of the Jacobian.
-  struct RowCoupling {
-    std::uint32_t loop, unknown, slot;
-    std::uint32_t first_position;  ///< in `row_positions_`
-  };
-
-  /// A stretch of the tape, then perhaps d unknowns/dt of a loop, from right sides that the stretch has
-  /// computed.
-  struct RateStep {
-    TapeRange stretch;
-    std::optional<std::uint32_t> loop;
-    std::vector<std::uint32_t> right_sides, rates;  ///< slots
-  };
-
-  bool run(const std::vector<Step>& steps, Workspace& workspace) const;
+  bool run(const std::vector<ProgramCode::Step>& steps, Workspace& workspace) const;
   bool load_and_run(double t, const double* x, Workspace& workspace) const;
   bool differentiate_loops(Workspace& workspace) const;
+  void copy_derivatives(const Workspace& workspace, double* dxdt) const;
 
-  std::vector<State> states_;
-  std::vector<Unknown> unknowns_;
-  std::vector<Loop> loops_;
-  std::vector<std::string> signal_names_;
-  std::vector<std::size_t> first_signal_;
-
-  std::vector<Instruction> tape_;
-  std::vector<double> initial_slots_;
-  std::vector<LoopCode> loop_codes_;
-  std::vector<Step> derivative_steps_;
-  std::vector<Step> surface_steps_;  ///< after `derivative_steps_`
-  std::vector<Step> signal_steps_;   ///< after `surface_steps_`
-  TapeRange jacobian_stretch_;       ///< after `derivative_steps_`
-  std::vector<std::uint32_t> derivative_slots_;
-  std::vector<std::uint32_t> signal_slots_;
-
-  struct EventSlots {
-    std::uint32_t condition = 0;
-    std::vector<std::uint32_t> values;
-  };
-  std::size_t first_memory_ = 0;  ///< slot
-  std::vector<Memory> memories_;
-  std::vector<Switch> switches_;
-  std::vector<Event> events_;
-  std::vector<std::uint32_t> mode_memories_;
-  std::vector<std::uint32_t> surface_slots_;
-  std::vector<std::uint32_t> compared_slots_;  ///< one side of what the surface of each switch compares
-  std::vector<std::optional<std::uint32_t>> rate_slots_;
-  std::vector<EventSlots> event_slots_;
-  std::vector<std::optional<std::uint32_t>> start_slots_;
-  std::vector<std::uint32_t> phase_end_slots_;
-
-  struct OrderedSwitch {
-    TapeRange stretch;  ///< computes its surface and the rate of it
-    std::uint32_t switch_index;
-  };
-  std::vector<OrderedSwitch> switch_order_;
-  std::vector<bool> is_ordered_;                                              ///< of each switch
-  std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>> pieces_;  ///< of each switch; slots
-  std::vector<bool> has_pieces_;  ///< of each switch: nothing but a choice between them reads its position
-
-  SwitchStructure switch_structure_;
-  std::size_t first_rate_ = 0;        ///< slot of d states/dt, then of d unknowns/dt
-  std::vector<RateStep> rate_steps_;  ///< after `surface_steps_`
-  std::vector<std::uint32_t> surface_rate_slots_, phase_rate_slots_;
-  std::vector<Source> sources_;
-  std::vector<std::size_t> source_states_;
-  std::size_t n_clocks_ = 0;
-  TapeRange source_stretch_;
-
-  SparsePattern pattern_;
-  std::vector<DirectEntry> direct_entries_;
-  std::vector<Sensitivity> sensitivities_;        ///< of each loop; empty for those no derivative needs
-  std::vector<std::uint32_t> sensitivity_order_;  ///< loops that derivatives need
-  std::vector<RowCoupling> row_couplings_;
-  std::vector<std::uint32_t> row_positions_;
+  ProgramCode code_;
 };
 
 /// The scratch memory of one run of a Program. It keeps the last solution of every algebraic loop, from which
@@ -283,10 +148,17 @@ class Workspace {
   /// Sets all, or none where there are none.
   void load_memories(std::span<const double> memories);
   double memory(std::size_t m) const { return slots_[first_memory_ + m]; }
-  void set_memory(std::size_t m, double value) { slots_[first_memory_ + m] = value; }
+  void set_memory(std::size_t m, double value) {
+    double& slot = slots_[first_memory_ + m];
+    if (slot == value) return;
+    slot = value;
+    ++generation_;
+  }
 
  private:
   friend class Program;
+  friend class Evaluation;
+  friend class SignalEvaluation;
   const Program* program_;
   std::size_t first_memory_;
   std::vector<double> slots_;
@@ -295,6 +167,7 @@ class Workspace {
   std::vector<Eigen::MatrixXd> dz_dx_, dz_dt_;
   bool passes_failing_loops_ = false;
   Trouble trouble_;
+  std::uint64_t generation_ = 0;  ///< goes on with whatever makes an Evaluation stale
 };
 
 }  // namespace oblique::network

@@ -2,264 +2,146 @@
 #include <oblique/network/program/program_compiler.h>
 
 #include <algorithm>
+#include <utility>
+
+#include <oblique/network/program/compilation.h>
+#include <oblique/network/program/jacobian_layout.h>
+#include <oblique/network/program/sources.h>
+#include <oblique/network/program/surface_rates.h>
+#include <oblique/network/program/switch_order.h>
 
 namespace oblique::network {
+namespace {
 
-ProgramCompiler::ProgramCompiler(Program& program, Network network)
-    : program_(program), network_(std::move(network)) {
-  loop_of_unknown_.resize(network_.unknowns.size());
-  place_in_loop_.resize(network_.unknowns.size());
-  for (std::size_t l = 0; l < network_.loops.size(); ++l) {
-    const auto& unknowns = network_.loops[l].unknowns;
-    for (std::size_t i = 0; i < unknowns.size(); ++i) {
-      loop_of_unknown_[unknowns[i]] = static_cast<std::uint32_t>(l);
-      place_in_loop_[unknowns[i]] = static_cast<std::uint32_t>(i);
-    }
+void differentiate(Compilation& c) {
+  for (const State& state : c.network.states)
+    c.state_gradients.push_back(c.network.graph.gradient(state.derivative));
+  for (const Unknown& unknown : c.network.unknowns) {
+    c.residual_gradients.push_back(c.network.graph.gradient(unknown.residual));
   }
 }
 
-void ProgramCompiler::compile() {
-  program_.switch_structure_ = find_switch_structure(network_);
-  differentiate();
-  find_positions();
-  differentiate_surfaces();
-  find_sources();
-  find_levels();
-  find_needs();
-  write_tapes();
-  find_sensitivities();
-  lay_out_jacobian();
-  program_.tape_ = writer_->instructions();
-  program_.initial_slots_ = writer_->initial_slots();
-  program_.first_memory_ = network_.n_variables();
-  program_.first_rate_ = program_.first_memory_ + network_.memories.size();
-  program_.memories_ = std::move(network_.memories);
-  program_.switches_ = std::move(network_.switches);
-  program_.events_ = std::move(network_.events);
-  program_.mode_memories_ = std::move(network_.mode_memories);
-  program_.states_ = std::move(network_.states);
-  program_.unknowns_ = std::move(network_.unknowns);
-  program_.loops_ = std::move(network_.loops);
-  program_.signal_names_ = std::move(network_.signal_names);
-  program_.first_signal_ = std::move(network_.first_signal);
-}
-
-void ProgramCompiler::differentiate() {
-  for (const State& state : network_.states)
-    state_gradients_.push_back(network_.graph.gradient(state.derivative));
-  for (const Unknown& unknown : network_.unknowns) {
-    residual_gradients_.push_back(network_.graph.gradient(unknown.residual));
-  }
-}
-
-void ProgramCompiler::find_levels() {
-  const ExpressionGraph& graph = network_.graph;
-  levels_.assign(graph.size(), 0);
+void find_levels(Compilation& c) {
+  const ExpressionGraph& graph = c.network.graph;
+  c.levels.assign(graph.size(), 0);
   for (NodeId id = 0; id < graph.size(); ++id) {
     const Node& node = graph[id];
     for (int i = 0; i < operand_count(node.op); ++i)
-      levels_[id] = std::max(levels_[id], levels_[node.operand(i)]);
-    if (node.op == Op::variable && is_unknown(node.variable)) {
-      levels_[id] = loop_of_unknown_[unknown_of(node.variable)] + 1;
+      c.levels[id] = std::max(c.levels[id], c.levels[node.operand(i)]);
+    if (node.op == Op::variable && c.is_unknown(node.variable)) {
+      c.levels[id] = c.loop_of_unknown[c.unknown_of(node.variable)] + 1;
     }
   }
-}
-
-void ProgramCompiler::require_loop(std::size_t loop, Needs& needs, std::vector<NodeId>& pending) const {
-  if (needs.loops[loop]) return;
-  needs.loops[loop] = true;
-  for (const std::size_t u : network_.loops[loop].unknowns) {
-    pending.push_back(network_.unknowns[u].residual);
-    for (const auto& [variable, node] : residual_gradients_[u]) {
-      if (is_unknown(variable) && loop_of_unknown_[unknown_of(variable)] == loop) pending.push_back(node);
-    }
-  }
-}
-
-void ProgramCompiler::close_over(NodeId root, Needs& needs) const {
-  std::vector<NodeId> pending{root};
-  while (!pending.empty()) {
-    const NodeId id = pending.back();
-    pending.pop_back();
-    if (needs.nodes[id]) continue;
-    needs.nodes[id] = true;
-    const Node& node = network_.graph[id];
-    for (int i = 0; i < operand_count(node.op); ++i) pending.push_back(node.operand(i));
-    if (node.op == Op::variable && is_unknown(node.variable)) {
-      require_loop(loop_of_unknown_[unknown_of(node.variable)], needs, pending);
-    }
-  }
-}
-
-void ProgramCompiler::find_needs() {
-  const Needs none{std::vector<bool>(network_.graph.size()), std::vector<bool>(network_.loops.size())};
-  for_derivatives_ = for_surfaces_ = for_jacobian_ = for_signals_ = for_rates_ = for_sources_ = none;
-  for (const State& state : network_.states) close_over(state.derivative, for_derivatives_);
-  for (const NodeId root : surface_roots()) close_over(root, for_surfaces_);
-  for (const NodeId root : signal_roots()) close_over(root, for_signals_);
-  for (const NodeId root : rate_roots()) close_over(root, for_rates_);
-  for (const NodeId root : source_roots()) close_over(root, for_sources_);
-  for (const Gradient& gradient : state_gradients_) {
-    for (const auto& [variable, node] : gradient) close_over(node, for_jacobian_);
-  }
-  for (std::size_t u = 0; u < network_.unknowns.size(); ++u) {
-    if (!for_derivatives_.loops[loop_of_unknown_[u]]) continue;
-    for (const auto& [variable, node] : residual_gradients_[u]) close_over(node, for_jacobian_);
-  }
-}
-
-/// One side of the comparison: where the two are equal, the magnitude of both.
-NodeId ProgramCompiler::compared_side(const Switch& s) const {
-  const Node& node = network_.graph[s.surface];
-  return node.op == Op::subtract || node.op == Op::add ? node.b : s.surface;
 }
 
 /// What tells of events: surfaces, rates of known times, conditions.
-std::vector<NodeId> ProgramCompiler::surface_roots() const {
-  std::vector<NodeId> roots = network_.phase_ends;
-  for (const Switch& s : network_.switches) {
+std::vector<NodeId> surface_roots(const Compilation& c) {
+  std::vector<NodeId> roots = c.network.phase_ends;
+  for (const Switch& s : c.network.switches) {
     roots.push_back(s.surface);
-    roots.push_back(compared_side(s));
+    roots.push_back(c.compared_side(s));
     if (s.rate) roots.push_back(*s.rate);
   }
-  for (const Event& event : network_.events) roots.push_back(event.condition);
+  for (const Event& event : c.network.events) roots.push_back(event.condition);
   return roots;
 }
 
 /// The signals, and what events make of them.
-std::vector<NodeId> ProgramCompiler::signal_roots() const {
-  std::vector<NodeId> roots = network_.signals;
-  for (const Event& event : network_.events) {
+std::vector<NodeId> signal_roots(const Compilation& c) {
+  std::vector<NodeId> roots = c.network.signals;
+  for (const Event& event : c.network.events) {
     for (const Event::Action& action : event.actions) roots.push_back(action.value);
   }
-  for (const State& state : network_.states) {
+  for (const State& state : c.network.states) {
     if (state.start_node) roots.push_back(*state.start_node);
   }
   return roots;
 }
 
-std::vector<std::uint32_t> ProgramCompiler::count_uses() const {
-  std::vector<std::uint32_t> uses(network_.graph.size(), 0);
-  for (NodeId id = 0; id < network_.graph.size(); ++id) {
-    if (!for_derivatives_.nodes[id] && !for_surfaces_.nodes[id] && !for_signals_.nodes[id] &&
-        !for_jacobian_.nodes[id] && !for_rates_.nodes[id] && !for_sources_.nodes[id]) {
+void find_needs(Compilation& c) {
+  c.for_derivatives = c.for_surfaces = c.for_jacobian = c.for_signals = c.for_rates = c.for_sources =
+      c.no_needs();
+  for (const State& state : c.network.states) c.close_over(state.derivative, c.for_derivatives);
+  for (const NodeId root : surface_roots(c)) c.close_over(root, c.for_surfaces);
+  for (const NodeId root : signal_roots(c)) c.close_over(root, c.for_signals);
+  for (const NodeId root : rate_roots(c)) c.close_over(root, c.for_rates);
+  for (const NodeId root : source_roots(c)) c.close_over(root, c.for_sources);
+  for (const Compilation::Gradient& gradient : c.state_gradients) {
+    for (const auto& [variable, node] : gradient) c.close_over(node, c.for_jacobian);
+  }
+  for (std::size_t u = 0; u < c.network.unknowns.size(); ++u) {
+    if (!c.for_derivatives.loops[c.loop_of_unknown[u]]) continue;
+    for (const auto& [variable, node] : c.residual_gradients[u]) c.close_over(node, c.for_jacobian);
+  }
+}
+
+std::vector<std::uint32_t> count_uses(const Compilation& c) {
+  std::vector<std::uint32_t> uses(c.network.graph.size(), 0);
+  for (NodeId id = 0; id < c.network.graph.size(); ++id) {
+    if (!c.for_derivatives.nodes[id] && !c.for_surfaces.nodes[id] && !c.for_signals.nodes[id] &&
+        !c.for_jacobian.nodes[id] && !c.for_rates.nodes[id] && !c.for_sources.nodes[id]) {
       continue;
     }
-    const Node& node = network_.graph[id];
+    const Node& node = c.network.graph[id];
     for (int i = 0; i < operand_count(node.op); ++i) ++uses[node.operand(i)];
   }
-  for (const State& state : network_.states) ++uses[state.derivative];
-  for (const Unknown& unknown : network_.unknowns) ++uses[unknown.residual];
-  for (const auto& roots : {surface_roots(), signal_roots(), rate_roots(), source_roots()}) {
+  for (const State& state : c.network.states) ++uses[state.derivative];
+  for (const Unknown& unknown : c.network.unknowns) ++uses[unknown.residual];
+  for (const auto& roots : {surface_roots(c), signal_roots(c), rate_roots(c), source_roots(c)}) {
     for (const NodeId root : roots) ++uses[root];
   }
-  for (const auto* gradients : {&state_gradients_, &residual_gradients_}) {
-    for (const Gradient& gradient : *gradients) {
+  for (const auto* gradients : {&c.state_gradients, &c.residual_gradients}) {
+    for (const Compilation::Gradient& gradient : *gradients) {
       for (const auto& [variable, node] : gradient) ++uses[node];
     }
   }
   return uses;
 }
 
-void ProgramCompiler::write_tapes() {
-  const bool with_rates = !network_.switches.empty();
-  const std::size_t n_rates = with_rates ? network_.states.size() + network_.unknowns.size() : 0;
-  writer_.emplace(network_.graph, network_.n_variables(), network_.memories.size() + n_rates, network_.tables,
-                  count_uses());
-  program_.loop_codes_.resize(network_.loops.size());
-  in_body_.assign(network_.graph.size(), false);
-  const Needs nothing{std::vector<bool>(network_.graph.size()), std::vector<bool>(network_.loops.size())};
-  program_.derivative_steps_ = write_steps(for_derivatives_, nothing);
-  program_.surface_steps_ = write_steps(for_surfaces_, for_derivatives_);
-  Needs done = for_derivatives_;
-  for (std::size_t i = 0; i < done.nodes.size(); ++i) done.nodes[i] = done.nodes[i] || for_surfaces_.nodes[i];
-  for (std::size_t i = 0; i < done.loops.size(); ++i) done.loops[i] = done.loops[i] || for_surfaces_.loops[i];
-  program_.signal_steps_ = write_steps(for_signals_, done);
-
-  std::vector<NodeId> rest;
-  for (NodeId id = 0; id < network_.graph.size(); ++id) {
-    if (for_jacobian_.nodes[id] && !for_derivatives_.nodes[id]) rest.push_back(id);
+void write_events(Compilation& c) {
+  TapeWriter& writer = *c.writer;
+  for (const Switch& s : c.network.switches) {
+    c.code.surface_slots.push_back(writer.slot(s.surface));
+    c.code.compared_slots.push_back(writer.slot(c.compared_side(s)));
+    c.code.rate_slots.push_back(s.rate ? std::optional(writer.slot(*s.rate)) : std::nullopt);
   }
-  program_.jacobian_stretch_ = writer_->write(rest);
-  for (const State& state : network_.states) {
-    program_.derivative_slots_.push_back(writer_->slot(state.derivative));
-  }
-  for (const NodeId signal : network_.signals) program_.signal_slots_.push_back(writer_->slot(signal));
-  write_events();
-  write_rates();
-  write_sources();
-  write_switch_order();
-  write_pieces();
-}
-
-void ProgramCompiler::write_events() {
-  TapeWriter& writer = *writer_;
-  for (const Switch& s : network_.switches) {
-    program_.surface_slots_.push_back(writer.slot(s.surface));
-    program_.compared_slots_.push_back(writer.slot(compared_side(s)));
-    program_.rate_slots_.push_back(s.rate ? std::optional(writer.slot(*s.rate)) : std::nullopt);
-  }
-  for (const Event& event : network_.events) {
-    Program::EventSlots& slots = program_.event_slots_.emplace_back();
+  for (const Event& event : c.network.events) {
+    ProgramCode::EventSlots& slots = c.code.event_slots.emplace_back();
     slots.condition = writer.slot(event.condition);
     for (const Event::Action& action : event.actions) slots.values.push_back(writer.slot(action.value));
   }
-  for (const State& state : network_.states) {
-    program_.start_slots_.push_back(state.start_node ? std::optional(writer.slot(*state.start_node))
-                                                     : std::nullopt);
+  for (const State& state : c.network.states) {
+    c.code.start_slots.push_back(state.start_node ? std::optional(writer.slot(*state.start_node))
+                                                  : std::nullopt);
   }
-  for (const NodeId end : network_.phase_ends) program_.phase_end_slots_.push_back(writer.slot(end));
-}
-
-std::vector<Program::Step> ProgramCompiler::write_steps(const Needs& wanted, const Needs& done) {
-  std::vector<std::vector<NodeId>> by_level(network_.loops.size() + 1);
-  for (NodeId id = 0; id < network_.graph.size(); ++id) {
-    if (wanted.nodes[id] && !done.nodes[id]) by_level[levels_[id]].push_back(id);
-  }
-  std::vector<Program::Step> steps;
-  std::vector<NodeId> pending = std::move(by_level[0]);
-  const auto flush = [&](std::optional<std::uint32_t> loop) {
-    std::sort(pending.begin(), pending.end());
-    steps.push_back({writer_->write(pending), loop});
-    pending.clear();
-  };
-  for (std::size_t l = 0; l < network_.loops.size(); ++l) {
-    std::vector<NodeId>& nodes = by_level[l + 1];
-    if (wanted.loops[l] && !done.loops[l]) {
-      flush(static_cast<std::uint32_t>(l));
-      nodes = write_loop_body(l, std::move(nodes));
-    }
-    pending.insert(pending.end(), nodes.begin(), nodes.end());
-  }
-  flush(std::nullopt);
-  return steps;
+  for (const NodeId end : c.network.phase_ends) c.code.phase_end_slots.push_back(writer.slot(end));
 }
 
 /// Writes those of `nodes` that the loop's residuals and slopes need as its body, and gives back the others.
-std::vector<NodeId> ProgramCompiler::write_loop_body(std::size_t loop, std::vector<NodeId> nodes) {
-  LoopCode& code = program_.loop_codes_[loop];
-  const Loop& members = network_.loops[loop];
-  TapeWriter& writer = *writer_;
+std::vector<NodeId> write_loop_body(Compilation& c, std::size_t loop, std::vector<NodeId> nodes) {
+  LoopCode& code = c.code.loop_codes[loop];
+  const Loop& members = c.network.loops[loop];
+  TapeWriter& writer = *c.writer;
   const auto level = static_cast<std::uint32_t>(loop + 1);
 
   std::vector<NodeId> roots;
   code.linear = true;
   for (const std::size_t u : members.unknowns) {
-    roots.push_back(network_.unknowns[u].residual);
-    for (const auto& [variable, node] : residual_gradients_[u]) {
-      if (!is_unknown(variable) || loop_of_unknown_[unknown_of(variable)] != loop) continue;
+    roots.push_back(c.network.unknowns[u].residual);
+    for (const auto& [variable, node] : c.residual_gradients[u]) {
+      if (!c.is_unknown(variable) || c.loop_of_unknown[c.unknown_of(variable)] != loop) continue;
       roots.push_back(node);
-      code.linear = code.linear && levels_[node] < level;
+      code.linear = code.linear && c.levels[node] < level;
     }
   }
   std::vector<NodeId> body;
   while (!roots.empty()) {
     const NodeId id = roots.back();
     roots.pop_back();
-    if (levels_[id] != level || in_body_[id]) continue;
-    in_body_[id] = true;
+    if (c.levels[id] != level || c.in_body[id]) continue;
+    c.in_body[id] = true;
     body.push_back(id);
-    const Node node = network_.graph[id];
+    const Node node = c.network.graph[id];
     for (int i = 0; i < operand_count(node.op); ++i) roots.push_back(node.operand(i));
   }
   std::sort(body.begin(), body.end());
@@ -267,19 +149,105 @@ std::vector<NodeId> ProgramCompiler::write_loop_body(std::size_t loop, std::vect
 
   for (std::size_t i = 0; i < members.unknowns.size(); ++i) {
     const std::size_t u = members.unknowns[i];
-    code.unknown_slots.push_back(network_.unknown_variable(u));
-    code.residual_slots.push_back(writer.slot(network_.unknowns[u].residual));
-    code.natural_scale.push_back(network_.unknowns[u].torn ? 1.0 : 0.0);
-    code.held_by_amplifier.push_back(network_.unknowns[u].held_by_amplifier);
-    for (const auto& [variable, node] : residual_gradients_[u]) {
-      if (!is_unknown(variable) || loop_of_unknown_[unknown_of(variable)] != loop) continue;
+    code.unknown_slots.push_back(c.network.unknown_variable(u));
+    code.residual_slots.push_back(writer.slot(c.network.unknowns[u].residual));
+    code.natural_scale.push_back(c.network.unknowns[u].torn ? 1.0 : 0.0);
+    code.held_by_amplifier.push_back(c.network.unknowns[u].held_by_amplifier);
+    for (const auto& [variable, node] : c.residual_gradients[u]) {
+      if (!c.is_unknown(variable) || c.loop_of_unknown[c.unknown_of(variable)] != loop) continue;
       code.slopes.push_back(
-          {static_cast<std::uint32_t>(i), place_in_loop_[unknown_of(variable)], writer.slot(node)});
+          {static_cast<std::uint32_t>(i), c.place_in_loop[c.unknown_of(variable)], writer.slot(node)});
     }
   }
-  nodes.erase(std::remove_if(nodes.begin(), nodes.end(), [&](NodeId id) { return in_body_[id]; }),
+  nodes.erase(std::remove_if(nodes.begin(), nodes.end(), [&](NodeId id) { return c.in_body[id]; }),
               nodes.end());
   return nodes;
+}
+std::vector<ProgramCode::Step> write_steps(Compilation& c, const Compilation::Needs& wanted,
+                                           const Compilation::Needs& done) {
+  std::vector<std::vector<NodeId>> by_level(c.network.loops.size() + 1);
+  for (NodeId id = 0; id < c.network.graph.size(); ++id) {
+    if (wanted.nodes[id] && !done.nodes[id]) by_level[c.levels[id]].push_back(id);
+  }
+  std::vector<ProgramCode::Step> steps;
+  std::vector<NodeId> pending = std::move(by_level[0]);
+  const auto flush = [&](std::optional<std::uint32_t> loop) {
+    std::sort(pending.begin(), pending.end());
+    steps.push_back({c.writer->write(pending), loop});
+    pending.clear();
+  };
+  for (std::size_t l = 0; l < c.network.loops.size(); ++l) {
+    std::vector<NodeId>& nodes = by_level[l + 1];
+    if (wanted.loops[l] && !done.loops[l]) {
+      flush(static_cast<std::uint32_t>(l));
+      nodes = write_loop_body(c, l, std::move(nodes));
+    }
+    pending.insert(pending.end(), nodes.begin(), nodes.end());
+  }
+  flush(std::nullopt);
+  return steps;
+}
+
+void write_tapes(Compilation& c) {
+  const bool with_rates = !c.network.switches.empty();
+  const std::size_t n_rates = with_rates ? c.network.states.size() + c.network.unknowns.size() : 0;
+  c.writer.emplace(c.network.graph, c.network.n_variables(), c.network.memories.size() + n_rates,
+                   c.network.tables, count_uses(c));
+  c.code.loop_codes.resize(c.network.loops.size());
+  c.in_body.assign(c.network.graph.size(), false);
+  const Compilation::Needs nothing = c.no_needs();
+  c.code.derivative_steps = write_steps(c, c.for_derivatives, nothing);
+  c.code.surface_steps = write_steps(c, c.for_surfaces, c.for_derivatives);
+  Compilation::Needs done = c.for_derivatives;
+  for (std::size_t i = 0; i < done.nodes.size(); ++i)
+    done.nodes[i] = done.nodes[i] || c.for_surfaces.nodes[i];
+  for (std::size_t i = 0; i < done.loops.size(); ++i)
+    done.loops[i] = done.loops[i] || c.for_surfaces.loops[i];
+  c.code.signal_steps = write_steps(c, c.for_signals, done);
+
+  std::vector<NodeId> rest;
+  for (NodeId id = 0; id < c.network.graph.size(); ++id) {
+    if (c.for_jacobian.nodes[id] && !c.for_derivatives.nodes[id]) rest.push_back(id);
+  }
+  c.code.jacobian_stretch = c.writer->write(rest);
+  for (const State& state : c.network.states) {
+    c.code.derivative_slots.push_back(c.writer->slot(state.derivative));
+  }
+  for (const NodeId signal : c.network.signals) c.code.signal_slots.push_back(c.writer->slot(signal));
+  write_events(c);
+  write_rates(c);
+  write_sources(c);
+  write_switch_order(c);
+  write_pieces(c);
+}
+
+}  // namespace
+
+ProgramCode compile(Network network) {
+  Compilation c(std::move(network));
+  c.code.switch_structure = find_switch_structure(c.network);
+  differentiate(c);
+  find_positions(c);
+  differentiate_surfaces(c);
+  find_sources(c);
+  find_levels(c);
+  find_needs(c);
+  write_tapes(c);
+  lay_out_jacobian(c);
+  c.code.tape = c.writer->instructions();
+  c.code.initial_slots = c.writer->initial_slots();
+  c.code.first_memory = c.network.n_variables();
+  c.code.first_rate = c.code.first_memory + c.network.memories.size();
+  c.code.memories = std::move(c.network.memories);
+  c.code.switches = std::move(c.network.switches);
+  c.code.events = std::move(c.network.events);
+  c.code.mode_memories = std::move(c.network.mode_memories);
+  c.code.states = std::move(c.network.states);
+  c.code.unknowns = std::move(c.network.unknowns);
+  c.code.loops = std::move(c.network.loops);
+  c.code.signal_names = std::move(c.network.signal_names);
+  c.code.first_signal = std::move(c.network.first_signal);
+  return std::move(c.code);
 }
 
 }  // namespace oblique::network

@@ -10,11 +10,11 @@
 
 namespace oblique::solve {
 
-bool only_bends(const network::Program& program, const network::Workspace& workspace, std::uint32_t unit) {
+bool only_bends(const network::Program& program, const network::Evaluation& here, std::uint32_t unit) {
   const auto& members = program.switch_structure().members[unit];
   return std::all_of(members.begin(), members.end(), [&](std::uint32_t s) {
     return program.is_ordered(s) &&
-           (program.switches()[s].turning != network::Turning::jumps || program.pieces_meet(s, workspace));
+           (program.switches()[s].turning != network::Turning::jumps || here.pieces_meet(s));
   });
 }
 
@@ -42,10 +42,11 @@ void Bends::add(std::uint32_t unit, bool prefers_above) {
   }
 }
 
-bool Bends::follow(double t, std::span<const double> x, std::vector<double>& surfaces) {
+std::optional<network::Evaluation> Bends::follow(const network::Evaluation& here, double t,
+                                                 std::span<const double> x, std::vector<double>& surfaces) {
   const network::SwitchStructure& structure = program_.switch_structure();
   resting_.clear();
-  program_.last_derivatives(slopes_.data(), workspace_);
+  here.derivatives(slopes_.data());
   const double fastest = fastest_of(slopes_, std::numeric_limits<double>::min());
   const auto moves = [&](double rate, double rounding) {
     return std::abs(rate) > rounding * fastest && leaves_rounding(rate, span_);
@@ -63,18 +64,18 @@ bool Bends::follow(double t, std::span<const double> x, std::vector<double>& sur
   std::vector<bool> at_once(is_one_.size(), false), by_later(is_one_.size(), false);
   const double step = std::min(kProbe / fastest, kProbe * span_);
   for (std::size_t i = 0; i < x.size(); ++i) moved_[i] = x[i] + step * slopes_[i];
-  if (program_.surfaces(t + step, moved_.data(), surfaces_.data(), workspace_)) {
-    program_.last_derivatives(slopes_.data(), workspace_);
+  if (const auto later = program_.surfaces(t + step, moved_.data(), surfaces_.data(), workspace_)) {
+    later->derivatives(slopes_.data());
     program_.decide_in_order(
         t + step, moved_.data(), slopes_.data(), workspace_,
-        [&](std::uint32_t s, double /*surface*/, double later) {
+        [&](std::uint32_t s, double /*surface*/, double later_rate) {
           if (!is_one_[s]) return;
           const double rate = first_rates_[s];
-          if (moves(rate, kRounding) && std::abs(rate) > kAboutToTurn * std::abs(later - rate)) {
+          if (moves(rate, kRounding) && std::abs(rate) > kAboutToTurn * std::abs(later_rate - rate)) {
             go(s, rate);
             at_once[s] = true;
-          } else if (moves(later, 10 * kRounding)) {
-            go(s, later);
+          } else if (moves(later_rate, 10 * kRounding)) {
+            go(s, later_rate);
             by_later[s] = true;
           } else if (s == structure.members[structure.unit[s]].front()) {
             resting_.push_back(structure.unit[s]);
@@ -92,8 +93,9 @@ bool Bends::follow(double t, std::span<const double> x, std::vector<double>& sur
 void Bends::keep_where_both_sides_lead_back(double t, std::span<const double> x,
                                             const std::vector<bool>& decided) {
   if (std::find(decided.begin(), decided.end(), true) == decided.end()) return;
-  if (!program_.surfaces(t, x.data(), surfaces_.data(), workspace_)) return;
-  program_.last_derivatives(slopes_.data(), workspace_);
+  const auto here = program_.surfaces(t, x.data(), surfaces_.data(), workspace_);
+  if (!here) return;
+  here->derivatives(slopes_.data());
   std::vector<double> preferred(is_one_.size());
   for (const auto& [s, position] : positions_) preferred[s] = position;
   program_.decide_in_order(t, x.data(), slopes_.data(), workspace_,

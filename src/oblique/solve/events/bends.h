@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -11,8 +12,8 @@
 
 namespace oblique::solve {
 
-/// Whether the equations only bend with a unit of switches, where the surfaces were evaluated last.
-bool only_bends(const network::Program& program, const network::Workspace& workspace, std::uint32_t unit);
+/// Whether the equations only bend with a unit of switches where `here` was evaluated.
+bool only_bends(const network::Program& program, const network::Evaluation& here, std::uint32_t unit);
 
 /// Units of switches at which the equations only bend. Wherever these stand, dx/dt at that instant is the
 /// same, so that they need no trials: each goes where its surface goes, in the order in which the slopes of
@@ -30,10 +31,11 @@ class Bends {
   /// The switches, and the positions that they prefer.
   const std::vector<std::pair<std::uint32_t, double>>& positions() const { return positions_; }
 
-  /// Turns them to where their surfaces go from (t, x), all others where they are and the surfaces evaluated
-  /// there; then evaluates the surfaces anew. One that stays at zero keeps its position. False where a loop
-  /// has no solution.
-  bool follow(double t, std::span<const double> x, std::vector<double>& surfaces);
+  /// Turns them to where their surfaces go from (t, x), all others where they are and `here` evaluated there;
+  /// then evaluates the surfaces anew. One that stays at zero keeps its position. Nothing where a loop has no
+  /// solution.
+  std::optional<network::Evaluation> follow(const network::Evaluation& here, double t,
+                                            std::span<const double> x, std::vector<double>& surfaces);
   /// The units that the last `follow` found to stay at zero.
   const std::vector<std::uint32_t>& resting() const { return resting_; }
 

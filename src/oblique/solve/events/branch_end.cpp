@@ -27,12 +27,12 @@ bool held_by_amplifier(const network::Program& program, std::size_t unknown) {
 
 /// Smallest real part of the eigenvalues of dg/dz of the amplifiers' equations, the rest of the loop solved,
 /// over the largest: below 0 where the amplifiers do not rest.
-double least_rise(const network::Program& program, const network::Workspace& workspace, std::size_t loop) {
+double least_rise(const network::Program& program, const network::SignalEvaluation& here, std::size_t loop) {
   const std::vector<std::size_t>& unknowns = program.loops()[loop].unknowns;
   std::vector<Eigen::Index> amplifiers, others;
   for (std::size_t i = 0; i < unknowns.size(); ++i)
     (held_by_amplifier(program, unknowns[i]) ? amplifiers : others).push_back(static_cast<Eigen::Index>(i));
-  const Eigen::MatrixXd slopes = program.loop_slopes(loop, workspace);
+  const Eigen::MatrixXd slopes = here.loop_slopes(loop);
   Eigen::MatrixXd own = slopes(amplifiers, amplifiers);
   if (!others.empty()) {
     const Eigen::MatrixXd inner = slopes(others, others);
@@ -45,9 +45,9 @@ double least_rise(const network::Program& program, const network::Workspace& wor
          std::max(values.cwiseAbs().maxCoeff(), std::numeric_limits<double>::min());
 }
 
-bool rests(const network::Program& program, const network::Workspace& workspace, std::size_t loop) {
+bool rests(const network::Program& program, const network::SignalEvaluation& here, std::size_t loop) {
   constexpr double kRounding = 1e-9;  // a root of even order has no slope but that of its rounding
-  return least_rise(program, workspace, loop) > -kRounding;
+  return least_rise(program, here, loop) > -kRounding;
 }
 
 std::string amplifier_names(const network::Program& program, std::size_t loop) {
@@ -143,7 +143,8 @@ BranchWatch::Ahead BranchWatch::look_ahead(double& t, double stretch_end, std::v
 void BranchWatch::pass(double t, const std::vector<double>& states) {
   std::vector<double> before, signals(program_.n_signals());
   for (std::size_t u = 0; u < program_.unknowns().size(); ++u) before.push_back(workspace_.unknown(u));
-  if (!program_.signals(t, states.data(), signals.data(), workspace_)) {
+  const auto here = program_.signals(t, states.data(), signals.data(), workspace_);
+  if (!here) {
     network::Workspace::Trouble trouble = workspace_.trouble();
     if (program_.loop_has_branches(trouble.loop)) trouble.failure = network::LoopFailure::lost;
     throw loop_error(program_, trouble, t, file_);
@@ -151,7 +152,7 @@ void BranchWatch::pass(double t, const std::vector<double>& states) {
   for (std::size_t loop = 0; loop < program_.loops().size(); ++loop) {
     if (!program_.loop_has_branches(loop)) continue;
     const bool jumps = change_of(program_, workspace_, loop, before) > kJump;
-    if (rests(program_, workspace_, loop)) {
+    if (rests(program_, *here, loop)) {
       if (!jumps) continue;
       std::vector<std::string> ways;
       for (const std::size_t u : program_.loops()[loop].unknowns) {
@@ -178,12 +179,19 @@ std::vector<EventRecord> BranchWatch::merged_with(std::vector<EventRecord> event
 }
 
 std::vector<text::Diagnostic> unstable_branches(const network::Program& program,
-                                                const network::Workspace& workspace, double t,
-                                                const std::string& file) {
-  std::vector<text::Diagnostic> warnings;
+                                                network::Workspace& workspace, double t,
+                                                const std::vector<double>& states, const std::string& file) {
+  std::vector<std::size_t> with_branches;
   for (std::size_t loop = 0; loop < program.loops().size(); ++loop) {
-    if (program.loop_has_branches(loop) && !rests(program, workspace, loop))
-      warnings.push_back(unstable_warning(program, workspace, loop, t, file));
+    if (program.loop_has_branches(loop)) with_branches.push_back(loop);
+  }
+  std::vector<text::Diagnostic> warnings;
+  if (with_branches.empty()) return warnings;
+  std::vector<double> signals(program.n_signals());
+  const auto here = program.signals(t, states.data(), signals.data(), workspace);
+  if (!here) throw loop_error(program, workspace.trouble(), t, file);
+  for (const std::size_t loop : with_branches) {
+    if (!rests(program, *here, loop)) warnings.push_back(unstable_warning(program, workspace, loop, t, file));
   }
   return warnings;
 }

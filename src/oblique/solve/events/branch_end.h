@@ -29,10 +29,10 @@ class StraightLine final : public Interpolant {
 };
 
 /// A warning for each loop whose amplifiers, at equal speeds, do not rest at the solution that they have been
-/// given, though the loop has or had others. `signals` must have been evaluated at t.
+/// given at (t, states), though the loop has or had others. Throws SolveError.
 std::vector<text::Diagnostic> unstable_branches(const network::Program& program,
-                                                const network::Workspace& workspace, double t,
-                                                const std::string& file);
+                                                network::Workspace& workspace, double t,
+                                                const std::vector<double>& states, const std::string& file);
 
 /// Watches during a run for ends of the branches on which ideal amplifiers solve their algebraic loops.
 class BranchWatch {

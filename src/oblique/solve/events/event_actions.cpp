@@ -70,33 +70,35 @@ bool EventActions::comes_at_once(std::size_t event, double t, std::span<const do
     const std::uint32_t memory = program_.switches()[s].memory;
     const double position = workspace_.memory(memory);
     workspace_.set_memory(memory, 1 - position);
-    hangs =
-        program_.surfaces(t, x.data(), others.data(), workspace_) && !program_.condition(event, workspace_);
+    const auto there = program_.surfaces(t, x.data(), others.data(), workspace_);
+    hangs = there && !there->condition(event);
     workspace_.set_memory(memory, position);
   }
-  program_.surfaces(t, x.data(), others.data(), workspace_);  // leaves everything as it was
+  program_.surfaces(t, x.data(), others.data(), workspace_);  // back to the solutions of the loops here
   return hangs;
 }
 
 /// Looks at all conditions; the events that have come.
 std::vector<EventActions::Come> EventActions::look(double t, std::span<const double> x, bool starting) {
+  const std::vector<bool> held_before = held_;
+  for (std::size_t e = 0; e < held_.size(); ++e) held_[e] = surfaces_.here().condition(e);
   std::vector<Come> found;
   for (std::size_t e = 0; e < held_.size(); ++e) {
     const network::Event& event = program_.events()[e];
-    const bool holds = program_.condition(e, workspace_);
-    const bool at_once = holds && comes_at_once(e, t, x);
-    const bool comes = holds && (!held_[e] || event.repeats || at_once) && (!starting || event.at_start);
-    held_[e] = holds;
+    const bool at_once = held_[e] && comes_at_once(e, t, x);
+    const bool comes =
+        held_[e] && (!held_before[e] || event.repeats || at_once) && (!starting || event.at_start);
     if (comes) found.push_back({e, at_once});
   }
   return found;
 }
 
-/// What an event sets, by the signals that were evaluated last.
-void EventActions::add_changes(std::size_t event, double t, std::vector<Change>& changes) const {
+/// What an event sets, by the signals `here`.
+void EventActions::add_changes(std::size_t event, const network::SignalEvaluation& here, double t,
+                               std::vector<Change>& changes) const {
   const network::Event& what = program_.events()[event];
   for (std::size_t a = 0; a < what.actions.size(); ++a) {
-    const double value = program_.action_value(event, a, workspace_);
+    const double value = here.action_value(event, a);
     if (!std::isfinite(value)) {
       throw SolveError(SolveError::Kind::blow_up, t,
                        {{file_, {}},
@@ -113,8 +115,8 @@ void EventActions::add_changes(std::size_t event, double t, std::vector<Change>&
 std::optional<EventActions::Effect> EventActions::serve(double t, std::vector<double>& x, bool starting) {
   const std::vector<Come> served = look(t, x, starting);
   if (served.empty()) return std::nullopt;
-  if (!program_.signals(t, x.data(), signals_.data(), workspace_))
-    throw loop_error(program_, workspace_.trouble(), t, file_);
+  const auto here = program_.signals(t, x.data(), signals_.data(), workspace_);
+  if (!here) throw loop_error(program_, workspace_.trouble(), t, file_);
   std::vector<Change> changes;
   for (const Come& come : served) {
     const network::Event& event = program_.events()[come.event];
@@ -122,10 +124,10 @@ std::optional<EventActions::Effect> EventActions::serve(double t, std::vector<do
     if (piles_up(come, t)) {
       came_[come.event] = false;
       log_.record(t, program_.events()[*event.piling_up].block + ": its events pile up");
-      add_changes(*event.piling_up, t, changes);
+      add_changes(*event.piling_up, *here, t, changes);
     } else {
       log_.record(t, event.block);
-      add_changes(come.event, t, changes);
+      add_changes(come.event, *here, t, changes);
     }
   }
   Effect effect;

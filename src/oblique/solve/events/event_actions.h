@@ -36,8 +36,8 @@ class EventActions {
     bool sets_states = false;
     bool jumps = false;  ///< a state has another value now
   };
-  /// Serves all events whose conditions have become true at (t, x), where the surfaces were evaluated last;
-  /// while `starting` only those that come at a start. Nothing where there are none. Throws SolveError.
+  /// Serves all events whose conditions have become true at (t, x), where all surfaces were evaluated; while
+  /// `starting` only those that come at a start. Nothing where there are none. Throws SolveError.
   std::optional<Effect> serve(double t, std::vector<double>& x, bool starting);
 
   /// Whether the condition of each event held when it was last looked at: what must be kept to go on later.
@@ -58,7 +58,8 @@ class EventActions {
   std::vector<Come> look(double t, std::span<const double> x, bool starting);
   bool comes_at_once(std::size_t event, double t, std::span<const double> x);
   bool piles_up(const Come& come, double t);
-  void add_changes(std::size_t event, double t, std::vector<Change>& changes) const;
+  void add_changes(std::size_t event, const network::SignalEvaluation& here, double t,
+                   std::vector<Change>& changes) const;
 
   const network::Program& program_;
   network::Workspace& workspace_;

@@ -89,10 +89,13 @@ EventSearch::EventSearch(const network::Program& program, network::Workspace& wo
 void EventSearch::look(double t, const Interpolant& solution, Look& at) {
   interruption_.check();
   at.time = t;
+  std::optional<network::Evaluation> here;
   const double reached = evaluate_along_branch(reached_, t, workspace_, [&](double time) {
     solution.states_at(time, states_);
-    return (!slide_.active() || slide_.evaluate(time, states_)) &&
-           program_.surfaces(time, states_.data(), surfaces_.data(), workspace_);
+    here.reset();
+    if (!slide_.active() || slide_.evaluate(time, states_))
+      here = program_.surfaces(time, states_.data(), surfaces_.data(), workspace_);
+    return here.has_value();
   });
   reached_ = reached;
   if (reached != t) {
@@ -101,19 +104,20 @@ void EventSearch::look(double t, const Interpolant& solution, Look& at) {
     // The branch may end because a switch is due that does not depend on it.
     solution.states_at(t, states_);
     workspace_.pass_failing_loops(true);
-    program_.surfaces(t, states_.data(), surfaces_.data(), workspace_);
+    here = program_.surfaces(t, states_.data(), surfaces_.data(), workspace_);
     workspace_.pass_failing_loops(false);
   }
   solution.rates_at(t, rates_);
-  program_.surface_rates(rates_.data(), surface_rates_.data(), workspace_);
-  at.phase_rate = program_.fastest_phase(workspace_);
+  at.phase_rate = here.value().surface_rates(rates_.data(), surface_rates_.data());
   const std::size_t n = surfaces_.size();
   at.surfaces = surfaces_;
+  at.roundings.resize(n);
   at.overdue.resize(n);
   at.rates.resize(n);
   for (std::size_t s = 0; s < n; ++s) {
     const bool closed = workspace_.memory(program_.switches()[s].memory) == 1;
-    at.overdue[s] = (closed ? -surfaces_[s] : surfaces_[s]) - thresholds_.along_solution(s);
+    at.roundings[s] = thresholds_.rounding_of(s, here->compared_size(s));
+    at.overdue[s] = (closed ? -surfaces_[s] : surfaces_[s]) - thresholds_.along_solution(s, at.roundings[s]);
     at.rates[s] = closed ? -surface_rates_[s] : surface_rates_[s];
     if (slide_.rests(s)) at.overdue[s] -= SlidingMode::drift();
     if (program_.switches()[s].rate || slide_.holds(s) || slide_.follows(s)) at.overdue[s] = -kInfinity;
@@ -175,7 +179,8 @@ std::optional<EventSearch::Found> EventSearch::search(double from, std::span<con
 /// Takes its slack from every surface that is beyond the errors of the states.
 void EventSearch::leave_behind(Look& at) {
   for (std::size_t s = 0; s < at.surfaces.size(); ++s) {
-    if (const auto less = thresholds_.leave_behind(s, at.surfaces[s])) at.overdue[s] += *less;
+    if (const auto less = thresholds_.leave_behind(s, at.surfaces[s], at.roundings[s]))
+      at.overdue[s] += *less;
   }
 }
 

@@ -51,7 +51,8 @@ class EventSearch {
   /// upper edge of each unit that slides, then what follows on each side.
   struct Look {
     double time = 0;
-    std::vector<double> surfaces, overdue, rates;
+    std::vector<double> surfaces, roundings;  ///< of each switch
+    std::vector<double> overdue, rates;
     double phase_rate = 0;  ///< [rad/s]
   };
 

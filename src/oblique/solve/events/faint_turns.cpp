@@ -42,8 +42,9 @@ void FaintTurns::approach(double from, double at, const std::vector<std::pair<st
   for (Approach& a : approaches_) a.before = std::abs(surfaces_[a.number]);
   solution.states_at(at, states_);
   solution.rates_at(at, rates_);
-  if (!program_.surfaces(at, states_.data(), surfaces_.data(), workspace_)) return approaches_.clear();
-  program_.surface_rates(rates_.data(), surfaces_.data(), workspace_);
+  const auto there = program_.surfaces(at, states_.data(), surfaces_.data(), workspace_);
+  if (!there) return approaches_.clear();
+  there->surface_rates(rates_.data(), surfaces_.data());
   for (Approach& a : approaches_) a.speed = std::abs(surfaces_[a.number]);
 }
 

@@ -22,10 +22,11 @@ Positions::Positions(const network::Program& program, network::Workspace& worksp
 /// Sets those apart that only bend where there are no others, or too many for trials. Together with a few
 /// others they take part in the trials: they may rest while these slide. The others are left.
 std::vector<std::uint32_t> Positions::set_bends_apart(const std::vector<std::uint32_t>& units,
-                                                      const std::vector<bool>& preferred) {
+                                                      const std::vector<bool>& preferred,
+                                                      const network::Evaluation& here) {
   bends_.clear();
   std::vector<bool> bends(units.size());
-  for (std::size_t u = 0; u < units.size(); ++u) bends[u] = only_bends(program_, workspace_, units[u]);
+  for (std::size_t u = 0; u < units.size(); ++u) bends[u] = only_bends(program_, here, units[u]);
   const bool apart = units.size() > kMostUnits || std::find(bends.begin(), bends.end(), false) == bends.end();
   if (!apart) return units;
   std::vector<std::uint32_t> others;
@@ -52,10 +53,10 @@ Combination Positions::present_sides(const std::vector<std::uint32_t>& units) co
 }
 
 bool Positions::choose(const std::vector<std::uint32_t>& units, const std::vector<bool>& preferred_sides,
-                       double t, std::span<const double> x) {
+                       const network::Evaluation& here, double t, std::span<const double> x) {
   undecided_.clear();
   resting_.clear();
-  const std::vector<std::uint32_t> tried = set_bends_apart(units, preferred_sides);
+  const std::vector<std::uint32_t> tried = set_bends_apart(units, preferred_sides, here);
   if (tried.size() > kMostUnits) return false;
   Combination preferred = 0;
   for (std::size_t u = 0; u < tried.size(); ++u) {

@@ -27,11 +27,11 @@ class Positions {
   Positions(const network::Program& program, network::Workspace& workspace, SlidingMode& slide,
             const Thresholds& thresholds, double span);
 
-  /// Places the units, and the switches that follow from them, at (t, x), where the surfaces were evaluated
-  /// last; `preferred` is of each of them whether the upper side is taken where both are possible. False,
-  /// with nothing changed, where nothing agrees.
-  bool choose(const std::vector<std::uint32_t>& units, const std::vector<bool>& preferred, double t,
-              std::span<const double> x);
+  /// Places the units, and the switches that follow from them, at (t, x), of which `here` was evaluated;
+  /// `preferred` is of each of them whether the upper side is taken where both are possible. False, with
+  /// nothing changed, where nothing agrees.
+  bool choose(const std::vector<std::uint32_t>& units, const std::vector<bool>& preferred,
+              const network::Evaluation& here, double t, std::span<const double> x);
 
   /// The units that the last `choose` could as well have put on the other side: both sides drive away from
   /// the surface.
@@ -45,7 +45,8 @@ class Positions {
 
  private:
   std::vector<std::uint32_t> set_bends_apart(const std::vector<std::uint32_t>& units,
-                                             const std::vector<bool>& preferred);
+                                             const std::vector<bool>& preferred,
+                                             const network::Evaluation& here);
   Combination present_sides(const std::vector<std::uint32_t>& units) const;
   std::optional<Combination> standing(Combination preferred) const;
   bool take(Combination sides, double t, std::span<const double> x);

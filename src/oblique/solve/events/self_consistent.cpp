@@ -15,9 +15,10 @@ namespace {
 bool agrees(const network::Program& program, network::Workspace& workspace, const SlidingMode& slide,
             const Thresholds& thresholds, double span, double t, std::span<const double> x) {
   std::vector<double> surfaces(program.switches().size()), rates(surfaces.size()), slopes(x.size());
-  if (!program.surfaces(t, x.data(), surfaces.data(), workspace)) return false;
-  program.last_derivatives(slopes.data(), workspace);
-  program.surface_rates(slopes.data(), rates.data(), workspace);
+  const auto here = program.surfaces(t, x.data(), surfaces.data(), workspace);
+  if (!here) return false;
+  here->derivatives(slopes.data());
+  here->surface_rates(slopes.data(), rates.data());
   const double fastest = fastest_of(slopes, 0);
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
     if (program.switches()[s].rate || slide.holds(s) || slide.follows(s)) continue;
@@ -35,9 +36,10 @@ bool agrees(const network::Program& program, network::Workspace& workspace, cons
 
 }  // namespace
 
-bool place_others(const network::Program& program, network::Workspace& workspace,
-                  const Thresholds& thresholds, const std::vector<bool>& placed, double t,
-                  std::span<const double> x, std::vector<double>& surfaces) {
+std::optional<network::Evaluation> place_others(const network::Program& program,
+                                                network::Workspace& workspace, const Thresholds& thresholds,
+                                                const std::vector<bool>& placed, double t,
+                                                std::span<const double> x, std::vector<double>& surfaces) {
   constexpr std::size_t kInOrder = 2;  // rounds before what is left goes in one
   bool turned = false;
   const auto settle = [&](std::size_t s, double surface) {
@@ -48,17 +50,18 @@ bool place_others(const network::Program& program, network::Workspace& workspace
     workspace.set_memory(memory, position);
   };
   for (std::size_t round = 0; round <= 2 * surfaces.size() + 1; ++round) {
-    if (!program.surfaces(t, x.data(), surfaces.data(), workspace)) return false;
+    auto here = program.surfaces(t, x.data(), surfaces.data(), workspace);
+    if (!here) return std::nullopt;
     turned = false;
     for (std::size_t s = 0; s < surfaces.size(); ++s) settle(s, surfaces[s]);
-    if (!turned) return true;
+    if (!turned) return here;
     if (round == kInOrder) {
       const std::vector<double> still(x.size(), 0.0);
       program.decide_in_order(t, x.data(), still.data(), workspace,
                               [&](std::uint32_t s, double surface, double /*rate*/) { settle(s, surface); });
     }
   }
-  return false;
+  return std::nullopt;
 }
 
 bool choose_any(const network::Program& program, network::Workspace& workspace, const SlidingMode& slide,

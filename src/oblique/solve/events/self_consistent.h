@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -13,10 +14,11 @@
 namespace oblique::solve {
 
 /// Puts every switch but those that are `placed` where its surface asks for it at (t, x), and leaves the
-/// surfaces that follow, one a switch. False where they go on turning over, or a loop has no solution.
-bool place_others(const network::Program& program, network::Workspace& workspace,
-                  const Thresholds& thresholds, const std::vector<bool>& placed, double t,
-                  std::span<const double> x, std::vector<double>& surfaces);
+/// surfaces that follow, one a switch. Nothing where they go on turning over, or a loop has no solution.
+std::optional<network::Evaluation> place_others(const network::Program& program,
+                                                network::Workspace& workspace, const Thresholds& thresholds,
+                                                const std::vector<bool>& placed, double t,
+                                                std::span<const double> x, std::vector<double>& surfaces);
 
 /// Tries all combinations of `restless` and of the switches that share their algebraic loops, the nearest to
 /// the present one first, until one agrees with itself at (t, x); false, with nothing changed, where none

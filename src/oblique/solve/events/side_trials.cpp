@@ -9,6 +9,7 @@
 #include <oblique/network/program/program.h>
 #include <oblique/solve/events/position_limits.h>
 #include <oblique/solve/events/self_consistent.h>
+#include <oblique/solve/events/slide_sides.h>
 #include <oblique/solve/events/sliding_mode.h>
 
 namespace oblique::solve {
@@ -33,7 +34,7 @@ SideTrials::SideTrials(const network::Program& program, network::Workspace& work
 
 void SideTrials::run(std::vector<std::uint32_t> units, Bends& bends, double t, std::span<const double> x) {
   units_ = std::move(units);
-  broken_by_ = SlidingMode::broken_by(program_, units_);
+  broken_by_ = broken_by(program_, units_);
   before_.assign(workspace_.memories().begin(), workspace_.memories().end());
   fastest_ = 0;
   trials_.clear();
@@ -52,7 +53,8 @@ std::vector<double> SideTrials::of_units(const std::vector<double>& of_switches)
   return values;
 }
 
-bool SideTrials::place(Combination sides, Bends& bends, double t, std::span<const double> x) {
+std::optional<network::Evaluation> SideTrials::place(Combination sides, Bends& bends, double t,
+                                                     std::span<const double> x) {
   const network::SwitchStructure& structure = program_.switch_structure();
   take_back();
   std::vector<bool> placed(surfaces_.size(), false);
@@ -65,25 +67,27 @@ bool SideTrials::place(Combination sides, Bends& bends, double t, std::span<cons
       put(s, has(sides, u) != structure.opposite[s] ? 1 : 0);
   }
   for (const auto& [s, position] : bends.positions()) put(s, position);
-  return place_others(program_, workspace_, thresholds_, placed, t, x, surfaces_) &&
-         (!bends.any() || bends.follow(t, x, surfaces_));
+  auto here = place_others(program_, workspace_, thresholds_, placed, t, x, surfaces_);
+  return here && bends.any() ? bends.follow(*here, t, x, surfaces_) : here;
 }
 
 std::optional<SideTrials::Trial> SideTrials::attempt(Combination sides, Bends& bends, double t,
                                                      std::span<const double> x) {
-  if (!place(sides, bends, t, x)) return std::nullopt;
+  const auto here = place(sides, bends, t, x);
+  if (!here) return std::nullopt;
   Trial trial;
   trial.surfaces = of_units(surfaces_);
-  program_.last_derivatives(slopes_.data(), workspace_);
-  program_.surface_rates(slopes_.data(), rates_.data(), workspace_);
+  here->derivatives(slopes_.data());
+  here->surface_rates(slopes_.data(), rates_.data());
   trial.rates = of_units(rates_);
   const double fastest = fastest_of(slopes_, std::numeric_limits<double>::min());
   fastest_ = std::max(fastest_, fastest);
   const double step = std::min(kProbe / fastest, kProbe * span_);
   for (std::size_t i = 0; i < x.size(); ++i) moved_[i] = x[i] + step * slopes_[i];
-  if (!program_.surfaces(t + step, moved_.data(), surfaces_.data(), workspace_)) return std::nullopt;
-  program_.last_derivatives(slopes_.data(), workspace_);
-  program_.surface_rates(slopes_.data(), rates_.data(), workspace_);
+  const auto later = program_.surfaces(t + step, moved_.data(), surfaces_.data(), workspace_);
+  if (!later) return std::nullopt;
+  later->derivatives(slopes_.data());
+  later->surface_rates(slopes_.data(), rates_.data());
   trial.later = of_units(rates_);
   return trial;
 }

@@ -31,7 +31,8 @@ class SideTrials {
 
   /// Places all switches as a combination has them, from where they were before `run`. False where nothing
   /// agrees with it.
-  bool place(Combination sides, Bends& bends, double t, std::span<const double> x);
+  std::optional<network::Evaluation> place(Combination sides, Bends& bends, double t,
+                                           std::span<const double> x);
   /// Places them as they were.
   void take_back() { workspace_.load_memories(before_); }
 

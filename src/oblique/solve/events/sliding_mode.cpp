@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
-#include <Eigen/Dense>
+#include <oblique/solve/events/slide_shares.h>
 
 namespace oblique::solve {
 namespace {
@@ -23,14 +24,9 @@ constexpr double kEdge = 2 * kMostReturn;
 /// How far the states are moved to see whether a slide lasts [machine unit].
 constexpr double kProbe = 1e-6;
 
-/// A surface whose rate depends on the shares by less than this part of what others do stands still whatever
-/// they are.
-constexpr double kNoSlope = 1e-8;
-
 /// Of the drive of the other side.
 constexpr double kDrives = 1e-3;
 
-constexpr std::size_t kMostCoupled = 8;
 constexpr std::size_t kMostUnits = 64;
 
 }  // namespace
@@ -41,6 +37,7 @@ SlidingMode::SlidingMode(const network::Program& program, network::Workspace& wo
       span_(span),
       follows_(program.switches().size(), false),
       rests_(program.switches().size(), false),
+      sides_(program.switch_structure()),
       strongest_(program.switch_structure().members.size()),
       scratch_(std::max(program.n_states(), program.jacobian_pattern().entries())),
       moved_(program.n_states()) {}
@@ -62,40 +59,8 @@ void SlidingMode::find_followers() {
   }
 }
 
-/// Units are of one cluster where they are coupled, directly or through others: positions that follow may
-/// couple them too.
-void SlidingMode::make_sides() {
-  const network::SwitchStructure& structure = program_.switch_structure();
-  const std::size_t n = units_.size();
-  cluster_of_.resize(n);
-  for (std::size_t u = 0; u < n; ++u) cluster_of_[u] = static_cast<std::uint32_t>(u);
-  for (std::size_t u = 0; u < n; ++u) {
-    for (std::size_t v = 0; v < u; ++v) {
-      if (followers_.empty() && !structure.is_coupled(units_[u], units_[v])) continue;
-      const std::uint32_t from = cluster_of_[u], to = cluster_of_[v];
-      std::replace(cluster_of_.begin(), cluster_of_.end(), from, to);
-    }
-  }
-  sides_.assign(1, Side{});
-  for (std::uint32_t cluster = 0; cluster < n; ++cluster) {
-    std::vector<std::uint32_t> members;
-    for (std::uint32_t u = 0; u < n; ++u) {
-      if (cluster_of_[u] == cluster) members.push_back(u);
-    }
-    for (std::uint32_t combination = 1; combination < (1U << std::min(members.size(), kMostCoupled));
-         ++combination) {
-      Side side;
-      side.cluster = cluster;
-      for (std::size_t k = 0; k < members.size(); ++k) {
-        if ((combination >> k & 1U) != 0) side.bits |= std::uint64_t{1} << members[k];
-      }
-      sides_.push_back(std::move(side));
-    }
-  }
-}
-
 /// Puts the units on a side, and what follows them where its surfaces then are.
-bool SlidingMode::settle(Side& side, double t, std::span<const double> x) {
+bool SlidingMode::settle(SlideSide& side, double t, std::span<const double> x) {
   const network::SwitchStructure& structure = program_.switch_structure();
   for (std::size_t u = 0; u < units_.size(); ++u) {
     const bool above = (side.bits >> u & 1U) != 0;
@@ -127,7 +92,7 @@ bool SlidingMode::settle(Side& side, double t, std::span<const double> x) {
   return true;
 }
 
-void SlidingMode::load(const Side& side) {
+void SlidingMode::load(const SlideSide& side) {
   for (const auto& [memory, position] : side.positions) workspace_.set_memory(memory, position);
 }
 
@@ -135,39 +100,19 @@ void SlidingMode::load_base() {
   for (const auto& [memory, position] : base_) workspace_.set_memory(memory, position);
 }
 
-std::vector<std::uint64_t> SlidingMode::broken_by(const network::Program& program,
-                                                  const std::vector<std::uint32_t>& units) {
-  const network::SwitchStructure& structure = program.switch_structure();
-  std::vector<std::uint64_t> broken(units.size(), 0);
-  for (std::size_t u = 0; u < units.size(); ++u) {
-    for (const std::uint32_t s : structure.members[units[u]]) {
-      for (const std::uint32_t p : structure.positions_below(s)) {
-        const auto other = std::find(units.begin(), units.end(), structure.unit[p]);
-        if (other == units.end()) continue;
-        const auto v = static_cast<std::size_t>(other - units.begin());
-        if (u == v || program.switches()[p].turning == network::Turning::jumps)
-          broken[u] |= std::uint64_t{1} << v;
-      }
-    }
-  }
-  return broken;
-}
-
 bool SlidingMode::begin(std::vector<std::uint32_t> units, double t, std::span<const double> x) {
   if (units.size() > kMostUnits) return false;
   const std::vector<double> before(workspace_.memories().begin(), workspace_.memories().end());
   units_ = std::move(units);
   find_followers();
-  make_sides();
+  sides_.make(units_, !followers_.empty());
   base_.clear();
   for (std::uint32_t s = 0; s < follows_.size(); ++s) {
     const std::uint32_t memory = program_.switches()[s].memory;
     if (holds(s) || follows_[s]) base_.emplace_back(memory, workspace_.memory(memory));
   }
-  bool possible = std::all_of(cluster_of_.begin(), cluster_of_.end(), [&](std::uint32_t cluster) {
-    return std::count(cluster_of_.begin(), cluster_of_.end(), cluster) <= static_cast<long>(kMostCoupled);
-  });
-  for (Side& side : sides_) possible = possible && settle(side, t, x);
+  bool possible = sides_.are_all();
+  for (SlideSide& side : sides_) possible = possible && settle(side, t, x);
   const std::vector<std::uint64_t> broken = broken_by(program_, units_);
   possible = possible && std::none_of(broken.begin(), broken.end(), [](std::uint64_t by) { return by != 0; });
   shares_.assign(units_.size(), 0.5);
@@ -198,20 +143,21 @@ void SlidingMode::end() {
   begun_ = false;
 }
 
-bool SlidingMode::evaluate(Side& side, double t, std::span<const double> x) {
+bool SlidingMode::evaluate(SlideSide& side, double t, std::span<const double> x) {
   load(side);
   side.dxdt.resize(program_.n_states());
   side.surfaces.resize(follows_.size());
   side.rates.resize(follows_.size());
-  if (!program_.surfaces(t, x.data(), side.surfaces.data(), workspace_)) return false;
-  program_.last_derivatives(side.dxdt.data(), workspace_);
-  program_.surface_rates(side.dxdt.data(), side.rates.data(), workspace_);
+  const auto here = program_.surfaces(t, x.data(), side.surfaces.data(), workspace_);
+  if (!here) return false;
+  here->derivatives(side.dxdt.data());
+  here->surface_rates(side.dxdt.data(), side.rates.data());
   return true;
 }
 
 bool SlidingMode::evaluate(double t, std::span<const double> x) {
   bool valid = true;
-  for (Side& side : sides_) valid = valid && evaluate(side, t, x);
+  for (SlideSide& side : sides_) valid = valid && evaluate(side, t, x);
   valid = valid && find_shares();
   load_base();
   for (std::size_t u = 0; valid && u < units_.size(); ++u)
@@ -222,11 +168,10 @@ bool SlidingMode::evaluate(double t, std::span<const double> x) {
 /// How much more the upper side of a unit drives up than its lower one; nothing of one that is coupled, or of
 /// which one side does not drive, or both alike: that decides where it goes.
 double SlidingMode::drive_apart(std::size_t unit) const {
-  const auto alone = [&](const Side& side) { return side.bits == std::uint64_t{1} << unit; };
-  const bool coupled = std::count(cluster_of_.begin(), cluster_of_.end(), cluster_of_[unit]) > 1;
+  const auto alone = [&](const SlideSide& side) { return side.bits == std::uint64_t{1} << unit; };
   const auto upper = std::find_if(sides_.begin(), sides_.end(), alone);
-  if (coupled || upper == sides_.end()) return 0;
-  const double above = unit_value(upper->rates, unit), below = unit_value(sides_.front().rates, unit);
+  if (sides_.is_coupled(unit) || upper == sides_.end()) return 0;
+  const double above = sides_.of_unit(upper->rates, unit), below = sides_.of_unit(sides_[0].rates, unit);
   const double weaker = std::min(std::abs(above), std::abs(below));
   const double stronger = std::max(std::abs(above), std::abs(below));
   return std::min(weaker, std::abs(above - below)) > kDrives * stronger ? above - below : 0;
@@ -241,96 +186,28 @@ std::optional<double> SlidingMode::repulsion(std::size_t unit) const {
   return part > kNoDrive ? part : std::min(part, 0.0);
 }
 
-double SlidingMode::unit_value(const std::vector<double>& of_switches, std::size_t unit) const {
-  const network::SwitchStructure& structure = program_.switch_structure();
-  const std::uint32_t s = structure.members[units_[unit]].front();
-  return structure.opposite[s] ? -of_switches[s] : of_switches[s];
-}
-
-/// The rate at which a surface that has drifted off goes back.
-double SlidingMode::way_back(std::size_t unit, double fastest) const {
-  return std::clamp(kReturn / span_ * unit_value(sides_[0].surfaces, unit), -kMostReturn * fastest,
-                    kMostReturn * fastest);
-}
-
-/// Gives each side its weight for these shares: all together are 1.
-double SlidingMode::weigh(std::span<const double> shares) {
-  const auto product = [&](std::uint64_t bits, std::uint32_t cluster) {
-    double weight = 1;
-    for (std::size_t u = 0; u < units_.size(); ++u) {
-      if (cluster_of_[u] == cluster) weight *= (bits >> u & 1U) != 0 ? shares[u] : 1 - shares[u];
-    }
-    return weight;
-  };
-  double others = 0;
-  for (std::size_t k = 1; k < sides_.size(); ++k)
-    others += sides_[k].weight = product(sides_[k].bits, *sides_[k].cluster);
-  return sides_.front().weight = 1 - others;
-}
-
-/// The shares α with which no surface moves: Σ weight(α) · d surface/dt = 0, by Newton's method; linear for
-/// units that are not coupled. Where a surface stands still whatever the shares are, any will do for it.
+/// The shares with which no surface moves.
 bool SlidingMode::find_shares() {
-  constexpr int kMostIterations = 50;
-  constexpr double kFar = 1e3;
-  const std::size_t n = units_.size();
-  if (n == 1) {
-    const double below = unit_value(sides_[0].rates, 0), above = unit_value(sides_[1].rates, 0);
-    if (!std::isfinite(below - above)) return false;
-    if (below == above) {  // a slide stays as it was where its sides say nothing; none begins there
-      weigh(shares_);
-      return begun_ && std::abs(below) <= kNoDrive * strongest_[units_[0]];
-    }
-    shares_[0] = (below + way_back(0, std::abs(below - above))) / (below - above);
-    // Where the sides hardly drive any more the way back says nothing; what follows is told by `repulsion`.
-    if (std::abs(below - above) < kNoDrive * strongest_[units_[0]])
-      shares_[0] = std::clamp(shares_[0], 0.0, 1.0);
-    weigh(shares_);
-    return true;
+  if (units_.size() == 1) return find_only_share();
+  auto found = shares_of_coupled(sides_, shares_, kReturn / span_, kMostReturn);
+  if (!found) return false;
+  shares_ = std::move(*found);
+  return true;
+}
+
+bool SlidingMode::find_only_share() {
+  const double below = sides_.of_unit(sides_[0].rates, 0), above = sides_.of_unit(sides_[1].rates, 0);
+  if (!std::isfinite(below - above)) return false;
+  if (below == above) {  // a slide stays as it was where its sides say nothing; none begins there
+    sides_.weigh(shares_);
+    return begun_ && std::abs(below) <= kNoDrive * strongest_[units_[0]];
   }
-  const auto size = static_cast<Eigen::Index>(n);
-  Eigen::VectorXd residual(size), last(size);
-  Eigen::MatrixXd slopes(size, size);
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
-  decomposition.setThreshold(kNoSlope);
-  double scale = std::numeric_limits<double>::min();
-  for (const Side& side : sides_) {
-    for (std::size_t u = 0; u < n; ++u) scale = std::max(scale, std::abs(unit_value(side.rates, u)));
-  }
-  const auto residuals = [&](std::span<const double> shares, Eigen::Ref<Eigen::VectorXd> result) {
-    weigh(shares);
-    for (std::size_t u = 0; u < n; ++u) {
-      double sum = way_back(u, scale);
-      for (const Side& side : sides_) sum += side.weight * unit_value(side.rates, u);
-      result[static_cast<Eigen::Index>(u)] = sum;
-    }
-  };
-  std::vector<double> trial = shares_;
-  for (double& share : trial) share = std::clamp(share, 0.0, 1.0);
-  for (int iteration = 0; iteration < kMostIterations; ++iteration) {
-    residuals(trial, residual);
-    if (!residual.allFinite()) return false;
-    // The weights are linear in each share: a difference is a slope.
-    for (std::size_t u = 0; u < n; ++u) {
-      const double share = trial[u];
-      trial[u] = share + 1;
-      residuals(trial, last);
-      slopes.col(static_cast<Eigen::Index>(u)) = last - residual;
-      trial[u] = share;
-    }
-    decomposition.compute(slopes);
-    const Eigen::VectorXd step = decomposition.solve(-residual);
-    double change = 0;
-    for (std::size_t u = 0; u < n; ++u) {
-      trial[u] += step[static_cast<Eigen::Index>(u)];
-      change = std::max(change, std::abs(step[static_cast<Eigen::Index>(u)]));
-      if (!(std::abs(trial[u]) < kFar)) return false;
-    }
-    if (change < 1e-14) break;
-  }
-  residuals(trial, residual);
-  if (!(residual.cwiseAbs().maxCoeff() <= kMostReturn * scale)) return false;
-  shares_ = trial;
+  shares_[0] =
+      (below + way_back(sides_, 0, kReturn / span_, kMostReturn * std::abs(below - above))) / (below - above);
+  // Where the sides hardly drive any more the way back says nothing; what follows is told by `repulsion`.
+  if (std::abs(below - above) < kNoDrive * strongest_[units_[0]])
+    shares_[0] = std::clamp(shares_[0], 0.0, 1.0);
+  sides_.weigh(shares_);
   return true;
 }
 
@@ -341,7 +218,7 @@ bool SlidingMode::lasts(double t, std::span<const double> x) {
   const std::vector<double> now = shares_;
   std::fill(moved_.begin(), moved_.end(), 0.0);
   double fastest = std::numeric_limits<double>::min();
-  for (const Side& side : sides_) {
+  for (const SlideSide& side : sides_) {
     for (std::size_t i = 0; i < moved_.size(); ++i) moved_[i] += side.weight * side.dxdt[i];
   }
   for (const double rate : moved_) fastest = std::max(fastest, std::abs(rate));
@@ -356,13 +233,13 @@ bool SlidingMode::lasts(double t, std::span<const double> x) {
 
 void SlidingMode::mixed_rates(std::span<double> rates) const {
   std::fill(rates.begin(), rates.end(), 0.0);
-  for (const Side& side : sides_) {
+  for (const SlideSide& side : sides_) {
     for (std::size_t s = 0; s < rates.size(); ++s) rates[s] += side.weight * side.rates[s];
   }
 }
 
 double SlidingMode::overdue(std::size_t side, std::size_t follower) const {
-  const Side& at = sides_[side];
+  const SlideSide& at = sides_[side];
   const std::size_t s = followers_[follower];
   const double position = at.positions[at.positions.size() - followers_.size() + follower].second;
   return position == 1 ? -at.surfaces[s] : at.surfaces[s];
@@ -370,19 +247,19 @@ double SlidingMode::overdue(std::size_t side, std::size_t follower) const {
 
 bool SlidingMode::is_torn(std::size_t s) const {
   const std::uint32_t memory = program_.switches()[s].memory;
-  const auto position_on = [&](const Side& side) {
+  const auto position_on = [&](const SlideSide& side) {
     const auto found = std::find_if(side.positions.begin(), side.positions.end(),
                                     [&](const auto& setting) { return setting.first == memory; });
     return found->second;
   };
   return std::any_of(sides_.begin(), sides_.end(),
-                     [&](const Side& side) { return position_on(side) != position_on(sides_.front()); });
+                     [&](const SlideSide& side) { return position_on(side) != position_on(sides_[0]); });
 }
 
 bool SlidingMode::derivatives(double t, const double* x, double* dxdt) {
   if (!evaluate(t, {x, program_.n_states()})) return false;
   std::fill(dxdt, dxdt + program_.n_states(), 0.0);
-  for (const Side& side : sides_) {
+  for (const SlideSide& side : sides_) {
     for (std::size_t i = 0; i < program_.n_states(); ++i) dxdt[i] += side.weight * side.dxdt[i];
   }
   return true;
@@ -394,7 +271,7 @@ bool SlidingMode::jacobian(double t, const double* x, double* values) {
   const std::size_t entries = program_.jacobian_pattern().entries();
   std::fill(values, values + entries, 0.0);
   bool valid = true;
-  for (const Side& side : sides_) {
+  for (const SlideSide& side : sides_) {
     load(side);
     valid = valid && program_.jacobian(t, x, scratch_.data(), workspace_);
     for (std::size_t k = 0; k < entries; ++k) values[k] += side.weight * scratch_[k];
@@ -407,11 +284,11 @@ bool SlidingMode::signals(double t, const double* x, double* values) {
   if (!evaluate(t, {x, program_.n_states()})) return false;
   std::vector<double> shares = shares_;
   for (double& share : shares) share = std::clamp(share, 0.0, 1.0);
-  weigh(shares);
+  sides_.weigh(shares);
   std::vector<double> of_side(program_.n_signals());
   std::fill(values, values + program_.n_signals(), 0.0);
   bool valid = true;
-  for (const Side& side : sides_) {
+  for (const SlideSide& side : sides_) {
     load(side);
     valid = valid && program_.signals(t, x, of_side.data(), workspace_);
     for (std::size_t i = 0; i < of_side.size(); ++i) values[i] += side.weight * of_side[i];

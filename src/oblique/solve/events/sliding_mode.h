@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <oblique/network/program/program.h>
+#include <oblique/solve/events/slide_sides.h>
 
 namespace oblique::solve {
 
@@ -24,11 +25,6 @@ class SlidingMode {
  public:
   /// Both must outlive this; `span` is the length of the run [s].
   SlidingMode(const network::Program& program, network::Workspace& workspace, double span);
-
-  /// Of each of these units, up to 64, the others (as bits) whose positions break its surface: a unit whose
-  /// surface jumps or bends with its own position, or jumps with that of another, is none to slide on.
-  static std::vector<std::uint64_t> broken_by(const network::Program& program,
-                                              const std::vector<std::uint32_t>& units);
 
   bool active() const { return !units_.empty(); }
   const std::vector<std::uint32_t>& units() const { return units_; }
@@ -78,27 +74,14 @@ class SlidingMode {
   double overdue(std::size_t side, std::size_t follower) const;
 
  private:
-  /// One combination of sides: bit u of `bits` for unit u.
-  struct Side {
-    std::uint64_t bits = 0;
-    std::optional<std::uint32_t> cluster;                     ///< nothing for the first side, which is of all
-    std::vector<std::pair<std::uint32_t, double>> positions;  ///< memories, of what slides and what follows
-    std::vector<double> dxdt;
-    std::vector<double> surfaces, rates;  ///< of every switch
-    double weight = 0;
-  };
-
   void find_followers();
-  void make_sides();
-  bool settle(Side& side, double t, std::span<const double> x);
-  void load(const Side& side);
+  bool settle(SlideSide& side, double t, std::span<const double> x);
+  void load(const SlideSide& side);
   void load_base();
-  bool evaluate(Side& side, double t, std::span<const double> x);
+  bool evaluate(SlideSide& side, double t, std::span<const double> x);
   bool find_shares();
-  double unit_value(const std::vector<double>& of_switches, std::size_t unit) const;
-  double way_back(std::size_t unit, double fastest) const;
+  bool find_only_share();
   double drive_apart(std::size_t unit) const;
-  double weigh(std::span<const double> shares);
   bool lasts(double t, std::span<const double> x);
 
   const network::Program& program_;
@@ -107,8 +90,7 @@ class SlidingMode {
   std::vector<std::uint32_t> units_;
   std::vector<bool> follows_, rests_;
   std::vector<std::uint32_t> followers_;
-  std::vector<std::uint32_t> cluster_of_;               ///< of each unit here
-  std::vector<Side> sides_;                             ///< the first one with all units below
+  SlideSides sides_;
   std::vector<std::pair<std::uint32_t, double>> base_;  ///< positions that events see
   std::vector<double> shares_;
   std::vector<double> strongest_;  ///< drive together of each unit of the program in all slides of the run

@@ -14,29 +14,27 @@ namespace oblique::solve {
 class SurfaceErrors {
  public:
   /// `tolerance` is the relative one of the states, `absolute_tolerance` that of those without one of their
-  /// own. `program` and `workspace` must outlive this.
-  SurfaceErrors(const network::Program& program, network::Workspace& workspace, double tolerance,
-                double absolute_tolerance);
+  /// own. `program` must outlive this.
+  SurfaceErrors(const network::Program& program, double tolerance, double absolute_tolerance);
 
   /// The size [machine unit] down to which each state is known relatively; 0: as its absolute tolerance says.
   void know_states(std::span<const double> reach) { reach_.assign(reach.begin(), reach.end()); }
 
-  /// The most for some combinations of the signs of the errors, at the states at which the workspace has
-  /// evaluated the surfaces last.
-  void weigh(std::span<const double> states);
+  /// The most for some combinations of the signs of the errors; `here` is what was evaluated at `states`.
+  void weigh(const network::Evaluation& here, std::span<const double> states);
 
   /// Where they were weighed last.
   double operator[](std::size_t s) const { return errors_[s]; }
 
   /// The states that are hardly known and move the surface of a switch, itself or by the states that they
-  /// drive; `states` as for `weigh`.
-  std::vector<std::size_t> states_behind(std::uint32_t s, std::span<const double> states);
+  /// drive; the others as for `weigh`.
+  std::vector<std::size_t> states_behind(std::uint32_t s, const network::Evaluation& here,
+                                         std::span<const double> states) const;
 
  private:
   double error_of_state(std::size_t i) const;
 
   const network::Program& program_;
-  network::Workspace& workspace_;
   double tolerance_, absolute_tolerance_;
   std::vector<double> reach_;  ///< see `know_states`
   std::vector<double> errors_;

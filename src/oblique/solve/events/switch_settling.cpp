@@ -76,8 +76,8 @@ bool SwitchSettling::is_announced(std::uint32_t unit) const {
 void SwitchSettling::turn(std::size_t s, double position, double t) {
   const network::Switch& made = program_.switches()[s];
   if (workspace_.memory(made.memory) == position) return;
-  workspace_.set_memory(made.memory, position);
   const SurfaceErrors& errors = surfaces_.weigh_errors();
+  workspace_.set_memory(made.memory, position);
   Thresholds& thresholds = surfaces_.thresholds();
   Unrest& unrest = unrest_[s];
   const bool known = surfaces_.is_known(s);
@@ -179,7 +179,8 @@ void SwitchSettling::decide(Units units, double t, std::span<const double> x) {
   }
   std::vector<double> before;
   for (std::size_t s = 0; s < surfaces_.size(); ++s) before.push_back(position(s));
-  if (!positions_.choose(units, preferred, t, x)) {
+  surfaces_.weigh_errors();
+  if (!positions_.choose(units, preferred, surfaces_.here(), t, x)) {
     std::vector<std::uint32_t> members;
     for (const std::uint32_t unit : units)
       members.insert(members.end(), structure.members[unit].begin(), structure.members[unit].end());
@@ -233,6 +234,7 @@ bool SwitchSettling::settle(double t, std::span<const double> x) {
       if (round <= 2 * most) continue;
       if (!choose_any(program_, workspace_, slide_, surfaces_.thresholds(), span_, restless, t, x))
         throw no_position(*std::min_element(restless.begin(), restless.end()), t);
+      surfaces_.evaluate(t, x, announced_);
       return true;
     }
     if (on_surface.empty()) return any;

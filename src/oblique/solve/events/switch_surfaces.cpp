@@ -12,21 +12,24 @@ SwitchSurfaces::SwitchSurfaces(const network::Program& program, network::Workspa
     : program_(program),
       workspace_(workspace),
       file_(file),
-      thresholds_(program, workspace),
-      errors_(program, workspace, tolerance, absolute_tolerance),
-      values_(program.switches().size()) {}
+      thresholds_(program),
+      errors_(program, tolerance, absolute_tolerance),
+      values_(program.switches().size()),
+      known_rates_(values_.size()) {}
 
 void SwitchSurfaces::evaluate(double t, std::span<const double> x, const Announced& announced) {
   interruption_.check();
   states_.assign(x.begin(), x.end());
   weighed_ = false;
-  const bool known = program_.surfaces(t, x.data(), values_.data(), workspace_);
+  here_ = program_.surfaces(t, x.data(), values_.data(), workspace_);
+  const bool known = here_.has_value();
   if (!known) {
     workspace_.pass_failing_loops(true);
-    program_.surfaces(t, x.data(), values_.data(), workspace_);
+    here_ = program_.surfaces(t, x.data(), values_.data(), workspace_);
     workspace_.pass_failing_loops(false);
   }
-  thresholds_.update(t);
+  thresholds_.update(t, here());
+  for (std::size_t s = 0; s < known_rates_.size(); ++s) known_rates_[s] = here().known_rate(s);
   if (!known && !is_any_due(announced)) throw loop_error(program_, workspace_.trouble(), t, file_);
 }
 
@@ -44,7 +47,7 @@ bool SwitchSurfaces::is_any_due(const Announced& announced) const {
 }
 
 const SurfaceErrors& SwitchSurfaces::weigh_errors() {
-  if (!weighed_) errors_.weigh(states_);
+  if (!weighed_) errors_.weigh(here(), states_);
   weighed_ = true;
   return errors_;
 }

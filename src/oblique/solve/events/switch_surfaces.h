@@ -31,21 +31,25 @@ class SwitchSurfaces {
   void end_when(const Interruption& interruption) { interruption_ = interruption; }
   void know_states(std::span<const double> reach) { errors_.know_states(reach); }
 
-  // As `evaluate` has found them:
+  // As `evaluate` has found them, whatever has been evaluated since:
   std::size_t size() const { return values_.size(); }
   double operator[](std::size_t s) const { return values_[s]; }
   bool is_off_zero(std::size_t s) const { return std::abs(values_[s]) > thresholds_[s]; }
   /// How far a surface lies on the side on which its switch does not stand.
   double against(std::size_t s) const;
   /// d surface/dt of a switch whose surface depends on time alone, linearly; nothing for another.
-  std::optional<double> known_rate(std::size_t s) const { return program_.known_rate(s, workspace_); }
+  std::optional<double> known_rate(std::size_t s) const { return known_rates_[s]; }
   bool is_known(std::size_t s) const { return program_.switches()[s].rate.has_value(); }
 
-  /// The errors there, weighed when they are first asked for.
+  /// What else `evaluate` has found, as long as nothing has been evaluated since and no switch turned over.
+  const network::Evaluation& here() const { return here_.value(); }
+  /// The errors there, weighed when they are first asked for: from `here`, so before a switch turns over.
   const SurfaceErrors& weigh_errors();
   /// Those that were weighed last, here or where a switch turned over before.
   const SurfaceErrors& last_errors() const { return errors_; }
-  std::vector<std::size_t> states_behind(std::uint32_t s) { return errors_.states_behind(s, states_); }
+  std::vector<std::size_t> states_behind(std::uint32_t s) const {
+    return errors_.states_behind(s, here(), states_);
+  }
 
   const Thresholds& thresholds() const { return thresholds_; }
   Thresholds& thresholds() { return thresholds_; }
@@ -59,7 +63,9 @@ class SwitchSurfaces {
   Interruption interruption_;
   Thresholds thresholds_;
   SurfaceErrors errors_;
+  std::optional<network::Evaluation> here_;
   std::vector<double> values_, states_;
+  std::vector<std::optional<double>> known_rates_;
   bool weighed_ = false;  ///< whether the errors are those of `states_`
 };
 

@@ -120,6 +120,11 @@ std::optional<double> Switching::search(double from, std::span<const double> loo
   return found->time;
 }
 
+const network::Evaluation& Switching::evaluate(double t, std::span<const double> x) {
+  surfaces_.evaluate(t, x, location_.announced());
+  return surfaces_.here();
+}
+
 bool Switching::derivatives(double t, const double* x, double* dxdt) {
   return slide_.active() ? slide_.derivatives(t, x, dxdt) : program_.derivatives(t, x, dxdt, workspace_);
 }
@@ -130,7 +135,8 @@ bool Switching::jacobian(double t, const double* x, double* values) {
 
 bool Switching::signals(double t, const double* x, double* values) {
   interruption_.check();
-  return slide_.active() ? slide_.signals(t, x, values) : program_.signals(t, x, values, workspace_);
+  return slide_.active() ? slide_.signals(t, x, values)
+                         : program_.signals(t, x, values, workspace_).has_value();
 }
 
 }  // namespace oblique::solve

@@ -59,6 +59,9 @@ class Switching {
   /// `looks` are times at which to look at least; the search ends at the last.
   std::optional<double> search(double from, std::span<const double> looks, const Interpolant& solution);
 
+  /// All surfaces at (t, x), and what else follows there. Throws SolveError.
+  const network::Evaluation& evaluate(double t, std::span<const double> x);
+
   /// dx/dt, its Jacobian and all signals, with what slides held on its surfaces.
   bool derivatives(double t, const double* x, double* dxdt);
   bool jacobian(double t, const double* x, double* values);

@@ -24,11 +24,11 @@ void take_starts(const network::Program& program, network::Workspace& workspace,
   std::vector<std::size_t> circle;
   bool changes = true, finite = true;
   for (long round = 0; changes && finite && round <= starts + kMostRoundsInCircle; ++round) {
-    if (!program.signals(t, x.data(), signals.data(), workspace))
-      throw loop_error(program, workspace.trouble(), t, file);
+    const auto here = program.signals(t, x.data(), signals.data(), workspace);
+    if (!here) throw loop_error(program, workspace.trouble(), t, file);
     changes = false;
     for (std::size_t i = 0; i < x.size(); ++i) {
-      const auto value = program.start_value(i, workspace);
+      const auto value = here->start_value(i);
       if (!value) continue;
       const bool same = std::abs(*value - x[i]) <= 4 * kEpsilon * (1 + std::abs(*value));
       if (same && std::isfinite(*value)) continue;

@@ -12,10 +12,10 @@ constexpr double kRounding = 1e-13;  ///< of what a switch compares, or of a mac
 
 }  // namespace
 
-Thresholds::Thresholds(const network::Program& program, const network::Workspace& workspace)
+Thresholds::Thresholds(const network::Program& program)
     : program_(program),
-      workspace_(workspace),
       now_(program.switches().size(), 0.0),
+      roundings_(program.switches().size(), 0.0),
       slack_(program.switches().size(), 0.0),
       excursions_(program.switches().size(), 0.0),
       of_time_(program.switches().size(), false) {
@@ -24,28 +24,29 @@ Thresholds::Thresholds(const network::Program& program, const network::Workspace
   }
 }
 
-void Thresholds::update(double t) {
+void Thresholds::update(double t, const network::Evaluation& here) {
   for (std::size_t s = 0; s < now_.size(); ++s) {
+    const double size = here.compared_size(s);
+    roundings_[s] = rounding_of(s, size);
     if (program_.switches()[s].rate) {  // known to rounding of the time
-      const double size = program_.compared_size(s, workspace_);
       now_[s] = 8 * kEpsilon * (std::isfinite(size) ? size : std::abs(t));
     } else {
-      now_[s] = std::max(rounding(s), slack_[s]);
+      now_[s] = std::max(roundings_[s], slack_[s]);
     }
   }
 }
 
-double Thresholds::rounding(std::size_t s) const {
-  const double size = program_.compared_size(s, workspace_);
-  if (of_time_[s] && std::isfinite(size)) return 8 * kEpsilon * size;
-  return kRounding * (std::isfinite(size) ? std::max(1.0, size) : 1);
+double Thresholds::rounding_of(std::size_t s, double compared_size) const {
+  const bool finite = std::isfinite(compared_size);
+  if (of_time_[s] && finite) return 8 * kEpsilon * compared_size;
+  return kRounding * (finite ? std::max(1.0, compared_size) : 1);
 }
 
-std::optional<double> Thresholds::leave_behind(std::size_t s, double surface) {
+std::optional<double> Thresholds::leave_behind(std::size_t s, double surface, double rounding) {
   excursions_[s] = std::max(excursions_[s], std::abs(surface));
   if (slack_[s] == 0 || excursions_[s] <= 2 * slack_[s]) return std::nullopt;
   const double before = now_[s];
-  now_[s] = rounding(s);
+  now_[s] = rounding;
   slack_[s] = 0;
   return before - now_[s];
 }

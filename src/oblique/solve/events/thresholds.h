@@ -15,20 +15,23 @@ namespace oblique::solve {
 /// where the switch has just turned over, by more than the errors of the states. Not installed.
 class Thresholds {
  public:
-  /// Both must outlive this.
-  Thresholds(const network::Program& program, const network::Workspace& workspace);
+  /// The program must outlive this.
+  explicit Thresholds(const network::Program& program);
 
-  /// Takes them from where the surfaces were evaluated last, at time t.
-  void update(double t);
+  /// Takes them from what was evaluated at time t.
+  void update(double t, const network::Evaluation& here);
 
   double operator[](std::size_t s) const { return now_[s]; }
 
-  /// That of a search along a solution: what the time alone does is known to the rounding that it has there.
-  double along_solution(std::size_t s) const { return of_time_[s] && slack_[s] == 0 ? rounding(s) : now_[s]; }
-
-  /// Rounding of the surface of a switch, where the surfaces were evaluated last: of what it compares, at
-  /// least of a machine unit.
-  double rounding(std::size_t s) const;
+  /// Rounding of the surface of a switch at the last `update`.
+  double rounding(std::size_t s) const { return roundings_[s]; }
+  /// That where it compares what has this magnitude: a part of it, at least of a machine unit.
+  double rounding_of(std::size_t s, double compared_size) const;
+  /// The threshold in a search along a solution, by the rounding there: what the time alone does is known to
+  /// that.
+  double along_solution(std::size_t s, double rounding) const {
+    return of_time_[s] && slack_[s] == 0 ? rounding : now_[s];
+  }
 
   /// Lets a surface go back so far by the errors of the states, until it has left them behind; from the next
   /// `update` on.
@@ -37,8 +40,8 @@ class Thresholds {
   void widen(std::size_t s, double slack) { now_[s] = slack_[s] = slack; }
   void take_all_slack() { std::fill(slack_.begin(), slack_.end(), 0.0); }
   /// Notes how far off a surface is, and takes its slack where that is beyond the errors of the states: by
-  /// how much its threshold has become smaller then.
-  std::optional<double> leave_behind(std::size_t s, double surface);
+  /// how much its threshold has become smaller then; it is the rounding there.
+  std::optional<double> leave_behind(std::size_t s, double surface, double rounding);
 
   /// How far the surface of a switch has been from zero since `forget`.
   double excursion(std::size_t s) const { return excursions_[s]; }
@@ -46,8 +49,7 @@ class Thresholds {
 
  private:
   const network::Program& program_;
-  const network::Workspace& workspace_;
-  std::vector<double> now_;
+  std::vector<double> now_, roundings_;
   std::vector<double> slack_;  ///< of them, for the errors of the states
   std::vector<double> excursions_;
   std::vector<bool> of_time_;  ///< the surface follows the time alone, to rounding

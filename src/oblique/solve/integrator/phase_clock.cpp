@@ -23,8 +23,8 @@ double PhaseClock::end() const {
   return position_.begin + timeline_.phases[position_.phase].duration;
 }
 
-bool PhaseClock::is_over(double t) const {
-  return !is_last() && (t >= end() || program_.phase_ends(position_.phase, workspace_));
+bool PhaseClock::is_over(double t, const network::Evaluation& here) const {
+  return !is_last() && (t >= end() || here.phase_ends(position_.phase));
 }
 
 void PhaseClock::advance(double t) {

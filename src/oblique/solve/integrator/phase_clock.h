@@ -20,9 +20,9 @@ class PhaseClock {
   /// When the phase ends at the latest [s]; infinite for the last one.
   double end() const;
 
-  /// Whether the phase is over at t: its time, or, as the workspace has it, its condition. The last phase is
-  /// never over.
-  bool is_over(double t) const;
+  /// Whether the phase is over at t, of which `here` was evaluated: its time, or its condition. The last
+  /// phase is never over.
+  bool is_over(double t, const network::Evaluation& here) const;
 
   /// Begins the next phase at t.
   void advance(double t);

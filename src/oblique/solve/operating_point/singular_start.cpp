@@ -83,7 +83,7 @@ class Start {
   bool keep(const Eigen::VectorXd& z) {
     workspace_.reset();
     hold(z, false);
-    return program_.signals(t_, states_.data(), signals_.data(), workspace_);
+    return program_.signals(t_, states_.data(), signals_.data(), workspace_).has_value();
   }
 
  private:

@@ -139,9 +139,10 @@ class AlgebraicLoop {
     }
   }
 
-  /// `workspace` has just evaluated the signals at the instant.
-  void look_at(const Instant& instant, std::span<const double> signals, const network::Workspace& workspace) {
-    const Eigen::MatrixXd slopes = program_.loop_slopes(loop_, workspace);
+  /// `here` is the evaluation of the signals at the instant.
+  void look_at(const Instant& instant, std::span<const double> signals,
+               const network::SignalEvaluation& here) {
+    const Eigen::MatrixXd slopes = here.loop_slopes(loop_);
     if (!slopes.allFinite()) return;
     const Eigen::PartialPivLU<Eigen::MatrixXd> lu(slopes);
     const Eigen::MatrixXd inverse = lu.inverse();
@@ -196,8 +197,9 @@ std::vector<LoopReport> explain_loops(const network::Program& program, const Sig
   std::vector<double> signals(program.n_signals());
   for (const Instant& instant : instants) {
     workspace.load_memories(instant.memories);
-    if (!program.signals(instant.t, instant.states.data(), signals.data(), workspace)) continue;
-    for (AlgebraicLoop& loop : algebraic) loop.look_at(instant, signals, workspace);
+    const auto here = program.signals(instant.t, instant.states.data(), signals.data(), workspace);
+    if (!here) continue;
+    for (AlgebraicLoop& loop : algebraic) loop.look_at(instant, signals, *here);
     const auto linear = Linearisation::at(program, workspace, instant);
     if (!linear) continue;
     for (ServoLoopHistory& loop : servos) loop.look_at(*linear, instant, signals, workspace);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/solve/operating_point/static_test.h>
+#include <oblique/solve/static_test.h>
 
 #include <string_view>
 #include <unordered_map>

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <oblique/network/program/program.h>
+#include <oblique/solve/events/switching.h>
+#include <oblique/solve/integrator/ode_system.h>
+#include <oblique/solve/interruption.h>
+
+namespace oblique::solve {
+
+/// The equations of a diagram with its switches. Not installed.
+class SwitchedSystem final : public OdeSystem {
+ public:
+  /// All must outlive this.
+  SwitchedSystem(const network::Program& program, Switching& switching, const Interruption& interruption)
+      : program_(program), switching_(switching), interruption_(interruption) {}
+  std::size_t size() const override { return program_.n_states(); }
+  const network::SparsePattern& pattern() const override { return program_.jacobian_pattern(); }
+  bool derivatives(double t, const double* x, double* dxdt) override {
+    return switching_.derivatives(t, x, dxdt);
+  }
+  bool jacobian(double t, const double* x, double* values) override {
+    return switching_.jacobian(t, x, values);
+  }
+  bool is_to_end() const override { return interruption_.is_asked(); }
+
+ private:
+  const network::Program& program_;
+  Switching& switching_;
+  const Interruption& interruption_;
+};
+
+}  // namespace oblique::solve

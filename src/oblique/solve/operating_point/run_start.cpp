@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/solve/operating_point/run_start.h>
+
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <oblique/solve/events/branch_end.h>
+#include <oblique/solve/operating_point/rest.h>
+#include <oblique/solve/operating_point/singular_start.h>
+#include <oblique/solve/run_errors.h>
+#include <oblique/solve/solve_error.h>
+
+namespace oblique::solve {
+namespace {
+
+void refuse_singular_rates(const StartParts& parts, double t, const std::vector<double>& slopes) {
+  for (std::size_t i = 0; i < slopes.size(); ++i) {
+    if (std::isfinite(slopes[i])) continue;
+    throw SolveError(
+        SolveError::Kind::blow_up, t,
+        {{parts.diagram.file, {}},
+         fmt::format("the rate of '{}' is no finite number where the run starts, at t = {:.6g} s",
+                     parts.program.states()[i].name, t),
+         "equations that have a value there",
+         "start a little beside it, or write a quotient of zeros as its limit, with an if(…) in a block"});
+  }
+}
+
+}  // namespace
+
+std::vector<text::Diagnostic> settle_start(const StartParts& parts, double t, std::vector<double>& states) {
+  const network::Program& program = parts.program;
+  const std::string& file = parts.diagram.file;
+  if (parts.loop_start.loop) {
+    const std::vector<std::size_t>& unknowns = program.loops()[*parts.loop_start.loop].unknowns;
+    for (std::size_t i = 0; i < unknowns.size(); ++i)
+      parts.workspace.set_unknown(unknowns[i], parts.loop_start.unknowns[i]);
+  }
+  std::vector<text::Diagnostic> warnings;
+  std::vector<double> signals(program.n_signals());
+  const auto settle_all = [&] {
+    parts.switching.start(t, states, [&] {
+      if (parts.options.settle) warnings = bring_to_rest(program, parts.workspace, t, states, file);
+    });
+    if (!parts.switching.signals(t, states.data(), signals.data()))
+      throw loop_error(program, parts.workspace.trouble(), t, file);
+  };
+  try {
+    settle_all();
+  } catch (const SolveError& error) {
+    if (error.kind() != SolveError::Kind::singular_loop ||
+        !hold_singular_start(program, parts.workspace, t, states, parts.options.until - t))
+      throw;
+    settle_all();
+  }
+  return warnings;
+}
+
+std::vector<text::Diagnostic> start_run(const StartParts& parts, double t, std::vector<double>& states) {
+  std::vector<text::Diagnostic> warnings = settle_start(parts, t, states);
+  std::vector<double> slopes(states.size());
+  if (parts.switching.derivatives(t, states.data(), slopes.data())) refuse_singular_rates(parts, t, slopes);
+  for (text::Diagnostic& warning :
+       unstable_branches(parts.program, parts.workspace, t, states, parts.diagram.file))
+    warnings.push_back(std::move(warning));
+  return warnings;
+}
+
+}  // namespace oblique::solve
