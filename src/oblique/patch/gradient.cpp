@@ -46,7 +46,8 @@ void add_residual(Circuit& circuit, const Residual& residual, Gradients& gradien
   if (sum.size() == 1 && sum.front().weight == 0) sum.clear();
   for (const Residual::Product& product : residual.products) {
     const std::string &a = forms[product.a], &b = forms[product.b];
-    sum.push_back({product.weight, writer.add_product(product.a == product.b ? a + "2" : a + "_" + b, a, b)});
+    sum.push_back({product.weight,
+                   writer.add_product(product.a == product.b ? a + "2" : fmt::format("{}_{}", a, b), a, b)});
   }
   const std::string gap =
       writer.add_block(residual.name + "_gap", "summer", {diagram::wire_setting("in", sum)},
