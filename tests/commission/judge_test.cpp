@@ -12,6 +12,7 @@
 #include <oblique/mechanism/model/read_mechanism.h>
 #include <oblique/network/assembly/network.h>
 #include <oblique/network/program/program.h>
+#include <oblique/patch/triad_split.h>
 #include <oblique/solve/run.h>
 
 namespace oblique::commission {

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <oblique/text/expression_printer.h>
+
 #include "small_library.h"
 
 namespace oblique::diagram {

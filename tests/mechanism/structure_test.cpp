@@ -245,9 +245,9 @@ line = { point = "L", along = ["D", "E"], of = "T", angle = "0 deg" }
 crank = { turns = "AB", about = "A", speed = 1, start = "45 deg" }
 )"));
   ASSERT_EQ(pin.groups.size(), 2U);
-  EXPECT_EQ(pin.groups[1].kind, GroupKind::prp);
+  EXPECT_EQ(pin.groups[1].form.kind, GroupKind::prp);
   const Structure yoke = find_groups(shipped("scotch-yoke.toml"));
-  EXPECT_EQ(yoke.groups.at(1).kind, GroupKind::rpp);
+  EXPECT_EQ(yoke.groups.at(1).form.kind, GroupKind::rpp);
 }
 
 // Four links in a closed loop, of which one is hinged to the crank and one to the frame (Artobolevsky calls a

@@ -69,7 +69,10 @@ TEST(LoopMatrix, OfALongLoopSolvesWhatIsKnown) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
     const Chain chain(seed);
     Eigen::MatrixXd known(static_cast<Eigen::Index>(kSize), 2);
-    for (Eigen::Index i = 0; i < known.rows(); ++i) known.row(i) << std::sin(i + 1.0), 1.0 / (i + 1.0);
+    for (Eigen::Index i = 0; i < known.rows(); ++i) {
+      const double number = static_cast<double>(i) + 1;
+      known.row(i) << std::sin(number), 1 / number;
+    }
     Eigen::MatrixXd sides = Eigen::MatrixXd::Zero(known.rows(), 2);
     for (const MatrixEntry& entry : chain.code.slopes)
       sides.row(entry.row) += chain.slots[entry.slot] * known.row(entry.column);

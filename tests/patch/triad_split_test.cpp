@@ -9,6 +9,8 @@
 #include <gtest/gtest.h>
 
 #include <oblique/mechanism/model/read_mechanism.h>
+#include <oblique/mechanism/motion/motion.h>
+#include <oblique/patch/patch.h>
 #include <oblique/text/document.h>
 #include <oblique/text/file.h>
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <oblique/diagram/names.h>
+#include <oblique/text/expression_parser.h>
 #include <oblique/text/table_reader.h>
 
 namespace oblique::diagram {

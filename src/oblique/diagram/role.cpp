@@ -10,6 +10,7 @@
 #include <fmt/ranges.h>
 
 #include <oblique/diagram/block_definition.h>
+#include <oblique/text/expression_parser.h>
 
 namespace oblique::diagram {
 namespace {

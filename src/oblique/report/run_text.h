@@ -6,8 +6,8 @@
 
 #include <oblique/network/program/program.h>
 #include <oblique/report/text_table.h>
-#include <oblique/solve/operating_point/static_test.h>
 #include <oblique/solve/run.h>
+#include <oblique/solve/static_test.h>
 #include <oblique/text/diagnostic.h>
 
 /// What a run says to people, part by part. Not installed.
