@@ -98,7 +98,7 @@ void EventSearch::look(double t, const Interpolant& solution, Look& at) {
     return here.has_value();
   });
   reached_ = reached;
-  if (reached != t) {
+  if (!here) {
     if (workspace_.trouble().failure != network::LoopFailure::lost)
       throw loop_error(program_, workspace_.trouble(), t, file_);
     // The branch may end because a switch is due that does not depend on it.
