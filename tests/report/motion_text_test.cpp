@@ -77,6 +77,10 @@ TEST(MotionText, SaysWhereTheDriveStandsAtEachEvent) {
   EXPECT_EQ(
       events_text(mechanism, structure, {{MotionEvent::Kind::limit, 0.0, 0}}),
       "limit at " + drive + " = 0 deg: a dead centre of " + group + ", which cannot be assembled beyond\n");
+  EXPECT_EQ(events_text(mechanism, structure, {{MotionEvent::Kind::lost, 0.0, 0}}),
+            "lost at " + drive + " = 0 deg: no step leads " + group +
+                " on, and that this is a limit is not proven\n");
+  EXPECT_TRUE((MotionEvent{MotionEvent::Kind::lost}.ends()));
   const std::vector<MotionEvent> many(10, {MotionEvent::Kind::change, 0.0, 0});
   const std::string text = events_text(mechanism, structure, many);
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 9);

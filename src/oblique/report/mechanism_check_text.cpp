@@ -59,10 +59,11 @@ class Report {
     mechanism::DriveClock clock(mechanism_);
     const auto limit = [&](const char* word, const std::optional<mechanism::MotionEvent>& event) {
       if (!event) return std::string();
-      return fmt::format(
-          " {} {} ({}{})", word, drive_text(check_, clock.at(0, event->time).value),
-          check_.structure.groups[event->group].name,
-          event->kind == mechanism::MotionEvent::Kind::infinity ? ", which is at infinity" : "");
+      std::string_view kind;
+      if (event->kind == mechanism::MotionEvent::Kind::infinity) kind = ", which is at infinity";
+      if (event->kind == mechanism::MotionEvent::Kind::lost) kind = ", which is not proven to be a limit";
+      return fmt::format(" {} {} ({}{})", word, drive_text(check_, clock.at(0, event->time).value),
+                         check_.structure.groups[event->group].name, kind);
     };
     if (tour.range.backward || tour.range.forward) {
       text_ += fmt::format("  range of '{}':{}{}; what follows is about that range\n",

@@ -33,6 +33,9 @@ std::string event_text(mechanism::MotionEvent::Kind kind, const std::string& whe
     case mechanism::MotionEvent::Kind::infinity:
       return fmt::format("infinity at {}: {} recedes to infinity and comes back from the other side\n", where,
                          group);
+    case mechanism::MotionEvent::Kind::lost:
+      return fmt::format("lost at {}: no step leads {} on, and that this is a limit is not proven\n", where,
+                         group);
   }
   return {};
 }

@@ -16,8 +16,9 @@ using Eigen::Vector2d;
 /// triangle is then a few times what counts as collinear, so that rates still have a value.
 constexpr double kSingular = 1e-6;
 /// Within these ways of the fastest drive [rad] what is left out beyond the second order is rounding: of a
-/// crossing it is of third order in the way, of a fold of third order in its root.
-constexpr double kNearCrossing = 1e-5, kNearFold = 1e-9;
+/// crossing it is of third order in the way, of a fold of third order in its root. Where no step leads
+/// nearer, one of two folds a little way apart, farther away is near.
+constexpr double kNearCrossing = 1e-5, kNearFold = 1e-9, kNearLastFold = 1e-6;
 /// From this many sizes away on a group may go to infinity.
 constexpr double kFar = 300;
 
@@ -221,9 +222,10 @@ Crossing cross_at(BranchWalk& walk, std::size_t g, double t, bool is_last) {
     if (crossing != Crossing::regular) return crossing;
   }
   const auto fold = singularity.fold(direction);
-  if (fold && std::abs(*fold) < kNearFold * radian) return end_at(walk, g, t, *fold, singularity);
+  const double near = is_last ? kNearLastFold : kNearFold;
+  if (fold && std::abs(*fold) < near * radian) return end_at(walk, g, t, *fold, singularity);
   if (!is_last) return Crossing::regular;
-  walk.events.push_back({MotionEvent::Kind::limit, walk.time, g});  // no step leads on
+  walk.events.push_back({MotionEvent::Kind::lost, walk.time, g});
   walk.step = walk.duration_of_degree;
   return Crossing::limit;
 }
