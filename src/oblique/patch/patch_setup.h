@@ -17,7 +17,7 @@ mechanism::Motion patch_motion(const mechanism::Mechanism& mechanism, const mech
 /// What is known before the first block is written. The options have to outlive it.
 struct PatchSetup {
   /// Throws as `MachineTime`, `decompose`, `period` and `find_scaling`.
-  PatchSetup(const mechanism::Mechanism& mechanism, const PatchOptions& options);
+  PatchSetup(const mechanism::Mechanism& whole, const PatchOptions& patch_options);
 
   /// In the machine's time.
   const mechanism::Mechanism& mechanism() const { return time.slowed; }

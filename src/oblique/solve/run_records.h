@@ -23,7 +23,7 @@ struct OverloadRecord {
   double suggested_scale = 1;  ///< the factor that brings it back into the range: 1/2, 1/5, 1/10, …
 };
 
-/// Something that happened between two smooth stretches of a run.
+/// Something that happened between two smooth segments of a run.
 struct EventRecord {
   double time = 0;  ///< [s]
   std::string what;

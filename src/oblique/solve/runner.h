@@ -14,7 +14,7 @@ struct Observed {
   long steps = 0;
 };
 
-/// One run from its start to its end: smooth stretches, and events between them. Its algebraic loops begin
+/// One run from its start to its end: smooth segments, and events between them. Its algebraic loops begin
 /// from `loop_start`. With `may_end_unseen` it ends early where it must be made again: it has met growth that
 /// it did not see, long ago. Throws SolveError. Not installed.
 Run run_once(const network::Program& program, const diagram::FlatDiagram& diagram, const RunOptions& options,

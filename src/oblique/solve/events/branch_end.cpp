@@ -122,7 +122,7 @@ std::optional<double> BranchWatch::search(double from, double to, double longest
   return std::nullopt;
 }
 
-BranchWatch::Ahead BranchWatch::look_ahead(double& t, double stretch_end, std::vector<double>& states,
+BranchWatch::Ahead BranchWatch::look_ahead(double& t, double segment_end, std::vector<double>& states,
                                            const Interpolant& solution) {
   if (!any_ || workspace_.trouble().failure != network::LoopFailure::lost) return Ahead::nothing;
   std::vector<double> slopes(states.size());
@@ -133,7 +133,7 @@ BranchWatch::Ahead BranchWatch::look_ahead(double& t, double stretch_end, std::v
   const bool twice = tried_ && t <= *tried_;
   tried_ = t;
   const double sight = (twice ? 1e-6 : 1e-9) * span_;
-  const auto end = search(t, std::min(t + sight, stretch_end), sight, ahead);
+  const auto end = search(t, std::min(t + sight, segment_end), sight, ahead);
   if (!end) return twice ? Ahead::nothing : Ahead::not_yet;
   ahead.states_at(*end, states);
   t = *end;

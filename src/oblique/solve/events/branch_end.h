@@ -55,7 +55,7 @@ class BranchWatch {
   };
   /// What lies ahead where the solver has found no step from (t, states), which go on beyond an end in sight
   /// along a straight line.
-  Ahead look_ahead(double& t, double stretch_end, std::vector<double>& states, const Interpolant& solution);
+  Ahead look_ahead(double& t, double segment_end, std::vector<double>& states, const Interpolant& solution);
 
   /// Lets the amplifiers of all loops go, infinitely fast, to where they rest at (t, states), after a branch
   /// has ended there. A loop that has no rest in reach but a solution that goes on smoothly keeps to that.

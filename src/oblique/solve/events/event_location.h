@@ -33,7 +33,7 @@ class EventLocation {
 
   const Announced& announced() const { return announced_; }
   /// Withdraws switches that follow time alone and are not due yet at t, where the surfaces were evaluated
-  /// last: the stretch may have ended before their time.
+  /// last: the segment may have ended before their time.
   void withdraw_early(double t);
   /// Withdraws switches whose surfaces have moved away from zero; or all.
   void withdraw_past(bool all);

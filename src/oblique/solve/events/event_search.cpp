@@ -112,31 +112,31 @@ void EventSearch::look(double t, const Interpolant& solution, Look& at) {
   const std::size_t n = surfaces_.size();
   at.surfaces = surfaces_;
   at.roundings.resize(n);
-  at.overdue.resize(n);
+  at.crossed.resize(n);
   at.rates.resize(n);
   for (std::size_t s = 0; s < n; ++s) {
     const bool closed = workspace_.memory(program_.switches()[s].memory) == 1;
     at.roundings[s] = thresholds_.rounding_of(s, here->compared_size(s));
-    at.overdue[s] = (closed ? -surfaces_[s] : surfaces_[s]) - thresholds_.along_solution(s, at.roundings[s]);
+    at.crossed[s] = (closed ? -surfaces_[s] : surfaces_[s]) - thresholds_.along_solution(s, at.roundings[s]);
     at.rates[s] = closed ? -surface_rates_[s] : surface_rates_[s];
-    if (slide_.rests(s)) at.overdue[s] -= SlidingMode::drift();
-    if (program_.switches()[s].rate || slide_.holds(s) || slide_.follows(s)) at.overdue[s] = -kInfinity;
+    if (slide_.rests(s)) at.crossed[s] -= SlidingMode::drift();
+    if (program_.switches()[s].rate || slide_.holds(s) || slide_.follows(s)) at.crossed[s] = -kInfinity;
   }
   for (const double share : slide_.shares()) {
-    at.overdue.push_back(-share - kEdge);
-    at.overdue.push_back(share - 1 - kEdge);
+    at.crossed.push_back(-share - kEdge);
+    at.crossed.push_back(share - 1 - kEdge);
   }
   for (std::size_t unit = 0; unit < slide_.units().size(); ++unit)
-    at.overdue.push_back(slide_.repulsion(unit).value_or(kAttracted) - SlidingMode::kNoRepulsion);
+    at.crossed.push_back(slide_.repulsion(unit).value_or(kAttracted) - SlidingMode::kNoRepulsion);
   for (std::size_t side = 0; side < slide_.sides(); ++side) {
     for (std::size_t f = 0; f < slide_.followers().size(); ++f)
-      at.overdue.push_back(slide_.overdue(side, f) - thresholds_[slide_.followers()[f]]);
+      at.crossed.push_back(slide_.crossed(side, f) - thresholds_[slide_.followers()[f]]);
   }
-  at.rates.resize(at.overdue.size(), std::numeric_limits<double>::quiet_NaN());
+  at.rates.resize(at.crossed.size(), std::numeric_limits<double>::quiet_NaN());
 }
 
 bool EventSearch::is_due(const Look& at) const {
-  return std::any_of(at.overdue.begin(), at.overdue.end(), [](double value) { return value > 0; });
+  return std::any_of(at.crossed.begin(), at.crossed.end(), [](double value) { return value > 0; });
 }
 
 std::optional<EventSearch::Found> EventSearch::search(double from, std::span<const double> looks,
@@ -145,7 +145,7 @@ std::optional<EventSearch::Found> EventSearch::search(double from, std::span<con
   reached_ = looks.empty() ? from : looks.back();  // where the solver was last
   look(from, solution, left);
   // Where the solver starts anew a surface may still lie within rounding of zero on the wrong side.
-  for (double& value : left.overdue) value = std::min(value, 0.0);
+  for (double& value : left.crossed) value = std::min(value, 0.0);
   for (const double to : looks) {
     const double begin = left.time;
     look(to, solution, right);
@@ -180,18 +180,18 @@ std::optional<EventSearch::Found> EventSearch::search(double from, std::span<con
 void EventSearch::leave_behind(Look& at) {
   for (std::size_t s = 0; s < at.surfaces.size(); ++s) {
     if (const auto less = thresholds_.leave_behind(s, at.surfaces[s], at.roundings[s]))
-      at.overdue[s] += *less;
+      at.crossed[s] += *less;
   }
 }
 
 std::optional<EventSearch::Found> EventSearch::between(const Look& from, const Look& to,
                                                        const Interpolant& solution) {
   const double length = to.time - from.time;
-  const std::size_t n = to.overdue.size();
+  const std::size_t n = to.crossed.size();
   bool clear = true;
   for (std::size_t k = 0; k < n && clear; ++k) {
     const double reach = length * std::max(std::abs(from.rates[k]), std::abs(to.rates[k]));
-    const double nearest = std::max(from.overdue[k], to.overdue[k]);
+    const double nearest = std::max(from.crossed[k], to.crossed[k]);
     clear = nearest == -kInfinity || nearest + reach < 0;
   }
   if (clear) return std::nullopt;
@@ -199,14 +199,14 @@ std::optional<EventSearch::Found> EventSearch::between(const Look& from, const L
   look(from.time + length / 2, solution, middle);
   std::vector<double> errors(n, 0.0);
   for (std::size_t k = 0; k < n; ++k) {
-    if (to.overdue[k] == -kInfinity || from.overdue[k] == -kInfinity) continue;
-    const Cubic cubic = cubic_of(from.overdue[k], to.overdue[k], from.rates[k], to.rates[k], length);
+    if (to.crossed[k] == -kInfinity || from.crossed[k] == -kInfinity) continue;
+    const Cubic cubic = cubic_of(from.crossed[k], to.crossed[k], from.rates[k], to.rates[k], length);
     // Half a part has a sixteenth of the error of a cubic; twice that to be safe.
-    errors[k] = std::abs(cubic.value(0.5) - middle.overdue[k]) / 8;
+    errors[k] = std::abs(cubic.value(0.5) - middle.crossed[k]) / 8;
   }
   splits_left_ = kMostSplits;
   if (auto found = split(from, middle, errors, 0, solution)) return found;
-  for (double& value : middle.overdue) value = std::min(value, 0.0);
+  for (double& value : middle.crossed) value = std::min(value, 0.0);
   return split(middle, to, errors, 0, solution);
 }
 
@@ -222,8 +222,8 @@ std::optional<EventSearch::Found> EventSearch::split(const Look& from, const Loo
   }
   double highest = 0, at = 0.5;
   bool hides = false;
-  for (std::size_t k = 0; k < to.overdue.size(); ++k) {
-    const double a = from.overdue[k], b = to.overdue[k];
+  for (std::size_t k = 0; k < to.crossed.size(); ++k) {
+    const double a = from.crossed[k], b = to.crossed[k];
     if (a == -kInfinity || b == -kInfinity || b > 0) continue;
     const Cubic cubic = cubic_of(a, b, from.rates[k], to.rates[k], length);
     const auto top = cubic.top();
@@ -253,17 +253,17 @@ std::optional<EventSearch::Found> EventSearch::split(const Look& from, const Loo
   // their lengths; twice that to be safe.
   std::vector<double> before(errors.size(), 0.0), after(errors.size(), 0.0);
   for (std::size_t k = 0; k < errors.size(); ++k) {
-    const double a = from.overdue[k], b = to.overdue[k];
+    const double a = from.crossed[k], b = to.crossed[k];
     if (a == -kInfinity || b == -kInfinity) continue;
     const double off =
-        std::abs(cubic_of(a, b, from.rates[k], to.rates[k], length).value(at) - between.overdue[k]);
+        std::abs(cubic_of(a, b, from.rates[k], to.rates[k], length).value(at) - between.crossed[k]);
     if (off <= 4 * std::numeric_limits<double>::epsilon() * (std::abs(a) + std::abs(b))) continue;
     const double largest = std::min(errors[k], off / (16 * at * at * (1 - at) * (1 - at)));
     before[k] = std::min(2 * std::pow(at, 4), 1.0) * largest;
     after[k] = std::min(2 * std::pow(1 - at, 4), 1.0) * largest;
   }
   if (auto found = split(from, between, before, depth + 1, solution)) return found;
-  for (double& value : between.overdue) value = std::min(value, 0.0);
+  for (double& value : between.crossed) value = std::min(value, 0.0);
   return split(between, to, after, depth + 1, solution);
 }
 
@@ -274,9 +274,9 @@ EventSearch::Found EventSearch::locate(Look from, Look to, const Interpolant& so
   bool halve = false;
   while (to.time - from.time > time_resolution(to.time)) {
     double at = kInfinity;
-    for (std::size_t s = 0; s < to.overdue.size(); ++s) {
-      if (to.overdue[s] <= 0 || !std::isfinite(from.overdue[s])) continue;
-      const double part = from.overdue[s] / (from.overdue[s] - to.overdue[s]);
+    for (std::size_t s = 0; s < to.crossed.size(); ++s) {
+      if (to.crossed[s] <= 0 || !std::isfinite(from.crossed[s])) continue;
+      const double part = from.crossed[s] / (from.crossed[s] - to.crossed[s]);
       at = std::min(at, from.time + part * (to.time - from.time));
     }
     const double half = from.time + (to.time - from.time) / 2;
@@ -292,8 +292,8 @@ EventSearch::Found EventSearch::locate(Look from, Look to, const Interpolant& so
   Found found;
   found.time = to.time;
   const std::size_t n = surfaces_.size();
-  for (std::size_t k = 0; k < to.overdue.size(); ++k) {
-    if (!(to.overdue[k] > 0)) continue;
+  for (std::size_t k = 0; k < to.crossed.size(); ++k) {
+    if (!(to.crossed[k] > 0)) continue;
     if (k < n) {
       found.turned.emplace_back(static_cast<std::uint32_t>(k),
                                 1 - workspace_.memory(program_.switches()[k].memory));

@@ -52,7 +52,7 @@ class EventSearch {
   struct Look {
     double time = 0;
     std::vector<double> surfaces, roundings;  ///< of each switch
-    std::vector<double> overdue, rates;
+    std::vector<double> crossed, rates;
     double phase_rate = 0;  ///< [rad/s]
   };
 

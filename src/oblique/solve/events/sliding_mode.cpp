@@ -238,7 +238,7 @@ void SlidingMode::mixed_rates(std::span<double> rates) const {
   }
 }
 
-double SlidingMode::overdue(std::size_t side, std::size_t follower) const {
+double SlidingMode::crossed(std::size_t side, std::size_t follower) const {
   const SlideSide& at = sides_[side];
   const std::size_t s = followers_[follower];
   const double position = at.positions[at.positions.size() - followers_.size() + follower].second;

@@ -71,7 +71,7 @@ class SlidingMode {
   static double drift() { return 1e-7; }
   std::size_t sides() const { return sides_.size(); }
   /// By how much a follower's surface has passed zero against its position on a side.
-  double overdue(std::size_t side, std::size_t follower) const;
+  double crossed(std::size_t side, std::size_t follower) const;
 
  private:
   void find_followers();

@@ -40,7 +40,7 @@ struct SolverFailure {
 /// measured by the state that is worst beside its tolerance, so that no number of other states hides it. Owns
 /// all of SUNDIALS' memory.
 ///
-/// CVODES' own clock starts at zero with every start, so that a stretch far shorter than what the time itself
+/// CVODES' own clock starts at zero with every start, so that a segment far shorter than what the time itself
 /// resolves late in a run keeps its length.
 class CvodesSolver final : public Interpolant {
  public:

@@ -29,7 +29,7 @@ class GrowthWatch {
   /// All must outlive the watch.
   GrowthWatch(OdeSystem& system, const SolverSettings& settings);
 
-  /// Begins a smooth stretch at (t, x).
+  /// Begins a smooth segment at (t, x).
   void restart(double t, std::span<const double> x);
 
   /// Looks at the step to (t, x).

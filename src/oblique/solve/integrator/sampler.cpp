@@ -65,7 +65,7 @@ void Sampler::advance(double t, const Interpolant& solution) {
   }
 }
 
-/// In the middle of the stretch and at its ends, and once more where a parabola through these has its top:
+/// In the middle of the segment and at its ends, and once more where a parabola through these has its top:
 /// what is missed is of third order in the solver's step.
 void Sampler::watch(double from, double to, const Interpolant& solution) {
   if (!options_.extremes) return;

@@ -22,7 +22,7 @@ class Sampler {
   /// Adds every row from the last one up to `t`.
   void advance(double t, const Interpolant& solution);
 
-  /// Looks for the extremes of the outputs in a stretch without events.
+  /// Looks for the extremes of the outputs in a segment without events.
   void watch(double from, double to, const Interpolant& solution);
 
   /// What the rows alone warn of.
