@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the search for events knows beforehand: rates of surfaces, the structure of switches, sources.
+// What the search for events knows beforehand: rates of surfaces, the structure of switches.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -10,7 +10,6 @@ namespace oblique::network {
 namespace {
 
 using testing::Compiled;
-using testing::shipped_blocks_and;
 
 /// The surface of switch 0 at (t, x).
 double surface_at(const Program& program, double t, const std::vector<double>& x) {
@@ -124,19 +123,6 @@ k = { type = "sign", in = "x" }
   EXPECT_TRUE(structure.depends(number("c"), number("c")));
   EXPECT_FALSE(structure.depends(number("k"), number("c")));
   EXPECT_FALSE(structure.depends(number("k"), number("k")));
-}
-
-TEST(Sources, AreTheLargestPartsThatFollowTheTimeAlone) {
-  const auto sources = [](const char* blocks) { return Compiled(blocks).program.sources().size(); };
-  // The square of the whole sum is one source; a ramp is none, since nothing hides on a straight line.
-  EXPECT_EQ(sources(R"(w = { type = "sine-source" }
-r = { type = "ramp" }
-s = { type = "summer", in = ["w", "r"] }
-q = { type = "squarer", in = "s" }
-x = { type = "integrator", in = ["q", "-x"] }
-)"),
-            3U);  // and the outputs w and s, which are shown
-  EXPECT_EQ(sources("r = { type = \"ramp\" }\nx = { type = \"integrator\", in = [\"r\", \"-x\"] }\n"), 0U);
 }
 
 }  // namespace
