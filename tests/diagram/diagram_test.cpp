@@ -181,8 +181,8 @@ TEST(ParseDiagram, ChecksBlocks) {
 }
 
 TEST(ParseDiagram, ChecksMachineAndRun) {
-  EXPECT_EQ(diagram_message("[machine]\nprofile = \"tr-20\"\n"),
-            "d.toml:5:11: there is no machine 'tr-20'\n  remedy: did you mean 'tr-10'? 'machines' "
+  EXPECT_EQ(diagram_message("[machine]\nprofile = \"tr-11\"\n"),
+            "d.toml:5:11: there is no machine 'tr-11'\n  remedy: did you mean 'tr-10'? 'machines' "
             "lists all");
   EXPECT_THAT(diagram_message("[machine]\ninverting = 1\n"),
               HasSubstr("'inverting' of [machine] is a number"));

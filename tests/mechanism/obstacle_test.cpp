@@ -54,8 +54,8 @@ TEST(Obstacle, IsFoundBetweenPositionsHoweverShort) {
       const double limit = (17 - (5 - size) * (5 - size)) / 8;  // cos φ where it opens
       // the limit is told to 1e-11 rad; flat within 32 ε of 5 counts as a dead centre, 1e-14 more of |BD|
       EXPECT_LE(std::cos(angle), limit + 1e-11) << start << " " << size;
-      // the two folds lie √(10 size) rad apart: that each is one, and not only a place without a next step, is
-      // proven
+      // the two folds lie √(10 size) rad apart: that each is one, and not only a place without a next step,
+      // is proven
       const Mechanism open = four_bar(2.5, 2.5 - size, start > 179 ? 90 : start);
       const auto range = find_range(open, decompose(open));
       for (const auto& end : {range.forward, range.backward}) {
