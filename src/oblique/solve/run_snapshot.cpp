@@ -28,6 +28,7 @@ RunSnapshot::RunSnapshot(double t, const RunParts& parts)
       states_(parts.states),
       memories_(parts.workspace.memories().begin(), parts.workspace.memories().end()),
       conditions_(parts.switching.conditions()),
+      sliding_(parts.switching.sliding()),
       position_(parts.clock.position()) {
   for (std::size_t u = 0; u < parts.program.unknowns().size(); ++u)
     unknowns_.push_back(parts.workspace.unknown(u));
@@ -39,6 +40,7 @@ RunSnapshot::RunSnapshot(const RunState& state)
       memories_(values_of(state.memories)),
       unknowns_(values_of(state.unknowns)),
       conditions_(state.conditions),
+      sliding_(state.sliding),
       position_(state.position) {}
 
 void RunSnapshot::restore(const RunParts& parts) const {
@@ -46,7 +48,7 @@ void RunSnapshot::restore(const RunParts& parts) const {
   for (std::size_t u = 0; u < unknowns_.size(); ++u) parts.workspace.set_unknown(u, unknowns_[u]);
   parts.workspace.load_memories(memories_);
   parts.clock.restore(position_);
-  parts.switching.restore(conditions_);
+  parts.switching.restore(conditions_, sliding_);
 }
 
 RunState RunSnapshot::named(const network::Program& program) const {
@@ -56,6 +58,7 @@ RunState RunSnapshot::named(const network::Program& program) const {
   state.unknowns = named_by(program.unknowns(), unknowns_);
   state.memories = named_by(program.memories(), memories_);
   state.conditions = conditions_;
+  state.sliding = sliding_;
   state.position = position_;
   return state;
 }

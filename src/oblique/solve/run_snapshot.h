@@ -28,14 +28,14 @@ class RunSnapshot {
   explicit RunSnapshot(const RunState& state);
 
   double time() const { return time_; }
-  /// Brings the parts back to this state; what slides is to be settled.
+  /// Brings the parts back to this state; what slides is to be resumed.
   void restore(const RunParts& parts) const;
   RunState named(const network::Program& program) const;
 
  private:
   double time_ = 0;
   std::vector<double> states_, memories_, unknowns_;
-  std::vector<bool> conditions_;
+  std::vector<bool> conditions_, sliding_;
   PhaseClock::Position position_;
 };
 

@@ -24,6 +24,10 @@ void write_numbers(std::string_view table, const RunState::Named& values, std::s
   }
 }
 
+void write_flags(std::string_view key, const std::vector<bool>& flags, std::string& out) {
+  out += fmt::format("{} = [{}]\n", key, fmt::join(std::vector<int>(flags.begin(), flags.end()), ", "));
+}
+
 RunState::Named read_numbers(text::TableReader& reader, std::string_view name, const std::string& file,
                              text::Diagnostics& diagnostics) {
   RunState::Named values;
@@ -44,10 +48,10 @@ RunState::Named read_numbers(text::TableReader& reader, std::string_view name, c
   return values;
 }
 
-/// An array of numbers; empty where there is none.
-std::vector<double> read_list(text::TableReader& reader, std::string_view key,
-                              text::Diagnostics& diagnostics) {
-  std::vector<double> values;
+/// An array of numbers that are 0 or not; empty where there is none.
+std::vector<bool> read_flags(text::TableReader& reader, std::string_view key,
+                             text::Diagnostics& diagnostics) {
+  std::vector<bool> values;
   const text::Value* const list = reader.find(key);
   if (list == nullptr) return values;
   if (list->kind != text::Value::Kind::array) {
@@ -60,7 +64,7 @@ std::vector<double> read_list(text::TableReader& reader, std::string_view key,
                        fmt::format("an element of '{}' is {}", key, text::kind_name(element.kind)),
                        "a number",
                        {}});
-    values.push_back(element.number);
+    values.push_back(element.number != 0);
   }
   return values;
 }
@@ -87,13 +91,22 @@ void compare_names(const RunState::Named& saved, const Things& things, std::stri
                                          "parameters may change between runs, blocks and wires may not"});
 }
 
+void compare_counts(std::size_t saved, std::size_t here, std::string_view what, const std::string& file) {
+  if (saved == here) return;
+  throw text::ReadError(text::Diagnostic{
+      {file, {}},
+      fmt::format("this is the state of another diagram: it has {} {}, the diagram {}", saved, what, here),
+      "the state of a run of this diagram",
+      {}});
+}
+
 }  // namespace
 
 std::string to_text(const RunState& state) {
   std::string out = "# Where a run stood, and from where it goes on.\nformat = \"oblique-state/1\"\n";
   out += fmt::format("time = {}\n", state.time);
-  out += fmt::format("conditions = [{}]\n",
-                     fmt::join(std::vector<int>(state.conditions.begin(), state.conditions.end()), ", "));
+  write_flags("conditions", state.conditions, out);
+  write_flags("sliding", state.sliding, out);
   out += fmt::format("\n[timeline]\nphase = {}\ncycle = {}\nbegin = {}\n", state.position.phase,
                      state.position.cycle, state.position.begin);
   write_numbers("states", state.states, out);
@@ -113,8 +126,8 @@ RunState parse_run_state(std::string_view text, const std::string& file) {
   diagnostics.throw_if_any<text::ReadError>();
   RunState state;
   state.time = reader.required_quantity("time", "s").value_or(0);
-  for (const double condition : read_list(reader, "conditions", diagnostics))
-    state.conditions.push_back(condition != 0);
+  state.conditions = read_flags(reader, "conditions", diagnostics);
+  state.sliding = read_flags(reader, "sliding", diagnostics);
   if (const text::Value* const table = reader.table("timeline")) {
     text::TableReader timeline(file, *table, "[timeline]", diagnostics);
     state.position.phase = static_cast<std::size_t>(timeline.required_quantity("phase", "1").value_or(0));
@@ -134,13 +147,9 @@ void check_run_state(const RunState& state, const network::Program& program, con
   compare_names(state.states, program.states(), "state", file);
   compare_names(state.unknowns, program.unknowns(), "unknown", file);
   compare_names(state.memories, program.memories(), "memory", file);
-  if (state.conditions.size() == program.events().size()) return;
-  throw text::ReadError(text::Diagnostic{
-      {file, {}},
-      fmt::format("this is the state of another diagram: it has {} conditions of events, the diagram {}",
-                  state.conditions.size(), program.events().size()),
-      "the state of a run of this diagram",
-      {}});
+  compare_counts(state.conditions.size(), program.events().size(), "conditions of events", file);
+  if (!state.sliding.empty())
+    compare_counts(state.sliding.size(), program.switches().size(), "switches", file);
 }
 
 }  // namespace oblique::solve

@@ -24,6 +24,9 @@ struct RunState {
   Named unknowns;  ///< of algebraic loops: where the next search begins
   Named memories;
   std::vector<bool> conditions;  ///< of events, in the program's order
+  /// Of each switch, in the program's order, whether it slides or rests at zero along with what does. Empty
+  /// where that is not known.
+  std::vector<bool> sliding;
   PhasePosition position;
 };
 

@@ -6,6 +6,7 @@
 #include <oblique/network/program/program.h>
 #include <oblique/solve/events/branch_end.h>
 #include <oblique/solve/integrator/cvodes_solver.h>
+#include <oblique/solve/integrator/lost_outputs.h>
 #include <oblique/solve/integrator/method.h>
 #include <oblique/solve/integrator/overload.h>
 #include <oblique/solve/integrator/phase_clock.h>
@@ -50,7 +51,6 @@ class Runner {
     constexpr double kLooksAStep = 100, kSourceLooksAStep = 10;
     switching_.end_at(options.until);
     switching_.end_when(interruption_);
-    switching_.know_states(refinement.reach);
     switching_.limit_looks(kLooksAStep * static_cast<double>(options.max_steps) + 1e6);
     sources_.limit_looks(kSourceLooksAStep * static_cast<double>(options.max_steps) + 1e6);
     if (options.watch_overloads || options.halt_on_overload)
@@ -60,7 +60,9 @@ class Runner {
   Run run() {
     if (options_.from) {
       resume(*options_.from);
+      switching_.know_states(refinement_.reach);  // what was saved is known as the run knew it that saved it
     } else {
+      switching_.know_states(refinement_.reach);
       warnings_at_start_ = start_run(start_parts(), begin_, states_);
     }
     segments_.follow_phases(begin_);
@@ -86,6 +88,7 @@ class Runner {
       sampler_.result.warnings.insert(sampler_.result.warnings.end(), warnings->begin(), warnings->end());
     for (text::Diagnostic& warning : sampler_.warnings())
       sampler_.result.warnings.push_back(std::move(warning));
+    if (lost_) add_warnings_of_lost_outputs();
     if (overloads_) {
       sampler_.result.peaks = overloads_->peaks();
       sampler_.result.overloads = overloads_->overloads();
@@ -124,7 +127,7 @@ class Runner {
 
   void resume(const RunState& state) {
     RunSnapshot(state).restore(parts());
-    switching_.settle(begin_, states_);
+    switching_.resume(begin_, states_);
   }
 
   /// Whether growth was not seen so long ago that the run, which must be made again, is not worth its end.
@@ -135,13 +138,28 @@ class Runner {
     return steps_ > 2 * *steps_unseen_ + kMore;
   }
 
-  /// What shows that a state is not known: the outputs, then the surfaces of the switches.
-  bool read(double t, const double* x, double* values) {
+  /// But of those that show a state that is too small, which is told of apart.
+  void add_warnings_of_lost_outputs() {
+    std::vector<bool> told(diagram_.outputs.size(), false);
+    for (const SmallState& small : unseen().small) {
+      if (small.reading < told.size()) told[small.reading] = true;
+    }
+    for (text::Diagnostic& warning : lost_->warnings(told))
+      sampler_.result.warnings.push_back(std::move(warning));
+  }
+
+  bool read_outputs(double t, const double* x, double* values) {
     std::vector<double> signals(program_.n_signals());
     if (!switching_.signals(t, x, signals.data())) return false;
     for (const diagram::FlatOutput& output : diagram_.outputs)
       *values++ = output.scale * signals[program_.signal_index(output.signal)];
-    return program_.surfaces(t, x, values, workspace_).has_value();
+    return true;
+  }
+
+  /// What shows that a state is not known: the outputs, then the surfaces of the switches.
+  bool read(double t, const double* x, double* values) {
+    return read_outputs(t, x, values) &&
+           program_.surfaces(t, x, values + diagram_.outputs.size(), workspace_).has_value();
   }
 
   bool goes_on(double t) {
@@ -167,6 +185,8 @@ class Runner {
         [this](double at, const double* x, double* values) { return read(at, x, values); },
         n_outputs + program_.switches().size(), n_outputs);
     small_->advance(t, states_);
+    lost_.emplace(diagram_, settings_,
+                  [this](double at, const double* x, double* values) { return read_outputs(at, x, values); });
     ShortSteps short_steps(
         HiddenMotion(system_, settings_.relative_tolerance,
                      settings_.own_tolerances.empty()
@@ -214,12 +234,14 @@ class Runner {
           short_steps.advance(t, states_, segments_.end());
         }
         small_->advance(t, states_);
+        lost_->advance(t, states_);
         ++steps_;
         if (ends_unseen()) break;
         if (options_.progress && steps_ % kStepsPerReport == 0)
           options_.progress((t - begin_) / (options_.until - begin_));
       }
       small_->end(t, states_);
+      lost_->end(t, states_);
     } catch (const SolverFailure& failure) {
       throw run_error(program_, failure, solver, workspace_, diagram_.file);
     } catch (const Interrupted&) {
@@ -268,6 +290,7 @@ class Runner {
   SolverSettings settings_;
   std::optional<GrowthWatch> growth_;
   std::optional<SmallStates> small_;
+  std::optional<LostOutputs> lost_;
   long steps_ = 0;
   std::optional<long> steps_unseen_;  ///< until growth was first unseen
 

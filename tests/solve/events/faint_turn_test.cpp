@@ -113,6 +113,42 @@ c = { type = "comparator", in = ["one", "-x"] }
   }
 }
 
+// x = e^(−t/τ) is read by a comparator that drives nothing: whatever the steps, it never turns over, and no
+// event is told of that there is not.
+TEST(FaintTurn, OfADecayMakesNoEvents) {
+  const testing::Compiled made(R"(
+x = { type = "transfer-lag", in = "0*x", time_constant = 0.21875, initial = 1 }
+c = { type = "comparator", in = "-x", high = 0.8 }
+)");
+  for (const auto method : {diagram::IntegrationMethod::bdf, diagram::IntegrationMethod::adams}) {
+    for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10}) {
+      RunOptions options;
+      options.until = 20;
+      options.tolerance = tolerance;
+      options.method = method;
+      const auto found = oblique::solve::run(made.program, made.flat, options);
+      EXPECT_EQ(testing::row_values(found, "c").back(), 0) << tolerance;
+      EXPECT_EQ(found.event_count, 0) << tolerance;
+      EXPECT_THAT(found.warnings, IsEmpty()) << tolerance;
+    }
+  }
+}
+
+// Four lags behind a sign, closed by it against its sense, at rest: any solution leaves zero, through
+// infinitely many turns, in a rhythm that nothing gives. So the first that the run sees is decided by errors.
+TEST(FaintTurn, AtTheStartIsToldOf) {
+  const testing::Compiled made(R"(
+x1 = { type = "integrator", in = ["s", "-0.5*x1"], rate = 3.5 }
+x2 = { type = "transfer-lag", in = "-x1", time_constant = 0.09 }
+x3 = { type = "transfer-lag", in = "-x2", time_constant = 0.4 }
+x4 = { type = "transfer-lag", in = "0.3*x3", time_constant = 0.5 }
+s = { type = "sign", in = "-x4" }
+)");
+  const oblique::solve::Run run = testing::run_of(made, {.until = 2});
+  ASSERT_GT(run.event_count, 3);
+  EXPECT_FALSE(run.warnings.empty());
+}
+
 // A kink is passed without an effect: |x| of a decay is as exact on both sides. A jump is not.
 TEST(FaintTurn, WithoutAnEffectIsNoMatter) {
   for (const auto& [type, restarts] : {std::pair("absolute-value", 0), std::pair("comparator", 1)}) {

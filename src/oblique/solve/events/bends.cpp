@@ -10,12 +10,15 @@
 
 namespace oblique::solve {
 
+bool switch_only_bends(const network::Program& program, const network::Evaluation& here, std::uint32_t s) {
+  return program.is_ordered(s) &&
+         (program.switches()[s].turning != network::Turning::jumps || here.pieces_meet(s));
+}
+
 bool only_bends(const network::Program& program, const network::Evaluation& here, std::uint32_t unit) {
   const auto& members = program.switch_structure().members[unit];
-  return std::all_of(members.begin(), members.end(), [&](std::uint32_t s) {
-    return program.is_ordered(s) &&
-           (program.switches()[s].turning != network::Turning::jumps || here.pieces_meet(s));
-  });
+  return std::all_of(members.begin(), members.end(),
+                     [&](std::uint32_t s) { return switch_only_bends(program, here, s); });
 }
 
 Bends::Bends(const network::Program& program, network::Workspace& workspace, double span)
@@ -34,11 +37,10 @@ void Bends::clear() {
   std::fill(is_one_.begin(), is_one_.end(), false);
 }
 
-void Bends::add(std::uint32_t unit, bool prefers_above) {
-  const network::SwitchStructure& structure = program_.switch_structure();
-  for (const std::uint32_t s : structure.members[unit]) {
+void Bends::add(std::uint32_t unit, const std::vector<double>& preferred) {
+  for (const std::uint32_t s : program_.switch_structure().members[unit]) {
     is_one_[s] = true;
-    positions_.emplace_back(s, prefers_above != structure.opposite[s] ? 1 : 0);
+    positions_.emplace_back(s, preferred[s]);
   }
 }
 

@@ -12,7 +12,8 @@
 
 namespace oblique::solve {
 
-/// Whether the equations only bend with a unit of switches where `here` was evaluated.
+/// Whether the equations only bend with a switch where `here` was evaluated; or with a unit of switches.
+bool switch_only_bends(const network::Program& program, const network::Evaluation& here, std::uint32_t s);
 bool only_bends(const network::Program& program, const network::Evaluation& here, std::uint32_t unit);
 
 /// Units of switches at which the equations only bend. Wherever these stand, dx/dt at that instant is the
@@ -24,8 +25,8 @@ class Bends {
   Bends(const network::Program& program, network::Workspace& workspace, double span);
 
   void clear();
-  /// Adds a unit; `prefers_above` tells the side that it takes where both are right.
-  void add(std::uint32_t unit, bool prefers_above);
+  /// Adds a unit; `preferred` are the positions of the program's switches to be taken where either is right.
+  void add(std::uint32_t unit, const std::vector<double>& preferred);
   bool any() const { return !positions_.empty(); }
 
   /// The switches, and the positions that they prefer.

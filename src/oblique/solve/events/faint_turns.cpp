@@ -25,7 +25,6 @@ FaintTurns::FaintTurns(const network::Program& program, network::Workspace& work
     : program_(program),
       workspace_(workspace),
       span_(span),
-      farthest_(program.switches().size(), 0.0),
       states_(program.n_states()),
       rates_(program.n_states()),
       surfaces_(program.switches().size()) {}
@@ -51,11 +50,12 @@ void FaintTurns::approach(double from, double at, const std::vector<std::pair<st
 /// By the error of the surface, how far it has been from zero since it turned over last, and how long that is
 /// ago [s].
 bool FaintTurns::is_faint(const Approach& approach, double error, double excursion, double since) const {
-  constexpr double kAfar = 30, kSlow = 10;  // errors
+  constexpr double kAfar = 30, kNear = 10;  // errors
+  constexpr double kSlow = 1000;            // errors: a decay to within them takes some 30 of its times
   constexpr double kPileUp = 1e-4;          // of the run: turns that come more quickly may be those of a ball
-  const bool has_decayed = excursion <= kSlow * error && since >= kPileUp * span_;
+  const bool stays_near = excursion <= kNear * error && since >= kPileUp * span_;
   const bool decays = excursion >= kAfar * error && approach.speed * since <= kSlow * error;
-  return approach.before <= error && farthest_[approach.number] >= kAfar * error && (decays || has_decayed);
+  return approach.before <= error && (decays || stays_near);
 }
 
 std::vector<FaintTurn> FaintTurns::due(double t, const Announced& announced, SwitchSurfaces& surfaces,
@@ -66,7 +66,6 @@ std::vector<FaintTurn> FaintTurns::due(double t, const Announced& announced, Swi
   for (const Approach& approach : approaches_) {
     const std::uint32_t s = approach.number;
     const double excursion = surfaces.thresholds().excursion(s);
-    farthest_[s] = std::max(farthest_[s], excursion);
     const bool told =
         std::any_of(found_.begin(), found_.end(), [s](const FaintTurn& turn) { return turn.number == s; });
     if (!told && announced[s] && is_faint(approach, errors[s], excursion, t - last_turn(s)))

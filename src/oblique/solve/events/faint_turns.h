@@ -17,7 +17,7 @@ namespace oblique::solve {
 /// zero, and never passes it; its states are known to the absolute tolerance, and one of their errors lets it
 /// pass. It is then within its error during the whole step in which it passes, and so slow that in all the
 /// time that it took to come it would not have moved by more than some errors. So is each half-wave of an
-/// oscillation that has decayed. Not installed.
+/// oscillation that has decayed, and what never came farther than its errors. Not installed.
 class FaintTurns {
  public:
   /// `span` is the length of the run [s]. All must outlive this.
@@ -52,7 +52,6 @@ class FaintTurns {
   network::Workspace& workspace_;
   double span_;
   std::vector<Approach> approaches_;
-  std::vector<double> farthest_;  ///< of each surface: how far from zero it has been
   std::vector<double> states_, rates_, surfaces_;
   std::vector<FaintTurn> found_;
 };

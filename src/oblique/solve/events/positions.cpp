@@ -10,6 +10,18 @@
 #include <oblique/solve/events/position_limits.h>
 
 namespace oblique::solve {
+namespace {
+
+/// The switch whose position says where a unit prefers to be: one that jumps, where the others only bend.
+std::uint32_t deciding_member(const network::Program& program, const network::Evaluation& here,
+                              std::uint32_t unit) {
+  const auto& members = program.switch_structure().members[unit];
+  const auto jumping = std::find_if(members.begin(), members.end(),
+                                    [&](std::uint32_t s) { return !switch_only_bends(program, here, s); });
+  return jumping != members.end() ? *jumping : members.front();
+}
+
+}  // namespace
 
 Positions::Positions(const network::Program& program, network::Workspace& workspace, SlidingMode& slide,
                      const Thresholds& thresholds, double span)
@@ -22,7 +34,7 @@ Positions::Positions(const network::Program& program, network::Workspace& worksp
 /// Sets those apart that only bend where there are no others, or too many for trials. Together with a few
 /// others they take part in the trials: they may rest while these slide. The others are left.
 std::vector<std::uint32_t> Positions::set_bends_apart(const std::vector<std::uint32_t>& units,
-                                                      const std::vector<bool>& preferred,
+                                                      const std::vector<double>& preferred,
                                                       const network::Evaluation& here) {
   bends_.clear();
   std::vector<bool> bends(units.size());
@@ -32,7 +44,7 @@ std::vector<std::uint32_t> Positions::set_bends_apart(const std::vector<std::uin
   std::vector<std::uint32_t> others;
   for (std::size_t u = 0; u < units.size(); ++u) {
     if (bends[u]) {
-      bends_.add(units[u], preferred[u]);
+      bends_.add(units[u], preferred);
     } else {
       others.push_back(units[u]);
     }
@@ -52,20 +64,21 @@ Combination Positions::present_sides(const std::vector<std::uint32_t>& units) co
   return present;
 }
 
-bool Positions::choose(const std::vector<std::uint32_t>& units, const std::vector<bool>& preferred_sides,
-                       const network::Evaluation& here, double t, std::span<const double> x) {
+bool Positions::choose(const std::vector<std::uint32_t>& units,
+                       const std::vector<double>& preferred_positions, const network::Evaluation& here,
+                       double t, std::span<const double> x) {
   undecided_.clear();
   resting_.clear();
-  const std::vector<std::uint32_t> tried = set_bends_apart(units, preferred_sides, here);
+  const std::vector<std::uint32_t> tried = set_bends_apart(units, preferred_positions, here);
   if (tried.size() > kMostUnits) return false;
   Combination preferred = 0;
   for (std::size_t u = 0; u < tried.size(); ++u) {
-    const auto at = std::find(units.begin(), units.end(), tried[u]) - units.begin();
-    if (preferred_sides[static_cast<std::size_t>(at)]) preferred |= 1U << u;
+    const std::uint32_t s = deciding_member(program_, here, tried[u]);
+    if ((preferred_positions[s] == 1) != program_.switch_structure().opposite[s]) preferred |= 1U << u;
   }
   const Combination present = present_sides(tried);
   trials_.run(tried, bends_, t, x);
-  if (const auto sides = standing(preferred)) return take(*sides, t, x);
+  if (const auto sides = standing(preferred)) return take(*sides, preferred_positions, t, x);
   if (slide(present, t, x)) return true;
   trials_.take_back();
   return false;
@@ -88,14 +101,39 @@ std::optional<Combination> Positions::standing(Combination preferred) const {
 }
 
 /// Places all as a combination has them, and notes what else it tells.
-bool Positions::take(Combination sides, double t, std::span<const double> x) {
+bool Positions::take(Combination sides, const std::vector<double>& preferred, double t,
+                     std::span<const double> x) {
   for (std::size_t u = 0; u < trials_.units().size(); ++u) {
     if (trials_.rests(sides, u)) resting_.push_back(trials_.units()[u]);
     if (trials_.is_undecided(sides, u)) undecided_.push_back(trials_.units()[u]);
   }
   if (!trials_.place(sides, bends_, t, x)) return false;
+  for (const std::uint32_t unit : resting_) prefer_where_nothing_changes(unit, preferred, t, x);
   resting_.insert(resting_.end(), bends_.resting().begin(), bends_.resting().end());
   return true;
+}
+
+/// Puts the switches of a unit that stays at zero where each prefers to be, which no side of it may be: none
+/// of them need hold at zero. But only where the equations are then the same.
+void Positions::prefer_where_nothing_changes(std::uint32_t unit, const std::vector<double>& preferred,
+                                             double t, std::span<const double> x) {
+  const auto& members = program_.switch_structure().members[unit];
+  const auto is_preferred = [&](std::uint32_t s) {
+    return workspace_.memory(program_.switches()[s].memory) == preferred[s];
+  };
+  if (std::all_of(members.begin(), members.end(), is_preferred)) return;
+  const std::vector<double> positions(workspace_.memories().begin(), workspace_.memories().end());
+  using Equations = std::pair<std::vector<double>, std::vector<double>>;  // dx/dt and surfaces
+  const auto evaluate = [&]() -> std::optional<Equations> {
+    Equations found{std::vector<double>(program_.n_states()), std::vector<double>(preferred.size())};
+    const auto here = program_.surfaces(t, x.data(), found.second.data(), workspace_);
+    if (!here) return std::nullopt;
+    here->derivatives(found.first.data());
+    return found;
+  };
+  const auto before = evaluate();
+  for (const std::uint32_t s : members) workspace_.set_memory(program_.switches()[s].memory, preferred[s]);
+  if (!before || evaluate() != before) workspace_.load_memories(positions);
 }
 
 /// Slides along as few units as possible. To events, what slides stays where it was.

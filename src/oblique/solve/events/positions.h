@@ -28,9 +28,9 @@ class Positions {
             const Thresholds& thresholds, double span);
 
   /// Places the units, and the switches that follow from them, at (t, x), of which `here` was evaluated;
-  /// `preferred` is of each of them whether the upper side is taken where both are possible. False, with
-  /// nothing changed, where nothing agrees.
-  bool choose(const std::vector<std::uint32_t>& units, const std::vector<bool>& preferred,
+  /// `preferred` are the positions of the program's switches to be taken where either is possible. False,
+  /// with nothing changed, where nothing agrees.
+  bool choose(const std::vector<std::uint32_t>& units, const std::vector<double>& preferred,
               const network::Evaluation& here, double t, std::span<const double> x);
 
   /// The units that the last `choose` could as well have put on the other side: both sides drive away from
@@ -45,11 +45,13 @@ class Positions {
 
  private:
   std::vector<std::uint32_t> set_bends_apart(const std::vector<std::uint32_t>& units,
-                                             const std::vector<bool>& preferred,
+                                             const std::vector<double>& preferred,
                                              const network::Evaluation& here);
   Combination present_sides(const std::vector<std::uint32_t>& units) const;
   std::optional<Combination> standing(Combination preferred) const;
-  bool take(Combination sides, double t, std::span<const double> x);
+  bool take(Combination sides, const std::vector<double>& preferred, double t, std::span<const double> x);
+  void prefer_where_nothing_changes(std::uint32_t unit, const std::vector<double>& preferred, double t,
+                                    std::span<const double> x);
   bool slide(Combination present, double t, std::span<const double> x);
   bool try_slide(Combination sliding, Combination sides, double t, std::span<const double> x);
   bool fits_slide(Combination sliding, Combination sides);

@@ -151,18 +151,19 @@ void SwitchSettling::turn_in_order(double t, std::span<const double> x) {
       });
 }
 
-/// Whether a unit that lies on its surface is taken to be above it where both sides are possible.
-bool SwitchSettling::prefers_above(std::uint32_t unit) const {
+/// Where the switches of a unit that lies on its surface are left where they may be on either side. At zero
+/// none of them need hold, though their surfaces be opposite.
+void SwitchSettling::add_preferred(std::uint32_t unit, std::vector<double>& preferred) const {
   const network::SwitchStructure& structure = program_.switch_structure();
-  const std::uint32_t s = structure.members[unit].front();
-  double preferred = position(s);
-  if (set_ && surfaces_[s] == 0) preferred = 0;  // put on its level it is not above it
-  for (const std::uint32_t member : structure.members[unit]) {
-    if (!announced_[member]) continue;
-    const double there = *announced_[member];
-    preferred = structure.opposite[member] == structure.opposite[s] ? there : 1 - there;
+  const auto& members = structure.members[unit];
+  for (const std::uint32_t s : members) {
+    preferred[s] = set_ && surfaces_[s] == 0 ? 0 : position(s);  // put on its level it is not above it
+    for (const std::uint32_t member : members) {
+      if (!announced_[member]) continue;
+      const double there = *announced_[member];
+      preferred[s] = structure.opposite[member] == structure.opposite[s] ? there : 1 - there;
+    }
   }
-  return (preferred == 1) != structure.opposite[s];
 }
 
 /// Lets the solution decide where the units go that lie on their surfaces, together with those that slide.
@@ -172,10 +173,10 @@ void SwitchSettling::decide(Units units, double t, std::span<const double> x) {
     if (!contains(units, unit)) units.push_back(unit);
   }
   slide_.end();
-  std::vector<bool> preferred;
+  std::vector<double> preferred(surfaces_.size());
   for (const std::uint32_t unit : units) {
     decided_[unit] = true;
-    preferred.push_back(prefers_above(unit));
+    add_preferred(unit, preferred);
   }
   std::vector<double> before;
   for (std::size_t s = 0; s < surfaces_.size(); ++s) before.push_back(position(s));
@@ -246,11 +247,14 @@ bool SwitchSettling::settle(double t, std::span<const double> x) {
 }
 
 void SwitchSettling::begin() {
-  std::fill(decided_.begin(), decided_.end(), false);
+  decided_.assign(decided_.size(), false);
+  if (!kept_.empty()) decided_.swap(kept_);
+  kept_.clear();
   std::fill(stays_.begin(), stays_.end(), false);
   slid_ = slide_.units();
-  for (std::size_t s = 0; s < rested_.size(); ++s) rested_[s] = resumed_ || slide_.rests(s);
-  resumed_ = false;
+  for (std::size_t s = 0; s < rested_.size(); ++s)
+    rested_[s] = slide_.rests(s) || (s < restored_.size() && restored_[s]);
+  restored_.clear();
   slide_.end();
 }
 
@@ -272,6 +276,28 @@ void SwitchSettling::end(const std::vector<std::uint32_t>& slid) {
       const double off = std::abs(surfaces_[s]);
       if (off <= SlidingMode::drift()) surfaces_.thresholds().give_slack(s, 2 * off);
     }
+  }
+}
+
+void SwitchSettling::let_touch(std::size_t s) {
+  const double error = surfaces_.last_errors()[s];
+  if (surfaces_.is_known(s) || !(std::abs(surfaces_[s]) <= error)) return;
+  surfaces_.thresholds().forget(s);
+  surfaces_.thresholds().widen(s, error);
+}
+
+void SwitchSettling::restore(std::vector<bool> sliding) {
+  restored_ = std::move(sliding);
+  if (restored_.empty()) restored_.assign(surfaces_.size(), true);
+}
+
+void SwitchSettling::keep_positions_within_errors() {
+  const SurfaceErrors& errors = surfaces_.weigh_errors();
+  kept_.assign(decided_.size(), false);
+  for (std::size_t s = 0; s < surfaces_.size(); ++s) {
+    if (surfaces_.is_known(s) || restored_[s] || !(std::abs(surfaces_[s]) <= errors[s])) continue;
+    surfaces_.thresholds().widen(s, errors[s]);
+    kept_[program_.switch_structure().unit[s]] = true;
   }
 }
 

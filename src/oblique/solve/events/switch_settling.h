@@ -40,8 +40,15 @@ class SwitchSettling {
   /// Where a surface, evaluated after that, still lies on the wrong side, it goes back at once: it stays
   /// there for a moment, which is no event of its own.
   void allow_wrong_sides();
-  /// Goes on from a state that does not say what slid.
-  void resume() { resumed_ = true; }
+  /// A switch that was announced has not turned over: its surface may touch zero within the errors of the
+  /// states until it has left these behind.
+  void let_touch(std::size_t s);
+  /// What slides is settled anew in the next settling: these switches did, or rested at zero along with it;
+  /// any may have where that is not known and `sliding` is empty.
+  void restore(std::vector<bool> sliding);
+  /// Of a run that goes on with the surfaces evaluated: those that are within the errors of the states stay
+  /// where they are until they have left these behind. On which side they lie, rounding decides.
+  void keep_positions_within_errors();
 
   /// Whether a surface, at zero, was found to stay there.
   bool stays(std::size_t s) const { return stays_[s]; }
@@ -60,7 +67,7 @@ class SwitchSettling {
   double known_position(std::size_t s) const;
   bool turn_by_surfaces(double t, Units& on_surface, std::vector<std::uint32_t>& turned);
   void turn_in_order(double t, std::span<const double> x);
-  bool prefers_above(std::uint32_t unit) const;
+  void add_preferred(std::uint32_t unit, std::vector<double>& preferred) const;
   void decide(Units units, double t, std::span<const double> x);
   void note_choice(double t);
   SolveError no_position(std::uint32_t s, double t) const;
@@ -80,7 +87,8 @@ class SwitchSettling {
   bool set_ = false;           ///< whether events have set states at this instant
   Units slid_;                 ///< what slid when the settling began
   std::vector<bool> rested_;   ///< the surfaces that then stayed at zero along with it
-  bool resumed_ = false;       ///< see `resume`
+  /// Until the next settling begins: see `restore`, and the units to be kept where they are.
+  std::vector<bool> restored_, kept_;
 
   /// How often a switch has turned over without leaving its place.
   struct Unrest {

@@ -79,15 +79,27 @@ bool Switching::serve_events(double t, std::vector<double>& x, bool starting) {
   return true;
 }
 
+/// Records which of the announced switches have turned over; the solution leads the others back at once.
+void Switching::record_turns(const std::vector<double>& memories_before, double t) {
+  for (std::uint32_t s = 0; s < surfaces_.size(); ++s) {
+    const auto position = location_.announced()[s];
+    if (!position) continue;
+    const std::uint32_t memory = program_.switches()[s].memory;
+    if (workspace_.memory(memory) != memories_before[memory] || settling_.last_turn(s) == t ||
+        slide_.holds(s))
+      log_.record_turn(s, *position, t);
+    else
+      settling_.let_touch(s);
+  }
+}
+
 void Switching::settle(double t, std::vector<double>& x) {
   const std::vector<std::uint32_t> slid = slide_.units();
   const std::vector<std::uint32_t> repelled = repelled_units(t, x);
   settling_.begin();
   surfaces_.evaluate(t, x, location_.announced());
   location_.withdraw_early(t);
-  for (std::size_t s = 0; s < surfaces_.size(); ++s) {
-    if (const auto position = location_.announced()[s]) log_.record_turn(s, *position, t);
-  }
+  const std::vector<double> before(workspace_.memories().begin(), workspace_.memories().end());
   std::vector<FaintTurn> faint = faint_turns_.due(t, location_.announced(), surfaces_,
                                                   [this](std::uint32_t s) { return settling_.last_turn(s); });
   if (!faint.empty() && !signals(t, x.data(), signals_.data())) faint.clear();
@@ -96,6 +108,7 @@ void Switching::settle(double t, std::vector<double>& x) {
   settling_.begin_instant();
   for (int round = 0;; ++round) {
     settling_.settle(t, x);
+    if (round == 0) record_turns(before, t);
     if (!serve_events(t, x, false)) break;
     if (round > kMostRounds) throw log_.endless("events set each other off", t);
   }
@@ -106,6 +119,18 @@ void Switching::settle(double t, std::vector<double>& x) {
   settling_.allow_wrong_sides();
   if (faint.empty() || !signals(t, x.data(), signals_.data())) return;
   faint_turns_.keep(std::move(faint), signals_before, signals_);
+}
+
+std::vector<bool> Switching::sliding() const {
+  std::vector<bool> sliding(program_.switches().size());
+  for (std::size_t s = 0; s < sliding.size(); ++s) sliding[s] = slide_.holds(s) || slide_.rests(s);
+  return sliding;
+}
+
+void Switching::resume(double t, std::vector<double>& x) {
+  surfaces_.evaluate(t, x, location_.announced());
+  settling_.keep_positions_within_errors();
+  settle(t, x);
 }
 
 void Switching::throw_endless(double t) const {

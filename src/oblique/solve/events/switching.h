@@ -83,16 +83,22 @@ class Switching {
   /// The first turn of each switch about which rounding has decided.
   const std::vector<FaintTurn>& faint_turns() const { return faint_turns_.found(); }
 
-  /// What must be kept to go on later: whether each condition held.
+  /// What must be kept to go on later: whether each condition held, and whether each switch slides or rests
+  /// at zero along with what does.
   const std::vector<bool>& conditions() const { return actions_.conditions(); }
-  void restore(std::vector<bool> conditions) {
+  std::vector<bool> sliding() const;
+  /// `resume` is to follow. Empty `sliding`: it is not known.
+  void restore(std::vector<bool> conditions, std::vector<bool> sliding) {
     actions_.restore(std::move(conditions));
-    settling_.resume();
+    settling_.restore(std::move(sliding));
   }
+  /// Goes on from what was restored, at time t. Throws SolveError.
+  void resume(double t, std::vector<double>& x);
 
  private:
   std::vector<std::uint32_t> repelled_units(double t, std::span<const double> x);
   bool serve_events(double t, std::vector<double>& x, bool starting);
+  void record_turns(const std::vector<double>& memories_before, double t);
 
   const network::Program& program_;
   network::Workspace& workspace_;

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/solve/integrator/lost_outputs.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace oblique::solve {
+namespace {
+
+/// Of what the tolerances leave to a state in a step: what the steps together do.
+constexpr double kErrors = 10;
+
+/// An output that the errors move by this part of its largest magnitude has no digit left.
+constexpr double kNoDigit = 0.3;
+/// Of the relative tolerance, in machine units: outputs that are smaller mean zero.
+constexpr double kLeast = 1e4;
+
+}  // namespace
+
+LostOutputs::LostOutputs(const diagram::FlatDiagram& diagram, const SolverSettings& settings, Outputs outputs)
+    : diagram_(diagram),
+      settings_(settings),
+      outputs_(std::move(outputs)),
+      sizes_(diagram.outputs.size(), 0),
+      losses_(diagram.outputs.size()),
+      values_(diagram.outputs.size()),
+      moved_(diagram.outputs.size()) {}
+
+double LostOutputs::error_of_state(std::size_t i, double x) const {
+  const double absolute =
+      settings_.own_tolerances.empty() ? settings_.absolute_tolerance : settings_.own_tolerances[i];
+  return kErrors * (settings_.relative_tolerance * std::abs(x) + absolute);
+}
+
+void LostOutputs::advance(double t, std::span<const double> x) {
+  if (steps_++ < next_look_) return;
+  next_look_ = 2 * next_look_ + 1;
+  look(t, x);
+}
+
+void LostOutputs::look(double t, std::span<const double> x) {
+  constexpr std::uint64_t kTrials = 4;
+  if (!outputs_(t, x.data(), values_.data())) return;
+  for (std::size_t k = 0; k < values_.size(); ++k) sizes_[k] = std::max(sizes_[k], std::abs(values_[k]));
+  off_states_.resize(x.size());
+  for (std::uint64_t trial = 1; trial <= kTrials; ++trial) {
+    std::uint64_t signs = 0x9E3779B97F4A7C15 * trial;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      off_states_[i] = x[i] + ((signs >> 63) != 0 ? 1 : -1) * error_of_state(i, x[i]);
+      signs = 6364136223846793005 * signs + 1442695040888963407;
+    }
+    if (!outputs_(t, off_states_.data(), moved_.data())) continue;
+    for (std::size_t k = 0; k < values_.size(); ++k) {
+      const double moved = std::abs(moved_[k] - values_[k]);
+      const double much = std::max(kNoDigit * sizes_[k], kLeast * settings_.relative_tolerance);
+      if (losses_[k].time < 0 && moved > much) losses_[k] = {t, values_[k], moved};
+    }
+  }
+  outputs_(t, x.data(), values_.data());  // leaves the solutions of algebraic loops where they were
+}
+
+std::vector<text::Diagnostic> LostOutputs::warnings(const std::vector<bool>& told) const {
+  std::vector<text::Diagnostic> warnings;
+  for (std::size_t k = 0; k < losses_.size(); ++k) {
+    const Loss& loss = losses_[k];
+    if (loss.time < 0 || told[k]) continue;
+    warnings.push_back(
+        {{diagram_.file, {}},
+         fmt::format("no digit of the output '{}' is known: at t = {:.6g} s it reads {:.3g}, and the errors "
+                     "that the tolerance leaves to the states move it by {:.3g}",
+                     diagram_.outputs[k].name, loss.time, loss.value, loss.moved),
+         {},
+         "look for a division by what comes to zero, or a difference of what is nearly alike; where it is "
+         "meant, a finer 'tolerance' in [run] carries further"});
+  }
+  return warnings;
+}
+
+}  // namespace oblique::solve

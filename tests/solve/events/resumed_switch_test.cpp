@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+// Switches of a run that is saved and gone on with: what the errors of the states do not tell from zero stays
+// where it was, and what slid goes on sliding.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <oblique/solve/run_state.h>
+
+#include "../../support/runs.h"
+
+namespace oblique::solve {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+/// The run of a diagram, and that of its second half from what the first half saved as a text.
+struct Halves {
+  Halves(const testing::Compiled& made, double until, double tolerance) {
+    RunOptions options;
+    options.until = until;
+    options.tolerance = tolerance;
+    options.samples = 101;
+    whole = oblique::solve::run(made.program, made.flat, options);
+    options.until = until / 2;
+    options.samples = 51;
+    first = oblique::solve::run(made.program, made.flat, options);
+    options.from = parse_run_state(to_text(first.state), "state.toml");
+    options.until = until;
+    second = oblique::solve::run(made.program, made.flat, options);
+  }
+  Run whole, first, second;
+};
+
+// x = 0.9 e^(−5.8 t): half way it is 3e-10, at the end 1e-19, and its sign is always the same.
+TEST(ResumedSwitch, OfADecayStaysWhereItWas) {
+  const testing::Compiled made(R"(
+x = { type = "transfer-lag", in = "0*x", time_constant = 0.1724, initial = -0.9 }
+s = { type = "sign", in = "x" }
+)");
+  for (const double tolerance : {1e-4, 1e-6, 1e-8}) {
+    for (const double until : {3.0, 5.0, 7.5, 11.0}) {
+      const Halves halves(made, until, tolerance);
+      for (const oblique::solve::Run* const run : {&halves.whole, &halves.second}) {
+        EXPECT_THAT(testing::row_values(*run, "s"), ::testing::Each(-1)) << tolerance << ' ' << until;
+        EXPECT_EQ(run->event_count, 0) << tolerance << ' ' << until;
+        EXPECT_THAT(run->warnings, IsEmpty());
+      }
+    }
+  }
+}
+
+// x′ = 0.5 − sgn x slides along zero from t = 2/3 on, where the mean of the sign is 0.5.
+TEST(ResumedSwitch, ThatSlidGoesOnSliding) {
+  const testing::Compiled made(R"(
+half = { type = "constant", value = 0.5 }
+x = { type = "integrator", in = ["half", "-s"], initial = 0.3333333333333333 }
+s = { type = "sign", in = "x" }
+)");
+  const Halves halves(made, 4, 1e-8);
+  EXPECT_THAT(halves.first.state.sliding, ::testing::Contains(true));
+  EXPECT_THAT(halves.second.warnings, IsEmpty());
+  for (const double s : testing::row_values(halves.second, "s")) EXPECT_NEAR(s, 0.5, 1e-12);
+  for (const double x : testing::row_values(halves.second, "x")) EXPECT_NEAR(x, 0, 1e-7);
+  EXPECT_EQ(halves.second.event_count, 1) << "that it slides, at its start";
+}
+
+// A state that was saved before it said what slides goes on, too: all that lies at zero may have slid.
+TEST(ResumedSwitch, OfAStateThatDoesNotSayWhatSlid) {
+  const testing::Compiled made(R"(
+half = { type = "constant", value = 0.5 }
+x = { type = "integrator", in = ["half", "-s"], initial = 0.3333333333333333 }
+s = { type = "sign", in = "x" }
+)");
+  const Halves halves(made, 4, 1e-8);
+  std::string text = to_text(halves.first.state);
+  const std::size_t at = text.find("sliding = ");
+  ASSERT_NE(at, std::string::npos);
+  text.erase(at, text.find('\n', at) + 1 - at);
+  RunOptions options;
+  options.from = parse_run_state(text, "state.toml");
+  options.until = 4;
+  const oblique::solve::Run run = oblique::solve::run(made.program, made.flat, options);
+  for (const double s : testing::row_values(run, "s")) EXPECT_NEAR(s, 0.5, 1e-12);
+}
+
+TEST(ResumedSwitch, OfAnotherDiagramIsRefused) {
+  const testing::Compiled made(
+      "x = { type = \"integrator\", in = \"-s\", initial = 1 }\n"
+      "s = { type = \"sign\", in = \"x\" }\n");
+  RunState state = Halves(made, 1, 1e-8).first.state;
+  state.sliding.push_back(false);
+  RunOptions options;
+  options.from = state;
+  try {
+    oblique::solve::run(made.program, made.flat, options);
+    FAIL() << "went on";
+  } catch (const text::ReadError& error) {
+    EXPECT_THAT(error.what(),
+                HasSubstr("this is the state of another diagram: it has 2 switches, the diagram "
+                          "1; expected the state of a run of this diagram"));
+  }
+}
+
+// At zero neither `in > 0` nor `0 > in` holds, in whatever order the blocks stand: of two points of one x
+// the second holds.
+TEST(SwitchAtZero, HoldsNeitherWay) {
+  const std::string magnitude = "a = { type = \"absolute-value\", in = \"x\" }\n";
+  const std::string jump =
+      "f = { type = \"function-generator\", in = \"x\", points = [[-1, 0.5], [0, 0], [0, 1], [1, 1]] }\n";
+  const std::string rest = "x = { type = \"integrator\", in = \"0*x\" }\n";
+  for (const std::string& blocks :
+       {magnitude + jump + rest, jump + magnitude + rest, rest + jump + magnitude}) {
+    const oblique::solve::Run run = testing::run_of(testing::Compiled(blocks));
+    EXPECT_THAT(testing::row_values(run, "f"), ::testing::Each(1)) << blocks;
+  }
+}
+
+}  // namespace
+}  // namespace oblique::solve
