@@ -59,12 +59,14 @@ bool is_moved_by_rounding(const Trial& trial) {
          tells(trial, "which is its error");
 }
 
-/// Whether a run does not begin because no rest, or no initial values that agree, were found. They are sought
+/// Whether a run does not begin because no rest, no initial values or no positions of switches in a loop that
+/// agree were found. They are sought
 /// from one element to the next, in the order of the diagram and by the sizes that its signals have: another
 /// order may find what this one does not (see known-gaps.md), and to refuse is not to answer wrongly.
 bool sought_in_vain(const Trial& trial) {
   return trial.end == End::refused &&
          (trial.message.find("not come to rest") != std::string::npos ||
+          trial.message.find("no position of its switch agrees") != std::string::npos ||
           trial.message.find("follow from each other in a circle") != std::string::npos);
 }
 

@@ -102,6 +102,29 @@ TEST(ResumedSwitch, OfAnotherDiagramIsRefused) {
   }
 }
 
+// x′ = 0.5 − sgn x slides until the machine is held, and then stands where the comparison was: within its
+// errors of zero, where a real one would have no certain output either. That is told, where anybody sees it.
+TEST(HeldSlide, IsToldOf) {
+  const std::string loop =
+      "half = { type = \"constant\", value = 0.5 }\n"
+      "x = { type = \"integrator\", in = [\"half\", \"-s\"], initial = 0.1 }\n"
+      "s = { type = \"sign\", in = \"x\" }\n";
+  const std::string held =
+      "[timeline]\nphases = [{ mode = \"operate\", for = 0.5 }, { mode = \"hold\", for = 0.5 }]\n";
+  const oblique::solve::Run run = testing::run_of(testing::Compiled(loop, held));
+  ASSERT_EQ(run.warnings.size(), 1U);
+  EXPECT_EQ(
+      text::to_string(run.warnings.front()),
+      "d.toml: 's' (in > 0) stops on the surface that it slid along at t = 0.5 s, where nothing moves it "
+      "any more: rounding decides on which side it stays\n  remedy: give the comparison a hysteresis, or "
+      "do not read it while it rests");
+  const oblique::solve::Run smooth =
+      testing::run_of(testing::Compiled("x = { type = \"integrator\", in = \"-m\", initial = 0.1 }\nm = { "
+                                        "type = \"absolute-value\", in = \"x\" }\n",
+                                        held));
+  EXPECT_THAT(smooth.warnings, IsEmpty());
+}
+
 // At zero neither `in > 0` nor `0 > in` holds, in whatever order the blocks stand: of two points of one x
 // the second holds.
 TEST(SwitchAtZero, HoldsNeitherWay) {

@@ -86,6 +86,15 @@ void EventLog::warn_of_no_side(std::uint32_t unit, double t) {
       "begin a little to the side that is meant, or add the disturbance that decides it on the machine");
 }
 
+void EventLog::warn_of_halt(std::uint32_t unit, double t) {
+  warn_of_unit(
+      unit, "stops on the surface that it slid along",
+      fmt::format(" at t = {:.9g} s, where nothing moves it any more: rounding decides on which side "
+                  "it stays",
+                  t),
+      "give the comparison a hysteresis, or do not read it while it rests");
+}
+
 /// Tells of switches with events that follow what slides: what these would do is not counted.
 void EventLog::warn_of_torn(const SlidingMode& slide, double t) {
   constexpr std::string_view kWhen = " from t = ";

@@ -31,6 +31,9 @@ class EventLog {
   /// Tells that nothing decides where the solution goes.
   void warn_of_no_side(std::uint32_t unit, double t);
 
+  /// Tells that nothing decides on which side a solution stops that slid.
+  void warn_of_halt(std::uint32_t unit, double t);
+
   /// The error of a run in which this block switches without end.
   SolveError endless(const std::string& block, const std::string& what, double t) const;
   /// The same of what was recorded last.

@@ -189,7 +189,7 @@ void SwitchSettling::decide(Units units, double t, std::span<const double> x) {
         !choose_any(program_, workspace_, slide_, surfaces_.thresholds(), span_, members, t, x))
       throw no_position(members.front(), t);
   }
-  note_choice(t);
+  note_choice(t, x);
   for (std::size_t s = 0; s < before.size(); ++s) {  // those that turned over count
     const double chosen = position(s);
     workspace_.set_memory(program_.switches()[s].memory, before[s]);
@@ -197,10 +197,28 @@ void SwitchSettling::decide(Units units, double t, std::span<const double> x) {
   }
 }
 
+/// Whether some signal is another with the unit on its other side.
+bool SwitchSettling::matters(std::uint32_t unit, double t, std::span<const double> x) const {
+  constexpr double kMuch = 1e-6;  // of 1 + the signal
+  const std::vector<double> positions(workspace_.memories().begin(), workspace_.memories().end());
+  std::vector<double> here(program_.n_signals()), there(program_.n_signals());
+  const bool known = program_.signals(t, x.data(), here.data(), workspace_).has_value();
+  for (const std::uint32_t s : program_.switch_structure().members[unit])
+    workspace_.set_memory(program_.switches()[s].memory, 1 - position(s));
+  const bool known_there = program_.signals(t, x.data(), there.data(), workspace_).has_value();
+  workspace_.load_memories(positions);
+  if (!known || !known_there) return false;
+  for (std::size_t i = 0; i < here.size(); ++i) {
+    if (std::abs(there[i] - here[i]) > kMuch * (1 + std::abs(here[i]))) return true;
+  }
+  return false;
+}
+
 /// What the last choice of positions tells besides.
-void SwitchSettling::note_choice(double t) {
+void SwitchSettling::note_choice(double t, std::span<const double> x) {
   for (const std::uint32_t unit : positions_.resting()) {
     for (const std::uint32_t member : program_.switch_structure().members[unit]) stays_[member] = true;
+    if (contains(slid_, unit) && matters(unit, t, x)) log_.warn_of_halt(unit, t);
   }
   for (const std::uint32_t unit : positions_.undecided()) {
     if (contains(slid_, unit) || is_announced(unit)) continue;  // what slid is told of apart

@@ -69,7 +69,8 @@ class SwitchSettling {
   void turn_in_order(double t, std::span<const double> x);
   void add_preferred(std::uint32_t unit, std::vector<double>& preferred) const;
   void decide(Units units, double t, std::span<const double> x);
-  void note_choice(double t);
+  bool matters(std::uint32_t unit, double t, std::span<const double> x) const;
+  void note_choice(double t, std::span<const double> x);
   SolveError no_position(std::uint32_t s, double t) const;
 
   const network::Program& program_;
