@@ -66,6 +66,26 @@ b = { type = "servo-amplifier", in = ["-b"], gain = 20, bandwidth = 5, initial =
   EXPECT_FALSE(settle(made.program, workspace, 0, servo_groups(made.program), states));
 }
 
+// The direction of what has no length rests at a length of zero, and so do all that follow it: exactly, for
+// they are at an unstable equilibrium, out of which rounding would grow.
+TEST(Settling, LeavesNoRounding) {
+  const testing::Compiled made(R"(
+d = { type = "vector-direction", x = "-0.5*b", y = "-0.5*a", gain = 6000, bandwidth = 2 }
+b = { type = "transfer-lag", in = "-0.5*d.sin", time_constant = 0.84 }
+a = { type = "servo-amplifier", in = ["i", "a"], gain = 14100, bandwidth = 17, initial = 0.75 }
+i = { type = "integrator", in = "-0.2*b", rate = 0.9 }
+)");
+  network::Workspace workspace(made.program);
+  std::vector<double> states = made.program.start();
+  ASSERT_TRUE(settle(made.program, workspace, 0, servo_groups(made.program), states));
+  for (std::size_t s = 0; s < states.size(); ++s) {
+    const std::string& name = made.program.states()[s].name;
+    if (name == "a" || name == "d.side") {
+      EXPECT_EQ(states[s], 0) << name;
+    }
+  }
+}
+
 // A cyclic shift of n rows, one of them negated, has the determinant (−1)ⁿ: dense factors and sparse ones.
 TEST(LinearFactors, KnowTheSignOfTheDeterminant) {
   for (const int n : {1, 2, 3, 64, 65, 100}) {

@@ -88,6 +88,23 @@ v2 = { type = "integrator", in = ["s1", "-2*s2"], initial = 0.1 })");
   EXPECT_NEAR(row_values(result, "s2").back(), 0.15, 1e-7);
 }
 
+// x slides at zero, driven by ±1e7 units a second, and y = −2t. Beside such a rate that of x + y is small,
+// yet it does not rest at −0.5 where the limiter begins: whoever shares a signal with a slide is watched.
+TEST(Slides, ALimiterBesideAFastSlideLimits) {
+  const Compiled made(R"(
+one = { type = "constant", value = 1 }
+x = { type = "integrator", in = ["0.5*one", "-s"], rate = 1e7, initial = 0.1 }
+s = { type = "sign", in = "x" }
+y = { type = "integrator", in = "-2*one" }
+z = { type = "summer", in = ["x", "y"] }
+l = { type = "limiter", in = "z", low = -0.5, high = 5 }
+)");
+  const auto run = run_of(made, {.until = 1});
+  const auto t = row_values(run, "t"), l = row_values(run, "l");
+  // the surface of a slide drifts by up to 1e-7
+  for (std::size_t k = 1; k < t.size(); ++k) EXPECT_NEAR(l[k], std::max(-2 * t[k], -0.5), 1e-6) << t[k];
+}
+
 TEST(Slides, WhatASlideDoesPassesThroughASquarer) {
   // x' = 0.2 − u slides at x = 0 with a mean u of 0.2; u² is 1 on both sides, whatever the mean is.
   const Compiled made(R"(one = { type = "constant" }

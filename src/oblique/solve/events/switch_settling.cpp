@@ -66,6 +66,13 @@ double SwitchSettling::near_size(std::size_t s) const {
   return unrest_[s].turns > kRestless ? std::max(near, place_size(s)) : near;
 }
 
+/// Whether a surface counts as zero, so that the solution decides. That of a switch that is announced lies a
+/// little past it; one that rested beside a slide, and has left it by more than that drifts, does not rest.
+bool SwitchSettling::is_near(std::size_t s) const {
+  const double near = near_size(s);
+  return std::abs(surfaces_[s]) <= (announced_[s] ? std::max(near, SlidingMode::drift()) : near);
+}
+
 /// Whether any switch of a unit is.
 bool SwitchSettling::is_announced(std::uint32_t unit) const {
   const auto& members = program_.switch_structure().members[unit];
@@ -113,7 +120,7 @@ bool SwitchSettling::turn_by_surfaces(double t, Units& on_surface, std::vector<s
     if (surfaces_.is_known(s)) {
       if (chained_ && program_.is_ordered(s)) continue;  // is where it belongs
       asked = known_position(s);
-    } else if (announced_[s] || std::abs(surfaces_[s]) <= near_size(s)) {
+    } else if (is_near(s)) {
       const std::uint32_t unit = structure.unit[s];
       if (!listed[unit]) on_surface.push_back(unit);
       listed[unit] = true;
@@ -298,7 +305,7 @@ void SwitchSettling::end(const std::vector<std::uint32_t>& slid) {
 }
 
 void SwitchSettling::let_touch(std::size_t s) {
-  const double error = surfaces_.last_errors()[s];
+  const double error = std::min(surfaces_.last_errors()[s], SlidingMode::drift());
   if (surfaces_.is_known(s) || !(std::abs(surfaces_[s]) <= error)) return;
   surfaces_.thresholds().forget(s);
   surfaces_.thresholds().widen(s, error);

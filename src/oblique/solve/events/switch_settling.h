@@ -62,6 +62,7 @@ class SwitchSettling {
   double position(std::size_t s) const { return workspace_.memory(program_.switches()[s].memory); }
   double place_size(std::size_t s) const;
   double near_size(std::size_t s) const;
+  bool is_near(std::size_t s) const;
   bool is_announced(std::uint32_t unit) const;
   void turn(std::size_t s, double position, double t);
   double known_position(std::size_t s) const;

@@ -42,6 +42,15 @@ class Settling {
     return true;
   }
 
+  /// The states x, of those that settle those as zero that are smaller than `rounding`.
+  VectorXd without_rounding(VectorXd x, double rounding) const {
+    for (std::size_t i = 0; i < group_of_.size(); ++i) {
+      double& state = x[static_cast<Index>(i)];
+      if (group_of_[i] != kHeld && std::abs(state) < rounding) state = 0;
+    }
+    return x;
+  }
+
   /// Takes the Jacobian at x; false where there is none.
   bool linearise(const VectorXd& x) { return program_.jacobian(t_, x.data(), values_.data(), workspace_); }
 
@@ -154,7 +163,14 @@ bool settle(const network::Program& program, network::Workspace& workspace, doub
       continue;
     }
     // Rounding has been reached: the steps become no shorter, or move nothing.
-    if (h >= kLongest * unit && change < kAtRest && (change >= last || change < kNothing)) return true;
+    if (h >= kLongest * unit && change < kAtRest && (change >= last || change < kNothing)) {
+      // Out of an unstable equilibrium rounding would grow.
+      next = system.without_rounding(x, kAtRest);
+      if (system.slopes(next, next_slopes) &&
+          next_slopes.cwiseAbs().maxCoeff() <= slopes.cwiseAbs().maxCoeff())
+        VectorXd::Map(states.data(), n) = next;
+      return true;
+    }
     x = next;
     slopes = next_slopes;
     VectorXd::Map(states.data(), n) = x;
