@@ -144,9 +144,11 @@ x3 = { type = "transfer-lag", in = "-x2", time_constant = 0.4 }
 x4 = { type = "transfer-lag", in = "0.3*x3", time_constant = 0.5 }
 s = { type = "sign", in = "-x4" }
 )");
-  const oblique::solve::Run run = testing::run_of(made, {.until = 2});
-  ASSERT_GT(run.event_count, 3);
-  EXPECT_FALSE(run.warnings.empty());
+  for (const double until : {2.0, 50.0}) {
+    const oblique::solve::Run run = testing::run_of(made, {.until = until});
+    ASSERT_GT(run.event_count, 3);
+    EXPECT_FALSE(run.warnings.empty()) << until;
+  }
 }
 
 // A kink is passed without an effect: |x| of a decay is as exact on both sides. A jump is not.

@@ -47,13 +47,16 @@ void FaintTurns::approach(double from, double at, const std::vector<std::pair<st
   for (Approach& a : approaches_) a.speed = std::abs(surfaces_[a.number]);
 }
 
-/// By the error of the surface, how far it has been from zero since it turned over last, and how long that is
-/// ago [s].
-bool FaintTurns::is_faint(const Approach& approach, double error, double excursion, double since) const {
+/// At t, by the error of the surface, how far it has been from zero since it turned over last, and when that
+/// was [s]; 0 where it never has.
+bool FaintTurns::is_faint(const Approach& approach, double error, double excursion, double t,
+                          double last_turn) const {
+  const double since = t - last_turn;
   constexpr double kAfar = 30, kNear = 10;  // errors
   constexpr double kSlow = 1000;            // errors: a decay to within them takes some 30 of its times
   constexpr double kPileUp = 1e-4;          // of the run: turns that come more quickly may be those of a ball
-  const bool stays_near = excursion <= kNear * error && since >= kPileUp * span_;
+  const bool piles_up = last_turn > 0 && since < kPileUp * span_;
+  const bool stays_near = excursion <= kNear * error && !piles_up;
   const bool decays = excursion >= kAfar * error && approach.speed * since <= kSlow * error;
   return approach.before <= error && (decays || stays_near);
 }
@@ -68,7 +71,7 @@ std::vector<FaintTurn> FaintTurns::due(double t, const Announced& announced, Swi
     const double excursion = surfaces.thresholds().excursion(s);
     const bool told =
         std::any_of(found_.begin(), found_.end(), [s](const FaintTurn& turn) { return turn.number == s; });
-    if (!told && announced[s] && is_faint(approach, errors[s], excursion, t - last_turn(s)))
+    if (!told && announced[s] && is_faint(approach, errors[s], excursion, t, last_turn(s)))
       found.push_back({s, t, errors[s], surfaces.states_behind(s)});
   }
   approaches_.clear();

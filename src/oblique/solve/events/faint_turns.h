@@ -46,7 +46,7 @@ class FaintTurns {
     double speed = 0;   ///< magnitude of its rate at the turn [1/s]
   };
 
-  bool is_faint(const Approach& approach, double error, double excursion, double since) const;
+  bool is_faint(const Approach& approach, double error, double excursion, double t, double last_turn) const;
 
   const network::Program& program_;
   network::Workspace& workspace_;
