@@ -60,15 +60,16 @@ bool is_moved_by_rounding(const Trial& trial) {
          tells(trial, "which is its error");
 }
 
-/// Whether a run does not begin because no rest, no initial values or no positions of switches in a loop that
-/// agree were found. They are sought
-/// from one element to the next, in the order of the diagram and by the sizes that its signals have: another
-/// order may find what this one does not (see known-gaps.md), and to refuse is not to answer wrongly.
+/// Whether a run does not begin because no rest, no initial values, no positions of switches in a loop or no
+/// regular solution of it were found. They are sought from one element to the next, in the order of the
+/// diagram and by the sizes that its signals have: another order may find what this one does not (see
+/// known-gaps.md), and to refuse is not to answer wrongly.
 bool sought_in_vain(const Trial& trial) {
+  constexpr std::string_view kInVain[] = {"not come to rest", "no position of its switch agrees",
+                                          "follow from each other in a circle", "is singular at t = 0 s"};
   return trial.end == End::refused &&
-         (trial.message.find("not come to rest") != std::string::npos ||
-          trial.message.find("no position of its switch agrees") != std::string::npos ||
-          trial.message.find("follow from each other in a circle") != std::string::npos);
+         std::any_of(std::begin(kInVain), std::end(kInVain),
+                     [&](std::string_view words) { return trial.message.find(words) != std::string::npos; });
 }
 
 /// A thousand tolerances: a run is calibrated to some ten, and the worst of smooth problems has sixty.
