@@ -37,7 +37,7 @@ std::vector<bool> states_behind(const PatchedMechanism& patched, const solve::In
   const network::Program& program = patched.program;
   network::Workspace workspace(program);
   std::vector<double> signals(program.n_signals());
-  workspace.load_memories(instant.memories);
+  workspace.load_discrete_states(instant.discrete_states);
   std::vector<bool> behind(program.n_states(), false);
   const auto place = [&](std::vector<double> states) {
     program.signals(instant.t, states.data(), signals.data(), workspace);

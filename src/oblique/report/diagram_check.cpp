@@ -49,7 +49,7 @@ ScalingProposal propose(const diagram::FlatDiagram& flat, const network::Program
     const network::State& state = program.states()[i];
     const auto factor = factors.find(state.name);
     if (state.at_rest || factor == factors.end()) continue;
-    fastest = std::max(fastest, factor->second * analysis.fastest_slopes[i]);
+    fastest = std::max(fastest, factor->second * analysis.fastest_derivatives[i]);
   }
   proposal.time_scale = 1 / diagram::scale_for_peak(fastest);
   return proposal;

@@ -56,8 +56,8 @@ std::string trial(const DiagramCheck& check) {
   if (analysis.failure) {
     return fmt::format("\ntrial run: failed at t = {:.6g} s; what follows is about {}\n",
                        analysis.failure->time(),
-                       analysis.standing ? "the servo loops standing at rest, where they would not stay"
-                                         : "the time before");
+                       analysis.quasi_steady ? "the servo loops standing at rest, where they would not stay"
+                                             : "the time before");
   }
   std::string text =
       fmt::format("\ntrial run: {:.6g} s, {}", check.diagram.run.until,

@@ -46,7 +46,7 @@ Combination Positions::present_sides(const std::vector<std::uint32_t>& units) co
   Combination present = 0;
   for (std::size_t u = 0; u < units.size(); ++u) {
     const std::uint32_t s = structure.members[units[u]].front();
-    const bool closed = workspace_.memory(program_.switches()[s].memory) == 1;
+    const bool closed = workspace_.discrete_state(program_.switches()[s].discrete_state) == 1;
     if (closed != structure.opposite[s]) present |= 1U << u;
   }
   return present;
