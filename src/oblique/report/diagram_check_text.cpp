@@ -10,7 +10,7 @@
 #include <oblique/solve/operating_point/rest.h>
 
 #include <oblique/network/program/program.h>
-#include <oblique/report/bill_text.h>
+#include <oblique/report/component_list_text.h>
 #include <oblique/report/text_table.h>
 
 namespace oblique::report {
@@ -299,7 +299,7 @@ std::string_view kind_name(solve::LoopKind kind) {
 
 std::string to_text(const DiagramCheck& check, const text::Vocabulary& vocabulary) {
   std::string text = contents(check);
-  if (check.bill) text += "\n" + to_text(*check.bill);
+  if (check.components) text += "\n" + to_text(*check.components);
   text += trial(check);
   if (!check.analysis.instants.empty()) {
     const std::vector<solve::LoopReport>& found = check.analysis.loops;
