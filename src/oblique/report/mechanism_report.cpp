@@ -120,7 +120,7 @@ class Writer {
       page_.introduction(table.explanation);
       page_.table(table.table.rows());
     }
-    if (!check.analysis.tour) return;
+    if (!check.analysis.motion_range) return;
     const std::vector<std::string> found = remarks(check);
     if (found.empty()) return;
     page_.subheading("What a designer would look at again");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where event functions are left that are slid along, or rested on.
+// Where switching surfaces are left that are slid along, or rested on.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
