@@ -30,6 +30,11 @@ list(JOIN block_names "|" block_names)
 set(asks "[!=]= *\"(${block_names})\"|\"(${block_names})\" *[!=]=|[^_a-z](find|contains|at|count|role_of)\\(\"(${block_names})\"|{\"(${block_names})\", *[A-Za-z:]*Role::")
 set(asks_for_others "(symbol|parameter|parameter[.]name|key) *[!=]= *\"")
 
+# Words that the glossary has replaced, alone or as a part of a name. In double quotes by themselves they are keys of JSON.
+set(replaced "hinge[ds]?|tours?|amidst|regularity|overdue")
+set(replaced_network "|surfaces?")
+set(replaced_solve "|surfaces?")
+
 set(verbs "run|check|solve|modes|patch|compare|fit|draw|animate|report|blocks|machines")
 set(most_units 33)
 file(GLOB_RECURSE files RELATIVE ${SOURCE}/src ${SOURCE}/src/oblique/*.h ${SOURCE}/src/oblique/*.cpp
@@ -64,6 +69,11 @@ foreach(file IN LISTS files)
   list(FILTER named EXCLUDE REGEX "${asks_for_others}")
   if(named AND block_names)
     finding("src/${file}: no stage knows a block by its name (role, symbol)")
+  endif()
+  file(STRINGS ${SOURCE}/src/${file} replaced_words REGEX "(^|[^A-Za-z\"])(${replaced}${replaced_${stage}})([^A-Za-z\"]|$)")
+  list(FILTER replaced_words EXCLUDE REGEX "switching surface")
+  if(replaced_words)
+    finding("src/${file}: words that the glossary has replaced (docs/glossary.md): ${replaced_words}")
   endif()
   file(STRINGS ${SOURCE}/src/${file} words REGEX "\"[^\"]*(--[a-z]|oblique (${verbs}))")
   list(FILTER words EXCLUDE REGEX "^[ \t]*//")

@@ -27,10 +27,10 @@ endfunction()
 plant(CMakeLists.txt "")
 plant(src/oblique/text/a.h "#include <string>\n// \"--help\" of the program\nnamespace oblique::text {")
 plant(src/oblique/diagram/a.cpp "#include <oblique/text/a.h>\nstd::snprintf(text)")
-plant(src/oblique/diagram/a.h "")
+plant(src/oblique/diagram/a.h "json[\"tour\"] = detour  // a surface that is drawn")
 plant(src/oblique/solve/events/tested.h "")
 plant(src/oblique/solve/events/tested.cpp "")
-plant(src/oblique/solve/events/covered.h "")
+plant(src/oblique/solve/events/covered.h "/// On a switching surface.")
 plant(src/oblique/solve/events/covered.cpp "")
 plant(tests/solve/tested_test.cpp "")
 plant(tests/solve/events/other_test.cpp "")
@@ -57,7 +57,9 @@ plant(src/oblique/machine/a.cpp "library.find(\"sine\")")
 plant(src/oblique/machine/b.cpp "kRoles{{\"sine\", Role::other}}")
 plant(src/oblique/solve/b.cpp "namespace oblique {\n\"end it with --until\"")
 plant(src/oblique/solve/c.cpp "namespace oblique::text {\n\"see oblique check\"")
-plant(src/oblique/solve/events/stray.cpp "")
+plant(src/oblique/solve/events/stray.cpp "std::vector<double> surfaces_;")
+plant(src/oblique/draw/a.h "/// The hinge.")
+plant(src/oblique/patch/b.h "double longest_tour() {")
 plant(tests/solve/events/forgotten_test.cpp "")
 plant(tests/covered_by.txt "solve/events/gone: solve/events/other_test.cpp
 solve/events/tested: solve/tested_test.cpp
@@ -86,6 +88,9 @@ expect(
   "src/oblique/solve/b.cpp: no stage spells an option or a verb"
   "src/oblique/solve/c.cpp: its namespace is oblique::solve"
   "src/oblique/solve/c.cpp: no stage spells an option or a verb"
+  "src/oblique/solve/events/stray.cpp: words that the glossary has replaced"
+  "src/oblique/draw/a.h: words that the glossary has replaced"
+  "src/oblique/patch/b.h: words that the glossary has replaced"
   "src/cli: more than 32 units"
   "src/oblique/solve/events/stray.cpp: a unit has a header of its name"
   "src/oblique/solve/events/stray.cpp: has no test of its name, and no line in tests/covered_by.txt"

@@ -26,7 +26,7 @@
 #include <oblique/draw/picture/svg.h>
 #include <oblique/draw/picture/text_width.h>
 #include <oblique/draw/schematic/diagram_drawing.h>
-#include <oblique/machine/bill.h>
+#include <oblique/machine/component_list.h>
 #include <oblique/machine/realise.h>
 #include <oblique/machine/sheets.h>
 #include <oblique/mechanism/model/read_mechanism.h>
@@ -35,9 +35,9 @@
 #include <oblique/mechanism/structure/structure.h>
 #include <oblique/patch/patch.h>
 #include <oblique/patch/scaling.h>
-#include <oblique/report/bill_text.h>
 #include <oblique/report/comparison_chart.h>
 #include <oblique/report/comparison_report.h>
+#include <oblique/report/component_list_text.h>
 #include <oblique/report/expectation_check.h>
 #include <oblique/report/html_page.h>
 #include <oblique/report/judgement_text.h>

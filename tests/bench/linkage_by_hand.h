@@ -8,8 +8,8 @@
 
 namespace oblique::bench {
 
-/// Points of a linkage by hand, numbered: the end of the crank, points of the frame, hinges of dyads, carried
-/// points. Lengths in machine units.
+/// Points of a linkage by hand, numbered: the end of the crank, points of the frame, revolute joints of
+/// dyads, carried points. Lengths in machine units.
 struct HandLinkage {
   double crank = 0;                   ///< radius; the crank's end is point 0, turning about the origin
   std::optional<std::size_t> mirror;  ///< a point opposite to the crank's end
@@ -18,8 +18,8 @@ struct HandLinkage {
     double x, y;
   };
   std::vector<Fixed> fixed;
-  /// A hinge over P → Q, left of it for side 1; where `length` stands, r2 in units of reach is a state that
-  /// closes the loop below.
+  /// A revolute joint over P → Q, left of it for side 1; where `length` stands, r2 in units of reach is a
+  /// state that closes the loop below.
   struct Dyad {
     std::size_t c, p, q;
     double r1, r2, side, reach;

@@ -25,7 +25,7 @@ struct Moving {
   double x, y, vx, vy, ax, ay;
 };
 
-/// What a dyad gives: its hinge, and the turn of both links as e, ω, α.
+/// What a dyad gives: its revolute joint, and the turn of both links as e, ω, α.
 struct HandDyad {
   Moving c;
   double e1x, e1y, e2x, e2y, w1, w2, a1, a2;

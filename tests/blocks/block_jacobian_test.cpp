@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The analytic Jacobian of every shipped primitive block against central differences, with its switches in
-// random positions, since each goes on smoothly past its surface.
+// random positions, since each goes on smoothly past its switching surface.
 #include <cmath>
 #include <map>
 #include <random>
@@ -67,9 +67,9 @@ class Differences {
   void compare() {
     for (int round = 0; round < 20; ++round) {
       workspace_.reset();
-      workspace_.reset_memories();
+      workspace_.reset_discrete_states();
       for (const network::Switch& s : program_.switches())
-        workspace_.set_memory(s.memory, at_random(0, 1) < 0.5 ? 0 : 1);
+        workspace_.set_discrete_state(s.discrete_state, at_random(0, 1) < 0.5 ? 0 : 1);
       std::vector<double> x(n_);
       for (double& value : x) value = at_random(0.1, 0.9);  // where roots and logarithms have values
       compare_at(at_random(0.1, 2), x);
@@ -81,7 +81,7 @@ class Differences {
     return std::uniform_real_distribution<double>(low, high)(generator_);
   }
 
-  std::vector<double> slopes(double t, const std::vector<double>& x) {
+  std::vector<double> derivatives(double t, const std::vector<double>& x) {
     std::vector<double> values(n_);
     EXPECT_TRUE(program_.derivatives(t, x.data(), values.data(), workspace_)) << name_;
     return values;
@@ -101,12 +101,12 @@ class Differences {
       std::vector<double> left = x, right = x;
       left[column] -= kStep;
       right[column] += kStep;
-      const std::vector<double> below = slopes(t, left), above = slopes(t, right);
+      const std::vector<double> below = derivatives(t, left), above = derivatives(t, right);
       for (std::size_t row = 0; row < n_; ++row) {
-        const double slope = (above[row] - below[row]) / (2 * kStep);
+        const double derivative = (above[row] - below[row]) / (2 * kStep);
         // Truncation h² f‴/6 with f‴ up to 1e3, and rounding of the values over h.
-        const double size = 1 + std::abs(slope) + std::abs(above[row]) * 1e-3;
-        EXPECT_NEAR(found[row], slope, 1e-7 * size)
+        const double size = 1 + std::abs(derivative) + std::abs(above[row]) * 1e-3;
+        EXPECT_NEAR(found[row], derivative, 1e-7 * size)
             << name_ << ": d " << program_.states()[row].name << "/d " << program_.states()[column].name;
       }
     }

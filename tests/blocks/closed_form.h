@@ -38,7 +38,7 @@ cosine = { type = "integrator", in = ["-sine"], initial = 1 }
 sine   = { type = "integrator", in = ["cosine"] }
 )toml";
 
-/// Rounding of times, slopes and sums of a few numbers around 1, where nothing is integrated.
+/// Rounding of times, derivatives and sums of a few numbers around 1, where nothing is integrated.
 inline constexpr double kRounding = 1e-13;
 
 /// Of a few thousand steps at the default relative tolerance of 1e-8.

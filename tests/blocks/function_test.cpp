@@ -68,7 +68,7 @@ f = {{ {}, in = "y" }}
                                   (c.from + c.to) / 2, c.block));
   network::Workspace workspace(made.program);
   const double y = 0.3 * c.from + 0.7 * c.to;
-  std::vector<double> slope(1), jacobian(1);
+  std::vector<double> derivative(1), jacobian(1);
   ASSERT_TRUE(made.program.jacobian(0, &y, jacobian.data(), workspace));
   const double step = 1e-5 * (1 + std::abs(y));
   const double difference = (c.exact(y + step) - c.exact(y - step)) / (2 * step);

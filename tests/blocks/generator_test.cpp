@@ -64,13 +64,14 @@ TEST(SineCosineGenerator, HoldsItsAmplitudeAsTheLogisticCurve) {
 angle = { type = "sine-cosine-generator", in = ["one"], rate = 3, hold = 0.7 }
 )toml");
   network::Workspace workspace(made.program);
-  std::vector<double> x = made.program.start(), slope(2);
+  std::vector<double> x = made.program.start(), derivative(2);
   for (const double p : {0.25, 0.9, 1.0, 1.2}) {
     for (const double angle : {0.0, 1.0, 4.0}) {
       x = {std::sqrt(p) * std::cos(angle), std::sqrt(p) * std::sin(angle)};
-      ASSERT_TRUE(made.program.derivatives(0, x.data(), slope.data(), workspace));
-      EXPECT_NEAR(2 * (x[0] * slope[0] + x[1] * slope[1]), 0.7 * p * (1 - p), 1e-15) << p;  // rounding
-      EXPECT_NEAR(x[0] * slope[1] - x[1] * slope[0], 3 * p, 1e-14) << p;                    // φ̇ p
+      ASSERT_TRUE(made.program.derivatives(0, x.data(), derivative.data(), workspace));
+      EXPECT_NEAR(2 * (x[0] * derivative[0] + x[1] * derivative[1]), 0.7 * p * (1 - p), 1e-15)
+          << p;                                                                     // rounding
+      EXPECT_NEAR(x[0] * derivative[1] - x[1] * derivative[0], 3 * p, 1e-14) << p;  // φ̇ p
     }
   }
 }

@@ -67,7 +67,7 @@ TEST_P(IdealTest, CompilesToItsBareEquation) {
   const Compiled shipped = made(ideal.type), bare = made("bare");
   EXPECT_EQ(shipped.program.n_instructions(), bare.program.n_instructions());
   EXPECT_EQ(shipped.program.n_states(), bare.program.n_states());
-  EXPECT_TRUE(shipped.program.memories().empty());
+  EXPECT_TRUE(shipped.program.discrete_states().empty());
   EXPECT_TRUE(shipped.program.events().empty());
   EXPECT_EQ(row_values(run_of(shipped, {.samples = 21}), "b"),
             row_values(run_of(bare, {.samples = 21}), "b"));

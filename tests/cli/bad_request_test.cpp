@@ -110,7 +110,7 @@ INSTANTIATE_TEST_SUITE_P(
             "oblique patch diagrams/mechanisms/class-iii.toml --method gradient --slower 10", 2,
             "error: --slower 10 with --method gradient, which takes no group apart; expected --method "
             "triangles or paper beside it"},
-        BadRequestCase{"SplitOfOtherLeads",
+        BadRequestCase{"SplitOfOtherLegs",
                        "oblique patch diagrams/mechanisms/class-iii.toml --split AB,DE,XY", 2,
                        "--split AB,DE,XY: no triad has these legs; expected the three legs of a triad"},
         BadRequestCase{"GradientOfInfiniteGain",

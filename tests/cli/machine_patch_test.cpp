@@ -57,7 +57,7 @@ class PatchForMachine : public testing::Test {
   std::filesystem::path folder_;
 };
 
-TEST_F(PatchForMachine, WritesADiagramThatRunsAndItsBill) {
+TEST_F(PatchForMachine, WritesADiagramThatRunsAndItsComponentList) {
   const Outcome outcome = patch("slider-crank", "--machine tr-10 -o made.toml");
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(outcome.out, "");
@@ -158,7 +158,7 @@ TEST_F(PatchForMachine, RefusesWhatCannotBeBeforeAnythingIsWritten) {
   EXPECT_TRUE(is_empty());
 }
 
-TEST_F(PatchForMachine, HasNoBillForTheIdealMachineInCheck) {
+TEST_F(PatchForMachine, HasNoComponentListForTheIdealMachineInCheck) {
   EXPECT_EQ(patch("slider-crank", "-o made.toml").status, 0);
   EXPECT_THAT(oblique("check made.toml").out, Not(HasSubstr("elements of")));
 }

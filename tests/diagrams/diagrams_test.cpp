@@ -134,7 +134,7 @@ TEST_P(PatchedMechanism, AgreesWithItsExactMotion) {
     EXPECT_TRUE(run.stable);
   }
   const compare::GainSeries& series = comparison.series.front();
-  if (!series.order) {  // the tolerance hides it: a trammel on its slide errs by 1e-8 at gain 1e4
+  if (!series.order) {  // the tolerance hides it: a trammel on its prismatic joint errs by 1e-8 at gain 1e4
     EXPECT_LT(comparison.runs.back().max_error, 10 * series.floor.value());
     return;
   }

@@ -84,7 +84,7 @@ TEST(AnimatedSvg, MovesPinsThroughTheFrames) {
     EXPECT_LT((Vector2d(values[2 * k], values[2 * k + 1]) - pins[k]).norm(), kRounding);
 }
 
-// A body is shifted with its first point, and turned about it so that its second point lies where it is.
+// A link is shifted with its first point, and turned about it so that its second point lies where it is.
 TEST(AnimatedSvg, TurnsBodiesWithTheirAngles) {
   const mechanism::Mechanism mechanism = shipped("four-bar");
   const draw::LinkageAnimation animation = animation_of(mechanism);
@@ -125,7 +125,7 @@ TEST(AnimatedPage, HasTheFramesAndNothingFromElsewhere) {
   const std::size_t begin = page.find("const motions = [") + 17;
   const std::string motions = page.substr(begin, page.find("];", begin) - begin);
   EXPECT_EQ(occurrences(motions, "["), occurrences(page, "data-moves=\"\""));
-  const std::string first = motions.substr(1, motions.find(']') - 1);  // of the first body
+  const std::string first = motions.substr(1, motions.find(']') - 1);  // of the first link
   EXPECT_EQ(numbers_of(first).size(), 3U * (kFrames + 1));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Driven slides are seen: in the colour of drives, with an arrow the way they go.
+// Driven prismatic joints are seen: in the colour of drives, with an arrow the way they go.
 #include <algorithm>
 #include <cmath>
 
@@ -23,8 +23,8 @@ mechanism::Mechanism shipped(const std::string& name) {
                                    ".toml");
 }
 
-/// A block that is driven along an inclined guide, and the slot of a lever that it turns: two slides of one
-/// point, the driven one first.
+/// A block that is driven along an inclined guide, and the slot of a lever that it turns: two prismatic
+/// joints of one point, the driven one first.
 mechanism::Mechanism driven_block(const std::string& speed) {
   return mechanism::parse_mechanism(R"(
 format = "oblique-mechanism/1"
@@ -75,8 +75,8 @@ Vector2d way_of(const draw::Mark& arrow, const Vector2d& from) {
   return (tip - from).normalized();
 }
 
-/// The way [px] in which a slide's point moves along its line just after `time`: the difference of two
-/// places, seen from what carries the line.
+/// The way [px] in which a prismatic joint's point moves along its line just after `time`: the difference of
+/// two places, seen from what carries the line.
 Vector2d way_along(const mechanism::Mechanism& mechanism, std::size_t slide, double time) {
   constexpr double kSoon = 1e-4;  // [s]
   const mechanism::Slide& s = mechanism.slides[slide];

@@ -117,7 +117,7 @@ TEST_P(Shipped, NamesLieOnNothing) {
   }
 }
 
-/// The area between the points of a body [px²]; 0 for a bar.
+/// The area between the points of a link [px²]; 0 for a bar.
 double area_of(const mechanism::Mechanism& mechanism, const mechanism::Body& body,
                const draw::Picture& picture) {
   const auto pin = [&](std::size_t k) {
@@ -226,7 +226,7 @@ TEST(Linkage, OtherPositionsAreDrawnFainterTheFartherTheyAre) {
   const std::size_t alone = draw::draw_linkage(mechanism, scene).marks.size();
   scene.others = mechanism::solve_motion(mechanism, 25).configurations;
   const draw::Picture picture = draw::draw_linkage(mechanism, scene);
-  // A bar is one mark, a plate two; 13 bodies, of which the crank with its two pins and four others are
+  // A bar is one mark, a plate two; 13 links, of which the crank with its two pins and four others are
   // plates.
   EXPECT_EQ(picture.marks.size() - alone, 25U * (13 + 5));
   std::vector<double> bars;

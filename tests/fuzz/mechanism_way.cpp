@@ -25,7 +25,7 @@ namespace {
 
 constexpr int kPositions = 37;
 constexpr double kGain = 1e4;
-constexpr double kLeastRegularity = 0.1;
+constexpr double kLeastDeterminant = 0.1;
 
 /// The exact motion of a text; or why there is none.
 struct Way {
@@ -56,7 +56,7 @@ bool turns_well(const mechanism::Mechanism& mechanism) {
     follower.advance(2 * std::numbers::pi * k / 360);
     if (!follower.events().empty()) return false;
     for (std::size_t group = 1; group < structure.groups.size(); ++group) {
-      if (std::abs(follower.regularity(group)) < kLeastRegularity) return false;
+      if (std::abs(follower.normalised_determinant(group)) < kLeastDeterminant) return false;
     }
   }
   return true;
@@ -75,7 +75,7 @@ class MechanismExamination {
         return alike(writing, "renamed", 0);
       case 1:
         writing.other_order = true;
-        // What stays of the residuals of Newton's method, magnified by a small regularity.
+        // What stays of the residuals of Newton's method, magnified by a small determinant.
         return alike(writing, "in the opposite order", 1e-7);
       case 2:
         writing.scale = 2;
@@ -163,8 +163,8 @@ class MechanismExamination {
     if (trial.end != Trial::End::clean) return "";
     compared_ = true;
     const solve::Trajectory& table = trial.run->trajectory;
-    // 1/gain, magnified by the regularity, its square where residuals are squared, and by lengths.
-    const double allowed = 100 / kGain / kLeastRegularity * std::max(1.0, base_.mechanism->largest_length());
+    // 1/gain, magnified by the determinant, its square where residuals are squared, and by lengths.
+    const double allowed = 100 / kGain / kLeastDeterminant * std::max(1.0, base_.mechanism->largest_length());
     for (std::size_t p = plan_.fixed; p < plan_.points.size(); ++p) {
       const auto point = base_.mechanism->find_point(point_name(p)).value();
       const auto x = table.find(point_name(p) + ".x");

@@ -49,7 +49,7 @@ TEST(ChooseRate, TakesTheLeastTimeFactorAtWhichOneInputSuffices) {
   EXPECT_EQ(choose_rate(1, 1, rates, kGains), 10);
   EXPECT_EQ(choose_rate(100, 1, rates, kGains), 10);
   EXPECT_EQ(choose_rate(100.1, 1, rates, kGains), 1000);
-  EXPECT_EQ(choose_rate(6.3e7, 6.3e7, rates, kGains), 6.3e7);  // none: the bill will say so
+  EXPECT_EQ(choose_rate(6.3e7, 6.3e7, rates, kGains), 6.3e7);  // none: the component list will say so
   EXPECT_EQ(choose_rate(5, 2, {}, kGains), 2);                 // any can be had
   EXPECT_DOUBLE_EQ(choose_rate(157, 1, {}, kGains), 100);
   EXPECT_DOUBLE_EQ(choose_rate(700, 1, {}, kGains), 100);

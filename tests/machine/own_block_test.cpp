@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <oblique/diagram/diagram_writer.h>
-#include <oblique/machine/bill.h>
+#include <oblique/machine/component_list.h>
 #include <oblique/machine/realise.h>
 #include <oblique/machine/sheets.h>
 
@@ -89,11 +89,13 @@ TEST_F(OwnBlocks, AreRealisedAsTheShippedOnes) {
     for (std::size_t b = 0; b < flat.blocks.size(); ++b)
       EXPECT_EQ(flat.blocks[b].parameters, shipped_flat.blocks[b].parameters) << flat.blocks[b].path;
 
-    const Bill bill = bill_of(flat, machine), shipped_bill = bill_of(shipped_flat, machine);
-    ASSERT_EQ(bill.rows.size(), shipped_bill.rows.size()) << name;
-    for (std::size_t row = 0; row < bill.rows.size(); ++row) {
-      EXPECT_EQ(bill.rows[row].element, shipped_bill.rows[row].element);
-      EXPECT_EQ(bill.rows[row].needed, shipped_bill.rows[row].needed) << bill.rows[row].element;
+    const ComponentList components = component_list_of(flat, machine),
+                        shipped_components = component_list_of(shipped_flat, machine);
+    ASSERT_EQ(components.rows.size(), shipped_components.rows.size()) << name;
+    for (std::size_t row = 0; row < components.rows.size(); ++row) {
+      EXPECT_EQ(components.rows[row].element, shipped_components.rows[row].element);
+      EXPECT_EQ(components.rows[row].needed, shipped_components.rows[row].needed)
+          << components.rows[row].element;
     }
     const MachineSheets sheets = sheets_of(own.diagram, flat, library_, machine);
     const MachineSheets shipped_sheets = sheets_of(shipped.diagram, shipped_flat, shipped_blocks(), machine);
@@ -114,7 +116,7 @@ TEST_F(OwnBlocks, AreElementsOfTheirOwnWithoutARole) {
   EXPECT_THAT(diagram::write_diagram(made),
               HasSubstr("= { type = \"plain\", label = \"X1\", in = \"minus_x\" }"));
   const std::vector<std::string> absent =
-      bill_of(diagram::flatten(made, library_), inverting_machine()).absent();
+      component_list_of(diagram::flatten(made, library_), inverting_machine()).absent();
   EXPECT_THAT(absent, ::testing::ElementsAre("plain"));
 }
 

@@ -81,7 +81,7 @@ TEST(Sheets, SayWhatPotentiometersStandFor) {
 // x = 0.6, y = −1: ẋ = 2.5 + 0.2, ẏ = 1.5, x·½y = −0.3 [machine unit]; 10 V each.
 TEST(Sheets, TellWhatEveryElementShowsAtTheStart) {
   const Sheet test = sheets(ten_volts()).static_test;
-  EXPECT_THAT(test.columns, ElementsAre("element", "signal", "kind", "output [V]", "slope [V/s]"));
+  EXPECT_THAT(test.columns, ElementsAre("element", "signal", "kind", "output [V]", "derivative [V/s]"));
   EXPECT_THAT(test.rows, Contains(ElementsAre("A1", "x", "integrator, k0 = 1 1/s", "6.0000", "27.0000")));
   EXPECT_THAT(test.rows, Contains(ElementsAre("A2", "minus_x", "inverter", "-6.0000", "")));
   EXPECT_THAT(test.rows, Contains(ElementsAre("A3", "y", "integrator, k0 = 1 1/s", "-10.0000", "15.0000")));
@@ -91,8 +91,8 @@ TEST(Sheets, TellWhatEveryElementShowsAtTheStart) {
 
 TEST(Sheets, ComputeInMachineUnitsWhereTheVoltageIsNotKnown) {
   const Sheet test = sheets(inverting_machine()).static_test;
-  EXPECT_THAT(test.columns,
-              ElementsAre("element", "signal", "kind", "output [machine unit]", "slope [machine unit/s]"));
+  EXPECT_THAT(test.columns, ElementsAre("element", "signal", "kind", "output [machine unit]",
+                                        "derivative [machine unit/s]"));
   EXPECT_THAT(test.rows, Contains(ElementsAre("A1", "x", "integrator, k0 = 1 1/s", "0.6000", "2.7000")));
 }
 

@@ -39,21 +39,23 @@ TEST(Transmission, ExtremesOfAFourBarAreWhereCrankAndFrameLieOnALine) {
 TEST(MotionRange, HasSmoothPlacesUpToItsLimits) {
   for (const bool from_limit : {false, true}) {
     for (const bool at_limit : {false, true}) {
-      MotionRange tour;
-      tour.begin = 1;
-      tour.end = 3;
-      tour.from_limit = from_limit;
-      tour.at_limit = at_limit;
-      EXPECT_EQ(tour.time(0), 1);
-      EXPECT_EQ(tour.time(1), 3);
+      MotionRange motion_range;
+      motion_range.begin = 1;
+      motion_range.end = 3;
+      motion_range.from_limit = from_limit;
+      motion_range.at_limit = at_limit;
+      EXPECT_EQ(motion_range.time(0), 1);
+      EXPECT_EQ(motion_range.time(1), 3);
       const double third = from_limit && at_limit ? 0.25
                            : from_limit           ? 1.0 / 9
                            : at_limit             ? 5.0 / 9
                                                   : 1.0 / 3;
-      EXPECT_NEAR(tour.time(1.0 / 3), 1 + 2 * third, 1e-15);
+      EXPECT_NEAR(motion_range.time(1.0 / 3), 1 + 2 * third, 1e-15);
       constexpr double kStep = 1e-5;
       for (const double u : {0.1, 0.35, 0.5, 0.8}) {
-        EXPECT_NEAR(tour.rate(u), (tour.time(u + kStep) - tour.time(u - kStep)) / (2 * kStep), 1e-8) << u;
+        EXPECT_NEAR(motion_range.rate(u),
+                    (motion_range.time(u + kStep) - motion_range.time(u - kStep)) / (2 * kStep), 1e-8)
+            << u;
       }
     }
   }
@@ -73,7 +75,7 @@ TEST(Transmission, IsPoorBeyondWhatTextbooksAllow) {
   angle.measure = Transmission::Measure::pressure_angle;
   EXPECT_FALSE(is_poor(0, kPi / 2 - kPi / 6));
   EXPECT_TRUE(is_poor(0, kPi / 2 - kPi / 6 + 1e-9));
-  angle.measure = Transmission::Measure::regularity;
+  angle.measure = Transmission::Measure::determinant;
   EXPECT_FALSE(is_poor(0, 1));
 }
 
@@ -146,7 +148,7 @@ E = [158, 474]
   EXPECT_NEAR(slot.least.value, 200, 1e-9);
   EXPECT_NEAR(slot.greatest.value, 400, 1e-9);
   EXPECT_EQ(analysis.sliders.at(0).type, SliderLoop::Type::lever_swings);
-  EXPECT_EQ(analysis.transmissions.at(0).measure, Transmission::Measure::regularity);
+  EXPECT_EQ(analysis.transmissions.at(0).measure, Transmission::Measure::determinant);
 }
 
 TEST(Sweep, StrokeOfAnOffsetSliderCrank) {
@@ -174,7 +176,7 @@ TEST(Sweep, TellsTurningFromSwingingAndRest) {
   const MechanismAnalysis parallel = analysis_of(four_bar(1, 3, 1, 3, "60.5 deg", "[3.5, 1]"));
   EXPECT_EQ(parallel.swings.at(0).kind, Sweep::Kind::stationary);
   EXPECT_EQ(parallel.swings.at(1).kind, Sweep::Kind::turns);
-  EXPECT_EQ(parallel.tour->changes.size(), 2U);
+  EXPECT_EQ(parallel.motion_range->changes.size(), 2U);
 }
 
 // sin⁷ φ is within ±0.01, a hundredth of its stroke, while |φ| < asin(0.01^(1/7)), about 0 and about 180°;
@@ -184,7 +186,7 @@ TEST(Dwell, IsFoundWhereverItLies) {
   const Structure structure = decompose(four);
   const RangeWalk walk(four, structure, plan_motion_range(four, structure));
   std::vector<double> values;
-  const std::size_t samples = walk.tour().samples;
+  const std::size_t samples = walk.motion_range().samples;
   for (std::size_t k = 0; k <= samples; ++k) {
     values.push_back(std::pow(std::sin(2 * kPi * static_cast<double>(k) / static_cast<double>(samples)), 7));
   }
@@ -204,8 +206,9 @@ TEST(Dwell, HarmonicMotionHasNone) {
   const Structure structure = decompose(four);
   const RangeWalk walk(four, structure, plan_motion_range(four, structure));
   std::vector<double> values;
-  for (std::size_t k = 0; k <= walk.tour().samples; ++k)
-    values.push_back(std::cos(2 * kPi * static_cast<double>(k) / static_cast<double>(walk.tour().samples)));
+  for (std::size_t k = 0; k <= walk.motion_range().samples; ++k)
+    values.push_back(
+        std::cos(2 * kPi * static_cast<double>(k) / static_cast<double>(walk.motion_range().samples)));
   EXPECT_TRUE(find_dwells(walk, {&values}, 2).empty());
 }
 
@@ -213,11 +216,11 @@ TEST(Dwell, HarmonicMotionHasNone) {
 TEST(Range, LimitsOfADoubleRockerFollowFromTheLawOfCosines) {
   const MechanismAnalysis analysis = analysis_of(four_bar(60, 70, 80, 100, "30 deg", "[100, 80]"));
   const double limit = angle_opposite(150, 60, 100);
-  const MotionRange& tour = *analysis.tour;
-  EXPECT_EQ(tour.kind, MotionRange::Kind::limits);
-  EXPECT_FALSE(tour.closed);
-  EXPECT_NEAR(tour.range.forward->time + kPi / 6, limit, 1e-9);
-  EXPECT_NEAR(tour.range.backward->time + kPi / 6, -limit, 1e-9);
+  const MotionRange& motion_range = *analysis.motion_range;
+  EXPECT_EQ(motion_range.kind, MotionRange::Kind::limits);
+  EXPECT_FALSE(motion_range.closed);
+  EXPECT_NEAR(motion_range.range.forward->time + kPi / 6, limit, 1e-9);
+  EXPECT_NEAR(motion_range.range.backward->time + kPi / 6, -limit, 1e-9);
   // at a limit the velocities are infinite, and positions known to the root of its sharpness
   const Sweep& right = analysis.swings.at(1);
   EXPECT_NEAR(right.greatest.value, angle_opposite(60, 100, 150), 1e-5);
@@ -242,8 +245,8 @@ block = { slides = "across", speed = 10, start = 30 }
 [sketch]
 B = [0, 110]
 )"));
-  EXPECT_NEAR(analysis.tour->range.forward->time, 9, 1e-9);
-  EXPECT_NEAR(analysis.tour->range.backward->time, -15, 1e-9);
+  EXPECT_NEAR(analysis.motion_range->range.forward->time, 9, 1e-9);
+  EXPECT_NEAR(analysis.motion_range->range.backward->time, -15, 1e-9);
   EXPECT_NEAR(analysis.swings.at(1).greatest.value, 120, 1e-9);
 }
 

@@ -123,8 +123,8 @@ FD = { points = ["F", "D"], length = 4 }
   }
 }
 
-// The body CDFH on rods to E and G, and P and Q on rods to each other, to the frame and to the body: seven
-// conditions for three unknowns of the body and two of each free point, which no part of them gives.
+// The link CDFH on rods to E and G, and P and Q on rods to each other, to the frame and to the link: seven
+// conditions for three unknowns of the link and two of each free point, which no part of them gives.
 TEST(AssemblyModes, OfAGroupOfABodyAndTwoFreePoints) {
   const std::map<std::string, Eigen::Vector2d> places{
       {"A", {1, 0}},     {"B", {6, 0}},     {"C", {2.2, 4}}, {"D", {4.4, 4.1}}, {"E", {-0.5, 5.5}},

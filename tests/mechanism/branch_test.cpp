@@ -190,7 +190,8 @@ TEST(Branch, GoesOnWhereTheDriveComesBack) {
   }
 }
 
-// Two drives: an arm of two links carries the hinge of a dyad out of its reach, and another way back into it.
+// Two drives: an arm of two links carries the revolute joint of a dyad out of its reach, and another way back
+// into it.
 TEST(Branch, OfSeveralDrivesComesBackOnAStraightWay) {
   const Mechanism mechanism = parse_mechanism(R"(format = "oblique-mechanism/1"
 [frame]

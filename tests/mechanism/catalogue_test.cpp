@@ -51,7 +51,8 @@ struct Measure {
   }
 };
 
-/// A motion held against the oracle: positions, velocities and accelerations of points, bodies and slides.
+/// A motion held against the oracle: positions, velocities and accelerations of points, links and prismatic
+/// joints.
 struct Comparison {
   std::array<Measure, 3> points, bodies, slides;
   double closure = 0;         ///< largest residual of our own positions [length unit]

@@ -29,7 +29,7 @@ const std::string kCrank = R"([drives]
 crank = { turns = "AB", about = "A", speed = 1 }
 )";
 
-/// The names of bodies and points, of the frame too, that these vertices are.
+/// The names of links and points, of the frame too, that these vertices are.
 std::vector<std::string> names(const Mechanism& mechanism, const ConstraintGraph& graph,
                                const std::vector<std::size_t>& vertices) {
   std::vector<std::string> found;

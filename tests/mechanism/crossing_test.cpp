@@ -158,10 +158,10 @@ TEST(Crossing, GoesThroughInfinity) {
   const Motion stopped = solve_motion(mechanism, options);
   EXPECT_NEAR(stopped.times.back(), kPi / 2 - 1e-3, 1e-9);
   EXPECT_EQ(stopped.configurations.back().status, Status::ok);
-  const MotionRange tour = plan_motion_range(mechanism, decompose(mechanism));
-  ASSERT_TRUE(tour.range.forward && tour.range.backward);
-  EXPECT_EQ(tour.range.forward->kind, Kind::infinity);
-  EXPECT_NEAR(tour.range.backward->time, -kPi / 2, 1e-9);
+  const MotionRange motion_range = plan_motion_range(mechanism, decompose(mechanism));
+  ASSERT_TRUE(motion_range.range.forward && motion_range.range.backward);
+  EXPECT_EQ(motion_range.range.forward->kind, Kind::infinity);
+  EXPECT_NEAR(motion_range.range.backward->time, -kPi / 2, 1e-9);
 }
 
 }  // namespace

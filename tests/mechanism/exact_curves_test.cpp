@@ -158,7 +158,7 @@ TEST(ExactCurve, OfHoekensIsThatOfItsCognateByChebyshev) {
   }
 }
 
-/// A four-bar in the file's format: its moving points from the first pivot on are the first body's end, the
+/// A four-bar in the file's format: its moving points from the first pivot on are the first link's end, the
 /// coupler's end and the coupler's mark M.
 std::string four_bar_text(Complex first, Complex second, double crank, double coupler, double rocker,
                           Complex mark, const std::string& drive, double start, Complex sketched_first,

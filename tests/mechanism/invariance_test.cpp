@@ -52,7 +52,7 @@ Mechanism transformed(Mechanism mechanism, const Similarity& by) {
   return mechanism;
 }
 
-/// Bodies in the reverse order and with other names.
+/// Links in the reverse order and with other names.
 Mechanism reordered(Mechanism mechanism) {
   const std::size_t last = mechanism.bodies.size() - 1;
   std::reverse(mechanism.bodies.begin(), mechanism.bodies.end());

@@ -116,7 +116,7 @@ TEST(LawDerivative, RefusesWhatHasNone) {
       return fmt::format("{}: {}", error.column, error.what);
     }
   };
-  EXPECT_EQ(message("2*noise(time, 1)"), "3: the slope of noise has no expression");
+  EXPECT_EQ(message("2*noise(time, 1)"), "3: the derivative of noise has no expression");
   EXPECT_EQ(message("1 + abs(time)"), "5: what switches has no derivative");
   EXPECT_EQ(message("time < 1"), "6: what switches has no derivative");
 }

@@ -270,7 +270,7 @@ TEST(Motion, GivesTheSameAnglesForAnyRows) {
 }
 
 // D lies 1e-5 inside the circle of B, so seen from D, B swings by more than half a turn within one degree of
-// the crank. With equal links the triangle BCD is the same at both ends, and both bodies turn with the
+// the crank. With equal links the triangle BCD is the same at both ends, and both links turn with the
 // direction from D to B.
 TEST(Motion, FollowsABodyThatTurnsMuchFasterThanItsDrive) {
   const double end = 20.45 * kPi / 180;

@@ -18,22 +18,22 @@ namespace oblique::mechanism {
 /// are no angles, no groups, no order of solution and no branches: one set of equations, in long double,
 /// solved as a whole.
 ///
-/// With d = second − first of a body or a line and J d = d turned left by a right angle:
+/// With d = second − first of a link or a line and J d = d turned left by a right angle:
 ///
-///     two points of a body         (d·d − L²) / 2L = 0
+///     two points of a link         (d·d − L²) / 2L = 0
 ///     a further point at (u, v)    p − first − (u d + v J d)/L = 0              two equations
 ///     a point on a line            d × (p − first)/|d| − offset = 0
-///     a body b that keeps α        (cos α (d × b) − sin α (d · b))/|d| = 0      and the other sign of b is
+///     a link b that keeps α        (cos α (d × b) − sin α (d · b))/|d| = 0      and the other sign of b is
 ///                                                                               another assembly mode
-///     a turned body                d − L (cos θ, sin θ) = 0                     two equations
-///     a moved slide                d · (p − first)/|d| − s = 0
+///     a turned link                d − L (cos θ, sin θ) = 0                     two equations
+///     a moved prismatic joint                d · (p − first)/|d| − s = 0
 ///
 /// Every one is a sum of differences of coordinates and of products of two such, less a known function of
 /// time, f(x) = c(t). So the derivatives by time are exact and short:
 ///
 ///     f′(x) ẋ = ċ,    f′(x) ẍ = c̈ − 2 f₂(ẋ)         f₂: the products alone
 ///
-/// The equations are more than the unknowns where a body is driven; they agree, and the least squares of the
+/// The equations are more than the unknowns where a link is driven; they agree, and the least squares of the
 /// QR decomposition do not mind. All residuals are lengths.
 class NaturalCoordinates {
  public:
@@ -55,7 +55,7 @@ class NaturalCoordinates {
     Real conditioning = 0;  ///< of the equations: smallest over largest pivot; 0 in a dead centre
   };
 
-  /// Position and its derivatives of a body's angle [rad] or of a slide [length unit].
+  /// Position and its derivatives of a link's angle [rad] or of a prismatic joint [length unit].
   struct Scalar {
     Real value = 0, rate = 0, acceleration = 0;
   };
@@ -121,7 +121,7 @@ class NaturalCoordinates {
     return coordinates.segment<2>(2 * static_cast<Eigen::Index>(point));
   }
 
-  /// A body's angle of first → second point from +x, the one nearest to `near`.
+  /// A link's angle of first → second point from +x, the one nearest to `near`.
   Scalar angle(const Pose& pose, std::size_t body, Real near) const {
     const auto& points = mechanism_.bodies[body].points;
     const Line line{points[0].point, points[1].point};
@@ -134,7 +134,7 @@ class NaturalCoordinates {
             cross(d, acceleration) / d.squaredNorm()};
   }
 
-  /// A slide's distance from the first point of its line.
+  /// A prismatic joint's distance from the first point of its line.
   Scalar slide(const Pose& pose, std::size_t index) const {
     const Slide& s = mechanism_.slides[index];
     const Line line{s.first, s.second}, arm{s.first, s.point};
@@ -147,7 +147,7 @@ class NaturalCoordinates {
             (d2.dot(p0) + 2 * d1.dot(p1) + d0.dot(p2)) / length};
   }
 
-  /// Whether every body that keeps an angle to a line points the right way along it.
+  /// Whether every link that keeps an angle to a line points the right way along it.
   bool guides_agree(const Vector& position) const {
     for (const Slide& s : mechanism_.slides) {
       if (!s.of) continue;

@@ -30,8 +30,8 @@ s = { point = "C", along = ["A", "X"], offset = 0.5 }
 crank = { turns = "AB", about = "A", speed = 1 }
 )";
 
-/// Every kind of equation at once: a triangle with marks, a pin in a moving slot, a prismatic pair on a body,
-/// a driven slide.
+/// Every kind of equation at once: a triangle with marks, a pin in a moving slot, a prismatic pair on a link,
+/// a driven prismatic joint.
 constexpr auto kMixed = R"(
 format = "oblique-mechanism/1"
 [frame]

@@ -33,7 +33,7 @@ rc::Gen<double> between(double from, double to) {
 ///    O             S
 struct MovingDyad {
   Mechanism mechanism;
-  Vector2d hinge;  ///< where C was put
+  Vector2d joint;  ///< where C was put
 };
 
 MovingDyad make_dyad(double crank_angle, double second_angle, double r1, double r2, double direction,
@@ -75,7 +75,7 @@ RC_GTEST_PROP(RandomDyad, IsPutTogetherAsItWasTakenApart, ()) {
 
   // coordinates up to 10 with some ten roundings each, times 1/sin 10°
   const double position_rounding = 2e-13;
-  RC_ASSERT((c.position - dyad.hinge).norm() < position_rounding);
+  RC_ASSERT((c.position - dyad.joint).norm() < position_rounding);
   const double side = structure.groups.back().side;
   RC_ASSERT(side * cross(q.position - p.position, c.position - p.position) > 0);
 
@@ -95,7 +95,7 @@ RC_GTEST_PROP(RandomDyad, IsPutTogetherAsItWasTakenApart, ()) {
               acceleration_rounding * (1 + rate.squaredNorm()));
   }
 
-  // Angles of the bodies, and their rates from the ends of the bars: e × ė = ω e², e × ë = α e².
+  // Angles of the links, and their rates from the ends of the bars: e × ė = ω e², e × ë = α e².
   const auto check_body = [&](const BodyState& body, const PointState& from, const PointState& to) {
     const Vector2d e = to.position - from.position;
     RC_ASSERT(std::abs(cross(e, Vector2d(std::cos(body.angle), std::sin(body.angle)))) < position_rounding);

@@ -45,20 +45,20 @@ RandomSixbar random_sixbar(std::uint64_t seed) {
     }
   }
   const std::size_t frame = choice(chain.size());
-  const auto hinge_of = [&](const std::string& link) {
+  const auto joint_of = [&](const std::string& link) {
     const auto at = std::find_if(link.begin(), link.end(),
                                  [&](char joint) { return chain[frame].find(joint) != std::string::npos; });
     return at == link.end() ? std::string::npos : static_cast<std::size_t>(at - link.begin());
   };
   std::size_t driven = choice(chain.size());
-  while (driven == frame || hinge_of(chain[driven]) == std::string::npos) driven = choice(chain.size());
+  while (driven == frame || joint_of(chain[driven]) == std::string::npos) driven = choice(chain.size());
 
   RandomSixbar mechanism;
   std::string bodies, drive;
   for (std::size_t i = 0; i < chain.size(); ++i) {
     if (i == frame) continue;
     std::string link = chain[i];
-    if (i == driven) std::swap(link[0], link[hinge_of(link)]);
+    if (i == driven) std::swap(link[0], link[joint_of(link)]);
     const Vector2d way = joints[link[1]] - joints[link[0]];
     const double length = way.norm();
     mechanism.bars.push_back({{link[0]}, {link[1]}, length});

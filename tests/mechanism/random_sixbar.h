@@ -7,7 +7,7 @@
 
 namespace oblique::mechanism {
 
-/// A six-bar chain of hinged links at random dimensions: the text of its file, and the distances that its
+/// A six-bar chain of pinned links at random dimensions: the text of its file, and the distances that its
 /// links keep and the sides on which their third points lie.
 struct RandomSixbar {
   std::string text;
@@ -24,7 +24,7 @@ struct RandomSixbar {
 };
 
 /// Number `seed` of them: Watt's and Stephenson's chains by turns, on any of their links, driven by any link
-/// that is hinged to the frame. None has two joints of a link nearer to each other than 0.15 of 1.
+/// that is pinned to the frame. None has two joints of a link nearer to each other than 0.15 of 1.
 RandomSixbar random_sixbar(std::uint64_t seed);
 
 }  // namespace oblique::mechanism

@@ -73,7 +73,7 @@ PlatformPose random_pose(Dice& dice) {
   return {dice.point(), direction.x(), direction.y()};
 }
 
-/// Leads that close in `pose`: lengths are measured there, lines moved there.
+/// Legs that close in `pose`: lengths are measured there, lines moved there.
 std::array<Leg, 3> closed_in(const Sketch& sketch, const PlatformPose& pose) {
   const Matrix2d turn = (Matrix2d() << pose.cosine, -pose.sine, pose.sine, pose.cosine).finished();
   std::array<Leg, 3> legs;
@@ -252,15 +252,15 @@ TEST(RandomTriad, OfASpecialShapeMissesNoMode) {
   }
 }
 
-TEST(RandomTriad, OnAHingeOfTwoLinesMissesNoMode) {
-  const Shape hinge = [](Dice&, Sketch& s) {
+TEST(RandomTriad, OnARevoluteJointOfTwoLinesMissesNoMode) {
+  const Shape revolute = [](Dice&, Sketch& s) {
     s.locals[1] = s.locals[0];
     s.directions[0] = Vector2d::UnitX();
     s.directions[1] = Vector2d::UnitY();
   };
   for (const Kind third : {Kind::circle, Kind::fixed_line, Kind::platform_line}) {
     expect_all_found(300 + static_cast<unsigned>(third), number_of_triads(500),
-                     {Kind::fixed_line, Kind::fixed_line, third}, hinge);
+                     {Kind::fixed_line, Kind::fixed_line, third}, revolute);
   }
 }
 

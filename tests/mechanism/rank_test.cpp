@@ -42,7 +42,7 @@ C = {}
                                start, sketch));
 }
 
-/// A parallelogram with a third crank FE of this length, hinged halfway.
+/// A parallelogram with a third crank FE of this length, pinned halfway.
 Mechanism three_cranks(double length, const std::string& order = R"("F", "E")") {
   return mechanism(fmt::format(R"([units]
 length = "mm"
@@ -95,7 +95,8 @@ TEST(Rank, IsFoundOfManyLinksToo) {
   }
 }
 
-// Columns of the Jacobian against differences of the conditions: a point moves on a slide of a moving body.
+// Columns of the Jacobian against differences of the conditions: a point moves on a prismatic joint of a
+// moving link.
 TEST(Rank, CountsSlides) {
   const Mechanism whitworth = mechanism(R"([frame]
 A = [0, 0]

@@ -38,7 +38,7 @@ std::pair<MechanismError::Kind, std::string> refusal(const std::string& body) {
 }
 
 // A four-bar ABCD with marks K and E on its coupler and rocker, a dyad E–G–H behind the rocker and another
-// C–F–K on the four-bar: eight bars with the frame. The bodies stand in the file in the reverse of the order
+// C–F–K on the four-bar: eight bars with the frame. The links stand in the file in the reverse of the order
 // of motion.
 const std::string kEightBar = R"([frame]
 A = [0, 0]
@@ -56,11 +56,11 @@ AB  = { points = ["A", "B"], length = 1 }
 crank = { turns = "AB", about = "A", speed = 1 }
 )";
 
-TEST(Mobility, CountsHingesOfSeveralBodiesAndTheFrame) {
+TEST(Mobility, CountsRevoluteJointsOfSeveralBodiesAndTheFrame) {
   EXPECT_EQ(mobility(shipped("four-bar.toml")), 1);
   EXPECT_EQ(mobility(shipped("six-bar.toml")), 1);
   EXPECT_EQ(mobility(shipped("jansen.toml")),
-            1);  // 13 bodies, 19 hinges: O2 is four of them, P6 and Q6 two each
+            1);  // 13 links, 19 revolute joints: O2 is four of them, P6 and Q6 two each
   EXPECT_EQ(
       mobility(mechanism("[frame]\nA = [0, 0]\n[bodies]\nAB = { points = [\"A\", \"B\"], length = 1 }")), 1);
   EXPECT_EQ(
@@ -197,8 +197,9 @@ crank = { turns = "AB", about = "A", speed = 1 }
           HasSubstr("test.toml:11:1: body 'CX' can move freely (mobility 1 after the drives)")));
 }
 
-// The four-bar stands still without K, which has 3 freedoms and 6 conditions: three too many, of two hinges.
-TEST(Structure, TellsOfAHingeThatIsTooMuchOnce) {
+// The four-bar stands still without K, which has 3 freedoms and 6 conditions: three too many, of two revolute
+// joints.
+TEST(Structure, TellsOfARevoluteJointThatIsTooMuchOnce) {
   const auto [kind, text] = refusal(R"([frame]
 A = [0, 0]
 D = [4, 0]
@@ -213,10 +214,10 @@ FX = { points = ["F", "X"], length = 1 }
 crank = { turns = "AB", about = "A", speed = 1 }
 )");
   EXPECT_EQ(kind, MechanismError::Kind::mobility);
-  for (const std::string hinge :
+  for (const std::string revolute :
        {"its revolute joint at 'M' is superfluous", "its revolute joint at 'N' is superfluous"}) {
-    EXPECT_NE(text.find(hinge), std::string::npos) << text;
-    EXPECT_EQ(text.find(hinge), text.rfind(hinge)) << text;
+    EXPECT_NE(text.find(revolute), std::string::npos) << text;
+    EXPECT_EQ(text.find(revolute), text.rfind(revolute)) << text;
   }
 }
 
@@ -227,7 +228,7 @@ TEST(Structure, KnowsADrivenSlider) {
   EXPECT_EQ(trammel.groups.at(1).form.kind, GroupKind::rrp);
 }
 
-// Two blocks hinged to each other at P, one in a slot of the crank and one in a slot of the frame; the yoke
+// Two blocks pinned to each other at P, one in a slot of the crank and one in a slot of the frame; the yoke
 // has a slot of its own.
 TEST(Structure, TellsAPinInTwoSlotsFromAYoke) {
   const Structure pin = find_groups(mechanism(R"([frame]
@@ -250,7 +251,7 @@ crank = { turns = "AB", about = "A", speed = 1, start = "45 deg" }
   EXPECT_EQ(yoke.groups.at(1).form.kind, GroupKind::rpp);
 }
 
-// Four links in a closed loop, of which one is hinged to the crank and one to the frame (Artobolevsky calls a
+// Four links in a closed loop, of which one is pinned to the crank and one to the frame (Artobolevsky calls a
 // group by the number of pairs in the loop of most pairs, where no link has more).
 TEST(Structure, KnowsAGroupOfClassIV) {
   const Structure structure = decompose(shipped("class-iv.toml"));

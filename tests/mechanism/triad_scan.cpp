@@ -32,9 +32,9 @@ using Motion = std::function<PlatformPose(double tau)>;
 /// its anchor, with d and `along` given by the second leg. That needs h = h₀ + h₁cos(θ − θ₀) in [low, high].
 /// Where θ turns round at the end of such an interval the two signs meet, so θ = middle − half·cos τ with the
 /// sign of sin τ walks through both smoothly.
-class TwoLeads {
+class TwoLegs {
  public:
-  TwoLeads(const Leg& circle, const Leg& other) : circle_(circle), other_(other) {
+  TwoLegs(const Leg& circle, const Leg& other) : circle_(circle), other_(other) {
     const Vector2d a = other.anchor - circle.anchor;
     const Vector2d b = circle.local - other.local;
     const double l = circle.length;
@@ -209,7 +209,7 @@ std::vector<PlatformPose> scan_poses(const std::array<Leg, 3>& legs, int steps) 
   std::sort(order.begin(), order.end(), [](const Leg& a, const Leg& b) { return a.kind < b.kind; });
   if (order[0].kind != Leg::Kind::circle) return scan_lines(legs, steps);
   std::vector<PlatformPose> poses;
-  for (const Motion& motion : TwoLeads(order[0], order[1]).motions()) {
+  for (const Motion& motion : TwoLegs(order[0], order[1]).motions()) {
     const auto error = [&](double tau) { return closing_error(order[2], motion(tau)); };
     for (const double tau : periodic_zeros(error, steps)) poses.push_back(motion(tau));
   }

@@ -141,7 +141,7 @@ TEST(Triad, KeepsItsModesUnderMotionsAndScales) {
   }
 }
 
-TEST(Triad, HangsOnAHingeAndARod) {
+TEST(Triad, HangsOnARevoluteJointAndARod) {
   // The platform's origin on the origin of the world, its point (2, 0) at 1.5 from (3, 0): cos θ by the law
   // of cosines.
   const double theta = std::acos((4 + 9 - 2.25) / 12);
@@ -156,7 +156,7 @@ TEST(Triad, HangsOnAHingeAndARod) {
   EXPECT_EQ(platform_modes({kUpright, kLevel, circle({2, 0}, {3.6, 0}, 1.5)}).count, 0);
 }
 
-TEST(Triad, HangsOnAHingeAndASlide) {
+TEST(Triad, HangsOnARevoluteAndAPrismaticJoint) {
   // PR: the point (2, 0) on the line y = 1
   expect_modes({kUpright, kLevel, fixed_line({2, 0}, {7, 1}, 0)},
                {{{0, 0}, std::sqrt(3) / 2, 0.5}, {{0, 0}, -std::sqrt(3) / 2, 0.5}});
@@ -310,7 +310,7 @@ TEST(Triad, FindsAPoseNextToAParallelogram) {
   }
 }
 
-TEST(Triad, IsMovableWhereLeadsRepeat) {
+TEST(Triad, IsMovableWhereLegsRepeat) {
   const Leg rod = circle({1, 0}, {4, 0}, 2.5);
   EXPECT_TRUE(platform_modes({rod, rod, circle({0, 1}, {0, 0}, 2)}).movable);
   EXPECT_TRUE(platform_modes({rod, kLevel, kLevel}).movable);

@@ -91,11 +91,11 @@ TEST_P(AllocationTest, NothingAfterTheFirstCall) {
   const Program& program = made.program;
   Workspace workspace(program);
   std::vector<double> x = program.start();
-  std::vector<double> slopes(x.size()), values(program.jacobian_pattern().entries()),
+  std::vector<double> derivatives(x.size()), values(program.jacobian_pattern().entries()),
       signals(program.n_signals());
   const auto evaluate_all = [&] {
     x[0] += 1e-3;  // so that the loops have something to do
-    return program.derivatives(0, x.data(), slopes.data(), workspace) &&
+    return program.derivatives(0, x.data(), derivatives.data(), workspace) &&
            program.jacobian(0, x.data(), values.data(), workspace) &&
            program.signals(0, x.data(), signals.data(), workspace);
   };

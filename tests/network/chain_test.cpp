@@ -45,18 +45,19 @@ TEST(SwitchOrder, SettlesAChainInOneGo) {
   const Program& program = made.program;
   Workspace workspace(program);
   const std::vector<double> x{50, 0, 0}, still(3, 0.0);
-  std::vector<double> surfaces(program.switches().size());
-  ASSERT_TRUE(program.surfaces(0, x.data(), surfaces.data(), workspace));
+  std::vector<double> event_functions(program.switches().size());
+  ASSERT_TRUE(program.event_functions(0, x.data(), event_functions.data(), workspace));
   int decided = 0;
-  program.decide_in_order(0, x.data(), still.data(), workspace,
-                          [&](std::uint32_t s, double surface, double /*rate*/) {
-                            ++decided;
-                            workspace.set_memory(program.switches()[s].memory, surface > 0 ? 1 : 0);
-                          });
+  program.decide_in_order(
+      0, x.data(), still.data(), workspace, [&](std::uint32_t s, double event_function, double /*rate*/) {
+        ++decided;
+        workspace.set_discrete_state(program.switches()[s].discrete_state, event_function > 0 ? 1 : 0);
+      });
   EXPECT_EQ(decided, kLength);
-  ASSERT_TRUE(program.surfaces(0, x.data(), surfaces.data(), workspace));
-  for (std::size_t s = 0; s < surfaces.size(); ++s)
-    EXPECT_EQ(workspace.memory(program.switches()[s].memory) == 1, surfaces[s] > 0) << s;
+  ASSERT_TRUE(program.event_functions(0, x.data(), event_functions.data(), workspace));
+  for (std::size_t s = 0; s < event_functions.size(); ++s)
+    EXPECT_EQ(workspace.discrete_state(program.switches()[s].discrete_state) == 1, event_functions[s] > 0)
+        << s;
   std::vector<double> signals(program.n_signals());
   ASSERT_TRUE(program.signals(0, x.data(), signals.data(), workspace));
   // 50 − 300 · 0.1, in the arithmetic of 300 subtractions.
@@ -82,11 +83,11 @@ TEST(SwitchOrder, GivesEachRateByThePositionsBefore) {
   const std::vector<double> x{0, 1, 0}, dxdt{1, 0, 0};
   std::vector<double> rates(program.switches().size(), 0.0);
   const auto run_down = [&](const std::vector<double>& along) {
-    program.decide_in_order(0, x.data(), along.data(), workspace,
-                            [&](std::uint32_t s, double /*surface*/, double rate) {
-                              rates[s] = rate;
-                              workspace.set_memory(program.switches()[s].memory, rate > 0 ? 1 : 0);
-                            });
+    program.decide_in_order(
+        0, x.data(), along.data(), workspace, [&](std::uint32_t s, double /*event_function*/, double rate) {
+          rates[s] = rate;
+          workspace.set_discrete_state(program.switches()[s].discrete_state, rate > 0 ? 1 : 0);
+        });
   };
   run_down(dxdt);
   EXPECT_EQ(rates, (std::vector<double>{1, 1, 1, 1}));
@@ -124,8 +125,8 @@ TEST(Pieces, MeetWhereTheyAreEqual) {
         "a = { type = " + std::string(block) + ", in = \"x\" }\nx = { type = \"integrator\", in = \"a\" }\n",
         "", library);
     Workspace workspace(made.program);
-    std::vector<double> surfaces(made.program.switches().size());
-    return made.program.surfaces(0, &x, surfaces.data(), workspace).value().pieces_meet(0);
+    std::vector<double> event_functions(made.program.switches().size());
+    return made.program.event_functions(0, &x, event_functions.data(), workspace).value().pieces_meet(0);
   };
   EXPECT_TRUE(meet("\"own\"", 0));
   EXPECT_FALSE(meet("\"own\"", 0.5));

@@ -130,7 +130,7 @@ TEST_F(ExpressionGraphTest, DifferentiatesEveryOperation) {
   const std::array point{kA, kB};
   // Each formula is a handful of roundings from the exact value.
   constexpr double kRounding = 1e-15;
-  constexpr std::size_t kNoise = 2;  // it and its slope, which noise_test holds
+  constexpr std::size_t kNoise = 2;  // it and its derivative, which noise_test holds
   EXPECT_EQ(kFormulas.size() + kNoise, text::operations().size()) << "an operation has no formula here";
   for (const Formula& formula : kFormulas) {
     const NodeId node = g.apply(formula.op, x, y);
@@ -153,7 +153,7 @@ TEST_F(ExpressionGraphTest, HoldsEveryOperationOfTheTable) {
     EXPECT_EQ(node.operand(0), x) << info.name;
   }
   for (const Op op :
-       {Op::constant, Op::variable, Op::memory, Op::select, Op::gate, Op::less, Op::table_value})
+       {Op::constant, Op::variable, Op::discrete_state, Op::select, Op::gate, Op::less, Op::table_value})
     EXPECT_EQ(smooth_operation(op), std::nullopt) << static_cast<int>(op);
 }
 
@@ -247,8 +247,8 @@ RC_GTEST_PROP(ExpressionGraph, GradientsAgreeWithCentralDifferences, ()) {
     Vector left = wide, right = wide;
     left[i] -= kStep;
     right[i] += kStep;
-    const auto slope = static_cast<double>((twin.value(right) - twin.value(left)) / (2 * kStep));
-    RC_ASSERT(std::abs(found[i] - slope) <= 1e-7 * (1 + std::abs(slope)));
+    const auto derivative = static_cast<double>((twin.value(right) - twin.value(left)) / (2 * kStep));
+    RC_ASSERT(std::abs(found[i] - derivative) <= 1e-7 * (1 + std::abs(derivative)));
   }
 }
 

@@ -19,7 +19,7 @@ using Vector = std::vector<double>;
 struct Case {
   std::string name;
   std::string blocks;
-  std::function<Vector(double x, double y, double z)> slopes;
+  std::function<Vector(double x, double y, double z)> derivatives;
   std::vector<std::size_t> loops;          ///< number of unknowns of each
   std::vector<std::pair<int, int>> zeros;  ///< (row, column) that must not be in the pattern
   double rounding = 1e-13;                 ///< of dx/dt, relative to 1 + |dx/dt|
@@ -184,7 +184,7 @@ class JacobianTest : public ::testing::TestWithParam<Case> {
   const Program& program = made.program;
 
   Vector oracle(const Vector& x) const {
-    return GetParam().slopes(x[0], x.size() > 1 ? x[1] : 0, x.size() > 2 ? x[2] : 0);
+    return GetParam().derivatives(x[0], x.size() > 1 ? x[1] : 0, x.size() > 2 ? x[2] : 0);
   }
 
   /// Somewhere that all loops have solutions: the roots are real, the triangles close, no gain is 1.
@@ -221,10 +221,10 @@ TEST_P(JacobianTest, DerivativesAreTheClosedForm) {
   EXPECT_TRUE(rc::check([&] {
     const Vector x = random_point(), expected = oracle(x);
     Workspace workspace(program);
-    Vector slopes(x.size());
-    RC_ASSERT(program.derivatives(0, x.data(), slopes.data(), workspace));
+    Vector derivatives(x.size());
+    RC_ASSERT(program.derivatives(0, x.data(), derivatives.data(), workspace));
     for (std::size_t i = 0; i < x.size(); ++i) {
-      RC_ASSERT(std::abs(slopes[i] - expected[i]) <= GetParam().rounding * (1 + std::abs(expected[i])));
+      RC_ASSERT(std::abs(derivatives[i] - expected[i]) <= GetParam().rounding * (1 + std::abs(expected[i])));
     }
   }));
 }
@@ -248,9 +248,9 @@ TEST_P(JacobianTest, AgreesWithDifferencesOfTheClosedForm) {
       right[column] += kStep;
       const Vector below = oracle(left), above = oracle(right);
       for (std::size_t row = 0; row < x.size(); ++row) {
-        const double slope = (above[row] - below[row]) / (2 * kStep);
+        const double derivative = (above[row] - below[row]) / (2 * kStep);
         // Truncation h² f‴/6 with f‴ up to 1e3 (the root at 0.15) and rounding 1e-16/h.
-        RC_ASSERT(std::abs(found[row] - slope) <= 1e-7 * (1 + std::abs(slope)));
+        RC_ASSERT(std::abs(found[row] - derivative) <= 1e-7 * (1 + std::abs(derivative)));
       }
     }
   }));

@@ -15,13 +15,13 @@ namespace {
 
 constexpr std::size_t kSize = 400;
 
-/// A loop whose slopes stand on slots 0, 1, …: each row reads itself and its two neighbours, and the rows
-/// are in the order of `row_of`.
+/// A loop whose derivatives stand on slots 0, 1, …: each row reads itself and its two neighbours, and the
+/// rows are in the order of `row_of`.
 struct Chain {
   explicit Chain(unsigned seed) : row_of(kSize) {
     std::iota(row_of.begin(), row_of.end(), 0U);
     std::mt19937 random(seed);
-    std::uniform_real_distribution<double> slope(-1, 1);
+    std::uniform_real_distribution<double> derivative(-1, 1);
     for (std::size_t k = 0; k < kSize / 3; ++k) {
       const std::size_t a = random() % kSize, b = random() % kSize;
       if (a == b) continue;
@@ -30,9 +30,9 @@ struct Chain {
     }
     for (std::size_t i = 0; i < kSize; ++i) {
       for (std::size_t j = i == 0 ? 0 : i - 1; j < std::min(kSize, i + 2); ++j) {
-        code.slopes.push_back(
+        code.jacobian.push_back(
             {row_of[i], static_cast<std::uint32_t>(j), static_cast<std::uint32_t>(slots.size())});
-        slots.push_back(slope(random) + (i == j ? (random() % 2 == 0 ? 2.5 : -2.5) : 0));
+        slots.push_back(derivative(random) + (i == j ? (random() % 2 == 0 ? 2.5 : -2.5) : 0));
       }
     }
     code.unknown_slots.resize(kSize);
@@ -74,7 +74,7 @@ TEST(LoopMatrix, OfALongLoopSolvesWhatIsKnown) {
       known.row(i) << std::sin(number), 1 / number;
     }
     Eigen::MatrixXd sides = Eigen::MatrixXd::Zero(known.rows(), 2);
-    for (const MatrixEntry& entry : chain.code.slopes)
+    for (const MatrixEntry& entry : chain.code.jacobian)
       sides.row(entry.row) += chain.slots[entry.slot] * known.row(entry.column);
     LoopMatrix matrix(kSize);
     ASSERT_TRUE(matrix.factor(chain.code, chain.slots.data()));

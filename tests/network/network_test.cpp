@@ -28,11 +28,11 @@ std::string refusal_of(const std::string& tables) {
       [&] { assemble(diagram::flatten(diagram::parse_diagram(text, "d.toml"), library)); });
 }
 
-double slope_at(const Compiled& made, double x) {
+double derivative_at(const Compiled& made, double x) {
   Workspace workspace(made.program);
-  double slope = 0;
-  EXPECT_TRUE(made.program.derivatives(0, &x, &slope, workspace));
-  return slope;
+  double derivative = 0;
+  EXPECT_TRUE(made.program.derivatives(0, &x, &derivative, workspace));
+  return derivative;
 }
 
 // Whatever switches is refused where its argument varies, and only there.
@@ -70,7 +70,7 @@ out = "if(p < 0 and abs(p) == 3, max(p, 2)*in, min(in, 0))"
 )toml");
   const Compiled made("o = { type = \"odd\", in = \"x\" }\nx = { type = \"integrator\", in = [\"o\"] }\n", "",
                       library);
-  EXPECT_EQ(slope_at(made, 0.5), 1.0);
+  EXPECT_EQ(derivative_at(made, 0.5), 1.0);
 }
 
 TEST(Network, RefusesAnEquationThatIsNeverFinite) {
@@ -129,7 +129,7 @@ TEST(FeedThrough, OfACompositeIsDecidedPathByPath) {
   const diagram::BlockLibrary library = shipped_blocks_and("two-paths", kTwoPaths);
   const Compiled made("p = { type = \"two-paths\", a = \"p.slow\", b = \"p.fast\" }\n", "", library);
   EXPECT_THAT(made.program.loops(), IsEmpty());
-  EXPECT_EQ(slope_at(made, 0.5), 1.0);  // d slow/dt = fast = 2 slow
+  EXPECT_EQ(derivative_at(made, 0.5), 1.0);  // d slow/dt = fast = 2 slow
 }
 
 TEST(FeedThrough, FindsTheLoopThatIsThere) {
@@ -140,7 +140,7 @@ TEST(FeedThrough, FindsTheLoopThatIsThere) {
       "", library);
   ASSERT_EQ(made.program.loops().size(), 1U);
   EXPECT_THAT(made.program.loops()[0].members, ElementsAre("p.double", "s"));
-  EXPECT_DOUBLE_EQ(slope_at(made, 0.6), 0.4);  // fast = 2 s, s = slow − fast
+  EXPECT_DOUBLE_EQ(derivative_at(made, 0.6), 0.4);  // fast = 2 s, s = slow − fast
 }
 
 TEST(FeedThrough, OfTwoOutputsOfOneBlockIsApart) {
@@ -151,7 +151,7 @@ TEST(FeedThrough, OfTwoOutputsOfOneBlockIsApart) {
       "p = { type = \"pair\", a = \"x\", b = \"p.u\" }\nx = { type = \"integrator\", in = [\"p.v\"] }\n", "",
       library);
   EXPECT_THAT(made.program.loops(), IsEmpty());
-  EXPECT_EQ(slope_at(made, 0.5), 1.5);
+  EXPECT_EQ(derivative_at(made, 0.5), 1.5);
 }
 
 TEST(FeedThrough, EndsAtAServoAmplifierOfFiniteBandwidth) {
@@ -183,8 +183,8 @@ TEST(Polarity, TurnsSummersAndIntegratorsOnly) {
       "i = { type = \"inverter\", in = \"x\" }\n"
       "x = { type = \"integrator\", in = [\"s\"], initial = 0.25 }\n";
   const Compiled plain(blocks), turned(blocks, "[machine]\ninverting = true\n");
-  EXPECT_EQ(slope_at(plain, 0.5), 0.5);
-  EXPECT_EQ(slope_at(turned, 0.5), 0.5);  // −(−(2x − x)): once by the summer, once by the integrator
+  EXPECT_EQ(derivative_at(plain, 0.5), 0.5);
+  EXPECT_EQ(derivative_at(turned, 0.5), 0.5);  // −(−(2x − x)): once by the summer, once by the integrator
   Workspace workspace(turned.program);
   const double x = 0.5;
   std::vector<double> signals(3);
@@ -196,7 +196,7 @@ TEST(Polarity, TurnsSummersAndIntegratorsOnly) {
 
 TEST(Polarity, TurnsALoneIntegrator) {
   const Compiled made("x = { type = \"integrator\", in = [\"3*x\"] }\n", "[machine]\ninverting = true\n");
-  EXPECT_EQ(slope_at(made, 1), -3.0);
+  EXPECT_EQ(derivative_at(made, 1), -3.0);
 }
 
 }  // namespace

@@ -14,10 +14,10 @@ namespace {
 using testing::Compiled;
 using Vector = std::vector<double>;
 
-double slope_of_only_state(const Program& program, double x, Workspace& workspace) {
-  double slope = std::nan("");
-  EXPECT_TRUE(program.derivatives(0, &x, &slope, workspace));
-  return slope;
+double derivative_of_only_state(const Program& program, double x, Workspace& workspace) {
+  double derivative = std::nan("");
+  EXPECT_TRUE(program.derivatives(0, &x, &derivative, workspace));
+  return derivative;
 }
 
 TEST(Program, StartsWhereTheIntegratorsDo) {
@@ -52,9 +52,9 @@ TEST(Program, ReadsTheClock) {
                       library);
   Workspace workspace(made.program);
   const double x = 0;
-  double slope = 0;
-  ASSERT_TRUE(made.program.derivatives(0.75, &x, &slope, workspace));
-  EXPECT_EQ(slope, 1.5);
+  double derivative = 0;
+  ASSERT_TRUE(made.program.derivatives(0.75, &x, &derivative, workspace));
+  EXPECT_EQ(derivative, 1.5);
 }
 
 // The division loop q = z/x by an ideal amplifier: one linear equation, whose solution grows as 1/x.
@@ -67,25 +67,25 @@ x = { type = "integrator", in = ["q"] }
 TEST(Workspace, ALinearLoopForgetsHowLargeItsSolutionWas) {
   const Compiled made(kDivision);
   Workspace workspace(made.program);
-  EXPECT_DOUBLE_EQ(slope_of_only_state(made.program, 1e-12, workspace), 3e11);
+  EXPECT_DOUBLE_EQ(derivative_of_only_state(made.program, 1e-12, workspace), 3e11);
   // Had it been sought from 3e11, rounding would have left 3e11 · 1e-16 = 3e-5.
-  EXPECT_DOUBLE_EQ(slope_of_only_state(made.program, 1, workspace), 0.3);
+  EXPECT_DOUBLE_EQ(derivative_of_only_state(made.program, 1, workspace), 0.3);
 }
 
 TEST(Workspace, KeepsTheLastSolutionThroughAFailure) {
   const Compiled made(kDivision);
   Workspace workspace(made.program);
-  EXPECT_DOUBLE_EQ(slope_of_only_state(made.program, 0.5, workspace), 0.6);
+  EXPECT_DOUBLE_EQ(derivative_of_only_state(made.program, 0.5, workspace), 0.6);
   const double x = 0;
-  double slope = 0;
-  EXPECT_FALSE(made.program.derivatives(0, &x, &slope, workspace));
+  double derivative = 0;
+  EXPECT_FALSE(made.program.derivatives(0, &x, &derivative, workspace));
   EXPECT_EQ(workspace.trouble().loop, 0U);
   EXPECT_EQ(workspace.trouble().failure, LoopFailure::singular);
-  EXPECT_EQ(workspace.trouble().slope, 0);
+  EXPECT_EQ(workspace.trouble().derivative, 0);
   const double not_a_number = std::nan("");
-  EXPECT_FALSE(made.program.derivatives(0, &not_a_number, &slope, workspace));
+  EXPECT_FALSE(made.program.derivatives(0, &not_a_number, &derivative, workspace));
   EXPECT_EQ(workspace.trouble().failure, LoopFailure::not_finite);
-  EXPECT_DOUBLE_EQ(slope_of_only_state(made.program, 0.5, workspace), 0.6);
+  EXPECT_DOUBLE_EQ(derivative_of_only_state(made.program, 0.5, workspace), 0.6);
 }
 
 TEST(Workspace, FollowsTheBranchItIsOnUntilReset) {
@@ -96,11 +96,11 @@ x = { type = "integrator", in = ["y"] }
 )");
   Workspace workspace(made.program);
   for (double x = 4; x > 1e-6; x *= 0.7) {
-    EXPECT_NEAR(slope_of_only_state(made.program, x, workspace), -std::sqrt(x), 1e-15) << x;
+    EXPECT_NEAR(derivative_of_only_state(made.program, x, workspace), -std::sqrt(x), 1e-15) << x;
   }
   EXPECT_EQ(made.program.unknowns()[0].guess, -2);
   workspace.reset();
-  EXPECT_NEAR(slope_of_only_state(made.program, 4, workspace), -2, 1e-15);
+  EXPECT_NEAR(derivative_of_only_state(made.program, 4, workspace), -2, 1e-15);
 }
 
 TEST(Workspace, ReportsALoopWithoutSolution) {
@@ -109,8 +109,8 @@ TEST(Workspace, ReportsALoopWithoutSolution) {
       "x = { type = \"integrator\", in = [\"-r\"] }\n");
   Workspace workspace(made.program);
   const double x = -0.5;
-  double slope = 0;
-  EXPECT_FALSE(made.program.derivatives(0, &x, &slope, workspace));
+  double derivative = 0;
+  EXPECT_FALSE(made.program.derivatives(0, &x, &derivative, workspace));
   EXPECT_EQ(workspace.trouble().failure, LoopFailure::diverged);
 }
 
@@ -121,12 +121,13 @@ TEST(Workspace, SolvesANonLinearLoopFromFarAway) {
       "x = { type = \"integrator\", in = [\"r\"] }\n");
   for (const double x : {1e-12, 1e-3, 1.0, 1e12}) {
     Workspace workspace(made.program);
-    EXPECT_NEAR(slope_of_only_state(made.program, x, workspace), std::sqrt(x), 1e-15 * std::sqrt(x) + 1e-18)
+    EXPECT_NEAR(derivative_of_only_state(made.program, x, workspace), std::sqrt(x),
+                1e-15 * std::sqrt(x) + 1e-18)
         << x;
   }
 }
 
-/// The slope of x′ = z, where z solves `equation` (names z and x) by Newton's method from `guess`.
+/// The derivative of x′ = z, where z solves `equation` (names z and x) by Newton's method from `guess`.
 double implicit_solution(const std::string& equation, double x, double guess) {
   const diagram::BlockLibrary library = testing::shipped_blocks_and(
       "root", "[inputs]\nx = {}\n[outputs]\nz = {}\n[implicit]\nz = \"" + equation +
@@ -134,9 +135,9 @@ double implicit_solution(const std::string& equation, double x, double guess) {
   const Compiled made("x = { type = \"integrator\", in = [\"r\"] }\nr = { type = \"root\", x = \"x\" }\n", "",
                       library);
   Workspace workspace(made.program);
-  double slope = std::nan("");
-  EXPECT_TRUE(made.program.derivatives(0, &x, &slope, workspace)) << equation << " at " << x;
-  return slope;
+  double derivative = std::nan("");
+  EXPECT_TRUE(made.program.derivatives(0, &x, &derivative, workspace)) << equation << " at " << x;
+  return derivative;
 }
 
 // cos² + sin² = 1 leaves sin z = x, and the rounding of terms of order k, which no step makes smaller.
@@ -147,7 +148,7 @@ TEST(LoopNearZero, IsSolvedToTheRoundingOfItsTerms) {
         "sin(z) + " + terms + "*cos(0.3 + z)^2 + " + terms + "*sin(0.3 + z)^2 - " + terms + " - x";
     for (int power = 0; power <= 80; ++power) {
       const double x = power == 0 ? 0 : std::pow(10.0, -0.2 * power) * (power % 2 == 0 ? 0.7 : -0.7);
-      // some roundings of k, over the slope cos z > 0.7
+      // some roundings of k, over the derivative cos z > 0.7
       EXPECT_NEAR(implicit_solution(equation, x, 0.2), std::asin(x), 1e-15 * k + 1e-15) << x << " " << k;
     }
   }
@@ -176,15 +177,15 @@ class ArcTest : public ::testing::Test {
 
 TEST_F(ArcTest, DampsStepsThatWouldOvershoot) {
   // From |y| > 1.39 the full Newton steps alternate with growing size.
-  EXPECT_NEAR(slope_of_only_state(made.program, 0.5, workspace), std::tan(0.5), 1e-15);
+  EXPECT_NEAR(derivative_of_only_state(made.program, 0.5, workspace), std::tan(0.5), 1e-15);
 }
 
 TEST_F(ArcTest, ReturnsFromAFailureToTheLastSolution) {
-  EXPECT_NEAR(slope_of_only_state(made.program, 0.5, workspace), std::tan(0.5), 1e-15);
-  const double x = 2;  // beyond π/2: the search ends far out, where the slope is lost
-  double slope = 0;
-  EXPECT_FALSE(made.program.derivatives(0, &x, &slope, workspace));
-  EXPECT_NEAR(slope_of_only_state(made.program, 0.5, workspace), std::tan(0.5), 1e-15);
+  EXPECT_NEAR(derivative_of_only_state(made.program, 0.5, workspace), std::tan(0.5), 1e-15);
+  const double x = 2;  // beyond π/2: the search ends far out, where the derivative is lost
+  double derivative = 0;
+  EXPECT_FALSE(made.program.derivatives(0, &x, &derivative, workspace));
+  EXPECT_NEAR(derivative_of_only_state(made.program, 0.5, workspace), std::tan(0.5), 1e-15);
 }
 
 TEST(Program, IsSharedBetweenThreads) {
@@ -198,12 +199,12 @@ y = { type = "integrator", in = ["c.y"] }
 )");
   const auto walk = [&](Vector& seen) {
     Workspace workspace(made.program);
-    Vector slopes(2), values(made.program.jacobian_pattern().entries());
+    Vector derivatives(2), values(made.program.jacobian_pattern().entries());
     for (int k = 0; k < 2000; ++k) {
       const Vector x{0.2 * std::sin(0.01 * k), 0.2 * std::cos(0.01 * k)};
-      if (!made.program.derivatives(0, x.data(), slopes.data(), workspace)) return;
+      if (!made.program.derivatives(0, x.data(), derivatives.data(), workspace)) return;
       if (!made.program.jacobian(0, x.data(), values.data(), workspace)) return;
-      seen.insert(seen.end(), slopes.begin(), slopes.end());
+      seen.insert(seen.end(), derivatives.begin(), derivatives.end());
       seen.insert(seen.end(), values.begin(), values.end());
     }
   };

@@ -97,8 +97,8 @@ TEST_F(TapeTest, KeepsAProductThatOneSumReadsTwice) {
   EXPECT_EQ(value(twice, {twice}, 2), 0.25);
 }
 
-TEST_F(TapeTest, DoesNotFuseAcrossStretches) {
-  // Where the second stretch runs more often than the first, the product is there already.
+TEST_F(TapeTest, DoesNotFuseAcrossSegments) {
+  // Where the second segment runs more often than the first, the product is there already.
   const NodeId sum = g.apply(Op::add, xy, z);
   TapeWriter writer(g, 3, 0, {}, uses_of(g, {sum}));
   const TapeRange first = writer.write(std::array{xy});

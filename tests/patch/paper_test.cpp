@@ -113,7 +113,7 @@ TEST(Split, IsTakenAsNamed) {
   }
 }
 
-TEST(Split, IsRefusedWhereNoTriadHasItsLeads) {
+TEST(Split, IsRefusedWhereNoTriadHasItsLegs) {
   PatchOptions options;
   options.split = {"AB", "OA", "DE"};
   EXPECT_THAT(message(shipped("class-iii"), options),
@@ -138,7 +138,7 @@ TEST(Split, WorthTheMostIsWhatIsChosen) {
 }
 
 // The same mechanism with a longer O1C, in which B–D–E passes through a straight line.
-mechanism::Mechanism with_longer_lead() {
+mechanism::Mechanism with_longer_leg() {
   const std::string path = std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/class-iii.toml";
   std::string text = text::read_file(path);
   const std::string length = "length = 1.945";
@@ -158,7 +158,7 @@ double twice_area(const mechanism::Mechanism& mechanism, double time) {
 }
 
 TEST(Split, IsRefusedWhereATriangleTurnsOver) {
-  const mechanism::Mechanism mechanism = with_longer_lead();
+  const mechanism::Mechanism mechanism = with_longer_leg();
   PatchOptions options;
   options.split = {"AB", "O1C", "DE"};
   const std::string text = message(mechanism, options);
@@ -180,7 +180,7 @@ TEST(Split, IsRefusedWhereATriangleTurnsOver) {
 
 // A split that is of use is one that is not refused.
 TEST(Split, IsOfUseWhereItIsNotRefused) {
-  const mechanism::Mechanism mechanism = with_longer_lead();
+  const mechanism::Mechanism mechanism = with_longer_leg();
   const std::vector<std::vector<std::string>> all{{"AB", "O1C", "DE"}, {"AB", "DE", "O1C"},
                                                   {"DE", "AB", "O1C"}, {"DE", "O1C", "AB"},
                                                   {"O1C", "AB", "DE"}, {"O1C", "DE", "AB"}};

@@ -71,7 +71,7 @@ TEST(Patch, HasACommentedSectionForTheCrankAndEachDyad) {
       diagram::write_diagram(patch_triangles(mechanism::parse_mechanism(kFourBar, "four-bar.toml")));
   EXPECT_THAT(text, HasSubstr("# Coordinates: 1 machine unit = 4 m."));
   EXPECT_THAT(text, HasSubstr("# crank AB: turns about A at 1 rad/s"));
-  EXPECT_THAT(text, HasSubstr("# dyad BC-CD: C is hinged to B (3.5 m) and D (3 m), on the left of B → D."));
+  EXPECT_THAT(text, HasSubstr("# dyad BC-CD: C is linked to B (3.5 m) and D (3 m), on the left of B → D."));
   EXPECT_THAT(text, HasSubstr("# B–D is 3 … 5 m long; sin γ at B falls to 0.59."));
   EXPECT_THAT(text, HasSubstr("\"C.x\" = { signal = \"C.x\", scale = 4, unit = \"m\" }"));
 }
@@ -102,14 +102,14 @@ TEST(Patch, GivesClashingNamesANumber) {
   EXPECT_THAT(diagram::write_diagram(diagram), HasSubstr("B_x_2"));
 }
 
-// The blocks of a dyad and of a crank are called as the hinge and the drive.
+// The blocks of a dyad and of a crank are called as the joint and the drive.
 TEST(Patch, GivesBlocksOtherNamesThanThoseThatExpressionsKeep) {
   for (const std::string name : {"time", "polarity", "in_initial", "in_operate", "in_hold", "pi", "inf",
                                  "and", "or", "not", "one", "if", "sin"}) {
     const std::string quoted = "\"" + name + "\"";
-    const std::string hinge = replaced(replaced(kFourBar, "\"C\"", quoted), "\"C\"", quoted);
+    const std::string joint = replaced(replaced(kFourBar, "\"C\"", quoted), "\"C\"", quoted);
     const mechanism::Mechanism mechanism =
-        mechanism::parse_mechanism(replaced(hinge, "\nC = ", "\n" + name + " = "), "hinge.toml");
+        mechanism::parse_mechanism(replaced(joint, "\nC = ", "\n" + name + " = "), "hinge.toml");
     const diagram::Diagram diagram =
         diagram::parse_diagram(diagram::write_diagram(patch_triangles(mechanism)), "patched.toml");
     EXPECT_LT(largest_error(mechanism, PatchedRun(diagram).result), 1e-6 * mechanism.largest_length())
@@ -211,7 +211,7 @@ TEST(Patch, TakesATriadApart) {
 }
 
 // Of two legs that share their anchor each has its own length.
-TEST(LeadOf, TellsLeadsOfOneAnchorApart) {
+TEST(LegOf, TellsLegsOfOneAnchorApart) {
   const mechanism::Mechanism mechanism = mechanism::parse_mechanism(R"(format = "oblique-mechanism/1"
 [frame]
 O = [0, 0]
@@ -298,7 +298,8 @@ TEST(Patch, OffersTheGradientWhereATriadHasASlide) {
   }
 }
 
-// The way of a slide's point along a line that moves is scaled by itself, to reach its machine unit.
+// The way of a prismatic joint's point along a line that moves is scaled by itself, to reach its machine
+// unit.
 TEST(Patch, UsesTheRangeForTheWayAlongASlot) {
   PatchOptions options;
   options.method = PatchMethod::gradient;
@@ -312,7 +313,7 @@ TEST(Patch, UsesTheRangeForTheWayAlongASlot) {
   EXPECT_GT(largest, 0.9);  // upright, the slot is all dy; the scale is rounded up to two digits
 }
 
-// Of a body's points the one that slides matters more than one that nothing else uses.
+// Of a link's points the one that slides matters more than one that nothing else uses.
 TEST(Patch, TakesForABodyThePointsThatOthersUse) {
   PatchOptions options;
   options.method = PatchMethod::gradient;

@@ -104,7 +104,7 @@ TEST_P(Rates, FollowACrankOnAMovingPivot) {
   EXPECT_LT(errors.acceleration, 1e-6);
 }
 
-// A drive's own acceleration enters too: φ̈ = −3 sin 3t [rad/s²] for a crank, and for a slide.
+// A drive's own acceleration enters too: φ̈ = −3 sin 3t [rad/s²] for a crank, and for a prismatic joint.
 TEST_P(Rates, FollowASpeedLaw) {
   const std::string law =
       replaced(kFourBar, "speed = 1", "speed = \"0.2 + cos(3*time) rad/s\"") + "[motion]\nuntil = 4\n";

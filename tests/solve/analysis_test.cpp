@@ -52,7 +52,7 @@ out = { type = "servo-amplifier", in = ["10*out", "-10*u"], gain = 500 }
   EXPECT_NEAR(analysis.run->trajectory.at(120, 2), 0.4 * (1 - 1 / (1 + kGain * kWeight)), 1e-12);
 }
 
-// What an amplifier adds to its residual, and its capacitor, are no matter of the slope.
+// What an amplifier adds to its residual, and its capacitor, are no matter of the derivative.
 TEST(Loops, ARealAmplifierHasTheGainOfItsLoop) {
   const Compiled made(R"toml(u   = { type = "constant", value = 0.4 }
 out = { type = "servo-amplifier", in = ["10*out", "-10*u"], gain = 500, offset = 1e-3 }
@@ -63,7 +63,7 @@ out = { type = "servo-amplifier", in = ["10*out", "-10*u"], gain = 500, offset =
   EXPECT_EQ(analysis.loops[0].unknowns[0].sign, 1);
 }
 
-// Its noise gain is 1 + 1.5 in the equation and in its own slope alike.
+// Its noise gain is 1 + 1.5 in the equation and in its own derivative alike.
 TEST(Loops, ARealSummerIsOneWhereItFeedsItself) {
   const Compiled made(R"toml(u    = { type = "constant", value = 0.4 }
 back = { type = "summer", in = ["u", "-0.5*back"], bandwidth = 1e4 }
@@ -75,7 +75,7 @@ off  = { type = "summer", in = ["u", "0.1*back"], bandwidth = 1e4 }
   EXPECT_NEAR(analysis.loops[0].unknowns[0].least_gain, 0.5, 1e-9);
 }
 
-// c² = u: the slope 2 c of the residual depends on c.
+// c² = u: the derivative 2 c of the residual depends on c.
 TEST(Loops, ARootIsNonLinearAndGoesThroughItsSquarer) {
   const Compiled made(R"toml(u  = { type = "constant", value = 0.25 }
 cc = { type = "multiplier", in = ["c", "c"] }
@@ -145,7 +145,7 @@ b = { type = "inverter", in = "a" }
   EXPECT_FALSE(loop.unknowns[0].static_error);
 }
 
-TEST(Loops, TellWhereTheSlopeChangesItsSign) {
+TEST(Loops, TellWhereTheDerivativeChangesItsSign) {
   const Compiled made(R"toml(x  = { type = "integrator", in = ["x"] }
 xq = { type = "multiplier", in = ["x", "q"] }
 q  = { type = "servo-amplifier", in = ["xq"], gain = 100 }
@@ -220,7 +220,7 @@ q  = { type = "servo-amplifier", in = ["xq", "-0.01*one"], gain = 1e4 }
   ASSERT_TRUE(analysis.failure);
   EXPECT_EQ(analysis.failure->kind(), SolveError::Kind::blow_up);
   EXPECT_FALSE(analysis.run);
-  EXPECT_TRUE(analysis.standing);
+  EXPECT_TRUE(analysis.quasi_steady);
   EXPECT_EQ(analysis.instants.size(), 61U);
   const LoopUnknown& q = analysis.loops.at(0).unknowns.at(0);
   ASSERT_EQ(q.sign_changes.size(), 1U);
@@ -237,7 +237,7 @@ q  = { type = "servo-amplifier", in = ["q2", "x", "-0.25*one"], initial = 0.5, g
 )toml");
   const Analysis analysis = analysis_of(made);
   ASSERT_TRUE(analysis.failure);
-  EXPECT_FALSE(analysis.standing);
+  EXPECT_FALSE(analysis.quasi_steady);
   EXPECT_GE(analysis.instants.size(), 15U);  // a sixtieth of a second apart
   EXPECT_LE(analysis.instants.size(), 17U);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Many switches at which the equations only bend, on their surfaces at one instant: wherever they stand
-// there, the solution is the same.
+// Many switches at which the equations only bend, on their switching surfaces at one instant: wherever they
+// stand there, the solution is the same.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -74,11 +74,11 @@ class ChainRun : public ::testing::TestWithParam<Case> {};
 INSTANTIATE_TEST_SUITE_P(
     Solve, ChainRun,
     ::testing::Values(
-        // All on their surfaces at the start, and again at π and 2π.
+        // All on their switching surfaces at the start, and again at π and 2π.
         Case{"MagnitudesFromZero", "\"absolute-value\"", 12, 0, magnitude},
         Case{"ManyMagnitudesFromZero", "\"absolute-value\"", 1000, 0, magnitude},
         Case{"OwnMagnitudesFromZero", "\"own\"", 100, 0, magnitude},
-        // Wherever one of them bends, every second of those behind it touches its surface.
+        // Wherever one of them bends, every second of those behind it touches its switching surface.
         Case{"Folds", "\"absolute-value\"", 1000, 0.1, magnitude},
         Case{"OwnFolds", "\"own\"", 300, 0.1, magnitude},
         Case{"DeadZonesOfNoWidth", "\"dead-zone\", low = 0, high = 0", 30, 0, [](double x) { return x; }},
@@ -89,7 +89,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"ClosedRectifiers", "\"rectifier\"", 50, 1e-3, [](double x) { return std::max(x, 0.0); }}),
     [](const auto& tested) { return tested.param.name; });
 
-TEST_P(ChainRun, GoesOnFromManySurfacesAtOnce) {
+TEST_P(ChainRun, GoesOnFromManySwitchingSurfacesAtOnce) {
   constexpr double kUntil = 7;
   diagram::BlockLibrary library = shipped_blocks_and("own", kOwnMagnitude);
   library.add(diagram::parse_block(
@@ -111,7 +111,7 @@ TEST(Chains, TakesTheSameStepsHoweverLongItIs) {
 }
 
 // Of the time alone every crossing is known beforehand, and of those that come at one instant every second is
-// none: its surface touches zero. The chain is straight between the tenths of a second, so that the
+// none: its event function touches zero. The chain is straight between the tenths of a second, so that the
 // trapezoidal rule between them is exact.
 TEST(Chains, OfTheTimeAloneFold) {
   constexpr int kLength = 200, kTenths = 70;
@@ -158,8 +158,8 @@ z = { type = "integrator", in = "p" }
 }
 
 // A diode that charges fast turns on as its input, at rest so far, rises from rounding: what it does then
-// goes along its surface within a ten-thousandth of the moment that is looked ahead. v follows e^(t − 50)
-// within 1e-5 · d/dt of it.
+// goes along its switching surface within a ten-thousandth of the moment that is looked ahead. v follows e^(t
+// − 50) within 1e-5 · d/dt of it.
 TEST(BendsAtOnce, HoldWhereAFastDynamicsLeadsBack) {
   const Compiled made(R"--(e = { type = "time-function", formula = "exp(time - 50)" }
 zero = { type = "constant", value = 0 }

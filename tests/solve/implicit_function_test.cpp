@@ -31,7 +31,7 @@ yy = { type = "squarer", in = "y" }
 y = { type = "servo-amplifier", in = ["yy", "-u"] @ }
 )toml",
      "y", 3, std::sqrt(1 + 0.5 * kSine3)},
-    // the slope 3 y² vanishes at t = π/2, where the root is of odd order and the amplifier goes through
+    // the derivative 3 y² vanishes at t = π/2, where the root is of odd order and the amplifier goes through
     {"CubeRootThroughZero", R"toml(u = { type = "time-function", formula = "cos(time)" }
 yy = { type = "squarer", in = "y" }
 yyy = { type = "multiplier", in = ["yy", "y"] }
@@ -147,7 +147,7 @@ TEST_P(ImplicitFunction, IsSolvedByEveryAmplifier) {
   const Circuit& circuit = GetParam();
   // ideal: to the solver's tolerance, where there are states, a hundred times
   EXPECT_NEAR(end_of(circuit, R"(, gain = inf, bandwidth = inf)"), circuit.truth, 1e-6);
-  // the static error out/(μ ∂r/∂out), with slopes of 0.1 and more
+  // the static error out/(μ ∂r/∂out), with derivatives of 0.1 and more
   EXPECT_NEAR(end_of(circuit, R"(, gain = 1e6, bandwidth = inf)"), circuit.truth, 1e-4);
   // and the lag of some 1/(2π 10 μ) s
   EXPECT_NEAR(end_of(circuit, ""), circuit.truth, 1e-4);

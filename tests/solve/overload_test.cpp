@@ -42,7 +42,7 @@ TEST(Overload, OfASineHasItsPeakTimeAndDuration) {
   const OverloadRecord& x = result.overloads[1];
   EXPECT_EQ(y.signal, made.signal("y"));
   EXPECT_EQ(x.signal, made.signal("x"));
-  // The solver's error of 1e-10 a step over some 200 steps, divided by the slope 0.75 at the crossing.
+  // The solver's error of 1e-10 a step over some 200 steps, divided by the derivative 0.75 at the crossing.
   const double outside = std::acos(1 / kAmplitude);
   EXPECT_EQ(y.first, 0);
   EXPECT_NEAR(x.first, std::asin(1 / kAmplitude), 1e-8);

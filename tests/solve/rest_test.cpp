@@ -22,14 +22,14 @@ using ::testing::HasSubstr;
 struct Rested {
   Compiled made;
   std::vector<double> states;
-  std::vector<double> slopes;
+  std::vector<double> derivatives;
 
   explicit Rested(std::string_view blocks)
-      : made(blocks), states(made.program.start()), slopes(states.size()) {
+      : made(blocks), states(made.program.start()), derivatives(states.size()) {
     network::Workspace workspace(made.program);
     bring_to_rest(made.program, workspace, 0, states, "d.toml");
-    if (!made.program.derivatives(0, states.data(), slopes.data(), workspace))
-      throw std::runtime_error("no slopes");
+    if (!made.program.derivatives(0, states.data(), derivatives.data(), workspace))
+      throw std::runtime_error("no derivatives");
   }
 
   double state(std::string_view name) const {
@@ -43,7 +43,8 @@ struct Rested {
   /// Largest residual of the servo loops: dx/dt without its factor μ/τ.
   double residual(double gain, double bandwidth = 10) const {
     double largest = 0;
-    for (const std::size_t i : rest_states(made.program)) largest = std::max(largest, std::abs(slopes[i]));
+    for (const std::size_t i : rest_states(made.program))
+      largest = std::max(largest, std::abs(derivatives[i]));
     return largest / (2 * std::numbers::pi * bandwidth * gain);
   }
 };
@@ -57,7 +58,7 @@ z  = { type = "constant", value = 0.3 }
 q  = { type = "divider", numerator = "z", denominator = "x", gain = 1e6 }
 )toml");
   EXPECT_EQ(at.state("x"), 0.6);
-  EXPECT_EQ(at.slopes[0], 1);  // the clock only stood still
+  EXPECT_EQ(at.derivatives[0], 1);  // the clock only stood still
   EXPECT_NEAR(at.state("q.quotient"), 0.3 / (0.6 + 1e-6), 1e-15);
   EXPECT_LT(at.residual(1e6), kRounding);
 }

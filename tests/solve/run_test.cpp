@@ -44,8 +44,8 @@ TEST(Run, SamplesOnAnExactGrid) {
 }
 
 // The square of what goes beyond a dead zone that the source never leaves is 0 throughout: within the zone
-// neither its value nor its slope has any width. It is looked at a few times for the edges of the zone, not a
-// million times for itself.
+// neither its value nor its derivative has any width. It is looked at a few times for the edges of the zone,
+// not a million times for itself.
 TEST(SourceWatch, LooksNoCloserWhereNothingShows) {
   const Compiled made(R"toml(
 u = { type = "sine-source", amplitude = 0.25, frequency = 2 }
@@ -57,7 +57,7 @@ x = { type = "integrator", in = ["q"] }
   const std::string file = "d.toml";
   SourceWatch watch(made.program, workspace, false, file);
   const std::vector<double> states = made.program.start();
-  EXPECT_LE(watch.looks(0, 3, StandingStates(states)).size(), 16U);
+  EXPECT_LE(watch.sample_times(0, 3, ConstantStates(states)).size(), 16U);
 }
 
 TEST(Run, DoesNotDependOnTheNumberOfRows) {
@@ -200,7 +200,7 @@ TEST(Run, TakesNoLongerStepsThanAskedFor) {
   EXPECT_GE(run(made.program, made.flat, options_of(made.diagram.run)).statistics.steps, 1000);
 }
 
-// Without states and with two rows there is one step, in which a thousand looks meet few of the 2000
+// Without states and with two rows there is one step, in which a thousand samples meet few of the 2000
 // crossings.
 TEST(Run, TakesNoLongerStepsThanAskedForWithoutStates) {
   const std::string blocks =

@@ -120,7 +120,7 @@ TEST(ServoStability, OfOneLoopIsItsPole) {
 }
 
 TEST(ServoStability, DependsOnWhereTheLoopIs) {
-  // r = c² − u: 2 c is the slope, and its sign is that of c.
+  // r = c² − u: 2 c is the derivative, and its sign is that of c.
   const Compiled made(R"toml(u  = { type = "constant", value = 0.25 }
 cc = { type = "multiplier", in = ["c", "c"] }
 c  = { type = "servo-amplifier", in = ["cc", "-u"], gain = 100, initial = 1 }

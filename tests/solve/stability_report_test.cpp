@@ -59,7 +59,7 @@ x = { type = "integrator", in = ["p"], initial = 1 }
   EXPECT_EQ(verdict_along({-0.5, -0.5}), StabilityVerdict::stable);
 }
 
-// x = 1/a has no slope where a is 0.
+// x = 1/a has no derivative where a is 0.
 TEST(StabilityReport, TellsOfAnInstantWithoutALinearisation) {
   const Compiled made(R"toml(one = { type = "constant" }
 a = { type = "integrator", in = ["-one"], initial = 0 }

@@ -29,17 +29,17 @@ xv  = { type = "multiplier", in = ["x", "v"] }
   const auto readings = static_test(made.program, "d.toml");
   ASSERT_EQ(readings.size(), 4U);
   EXPECT_EQ(reading(readings, "x").output, 0.2);
-  EXPECT_EQ(reading(readings, "x").slope, -0.3);
-  EXPECT_DOUBLE_EQ(reading(readings, "v").slope.value(), 0.15 - 0.8 + 1);
+  EXPECT_EQ(reading(readings, "x").derivative, -0.3);
+  EXPECT_DOUBLE_EQ(reading(readings, "v").derivative.value(), 0.15 - 0.8 + 1);
   EXPECT_DOUBLE_EQ(reading(readings, "xv").output, -0.06);
-  EXPECT_FALSE(reading(readings, "xv").slope);
+  EXPECT_FALSE(reading(readings, "xv").derivative);
   EXPECT_FALSE(reading(readings, "x").at_rest);
 }
 
 TEST(StaticTest, InvertsWhereTheMachineDoes) {
   const Compiled made("one = { type = \"constant\" }\nx = { type = \"integrator\", in = [\"3*one\"] }\n",
                       "[machine]\ninverting = true\n");
-  EXPECT_EQ(reading(static_test(made.program, "d.toml"), "x").slope, -3);
+  EXPECT_EQ(reading(static_test(made.program, "d.toml"), "x").derivative, -3);
 }
 
 // c² = 0.25 solved by an amplifier of gain 1000: c² + c/1000 = 0.25.
@@ -54,8 +54,8 @@ i  = { type = "integrator", in = ["c"] }
   EXPECT_NEAR(reading(readings, "c").output, c, 1e-14);  // rounding of Newton's method
   EXPECT_TRUE(reading(readings, "c").at_rest);
   // 2π·10 Hz times the rounding of the residual times the gain.
-  EXPECT_NEAR(reading(readings, "c").slope.value(), 0, 1e-10);
-  EXPECT_NEAR(reading(readings, "i").slope.value(), c, 1e-14);
+  EXPECT_NEAR(reading(readings, "c").derivative.value(), 0, 1e-10);
+  EXPECT_NEAR(reading(readings, "i").derivative.value(), c, 1e-14);
 }
 
 TEST(StaticTest, SaysWhichLoopDoesNotSettle) {

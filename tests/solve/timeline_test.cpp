@@ -271,7 +271,7 @@ TEST(RunState, GoingOnGivesWhatAnUninterruptedRunGives) {
   }
 }
 
-TEST(RunState, KeepsMemoriesAndPhases) {
+TEST(RunState, KeepsDiscreteStatesAndPhases) {
   const diagram::BlockLibrary library = library_with_modes();
   const Compiled made(
       kRamp,

@@ -19,10 +19,11 @@ inline double naive_value(const network::ExpressionGraph& graph, network::NodeId
   if (node.op == network::Op::constant) return node.value;
   if (node.op == network::Op::variable) return variables[node.variable];
   const double a = naive_value(graph, node.a, variables);
-  const bool binary =
-      node.op == network::Op::add || node.op == network::Op::subtract || node.op == network::Op::multiply ||
-      node.op == network::Op::divide || node.op == network::Op::power || node.op == network::Op::atan2 ||
-      node.op == network::Op::hypot || node.op == network::Op::noise || node.op == network::Op::noise_slope;
+  const bool binary = node.op == network::Op::add || node.op == network::Op::subtract ||
+                      node.op == network::Op::multiply || node.op == network::Op::divide ||
+                      node.op == network::Op::power || node.op == network::Op::atan2 ||
+                      node.op == network::Op::hypot || node.op == network::Op::noise ||
+                      node.op == network::Op::noise_derivative;
   const double b = binary ? naive_value(graph, node.b, variables) : 0;
   // clang-format off
   switch (node.op) {
@@ -44,7 +45,7 @@ inline double naive_value(const network::ExpressionGraph& graph, network::NodeId
     case network::Op::sqrt: return std::sqrt(a);
     case network::Op::hypot: return std::hypot(a, b);
     case network::Op::noise: return text::noise(a, b, 0);
-    case network::Op::noise_slope: return text::noise(a, b, 1);
+    case network::Op::noise_derivative: return text::noise(a, b, 1);
     default: return std::numeric_limits<double>::quiet_NaN();  // the graph's own
   }
   // clang-format on

@@ -23,7 +23,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kLeastRegularity = 0.1;
+constexpr double kLeastDeterminant = 0.1;
 
 class Numbers {
  public:
@@ -74,7 +74,8 @@ bool turns_well(const mechanism::Mechanism& mechanism) {
     mechanism::Follower follower(mechanism, structure);
     for (int k = 0; k <= 360; ++k) {
       follower.advance(2 * std::numbers::pi * k / 360);
-      if (!follower.events().empty() || std::abs(follower.regularity(1)) < kLeastRegularity) return false;
+      if (!follower.events().empty() || std::abs(follower.normalised_determinant(1)) < kLeastDeterminant)
+        return false;
     }
     return true;
   } catch (const mechanism::MechanismError&) {  // it cannot be assembled, or falls apart otherwise

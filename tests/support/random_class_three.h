@@ -13,7 +13,7 @@
 namespace oblique::testing {
 
 /// A crank and a triad on three links with anchors and joints anywhere in a square of 3 m, that turn fully
-/// and whose regularity (GroupSolver) never falls below 0.1, a tenth of the greatest there is:
+/// and whose determinant (GroupSolver) never falls below 0.1, a tenth of the greatest there is:
 /// well-conditioned everywhere. The same seed gives the same mechanism on every machine.
 mechanism::Mechanism random_class_three(std::uint64_t seed);
 

@@ -33,7 +33,7 @@ constexpr std::array kSecond{0.4, 1.7};
 
 TEST(Operations, HaveTheDerivativesThatDifferencesHave) {
   for (const OperationInfo& info : operations()) {
-    if (info.operation == Operation::noise_slope) continue;  // its derivative nobody asks for
+    if (info.operation == Operation::noise_derivative) continue;  // its derivative nobody asks for
     for (const double a : kFirst) {
       for (const double b : kSecond) {
         const Number f{evaluate(info.operation, a, b)};

@@ -14,7 +14,7 @@
 
 #include <oblique/diagram/diagram_writer.h>
 #include <oblique/diagram/flatten.h>
-#include <oblique/report/bill_text.h>
+#include <oblique/report/component_list_text.h>
 #include <oblique/report/judgement_text.h>
 #include <oblique/report/text_table.h>
 #include "terminal/output_files.h"
@@ -32,13 +32,13 @@ std::string table_of(const machine::Sheet& sheet) {
 }
 
 std::vector<Written> sheet_files(const PatchRequest& request, const diagram::Diagram& diagram,
-                                 const diagram::FlatDiagram& flat, const machine::Bill& bill,
+                                 const diagram::FlatDiagram& flat, const machine::ComponentList& components,
                                  const diagram::BlockLibrary& library,
                                  const diagram::MachineProfile& machine) {
   const machine::MachineSheets sheets = machine::sheets_of(diagram, flat, library, machine);
-  const std::string text =
-      fmt::format("{}\n\n{}\n{}\n{}\n{}", diagram.title, report::to_text(bill), table_of(sheets.connections),
-                  table_of(sheets.potentiometers), table_of(sheets.static_test));
+  const std::string text = fmt::format("{}\n\n{}\n{}\n{}\n{}", diagram.title, report::to_text(components),
+                                       table_of(sheets.connections), table_of(sheets.potentiometers),
+                                       table_of(sheets.static_test));
   const std::array<std::string, 4> texts{machine::to_csv(sheets.connections),
                                          machine::to_csv(sheets.potentiometers),
                                          machine::to_csv(sheets.static_test), text};
@@ -67,7 +67,7 @@ void check_machine_request(const PatchRequest& request) {
 ExitStatus patch_for_machine(const diagram::BlockLibrary& library, const PatchRequest& request,
                              const mechanism::Mechanism& mechanism, const commission::JudgedPatch& patched) {
   const diagram::MachineProfile& machine = *diagram::find_machine(request.machine);
-  const machine::Bill needed = machine::bill_of(
+  const machine::ComponentList needed = machine::component_list_of(
       diagram::flatten(machine::realise(patched.diagram, library, machine).diagram, library), machine);
   if (const auto absent = needed.absent(); !absent.empty() && !request.force) {
     note(report::to_text(needed));
@@ -83,12 +83,12 @@ ExitStatus patch_for_machine(const diagram::BlockLibrary& library, const PatchRe
       commission::put_on_machine(mechanism, library, machine, patched);
   const diagram::Diagram& realised = on_machine.realised;
   const diagram::FlatDiagram flat = diagram::flatten(realised, library);
-  const machine::Bill bill = machine::bill_of(flat, machine);
-  note(report::to_text(bill));
+  const machine::ComponentList components = machine::component_list_of(flat, machine);
+  note(report::to_text(components));
   note(report::bandwidth_text(on_machine, machine));
   note(report::judgement_text(on_machine.judgement, command_line()));
   std::vector<Written> files;
-  if (!request.sheets.empty()) files = sheet_files(request, realised, flat, bill, library, machine);
+  if (!request.sheets.empty()) files = sheet_files(request, realised, flat, components, library, machine);
   const std::string text = diagram::write_diagram(realised);
   if (!request.output.empty()) files.insert(files.begin(), {request.output, text});
   save_together(files);

@@ -12,8 +12,8 @@ namespace oblique::cli {
 void check_machine_request(const PatchRequest& request);
 
 /// Puts a patch into the elements of the machine of --machine and writes it, with the sheets where they are
-/// asked for; the bill goes to stderr. Where the machine has no elements of a kind that is needed nothing is
-/// written, unless forced, and the status is `no`.
+/// asked for; the component list goes to stderr. Where the machine has no elements of a kind that is needed
+/// nothing is written, unless forced, and the status is `no`.
 ExitStatus patch_for_machine(const diagram::BlockLibrary& library, const PatchRequest& request,
                              const mechanism::Mechanism& mechanism, const commission::JudgedPatch& patched);
 

@@ -12,7 +12,7 @@
 #include <oblique/network/assembly/network.h>
 #include <oblique/network/program/program.h>
 #include <oblique/patch/triad_split.h>
-#include <oblique/solve/operating_point/standing.h>
+#include <oblique/solve/operating_point/quasi_steady.h>
 #include <oblique/solve/solve_error.h>
 #include <oblique/solve/stability/loop_report.h>
 #include <oblique/solve/stability/stability_report.h>
@@ -132,7 +132,7 @@ Judgement judge(const diagram::Diagram& diagram, const diagram::BlockLibrary& li
   judgement.slowest_pole = -std::numeric_limits<double>::infinity();
   std::vector<solve::Instant> instants;
   try {
-    instants = solve::standing_instants(program, flat, solve::options_of(diagram.run), kInstants);
+    instants = solve::quasi_steady_instants(program, flat, solve::options_of(diagram.run), kInstants);
   } catch (const solve::SolveError& error) {
     judgement.no_rest = error.diagnostics().front().what;
     return judgement;

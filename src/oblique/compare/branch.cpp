@@ -19,10 +19,10 @@ constexpr double kApart = 1e-6;
 mechanism::GroupPose pose_in(const mechanism::Mechanism& mechanism, const mechanism::Group& group,
                              const mechanism::Configuration& here) {
   mechanism::GroupPose pose;
-  for (const std::size_t core : group.equations.cores) {
-    const mechanism::BodyState& body = here.bodies[core];
-    const std::size_t base = mechanism.bodies[core].points.front().point;
-    pose.cores.push_back({here.points[base].position, body.cosine, body.sine});
+  for (const std::size_t platform : group.equations.platforms) {
+    const mechanism::BodyState& body = here.bodies[platform];
+    const std::size_t base = mechanism.bodies[platform].points.front().point;
+    pose.platforms.push_back({here.points[base].position, body.cosine, body.sine});
   }
   for (const std::size_t point : group.equations.free_points)
     pose.points.push_back(here.points[point].position);
@@ -31,16 +31,16 @@ mechanism::GroupPose pose_in(const mechanism::Mechanism& mechanism, const mechan
 
 double distance(const mechanism::GroupPose& a, const mechanism::GroupPose& b, double size) {
   double far = 0;
-  for (std::size_t i = 0; i < a.cores.size(); ++i) {
-    far = std::max(far, (a.cores[i].position - b.cores[i].position).norm());
-    far = std::max(
-        far, size * std::hypot(a.cores[i].cosine - b.cores[i].cosine, a.cores[i].sine - b.cores[i].sine));
+  for (std::size_t i = 0; i < a.platforms.size(); ++i) {
+    far = std::max(far, (a.platforms[i].position - b.platforms[i].position).norm());
+    far = std::max(far, size * std::hypot(a.platforms[i].cosine - b.platforms[i].cosine,
+                                          a.platforms[i].sine - b.platforms[i].sine));
   }
   for (std::size_t i = 0; i < a.points.size(); ++i) far = std::max(far, (a.points[i] - b.points[i]).norm());
   return far;
 }
 
-/// The exact configuration with all points, and so all bodies, where a run has them.
+/// The exact configuration with all points, and so all links, where a run has them.
 mechanism::Configuration analog_configuration(const mechanism::Mechanism& mechanism,
                                               const std::vector<PointOutputs>& outputs,
                                               const solve::Trajectory& analog,

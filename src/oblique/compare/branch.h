@@ -12,7 +12,7 @@
 
 namespace oblique::compare {
 
-/// The first row in which the bodies of a run stand next to another assembly mode than the exact one:
+/// The first row in which the links of a run stand next to another assembly mode than the exact one:
 /// Newton's method, begun from where the run has a group, closes it elsewhere. Only rows that err by a
 /// twentieth of the largest link are looked at; `along` has the largest error of each.
 std::optional<std::size_t> row_off_branch(const mechanism::Mechanism& mechanism,

@@ -103,7 +103,7 @@ struct Comparison {
   std::string unit;                ///< of lengths
   double size = 0;                 ///< largest link length [length unit]
   bool closed_form = true;         ///< of all groups' exact motion; false: of some by Newton's method
-  bool turning = true;             ///< the first drive turns a body: it is told by its angle
+  bool turning = true;             ///< the first drive turns a link: it is told by its angle
   std::vector<double> drive;       ///< value of the first drive in each row [rad] or [length unit]
   std::vector<ComparedRun> runs;   ///< method by method, bandwidth by bandwidth, in the order of the gains
   std::vector<GainSeries> series;  ///< in the order of the runs

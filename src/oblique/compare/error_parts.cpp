@@ -27,7 +27,7 @@ std::optional<Eigen::Vector2d> place_in(const PatchedMechanism& patched, const P
                                         const solve::Instant& instant) {
   network::Workspace workspace(patched.program);
   std::vector<double> signals(patched.program.n_signals());
-  workspace.load_memories(instant.memories);
+  workspace.load_discrete_states(instant.discrete_states);
   if (!patched.program.signals(instant.t, instant.states.data(), signals.data(), workspace))
     return std::nullopt;
   const auto value = [&](std::size_t column) {
@@ -73,15 +73,15 @@ std::optional<solve::Instant> at_rest(const network::Program& program, const std
                                       solve::Instant instant) {
   if (moving.empty()) return instant;
   network::Workspace workspace(program);
-  std::vector<double> slopes(program.n_states());
+  std::vector<double> derivatives(program.n_states());
   const auto n = static_cast<Eigen::Index>(moving.size());
   Eigen::VectorXd right(n), away = Eigen::VectorXd::Zero(n);
   double last = kFarthest;
   for (int step = 0; step < kMostSteps; ++step) {
     const auto linear = solve::Linearisation::at(program, workspace, instant);
-    if (!linear || !program.derivatives(instant.t, instant.states.data(), slopes.data(), workspace))
+    if (!linear || !program.derivatives(instant.t, instant.states.data(), derivatives.data(), workspace))
       return std::nullopt;
-    for (Eigen::Index k = 0; k < n; ++k) right[k] = slopes[moving[static_cast<std::size_t>(k)]];
+    for (Eigen::Index k = 0; k < n; ++k) right[k] = derivatives[moving[static_cast<std::size_t>(k)]];
     const Eigen::VectorXd change = linear->block(moving).partialPivLu().solve(right);
     if (!change.allFinite()) return std::nullopt;
     const double size = change.cwiseAbs().maxCoeff();
@@ -104,14 +104,14 @@ std::optional<ErrorParts> error_parts(const mechanism::Mechanism& mechanism, con
   const auto rest = at_rest(
       patched.program, tracking_states(patched.program, patched.flat, point_outputs(mechanism, patched.flat)),
       tight.instants[error.row]);
-  const auto standing = rest ? place_in(patched, error.worst, *rest) : std::nullopt;
-  if (!standing) return std::nullopt;
+  const auto settled = rest ? place_in(patched, error.worst, *rest) : std::nullopt;
+  if (!settled) return std::nullopt;
   const Eigen::Vector2d& there = exact.configurations[error.row].points[error.worst.point].position;
   const Eigen::Vector2d moving = place_of(error.worst, tight.run.trajectory, error.row);
   const Eigen::Vector2d found = place_of(error.worst, analog.trajectory, error.row);
   const Eigen::Vector2d along = (found - there).normalized();
   const auto part = [&](const Eigen::Vector2d& way) { return along.dot(way) + 0.0; };  // −0 + 0 is 0
-  return ErrorParts{part(*standing - there), part(moving - *standing), part(found - moving)};
+  return ErrorParts{part(*settled - there), part(moving - *settled), part(found - moving)};
 }
 
 }  // namespace oblique::compare

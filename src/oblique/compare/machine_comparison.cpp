@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include <oblique/compare/patched_run.h>
-#include <oblique/machine/bill.h>
+#include <oblique/machine/component_list.h>
 #include <oblique/machine/realise.h>
 #include <oblique/solve/solve_error.h>
 
@@ -141,7 +141,7 @@ MachineComparison compare_on_machine(const mechanism::Mechanism& whole, const di
 
   MachineComparison result;
   result.machine = machine.title;
-  result.absent = machine::bill_of(all.flat, machine).absent();
+  result.absent = machine::component_list_of(all.flat, machine).absent();
   result.scatter = scatter_figures(machine);
   result.max_error = error.largest;
   result.rms_error = error.rms;

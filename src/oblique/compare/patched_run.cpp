@@ -44,7 +44,7 @@ double slowest_pole_of(const network::Program& program, const std::vector<solve:
   double slowest = -std::numeric_limits<double>::infinity();
   network::Workspace workspace(program);
   for (std::size_t row = 0; row < instants.size(); row += kRowsPerStabilityCheck) {
-    workspace.load_memories(instants[row].memories);
+    workspace.load_discrete_states(instants[row].discrete_states);
     const double pole = solve::servo_stability(program, workspace, instants[row].t, instants[row].states);
     if (std::isnan(pole)) return pole;
     slowest = std::max(slowest, pole);
@@ -62,8 +62,9 @@ RecordedRun run_recorded(const PatchedMechanism& patched, const std::string& wha
   how.extra_times = moments;
   how.max_steps = max_steps.value_or(how.max_steps);
   if (!moments.empty()) how.until = std::max(how.until, moments.back());
-  how.on_sample = [&](double t, std::span<const double> states, std::span<const double> memories) {
-    recorded.instants.push_back({t, {states.begin(), states.end()}, {memories.begin(), memories.end()}});
+  how.on_sample = [&](double t, std::span<const double> states, std::span<const double> discrete_states) {
+    recorded.instants.push_back(
+        {t, {states.begin(), states.end()}, {discrete_states.begin(), discrete_states.end()}});
   };
   how.on_restart = [&] { recorded.instants.clear(); };
   try {

@@ -37,7 +37,7 @@ std::vector<bool> states_behind(const PatchedMechanism& patched, const solve::In
   const network::Program& program = patched.program;
   network::Workspace workspace(program);
   std::vector<double> signals(program.n_signals());
-  workspace.load_memories(instant.memories);
+  workspace.load_discrete_states(instant.discrete_states);
   std::vector<bool> behind(program.n_states(), false);
   const auto place = [&](std::vector<double> states) {
     program.signals(instant.t, states.data(), signals.data(), workspace);
@@ -59,12 +59,12 @@ WorstReasons::WorstReasons(const mechanism::Mechanism& mechanism, const mechanis
     : mechanism_(mechanism),
       exact_(exact),
       structure_(mechanism::decompose(mechanism)),
-      regularities_(structure_.groups.size()) {
+      determinants_(structure_.groups.size()) {
   mechanism::Follower follower(mechanism, structure_);
   for (const double t : exact.times) {
     follower.advance(t);
-    for (std::size_t g = 0; g < regularities_.size(); ++g)
-      regularities_[g].push_back(std::abs(follower.regularity(g)));
+    for (std::size_t g = 0; g < determinants_.size(); ++g)
+      determinants_[g].push_back(std::abs(follower.normalised_determinant(g)));
   }
 }
 
@@ -76,7 +76,7 @@ bool WorstReasons::is_near(double a, double b) const {
 
 std::vector<double> WorstReasons::flatness(std::size_t group, patch::PatchMethod method) const {
   const auto& dyad = structure_.groups[group].form.dyad;
-  if (!dyad || method == patch::PatchMethod::gradient) return regularities_[group];
+  if (!dyad || method == patch::PatchMethod::gradient) return determinants_[group];
   std::vector<double> sines;
   for (const mechanism::Configuration& here : exact_.configurations)
     sines.push_back(sine_at_pivot(*dyad, here));

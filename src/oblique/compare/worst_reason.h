@@ -35,7 +35,7 @@ class WorstReasons {
   const mechanism::Mechanism& mechanism_;
   const mechanism::Motion& exact_;
   mechanism::Structure structure_;
-  std::vector<std::vector<double>> regularities_;  ///< of each group in each row
+  std::vector<std::vector<double>> determinants_;  ///< of each group in each row
 };
 
 }  // namespace oblique::compare

@@ -32,7 +32,7 @@ struct Realisation {
 /// - Where the machine inverts and its coefficients have no sign, each signal is carried as it is or as its
 ///   negative, whichever takes fewer inverters in all (`choose_signs`).
 /// - Integrators take the least time factor k0 of the machine at which one input for each term suffices;
-///   where there is none (`choose_rate`) the bill misses the one they get. Their initial value is
+///   where there is none (`choose_rate`) the component list misses the one they get. Their initial value is
 ///   a potentiometer at `start`, unless the machine's coefficients have signs (those are set digitally).
 /// - Servo amplifiers are open amplifiers and keep their bandwidth and capacitor, and their gain where the
 ///   machine's is not known.

@@ -74,10 +74,10 @@ class SheetMaker {
   }
 
   Sheet static_test(const std::vector<solve::StaticReading>& readings) const {
-    Sheet sheet{
-        "static test",
-        {"element", "signal", "kind", fmt::format("output [{}]", unit_), fmt::format("slope [{}/s]", unit_)},
-        {}};
+    Sheet sheet{"static test",
+                {"element", "signal", "kind", fmt::format("output [{}]", unit_),
+                 fmt::format("derivative [{}/s]", unit_)},
+                {}};
     std::unordered_map<std::string_view, const solve::StaticReading*> by_name;
     for (const solve::StaticReading& reading : readings) by_name.emplace(reading.signal, &reading);
     for (std::size_t b = 0; b < diagram_.blocks.size(); ++b) {
@@ -86,9 +86,9 @@ class SheetMaker {
       for (std::size_t k = 0; k < definition.outputs.size(); ++k) {
         const std::string signal = diagram_.signal_name({b, k});
         const solve::StaticReading& reading = *by_name.at(signal);
-        const bool integrates = definition.role == Role::integrator && reading.slope;
+        const bool integrates = definition.role == Role::integrator && reading.derivative;
         sheet.rows.push_back({numbers_[b], signal, kind_text(diagram_.blocks[b]), voltage(reading.output),
-                              integrates ? voltage(*reading.slope) : ""});
+                              integrates ? voltage(*reading.derivative) : ""});
       }
     }
     return sheet;

@@ -26,8 +26,8 @@ std::string to_csv(const Sheet& sheet);
 struct MachineSheets {
   Sheet connections;     ///< from output to input, with the gain of the input
   Sheet potentiometers;  ///< settings to four digits, and what they stand for
-  Sheet static_test;     ///< what everything is and shows at t = 0 [V], with slopes of integrators [V/s]; in
-                         ///< machine units where their voltage is not published
+  Sheet static_test;  ///< what everything is and shows at t = 0 [V], with derivatives of integrators [V/s];
+                      ///< in machine units where their voltage is not published
 };
 
 /// `diagram` is flattened from one that `realise` has made; `readings` are its `static_test`.

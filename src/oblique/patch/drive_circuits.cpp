@@ -72,7 +72,7 @@ std::string add_way(Circuit& circuit, std::size_t d) {
 VectorForm crank_point(const PointBook& places, const DriveForms& drive, const mechanism::Group& crank,
                        const mechanism::BodyPoint& point) {
   const std::size_t pivot = mechanism::pivot_of(crank);
-  const mechanism::Body& body = places.mechanism().bodies[crank.equations.cores.front()];
+  const mechanism::Body& body = places.mechanism().bodies[crank.equations.platforms.front()];
   const Eigen::Vector2d arm = point.local - body.find(pivot)->local;
   const double along = places.scaled(arm.x()), left = places.scaled(arm.y());
   const VectorForm& at = places.at(pivot);

@@ -7,12 +7,12 @@
 
 namespace oblique::patch {
 
-/// A block that gives the direction of the body that a drive turns: its name. The circuit's drive gets the
+/// A block that gives the direction of the link that a drive turns: its name. The circuit's drive gets the
 /// form.
 std::string add_generator(Circuit& circuit, std::size_t drive, const std::string& comment);
 
-/// A block that gives the way of a drive along its slide, scaled to stay within ±1 machine unit: its
-/// signal. The circuit's drive gets the form.
+/// A block that gives the way of a drive along its prismatic joint, scaled to stay within ±1 machine unit:
+/// its signal. The circuit's drive gets the form.
 std::string add_way(Circuit& circuit, std::size_t drive);
 
 /// A crank with all its points. Gives the name of its generator.

@@ -28,7 +28,7 @@ class GroupResiduals {
       const std::size_t point = mechanism_.slides[slide].point;
       if (group_.bodies.empty() && !places_.has(point)) give_signals_(point);
     }
-    while (!left.empty()) {  // the body first of which most is known
+    while (!left.empty()) {  // the link first of which most is known
       const auto next = std::max_element(left.begin(), left.end(), [&](std::size_t a, std::size_t b) {
         return known_count(a) < known_count(b);
       });
@@ -47,7 +47,7 @@ class GroupResiduals {
         points.begin(), points.end(), [&](const mechanism::BodyPoint& p) { return places_.has(p.point); }));
   }
 
-  /// How much a point matters to others: the bodies of the group and the slides that use it.
+  /// How much a point matters to others: the links of the group and the prismatic joints that use it.
   long uses(std::size_t point) const {
     return std::count_if(group_.bodies.begin(), group_.bodies.end(),
                          [&](std::size_t body) { return mechanism_.bodies[body].find(point) != nullptr; }) +
@@ -55,7 +55,7 @@ class GroupResiduals {
                          [&](std::size_t s) { return mechanism_.slides[s].point == point; });
   }
 
-  /// Two points stand for a body, at their distance; the others follow from them.
+  /// Two points stand for a link, at their distance; the others follow from them.
   void add_body(std::size_t index) {
     const mechanism::Body& body = mechanism_.bodies[index];
     std::vector<mechanism::BodyPoint> order = body.points;
@@ -89,18 +89,18 @@ class GroupResiduals {
       }
       const VectorForm& there = places_.at(order[i].point);
       for (const bool is_x : {true, false}) {
-        Residual hinge;
-        hinge.name = fmt::format("{}_{}{}", body.name, places_.name_of(order[i].point), is_x ? "x" : "y");
-        hinge.comment = fmt::format("{} carries {}", body.name, places_.name_of(order[i].point));
-        hinge.rest =
+        Residual joint;
+        joint.name = fmt::format("{}_{}{}", body.name, places_.name_of(order[i].point), is_x ? "x" : "y");
+        joint.comment = fmt::format("{} carries {}", body.name, places_.name_of(order[i].point));
+        joint.rest =
             is_x ? combined({{1, &follows.x}, {-1, &there.x}}) : combined({{1, &follows.y}, {-1, &there.y}});
-        residuals_.push_back(std::move(hinge));
+        residuals_.push_back(std::move(joint));
       }
     }
   }
 
-  /// The largest distance of a slide's point from where its line begins, over the motion: it scales the
-  /// products.
+  /// The largest distance of a prismatic joint's point from where its line begins, over the motion: it scales
+  /// the products.
   double reach_of(const mechanism::Slide& slide) const {
     const auto s = static_cast<std::size_t>(&slide - mechanism_.slides.data());
     return round_up(

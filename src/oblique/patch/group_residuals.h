@@ -26,16 +26,17 @@ struct Residual {
 
 /// What a drive gives, as forms of its signals.
 struct DriveForms {
-  VectorForm axis;  ///< the direction of the body that it turns
-  LinearForm way;   ///< of the slide that it moves [machine unit]
+  VectorForm axis;  ///< the direction of the link that it turns
+  LinearForm way;   ///< of the prismatic joint that it moves [machine unit]
 };
 
 /// Gives a point whose place is unknown its signals, in the book.
 using GiveSignals = std::function<void(std::size_t point)>;
 
-/// The conditions of one group of any class: bodies keep their lengths, are hinged to each other, slides stay
-/// on their lines, drives are where they say. The book has all points that the groups before place, and gets
-/// those of this group: signals for the points that are unknowns, forms of those for the others.
+/// The conditions of one group of any class: links keep their lengths, are pinned to each other, sliding
+/// points stay on their lines, drives are where they say. The book has all points that the groups before
+/// place, and gets those of this group: signals for the points that are unknowns, forms of those for the
+/// others.
 std::vector<Residual> residuals_of(const mechanism::Group& group, PointBook& places, const Scaling& scaling,
                                    const std::vector<DriveForms>& drives, const GiveSignals& give_signals);
 

@@ -13,7 +13,7 @@ void add_link_dyad(Circuit& circuit, const mechanism::Group& group, const Triang
   const std::string& unit = setup.mechanism().length_unit;
   const std::string &p = setup.name_of(dyad.p), &q = setup.name_of(dyad.q), &c = setup.name_of(dyad.c);
   const std::string comment = fmt::format(
-      "dyad {}: {} is hinged to {} ({:.6g} {}) and {} ({:.6g} {}), on the {} of {} → {}.\n"
+      "dyad {}: {} is linked to {} ({:.6g} {}) and {} ({:.6g} {}), on the {} of {} → {}.\n"
       "{}–{} is {:.4g} … {:.4g} {} long; sin γ at {} falls to {:.2g}.",
       group.name, c, p, dyad.r1, unit, q, dyad.r2, unit, group.side > 0 ? "left" : "right", p, q, p, q,
       range.shortest, range.longest, unit, p, range.flattest);

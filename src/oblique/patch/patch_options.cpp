@@ -26,8 +26,8 @@ std::optional<PatchMethod> parse_patch_method(std::string_view text) {
 
 namespace {
 
-/// The greatest speed of a drive over the motion [rad/s], of one that moves a slide as that of a crank as
-/// long as the longest link; of a law, at a thousand moments.
+/// The greatest speed of a drive over the motion [rad/s], of one that moves a prismatic joint as that of a
+/// crank as long as the longest link; of a law, at a thousand moments.
 double greatest_speed(const mechanism::Mechanism& mechanism, const mechanism::Drive& drive) {
   double fastest = std::abs(drive.speed);
   if (drive.law) {

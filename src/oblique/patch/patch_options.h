@@ -48,7 +48,7 @@ struct PatchOptions {
 
 /// A hundred times the frequency of the fastest drive, rounded up to 1, 2 or 5 times a power of ten [Hz]: the
 /// pole of the open loop then turns the phase of a signal at crank frequency by half a degree. A drive that
-/// moves a slide counts as a crank of the longest link's length.
+/// moves a prismatic joint counts as a crank of the longest link's length.
 double default_bandwidth(const mechanism::Mechanism& mechanism);
 
 /// The bandwidth of the servo amplifiers of `patch` with these options [Hz of machine time].

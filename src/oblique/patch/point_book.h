@@ -19,7 +19,7 @@ struct PointSignals {
   std::string x, y;
 };
 
-/// The book of where the points of a mechanism are, and what its bodies carry, as forms of signals [machine
+/// The book of where the points of a mechanism are, and what its links carry, as forms of signals [machine
 /// unit]. A point of the frame has its place from the beginning; any other gets a form of other points'
 /// signals or signals of its own, which then are its form.
 class PointBook {
@@ -40,14 +40,14 @@ class PointBook {
   /// Takes a pair of signals as a point's place.
   void set_signals(std::size_t point, PointSignals signals);
 
-  /// Takes two points to stand for a body: its first two where nothing is said.
+  /// Takes two points to stand for a link: its first two where nothing is said.
   void set_base(std::size_t body, std::size_t p, std::size_t c);
 
-  /// Gives the points of a body of which the base is known their forms.
+  /// Gives the points of a link of which the base is known their forms.
   void carry(std::size_t body);
 
-  /// A vector of a body's frame [length unit], per length unit, and a point of it [machine unit], in the
-  /// world, by the two points that stand for the body.
+  /// A vector of a link's frame [length unit], per length unit, and a point of it [machine unit], in the
+  /// world, by the two points that stand for the link.
   VectorForm direction_of(std::size_t body, const Eigen::Vector2d& local) const;
   VectorForm point_of(std::size_t body, const Eigen::Vector2d& local) const;
 
@@ -65,7 +65,7 @@ class PointBook {
   double unit_;  ///< 1 machine unit [length unit]
   std::vector<std::optional<VectorForm>> forms_;
   std::vector<PointSignals> signals_;
-  std::map<std::size_t, Base> bases_;  ///< of bodies that others than their first two points stand for
+  std::map<std::size_t, Base> bases_;  ///< of links that others than their first two points stand for
 };
 
 }  // namespace oblique::patch

@@ -18,7 +18,7 @@ void add_summed_point(Circuit& circuit, std::size_t point, const Terms& x, const
 /// Summers for those points that a group places and that are but forms so far.
 void add_formed_points(Circuit& circuit, const mechanism::Group& group);
 
-/// Points of a body of which P and C are known: M − P = (a + i b)(C − P), with a + i b from the body's own
+/// Points of a link of which P and C are known: M − P = (a + i b)(C − P), with a + i b from the link's own
 /// frame.
 void add_carried_points(Circuit& circuit, const mechanism::Body& body, std::size_t p, std::size_t c);
 

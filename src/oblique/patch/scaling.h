@@ -23,7 +23,7 @@ struct Scaling {
   double length = 1;                     ///< 1 machine unit of a coordinate [length unit]
   std::vector<TriangleRange> triangles;  ///< one for each group of the structure; unused for cranks
   std::vector<double>
-      slides;  ///< largest distance of each slide's point from where its line begins [length unit]
+      slides;  ///< largest distance of each prismatic joint's point from where its line begins [length unit]
 };
 
 /// Smallest of 1, 2, 4, 5, 8, 10 times a power of ten that is not below `value`: lengths divided by it stay
@@ -34,7 +34,7 @@ double round_scale_up(double value);
 double round_up(double value);
 
 /// Finds the scaling from a motion over one turn. Throws PatchError where there is an obstacle on the way:
-/// there a triangle is flat or open.
+/// there a triangle is collinear or cannot be assembled.
 Scaling find_scaling(const mechanism::Mechanism& mechanism, const mechanism::Structure& structure,
                      const mechanism::Motion& motion);
 

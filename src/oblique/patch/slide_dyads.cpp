@@ -44,15 +44,15 @@ class SlideDyad {
     const auto condition = [&](std::size_t index) -> const mechanism::Condition& {
       return equations.conditions[index];
     };
-    const bool is_body = !equations.cores.empty();
-    const std::string& name = is_body ? mechanism_.bodies[equations.cores.front()].name
+    const bool is_body = !equations.platforms.empty();
+    const std::string& name = is_body ? mechanism_.bodies[equations.platforms.front()].name
                                       : setup_.name_of(equations.free_points.front());
     if (form.angle) set_axis(condition(*form.angle));
     VectorForm unknown;
-    if (form.hinge) {
-      const mechanism::Condition& hinge = condition(*form.hinge);
-      if (!form.angle) add_own_line(hinge, condition(form.loci.front()), name);
-      unknown = sum(places_.at(hinge.b.point), -1, arm(hinge.a.local));
+    if (form.revolute) {
+      const mechanism::Condition& revolute = condition(*form.revolute);
+      if (!form.angle) add_own_line(revolute, condition(form.loci.front()), name);
+      unknown = sum(places_.at(revolute.b.point), -1, arm(revolute.a.local));
     } else if (condition(form.loci.back()).kind == mechanism::Condition::Kind::along) {
       unknown = add_slider(condition(form.loci.back()), name);
     } else {
@@ -61,28 +61,28 @@ class SlideDyad {
     if (!is_body) {
       places_.set(equations.free_points.front(), unknown);
     } else {
-      carry(equations.cores.front(), mechanism_.bodies[equations.cores.front()].points.front().point,
+      carry(equations.platforms.front(), mechanism_.bodies[equations.platforms.front()].points.front().point,
             unknown);
     }
-    for (const mechanism::Link& link : equations.links) {
+    for (const mechanism::BinaryLink& link : equations.binary_links) {
       places_.set_base(link.body, link.from, link.to);
       places_.carry(link.body);
     }
-    const VectorForm core_axis = axis_;
+    const VectorForm platform_axis = axis_;
     for (const mechanism::SliderBlock& block : equations.blocks) {
-      const bool on_core = block.on && is_body && *block.on == equations.cores.front();
-      const VectorForm on = on_core    ? core_axis
-                            : block.on ? places_.direction_of(*block.on, Eigen::Vector2d::UnitX())
-                                       : VectorForm{constant(1), constant(0)};
+      const bool on_platform = block.on && is_body && *block.on == equations.platforms.front();
+      const VectorForm on = on_platform ? platform_axis
+                            : block.on  ? places_.direction_of(*block.on, Eigen::Vector2d::UnitX())
+                                        : VectorForm{constant(1), constant(0)};
       axis_ = {combined({{block.cosine, &on.x}, {-block.sine, &on.y}}),
                combined({{block.cosine, &on.y}, {block.sine, &on.x}})};
-      carry(block.body, block.hinge, places_.at(block.hinge));
+      carry(block.body, block.revolute, places_.at(block.revolute));
     }
     add_formed_points(circuit_, group_);
   }
 
  private:
-  /// local [length unit] turned by the axis of the unknown body [machine unit].
+  /// local [length unit] turned by the axis of the unknown link [machine unit].
   VectorForm arm(const Eigen::Vector2d& local) const {
     const double x = setup_.scaled(local.x()), y = setup_.scaled(local.y());
     return {combined({{x, &axis_.x}, {-y, &axis_.y}}), combined({{x, &axis_.y}, {y, &axis_.x}})};
@@ -90,10 +90,10 @@ class SlideDyad {
 
   Locus locus(const mechanism::Condition& c) {
     Locus locus;
-    const bool is_body = !group_.equations.cores.empty();
-    const std::size_t core = is_body ? group_.equations.cores.front() : 0;
-    const auto body = [core](const mechanism::Configuration& here) -> const mechanism::BodyState& {
-      return here.bodies[core];
+    const bool is_body = !group_.equations.platforms.empty();
+    const std::size_t platform = is_body ? group_.equations.platforms.front() : 0;
+    const auto body = [platform](const mechanism::Configuration& here) -> const mechanism::BodyState& {
+      return here.bodies[platform];
     };
     if (c.kind == mechanism::Condition::Kind::distance) {
       locus.circle = true;
@@ -137,7 +137,7 @@ class SlideDyad {
     return locus;
   }
 
-  /// The direction of the unknown body's x axis, where it is given.
+  /// The direction of the unknown link's x axis, where it is given.
   void set_axis(const mechanism::Condition& angle) {
     if (angle.drive) {
       const mechanism::Drive& drive = mechanism_.drives[*angle.drive];
@@ -155,7 +155,7 @@ class SlideDyad {
     }
   }
 
-  /// The points of a body whose axis and one point are known.
+  /// The points of a link whose axis and one point are known.
   void carry(std::size_t index, std::size_t base, const VectorForm& at) {
     const mechanism::Body& body = mechanism_.bodies[index];
     for (const mechanism::BodyPoint& p : body.points) {
@@ -163,26 +163,26 @@ class SlideDyad {
     }
   }
 
-  /// RPR: the axis of a body hinged to P from its line through Q.
-  void add_own_line(const mechanism::Condition& hinge, const mechanism::Condition& on_line,
+  /// RPR: the axis of a link pinned to P from its line through Q.
+  void add_own_line(const mechanism::Condition& revolute, const mechanism::Condition& on_line,
                     const std::string& name) {
     const Eigen::Vector2d& u = on_line.line.direction;
     const Eigen::Vector2d normal(-u.y(), u.x());
-    const VectorForm& p = places_.at(hinge.b.point);
+    const VectorForm& p = places_.at(revolute.b.point);
     const VectorForm& q = places_.at(on_line.a.point);
     const double reach = largest_over_motion([&](const mechanism::Configuration& here) {
-      return (here.points[on_line.a.point].position - here.points[hinge.b.point].position).norm();
+      return (here.points[on_line.a.point].position - here.points[revolute.b.point].position).norm();
     });
     const std::string block = writer_.add_block(
         name + "_line", "dyad-rpr",
         with_amplifiers(
-            setup_,
-            {writer_.wire(name + "_line", "px", p.x), writer_.wire(name + "_line", "py", p.y),
-             writer_.wire(name + "_line", "qx", q.x), writer_.wire(name + "_line", "qy", q.y),
-             diagram::number_setting("offset", setup_.scaled(normal.dot(on_line.line.point - hinge.a.local))),
-             diagram::number_setting("side", group_.side), diagram::number_setting("reach", reach)}),
+            setup_, {writer_.wire(name + "_line", "px", p.x), writer_.wire(name + "_line", "py", p.y),
+                     writer_.wire(name + "_line", "qx", q.x), writer_.wire(name + "_line", "qy", q.y),
+                     diagram::number_setting(
+                         "offset", setup_.scaled(normal.dot(on_line.line.point - revolute.a.local))),
+                     diagram::number_setting("side", group_.side), diagram::number_setting("reach", reach)}),
         fmt::format("dyad {} (RPR): {} turns about {}, and its line passes through {}", group_.name, name,
-                    setup_.name_of(hinge.b.point), setup_.name_of(on_line.a.point)));
+                    setup_.name_of(revolute.b.point), setup_.name_of(on_line.a.point)));
     LinearForm cosine, sine;
     cosine.weights[block + ".cos"] = 1;
     sine.weights[block + ".sin"] = 1;
@@ -191,9 +191,10 @@ class SlideDyad {
 
   /// RRP and PRP: where a circle or a line meets a line.
   VectorForm add_crossing(const Locus& first, const Locus& second, const std::string& name) {
-    const bool is_body = !group_.equations.cores.empty();
-    const std::size_t point = is_body ? mechanism_.bodies[group_.equations.cores.front()].points.front().point
-                                      : group_.equations.free_points.front();
+    const bool is_body = !group_.equations.platforms.empty();
+    const std::size_t point = is_body
+                                  ? mechanism_.bodies[group_.equations.platforms.front()].points.front().point
+                                  : group_.equations.free_points.front();
     const auto place = [&](const mechanism::Configuration& here) { return here.points[point].position; };
     std::string block;
     if (first.circle) {
@@ -278,7 +279,7 @@ class SlideDyad {
   CircuitWriter& writer_;
   PointBook& places_;
   const mechanism::Group& group_;
-  VectorForm axis_;  ///< of the body that is being placed
+  VectorForm axis_;  ///< of the link that is being placed
 };
 
 }  // namespace
@@ -286,7 +287,7 @@ class SlideDyad {
 bool has_slide_dyad(const mechanism::Group& group) {
   const mechanism::GroupForm& form = group.form;
   switch (form.placing) {
-    case mechanism::Placing::hinged:
+    case mechanism::Placing::pinned:
       return true;
     case mechanism::Placing::crossing:
       return form.circles < 2;

@@ -5,10 +5,10 @@
 
 namespace oblique::patch {
 
-/// Whether there is a block for a group of one unknown point or body.
+/// Whether there is a block for a group of one unknown point or link.
 bool has_slide_dyad(const mechanism::Group& group);
 
-/// Places the unknown point or body of a group and all that it carries: RRP, RPR, PRP, RPP, and drives along
+/// Places the unknown point or link of a group and all that it carries: RRP, RPR, PRP, RPP, and drives along
 /// slides.
 void add_slide_dyad(Circuit& circuit, const mechanism::Group& group);
 

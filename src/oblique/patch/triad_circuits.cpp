@@ -113,10 +113,10 @@ void add_triad(Circuit& circuit, const mechanism::Group& group, const TriadSplit
 }
 
 void carry_triad(PointBook& places, const mechanism::Group& group, std::size_t b, std::size_t d) {
-  const std::size_t platform = group.equations.cores.front();
+  const std::size_t platform = group.equations.platforms.front();
   places.set_base(platform, b, d);
   places.carry(platform);
-  for (const mechanism::Link& link : group.equations.links) {
+  for (const mechanism::BinaryLink& link : group.equations.binary_links) {
     places.set_base(link.body, link.from, link.to);
     places.carry(link.body);
   }

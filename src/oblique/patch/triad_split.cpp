@@ -126,7 +126,7 @@ std::vector<TriadSplit> splits_of(const mechanism::Group& group, const mechanism
 }
 
 std::size_t leg_of(const mechanism::Group& triad, std::size_t condition) {
-  return triad.equations.links[triad.equations.conditions[condition].link].body;
+  return triad.equations.binary_links[triad.equations.conditions[condition].link].body;
 }
 
 std::string split_name(const mechanism::Mechanism& mechanism, const mechanism::Group& triad,
@@ -137,7 +137,7 @@ std::string split_name(const mechanism::Mechanism& mechanism, const mechanism::G
 TriadSplit choose_split(const mechanism::Mechanism& mechanism, const mechanism::Group& triad,
                         const mechanism::Motion& motion, const PatchOptions& options) {
   std::vector<TriadSplit> splits = splits_of(triad, motion);
-  const text::Place& place = mechanism.bodies[triad.equations.cores.front()].place;
+  const text::Place& place = mechanism.bodies[triad.equations.platforms.front()].place;
   const auto named = std::find_if(splits.begin(), splits.end(), [&](const TriadSplit& split) {
     return legs_of(mechanism, triad, split) == options.split;
   });

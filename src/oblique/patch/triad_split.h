@@ -43,7 +43,7 @@ std::vector<TriadSplit> splits_of(const mechanism::Group& group, const mechanism
 /// A split of less worth is as good as collinear, or without gain, at some position.
 inline constexpr double kLeastWorth = 0.02;
 
-/// The body of a leg, by its condition: its index in Mechanism::bodies.
+/// The link of a leg, by its condition: its index in Mechanism::bodies.
 std::size_t leg_of(const mechanism::Group& triad, std::size_t condition);
 
 /// "AB, O1C, DE": the legs of a split, the one that carries the variable length first, then the one that

@@ -19,7 +19,7 @@ bool has_circuit(const mechanism::Group& group) {
     case mechanism::Placing::rotation:
     case mechanism::Placing::triangle:
       return true;
-    case mechanism::Placing::hinged:
+    case mechanism::Placing::pinned:
     case mechanism::Placing::crossing:
     case mechanism::Placing::about_pivot:
       return has_slide_dyad(group);
@@ -54,7 +54,7 @@ void add_group(Circuit& circuit, std::size_t g) {
     case mechanism::Placing::triangle:
       add_link_dyad(circuit, group, setup.scaling.triangles[g]);
       return;
-    case mechanism::Placing::hinged:
+    case mechanism::Placing::pinned:
     case mechanism::Placing::crossing:
     case mechanism::Placing::about_pivot:
       add_slide_dyad(circuit, group);

@@ -9,7 +9,7 @@
 
 namespace oblique::report {
 
-/// Where the first drive stands: "172.5°" within one turn, or "12.5 mm" of a slide.
+/// Where the first drive stands: "172.5°" within one turn, or "12.5 mm" of a prismatic joint.
 std::string drive_text(const compare::Comparison& comparison, double value);
 
 /// What `compare` prints: errors, their parts and reasons, order, overloads.

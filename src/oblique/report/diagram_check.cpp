@@ -49,7 +49,7 @@ ScalingProposal propose(const diagram::FlatDiagram& flat, const network::Program
     const network::State& state = program.states()[i];
     const auto factor = factors.find(state.name);
     if (state.at_rest || factor == factors.end()) continue;
-    fastest = std::max(fastest, factor->second * analysis.fastest_slopes[i]);
+    fastest = std::max(fastest, factor->second * analysis.fastest_derivatives[i]);
   }
   proposal.time_scale = 1 / diagram::scale_for_peak(fastest);
   return proposal;
@@ -76,7 +76,7 @@ DiagramCheck examine(const diagram::Diagram& diagram, const diagram::FlatDiagram
                      const network::Program& program, const std::function<void(double fraction)>& progress) {
   DiagramCheck check{diagram.file, diagram, flat, program, {}, {}, {}, {}};
   if (diagram.machine.profile != "ideal")
-    check.bill = machine::bill_of(flat, *diagram::find_machine(diagram.machine.profile));
+    check.components = machine::component_list_of(flat, *diagram::find_machine(diagram.machine.profile));
   solve::RunOptions options = solve::options_of(diagram.run);
   options.progress = progress;
   check.analysis = solve::analyse(program, flat, options);

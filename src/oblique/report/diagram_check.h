@@ -8,7 +8,7 @@
 
 #include <oblique/diagram/propose_scaling.h>
 #include <oblique/diagram/rescale.h>
-#include <oblique/machine/bill.h>
+#include <oblique/machine/component_list.h>
 #include <oblique/network/program/program.h>
 #include <oblique/solve/stability/analysis.h>
 
@@ -37,7 +37,8 @@ struct DiagramCheck {
   const network::Program& program;
   solve::Analysis analysis;
   std::optional<ScalingProposal> scaling;
-  std::optional<machine::Bill> bill;  ///< on the machine that the diagram is for; none for the ideal one
+  std::optional<machine::ComponentList>
+      components;  ///< on the machine that the diagram is for; none for the ideal one
   /// Of the same diagram where no amplifier saturates, if it comes to its end: how far signals would go. Only
   /// where one leaves the machine unit on a machine that saturates.
   std::optional<Unsaturated> unsaturated;

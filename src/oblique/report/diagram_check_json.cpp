@@ -125,10 +125,10 @@ Json scaling_json(const DiagramCheck& check) {
   return {{"signals", std::move(signals)}, {"time_scale", check.scaling->time_scale}};
 }
 
-Json bill_json(const std::optional<machine::Bill>& bill) {
-  if (!bill) return nullptr;
+Json component_list_json(const std::optional<machine::ComponentList>& components) {
+  if (!components) return nullptr;
   Json rows = Json::array();
-  for (const machine::BillRow& row : bill->rows) {
+  for (const machine::ComponentListRow& row : components->rows) {
     rows.push_back({{"element", row.element},
                     {"needed", row.needed},
                     {"at_least", row.at_least},
@@ -136,10 +136,11 @@ Json bill_json(const std::optional<machine::Bill>& bill) {
                     {"available", row.available ? Json(*row.available) : Json()},
                     {"missing", row.missing()}});
   }
-  const machine::Bill::Verdict verdict = bill->verdict();
-  const Json fits =
-      verdict == machine::Bill::Verdict::cannot_tell ? Json() : Json(verdict == machine::Bill::Verdict::fits);
-  return {{"machine", bill->machine}, {"rows", std::move(rows)}, {"fits", fits}};
+  const machine::ComponentList::Verdict verdict = components->verdict();
+  const Json fits = verdict == machine::ComponentList::Verdict::cannot_tell
+                        ? Json()
+                        : Json(verdict == machine::ComponentList::Verdict::fits);
+  return {{"machine", components->machine}, {"rows", std::move(rows)}, {"fits", fits}};
 }
 
 }  // namespace
@@ -155,7 +156,7 @@ std::string to_json(const DiagramCheck& check) {
             {"states", check.program.n_states()},
             {"servo_amplifiers", solve::rest_states(check.program).size()},
             {"outputs", check.flat.outputs.size()}};
-  json["bill"] = bill_json(check.bill);
+  json["bill"] = component_list_json(check.components);
   json["run"] = run_json(check);
   json["loops"] = std::move(loops);
   json["stability"] = stability_json(check.analysis.stability, check.program);

@@ -10,7 +10,7 @@
 #include <oblique/solve/operating_point/rest.h>
 
 #include <oblique/network/program/program.h>
-#include <oblique/report/bill_text.h>
+#include <oblique/report/component_list_text.h>
 #include <oblique/report/text_table.h>
 
 namespace oblique::report {
@@ -56,8 +56,8 @@ std::string trial(const DiagramCheck& check) {
   if (analysis.failure) {
     return fmt::format("\ntrial run: failed at t = {:.6g} s; what follows is about {}\n",
                        analysis.failure->time(),
-                       analysis.standing ? "the servo loops standing at rest, where they would not stay"
-                                         : "the time before");
+                       analysis.quasi_steady ? "the servo loops standing at rest, where they would not stay"
+                                             : "the time before");
   }
   std::string text =
       fmt::format("\ntrial run: {:.6g} s, {}", check.diagram.run.until,
@@ -299,7 +299,7 @@ std::string_view kind_name(solve::LoopKind kind) {
 
 std::string to_text(const DiagramCheck& check, const text::Vocabulary& vocabulary) {
   std::string text = contents(check);
-  if (check.bill) text += "\n" + to_text(*check.bill);
+  if (check.components) text += "\n" + to_text(*check.components);
   text += trial(check);
   if (!check.analysis.instants.empty()) {
     const std::vector<solve::LoopReport>& found = check.analysis.loops;

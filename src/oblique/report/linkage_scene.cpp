@@ -74,14 +74,14 @@ DrawnMotion drawn_motion(const mechanism::Mechanism& mechanism, const mechanism:
         same_place(whole.configurations.front(), whole.configurations.back(), mechanism.largest_length());
     return {std::move(whole.configurations), std::move(whole.times), closed, false};
   }
-  const mechanism::MotionRange tour = mechanism::plan_motion_range(mechanism, structure);
+  const mechanism::MotionRange motion_range = mechanism::plan_motion_range(mechanism, structure);
   constexpr double kBesideLimit = 1e-5;  // where the mechanism can surely be assembled
-  const double first = tour.from_limit ? kBesideLimit : 0, last = 1 - kBesideLimit;
+  const double first = motion_range.from_limit ? kBesideLimit : 0, last = 1 - kBesideLimit;
   DrawnMotion motion;
   motion.ends_at_limit = true;
   motion.times.reserve(static_cast<std::size_t>(options.positions));
   for (int k = 0; k < options.positions; ++k)
-    motion.times.push_back(tour.time(first + (last - first) * k / (options.positions - 1)));
+    motion.times.push_back(motion_range.time(first + (last - first) * k / (options.positions - 1)));
   motion.rows = mechanism::solve_motion(mechanism, structure, motion.times).configurations;
   return motion;
 }

@@ -33,7 +33,7 @@ std::string poor_transmission(const MechanismCheck& check, const mechanism::Tran
     }
     case mechanism::Transmission::Measure::pressure_angle:
       return say("rises to", transmission.greatest, "above 60°");
-    case mechanism::Transmission::Measure::regularity:
+    case mechanism::Transmission::Measure::determinant:
       break;  // is never called poor
   }
   return {};
@@ -43,7 +43,7 @@ std::string poor_transmission(const MechanismCheck& check, const mechanism::Tran
 std::optional<std::string> obstacle_of(const mechanism::Mechanism& mechanism,
                                        const mechanism::Structure& structure) {
   if (mechanism.drives.empty()) return std::nullopt;
-  // one that moves a slide goes to and fro between its limits
+  // one that moves a prismatic joint goes to and fro between its limits
   if (mechanism.drives.front().slide && !mechanism.motion.until) return std::nullopt;
   const auto obstacle = mechanism::find_obstacle(mechanism, structure);
   if (!obstacle) return std::nullopt;
@@ -109,7 +109,7 @@ std::string drive_text(const MechanismCheck& check, double value) {
   }
   constexpr double kShown = 0.005;  // half of the last digit
   double degrees = value / kDegree;
-  if (check.analysis.tour->kind == mechanism::MotionRange::Kind::turn) {
+  if (check.analysis.motion_range->kind == mechanism::MotionRange::Kind::turn) {
     degrees = std::fmod(std::fmod(degrees, 360) + 360, 360);
     if (degrees > 360 - kShown) degrees = 0;
   }

@@ -48,13 +48,13 @@ class JsonReport {
               {"mobility_by_rank", mobility()},
               {"four_bars", four_bars()},
               {"sliders", sliders()}};
-    json["tour"] = analysis_.tour ? tour() : Json(nullptr);
+    json["tour"] = analysis_.motion_range ? motion_range() : Json(nullptr);
     json["transmissions"] = transmissions();
     json["swings"] = swings();
     json["paths"] = paths();
     json["instant_centres"] = centres();
     json["inertia"] = inertia();
-    json["remarks"] = analysis_.tour ? Json(remarks(check_)) : Json::array();
+    json["remarks"] = analysis_.motion_range ? Json(remarks(check_)) : Json::array();
     return json;
   }
 
@@ -118,17 +118,17 @@ class JsonReport {
             {"group", group(event->group)}};
   }
 
-  Json tour() const {
+  Json motion_range() const {
     constexpr std::array kKinds{"turn", "until", "limits", "to limit"};
-    const mechanism::MotionRange& tour = *analysis_.tour;
+    const mechanism::MotionRange& motion_range = *analysis_.motion_range;
     Json changes = Json::array();
-    for (const mechanism::MotionEvent& change : tour.changes) changes.push_back(event(change));
-    return {{"kind", kKinds[static_cast<std::size_t>(tour.kind)]},
-            {"begin", tour.begin},
-            {"end", tour.end},
-            {"closed", tour.closed},
-            {"backward_limit", event(tour.range.backward)},
-            {"forward_limit", event(tour.range.forward)},
+    for (const mechanism::MotionEvent& change : motion_range.changes) changes.push_back(event(change));
+    return {{"kind", kKinds[static_cast<std::size_t>(motion_range.kind)]},
+            {"begin", motion_range.begin},
+            {"end", motion_range.end},
+            {"closed", motion_range.closed},
+            {"backward_limit", event(motion_range.range.backward)},
+            {"forward_limit", event(motion_range.range.forward)},
             {"change_points", std::move(changes)}};
   }
 
@@ -136,7 +136,9 @@ class JsonReport {
     Json all = Json::array();
     for (const mechanism::Transmission& t : analysis_.transmissions) {
       all.push_back({{"group", group(t.group)},
-                     {"measure", mechanism::measure_name(t.measure)},
+                     {"measure", t.measure == mechanism::Transmission::Measure::determinant
+                                     ? "regularity"  // the format's word for it
+                                     : mechanism::measure_name(t.measure)},
                      {"least", reading(t.least)},
                      {"greatest", reading(t.greatest)},
                      {"poor", t.is_poor()}});

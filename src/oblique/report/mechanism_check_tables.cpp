@@ -24,7 +24,7 @@ class Tables {
   std::vector<CheckTable> all() {
     four_bars();
     sliders();
-    if (!analysis_.tour) return std::move(tables_);
+    if (!analysis_.motion_range) return std::move(tables_);
     transmissions();
     bodies();
     slides();
@@ -93,7 +93,7 @@ class Tables {
     if (analysis_.transmissions.empty()) return;
     Table table({"group", "measure", "least", at_header(), "greatest", at_header(), ""});
     for (const mechanism::Transmission& t : analysis_.transmissions) {
-      const bool angle = t.measure != mechanism::Transmission::Measure::regularity;
+      const bool angle = t.measure != mechanism::Transmission::Measure::determinant;
       const auto shown = [&](double value) {
         return angle ? degrees(value) + "°" : fmt::format("{:.4f}", value);
       };
@@ -102,7 +102,7 @@ class Tables {
                  t.is_poor() ? "poor" : ""});
     }
     tables_.push_back(
-        {"transmission (best: angle 90°, pressure angle 0°, regularity 1)", std::move(table), 2,
+        {"transmission (best: angle 90°, pressure angle 0°, determinant 1)", std::move(table), 2,
          "How well each group passes forces on where it does so worst and best; an angle more than 60° from "
          "its best is called poor."});
   }

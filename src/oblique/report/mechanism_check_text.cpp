@@ -16,10 +16,10 @@ class Report {
 
   std::string write() {
     contents();
-    if (analysis_.tour) limits();
+    if (analysis_.motion_range) limits();
     for (const CheckTable& table : tables_of(check_))
       text_ += "\n" + table.title + "\n" + table.table.text(table.left_columns);
-    if (!analysis_.tour) return text_;
+    if (!analysis_.motion_range) return text_;
     std::string lines;
     for (const std::string& remark : remarks(check_)) lines += fmt::format("  {}\n", remark);
     if (!lines.empty()) text_ += "\nremarks\n" + lines;
@@ -45,9 +45,9 @@ class Report {
       text_ += fmt::format("no: {}\n", *check_.finding);
     } else if (mechanism_.drives.empty()) {
       text_ += "ok: a structure, which can be assembled and does not move\n";
-    } else if (analysis_.tour->kind == mechanism::MotionRange::Kind::limits) {
+    } else if (analysis_.motion_range->kind == mechanism::MotionRange::Kind::limits) {
       text_ += "ok: it can be assembled between the limits of its drive\n";
-    } else if (analysis_.tour->kind == mechanism::MotionRange::Kind::until) {
+    } else if (analysis_.motion_range->kind == mechanism::MotionRange::Kind::until) {
       text_ += "ok: it can be assembled over the whole motion, without dead centres\n";
     } else {
       text_ += "ok: it can be assembled over the whole turn, without dead centres\n";
@@ -55,7 +55,7 @@ class Report {
   }
 
   void limits() {
-    const mechanism::MotionRange& tour = *analysis_.tour;
+    const mechanism::MotionRange& motion_range = *analysis_.motion_range;
     mechanism::DriveClock clock(mechanism_);
     const auto limit = [&](const char* word, const std::optional<mechanism::MotionEvent>& event) {
       if (!event) return std::string();
@@ -65,12 +65,12 @@ class Report {
       return fmt::format(" {} {} ({}{})", word, drive_text(check_, clock.at(0, event->time).value),
                          check_.structure.groups[event->group].name, kind);
     };
-    if (tour.range.backward || tour.range.forward) {
+    if (motion_range.range.backward || motion_range.range.forward) {
       text_ += fmt::format("  range of '{}':{}{}; what follows is about that range\n",
-                           mechanism_.drives.front().name, limit("from", tour.range.backward),
-                           limit("to", tour.range.forward));
+                           mechanism_.drives.front().name, limit("from", motion_range.range.backward),
+                           limit("to", motion_range.range.forward));
     }
-    for (const mechanism::MotionEvent& change : tour.changes) {
+    for (const mechanism::MotionEvent& change : motion_range.changes) {
       text_ +=
           fmt::format("  change point of {} at {} = {}\n", check_.structure.groups[change.group].name,
                       mechanism_.drives.front().name, drive_text(check_, clock.at(0, change.time).value));

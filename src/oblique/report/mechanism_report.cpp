@@ -18,9 +18,9 @@
 #include <oblique/mechanism/structure/structure.h>
 #include <oblique/network/assembly/network.h>
 #include <oblique/network/program/program.h>
-#include <oblique/report/bill_text.h>
 #include <oblique/report/comparison_chart.h>
 #include <oblique/report/comparison_report.h>
+#include <oblique/report/component_list_text.h>
 #include <oblique/report/judgement_text.h>
 #include <oblique/report/linkage_scene.h>
 #include <oblique/report/mechanism_check_tables.h>
@@ -120,7 +120,7 @@ class Writer {
       page_.introduction(table.explanation);
       page_.table(table.table.rows());
     }
-    if (!check.analysis.tour) return;
+    if (!check.analysis.motion_range) return;
     const std::vector<std::string> found = remarks(check);
     if (found.empty()) return;
     page_.subheading("What a designer would look at again");
@@ -262,11 +262,11 @@ class Writer {
     }
     const diagram::Diagram& diagram = patch.realised;
     const diagram::FlatDiagram flat = diagram::flatten(diagram, report_.blocks);
-    const machine::Bill bill = machine::bill_of(flat, profile);
+    const machine::ComponentList components = machine::component_list_of(flat, profile);
     page_.introduction(
         "The same patch in this machine's own elements. What it takes of them, and what there is:");
-    page_.table(bill_table(bill).rows());
-    page_.paragraph(capitalised(verdict_text(bill)) + ".");
+    page_.table(component_list_table(components).rows());
+    page_.paragraph(capitalised(verdict_text(components)) + ".");
     if (const std::string text = bandwidth_text(patch, profile); !text.empty())
       page_.paragraph(capitalised(text));
     page_.paragraph("Judged on these elements: " + judgement_text(patch.judgement, report_.vocabulary));

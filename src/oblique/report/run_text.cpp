@@ -35,9 +35,9 @@ std::string static_test_text(const std::vector<solve::StaticReading>& readings) 
   Table table({"element", "", "output", "d/dt"});
   table.add({"", "", "[machine unit]", "[machine unit/s]"});
   for (const solve::StaticReading& reading : readings) {
-    const char* const kind = !reading.slope ? "" : reading.at_rest ? "brought to rest" : "state";
+    const char* const kind = !reading.derivative ? "" : reading.at_rest ? "brought to rest" : "state";
     table.add({reading.signal, kind, short_number(reading.output),
-               reading.slope ? short_number(*reading.slope) : ""});
+               reading.derivative ? short_number(*reading.derivative) : ""});
   }
   return table.text(2);
 }

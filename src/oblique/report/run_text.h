@@ -19,7 +19,7 @@ Table rows_of(const solve::Trajectory& trajectory, std::size_t columns);
 /// What switched, and when; `count` events in all, of which `events` were kept.
 std::string events_text(const std::vector<solve::EventRecord>& events, long count);
 
-/// Every element's output, and the slopes of states.
+/// Every element's output, and the derivatives of states.
 std::string static_test_text(const std::vector<solve::StaticReading>& readings);
 
 /// How much work the run was, and by which method and why: a line each.

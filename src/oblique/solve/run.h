@@ -42,7 +42,7 @@ struct RunOptions {
   std::vector<double> extra_times;    ///< [s] ascending, within [0, until]: further rows, kept apart
   std::function<void(double fraction)>
       progress;  ///< called now and then with the part of the run that is done
-  std::function<void(double t, std::span<const double> states, std::span<const double> memories)>
+  std::function<void(double t, std::span<const double> states, std::span<const double> discrete_states)>
       on_sample;                     ///< called at every row of the grid
   std::function<void()> on_restart;  ///< called where the run begins anew, finer: its rows come once more
   bool watch_overloads = false;   ///< look for overloads at every step, at the price of two evaluations each

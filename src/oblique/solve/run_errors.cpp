@@ -53,15 +53,15 @@ std::size_t largest_state(const CvodesSolver& solver) {
 SolveError loop_error(const network::Program& program, const network::Workspace::Trouble& trouble, double t,
                       const std::string& file) {
   if (trouble.failure == network::LoopFailure::none) {  // what fails is no loop but a slide
-    return {
-        SolveError::Kind::chatter,
-        t,
-        {{file, {}},
-         fmt::format("at t = {:.6g} s no mixture of both of its sides keeps a switch on the surface that it "
-                     "slides along",
-                     t),
-         {},
-         "give the switch a hysteresis"}};
+    return {SolveError::Kind::chatter,
+            t,
+            {{file, {}},
+             fmt::format("at t = {:.6g} s no mixture of both of its sides keeps a switch on the switching "
+                         "surface that it "
+                         "slides along",
+                         t),
+             {},
+             "give the switch a hysteresis"}};
   }
   const network::Loop& loop = program.loops()[trouble.loop];
   const network::Unknown& unknown = program.unknowns()[loop.unknowns.front()];
@@ -70,13 +70,13 @@ SolveError loop_error(const network::Program& program, const network::Workspace:
   std::string what, remedy;
   if (trouble.failure == network::LoopFailure::singular && loop.unknowns.size() == 1 && unknown.torn) {
     what = fmt::format("the algebraic loop {} is singular at t = {:.6g} s: its gain is {:.6g}", path, t,
-                       trouble.slope + 1);
+                       trouble.derivative + 1);
     remedy = "change a weight so that the gain of the loop is not 1, or put an integrator into it";
   } else if (trouble.failure == network::LoopFailure::singular && loop.unknowns.size() == 1) {
     what = fmt::format(
         "the algebraic loop {} is singular at t = {:.6g} s: its gain is {:.6g}, "
         "the inputs of '{}' do not respond to its output",
-        path, t, trouble.slope, unknown.name);
+        path, t, trouble.derivative, unknown.name);
     remedy =
         "wire the output back so that the residual changes with it, start it at another 'initial', or give "
         "the "

@@ -26,7 +26,7 @@ RunState::Named named_by(const Items& items, const std::vector<double>& values) 
 RunSnapshot::RunSnapshot(double t, const RunParts& parts)
     : time_(t),
       states_(parts.states),
-      memories_(parts.workspace.memories().begin(), parts.workspace.memories().end()),
+      discrete_states_(parts.workspace.discrete_states().begin(), parts.workspace.discrete_states().end()),
       conditions_(parts.switching.conditions()),
       sliding_(parts.switching.sliding()),
       position_(parts.clock.position()) {
@@ -37,7 +37,7 @@ RunSnapshot::RunSnapshot(double t, const RunParts& parts)
 RunSnapshot::RunSnapshot(const RunState& state)
     : time_(state.time),
       states_(values_of(state.states)),
-      memories_(values_of(state.memories)),
+      discrete_states_(values_of(state.memories)),
       unknowns_(values_of(state.unknowns)),
       conditions_(state.conditions),
       sliding_(state.sliding),
@@ -46,7 +46,7 @@ RunSnapshot::RunSnapshot(const RunState& state)
 void RunSnapshot::restore(const RunParts& parts) const {
   parts.states = states_;
   for (std::size_t u = 0; u < unknowns_.size(); ++u) parts.workspace.set_unknown(u, unknowns_[u]);
-  parts.workspace.load_memories(memories_);
+  parts.workspace.load_discrete_states(discrete_states_);
   parts.clock.restore(position_);
   parts.switching.restore(conditions_, sliding_);
 }
@@ -56,7 +56,7 @@ RunState RunSnapshot::named(const network::Program& program) const {
   state.time = time_;
   state.states = named_by(program.states(), states_);
   state.unknowns = named_by(program.unknowns(), unknowns_);
-  state.memories = named_by(program.memories(), memories_);
+  state.memories = named_by(program.discrete_states(), discrete_states_);
   state.conditions = conditions_;
   state.sliding = sliding_;
   state.position = position_;

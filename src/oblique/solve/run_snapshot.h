@@ -34,7 +34,7 @@ class RunSnapshot {
 
  private:
   double time_ = 0;
-  std::vector<double> states_, memories_, unknowns_;
+  std::vector<double> states_, discrete_states_, unknowns_;
   std::vector<bool> conditions_, sliding_;
   PhaseClock::Position position_;
 };

@@ -146,7 +146,7 @@ RunState parse_run_state(std::string_view text, const std::string& file) {
 void check_run_state(const RunState& state, const network::Program& program, const std::string& file) {
   compare_names(state.states, program.states(), "state", file);
   compare_names(state.unknowns, program.unknowns(), "unknown", file);
-  compare_names(state.memories, program.memories(), "memory", file);
+  compare_names(state.memories, program.discrete_states(), "memory", file);
   compare_counts(state.conditions.size(), program.events().size(), "conditions of events", file);
   if (!state.sliding.empty())
     compare_counts(state.sliding.size(), program.switches().size(), "switches", file);

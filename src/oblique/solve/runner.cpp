@@ -48,11 +48,11 @@ class Runner {
         states_(program.start()),
         segments_({program, diagram, options, workspace_, switching_, clock_, branches_, sampler_, overloads_,
                    states_}) {
-    constexpr double kLooksAStep = 100, kSourceLooksAStep = 10;
+    constexpr double kSamplesAStep = 100, kSourceSamplesAStep = 10;
     switching_.end_at(options.until);
     switching_.end_when(interruption_);
-    switching_.limit_looks(kLooksAStep * static_cast<double>(options.max_steps) + 1e6);
-    sources_.limit_looks(kSourceLooksAStep * static_cast<double>(options.max_steps) + 1e6);
+    switching_.limit_samples(kSamplesAStep * static_cast<double>(options.max_steps) + 1e6);
+    sources_.limit_samples(kSourceSamplesAStep * static_cast<double>(options.max_steps) + 1e6);
     if (options.watch_overloads || options.halt_on_overload)
       overloads_.emplace(program, switching_, diagram.file, options.halt_on_overload);
   }
@@ -69,7 +69,7 @@ class Runner {
     workspace_.follow_branches(true);
     last_whole_ = RunSnapshot(begin_, parts());
     try {
-      sampler_.advance(begin_, StandingStates(states_));
+      sampler_.advance(begin_, ConstantStates(states_));
       if (overloads_) overloads_->restart(begin_, states_);
       if (program_.n_states() > 0) {
         integrate();
@@ -156,10 +156,10 @@ class Runner {
     return true;
   }
 
-  /// What shows that a state is not known: the outputs, then the surfaces of the switches.
+  /// What shows that a state is not known: the outputs, then the event functions of the switches.
   bool read(double t, const double* x, double* values) {
     return read_outputs(t, x, values) &&
-           program_.surfaces(t, x, values + diagram_.outputs.size(), workspace_).has_value();
+           program_.event_functions(t, x, values + diagram_.outputs.size(), workspace_).has_value();
   }
 
   bool goes_on(double t) {
@@ -217,13 +217,13 @@ class Runner {
               throw;
           }
         }
-        const std::vector<double>& looks = sources_.looks(from, t, solver);
+        const std::vector<double>& sample_times = sources_.sample_times(from, t, solver);
         // The states are still those of `from`.
-        if (short_steps.take_back(from, states_, looks, segments_.end())) {
+        if (short_steps.take_back(from, states_, sample_times, segments_.end())) {
           t = from;
           continue;
         }
-        if (segments_.finish_step(from, t, looks, solver)) {
+        if (segments_.finish_step(from, t, sample_times, solver)) {
           segments_.begin(t);
           solver.restart(t, states_, segments_.end(), segments_.length());
           growth_->restart(t, states_);
@@ -254,7 +254,7 @@ class Runner {
   /// A diagram without states follows the time alone: steps as long as the rows are apart, or shorter where
   /// that is asked for.
   void follow() {
-    const StandingStates no_states({});
+    const ConstantStates no_states({});
     const double step = std::min((options_.until - begin_) / (options_.samples - 1), options_.max_step);
     double t = begin_;
     segments_.begin(t);
@@ -262,7 +262,8 @@ class Runner {
       const double from = t;
       t = std::min(segments_.end(), t + step);
       if (segments_.end() - t < kShortest * segments_.end()) t = segments_.end();
-      if (segments_.finish_step(from, t, sources_.looks(from, t, no_states), no_states)) segments_.begin(t);
+      if (segments_.finish_step(from, t, sources_.sample_times(from, t, no_states), no_states))
+        segments_.begin(t);
     }
   }
 

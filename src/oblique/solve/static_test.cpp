@@ -16,18 +16,18 @@ namespace oblique::solve {
 std::vector<StaticReading> static_test(const network::Program& program, const std::string& file) {
   network::Workspace workspace(program);
   std::vector<double> states = program.start();
-  for (const std::uint32_t mode : program.mode_memories())
-    workspace.set_memory(mode, static_cast<double>(diagram::OperatingMode::initial));
+  for (const std::uint32_t mode : program.mode_states())
+    workspace.set_discrete_state(mode, static_cast<double>(diagram::OperatingMode::initial));
   Switching switching(program, workspace, 1, 0, 0, file);
   switching.start(0, states, [&] { bring_to_rest(program, workspace, 0, states, file); });
-  std::vector<double> outputs(program.n_signals()), slopes(program.n_states());
+  std::vector<double> outputs(program.n_signals()), derivatives(program.n_states());
   const bool has_outputs = switching.signals(0, states.data(), outputs.data()) ||
                            (hold_singular_start(program, workspace, 0, states, 1) &&
                             switching.signals(0, states.data(), outputs.data()));
   // What the integrators would do with their inputs: the first moment of "operate".
-  for (const std::uint32_t mode : program.mode_memories())
-    workspace.set_memory(mode, static_cast<double>(diagram::OperatingMode::operate));
-  if (!has_outputs || !switching.derivatives(0, states.data(), slopes.data())) {
+  for (const std::uint32_t mode : program.mode_states())
+    workspace.set_discrete_state(mode, static_cast<double>(diagram::OperatingMode::operate));
+  if (!has_outputs || !switching.derivatives(0, states.data(), derivatives.data())) {
     throw loop_error(program, workspace.trouble(), 0, file);
   }
 
@@ -42,7 +42,7 @@ std::vector<StaticReading> static_test(const network::Program& program, const st
     const auto found = index.find(state.name);
     if (found == index.end()) readings.push_back({state.name, states[i], {}, false});
     StaticReading& reading = found == index.end() ? readings.back() : readings[found->second];
-    reading.slope = slopes[i];
+    reading.derivative = derivatives[i];
     reading.at_rest = state.at_rest;
   }
   return readings;

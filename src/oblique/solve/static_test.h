@@ -13,10 +13,11 @@ namespace oblique::solve {
 
 /// What a meter shows at one element in initial condition.
 struct StaticReading {
-  std::string signal;           ///< path
-  double output = 0;            ///< [machine unit]
-  std::optional<double> slope;  ///< d output/dt [machine unit/s], of a state: what its integrator is fed with
-  bool at_rest = false;         ///< a servo amplifier: brought to rest, so that its slope is 0 to rounding
+  std::string signal;  ///< path
+  double output = 0;   ///< [machine unit]
+  std::optional<double>
+      derivative;        ///< d output/dt [machine unit/s], of a state: what its integrator is fed with
+  bool at_rest = false;  ///< a servo amplifier: brought to rest, so that its derivative is 0 to rounding
 };
 
 /// The static test: every output in initial condition at t = 0, servo loops brought to rest, and the

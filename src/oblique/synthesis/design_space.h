@@ -24,7 +24,7 @@ struct Dimension {
 /// All mechanisms that differ from a file in its free dimensions only.
 class DesignSpace {
  public:
-  /// Each of `free` is the name of a body (its length), `body.sides` or `body.sides.1`, a mark `body.M` or
+  /// Each of `free` is the name of a link (its length), `body.sides` or `body.sides.1`, a mark `body.M` or
   /// one of its coordinates `body.M.x`, a frame point `D` or `D.x`; names of one number may be followed by
   /// bounds, `=130..150`. Without them a length lies between half and twice its value, a coordinate within
   /// half of the mechanism's largest length of it. Throws as `parse_mechanism`, and SynthesisError (kind

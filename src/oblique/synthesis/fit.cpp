@@ -135,7 +135,7 @@ class Fitter {
     constexpr int kStages = 6;
     if (sum <= least_squares_.floor) return false;
     problem_.restart();
-    const VectorXd accelerations = problem_.accelerations(space_.values(), problem_.stance());
+    const VectorXd accelerations = problem_.accelerations(space_.values(), problem_.start_configuration());
     double weight =
         kFirstPart * sum * static_cast<double>(accelerations.size()) / accelerations.squaredNorm();
     Minimum minimum{start, sum, true};
@@ -164,9 +164,9 @@ class Fitter {
     // the numbers that will stand in the file, which is what is measured
     const VectorXd rounded = rounded_values(minimum.x);
     if (const auto residuals = problem_.residuals(rounded)) {
-      best_ = Best{rounded, residuals->squaredNorm(), error_of(*residuals), problem_.stance()};
+      best_ = Best{rounded, residuals->squaredNorm(), error_of(*residuals), problem_.start_configuration()};
     } else if (const auto exact = problem_.residuals(minimum.x)) {
-      best_ = Best{minimum.x, exact->squaredNorm(), error_of(*exact), problem_.stance()};
+      best_ = Best{minimum.x, exact->squaredNorm(), error_of(*exact), problem_.start_configuration()};
     }
   }
 
@@ -194,14 +194,14 @@ class Fitter {
     fit.text = space_.text(values);
     if (!fit.improved) return;
     if (fit.turns_fully) {
-      const auto largest = [&](const VectorXd& member, const Stance& stance) {
-        return problem_.accelerations(member, stance).lpNorm<Eigen::Infinity>();
+      const auto largest = [&](const VectorXd& member, const StartConfiguration& start_configuration) {
+        return problem_.accelerations(member, start_configuration).lpNorm<Eigen::Infinity>();
       };
-      fit.acceleration_after = largest(values, best_->stance);
+      fit.acceleration_after = largest(values, best_->start_configuration);
       problem_.restart();
-      fit.acceleration_before = largest(space_.values(), problem_.stance());
+      fit.acceleration_before = largest(space_.values(), problem_.start_configuration());
     }
-    FittedText fitted = fitted_text(space_, values, best_->stance);
+    FittedText fitted = fitted_text(space_, values, best_->start_configuration);
     fit.sketch_moved = fitted.sketch_moved;
     fit.text = with_comment(fitted.text, comment(fit));
   }
@@ -225,7 +225,7 @@ class Fitter {
     VectorXd x;
     double sum;
     PathError error;
-    Stance stance;
+    StartConfiguration start_configuration;
   };
 
   const DesignSpace& space_;

@@ -43,7 +43,7 @@ struct Fit {
   std::vector<FittedDimension> dimensions;
   bool improved = false;     ///< otherwise `text` is the file as it was and `after` is `before`
   bool turns_fully = false;  ///< the mechanism turned fully before, and so does this one
-  /// Largest angular acceleration of a body over the turn, in squares of the first drive's speed: far above 1
+  /// Largest angular acceleration of a link over the turn, in squares of the first drive's speed: far above 1
   /// near a dead centre. Known of a mechanism that turns fully and is improved.
   double acceleration_before = 0;
   double acceleration_after = 0;

@@ -16,8 +16,9 @@ struct FittedText {
 };
 
 /// The file of a space with other values. Its sketch stays as it is where it still picks the mode of
-/// `stance`; otherwise its points are put where they stand in it. Throws SynthesisError where not even that
-/// picks the mode.
-FittedText fitted_text(const DesignSpace& space, const Eigen::VectorXd& values, const Stance& stance);
+/// `start_configuration`; otherwise its points are put where they stand in it. Throws SynthesisError where
+/// not even that picks the mode.
+FittedText fitted_text(const DesignSpace& space, const Eigen::VectorXd& values,
+                       const StartConfiguration& start_configuration);
 
 }  // namespace oblique::synthesis

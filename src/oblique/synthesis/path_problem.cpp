@@ -30,12 +30,13 @@ bool is_assembled(const mechanism::Configuration& configuration) {
   return configuration.status != mechanism::Status::open;
 }
 
-Stance stance_in(const mechanism::Mechanism& mechanism, const mechanism::Configuration& configuration) {
-  Stance stance;
+StartConfiguration start_configuration_in(const mechanism::Mechanism& mechanism,
+                                          const mechanism::Configuration& configuration) {
+  StartConfiguration start_configuration;
   for (std::size_t i = 0; i < mechanism.points.size(); ++i) {
-    if (!mechanism.points[i].fixed) stance.push_back({i, configuration.points[i].position});
+    if (!mechanism.points[i].fixed) start_configuration.push_back({i, configuration.points[i].position});
   }
-  return stance;
+  return start_configuration;
 }
 
 VectorXd two_columns(const std::vector<PathCurve::Foot>& feet, const VectorXd& accelerations) {
@@ -49,11 +50,11 @@ VectorXd two_columns(const std::vector<PathCurve::Foot>& feet, const VectorXd& a
 
 }  // namespace
 
-std::optional<Stance> stance_of(const mechanism::Mechanism& mechanism) {
+std::optional<StartConfiguration> start_configuration_of(const mechanism::Mechanism& mechanism) {
   const mechanism::Configuration start =
       mechanism::solve_motion(mechanism, std::vector<double>{0}).configurations.front();
   if (!is_assembled(start)) return std::nullopt;
-  return stance_in(mechanism, start);
+  return start_configuration_in(mechanism, start);
 }
 
 PathProblem::PathProblem(const DesignSpace& space, const TargetPath& target)
@@ -61,7 +62,7 @@ PathProblem::PathProblem(const DesignSpace& space, const TargetPath& target)
   const mechanism::Mechanism& mechanism = space.original();
   size_ = mechanism.largest_length();
   must_turn_ = !mechanism::find_obstacle(mechanism, mechanism::decompose(mechanism));
-  original_ = {space.values(), stance_in(mechanism, turn_of(mechanism).configurations.front())};
+  original_ = {space.values(), start_configuration_in(mechanism, turn_of(mechanism).configurations.front())};
   restart();
   if (residuals(original_.values)) return;
   throw SynthesisError(
@@ -100,20 +101,20 @@ double PathProblem::weight_of_an_acceleration() const {
   return std::sqrt(barrier_ / static_cast<double>(space_.original().bodies.size() * kRows));
 }
 
-/// The stance from which the member with these values takes its mode.
-std::optional<Stance> PathProblem::walk_to(const VectorXd& values) const {
+/// The start configuration from which the member with these values takes its mode.
+std::optional<StartConfiguration> PathProblem::walk_to(const VectorXd& values) const {
   const VectorXd way = values - here_.values;
   const auto steps = static_cast<long>(std::ceil(way.cwiseAbs().maxCoeff() / (kModeStep * size_)));
-  Stance stance = here_.stance;
+  StartConfiguration start_configuration = here_.start_configuration;
   for (long k = 1; k < steps; ++k) {
     mechanism::Mechanism between =
         space_.mechanism(here_.values + static_cast<double>(k) / static_cast<double>(steps) * way);
-    between.sketch = stance;
-    const auto next = stance_of(between);
+    between.sketch = start_configuration;
+    const auto next = start_configuration_of(between);
     if (!next) return std::nullopt;
-    stance = *next;
+    start_configuration = *next;
   }
-  return stance;
+  return start_configuration;
 }
 
 std::optional<std::vector<PathCurve::Foot>> PathProblem::timed_feet(
@@ -131,7 +132,8 @@ std::optional<std::vector<PathCurve::Foot>> PathProblem::timed_feet(
   return feet;
 }
 
-std::optional<PathProblem::Solved> PathProblem::solve(const VectorXd& values, const Stance& near) {
+std::optional<PathProblem::Solved> PathProblem::solve(const VectorXd& values,
+                                                      const StartConfiguration& near) {
   ++members_tried_;
   mechanism::Mechanism mechanism = space_.mechanism(values);
   mechanism.sketch = near;
@@ -144,7 +146,7 @@ std::optional<PathProblem::Solved> PathProblem::solve(const VectorXd& values, co
         !mechanism::find_obstacle(mechanism, mechanism::decompose(mechanism));
     if (!turns) return std::nullopt;
   }
-  Solved solved{stance_in(mechanism, turn.configurations.front()), {}, {}};
+  Solved solved{start_configuration_in(mechanism, turn.configurations.front()), {}, {}};
   if (barrier_ > 0) solved.accelerations = weight_of_an_acceleration() * accelerations_in(turn);
   if (!target_.times.empty()) {
     auto feet = timed_feet(mechanism);
@@ -167,7 +169,7 @@ std::optional<VectorXd> PathProblem::residuals(const VectorXd& values) {
     if (!near) return std::nullopt;
     auto solved = solve(values, *near);
     if (!solved) return std::nullopt;
-    here_ = {values, std::move(solved->stance)};
+    here_ = {values, std::move(solved->start_configuration)};
     return two_columns(solved->feet, solved->accelerations);
   } catch (const mechanism::MechanismError&) {  // no such mechanism, or it cannot be assembled at the start
     return std::nullopt;
@@ -179,7 +181,7 @@ std::optional<PathProblem::Perturbed> PathProblem::perturb(const VectorXd& value
   try {
     ++members_tried_;
     mechanism::Mechanism mechanism = space_.mechanism(values);
-    mechanism.sketch = here_.stance;
+    mechanism.sketch = here_.start_configuration;
     Perturbed perturbed;
     if (!target_.times.empty()) {
       const auto moved = timed_feet(mechanism);
@@ -209,7 +211,7 @@ MatrixXd PathProblem::jacobian(const VectorXd& values) {
   const auto near = walk_to(values);
   const auto base = near ? solve(values, *near) : std::nullopt;
   if (!base) return MatrixXd::Zero(2 * std::ssize(target_.positions), values.size());
-  here_ = {values, base->stance};
+  here_ = {values, base->start_configuration};
   Perturbed middle;
   for (std::size_t k = 0; k < base->feet.size(); ++k) {
     middle.places.emplace_back(base->feet[k].difference + target_.positions[k]);
@@ -239,9 +241,10 @@ MatrixXd PathProblem::jacobian(const VectorXd& values) {
   return jacobian;
 }
 
-VectorXd PathProblem::accelerations(const VectorXd& values, const Stance& stance) const {
+VectorXd PathProblem::accelerations(const VectorXd& values,
+                                    const StartConfiguration& start_configuration) const {
   mechanism::Mechanism mechanism = space_.mechanism(values);
-  mechanism.sketch = stance;
+  mechanism.sketch = start_configuration;
   return accelerations_in(turn_of(mechanism));
 }
 
@@ -253,7 +256,7 @@ std::optional<double> PathProblem::effect_of(Index dimension) {
     values[dimension] += change * (space_.upper()[dimension] - space_.lower()[dimension]);
     try {
       mechanism::Mechanism mechanism = space_.mechanism(values);
-      mechanism.sketch = original_.stance;
+      mechanism.sketch = original_.start_configuration;
       return turn_of(mechanism);
     } catch (const mechanism::MechanismError&) {
       return std::nullopt;

@@ -13,10 +13,11 @@
 namespace oblique::synthesis {
 
 /// Where all moving points stand at the start; as a sketch it picks the assembly mode nearest to it.
-using Stance = std::vector<mechanism::SketchPoint>;
+using StartConfiguration = std::vector<mechanism::SketchPoint>;
 
-/// The stance of a mechanism as its sketch picks it, or nothing where it cannot be assembled there.
-std::optional<Stance> stance_of(const mechanism::Mechanism& mechanism);
+/// The start configuration of a mechanism as its sketch picks it, or nothing where it cannot be assembled
+/// there.
+std::optional<StartConfiguration> start_configuration_of(const mechanism::Mechanism& mechanism);
 
 /// How far the members of a space are from a target path.
 ///
@@ -44,21 +45,22 @@ class PathProblem {
   Eigen::MatrixXd jacobian(const Eigen::VectorXd& values);
 
   /// Weight of a barrier that keeps the mechanism off its dead centres: adds to the sum the mean square of
-  /// the bodies' accelerations α/ω₀² over the turn. It grows without bound there; that of the speeds would
+  /// the links' accelerations α/ω₀² over the turn. It grows without bound there; that of the speeds would
   /// not, as a four-bar linkage passes its change point with a jump in them. Only of use where `must_turn`.
   void set_barrier(double weight) { barrier_ = weight; }
 
-  /// α/ω₀² of all bodies over the turn of a member that begins near `stance`, ω₀ the speed of the first
-  /// drive.
-  Eigen::VectorXd accelerations(const Eigen::VectorXd& values, const Stance& stance) const;
+  /// α/ω₀² of all links over the turn of a member that begins near `start_configuration`, ω₀ the speed of
+  /// the first drive.
+  Eigen::VectorXd accelerations(const Eigen::VectorXd& values,
+                                const StartConfiguration& start_configuration) const;
 
   const DesignSpace& space() const { return space_; }
   bool must_turn() const { return must_turn_; }
   double size() const { return size_; }  ///< largest length of the original
   std::size_t targets() const { return target_.positions.size(); }
   std::size_t members_tried() const { return members_tried_; }
-  /// The stance of the member whose residuals were computed last.
-  const Stance& stance() const { return here_.stance; }
+  /// The start configuration of the member whose residuals were computed last.
+  const StartConfiguration& start_configuration() const { return here_.start_configuration; }
   /// Places of the point over the turn of the original with one dimension changed a little, for each that can
   /// be: the largest distance from those of the original [length unit], or nothing where no change can be
   /// made.
@@ -67,10 +69,10 @@ class PathProblem {
  private:
   struct Member {
     Eigen::VectorXd values;
-    Stance stance;
+    StartConfiguration start_configuration;
   };
   struct Solved {
-    Stance stance;
+    StartConfiguration start_configuration;
     std::vector<PathCurve::Foot> feet;  ///< one for each target
     Eigen::VectorXd accelerations;      ///< weighted; empty without a barrier
   };
@@ -79,8 +81,8 @@ class PathProblem {
     Eigen::VectorXd accelerations;
   };
 
-  std::optional<Stance> walk_to(const Eigen::VectorXd& values) const;
-  std::optional<Solved> solve(const Eigen::VectorXd& values, const Stance& near);
+  std::optional<StartConfiguration> walk_to(const Eigen::VectorXd& values) const;
+  std::optional<Solved> solve(const Eigen::VectorXd& values, const StartConfiguration& near);
   std::optional<Perturbed> perturb(const Eigen::VectorXd& values, const std::vector<PathCurve::Foot>& feet);
   std::optional<std::vector<PathCurve::Foot>> timed_feet(const mechanism::Mechanism& mechanism) const;
   mechanism::Motion turn_of(const mechanism::Mechanism& mechanism) const;

@@ -124,7 +124,8 @@ x = { type = "integrator", in = ["-y"], initial = 0.6666666666666666 }
 )toml");
     const auto result = run_of(made, {.until = 5 * period + 0.1, .tolerance = tolerance});
     ASSERT_EQ(result.events.size(), 10U);
-    // a root of the tolerance's power 2/3 a jump, from the slope that is infinite there; and 1e-10 of the run
+    // a root of the tolerance's power 2/3 a jump, from the derivative that is infinite there; and 1e-10 of
+    // the run
     EXPECT_NEAR(result.events[9].time, 5 * period, 100 * std::pow(tolerance, 2.0 / 3) + 1e-7) << tolerance;
   }
 }
@@ -144,7 +145,7 @@ z = { type = "integrator", in = "y" }
   EXPECT_TRUE(result.warnings.empty());
 }
 
-TEST(Branch, BeginsAtARootWithoutASlope) {
+TEST(Branch, BeginsAtARootWithoutADerivative) {
   const auto result = run_of(Compiled(R"toml(one = { type = "constant" }
 u = { type = "integrator", in = "one" }
 yy = { type = "squarer", in = "y" }

@@ -21,12 +21,12 @@ class SharesOfTwo : public ::testing::Test {
  protected:
   SharesOfTwo() : sides_(made_.program.switch_structure()) {}
 
-  /// Gives every side the rates of both surfaces by the sides (0 or 1) on which the units are.
+  /// Gives every side the rates of both event functions by the sides (0 or 1) on which the units are.
   template <class Rates>
   void set_rates(const Rates& rates) {
     const network::SwitchStructure& structure = made_.program.switch_structure();
     for (SlideSide& side : sides_) {
-      side.surfaces.assign(made_.program.switches().size(), 0.0);
+      side.event_functions.assign(made_.program.switches().size(), 0.0);
       side.rates.assign(made_.program.switches().size(), 0.0);
       const auto values = rates((side.bits & 1U) != 0 ? 1.0 : 0.0, (side.bits & 2U) != 0 ? 1.0 : 0.0);
       for (std::size_t unit = 0; unit < 2; ++unit) {
@@ -56,7 +56,7 @@ TEST_F(SharesOfTwo, MixCoupledUnitsInAllCombinations) {
 
 // ẋ goes as 1 − 4a and ẏ as 0.5 + 4a − 3b + 2ab by the shares a and b: both vanish at a = 1/4, b = 3/5. The
 // tolerance is some roundings of rates below 8.
-TEST_F(SharesOfTwo, HoldBothSurfaces) {
+TEST_F(SharesOfTwo, HoldBothSwitchingSurfaces) {
   sides_.make({0, 1}, true);
   set_rates([](double a, double b) {
     return std::vector<double>{1 - 4 * a, 0.5 + 4 * a - 3 * b + 2 * a * b};
@@ -67,19 +67,19 @@ TEST_F(SharesOfTwo, HoldBothSurfaces) {
   EXPECT_NEAR((*shares)[1], 0.6, 1e-13);
 }
 
-// Both sides of the second unit drive its surface up alike: no share holds it.
+// Both sides of the second unit drive its event function up alike: no share holds it.
 TEST_F(SharesOfTwo, AreNoneWhereBothSidesDriveAlike) {
   sides_.make({0, 1}, false);
   set_rates([](double a, double /*b*/) { return std::vector<double>{1 - 4 * a, 2}; });
   EXPECT_FALSE(shares_of_coupled(sides_, {0.5, 0.5}, 1, 1e-6));
 }
 
-// A surface that is 0.01 off goes back by rate · 0.01, and no faster than it may.
+// An event function that is 0.01 off goes back by rate · 0.01, and no faster than it may.
 TEST_F(SharesOfTwo, TakeADriftBack) {
   sides_.make({0, 1}, false);
   set_rates([](double a, double b) { return std::vector<double>{1 - 4 * a, 1 - 4 * b}; });
   for (SlideSide& side : sides_) {
-    for (const std::uint32_t s : made_.program.switch_structure().members[0]) side.surfaces[s] = 0.01;
+    for (const std::uint32_t s : made_.program.switch_structure().members[0]) side.event_functions[s] = 0.01;
   }
   const double sign =
       made_.program.switch_structure().opposite[made_.program.switch_structure().members[0][0]] ? -1 : 1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Sliding along surfaces, and chatter, against closed forms.
+// Sliding along event functions, and chatter, against closed forms.
 #include <cmath>
 
 #include <fmt/format.h>
@@ -18,7 +18,7 @@ using testing::row_values;
 using testing::run_of;
 using testing::shipped_blocks_and;
 
-TEST(Slides, ARelayWithoutHysteresisSlidesAlongItsSurface) {
+TEST(Slides, ARelayWithoutHysteresisSlidesAlongItsSwitchingSurface) {
   // x' = −sign x + 0.5 cos t reaches 0 and stays: Filippov's solution has sign x = 0.5 cos t there.
   const Compiled made(R"(one = { type = "constant" }
 phase = { type = "integrator", in = ["one"] }
@@ -39,7 +39,7 @@ x = { type = "integrator", in = ["-s", "0.5*c"], initial = 1 })");
   EXPECT_TRUE(reported);
 }
 
-TEST(Slides, ASurfaceThatStartsAtItsTurningPointGoesWhereItBends) {
+TEST(Slides, AnEventFunctionThatStartsAtItsTurningPointGoesWhereItBends) {
   // x = ±t²/2: its sign is known at once, though neither x nor x' shows it.
   for (const double side : {1.0, -1.0}) {
     const Compiled made(fmt::format(R"(one = {{ type = "constant", value = {} }}
@@ -56,7 +56,7 @@ sum = {{ type = "integrator", in = ["s"] }})",
 }
 
 TEST(Slides, TwoSwitchesSlideAtOnce) {
-  // Each comes to its surface at its own time and stays; what both do together is the sum.
+  // Each comes to its switching surface at its own time and stays; what both do together is the sum.
   const Compiled made(R"(x = { type = "integrator", in = ["-sx"], initial = 1 }
 sx = { type = "sign", in = "x" }
 y = { type = "integrator", in = ["-sy", "0.5*one"], initial = 1 }
@@ -131,7 +131,7 @@ x = { type = "integrator", in = "c" })");
   }
 }
 
-TEST(Slides, ASlideOnACurvedSurfaceLeadsToTheOrigin) {
+TEST(Slides, ASlideOnACurvedSwitchingSurfaceLeadsToTheOrigin) {
   // The double integrator in the least time (Pontryagin): from x = 1 at rest to the origin in 2 s, and there
   // it stays.
   const Compiled made(R"(av = { type = "absolute-value", in = "v" }
@@ -169,7 +169,7 @@ diagram::BlockLibrary library_with_bit(const std::string& set, const std::string
           set + "\"\nset = { q = 1 }\n[[events]]\nwhen = \"" + clear + "\"\nset = { q = 0 }\n");
 }
 
-TEST(Slides, AMemoryThatUndoesItselfChatters) {
+TEST(Slides, ADiscreteStateThatUndoesItselfChatters) {
   const diagram::BlockLibrary library = library_with_bit("in > 0", "in < 0");
   const Compiled made(R"(one = { type = "constant" }
 f = { type = "bit", in = "x" }

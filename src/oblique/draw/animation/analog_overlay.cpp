@@ -13,7 +13,7 @@ using Eigen::Vector2d;
 
 constexpr double kWidth = 2, kRadius = 3;  // [px]
 
-/// The points of a body in the order of their directions from the middle, so that a line through all of them
+/// The points of a link in the order of their directions from the middle, so that a line through all of them
 /// does not cross itself.
 std::vector<std::size_t> around(const mechanism::Body& body) {
   Vector2d middle = Vector2d::Zero();

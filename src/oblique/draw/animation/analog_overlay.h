@@ -15,7 +15,7 @@ namespace oblique::draw {
 /// The colour of the analog mechanism; paths of the exact one do without it.
 inline constexpr Ink kAnalogInk = Ink::vermilion;
 
-/// A thing of the analog mechanism: a body as a line or a polygon through its points, or one point. The
+/// A thing of the analog mechanism: a link as a line or a polygon through its points, or one point. The
 /// errors change its shape, so it is told by the places of its points.
 struct AnalogShape {
   std::vector<std::size_t> points;  ///< of Mechanism::points, in the order in which a line goes through them
@@ -23,7 +23,7 @@ struct AnalogShape {
   std::string id;                   ///< "analog-body-AB", "analog-pin-B"
 };
 
-/// Bodies, and over them the moving points.
+/// Links, and over them the moving points.
 std::vector<AnalogShape> analog_shapes(const mechanism::Mechanism& mechanism);
 
 /// A shape in the picture, with the points of the mechanism at `places` [length unit].

@@ -7,7 +7,7 @@
 
 #include <oblique/draw/layout/layout.h>
 
-/// Wires among boxes that stand fast. Not installed.
+/// Wires among fixed boxes. Not installed.
 namespace oblique::draw {
 
 /// The pins of a net and, once it is laid, its wires.

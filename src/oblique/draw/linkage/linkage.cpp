@@ -11,16 +11,16 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// Whether a body can only turn about a point of the frame, or only go along a guide there.
+/// Whether a link can only turn about a point of the frame, or only go along a guide there.
 bool is_led_by_frame(const mechanism::Mechanism& mechanism, std::size_t body) {
   const std::vector<mechanism::BodyPoint>& points = mechanism.bodies[body].points;
-  const bool hinged = std::any_of(points.begin(), points.end(), [&](const mechanism::BodyPoint& point) {
+  const bool pinned = std::any_of(points.begin(), points.end(), [&](const mechanism::BodyPoint& point) {
     return mechanism.points[point.point].fixed;
   });
   const bool guided =
       std::any_of(mechanism.slides.begin(), mechanism.slides.end(),
                   [&](const mechanism::Slide& slide) { return slide.of == body && !slide.carrier; });
-  return hinged || guided;
+  return pinned || guided;
 }
 
 /// A position drawn as thin lines and pale plates.
@@ -45,7 +45,7 @@ void add_faint(std::vector<Mark>& marks, const mechanism::Mechanism& mechanism, 
 }  // namespace
 
 std::vector<std::size_t> points_to_trace(const mechanism::Mechanism& mechanism) {
-  std::vector<std::size_t> marks, hinges;
+  std::vector<std::size_t> marks, joints;
   for (std::size_t p = 0; p < mechanism.points.size(); ++p) {
     const std::vector<std::size_t> bodies = mechanism.bodies_at(p);
     const bool guided =
@@ -54,9 +54,9 @@ std::vector<std::size_t> points_to_trace(const mechanism::Mechanism& mechanism) 
     const bool led = std::any_of(bodies.begin(), bodies.end(),
                                  [&](std::size_t body) { return is_led_by_frame(mechanism, body); });
     if (bodies.empty() || mechanism.points[p].fixed || guided || led) continue;
-    (bodies.size() == 1 ? marks : hinges).push_back(p);
+    (bodies.size() == 1 ? marks : joints).push_back(p);
   }
-  std::vector<std::size_t> chosen = marks.empty() ? hinges : marks;
+  std::vector<std::size_t> chosen = marks.empty() ? joints : marks;
   chosen.resize(std::min(chosen.size(), std::size(kAccents)));
   return chosen;
 }

@@ -34,13 +34,14 @@ struct LinkageScene {
   std::optional<AnalogOverlay> analog{};
 };
 
-/// The points whose paths are worth a look: marks of bodies that are not hinged to the frame; without such
-/// marks the hinges between such bodies. Points that only go round, or to and fro on a guide, are none.
+/// The points whose paths are worth a look: marks of links that are not pinned to the frame; without such
+/// marks the revolute joints between such links. Points that only go round, or to and fro on a guide, are
+/// none.
 std::vector<std::size_t> points_to_trace(const mechanism::Mechanism& mechanism);
 
-/// A mechanism as a picture to scale: links, hinges, supports, guides and blocks, with names, paths and a
-/// grid. The centre of the mark "pin-B" is the point B, as the axes' numbers tell; "analog-pin-B" is that of
-/// the analog mechanism.
+/// A mechanism as a picture to scale: links, revolute joints, supports, guides and blocks, with names, paths
+/// and a grid. The centre of the mark "pin-B" is the point B, as the axes' numbers tell; "analog-pin-B" is
+/// that of the analog mechanism.
 Picture draw_linkage(const mechanism::Mechanism& mechanism, const LinkageScene& scene);
 
 }  // namespace oblique::draw

@@ -32,7 +32,7 @@ class Legend {
 
   void line(const Pen& pen, const std::string& text) { swatch(text, line_mark({0, 0}, {kSwatch, 0}, pen)); }
 
-  /// A little bar, as bodies are drawn.
+  /// A little bar, as links are drawn.
   void link(const std::string& text) {
     constexpr double kHeight = 8;
     Mark bar = box_mark({0, -kHeight / 2}, {kSwatch, kHeight}, Ink::faint, {Ink::line, 1.3});

@@ -22,7 +22,7 @@ Pen thin_pen() {
   return {Ink::line, kThinLine};
 }
 
-/// From what the distance of a slide's point from its line's first point is measured.
+/// From what the distance of a prismatic joint's point from its line's first point is measured.
 Vector2d line_direction(const mechanism::Mechanism& mechanism, const mechanism::Slide& slide) {
   if (!slide.carrier) {
     return (mechanism.points[slide.second].position - mechanism.points[slide.first].position).normalized();
@@ -39,7 +39,7 @@ struct Range {
   double least = 0, greatest = 0;
 };
 
-/// Where a slide's point goes along its line [length unit].
+/// Where a prismatic joint's point goes along its line [length unit].
 Range range_of(const std::vector<mechanism::Configuration>& motion, std::size_t slide) {
   bool any = false;
   Range range;
@@ -58,7 +58,7 @@ bool slides_along(const mechanism::Mechanism& mechanism, std::size_t point) {
                      [&](const mechanism::Slide& slide) { return slide.point == point; });
 }
 
-/// Whether a body covers more than the line through its first two points.
+/// Whether a link covers more than the line through its first two points.
 bool is_plate(const mechanism::Body& body) {
   constexpr double kRounding = 1e-9;
   return std::any_of(body.points.begin(), body.points.end(), [](const mechanism::BodyPoint& point) {
@@ -108,7 +108,7 @@ LinkagePart frame_guide(const mechanism::Mechanism& mechanism,
   return part;
 }
 
-/// The line of a slide on a body, where it goes beyond the body itself.
+/// The line of a prismatic joint on a link, where it goes beyond the link itself.
 void add_body_guide(LinkagePart& part, const mechanism::Mechanism& mechanism,
                     const std::vector<mechanism::Configuration>& motion, std::size_t index, double scale) {
   const mechanism::Slide& slide = mechanism.slides[index];
@@ -160,9 +160,9 @@ LinkagePart body_part(const mechanism::Mechanism& mechanism,
 
 LinkagePart pin_part(const mechanism::Mechanism& mechanism, std::size_t index) {
   const mechanism::Point& point = mechanism.points[index];
-  const bool hinge = point.fixed || mechanism.bodies_at(index).size() > 1 || slides_along(mechanism, index);
+  const bool joint = point.fixed || mechanism.bodies_at(index).size() > 1 || slides_along(mechanism, index);
   LinkagePart part{Carrier::point, index};
-  part.marks.push_back(hinge ? disc_mark({0, 0}, kPinRadius, Ink::paper, {Ink::line, 1.8})
+  part.marks.push_back(joint ? disc_mark({0, 0}, kPinRadius, Ink::paper, {Ink::line, 1.8})
                              : disc_mark({0, 0}, kMarkRadius, Ink::line, {Ink::none, 0}));
   part.marks.back().id = "pin-" + point.name;
   return part;

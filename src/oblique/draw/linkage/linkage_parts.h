@@ -14,14 +14,14 @@
 namespace oblique::draw {
 
 /// A stiff piece of a drawn mechanism. Its marks are drawn about the origin of what carries it: x in pixels
-/// along a body's first → second point or a slide's line, y to the right of that.
+/// along a link's first → second point or a prismatic joint's line, y to the right of that.
 struct LinkagePart {
   enum class Carrier {
     frame,  ///< its origin is the place of the point `index`, and it never turns
-    guide,  ///< its origin is the first point of the line of the slide `index`
-    body,   ///< its origin is the first point of the body `index`
-    slide,  ///< its origin is the point of the slide `index`; it turns with the line
-    drive,  ///< as a slide, but x goes the way in which the slide's drive moves it
+    guide,  ///< its origin is the first point of the line of the prismatic joint `index`
+    body,   ///< its origin is the first point of the link `index`
+    slide,  ///< its origin is the point of the prismatic joint `index`; it turns with the line
+    drive,  ///< as a prismatic joint, but x goes the way in which the prismatic joint's drive moves it
     point,  ///< its origin is the point `index`, and it never turns
   };
   Carrier carrier = Carrier::frame;
@@ -45,7 +45,7 @@ Mark placed(const Mark& mark, const Eigen::Vector2d& at, double angle);
 /// Everything that is drawn of a mechanism but its names, lower things first: the insides of plates, supports
 /// and guides, whose hatching so lies before plates, the edges of plates and the bars, blocks with the arrows
 /// of those that are driven, pins. `motion` says how long guides have to be; `scale` [px/length unit]. Pins
-/// have the ids "pin-B", bodies "body-AB" and "inside-AB", blocks "slide-s", their arrows "arrow-s", hatching
+/// have the ids "pin-B", links "body-AB" and "inside-AB", blocks "slide-s", their arrows "arrow-s", hatching
 /// "ground-A" under a point and "guide-s" along a guide.
 std::vector<LinkagePart> linkage_parts(const mechanism::Mechanism& mechanism,
                                        const std::vector<mechanism::Configuration>& motion, double scale);
@@ -53,7 +53,7 @@ std::vector<LinkagePart> linkage_parts(const mechanism::Mechanism& mechanism,
 /// How high parts lie. Paths go under blocks, and leader lines of names under pins.
 enum class Layer {
   bodies,  ///< and the frame
-  blocks,  ///< of slides, with their arrows
+  blocks,  ///< of prismatic joints, with their arrows
   pins,
 };
 /// Those of `linkage_parts` in one layer.

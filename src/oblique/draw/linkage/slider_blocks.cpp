@@ -10,14 +10,14 @@ namespace {
 using Eigen::Vector2d;
 using Carrier = LinkagePart::Carrier;
 
-/// The drive that moves a slide, or nothing.
+/// The drive that moves a prismatic joint, or nothing.
 const mechanism::Drive* drive_of_slide(const mechanism::Mechanism& mechanism, std::size_t slide) {
   const auto found = std::find_if(mechanism.drives.begin(), mechanism.drives.end(),
                                   [&](const mechanism::Drive& drive) { return drive.slide == slide; });
   return found == mechanism.drives.end() ? nullptr : &*found;
 }
 
-/// A polygon in the colour of drives, as driven bodies have it; what lies under it does not show through.
+/// A polygon in the colour of drives, as driven links have it; what lies under it does not show through.
 void add_driven(std::vector<Mark>& marks, const std::vector<Vector2d>& corners, const Mark& edge) {
   Mark inside = polyline_mark(corners, {Ink::none, 0}, true);
   inside.fill = Ink::paper;

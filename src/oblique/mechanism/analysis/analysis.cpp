@@ -26,11 +26,11 @@ Signal coordinate(const Mechanism& mechanism, std::size_t point, int axis) {
 /// All signals of an analysis in one pass, and what becomes of their scans.
 class Study {
  public:
-  Study(const Mechanism& mechanism, const Structure& structure, const MotionRange& tour,
+  Study(const Mechanism& mechanism, const Structure& structure, const MotionRange& motion_range,
         MechanismAnalysis& analysis)
       : mechanism_(mechanism),
         structure_(structure),
-        walk_(mechanism, structure, tour),
+        walk_(mechanism, structure, motion_range),
         analysis_(analysis) {}
 
   void run() {
@@ -109,7 +109,7 @@ class Study {
   const Structure& structure_;
   RangeWalk walk_;
   MechanismAnalysis& analysis_;
-  std::vector<std::pair<bool, std::size_t>> movers_;  ///< whether a slide, and its index
+  std::vector<std::pair<bool, std::size_t>> movers_;  ///< whether a prismatic joint, and its index
   std::vector<Signal> signals_;
   std::vector<SignalScan> scans_;
 };
@@ -132,8 +132,8 @@ MechanismAnalysis analyse(const Mechanism& mechanism, const Structure& structure
   analysis.four_bars = four_bar_loops(mechanism, structure);
   analysis.sliders = slider_loops(mechanism, structure);
   if (mechanism.drives.empty()) return analysis;
-  analysis.tour = plan_motion_range(mechanism, structure);
-  Study(mechanism, structure, *analysis.tour, analysis).run();
+  analysis.motion_range = plan_motion_range(mechanism, structure);
+  Study(mechanism, structure, *analysis.motion_range, analysis).run();
   analysis.centres = centres_at_start(mechanism, structure);
   return analysis;
 }

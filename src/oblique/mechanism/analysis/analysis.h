@@ -33,15 +33,15 @@ struct InertiaReport {
   Reading least_energy, greatest_energy;  ///< kinetic [J]
 };
 
-/// What a mechanism does over its tour (plan_motion_range): what can be said without moving is there for
-/// structures too.
+/// What a mechanism does over its motion range (plan_motion_range): what can be said without moving is there
+/// for structures too.
 struct MechanismAnalysis {
   MobilityReport mobility;
   std::vector<FourBarLoop> four_bars;
   std::vector<SliderLoop> sliders;
-  std::optional<MotionRange> tour;          ///< none: it has no drive
+  std::optional<MotionRange> motion_range;  ///< none: it has no drive
   std::vector<Transmission> transmissions;  ///< of all groups that have a measure
-  std::vector<Sweep> swings;                ///< of all bodies and slides that no drive moves itself
+  std::vector<Sweep> swings;                ///< of all links and prismatic joints that no drive moves itself
   std::vector<PathReport> paths;            ///< of all moving points
   std::vector<InstantCentre> centres;       ///< at the start; against the frame first
   std::optional<InertiaReport> inertia;

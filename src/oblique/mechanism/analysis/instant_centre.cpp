@@ -11,7 +11,7 @@ using Eigen::Vector2d;
 
 constexpr double kEqual = 1e-12;
 
-/// The velocity of a body at x is a + ω k×x.
+/// The velocity of a link at x is a + ω k×x.
 struct Twist {
   Vector2d a = Vector2d::Zero();
   double omega = 0;
@@ -25,9 +25,9 @@ Twist twist(const Mechanism& mechanism, const Configuration& here, std::size_t b
           base.velocity.norm()};
 }
 
-/// A hinge that two bodies, or a body and the frame, share.
-std::optional<std::size_t> hinge(const Mechanism& mechanism, std::optional<std::size_t> first,
-                                 std::size_t second) {
+/// A revolute joint that two links, or a link and the frame, share.
+std::optional<std::size_t> shared_joint(const Mechanism& mechanism, std::optional<std::size_t> first,
+                                        std::size_t second) {
   for (const BodyPoint& p : mechanism.bodies[second].points) {
     if (first ? mechanism.bodies[*first].find(p.point) != nullptr : mechanism.points[p.point].fixed) {
       return p.point;
@@ -40,7 +40,7 @@ InstantCentre centre_of(const Mechanism& mechanism, double size, const Configura
                         std::optional<std::size_t> first, std::size_t second) {
   InstantCentre centre{first, second, std::nullopt, std::nullopt};
   if (here.status == Status::open) return centre;
-  if (const auto shared = hinge(mechanism, first, second)) {
+  if (const auto shared = shared_joint(mechanism, first, second)) {
     centre.position = here.points[*shared].position;
     return centre;
   }

@@ -9,18 +9,18 @@
 
 namespace oblique::mechanism {
 
-/// The point in which two bodies have the same velocity, by their momentary motion (J. Bernoulli, S.
-/// Aronhold, A. Kennedy: those of three bodies lie on one line).
+/// The point in which two links have the same velocity, by their momentary motion (J. Bernoulli, S.
+/// Aronhold, A. Kennedy: those of three links lie on one line).
 struct InstantCentre {
   std::optional<std::size_t> first;  ///< index in Mechanism::bodies; none: the frame
   std::size_t second = 0;
   std::optional<Eigen::Vector2d> position;  ///< [length unit]; none where it is at infinity or has no value
   /// Where it is at infinity: the unit vector towards it, square to the relative velocity. None where the
-  /// bodies stand still against each other, or have no velocity.
+  /// links stand still against each other, or have no velocity.
   std::optional<Eigen::Vector2d> direction;
 };
 
-/// The centre of a body against another or the frame. A hinge that both share is its place. Angular
+/// The centre of a link against another or the frame. A revolute joint that both share is its place. Angular
 /// velocities that differ by less than 1e-12 of the larger one (or of what the velocities over the largest
 /// link give) count as equal.
 InstantCentre instant_centre(const Mechanism& mechanism, const Configuration& here,

@@ -14,7 +14,7 @@ using Eigen::Vector2d;
 
 constexpr double kPoorAngle = std::numbers::pi / 6;
 
-/// A direction that turns with a body: `to` seen from `from`, or the line of a condition.
+/// A direction that turns with a link: `to` seen from `from`, or the line of a condition.
 struct Needle {
   std::size_t from = 0, to = 0;
   std::size_t body = 0;
@@ -43,12 +43,12 @@ Needles bar_and_guide(const Group& group) {
   const Condition& guide = conditions[group.form.loci.back()];
   Needle line;
   line.line = &guide.line;
-  if (group.form.hinge) {
-    const Condition& hinge = conditions[*group.form.hinge];
-    return {{hinge.b.point, guide.a.point, group.equations.cores[hinge.a.member], nullptr}, line};
+  if (group.form.revolute) {
+    const Condition& revolute = conditions[*group.form.revolute];
+    return {{revolute.b.point, guide.a.point, group.equations.platforms[revolute.a.member], nullptr}, line};
   }
   const Condition& bar = conditions[group.form.loci.front()];
-  return {{bar.b.point, bar.a.point, group.equations.links[bar.link].body, nullptr}, line};
+  return {{bar.b.point, bar.a.point, group.equations.binary_links[bar.link].body, nullptr}, line};
 }
 
 std::optional<Needles> needles_of(const Group& group) {
@@ -76,20 +76,20 @@ bool Transmission::is_poor() const {
       return least.value < kPoorAngle || greatest.value > std::numbers::pi - kPoorAngle;
     case Measure::pressure_angle:
       return greatest.value > std::numbers::pi / 2 - kPoorAngle;
-    case Measure::regularity:
+    case Measure::determinant:
       break;
   }
   return false;
 }
 
 std::string_view measure_name(Transmission::Measure measure) {
-  constexpr std::array<std::string_view, 3> kNames{"transmission angle", "pressure angle", "regularity"};
+  constexpr std::array<std::string_view, 3> kNames{"transmission angle", "pressure angle", "determinant"};
   return kNames[static_cast<std::size_t>(measure)];
 }
 
 std::optional<Transmission::Measure> measure_of(const Group& group) {
   if (group.assur_class == 1) return std::nullopt;
-  if (!needles_of(group)) return Transmission::Measure::regularity;
+  if (!needles_of(group)) return Transmission::Measure::determinant;
   return group.form.kind == GroupKind::rrp ? Transmission::Measure::pressure_angle
                                            : Transmission::Measure::transmission_angle;
 }
@@ -103,7 +103,10 @@ Signal transmission_signal(const Structure& structure, std::size_t g) {
             },
             1, true};
   }
-  return {[g](const RangeWalk& walk) { return SignalValue{std::abs(walk.regularity(g)), 0}; }, 1, false};
+  return {[g](const RangeWalk& walk) {
+            return SignalValue{std::abs(walk.normalised_determinant(g)), 0};
+          },
+          1, false};
 }
 
 std::optional<double> transmission_in(const Group& group, const Configuration& here) {

@@ -11,23 +11,24 @@
 
 namespace oblique::mechanism {
 
-/// How well a group passes on force and motion over a tour.
+/// How well a group passes on force and motion over a motion range.
 struct Transmission {
   enum class Measure {
     transmission_angle,  ///< of an RRR dyad: between its two bars [rad], best at 90°
     pressure_angle,      ///< of an RRP dyad: between its bar and the guide [rad], best at 0
-    regularity,          ///< of any other group: |GroupSolver::regularity|, 1 at best, 0 at a dead centre
+    determinant,  ///< of any other group: |GroupSolver::normalised_determinant|, 1 at best, 0 at a dead
+                  ///< centre
   };
   std::size_t group = 0;  ///< index in Structure::groups
-  Measure measure = Measure::regularity;
+  Measure measure = Measure::determinant;
   Reading least, greatest;
 
   /// Whether an angle leaves what textbooks allow at the most: 30° to 150°, of a pressure angle 60°, so that
-  /// the bar stays 30° away from the guide's normal. Never of a regularity.
+  /// the bar stays 30° away from the guide's normal. Never of a determinant.
   bool is_poor() const;
 };
 
-/// "transmission angle", "pressure angle", "regularity".
+/// "transmission angle", "pressure angle", "determinant".
 std::string_view measure_name(Transmission::Measure measure);
 
 /// What measures a group, nothing for drives.

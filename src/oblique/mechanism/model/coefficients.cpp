@@ -89,7 +89,7 @@ class Columns {
   void add_groups(const Structure& structure) {
     for (const Group& group : structure.groups) {
       const auto measure = measure_of(group);
-      if (!measure || *measure == Transmission::Measure::regularity) continue;
+      if (!measure || *measure == Transmission::Measure::determinant) continue;
       const bool pressure = *measure == Transmission::Measure::pressure_angle;
       add(group.name + (pressure ? ".pressure" : ".transmission"), "rad", [&](std::size_t row) {
         return transmission_in(group, motion_.configurations[row]).value_or(kNaN);

@@ -15,7 +15,7 @@ namespace oblique::mechanism {
 /// * kinematic coefficients (analogues of velocity and acceleration; Ihnatyshyn et al.), the
 ///   derivatives by the first drive's value s instead of time, x' = ẋ/ṡ and x″ = (ẍ − x' s̈)/ṡ²:
 ///   `P.dx P.ddx P.dy P.ddy` of every moving point, `b.dangle b.ddangle` of every body, `s.dposition
-///   s.ddposition` of every slide; without a value where the drive stands still;
+///   s.ddposition` of every prismatic joint; without a value where the drive stands still;
 /// * `b.icx b.icy`, the instant centre of every body against the frame; without a value at infinity;
 /// * `GROUP.transmission` or `GROUP.pressure` [rad] of every RRR and RRP dyad (Transmission);
 /// * with masses, `DRIVE.inertia` [kg m²] or [kg] and `DRIVE.energy` [J] (reduced_inertia, kinetic_energy).

@@ -38,16 +38,16 @@ struct BodyState {
   double sine;
 };
 
-/// Where a slide's point lies on its line, from beside the line's first named point towards the second, and
-/// its rates [length unit, s].
+/// Where a prismatic joint's point lies on its line, from beside the line's first named point towards the
+/// second, and its rates [length unit, s].
 struct SlideState {
   double position;
   double velocity;
   double acceleration;
 };
 
-/// All points, bodies and slides of a mechanism at one moment, indexed as in Mechanism. What has no value is
-/// NaN.
+/// All points, bodies and prismatic joints of a mechanism at one moment, indexed as in Mechanism. What has no
+/// value is NaN.
 struct Configuration {
   std::vector<PointState> points;
   std::vector<BodyState> bodies;

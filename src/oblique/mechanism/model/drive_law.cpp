@@ -20,7 +20,7 @@ bool names_time(const text::Expression& e) {
          std::any_of(e.operands.begin(), e.operands.end(), names_time);
 }
 
-/// Noise is smooth, but its slope has no expression that a patch could hold.
+/// Noise is smooth, but its derivative has no expression that a patch could hold.
 bool is_lawful(text::Function function) {
   return text::smooth_operation(function) && function != text::Function::noise;
 }

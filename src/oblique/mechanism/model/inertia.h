@@ -23,8 +23,8 @@ double bar_inertia(const Mechanism& mechanism, std::size_t body);
 /// Kinetic energy of the bodies with masses [J]: T = ½ Σ (m v² + J ω²), v of a bar's middle.
 double kinetic_energy(const Mechanism& mechanism, const Configuration& here);
 
-/// Moment of inertia of all bodies, reduced to the first drive [kg m²], or for one that moves a slide [kg]:
-/// 2T/ṡ², along the motion that the drives make together. NaN where the drive stands still.
+/// Moment of inertia of all bodies, reduced to the first drive [kg m²], or for one that moves a prismatic
+/// joint [kg]: 2T/ṡ², along the motion that the drives make together. NaN where the drive stands still.
 double reduced_inertia(const Mechanism& mechanism, const Configuration& here, const DriveState& drive);
 
 /// Length unit of the file in metres.

@@ -112,14 +112,14 @@ text::Expression Formula::applied(text::Operation operation, const text::Express
       return power(e, b);
     case text::Operation::negate:
       return negative(e);
-    case text::Operation::noise_slope:
+    case text::Operation::noise_derivative:
       break;
 #define OBLIQUE_FUNCTION(name, operands, ...) \
   case text::Operation::name:                 \
     return operands == 1 ? call(text::Function::name, {e}) : call(text::Function::name, {e, b});
 #include <oblique/text/operations.def>
   }
-  throw text::ExpressionError{column, "the slope of noise has no expression", {}, {}};
+  throw text::ExpressionError{column, "the derivative of noise has no expression", {}, {}};
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ class MechanismError : public text::Error {
   Kind kind_;
 };
 
-/// A named point: fixed in the frame, or carried by the bodies that name it (hinged there if several do).
+/// A named point: fixed in the frame, or carried by the bodies that name it (pinned there if several do).
 struct Point {
   std::string name;
   bool fixed = false;
@@ -81,8 +81,8 @@ struct Slide {
   text::Place place;
 };
 
-/// Turns a body, whose angle of first → second point from +x is then given; or moves a slide, whose distance
-/// from the first point of its line is. The given value is start + ∫ speed dt.
+/// Turns a body, whose angle of first → second point from +x is then given; or moves a prismatic joint, whose
+/// distance from the first point of its line is. The given value is start + ∫ speed dt.
 struct Drive {
   std::string name;
   std::size_t body = 0;   ///< index in Mechanism::bodies; unused with `slide`

@@ -17,9 +17,9 @@ constexpr double kMostTurns = 16;
 /// How far within its ends a branch is taken up again [rad], where both are known to 1e-11 or so.
 constexpr double kInside = 1e-9;
 
-/// Stands at time `t` as the straight way of the drives leads there from a standing on the branch; false, and
+/// Stands at time `t` as the straight way of the drives leads there from a place on the branch; false, and
 /// nothing is changed, where a limit lies on it.
-bool enter(BranchWalk& walk, const BranchWalk::Standing& from, double t) {
+bool enter(BranchWalk& walk, const BranchWalk::Place& from, double t) {
   walk.drives_at(t, walk.next_drives);
   std::vector<double> way;
   double longest = 0;
@@ -103,7 +103,7 @@ bool come_back_together(BranchWalk& walk, const Gap& gap, double t) {
     for (const Drive& drive : walk.mechanism.drives) ways *= drive.slide ? 1U : 2U;
     for (std::size_t way = 0; way < ways; ++way) {
       walk.drives_at(time, walk.next_drives);
-      BranchWalk::Standing from = gap.behind;
+      BranchWalk::Place from = gap.behind;
       for (std::size_t d = 0, bits = way; d < from.drives.size(); ++d) {
         if (walk.mechanism.drives[d].slide) continue;
         double& value = from.drives[d].value;
@@ -115,7 +115,7 @@ bool come_back_together(BranchWalk& walk, const Gap& gap, double t) {
     }
     return false;
   };
-  const BranchWalk::Standing left = walk.standing();
+  const BranchWalk::Place left = walk.place();
   const double since = walk.time;
   const auto go_back = [&] {
     walk.here = left.here;

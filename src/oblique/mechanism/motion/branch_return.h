@@ -7,11 +7,11 @@ namespace oblique::mechanism {
 
 /// Where the drives are while a walk has left its branch at a limit, and the configuration is open.
 struct Gap {
-  BranchWalk::Standing behind;  ///< on the branch, before the end at which it was left
-  BranchWalk::Standing ahead;   ///< of a single drive that turns: beside the branch's other end
-  double end = 0;               ///< of a single drive: its value where the branch was left
-  double outward = 0;           ///< ±1: in which direction it lies beyond
-  double width = 0;             ///< how far beyond it comes to the other end; infinite where to none
+  BranchWalk::Place behind;  ///< on the branch, before the end at which it was left
+  BranchWalk::Place ahead;   ///< of a single drive that turns: beside the branch's other end
+  double end = 0;            ///< of a single drive: its value where the branch was left
+  double outward = 0;        ///< ±1: in which direction it lies beyond
+  double width = 0;          ///< how far beyond it comes to the other end; infinite where to none
 };
 
 /// Finds out where the branch that has just been left at a limit goes on: of a single drive that turns, its
@@ -19,7 +19,7 @@ struct Gap {
 Gap leave_branch(BranchWalk& walk);
 
 /// Goes on, open, towards `t` until the branch can be taken up again, and stands on it then; false where it
-/// stays open. There the bodies could have come without being taken apart:
+/// stays open. There the links could have come without being taken apart:
 ///
 /// * A single drive comes back to where it left the branch, or comes to the branch's other end. Both are
 /// known

@@ -15,9 +15,9 @@ constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kDriveStep = std::numbers::pi / 180;
 /// How far the fastest drive turns while limits are still told apart [rad].
 constexpr double kSharpness = 1e-11;
-/// Cosine of the largest turn of a body in a step, 30°.
+/// Cosine of the largest turn of a link in a step, 30°.
 constexpr double kBodyStep = 0.866;
-/// Above this regularity a group is far from everything.
+/// Above this determinant a group is far from everything.
 constexpr double kRegular = 0.25;
 /// First correction by Newton's method, over the group's size, up to which a guess is nearly right; and the
 /// part of it up to which the second one shows that no other mode lies as near.
@@ -30,7 +30,7 @@ BranchWalk::BranchWalk(const Mechanism& whole, const Structure& structure)
       mechanism(whole),
       clock(whole),
       courses(structure.groups.size()),
-      regularities(structure.groups.size(), 1),
+      determinants(structure.groups.size(), 1),
       drives(whole.drives.size()),
       next_drives(whole.drives.size()),
       here(frame_configuration(whole)),
@@ -45,14 +45,14 @@ BranchWalk::BranchWalk(const Mechanism& whole, const Structure& structure)
   }
 }
 
-BranchWalk::BranchWalk(const BranchWalk& other, const Standing& from, std::vector<double> rates)
+BranchWalk::BranchWalk(const BranchWalk& other, const Place& from, std::vector<double> rates)
     : kinematics(other.mechanism, other.kinematics.structure()),
       mechanism(other.mechanism),
       clock(other.mechanism),
       straight(std::move(rates)),
       straight_from(from.drives),
       courses(from.courses),
-      regularities(other.regularities),
+      determinants(other.determinants),
       drives(from.drives),
       next_drives(from.drives),
       here(from.here),
@@ -65,7 +65,7 @@ BranchWalk::BranchWalk(const BranchWalk& other, const Standing& from, std::vecto
   step = duration_of_degree;
   place_all(0);
   accept(0);
-  last_clear = standing();
+  last_clear = place();
   probe(1e-4 * duration_of_degree);
 }
 
@@ -99,11 +99,11 @@ void BranchWalk::start() {
   next = here;
   time = 0;
   for (std::size_t g = 0; g < courses.size(); ++g) {
-    courses[g].regularity = regularities[g];
-    courses[g].peak = std::abs(regularities[g]);
+    courses[g].determinant = determinants[g];
+    courses[g].peak = std::abs(determinants[g]);
   }
   copy_angles();
-  last_clear = standing();
+  last_clear = place();
   if (!is_open) probe(1e-4 * duration_of_degree);
 }
 
@@ -112,7 +112,7 @@ void BranchWalk::probe(double dt) {
   if (tracks) predict(dt);
   if (attempt(time + dt) == Verdict::blocked) return;
   for (std::size_t g = 0; g < courses.size(); ++g)
-    courses[g].derivative = (regularities[g] - courses[g].regularity) / dt;
+    courses[g].derivative = (determinants[g] - courses[g].determinant) / dt;
 }
 
 void BranchWalk::predict(double dt) {
@@ -141,7 +141,7 @@ BranchWalk::Verdict BranchWalk::attempt(double t) {
   for (std::size_t g = 0; g < courses.size(); ++g) {
     GroupSolver& solver = kinematics.solver(g);
     const Status status = solver.place(next_drives, courses[g].side, next);
-    regularities[g] = solver.regularity();
+    determinants[g] = solver.normalised_determinant();
     if (status == Status::open) {
       culprit = g;
       return Verdict::blocked;
@@ -162,8 +162,8 @@ BranchWalk::Verdict BranchWalk::attempt(double t) {
 
 BranchWalk::Verdict BranchWalk::judge(std::size_t g, double dt) const {
   const Course& course = courses[g];
-  const double before = std::abs(course.regularity), after = std::abs(regularities[g]);
-  const bool same_sign = (course.regularity > 0) == (regularities[g] > 0);
+  const double before = std::abs(course.determinant), after = std::abs(determinants[g]);
+  const bool same_sign = (course.determinant > 0) == (determinants[g] > 0);
   if (!same_sign || after < before / 2) return Verdict::too_far;
   if (std::min(before, after) < kRegular &&
       (after > 2 * before || std::abs(course.derivative * dt) > before / 2)) {
@@ -187,9 +187,9 @@ void BranchWalk::accept(double t) {
   const double dt = t - time;
   for (std::size_t g = 0; g < courses.size(); ++g) {
     Course& course = courses[g];
-    if (dt != 0) course.derivative = (regularities[g] - course.regularity) / dt;
-    course.regularity = regularities[g];
-    course.peak = std::max(course.peak, std::abs(course.regularity));
+    if (dt != 0) course.derivative = (determinants[g] - course.determinant) / dt;
+    course.determinant = determinants[g];
+    course.peak = std::max(course.peak, std::abs(course.determinant));
   }
   std::swap(here, next);
   std::swap(drives, next_drives);
@@ -235,7 +235,7 @@ bool BranchWalk::place_all(double t) {
   for (std::size_t g = 0; g < courses.size(); ++g) {
     GroupSolver& solver = kinematics.solver(g);
     const Status status = solver.place(next_drives, courses[g].side, next);
-    regularities[g] = solver.regularity();
+    determinants[g] = solver.normalised_determinant();
     culprit = g;
     if (status == Status::open) return false;
     if (status == Status::dead_centre) {

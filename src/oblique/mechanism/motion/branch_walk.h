@@ -15,18 +15,18 @@ namespace oblique::mechanism {
 /// A mechanism on its way along one branch of its positions: the workspace of a Follower, of which
 /// `crossings` makes the steps.
 ///
-/// A step is tried in `next` and accepted to `here`. It is good where no body turns by more than 30° in it,
+/// A step is tried in `next` and accepted to `here`. It is good where no link turns by more than 30° in it,
 /// no group's normalised determinant changes sign or by more than a factor of two, and Newton's method finds
 /// its guess nearly right and contracts: then no group has changed its mode.
 struct BranchWalk {
   struct Course {  ///< of one group
     int side = 0;
-    double regularity = 1;  ///< normalised determinant (GroupSolver::regularity)
-    double derivative = 0;  ///< of it [1/s]
-    double peak = 1;        ///< its largest magnitude so far
+    double determinant = 1;  ///< normalised determinant (GroupSolver::normalised_determinant)
+    double derivative = 0;   ///< of it [1/s]
+    double peak = 1;         ///< its largest magnitude so far
   };
   /// A place on the branch from which it can be followed anew.
-  struct Standing {
+  struct Place {
     Configuration here;
     std::vector<Course> courses;
     std::vector<DriveState> drives;
@@ -39,7 +39,7 @@ struct BranchWalk {
 
   /// Started where `from` stands on another walk's branch, at time 0, each drive going straight on at these
   /// rates.
-  BranchWalk(const BranchWalk& other, const Standing& from, std::vector<double> rates);
+  BranchWalk(const BranchWalk& other, const Place& from, std::vector<double> rates);
 
   void start();
   void drives_at(double t, std::vector<DriveState>& states);
@@ -55,7 +55,7 @@ struct BranchWalk {
   /// The derivatives of the courses, from a small step that is not made.
   void probe(double dt);
 
-  Standing standing() const { return {here, courses, drives, angles}; }
+  Place place() const { return {here, courses, drives, angles}; }
 
   /// Finishes `shown` for a time at which the walk itself does not stand.
   void show(double t);
@@ -68,11 +68,11 @@ struct BranchWalk {
   std::vector<double> straight;  ///< instead of the clock: how fast each drive goes, on from `straight_from`
   std::vector<DriveState> straight_from;
   std::vector<Course> courses;
-  std::vector<double> regularities;  ///< of the configuration attempted
+  std::vector<double> determinants;  ///< of the configuration attempted
   std::vector<DriveState> drives, next_drives;
   Configuration here, next, shown;
   std::vector<double> angles;  ///< continuous, of the last configuration that was not open
-  Standing last_clear;         ///< the last place before the steps became small
+  Place last_clear;            ///< the last place before the steps became small
   std::vector<MotionEvent> events;
   bool started = false;
   bool is_open = false;

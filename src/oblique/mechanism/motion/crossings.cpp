@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// Below this part of its largest regularity a group is at the point where its modes meet: the height of a
+/// Below this part of its largest determinant a group is at the point where its modes meet: the height of a
 /// triangle is then a few times what counts as collinear, so that rates still have a value.
 constexpr double kSingular = 1e-6;
 /// Within these ways of the fastest drive [rad] what is left out beyond the second order is rounding: of a
@@ -33,8 +33,9 @@ bool place_next_to_velocity(BranchWalk& walk, std::size_t g, double dt) {
   if (!step.allFinite()) return false;
   solver.displace(step, walk.next);
   const Configuration guess = walk.next;
-  // the modes lie as far apart as the regularity says; the right one is nearer to the guess by orders
-  double nearest = std::max(std::abs(walk.courses[g].regularity), 1e-9) * walk.mechanism.largest_length() / 2;
+  // the modes lie as far apart as the determinant says; the right one is nearer to the guess by orders
+  double nearest =
+      std::max(std::abs(walk.courses[g].determinant), 1e-9) * walk.mechanism.largest_length() / 2;
   bool found = false;
   Configuration best;
   const std::array<int, 2> sides{1, -1};
@@ -52,7 +53,7 @@ bool place_next_to_velocity(BranchWalk& walk, std::size_t g, double dt) {
     found = true;
     nearest = far;
     best = std::move(there);
-    walk.regularities[g] = solver.regularity();
+    walk.determinants[g] = solver.normalised_determinant();
     walk.courses[g].side = side;
   }
   if (found) walk.next = std::move(best);
@@ -63,8 +64,8 @@ bool place_next_to_velocity(BranchWalk& walk, std::size_t g, double dt) {
 Crossing cross_modes(BranchWalk& walk, std::size_t g, double t, double zero) {
   const std::vector<BranchWalk::Course> before = walk.courses;
   const double direction = zero > 0 ? 1 : -1;
-  const bool amidst = (t - walk.time - 2 * zero) * direction <= 0;
-  const double to = amidst ? t : walk.time + 2 * zero;
+  const bool at_singularity = (t - walk.time - 2 * zero) * direction <= 0;
+  const double to = at_singularity ? t : walk.time + 2 * zero;
   walk.predict(to - walk.time);
   walk.drives_at(to, walk.next_drives);
   walk.next.status = Status::ok;
@@ -73,17 +74,17 @@ Crossing cross_modes(BranchWalk& walk, std::size_t g, double t, double zero) {
   for (std::size_t i = 0; i < walk.courses.size(); ++i) {
     constexpr double kBeside = 1e3 * kSingular;
     GroupSolver& solver = walk.kinematics.solver(i);
-    const bool passes = i == g || std::abs(before[i].regularity) < kBeside * before[i].peak;
+    const bool passes = i == g || std::abs(before[i].determinant) < kBeside * before[i].peak;
     Status status = Status::ok;
     if (!passes) {
       status = solver.place(walk.next_drives, walk.courses[i].side, walk.next);
-      walk.regularities[i] = solver.regularity();
+      walk.determinants[i] = solver.normalised_determinant();
     } else if (place_next_to_velocity(walk, i, to - walk.time)) {
       const bool is_dead_centre =
           std::isnan(walk.next.points[walk.kinematics.structure().groups[i].points.front()].velocity.x());
       status = is_dead_centre ? Status::dead_centre : Status::ok;
-      if ((walk.regularities[i] > 0) != (before[i].regularity > 0)) passing.push_back(i);
-    } else if (amidst) {  // a group without a place of its own there: the one that it passes
+      if ((walk.determinants[i] > 0) != (before[i].determinant > 0)) passing.push_back(i);
+    } else if (at_singularity) {  // a group without a place of its own there: the one that it passes
       solver.stand(walk.next_drives, walk.next);
       status = Status::dead_centre;
     } else {
@@ -98,11 +99,11 @@ Crossing cross_modes(BranchWalk& walk, std::size_t g, double t, double zero) {
       walk.next.status = status;
     }
   }
-  if (amidst) {
+  if (at_singularity) {
     walk.courses = before;
     walk.shown = walk.next;
     walk.show(t);
-    return Crossing::amidst;
+    return Crossing::at_singularity;
   }
   if (std::find(passing.begin(), passing.end(), g) == passing.end()) {
     walk.courses = before;
@@ -142,7 +143,7 @@ Crossing end_at(BranchWalk& walk, std::size_t g, double t, double tau, const Sin
       walk.shown = walk.next;
       walk.show(t);
     }
-    return Crossing::amidst;
+    return Crossing::at_singularity;
   }
   walk.events.push_back({MotionEvent::Kind::limit, walk.time + tau, g});
   walk.step = walk.duration_of_degree;
@@ -163,12 +164,12 @@ Crossing cross_infinity(BranchWalk& walk, std::size_t g, double t) {
   const double radian = walk.duration_of_degree * 180 / std::numbers::pi;
   constexpr double kBrief = 0.05, kAtIt = 1e-9;  // rad
   if (!((t - walk.time) * left > 0 && std::abs(left) < kBrief * radian)) return Crossing::regular;
-  const bool amidst = (t - walk.time - 2 * left) * left <= 0;
-  if (amidst && std::abs(t - walk.time - left) < kAtIt * radian) {
+  const bool at_singularity = (t - walk.time - 2 * left) * left <= 0;
+  if (at_singularity && std::abs(t - walk.time - left) < kAtIt * radian) {
     walk.show_open(t, g);
-    return Crossing::amidst;
+    return Crossing::at_singularity;
   }
-  const double to = amidst ? t : walk.time + 2 * left;
+  const double to = at_singularity ? t : walk.time + 2 * left;
   const double h = to - walk.time, away = solver.distance(walk.here);
   walk.predict(h);
   for (const std::size_t p : group.points) walk.next.points[p] = walk.here.points[p];
@@ -185,17 +186,17 @@ Crossing cross_infinity(BranchWalk& walk, std::size_t g, double t) {
   for (std::size_t i = 0; i < walk.courses.size(); ++i) {
     if (walk.kinematics.solver(i).place(walk.next_drives, walk.courses[i].side, walk.next) != Status::ok)
       return Crossing::regular;
-    walk.regularities[i] = walk.kinematics.solver(i).regularity();
+    walk.determinants[i] = walk.kinematics.solver(i).normalised_determinant();
   }
-  const double beyond = solver.distance(walk.next), before = std::abs(walk.courses[g].regularity);
-  const double there = std::abs(walk.regularities[g]);
+  const double beyond = solver.distance(walk.next), before = std::abs(walk.courses[g].determinant);
+  const double there = std::abs(walk.determinants[g]);
   const bool is_beyond = (h - left) * left > 0;
   const bool other_side = walk.next.points[farthest].position.dot(point.position) < 0;
   if (other_side != is_beyond || !(beyond > away / 2)) return Crossing::regular;
-  if (amidst) {
+  if (at_singularity) {
     walk.shown = walk.next;
     walk.show(t);
-    return Crossing::amidst;
+    return Crossing::at_singularity;
   }
   if (!(beyond < 2 * away && there > before / 4 && there < 4 * before)) return Crossing::regular;
   walk.events.push_back({MotionEvent::Kind::infinity, walk.time + left, g});
@@ -238,8 +239,8 @@ Crossing step_towards(BranchWalk& walk, double t) {
   // nearer to where modes meet than this no pose tells them apart, so none is taken there
   for (std::size_t g = 0; g < walk.courses.size(); ++g) {
     const BranchWalk::Course& course = walk.courses[g];
-    if (std::abs(course.regularity) < kSingular * course.peak &&
-        course.derivative * course.regularity * direction < 0) {
+    if (std::abs(course.determinant) < kSingular * course.peak &&
+        course.derivative * course.determinant * direction < 0) {
       const Crossing crossing = cross_at(walk, g, t, false);
       if (crossing != Crossing::regular) return crossing;
     }
@@ -255,7 +256,7 @@ Crossing step_towards(BranchWalk& walk, double t) {
                            walk.duration_of_degree);  // a near row is no reason to go slower
       return Crossing::passed;
     }
-    if (walk.step == walk.duration_of_degree) walk.last_clear = walk.standing();
+    if (walk.step == walk.duration_of_degree) walk.last_clear = walk.place();
     walk.step = dt /= 2;
     if (dt < walk.smallest) return cross_at(walk, walk.culprit, t, true);
   }
@@ -266,7 +267,7 @@ std::optional<MotionEvent> walk_to_limit(BranchWalk& walk, double t) {
   while (walk.time != t) {
     const std::size_t before = walk.events.size();
     const Crossing crossing = step_towards(walk, t);
-    if (crossing == Crossing::amidst || crossing == Crossing::limit) break;
+    if (crossing == Crossing::at_singularity || crossing == Crossing::limit) break;
     if (walk.events.size() > before && walk.events.back().ends()) break;
   }
   for (const MotionEvent& event : walk.events) {

@@ -10,10 +10,10 @@ namespace oblique::mechanism {
 
 /// How a step of a walk went.
 enum class Crossing : std::uint8_t {
-  passed,   ///< it was made, or what it met was passed
-  limit,    ///< the branch ends here
-  amidst,   ///< the time asked for lies where the modes meet: it is in `shown`
-  regular,  ///< there is nothing to cross: smaller steps will do
+  passed,          ///< it was made, or what it met was passed
+  limit,           ///< the branch ends here
+  at_singularity,  ///< the time asked for lies where the modes meet: it is in `shown`
+  regular,         ///< there is nothing to cross: smaller steps will do
 };
 
 /// One step towards `t`, which deals with what lies on the way:

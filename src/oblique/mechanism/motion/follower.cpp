@@ -22,7 +22,7 @@ const Configuration& Follower::advance(double t) {
       continue;
     }
     const Crossing crossing = step_towards(walk_, t);
-    if (crossing == Crossing::amidst) return walk_.shown;
+    if (crossing == Crossing::at_singularity) return walk_.shown;
     if (crossing == Crossing::limit) {
       walk_.is_open = true;
       walk_.culprit = walk_.events.back().group;

@@ -20,7 +20,7 @@ inline constexpr double kBeforeInfinity = 1e-3;
 /// velocity. Nothing of this depends on the times asked for.
 ///
 /// Beyond a limit the configuration is open until the drives come to where the branch that was left goes on:
-/// there the bodies could have come without being taken apart. Of a single drive these are the two ends of
+/// there the links could have come without being taken apart. Of a single drive these are the two ends of
 /// the branch, wherever in its turns; of several drives, what the straight way of all of them reaches.
 class Follower {
  public:
@@ -38,8 +38,8 @@ class Follower {
   double time() const { return walk_.time; }
   const std::vector<DriveState>& drives() const { return walk_.drives; }
   const std::vector<MotionEvent>& events() const { return walk_.events; }
-  /// Of a group where the follower stands (GroupSolver::regularity).
-  double regularity(std::size_t group) const { return walk_.courses[group].regularity; }
+  /// Of a group where the follower stands (GroupSolver::normalised_determinant).
+  double normalised_determinant(std::size_t group) const { return walk_.courses[group].determinant; }
 
  private:
   BranchWalk walk_;

@@ -35,7 +35,8 @@ const Drive& first_drive(const Mechanism& mechanism) {
   return mechanism.drives.front();
 }
 
-/// Longest time in which a limit is looked for: a turn, or for a slide the way of ten times the longest link.
+/// Longest time in which a limit is looked for: a turn, or for a prismatic joint the way of ten times the
+/// longest link.
 double search_time(const Mechanism& mechanism) {
   const Drive& drive = first_drive(mechanism);
   if (!drive.slide) return period(mechanism);

@@ -15,8 +15,8 @@ namespace oblique::mechanism {
 
 struct Structure;
 
-/// An exact motion as a table: row k stands for times[k], drives[k] and configurations[k]. Angles of bodies
-/// are continuous from row to row, not wrapped; those of the start are in (−π, π], except for driven bodies,
+/// An exact motion as a table: row k stands for times[k], drives[k] and configurations[k]. Angles of links
+/// are continuous from row to row, not wrapped; those of the start are in (−π, π], except for driven links,
 /// which have their drive's angle.
 struct Motion {
   std::vector<double> times;                    ///< [s]
@@ -38,11 +38,11 @@ struct MotionLimits {
 };
 
 /// Time of the motion [s]: that of the file, or one turn of the first drive. Throws MechanismError (kind
-/// `request`) without a drive, for one that moves a slide, and for a law that makes no full turn.
+/// `request`) without a drive, for one that moves a prismatic joint, and for a law that makes no full turn.
 double period(const Mechanism& mechanism);
 
-/// How long a motion lasts by itself: `period`, or for a first drive that moves a slide the way to both
-/// limits and back.
+/// How long a motion lasts by itself: `period`, or for a first drive that moves a prismatic joint the way to
+/// both limits and back.
 double cycle(const Mechanism& mechanism, const Structure& structure);
 
 /// Throws MechanismError (kind `request`) where a drive turns so often in `duration` [s] that nobody would
@@ -71,8 +71,8 @@ std::vector<MotionEvent> visit_motion(const Mechanism& mechanism, const Structur
                                       const std::function<void(const MotionRow&)>& visit);
 
 /// A motion in `options.positions` ≥ 2 rows at equal distances of time, both ends included. A first drive
-/// that moves a slide is reversed at its limits unless the options say otherwise. Throws MechanismError (kind
-/// `request`) without a drive or for fewer than two positions, and as `decompose`.
+/// that moves a prismatic joint is reversed at its limits unless the options say otherwise. Throws
+/// MechanismError (kind `request`) without a drive or for fewer than two positions, and as `decompose`.
 Motion solve_motion(const Mechanism& mechanism, const MotionOptions& options);
 Motion solve_motion(const Mechanism& mechanism, int positions);
 
@@ -88,8 +88,8 @@ struct MotionColumnName {
 };
 
 /// `t`; each drive; `P.x P.y P.vx P.vy P.ax P.ay` of every moving point; `b.angle b.omega b.alpha` of every
-/// body; `s.position s.velocity s.acceleration` of every slide. The last column of the file, `status`, is
-/// text and not among these.
+/// link; `s.position s.velocity s.acceleration` of every prismatic joint. The last column of the file,
+/// `status`, is text and not among these.
 std::vector<MotionColumnName> motion_column_names(const Mechanism& mechanism);
 
 /// The values of these columns in one row; NaN where there is no value.

@@ -11,7 +11,7 @@ struct MotionEvent {
     limit,     ///< a dead centre beyond which the group cannot be assembled
     return_,   ///< from beyond it, onto the same branch
     change,    ///< two of its modes cross: it passes by its velocity
-    infinity,  ///< its bodies go away without end, and come back from the other side
+    infinity,  ///< its links go away without end, and come back from the other side
     lost,      ///< no step leads on, and that it is a limit is not proven
   };
   Kind kind = Kind::limit;

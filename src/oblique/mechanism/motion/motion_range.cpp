@@ -13,7 +13,8 @@ namespace {
 /// Way of a drive [rad] in an interval of the samples.
 constexpr double kSampleStep = std::numbers::pi / 720;
 constexpr std::size_t kFewestSamples = 1440, kMostSamples = 20000;
-/// Limits are known to about 1e-11 rad of the fastest drive; a tour keeps this far away from them [rad].
+/// Limits are known to about 1e-11 rad of the fastest drive; a motion range keeps this far away from them
+/// [rad].
 constexpr double kBeforeLimit = 4e-11;
 
 double fastest_rate(const Mechanism& mechanism) {
@@ -26,14 +27,14 @@ double fastest_rate(const Mechanism& mechanism) {
 }
 
 /// The longest way that a drive makes, to and fro counted [rad, largest lengths].
-double longest_way(const Mechanism& mechanism, const MotionRange& tour) {
+double longest_way(const Mechanism& mechanism, const MotionRange& motion_range) {
   constexpr int kParts = 256;
   DriveClock clock(mechanism);
   double longest = 0;
   for (std::size_t d = 0; d < mechanism.drives.size(); ++d) {
-    double way = 0, before = clock.at(d, tour.begin).value;
+    double way = 0, before = clock.at(d, motion_range.begin).value;
     for (int k = 1; k <= kParts; ++k) {
-      const double value = clock.at(d, tour.begin + tour.duration() * k / kParts).value;
+      const double value = clock.at(d, motion_range.begin + motion_range.duration() * k / kParts).value;
       way += std::abs(value - before);
       before = value;
     }
@@ -70,50 +71,53 @@ double MotionRange::rate(double u) const {
 }
 
 MotionRange plan_motion_range(const Mechanism& mechanism, const Structure& structure) {
-  MotionRange tour;
+  MotionRange motion_range;
   const MotionSettings& settings = mechanism.motion;
   if (settings.until && settings.at_limit.value_or(AtLimit::open) != AtLimit::reverse) {
     check_travel(mechanism, *settings.until);
-    tour.kind = MotionRange::Kind::until;
-    tour.end = *settings.until;
-    tour.range.forward = Follower(mechanism, structure).advance_to_limit(*settings.until);
+    motion_range.kind = MotionRange::Kind::until;
+    motion_range.end = *settings.until;
+    motion_range.range.forward = Follower(mechanism, structure).advance_to_limit(*settings.until);
   } else {
-    tour.range = find_range(mechanism, structure);
-    if (!tour.range.forward || !tour.range.backward) tour.end = cycle(mechanism, structure);
+    motion_range.range = find_range(mechanism, structure);
+    if (!motion_range.range.forward || !motion_range.range.backward)
+      motion_range.end = cycle(mechanism, structure);
   }
   const auto margin = [&](const MotionEvent& end) {
     const bool far = end.kind == MotionEvent::Kind::infinity;
     return (far ? kBeforeInfinity : kBeforeLimit) / fastest_rate(mechanism);
   };
-  if (tour.range.backward) {
-    tour.from_limit = true;
-    tour.begin = tour.range.backward->time + margin(*tour.range.backward);
+  if (motion_range.range.backward) {
+    motion_range.from_limit = true;
+    motion_range.begin = motion_range.range.backward->time + margin(*motion_range.range.backward);
   }
-  if (tour.range.forward) {
-    tour.at_limit = true;
-    tour.end = tour.range.forward->time - margin(*tour.range.forward);
+  if (motion_range.range.forward) {
+    motion_range.at_limit = true;
+    motion_range.end = motion_range.range.forward->time - margin(*motion_range.range.forward);
   }
-  if (tour.from_limit || tour.at_limit) {
-    tour.kind = tour.from_limit && tour.at_limit ? MotionRange::Kind::limits : MotionRange::Kind::to_limit;
+  if (motion_range.from_limit || motion_range.at_limit) {
+    motion_range.kind = motion_range.from_limit && motion_range.at_limit ? MotionRange::Kind::limits
+                                                                         : MotionRange::Kind::to_limit;
   }
   Follower follower(mechanism, structure);
-  const Configuration first = follower.advance(tour.begin);
+  const Configuration first = follower.advance(motion_range.begin);
   const std::size_t before = follower.events().size();
-  const Configuration& last = follower.advance(tour.end);
-  tour.closed = !tour.from_limit && !tour.at_limit && closes(mechanism, first, last);
+  const Configuration& last = follower.advance(motion_range.end);
+  motion_range.closed = !motion_range.from_limit && !motion_range.at_limit && closes(mechanism, first, last);
   for (std::size_t i = before; i < follower.events().size(); ++i) {
-    if (follower.events()[i].kind == MotionEvent::Kind::change) tour.changes.push_back(follower.events()[i]);
+    if (follower.events()[i].kind == MotionEvent::Kind::change)
+      motion_range.changes.push_back(follower.events()[i]);
   }
-  const double wanted = std::ceil(longest_way(mechanism, tour) / kSampleStep);
-  tour.samples = static_cast<std::size_t>(
+  const double wanted = std::ceil(longest_way(mechanism, motion_range) / kSampleStep);
+  motion_range.samples = static_cast<std::size_t>(
       std::clamp(wanted, static_cast<double>(kFewestSamples), static_cast<double>(kMostSamples)));
-  return tour;
+  return motion_range;
 }
 
-RangeWalk::RangeWalk(const Mechanism& mechanism, const Structure& structure, MotionRange tour)
+RangeWalk::RangeWalk(const Mechanism& mechanism, const Structure& structure, MotionRange motion_range)
     : mechanism_(mechanism),
       structure_(structure),
-      tour_(std::move(tour)),
+      motion_range_(std::move(motion_range)),
       follower_(mechanism, structure),
       clock_(mechanism),
       drives_(mechanism.drives.size()) {
@@ -122,11 +126,11 @@ RangeWalk::RangeWalk(const Mechanism& mechanism, const Structure& structure, Mot
 
 const Configuration& RangeWalk::go(double u) {
   place_ = u;
-  time_ = tour_.time(u);
+  time_ = motion_range_.time(u);
   here_ = &follower_.advance(time_);
-  constexpr double kBeside = 1e-6;  // of the tour: where a flat triangle has its rates again
+  constexpr double kBeside = 1e-6;  // of the motion range: where a collinear triangle has its rates again
   if (here_->status == Status::dead_centre) {
-    time_ = tour_.time(u < 0.5 ? u + kBeside : u - kBeside);
+    time_ = motion_range_.time(u < 0.5 ? u + kBeside : u - kBeside);
     here_ = &follower_.advance(time_);
   }
   clock_.at(time_, drives_);

@@ -38,10 +38,10 @@ struct MotionRange {
 /// moves, that. Throws as `find_range` and `cycle`.
 MotionRange plan_motion_range(const Mechanism& mechanism, const Structure& structure);
 
-/// A follower that goes by places of a tour. The mechanism and the structure have to outlive it.
+/// A follower that goes by places of a motion range. The mechanism and the structure have to outlive it.
 class RangeWalk {
  public:
-  RangeWalk(const Mechanism& mechanism, const Structure& structure, MotionRange tour);
+  RangeWalk(const Mechanism& mechanism, const Structure& structure, MotionRange motion_range);
 
   /// Goes to place `u` in [0, 1]. A dead centre, where rates have no value, is passed by as closely as they
   /// still have one.
@@ -49,17 +49,17 @@ class RangeWalk {
 
   const Mechanism& mechanism() const { return mechanism_; }
   const Structure& structure() const { return structure_; }
-  const MotionRange& tour() const { return tour_; }
+  const MotionRange& motion_range() const { return motion_range_; }
   const Configuration& here() const { return *here_; }
   double place() const { return place_; }
   double time() const { return time_; }
   const std::vector<DriveState>& drives() const { return drives_; }
-  double regularity(std::size_t group) const { return follower_.regularity(group); }
+  double normalised_determinant(std::size_t group) const { return follower_.normalised_determinant(group); }
 
  private:
   const Mechanism& mechanism_;
   const Structure& structure_;
-  MotionRange tour_;
+  MotionRange motion_range_;
   Follower follower_;
   DriveClock clock_;
   const Configuration* here_ = nullptr;

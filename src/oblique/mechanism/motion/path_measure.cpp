@@ -19,7 +19,7 @@ constexpr std::array kKronrod{0.022935322010529224963732008058970, 0.06309209262
                               0.204432940075298892414161999234649, 0.209482141084727828012999174891714};
 constexpr std::array kGauss{0.129484966168869693270611432679082, 0.279705391489276667901467771423780,
                             0.381830050505118944950369775488975, 0.417959183673469387755102040816327};
-constexpr double kTolerance = 1e-10;  ///< of the largest link, over the whole tour
+constexpr double kTolerance = 1e-10;  ///< of the largest link, over the whole motion range
 constexpr int kMostHalvings = 40;     ///< down to the rounding of u
 constexpr double kGain = 0.35;        ///< a corner loses three quarters of its error by a halving
 constexpr int kMostStalled = 3;
@@ -44,7 +44,7 @@ class Quadrature {
       const std::size_t node = std::min(i, 14 - i);
       const double u = (a + b) / 2 + (i > 7 ? -1 : 1) * kNodes[node] * (b - a) / 2;
       const Configuration& here = walk_.go(u);
-      const double factor = walk_.tour().rate(u) * (b - a) / 2;
+      const double factor = walk_.motion_range().rate(u) * (b - a) / 2;
       for (std::size_t p = 0; p < points_.size(); ++p) {
         const PointState& state = here.points[points_[p]];
         const Eigen::Vector2d way = factor * state.velocity;
@@ -99,7 +99,7 @@ std::vector<PathMeasure> measure_paths(RangeWalk& walk) {
   for (std::size_t p = 0; p < mechanism.points.size(); ++p) {
     if (!mechanism.points[p].fixed) points.push_back(p);
   }
-  const std::size_t panels = walk.tour().samples / 40;
+  const std::size_t panels = walk.motion_range().samples / 40;
   Quadrature quadrature(walk, points);
   for (std::size_t k = 0; k < panels; ++k) {
     quadrature.add(static_cast<double>(k) / static_cast<double>(panels),

@@ -9,7 +9,7 @@
 
 namespace oblique::mechanism {
 
-/// The path of a point over a tour.
+/// The path of a point over a motion range.
 struct PathMeasure {
   std::size_t point = 0;  ///< index in Mechanism::points
   double length = 0;      ///< ∫|v| dt [length unit]; a way that is gone twice counts twice

@@ -7,7 +7,7 @@
 namespace oblique::mechanism {
 namespace {
 
-/// Of a signal's scale per tour: slower than this it stands.
+/// Of a signal's scale per motion range: slower than this it stands.
 constexpr double kStands = 1e-12;
 /// Of a signal's scale: turning points that differ by less are rounding.
 constexpr double kSameValue = 1e-10;
@@ -109,8 +109,8 @@ Reading read(const RangeWalk& walk, double value) {
 }
 
 std::vector<SignalScan> scan(RangeWalk& walk, const std::vector<Signal>& signals) {
-  const std::size_t samples = walk.tour().samples;
-  const double duration = walk.tour().duration();
+  const std::size_t samples = walk.motion_range().samples;
+  const double duration = walk.motion_range().duration();
   std::vector<SignalScan> scans(signals.size());
   std::vector<Course> courses(signals.size());
   for (std::size_t k = 0; k <= samples; ++k) {
@@ -155,7 +155,7 @@ std::vector<SignalScan> scan(RangeWalk& walk, const std::vector<Signal>& signals
       continue;
     }
     const Course& course = courses[s];
-    if (walk.tour().closed && course.first_direction == -course.last_direction &&
+    if (walk.motion_range().closed && course.first_direction == -course.last_direction &&
         course.last_direction != 0) {
       TurningPoint at_end;
       static_cast<Reading&>(at_end) = scan.last;

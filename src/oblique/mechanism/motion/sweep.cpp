@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kBand = 0.01;         ///< of the stroke
-constexpr double kShortest = 1.0 / 8;  ///< of the tour
+constexpr double kShortest = 1.0 / 8;  ///< of the motion range
 constexpr double kRests = 1e-9;        ///< of the signal's scale
 
 /// The extremes of a window that moves over samples: the greatest of `sign` times the values.
@@ -101,8 +101,8 @@ Signal slide_signal(const Mechanism& mechanism, std::size_t slide) {
 
 std::vector<Dwell> find_dwells(const RangeWalk& walk,
                                const std::vector<const std::vector<double>*>& coordinates, double stroke) {
-  if (!walk.tour().closed || walk.tour().kind != MotionRange::Kind::turn) return {};
-  const std::size_t samples = walk.tour().samples;
+  if (!walk.motion_range().closed || walk.motion_range().kind != MotionRange::Kind::turn) return {};
+  const std::size_t samples = walk.motion_range().samples;
   std::vector<Stretch> candidates = stretches(coordinates, kBand * stroke);
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Stretch& a, const Stretch& b) { return a.length() > b.length(); });
@@ -120,7 +120,8 @@ std::vector<Dwell> find_dwells(const RangeWalk& walk,
   std::vector<Dwell> dwells;
   DriveClock clock(walk.mechanism());
   const auto time = [&](std::size_t k) {
-    return walk.tour().begin + walk.tour().duration() * static_cast<double>(k) / static_cast<double>(samples);
+    return walk.motion_range().begin +
+           walk.motion_range().duration() * static_cast<double>(k) / static_cast<double>(samples);
   };
   for (const Stretch& stretch : chosen) {
     const double begin = time(stretch.begin), end = time(stretch.end);
@@ -138,7 +139,7 @@ Sweep sweep_of(const RangeWalk& walk, const SignalScan& scan, bool is_slide, std
   sweep.greatest = scan.greatest;
   sweep.gain = scan.last.value - scan.first.value;
   sweep.reversals = scan.turns.size();
-  const bool closed = walk.tour().closed;
+  const bool closed = walk.motion_range().closed;
   const double whole = is_slide ? 0 : std::round(sweep.gain / kTurn);
   if (sweep.stroke() < kRests * scale) {
     sweep.kind = Sweep::Kind::stationary;
@@ -151,14 +152,14 @@ Sweep sweep_of(const RangeWalk& walk, const SignalScan& scan, bool is_slide, std
     sweep.kind = Sweep::Kind::monotone;
   }
   // the times between turning points, those before the first and after the last one as well
-  double before = walk.tour().begin;
+  double before = walk.motion_range().begin;
   bool rises = scan.turns.empty() ? sweep.gain > 0 : scan.turns.front().is_greatest;
   for (const TurningPoint& turn : scan.turns) {
     (turn.is_greatest ? sweep.rising : sweep.falling) += turn.time - before;
     before = turn.time;
     rises = !turn.is_greatest;
   }
-  (rises ? sweep.rising : sweep.falling) += walk.tour().end - before;
+  (rises ? sweep.rising : sweep.falling) += walk.motion_range().end - before;
   if (closed && sweep.kind == Sweep::Kind::oscillates) {
     if (sweep.reversals == 2) {
       sweep.time_ratio = std::max(sweep.rising, sweep.falling) / std::min(sweep.rising, sweep.falling);

@@ -18,13 +18,14 @@ struct Dwell {
   double begin_drive = 0, end_drive = 0;  ///< the first drive at the ends [rad] or [length unit]
 };
 
-/// How a body or a slide moves over a tour: values are angles [rad] or positions [length unit].
+/// How a link or a prismatic joint moves over a motion range: values are angles [rad] or positions [length
+/// unit].
 struct Sweep {
   enum class Kind {
-    turns,                 ///< a body that gains whole turns and never turns back
-    turns_with_reversals,  ///< a body that gains whole turns, and turns back on the way
+    turns,                 ///< a link that gains whole turns and never turns back
+    turns_with_reversals,  ///< a link that gains whole turns, and turns back on the way
     oscillates,            ///< between two ends
-    monotone,              ///< from one end of the tour to the other without turning back
+    monotone,              ///< from one end of the motion range to the other without turning back
     stationary,            ///< it keeps its direction or its place
   };
   Kind kind = Kind::oscillates;
@@ -34,14 +35,15 @@ struct Sweep {
   double gain = 0;  ///< last − first value
   std::size_t reversals = 0;
   double rising = 0, falling = 0;  ///< how long its value rises and falls [s]
-  /// Of a closed tour with two reversals: the time of the slower stroke over that of the faster one, ≥ 1.
+  /// Of a closed motion range with two reversals: the time of the slower stroke over that of the faster one,
+  /// ≥ 1.
   std::optional<double> time_ratio = {};
   std::vector<Dwell> dwells = {};
 
   double stroke() const { return greatest.value - least.value; }
 };
 
-/// What a body or a slide is as a signal.
+/// What a link or a prismatic joint is as a signal.
 Signal body_signal(std::size_t body);
 Signal slide_signal(const Mechanism& mechanism, std::size_t slide);
 
@@ -50,7 +52,7 @@ Sweep sweep_of(const RangeWalk& walk, const SignalScan& scan, bool is_slide, std
 
 /// The dwells of something with one or two coordinates, given at u = k/samples; `stroke` is the way between
 /// the extremes of the coordinate that goes farthest, and a dwell stays within 1 % of it in each. None in a
-/// tour that is no turn, or does not close.
+/// motion range that is no turn, or does not close.
 std::vector<Dwell> find_dwells(const RangeWalk& walk,
                                const std::vector<const std::vector<double>*>& coordinates, double stroke);
 

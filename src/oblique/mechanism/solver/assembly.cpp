@@ -84,7 +84,7 @@ class ModeChooser {
         });
   }
 
-  /// A guess of the group's pose from the sketched points of its bodies; the others lie among them.
+  /// A guess of the group's pose from the sketched points of its links; the others lie among them.
   GroupPose sketched_pose(const Group& group) const {
     const auto sketched = [&](std::size_t point) -> std::optional<Eigen::Vector2d> {
       if (is_placed(here_, point)) return here_.points[point].position;
@@ -94,9 +94,9 @@ class ModeChooser {
       return std::nullopt;
     };
     GroupPose pose;
-    for (const std::size_t core : group.equations.cores) {
-      std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> pairs;  // in the body, in the world
-      for (const BodyPoint& p : mechanism_.bodies[core].points) {
+    for (const std::size_t platform : group.equations.platforms) {
+      std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> pairs;  // in the link, in the world
+      for (const BodyPoint& p : mechanism_.bodies[platform].points) {
         if (const auto at = sketched(p.point)) pairs.emplace_back(p.local, *at);
       }
       Eigen::Vector2d local = Eigen::Vector2d::Zero(), world = local;
@@ -113,9 +113,9 @@ class ModeChooser {
       const double norm = std::hypot(cosine, sine);
       cosine = norm > 0 ? cosine / norm : 1;
       sine = norm > 0 ? sine / norm : 0;
-      pose.cores.push_back({world - Eigen::Vector2d(cosine * local.x() - sine * local.y(),
-                                                    sine * local.x() + cosine * local.y()),
-                            cosine, sine});
+      pose.platforms.push_back({world - Eigen::Vector2d(cosine * local.x() - sine * local.y(),
+                                                        sine * local.x() + cosine * local.y()),
+                                cosine, sine});
     }
     for (const std::size_t point : group.equations.free_points)
       pose.points.push_back(sketched(point).value_or(Eigen::Vector2d::Zero()));
@@ -161,7 +161,7 @@ class ModeChooser {
     here_ = std::move(all[chosen].configuration);
   }
 
-  /// What the rank of the conditions says of the bodies placed so far, where it differs from Grübler's
+  /// What the rank of the conditions says of the links placed so far, where it differs from Grübler's
   /// number.
   std::string shaky_text(const Configuration& here) const {
     const JacobianRank rank = jacobian_rank(mechanism_, poses_of(mechanism_, here));

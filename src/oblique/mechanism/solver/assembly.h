@@ -26,7 +26,7 @@ struct GroupModes {
 };
 
 /// Sets the side and the start of each group: of the ways to assemble it at the start position, the one
-/// nearest to the sketched points of its bodies (root sum of squared distances). Throws MechanismError: kind
+/// nearest to the sketched points of its links (root sum of squared distances). Throws MechanismError: kind
 /// `assembly` where links do not reach, kind `sketch` where no sketched point tells the modes apart (the
 /// message lists them as lines to paste), kind `constraint` where conditions depend on each other.
 void choose_modes(const Mechanism& mechanism, Structure& structure);

@@ -39,8 +39,8 @@ class ClosedForm {
 
   Status find(int side) {
     switch (form_.placing) {
-      case Placing::hinged:
-        return find_hinged();
+      case Placing::pinned:
+        return find_pinned();
       case Placing::crossing:
         return find_crossing(side);
       case Placing::about_pivot:
@@ -59,10 +59,11 @@ class ClosedForm {
     return conditions_[index.value()];
   }
 
-  /// Where the unknown point lies: the free point, or the origin of the core body, whose direction is known.
+  /// Where the unknown point lies: the free point, or the origin of the platform link, whose direction is
+  /// known.
   Locus locus(const Condition& c) const {
     const auto arm = [&](const Vector2d& local) {
-      return turned(local, state_.cores.front().cosine, state_.cores.front().sine);
+      return turned(local, state_.platforms.front().cosine, state_.platforms.front().sine);
     };
     const Vector2d shift = c.a.kind == PointRef::Kind::carried ? arm(c.a.local) : Vector2d::Zero();
     if (c.kind == Condition::Kind::distance) {
@@ -82,25 +83,26 @@ class ClosedForm {
     return line;
   }
 
-  /// The direction of the unknown body, where there is one.
+  /// The direction of the unknown link, where there is one.
   void set_direction() {
-    if (state_.cores.empty()) return;
+    if (state_.platforms.empty()) return;
     const Condition& c = condition(form_.angle);
     const double angle = c.drive ? drives_[*c.drive].value : c.value;
     Vector2d axis = Vector2d::UnitX();
     if (c.line.kind == LineRef::Kind::known)
       axis = {here_.bodies[c.line.body].cosine, here_.bodies[c.line.body].sine};
     const Vector2d direction = turned(axis, std::cos(angle), std::sin(angle));
-    state_.cores.front().cosine = direction.x();
-    state_.cores.front().sine = direction.y();
+    state_.platforms.front().cosine = direction.x();
+    state_.platforms.front().sine = direction.y();
   }
 
-  Status find_hinged() {
+  Status find_pinned() {
     set_direction();
-    const Condition& c = condition(form_.hinge);
-    GroupState::Core& core = state_.cores.front();
-    core.origin.position = here_.points[c.b.point].position - turned(c.a.local, core.cosine, core.sine);
-    return std::isfinite(core.origin.position.x()) ? Status::ok : Status::open;
+    const Condition& c = condition(form_.revolute);
+    GroupState::Platform& platform = state_.platforms.front();
+    platform.origin.position =
+        here_.points[c.b.point].position - turned(c.a.local, platform.cosine, platform.sine);
+    return std::isfinite(platform.origin.position.x()) ? Status::ok : Status::open;
   }
 
   /// Two circles: the triangle over their centres, on the left of first → second for `side` +1. A circle and
@@ -109,7 +111,7 @@ class ClosedForm {
   Status find_crossing(int side) {
     set_direction();
     Vector2d& unknown =
-        state_.cores.empty() ? state_.free.front().position : state_.cores.front().origin.position;
+        state_.platforms.empty() ? state_.free.front().position : state_.platforms.front().origin.position;
     const Locus first = locus(conditions_[form_.loci[0]]);
     const Locus second = locus(conditions_[form_.loci[1]]);
     const double rounding =
@@ -139,8 +141,8 @@ class ClosedForm {
     return Status::ok;
   }
 
-  /// a cos θ + b sin θ = c for a body hinged to a known point P: with m from the hinge in the body's frame
-  /// and w from P in the world's,
+  /// a cos θ + b sin θ = c for a link pinned to a known point P: with m from the revolute joint in the link's
+  /// frame and w from P in the world's,
   ///
   ///     distance to a known point     w·R m = (m² + w² − r²)/2
   ///     known point on its own line   w·R n = n·m
@@ -148,24 +150,24 @@ class ClosedForm {
   ///
   /// θ is the direction of (a, b), ± arccos(c/√(a² + b²)), left for `side` +1.
   Status find_about_pivot(int side) {
-    const Condition& hinge = condition(form_.hinge);
+    const Condition& revolute = condition(form_.revolute);
     const Condition& c = conditions_[form_.loci.front()];
-    const Vector2d p = here_.points[hinge.b.point].position;
+    const Vector2d p = here_.points[revolute.b.point].position;
     Vector2d m, w;
     double constant = 0;
     const bool along = c.kind == Condition::Kind::along;
     const double way = along ? drives_[*c.drive].value : 0;
     if (c.kind == Condition::Kind::distance) {
-      m = c.a.local - hinge.a.local;
+      m = c.a.local - revolute.a.local;
       w = here_.points[c.b.point].position - p;
       constant = (m.squaredNorm() + w.squaredNorm() - c.value * c.value) / 2;
     } else if (c.line.kind == LineRef::Kind::carried) {
       m = along ? c.line.direction : left_normal(c.line.direction);
       w = here_.points[c.a.point].position - p;
-      constant = m.dot(c.line.point - hinge.a.local) + way;
+      constant = m.dot(c.line.point - revolute.a.local) + way;
     } else {
       const LineState line = state_of(mechanism_, c.line, state_, here_);
-      m = c.a.local - hinge.a.local;
+      m = c.a.local - revolute.a.local;
       w = along ? line.direction : left_normal(line.direction);
       constant = w.dot(line.at.position - p) + way;
     }
@@ -176,10 +178,10 @@ class ClosedForm {
     if (!(norm > rounding && slack >= -rounding)) return Status::open;
     const double cosine = std::clamp(constant / norm, -1.0, 1.0);
     const double sine = slack > 0 ? side * std::sqrt(slack * (norm + std::abs(constant))) / norm : 0;
-    GroupState::Core& core = state_.cores.front();
-    core.cosine = (cosine * a - sine * b) / norm;
-    core.sine = (cosine * b + sine * a) / norm;
-    core.origin.position = p - turned(hinge.a.local, core.cosine, core.sine);
+    GroupState::Platform& platform = state_.platforms.front();
+    platform.cosine = (cosine * a - sine * b) / norm;
+    platform.sine = (cosine * b + sine * a) / norm;
+    platform.origin.position = p - turned(revolute.a.local, platform.cosine, platform.sine);
     return slack > rounding ? Status::ok : Status::dead_centre;
   }
 
@@ -228,7 +230,7 @@ GroupPoses platform_poses(const Mechanism& mechanism, const Group& group, const 
   for (int i = 0; i < modes.count; ++i) {
     const PlatformPose& platform = modes.poses[static_cast<std::size_t>(i)];
     GroupPose pose;
-    pose.cores.push_back({platform.position, platform.cosine, platform.sine});
+    pose.platforms.push_back({platform.position, platform.cosine, platform.sine});
     found.poses.push_back(std::move(pose));
   }
   return found;

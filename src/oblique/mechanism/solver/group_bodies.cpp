@@ -29,27 +29,28 @@ GroupBodies::GroupBodies(const Mechanism& mechanism, const Group& group) : group
     }
     return rigid;
   };
-  for (const std::size_t core : group.equations.cores) {
-    const std::size_t base = mechanism.bodies[core].points.front().point;
-    cores_.push_back(plan(core, base));
+  for (const std::size_t platform : group.equations.platforms) {
+    const std::size_t base = mechanism.bodies[platform].points.front().point;
+    platforms_.push_back(plan(platform, base));
   }
-  for (const Link& link : group.equations.links) links_.push_back(plan(link.body, link.from));
-  for (const SliderBlock& block : group.equations.blocks) blocks_.push_back(plan(block.body, block.hinge));
+  for (const BinaryLink& link : group.equations.binary_links)
+    binary_links_.push_back(plan(link.body, link.from));
+  for (const SliderBlock& block : group.equations.blocks) blocks_.push_back(plan(block.body, block.revolute));
 }
 
 void GroupBodies::place(const GroupState& state, Configuration& here) const {
-  for (std::size_t i = 0; i < cores_.size(); ++i) {
-    const GroupState::Core& core = state.cores[i];
-    const RigidBody& rigid = cores_[i];
-    here.bodies[rigid.body] = {kNaN, core.omega, core.alpha, core.cosine, core.sine};
+  for (std::size_t i = 0; i < platforms_.size(); ++i) {
+    const GroupState::Platform& platform = state.platforms[i];
+    const RigidBody& rigid = platforms_[i];
+    here.bodies[rigid.body] = {kNaN, platform.omega, platform.alpha, platform.cosine, platform.sine};
     if (std::binary_search(group_.points.begin(), group_.points.end(), rigid.base))
-      here.points[rigid.base] = core.origin;
-    place_arms(rigid, core.cosine, core.sine, core.omega, core.alpha, here);
+      here.points[rigid.base] = platform.origin;
+    place_arms(rigid, platform.cosine, platform.sine, platform.omega, platform.alpha, here);
   }
   for (std::size_t i = 0; i < state.free.size(); ++i)
     here.points[group_.equations.free_points[i]] = state.free[i];
-  for (std::size_t i = 0; i < group_.equations.links.size(); ++i) {
-    const Link& link = group_.equations.links[i];
+  for (std::size_t i = 0; i < group_.equations.binary_links.size(); ++i) {
+    const BinaryLink& link = group_.equations.binary_links[i];
     const PointState& from = here.points[link.from];
     const PointState& to = here.points[link.to];
     const Vector2d e = to.position - from.position;
@@ -60,7 +61,7 @@ void GroupBodies::place(const GroupState& state, Configuration& here) const {
     const double cosine = (link.cosine * e.x() + link.sine * e.y()) / length;
     const double sine = (link.cosine * e.y() - link.sine * e.x()) / length;
     here.bodies[link.body] = {kNaN, omega, alpha, cosine, sine};
-    place_arms(links_[i], cosine, sine, omega, alpha, here);
+    place_arms(binary_links_[i], cosine, sine, omega, alpha, here);
   }
   for (std::size_t i = 0; i < group_.equations.blocks.size(); ++i) {
     const SliderBlock& block = group_.equations.blocks[i];

@@ -22,17 +22,17 @@ class Reduction {
 
   GroupEquations run() {
     for (const std::size_t body : members_.bodies) {
-      if (is_link(body)) links_.push_back(body);
+      if (is_binary_link(body)) binary_links_.push_back(body);
     }
     find_blocks();
     for (const std::size_t body : members_.bodies) {
-      if (!has(links_, body) && !block_slide(body)) result_.cores.push_back(body);
+      if (!has(binary_links_, body) && !block_slide(body)) result_.platforms.push_back(body);
     }
     for (const std::size_t point : members_.points) {
-      if (!known_[point] && !core_with(point)) result_.free_points.push_back(point);
+      if (!known_[point] && !platform_with(point)) result_.free_points.push_back(point);
     }
-    add_hinges();
-    for (const std::size_t link : links_) add_link(link);
+    add_revolutes();
+    for (const std::size_t link : binary_links_) add_binary_link(link);
     for (const auto& [body, slide] : block_slides_) add_block(body, mechanism_.slides[slide]);
     for (const std::size_t s : members_.slides) {
       if (!is_block_slide(s)) add_slide(mechanism_.slides[s]);
@@ -42,7 +42,7 @@ class Reduction {
   }
 
  private:
-  /// The points of a body by which it hangs together with the rest: known ones, and unknowns of the group.
+  /// The points of a link by which it hangs together with the rest: known ones, and unknowns of the group.
   std::vector<std::size_t> active_points(std::size_t body) const {
     std::vector<std::size_t> active;
     for (const BodyPoint& p : mechanism_.bodies[body].points) {
@@ -62,7 +62,7 @@ class Reduction {
                        [&](std::size_t d) { return mechanism_.drives[d].slide == slide; });
   }
 
-  bool is_link(std::size_t body) const {
+  bool is_binary_link(std::size_t body) const {
     if (is_driven(body) || active_points(body).size() != 2) return false;
     return std::none_of(members_.slides.begin(), members_.slides.end(), [&](std::size_t s) {
       const Slide& slide = mechanism_.slides[s];
@@ -70,7 +70,7 @@ class Reduction {
     });
   }
 
-  /// Of a body that takes part in one slide only, a full prismatic pair, and otherwise in one hinge.
+  /// Of a link that takes part in one prismatic joint only, a full one, and otherwise in one revolute joint.
   void find_blocks() {
     for (const std::size_t body : members_.bodies) {
       if (is_driven(body)) continue;
@@ -89,15 +89,15 @@ class Reduction {
       if (!slide.of || (slide.of != body && slide.carrier != body)) continue;
       const auto other = slide.of == body ? slide.carrier : slide.of;
       if (other && block_slide(*other)) continue;
-      if (hinges(body, slide).size() != 1) continue;
+      if (joints(body, slide).size() != 1) continue;
       // what it slides on has to be more than a link
-      if (other && has(links_, *other)) continue;
+      if (other && has(binary_links_, *other)) continue;
       block_slides_.emplace_back(body, *only);
     }
   }
 
-  /// The hinges of a body: its active points, but the one that merely slides.
-  std::vector<std::size_t> hinges(std::size_t body, const Slide& slide) const {
+  /// The revolute joints of a link: its active points, but the one that merely slides.
+  std::vector<std::size_t> joints(std::size_t body, const Slide& slide) const {
     std::vector<std::size_t> points;
     for (const std::size_t p : active_points(body)) {
       std::size_t others = known_[p] ? 1 : 0;
@@ -121,40 +121,41 @@ class Reduction {
                        [&](const auto& entry) { return entry.second == slide; });
   }
 
-  /// The first core body with a point, as its index in `cores`.
-  std::optional<std::size_t> core_with(std::size_t point) const {
-    for (std::size_t i = 0; i < result_.cores.size(); ++i) {
-      if (mechanism_.bodies[result_.cores[i]].find(point) != nullptr) return i;
+  /// The first platform link with a point, as its index in `platforms`.
+  std::optional<std::size_t> platform_with(std::size_t point) const {
+    for (std::size_t i = 0; i < result_.platforms.size(); ++i) {
+      if (mechanism_.bodies[result_.platforms[i]].find(point) != nullptr) return i;
     }
     return std::nullopt;
   }
 
-  std::optional<std::size_t> core_index(std::size_t body) const {
-    const auto found = std::find(result_.cores.begin(), result_.cores.end(), body);
-    if (found == result_.cores.end()) return std::nullopt;
-    return static_cast<std::size_t>(found - result_.cores.begin());
+  std::optional<std::size_t> platform_index(std::size_t body) const {
+    const auto found = std::find(result_.platforms.begin(), result_.platforms.end(), body);
+    if (found == result_.platforms.end()) return std::nullopt;
+    return static_cast<std::size_t>(found - result_.platforms.begin());
   }
 
-  PointRef carried(std::size_t core, std::size_t point) const {
-    return {PointRef::Kind::carried, point, core, mechanism_.bodies[result_.cores[core]].find(point)->local};
+  PointRef carried(std::size_t platform, std::size_t point) const {
+    return {PointRef::Kind::carried, point, platform,
+            mechanism_.bodies[result_.platforms[platform]].find(point)->local};
   }
 
   PointRef reference(std::size_t point) const {
     if (known_[point]) return {PointRef::Kind::known, point, 0, Vector2d::Zero()};
-    if (const auto core = core_with(point)) return carried(*core, point);
+    if (const auto platform = platform_with(point)) return carried(*platform, point);
     const auto found = std::find(result_.free_points.begin(), result_.free_points.end(), point);
     return {PointRef::Kind::free, point, static_cast<std::size_t>(found - result_.free_points.begin()),
             Vector2d::Zero()};
   }
 
-  /// A line in the frame of a body of the group or a placed one, or of the frame.
+  /// A line in the frame of a link of the group or a placed one, or of the frame.
   LineRef line(std::optional<std::size_t> body, const Vector2d& point, const Vector2d& direction) const {
     LineRef line{LineRef::Kind::fixed, 0, 0, point, direction};
     if (!body) return line;
     line.body = *body;
-    if (const auto core = core_index(*body)) {
+    if (const auto platform = platform_index(*body)) {
       line.kind = LineRef::Kind::carried;
-      line.member = *core;
+      line.member = *platform;
     } else {
       line.kind = LineRef::Kind::known;
     }
@@ -166,25 +167,25 @@ class Reduction {
     return line(slide.carrier, at.point, at.direction);
   }
 
-  void add_hinges() {
-    for (std::size_t core = 0; core < result_.cores.size(); ++core) {
-      for (const BodyPoint& p : mechanism_.bodies[result_.cores[core]].points) {
+  void add_revolutes() {
+    for (std::size_t platform = 0; platform < result_.platforms.size(); ++platform) {
+      for (const BodyPoint& p : mechanism_.bodies[result_.platforms[platform]].points) {
         if (!known_[p.point] && !has(members_.points, p.point)) continue;
         const PointRef there = reference(p.point);
-        if (there.kind == PointRef::Kind::carried && there.member == core) continue;
-        Condition hinge;
-        hinge.kind = Condition::Kind::coincidence;
-        hinge.a = carried(core, p.point);
-        hinge.b = there;
-        result_.conditions.push_back(hinge);
+        if (there.kind == PointRef::Kind::carried && there.member == platform) continue;
+        Condition revolute;
+        revolute.kind = Condition::Kind::coincidence;
+        revolute.a = carried(platform, p.point);
+        revolute.b = there;
+        result_.conditions.push_back(revolute);
       }
     }
   }
 
-  void add_link(std::size_t body) {
+  void add_binary_link(std::size_t body) {
     const auto ends = active_points(body);
     const Body& bar = mechanism_.bodies[body];
-    // from what is known, or stands first in the body
+    // from what is known, or stands first in the link
     const std::size_t from = known_[ends[1]] && !known_[ends[0]] ? ends[1] : ends[0];
     const std::size_t to = from == ends[0] ? ends[1] : ends[0];
     const Vector2d bone = bar.find(to)->local - bar.find(from)->local;
@@ -193,38 +194,38 @@ class Reduction {
     length.a = reference(to);
     length.b = reference(from);
     length.value = distance(bar, from, to);
-    length.link = result_.links.size();
+    length.link = result_.binary_links.size();
     result_.conditions.push_back(length);
-    result_.links.push_back({body, from, to, bone.x() / length.value, bone.y() / length.value});
+    result_.binary_links.push_back({body, from, to, bone.x() / length.value, bone.y() / length.value});
   }
 
-  /// A block on a line of `other`: its hinge H lies on that line, shifted by where H lies beside the block's
-  /// own point. A block that carries the line itself: H lies on a line of the body that slides in it.
+  /// A block on a line of `other`: its revolute joint H lies on that line, shifted by where H lies beside the
+  /// block's own point. A block that carries the line itself: H lies on a line of the link that slides in it.
   void add_block(std::size_t body, const Slide& slide) {
     const LineRef at = line_of(mechanism_, slide);
     const double against = slide.angle + std::atan2(at.direction.y(), at.direction.x());  // of `of` − carrier
     const bool is_guided = slide.of == body;
-    const std::size_t hinge = hinges(body, slide).front();
+    const std::size_t revolute = joints(body, slide).front();
     const Body& block = mechanism_.bodies[body];
     Condition condition;
     condition.kind = Condition::Kind::on_line;
-    condition.a = reference(hinge);
+    condition.a = reference(revolute);
     double angle = against;
     if (is_guided) {
-      const Vector2d beside = turned(block.find(slide.point)->local - block.find(hinge)->local, against);
+      const Vector2d beside = turned(block.find(slide.point)->local - block.find(revolute)->local, against);
       const Vector2d normal = left_normal(at.direction);
       condition.line = line(slide.carrier, at.point - normal.dot(beside) * normal, at.direction);
     } else {
       angle = -against;
       const Vector2d direction = turned(Vector2d::UnitX(), -slide.angle);
       const Vector2d normal = left_normal(direction);
-      const double beside = left_normal(at.direction).dot(at.point - block.find(hinge)->local);
+      const double beside = left_normal(at.direction).dot(at.point - block.find(revolute)->local);
       const Vector2d sliding = mechanism_.bodies[*slide.of].find(slide.point)->local;
       condition.line = line(slide.of, sliding - beside * normal, direction);
     }
     result_.conditions.push_back(condition);
     result_.blocks.push_back(
-        {body, hinge, is_guided ? slide.carrier : slide.of, std::cos(angle), std::sin(angle)});
+        {body, revolute, is_guided ? slide.carrier : slide.of, std::cos(angle), std::sin(angle)});
   }
 
   void add_slide(const Slide& slide) {
@@ -238,12 +239,12 @@ class Reduction {
         slide.angle + std::atan2(condition.line.direction.y(), condition.line.direction.x());
     Condition orientation;
     orientation.kind = Condition::Kind::orientation;
-    if (const auto core = core_index(*slide.of)) {
-      orientation.member = *core;
+    if (const auto platform = platform_index(*slide.of)) {
+      orientation.member = *platform;
       orientation.line = condition.line;
       orientation.value = against;
-    } else {  // the carrier is the unknown body
-      orientation.member = core_index(*slide.carrier).value();
+    } else {  // the carrier is the unknown link
+      orientation.member = platform_index(*slide.carrier).value();
       orientation.line = line(slide.of, Vector2d::Zero(), Vector2d::UnitX());
       orientation.value = -against;
     }
@@ -261,7 +262,7 @@ class Reduction {
       condition.line = line(slide);
     } else {
       condition.kind = Condition::Kind::orientation;
-      condition.member = core_index(drive.body).value();
+      condition.member = platform_index(drive.body).value();
     }
     result_.conditions.push_back(condition);
   }
@@ -269,8 +270,8 @@ class Reduction {
   const Mechanism& mechanism_;
   const GroupMembers& members_;
   const std::vector<bool>& known_;
-  std::vector<std::size_t> links_;
-  std::vector<std::pair<std::size_t, std::size_t>> block_slides_;  ///< body and slide
+  std::vector<std::size_t> binary_links_;
+  std::vector<std::pair<std::size_t, std::size_t>> block_slides_;  ///< link and prismatic joint
   GroupEquations result_;
 };
 

@@ -45,7 +45,7 @@ bool GroupSolver::is_tracked() const {
       return true;
     case Placing::rotation:
     case Placing::triangle:
-    case Placing::hinged:
+    case Placing::pinned:
     case Placing::crossing:
     case Placing::about_pivot:
       break;
@@ -56,7 +56,7 @@ bool GroupSolver::is_tracked() const {
 bool GroupSolver::is_single() const {
   switch (form_.placing) {
     case Placing::rotation:
-    case Placing::hinged:
+    case Placing::pinned:
       return true;
     case Placing::crossing:
       return form_.circles == 0;
@@ -94,14 +94,14 @@ Status GroupSolver::find(std::span<const DriveState> drives, int side, const Con
 
 Status GroupSolver::place_crank(std::span<const DriveState> drives, Configuration& here) {
   const DriveState& drive = drives[*equations_.conditions[*form_.angle].drive];
-  const std::size_t body = equations_.cores.front();
-  const RigidBody& rigid = bodies_.cores().front();
+  const std::size_t body = equations_.platforms.front();
+  const RigidBody& rigid = bodies_.platforms().front();
   const double cosine = std::cos(drive.value), sine = std::sin(drive.value);
   here.bodies[body] = {drive.value, drive.rate, drive.acceleration, cosine, sine};
-  const Condition& hinge = equations_.conditions[*form_.hinge];
-  if (hinge.a.point != rigid.base) {  // the pivot is not the body's first point
-    const PointState& pivot = here.points[hinge.b.point];
-    const Vector2d way = turned(-hinge.a.local, cosine, sine);
+  const Condition& revolute = equations_.conditions[*form_.revolute];
+  if (revolute.a.point != rigid.base) {  // the pivot is not the link's first point
+    const PointState& pivot = here.points[revolute.b.point];
+    const Vector2d way = turned(-revolute.a.local, cosine, sine);
     here.points[rigid.base] = {
         pivot.position + way, pivot.velocity + drive.rate * left_normal(way),
         pivot.acceleration + drive.acceleration * left_normal(way) - drive.rate * drive.rate * way};
@@ -129,7 +129,7 @@ Status GroupSolver::place_dyad(int side, Configuration& here) {
   c.position = p.position + e1;
   const Vector2d e2 = c.position - q.position;
   const double cross = side * shape.four_area / 2;
-  regularity_ = cross * inverse_r1_ * inverse_r2_;
+  determinant_ = cross * inverse_r1_ * inverse_r2_;
   double omega1 = kNaN, omega2 = kNaN, alpha1 = kNaN, alpha2 = kNaN;
   if (!is_dead_centre) {
     const double inverse = 1 / cross;
@@ -143,31 +143,31 @@ Status GroupSolver::place_dyad(int side, Configuration& here) {
   c.velocity = p.velocity + omega1 * left_normal(e1);
   c.acceleration = p.acceleration + alpha1 * left_normal(e1) - omega1 * omega1 * e1;
   for (std::size_t i = 0; i < 2; ++i) {
-    const Link& link = equations_.links[i];
+    const BinaryLink& link = equations_.binary_links[i];
     const bool first = link.body == dyad.body1;
     const Vector2d bone = first ? e1 * inverse_r1_ : e2 * inverse_r2_;
     const double cosine = link.cosine * bone.x() + link.sine * bone.y();
     const double sine = link.cosine * bone.y() - link.sine * bone.x();
     const double omega = first ? omega1 : omega2, alpha = first ? alpha1 : alpha2;
     here.bodies[link.body] = {kNaN, omega, alpha, cosine, sine};
-    place_arms(bodies_.links()[i], cosine, sine, omega, alpha, here);
+    place_arms(bodies_.binary_links()[i], cosine, sine, omega, alpha, here);
   }
   return is_dead_centre ? Status::dead_centre : Status::ok;
 }
 
-/// Rates of the unknowns, and all bodies and points by them.
+/// Rates of the unknowns, and all links and points by them.
 Status GroupSolver::finish(std::span<const DriveState> drives, Configuration& here, bool is_dead_centre) {
   state_.stop();
   system_.evaluate_jacobian(state_, here);
   const auto apply = [&](bool second) {
     system_.evaluate_rates(state_, drives, here, second);
     const bool solved = system_.solve();
-    if (!second) regularity_ = system_.normalised_determinant();
+    if (!second) determinant_ = system_.normalised_determinant();
     const auto part = [&](Index k) { return solved ? system_.solution()(k) : kNaN; };
     Index k = 0;
-    for (GroupState::Core& core : state_.cores) {
-      (second ? core.origin.acceleration : core.origin.velocity) = {part(k), part(k + 1)};
-      (second ? core.alpha : core.omega) = part(k + 2) / system_.size();
+    for (GroupState::Platform& platform : state_.platforms) {
+      (second ? platform.origin.acceleration : platform.origin.velocity) = {part(k), part(k + 1)};
+      (second ? platform.alpha : platform.omega) = part(k + 2) / system_.size();
       k += 3;
     }
     for (PointState& point : state_.free) {
@@ -178,13 +178,13 @@ Status GroupSolver::finish(std::span<const DriveState> drives, Configuration& he
   apply(false);
   // Two modes that meet do so like square roots of the rounding.
   constexpr double kMeeting = 1e-7;
-  is_dead_centre = is_dead_centre || !(std::abs(regularity_) > (is_tracked() ? kMeeting : 0));
+  is_dead_centre = is_dead_centre || !(std::abs(determinant_) > (is_tracked() ? kMeeting : 0));
   apply(true);
   if (is_dead_centre) {
     const Vector2d nothing = Vector2d::Constant(kNaN);
-    for (GroupState::Core& core : state_.cores) {
-      core.origin.velocity = core.origin.acceleration = nothing;
-      core.omega = core.alpha = kNaN;
+    for (GroupState::Platform& platform : state_.platforms) {
+      platform.origin.velocity = platform.origin.acceleration = nothing;
+      platform.omega = platform.alpha = kNaN;
     }
     for (PointState& point : state_.free) point.velocity = point.acceleration = nothing;
   }
@@ -212,7 +212,7 @@ GroupPoses GroupSolver::poses(std::span<const DriveState> drives, const Configur
       }
       break;
     }
-    case Placing::hinged:
+    case Placing::pinned:
     case Placing::crossing:
     case Placing::about_pivot: {
       const bool single = is_single();
@@ -252,11 +252,11 @@ void GroupSolver::stand(std::span<const DriveState> drives, Configuration& here)
 
 void GroupSolver::displace(const VectorXd& step, Configuration& here) const {
   Index k = 0;
-  for (std::size_t i = 0; i < state_.cores.size(); ++i, k += 3) {
-    const std::size_t base = bodies_.cores()[i].base;
+  for (std::size_t i = 0; i < state_.platforms.size(); ++i, k += 3) {
+    const std::size_t base = bodies_.platforms()[i].base;
     if (std::binary_search(group_.points.begin(), group_.points.end(), base))
       here.points[base].position += step.segment<2>(k);
-    BodyState& body = here.bodies[equations_.cores[i]];
+    BodyState& body = here.bodies[equations_.platforms[i]];
     const double angle = step(k + 2) / system_.size();
     const Vector2d way = turned({body.cosine, body.sine}, std::cos(angle), std::sin(angle));
     body.cosine = way.x();
@@ -271,9 +271,9 @@ void GroupSolver::displace(const VectorXd& step, Configuration& here) const {
 VectorXd GroupSolver::velocity(const Configuration& here) const {
   VectorXd rates(system_.jacobian().rows());
   Index k = 0;
-  for (std::size_t i = 0; i < state_.cores.size(); ++i, k += 3) {
-    rates.segment<2>(k) = here.points[bodies_.cores()[i].base].velocity;
-    rates(k + 2) = system_.size() * here.bodies[equations_.cores[i]].omega;
+  for (std::size_t i = 0; i < state_.platforms.size(); ++i, k += 3) {
+    rates.segment<2>(k) = here.points[bodies_.platforms()[i].base].velocity;
+    rates(k + 2) = system_.size() * here.bodies[equations_.platforms[i]].omega;
   }
   for (const std::size_t point : equations_.free_points) {
     rates.segment<2>(k) = here.points[point].velocity;

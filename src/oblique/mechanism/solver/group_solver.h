@@ -19,8 +19,8 @@ namespace oblique::mechanism {
 /// Puts one group together whose known elements stand in a configuration. It keeps scratch memory, so one
 /// object serves one thread; after construction nothing allocates but `poses`.
 ///
-/// Positions: a rotation for a crank; two loci (circles, lines) that intersect for a point or a body of known
-/// direction; a cos θ + b sin θ = c for a body about a known point; otherwise Newton's method from the pose
+/// Positions: a rotation for a crank; two loci (circles, lines) that intersect for a point or a link of known
+/// direction; a cos θ + b sin θ = c for a link about a known point; otherwise Newton's method from the pose
 /// that stands in the configuration. Rates: from the linear systems of GroupSystem; for an
 /// RRR dyad, with D = e₁ × e₂, e₁ = C − P, e₂ = C − Q:
 ///
@@ -53,7 +53,7 @@ class GroupSolver {
 
   /// How far the last placement is from one where its modes meet: the determinant of J over the product of
   /// the lengths of its rows, angles counted as lengths on the group's size; in [−1, 1]. 1 for drives.
-  double regularity() const { return regularity_; }
+  double normalised_determinant() const { return determinant_; }
 
   /// Size of the last placement's first correction by Newton's method over the group's size: how wrong the
   /// guess was.
@@ -93,7 +93,7 @@ class GroupSolver {
   GroupSystem system_;
   GroupState state_;
   double inverse_r1_ = 0, inverse_r2_ = 0;  ///< of the dyad's links
-  double regularity_ = 1;
+  double determinant_ = 1;
   double correction_ = 0;
   double contraction_ = 0;
 };

@@ -11,17 +11,18 @@
 namespace oblique::mechanism {
 
 /// Where the unknowns of a group stand, and how they move, in the order of GroupEquations. As a vector they
-/// are x, y and angle of each core body, x and y of each free point, angles as lengths on the group's size.
+/// are x, y and angle of each platform link, x and y of each free point, angles as lengths on the group's
+/// size.
 struct GroupState {
-  struct Core {
+  struct Platform {
     PointState origin;
     double cosine, sine, omega, alpha;
   };
-  std::vector<Core> cores;
+  std::vector<Platform> platforms;
   std::vector<PointState> free;
 
   explicit GroupState(const GroupEquations& equations)
-      : cores(equations.cores.size()), free(equations.free_points.size()) {}
+      : platforms(equations.platforms.size()), free(equations.free_points.size()) {}
 
   /// Takes the pose that stands in a configuration, or a pose. Rates stay as they are.
   void load(const Mechanism& mechanism, const GroupEquations& equations, const Configuration& here);

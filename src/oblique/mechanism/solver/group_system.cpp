@@ -65,20 +65,20 @@ void GroupSystem::evaluate(const GroupState& state, std::span<const DriveState> 
         break;
       }
       case Kind::orientation: {
-        const GroupState::Core& core = state.cores[c.member];
+        const GroupState::Platform& platform = state.platforms[c.member];
         // where the carrier's x axis points, or the drive
         double cosine = 1, sine = 0;
         if (c.line.kind == LineRef::Kind::carried) {
-          cosine = state.cores[c.line.member].cosine;
-          sine = state.cores[c.line.member].sine;
+          cosine = state.platforms[c.line.member].cosine;
+          sine = state.platforms[c.line.member].sine;
         } else if (c.line.kind == LineRef::Kind::known) {
           cosine = here.bodies[c.line.body].cosine;
           sine = here.bodies[c.line.body].sine;
         }
         const double angle = c.drive ? drives[*c.drive].value : c.value;
         const Vector2d wanted = turned({cosine, sine}, std::cos(angle), std::sin(angle));
-        const double across = wanted.x() * core.sine - wanted.y() * core.cosine;
-        const double along = wanted.x() * core.cosine + wanted.y() * core.sine;
+        const double across = wanted.x() * platform.sine - wanted.y() * platform.cosine;
+        const double along = wanted.x() * platform.cosine + wanted.y() * platform.sine;
         right_(row++) = -size_ * (along > 0 ? across : std::atan2(across, along));
         break;
       }
@@ -91,17 +91,17 @@ void GroupSystem::evaluate_jacobian(const GroupState& state, const Configuration
   jacobian_.setZero();
   Index row = 0;
   const auto free_column = [&](std::size_t member) {
-    return static_cast<Index>(3 * state.cores.size() + 2 * member);
+    return static_cast<Index>(3 * state.platforms.size() + 2 * member);
   };
   /// Adds the derivative by the position of a point, as the chain rule has it.
   const auto add = [&](Index r, const PointRef& point, const Vector2d& derivative) {
     if (point.kind == PointRef::Kind::known) return;
     Index column = free_column(point.member);
     if (point.kind == PointRef::Kind::carried) {
-      const GroupState::Core& core = state.cores[point.member];
+      const GroupState::Platform& platform = state.platforms[point.member];
       column = static_cast<Index>(3 * point.member);
       jacobian_(r, column + 2) +=
-          derivative.dot(left_normal(turned(point.local, core.cosine, core.sine))) / size_;
+          derivative.dot(left_normal(turned(point.local, platform.cosine, platform.sine))) / size_;
     }
     jacobian_(r, column) += derivative.x();
     jacobian_(r, column + 1) += derivative.y();

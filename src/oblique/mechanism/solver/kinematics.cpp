@@ -69,13 +69,13 @@ void Kinematics::finish(std::span<const DriveState> drives, Configuration& here)
 
 void Kinematics::load_start(Configuration& here) const {
   for (const Group& group : structure_.groups) {
-    for (std::size_t i = 0; i < group.start.cores.size(); ++i) {
-      const GroupPose::Core& core = group.start.cores[i];
-      const std::size_t body = group.equations.cores[i];
-      here.bodies[body].cosine = core.cosine;
-      here.bodies[body].sine = core.sine;
+    for (std::size_t i = 0; i < group.start.platforms.size(); ++i) {
+      const GroupPose::Platform& platform = group.start.platforms[i];
+      const std::size_t body = group.equations.platforms[i];
+      here.bodies[body].cosine = platform.cosine;
+      here.bodies[body].sine = platform.sine;
       const std::size_t base = mechanism_.bodies[body].points.front().point;
-      if (!mechanism_.points[base].fixed) here.points[base].position = core.position;
+      if (!mechanism_.points[base].fixed) here.points[base].position = platform.position;
     }
     for (std::size_t i = 0; i < group.start.points.size(); ++i)
       here.points[group.equations.free_points[i]].position = group.start.points[i];

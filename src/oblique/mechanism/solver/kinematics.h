@@ -16,13 +16,13 @@ class Kinematics {
  public:
   Kinematics(const Mechanism& mechanism, const Structure& structure);
 
-  /// Exact positions and rates of all points and bodies at given states of the drives, one for each of
+  /// Exact positions and rates of all points and links at given states of the drives, one for each of
   /// Mechanism::drives. Groups without closed form start from the poses in `here`. Sets status and group;
-  /// where a group is open, nothing has a value. Angles of bodies and slides are set by `finish`.
+  /// where a group is open, nothing has a value. Angles of links and prismatic joints are set by `finish`.
   void place(std::span<const DriveState> drives, Configuration& here);
 
-  /// The angles of the bodies from their cosines and sines, in (−π, π] but for driven ones, which have their
-  /// drive's; and the slides.
+  /// The angles of the links from their cosines and sines, in (−π, π] but for driven ones, which have their
+  /// drive's; and the prismatic joints.
   void finish(std::span<const DriveState> drives, Configuration& here) const;
 
   /// Writes the poses at time 0 into `here`: from where tracked groups start.
@@ -37,7 +37,7 @@ class Kinematics {
   const Mechanism& mechanism_;
   const Structure& structure_;
   std::vector<GroupSolver> solvers_;
-  std::vector<LineRef> lines_;  ///< of the slides
+  std::vector<LineRef> lines_;  ///< of the prismatic joints
 };
 
 /// The configuration of a structure at the start: `place` and `finish` at time 0.

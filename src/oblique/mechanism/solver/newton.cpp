@@ -31,14 +31,14 @@ Closing close_by_newton(GroupSystem& system, GroupState& state, std::span<const 
     const double most = kLongestStep * size;
     const double factor = length > most ? most / length : 1;
     Index k = 0;
-    for (GroupState::Core& core : state.cores) {
-      core.origin.position += factor * solution.segment<2>(k);
+    for (GroupState::Platform& platform : state.platforms) {
+      platform.origin.position += factor * solution.segment<2>(k);
       const double angle = factor * solution(k + 2) / size;
-      const double c = core.cosine - angle * core.sine;
-      const double s = core.sine + angle * core.cosine;
+      const double c = platform.cosine - angle * platform.sine;
+      const double s = platform.sine + angle * platform.cosine;
       const double norm = 1 / std::sqrt(c * c + s * s);
-      core.cosine = c * norm;
-      core.sine = s * norm;
+      platform.cosine = c * norm;
+      platform.sine = s * norm;
       k += 3;
     }
     for (PointState& point : state.free) {

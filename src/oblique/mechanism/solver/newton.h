@@ -18,7 +18,7 @@ struct Closing {
 /// * A step longer than half the group's size is shortened to that, since a pose so far away has nothing to
 /// do with the
 ///   guess.
-/// * Bodies turn by the angle of the step and keep cosine² + sine² = 1.
+/// * Links turn by the angle of the step and keep cosine² + sine² = 1.
 /// * Errors are squared from step to step. So it stops after a step of 1e-9 of the size: the next would be
 ///   rounding.
 /// * At a dead centre, a double root, steps only halve, down to the root of the rounding. When they no longer

@@ -24,10 +24,10 @@ GroupPoses search_poses(GroupSystem& system, std::span<const DriveState> drives,
     constexpr double kSame = 1e-6;
     return std::none_of(found.poses.begin(), found.poses.end(), [&](const GroupPose& other) {
       double far = 0;
-      for (std::size_t i = 0; const GroupPose::Core& core : pose.cores) {
-        const GroupPose::Core& twin = other.cores[i++];
-        far = std::max(far, (core.position - twin.position).norm());
-        far = std::max(far, size * std::hypot(core.cosine - twin.cosine, core.sine - twin.sine));
+      for (std::size_t i = 0; const GroupPose::Platform& platform : pose.platforms) {
+        const GroupPose::Platform& twin = other.platforms[i++];
+        far = std::max(far, (platform.position - twin.position).norm());
+        far = std::max(far, size * std::hypot(platform.cosine - twin.cosine, platform.sine - twin.sine));
       }
       for (std::size_t i = 0; const Vector2d& point : pose.points)
         far = std::max(far, (point - other.points[i++]).norm());
@@ -63,10 +63,10 @@ GroupPoses search_poses(GroupSystem& system, std::span<const DriveState> drives,
   const int starts = 60 * static_cast<int>(equations.unknowns());
   for (int i = 0; i < starts; ++i) {
     GroupPose guess;
-    guess.cores.resize(equations.cores.size());
-    for (GroupPose::Core& core : guess.cores) {
+    guess.platforms.resize(equations.platforms.size());
+    for (GroupPose::Platform& platform : guess.platforms) {
       const double angle = 2 * std::numbers::pi * fraction();
-      core = {place_in_box(), std::cos(angle), std::sin(angle)};
+      platform = {place_in_box(), std::cos(angle), std::sin(angle)};
     }
     guess.points.resize(equations.free_points.size());
     for (Vector2d& point : guess.points) point = place_in_box();

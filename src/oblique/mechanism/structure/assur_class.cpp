@@ -63,7 +63,7 @@ int class_of(const Mechanism& mechanism, const GroupMembers& members, const std:
         std::count_if(pairs.begin(), pairs.end(), [&](const Pair& p) { return has(p.bodies, body); });
     largest = std::max(largest, static_cast<int>(count));
   }
-  // shortest loop through body `from` and pair `cut`: a breadth-first search that does not use the pair
+  // shortest loop through link `from` and pair `cut`: a breadth-first search that does not use the pair
   for (std::size_t cut = 0; cut < pairs.size(); ++cut) {
     for (std::size_t i = 1; i < pairs[cut].bodies.size(); ++i) {
       std::vector<int> steps(mechanism.bodies.size(), 0);

@@ -12,7 +12,7 @@ ConstraintGraph::ConstraintGraph(const Mechanism& mechanism) : bodies_(mechanism
   incident_.resize(capacity_.size());
   using Kind = Edge::Kind;
   const auto carrier = [](const Slide& slide) { return slide.carrier.value_or(kFrame); };
-  // a body that may not turn is guided itself, not its point
+  // a link that may not turn is guided itself, not its point
   const auto guided = [&](const Slide& slide) { return slide.of ? *slide.of : point_vertex(slide.point); };
   // drives first: what is too much then is a pair
   for (std::size_t d = 0; d < mechanism.drives.size(); ++d) {
@@ -27,7 +27,7 @@ ConstraintGraph::ConstraintGraph(const Mechanism& mechanism) : bodies_(mechanism
   for (std::size_t body = 0; body < bodies_; ++body) {
     for (const BodyPoint& p : mechanism.bodies[body].points) {
       for (int coordinate = 0; coordinate < 2; ++coordinate) {
-        add({Kind::hinge, body, p.point, body, point_vertex(p.point)});
+        add({Kind::revolute, body, p.point, body, point_vertex(p.point)});
       }
     }
   }
@@ -44,7 +44,7 @@ void ConstraintGraph::add(Edge edge) {
   for (const std::size_t end : {edge.a, edge.b}) {
     if (exists(end)) incident_[end].push_back(index);
   }
-  for (const std::size_t end : {edge.b, edge.a}) {  // points before bodies
+  for (const std::size_t end : {edge.b, edge.a}) {  // points before links
     std::vector<bool> seen(capacity_.size());
     if (!exists(end) || !find_unknown(end, seen)) continue;
     edges_[index].owner = end;

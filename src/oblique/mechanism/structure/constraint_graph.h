@@ -9,17 +9,17 @@
 
 namespace oblique::mechanism {
 
-/// The conditions of a mechanism as a graph. Vertices are the bodies (three unknowns each), then the points
+/// The conditions of a mechanism as a graph. Vertices are the links (three unknowns each), then the points
 /// (two each, none for those of the frame); an edge is one scalar condition between two vertices, or on one.
 class ConstraintGraph {
  public:
   static constexpr std::size_t kFrame = static_cast<std::size_t>(-1);
 
   struct Edge {
-    enum class Kind { hinge, on_line, angle, turn, along };
-    Kind kind = Kind::hinge;
-    std::size_t index = 0;               ///< body of a hinge, slide, or drive
-    std::size_t point = 0;               ///< of a hinge, index in Mechanism::points
+    enum class Kind { revolute, on_line, angle, turn, along };
+    Kind kind = Kind::revolute;
+    std::size_t index = 0;               ///< link of a revolute joint, prismatic joint, or drive
+    std::size_t point = 0;               ///< of a revolute joint, index in Mechanism::points
     std::size_t a = kFrame, b = kFrame;  ///< vertices
     std::size_t owner = kFrame;  ///< the vertex that this condition determines; kFrame: it is too much
   };
@@ -39,7 +39,7 @@ class ConstraintGraph {
   /// Conditions that find no unknown left to determine, in the order in which they were added.
   const std::vector<std::size_t>& redundant() const { return redundant_; }
 
-  /// The vertices that a redundant condition competes with for unknowns: their bodies are over-constrained.
+  /// The vertices that a redundant condition competes with for unknowns: their links are over-constrained.
   std::vector<std::size_t> competitors(std::size_t edge) const;
 
   /// Unknowns that no condition determines, and the vertices that can move with them.

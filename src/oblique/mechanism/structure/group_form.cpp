@@ -23,10 +23,10 @@ bool has_known_end(const Condition& c) {
   throw std::logic_error("a condition of no kind");
 }
 
-/// The conditions of a group of one unknown point or body by what they do.
+/// The conditions of a group of one unknown point or link by what they do.
 struct Sorted {
-  std::vector<std::size_t> hinges, angles, circles, lines, ways;  ///< ways: a drive's, along a line
-  bool has_own_line = false;  ///< of the lines that are no drive's: one is the unknown body's
+  std::vector<std::size_t> revolutes, angles, circles, lines, ways;  ///< ways: a drive's, along a line
+  bool has_own_line = false;  ///< of the lines that are no drive's: one is the unknown link's
 };
 
 /// Nothing where there are more unknowns, or conditions between them.
@@ -42,7 +42,7 @@ std::optional<Sorted> sorted(const GroupEquations& equations) {
         by.circles.push_back(i);
         break;
       case Condition::Kind::coincidence:
-        by.hinges.push_back(i);
+        by.revolutes.push_back(i);
         break;
       case Condition::Kind::on_line:
         by.lines.push_back(i);
@@ -59,14 +59,14 @@ std::optional<Sorted> sorted(const GroupEquations& equations) {
   return by;
 }
 
-/// Of a body hinged to a known point, whose direction is not given.
+/// Of a link pinned to a known point, whose direction is not given.
 GroupKind kind_about_pivot(const Sorted& by) {
   if (!by.ways.empty()) return GroupKind::general;
   if (!by.circles.empty()) return GroupKind::rrr;
   return by.has_own_line ? GroupKind::rpr : GroupKind::rrp;
 }
 
-/// Of a point, or a body whose direction is given, where two loci meet.
+/// Of a point, or a link whose direction is given, where two loci meet.
 GroupKind kind_of_crossing(const Sorted& by, bool is_turned) {
   if (is_turned) return GroupKind::general;
   if (!by.ways.empty()) {
@@ -81,7 +81,7 @@ GroupKind kind_of_crossing(const Sorted& by, bool is_turned) {
 Dyad dyad_on(const GroupEquations& equations) {
   const Condition* first = &equations.conditions[0];
   const Condition* second = &equations.conditions[1];
-  const auto body = [&](const Condition& c) { return equations.links[c.link].body; };
+  const auto body = [&](const Condition& c) { return equations.binary_links[c.link].body; };
   if (body(*second) < body(*first)) std::swap(first, second);
   return {body(*first),   first->b.point, body(*second), second->b.point,
           first->a.point, first->value,   second->value};
@@ -118,16 +118,16 @@ GroupForm form_of(const GroupEquations& equations) {
   const std::optional<Sorted> by = sorted(equations);
   if (!by) return form;
   form.circles = by->circles.size();
-  if (!by->hinges.empty()) form.hinge = by->hinges.front();
+  if (!by->revolutes.empty()) form.revolute = by->revolutes.front();
   if (!by->angles.empty()) form.angle = by->angles.front();
-  const bool is_body = !equations.cores.empty();
+  const bool is_body = !equations.platforms.empty();
   const bool is_turned = form.angle && equations.conditions[*form.angle].drive.has_value();
   for (const auto* loci : {&by->circles, &by->lines, &by->ways})
     form.loci.insert(form.loci.end(), loci->begin(), loci->end());
-  if (form.hinge && form.angle) {
-    form.placing = is_turned ? Placing::rotation : Placing::hinged;
+  if (form.revolute && form.angle) {
+    form.placing = is_turned ? Placing::rotation : Placing::pinned;
     form.kind = is_turned ? GroupKind::crank : GroupKind::general;
-  } else if (form.hinge) {
+  } else if (form.revolute) {
     form.placing = Placing::about_pivot;
     form.kind = kind_about_pivot(*by);
   } else if (is_body && by->angles.empty()) {

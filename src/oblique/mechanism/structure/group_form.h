@@ -12,16 +12,16 @@
 namespace oblique::mechanism {
 
 /// What a group is called. The letters of a class II group are its pairs, from one known element to the
-/// other: R a hinge, P a slide.
+/// other: R a revolute joint, P a prismatic joint.
 enum class GroupKind : std::uint8_t {
-  crank,    ///< class I: a body turned by a drive about a known point
-  slider,   ///< class I: a point or a body moved by a drive along a known line
+  crank,    ///< class I: a link turned by a drive about a known point
+  slider,   ///< class I: a point or a link moved by a drive along a known line
   rrr,      ///< a point at two distances
   rrp,      ///< a point at a distance and on a line
   prp,      ///< a point on two lines
-  rpr,      ///< a body hinged to a known point, whose line passes through another
-  rpp,      ///< a body that keeps its direction, whose line passes through a known point
-  triad,    ///< class III: a body on three legs
+  rpr,      ///< a link pinned to a known point, whose line passes through another
+  rpp,      ///< a link that keeps its direction, whose line passes through a known point
+  triad,    ///< class III: a link on three legs
   general,  ///< everything else
 };
 
@@ -32,14 +32,14 @@ std::string_view kind_name(GroupKind kind);
 enum class Placing : std::uint8_t {
   rotation,     ///< a crank: its drive gives the angle about a known point
   triangle,     ///< two links on two known points: `GroupForm::dyad`
-  hinged,       ///< a body of known direction, hinged to a known point
-  crossing,     ///< a point, or a body of known direction, where two circles or lines meet
-  about_pivot,  ///< a body hinged to a known point, with one condition on its angle
-  platform,     ///< a triad: a body on three legs
-  iteration,    ///< several bodies or points at once, or conditions between unknowns
+  pinned,       ///< a link of known direction, pinned to a known point
+  crossing,     ///< a point, or a link of known direction, where two circles or lines meet
+  about_pivot,  ///< a link pinned to a known point, with one condition on its angle
+  platform,     ///< a triad: a link on three legs
+  iteration,    ///< several links or points at once, or conditions between unknowns
 };
 
-/// An RRR dyad by its triangle: body1 hinged to the known P, body2 to the known Q, both to each other in C.
+/// An RRR dyad by its triangle: body1 pinned to the known P, body2 to the known Q, both to each other in C.
 ///
 ///            C             C lies left of P → Q: Group::side = +1
 ///      r₁  /   \  r₂
@@ -56,8 +56,8 @@ struct Dyad {
 struct GroupForm {
   GroupKind kind = GroupKind::general;
   Placing placing = Placing::iteration;
-  std::optional<std::size_t> hinge;  ///< rotation, hinged, about_pivot: to the known point
-  std::optional<std::size_t> angle;  ///< rotation, hinged, crossing of a body: what gives its direction
+  std::optional<std::size_t> revolute;  ///< rotation, pinned, about_pivot: to the known point
+  std::optional<std::size_t> angle;     ///< rotation, pinned, crossing of a link: what gives its direction
   /// The other conditions, each between something known and an unknown. Crossing: two, circles first;
   /// about_pivot: one; platform: its three legs.
   std::vector<std::size_t> loci;

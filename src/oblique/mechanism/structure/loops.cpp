@@ -18,7 +18,7 @@ bool in_group(const Group& group, std::size_t body) {
   return std::find(group.bodies.begin(), group.bodies.end(), body) != group.bodies.end();
 }
 
-/// The bodies outside of a group that carry a point.
+/// The links outside of a group that carry a point.
 std::vector<std::size_t> carriers(const Mechanism& mechanism, const Group& group, std::size_t point) {
   std::vector<std::size_t> found;
   for (const std::size_t body : mechanism.bodies_at(point)) {
@@ -27,7 +27,7 @@ std::vector<std::size_t> carriers(const Mechanism& mechanism, const Group& group
   return found;
 }
 
-/// A fixed point that a body is hinged to.
+/// A fixed point that a link is pinned to.
 std::optional<std::size_t> pivot(const Mechanism& mechanism, std::size_t body) {
   for (const BodyPoint& p : mechanism.bodies[body].points) {
     if (mechanism.points[p.point].fixed) return p.point;
@@ -36,10 +36,10 @@ std::optional<std::size_t> pivot(const Mechanism& mechanism, std::size_t body) {
 }
 
 struct Chain {
-  LoopLink base, input;  ///< the base goes from the far hinge to the input's foot
+  LoopLink base, input;  ///< the base goes from the far revolute joint to the input's foot
 };
 
-/// Two links hinged to each other that carry `moving` and `far`; a loop with the frame is preferred.
+/// Two links pinned to each other that carry `moving` and `far`; a loop with the frame is preferred.
 std::optional<Chain> chain(const Mechanism& mechanism, const Group& group, std::size_t moving,
                            std::size_t far) {
   const auto link = [&](std::size_t body, std::size_t from, std::size_t to) {
@@ -93,7 +93,7 @@ std::optional<FourBarLoop> four_bar(const Mechanism& mechanism, const Structure&
   return loop;
 }
 
-/// A crank that carries a point: the body and its fixed pivot.
+/// A crank that carries a point: the link and its fixed pivot.
 std::optional<std::pair<std::size_t, std::size_t>> crank_at(const Mechanism& mechanism, const Group& group,
                                                             std::size_t point) {
   if (mechanism.points[point].fixed) return std::nullopt;
@@ -126,15 +126,15 @@ std::optional<SliderLoop> slider_crank(const Mechanism& mechanism, const Structu
   SliderLoop loop;
   loop.group = g;
   std::size_t pin = 0;
-  if (group.form.hinge) {
-    const Condition& hinge = conditions[*group.form.hinge];
-    pin = hinge.b.point;
-    loop.rod = group.equations.cores[hinge.a.member];
-    loop.length = (line.a.local - hinge.a.local).norm();
+  if (group.form.revolute) {
+    const Condition& revolute = conditions[*group.form.revolute];
+    pin = revolute.b.point;
+    loop.rod = group.equations.platforms[revolute.a.member];
+    loop.length = (line.a.local - revolute.a.local).norm();
   } else {
     const Condition& rod = conditions[group.form.loci.front()];
     pin = rod.b.point;
-    loop.rod = group.equations.links[rod.link].body;
+    loop.rod = group.equations.binary_links[rod.link].body;
     loop.length = rod.value;
   }
   const auto crank = crank_at(mechanism, group, pin);
@@ -152,13 +152,13 @@ std::optional<SliderLoop> slotted_lever(const Mechanism& mechanism, const Struct
   const Group& group = structure.groups[g];
   if (group.form.placing != Placing::about_pivot) return std::nullopt;
   const Condition& line = group.equations.conditions[group.form.loci.front()];
-  const Condition& hinge = group.equations.conditions[*group.form.hinge];
+  const Condition& revolute = group.equations.conditions[*group.form.revolute];
   SliderLoop loop;
   loop.group = g;
   loop.is_lever = true;
-  loop.rod = group.equations.cores[hinge.a.member];
-  loop.offset = std::abs(cross(line.line.direction, hinge.a.local - line.line.point));
-  std::size_t pin = line.a.point, fixed = hinge.b.point;
+  loop.rod = group.equations.platforms[revolute.a.member];
+  loop.offset = std::abs(cross(line.line.direction, revolute.a.local - line.line.point));
+  std::size_t pin = line.a.point, fixed = revolute.b.point;
   if (mechanism.points[pin].fixed) std::swap(pin, fixed);
   const auto crank = crank_at(mechanism, group, pin);
   if (!crank || !mechanism.points[fixed].fixed) return std::nullopt;

@@ -12,7 +12,7 @@
 
 namespace oblique::mechanism {
 
-/// A link of a loop, from hinge to hinge; no body: the frame.
+/// A link of a loop, from joint to joint; no link: the frame.
 struct LoopLink {
   std::optional<std::size_t> body;  ///< index in Mechanism::bodies
   std::size_t from = 0, to = 0;     ///< indices in Mechanism::points
@@ -22,7 +22,7 @@ struct LoopLink {
 /// What F. Grashof's rule says of a four-bar loop whose shortest and longest links are s and l, the others
 /// p and q (Theoretische Maschinenlehre II, 1883).
 enum class GrashofClass {
-  crank_rocker,   ///< s + l < p + q and the shortest link is hinged to the frame: it turns fully
+  crank_rocker,   ///< s + l < p + q and the shortest link is pinned to the frame: it turns fully
   double_crank,   ///< the frame is the shortest: both its neighbours turn fully
   double_rocker,  ///< the coupler is the shortest and turns fully, its neighbours swing
   change_point,   ///< s + l = p + q: all four links can lie on one line
@@ -33,10 +33,10 @@ enum class GrashofClass {
 /// "crank-rocker" …
 std::string_view grashof_name(GrashofClass type);
 
-/// Four links hinged in a ring:   frame – input – coupler – output – frame.
+/// Four links pinned in a ring:   frame – input – coupler – output – frame.
 struct FourBarLoop {
   std::size_t group = 0;          ///< the RRR dyad that closes it, index in Structure::groups
-  std::array<LoopLink, 4> links;  ///< the frame (of a loop without it: a body), input, coupler, output
+  std::array<LoopLink, 4> links;  ///< the frame (of a loop without it: a link), input, coupler, output
   GrashofClass type = GrashofClass::triple_rocker;
   double shortest_and_longest = 0, others = 0;  ///< s + l, p + q [length unit]
   std::vector<std::size_t> shortest;            ///< indices in `links`
@@ -46,7 +46,7 @@ struct FourBarLoop {
 /// longest count as equal.
 GrashofClass grashof_class(const std::array<double, 4>& lengths);
 
-/// A crank about a fixed pivot, a rod or lever, and a slide.
+/// A crank about a fixed pivot, a rod or lever, and a prismatic joint.
 ///
 ///     slider-crank: the rod l joins the crank's pin to a point on a fixed line, e away from the pivot
 ///         crank turns fully: l ≥ r + e;   rod turns fully: r ≥ l + e
@@ -64,7 +64,7 @@ struct SliderLoop {
   };
   std::size_t group = 0;
   bool is_lever = false;
-  std::size_t crank = 0;  ///< bodies
+  std::size_t crank = 0;  ///< links
   std::size_t rod = 0;
   double radius = 0;  ///< r [length unit]
   double length = 0;  ///< l, or d of a slotted lever
@@ -75,8 +75,8 @@ struct SliderLoop {
 /// "the crank turns fully" …
 std::string_view slider_loop_name(SliderLoop::Type type);
 
-/// Every four-bar loop that an RRR dyad closes: its outer hinges sit on two links that are hinged to each
-/// other, of which one may be the frame.
+/// Every four-bar loop that an RRR dyad closes: its outer revolute joints sit on two links that are pinned to
+/// each other, of which one may be the frame.
 std::vector<FourBarLoop> four_bar_loops(const Mechanism& mechanism, const Structure& structure);
 
 /// Every slider-crank and slotted lever that an RRP or RPR dyad closes about a crank with a fixed pivot.

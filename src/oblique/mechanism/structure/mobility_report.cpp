@@ -19,7 +19,8 @@ std::string quoted_bodies(const Mechanism& mechanism, const std::vector<std::siz
   return fmt::format("{} {}", names.size() == 1 ? "body" : "bodies", fmt::join(names, ", "));
 }
 
-/// Points that only one body names and frame points that none names: where a hinge may have been meant.
+/// Points that only one link names and frame points that none names: where a revolute joint may have been
+/// meant.
 std::string loose_ends(const Mechanism& mechanism) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < mechanism.points.size(); ++i) {
@@ -38,8 +39,8 @@ std::string mobility_formula(const Mechanism& mechanism) {
   int slides = 0;
   for (const Slide& slide : mechanism.slides) slides += slide.of ? 2 : 1;
   const int bodies = static_cast<int>(mechanism.bodies.size());
-  const int hinges = (3 * bodies - slides - mobility(mechanism)) / 2;
-  std::string text = fmt::format("3·{} bodies − 2·{} revolute joints", bodies, hinges);
+  const int revolutes = (3 * bodies - slides - mobility(mechanism)) / 2;
+  std::string text = fmt::format("3·{} bodies − 2·{} revolute joints", bodies, revolutes);
   if (slides > 0) text += fmt::format(" − {} for slides", slides);
   return text;
 }
@@ -89,7 +90,7 @@ void check_parts(const Mechanism& mechanism, const ConstraintGraph& graph) {
       return fmt::format("{} superfluous: {} fix it already", what, quoted_bodies(mechanism, others));
     };
     switch (edge.kind) {
-      case ConstraintGraph::Edge::Kind::hinge:
+      case ConstraintGraph::Edge::Kind::revolute:
         std::erase(others, edge.index);
         finding.place = mechanism.bodies[edge.index].place;
         finding.what = fmt::format(

@@ -49,7 +49,7 @@ class Rows {
     rows_.emplace_back(Eigen::RowVectorXd::Zero(static_cast<Index>(3 * mechanism_.bodies.size())));
   }
 
-  /// Adds the derivative by the place of a body's material point.
+  /// Adds the derivative by the place of a link's material point.
   void add_arm(std::size_t body, const Vector2d& arm, const Vector2d& derivative) {
     const auto column = static_cast<Index>(3 * body);
     rows_.back()(column) += derivative.x();

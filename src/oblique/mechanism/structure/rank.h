@@ -12,7 +12,7 @@
 
 namespace oblique::mechanism {
 
-/// Where a body stands: the place of its first point and its direction.
+/// Where a link stands: the place of its first point and its direction.
 struct BodyPose {
   Eigen::Vector2d position;
   double cosine = 1, sine = 0;
@@ -20,9 +20,9 @@ struct BodyPose {
 
 std::vector<BodyPose> poses_of(const Mechanism& mechanism, const Configuration& here);
 
-/// Slopes of all pair conditions, drives apart, by the coordinates of all bodies: x, y and angle times the
-/// largest length of each. Two rows for a hinge between a body and the frame or the first body that names
-/// the point, one for a pin in a slot, two for a prismatic pair.
+/// Derivatives of all pair conditions, drives apart, by the coordinates of all links: x, y and angle times
+/// the largest length of each. Two rows for a revolute joint between a link and the frame or the first link
+/// that names the point, one for a pin in a slot, two for a prismatic pair.
 Eigen::MatrixXd pair_jacobian(const Mechanism& mechanism, const std::vector<BodyPose>& poses);
 
 /// Degrees of freedom by the rank of `pair_jacobian`: singular values below kRankTolerance of the largest
@@ -37,7 +37,7 @@ struct JacobianRank {
 };
 inline constexpr double kRankTolerance = 1e-6;
 
-/// Bodies without a place (NaN) and their conditions are left out.
+/// Links without a place (NaN) and their conditions are left out.
 JacobianRank jacobian_rank(const Mechanism& mechanism, const std::vector<BodyPose>& poses);
 
 /// Mobility by Grübler's formula and by rank. Where they differ at the start, a second position is looked

@@ -25,8 +25,9 @@ constexpr double kCloses = 1e-9;  ///< of the largest length
 /// A pair of the mechanism that was loosened.
 struct Cut {
   Edge edge;
-  int conditions = 0;     ///< of the pair that are too much
-  std::size_t loose = 0;  ///< hinge: the body's own point, index in the points of the loosened mechanism
+  int conditions = 0;  ///< of the pair that are too much
+  std::size_t loose =
+      0;  ///< revolute joint: the link's own point, index in the points of the loosened mechanism
 };
 
 /// The mechanism with its redundant conditions taken away.
@@ -37,7 +38,7 @@ class Loosened {
     for (const std::size_t index : graph.redundant()) {
       const Edge& edge = graph.edges()[index];
       const auto same = std::find_if(cuts_.begin(), cuts_.end(), [&](const Cut& cut) {
-        return is_hinge(edge) == is_hinge(cut.edge) && edge.index == cut.edge.index &&
+        return is_revolute(edge) == is_revolute(cut.edge) && edge.index == cut.edge.index &&
                edge.point == cut.edge.point;
       });
       if (same != cuts_.end()) {
@@ -64,8 +65,8 @@ class Loosened {
     const Cut& cut = cuts_[c];
     Excess excess;
     excess.bodies = loops_[c];
-    excess.is_hinge = is_hinge(cut.edge);
-    if (excess.is_hinge) {
+    excess.is_revolute = is_revolute(cut.edge);
+    if (excess.is_revolute) {
       excess.pair = fmt::format("the revolute joint of '{}' at '{}'", original_.bodies[cut.edge.index].name,
                                 original_.points[cut.edge.point].name);
       excess.place = original_.bodies[cut.edge.index].place;
@@ -79,7 +80,7 @@ class Loosened {
   }
 
   double miss(const Cut& cut, const Configuration& here) const {
-    if (is_hinge(cut.edge)) {
+    if (is_revolute(cut.edge)) {
       return (here.points[cut.edge.point].position - here.points[cut.loose].position).norm();
     }
     const Slide& slide = original_.slides[cut.edge.index];
@@ -100,12 +101,12 @@ class Loosened {
   }
 
  private:
-  static bool is_hinge(const Edge& edge) { return edge.kind == Edge::Kind::hinge; }
+  static bool is_revolute(const Edge& edge) { return edge.kind == Edge::Kind::revolute; }
 
   bool loosen(Cut& cut) {
     if (cut.edge.kind == Edge::Kind::turn || cut.edge.kind == Edge::Kind::along) return false;
-    if (is_hinge(cut.edge)) {
-      loosen_hinge(cut);
+    if (is_revolute(cut.edge)) {
+      loosen_revolute(cut);
       return true;
     }
     Slide& slide = loose_.slides[cut.edge.index];
@@ -114,9 +115,9 @@ class Loosened {
       cut.edge.kind = Edge::Kind::angle;
       return true;
     }
-    // the whole slide goes, which would shift the numbers of others
+    // the whole prismatic joint goes, which would shift the numbers of others
     const bool others = std::any_of(cuts_.begin(), cuts_.end(), [&](const Cut& other) {
-      return &other != &cut && !is_hinge(other.edge);
+      return &other != &cut && !is_revolute(other.edge);
     });
     const bool driven = std::any_of(loose_.drives.begin(), loose_.drives.end(),
                                     [](const Drive& drive) { return drive.slide.has_value(); });
@@ -125,7 +126,7 @@ class Loosened {
     return true;
   }
 
-  void loosen_hinge(Cut& cut) {
+  void loosen_revolute(Cut& cut) {
     Body& body = loose_.bodies[cut.edge.index];
     Point own;
     own.name = fmt::format("{} of {}", original_.points[cut.edge.point].name, body.name);
@@ -157,8 +158,8 @@ class Loosened {
   bool possible_ = false;
 };
 
-/// Chooses modes as the sketch has them, and where a loosened hinge hangs on the choice, those in which it
-/// gapes least. False where nothing decides.
+/// Chooses modes as the sketch has them, and where a loosened revolute joint hangs on the choice, those in
+/// which it gapes least. False where nothing decides.
 bool choose(const Loosened& loosened, Structure& structure) {
   const Mechanism& mechanism = loosened.mechanism();
   Kinematics kinematics(mechanism, structure);
@@ -187,7 +188,7 @@ bool choose(const Loosened& loosened, Structure& structure) {
         decided = true;
       }
       for (const Cut& cut : loosened.cuts()) {
-        if (cut.edge.kind != Edge::Kind::hinge) continue;
+        if (cut.edge.kind != Edge::Kind::revolute) continue;
         const double gap = loosened.miss(cut, there);
         if (std::isnan(gap)) continue;
         score += gap * gap;
@@ -279,8 +280,8 @@ std::vector<text::Diagnostic> redundancy_findings(const Mechanism& mechanism) {
       finding.what =
           fmt::format("{} is redundant: it closes all the same, and by rank the mechanism has mobility {}",
                       loop, *redundancy->mobility);
-      finding.remedy = excess.is_hinge ? "the others move alike without that body: leave it out"
-                                       : "the mechanism moves alike without it: leave it out";
+      finding.remedy = excess.is_revolute ? "the others move alike without that body: leave it out"
+                                          : "the mechanism moves alike without it: leave it out";
     }
     findings.push_back(std::move(finding));
   }

@@ -16,7 +16,7 @@ struct Excess {
   text::Place place;
   double miss_at_start = 0;  ///< [length unit], of an angle [rad]
   double miss_beside = 0;    ///< 5° of the fastest drive on
-  bool is_hinge = false, is_angle = false;
+  bool is_revolute = false, is_angle = false;
 };
 
 /// What the conditions do that are too many in a mechanism, once it is put together without them.
@@ -29,9 +29,9 @@ struct Redundancy {
 };
 
 /// Puts an over-constrained mechanism together without the conditions that find no unknown to determine
-/// (ConstraintGraph) and measures what they miss by. Of a hinge with one condition too much the one along
-/// the body's bar is left out: the hinge becomes a pin in a slot of the bar. Nothing where no condition is
-/// too much, drives are, or what is left cannot be put together either.
+/// (ConstraintGraph) and measures what they miss by. Of a revolute joint with one condition too much the one
+/// along the link's bar is left out: the revolute joint becomes a pin in a slot of the bar. Nothing where no
+/// condition is too much, drives are, or what is left cannot be put together either.
 std::optional<Redundancy> examine_redundancy(const Mechanism& mechanism);
 
 /// What `examine_redundancy` finds, as findings to tell beside those of `find_groups`.

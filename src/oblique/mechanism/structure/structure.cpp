@@ -29,7 +29,7 @@ void add_once(std::vector<std::size_t>& list, std::size_t item) {
 struct Part {
   GroupMembers members;
   std::vector<std::size_t> needs;    ///< parts that come before
-  std::vector<std::size_t> carried;  ///< points that its bodies carry along
+  std::vector<std::size_t> carried;  ///< points that its links carry along
 };
 
 /// Takes a mechanism apart and orders the groups:
@@ -38,9 +38,9 @@ struct Part {
 /// the
 ///    vertex that owns a condition to what the condition needs, and the strongly connected components are
 ///    the parts that only together have a place.
-/// 2. A component that is nothing but a point of one body goes to the part of that body, which carries it.
+/// 2. A component that is nothing but a point of one link goes to the part of that link, which carries it.
 /// 3. Of the parts that have all they need, the next is always the one whose drive stands first in the file,
-///    then whose first body does. So the order does not depend on the matching, of which there are many, and
+///    then whose first link does. So the order does not depend on the matching, of which there are many, and
 ///    files that say the same give the same rows and names.
 /// 4. In that order each part is reduced to equations, whose form then is known: what earlier groups place
 ///    counts as given.
@@ -80,7 +80,7 @@ class Decomposition {
           if (edge.kind == ConstraintGraph::Edge::Kind::turn ||
               edge.kind == ConstraintGraph::Edge::Kind::along) {
             add_once(part.members.drives, edge.index);
-          } else if (edge.kind != ConstraintGraph::Edge::Kind::hinge) {
+          } else if (edge.kind != ConstraintGraph::Edge::Kind::revolute) {
             add_once(part.members.slides, edge.index);
           }
           const std::size_t other = edge.a == v ? edge.b : edge.a;
@@ -89,7 +89,7 @@ class Decomposition {
           }
         }
       }
-      // a point that hangs on one body alone is that body's
+      // a point that hangs on one link alone is that link's
       if (part.members.bodies.empty() && part.members.slides.empty()) {
         const std::size_t owner = needs.front();
         for (const std::size_t v : component) {
@@ -109,7 +109,7 @@ class Decomposition {
     return !graph_.is_body(vertex) && mechanism_.points[graph_.point_of(vertex)].fixed;
   }
 
-  /// Of the parts that have all they need, the driven ones first, then by their first body.
+  /// Of the parts that have all they need, the driven ones first, then by their first link.
   std::size_t first_ready(const std::vector<bool>& done) const {
     constexpr std::size_t kLast = std::numeric_limits<std::size_t>::max();
     std::size_t best = kLast;
@@ -163,7 +163,7 @@ class Decomposition {
 }  // namespace
 
 std::size_t pivot_of(const Group& crank) {
-  return crank.equations.conditions[crank.form.hinge.value()].b.point;
+  return crank.equations.conditions[crank.form.revolute.value()].b.point;
 }
 
 int mobility(const Mechanism& mechanism) {

@@ -7,9 +7,9 @@
 
 namespace oblique::mechanism {
 
-/// A triangle is flat where its slack is within this, for coordinates and sides up to `size`. Coordinates of
-/// known points carry a few roundings of their size each, and more behind several groups; 32 of them leave
-/// every angle between the links whose sine is above about 2e-7 to the regular case.
+/// A triangle is collinear where its slack is within this, for coordinates and sides up to `size`.
+/// Coordinates of known points carry a few roundings of their size each, and more behind several groups; 32
+/// of them leave every angle between the links whose sine is above about 2e-7 to the regular case.
 inline double flat_within(double size) {
   return 32 * std::numeric_limits<double>::epsilon() * size;
 }
@@ -17,7 +17,7 @@ inline double flat_within(double size) {
 /// The oblique triangle over a base: where its apex lies, from three side lengths.
 struct Triangle {
   double along = 0;      ///< of the apex, from the base's first end along the base
-  double height = 0;     ///< of the apex over the base, ≥ 0; 0 for a flat or impossible triangle
+  double height = 0;     ///< of the apex over the base, ≥ 0; 0 for a collinear or impossible triangle
   double four_area = 0;  ///< 4·area = √((r₁+r₂)²−L²)(L²−(r₁−r₂)²), ≥ 0
   double slack = 0;  ///< min(r₁+r₂−L, L−|r₁−r₂|): negative where the sides do not reach each other
 };
@@ -27,7 +27,7 @@ struct Triangle {
 ///     along = (L² + r₁² − r₂²) / 2L,   height = √((r₁+r₂+L)(r₁+r₂−L)(L+r₁−r₂)(L−r₁+r₂)) / 2L
 ///
 /// Heron's products instead of 1 − cos² keep the height accurate to rounding of the *lengths* even where the
-/// triangle is nearly flat (W. Kahan, "Miscalculating Area and Angles of a Needle-like Triangle").
+/// triangle is nearly collinear (W. Kahan, "Miscalculating Area and Angles of a Needle-like Triangle").
 inline Triangle triangle(double base, double first, double second) {
   const double sum = first + second;
   const double difference = first - second;

@@ -28,7 +28,8 @@ class BlockContext final : public ExpressionContext {
       return flat.inputs[*input].terms.empty() ? Change::never : Change::always;
     if (assembly_.quantity_of(block_, name) != kNone || name == "time") return Change::always;
     if (flat.definition->find_memory(name)) {
-      const bool constant = !assembly_.first_memory.empty() && assembly_.first_memory[block_] == kNone;
+      const bool constant =
+          !assembly_.first_discrete_state.empty() && assembly_.first_discrete_state[block_] == kNone;
       return constant ? Change::never : Change::with_events;
     }
     if (mode_node(assembly_, block_, name)) return Change::with_events;
@@ -109,9 +110,9 @@ const diagram::StartRule& Assembly::start_of(const Quantity& quantity) const {
   });
 }
 
-std::uint32_t Assembly::new_memory(std::string name, double start) {
-  network.memories.push_back({std::move(name), start});
-  return static_cast<std::uint32_t>(network.memories.size() - 1);
+std::uint32_t Assembly::new_discrete_state(std::string name, double start) {
+  network.discrete_states.push_back({std::move(name), start});
+  return static_cast<std::uint32_t>(network.discrete_states.size() - 1);
 }
 
 bool Assembly::is_constant(std::size_t block, const text::Expression& expression) {
@@ -129,7 +130,8 @@ NodeId Assembly::node_of(std::size_t block, std::string_view name) {
   if (const auto input = flat.definition->find_input(name)) return sum_of(*this, flat.inputs[*input]);
   if (const std::uint32_t own = quantity_of(block, name); own != kNone) return quantities[own].node;
   if (name == "time") return network.graph.variable(0);
-  if (const auto memory = flat.definition->find_memory(name)) return memory_node(*this, block, *memory);
+  if (const auto discrete_state = flat.definition->find_memory(name))
+    return discrete_state_node(*this, block, *discrete_state);
   if (const auto mode = mode_node(*this, block, name)) return *mode;
   return network.graph.constant(constant_of(flat, name).value());  // parse_block admits no other names
 }

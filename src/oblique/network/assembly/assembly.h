@@ -33,7 +33,7 @@ struct Assembly {
   struct PendingSwitch {
     std::size_t block;
     text::Expression left, right;
-    std::uint32_t memory;
+    std::uint32_t discrete_state;
     text::Place place;
     Turning turning;
   };
@@ -47,7 +47,7 @@ struct Assembly {
     NodeId initial, operate, hold;
   };
   struct ModeLine {
-    std::uint32_t memory;
+    std::uint32_t discrete_state;
     diagram::SignalRef signal;
     std::string group;
   };
@@ -59,7 +59,7 @@ struct Assembly {
   std::uint32_t quantity_of(diagram::SignalRef signal) const;
   const diagram::StartRule& start_of(const Quantity& quantity) const;
 
-  std::uint32_t new_memory(std::string name, double start);
+  std::uint32_t new_discrete_state(std::string name, double start);
   /// Whether an expression never changes.
   bool is_constant(std::size_t block, const text::Expression& expression);
   /// Its value; nothing for one that changes.
@@ -77,7 +77,7 @@ struct Assembly {
   std::vector<ModeLines> modes;  ///< of each group
   std::vector<ModeLine> mode_lines;
   std::vector<std::pair<std::size_t, const diagram::EventRule*>> active_events;
-  std::vector<std::uint32_t> first_memory;  ///< of each block with memories that events set
+  std::vector<std::uint32_t> first_discrete_state;  ///< of each block with discrete states that events set
   std::map<std::pair<std::size_t, std::string>, std::uint32_t> switch_index, table_index;
   std::vector<PendingSwitch> pending_switches;
   std::vector<PendingTable> pending_tables;

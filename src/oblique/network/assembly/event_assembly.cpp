@@ -13,10 +13,10 @@ std::vector<Event::Action> actions_of(Assembly& a, std::size_t block,
   std::vector<Event::Action> actions;
   for (const diagram::EventAction& rule : rules) {
     Event::Action done;
-    const auto memory = a.diagram.blocks[block].definition->find_memory(rule.target);
-    done.on_state = !memory;
-    done.index = memory ? a.first_memory[block] + static_cast<std::uint32_t>(*memory)
-                        : a.quantities[a.quantity_of(block, rule.target)].variable_index;
+    const auto discrete_state = a.diagram.blocks[block].definition->find_memory(rule.target);
+    done.on_state = !discrete_state;
+    done.index = discrete_state ? a.first_discrete_state[block] + static_cast<std::uint32_t>(*discrete_state)
+                                : a.quantities[a.quantity_of(block, rule.target)].variable_index;
     done.value = a.built(block, rule.value, rule.place, "an event's '" + rule.target + "'");
     actions.push_back(done);
   }
@@ -36,31 +36,32 @@ void find_active_events(Assembly& a) {
   }
 }
 
-void make_memories(Assembly& a) {
-  a.first_memory.assign(a.diagram.blocks.size(), kNone);
+void make_discrete_states(Assembly& a) {
+  a.first_discrete_state.assign(a.diagram.blocks.size(), kNone);
   std::vector<bool> set(a.diagram.blocks.size(), false);
   for (const auto& [block, rule] : a.active_events) set[block] = true;
   for (std::size_t b = 0; b < a.diagram.blocks.size(); ++b) {
     const diagram::FlatBlock& block = a.diagram.blocks[b];
     if (!set[b]) continue;
-    a.first_memory[b] = static_cast<std::uint32_t>(a.network.memories.size());
-    for (const diagram::MemoryRule& memory : block.definition->memories) {
-      const double start = a.constant_value(b, memory.initial).value_or(0);
+    a.first_discrete_state[b] = static_cast<std::uint32_t>(a.network.discrete_states.size());
+    for (const diagram::MemoryRule& discrete_state : block.definition->memories) {
+      const double start = a.constant_value(b, discrete_state.initial).value_or(0);
       if (!std::isfinite(start)) {
         a.diagnostics.add({block.place,
-                           fmt::format("'{}.{}' would start at {}", block.path, memory.name, start),
+                           fmt::format("'{}.{}' would start at {}", block.path, discrete_state.name, start),
                            "a finite start value",
                            {}});
       }
-      a.network.memories.push_back({block.path + "." + memory.name, start});
+      a.network.discrete_states.push_back({block.path + "." + discrete_state.name, start});
     }
   }
 }
 
-NodeId memory_node(Assembly& a, std::size_t block, std::size_t memory) {
-  if (a.first_memory[block] != kNone)
-    return a.network.graph.memory(a.first_memory[block] + static_cast<std::uint32_t>(memory));
-  const text::Expression& initial = a.diagram.blocks[block].definition->memories[memory].initial;
+NodeId discrete_state_node(Assembly& a, std::size_t block, std::size_t discrete_state) {
+  if (a.first_discrete_state[block] != kNone)
+    return a.network.graph.discrete_state(a.first_discrete_state[block] +
+                                          static_cast<std::uint32_t>(discrete_state));
+  const text::Expression& initial = a.diagram.blocks[block].definition->memories[discrete_state].initial;
   return a.network.graph.constant(a.constant_value(block, initial).value_or(0));
 }
 

@@ -10,19 +10,20 @@ namespace oblique::network {
 void make_modes(Assembly& a) {
   constexpr auto kOperate = static_cast<double>(diagram::OperatingMode::operate);
   for (const diagram::FlatGroup& group : a.diagram.timeline.groups) {
-    const std::uint32_t mode = a.new_memory("mode of group " + group.name, kOperate);
-    a.network.mode_memories.push_back(mode);
+    const std::uint32_t mode = a.new_discrete_state("mode of group " + group.name, kOperate);
+    a.network.mode_states.push_back(mode);
     Assembly::ModeLines lines;
     ExpressionGraph& graph = a.network.graph;
     const auto line = [&](const std::optional<diagram::SignalRef>& signal, std::string_view name) {
       if (!signal) return graph.constant(0);
-      const std::uint32_t memory = a.new_memory(fmt::format("{} line of group {}", name, group.name), 0);
-      a.mode_lines.push_back({memory, *signal, group.name});
-      return graph.memory(memory);
+      const std::uint32_t discrete_state =
+          a.new_discrete_state(fmt::format("{} line of group {}", name, group.name), 0);
+      a.mode_lines.push_back({discrete_state, *signal, group.name});
+      return graph.discrete_state(discrete_state);
     };
     const auto inverse = [&](NodeId node) { return graph.apply(Op::subtract, graph.constant(1), node); };
     const auto is = [&](diagram::OperatingMode asked) {
-      return graph.apply(Op::equal, graph.memory(mode), graph.constant(static_cast<double>(asked)));
+      return graph.apply(Op::equal, graph.discrete_state(mode), graph.constant(static_cast<double>(asked)));
     };
     const auto either = [&](NodeId one, NodeId other) {
       return inverse(graph.apply(Op::multiply, inverse(one), inverse(other)));
@@ -47,10 +48,10 @@ std::optional<NodeId> mode_node(const Assembly& a, std::size_t block, std::strin
 
 void define_mode_lines(Assembly& a) {
   for (const Assembly::ModeLine& line : a.mode_lines) {
-    add_switch(
-        a, {line.memory, fmt::format("group {}", line.group), a.diagram.signal_name(line.signal) + " > 0.5",
-            a.network.graph.apply(Op::subtract, a.quantities[a.quantity_of(line.signal)].node,
-                                  a.network.graph.constant(0.5))});
+    add_switch(a, {line.discrete_state, fmt::format("group {}", line.group),
+                   a.diagram.signal_name(line.signal) + " > 0.5",
+                   a.network.graph.apply(Op::subtract, a.quantities[a.quantity_of(line.signal)].node,
+                                         a.network.graph.constant(0.5))});
   }
 }
 
@@ -63,13 +64,13 @@ void define_phase_ends(Assembly& a) {
     const diagram::FlatCondition& until = *phase.until;
     const NodeId signal = a.quantities[a.quantity_of(until.signal)].node;
     const NodeId threshold = a.network.graph.constant(until.threshold);
-    const std::uint32_t memory = a.new_memory("end of a phase", 0);
-    add_switch(a, {memory, "timeline",
+    const std::uint32_t discrete_state = a.new_discrete_state("end of a phase", 0);
+    add_switch(a, {discrete_state, "timeline",
                    fmt::format("{} {} {}", a.diagram.signal_name(until.signal), until.above ? ">" : "<",
                                until.threshold),
                    until.above ? a.network.graph.apply(Op::subtract, signal, threshold)
                                : a.network.graph.apply(Op::subtract, threshold, signal)});
-    a.network.phase_ends.push_back(a.network.graph.memory(memory));
+    a.network.phase_ends.push_back(a.network.graph.discrete_state(discrete_state));
   }
 }
 

@@ -9,7 +9,7 @@
 // Modes of operation and the phases of a timeline.
 namespace oblique::network {
 
-/// A memory for the mode of each group, and one for each of its mode lines.
+/// A discrete state for the mode of each group, and one for each of its mode lines.
 void make_modes(Assembly& a);
 
 /// The node of a mode of operation; nothing for another name, or where there is no timeline.

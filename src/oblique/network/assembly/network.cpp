@@ -189,7 +189,7 @@ Network assemble(const diagram::FlatDiagram& diagram) {
   collect_quantities(a);
   make_modes(a);
   find_active_events(a);
-  make_memories(a);
+  make_discrete_states(a);
   make_states(a);
   for (const OrderStep& step : dependency_order(dependencies_of_algebra(a), implicit_marks(a)))
     define(a, step);

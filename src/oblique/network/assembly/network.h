@@ -30,8 +30,8 @@ struct State {
 };
 
 /// A value that only events change.
-struct Memory {
-  std::string name;  ///< of a block's memory its path; of a switch the comparison
+struct DiscreteState {
+  std::string name;  ///< of a block's discrete state its path; of a switch the comparison
   double start = 0;
 };
 
@@ -40,13 +40,14 @@ struct Memory {
 /// not.
 enum class Turning { limits, bends, jumps };
 
-/// A switch: its memory is 1 where the surface is above 0, else 0.
+/// A switch: its discrete state is 1 where the event function is above 0, else 0.
 struct Switch {
-  std::uint32_t memory = 0;
-  std::string block;       ///< path
-  std::string comparison;  ///< "in > high", as the block's file has it
-  NodeId surface = 0;      ///< [machine unit] or whatever is compared
-  /// d surface/dt of a surface that depends on time alone, and linearly: its crossing is known beforehand.
+  std::uint32_t discrete_state = 0;
+  std::string block;          ///< path
+  std::string comparison;     ///< "in > high", as the block's file has it
+  NodeId event_function = 0;  ///< [machine unit] or whatever is compared
+  /// d(event function)/dt of an event function that depends on time alone, and linearly: its crossing is
+  /// known beforehand.
   std::optional<NodeId> rate = std::nullopt;
   double check_interval = std::numeric_limits<double>::infinity();  ///< [s] how often at least to look
   Turning turning = Turning::jumps;
@@ -55,7 +56,7 @@ struct Switch {
 /// What happens when a condition becomes true: all values are those of the moment before.
 struct Event {
   struct Action {
-    bool on_state = false;  ///< else on a memory
+    bool on_state = false;  ///< else on a discrete state
     std::uint32_t index = 0;
     NodeId value = 0;
   };
@@ -91,19 +92,20 @@ struct Loop {
 ///
 ///     dx/dt = f(t, x, z; m),   0 = g(t, x, z; m),   signals = h(t, x, z; m)
 ///
-/// with states x, algebraic unknowns z and memories m, which stay as they are until a switch turns over.
-/// Variables of the graph are numbered: time, states, unknowns.
+/// with states x, algebraic unknowns z and discrete states m, which stay as they are until a switch turns
+/// over. Variables of the graph are numbered: time, states, unknowns.
 struct Network {
   ExpressionGraph graph;
   std::vector<State> states;
   std::vector<Unknown> unknowns;
   std::vector<Loop> loops;  ///< each after those it depends on
-  std::vector<Memory> memories;
+  std::vector<DiscreteState> discrete_states;
   std::vector<Switch> switches;
   std::vector<Event> events;
   std::vector<text::PointTable> tables;
-  /// Of each group of integrators: the memory that holds its mode of operation. Empty without a timeline.
-  std::vector<std::uint32_t> mode_memories;
+  /// Of each group of integrators: the discrete state that holds its mode of operation. Empty without a
+  /// timeline.
+  std::vector<std::uint32_t> mode_states;
   std::vector<NodeId> phase_ends;  ///< conditions of the timeline's phases that end by one
   std::vector<NodeId> signals;     ///< one for each output of each flat block, in their order
   std::vector<std::string> signal_names;

@@ -10,10 +10,10 @@ namespace oblique::network {
 NodeId switch_of(Assembly& a, std::size_t block, const text::Expression& left, const text::Expression& right,
                  Turning turning);
 
-/// Adds a switch, which names its memory.
+/// Adds a switch, which names its discrete state.
 void add_switch(Assembly& a, Switch made);
 
-/// The surfaces of all switches; building one may call for another.
+/// The event functions of all switches; building one may call for another.
 void define_switches(Assembly& a);
 
 }  // namespace oblique::network

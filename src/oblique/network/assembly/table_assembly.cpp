@@ -17,8 +17,8 @@ NodeId interpolate_by_segments(Assembly& a, std::size_t block, const text::Expre
   if (inserted) {
     found->second = static_cast<std::uint32_t>(a.network.tables.size());
     a.network.tables.push_back(std::move(table));
-    const auto segment = static_cast<std::uint32_t>(a.network.memories.size());
-    a.network.memories.push_back({a.diagram.blocks[block].path + ": segment", 0});
+    const auto segment = static_cast<std::uint32_t>(a.network.discrete_states.size());
+    a.network.discrete_states.push_back({a.diagram.blocks[block].path + ": segment", 0});
     a.pending_tables.push_back(
         {block, call.operands[0], found->second, segment, a.diagram.blocks[block].place});
   }
@@ -27,7 +27,7 @@ NodeId interpolate_by_segments(Assembly& a, std::size_t block, const text::Expre
   const NodeId x = a.built_operand(block, call.operands[0]);
   const auto& pending = *std::find_if(a.pending_tables.begin(), a.pending_tables.end(),
                                       [&](const Assembly::PendingTable& p) { return p.table == chosen; });
-  return graph.apply(Op::table_value, x, graph.memory(pending.segment), number);
+  return graph.apply(Op::table_value, x, graph.discrete_state(pending.segment), number);
 }
 
 /// A table with a few jumps is one without them and a step at each: a step can be slid along.
@@ -108,22 +108,22 @@ void define_tables(Assembly& a) {
     const Assembly::PendingTable pending = a.pending_tables[next_table++];
     const NodeId x = a.built(pending.block, pending.x, pending.place, "a table's argument");
     const NodeId number = graph.constant(pending.table);
-    const NodeId segment = graph.memory(pending.segment);
+    const NodeId segment = graph.discrete_state(pending.segment);
     const NodeId found = graph.apply(Op::table_segment, x, number);
     for (const bool up : {true, false}) {
       const NodeId edge = graph.apply(up ? Op::table_end : Op::table_begin, segment, number);
       Switch made;
-      made.memory = a.new_memory({}, 0);
+      made.discrete_state = a.new_discrete_state({}, 0);
       made.block = a.diagram.blocks[pending.block].path;
       made.comparison = text::to_string(pending.x) + (up ? " after its segment" : " before its segment");
-      made.surface = up ? graph.apply(Op::subtract, x, edge) : graph.apply(Op::subtract, edge, x);
+      made.event_function = up ? graph.apply(Op::subtract, x, edge) : graph.apply(Op::subtract, edge, x);
       made.turning = Turning::bends;
       // At least to the next one, which rounding may hide from the search.
       const NodeId next = graph.apply(up ? Op::add : Op::subtract, segment, graph.constant(1));
       const NodeId farther = up ? graph.apply(Op::less, next, found) : graph.apply(Op::less, found, next);
       Event event;
       event.block = made.block;
-      event.condition = graph.memory(made.memory);
+      event.condition = graph.discrete_state(made.discrete_state);
       event.repeats = true;
       event.actions.push_back({false, pending.segment, graph.apply(Op::select, farther, found, next)});
       add_switch(a, std::move(made));

@@ -20,7 +20,8 @@ class ExpressionContext {
   /// When the value of a name can change: at no time, with events, at any time.
   enum class Change { never, with_events, always };
   virtual Change change_of(std::string_view name) const = 0;
-  /// A switch: the memory that is 1 where left > right, else 0. At least one side changes at any time.
+  /// A switch: the discrete state that is 1 where left > right, else 0. At least one side changes at any
+  /// time.
   virtual NodeId greater(const text::Expression& left, const text::Expression& right, Turning turning) = 0;
   /// The function through points: the parameter that holds them, or numbers.
   virtual NodeId interpolated(const text::Expression& call) = 0;

@@ -43,7 +43,7 @@ std::optional<text::Operation> smooth_operation(Op op) {
 #include <oblique/text/operations.def>
     case Op::constant:
     case Op::variable:
-    case Op::memory:
+    case Op::discrete_state:
     case Op::select:
     case Op::gate:
     case Op::less:
@@ -67,7 +67,7 @@ int operand_count(Op op) {
 #include <oblique/text/operations.def>
     case Op::constant:
     case Op::variable:
-    case Op::memory:
+    case Op::discrete_state:
       break;
     case Op::gate:
     case Op::less:
@@ -101,7 +101,7 @@ double evaluate(Op op, double a, double b) {
       return a == b ? 1 : 0;
     case Op::constant:
     case Op::variable:
-    case Op::memory:
+    case Op::discrete_state:
     case Op::select:
     case Op::table_value:
     case Op::table_slope:
@@ -150,9 +150,9 @@ NodeId ExpressionGraph::variable(std::uint32_t number) {
   return intern(node);
 }
 
-NodeId ExpressionGraph::memory(std::uint32_t number) {
+NodeId ExpressionGraph::discrete_state(std::uint32_t number) {
   Node node;
-  node.op = Op::memory;
+  node.op = Op::discrete_state;
   node.variable = number;
   return intern(node);
 }
@@ -243,15 +243,15 @@ NodeId ExpressionGraph::passed_on(NodeId adjoint, NodeId id, int operand) {
     return operand == 1 ? apply(Op::select, node.a, adjoint, constant(0))
                         : apply(Op::select, node.a, constant(0), adjoint);
   }
-  const NodeId slope = partial(id, operand);
+  const NodeId derivative = partial(id, operand);
   const Op by = nodes_[adjoint].op;
   const bool gated = by == Op::select || by == Op::gate;
-  return apply(gated && !has_value_everywhere(id, slope) ? Op::gate : Op::multiply, adjoint, slope);
+  return apply(gated && !has_value_everywhere(id, derivative) ? Op::gate : Op::multiply, adjoint, derivative);
 }
 
-bool ExpressionGraph::has_value_everywhere(NodeId id, NodeId slope) const {
+bool ExpressionGraph::has_value_everywhere(NodeId id, NodeId derivative) const {
   const Op op = nodes_[id].op;
-  return op == Op::add || op == Op::subtract || op == Op::negate || is_constant(slope);
+  return op == Op::add || op == Op::subtract || op == Op::negate || is_constant(derivative);
 }
 
 NodeId ExpressionGraph::partial(NodeId id, int operand) {

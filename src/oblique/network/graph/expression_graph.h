@@ -17,7 +17,7 @@ using NodeId = std::uint32_t;
 enum class Op : std::uint8_t {
   constant,
   variable,
-  memory,  ///< held between events: no derivative
+  discrete_state,  ///< held between events: no derivative
 // the smooth operations
 #define OBLIQUE_OPERATION(name, ...) name,
 #include <oblique/text/operations.def>
@@ -40,14 +40,15 @@ std::optional<text::Operation> smooth_operation(Op op);
 /// Number of operands of an operation: 0 to 3.
 int operand_count(Op op);
 
-/// One node: an operation on up to three others, a constant, or a variable or memory known by its number.
+/// One node: an operation on up to three others, a constant, or a variable or discrete state known by its
+/// number.
 struct Node {
   Op op = Op::constant;
   NodeId a = 0;
   NodeId b = 0;
   NodeId c = 0;
   double value = 0;            ///< of a constant
-  std::uint32_t variable = 0;  ///< number of a variable or memory
+  std::uint32_t variable = 0;  ///< number of a variable or discrete state
   bool continuous = false;     ///< depends on a variable: may change between events
 
   NodeId operand(int i) const { return i == 0 ? a : i == 1 ? b : c; }
@@ -59,7 +60,7 @@ class ExpressionGraph {
  public:
   NodeId constant(double value);
   NodeId variable(std::uint32_t number);
-  NodeId memory(std::uint32_t number);
+  NodeId discrete_state(std::uint32_t number);
 
   /// Applies an operation; the operands beyond its number are ignored. Operands that are tables are constants
   /// that hold the table's number.
@@ -78,8 +79,8 @@ class ExpressionGraph {
 
   /// Partial derivative of a node by one of its operands. Adds nodes to the graph.
   NodeId partial(NodeId id, int operand);
-  /// Whether `slope`, a partial derivative of a node, is a finite number wherever there is one at all.
-  bool has_value_everywhere(NodeId id, NodeId slope) const;
+  /// Whether `derivative`, a partial derivative of a node, is a finite number wherever there is one at all.
+  bool has_value_everywhere(NodeId id, NodeId derivative) const;
 
  private:
   struct Key {

@@ -191,7 +191,7 @@ void run_tape(std::span<const Instruction> instructions, std::span<Interval> slo
       case Code::noise:
         value = sampled_noise(a, b, 0);
         break;
-      case Code::noise_slope:
+      case Code::noise_derivative:
         value = sampled_noise(a, b, 1);
         break;
       case Code::select:

@@ -46,8 +46,8 @@ void Compilation::close_over(NodeId root, Needs& needs) const {
 }
 
 NodeId Compilation::compared_side(const Switch& s) const {
-  const Node& node = network.graph[s.surface];
-  return node.op == Op::subtract || node.op == Op::add ? node.b : s.surface;
+  const Node& node = network.graph[s.event_function];
+  return node.op == Op::subtract || node.op == Op::add ? node.b : s.event_function;
 }
 
 }  // namespace oblique::network

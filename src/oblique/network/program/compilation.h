@@ -25,7 +25,7 @@ struct Compilation {
     std::vector<bool> loops;
   };
   struct FoundSource {
-    NodeId value, slope;
+    NodeId value, derivative;
     bool acts, by_states;
     std::optional<std::uint32_t> switch_index;
   };
@@ -48,13 +48,13 @@ struct Compilation {
   std::vector<std::uint32_t> loop_of_unknown;
   std::vector<std::uint32_t> place_in_loop;
   std::vector<std::uint32_t> levels;  ///< of a node: 1 + the last loop it depends on, 0 for none
-  Needs for_derivatives, for_surfaces, for_signals, for_jacobian, for_rates, for_sources;
+  Needs for_derivatives, for_event_functions, for_signals, for_jacobian, for_rates, for_sources;
 
-  std::vector<NodeId> positions;      ///< of every switch the node of its memory
-  std::vector<NodeId> surface_rates;  ///< of every switch
+  std::vector<NodeId> positions;             ///< of every switch the node of its discrete state
+  std::vector<NodeId> event_function_rates;  ///< of every switch
   std::vector<NodeId> phase_rates;
-  /// Of each loop whose unknowns' rates the surfaces need, for each residual: what its rate would be if the
-  /// loop's own unknowns stood still.
+  /// Of each loop whose unknowns' rates the event functions need, for each residual: what its rate would be
+  /// if the loop's own unknowns stood still.
   std::map<std::size_t, std::vector<NodeId>> loop_rates;
   std::vector<FoundSource> sources;
   std::vector<bool> in_body;         ///< of a node: written as part of its loop

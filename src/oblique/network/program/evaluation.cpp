@@ -54,7 +54,7 @@ bool Evaluation::phase_ends(std::size_t end) const {
   return value(program_->code_.phase_end_slots[end]) != 0;
 }
 
-double Evaluation::surface_rates(const double* dxdt, double* values) const {
+double Evaluation::event_function_rates(const double* dxdt, double* values) const {
   check();
   const ProgramCode& program = program_->code_;
   if (program.switches.empty()) return 0;
@@ -62,7 +62,7 @@ double Evaluation::surface_rates(const double* dxdt, double* values) const {
   double* const slots = workspace_->slots_.data();
   std::copy(dxdt, dxdt + program.states.size(), slots + program.first_rate);
   for (const ProgramCode::RateStep& step : program.rate_steps) {
-    run_tape(std::span(program.tape).subspan(step.stretch.begin, step.stretch.end - step.stretch.begin),
+    run_tape(std::span(program.tape).subspan(step.segment.begin, step.segment.end - step.segment.begin),
              slots);
     if (!step.loop) continue;
     LoopWorkspace& loop = workspace_->loops_[*step.loop];
@@ -76,8 +76,8 @@ double Evaluation::surface_rates(const double* dxdt, double* values) const {
     for (std::size_t i = 0; i < step.rates.size(); ++i)
       slots[step.rates[i]] = rates(static_cast<Eigen::Index>(i), 0);
   }
-  for (std::size_t s = 0; s < program.surface_rate_slots.size(); ++s)
-    values[s] = slots[program.surface_rate_slots[s]];
+  for (std::size_t s = 0; s < program.event_function_rate_slots.size(); ++s)
+    values[s] = slots[program.event_function_rate_slots[s]];
   double fastest = 0;
   for (const std::uint32_t slot : program.phase_rate_slots)
     fastest = std::max(fastest, std::abs(slots[slot]));
@@ -93,12 +93,12 @@ std::optional<double> SignalEvaluation::start_value(std::size_t state) const {
   return slot ? std::optional(value(*slot)) : std::nullopt;
 }
 
-Eigen::MatrixXd SignalEvaluation::loop_slopes(std::size_t loop) const {
+Eigen::MatrixXd SignalEvaluation::loop_jacobian(std::size_t loop) const {
   const LoopCode& code = program_->code_.loop_codes[loop];
   const auto n = static_cast<Eigen::Index>(code.size());
-  Eigen::MatrixXd slopes = Eigen::MatrixXd::Zero(n, n);
-  for (const MatrixEntry& entry : code.slopes) slopes(entry.row, entry.column) = value(entry.slot);
-  return slopes;
+  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(n, n);
+  for (const MatrixEntry& entry : code.jacobian) jacobian(entry.row, entry.column) = value(entry.slot);
+  return jacobian;
 }
 
 }  // namespace oblique::network

@@ -16,19 +16,19 @@ Eigen::Index index(std::size_t i) {
 
 /// Up to here dense factors are as quick.
 constexpr std::size_t kShort = 100;
-/// Slopes of an unknown, on the average, up to which sparse factors stay sparse.
+/// Entries of the Jacobian for an unknown, on the average, up to which sparse factors stay sparse.
 constexpr std::size_t kFew = 8;
 
 }  // namespace
 
-/// Factors that grow with the slopes and what fills in between them, not with the cube of the size. (They
-/// take memory anew each time, which beside their work is nothing.)
+/// Factors that grow with the derivatives and what fills in between them, not with the cube of the size.
+/// (They take memory anew each time, which beside their work is nothing.)
 class LoopMatrix::Sparse : public Eigen::SparseLU<Eigen::SparseMatrix<double>, Eigen::COLAMDOrdering<int>> {
  public:
   Sparse() = default;
   explicit Sparse(const LoopCode& loop) {
     std::vector<Eigen::Triplet<double>> places;
-    for (const MatrixEntry& entry : loop.slopes)
+    for (const MatrixEntry& entry : loop.jacobian)
       places.emplace_back(static_cast<int>(entry.row), static_cast<int>(entry.column), 0.0);
     for (int i = 0; i < static_cast<int>(loop.size()); ++i) places.emplace_back(i, i, 0.0);
     matrix.resize(index(loop.size()), index(loop.size()));
@@ -36,7 +36,7 @@ class LoopMatrix::Sparse : public Eigen::SparseLU<Eigen::SparseMatrix<double>, E
     const auto place_of = [&](Eigen::Index row, Eigen::Index column) {
       return static_cast<std::size_t>(&matrix.coeffRef(row, column) - matrix.valuePtr());
     };
-    for (const MatrixEntry& entry : loop.slopes) of_slope.push_back(place_of(entry.row, entry.column));
+    for (const MatrixEntry& entry : loop.jacobian) of_entry.push_back(place_of(entry.row, entry.column));
     for (std::size_t i = 0; i < loop.size(); ++i) of_diagonal.push_back(place_of(index(i), index(i)));
     analyzePattern(matrix);
   }
@@ -45,7 +45,7 @@ class LoopMatrix::Sparse : public Eigen::SparseLU<Eigen::SparseMatrix<double>, E
   std::unique_ptr<Sparse> copy() const {
     auto made = std::make_unique<Sparse>();
     made->matrix = matrix;
-    made->of_slope = of_slope;
+    made->of_entry = of_entry;
     made->of_diagonal = of_diagonal;
     made->analyzePattern(made->matrix);
     if (m_factorizationIsOk) made->factorize(made->matrix);
@@ -63,7 +63,7 @@ class LoopMatrix::Sparse : public Eigen::SparseLU<Eigen::SparseMatrix<double>, E
   }
 
   Eigen::SparseMatrix<double> matrix;              ///< rows scaled by 1/scale_
-  std::vector<std::size_t> of_slope, of_diagonal;  ///< where its values are
+  std::vector<std::size_t> of_entry, of_diagonal;  ///< where its values are
   Eigen::MatrixXd right_sides, solutions;
 };
 
@@ -98,7 +98,7 @@ LoopMatrix& LoopMatrix::operator=(LoopMatrix&&) noexcept = default;
 
 /// Once, for a long loop.
 void LoopMatrix::prepare(const LoopCode& loop) {
-  if (loop.slopes.size() <= kFew * loop.size()) {
+  if (loop.jacobian.size() <= kFew * loop.size()) {
     sparse_ = std::make_unique<Sparse>(loop);
   } else {
     matrix_.resize(index(loop.size()), index(loop.size()));
@@ -110,10 +110,10 @@ bool LoopMatrix::factor_sparse(const LoopCode& loop, const double* slots, double
                                double smallest_pivot) {
   double* const values = sparse_->matrix.valuePtr();
   std::fill(values, values + sparse_->matrix.nonZeros(), 0.0);
-  for (std::size_t k = 0; k < loop.slopes.size(); ++k) {
-    const double slope = slots[loop.slopes[k].slot];
-    if (!std::isfinite(slope)) return false;
-    values[sparse_->of_slope[k]] = slope / scale_[loop.slopes[k].row];
+  for (std::size_t k = 0; k < loop.jacobian.size(); ++k) {
+    const double derivative = slots[loop.jacobian[k].slot];
+    if (!std::isfinite(derivative)) return false;
+    values[sparse_->of_entry[k]] = derivative / scale_[loop.jacobian[k].row];
   }
   for (std::size_t i = 0; i < loop.size(); ++i) {
     if (loop.held_by_amplifier[i]) values[sparse_->of_diagonal[i]] += mass / scale_[index(i)];
@@ -127,7 +127,7 @@ bool LoopMatrix::factor(const LoopCode& loop, const double* slots, double mass) 
   for (std::size_t i = 0; i < loop.size(); ++i) {
     if (loop.held_by_amplifier[i]) scale_[index(i)] = std::max(scale_[index(i)], mass);
   }
-  for (const MatrixEntry& entry : loop.slopes) {
+  for (const MatrixEntry& entry : loop.jacobian) {
     scale_[entry.row] = std::max(scale_[entry.row], std::abs(slots[entry.slot]));
   }
   if (!scale_.allFinite() || scale_.minCoeff() <= 0) return false;
@@ -135,7 +135,7 @@ bool LoopMatrix::factor(const LoopCode& loop, const double* slots, double mass) 
   if (!sparse_ && matrix_.size() == 0) prepare(loop);
   if (sparse_) return factor_sparse(loop, slots, mass, smallest_pivot);
   matrix_.setZero();
-  for (const MatrixEntry& entry : loop.slopes) {
+  for (const MatrixEntry& entry : loop.jacobian) {
     matrix_(entry.row, entry.column) = slots[entry.slot] / scale_[entry.row];
   }
   for (std::size_t i = 0; i < loop.size(); ++i) {

@@ -20,7 +20,7 @@ struct MatrixEntry {
 struct LoopCode {
   std::vector<std::uint32_t> unknown_slots;
   std::vector<std::uint32_t> residual_slots;
-  std::vector<MatrixEntry> slopes;    ///< dg/dz
+  std::vector<MatrixEntry> jacobian;  ///< dg/dz
   std::vector<double> natural_scale;  ///< a row of dg/dz far below this has cancelled: 1 where torn, else 0
   TapeRange body;
   bool linear = false;  ///< dg/dz does not depend on z: one step solves it

@@ -13,8 +13,8 @@ constexpr int kMostIterations = 100;
 constexpr double kSmallestFraction = 1e-9;  ///< of a Newton step, below which the search along it gives up
 
 /// A step below this, of 1 + |z|, that does not bring the residual down is led by the residual's rounding:
-/// the terms of an equation may be a hundred million times its slope. (A Newton step leads downhill, so along
-/// a longer one that does not, there is no solution.)
+/// the terms of an equation may be a hundred million times its derivative. (A Newton step leads downhill, so
+/// along a longer one that does not, there is no solution.)
 constexpr double kNoise = 1e-8;
 
 /// Size of an unknown for relative tests; the floor only keeps a zero from dividing.
@@ -76,17 +76,18 @@ LoopFailure LoopWorkspace::solve_loop(const LoopCode& loop, std::span<const Inst
   return newton(loop, body, slots).failure;
 }
 
-/// Whether these unknowns solve the loop, as far as an equation tells that has lost its slope.
+/// Whether these unknowns solve the loop, as far as an equation tells that has lost its derivative.
 bool LoopWorkspace::solves(const LoopCode& loop, std::span<const Instruction> body, double* slots,
                            std::span<const double> unknowns) {
-  constexpr double kConsistent = 1e-7;  // of the terms of an equation: what is told where a slope is lost
+  constexpr double kConsistent =
+      1e-7;  // of the terms of an equation: what is told where a derivative is lost
   for (std::size_t i = 0; i < loop.size(); ++i) slots[loop.unknown_slots[i]] = unknowns[i];
   run_tape(body, slots);
   if (held_whatever_) return true;
   for (std::size_t i = 0; i < loop.size(); ++i) {
     const double residual = slots[loop.residual_slots[i]];
     double rest = residual, terms = 0;
-    for (const MatrixEntry& entry : loop.slopes) {
+    for (const MatrixEntry& entry : loop.jacobian) {
       if (entry.row != i) continue;
       const double term = slots[entry.slot] * unknowns[entry.column];
       rest -= term;
@@ -191,7 +192,7 @@ LoopFailure LoopWorkspace::solve_branched(const LoopCode& loop, std::span<const 
     solved_ = true;
     return LoopFailure::none;
   };
-  const auto rests = [&] {  // at a root of even order, where it has lost its slope
+  const auto rests = [&] {  // at a root of even order, where it has lost its derivative
     return std::all_of(loop.residual_slots.begin(), loop.residual_slots.end(),
                        [&](std::uint32_t slot) { return slots[slot] == 0; });
   };
@@ -277,10 +278,10 @@ bool LoopWorkspace::relax(const LoopCode& loop, std::span<const Instruction> bod
   if (!finite()) return false;
   const auto fastest = [&] {
     double rate = 0;
-    for (const MatrixEntry& entry : loop.slopes) rate = std::max(rate, std::abs(slots[entry.slot]));
+    for (const MatrixEntry& entry : loop.jacobian) rate = std::max(rate, std::abs(slots[entry.slot]));
     return rate;
   };
-  // Where a branch ends, slopes are near zero, and say nothing about how fast the amplifiers move later.
+  // Where a branch ends, derivatives are near zero, and say nothing about how fast the amplifiers move later.
   const auto natural_step = [&] {
     double rate = fastest();
     for (std::size_t i = 0; i < n; ++i) {

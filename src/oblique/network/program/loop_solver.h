@@ -52,7 +52,7 @@ class LoopWorkspace {
   struct Search {
     LoopFailure failure = LoopFailure::none;
     bool damped = false;      ///< a step has led uphill
-    bool even_order = false;  ///< each step was half the one before it: the root has no slope
+    bool even_order = false;  ///< each step was half the one before it: the root has no derivative
   };
   Search newton(const LoopCode& loop, std::span<const Instruction> body, double* slots);
   LoopFailure solve_linear(const LoopCode& loop, std::span<const Instruction> body, double* slots);

@@ -22,13 +22,13 @@ bool Program::run(const std::vector<ProgramCode::Step>& steps, Workspace& worksp
   const std::span<const Instruction> tape(code_.tape);
   const std::size_t first_unknown = 1 + code_.states.size();
   for (const ProgramCode::Step& step : steps) {
-    run_tape(tape.subspan(step.stretch.begin, step.stretch.end - step.stretch.begin), slots);
+    run_tape(tape.subspan(step.segment.begin, step.segment.end - step.segment.begin), slots);
     if (!step.loop) continue;
     const LoopCode& loop = code_.loop_codes[*step.loop];
     const LoopFailure failure = workspace.loops_[*step.loop].solve_loop(loop, tape, slots);
     if (failure != LoopFailure::none) {
-      const double slope = loop.size() == 1 && !loop.slopes.empty() ? slots[loop.slopes[0].slot] : 0;
-      workspace.trouble_ = {*step.loop, failure, slope,
+      const double derivative = loop.size() == 1 && !loop.jacobian.empty() ? slots[loop.jacobian[0].slot] : 0;
+      workspace.trouble_ = {*step.loop, failure, derivative,
                             workspace.solved_[loop.unknown_slots.front() - first_unknown]};
       for (const std::uint32_t slot : loop.unknown_slots)
         slots[slot] = workspace.solved_[slot - first_unknown];
@@ -60,7 +60,7 @@ void Program::copy_derivatives(const Workspace& workspace, double* dxdt) const {
 
 std::optional<SignalEvaluation> Program::signals(double t, const double* x, double* values,
                                                  Workspace& workspace) const {
-  if (!load_and_run(t, x, workspace) || !run(code_.surface_steps, workspace) ||
+  if (!load_and_run(t, x, workspace) || !run(code_.event_function_steps, workspace) ||
       !run(code_.signal_steps, workspace))
     return std::nullopt;
   for (std::size_t i = 0; i < code_.signal_slots.size(); ++i)
@@ -68,11 +68,11 @@ std::optional<SignalEvaluation> Program::signals(double t, const double* x, doub
   return SignalEvaluation(*this, workspace);
 }
 
-std::optional<Evaluation> Program::surfaces(double t, const double* x, double* values,
-                                            Workspace& workspace) const {
-  if (!load_and_run(t, x, workspace) || !run(code_.surface_steps, workspace)) return std::nullopt;
-  for (std::size_t i = 0; i < code_.surface_slots.size(); ++i)
-    values[i] = workspace.slots_[code_.surface_slots[i]];
+std::optional<Evaluation> Program::event_functions(double t, const double* x, double* values,
+                                                   Workspace& workspace) const {
+  if (!load_and_run(t, x, workspace) || !run(code_.event_function_steps, workspace)) return std::nullopt;
+  for (std::size_t i = 0; i < code_.event_function_slots.size(); ++i)
+    values[i] = workspace.slots_[code_.event_function_slots[i]];
   return Evaluation(*this, workspace);
 }
 
@@ -83,9 +83,9 @@ void Program::decide_in_order(double t, const double* x, const double* dxdt, Wor
   slots[0] = t;
   std::copy(x, x + code_.states.size(), slots + 1);
   std::copy(dxdt, dxdt + code_.states.size(), slots + code_.first_rate);
-  for (const auto& [stretch, s] : code_.switch_order) {
-    run_tape(std::span(code_.tape).subspan(stretch.begin, stretch.end - stretch.begin), slots);
-    decide(s, slots[code_.surface_slots[s]], slots[code_.surface_rate_slots[s]]);
+  for (const auto& [segment, s] : code_.switch_order) {
+    run_tape(std::span(code_.tape).subspan(segment.begin, segment.end - segment.begin), slots);
+    decide(s, slots[code_.event_function_slots[s]], slots[code_.event_function_rate_slots[s]]);
   }
 }
 
@@ -101,10 +101,11 @@ void Program::source_ranges(const Interval& time, std::span<const Interval> stat
                             const Workspace& workspace, std::span<Interval> slots) const {
   slots[0] = time;
   for (std::size_t k = 0; k < states.size(); ++k) slots[1 + code_.source_states[k]] = states[k];
-  for (std::size_t m = code_.first_memory; m < code_.first_memory + code_.memories.size(); ++m)
+  for (std::size_t m = code_.first_discrete_state;
+       m < code_.first_discrete_state + code_.discrete_states.size(); ++m)
     slots[m] = {workspace.slots_[m], workspace.slots_[m]};
   run_tape(std::span(code_.tape)
-               .subspan(code_.source_stretch.begin, code_.source_stretch.end - code_.source_stretch.begin),
+               .subspan(code_.source_segment.begin, code_.source_segment.end - code_.source_segment.begin),
            slots);
 }
 
@@ -144,7 +145,7 @@ bool Program::jacobian(double t, const double* x, double* values, Workspace& wor
   double* const slots = workspace.slots_.data();
   run_tape(
       std::span(code_.tape)
-          .subspan(code_.jacobian_stretch.begin, code_.jacobian_stretch.end - code_.jacobian_stretch.begin),
+          .subspan(code_.jacobian_segment.begin, code_.jacobian_segment.end - code_.jacobian_segment.begin),
       slots);
   if (!differentiate_loops(workspace)) return false;
   std::fill(values, values + code_.pattern.entries(), 0.0);
@@ -161,7 +162,9 @@ bool Program::jacobian(double t, const double* x, double* values, Workspace& wor
 }
 
 Workspace::Workspace(const Program& program)
-    : program_(&program), first_memory_(program.code_.first_memory), slots_(program.code_.initial_slots) {
+    : program_(&program),
+      first_discrete_state_(program.code_.first_discrete_state),
+      slots_(program.code_.initial_slots) {
   for (std::size_t l = 0; l < program.code_.loop_codes.size(); ++l) {
     const std::size_t size = program.code_.loop_codes[l].size();
     loops_.emplace_back(size);
@@ -170,7 +173,7 @@ Workspace::Workspace(const Program& program)
     dz_dt_.emplace_back(static_cast<Eigen::Index>(size), 1);
   }
   reset();
-  reset_memories();
+  reset_discrete_states();
 }
 
 void Workspace::set_unknown(std::size_t u, double value) {
@@ -189,18 +192,19 @@ void Workspace::hold_loop(std::size_t loop, double t, const std::vector<double>&
   loops_[loop].hold(t, unknowns, whatever);
 }
 
-std::span<const double> Workspace::memories() const {
-  return std::span(slots_).subspan(first_memory_, program_->code_.memories.size());
+std::span<const double> Workspace::discrete_states() const {
+  return std::span(slots_).subspan(first_discrete_state_, program_->code_.discrete_states.size());
 }
 
-void Workspace::load_memories(std::span<const double> memories) {
+void Workspace::load_discrete_states(std::span<const double> discrete_states) {
   ++generation_;
-  std::copy(memories.begin(), memories.end(), slots_.begin() + static_cast<std::ptrdiff_t>(first_memory_));
+  std::copy(discrete_states.begin(), discrete_states.end(),
+            slots_.begin() + static_cast<std::ptrdiff_t>(first_discrete_state_));
 }
 
-void Workspace::reset_memories() {
-  for (std::size_t m = 0; m < program_->code_.memories.size(); ++m)
-    set_memory(m, program_->code_.memories[m].start);
+void Workspace::reset_discrete_states() {
+  for (std::size_t m = 0; m < program_->code_.discrete_states.size(); ++m)
+    set_discrete_state(m, program_->code_.discrete_states[m].start);
 }
 
 void Workspace::reset() {

@@ -56,24 +56,26 @@ class Program {
   std::optional<SignalEvaluation> signals(double t, const double* x, double* values,
                                           Workspace& workspace) const;
 
-  // --- events: all of the above hold for the memories as they are in the workspace
+  // --- events: all of the above hold for the discrete states as they are in the workspace
 
-  const std::vector<Memory>& memories() const { return code_.memories; }
+  const std::vector<DiscreteState>& discrete_states() const { return code_.discrete_states; }
   const std::vector<Switch>& switches() const { return code_.switches; }
   const std::vector<Event>& events() const { return code_.events; }
-  /// Of each group of integrators, the memory with its mode of operation; empty without a timeline.
-  const std::vector<std::uint32_t>& mode_memories() const { return code_.mode_memories; }
+  /// Of each group of integrators, the discrete state with its mode of operation; empty without a timeline.
+  const std::vector<std::uint32_t>& mode_states() const { return code_.mode_states; }
 
-  /// The surface of every switch at (t, x), and what else follows there; nothing as above.
-  std::optional<Evaluation> surfaces(double t, const double* x, double* values, Workspace& workspace) const;
+  /// The event function of every switch at (t, x), and what else follows there; nothing as above.
+  std::optional<Evaluation> event_functions(double t, const double* x, double* values,
+                                            Workspace& workspace) const;
   const SwitchStructure& switch_structure() const { return code_.switch_structure; }
 
-  /// Whether a switch follows from no algebraic loop, and its surface does not depend on its own position.
+  /// Whether a switch follows from no algebraic loop, and its event function does not depend on its own
+  /// position.
   bool is_ordered(std::size_t s) const { return code_.is_ordered[s]; }
-  /// What `decide_in_order` calls: a switch, its surface, and d surface/dt.
-  using Decide = std::function<void(std::uint32_t s, double surface, double rate)>;
+  /// What `decide_in_order` calls: a switch, its event function, and d(event function)/dt.
+  using Decide = std::function<void(std::uint32_t s, double event_function, double rate)>;
   /// Goes once through all ordered switches at (t, x), where the states move with `dxdt`: each comes after
-  /// those on whose positions its surface depends, and sees them as `decide` has set them.
+  /// those on whose positions its event function depends, and sees them as `decide` has set them.
   void decide_in_order(double t, const double* x, const double* dxdt, Workspace& workspace,
                        const Decide& decide) const;
 
@@ -82,8 +84,8 @@ class Program {
   /// integrators of what only events change.
   const std::vector<std::size_t>& source_states() const { return code_.source_states; }
   std::size_t clocks() const { return code_.n_clocks; }
-  /// The values of all sources, and their slopes, for times within `time` and the source states within
-  /// `states`, on slots of the kind that `source_slots` gives, with the memories as they are in the
+  /// The values of all sources, and their derivatives, for times within `time` and the source states within
+  /// `states`, on slots of the kind that `source_slots` gives, with the discrete states as they are in the
   /// workspace.
   void source_ranges(const Interval& time, std::span<const Interval> states, const Workspace& workspace,
                      std::span<Interval> slots) const;
@@ -117,15 +119,15 @@ class Workspace {
 
   /// Forgets the solutions of the loops: the next search starts from the guesses of the diagram.
   void reset();
-  /// The memories as they are before the run.
-  void reset_memories();
+  /// The discrete states as they are before the run.
+  void reset_discrete_states();
 
   /// The loop that could not be solved when an evaluation last failed.
   struct Trouble {
     std::size_t loop = 0;
     LoopFailure failure = LoopFailure::none;
-    double slope = 0;  ///< dg/dz where the loop has one unknown
-    double value = 0;  ///< of its first unknown where it was solved last, or its guess
+    double derivative = 0;  ///< dg/dz where the loop has one unknown
+    double value = 0;       ///< of its first unknown where it was solved last, or its guess
   };
   const Trouble& trouble() const { return trouble_; }
 
@@ -143,13 +145,13 @@ class Workspace {
   double unknown(std::size_t u) const { return solved_[u]; }
   void set_unknown(std::size_t u, double value);
 
-  /// The memories, between events as they are.
-  std::span<const double> memories() const;
+  /// The discrete states, between events as they are.
+  std::span<const double> discrete_states() const;
   /// Sets all, or none where there are none.
-  void load_memories(std::span<const double> memories);
-  double memory(std::size_t m) const { return slots_[first_memory_ + m]; }
-  void set_memory(std::size_t m, double value) {
-    double& slot = slots_[first_memory_ + m];
+  void load_discrete_states(std::span<const double> discrete_states);
+  double discrete_state(std::size_t m) const { return slots_[first_discrete_state_ + m]; }
+  void set_discrete_state(std::size_t m, double value) {
+    double& slot = slots_[first_discrete_state_ + m];
     if (slot == value) return;
     slot = value;
     ++generation_;
@@ -160,7 +162,7 @@ class Workspace {
   friend class Evaluation;
   friend class SignalEvaluation;
   const Program* program_;
-  std::size_t first_memory_;
+  std::size_t first_discrete_state_;
   std::vector<double> slots_;
   std::vector<double> solved_;  ///< unknowns at the last success
   std::vector<LoopWorkspace> loops_;

@@ -26,18 +26,18 @@ struct SparsePattern {
 /// A part of the equations that follows the time alone, or clocks, and not along a straight line; or one that
 /// follows states, and may be next to nothing here and a peak there.
 struct Source {
-  std::uint32_t slot = 0, slope_slot = 0;  ///< its value, and d value/dt (of one by states no use)
-  bool acts = false;                       ///< on dx/dt, or on the surface of a switch
+  std::uint32_t slot = 0, derivative_slot = 0;  ///< its value, and d value/dt (of one by states no use)
+  bool acts = false;                            ///< on dx/dt, or on the event function of a switch
   bool by_states = false;
-  std::optional<std::uint32_t> switch_index;  ///< the switch whose whole surface it is
+  std::optional<std::uint32_t> switch_index;  ///< the switch whose whole event function it is
 };
 
 /// What a Program consists of: the tape, and where on it and on its slots everything stands. Compilation
 /// makes it, and Program and Evaluation read it.
 struct ProgramCode {
-  /// A stretch of the tape, then perhaps a loop to solve.
+  /// A segment of the tape, then perhaps a loop to solve.
   struct Step {
-    TapeRange stretch;
+    TapeRange segment;
     std::optional<std::uint32_t> loop;
   };
 
@@ -65,10 +65,10 @@ struct ProgramCode {
     std::uint32_t first_position;  ///< in `row_positions`
   };
 
-  /// A stretch of the tape, then perhaps d unknowns/dt of a loop, from right sides that the stretch has
+  /// A segment of the tape, then perhaps d unknowns/dt of a loop, from right sides that the segment has
   /// computed.
   struct RateStep {
-    TapeRange stretch;
+    TapeRange segment;
     std::optional<std::uint32_t> loop;
     std::vector<std::uint32_t> right_sides, rates;  ///< slots
   };
@@ -79,7 +79,7 @@ struct ProgramCode {
   };
 
   struct OrderedSwitch {
-    TapeRange stretch;  ///< computes its surface and the rate of it
+    TapeRange segment;  ///< computes its event function and the rate of it
     std::uint32_t switch_index;
   };
 
@@ -93,19 +93,19 @@ struct ProgramCode {
   std::vector<double> initial_slots;
   std::vector<LoopCode> loop_codes;
   std::vector<Step> derivative_steps;
-  std::vector<Step> surface_steps;  ///< after `derivative_steps`
-  std::vector<Step> signal_steps;   ///< after `surface_steps`
-  TapeRange jacobian_stretch;       ///< after `derivative_steps`
+  std::vector<Step> event_function_steps;  ///< after `derivative_steps`
+  std::vector<Step> signal_steps;          ///< after `event_function_steps`
+  TapeRange jacobian_segment;              ///< after `derivative_steps`
   std::vector<std::uint32_t> derivative_slots;
   std::vector<std::uint32_t> signal_slots;
 
-  std::size_t first_memory = 0;  ///< slot
-  std::vector<Memory> memories;
+  std::size_t first_discrete_state = 0;  ///< slot
+  std::vector<DiscreteState> discrete_states;
   std::vector<Switch> switches;
   std::vector<Event> events;
-  std::vector<std::uint32_t> mode_memories;
-  std::vector<std::uint32_t> surface_slots;
-  std::vector<std::uint32_t> compared_slots;  ///< one side of what the surface of each switch compares
+  std::vector<std::uint32_t> mode_states;
+  std::vector<std::uint32_t> event_function_slots;
+  std::vector<std::uint32_t> compared_slots;  ///< one side of what the event function of each switch compares
   std::vector<std::optional<std::uint32_t>> rate_slots;
   std::vector<EventSlots> event_slots;
   std::vector<std::optional<std::uint32_t>> start_slots;
@@ -118,12 +118,12 @@ struct ProgramCode {
 
   SwitchStructure switch_structure;
   std::size_t first_rate = 0;        ///< slot of d states/dt, then of d unknowns/dt
-  std::vector<RateStep> rate_steps;  ///< after `surface_steps`
-  std::vector<std::uint32_t> surface_rate_slots, phase_rate_slots;
+  std::vector<RateStep> rate_steps;  ///< after `event_function_steps`
+  std::vector<std::uint32_t> event_function_rate_slots, phase_rate_slots;
   std::vector<Source> sources;
   std::vector<std::size_t> source_states;
   std::size_t n_clocks = 0;
-  TapeRange source_stretch;
+  TapeRange source_segment;
 
   SparsePattern pattern;
   std::vector<DirectEntry> direct_entries;

@@ -5,9 +5,9 @@
 #include <utility>
 
 #include <oblique/network/program/compilation.h>
+#include <oblique/network/program/event_function_rates.h>
 #include <oblique/network/program/jacobian_layout.h>
 #include <oblique/network/program/sources.h>
-#include <oblique/network/program/surface_rates.h>
 #include <oblique/network/program/switch_order.h>
 
 namespace oblique::network {
@@ -34,11 +34,11 @@ void find_levels(Compilation& c) {
   }
 }
 
-/// What tells of events: surfaces, rates of known times, conditions.
-std::vector<NodeId> surface_roots(const Compilation& c) {
+/// What tells of events: event functions, rates of known times, conditions.
+std::vector<NodeId> event_function_roots(const Compilation& c) {
   std::vector<NodeId> roots = c.network.phase_ends;
   for (const Switch& s : c.network.switches) {
-    roots.push_back(s.surface);
+    roots.push_back(s.event_function);
     roots.push_back(c.compared_side(s));
     if (s.rate) roots.push_back(*s.rate);
   }
@@ -59,10 +59,10 @@ std::vector<NodeId> signal_roots(const Compilation& c) {
 }
 
 void find_needs(Compilation& c) {
-  c.for_derivatives = c.for_surfaces = c.for_jacobian = c.for_signals = c.for_rates = c.for_sources =
+  c.for_derivatives = c.for_event_functions = c.for_jacobian = c.for_signals = c.for_rates = c.for_sources =
       c.no_needs();
   for (const State& state : c.network.states) c.close_over(state.derivative, c.for_derivatives);
-  for (const NodeId root : surface_roots(c)) c.close_over(root, c.for_surfaces);
+  for (const NodeId root : event_function_roots(c)) c.close_over(root, c.for_event_functions);
   for (const NodeId root : signal_roots(c)) c.close_over(root, c.for_signals);
   for (const NodeId root : rate_roots(c)) c.close_over(root, c.for_rates);
   for (const NodeId root : source_roots(c)) c.close_over(root, c.for_sources);
@@ -78,7 +78,7 @@ void find_needs(Compilation& c) {
 std::vector<std::uint32_t> count_uses(const Compilation& c) {
   std::vector<std::uint32_t> uses(c.network.graph.size(), 0);
   for (NodeId id = 0; id < c.network.graph.size(); ++id) {
-    if (!c.for_derivatives.nodes[id] && !c.for_surfaces.nodes[id] && !c.for_signals.nodes[id] &&
+    if (!c.for_derivatives.nodes[id] && !c.for_event_functions.nodes[id] && !c.for_signals.nodes[id] &&
         !c.for_jacobian.nodes[id] && !c.for_rates.nodes[id] && !c.for_sources.nodes[id]) {
       continue;
     }
@@ -87,7 +87,7 @@ std::vector<std::uint32_t> count_uses(const Compilation& c) {
   }
   for (const State& state : c.network.states) ++uses[state.derivative];
   for (const Unknown& unknown : c.network.unknowns) ++uses[unknown.residual];
-  for (const auto& roots : {surface_roots(c), signal_roots(c), rate_roots(c), source_roots(c)}) {
+  for (const auto& roots : {event_function_roots(c), signal_roots(c), rate_roots(c), source_roots(c)}) {
     for (const NodeId root : roots) ++uses[root];
   }
   for (const auto* gradients : {&c.state_gradients, &c.residual_gradients}) {
@@ -101,7 +101,7 @@ std::vector<std::uint32_t> count_uses(const Compilation& c) {
 void write_events(Compilation& c) {
   TapeWriter& writer = *c.writer;
   for (const Switch& s : c.network.switches) {
-    c.code.surface_slots.push_back(writer.slot(s.surface));
+    c.code.event_function_slots.push_back(writer.slot(s.event_function));
     c.code.compared_slots.push_back(writer.slot(c.compared_side(s)));
     c.code.rate_slots.push_back(s.rate ? std::optional(writer.slot(*s.rate)) : std::nullopt);
   }
@@ -117,7 +117,8 @@ void write_events(Compilation& c) {
   for (const NodeId end : c.network.phase_ends) c.code.phase_end_slots.push_back(writer.slot(end));
 }
 
-/// Writes those of `nodes` that the loop's residuals and slopes need as its body, and gives back the others.
+/// Writes those of `nodes` that the loop's residuals and Jacobian need as its body, and gives back the
+/// others.
 std::vector<NodeId> write_loop_body(Compilation& c, std::size_t loop, std::vector<NodeId> nodes) {
   LoopCode& code = c.code.loop_codes[loop];
   const Loop& members = c.network.loops[loop];
@@ -155,7 +156,7 @@ std::vector<NodeId> write_loop_body(Compilation& c, std::size_t loop, std::vecto
     code.held_by_amplifier.push_back(c.network.unknowns[u].held_by_amplifier);
     for (const auto& [variable, node] : c.residual_gradients[u]) {
       if (!c.is_unknown(variable) || c.loop_of_unknown[c.unknown_of(variable)] != loop) continue;
-      code.slopes.push_back(
+      code.jacobian.push_back(
           {static_cast<std::uint32_t>(i), c.place_in_loop[c.unknown_of(variable)], writer.slot(node)});
     }
   }
@@ -191,25 +192,25 @@ std::vector<ProgramCode::Step> write_steps(Compilation& c, const Compilation::Ne
 void write_tapes(Compilation& c) {
   const bool with_rates = !c.network.switches.empty();
   const std::size_t n_rates = with_rates ? c.network.states.size() + c.network.unknowns.size() : 0;
-  c.writer.emplace(c.network.graph, c.network.n_variables(), c.network.memories.size() + n_rates,
+  c.writer.emplace(c.network.graph, c.network.n_variables(), c.network.discrete_states.size() + n_rates,
                    c.network.tables, count_uses(c));
   c.code.loop_codes.resize(c.network.loops.size());
   c.in_body.assign(c.network.graph.size(), false);
   const Compilation::Needs nothing = c.no_needs();
   c.code.derivative_steps = write_steps(c, c.for_derivatives, nothing);
-  c.code.surface_steps = write_steps(c, c.for_surfaces, c.for_derivatives);
+  c.code.event_function_steps = write_steps(c, c.for_event_functions, c.for_derivatives);
   Compilation::Needs done = c.for_derivatives;
   for (std::size_t i = 0; i < done.nodes.size(); ++i)
-    done.nodes[i] = done.nodes[i] || c.for_surfaces.nodes[i];
+    done.nodes[i] = done.nodes[i] || c.for_event_functions.nodes[i];
   for (std::size_t i = 0; i < done.loops.size(); ++i)
-    done.loops[i] = done.loops[i] || c.for_surfaces.loops[i];
+    done.loops[i] = done.loops[i] || c.for_event_functions.loops[i];
   c.code.signal_steps = write_steps(c, c.for_signals, done);
 
   std::vector<NodeId> rest;
   for (NodeId id = 0; id < c.network.graph.size(); ++id) {
     if (c.for_jacobian.nodes[id] && !c.for_derivatives.nodes[id]) rest.push_back(id);
   }
-  c.code.jacobian_stretch = c.writer->write(rest);
+  c.code.jacobian_segment = c.writer->write(rest);
   for (const State& state : c.network.states) {
     c.code.derivative_slots.push_back(c.writer->slot(state.derivative));
   }
@@ -228,7 +229,7 @@ ProgramCode compile(Network network) {
   c.code.switch_structure = find_switch_structure(c.network);
   differentiate(c);
   find_positions(c);
-  differentiate_surfaces(c);
+  differentiate_event_functions(c);
   find_sources(c);
   find_levels(c);
   find_needs(c);
@@ -236,12 +237,12 @@ ProgramCode compile(Network network) {
   lay_out_jacobian(c);
   c.code.tape = c.writer->instructions();
   c.code.initial_slots = c.writer->initial_slots();
-  c.code.first_memory = c.network.n_variables();
-  c.code.first_rate = c.code.first_memory + c.network.memories.size();
-  c.code.memories = std::move(c.network.memories);
+  c.code.first_discrete_state = c.network.n_variables();
+  c.code.first_rate = c.code.first_discrete_state + c.network.discrete_states.size();
+  c.code.discrete_states = std::move(c.network.discrete_states);
   c.code.switches = std::move(c.network.switches);
   c.code.events = std::move(c.network.events);
-  c.code.mode_memories = std::move(c.network.mode_memories);
+  c.code.mode_states = std::move(c.network.mode_states);
   c.code.states = std::move(c.network.states);
   c.code.unknowns = std::move(c.network.unknowns);
   c.code.loops = std::move(c.network.loops);

@@ -105,7 +105,7 @@ void find_sources(Compilation& c) {
   std::vector<NodeId> acting, others = c.network.signals;
   for (const State& state : c.network.states) acting.push_back(state.derivative);
   for (const Unknown& unknown : c.network.unknowns) acting.push_back(unknown.residual);
-  for (const Switch& s : c.network.switches) acting.push_back(s.surface);
+  for (const Switch& s : c.network.switches) acting.push_back(s.event_function);
   for (const auto* roots : {&acting, &others}) {
     for (const NodeId root : *roots) {
       is_root[root] = needed[root] = true;
@@ -123,17 +123,17 @@ void find_sources(Compilation& c) {
     }
   }
   find_peaks(c, acts, clocks, [&](NodeId id) { return follows[id] == Follows::states; });
-  Tangents slopes(graph, [&](std::uint32_t variable) {
+  Tangents derivatives(graph, [&](std::uint32_t variable) {
     return variable == 0 ? graph.constant(1) : c.network.states[variable - 1].derivative;
   });
   std::map<NodeId, std::size_t> source_of;
   for (NodeId id = 0; id < size; ++id) {
     if (!is_root[id] || follows[id] != Follows::time) continue;
     source_of.emplace(id, c.sources.size());
-    c.sources.push_back({id, slopes.of(id), acts[id], false, std::nullopt});
+    c.sources.push_back({id, derivatives.of(id), acts[id], false, std::nullopt});
   }
   for (std::size_t s = 0; s < c.network.switches.size(); ++s) {
-    const auto same = source_of.find(c.network.switches[s].surface);
+    const auto same = source_of.find(c.network.switches[s].event_function);
     if (same == source_of.end()) continue;
     std::optional<std::uint32_t>& index = c.sources[same->second].switch_index;
     if (!index) index = static_cast<std::uint32_t>(s);
@@ -144,7 +144,7 @@ std::vector<NodeId> source_roots(const Compilation& c) {
   std::vector<NodeId> roots;
   for (const Compilation::FoundSource& source : c.sources) {
     roots.push_back(source.value);
-    roots.push_back(source.slope);
+    roots.push_back(source.derivative);
   }
   return roots;
 }
@@ -154,9 +154,9 @@ void write_sources(Compilation& c) {
   for (NodeId id = 0; id < c.network.graph.size(); ++id) {
     if (c.for_sources.nodes[id]) nodes.push_back(id);
   }
-  c.code.source_stretch = c.writer->write(nodes);
+  c.code.source_segment = c.writer->write(nodes);
   for (const Compilation::FoundSource& source : c.sources)
-    c.code.sources.push_back({c.writer->slot(source.value), c.writer->slot(source.slope), source.acts,
+    c.code.sources.push_back({c.writer->slot(source.value), c.writer->slot(source.derivative), source.acts,
                               source.by_states, source.switch_index});
 }
 

@@ -11,11 +11,11 @@ namespace {
 /// What must be known before a switch can be decided.
 std::vector<NodeId> grounds_of(const Compilation& c, std::size_t s) {
   const Switch& made = c.network.switches[s];
-  return {made.surface, c.compared_side(made), c.surface_rates[s]};
+  return {made.event_function, c.compared_side(made), c.event_function_rates[s]};
 }
 
-/// The nodes below the surfaces of `ordered`, each after what it needs: also the positions of `ordered`,
-/// after their grounds. Several that need each other are one step.
+/// The nodes below the event functions of `ordered`, each after what it needs: also the positions of
+/// `ordered`, after their grounds. Several that need each other are one step.
 std::vector<OrderStep> order_of_positions(const Compilation& c, const std::vector<bool>& ordered) {
   const ExpressionGraph& graph = c.network.graph;
   std::vector<std::uint32_t> switch_at(graph.size(), SwitchStructure::kNone);
@@ -46,7 +46,8 @@ std::vector<OrderStep> order_of_positions(const Compilation& c, const std::vecto
 }  // namespace
 
 void find_positions(Compilation& c) {
-  for (const Switch& s : c.network.switches) c.positions.push_back(c.network.graph.memory(s.memory));
+  for (const Switch& s : c.network.switches)
+    c.positions.push_back(c.network.graph.discrete_state(s.discrete_state));
 }
 
 void write_switch_order(Compilation& c) {
@@ -66,13 +67,13 @@ void write_switch_order(Compilation& c) {
       if (switch_at[id] != SwitchStructure::kNone) ordered[switch_at[id]] = false;
     }
   }
-  std::vector<NodeId> stretch;
+  std::vector<NodeId> segment;
   for (const OrderStep& step : order_of_positions(c, ordered)) {
     const NodeId id = step.tears.front();
-    if (operand_count(graph[id].op) > 0) stretch.push_back(id);
+    if (operand_count(graph[id].op) > 0) segment.push_back(id);
     if (switch_at[id] == SwitchStructure::kNone || !ordered[switch_at[id]]) continue;
-    c.code.switch_order.push_back({c.writer->write(stretch), switch_at[id]});
-    stretch.clear();
+    c.code.switch_order.push_back({c.writer->write(segment), switch_at[id]});
+    segment.clear();
   }
 }
 
@@ -80,7 +81,7 @@ void write_pieces(Compilation& c) {
   const ExpressionGraph& graph = c.network.graph;
   Compilation::Needs read{std::vector<bool>(graph.size()), std::vector<bool>(c.network.loops.size())};
   for (const State& state : c.network.states) c.close_over(state.derivative, read);
-  for (const Switch& s : c.network.switches) c.close_over(s.surface, read);
+  for (const Switch& s : c.network.switches) c.close_over(s.event_function, read);
   // Of a node the switch whose position it is, or 1 − its position.
   std::vector<std::uint32_t> chooses(graph.size(), SwitchStructure::kNone);
   std::vector<bool> otherwise(c.positions.size(), false);
@@ -108,7 +109,7 @@ void write_pieces(Compilation& c) {
     }
   }
   for (const State& state : c.network.states) read_by(state.derivative);
-  for (const Switch& s : c.network.switches) read_by(s.surface);
+  for (const Switch& s : c.network.switches) read_by(s.event_function);
   // What makes events is told by the position itself.
   std::vector<NodeId> pending = c.network.phase_ends;
   for (const Event& event : c.network.events) pending.push_back(event.condition);

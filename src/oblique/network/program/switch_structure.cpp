@@ -13,12 +13,12 @@ class Finder {
   explicit Finder(const Network& network)
       : network_(network),
         loop_of_(network.unknowns.size(), 0),
-        switch_of_(network.memories.size(), SwitchStructure::kNone) {
+        switch_of_(network.discrete_states.size(), SwitchStructure::kNone) {
     for (std::size_t l = 0; l < network.loops.size(); ++l) {
       for (const std::size_t u : network.loops[l].unknowns) loop_of_[u] = static_cast<std::uint32_t>(l);
     }
     for (std::size_t s = 0; s < network.switches.size(); ++s)
-      switch_of_[network.switches[s].memory] = static_cast<std::uint32_t>(s);
+      switch_of_[network.switches[s].discrete_state] = static_cast<std::uint32_t>(s);
   }
 
   SwitchStructure find() {
@@ -34,11 +34,11 @@ class Finder {
   }
   std::size_t loop_of(const Node& node) const { return loop_of_[node.variable - 1 - network_.states.size()]; }
 
-  /// a − b and b − a, x and −x are one surface.
+  /// a − b and b − a, x and −x are one event function.
   void find_units() {
     std::map<std::pair<NodeId, NodeId>, std::uint32_t> units;
     for (std::size_t s = 0; s < network_.switches.size(); ++s) {
-      NodeId id = network_.switches[s].surface;
+      NodeId id = network_.switches[s].event_function;
       bool opposite = false;
       if (network_.graph[id].op == Op::negate) {
         id = network_.graph[id].a;
@@ -60,14 +60,14 @@ class Finder {
 
   void find_operands() {
     const ExpressionGraph& graph = network_.graph;
-    for (const Switch& s : network_.switches) structure_.surfaces.push_back(s.surface);
+    for (const Switch& s : network_.switches) structure_.event_functions.push_back(s.event_function);
     structure_.switch_at.assign(graph.size(), SwitchStructure::kNone);
     // The residuals of a loop stand with the first of its unknowns, and the others lead there.
     std::vector<std::uint32_t> first_unknown(network_.loops.size(), SwitchStructure::kNone);
     structure_.first_operand.push_back(0);
     for (NodeId id = 0; id < graph.size(); ++id) {
       const Node& node = graph[id];
-      if (node.op == Op::memory) structure_.switch_at[id] = switch_of_[node.variable];
+      if (node.op == Op::discrete_state) structure_.switch_at[id] = switch_of_[node.variable];
       std::vector<std::uint32_t>& operands = structure_.operands;
       for (int i = 0; i < operand_count(node.op); ++i) operands.push_back(node.operand(i));
       if (is_unknown(node)) {
@@ -145,7 +145,7 @@ class Finder {
 
   const Network& network_;
   std::vector<std::uint32_t> loop_of_;    ///< of each unknown
-  std::vector<std::uint32_t> switch_of_;  ///< of each memory
+  std::vector<std::uint32_t> switch_of_;  ///< of each discrete state
   SwitchStructure structure_;
 };
 
@@ -171,7 +171,7 @@ void visit_below(const SwitchStructure& structure, NodeId root, const Visit& vis
 
 std::vector<std::uint32_t> SwitchStructure::positions_below(std::size_t s) const {
   std::vector<std::uint32_t> found;
-  visit_below(*this, surfaces[s], [&](NodeId id) {
+  visit_below(*this, event_functions[s], [&](NodeId id) {
     if (switch_at[id] != kNone) found.push_back(switch_at[id]);
   });
   std::sort(found.begin(), found.end());
@@ -180,15 +180,15 @@ std::vector<std::uint32_t> SwitchStructure::positions_below(std::size_t s) const
 
 bool SwitchStructure::depends(std::size_t s, std::size_t other) const {
   bool found = false;
-  visit_below(*this, surfaces[s], [&](NodeId id) { found = found || switch_at[id] == other; });
+  visit_below(*this, event_functions[s], [&](NodeId id) { found = found || switch_at[id] == other; });
   return found;
 }
 
 std::vector<bool> SwitchStructure::followers_of(const std::vector<bool>& these) const {
-  // What is read by whom: the operands turned round, and positions that read their surfaces.
+  // What is read by whom: the operands turned round, and positions that read their event functions.
   const std::size_t size = switch_at.size();
-  std::vector<std::uint32_t> first_reader(size + 2, 0), readers(operands.size() + surfaces.size());
-  std::vector<NodeId> position_of(surfaces.size(), kNone);
+  std::vector<std::uint32_t> first_reader(size + 2, 0), readers(operands.size() + event_functions.size());
+  std::vector<NodeId> position_of(event_functions.size(), kNone);
   for (NodeId id = 0; id < size; ++id) {
     if (switch_at[id] != kNone) position_of[switch_at[id]] = id;
   }
@@ -198,17 +198,17 @@ std::vector<bool> SwitchStructure::followers_of(const std::vector<bool>& these) 
     for (std::uint32_t k = first_operand[id]; k < first_operand[id + 1]; ++k)
       readers[first_reader[operands[k] + 1]++] = id;
   }
-  std::vector<std::vector<std::uint32_t>> switches_on(size);  // those with this node as their surface
-  for (std::uint32_t s = 0; s < surfaces.size(); ++s) switches_on[surfaces[s]].push_back(s);
+  std::vector<std::vector<std::uint32_t>> switches_on(size);  // those with this node as their event function
+  for (std::uint32_t s = 0; s < event_functions.size(); ++s) switches_on[event_functions[s]].push_back(s);
 
-  std::vector<bool> seen(size, false), follows(surfaces.size(), false);
+  std::vector<bool> seen(size, false), follows(event_functions.size(), false);
   std::vector<NodeId> pending;
   const auto reach = [&](NodeId id) {
     if (id == kNone || seen[id]) return;
     seen[id] = true;
     pending.push_back(id);
   };
-  for (std::size_t s = 0; s < surfaces.size(); ++s) {
+  for (std::size_t s = 0; s < event_functions.size(); ++s) {
     if (these[s]) reach(position_of[s]);
   }
   while (!pending.empty()) {

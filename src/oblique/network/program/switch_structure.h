@@ -12,24 +12,24 @@ namespace oblique::network {
 
 /// How the switches of a network hang together, read off its expressions.
 ///
-/// Switches on one surface, seen from the same side or from opposite ones, turn over together: they are one
-/// unit. Two units are coupled where some signal is no sum of what each of them does by itself.
+/// Switches on one switching surface, seen from the same side or from opposite ones, turn over together: they
+/// are one unit. Two units are coupled where some signal is no sum of what each of them does by itself.
 ///
-/// On which positions a surface depends at the same instant is asked of the expressions: of a chain of
-/// switches the answers together would be as long as the square of its length.
+/// On which positions an event function depends at the same instant is asked of the expressions: of a chain
+/// of switches the answers together would be as long as the square of its length.
 struct SwitchStructure {
   std::vector<std::uint32_t> unit;  ///< of each switch
-  std::vector<bool> opposite;       ///< of each switch: it sees its unit's surface from the other side
+  std::vector<bool> opposite;       ///< of each switch: it sees its unit's event function from the other side
   std::vector<std::vector<std::uint32_t>> members;  ///< of each unit: its switches
 
   bool is_coupled(std::uint32_t unit_a, std::uint32_t unit_b) const {
     return (coupled[unit_a % coupled.size()] >> (unit_b % coupled.size()) & 1U) != 0;
   }
-  /// The switches on whose positions the surface of switch s depends, ascending.
+  /// The switches on whose positions the event function of switch s depends, ascending.
   std::vector<std::uint32_t> positions_below(std::size_t s) const;
-  /// Whether the surface of switch s depends on the position of switch `other`.
+  /// Whether the event function of switch s depends on the position of switch `other`.
   bool depends(std::size_t s, std::size_t other) const;
-  /// Of each switch: whether its surface depends on the position of one of `these` (one flag for each
+  /// Of each switch: whether its event function depends on the position of one of `these` (one flag for each
   /// switch), or on that of another that does.
   std::vector<bool> followers_of(const std::vector<bool>& these) const;
 
@@ -43,7 +43,7 @@ struct SwitchStructure {
   /// − 1]`.
   std::vector<std::uint32_t> first_operand, operands;
   std::vector<std::uint32_t> switch_at;  ///< of each node: the switch whose position it is
-  std::vector<NodeId> surfaces;          ///< of each switch
+  std::vector<NodeId> event_functions;   ///< of each switch
 };
 
 SwitchStructure find_switch_structure(const Network& network);

@@ -28,8 +28,8 @@ NodeId Tangents::of(NodeId root) {
   return known_[root];
 }
 
-/// The operands are known. Below a `select` that is closed nothing moves, even where the slope of what reads
-/// it is no number.
+/// The operands are known. Below a `select` that is closed nothing moves, even where the derivative of what
+/// reads it is no number.
 void Tangents::differentiate(NodeId id) {
   const Node node = graph_[id];  // a copy: new nodes may move the array
   if (!node.continuous) {
@@ -51,9 +51,9 @@ void Tangents::differentiate(NodeId id) {
   for (int i = 0; i < operand_count(node.op); ++i) {
     const NodeId tangent = known_[node.operand(i)];
     if (graph_.is_constant(tangent, 0)) continue;
-    const NodeId slope = graph_.partial(id, i);
-    const Op by = branches && !graph_.has_value_everywhere(id, slope) ? Op::gate : Op::multiply;
-    sum = graph_.apply(Op::add, sum, graph_.apply(by, tangent, slope));
+    const NodeId derivative = graph_.partial(id, i);
+    const Op by = branches && !graph_.has_value_everywhere(id, derivative) ? Op::gate : Op::multiply;
+    sum = graph_.apply(Op::add, sum, graph_.apply(by, tangent, derivative));
   }
   known_[id] = sum;
 }

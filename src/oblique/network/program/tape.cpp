@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint32_t kNoSlot = std::numeric_limits<std::uint32_t>::max();
 
-/// Nothing of constants, variables and memories, which are never written.
+/// Nothing of constants, variables and discrete states, which are never written.
 std::optional<Instruction::Code> code_of(Op op) {
   using Code = Instruction::Code;
   switch (op) {
@@ -44,7 +44,7 @@ std::optional<Instruction::Code> code_of(Op op) {
       return Code::table_segment;
     case Op::constant:
     case Op::variable:
-    case Op::memory:
+    case Op::discrete_state:
       break;
   }
   return std::nullopt;
@@ -145,15 +145,15 @@ void run_tape(std::span<const Instruction> instructions, double* slots) {
   }
 }
 
-TapeWriter::TapeWriter(const ExpressionGraph& graph, std::size_t n_variables, std::size_t n_memories,
+TapeWriter::TapeWriter(const ExpressionGraph& graph, std::size_t n_variables, std::size_t n_discrete_states,
                        const std::vector<text::PointTable>& tables, std::vector<std::uint32_t> uses)
     : graph_(&graph),
       n_variables_(n_variables),
       uses_(std::move(uses)),
       slots_(graph.size(), kNoSlot),
-      stretch_(graph.size(), 0),
+      segment_(graph.size(), 0),
       fused_(graph.size(), 0),
-      initial_slots_(n_variables + n_memories, 0.0) {
+      initial_slots_(n_variables + n_discrete_states, 0.0) {
   for (const text::PointTable& table : tables) {
     table_slots_.push_back(static_cast<std::uint32_t>(initial_slots_.size()));
     const std::size_t count = initial_slots_.size();
@@ -179,7 +179,7 @@ std::uint32_t TapeWriter::slot(NodeId id) {
     const Node& node = (*graph_)[id];
     if (node.op == Op::variable) {
       slots_[id] = node.variable;
-    } else if (node.op == Op::memory) {
+    } else if (node.op == Op::discrete_state) {
       slots_[id] = static_cast<std::uint32_t>(n_variables_ + node.variable);
     } else {
       slots_[id] = static_cast<std::uint32_t>(initial_slots_.size());
@@ -190,12 +190,12 @@ std::uint32_t TapeWriter::slot(NodeId id) {
 }
 
 bool TapeWriter::can_fuse(NodeId id) const {
-  return (*graph_)[id].op == Op::multiply && uses_[id] == 1 && stretch_[id] == current_stretch_;
+  return (*graph_)[id].op == Op::multiply && uses_[id] == 1 && segment_[id] == current_segment_;
 }
 
 TapeRange TapeWriter::write(std::span<const NodeId> nodes) {
-  ++current_stretch_;
-  for (const NodeId id : nodes) stretch_[id] = current_stretch_;
+  ++current_segment_;
+  for (const NodeId id : nodes) segment_[id] = current_segment_;
 
   // A product is taken into the sum that reads it: mark those first, so that they are not written on their
   // own.
@@ -207,14 +207,14 @@ TapeRange TapeWriter::write(std::span<const NodeId> nodes) {
   for (const NodeId id : nodes) {
     const Node& node = (*graph_)[id];
     const int operand = fused_operand(node);
-    if (operand != 0) fused_[operand == 1 ? node.a : node.b] = current_stretch_;
+    if (operand != 0) fused_[operand == 1 ? node.a : node.b] = current_segment_;
   }
 
   TapeRange range{static_cast<std::uint32_t>(instructions_.size()), 0};
   for (const NodeId id : nodes) {
     const Node& node = (*graph_)[id];
     const auto code = code_of(node.op);
-    if (!code || fused_[id] == current_stretch_) continue;
+    if (!code || fused_[id] == current_segment_) continue;
     Instruction instruction{};
     const int operand = fused_operand(node);
     if (operand != 0) {

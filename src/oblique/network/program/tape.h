@@ -34,7 +34,7 @@ struct Instruction {
   std::uint32_t result;
 };
 
-/// A stretch of instructions, half open.
+/// A segment of instructions, half open.
 struct TapeRange {
   std::uint32_t begin = 0;
   std::uint32_t end = 0;
@@ -48,12 +48,12 @@ class TapeWriter {
  public:
   /// `uses` counts, for every node, who reads it: the nodes to be written and the world outside. The first
   /// `n_variables` slots are the variables, by their number.
-  /// Memories have the slots after the variables.
-  TapeWriter(const ExpressionGraph& graph, std::size_t n_variables, std::size_t n_memories,
+  /// Discrete states have the slots after the variables.
+  TapeWriter(const ExpressionGraph& graph, std::size_t n_variables, std::size_t n_discrete_states,
              const std::vector<text::PointTable>& tables, std::vector<std::uint32_t> uses);
 
   /// Appends the instructions of `nodes` (ascending; their operands are constants, variables, among them, or
-  /// written before). A product that nobody but one sum in the same stretch reads becomes one instruction
+  /// written before). A product that nobody but one sum in the same segment reads becomes one instruction
   /// with it.
   TapeRange write(std::span<const NodeId> nodes);
 
@@ -74,9 +74,9 @@ class TapeWriter {
   std::vector<std::uint32_t> table_slots_;
   std::vector<std::uint32_t> uses_;
   std::vector<std::uint32_t> slots_;
-  std::vector<std::uint32_t> stretch_;  ///< number of the stretch that last contained the node
-  std::vector<std::uint32_t> fused_;    ///< number of the stretch in which the product went into its sum
-  std::uint32_t current_stretch_ = 0;
+  std::vector<std::uint32_t> segment_;  ///< number of the segment that last contained the node
+  std::vector<std::uint32_t> fused_;    ///< number of the segment in which the product went into its sum
+  std::uint32_t current_segment_ = 0;
   std::vector<Instruction> instructions_;
   std::vector<double> initial_slots_;
 };

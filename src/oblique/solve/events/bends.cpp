@@ -27,8 +27,8 @@ Bends::Bends(const network::Program& program, network::Workspace& workspace, dou
       span_(span),
       is_one_(program.switches().size(), false),
       first_rates_(program.switches().size()),
-      surfaces_(program.switches().size()),
-      slopes_(program.n_states()),
+      event_functions_(program.switches().size()),
+      derivatives_(program.n_states()),
       moved_(program.n_states()) {}
 
 void Bends::clear() {
@@ -45,19 +45,20 @@ void Bends::add(std::uint32_t unit, const std::vector<double>& preferred) {
 }
 
 std::optional<network::Evaluation> Bends::follow(const network::Evaluation& here, double t,
-                                                 std::span<const double> x, std::vector<double>& surfaces) {
+                                                 std::span<const double> x,
+                                                 std::vector<double>& event_functions) {
   const network::SwitchStructure& structure = program_.switch_structure();
   resting_.clear();
-  here.derivatives(slopes_.data());
-  const double fastest = fastest_of(slopes_, std::numeric_limits<double>::min());
+  here.derivatives(derivatives_.data());
+  const double fastest = fastest_of(derivatives_, std::numeric_limits<double>::min());
   const auto moves = [&](double rate, double rounding) {
     return std::abs(rate) > rounding * fastest && leaves_rounding(rate, span_);
   };
   const auto go = [&](std::uint32_t s, double rate) {
-    workspace_.set_memory(program_.switches()[s].memory, rate > 0 ? 1 : 0);
+    workspace_.set_discrete_state(program_.switches()[s].discrete_state, rate > 0 ? 1 : 0);
   };
-  program_.decide_in_order(t, x.data(), slopes_.data(), workspace_,
-                           [&](std::uint32_t s, double /*surface*/, double rate) {
+  program_.decide_in_order(t, x.data(), derivatives_.data(), workspace_,
+                           [&](std::uint32_t s, double /*event_function*/, double rate) {
                              if (!is_one_[s]) return;
                              first_rates_[s] = rate;
                              if (moves(rate, kRounding)) go(s, rate);
@@ -65,12 +66,13 @@ std::optional<network::Evaluation> Bends::follow(const network::Evaluation& here
   // What stands still to first order, or is about to turn, goes where it goes a moment later.
   std::vector<bool> at_once(is_one_.size(), false), by_later(is_one_.size(), false);
   const double step = std::min(kProbe / fastest, kProbe * span_);
-  for (std::size_t i = 0; i < x.size(); ++i) moved_[i] = x[i] + step * slopes_[i];
-  if (const auto later = program_.surfaces(t + step, moved_.data(), surfaces_.data(), workspace_)) {
-    later->derivatives(slopes_.data());
+  for (std::size_t i = 0; i < x.size(); ++i) moved_[i] = x[i] + step * derivatives_[i];
+  if (const auto later =
+          program_.event_functions(t + step, moved_.data(), event_functions_.data(), workspace_)) {
+    later->derivatives(derivatives_.data());
     program_.decide_in_order(
-        t + step, moved_.data(), slopes_.data(), workspace_,
-        [&](std::uint32_t s, double /*surface*/, double later_rate) {
+        t + step, moved_.data(), derivatives_.data(), workspace_,
+        [&](std::uint32_t s, double /*event_function*/, double later_rate) {
           if (!is_one_[s]) return;
           const double rate = first_rates_[s];
           if (moves(rate, kRounding) && std::abs(rate) > kAboutToTurn * std::abs(later_rate - rate)) {
@@ -86,25 +88,28 @@ std::optional<network::Evaluation> Bends::follow(const network::Evaluation& here
     keep_where_both_sides_lead_back(t + step, moved_, by_later);
     keep_where_both_sides_lead_back(t, x, at_once);
   }
-  return program_.surfaces(t, x.data(), surfaces.data(), workspace_);
+  return program_.event_functions(t, x.data(), event_functions.data(), workspace_);
 }
 
 /// Looks at those `decided` at (t, x) where they have gone: where that side leads back as well, the solution
-/// goes along the surface within less than what can be told, and both sides are right to the rounding of the
-/// surface. (What multiplies this rounding may change dx/dt.) Such a one takes the side that it prefers.
+/// goes along the switching event function within less than what can be told, and both sides are right to the
+/// rounding of the event function. (What multiplies this rounding may change dx/dt.) Such a one takes the
+/// side that it prefers.
 void Bends::keep_where_both_sides_lead_back(double t, std::span<const double> x,
                                             const std::vector<bool>& decided) {
   if (std::find(decided.begin(), decided.end(), true) == decided.end()) return;
-  const auto here = program_.surfaces(t, x.data(), surfaces_.data(), workspace_);
+  const auto here = program_.event_functions(t, x.data(), event_functions_.data(), workspace_);
   if (!here) return;
-  here->derivatives(slopes_.data());
+  here->derivatives(derivatives_.data());
   std::vector<double> preferred(is_one_.size());
   for (const auto& [s, position] : positions_) preferred[s] = position;
-  program_.decide_in_order(t, x.data(), slopes_.data(), workspace_,
-                           [&](std::uint32_t s, double /*surface*/, double rate) {
-                             const std::uint32_t memory = program_.switches()[s].memory;
-                             const bool back = workspace_.memory(memory) == 1 ? rate < 0 : rate > 0;
-                             if (decided[s] && back) workspace_.set_memory(memory, preferred[s]);
+  program_.decide_in_order(t, x.data(), derivatives_.data(), workspace_,
+                           [&](std::uint32_t s, double /*event_function*/, double rate) {
+                             const std::uint32_t discrete_state = program_.switches()[s].discrete_state;
+                             const bool back =
+                                 workspace_.discrete_state(discrete_state) == 1 ? rate < 0 : rate > 0;
+                             if (decided[s] && back)
+                               workspace_.set_discrete_state(discrete_state, preferred[s]);
                            });
 }
 
@@ -113,7 +118,7 @@ bool Bends::rest_with(SlidingMode& slide, const std::vector<double>& rates, doub
     const std::uint32_t s = placed.first;
     const double largest = std::max(kRounding * fastest, std::abs(first_rates_[s]));
     if (std::abs(rates[s]) > kNoLaterRate * largest)
-      return (rates[s] > 0) == (workspace_.memory(program_.switches()[s].memory) == 1);
+      return (rates[s] > 0) == (workspace_.discrete_state(program_.switches()[s].discrete_state) == 1);
     slide.let_rest(s);
     return true;
   });

@@ -17,8 +17,9 @@ bool switch_only_bends(const network::Program& program, const network::Evaluatio
 bool only_bends(const network::Program& program, const network::Evaluation& here, std::uint32_t unit);
 
 /// Units of switches at which the equations only bend. Wherever these stand, dx/dt at that instant is the
-/// same, so that they need no trials: each goes where its surface goes, in the order in which the slopes of
-/// the surfaces depend on their positions (lexicographic derivatives: Nesterov 2005). Not installed.
+/// same, so that they need no trials: each goes where its event function goes, in the order in which the
+/// derivatives of the event functions depend on their positions (lexicographic derivatives: Nesterov 2005).
+/// Not installed.
 class Bends {
  public:
   /// All must outlive this; `span` is the length of the run [s].
@@ -32,16 +33,17 @@ class Bends {
   /// The switches, and the positions that they prefer.
   const std::vector<std::pair<std::uint32_t, double>>& positions() const { return positions_; }
 
-  /// Turns them to where their surfaces go from (t, x), all others where they are and `here` evaluated there;
-  /// then evaluates the surfaces anew. One that stays at zero keeps its position. Nothing where a loop has no
-  /// solution.
+  /// Turns them to where their event functions go from (t, x), all others where they are and `here` evaluated
+  /// there; then evaluates the event functions anew. One that stays at zero keeps its position. Nothing where
+  /// a loop has no solution.
   std::optional<network::Evaluation> follow(const network::Evaluation& here, double t,
-                                            std::span<const double> x, std::vector<double>& surfaces);
+                                            std::span<const double> x, std::vector<double>& event_functions);
   /// The units that the last `follow` found to stay at zero.
   const std::vector<std::uint32_t>& resting() const { return resting_; }
 
-  /// Lets those rest whose surfaces stay at zero along with a slide that has begun; `rates` are those of its
-  /// mixture, and `fastest` is the rate of the fastest state. False where one would go to the other side.
+  /// Lets those rest whose event functions stay at zero along with a slide that has begun; `rates` are those
+  /// of its mixture, and `fastest` is the rate of the fastest state. False where one would go to the other
+  /// side.
   bool rest_with(SlidingMode& slide, const std::vector<double>& rates, double fastest) const;
 
  private:
@@ -53,8 +55,8 @@ class Bends {
   std::vector<std::pair<std::uint32_t, double>> positions_;  ///< see `positions`
   std::vector<bool> is_one_;                                 ///< of each switch: it is one of them
   std::vector<std::uint32_t> resting_;
-  std::vector<double> first_rates_;  ///< of their surfaces
-  std::vector<double> surfaces_, slopes_, moved_;
+  std::vector<double> first_rates_;  ///< of their event functions
+  std::vector<double> event_functions_, derivatives_, moved_;
 };
 
 }  // namespace oblique::solve

@@ -32,12 +32,12 @@ double least_rise(const network::Program& program, const network::SignalEvaluati
   std::vector<Eigen::Index> amplifiers, others;
   for (std::size_t i = 0; i < unknowns.size(); ++i)
     (held_by_amplifier(program, unknowns[i]) ? amplifiers : others).push_back(static_cast<Eigen::Index>(i));
-  const Eigen::MatrixXd slopes = here.loop_slopes(loop);
-  Eigen::MatrixXd own = slopes(amplifiers, amplifiers);
+  const Eigen::MatrixXd jacobian = here.loop_jacobian(loop);
+  Eigen::MatrixXd own = jacobian(amplifiers, amplifiers);
   if (!others.empty()) {
-    const Eigen::MatrixXd inner = slopes(others, others);
-    own -=
-        slopes(amplifiers, others) * inner.partialPivLu().solve(Eigen::MatrixXd(slopes(others, amplifiers)));
+    const Eigen::MatrixXd inner = jacobian(others, others);
+    own -= jacobian(amplifiers, others) *
+           inner.partialPivLu().solve(Eigen::MatrixXd(jacobian(others, amplifiers)));
   }
   if (!own.allFinite()) return 0;
   const Eigen::VectorXcd values = eigenvalues_of(own);
@@ -46,7 +46,7 @@ double least_rise(const network::Program& program, const network::SignalEvaluati
 }
 
 bool rests(const network::Program& program, const network::SignalEvaluation& here, std::size_t loop) {
-  constexpr double kRounding = 1e-9;  // a root of even order has no slope but that of its rounding
+  constexpr double kRounding = 1e-9;  // a root of even order has no derivative but that of its rounding
   return least_rise(program, here, loop) > -kRounding;
 }
 
@@ -125,10 +125,11 @@ std::optional<double> BranchWatch::search(double from, double to, double longest
 BranchWatch::Ahead BranchWatch::look_ahead(double& t, double segment_end, std::vector<double>& states,
                                            const Interpolant& solution) {
   if (!any_ || workspace_.trouble().failure != network::LoopFailure::lost) return Ahead::nothing;
-  std::vector<double> slopes(states.size());
+  std::vector<double> derivatives(states.size());
   // Next to the end dx/dt itself may have no value any more.
-  if (!program_.derivatives(t, states.data(), slopes.data(), workspace_)) solution.rates_at(t, slopes);
-  const StraightLine ahead(t, states, slopes);
+  if (!program_.derivatives(t, states.data(), derivatives.data(), workspace_))
+    solution.rates_at(t, derivatives);
+  const StraightLine ahead(t, states, derivatives);
   // Of the run: the square of the farther one, the error of a straight line, is below every tolerance.
   const bool twice = tried_ && t <= *tried_;
   tried_ = t;

@@ -21,12 +21,12 @@ bool sets_states(const network::Event& event) {
 }  // namespace
 
 EventActions::EventActions(const network::Program& program, network::Workspace& workspace,
-                           const SwitchSurfaces& surfaces, const SlidingMode& slide,
+                           const EventFunctions& event_functions, const SlidingMode& slide,
                            const SwitchSettling& settling, EventLog& log, double span,
                            const std::string& file)
     : program_(program),
       workspace_(workspace),
-      surfaces_(surfaces),
+      event_functions_(event_functions),
       slide_(slide),
       settling_(settling),
       log_(log),
@@ -37,19 +37,19 @@ EventActions::EventActions(const network::Program& program, network::Workspace& 
       paces_(program.events().size()),
       signals_(program.n_signals()) {}
 
-/// Whether an event piles up, so that the one that takes its place is to come. Throws SolveError where none
-/// does.
-bool EventActions::piles_up(const Come& come, double t) {
-  const auto pile_up = paces_[come.event].come(t, span_, end_);
-  if (!pile_up && !come.at_once) return false;
+/// Whether an event shows Zeno behaviour, so that the one that takes its place is to come. Throws SolveError
+/// where none does.
+bool EventActions::is_zeno(const Come& come, double t) {
+  const auto zeno = paces_[come.event].come(t, span_, end_);
+  if (!zeno && !come.at_once) return false;
   const network::Event& what = program_.events()[come.event];
   if (what.piling_up) return true;
   const std::string told =
-      pile_up
+      zeno
           ? fmt::format(
                 "come ever faster: at t = {:.9g} s again after {:.3g} s, and they pile up at t = "
                 "{:.9g} s",
-                t, pile_up->interval, pile_up->at)
+                t, zeno->interval, zeno->at)
           : fmt::format("come again at once at t = {:.9g} s: what they set leads back to their condition", t);
   throw SolveError(SolveError::Kind::chatter, t,
                    {{file_, {}},
@@ -60,28 +60,31 @@ bool EventActions::piles_up(const Come& come, double t) {
 }
 
 /// Whether the condition of an event that came at this instant holds because what it set leads back to it: it
-/// hangs on a switch whose surface is at zero, and does not stay there.
+/// hangs on a switch whose event function is at zero, and does not stay there.
 bool EventActions::comes_at_once(std::size_t event, double t, std::span<const double> x) {
   if (!came_[event]) return false;
-  std::vector<double> others(surfaces_.size());
+  std::vector<double> others(event_functions_.size());
   bool hangs = false;
-  for (std::size_t s = 0; s < surfaces_.size() && !hangs; ++s) {
-    if (surfaces_.is_known(s) || settling_.stays(s) || slide_.rests(s) || surfaces_.is_off_zero(s)) continue;
-    const std::uint32_t memory = program_.switches()[s].memory;
-    const double position = workspace_.memory(memory);
-    workspace_.set_memory(memory, 1 - position);
-    const auto there = program_.surfaces(t, x.data(), others.data(), workspace_);
+  for (std::size_t s = 0; s < event_functions_.size() && !hangs; ++s) {
+    if (event_functions_.is_known(s) || settling_.stays(s) || slide_.rests(s) ||
+        event_functions_.is_off_zero(s))
+      continue;
+    const std::uint32_t discrete_state = program_.switches()[s].discrete_state;
+    const double position = workspace_.discrete_state(discrete_state);
+    workspace_.set_discrete_state(discrete_state, 1 - position);
+    const auto there = program_.event_functions(t, x.data(), others.data(), workspace_);
     hangs = there && !there->condition(event);
-    workspace_.set_memory(memory, position);
+    workspace_.set_discrete_state(discrete_state, position);
   }
-  program_.surfaces(t, x.data(), others.data(), workspace_);  // back to the solutions of the loops here
+  program_.event_functions(t, x.data(), others.data(),
+                           workspace_);  // back to the solutions of the loops here
   return hangs;
 }
 
 /// Looks at all conditions; the events that have come.
 std::vector<EventActions::Come> EventActions::look(double t, std::span<const double> x, bool starting) {
   const std::vector<bool> held_before = held_;
-  for (std::size_t e = 0; e < held_.size(); ++e) held_[e] = surfaces_.here().condition(e);
+  for (std::size_t e = 0; e < held_.size(); ++e) held_[e] = event_functions_.here().condition(e);
   std::vector<Come> found;
   for (std::size_t e = 0; e < held_.size(); ++e) {
     const network::Event& event = program_.events()[e];
@@ -121,7 +124,7 @@ std::optional<EventActions::Effect> EventActions::serve(double t, std::vector<do
   for (const Come& come : served) {
     const network::Event& event = program_.events()[come.event];
     came_[come.event] = sets_states(event);
-    if (piles_up(come, t)) {
+    if (is_zeno(come, t)) {
       came_[come.event] = false;
       log_.record(t, program_.events()[*event.piling_up].block + ": its events pile up");
       add_changes(*event.piling_up, *here, t, changes);
@@ -137,7 +140,7 @@ std::optional<EventActions::Effect> EventActions::serve(double t, std::vector<do
       effect.jumps = effect.jumps || x[change.action->index] != change.value;
       x[change.action->index] = change.value;
     } else {
-      workspace_.set_memory(change.action->index, change.value);
+      workspace_.set_discrete_state(change.action->index, change.value);
     }
   }
   return effect;

@@ -9,23 +9,23 @@
 #include <vector>
 
 #include <oblique/network/program/program.h>
+#include <oblique/solve/events/event_functions.h>
 #include <oblique/solve/events/event_log.h>
 #include <oblique/solve/events/event_pace.h>
 #include <oblique/solve/events/sliding_mode.h>
 #include <oblique/solve/events/switch_settling.h>
-#include <oblique/solve/events/switch_surfaces.h>
 
 namespace oblique::solve {
 
-/// Serves events: which have come, what they set, and how they pile up. Not installed.
+/// Serves events: which have come, what they set, and their Zeno behaviour. Not installed.
 class EventActions {
  public:
   /// All must outlive this; `span` is the length of the run [s], and `file` names the diagram in messages.
-  EventActions(const network::Program& program, network::Workspace& workspace, const SwitchSurfaces& surfaces,
-               const SlidingMode& slide, const SwitchSettling& settling, EventLog& log, double span,
-               const std::string& file);
+  EventActions(const network::Program& program, network::Workspace& workspace,
+               const EventFunctions& event_functions, const SlidingMode& slide,
+               const SwitchSettling& settling, EventLog& log, double span, const std::string& file);
 
-  /// Where the run ends [s]: events that would pile up later do not.
+  /// Where the run ends [s]: Zeno behaviour that would be complete later is none.
   void end_at(double t) { end_ = t; }
 
   /// A new instant: no event has come at it yet.
@@ -36,8 +36,8 @@ class EventActions {
     bool sets_states = false;
     bool jumps = false;  ///< a state has another value now
   };
-  /// Serves all events whose conditions have become true at (t, x), where all surfaces were evaluated; while
-  /// `starting` only those that come at a start. Nothing where there are none. Throws SolveError.
+  /// Serves all events whose conditions have become true at (t, x), where all event functions were evaluated;
+  /// while `starting` only those that come at a start. Nothing where there are none. Throws SolveError.
   std::optional<Effect> serve(double t, std::vector<double>& x, bool starting);
 
   /// Whether the condition of each event held when it was last looked at: what must be kept to go on later.
@@ -57,13 +57,13 @@ class EventActions {
 
   std::vector<Come> look(double t, std::span<const double> x, bool starting);
   bool comes_at_once(std::size_t event, double t, std::span<const double> x);
-  bool piles_up(const Come& come, double t);
+  bool is_zeno(const Come& come, double t);
   void add_changes(std::size_t event, const network::SignalEvaluation& here, double t,
                    std::vector<Change>& changes) const;
 
   const network::Program& program_;
   network::Workspace& workspace_;
-  const SwitchSurfaces& surfaces_;
+  const EventFunctions& event_functions_;
   const SlidingMode& slide_;
   const SwitchSettling& settling_;
   EventLog& log_;

@@ -12,25 +12,25 @@
 namespace oblique::solve {
 
 EventLocation::EventLocation(const network::Program& program, network::Workspace& workspace,
-                             SlidingMode& slide, SwitchSurfaces& surfaces, double span,
+                             SlidingMode& slide, EventFunctions& event_functions, double span,
                              const std::string& file)
     : program_(program),
       workspace_(workspace),
-      surfaces_(surfaces),
-      search_(program, workspace, slide, surfaces.thresholds(), span, file),
+      event_functions_(event_functions),
+      search_(program, workspace, slide, event_functions.thresholds(), span, file),
       announced_(program.switches().size()) {}
 
 std::optional<double> EventLocation::known_wait(double t, std::span<const double> x) {
   if (announced_.empty()) return std::nullopt;
   std::optional<double> next;
   std::vector<std::optional<double>> waits(announced_.size());
-  surfaces_.evaluate(t, x, announced_);
+  event_functions_.evaluate(t, x, announced_);
   for (std::size_t s = 0; s < announced_.size(); ++s) {
-    const auto rate = surfaces_.known_rate(s);
+    const auto rate = event_functions_.known_rate(s);
     if (!rate) continue;
-    const bool closed = workspace_.memory(program_.switches()[s].memory) == 1;
+    const bool closed = workspace_.discrete_state(program_.switches()[s].discrete_state) == 1;
     if (closed ? *rate >= 0 : *rate <= 0) continue;
-    const double wait = surfaces_.is_off_zero(s) ? std::max(0.0, -surfaces_[s] / *rate) : 0;
+    const double wait = event_functions_.is_off_zero(s) ? std::max(0.0, -event_functions_[s] / *rate) : 0;
     if (!std::isfinite(wait)) continue;
     waits[s] = wait;
     next = std::min(next.value_or(wait), wait);
@@ -38,14 +38,14 @@ std::optional<double> EventLocation::known_wait(double t, std::span<const double
   withdraw_all();
   for (std::size_t s = 0; s < announced_.size(); ++s) {
     if (waits[s] && *waits[s] <= *next + time_resolution(t + *next))
-      announced_[s] = 1 - workspace_.memory(program_.switches()[s].memory);
+      announced_[s] = 1 - workspace_.discrete_state(program_.switches()[s].discrete_state);
   }
   return next;
 }
 
-std::optional<EventSearch::Found> EventLocation::search(double from, std::span<const double> looks,
+std::optional<EventSearch::Found> EventLocation::search(double from, std::span<const double> sample_times,
                                                         const Interpolant& solution) {
-  auto found = search_.search(from, looks, solution);
+  auto found = search_.search(from, sample_times, solution);
   if (!found) return std::nullopt;
   withdraw_all();
   for (const auto& [s, position] : found->turned) announced_[s] = position;
@@ -54,14 +54,15 @@ std::optional<EventSearch::Found> EventLocation::search(double from, std::span<c
 
 void EventLocation::withdraw_early(double t) {
   for (std::size_t s = 0; s < announced_.size(); ++s) {
-    const auto rate = surfaces_.known_rate(s);
-    if (rate && std::abs(surfaces_[s]) > 8 * time_resolution(t) * std::abs(*rate)) announced_[s].reset();
+    const auto rate = event_functions_.known_rate(s);
+    if (rate && std::abs(event_functions_[s]) > 8 * time_resolution(t) * std::abs(*rate))
+      announced_[s].reset();
   }
 }
 
 void EventLocation::withdraw_past(bool all) {
   for (std::size_t s = 0; s < announced_.size(); ++s) {
-    if (all || surfaces_.is_off_zero(s)) announced_[s].reset();
+    if (all || event_functions_.is_off_zero(s)) announced_[s].reset();
   }
 }
 

@@ -6,8 +6,8 @@
 #include <string>
 
 #include <oblique/network/program/program.h>
+#include <oblique/solve/events/event_functions.h>
 #include <oblique/solve/events/event_search.h>
-#include <oblique/solve/events/switch_surfaces.h>
 #include <oblique/solve/integrator/interpolant.h>
 
 namespace oblique::solve {
@@ -18,9 +18,9 @@ class EventLocation {
  public:
   /// All must outlive this; `span` is the length of the run [s].
   EventLocation(const network::Program& program, network::Workspace& workspace, SlidingMode& slide,
-                SwitchSurfaces& surfaces, double span, const std::string& file);
+                EventFunctions& event_functions, double span, const std::string& file);
 
-  void limit_looks(double looks) { search_.limit_looks(looks); }
+  void limit_samples(double samples) { search_.limit_samples(samples); }
   void end_when(const Interruption& interruption) { search_.end_when(interruption); }
 
   /// How long after t the next switch that follows time alone turns over [s], which is announced; nothing
@@ -28,21 +28,21 @@ class EventLocation {
   std::optional<double> known_wait(double t, std::span<const double> x);
 
   /// The first crossing after `from`, which is announced; nothing where there is none: see EventSearch.
-  std::optional<EventSearch::Found> search(double from, std::span<const double> looks,
+  std::optional<EventSearch::Found> search(double from, std::span<const double> sample_times,
                                            const Interpolant& solution);
 
   const Announced& announced() const { return announced_; }
-  /// Withdraws switches that follow time alone and are not due yet at t, where the surfaces were evaluated
-  /// last: the segment may have ended before their time.
+  /// Withdraws switches that follow time alone and are not due yet at t, where the event functions were
+  /// evaluated last: the segment may have ended before their time.
   void withdraw_early(double t);
-  /// Withdraws switches whose surfaces have moved away from zero; or all.
+  /// Withdraws switches whose event functions have moved away from zero; or all.
   void withdraw_past(bool all);
   void withdraw_all() { announced_.assign(announced_.size(), std::nullopt); }
 
  private:
   const network::Program& program_;
   const network::Workspace& workspace_;
-  SwitchSurfaces& surfaces_;
+  EventFunctions& event_functions_;
   EventSearch search_;
   Announced announced_;
 };

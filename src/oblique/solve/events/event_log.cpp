@@ -70,7 +70,7 @@ void EventLog::warn_of_unit(std::uint32_t unit, const char* what, const std::str
 /// Tells that rounding decides where the solution goes.
 void EventLog::warn_of_repulsion(std::uint32_t unit, double t) {
   warn_of_unit(
-      unit, "leaves the surface that it slides along",
+      unit, "leaves the switching surface that it slides along",
       fmt::format(" at t = {:.9g} s, since both of its sides drive away from it from then on: rounding "
                   "decides to which side it goes",
                   t),
@@ -79,7 +79,7 @@ void EventLog::warn_of_repulsion(std::uint32_t unit, double t) {
 
 void EventLog::warn_of_no_side(std::uint32_t unit, double t) {
   warn_of_unit(
-      unit, "stands on its surface",
+      unit, "stands on its switching surface",
       fmt::format(" at t = {:.9g} s, and both of its sides drive away from it: nothing decides to which "
                   "side it goes",
                   t),
@@ -102,7 +102,7 @@ void EventLog::warn_of_torn(const SlidingMode& slide, double t) {
     if (!slide.is_torn(s)) continue;
     const network::Switch& follower = program_.switches()[s];
     const std::string what = fmt::format(
-        "'{}' ({}) depends on '{}', which slides along its surface{}{:.9g} s: it switches "
+        "'{}' ({}) depends on '{}', which slides along its switching surface{}{:.9g} s: it switches "
         "without end, which is not counted and not stored",
         follower.block, follower.comparison, first_of(slide.units().front()).block, kWhen, t);
     const bool told = std::any_of(warnings_.begin(), warnings_.end(), [&](const text::Diagnostic& warning) {

@@ -7,7 +7,7 @@ namespace oblique::solve {
 namespace {
 
 constexpr int kMostShorter = 10;
-constexpr double kPilingUp = 1e-5;  ///< of the run
+constexpr double kZenoTime = 1e-5;  ///< of the run
 /// Three intervals are enough where they shorten this quickly, and their two ratios are the same to such a
 /// part of them: they are soon within the errors of the states, where no event can be told.
 constexpr double kQuickly = 0.7;
@@ -17,7 +17,7 @@ constexpr double kSteady = 0.75;
 
 }  // namespace
 
-std::optional<EventPace::PileUp> EventPace::come(double t, double span, double end) {
+std::optional<EventPace::Zeno> EventPace::come(double t, double span, double end) {
   const double now = t - last;
   shorter = now > 0 && interval && now < *interval ? shorter + 1 : 0;
   const double present = interval ? now / *interval : 1;
@@ -31,9 +31,9 @@ std::optional<EventPace::PileUp> EventPace::come(double t, double span, double e
     approach = 1 - present;
   }
   const bool quick = shorter > 1 && present < kQuickly && std::abs(present - ratio) < kSameRatio * present;
-  const bool many = steady && shorter >= kMostShorter && now < kPilingUp * span;
+  const bool many = steady && shorter >= kMostShorter && now < kZenoTime * span;
   ratio = present;
-  if ((many || quick) && left < kPilingUp * span && t + left < end) return PileUp{now, t + left};
+  if ((many || quick) && left < kZenoTime * span && t + left < end) return Zeno{now, t + left};
   last = t;
   interval = now > 0 ? std::optional(now) : std::nullopt;
   return std::nullopt;

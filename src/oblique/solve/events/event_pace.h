@@ -5,12 +5,12 @@
 
 namespace oblique::solve {
 
-/// How quickly an event comes again: ever faster is how events pile up (Zeno).
+/// How quickly an event comes again: ever faster is Zeno behaviour.
 ///
-/// Events that come sooner and sooner, often enough in a row, pile up where the times left to them, at the
-/// present ratio, are together a vanishing part of the run, and the ratio is not on its way to 1: events that
-/// crowd together and thin out again (two balls between a heavy one and a wall). That is seen over intervals
-/// that become shorter by a factor: 1 less the ratio is then not much smaller than it was.
+/// Events that come sooner and sooner, often enough in a row, show Zeno behaviour where the times left to
+/// them, at the present ratio, are together a vanishing part of the run, and the ratio is not on its way to
+/// 1: events that crowd together and thin out again (two balls between a heavy one and a wall). That is seen
+/// over intervals that become shorter by a factor: 1 less the ratio is then not much smaller than it was.
 struct EventPace {
   double last = 0;                 ///< when it came last [s]
   std::optional<double> interval;  ///< since it came before [s]; nothing where it came at once
@@ -21,12 +21,12 @@ struct EventPace {
   double approach = 0;
   bool steady = false;
 
-  /// The event comes at t in a run as long as `span` that ends at `end` [s]. Its interval [s] where the
-  /// events pile up before that end, and when they do [s]; this one is then not counted.
-  struct PileUp {
+  /// The event comes at t in a run as long as `span` that ends at `end` [s]. Its interval [s] where
+  /// it comes infinitely often before that end, and by when [s]; this one is then not counted.
+  struct Zeno {
     double interval, at;
   };
-  std::optional<PileUp> come(double t, double span, double end);
+  std::optional<Zeno> come(double t, double span, double end);
 };
 
 }  // namespace oblique::solve

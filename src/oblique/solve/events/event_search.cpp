@@ -19,11 +19,11 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// At least so often over a run, however smooth the states are: nothing is known of what is made of them.
-constexpr double kFewestLooks = 1000;
+constexpr double kFewestSamples = 1000;
 
-/// No further from look to look than a periodic function of the states turns by this [rad].
+/// No further from sample to sample than a periodic function of the states turns by this [rad].
 constexpr double kMostTurn = 0.5;
-constexpr double kMostLooks = 1e6;  ///< in a step
+constexpr double kMostSamples = 1e6;  ///< in a step
 
 /// How far beyond 0 and 1 the shares of a slide are where it ends.
 constexpr double kEdge = 1e-5;
@@ -33,7 +33,7 @@ constexpr double kEdge = 1e-5;
 constexpr double kAttracted = -1;
 
 constexpr int kDeepest = 60;
-constexpr int kMostSplits = 1000;  ///< of a part between two looks: more is asked for by rounding alone
+constexpr int kMostSplits = 1000;  ///< of a part between two samples: more is asked for by rounding alone
 
 /// A cubic over [0, 1] by its values at the ends and its slopes there.
 struct Cubic {
@@ -60,7 +60,7 @@ struct Cubic {
   }
 };
 
-/// From one look to another; without rates a straight line.
+/// From one sample to another; without rates a straight line.
 Cubic cubic_of(double from, double to, double from_rate, double to_rate, double length) {
   const double secant = to - from;
   const bool known = std::isfinite(from_rate) && std::isfinite(to_rate);
@@ -77,16 +77,16 @@ EventSearch::EventSearch(const network::Program& program, network::Workspace& wo
       thresholds_(thresholds),
       span_(span),
       file_(file),
-      check_interval_(span / kFewestLooks),
+      check_interval_(span / kFewestSamples),
       states_(program.n_states()),
       rates_(program.n_states()),
-      surfaces_(program.switches().size()),
-      surface_rates_(program.switches().size()) {
+      event_functions_(program.switches().size()),
+      event_function_rates_(program.switches().size()) {
   for (const network::Switch& s : program.switches())
     check_interval_ = std::min(check_interval_, s.check_interval);
 }
 
-void EventSearch::look(double t, const Interpolant& solution, Look& at) {
+void EventSearch::sample(double t, const Interpolant& solution, Sample& at) {
   interruption_.check();
   at.time = t;
   std::optional<network::Evaluation> here;
@@ -94,7 +94,7 @@ void EventSearch::look(double t, const Interpolant& solution, Look& at) {
     solution.states_at(time, states_);
     here.reset();
     if (!slide_.active() || slide_.evaluate(time, states_))
-      here = program_.surfaces(time, states_.data(), surfaces_.data(), workspace_);
+      here = program_.event_functions(time, states_.data(), event_functions_.data(), workspace_);
     return here.has_value();
   });
   reached_ = reached;
@@ -104,21 +104,22 @@ void EventSearch::look(double t, const Interpolant& solution, Look& at) {
     // The branch may end because a switch is due that does not depend on it.
     solution.states_at(t, states_);
     workspace_.pass_failing_loops(true);
-    here = program_.surfaces(t, states_.data(), surfaces_.data(), workspace_);
+    here = program_.event_functions(t, states_.data(), event_functions_.data(), workspace_);
     workspace_.pass_failing_loops(false);
   }
   solution.rates_at(t, rates_);
-  at.phase_rate = here.value().surface_rates(rates_.data(), surface_rates_.data());
-  const std::size_t n = surfaces_.size();
-  at.surfaces = surfaces_;
+  at.phase_rate = here.value().event_function_rates(rates_.data(), event_function_rates_.data());
+  const std::size_t n = event_functions_.size();
+  at.event_functions = event_functions_;
   at.roundings.resize(n);
   at.crossed.resize(n);
   at.rates.resize(n);
   for (std::size_t s = 0; s < n; ++s) {
-    const bool closed = workspace_.memory(program_.switches()[s].memory) == 1;
+    const bool closed = workspace_.discrete_state(program_.switches()[s].discrete_state) == 1;
     at.roundings[s] = thresholds_.rounding_of(s, here->compared_size(s));
-    at.crossed[s] = (closed ? -surfaces_[s] : surfaces_[s]) - thresholds_.along_solution(s, at.roundings[s]);
-    at.rates[s] = closed ? -surface_rates_[s] : surface_rates_[s];
+    at.crossed[s] = (closed ? -event_functions_[s] : event_functions_[s]) -
+                    thresholds_.along_solution(s, at.roundings[s]);
+    at.rates[s] = closed ? -event_function_rates_[s] : event_function_rates_[s];
     if (slide_.rests(s)) at.crossed[s] -= SlidingMode::drift();
     if (program_.switches()[s].rate || slide_.holds(s) || slide_.follows(s)) at.crossed[s] = -kInfinity;
   }
@@ -135,23 +136,23 @@ void EventSearch::look(double t, const Interpolant& solution, Look& at) {
   at.rates.resize(at.crossed.size(), std::numeric_limits<double>::quiet_NaN());
 }
 
-bool EventSearch::is_due(const Look& at) const {
+bool EventSearch::is_due(const Sample& at) const {
   return std::any_of(at.crossed.begin(), at.crossed.end(), [](double value) { return value > 0; });
 }
 
-std::optional<EventSearch::Found> EventSearch::search(double from, std::span<const double> looks,
+std::optional<EventSearch::Found> EventSearch::search(double from, std::span<const double> sample_times,
                                                       const Interpolant& solution) {
-  Look left, right;
-  reached_ = looks.empty() ? from : looks.back();  // where the solver was last
-  look(from, solution, left);
-  // Where the solver starts anew a surface may still lie within rounding of zero on the wrong side.
+  Sample left, right;
+  reached_ = sample_times.empty() ? from : sample_times.back();  // where the solver was last
+  sample(from, solution, left);
+  // Where the solver starts anew an event function may still lie within rounding of zero on the wrong side.
   for (double& value : left.crossed) value = std::min(value, 0.0);
-  for (const double to : looks) {
+  for (const double to : sample_times) {
     const double begin = left.time;
-    look(to, solution, right);
+    sample(to, solution, right);
     const double turning = std::max(left.phase_rate, right.phase_rate);
     const double longest = std::min(check_interval_, turning > 0 ? kMostTurn / turning : kInfinity);
-    if (!((to - begin) / longest <= looks_left_)) {
+    if (!((to - begin) / longest <= samples_left_)) {
       throw SolveError(
           SolveError::Kind::step_budget, begin,
           {{file_, {}},
@@ -162,12 +163,12 @@ std::optional<EventSearch::Found> EventSearch::search(double from, std::span<con
            "end the run before, keep the argument of the sine or cosine small, or give more 'max_steps' "
            "in [run]"});
     }
-    const auto parts = static_cast<long>(std::clamp(std::ceil((to - begin) / longest), 1.0, kMostLooks));
-    looks_left_ -= static_cast<double>(parts - 1);
+    const auto parts = static_cast<long>(std::clamp(std::ceil((to - begin) / longest), 1.0, kMostSamples));
+    samples_left_ -= static_cast<double>(parts - 1);
     for (long k = 1; k <= parts; ++k) {
       if (parts > 1)
-        look(k == parts ? to : begin + (to - begin) * static_cast<double>(k) / static_cast<double>(parts),
-             solution, right);
+        sample(k == parts ? to : begin + (to - begin) * static_cast<double>(k) / static_cast<double>(parts),
+               solution, right);
       if (auto found = between(left, right, solution)) return found;
       std::swap(left, right);
       leave_behind(left);
@@ -176,15 +177,15 @@ std::optional<EventSearch::Found> EventSearch::search(double from, std::span<con
   return std::nullopt;
 }
 
-/// Takes its slack from every surface that is beyond the errors of the states.
-void EventSearch::leave_behind(Look& at) {
-  for (std::size_t s = 0; s < at.surfaces.size(); ++s) {
-    if (const auto less = thresholds_.leave_behind(s, at.surfaces[s], at.roundings[s]))
+/// Takes its slack from every event function that is beyond the errors of the states.
+void EventSearch::leave_behind(Sample& at) {
+  for (std::size_t s = 0; s < at.event_functions.size(); ++s) {
+    if (const auto less = thresholds_.leave_behind(s, at.event_functions[s], at.roundings[s]))
       at.crossed[s] += *less;
   }
 }
 
-std::optional<EventSearch::Found> EventSearch::between(const Look& from, const Look& to,
+std::optional<EventSearch::Found> EventSearch::between(const Sample& from, const Sample& to,
                                                        const Interpolant& solution) {
   const double length = to.time - from.time;
   const std::size_t n = to.crossed.size();
@@ -195,8 +196,8 @@ std::optional<EventSearch::Found> EventSearch::between(const Look& from, const L
     clear = nearest == -kInfinity || nearest + reach < 0;
   }
   if (clear) return std::nullopt;
-  Look middle;
-  look(from.time + length / 2, solution, middle);
+  Sample middle;
+  sample(from.time + length / 2, solution, middle);
   std::vector<double> errors(n, 0.0);
   for (std::size_t k = 0; k < n; ++k) {
     if (to.crossed[k] == -kInfinity || from.crossed[k] == -kInfinity) continue;
@@ -210,8 +211,8 @@ std::optional<EventSearch::Found> EventSearch::between(const Look& from, const L
   return split(middle, to, errors, 0, solution);
 }
 
-/// `errors` is of each surface how far it may be from its cubic between the two.
-std::optional<EventSearch::Found> EventSearch::split(const Look& from, const Look& to,
+/// `errors` is of each event function how far it may be from its cubic between the two.
+std::optional<EventSearch::Found> EventSearch::split(const Sample& from, const Sample& to,
                                                      const std::vector<double>& errors, int depth,
                                                      const Interpolant& solution) {
   const double length = to.time - from.time;
@@ -243,8 +244,8 @@ std::optional<EventSearch::Found> EventSearch::split(const Look& from, const Loo
     if (due) return locate(from, to, solution);
     return std::nullopt;
   }
-  Look between;
-  look(from.time + at * length, solution, between);
+  Sample between;
+  sample(from.time + at * length, solution, between);
   if (!(between.time > from.time && between.time < to.time)) {
     if (due) return locate(from, to, solution);
     return std::nullopt;
@@ -267,10 +268,10 @@ std::optional<EventSearch::Found> EventSearch::split(const Look& from, const Loo
   return split(between, to, after, depth + 1, solution);
 }
 
-/// The first crossing between a look at which nothing is due and one at which something is: secants, and
+/// The first crossing between a sample at which nothing is due and one at which something is: secants, and
 /// halves where they do not close the bracket.
-EventSearch::Found EventSearch::locate(Look from, Look to, const Interpolant& solution) {
-  Look middle;
+EventSearch::Found EventSearch::locate(Sample from, Sample to, const Interpolant& solution) {
+  Sample middle;
   bool halve = false;
   while (to.time - from.time > time_resolution(to.time)) {
     double at = kInfinity;
@@ -285,18 +286,18 @@ EventSearch::Found EventSearch::locate(Look from, Look to, const Interpolant& so
     if (!halve) at = std::min(at + 0.01 * (at - from.time) * (to.time - at) / (to.time - from.time), to.time);
     if (!(at > from.time && at < to.time)) break;
     const double width = to.time - from.time;
-    look(at, solution, middle);
+    sample(at, solution, middle);
     std::swap(is_due(middle) ? to : from, middle);
     halve = to.time - from.time > width / 2;
   }
   Found found;
   found.time = to.time;
-  const std::size_t n = surfaces_.size();
+  const std::size_t n = event_functions_.size();
   for (std::size_t k = 0; k < to.crossed.size(); ++k) {
     if (!(to.crossed[k] > 0)) continue;
     if (k < n) {
       found.turned.emplace_back(static_cast<std::uint32_t>(k),
-                                1 - workspace_.memory(program_.switches()[k].memory));
+                                1 - workspace_.discrete_state(program_.switches()[k].discrete_state));
     } else {
       found.slide_changes = true;
     }

@@ -19,11 +19,11 @@ namespace oblique::solve {
 /// Finds the first time in a step at which a switch turns over, a slide ends, or what follows a slide turns
 /// over.
 ///
-/// Of every surface the value and the exact rate along the solution are known at each look. Between two looks
-/// the cubic through these bounds the surface, and its error is known from a third look in the middle: where
-/// the bound stays below zero nothing happens, else the part is split, at the top of the cubic where there is
-/// one, until it is below zero or a crossing is bracketed. So an extremum that passes zero for a moment is
-/// found, not guessed.
+/// Of every event function the value and the exact rate along the solution are known at each sample. Between
+/// two samples the cubic through these bounds the event function, and its error is known from a third sample
+/// in the middle: where the bound stays below zero nothing happens, else the part is split, at the top of the
+/// cubic where there is one, until it is below zero or a crossing is bracketed. So an extremum that passes
+/// zero for a moment is found, not guessed.
 class EventSearch {
  public:
   /// What is due at a time.
@@ -37,32 +37,32 @@ class EventSearch {
   EventSearch(const network::Program& program, network::Workspace& workspace, SlidingMode& slide,
               Thresholds& thresholds, double span, const std::string& file);
 
-  /// In (from, to]; all is in place at `from`. `looks` are times at which to look at least, the last one
-  /// `to`.
-  std::optional<Found> search(double from, std::span<const double> looks, const Interpolant& solution);
+  /// In (from, to]; all is in place at `from`. `sample_times` are times at which to look at least, the last
+  /// one `to`.
+  std::optional<Found> search(double from, std::span<const double> sample_times, const Interpolant& solution);
 
   /// How often to look between steps in all, where something turns fast.
-  void limit_looks(double looks) { looks_left_ = looks; }
+  void limit_samples(double samples) { samples_left_ = samples; }
   /// `search` then throws Interrupted.
   void end_when(const Interruption& interruption) { interruption_ = interruption; }
 
  private:
   /// Of all that is watched: above 0 where it is due, and its rate. Switches first, then the lower and the
   /// upper edge of each unit that slides, then what follows on each side.
-  struct Look {
+  struct Sample {
     double time = 0;
-    std::vector<double> surfaces, roundings;  ///< of each switch
+    std::vector<double> event_functions, roundings;  ///< of each switch
     std::vector<double> crossed, rates;
     double phase_rate = 0;  ///< [rad/s]
   };
 
-  void look(double t, const Interpolant& solution, Look& at);
-  bool is_due(const Look& at) const;
-  std::optional<Found> between(const Look& from, const Look& to, const Interpolant& solution);
-  std::optional<Found> split(const Look& from, const Look& to, const std::vector<double>& errors, int depth,
-                             const Interpolant& solution);
-  Found locate(Look from, Look to, const Interpolant& solution);
-  void leave_behind(Look& at);
+  void sample(double t, const Interpolant& solution, Sample& at);
+  bool is_due(const Sample& at) const;
+  std::optional<Found> between(const Sample& from, const Sample& to, const Interpolant& solution);
+  std::optional<Found> split(const Sample& from, const Sample& to, const std::vector<double>& errors,
+                             int depth, const Interpolant& solution);
+  Found locate(Sample from, Sample to, const Interpolant& solution);
+  void leave_behind(Sample& at);
 
   const network::Program& program_;
   network::Workspace& workspace_;
@@ -72,10 +72,10 @@ class EventSearch {
   const std::string& file_;
   double check_interval_;
   int splits_left_ = 0;
-  double reached_ = 0;  ///< [s] where the surfaces were evaluated last
-  double looks_left_ = std::numeric_limits<double>::infinity();
+  double reached_ = 0;  ///< [s] where the event functions were evaluated last
+  double samples_left_ = std::numeric_limits<double>::infinity();
   Interruption interruption_;
-  std::vector<double> states_, rates_, surfaces_, surface_rates_;
+  std::vector<double> states_, rates_, event_functions_, event_function_rates_;
 };
 
 }  // namespace oblique::solve

@@ -27,7 +27,7 @@ FaintTurns::FaintTurns(const network::Program& program, network::Workspace& work
       span_(span),
       states_(program.n_states()),
       rates_(program.n_states()),
-      surfaces_(program.switches().size()) {}
+      event_functions_(program.switches().size()) {}
 
 void FaintTurns::approach(double from, double at, const std::vector<std::pair<std::uint32_t, double>>& turned,
                           const Interpolant& solution) {
@@ -37,42 +37,43 @@ void FaintTurns::approach(double from, double at, const std::vector<std::pair<st
   }
   if (approaches_.empty() || states_.empty()) return approaches_.clear();
   solution.states_at(from, states_);
-  if (!program_.surfaces(from, states_.data(), surfaces_.data(), workspace_)) return approaches_.clear();
-  for (Approach& a : approaches_) a.before = std::abs(surfaces_[a.number]);
+  if (!program_.event_functions(from, states_.data(), event_functions_.data(), workspace_))
+    return approaches_.clear();
+  for (Approach& a : approaches_) a.before = std::abs(event_functions_[a.number]);
   solution.states_at(at, states_);
   solution.rates_at(at, rates_);
-  const auto there = program_.surfaces(at, states_.data(), surfaces_.data(), workspace_);
+  const auto there = program_.event_functions(at, states_.data(), event_functions_.data(), workspace_);
   if (!there) return approaches_.clear();
-  there->surface_rates(rates_.data(), surfaces_.data());
-  for (Approach& a : approaches_) a.speed = std::abs(surfaces_[a.number]);
+  there->event_function_rates(rates_.data(), event_functions_.data());
+  for (Approach& a : approaches_) a.speed = std::abs(event_functions_[a.number]);
 }
 
-/// At t, by the error of the surface, how far it has been from zero since it turned over last, and when that
-/// was [s]; 0 where it never has.
+/// At t, by the error of the event function, how far it has been from zero since it turned over last, and
+/// when that was [s]; 0 where it never has.
 bool FaintTurns::is_faint(const Approach& approach, double error, double excursion, double t,
                           double last_turn) const {
   const double since = t - last_turn;
   constexpr double kAfar = 30, kNear = 10;  // errors
   constexpr double kSlow = 1000;            // errors: a decay to within them takes some 30 of its times
-  constexpr double kPileUp = 1e-4;          // of the run: turns that come more quickly may be those of a ball
-  const bool piles_up = last_turn > 0 && since < kPileUp * span_;
+  constexpr double kZenoTime = 1e-4;        // of the run: turns that come more quickly may be those of a ball
+  const bool piles_up = last_turn > 0 && since < kZenoTime * span_;
   const bool stays_near = excursion <= kNear * error && !piles_up;
   const bool decays = excursion >= kAfar * error && approach.speed * since <= kSlow * error;
   return approach.before <= error && (decays || stays_near);
 }
 
-std::vector<FaintTurn> FaintTurns::due(double t, const Announced& announced, SwitchSurfaces& surfaces,
+std::vector<FaintTurn> FaintTurns::due(double t, const Announced& announced, EventFunctions& event_functions,
                                        const std::function<double(std::uint32_t)>& last_turn) {
   if (approaches_.empty()) return {};
-  const SurfaceErrors& errors = surfaces.weigh_errors();
+  const EventFunctionErrors& errors = event_functions.weigh_errors();
   std::vector<FaintTurn> found;
   for (const Approach& approach : approaches_) {
     const std::uint32_t s = approach.number;
-    const double excursion = surfaces.thresholds().excursion(s);
+    const double excursion = event_functions.thresholds().excursion(s);
     const bool told =
         std::any_of(found_.begin(), found_.end(), [s](const FaintTurn& turn) { return turn.number == s; });
     if (!told && announced[s] && is_faint(approach, errors[s], excursion, t, last_turn(s)))
-      found.push_back({s, t, errors[s], surfaces.states_behind(s)});
+      found.push_back({s, t, errors[s], event_functions.states_behind(s)});
   }
   approaches_.clear();
   return found;

@@ -7,15 +7,15 @@
 #include <vector>
 
 #include <oblique/network/program/program.h>
+#include <oblique/solve/events/event_functions.h>
 #include <oblique/solve/events/faint_turn.h>
-#include <oblique/solve/events/switch_surfaces.h>
 #include <oblique/solve/integrator/interpolant.h>
 
 namespace oblique::solve {
 
-/// Tells turns that are faint. The surface of a switch that reads a decay comes from afar, ever nearer to
-/// zero, and never passes it; its states are known to the absolute tolerance, and one of their errors lets it
-/// pass. It is then within its error during the whole step in which it passes, and so slow that in all the
+/// Tells turns that are faint. The event function of a switch that reads a decay comes from afar, ever nearer
+/// to zero, and never passes it; its states are known to the absolute tolerance, and one of their errors lets
+/// it pass. It is then within its error during the whole step in which it passes, and so slow that in all the
 /// time that it took to come it would not have moved by more than some errors. So is each half-wave of an
 /// oscillation that has decayed, and what never came farther than its errors. Not installed.
 class FaintTurns {
@@ -23,14 +23,15 @@ class FaintTurns {
   /// `span` is the length of the run [s]. All must outlive this.
   FaintTurns(const network::Program& program, network::Workspace& workspace, double span);
 
-  /// Looks how the surfaces of the switches that turn over at `at` come there in a step that began at `from`.
+  /// Looks how the event functions of the switches that turn over at `at` come there in a step that began at
+  /// `from`.
   void approach(double from, double at, const std::vector<std::pair<std::uint32_t, double>>& turned,
                 const Interpolant& solution);
 
   /// Of the switches that were looked at those that are faint, still announced, and not found before; they
-  /// then lie behind. The surfaces were evaluated last at t; `last_turn` gives when a switch turned over last
-  /// [s].
-  std::vector<FaintTurn> due(double t, const Announced& announced, SwitchSurfaces& surfaces,
+  /// then lie behind. The event functions were evaluated last at t; `last_turn` gives when a switch turned
+  /// over last [s].
+  std::vector<FaintTurn> due(double t, const Announced& announced, EventFunctions& event_functions,
                              const std::function<double(std::uint32_t)>& last_turn);
 
   /// Keeps those of the turns that have an effect on the signals, by their values before and after.
@@ -42,7 +43,7 @@ class FaintTurns {
  private:
   struct Approach {
     std::uint32_t number = 0;
-    double before = 0;  ///< magnitude of the surface where the step began
+    double before = 0;  ///< magnitude of the event function where the step began
     double speed = 0;   ///< magnitude of its rate at the turn [1/s]
   };
 
@@ -52,7 +53,7 @@ class FaintTurns {
   network::Workspace& workspace_;
   double span_;
   std::vector<Approach> approaches_;
-  std::vector<double> states_, rates_, surfaces_;
+  std::vector<double> states_, rates_, event_functions_;
   std::vector<FaintTurn> found_;
 };
 

@@ -8,28 +8,28 @@
 // What counts as a rate where the positions of switches are chosen; not installed.
 namespace oblique::solve {
 
-/// How far the states are moved to see what a surface does a moment later [machine unit]: its square is above
-/// rounding, its cube below.
+/// How far the states are moved to see what an event function does a moment later [machine unit]: its square
+/// is above rounding, its cube below.
 inline constexpr double kProbe = 1e-6;
 
 /// A rate below this part of the largest among the trials is none.
 inline constexpr double kNoRate = 1e-9;
 inline constexpr double kNoLaterRate = 1e-6;
 /// A rate that is this small a part of its change over the moment is about to turn, within rounding of the
-/// surface.
+/// event function.
 inline constexpr double kAboutToTurn = 0.05;
-/// Rounding of a rate, of the fastest state's; and of a surface [machine unit].
+/// Rounding of a rate, of the fastest state's; and of an event function [machine unit].
 inline constexpr double kRounding = 1e-13;
 
-/// Whether a rate takes a surface out of its rounding at all in a run as long as `span` [s]: where all is at
-/// rest there is no faster state beside which to see that it is rounding.
+/// Whether a rate takes an event function out of its rounding at all in a run as long as `span` [s]: where
+/// all is at rest there is no faster state beside which to see that it is rounding.
 inline bool leaves_rounding(double rate, double span) {
   return std::abs(rate) * span > kRounding;
 }
 
 /// The rate of the fastest state, at least `least`.
-inline double fastest_of(std::span<const double> slopes, double least) {
-  for (const double slope : slopes) least = std::max(least, std::abs(slope));
+inline double fastest_of(std::span<const double> derivatives, double least) {
+  for (const double derivative : derivatives) least = std::max(least, std::abs(derivative));
   return least;
 }
 

@@ -58,7 +58,7 @@ Combination Positions::present_sides(const std::vector<std::uint32_t>& units) co
   Combination present = 0;
   for (std::size_t u = 0; u < units.size(); ++u) {
     const std::uint32_t s = structure.members[units[u]].front();
-    const bool closed = workspace_.memory(program_.switches()[s].memory) == 1;
+    const bool closed = workspace_.discrete_state(program_.switches()[s].discrete_state) == 1;
     if (closed != structure.opposite[s]) present |= 1U << u;
   }
   return present;
@@ -119,21 +119,21 @@ void Positions::prefer_where_nothing_changes(std::uint32_t unit, const std::vect
                                              double t, std::span<const double> x) {
   const auto& members = program_.switch_structure().members[unit];
   const auto is_preferred = [&](std::uint32_t s) {
-    return workspace_.memory(program_.switches()[s].memory) == preferred[s];
+    return workspace_.discrete_state(program_.switches()[s].discrete_state) == preferred[s];
   };
   if (std::all_of(members.begin(), members.end(), is_preferred)) return;
-  const std::vector<double> positions(workspace_.memories().begin(), workspace_.memories().end());
-  using Equations = std::pair<std::vector<double>, std::vector<double>>;  // dx/dt and surfaces
+  const std::vector<double> positions(workspace_.discrete_states().begin(), workspace_.discrete_states().end());
+  using Equations = std::pair<std::vector<double>, std::vector<double>>;  // dx/dt and event functions
   const auto evaluate = [&]() -> std::optional<Equations> {
     Equations found{std::vector<double>(program_.n_states()), std::vector<double>(preferred.size())};
-    const auto here = program_.surfaces(t, x.data(), found.second.data(), workspace_);
+    const auto here = program_.event_functions(t, x.data(), found.second.data(), workspace_);
     if (!here) return std::nullopt;
     here->derivatives(found.first.data());
     return found;
   };
   const auto before = evaluate();
-  for (const std::uint32_t s : members) workspace_.set_memory(program_.switches()[s].memory, preferred[s]);
-  if (!before || evaluate() != before) workspace_.load_memories(positions);
+  for (const std::uint32_t s : members) workspace_.set_discrete_state(program_.switches()[s].discrete_state, preferred[s]);
+  if (!before || evaluate() != before) workspace_.load_discrete_states(positions);
 }
 
 /// Slides along as few units as possible. To events, what slides stays where it was.

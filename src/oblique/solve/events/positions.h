@@ -15,12 +15,12 @@
 
 namespace oblique::solve {
 
-/// Chooses the positions of switches that lie on their surfaces: those from which the solution goes to the
-/// side that they stand for. Where no combination does, they slide.
+/// Chooses the positions of switches that lie on their switching event functions: those from which the solution goes
+/// to the side that they stand for. Where no combination does, they slide.
 ///
-/// Where a surface is at rest to first order, what it does a moment later decides; one along which the
-/// solution runs by itself, while the other side drives to it, is slid along too, so that rounding makes no
-/// events. Not installed.
+/// Where an event function is at rest to first order, what it does a moment later decides; one along which
+/// the solution runs by itself, while the other side drives to it, is slid along too, so that rounding makes
+/// no events. Not installed.
 class Positions {
  public:
   /// All must outlive this; `span` is the length of the run [s].
@@ -34,10 +34,10 @@ class Positions {
               const network::Evaluation& here, double t, std::span<const double> x);
 
   /// The units that the last `choose` could as well have put on the other side: both sides drive away from
-  /// the surface.
+  /// the event function.
   const std::vector<std::uint32_t>& undecided() const { return undecided_; }
 
-  /// Those whose surfaces stay at zero where the last `choose` put them.
+  /// Those whose event functions stay at zero where the last `choose` put them.
   const std::vector<std::uint32_t>& resting() const { return resting_; }
 
   /// Of so many `choose` tries all combinations; those at which the equations only bend do not count.

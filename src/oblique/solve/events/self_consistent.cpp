@@ -11,23 +11,24 @@
 namespace oblique::solve {
 namespace {
 
-/// Whether every switch stands where its surface asks for it, or goes to.
+/// Whether every switch stands where its event function asks for it, or goes to.
 bool agrees(const network::Program& program, network::Workspace& workspace, const SlidingMode& slide,
             const Thresholds& thresholds, double span, double t, std::span<const double> x) {
-  std::vector<double> surfaces(program.switches().size()), rates(surfaces.size()), slopes(x.size());
-  const auto here = program.surfaces(t, x.data(), surfaces.data(), workspace);
+  std::vector<double> event_functions(program.switches().size()), rates(event_functions.size()),
+      derivatives(x.size());
+  const auto here = program.event_functions(t, x.data(), event_functions.data(), workspace);
   if (!here) return false;
-  here->derivatives(slopes.data());
-  here->surface_rates(slopes.data(), rates.data());
-  const double fastest = fastest_of(slopes, 0);
-  for (std::size_t s = 0; s < surfaces.size(); ++s) {
+  here->derivatives(derivatives.data());
+  here->event_function_rates(derivatives.data(), rates.data());
+  const double fastest = fastest_of(derivatives, 0);
+  for (std::size_t s = 0; s < event_functions.size(); ++s) {
     if (program.switches()[s].rate || slide.holds(s) || slide.follows(s)) continue;
-    const bool closed = workspace.memory(program.switches()[s].memory) == 1;
+    const bool closed = workspace.discrete_state(program.switches()[s].discrete_state) == 1;
     const auto goes_there = [&](double towards) { return closed ? towards > 0 : towards < 0; };
-    if (std::abs(surfaces[s]) <= thresholds[s]) {
+    if (std::abs(event_functions[s]) <= thresholds[s]) {
       const bool moves = leaves_rounding(rates[s], span) && std::abs(rates[s]) > kNoRate * fastest;
       if (moves && !goes_there(rates[s])) return false;
-    } else if (!goes_there(surfaces[s])) {
+    } else if (!goes_there(event_functions[s])) {
       return false;
     }
   }
@@ -39,26 +40,28 @@ bool agrees(const network::Program& program, network::Workspace& workspace, cons
 std::optional<network::Evaluation> place_others(const network::Program& program,
                                                 network::Workspace& workspace, const Thresholds& thresholds,
                                                 const std::vector<bool>& placed, double t,
-                                                std::span<const double> x, std::vector<double>& surfaces) {
+                                                std::span<const double> x,
+                                                std::vector<double>& event_functions) {
   constexpr std::size_t kInOrder = 2;  // rounds before what is left goes in one
   bool turned = false;
-  const auto settle = [&](std::size_t s, double surface) {
-    if (placed[s] || program.switches()[s].rate || std::abs(surface) <= thresholds[s]) return;
-    const std::uint32_t memory = program.switches()[s].memory;
-    const double position = surface > 0 ? 1 : 0;
-    turned = turned || workspace.memory(memory) != position;
-    workspace.set_memory(memory, position);
+  const auto settle = [&](std::size_t s, double event_function) {
+    if (placed[s] || program.switches()[s].rate || std::abs(event_function) <= thresholds[s]) return;
+    const std::uint32_t discrete_state = program.switches()[s].discrete_state;
+    const double position = event_function > 0 ? 1 : 0;
+    turned = turned || workspace.discrete_state(discrete_state) != position;
+    workspace.set_discrete_state(discrete_state, position);
   };
-  for (std::size_t round = 0; round <= 2 * surfaces.size() + 1; ++round) {
-    auto here = program.surfaces(t, x.data(), surfaces.data(), workspace);
+  for (std::size_t round = 0; round <= 2 * event_functions.size() + 1; ++round) {
+    auto here = program.event_functions(t, x.data(), event_functions.data(), workspace);
     if (!here) return std::nullopt;
     turned = false;
-    for (std::size_t s = 0; s < surfaces.size(); ++s) settle(s, surfaces[s]);
+    for (std::size_t s = 0; s < event_functions.size(); ++s) settle(s, event_functions[s]);
     if (!turned) return here;
     if (round == kInOrder) {
       const std::vector<double> still(x.size(), 0.0);
-      program.decide_in_order(t, x.data(), still.data(), workspace,
-                              [&](std::uint32_t s, double surface, double /*rate*/) { settle(s, surface); });
+      program.decide_in_order(
+          t, x.data(), still.data(), workspace,
+          [&](std::uint32_t s, double event_function, double /*rate*/) { settle(s, event_function); });
     }
   }
   return std::nullopt;
@@ -79,23 +82,23 @@ bool choose_any(const network::Program& program, network::Workspace& workspace, 
   std::sort(restless.begin(), restless.end());
   restless.erase(std::unique(restless.begin(), restless.end()), restless.end());
   if (restless.size() > kMostTogether) return false;
-  const std::vector<double> before(workspace.memories().begin(), workspace.memories().end());
+  const std::vector<double> before(workspace.discrete_states().begin(), workspace.discrete_states().end());
   Combination present = 0;
   std::vector<bool> placed(program.switches().size(), false);
   for (std::size_t k = 0; k < restless.size(); ++k) {
     placed[restless[k]] = true;
-    if (workspace.memory(program.switches()[restless[k]].memory) == 1) present |= 1U << k;
+    if (workspace.discrete_state(program.switches()[restless[k]].discrete_state) == 1) present |= 1U << k;
   }
-  std::vector<double> surfaces(program.switches().size());
+  std::vector<double> event_functions(program.switches().size());
   for (const Combination sides : nearest_first(present, restless.size())) {
-    workspace.load_memories(before);
+    workspace.load_discrete_states(before);
     for (std::size_t k = 0; k < restless.size(); ++k)
-      workspace.set_memory(program.switches()[restless[k]].memory, has(sides, k) ? 1 : 0);
-    if (place_others(program, workspace, thresholds, placed, t, x, surfaces) &&
+      workspace.set_discrete_state(program.switches()[restless[k]].discrete_state, has(sides, k) ? 1 : 0);
+    if (place_others(program, workspace, thresholds, placed, t, x, event_functions) &&
         agrees(program, workspace, slide, thresholds, span, t, x))
       return true;
   }
-  workspace.load_memories(before);
+  workspace.load_discrete_states(before);
   return false;
 }
 

@@ -10,15 +10,17 @@
 #include <oblique/solve/events/sliding_mode.h>
 #include <oblique/solve/events/thresholds.h>
 
-// Positions of switches that agree with the surfaces that follow from them. Not installed.
+// Positions of switches that agree with the event functions that follow from them. Not installed.
 namespace oblique::solve {
 
-/// Puts every switch but those that are `placed` where its surface asks for it at (t, x), and leaves the
-/// surfaces that follow, one a switch. Nothing where they go on turning over, or a loop has no solution.
+/// Puts every switch but those that are `placed` where its event function asks for it at (t, x), and leaves
+/// the event functions that follow, one a switch. Nothing where they go on turning over, or a loop has no
+/// solution.
 std::optional<network::Evaluation> place_others(const network::Program& program,
                                                 network::Workspace& workspace, const Thresholds& thresholds,
                                                 const std::vector<bool>& placed, double t,
-                                                std::span<const double> x, std::vector<double>& surfaces);
+                                                std::span<const double> x,
+                                                std::vector<double>& event_functions);
 
 /// Tries all combinations of `restless` and of the switches that share their algebraic loops, the nearest to
 /// the present one first, until one agrees with itself at (t, x); false, with nothing changed, where none

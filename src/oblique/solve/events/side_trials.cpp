@@ -27,15 +27,15 @@ SideTrials::SideTrials(const network::Program& program, network::Workspace& work
       workspace_(workspace),
       thresholds_(thresholds),
       span_(span),
-      surfaces_(program.switches().size()),
+      event_functions_(program.switches().size()),
       rates_(program.switches().size()),
-      slopes_(program.n_states()),
+      derivatives_(program.n_states()),
       moved_(program.n_states()) {}
 
 void SideTrials::run(std::vector<std::uint32_t> units, Bends& bends, double t, std::span<const double> x) {
   units_ = std::move(units);
   broken_by_ = broken_by(program_, units_);
-  before_.assign(workspace_.memories().begin(), workspace_.memories().end());
+  before_.assign(workspace_.discrete_states().begin(), workspace_.discrete_states().end());
   fastest_ = 0;
   trials_.clear();
   for (Combination sides = 0; sides < combinations(); ++sides) trials_.push_back(attempt(sides, bends, t, x));
@@ -57,18 +57,18 @@ std::optional<network::Evaluation> SideTrials::place(Combination sides, Bends& b
                                                      std::span<const double> x) {
   const network::SwitchStructure& structure = program_.switch_structure();
   take_back();
-  std::vector<bool> placed(surfaces_.size(), false);
+  std::vector<bool> placed(event_functions_.size(), false);
   const auto put = [&](std::uint32_t s, double position) {
     placed[s] = true;
-    workspace_.set_memory(program_.switches()[s].memory, position);
+    workspace_.set_discrete_state(program_.switches()[s].discrete_state, position);
   };
   for (std::size_t u = 0; u < units_.size(); ++u) {
     for (const std::uint32_t s : structure.members[units_[u]])
       put(s, has(sides, u) != structure.opposite[s] ? 1 : 0);
   }
   for (const auto& [s, position] : bends.positions()) put(s, position);
-  auto here = place_others(program_, workspace_, thresholds_, placed, t, x, surfaces_);
-  return here && bends.any() ? bends.follow(*here, t, x, surfaces_) : here;
+  auto here = place_others(program_, workspace_, thresholds_, placed, t, x, event_functions_);
+  return here && bends.any() ? bends.follow(*here, t, x, event_functions_) : here;
 }
 
 std::optional<SideTrials::Trial> SideTrials::attempt(Combination sides, Bends& bends, double t,
@@ -76,18 +76,18 @@ std::optional<SideTrials::Trial> SideTrials::attempt(Combination sides, Bends& b
   const auto here = place(sides, bends, t, x);
   if (!here) return std::nullopt;
   Trial trial;
-  trial.surfaces = of_units(surfaces_);
-  here->derivatives(slopes_.data());
-  here->surface_rates(slopes_.data(), rates_.data());
+  trial.event_functions = of_units(event_functions_);
+  here->derivatives(derivatives_.data());
+  here->event_function_rates(derivatives_.data(), rates_.data());
   trial.rates = of_units(rates_);
-  const double fastest = fastest_of(slopes_, std::numeric_limits<double>::min());
+  const double fastest = fastest_of(derivatives_, std::numeric_limits<double>::min());
   fastest_ = std::max(fastest_, fastest);
   const double step = std::min(kProbe / fastest, kProbe * span_);
-  for (std::size_t i = 0; i < x.size(); ++i) moved_[i] = x[i] + step * slopes_[i];
-  const auto later = program_.surfaces(t + step, moved_.data(), surfaces_.data(), workspace_);
+  for (std::size_t i = 0; i < x.size(); ++i) moved_[i] = x[i] + step * derivatives_[i];
+  const auto later = program_.event_functions(t + step, moved_.data(), event_functions_.data(), workspace_);
   if (!later) return std::nullopt;
-  later->derivatives(slopes_.data());
-  later->surface_rates(slopes_.data(), rates_.data());
+  later->derivatives(derivatives_.data());
+  later->event_function_rates(derivatives_.data(), rates_.data());
   trial.later = of_units(rates_);
   return trial;
 }
@@ -100,13 +100,13 @@ double SideTrials::largest_rate(std::size_t unit) const {
   return largest;
 }
 
-/// To which side the surface of a unit goes in a trial: 1, −1, or 0 where it stays at zero.
+/// To which side the event function of a unit goes in a trial: 1, −1, or 0 where it stays at zero.
 int SideTrials::direction(Combination sides, std::size_t unit) const {
   const auto& trial = trials_[sides];
   if (!trial) return 0;
   const std::uint32_t s = program_.switch_structure().members[units_[unit]].front();
-  if (std::abs(trial->surfaces[unit]) > std::max(thresholds_[s], SlidingMode::drift()))
-    return sign_of(trial->surfaces[unit]);
+  if (std::abs(trial->event_functions[unit]) > std::max(thresholds_[s], SlidingMode::drift()))
+    return sign_of(trial->event_functions[unit]);
   const double rate = trial->rates[unit], later = trial->later[unit];
   if (!leaves_rounding(rate, span_) && !leaves_rounding(later, span_)) return 0;
   if (std::abs(rate) > kNoRate * largest_rate(unit) && std::abs(rate) > kRounding * fastest_ &&

@@ -14,8 +14,8 @@
 namespace oblique::solve {
 
 /// What follows from every combination of the sides on which units of switches may stand that lie on their
-/// surfaces: where these surfaces go. In a combination the bit of a unit is set where it stands on its upper
-/// side. Not installed.
+/// event functions: where these event functions go. In a combination the bit of a unit is set where it stands
+/// on its upper side. Not installed.
 class SideTrials {
  public:
   /// All must outlive this; `span` is the length of the run [s].
@@ -23,7 +23,7 @@ class SideTrials {
              double span);
 
   /// Tries all combinations of the sides of `units` at (t, x), each with every other switch where it then
-  /// goes: `bends` where they follow, the rest where their surfaces ask for it.
+  /// goes: `bends` where they follow, the rest where their event functions ask for it.
   void run(std::vector<std::uint32_t> units, Bends& bends, double t, std::span<const double> x);
 
   const std::vector<std::uint32_t>& units() const { return units_; }
@@ -34,24 +34,26 @@ class SideTrials {
   std::optional<network::Evaluation> place(Combination sides, Bends& bends, double t,
                                            std::span<const double> x);
   /// Places them as they were.
-  void take_back() { workspace_.load_memories(before_); }
+  void take_back() { workspace_.load_discrete_states(before_); }
 
-  /// Whether the solution goes from every surface to the side that its unit stands on. Where the equations
-  /// only bend there, both sides are right to the rounding of the surface, unless it is asked for strictly.
+  /// Whether the solution goes from every switching surface to the side that its unit stands on. Where the
+  /// equations only bend there, both sides are right to the rounding of the event function, unless it is
+  /// asked for strictly.
   bool stands(Combination sides, bool strictly) const;
-  /// Whether every unit whose surface stays at zero is where it is preferred: nothing asks it to turn over.
+  /// Whether every unit whose event function stays at zero is where it is preferred: nothing asks it to turn
+  /// over.
   bool keeps(Combination sides, Combination preferred) const;
-  /// Whether the surface of a unit stays at zero.
+  /// Whether the event function of a unit stays at zero.
   bool rests(Combination sides, std::size_t unit) const { return direction(sides, unit) == 0; }
-  /// Whether both sides of the surface of a unit lead away from it: then either is a solution.
+  /// Whether both sides of the switching surface of a unit lead away from it: then either is a solution.
   bool is_undecided(Combination sides, std::size_t unit) const;
 
   /// Whether the equations jump with any of these units.
   bool any_jumps(Combination units) const;
-  /// Whether the surfaces of these units do not depend on their own positions.
+  /// Whether the event functions of these units do not depend on their own positions.
   bool is_independent(Combination units) const;
 
-  /// The largest rate of the surface of a unit in any trial, at least rounding.
+  /// The largest rate of the event function of a unit in any trial, at least rounding.
   double largest_rate(std::size_t unit) const;
   /// Of all dx/dt in the trials.
   double fastest() const { return fastest_; }
@@ -61,7 +63,7 @@ class SideTrials {
  private:
   /// What one combination of sides leads to.
   struct Trial {
-    std::vector<double> surfaces, rates, later;  ///< of each unit; `later` is the rate a moment on
+    std::vector<double> event_functions, rates, later;  ///< of each unit; `later` is the rate a moment on
   };
 
   std::optional<Trial> attempt(Combination sides, Bends& bends, double t, std::span<const double> x);
@@ -75,10 +77,10 @@ class SideTrials {
   double span_;
   std::vector<std::uint32_t> units_;
   std::vector<std::uint64_t> broken_by_;      ///< of each of them, see SlidingMode
-  std::vector<double> before_;                ///< memories
+  std::vector<double> before_;                ///< discrete states
   std::vector<std::optional<Trial>> trials_;  ///< of each combination; nothing where it has no values
   double fastest_ = 0;
-  std::vector<double> surfaces_, rates_, slopes_, moved_;
+  std::vector<double> event_functions_, rates_, derivatives_, moved_;
 };
 
 }  // namespace oblique::solve

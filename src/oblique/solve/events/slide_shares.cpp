@@ -10,14 +10,14 @@
 namespace oblique::solve {
 namespace {
 
-/// A surface whose rate depends on the shares by less than this part of what others do stands still whatever
-/// they are.
-constexpr double kNoSlope = 1e-8;
+/// An event function whose rate depends on the shares by less than this part of what others do stands still
+/// whatever they are.
+constexpr double kNoDerivative = 1e-8;
 
 }  // namespace
 
 double way_back(const SlideSides& sides, std::size_t unit, double rate, double fastest) {
-  return std::clamp(rate * sides.of_unit(sides[0].surfaces, unit), -fastest, fastest);
+  return std::clamp(rate * sides.of_unit(sides[0].event_functions, unit), -fastest, fastest);
 }
 
 std::optional<std::vector<double>> shares_of_coupled(SlideSides& sides, std::vector<double> trial,
@@ -27,9 +27,9 @@ std::optional<std::vector<double>> shares_of_coupled(SlideSides& sides, std::vec
   const std::size_t n = sides.units();
   const auto size = static_cast<Eigen::Index>(n);
   Eigen::VectorXd residual(size), last(size);
-  Eigen::MatrixXd slopes(size, size);
+  Eigen::MatrixXd jacobian(size, size);
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
-  decomposition.setThreshold(kNoSlope);
+  decomposition.setThreshold(kNoDerivative);
   double scale = std::numeric_limits<double>::min();
   for (const SlideSide& side : sides) {
     for (std::size_t u = 0; u < n; ++u) scale = std::max(scale, std::abs(sides.of_unit(side.rates, u)));
@@ -46,15 +46,15 @@ std::optional<std::vector<double>> shares_of_coupled(SlideSides& sides, std::vec
   for (int iteration = 0; iteration < kMostIterations; ++iteration) {
     residuals(trial, residual);
     if (!residual.allFinite()) return std::nullopt;
-    // The weights are linear in each share: a difference is a slope.
+    // The weights are linear in each share: a difference is a derivative.
     for (std::size_t u = 0; u < n; ++u) {
       const double share = trial[u];
       trial[u] = share + 1;
       residuals(trial, last);
-      slopes.col(static_cast<Eigen::Index>(u)) = last - residual;
+      jacobian.col(static_cast<Eigen::Index>(u)) = last - residual;
       trial[u] = share;
     }
-    decomposition.compute(slopes);
+    decomposition.compute(jacobian);
     const Eigen::VectorXd step = decomposition.solve(-residual);
     double change = 0;
     for (std::size_t u = 0; u < n; ++u) {

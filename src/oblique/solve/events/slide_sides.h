@@ -12,18 +12,20 @@
 // What a slide mixes (see SlidingMode). Not installed.
 namespace oblique::solve {
 
-/// Of each of these units, up to 64, the others (as bits) whose positions break its surface: a unit whose
-/// surface jumps or bends with its own position, or jumps with that of another, is none to slide on.
+/// Of each of these units, up to 64, the others (as bits) whose positions break its event function: a unit
+/// whose event function jumps or bends with its own position, or jumps with that of another, is none to slide
+/// on.
 std::vector<std::uint64_t> broken_by(const network::Program& program,
                                      const std::vector<std::uint32_t>& units);
 
 /// One combination of sides of the units that slide: bit u of `bits` for unit u.
 struct SlideSide {
   std::uint64_t bits = 0;
-  std::optional<std::uint32_t> cluster;                     ///< nothing for the first side, which is of all
-  std::vector<std::pair<std::uint32_t, double>> positions;  ///< memories, of what slides and what follows
+  std::optional<std::uint32_t> cluster;  ///< nothing for the first side, which is of all
+  std::vector<std::pair<std::uint32_t, double>>
+      positions;  ///< discrete states, of what slides and what follows
   std::vector<double> dxdt;
-  std::vector<double> surfaces, rates;  ///< of every switch
+  std::vector<double> event_functions, rates;  ///< of every switch
   double weight = 0;
 };
 

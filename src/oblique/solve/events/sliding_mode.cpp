@@ -12,13 +12,13 @@
 namespace oblique::solve {
 namespace {
 
-/// What integration lets a surface drift off is taken back at this rate, times the length of the run, by no
-/// more than this part of what the sides do: the shares must not show it.
+/// What integration lets an event function drift off is taken back at this rate, times the length of the run,
+/// by no more than this part of what the sides do: the shares must not show it.
 constexpr double kReturn = 100;
 constexpr double kMostReturn = 1e-6;
 
-/// How far beyond 0 and 1 the shares may be where a slide begins: a solution may run along a surface by
-/// itself.
+/// How far beyond 0 and 1 the shares may be where a slide begins: a solution may run along a
+/// switching surface by itself.
 constexpr double kEdge = 2 * kMostReturn;
 
 /// How far the states are moved to see whether a slide lasts [machine unit].
@@ -59,31 +59,32 @@ void SlidingMode::find_followers() {
   }
 }
 
-/// Puts the units on a side, and what follows them where its surfaces then are.
+/// Puts the units on a side, and what follows them where its event functions then are.
 bool SlidingMode::settle(SlideSide& side, double t, std::span<const double> x) {
   const network::SwitchStructure& structure = program_.switch_structure();
   for (std::size_t u = 0; u < units_.size(); ++u) {
     const bool above = (side.bits >> u & 1U) != 0;
     for (const std::uint32_t s : structure.members[units_[u]])
-      workspace_.set_memory(program_.switches()[s].memory, above != structure.opposite[s] ? 1 : 0);
+      workspace_.set_discrete_state(program_.switches()[s].discrete_state,
+                                    above != structure.opposite[s] ? 1 : 0);
   }
-  side.surfaces.resize(program_.switches().size());
+  side.event_functions.resize(program_.switches().size());
   bool settled = followers_.empty();
   for (std::size_t round = 0; !settled; ++round) {
     if (round > 2 * followers_.size() + 2) return false;
-    if (!program_.surfaces(t, x.data(), side.surfaces.data(), workspace_)) return false;
+    if (!program_.event_functions(t, x.data(), side.event_functions.data(), workspace_)) return false;
     settled = true;
     for (const std::uint32_t s : followers_) {
-      const std::uint32_t memory = program_.switches()[s].memory;
-      const double position = side.surfaces[s] > 0 ? 1 : 0;
-      settled = settled && workspace_.memory(memory) == position;
-      workspace_.set_memory(memory, position);
+      const std::uint32_t discrete_state = program_.switches()[s].discrete_state;
+      const double position = side.event_functions[s] > 0 ? 1 : 0;
+      settled = settled && workspace_.discrete_state(discrete_state) == position;
+      workspace_.set_discrete_state(discrete_state, position);
     }
   }
   side.positions.clear();
   const auto keep = [&](std::uint32_t s) {
-    const std::uint32_t memory = program_.switches()[s].memory;
-    side.positions.emplace_back(memory, workspace_.memory(memory));
+    const std::uint32_t discrete_state = program_.switches()[s].discrete_state;
+    side.positions.emplace_back(discrete_state, workspace_.discrete_state(discrete_state));
   };
   for (const std::uint32_t unit : units_) {
     for (const std::uint32_t s : structure.members[unit]) keep(s);
@@ -93,23 +94,26 @@ bool SlidingMode::settle(SlideSide& side, double t, std::span<const double> x) {
 }
 
 void SlidingMode::load(const SlideSide& side) {
-  for (const auto& [memory, position] : side.positions) workspace_.set_memory(memory, position);
+  for (const auto& [discrete_state, position] : side.positions)
+    workspace_.set_discrete_state(discrete_state, position);
 }
 
 void SlidingMode::load_base() {
-  for (const auto& [memory, position] : base_) workspace_.set_memory(memory, position);
+  for (const auto& [discrete_state, position] : base_)
+    workspace_.set_discrete_state(discrete_state, position);
 }
 
 bool SlidingMode::begin(std::vector<std::uint32_t> units, double t, std::span<const double> x) {
   if (units.size() > kMostUnits) return false;
-  const std::vector<double> before(workspace_.memories().begin(), workspace_.memories().end());
+  const std::vector<double> before(workspace_.discrete_states().begin(), workspace_.discrete_states().end());
   units_ = std::move(units);
   find_followers();
   sides_.make(units_, !followers_.empty());
   base_.clear();
   for (std::uint32_t s = 0; s < follows_.size(); ++s) {
-    const std::uint32_t memory = program_.switches()[s].memory;
-    if (holds(s) || follows_[s]) base_.emplace_back(memory, workspace_.memory(memory));
+    const std::uint32_t discrete_state = program_.switches()[s].discrete_state;
+    if (holds(s) || follows_[s])
+      base_.emplace_back(discrete_state, workspace_.discrete_state(discrete_state));
   }
   bool possible = sides_.are_all();
   for (SlideSide& side : sides_) possible = possible && settle(side, t, x);
@@ -128,7 +132,7 @@ bool SlidingMode::begin(std::vector<std::uint32_t> units, double t, std::span<co
     }
   }
   end();
-  workspace_.load_memories(before);
+  workspace_.load_discrete_states(before);
   return false;
 }
 
@@ -146,12 +150,12 @@ void SlidingMode::end() {
 bool SlidingMode::evaluate(SlideSide& side, double t, std::span<const double> x) {
   load(side);
   side.dxdt.resize(program_.n_states());
-  side.surfaces.resize(follows_.size());
+  side.event_functions.resize(follows_.size());
   side.rates.resize(follows_.size());
-  const auto here = program_.surfaces(t, x.data(), side.surfaces.data(), workspace_);
+  const auto here = program_.event_functions(t, x.data(), side.event_functions.data(), workspace_);
   if (!here) return false;
   here->derivatives(side.dxdt.data());
-  here->surface_rates(side.dxdt.data(), side.rates.data());
+  here->event_function_rates(side.dxdt.data(), side.rates.data());
   return true;
 }
 
@@ -186,7 +190,7 @@ std::optional<double> SlidingMode::repulsion(std::size_t unit) const {
   return part > kNoDrive ? part : std::min(part, 0.0);
 }
 
-/// The shares with which no surface moves.
+/// The shares with which no event function moves.
 bool SlidingMode::find_shares() {
   if (units_.size() == 1) return find_only_share();
   auto found = shares_of_coupled(sides_, shares_, kReturn / span_, kMostReturn);
@@ -211,8 +215,8 @@ bool SlidingMode::find_only_share() {
   return true;
 }
 
-/// Whether the shares are about the same a moment later: those of a surface that merely stands still at this
-/// one instant are not.
+/// Whether the shares are about the same a moment later: those of an event function that merely stands still
+/// at this one instant are not.
 bool SlidingMode::lasts(double t, std::span<const double> x) {
   constexpr double kJump = 0.01;
   const std::vector<double> now = shares_;
@@ -242,14 +246,14 @@ double SlidingMode::crossed(std::size_t side, std::size_t follower) const {
   const SlideSide& at = sides_[side];
   const std::size_t s = followers_[follower];
   const double position = at.positions[at.positions.size() - followers_.size() + follower].second;
-  return position == 1 ? -at.surfaces[s] : at.surfaces[s];
+  return position == 1 ? -at.event_functions[s] : at.event_functions[s];
 }
 
 bool SlidingMode::is_torn(std::size_t s) const {
-  const std::uint32_t memory = program_.switches()[s].memory;
+  const std::uint32_t discrete_state = program_.switches()[s].discrete_state;
   const auto position_on = [&](const SlideSide& side) {
     const auto found = std::find_if(side.positions.begin(), side.positions.end(),
-                                    [&](const auto& setting) { return setting.first == memory; });
+                                    [&](const auto& setting) { return setting.first == discrete_state; });
     return found->second;
   };
   return std::any_of(sides_.begin(), sides_.end(),

@@ -12,15 +12,15 @@
 
 namespace oblique::solve {
 
-/// Filippov's solution along the surfaces of switches that both of their sides drive to.
+/// Filippov's solution along the switching surfaces of switches that both of their sides drive to.
 ///
 /// A unit of switches that slides is in neither position: dx/dt is the mixture α f₁ + (1 − α) f₀ of what it
 /// is with the unit on either side, and so is every signal; never is a switch's own position mixed, which
-/// would go wrong through whatever is not linear downstream. Switches whose surfaces depend on such a
-/// position follow it: they are settled anew on each side. The shares α are those that keep all the surfaces
-/// where they are (Filippov 1960; the equivalent control of Utkin 1992). Of several units that are coupled
-/// all combinations of sides are mixed, each with the product of its shares (Alexander and Seidman 1998);
-/// units that are not coupled are each mixed by themselves, and what they do is added.
+/// would go wrong through whatever is not linear downstream. Switches whose event functions depend on such a
+/// position follow it: they are settled anew on each side. The shares α are those that keep all the event
+/// functions where they are (Filippov 1960; the equivalent control of Utkin 1992). Of several units that are
+/// coupled all combinations of sides are mixed, each with the product of its shares (Alexander and Seidman
+/// 1998); units that are not coupled are each mixed by themselves, and what they do is added.
 class SlidingMode {
  public:
   /// Both must outlive this; `span` is the length of the run [s].
@@ -32,14 +32,14 @@ class SlidingMode {
   bool holds(std::size_t s) const;
   /// Whether a switch follows one that slides.
   bool follows(std::size_t s) const { return follows_[s]; }
-  /// Whether the surface of a switch stays at zero along with the slide, though it is not slid along.
+  /// Whether the event function of a switch stays at zero along with the slide, though it is not slid along.
   bool rests(std::size_t s) const { return rests_[s]; }
   void let_rest(std::size_t s) { rests_[s] = true; }
   /// The switches that follow.
   const std::vector<std::uint32_t>& followers() const { return followers_; }
 
-  /// Begins to slide along the surfaces of `units` from (t, x), all other switches where they are. False,
-  /// with nothing changed, where no shares keep them there, now and a moment later.
+  /// Begins to slide along the switching surfaces of `units` from (t, x), all other switches where they are.
+  /// False, with nothing changed, where no shares keep them there, now and a moment later.
   bool begin(std::vector<std::uint32_t> units, double t, std::span<const double> x);
   /// Ends; the positions stay what they were to events.
   void end();
@@ -55,22 +55,22 @@ class SlidingMode {
   /// Of each unit, that of its upper side: outside 0 and 1 where the slide is over.
   const std::vector<double>& shares() const { return shares_; }
   /// Of a unit that nothing couples, how much more its upper side drives up than its lower one does, over the
-  /// most by which they have ever driven together: above 0 both drive away from the surface. Nothing of
-  /// another, or where that tells nothing.
+  /// most by which they have ever driven together: above 0 both drive away from the switching surface.
+  /// Nothing of another, or where that tells nothing.
   std::optional<double> repulsion(std::size_t unit) const;
   /// Rounding of it.
   static constexpr double kNoRepulsion = 1e-8;
   /// Sides that drive together or apart by less than this part of what they drove together do neither: a
-  /// magnitude in the surface may be about to turn over.
+  /// magnitude in the event function may be about to turn over.
   static constexpr double kNoDrive = 1e-6;
-  /// d surface/dt of every switch in the mixture.
+  /// d(event function)/dt of every switch in the mixture.
   void mixed_rates(std::span<double> rates) const;
   /// Whether a switch that follows is in one position on one side and in the other on another.
   bool is_torn(std::size_t s) const;
-  /// How far from zero a surface that has been slid along may have drifted [as the surface].
+  /// How far from zero an event function that has been slid along may have drifted [as the event function].
   static double drift() { return 1e-7; }
   std::size_t sides() const { return sides_.size(); }
-  /// By how much a follower's surface has passed zero against its position on a side.
+  /// By how much a follower's event function has passed zero against its position on a side.
   double crossed(std::size_t side, std::size_t follower) const;
 
  private:

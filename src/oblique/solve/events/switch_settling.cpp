@@ -12,12 +12,13 @@ namespace oblique::solve {
 namespace {
 
 /// A switch that turns over without having left its place, by more than rounding or the errors of the states,
-/// is restless after a few turns: its surface then counts as zero within those errors. After many it
+/// is restless after a few turns: its event function then counts as zero within those errors. After many it
 /// chatters.
 constexpr long kRestless = 5;
 constexpr long kMostTurns = 1000;
 
-constexpr double kSamePlace = 10;  ///< roundings: a surface that is no farther off has not left its place
+constexpr double kSamePlace =
+    10;  ///< roundings: an event function that is no farther off has not left its place
 
 bool contains(const std::vector<std::uint32_t>& units, std::uint32_t unit) {
   return std::find(units.begin(), units.end(), unit) != units.end();
@@ -26,16 +27,16 @@ bool contains(const std::vector<std::uint32_t>& units, std::uint32_t unit) {
 }  // namespace
 
 SwitchSettling::SwitchSettling(const network::Program& program, network::Workspace& workspace,
-                               SlidingMode& slide, SwitchSurfaces& surfaces, const Announced& announced,
-                               EventLog& log, double span)
+                               SlidingMode& slide, EventFunctions& event_functions,
+                               const Announced& announced, EventLog& log, double span)
     : program_(program),
       workspace_(workspace),
       slide_(slide),
-      surfaces_(surfaces),
+      event_functions_(event_functions),
       announced_(announced),
       log_(log),
       span_(span),
-      positions_(program, workspace, slide, surfaces.thresholds(), span),
+      positions_(program, workspace, slide, event_functions.thresholds(), span),
       chained_(known_follow_from_others()),
       stays_(program.switches().size(), false),
       decided_(program.switch_structure().members.size(), false),
@@ -45,32 +46,33 @@ SwitchSettling::SwitchSettling(const network::Program& program, network::Workspa
 /// Then the time at which one comes tells nothing of where it goes before the others are known.
 bool SwitchSettling::known_follow_from_others() const {
   for (std::size_t s = 0; s < program_.switches().size(); ++s) {
-    if (surfaces_.is_known(s) && program_.is_ordered(s) &&
+    if (event_functions_.is_known(s) && program_.is_ordered(s) &&
         !program_.switch_structure().positions_below(s).empty())
       return true;
   }
   return false;
 }
 
-/// Within this of zero a surface is where it was.
+/// Within this of zero an event function is where it was.
 double SwitchSettling::place_size(std::size_t s) const {
-  return std::max(kSamePlace * surfaces_.thresholds().rounding(s), surfaces_.last_errors()[s]);
+  return std::max(kSamePlace * event_functions_.thresholds().rounding(s), event_functions_.last_errors()[s]);
 }
 
-/// Within this of zero a surface counts as zero: one that was slid along may have drifted off.
+/// Within this of zero an event function counts as zero: one that was slid along may have drifted off.
 double SwitchSettling::near_size(std::size_t s) const {
   const std::uint32_t unit = program_.switch_structure().unit[s];
-  const double threshold = surfaces_.thresholds()[s];
+  const double threshold = event_functions_.thresholds()[s];
   const bool drifted = slide_.rests(s) || (!decided_[unit] && (rested_[s] || contains(slid_, unit)));
   const double near = drifted ? std::max(SlidingMode::drift(), threshold) : threshold;
   return unrest_[s].turns > kRestless ? std::max(near, place_size(s)) : near;
 }
 
-/// Whether a surface counts as zero, so that the solution decides. That of a switch that is announced lies a
-/// little past it; one that rested beside a slide, and has left it by more than that drifts, does not rest.
+/// Whether an event function counts as zero, so that the solution decides. That of a switch that is announced
+/// lies a little past it; one that rested beside a slide, and has left it by more than that drifts, does not
+/// rest.
 bool SwitchSettling::is_near(std::size_t s) const {
   const double near = near_size(s);
-  return std::abs(surfaces_[s]) <= (announced_[s] ? std::max(near, SlidingMode::drift()) : near);
+  return std::abs(event_functions_[s]) <= (announced_[s] ? std::max(near, SlidingMode::drift()) : near);
 }
 
 /// Whether any switch of a unit is.
@@ -82,17 +84,17 @@ bool SwitchSettling::is_announced(std::uint32_t unit) const {
 
 void SwitchSettling::turn(std::size_t s, double position, double t) {
   const network::Switch& made = program_.switches()[s];
-  if (workspace_.memory(made.memory) == position) return;
-  const SurfaceErrors& errors = surfaces_.weigh_errors();
-  workspace_.set_memory(made.memory, position);
-  Thresholds& thresholds = surfaces_.thresholds();
+  if (workspace_.discrete_state(made.discrete_state) == position) return;
+  const EventFunctionErrors& errors = event_functions_.weigh_errors();
+  workspace_.set_discrete_state(made.discrete_state, position);
+  Thresholds& thresholds = event_functions_.thresholds();
   Unrest& unrest = unrest_[s];
-  const bool known = surfaces_.is_known(s);
+  const bool known = event_functions_.is_known(s);
   const bool same_place = known ? t <= unrest.last : thresholds.excursion(s) < place_size(s);
   if (!same_place) unrest.turns = 0;
   unrest.last = t;
   thresholds.forget(s);
-  // A surface that is merely touched goes back and forth by the errors of the states.
+  // An event function that is merely touched goes back and forth by the errors of the states.
   if (!known && is_announced(program_.switch_structure().unit[s])) thresholds.give_slack(s, errors[s]);
   if (++unrest.turns > kMostTurns) throw log_.endless(made.block, made.comparison, t);
 }
@@ -100,32 +102,32 @@ void SwitchSettling::turn(std::size_t s, double position, double t) {
 /// Where a switch goes that follows time alone.
 double SwitchSettling::known_position(std::size_t s) const {
   if (announced_[s]) return *announced_[s];
-  if (surfaces_.is_off_zero(s)) return surfaces_[s] > 0 ? 1 : 0;
-  const double rate = surfaces_.known_rate(s).value_or(0);
+  if (event_functions_.is_off_zero(s)) return event_functions_[s] > 0 ? 1 : 0;
+  const double rate = event_functions_.known_rate(s).value_or(0);
   if (rate != 0) return rate > 0 ? 1 : 0;
   return position(s);
 }
 
-/// Turns every switch over whose surface asks for it, and collects the units that lie on their surfaces and
-/// have not been decided yet. True where any turned over.
-bool SwitchSettling::turn_by_surfaces(double t, Units& on_surface, std::vector<std::uint32_t>& turned) {
+/// Turns every switch over whose event function asks for it, and collects the units that lie on their event
+/// functions and have not been decided yet. True where any turned over.
+bool SwitchSettling::turn_by_event_functions(double t, Units& at_zero, std::vector<std::uint32_t>& turned) {
   const network::SwitchStructure& structure = program_.switch_structure();
-  on_surface.clear();
+  at_zero.clear();
   turned.clear();
   std::vector<bool> listed = decided_;
-  for (std::uint32_t s = 0; s < surfaces_.size(); ++s) {
+  for (std::uint32_t s = 0; s < event_functions_.size(); ++s) {
     if (slide_.holds(s) || slide_.follows(s)) continue;
     const double before = position(s);
     double asked = before;
-    if (surfaces_.is_known(s)) {
+    if (event_functions_.is_known(s)) {
       if (chained_ && program_.is_ordered(s)) continue;  // is where it belongs
       asked = known_position(s);
     } else if (is_near(s)) {
       const std::uint32_t unit = structure.unit[s];
-      if (!listed[unit]) on_surface.push_back(unit);
+      if (!listed[unit]) at_zero.push_back(unit);
       listed[unit] = true;
     } else {
-      asked = surfaces_[s] > 0 ? 1 : 0;
+      asked = event_functions_[s] > 0 ? 1 : 0;
     }
     if (asked == before) continue;
     turn(s, asked, t);
@@ -134,19 +136,19 @@ bool SwitchSettling::turn_by_surfaces(double t, Units& on_surface, std::vector<s
   return !turned.empty();
 }
 
-/// Turns every switch over whose surface asks for it, each after those on whose positions its surface
-/// depends: one after the other turns over in one go, however many there are. At its known time a switch goes
-/// where its surface goes with the others as they then stand: it may merely touch.
+/// Turns every switch over whose event function asks for it, each after those on whose positions its event
+/// function depends: one after the other turns over in one go, however many there are. At its known time a
+/// switch goes where its event function goes with the others as they then stand: it may merely touch.
 void SwitchSettling::turn_in_order(double t, std::span<const double> x) {
-  surfaces_.weigh_errors();
+  event_functions_.weigh_errors();
   const std::vector<double> still(x.size(), 0.0);  // what is known follows the time alone
   program_.decide_in_order(
-      t, x.data(), still.data(), workspace_, [&](std::uint32_t s, double surface, double rate) {
-        const bool away = std::abs(surface) > surfaces_.thresholds()[s];
+      t, x.data(), still.data(), workspace_, [&](std::uint32_t s, double event_function, double rate) {
+        const bool away = std::abs(event_function) > event_functions_.thresholds()[s];
         const bool due = announced_[s].has_value();
-        if (surfaces_.is_known(s)) {
+        if (event_functions_.is_known(s)) {
           if (!chained_) return;
-          const double asked = away && !due ? (surface > 0 ? 1 : 0)
+          const double asked = away && !due ? (event_function > 0 ? 1 : 0)
                                : rate != 0  ? (rate > 0 ? 1 : 0)
                                             : announced_[s].value_or(position(s));
           turn(s, asked, t);
@@ -154,17 +156,17 @@ void SwitchSettling::turn_in_order(double t, std::span<const double> x) {
         }
         const bool decided = due || slide_.holds(s) || slide_.follows(s) || slide_.rests(s) || rested_[s] ||
                              decided_[program_.switch_structure().unit[s]];
-        if (!decided && away) turn(s, surface > 0 ? 1 : 0, t);
+        if (!decided && away) turn(s, event_function > 0 ? 1 : 0, t);
       });
 }
 
-/// Where the switches of a unit that lies on its surface are left where they may be on either side. At zero
-/// none of them need hold, though their surfaces be opposite.
+/// Where the switches of a unit that lies on its switching surface are left where they may be on either side.
+/// At zero none of them need hold, though their event functions be opposite.
 void SwitchSettling::add_preferred(std::uint32_t unit, std::vector<double>& preferred) const {
   const network::SwitchStructure& structure = program_.switch_structure();
   const auto& members = structure.members[unit];
   for (const std::uint32_t s : members) {
-    preferred[s] = set_ && surfaces_[s] == 0 ? 0 : position(s);  // put on its level it is not above it
+    preferred[s] = set_ && event_functions_[s] == 0 ? 0 : position(s);  // put on its level it is not above it
     for (const std::uint32_t member : members) {
       if (!announced_[member]) continue;
       const double there = *announced_[member];
@@ -173,33 +175,34 @@ void SwitchSettling::add_preferred(std::uint32_t unit, std::vector<double>& pref
   }
 }
 
-/// Lets the solution decide where the units go that lie on their surfaces, together with those that slide.
+/// Lets the solution decide where the units go that lie on their switching surfaces, together with those that
+/// slide.
 void SwitchSettling::decide(Units units, double t, std::span<const double> x) {
   const network::SwitchStructure& structure = program_.switch_structure();
   for (const std::uint32_t unit : slide_.units()) {
     if (!contains(units, unit)) units.push_back(unit);
   }
   slide_.end();
-  std::vector<double> preferred(surfaces_.size());
+  std::vector<double> preferred(event_functions_.size());
   for (const std::uint32_t unit : units) {
     decided_[unit] = true;
     add_preferred(unit, preferred);
   }
   std::vector<double> before;
-  for (std::size_t s = 0; s < surfaces_.size(); ++s) before.push_back(position(s));
-  surfaces_.weigh_errors();
-  if (!positions_.choose(units, preferred, surfaces_.here(), t, x)) {
+  for (std::size_t s = 0; s < event_functions_.size(); ++s) before.push_back(position(s));
+  event_functions_.weigh_errors();
+  if (!positions_.choose(units, preferred, event_functions_.here(), t, x)) {
     std::vector<std::uint32_t> members;
     for (const std::uint32_t unit : units)
       members.insert(members.end(), structure.members[unit].begin(), structure.members[unit].end());
     if (units.size() > Positions::kMostUnits ||
-        !choose_any(program_, workspace_, slide_, surfaces_.thresholds(), span_, members, t, x))
+        !choose_any(program_, workspace_, slide_, event_functions_.thresholds(), span_, members, t, x))
       throw no_position(members.front(), t);
   }
   note_choice(t, x);
   for (std::size_t s = 0; s < before.size(); ++s) {  // those that turned over count
     const double chosen = position(s);
-    workspace_.set_memory(program_.switches()[s].memory, before[s]);
+    workspace_.set_discrete_state(program_.switches()[s].discrete_state, before[s]);
     turn(s, chosen, t);
   }
 }
@@ -207,13 +210,14 @@ void SwitchSettling::decide(Units units, double t, std::span<const double> x) {
 /// Whether some signal is another with the unit on its other side.
 bool SwitchSettling::matters(std::uint32_t unit, double t, std::span<const double> x) const {
   constexpr double kMuch = 1e-6;  // of 1 + the signal
-  const std::vector<double> positions(workspace_.memories().begin(), workspace_.memories().end());
+  const std::vector<double> positions(workspace_.discrete_states().begin(),
+                                      workspace_.discrete_states().end());
   std::vector<double> here(program_.n_signals()), there(program_.n_signals());
   const bool known = program_.signals(t, x.data(), here.data(), workspace_).has_value();
   for (const std::uint32_t s : program_.switch_structure().members[unit])
-    workspace_.set_memory(program_.switches()[s].memory, 1 - position(s));
+    workspace_.set_discrete_state(program_.switches()[s].discrete_state, 1 - position(s));
   const bool known_there = program_.signals(t, x.data(), there.data(), workspace_).has_value();
-  workspace_.load_memories(positions);
+  workspace_.load_discrete_states(positions);
   if (!known || !known_there) return false;
   for (std::size_t i = 0; i < here.size(); ++i) {
     if (std::abs(there[i] - here[i]) > kMuch * (1 + std::abs(here[i]))) return true;
@@ -240,34 +244,36 @@ SolveError SwitchSettling::no_position(std::uint32_t s, double t) const {
 
 bool SwitchSettling::settle(double t, std::span<const double> x) {
   constexpr std::size_t kInOrder = 2;  // rounds before
-  const std::size_t most = 2 * surfaces_.size() + 10;
+  const std::size_t most = 2 * event_functions_.size() + 10;
   bool any = false;
-  Units on_surface;
+  Units at_zero;
   std::vector<std::uint32_t> turned, restless;
   for (std::size_t round = 0;; ++round) {
-    surfaces_.evaluate(t, x, announced_);
+    event_functions_.evaluate(t, x, announced_);
     if (chained_ || round == kInOrder) {
-      const std::vector<double> before(workspace_.memories().begin(), workspace_.memories().end());
+      const std::vector<double> before(workspace_.discrete_states().begin(),
+                                       workspace_.discrete_states().end());
       turn_in_order(t, x);
-      any = any || !std::equal(before.begin(), before.end(), workspace_.memories().begin());
-      surfaces_.evaluate(t, x, announced_);
+      any = any || !std::equal(before.begin(), before.end(), workspace_.discrete_states().begin());
+      event_functions_.evaluate(t, x, announced_);
     }
-    if (turn_by_surfaces(t, on_surface, turned)) {
+    if (turn_by_event_functions(t, at_zero, turned)) {
       any = true;
       if (round <= most) continue;
-      // These go on turning over: their surfaces depend on their own positions.
+      // These go on turning over: their event functions depend on their own positions.
       restless.insert(restless.end(), turned.begin(), turned.end());
       if (round <= 2 * most) continue;
-      if (!choose_any(program_, workspace_, slide_, surfaces_.thresholds(), span_, restless, t, x))
+      if (!choose_any(program_, workspace_, slide_, event_functions_.thresholds(), span_, restless, t, x))
         throw no_position(*std::min_element(restless.begin(), restless.end()), t);
-      surfaces_.evaluate(t, x, announced_);
+      event_functions_.evaluate(t, x, announced_);
       return true;
     }
-    if (on_surface.empty()) return any;
-    const std::vector<double> before(workspace_.memories().begin(), workspace_.memories().end());
-    decide(on_surface, t, x);
+    if (at_zero.empty()) return any;
+    const std::vector<double> before(workspace_.discrete_states().begin(),
+                                     workspace_.discrete_states().end());
+    decide(at_zero, t, x);
     any = any || slide_.units() != slid_ ||
-          !std::equal(before.begin(), before.end(), workspace_.memories().begin());
+          !std::equal(before.begin(), before.end(), workspace_.discrete_states().begin());
   }
 }
 
@@ -289,7 +295,7 @@ void SwitchSettling::begin_after_events(bool set_states, bool jumped) {
   if (!jumped) return;
   slid_.clear();
   std::fill(rested_.begin(), rested_.end(), false);
-  surfaces_.thresholds().take_all_slack();
+  event_functions_.thresholds().take_all_slack();
 }
 
 void SwitchSettling::end(const std::vector<std::uint32_t>& slid) {
@@ -298,39 +304,40 @@ void SwitchSettling::end(const std::vector<std::uint32_t>& slid) {
     if (contains(slide_.units(), unit)) continue;
     // It may lie on the wrong side by what the integration let it drift off; after a jump it lies elsewhere.
     for (const std::uint32_t s : program_.switch_structure().members[unit]) {
-      const double off = std::abs(surfaces_[s]);
-      if (off <= SlidingMode::drift()) surfaces_.thresholds().give_slack(s, 2 * off);
+      const double off = std::abs(event_functions_[s]);
+      if (off <= SlidingMode::drift()) event_functions_.thresholds().give_slack(s, 2 * off);
     }
   }
 }
 
 void SwitchSettling::let_touch(std::size_t s) {
-  const double error = std::min(surfaces_.last_errors()[s], SlidingMode::drift());
-  if (surfaces_.is_known(s) || !(std::abs(surfaces_[s]) <= error)) return;
-  surfaces_.thresholds().forget(s);
-  surfaces_.thresholds().widen(s, error);
+  const double error = std::min(event_functions_.last_errors()[s], SlidingMode::drift());
+  if (event_functions_.is_known(s) || !(std::abs(event_functions_[s]) <= error)) return;
+  event_functions_.thresholds().forget(s);
+  event_functions_.thresholds().widen(s, error);
 }
 
 void SwitchSettling::restore(std::vector<bool> sliding) {
   restored_ = std::move(sliding);
-  if (restored_.empty()) restored_.assign(surfaces_.size(), true);
+  if (restored_.empty()) restored_.assign(event_functions_.size(), true);
 }
 
 void SwitchSettling::keep_positions_within_errors() {
-  const SurfaceErrors& errors = surfaces_.weigh_errors();
+  const EventFunctionErrors& errors = event_functions_.weigh_errors();
   kept_.assign(decided_.size(), false);
-  for (std::size_t s = 0; s < surfaces_.size(); ++s) {
-    if (surfaces_.is_known(s) || restored_[s] || !(std::abs(surfaces_[s]) <= errors[s])) continue;
-    surfaces_.thresholds().widen(s, errors[s]);
+  for (std::size_t s = 0; s < event_functions_.size(); ++s) {
+    if (event_functions_.is_known(s) || restored_[s] || !(std::abs(event_functions_[s]) <= errors[s]))
+      continue;
+    event_functions_.thresholds().widen(s, errors[s]);
     kept_[program_.switch_structure().unit[s]] = true;
   }
 }
 
 void SwitchSettling::allow_wrong_sides() {
-  Thresholds& thresholds = surfaces_.thresholds();
-  for (std::size_t s = 0; s < surfaces_.size(); ++s) {
-    if (surfaces_.is_known(s) || slide_.holds(s) || slide_.follows(s)) continue;
-    const double wrong = surfaces_.against(s);
+  Thresholds& thresholds = event_functions_.thresholds();
+  for (std::size_t s = 0; s < event_functions_.size(); ++s) {
+    if (event_functions_.is_known(s) || slide_.holds(s) || slide_.follows(s)) continue;
+    const double wrong = event_functions_.against(s);
     if (wrong > thresholds[s]) thresholds.widen(s, 2 * wrong);
   }
 }

@@ -6,30 +6,30 @@
 #include <vector>
 
 #include <oblique/network/program/program.h>
+#include <oblique/solve/events/event_functions.h>
 #include <oblique/solve/events/event_log.h>
 #include <oblique/solve/events/positions.h>
 #include <oblique/solve/events/sliding_mode.h>
-#include <oblique/solve/events/switch_surfaces.h>
 
 namespace oblique::solve {
 
 /// Settles all switches, and the algebraic loops between them, to a fixed point at one instant.
 ///
-/// A switch whose surface is off zero goes where that asks for it, again and again until none does. Those
-/// that lie on their surfaces then go, together, where the solution takes them, or slide (see Positions):
-/// once in a settling, for it ends nowhere else. Those that go on turning over depend on their own positions,
-/// and all combinations of these are tried. Not installed.
+/// A switch whose event function is off zero goes where that asks for it, again and again until none does.
+/// Those that lie on their switching surfaces then go, together, where the solution takes them, or slide (see
+/// Positions): once in a settling, for it ends nowhere else. Those that go on turning over depend on their
+/// own positions, and all combinations of these are tried. Not installed.
 class SwitchSettling {
  public:
   /// `announced` are the switches that are due, by time or by a crossing that was located; `span` is the
   /// length of the run [s]. All must outlive this.
   SwitchSettling(const network::Program& program, network::Workspace& workspace, SlidingMode& slide,
-                 SwitchSurfaces& surfaces, const Announced& announced, EventLog& log, double span);
+                 EventFunctions& event_functions, const Announced& announced, EventLog& log, double span);
 
   /// A new instant: events have set no states at it yet.
   void begin_instant() { set_ = false; }
-  /// Begins to settle: what lies on its surface is decided anew, and what slides is looked at as if it came
-  /// there now.
+  /// Begins to settle: what lies on its switching surface is decided anew, and what slides is looked at as if
+  /// it came there now.
   void begin();
   /// The same after events at this instant, that have set states, which may have jumped with that.
   void begin_after_events(bool set_states, bool jumped);
@@ -37,20 +37,20 @@ class SwitchSettling {
   bool settle(double t, std::span<const double> x);
   /// The instant is settled; before it these units slid.
   void end(const std::vector<std::uint32_t>& slid);
-  /// Where a surface, evaluated after that, still lies on the wrong side, it goes back at once: it stays
-  /// there for a moment, which is no event of its own.
+  /// Where an event function, evaluated after that, still lies on the wrong side, it goes back at once: it
+  /// stays there for a moment, which is no event of its own.
   void allow_wrong_sides();
-  /// A switch that was announced has not turned over: its surface may touch zero within the errors of the
-  /// states until it has left these behind.
+  /// A switch that was announced has not turned over: its event function may touch zero within the errors of
+  /// the states until it has left these behind.
   void let_touch(std::size_t s);
   /// What slides is settled anew in the next settling: these switches did, or rested at zero along with it;
   /// any may have where that is not known and `sliding` is empty.
   void restore(std::vector<bool> sliding);
-  /// Of a run that goes on with the surfaces evaluated: those that are within the errors of the states stay
-  /// where they are until they have left these behind. On which side they lie, rounding decides.
+  /// Of a run that goes on with the event functions evaluated: those that are within the errors of the states
+  /// stay where they are until they have left these behind. On which side they lie, rounding decides.
   void keep_positions_within_errors();
 
-  /// Whether a surface, at zero, was found to stay there.
+  /// Whether an event function, at zero, was found to stay there.
   bool stays(std::size_t s) const { return stays_[s]; }
   /// When a switch turned over last [s]; 0 where it has not.
   double last_turn(std::size_t s) const { return unrest_[s].last; }
@@ -59,14 +59,16 @@ class SwitchSettling {
   using Units = std::vector<std::uint32_t>;
 
   bool known_follow_from_others() const;
-  double position(std::size_t s) const { return workspace_.memory(program_.switches()[s].memory); }
+  double position(std::size_t s) const {
+    return workspace_.discrete_state(program_.switches()[s].discrete_state);
+  }
   double place_size(std::size_t s) const;
   double near_size(std::size_t s) const;
   bool is_near(std::size_t s) const;
   bool is_announced(std::uint32_t unit) const;
   void turn(std::size_t s, double position, double t);
   double known_position(std::size_t s) const;
-  bool turn_by_surfaces(double t, Units& on_surface, std::vector<std::uint32_t>& turned);
+  bool turn_by_event_functions(double t, Units& at_zero, std::vector<std::uint32_t>& turned);
   void turn_in_order(double t, std::span<const double> x);
   void add_preferred(std::uint32_t unit, std::vector<double>& preferred) const;
   void decide(Units units, double t, std::span<const double> x);
@@ -77,7 +79,7 @@ class SwitchSettling {
   const network::Program& program_;
   network::Workspace& workspace_;
   SlidingMode& slide_;
-  SwitchSurfaces& surfaces_;
+  EventFunctions& event_functions_;
   const Announced& announced_;
   EventLog& log_;
   double span_;
@@ -88,7 +90,7 @@ class SwitchSettling {
   std::vector<bool> decided_;  ///< of each unit: by where it drifts, once since `begin`
   bool set_ = false;           ///< whether events have set states at this instant
   Units slid_;                 ///< what slid when the settling began
-  std::vector<bool> rested_;   ///< the surfaces that then stayed at zero along with it
+  std::vector<bool> rested_;   ///< the event functions that then stayed at zero along with it
   /// Until the next settling begins: see `restore`, and the units to be kept where they are.
   std::vector<bool> restored_, kept_;
 

@@ -21,16 +21,16 @@ Switching::Switching(const network::Program& program, network::Workspace& worksp
       file_(file),
       log_(program, file),
       slide_(program, workspace, span),
-      surfaces_(program, workspace, tolerance, absolute_tolerance, file),
-      location_(program, workspace, slide_, surfaces_, span, file),
-      settling_(program, workspace, slide_, surfaces_, location_.announced(), log_, span),
-      actions_(program, workspace, surfaces_, slide_, settling_, log_, span, file),
+      event_functions_(program, workspace, tolerance, absolute_tolerance, file),
+      location_(program, workspace, slide_, event_functions_, span, file),
+      settling_(program, workspace, slide_, event_functions_, location_.announced(), log_, span),
+      actions_(program, workspace, event_functions_, slide_, settling_, log_, span, file),
       faint_turns_(program, workspace, span),
       signals_(program.n_signals()) {}
 
 void Switching::end_when(const Interruption& interruption) {
   interruption_ = interruption;
-  surfaces_.end_when(interruption);
+  event_functions_.end_when(interruption);
   location_.end_when(interruption);
 }
 
@@ -44,8 +44,8 @@ void Switching::start(double t, std::vector<double>& x, const std::function<void
     settling_.begin();
     if (starting && any_start) take_starts(program_, workspace_, t, x, log_, file_);
     if (active() && settling_.settle(t, x) && starting && any_start) continue;
-    if (!first ||
-        !rests_within_limits(program_, workspace_, surfaces_, location_.announced(), t, x, bring_to_rest))
+    if (!first || !rests_within_limits(program_, workspace_, event_functions_, location_.announced(), t, x,
+                                       bring_to_rest))
       bring_to_rest();
     first = false;
     if (!active()) return;
@@ -58,7 +58,7 @@ void Switching::start(double t, std::vector<double>& x, const std::function<void
   settling_.end({});
 }
 
-/// The units that slide though both of their sides drive away from their surfaces.
+/// The units that slide though both of their sides drive away from their switching surfaces.
 std::vector<std::uint32_t> Switching::repelled_units(double t, std::span<const double> x) {
   std::vector<std::uint32_t> repelled;
   if (!slide_.active() || !slide_.evaluate(t, x)) return repelled;
@@ -74,19 +74,19 @@ bool Switching::serve_events(double t, std::vector<double>& x, bool starting) {
   const auto effect = actions_.serve(t, x, starting);
   if (!effect) return false;
   settling_.begin_after_events(effect->sets_states, effect->jumps);
-  surfaces_.evaluate(t, x, location_.announced());
+  event_functions_.evaluate(t, x, location_.announced());
   location_.withdraw_past(effect->jumps);
   return true;
 }
 
 /// Records which of the announced switches have turned over; the solution leads the others back at once.
-void Switching::record_turns(const std::vector<double>& memories_before, double t) {
-  for (std::uint32_t s = 0; s < surfaces_.size(); ++s) {
+void Switching::record_turns(const std::vector<double>& discrete_states_before, double t) {
+  for (std::uint32_t s = 0; s < event_functions_.size(); ++s) {
     const auto position = location_.announced()[s];
     if (!position) continue;
-    const std::uint32_t memory = program_.switches()[s].memory;
-    if (workspace_.memory(memory) != memories_before[memory] || settling_.last_turn(s) == t ||
-        slide_.holds(s))
+    const std::uint32_t discrete_state = program_.switches()[s].discrete_state;
+    if (workspace_.discrete_state(discrete_state) != discrete_states_before[discrete_state] ||
+        settling_.last_turn(s) == t || slide_.holds(s))
       log_.record_turn(s, *position, t);
     else
       settling_.let_touch(s);
@@ -97,10 +97,10 @@ void Switching::settle(double t, std::vector<double>& x) {
   const std::vector<std::uint32_t> slid = slide_.units();
   const std::vector<std::uint32_t> repelled = repelled_units(t, x);
   settling_.begin();
-  surfaces_.evaluate(t, x, location_.announced());
+  event_functions_.evaluate(t, x, location_.announced());
   location_.withdraw_early(t);
-  const std::vector<double> before(workspace_.memories().begin(), workspace_.memories().end());
-  std::vector<FaintTurn> faint = faint_turns_.due(t, location_.announced(), surfaces_,
+  const std::vector<double> before(workspace_.discrete_states().begin(), workspace_.discrete_states().end());
+  std::vector<FaintTurn> faint = faint_turns_.due(t, location_.announced(), event_functions_,
                                                   [this](std::uint32_t s) { return settling_.last_turn(s); });
   if (!faint.empty() && !signals(t, x.data(), signals_.data())) faint.clear();
   const std::vector<double> signals_before = faint.empty() ? std::vector<double>() : signals_;
@@ -115,7 +115,7 @@ void Switching::settle(double t, std::vector<double>& x) {
   log_.record_slides(slid, repelled, slide_, t);
   settling_.end(slid);
   location_.withdraw_all();
-  surfaces_.evaluate(t, x, location_.announced());
+  event_functions_.evaluate(t, x, location_.announced());
   settling_.allow_wrong_sides();
   if (faint.empty() || !signals(t, x.data(), signals_.data())) return;
   faint_turns_.keep(std::move(faint), signals_before, signals_);
@@ -128,7 +128,7 @@ std::vector<bool> Switching::sliding() const {
 }
 
 void Switching::resume(double t, std::vector<double>& x) {
-  surfaces_.evaluate(t, x, location_.announced());
+  event_functions_.evaluate(t, x, location_.announced());
   settling_.keep_positions_within_errors();
   settle(t, x);
 }
@@ -137,17 +137,17 @@ void Switching::throw_endless(double t) const {
   throw log_.endless("a comparison of the time is always due", t);
 }
 
-std::optional<double> Switching::search(double from, std::span<const double> looks,
+std::optional<double> Switching::search(double from, std::span<const double> sample_times,
                                         const Interpolant& solution) {
-  const auto found = location_.search(from, looks, solution);
+  const auto found = location_.search(from, sample_times, solution);
   if (!found) return std::nullopt;
   faint_turns_.approach(from, found->time, found->turned, solution);
   return found->time;
 }
 
 const network::Evaluation& Switching::evaluate(double t, std::span<const double> x) {
-  surfaces_.evaluate(t, x, location_.announced());
-  return surfaces_.here();
+  event_functions_.evaluate(t, x, location_.announced());
+  return event_functions_.here();
 }
 
 bool Switching::derivatives(double t, const double* x, double* dxdt) {

@@ -10,26 +10,27 @@
 
 #include <oblique/network/program/program.h>
 #include <oblique/solve/events/event_actions.h>
+#include <oblique/solve/events/event_functions.h>
 #include <oblique/solve/events/event_location.h>
 #include <oblique/solve/events/event_log.h>
 #include <oblique/solve/events/faint_turns.h>
 #include <oblique/solve/events/sliding_mode.h>
 #include <oblique/solve/events/switch_settling.h>
-#include <oblique/solve/events/switch_surfaces.h>
 #include <oblique/solve/integrator/interpolant.h>
 #include <oblique/solve/interruption.h>
 
 namespace oblique::solve {
 
-/// The memories of one run: finds the times at which switches turn over, and settles everything there.
+/// The discrete states of one run: finds the times at which switches turn over, and settles everything there.
 ///
 /// A switch is latched: between events it keeps its position, and the equations go on smoothly past its
-/// surface. It turns over where its surface has passed zero by more than rounding (EventLocation finds the
-/// time). Then all switches, algebraic loops (SwitchSettling) and the events that they set off (EventActions)
-/// are settled to a fixed point at that one instant, simultaneous and secondary ones included. Switches that
-/// lie on their surfaces go where the solution takes them; where no combination of their positions agrees
-/// with where it would take them, they slide (SlidingMode), unless a surface depends on its own switch: then
-/// the other positions of the algebra around it are tried. EventLog keeps what is reported. Not installed.
+/// event function. It turns over where its event function has passed zero by more than rounding
+/// (EventLocation finds the time). Then all switches, algebraic loops (SwitchSettling) and the events that
+/// they set off (EventActions) are settled to a fixed point at that one instant, simultaneous and secondary
+/// ones included. Switches that lie on their switching surfaces go where the solution takes them; where no
+/// combination of their positions agrees with where it would take them, they slide (SlidingMode), unless an
+/// event function depends on its own switch: then the other positions of the algebra around it are tried.
+/// EventLog keeps what is reported. Not installed.
 class Switching {
  public:
   /// `file` names the diagram in messages; `span` is the length of the run [s], `tolerance` the relative one
@@ -56,23 +57,24 @@ class Switching {
   [[noreturn]] void throw_endless(double t) const;
 
   /// The first time after `from` at which a switch turns over, or nothing; all are in place at `from`.
-  /// `looks` are times at which to look at least; the search ends at the last.
-  std::optional<double> search(double from, std::span<const double> looks, const Interpolant& solution);
+  /// `sample_times` are times at which to look at least; the search ends at the last.
+  std::optional<double> search(double from, std::span<const double> sample_times,
+                               const Interpolant& solution);
 
-  /// All surfaces at (t, x), and what else follows there. Throws SolveError.
+  /// All event functions at (t, x), and what else follows there. Throws SolveError.
   const network::Evaluation& evaluate(double t, std::span<const double> x);
 
-  /// dx/dt, its Jacobian and all signals, with what slides held on its surfaces.
+  /// dx/dt, its Jacobian and all signals, with what slides held on its switching surfaces.
   bool derivatives(double t, const double* x, double* dxdt);
   bool jacobian(double t, const double* x, double* values);
   bool signals(double t, const double* x, double* values);
 
-  void limit_looks(double looks) { location_.limit_looks(looks); }
+  void limit_samples(double samples) { location_.limit_samples(samples); }
   /// Whoever evaluates or settles then throws Interrupted; but `derivatives` and `jacobian`, which solvers
   /// call that know no exceptions.
   void end_when(const Interruption& interruption);
   /// The size [machine unit] down to which each state is known relatively; 0: as its absolute tolerance says.
-  void know_states(std::span<const double> reach) { surfaces_.know_states(reach); }
+  void know_states(std::span<const double> reach) { event_functions_.know_states(reach); }
   /// Where the run ends [s]: what would come later is not told of.
   void end_at(double t) { actions_.end_at(t); }
 
@@ -106,7 +108,7 @@ class Switching {
   Interruption interruption_;
   EventLog log_;
   SlidingMode slide_;
-  SwitchSurfaces surfaces_;
+  EventFunctions event_functions_;
   EventLocation location_;
   SwitchSettling settling_;
   EventActions actions_;

@@ -67,29 +67,32 @@ void take_starts(const network::Program& program, network::Workspace& workspace,
 }
 
 bool rests_within_limits(const network::Program& program, network::Workspace& workspace,
-                         SwitchSurfaces& surfaces, const Announced& announced, double t,
+                         EventFunctions& event_functions, const Announced& announced, double t,
                          std::vector<double>& x, const std::function<void()>& bring_to_rest) {
   const std::vector<double> states = x;
-  const std::vector<double> memories(workspace.memories().begin(), workspace.memories().end());
+  const std::vector<double> discrete_states(workspace.discrete_states().begin(),
+                                            workspace.discrete_states().end());
   bool any = false;
   for (const network::Switch& made : program.switches()) {
-    if (made.turning != network::Turning::limits || workspace.memory(made.memory) == 0) continue;
-    workspace.set_memory(made.memory, 0);
+    if (made.turning != network::Turning::limits || workspace.discrete_state(made.discrete_state) == 0)
+      continue;
+    workspace.set_discrete_state(made.discrete_state, 0);
     any = true;
   }
   if (!any) return false;
   try {
     bring_to_rest();
-    surfaces.evaluate(t, x, announced);
+    event_functions.evaluate(t, x, announced);
     bool within = true;
-    for (std::size_t s = 0; s < surfaces.size(); ++s)
+    for (std::size_t s = 0; s < event_functions.size(); ++s)
       within = within && (program.switches()[s].turning != network::Turning::limits ||
-                          surfaces[s] <= surfaces.thresholds()[s]);
+                          event_functions[s] <= event_functions.thresholds()[s]);
     if (within) return true;
   } catch (const SolveError&) {  // what lies between the limits has no rest; they may make one
   }
   x = states;
-  for (std::size_t m = 0; m < memories.size(); ++m) workspace.set_memory(m, memories[m]);
+  for (std::size_t m = 0; m < discrete_states.size(); ++m)
+    workspace.set_discrete_state(m, discrete_states[m]);
   return false;
 }
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include <oblique/network/program/program.h>
+#include <oblique/solve/events/event_functions.h>
 #include <oblique/solve/events/event_log.h>
-#include <oblique/solve/events/switch_surfaces.h>
 
 // How a run with switches starts. Not installed.
 namespace oblique::solve {
@@ -22,7 +22,7 @@ void take_starts(const network::Program& program, network::Workspace& workspace,
 /// nothing has changed. An amplifier's guess may be far off only because the elements in its loop have not
 /// settled yet; at a limit it has no gain, and may stay there for good.
 bool rests_within_limits(const network::Program& program, network::Workspace& workspace,
-                         SwitchSurfaces& surfaces, const Announced& announced, double t,
+                         EventFunctions& event_functions, const Announced& announced, double t,
                          std::vector<double>& x, const std::function<void()>& bring_to_rest);
 
 }  // namespace oblique::solve

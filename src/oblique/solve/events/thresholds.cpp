@@ -42,8 +42,8 @@ double Thresholds::rounding_of(std::size_t s, double compared_size) const {
   return kRounding * (finite ? std::max(1.0, compared_size) : 1);
 }
 
-std::optional<double> Thresholds::leave_behind(std::size_t s, double surface, double rounding) {
-  excursions_[s] = std::max(excursions_[s], std::abs(surface));
+std::optional<double> Thresholds::leave_behind(std::size_t s, double event_function, double rounding) {
+  excursions_[s] = std::max(excursions_[s], std::abs(event_function));
   if (slack_[s] == 0 || excursions_[s] <= 2 * slack_[s]) return std::nullopt;
   const double before = now_[s];
   now_[s] = rounding;

@@ -11,8 +11,8 @@
 
 namespace oblique::solve {
 
-/// How far the surface of each switch must have passed zero to have passed it: by more than rounding and,
-/// where the switch has just turned over, by more than the errors of the states. Not installed.
+/// How far the event function of each switch must have passed zero to have passed it: by more than rounding
+/// and, where the switch has just turned over, by more than the errors of the states. Not installed.
 class Thresholds {
  public:
   /// The program must outlive this.
@@ -23,7 +23,7 @@ class Thresholds {
 
   double operator[](std::size_t s) const { return now_[s]; }
 
-  /// Rounding of the surface of a switch at the last `update`.
+  /// Rounding of the event function of a switch at the last `update`.
   double rounding(std::size_t s) const { return roundings_[s]; }
   /// That where it compares what has this magnitude: a part of it, at least of a machine unit.
   double rounding_of(std::size_t s, double compared_size) const;
@@ -33,17 +33,17 @@ class Thresholds {
     return of_time_[s] && slack_[s] == 0 ? rounding : now_[s];
   }
 
-  /// Lets a surface go back so far by the errors of the states, until it has left them behind; from the next
-  /// `update` on.
+  /// Lets an event function go back so far by the errors of the states, until it has left them behind; from
+  /// the next `update` on.
   void give_slack(std::size_t s, double slack) { slack_[s] = slack; }
   /// The same, at once.
   void widen(std::size_t s, double slack) { now_[s] = slack_[s] = slack; }
   void take_all_slack() { std::fill(slack_.begin(), slack_.end(), 0.0); }
-  /// Notes how far off a surface is, and takes its slack where that is beyond the errors of the states: by
-  /// how much its threshold has become smaller then; it is the rounding there.
-  std::optional<double> leave_behind(std::size_t s, double surface, double rounding);
+  /// Notes how far off an event function is, and takes its slack where that is beyond the errors of the
+  /// states: by how much its threshold has become smaller then; it is the rounding there.
+  std::optional<double> leave_behind(std::size_t s, double event_function, double rounding);
 
-  /// How far the surface of a switch has been from zero since `forget`.
+  /// How far the event function of a switch has been from zero since `forget`.
   double excursion(std::size_t s) const { return excursions_[s]; }
   void forget(std::size_t s) { excursions_[s] = 0; }
 
@@ -52,7 +52,7 @@ class Thresholds {
   std::vector<double> now_, roundings_;
   std::vector<double> slack_;  ///< of them, for the errors of the states
   std::vector<double> excursions_;
-  std::vector<bool> of_time_;  ///< the surface follows the time alone, to rounding
+  std::vector<bool> of_time_;  ///< the event function follows the time alone, to rounding
 };
 
 }  // namespace oblique::solve

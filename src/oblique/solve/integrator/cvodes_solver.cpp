@@ -167,13 +167,13 @@ struct CvodesSolver::Handles {
   static int evaluate(sunrealtype t, N_Vector x, N_Vector dxdt, void* user) {
     auto& self = *static_cast<Handles*>(user);
     const double* const states = N_VGetArrayPointer(x);
-    double* const slopes = N_VGetArrayPointer(dxdt);
+    double* const derivatives = N_VGetArrayPointer(dxdt);
     if (self.system->is_to_end()) return kGiveUp;
-    if (!self.system->derivatives(self.start + t, states, slopes)) {
+    if (!self.system->derivatives(self.start + t, states, derivatives)) {
       self.saw_refusal = true;
       return 1;
     }
-    if (all_finite(slopes, self.system->size())) return 0;
+    if (all_finite(derivatives, self.system->size())) return 0;
     self.saw_not_finite = true;
     return 1;  // recoverable: CVODES tries a shorter step
   }

@@ -20,15 +20,15 @@ HiddenMotion::HiddenMotion(OdeSystem& system, double relative_tolerance,
       absolute_(std::move(absolute_tolerances)),
       x_(system.size()),
       rates_(system.size()),
-      slopes_(system.size()) {}
+      derivatives_(system.size()) {}
 
 bool HiddenMotion::misses(double t, double part, const Interpolant& solution) {
   solution.states_at(t, x_);
   solution.rates_at(t, rates_);
-  if (!system_.derivatives(t, x_.data(), slopes_.data())) return true;
+  if (!system_.derivatives(t, x_.data(), derivatives_.data())) return true;
   bool suspicious = false;
   const auto error = [&](std::size_t i) {
-    return part * std::abs(rates_[i] - slopes_[i]) /
+    return part * std::abs(rates_[i] - derivatives_[i]) /
            (kMostErrors * (relative_ * std::abs(x_[i]) + absolute_[i]));
   };
   for (std::size_t i = 0; i < x_.size() && !suspicious; ++i) suspicious = error(i) > 1;
@@ -48,17 +48,17 @@ bool HiddenMotion::misses(double t, double part, const Interpolant& solution) {
   return false;
 }
 
-std::optional<double> HiddenMotion::find(double from, std::span<const double> looks,
+std::optional<double> HiddenMotion::find(double from, std::span<const double> sample_times,
                                          const Interpolant& solution) {
   double before = from;
-  for (std::size_t k = 0; k + 1 < looks.size(); ++k) {
-    const double part = looks[k] - before;
-    if (misses(looks[k], part, solution)) {
-      longest_ = std::min(part, looks[k + 1] - looks[k]);
+  for (std::size_t k = 0; k + 1 < sample_times.size(); ++k) {
+    const double part = sample_times[k] - before;
+    if (misses(sample_times[k], part, solution)) {
+      longest_ = std::min(part, sample_times[k + 1] - sample_times[k]);
       seen_until_ = before;
-      return looks[k];
+      return sample_times[k];
     }
-    before = looks[k];
+    before = sample_times[k];
   }
   return std::nullopt;
 }

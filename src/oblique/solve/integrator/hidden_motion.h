@@ -15,15 +15,15 @@ namespace oblique::solve {
 ///
 /// Where something may happen inside a step (SourceWatch says where to look), the residual u′ − f(t, u) of
 /// the solution u between the solver's own points shows whether the step has seen it: over the part of a step
-/// that a look stands for it makes an error of about |u′ − f| Δ/(1 + Δ |∂f/∂u|).
+/// that a sample stands for it makes an error of about |u′ − f| Δ/(1 + Δ |∂f/∂u|).
 class HiddenMotion {
  public:
   /// `system` must outlive this; tolerances as those of the solver, the absolute ones of each state.
   HiddenMotion(OdeSystem& system, double relative_tolerance, std::vector<double> absolute_tolerances);
 
-  /// The first of `looks` in the step that begins at `from` where the solution misses the equations; the last
-  /// of them is the end of the step and not looked at.
-  std::optional<double> find(double from, std::span<const double> looks, const Interpolant& solution);
+  /// The first of `sample_times` in the step that begins at `from` where the solution misses the equations;
+  /// the last of them is the end of the step and not looked at.
+  std::optional<double> find(double from, std::span<const double> sample_times, const Interpolant& solution);
 
   /// How long a step may be that sees what was found [s], and until when there was nothing to see [s].
   double longest_step() const { return longest_; }
@@ -35,7 +35,7 @@ class HiddenMotion {
   OdeSystem& system_;
   double relative_;
   std::vector<double> absolute_;
-  std::vector<double> x_, rates_, slopes_, jacobian_;
+  std::vector<double> x_, rates_, derivatives_, jacobian_;
   double longest_ = 0, seen_until_ = 0;
 };
 

@@ -17,9 +17,9 @@ class Interpolant {
 };
 
 /// States that stand still: those of a moment, or none.
-class StandingStates final : public Interpolant {
+class ConstantStates final : public Interpolant {
  public:
-  explicit StandingStates(std::span<const double> states) : states_(states) {}
+  explicit ConstantStates(std::span<const double> states) : states_(states) {}
   void states_at(double, std::span<double> x) const override {
     std::copy(states_.begin(), states_.end(), x.begin());
   }

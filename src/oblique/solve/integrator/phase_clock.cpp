@@ -45,7 +45,7 @@ void PhaseClock::set_modes() {
   if (timeline_.phases.empty()) return;
   const diagram::FlatPhase& phase = timeline_.phases[position_.phase];
   for (std::size_t g = 0; g < phase.modes.size(); ++g) {
-    workspace_.set_memory(program_.mode_memories()[g], static_cast<double>(phase.modes[g]));
+    workspace_.set_discrete_state(program_.mode_states()[g], static_cast<double>(phase.modes[g]));
   }
 }
 

@@ -55,7 +55,7 @@ void Sampler::advance(double t, const Interpolant& solution) {
     runaway_.look_at(time, signals_);
     if (grid_left && grid_time == time) {
       result.trajectory.add_row(row_);
-      if (options_.on_sample) options_.on_sample(time, states_, workspace_.memories());
+      if (options_.on_sample) options_.on_sample(time, states_, workspace_.discrete_states());
       ++next_sample_;
     }
     if (extra_left && extra_time == time) {

@@ -52,9 +52,9 @@ void Segments::settle(double t, bool at_branch_end) {
 /// then its time. The branch may end only because the switch was not turned over.
 bool Segments::turns_before(double from, double& t, const Interpolant& solution) {
   if (program_.switches().empty() || !(t > from)) return false;
-  const double look[] = {t};
+  const double sample_times[] = {t};
   workspace_.pass_failing_loops(true);
-  const auto event = switching_.search(from, look, solution);
+  const auto event = switching_.search(from, sample_times, solution);
   workspace_.pass_failing_loops(false);
   if (event) t = *event;
   return event.has_value();
@@ -85,25 +85,25 @@ void Segments::begin(double t) {
   length_ = wait ? std::min(*wait, last - t) : last - t;
 }
 
-bool Segments::finish_step(double from, double& t, std::span<const double> looks,
+bool Segments::finish_step(double from, double& t, std::span<const double> sample_times,
                            const Interpolant& solution) {
   std::optional<double> branch_end = branches_.find(from, t, solution);
-  std::vector<double> looks_before;
+  std::vector<double> times_before;
   if (branch_end) {
     t = std::max(from, branches_.before(*branch_end));
-    std::copy_if(looks.begin(), looks.end(), std::back_inserter(looks_before),
-                 [&](double look) { return look < t; });
-    looks_before.push_back(t);
-    looks = looks_before;
+    std::copy_if(sample_times.begin(), sample_times.end(), std::back_inserter(times_before),
+                 [&](double sample_time) { return sample_time < t; });
+    times_before.push_back(t);
+    sample_times = times_before;
   }
   std::optional<double> event;
   bool settled = false;
   for (double begin = from;;) {
-    while (!looks.empty() && looks.front() <= begin) looks = looks.subspan(1);
+    while (!sample_times.empty() && sample_times.front() <= begin) sample_times = sample_times.subspan(1);
     event.reset();
-    if (!program_.switches().empty() && t > begin) event = switching_.search(begin, looks, solution);
+    if (!program_.switches().empty() && t > begin) event = switching_.search(begin, sample_times, solution);
     const double end = event ? *event : t;
-    const double reached = look_through(begin, end, looks, solution);
+    const double reached = look_through(begin, end, sample_times, solution);
     if (halted()) {
       t = reached;
       return false;
@@ -111,7 +111,7 @@ bool Segments::finish_step(double from, double& t, std::span<const double> looks
     if (!event) break;
     if (!branch_end && end < t && end < end_) {
       settled = true;
-      if (turns_without_effect(end, looks, solution)) {
+      if (turns_without_effect(end, sample_times, solution)) {
         settled = false;
         begin = end;
         continue;
@@ -142,7 +142,7 @@ bool Segments::finish_step(double from, double& t, std::span<const double> looks
 
 /// Rows, extremes and overloads from `begin` to `end`, both within one step and without events between
 /// them.
-double Segments::look_through(double begin, double end, std::span<const double> looks,
+double Segments::look_through(double begin, double end, std::span<const double> sample_times,
                               const Interpolant& solution) {
   double from = begin;
   const auto to = [&](double time) {
@@ -151,7 +151,7 @@ double Segments::look_through(double begin, double end, std::span<const double> 
     sampler_.watch(from, time, solution);
     from = time;
   };
-  for (const double look : looks) to(std::min(look, end));
+  for (const double sample_time : sample_times) to(std::min(sample_time, end));
   to(end);
   const double reached = halted() ? from : end;
   sampler_.advance(reached, solution);
@@ -159,26 +159,30 @@ double Segments::look_through(double begin, double end, std::span<const double> 
 }
 
 /// Settles what turns over at `at`, and tells whether the solver may go on with its step as if nothing had
-/// been: no state and no memory changes, and dx/dt is the same at every one of `looks`, which show what the
-/// time alone does. (A condition that others mask may turn over at every rounding.)
-bool Segments::turns_without_effect(double at, std::span<const double> looks, const Interpolant& solution) {
+/// been: no state, continuous or discrete, changes, and dx/dt is the same at every one of `sample_times`,
+/// which show what the time alone does. (A condition that others mask may turn over at every rounding.)
+bool Segments::turns_without_effect(double at, std::span<const double> sample_times,
+                                    const Interpolant& solution) {
   std::vector<std::vector<double>> states_there, before;
   std::vector<double> after(states_.size());
   bool known = !switching_.slides();
-  for (const double look : looks) {
-    solution.states_at(look, states_there.emplace_back(states_.size()));
-    known = known && switching_.derivatives(look, states_there.back().data(),
+  for (const double sample_time : sample_times) {
+    solution.states_at(sample_time, states_there.emplace_back(states_.size()));
+    known = known && switching_.derivatives(sample_time, states_there.back().data(),
                                             before.emplace_back(states_.size()).data());
   }
-  std::vector<double> memories(workspace_.memories().begin(), workspace_.memories().end());
+  std::vector<double> discrete_states(workspace_.discrete_states().begin(),
+                                      workspace_.discrete_states().end());
   solution.states_at(at, states_);
   const std::vector<double> states = states_;
   settle(at, false);
   if (!known || switching_.slides() || states_ != states) return false;
-  for (const network::Switch& s : program_.switches()) memories[s.memory] = workspace_.memory(s.memory);
-  if (!std::equal(memories.begin(), memories.end(), workspace_.memories().begin())) return false;
-  for (std::size_t k = 0; k < looks.size(); ++k) {
-    if (!switching_.derivatives(looks[k], states_there[k].data(), after.data()) || before[k] != after)
+  for (const network::Switch& s : program_.switches())
+    discrete_states[s.discrete_state] = workspace_.discrete_state(s.discrete_state);
+  if (!std::equal(discrete_states.begin(), discrete_states.end(), workspace_.discrete_states().begin()))
+    return false;
+  for (std::size_t k = 0; k < sample_times.size(); ++k) {
+    if (!switching_.derivatives(sample_times[k], states_there[k].data(), after.data()) || before[k] != after)
       return false;
   }
   if (overloads_) overloads_->restart(at, states_);

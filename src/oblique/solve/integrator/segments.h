@@ -47,9 +47,9 @@ class Segments {
   double length() const { return length_; }
 
   /// Samples the step from `from` to t, and settles an event that cuts it short (t is then the time of the
-  /// event) or ends the segment. `looks` are times at which to look at least. True where the solver must
-  /// start anew.
-  bool finish_step(double from, double& t, std::span<const double> looks, const Interpolant& solution);
+  /// event) or ends the segment. `sample_times` are times at which to look at least. True where the solver
+  /// must start anew.
+  bool finish_step(double from, double& t, std::span<const double> sample_times, const Interpolant& solution);
   /// Settles what there is at t, where a branch ends, the states having gone straight on from `last`.
   void end_branch(double from, const std::vector<double>& last, double& t);
   /// Whether an overload has ended the run.
@@ -58,8 +58,9 @@ class Segments {
  private:
   void settle(double t, bool at_branch_end);
   bool turns_before(double from, double& t, const Interpolant& solution);
-  double look_through(double begin, double end, std::span<const double> looks, const Interpolant& solution);
-  bool turns_without_effect(double at, std::span<const double> looks, const Interpolant& solution);
+  double look_through(double begin, double end, std::span<const double> sample_times,
+                      const Interpolant& solution);
+  bool turns_without_effect(double at, std::span<const double> sample_times, const Interpolant& solution);
 
   const network::Program& program_;
   const diagram::FlatDiagram& diagram_;

@@ -3,9 +3,9 @@
 
 namespace oblique::solve {
 
-bool ShortSteps::take_back(double from, std::span<const double> x, std::span<const double> looks,
+bool ShortSteps::take_back(double from, std::span<const double> x, std::span<const double> sample_times,
                            double end) {
-  const auto missed = hidden_.find(from, looks, solver_);
+  const auto missed = hidden_.find(from, sample_times, solver_);
   if (!missed) return false;
   limit_ = hidden_.longest_step();
   short_until_ = *missed + limit_;

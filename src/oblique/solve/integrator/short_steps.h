@@ -19,9 +19,9 @@ class ShortSteps {
   ShortSteps(HiddenMotion hidden, CvodesSolver& solver, double span)
       : hidden_(std::move(hidden)), solver_(solver), span_(span) {}
 
-  /// Whether the step from `from`, where the states were x, has hidden something at one of `looks`: the
-  /// solver then stands at `from` again, and will not pass `end`.
-  bool take_back(double from, std::span<const double> x, std::span<const double> looks, double end);
+  /// Whether the step from `from`, where the states were x, has hidden something at one of `sample_times`:
+  /// the solver then stands at `from` again, and will not pass `end`.
+  bool take_back(double from, std::span<const double> x, std::span<const double> sample_times, double end);
 
   /// A step has led to (t, x), and nothing has happened there; the solver will not pass `end`.
   void advance(double t, std::span<const double> x, double end);

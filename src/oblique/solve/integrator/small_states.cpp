@@ -17,9 +17,9 @@ constexpr double kErrorOfState = 100;
 
 /// Of the run's tolerance: an error of an output that is too much to say nothing of.
 constexpr double kMuch = 1e4;
-/// Of the largest magnitude of a surface: what moves its crossings. (Many are rates, and these move by far
-/// more than what they are rates of.)
-constexpr double kMuchOfSurface = 1e-2;
+/// Of the largest magnitude of an event function: what moves its crossings. (Many are rates, and these move
+/// by far more than what they are rates of.)
+constexpr double kMuchOfEventFunction = 1e-2;
 
 constexpr std::size_t kMostStates = 100;  ///< looked at one by one
 constexpr double kRounding = 1e-15, kAboveRounding = 10;
@@ -117,7 +117,7 @@ std::optional<std::size_t> SmallStates::reader_of(std::size_t state) const {
   if (moves == moves_.end()) return std::nullopt;
   for (std::size_t k = 0; k < sizes_.size(); ++k) {
     const double much =
-        k < n_relative_ ? kMuch * tolerance_ * std::max(1.0, sizes_[k]) : kMuchOfSurface * sizes_[k];
+        k < n_relative_ ? kMuch * tolerance_ * std::max(1.0, sizes_[k]) : kMuchOfEventFunction * sizes_[k];
     if (much > 0 && moves->second[k] > much) return k;
   }
   return std::nullopt;

@@ -23,7 +23,7 @@ struct SmallState {
 /// decides about them: 1e-15 cos t is zero to a solver, and a gain of 1e15 shows it. At some of the steps the
 /// error that the solver leaves to each such state is put into it, alone and with what it grows to in the
 /// other states (by implicit steps of the linearised equations), and the readings are looked at: outputs in
-/// their units, and the surfaces of switches beside their own size. States that are no more than the
+/// their units, and the event functions of switches beside their own size. States that are no more than the
 /// rounding of what they integrate are not told of: nothing would make them known. Not installed.
 class SmallStates {
  public:

@@ -21,7 +21,7 @@ constexpr double kNothing = 1e-9;
 
 constexpr int kDeepest = 40;
 constexpr int kDeepestUnknown = 6;  ///< of a source by states that may be any number, as a quotient of zeros
-constexpr std::size_t kMostLooks = 1'000'000;  ///< in a step
+constexpr std::size_t kMostSamples = 1'000'000;  ///< in a step
 
 }  // namespace
 
@@ -42,7 +42,7 @@ SourceWatch::SourceWatch(const network::Program& program, const network::Workspa
 /// The ranges of all sources over a part of the step.
 void SourceWatch::bound(double from, const Values& at_from, double to, const Values& at_to) {
   constexpr double kBend =
-      2 * 4.0 / 27;  // a cubic goes 4/27 of the slopes' difference off its chord, at most
+      2 * 4.0 / 27;  // a cubic goes 4/27 of the derivatives' difference off its chord, at most
   for (std::size_t k = 0; k < ranges_.size(); ++k) {
     const double a = at_from.states[k], b = at_to.states[k];
     double off = 0;
@@ -82,11 +82,12 @@ bool SourceWatch::is_plain(double from, const Values& at_from, double to, const 
     const double a = at_from.sources[k], b = at_to.sources[k];
     network::Interval value = slots_[watched_[k].slot];
     if (!watched_[k].by_states) {
-      const network::Interval slope = slots_[watched_[k].slope_slot];
-      if (slope.low >= 0 || slope.high <= 0) continue;
-      // From the value at the beginning no further than the slopes lead: tighter where the part is short.
-      value.low = std::max(value.low, a + slope.low * (to - from));
-      value.high = std::min(value.high, a + slope.high * (to - from));
+      const network::Interval derivative = slots_[watched_[k].derivative_slot];
+      if (derivative.low >= 0 || derivative.high <= 0) continue;
+      // From the value at the beginning no further than the derivatives lead: tighter where the part is
+      // short.
+      value.low = std::max(value.low, a + derivative.low * (to - from));
+      value.high = std::min(value.high, a + derivative.high * (to - from));
     }
     if (watched_[k].switch_index) {
       if (value.contains(0)) return false;
@@ -101,7 +102,7 @@ bool SourceWatch::is_plain(double from, const Values& at_from, double to, const 
 }
 
 void SourceWatch::part(double from, const Values& at_from, double to, const Values& at_to, int depth) {
-  if (--looks_left_ < 0) {
+  if (--samples_left_ < 0) {
     throw SolveError(
         SolveError::Kind::step_budget, from,
         {{file_, {}},
@@ -112,7 +113,7 @@ void SourceWatch::part(double from, const Values& at_from, double to, const Valu
   }
   const double middle = from + (to - from) / 2;
   const double resolution = 16 * std::numeric_limits<double>::epsilon() * std::abs(to);
-  if (depth >= kDeepest || to - from <= resolution || times_.size() >= kMostLooks ||
+  if (depth >= kDeepest || to - from <= resolution || times_.size() >= kMostSamples ||
       is_plain(from, at_from, to, at_to, depth)) {
     times_.push_back(to);
     return;
@@ -122,7 +123,7 @@ void SourceWatch::part(double from, const Values& at_from, double to, const Valu
   part(middle, at_middle, to, at_to, depth + 1);
 }
 
-const std::vector<double>& SourceWatch::looks(double from, double to, const Interpolant& solution) {
+const std::vector<double>& SourceWatch::sample_times(double from, double to, const Interpolant& solution) {
   times_.clear();
   if (!active() || !(to > from)) {
     times_.push_back(to);

@@ -14,9 +14,9 @@ namespace oblique::solve {
 ///
 /// A pulse may lie between two times at which a solver looks, and a fast sine may look slow. Whether it does
 /// is not guessed: interval arithmetic bounds every source over the whole of a step, and those of the time
-/// their slopes. A step is parted until over each part every source is monotone, or within what its ends
-/// show; the surface of a switch that follows the time alone, until it is monotone or has no zero. The states
-/// are bounded by the cubic through their values and rates at the ends of a part, and twice its bend.
+/// their derivatives. A step is parted until over each part every source is monotone, or within what its ends
+/// show; the event function of a switch that follows the time alone, until it is monotone or has no zero. The
+/// states are bounded by the cubic through their values and rates at the ends of a part, and twice its bend.
 class SourceWatch {
  public:
   /// Looks at the sources that act on the states and switches, and with `outputs` at those too that are only
@@ -25,13 +25,13 @@ class SourceWatch {
               const std::string& file);
 
   /// How often it may look at most in the whole run.
-  void limit_looks(double looks) { looks_left_ = looks; }
+  void limit_samples(double samples) { samples_left_ = samples; }
 
   bool active() const { return !watched_.empty(); }
 
   /// Times in (from, to], ascending, the last one `to`, at which to look. `to` alone where nothing is hidden.
   /// Throws SolveError where there are more than it may look at.
-  const std::vector<double>& looks(double from, double to, const Interpolant& solution);
+  const std::vector<double>& sample_times(double from, double to, const Interpolant& solution);
 
  private:
   /// At one time: the sources, and the source states with their rates.
@@ -46,7 +46,7 @@ class SourceWatch {
   const network::Program& program_;
   const network::Workspace& workspace_;
   const std::string& file_;
-  double looks_left_ = 1e9;
+  double samples_left_ = 1e9;
   std::vector<network::Source> watched_;
   std::vector<network::Interval> slots_;
   const Interpolant* solution_ = nullptr;

@@ -14,7 +14,7 @@
 
 #include <oblique/network/assembly/network.h>
 #include <oblique/network/program/program.h>
-#include <oblique/solve/operating_point/standing.h>
+#include <oblique/solve/operating_point/quasi_steady.h>
 
 namespace oblique::solve {
 namespace {
@@ -95,8 +95,8 @@ IdealMachine::IdealMachine(const diagram::FlatDiagram& diagram, const network::P
 
 bool IdealMachine::look_at(const Instant& instant, const network::Workspace& actual) {
   linear_.reset();
-  if (program_.memories().size() != real_.memories().size()) return false;
-  here_ = {instant.t, program_.start(), instant.memories};
+  if (program_.discrete_states().size() != real_.discrete_states().size()) return false;
+  here_ = {instant.t, program_.start(), instant.discrete_states};
   for (std::size_t i = 0; i < here_.states.size(); ++i) {
     if (real_state_[i] < real_.n_states()) here_.states[i] = instant.states[real_state_[i]];
   }
@@ -119,10 +119,10 @@ std::vector<std::size_t> IdealMachine::open_amplifiers(const std::vector<std::si
   std::vector<double> signals(program_.n_signals());
   if (!linear_ || !program_.signals(here_.t, here_.states.data(), signals.data(), workspace_)) return found;
   const std::vector<double> largest = linear_->largest_in_rows();
-  constexpr double kOpen = 1e-9;  // far above the rounding of own_slope, far below a follower's 1
+  constexpr double kOpen = 1e-9;  // far above the rounding of own_derivative, far below a follower's 1
   for (const std::size_t state : states) {
     if (!state_of_[state] || !real_.states()[state].at_rest) continue;
-    const auto own = flow_.own_slope(real_.states()[state].name, here_.t, signals);
+    const auto own = flow_.own_derivative(real_.states()[state].name, here_.t, signals);
     if (own && std::abs(*own) < kOpen * largest[*state_of_[state]]) found.push_back(state);
   }
   return found;

@@ -22,10 +22,11 @@ namespace {
 /// Of the moving states, the fastest first.
 std::vector<std::size_t> by_speed(const network::Program& program, network::Workspace& workspace, double t,
                                   std::vector<std::size_t> order, const std::vector<double>& states) {
-  std::vector<double> slopes(states.size(), 0.0);
-  program.derivatives(t, states.data(), slopes.data(), workspace);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return std::abs(slopes[a]) > std::abs(slopes[b]); });
+  std::vector<double> derivatives(states.size(), 0.0);
+  program.derivatives(t, states.data(), derivatives.data(), workspace);
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return std::abs(derivatives[a]) > std::abs(derivatives[b]);
+  });
   return order;
 }
 
@@ -144,8 +145,8 @@ std::vector<std::vector<std::size_t>> servo_groups(const network::Program& progr
 std::vector<text::Diagnostic> bring_to_rest(const network::Program& program, network::Workspace& workspace,
                                             double t, std::vector<double>& states, const std::string& file) {
   if (rest_states(program).empty()) return {};
-  std::vector<double> slopes(states.size());
-  if (!program.derivatives(t, states.data(), slopes.data(), workspace))
+  std::vector<double> derivatives(states.size());
+  if (!program.derivatives(t, states.data(), derivatives.data(), workspace))
     throw loop_error(program, workspace.trouble(), t, file);
 
   // All at once, as on the machine. A loop that follows others may be driven over its edge while those still

@@ -15,9 +15,9 @@
 namespace oblique::solve {
 namespace {
 
-void refuse_singular_rates(const StartParts& parts, double t, const std::vector<double>& slopes) {
-  for (std::size_t i = 0; i < slopes.size(); ++i) {
-    if (std::isfinite(slopes[i])) continue;
+void refuse_singular_rates(const StartParts& parts, double t, const std::vector<double>& derivatives) {
+  for (std::size_t i = 0; i < derivatives.size(); ++i) {
+    if (std::isfinite(derivatives[i])) continue;
     throw SolveError(
         SolveError::Kind::blow_up, t,
         {{parts.diagram.file, {}},
@@ -60,8 +60,9 @@ std::vector<text::Diagnostic> settle_start(const StartParts& parts, double t, st
 
 std::vector<text::Diagnostic> start_run(const StartParts& parts, double t, std::vector<double>& states) {
   std::vector<text::Diagnostic> warnings = settle_start(parts, t, states);
-  std::vector<double> slopes(states.size());
-  if (parts.switching.derivatives(t, states.data(), slopes.data())) refuse_singular_rates(parts, t, slopes);
+  std::vector<double> derivatives(states.size());
+  if (parts.switching.derivatives(t, states.data(), derivatives.data()))
+    refuse_singular_rates(parts, t, derivatives);
   for (text::Diagnostic& warning :
        unstable_branches(parts.program, parts.workspace, t, states, parts.diagram.file))
     warnings.push_back(std::move(warning));

@@ -34,7 +34,7 @@ class Settling {
     }
   }
 
-  bool slopes(const VectorXd& x, VectorXd& dxdt) {
+  bool derivatives(const VectorXd& x, VectorXd& dxdt) {
     if (!program_.derivatives(t_, x.data(), dxdt.data(), workspace_)) return false;
     for (std::size_t i = 0; i < group_of_.size(); ++i) {
       if (group_of_[i] == kHeld) dxdt[static_cast<Index>(i)] = 0;
@@ -139,24 +139,25 @@ bool settle(const network::Program& program, network::Workspace& workspace, doub
   constexpr int kMostSteps = 2000;
   Settling system(program, workspace, t, groups);
   const auto n = static_cast<Index>(states.size());
-  VectorXd x = VectorXd::Map(states.data(), n), slopes(n), next(n), next_slopes(n);
-  if (!system.slopes(x, slopes) || !system.linearise(x)) return false;
+  VectorXd x = VectorXd::Map(states.data(), n), derivatives(n), next(n), next_derivatives(n);
+  if (!system.derivatives(x, derivatives) || !system.linearise(x)) return false;
   const double unit = system.fastest_time_constant();
   // Where a loop has no gain yet, its fastest time constant says nothing about how fast it moves.
   const auto step_of_change = [&] {
-    return kMostChange / (slopes.array().abs() / (1 + x.array().abs())).maxCoeff();
+    return kMostChange / (derivatives.array().abs() / (1 + x.array().abs())).maxCoeff();
   };
   double h = std::min(unit, step_of_change());
   double shortest = kShortest * h;
   double last = 1;
   for (int step = 0; step < kMostSteps && h > shortest; ++step) {
-    const auto moved = system.step(h, slopes);
+    const auto moved = system.step(h, derivatives);
     bool good = moved.has_value();
     double change = 0;
     if (good) {
       next = x + *moved;
       change = (moved->array() / (1 + x.array().abs())).abs().maxCoeff();
-      good = change < kMostChange && system.slopes(next, next_slopes) && next_slopes.allFinite();
+      good =
+          change < kMostChange && system.derivatives(next, next_derivatives) && next_derivatives.allFinite();
     }
     if (!good) {
       h /= 4;
@@ -166,13 +167,13 @@ bool settle(const network::Program& program, network::Workspace& workspace, doub
     if (h >= kLongest * unit && change < kAtRest && (change >= last || change < kNothing)) {
       // Out of an unstable equilibrium rounding would grow.
       next = system.without_rounding(x, kAtRest);
-      if (system.slopes(next, next_slopes) &&
-          next_slopes.cwiseAbs().maxCoeff() <= slopes.cwiseAbs().maxCoeff())
+      if (system.derivatives(next, next_derivatives) &&
+          next_derivatives.cwiseAbs().maxCoeff() <= derivatives.cwiseAbs().maxCoeff())
         VectorXd::Map(states.data(), n) = next;
       return true;
     }
     x = next;
-    slopes = next_slopes;
+    derivatives = next_derivatives;
     VectorXd::Map(states.data(), n) = x;
     shortest = kShortest * std::min(unit, step_of_change());
     if (x.cwiseAbs().maxCoeff() > kFarAway || !system.linearise(x)) return false;

@@ -22,7 +22,7 @@ class Start {
         t_(t),
         states_(states),
         moved_(states.size()),
-        slopes_(states.size()),
+        derivatives_(states.size()),
         signals_(program.n_signals()) {}
 
   /// Finds the singular loops; false where there are none, or something else is wrong.
@@ -50,16 +50,16 @@ class Start {
     constexpr double kSmall = 1e-9;  // of 1 + |z|
     constexpr double kProbe = 1e-4;  // the equation is nearly linear in z where h is small
     Eigen::VectorXd residual(z.size()), shifted(z.size());
-    Eigen::MatrixXd slopes(z.size(), z.size());
+    Eigen::MatrixXd jacobian(z.size(), z.size());
     for (int iteration = 0; iteration < kMostIterations; ++iteration) {
       if (!residual_at(h, z, residual)) return false;
       for (Eigen::Index k = 0; k < z.size(); ++k) {
         Eigen::VectorXd probe = z;
         probe[k] += kProbe * (1 + std::abs(z[k]));
         if (!residual_at(h, probe, shifted)) return false;
-        slopes.col(k) = (shifted - residual) / (probe[k] - z[k]);
+        jacobian.col(k) = (shifted - residual) / (probe[k] - z[k]);
       }
-      const Eigen::VectorXd step = slopes.fullPivLu().solve(-residual);
+      const Eigen::VectorXd step = jacobian.fullPivLu().solve(-residual);
       if (!step.allFinite()) return false;
       z += step;
       if ((step.array().abs() < kSmall * (1 + z.array().abs())).all()) return true;
@@ -103,8 +103,8 @@ class Start {
 
   bool residual_at(double h, const Eigen::VectorXd& z, Eigen::VectorXd& residual) {
     hold(z, true);
-    if (!program_.derivatives(t_, states_.data(), slopes_.data(), workspace_)) return false;
-    for (std::size_t i = 0; i < moved_.size(); ++i) moved_[i] = states_[i] + h * slopes_[i];
+    if (!program_.derivatives(t_, states_.data(), derivatives_.data(), workspace_)) return false;
+    for (std::size_t i = 0; i < moved_.size(); ++i) moved_[i] = states_[i] + h * derivatives_[i];
     if (!program_.signals(t_ + h, moved_.data(), signals_.data(), workspace_)) return false;
     Eigen::Index k = 0;
     for (const std::size_t loop : loops_) {
@@ -120,7 +120,7 @@ class Start {
   network::Workspace& workspace_;
   double t_;
   const std::vector<double>& states_;
-  std::vector<double> moved_, slopes_, signals_;
+  std::vector<double> moved_, derivatives_, signals_;
   std::vector<std::size_t> loops_;
 };
 
@@ -142,7 +142,7 @@ bool hold_singular_start(const network::Program& program, network::Workspace& wo
           ((limit - sooner).array().abs() < kAgrees * (1 + limit.array().abs())).all() && start.keep(limit);
     }
   }
-  // A root of even order that the loop starts from (y² = x at x = 0) is left with an infinite slope.
+  // A root of even order that the loop starts from (y² = x at x = 0) is left with an infinite derivative.
   found = found || (start.has_branches() && start.keep(start.guess()));
   if (!found) start.let_go();
   return found;

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include <oblique/network/program/program.h>
-#include <oblique/solve/operating_point/standing.h>
+#include <oblique/solve/operating_point/quasi_steady.h>
 
 namespace oblique::solve {
 namespace {
@@ -15,9 +15,9 @@ namespace {
 void stand(Analysis& analysis, const network::Program& program, const SignalFlow& flow,
            const diagram::FlatDiagram& diagram, const RunOptions& options, std::size_t most_instants) {
   try {
-    analysis.instants = standing_instants(program, diagram, options, most_instants);
+    analysis.instants = quasi_steady_instants(program, diagram, options, most_instants);
     analysis.stability = judge_stability(program, flow, analysis.instants);
-    analysis.standing = true;
+    analysis.quasi_steady = true;
   } catch (const SolveError&) {  // they stand nowhere: the run's own instants remain
   }
 }
@@ -46,9 +46,9 @@ Analysis analyse(const network::Program& program, const diagram::FlatDiagram& di
     if (row < rows.size()) analysis.instants.push_back(rows[row]);
   }
 
-  analysis.fastest_slopes.assign(program.n_states(), 0);
+  analysis.fastest_derivatives.assign(program.n_states(), 0);
   const SignalFlow flow(diagram, program);
-  // At an event the disturbance jumps too, which slopes do not tell.
+  // At an event the disturbance jumps too, which derivatives do not tell.
   std::optional<DisturbanceGrowth> growth;
   if (keep_all && analysis.run && analysis.run->event_count == 0) growth = disturbance_growth(program, rows);
   analysis.stability = judge_stability(program, flow, analysis.instants, growth);
@@ -57,12 +57,12 @@ Analysis analyse(const network::Program& program, const diagram::FlatDiagram& di
   if (analysis.instants.empty()) return analysis;  // it did not even start
   analysis.loops = explain_loops(program, flow, analysis.instants);
   network::Workspace workspace(program);
-  std::vector<double> slopes(program.n_states());
+  std::vector<double> derivatives(program.n_states());
   for (const Instant& instant : analysis.instants) {
-    workspace.load_memories(instant.memories);
-    if (!program.derivatives(instant.t, instant.states.data(), slopes.data(), workspace)) continue;
-    for (std::size_t i = 0; i < slopes.size(); ++i) {
-      analysis.fastest_slopes[i] = std::max(analysis.fastest_slopes[i], std::abs(slopes[i]));
+    workspace.load_discrete_states(instant.discrete_states);
+    if (!program.derivatives(instant.t, instant.states.data(), derivatives.data(), workspace)) continue;
+    for (std::size_t i = 0; i < derivatives.size(); ++i) {
+      analysis.fastest_derivatives[i] = std::max(analysis.fastest_derivatives[i], std::abs(derivatives[i]));
     }
   }
   return analysis;

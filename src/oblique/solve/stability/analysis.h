@@ -19,11 +19,11 @@ struct Analysis {
   /// Moments evenly spread over the rows of the run; where the run failed, or servo loops grow on it, those
   /// at which the loops stand at rest, as far as they can.
   std::vector<Instant> instants;
-  bool standing = false;  ///< whether the instants are of the latter kind
+  bool quasi_steady = false;  ///< whether the instants are of the latter kind
   StabilityReport stability;
   std::vector<LoopReport> loops;
   /// The fastest change of every state at the instants [machine unit/s].
-  std::vector<double> fastest_slopes;
+  std::vector<double> fastest_derivatives;
 };
 
 /// Runs a diagram on trial and judges its loops and its stability at up to `most_instants` of its rows; where

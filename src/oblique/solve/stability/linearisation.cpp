@@ -43,7 +43,7 @@ std::vector<std::vector<std::size_t>> coupled_groups(const network::Program& pro
 std::optional<Linearisation> Linearisation::at(const network::Program& program, network::Workspace& workspace,
                                                const Instant& instant) {
   std::vector<double> values(program.jacobian_pattern().entries());
-  workspace.load_memories(instant.memories);
+  workspace.load_discrete_states(instant.discrete_states);
   if (!program.jacobian(instant.t, instant.states.data(), values.data(), workspace)) return std::nullopt;
   if (!std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); })) {
     return std::nullopt;

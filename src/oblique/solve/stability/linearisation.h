@@ -15,9 +15,9 @@ namespace oblique::solve {
 
 /// A moment of a run.
 struct Instant {
-  double t = 0;                       ///< [s]
-  std::vector<double> states;         ///< n_states
-  std::vector<double> memories = {};  ///< as many as the program has; none: as before the run
+  double t = 0;                              ///< [s]
+  std::vector<double> states;                ///< n_states
+  std::vector<double> discrete_states = {};  ///< as many as the program has; none: as before the run
 };
 
 /// The states in groups that act on each other, ascending in each; each after the groups whose signals it
@@ -28,7 +28,7 @@ std::vector<std::vector<std::size_t>> coupled_groups(const network::Program& pro
 /// df/dx of a program at an instant, all signals frozen there; algebraic loops are closed in it.
 class Linearisation {
  public:
-  /// Nothing where an algebraic loop has no solution or a slope is no number.
+  /// Nothing where an algebraic loop has no solution or a derivative is no number.
   static std::optional<Linearisation> at(const network::Program& program, network::Workspace& workspace,
                                          const Instant& instant);
 

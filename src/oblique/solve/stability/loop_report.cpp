@@ -13,9 +13,10 @@ namespace oblique::solve {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// Slopes that differ by less are the same: far above rounding, far below what a term of second order does.
-constexpr double kSameSlope = 1e-9;
-/// A slope that a move leaves the same by accident is not so at three instants.
+/// Derivatives that differ by less are the same: far above rounding, far below what a term of second order
+/// does.
+constexpr double kSameDerivative = 1e-9;
+/// A derivative that a move leaves the same by accident is not so at three instants.
 constexpr int kMostTrials = 3;
 
 /// The loop gain of one unknown along a run.
@@ -57,12 +58,12 @@ LoopUnknown summary_of(const GainHistory& history) {
 bool is_steady(const GainHistory& history) {
   return std::all_of(history.gains.begin(), history.gains.end(), [&](double gain) {
     const double first = history.gains.front();
-    return gain == first || std::abs(gain - first) <= kSameSlope * std::abs(first);
+    return gain == first || std::abs(gain - first) <= kSameDerivative * std::abs(first);
   });
 }
 
-bool same_slopes(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
-  return (a - b).cwiseAbs().maxCoeff() <= kSameSlope * a.cwiseAbs().maxCoeff();
+bool same_derivatives(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  return (a - b).cwiseAbs().maxCoeff() <= kSameDerivative * a.cwiseAbs().maxCoeff();
 }
 
 class ServoLoopHistory {
@@ -77,7 +78,7 @@ class ServoLoopHistory {
     const Eigen::MatrixXd block = linear.block(loop_.states);
     const OpenLoops loops(block);
     for (std::size_t k = 0; k < histories_.size(); ++k) {
-      const auto own = flow_.own_slope(histories_[k].signal, instant.t, signals);
+      const auto own = flow_.own_derivative(histories_[k].signal, instant.t, signals);
       if (!own) continue;
       const auto place = std::lower_bound(loop_.states.begin(), loop_.states.end(), loop_.servos[k]);
       const double gain = loops.gain(place - loop_.states.begin(), *own, 0).real();
@@ -106,7 +107,8 @@ class ServoLoopHistory {
   }
 
  private:
-  /// Whether the slopes change with the loop's own signals, which are moved by odd parts of a machine unit.
+  /// Whether the derivatives change with the loop's own signals, which are moved by odd parts of a machine
+  /// unit.
   bool depends_on_itself(const Eigen::MatrixXd& block, const Instant& instant,
                          const network::Workspace& workspace) const {
     network::Workspace scratch = workspace;  // with the solutions of the algebraic loops here
@@ -117,7 +119,7 @@ class ServoLoopHistory {
       by = by > 0 ? -by * 0.83 : -by * 1.13;
     }
     const auto linear = Linearisation::at(program_, scratch, moved);
-    return !linear || !same_slopes(block, linear->block(loop_.states));
+    return !linear || !same_derivatives(block, linear->block(loop_.states));
   }
 
   const network::Program& program_;
@@ -142,23 +144,23 @@ class AlgebraicLoop {
   /// `here` is the evaluation of the signals at the instant.
   void look_at(const Instant& instant, std::span<const double> signals,
                const network::SignalEvaluation& here) {
-    const Eigen::MatrixXd slopes = here.loop_slopes(loop_);
-    if (!slopes.allFinite()) return;
-    const Eigen::PartialPivLU<Eigen::MatrixXd> lu(slopes);
+    const Eigen::MatrixXd jacobian = here.loop_jacobian(loop_);
+    if (!jacobian.allFinite()) return;
+    const Eigen::PartialPivLU<Eigen::MatrixXd> lu(jacobian);
     const Eigen::MatrixXd inverse = lu.inverse();
     for (std::size_t k = 0; k < histories_.size(); ++k) {
-      const auto own = flow_.own_slope(histories_[k].signal, instant.t, signals);
+      const auto own = flow_.own_derivative(histories_[k].signal, instant.t, signals);
       if (!own) continue;
       // With the other unknowns solved for, dg_k/dz_k is 1/(G⁻¹)_kk = own (1 + L).
       const auto place = static_cast<Eigen::Index>(k);
-      const double total = histories_.size() == 1 ? slopes(0, 0) : 1 / inverse(place, place);
+      const double total = histories_.size() == 1 ? jacobian(0, 0) : 1 / inverse(place, place);
       const double gain = *own == 0 ? std::copysign(kInfinity, total) : (total - *own) / *own;
       if (std::isnan(gain)) continue;
       histories_[k].times.push_back(instant.t);
       histories_[k].gains.push_back(gain);
     }
-    if (first_.size() == 0) first_ = slopes;
-    steady_ = steady_ && same_slopes(first_, slopes);
+    if (first_.size() == 0) first_ = jacobian;
+    steady_ = steady_ && same_derivatives(first_, jacobian);
   }
 
   LoopReport report() const {
@@ -196,7 +198,7 @@ std::vector<LoopReport> explain_loops(const network::Program& program, const Sig
   network::Workspace workspace(program);
   std::vector<double> signals(program.n_signals());
   for (const Instant& instant : instants) {
-    workspace.load_memories(instant.memories);
+    workspace.load_discrete_states(instant.discrete_states);
     const auto here = program.signals(instant.t, instant.states.data(), signals.data(), workspace);
     if (!here) continue;
     for (AlgebraicLoop& loop : algebraic) loop.look_at(instant, signals, *here);

@@ -11,7 +11,7 @@
 
 namespace oblique::solve {
 
-/// How the slopes of a loop depend on the signals.
+/// How the derivatives of a loop depend on the signals.
 enum class LoopKind {
   linear,      ///< not at all
   varying,     ///< on signals from outside the loop: its gain changes along the run
@@ -47,8 +47,8 @@ struct LoopReport {
   std::optional<double> time_constant;
 };
 
-/// Explains every loop by its slopes at the instants of a run: servo loops in the order of the signals, then
-/// algebraic ones. An amplifier that is brought to rest and has no feedback around it is no loop.
+/// Explains every loop by its derivatives at the instants of a run: servo loops in the order of the signals,
+/// then algebraic ones. An amplifier that is brought to rest and has no feedback around it is no loop.
 std::vector<LoopReport> explain_loops(const network::Program& program, const SignalFlow& flow,
                                       const std::vector<Instant>& instants);
 

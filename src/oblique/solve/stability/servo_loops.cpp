@@ -28,7 +28,7 @@ class LoneAmplifiers {
     const std::size_t stride = std::max<std::size_t>(1, instants.size() / 4);
     for (std::size_t k = 0; k < instants.size(); ++k) {
       const Instant& instant = instants[k];
-      workspace.load_memories(instant.memories);
+      workspace.load_discrete_states(instant.discrete_states);
       if (!program_.signals(instant.t, instant.states.data(), signals.data(), workspace)) continue;
       const auto linear = Linearisation::at(program_, workspace, instant);
       if (!linear) continue;
@@ -50,10 +50,10 @@ class LoneAmplifiers {
   bool open(std::size_t state) const { return open_[state]; }
 
  private:
-  /// Its gain with all others held is zero to the rounding of the differences of its own slope.
+  /// Its gain with all others held is zero to the rounding of the differences of its own derivative.
   bool acts_on_itself(const Linearisation& linear, std::size_t state, double largest, double t,
                       std::span<const double> signals) const {
-    const auto own = flow_.own_slope(program_.states()[state].name, t, signals);
+    const auto own = flow_.own_derivative(program_.states()[state].name, t, signals);
     if (!own) return false;
     constexpr double kRounding = 1e-9;
     const double fed_back = linear.block({state})(0, 0) - *own;

@@ -107,8 +107,8 @@ double SignalFlow::input_value(const diagram::FlatInput& input, std::span<const 
   return sum;
 }
 
-std::optional<double> SignalFlow::own_slope(std::string_view name, double t,
-                                            std::span<const double> signals) const {
+std::optional<double> SignalFlow::own_derivative(std::string_view name, double t,
+                                                 std::span<const double> signals) const {
   const auto found = by_name_.find(std::string(name));
   if (found == by_name_.end()) return std::nullopt;
   const Quantity& quantity = quantities_[found->second];
@@ -144,8 +144,8 @@ std::optional<double> SignalFlow::own_slope(std::string_view name, double t,
     return text::evaluate(equation, lookup);
   };
   try {
-    const double slope = (value_at(x + half_step) - value_at(x - half_step)) / (2 * half_step);
-    if (std::isfinite(slope)) return slope;
+    const double derivative = (value_at(x + half_step) - value_at(x - half_step)) / (2 * half_step);
+    if (std::isfinite(derivative)) return derivative;
   } catch (const text::ExpressionError&) {
     return std::nullopt;  // it names what is no output and no signal
   }

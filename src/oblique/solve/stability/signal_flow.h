@@ -29,7 +29,8 @@ class SignalFlow {
   /// by itself (−2π·bandwidth for a servo amplifier, 1/gain for an ideal one). `signals` are those of the
   /// program at the instant. From differences, exact to rounding where the equation is linear in x. Nothing
   /// where the name is unknown or the equation cannot be evaluated.
-  std::optional<double> own_slope(std::string_view name, double t, std::span<const double> signals) const;
+  std::optional<double> own_derivative(std::string_view name, double t,
+                                       std::span<const double> signals) const;
 
  private:
   struct Quantity {

@@ -10,8 +10,8 @@
 namespace oblique::solve {
 
 /// Groups of more loops than these act on each other are not given to the QR algorithm, which takes n³
-/// operations. They are judged by a bound that is sufficient, and close where every loop heeds itself more
-/// than the others.
+/// operations. They are judged by a bound that is sufficient, and close where the matrix of the loops is
+/// diagonally dominant.
 inline constexpr std::ptrdiff_t kMostLoopsForEigenvalues = 300;
 
 /// Largest real part [1/s] of the eigenvalues of the servo loops alone, linearised at (t, states) with all

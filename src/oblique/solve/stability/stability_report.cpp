@@ -177,7 +177,7 @@ class Judge {
   void find_margins(const Group& group, double t, bool unstable) {
     const OpenLoops loops{Eigen::MatrixXd(group.last)};
     for (const std::size_t i : group.servos) {
-      const auto own = flow_.own_slope(program_.states()[i].name, t, signals_);
+      const auto own = flow_.own_derivative(program_.states()[i].name, t, signals_);
       if (!own) continue;
       const auto place = std::lower_bound(group.states.begin(), group.states.end(), i);
       const auto margin = loops.phase_margin(place - group.states.begin(), *own, unstable);

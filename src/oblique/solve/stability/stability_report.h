@@ -73,7 +73,7 @@ struct StabilityReport {
   bool rightmost_is_servo = false;
   std::size_t growing = 0;  ///< most eigenvalues right of the axis at one instant; of a large group: found
   bool switches = false;    ///< whether there are switches, which may bring back what the modes do not show
-  bool varies = false;      ///< whether the slopes change along the run
+  bool varies = false;      ///< whether the derivatives change along the run
   std::optional<DisturbanceGrowth> growth;  ///< along the run, where it varies and was followed
   /// Of the modes that come from the machine (the problem does not have them on an ideal one, see
   /// IdealMachine), and of those that are the problem's own: the one with the least damping ratio.

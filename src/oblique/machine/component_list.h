@@ -11,7 +11,7 @@
 namespace oblique::machine {
 
 /// One kind of element: what a diagram needs of it and what the machine has.
-struct BillRow {
+struct ComponentListRow {
   std::string element;              ///< "multipliers", "integrators with k0 = 100 1/s"
   double needed = 0;                ///< inf never
   bool exists = true;               ///< whether the machine has elements of the kind at all
@@ -23,10 +23,10 @@ struct BillRow {
 };
 
 /// What a diagram needs on a machine, and whether the machine has it.
-struct Bill {
+struct ComponentList {
   enum class Verdict { fits, does_not_fit, cannot_tell };
   std::string machine;  ///< MachineProfile::title
-  std::vector<BillRow> rows;
+  std::vector<ComponentListRow> rows;
 
   /// cannot_tell: nothing is known to be missing, but a count or what the inputs weigh is not published.
   Verdict verdict() const;
@@ -45,6 +45,6 @@ struct Bill {
 /// Where amplifiers are uncommitted every summer, inverter, integrator and open amplifier is one, and the
 /// integrator takes a network besides. Elsewhere open amplifiers are summers, and so are inverters beyond
 /// those that the machine has.
-Bill bill_of(const diagram::FlatDiagram& diagram, const diagram::MachineProfile& machine);
+ComponentList component_list_of(const diagram::FlatDiagram& diagram, const diagram::MachineProfile& machine);
 
 }  // namespace oblique::machine

@@ -9,13 +9,13 @@
 
 namespace oblique::solve {
 
-/// How far the surfaces of switches are off zero by the errors that the solver leaves to the states. Not
-/// installed.
-class SurfaceErrors {
+/// How far the event functions of switches are off zero by the errors that the solver leaves to the states.
+/// Not installed.
+class EventFunctionErrors {
  public:
   /// `tolerance` is the relative one of the states, `absolute_tolerance` that of those without one of their
   /// own. `program` must outlive this.
-  SurfaceErrors(const network::Program& program, double tolerance, double absolute_tolerance);
+  EventFunctionErrors(const network::Program& program, double tolerance, double absolute_tolerance);
 
   /// The size [machine unit] down to which each state is known relatively; 0: as its absolute tolerance says.
   void know_states(std::span<const double> reach) { reach_.assign(reach.begin(), reach.end()); }
@@ -26,8 +26,8 @@ class SurfaceErrors {
   /// Where they were weighed last.
   double operator[](std::size_t s) const { return errors_[s]; }
 
-  /// The states that are hardly known and move the surface of a switch, itself or by the states that they
-  /// drive; the others as for `weigh`.
+  /// The states that are hardly known and move the event function of a switch, itself or by the states that
+  /// they drive; the others as for `weigh`.
   std::vector<std::size_t> states_behind(std::uint32_t s, const network::Evaluation& here,
                                          std::span<const double> states) const;
 

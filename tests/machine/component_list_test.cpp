@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/machine/bill.h>
+#include <oblique/machine/component_list.h>
 
 #include <algorithm>
 #include <limits>
@@ -21,16 +21,16 @@ using testing::inverting_machine;
 using testing::shipped_blocks;
 using testing::signed_machine;
 
-Bill bill(const std::string& blocks, const diagram::MachineProfile& machine) {
-  return bill_of(
+ComponentList components(const std::string& blocks, const diagram::MachineProfile& machine) {
+  return component_list_of(
       diagram::flatten(diagram::parse_diagram(testing::diagram_text(blocks), "d.toml"), shipped_blocks()),
       machine);
 }
 
-const BillRow& row(const Bill& bill, const std::string& element) {
-  const auto found = std::find_if(bill.rows.begin(), bill.rows.end(),
-                                  [&](const BillRow& r) { return r.element == element; });
-  if (found == bill.rows.end()) throw std::out_of_range(element);
+const ComponentListRow& row(const ComponentList& components, const std::string& element) {
+  const auto found = std::find_if(components.rows.begin(), components.rows.end(),
+                                  [&](const ComponentListRow& r) { return r.element == element; });
+  if (found == components.rows.end()) throw std::out_of_range(element);
   return *found;
 }
 
@@ -54,79 +54,79 @@ q = { type = "servo-amplifier", in = ["m", "x"] }
 m = { type = "multiplier", in = ["q", "q"] }
 )";
 
-TEST(Bill, CountsEveryUncommittedAmplifierAndTheNetworksOfIntegrators) {
-  const Bill counted = bill(kBlocks, inverting_machine());
+TEST(ComponentList, CountsEveryUncommittedAmplifierAndTheNetworksOfIntegrators) {
+  const ComponentList counted = components(kBlocks, inverting_machine());
   EXPECT_EQ(row(counted, "amplifiers").needed, 5);
   EXPECT_EQ(row(counted, "amplifiers").note, "1 summer, 1 inverter, 2 integrators, 1 open amplifier");
   EXPECT_EQ(row(counted, "integrator networks").needed, 2);
   EXPECT_EQ(row(counted, "potentiometers").needed, 1);
   EXPECT_EQ(row(counted, "multipliers").needed, 1);
   EXPECT_EQ(counted.rows.size(), 4U);
-  EXPECT_EQ(counted.verdict(), Bill::Verdict::fits);
+  EXPECT_EQ(counted.verdict(), ComponentList::Verdict::fits);
 }
 
-TEST(Bill, TakesSummersForOpenAmplifiersAndForInvertersBeyondThoseThereAre) {
+TEST(ComponentList, TakesSummersForOpenAmplifiersAndForInvertersBeyondThoseThereAre) {
   diagram::MachineProfile machine = inverting_machine();
   remove(machine, diagram::ElementKind::amplifier);
   set_count(machine, diagram::ElementKind::integrator, 2);
   set_count(machine, diagram::ElementKind::summer, 3);
-  Bill counted = bill(kBlocks, machine);  // without inverters of its own
+  ComponentList counted = components(kBlocks, machine);  // without inverters of its own
   EXPECT_EQ(row(counted, "integrators").needed, 2);
   EXPECT_EQ(row(counted, "summers").needed, 3);
   EXPECT_EQ(row(counted, "summers").note, "1 open amplifier, 1 inverter of these");
-  EXPECT_EQ(counted.verdict(), Bill::Verdict::fits);
+  EXPECT_EQ(counted.verdict(), ComponentList::Verdict::fits);
   set_count(machine, diagram::ElementKind::inverter, 4);
-  counted = bill(kBlocks, machine);
+  counted = components(kBlocks, machine);
   EXPECT_EQ(row(counted, "summers").needed, 2);
   EXPECT_EQ(row(counted, "inverters").needed, 1);
 }
 
-TEST(Bill, SaysWhatIsMissing) {
+TEST(ComponentList, SaysWhatIsMissing) {
   diagram::MachineProfile machine = inverting_machine();
   set_count(machine, diagram::ElementKind::amplifier, 3);
-  const Bill counted = bill(kBlocks, machine);
+  const ComponentList counted = components(kBlocks, machine);
   EXPECT_EQ(row(counted, "amplifiers").missing(), 2);
   EXPECT_EQ(row(counted, "multipliers").missing(), 0);
-  EXPECT_EQ(counted.verdict(), Bill::Verdict::does_not_fit);
+  EXPECT_EQ(counted.verdict(), ComponentList::Verdict::does_not_fit);
   EXPECT_TRUE(counted.absent().empty());
 }
 
-TEST(Bill, CannotTellWhereACountIsNotPublished) {
+TEST(ComponentList, CannotTellWhereACountIsNotPublished) {
   diagram::MachineProfile machine = inverting_machine();
   set_count(machine, diagram::ElementKind::multiplier, std::nullopt);
-  EXPECT_EQ(bill(kBlocks, machine).verdict(), Bill::Verdict::cannot_tell);
-  EXPECT_EQ(row(bill(kBlocks, machine), "multipliers").missing(), 0);
+  EXPECT_EQ(components(kBlocks, machine).verdict(), ComponentList::Verdict::cannot_tell);
+  EXPECT_EQ(row(components(kBlocks, machine), "multipliers").missing(), 0);
   set_count(machine, diagram::ElementKind::amplifier, 4);  // enough to know
-  EXPECT_EQ(bill(kBlocks, machine).verdict(), Bill::Verdict::does_not_fit);
+  EXPECT_EQ(components(kBlocks, machine).verdict(), ComponentList::Verdict::does_not_fit);
 }
 
 // What is no gain of an input is a potentiometer, or not; a weight at a multiplier is one for certain.
-TEST(Bill, CannotTellWhereTheGainsOfInputsAreNotPublished) {
+TEST(ComponentList, CannotTellWhereTheGainsOfInputsAreNotPublished) {
   const std::string blocks =
       "x = { type = \"integrator\", in = [\"0.3*x\"] }\nm = { type = \"multiplier\", in = [\"0.5*x\", \"x\"] "
       "}\n";
   diagram::MachineProfile machine = inverting_machine();
   machine.input_gains.clear();
-  EXPECT_EQ(row(bill(blocks, machine), "potentiometers").needed, 1);
-  EXPECT_EQ(bill(blocks, machine).verdict(), Bill::Verdict::fits);
+  EXPECT_EQ(row(components(blocks, machine), "potentiometers").needed, 1);
+  EXPECT_EQ(components(blocks, machine).verdict(), ComponentList::Verdict::fits);
   machine.input_gains_known = false;
-  EXPECT_TRUE(row(bill(blocks, machine), "potentiometers").at_least);
-  EXPECT_EQ(bill(blocks, machine).verdict(), Bill::Verdict::cannot_tell);
+  EXPECT_TRUE(row(components(blocks, machine), "potentiometers").at_least);
+  EXPECT_EQ(components(blocks, machine).verdict(), ComponentList::Verdict::cannot_tell);
 }
 
-TEST(Bill, NamesKindsThatTheMachineHasNot) {
+TEST(ComponentList, NamesKindsThatTheMachineHasNot) {
   diagram::MachineProfile machine = inverting_machine();
   remove(machine, diagram::ElementKind::multiplier);
   const std::string blocks = std::string(kBlocks) + "c = { type = \"cosine\", in = \"x\" }\n";
-  const Bill counted = bill(blocks, machine);
+  const ComponentList counted = components(blocks, machine);
   EXPECT_THAT(counted.absent(), ElementsAre("multipliers", "cosine"));
-  EXPECT_EQ(counted.verdict(), Bill::Verdict::does_not_fit);
+  EXPECT_EQ(counted.verdict(), ComponentList::Verdict::does_not_fit);
 }
 
-TEST(Bill, MissesTimeFactors) {
+TEST(ComponentList, MissesTimeFactors) {
   diagram::MachineProfile machine = inverting_machine();
   machine.rates = {1, 500};
-  const Bill counted = bill(
+  const ComponentList counted = components(
       "x = { type = \"integrator\", in = [\"y\"], rate = 6.3e7 }\ny = { type = \"integrator\", in = [\"x\"] "
       "}\n",
       machine);
@@ -136,50 +136,51 @@ TEST(Bill, MissesTimeFactors) {
 }
 
 // x twice with 0.3 shares a potentiometer; −0.3 x takes an inverter and, behind it, one of its own.
-TEST(Bill, CountsPotentiometersAndInvertersThatWeightsAskFor) {
+TEST(ComponentList, CountsPotentiometersAndInvertersThatWeightsAskFor) {
   const std::string blocks = R"(
 one = { type = "constant", value = 0.5 }
 x = { type = "integrator", in = ["0.3*y", "-one"], initial = 0.5 }
 y = { type = "integrator", in = ["0.3*x"] }
 z = { type = "integrator", in = ["3*x", "-0.3*x", "10*y"], initial = -1 }
 )";
-  const Bill counted = bill(blocks, inverting_machine());
+  const ComponentList counted = components(blocks, inverting_machine());
   // the constant, 0.3 y, the initial value 0.5, 0.3 x, −0.3 x
   EXPECT_EQ(row(counted, "potentiometers").needed, 5);
   EXPECT_EQ(row(counted, "amplifiers").note, "1 inverter, 3 integrators");
   // with signs: the constant, 0.3 y, ±0.3 x
-  EXPECT_EQ(row(bill(blocks, signed_machine()), "potentiometers").needed, 4);
-  EXPECT_EQ(row(bill(blocks, signed_machine()), "amplifiers").note, "3 integrators");
+  EXPECT_EQ(row(components(blocks, signed_machine()), "potentiometers").needed, 4);
+  EXPECT_EQ(row(components(blocks, signed_machine()), "amplifiers").note, "3 integrators");
 }
 
-TEST(Bill, AsksNothingForNothing) {
-  const Bill counted = bill(
+TEST(ComponentList, AsksNothingForNothing) {
+  const ComponentList counted = components(
       "zero = { type = \"constant\", value = 0 }\n"
       "x = { type = \"integrator\", in = [\"zero\", \"0*x\"] }\n",
       inverting_machine());
   EXPECT_EQ(counted.rows.size(), 2U);  // an amplifier and its network
 }
 
-TEST(Bill, TakesAGainForWhatItStandsFor) {
-  const Bill counted =
-      bill("x = { type = \"integrator\", in = [\"g\"] }\ng = { type = \"gain\", in = \"x\", factor = -3 }\n",
-           inverting_machine());
+TEST(ComponentList, TakesAGainForWhatItStandsFor) {
+  const ComponentList counted = components(
+      "x = { type = \"integrator\", in = [\"g\"] }\ng = { type = \"gain\", in = \"x\", factor = -3 }\n",
+      inverting_machine());
   EXPECT_EQ(row(counted, "potentiometers").needed, 1);
   EXPECT_EQ(row(counted, "amplifiers").note, "1 summer, 1 inverter, 1 integrator");
-  const Bill turned =
-      bill("x = { type = \"integrator\", in = [\"g\"] }\ng = { type = \"gain\", in = \"x\", factor = -1 }\n",
-           inverting_machine());
+  const ComponentList turned = components(
+      "x = { type = \"integrator\", in = [\"g\"] }\ng = { type = \"gain\", in = \"x\", factor = -1 }\n",
+      inverting_machine());
   EXPECT_EQ(row(turned, "amplifiers").note, "1 inverter, 1 integrator");
 }
 
-TEST(Bill, CannotTellWhereTimeFactorsAreNotPublished) {
+TEST(ComponentList, CannotTellWhereTimeFactorsAreNotPublished) {
   diagram::MachineProfile machine = inverting_machine();
   machine.rates.clear();
   machine.rates_known = false;
-  const Bill fast = bill("x = { type = \"integrator\", in = \"x\", rate = 12345 }\n", machine);
+  const ComponentList fast = components("x = { type = \"integrator\", in = \"x\", rate = 12345 }\n", machine);
   EXPECT_EQ(row(fast, "integrators with k0 = 1.234e+04 1/s").available, std::nullopt);
-  EXPECT_EQ(fast.verdict(), Bill::Verdict::cannot_tell);
-  EXPECT_EQ(bill("x = { type = \"integrator\", in = \"x\" }\n", machine).verdict(), Bill::Verdict::fits);
+  EXPECT_EQ(fast.verdict(), ComponentList::Verdict::cannot_tell);
+  EXPECT_EQ(components("x = { type = \"integrator\", in = \"x\" }\n", machine).verdict(),
+            ComponentList::Verdict::fits);
 }
 
 }  // namespace

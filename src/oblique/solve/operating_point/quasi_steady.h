@@ -21,8 +21,9 @@ diagram::FlatDiagram with_instant_servos(diagram::FlatDiagram diagram);
 /// Moments of a run, evenly spread over up to `most` of its rows, at which every servo loop of `program`
 /// stands at rest, whether it would stay there or not: where the solution of an unstable diagram lies, which
 /// no run of it shows. Throws SolveError where the loops have no solution on the way.
-std::vector<Instant> standing_instants(const network::Program& program, const diagram::FlatDiagram& diagram,
-                                       RunOptions options, std::size_t most);
+std::vector<Instant> quasi_steady_instants(const network::Program& program,
+                                           const diagram::FlatDiagram& diagram, RunOptions options,
+                                           std::size_t most);
 
 /// Collects `most` rows, evenly spread, of a run of `options.samples` rows into `instants`, which must
 /// outlive the run.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Events that pile up: the impacts of a ball.
+// Zeno behaviour: the impacts of a ball.
 #include <algorithm>
 #include <cmath>
 
@@ -48,7 +48,7 @@ double impact_time(int k, double h, double e, double g) {
   return t;
 }
 
-TEST(PileUp, BouncingBallMeetsTheTwentiethImpact) {
+TEST(Zeno, BouncingBallMeetsTheTwentiethImpact) {
   const diagram::BlockLibrary library = shipped_blocks_and("ball", kBall);
   const Compiled made("b = { type = \"ball\" }", "", library);
   const auto result = run_of(made, {.until = 8.2, .tolerance = 1e-10, .samples = 11});
@@ -63,7 +63,7 @@ TEST(PileUp, BouncingBallMeetsTheTwentiethImpact) {
   }
 }
 
-TEST(PileUp, BallThatPilesUpIsEndedByName) {
+TEST(Zeno, IsEndedByName) {
   const diagram::BlockLibrary library = shipped_blocks_and("ball", kBall);
   const Compiled made("b = { type = \"ball\", e = 0.5 }", "", library);
   const std::string message = message_of<SolveError>([&] { run_of(made, {.until = 5}); });
@@ -85,7 +85,7 @@ diagram::BlockLibrary library_with_resting_ball() {
 
 // A block that says what comes after rests there: to what is left of its bounces, 1e-5 of the run, and a
 // speed of g times that, half of a flight.
-TEST(PileUp, BallThatPilesUpGoesOverIntoWhatItsBlockSays) {
+TEST(Zeno, GoesOverIntoWhatItsBlockSays) {
   const diagram::BlockLibrary library = library_with_resting_ball();
   const Compiled made("b = { type = \"ball\", e = 0.5 }", "", library);
   const auto result = run_of(made, {.until = 5, .tolerance = 1e-10, .samples = 501});
@@ -105,7 +105,7 @@ TEST(PileUp, BallThatPilesUpGoesOverIntoWhatItsBlockSays) {
 
 // Where each flight is a tenth of the one before, the seventh is within the errors of the height: it rests
 // before that.
-TEST(PileUp, BallThatPilesUpQuicklyDoesNotFallThroughTheFloor) {
+TEST(Zeno, OfAQuickBallDoesNotFallThroughTheFloor) {
   const diagram::BlockLibrary library = library_with_resting_ball();
   for (const double e : {0.05, 0.1, 0.25, 0.3}) {
     const Compiled made(fmt::format("b = {{ type = \"ball\", e = {} }}", e), "", library);
@@ -131,8 +131,8 @@ Heights heights_of(const oblique::solve::Run& result) {
   return heights;
 }
 
-// Wherever the run is cut in two, also so late that no more flights are left than tell of a pile-up.
-TEST(PileUp, IsSeenInARunThatGoesOn) {
+// Wherever the run is cut in two, also so late that no more flights are left than tell of Zeno behaviour.
+TEST(Zeno, IsSeenInARunThatGoesOn) {
   const diagram::BlockLibrary library = library_with_resting_ball();
   for (const double e : {0.6, 0.9}) {
     const Compiled made(fmt::format("b = {{ type = \"ball\", e = {}, g = 2.5 }}", e), "", library);
@@ -154,7 +154,7 @@ TEST(PileUp, IsSeenInARunThatGoesOn) {
 
 // A ball that lies on the floor from the start falls no deeper; one that is only pressed against it does not
 // either, and where the block does not say what it does there, the run ends.
-TEST(PileUp, OfFlightsOfNoLengthIsSeenAtOnce) {
+TEST(Zeno, OfFlightsOfNoLengthIsSeenAtOnce) {
   const diagram::BlockLibrary balls = library_with_resting_ball();
   const Compiled lying("b = { type = \"ball\", height = 0 }", "", balls);
   const Heights heights = heights_of(run_of(lying));
@@ -184,7 +184,7 @@ set = { x = 1 }
 
 // What is set may also end what led to it: then nothing comes again, and put on its level the state is not
 // above it, also where it leaves that level no faster than its third power.
-TEST(PileUp, IsNotWhereASetStateStays) {
+TEST(Zeno, IsNotWhereASetStateStays) {
   const diagram::BlockLibrary library = shipped_blocks_and("stop", R"toml([inputs]
 in = {}
 [outputs]

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the search for events knows beforehand: rates of surfaces, the structure of switches.
+// What the search for events knows beforehand: rates of event functions, the structure of switches.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -11,36 +11,38 @@ namespace {
 
 using testing::Compiled;
 
-/// The surface of switch 0 at (t, x).
-double surface_at(const Program& program, double t, const std::vector<double>& x) {
+/// The event function of switch 0 at (t, x).
+double event_function_at(const Program& program, double t, const std::vector<double>& x) {
   Workspace workspace(program);
-  std::vector<double> surfaces(program.switches().size());
-  EXPECT_TRUE(program.surfaces(t, x.data(), surfaces.data(), workspace));
-  return surfaces[0];
+  std::vector<double> event_functions(program.switches().size());
+  EXPECT_TRUE(program.event_functions(t, x.data(), event_functions.data(), workspace));
+  return event_functions[0];
 }
 
 /// Its rate there, where the states move with their derivatives.
 double rate_at(const Program& program, double t, const std::vector<double>& x) {
   Workspace workspace(program);
-  std::vector<double> surfaces(program.switches().size()), rates(surfaces.size()), slopes(x.size());
-  const auto here = program.surfaces(t, x.data(), surfaces.data(), workspace);
-  here.value().derivatives(slopes.data());
-  here->surface_rates(slopes.data(), rates.data());
+  std::vector<double> event_functions(program.switches().size()), rates(event_functions.size()),
+      derivatives(x.size());
+  const auto here = program.event_functions(t, x.data(), event_functions.data(), workspace);
+  here.value().derivatives(derivatives.data());
+  here->event_function_rates(derivatives.data(), rates.data());
   return rates[0];
 }
 
 /// The rate by a central difference along the solution, with nothing of the compiled derivative in it.
 double differenced_rate(const Program& program, double t, const std::vector<double>& x) {
   Workspace workspace(program);
-  std::vector<double> slopes(x.size());
-  EXPECT_TRUE(program.derivatives(t, x.data(), slopes.data(), workspace));
+  std::vector<double> derivatives(x.size());
+  EXPECT_TRUE(program.derivatives(t, x.data(), derivatives.data(), workspace));
   constexpr double kStep = 1e-5;
   std::vector<double> ahead = x, behind = x;
   for (std::size_t i = 0; i < x.size(); ++i) {
-    ahead[i] += kStep * slopes[i];
-    behind[i] -= kStep * slopes[i];
+    ahead[i] += kStep * derivatives[i];
+    behind[i] -= kStep * derivatives[i];
   }
-  return (surface_at(program, t + kStep, ahead) - surface_at(program, t - kStep, behind)) / (2 * kStep);
+  return (event_function_at(program, t + kStep, ahead) - event_function_at(program, t - kStep, behind)) /
+         (2 * kStep);
 }
 
 void expect_rate(const Compiled& made, double t, const std::vector<double>& x) {
@@ -49,7 +51,7 @@ void expect_rate(const Compiled& made, double t, const std::vector<double>& x) {
               1e-8 * (1 + std::abs(exact)));  // the step squared, and rounding
 }
 
-TEST(SurfaceRate, FollowsStatesAndTheTime) {
+TEST(EventFunctionRate, FollowsStatesAndTheTime) {
   expect_rate(Compiled(R"(x = { type = "integrator", in = ["-0.3*y", "0.1*x"], initial = 1 }
 y = { type = "integrator", in = ["x"] }
 xy = { type = "multiplier", in = ["x", "y"] }
@@ -59,7 +61,7 @@ c = { type = "comparator", in = ["xy", "-w"] }
               0.4, {0.8, -0.6});
 }
 
-TEST(SurfaceRate, PassesThroughAlgebraicLoopsThatFollowEachOther) {
+TEST(EventFunctionRate, PassesThroughAlgebraicLoopsThatFollowEachOther) {
   // q = w/x by one loop, and r = √(1 + q²) by the next; the time enters the first.
   expect_rate(Compiled(R"(x = { type = "integrator", in = ["-0.5*r"], initial = 1 }
 one = { type = "constant" }
@@ -74,7 +76,7 @@ c = { type = "comparator", in = ["r", "-1.2*one"] }
               0.4, {0.8});
 }
 
-TEST(SwitchStructure, PutsOneSurfaceIntoOneUnit) {
+TEST(SwitchStructure, PutsOneSwitchingSurfaceIntoOneUnit) {
   const Compiled made(R"(x = { type = "integrator", in = ["-s", "-a"], initial = 1 }
 s = { type = "sign", in = "x" }
 a = { type = "absolute-value", in = "x" }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/solve/events/switch_surfaces.h>
+#include <oblique/solve/events/event_functions.h>
 
 #include <oblique/network/program/program.h>
 #include <oblique/solve/run_errors.h>
@@ -7,7 +7,7 @@
 
 namespace oblique::solve {
 
-SwitchSurfaces::SwitchSurfaces(const network::Program& program, network::Workspace& workspace,
+EventFunctions::EventFunctions(const network::Program& program, network::Workspace& workspace,
                                double tolerance, double absolute_tolerance, const std::string& file)
     : program_(program),
       workspace_(workspace),
@@ -17,15 +17,15 @@ SwitchSurfaces::SwitchSurfaces(const network::Program& program, network::Workspa
       values_(program.switches().size()),
       known_rates_(values_.size()) {}
 
-void SwitchSurfaces::evaluate(double t, std::span<const double> x, const Announced& announced) {
+void EventFunctions::evaluate(double t, std::span<const double> x, const Announced& announced) {
   interruption_.check();
   states_.assign(x.begin(), x.end());
   weighed_ = false;
-  here_ = program_.surfaces(t, x.data(), values_.data(), workspace_);
+  here_ = program_.event_functions(t, x.data(), values_.data(), workspace_);
   const bool known = here_.has_value();
   if (!known) {
     workspace_.pass_failing_loops(true);
-    here_ = program_.surfaces(t, x.data(), values_.data(), workspace_);
+    here_ = program_.event_functions(t, x.data(), values_.data(), workspace_);
     workspace_.pass_failing_loops(false);
   }
   thresholds_.update(t, here());
@@ -33,20 +33,21 @@ void SwitchSurfaces::evaluate(double t, std::span<const double> x, const Announc
   if (!known && !is_any_due(announced)) throw loop_error(program_, workspace_.trouble(), t, file_);
 }
 
-double SwitchSurfaces::against(std::size_t s) const {
-  return workspace_.memory(program_.switches()[s].memory) == 1 ? -values_[s] : values_[s];
+double EventFunctions::against(std::size_t s) const {
+  return workspace_.discrete_state(program_.switches()[s].discrete_state) == 1 ? -values_[s] : values_[s];
 }
 
-/// Whether a switch is on the wrong side of its surface, or has not turned over though it was announced.
-bool SwitchSurfaces::is_any_due(const Announced& announced) const {
+/// Whether a switch is on the wrong side of its switching surface, or has not turned over though it was
+/// announced.
+bool EventFunctions::is_any_due(const Announced& announced) const {
   for (std::size_t s = 0; s < values_.size(); ++s) {
-    const double position = workspace_.memory(program_.switches()[s].memory);
+    const double position = workspace_.discrete_state(program_.switches()[s].discrete_state);
     if (announced[s] ? *announced[s] != position : against(s) > thresholds_[s]) return true;
   }
   return false;
 }
 
-const SurfaceErrors& SwitchSurfaces::weigh_errors() {
+const EventFunctionErrors& EventFunctions::weigh_errors() {
   if (!weighed_) errors_.weigh(here(), states_);
   weighed_ = true;
   return errors_;

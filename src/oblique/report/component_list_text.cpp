@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/report/bill_text.h>
+#include <oblique/report/component_list_text.h>
 
 #include <cmath>
 
@@ -9,7 +9,7 @@
 namespace oblique::report {
 namespace {
 
-std::string available_text(const machine::BillRow& row) {
+std::string available_text(const machine::ComponentListRow& row) {
   if (!row.exists) return "none";
   if (!row.available) return "not published";
   return std::isinf(*row.available) ? "as many as it takes" : fmt::format("{}", *row.available);
@@ -17,20 +17,20 @@ std::string available_text(const machine::BillRow& row) {
 
 }  // namespace
 
-std::string verdict_text(const machine::Bill& bill) {
+std::string verdict_text(const machine::ComponentList& components) {
   std::vector<std::string> named;
-  switch (bill.verdict()) {
-    case machine::Bill::Verdict::fits:
+  switch (components.verdict()) {
+    case machine::ComponentList::Verdict::fits:
       return "it fits";
-    case machine::Bill::Verdict::does_not_fit:
-      for (const machine::BillRow& row : bill.rows) {
+    case machine::ComponentList::Verdict::does_not_fit:
+      for (const machine::ComponentListRow& row : components.rows) {
         if (row.missing() > 0) named.push_back(fmt::format("{} ({})", row.element, row.missing()));
       }
       return fmt::format("it does not fit; missing: {}", fmt::join(named, ", "));
-    case machine::Bill::Verdict::cannot_tell:
+    case machine::ComponentList::Verdict::cannot_tell:
       break;
   }
-  for (const machine::BillRow& row : bill.rows) {
+  for (const machine::ComponentListRow& row : components.rows) {
     if (row.at_least) {
       named.emplace_back("what its inputs weigh");
     } else if (!row.available) {
@@ -40,9 +40,9 @@ std::string verdict_text(const machine::Bill& bill) {
   return fmt::format("whether it fits cannot be told; not published: {}", fmt::join(named, ", "));
 }
 
-Table bill_table(const machine::Bill& bill) {
+Table component_list_table(const machine::ComponentList& components) {
   Table table({"element", "needed", "available", "missing"});
-  for (const machine::BillRow& row : bill.rows) {
+  for (const machine::ComponentListRow& row : components.rows) {
     table.add({row.note.empty() ? row.element : fmt::format("{} ({})", row.element, row.note),
                fmt::format("{}{}", row.at_least ? "≥ " : "", row.needed), available_text(row),
                row.missing() > 0 ? fmt::format("{}", row.missing()) : ""});
@@ -50,8 +50,9 @@ Table bill_table(const machine::Bill& bill) {
   return table;
 }
 
-std::string to_text(const machine::Bill& bill) {
-  return fmt::format("elements of {}\n{}{}\n", bill.machine, bill_table(bill).text(1), verdict_text(bill));
+std::string to_text(const machine::ComponentList& components) {
+  return fmt::format("elements of {}\n{}{}\n", components.machine, component_list_table(components).text(1),
+                     verdict_text(components));
 }
 
 }  // namespace oblique::report

@@ -5,12 +5,13 @@
 
 #include <oblique/network/program/compilation.h>
 
-// How quickly the surfaces of switches move, and what turns below them.
+// How quickly the event functions of switches move, and what turns below them.
 namespace oblique::network {
 
-/// Adds d surface/dt of every switch to the graph, and the rates of the arguments of periodic functions below
-/// the surfaces. The rates of states and unknowns are numbers that are put in, as if they were memories.
-void differentiate_surfaces(Compilation& c);
+/// Adds d(event function)/dt of every switch to the graph, and the rates of the arguments of periodic
+/// functions below the event functions. The rates of states and unknowns are numbers that are put in, as if
+/// they were discrete states.
+void differentiate_event_functions(Compilation& c);
 
 /// What the rates are made of.
 std::vector<NodeId> rate_roots(const Compilation& c);

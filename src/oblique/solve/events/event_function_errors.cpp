@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/solve/events/surface_errors.h>
+#include <oblique/solve/events/event_function_errors.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,26 +10,27 @@
 
 namespace oblique::solve {
 
-SurfaceErrors::SurfaceErrors(const network::Program& program, double tolerance, double absolute_tolerance)
+EventFunctionErrors::EventFunctionErrors(const network::Program& program, double tolerance,
+                                         double absolute_tolerance)
     : program_(program),
       tolerance_(tolerance),
       absolute_tolerance_(absolute_tolerance),
       errors_(program.switches().size(), 0.0) {}
 
 /// The absolute error that the solver leaves to a state.
-double SurfaceErrors::error_of_state(std::size_t i) const {
+double EventFunctionErrors::error_of_state(std::size_t i) const {
   const double own = program_.states()[i].tolerance;
   const double least = own > 0 ? own : absolute_tolerance_;
   return reach_.empty() || reach_[i] == 0 ? least : std::min(least, tolerance_ * reach_[i]);
 }
 
-void SurfaceErrors::weigh(const network::Evaluation& here, std::span<const double> states) {
+void EventFunctionErrors::weigh(const network::Evaluation& here, std::span<const double> states) {
   constexpr std::uint64_t kTrials = 4;
   constexpr double kErrorOfClock = 1e-13;  // it is a straight line to any method
   std::vector<bool> clocks(program_.n_states(), false);
   for (std::size_t c = 0; c < program_.clocks(); ++c) clocks[program_.source_states()[c]] = true;
   std::vector<double> off(program_.n_states(), 0.0), rates(errors_.size()), still(errors_.size());
-  here.surface_rates(off.data(), still.data());
+  here.event_function_rates(off.data(), still.data());
   std::fill(errors_.begin(), errors_.end(), 0.0);
   for (std::uint64_t trial = 0; trial < kTrials; ++trial) {
     std::uint64_t signs = 0x9E3779B97F4A7C15 * (trial + 1);
@@ -39,7 +40,7 @@ void SurfaceErrors::weigh(const network::Evaluation& here, std::span<const doubl
       off[i] = trial == 0 || (signs >> 63) != 0 ? error : -error;
       signs = 6364136223846793005 * signs + 1442695040888963407;
     }
-    here.surface_rates(off.data(), rates.data());
+    here.event_function_rates(off.data(), rates.data());
     for (std::size_t s = 0; s < errors_.size(); ++s) {
       const double error = std::abs(rates[s] - still[s]);
       errors_[s] = std::max(errors_[s], std::isfinite(error) ? error : tolerance_);
@@ -47,18 +48,18 @@ void SurfaceErrors::weigh(const network::Evaluation& here, std::span<const doubl
   }
 }
 
-std::vector<std::size_t> SurfaceErrors::states_behind(std::uint32_t s, const network::Evaluation& here,
-                                                      std::span<const double> states) const {
+std::vector<std::size_t> EventFunctionErrors::states_behind(std::uint32_t s, const network::Evaluation& here,
+                                                            std::span<const double> states) const {
   constexpr double kHardlyKnown = 1e4;  // errors
-  constexpr double kPart = 1e-2;        // of the surface's error
+  constexpr double kPart = 1e-2;        // of the event function's error
   const std::size_t n = program_.n_states();
   std::vector<double> off(n, 0.0), rates(errors_.size());
-  here.surface_rates(off.data(), rates.data());
+  here.event_function_rates(off.data(), rates.data());
   const double still = rates[s];
   std::vector<bool> moves(n, false);
   for (std::size_t i = 0; i < n; ++i) {
     off[i] = error_of_state(i);
-    here.surface_rates(off.data(), rates.data());
+    here.event_function_rates(off.data(), rates.data());
     off[i] = 0;
     moves[i] = std::abs(rates[s] - still) > kPart * errors_[s];
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where surfaces are left that are slid along, or rested on.
+// Where switching surfaces are left that are slid along, or rested on.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -38,7 +38,7 @@ x = { type = "integrator", in = ["c"], initial = 0.1 }
   // It is told where the drive is below 1e-6 of what it was.
   double told = 0;
   ASSERT_EQ(std::sscanf(result.warnings.front().what.c_str(),
-                        "'c' (in > 0) leaves the surface that it slides along at t = %lf s", &told),
+                        "'c' (in > 0) leaves the switching surface that it slides along at t = %lf s", &told),
             1);
   EXPECT_NEAR(told, 0.5, 1e-6);
   EXPECT_THAT(
@@ -51,7 +51,7 @@ x = { type = "integrator", in = ["c"], initial = 0.1 }
 
 // dx/dt = sign(x) from x = 0 is ±t as well as 0: what comes out is a solution, and it is told that it is not
 // the only one. From beside it, where it is crossed, and where it is driven to, nothing is told.
-TEST(Switches, OnASurfaceThatBothSidesLeaveAreToldOf) {
+TEST(Switches, OnASwitchingSurfaceThatBothSidesLeaveAreToldOf) {
   const auto made = [](double initial, const std::string& in) {
     return Compiled(
         fmt::format("c = {{ type = \"sign\", in = \"x\" }}\none = {{ type = \"constant\" }}\n"
@@ -62,10 +62,10 @@ TEST(Switches, OnASurfaceThatBothSidesLeaveAreToldOf) {
   EXPECT_NEAR(std::abs(row_values(result, "x").back()), 2,
               1e-9);  // a straight line, to rounding of the steps
   ASSERT_EQ(result.warnings.size(), 1U);
-  EXPECT_EQ(
-      result.warnings.front().what,
-      "'c' (in > 0) stands on its surface at t = 0 s, and both of its sides drive away from it: nothing "
-      "decides to which side it goes");
+  EXPECT_EQ(result.warnings.front().what,
+            "'c' (in > 0) stands on its switching surface at t = 0 s, and both of its sides drive away from "
+            "it: nothing "
+            "decides to which side it goes");
   EXPECT_EQ(
       result.warnings.front().remedy,
       "begin a little to the side that is meant, or add the disturbance that decides it on the machine");
@@ -75,9 +75,9 @@ TEST(Switches, OnASurfaceThatBothSidesLeaveAreToldOf) {
   EXPECT_TRUE(run_of(made(0, "\"-c\"")).warnings.empty());
 }
 
-// Two switches lie on their surfaces at the start. Only that of the absolute value moves off, so only it may
-// turn.
-TEST(Switches, StayWhereTheyAreOnASurfaceThatRests) {
+// Two switches lie on their switching surfaces at the start. Only that of the absolute value moves off, so
+// only it may turn.
+TEST(Switches, StayWhereTheyAreOnASwitchingSurfaceThatRests) {
   const std::string rest = "r = { type = \"integrator\", in = \"-r\" }\n";
   const std::string sign = "s = { type = \"sign\", in = \"r\" }\n";
   const std::string magnitude = "m = { type = \"absolute-value\", in = \"x\" }\n";
@@ -114,8 +114,8 @@ TEST(Slide, KeepsTheLimitOfOneAmplifierWhileAnotherComesToItsOwn) {
   }
 }
 
-// x rests at 0, on the surface of c, where c is low; with c high the amplifier would drive it down. What
-// rounding leaves of its rate decides nothing, whatever the unit of x.
+// x rests at 0, on the switching surface of c, where c is low; with c high the amplifier would drive it down.
+// What rounding leaves of its rate decides nothing, whatever the unit of x.
 TEST(Switches, StayWhereTheyAreWhereAllIsAtRest) {
   for (const double unit : {0.5, 1.0, 2.0, 4.0}) {
     const Compiled made(fmt::format(R"toml(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/machine/bill.h>
+#include <oblique/machine/component_list.h>
 
 #include <algorithm>
 #include <cmath>
@@ -30,8 +30,8 @@ class Counter {
     potentiometers_ += static_cast<double>(weighted_.size());
   }
 
-  Bill bill() {
-    bill_.machine = machine_.title;
+  ComponentList components() {
+    list_.machine = machine_.title;
     if (machine_.find(diagram::ElementKind::amplifier) != nullptr) {
       add_uncommitted();
     } else {
@@ -39,11 +39,11 @@ class Counter {
     }
     for (const auto& [rate, needed] : rates_) {
       const std::string element = fmt::format("integrators with k0 = {:.4g} 1/s", rate);
-      if (!machine_.rates_known && rate != 1) bill_.rows.push_back({element, needed, true, {}, {}});
+      if (!machine_.rates_known && rate != 1) list_.rows.push_back({element, needed, true, {}, {}});
       const bool lacks =
           std::find(machine_.rates.begin(), machine_.rates.end(), rate) == machine_.rates.end();
       if (machine_.rates.empty() || !lacks) continue;
-      bill_.rows.push_back({element, needed, true, 0.0,
+      list_.rows.push_back({element, needed, true, 0.0,
                             fmt::format("k0 on this machine: {:g} 1/s", fmt::join(machine_.rates, ", "))});
     }
     add_potentiometers();
@@ -51,9 +51,9 @@ class Counter {
     add(diagram::ElementKind::comparator, "comparators", comparators_);
     add(diagram::ElementKind::function_generator, "function generators", generators_);
     for (const auto& [block, needed] : others_) {
-      bill_.rows.push_back({block, needed, false, {}, {}});
+      list_.rows.push_back({block, needed, false, {}, {}});
     }
-    return std::move(bill_);
+    return std::move(list_);
   }
 
  private:
@@ -115,7 +115,7 @@ class Counter {
   void add(diagram::ElementKind kind, std::string element, double needed, std::string note = {}) {
     if (needed == 0) return;
     const diagram::ElementCount* const has = machine_.find(kind);
-    bill_.rows.push_back({std::move(element), needed, has != nullptr,
+    list_.rows.push_back({std::move(element), needed, has != nullptr,
                           has != nullptr ? has->count : std::optional<double>(), std::move(note), false});
   }
 
@@ -123,7 +123,7 @@ class Counter {
     const bool at_least = weights_inputs_ && !machine_.input_gains_known;
     if (potentiometers_ == 0 && !at_least) return;
     const diagram::ElementCount* const has = machine_.find(diagram::ElementKind::potentiometer);
-    bill_.rows.push_back({"potentiometers", potentiometers_, has != nullptr || potentiometers_ == 0,
+    list_.rows.push_back({"potentiometers", potentiometers_, has != nullptr || potentiometers_ == 0,
                           has != nullptr ? has->count : std::optional<double>(),
                           at_least ? "the gains of inputs are not published" : "", at_least});
   }
@@ -163,7 +163,7 @@ class Counter {
   const diagram::MachineProfile& machine_;
   bool signed_;
   bool weights_inputs_ = false;  ///< some sum has a weight other than ±1
-  Bill bill_;
+  ComponentList list_;
   double summers_ = 0, inverters_ = 0, integrators_ = 0, open_ = 0, multipliers_ = 0, potentiometers_ = 0;
   double comparators_ = 0, generators_ = 0;
   std::map<double, double> rates_;                          ///< how many integrators have which [1/s]
@@ -175,28 +175,30 @@ class Counter {
 
 }  // namespace
 
-double BillRow::missing() const {
+double ComponentListRow::missing() const {
   if (!exists) return needed;
   return available ? std::max(0.0, needed - *available) : 0;
 }
 
-Bill::Verdict Bill::verdict() const {
-  const auto missing = [](const BillRow& row) { return row.missing() > 0; };
-  const auto unknown = [](const BillRow& row) { return row.at_least || (row.exists && !row.available); };
+ComponentList::Verdict ComponentList::verdict() const {
+  const auto missing = [](const ComponentListRow& row) { return row.missing() > 0; };
+  const auto unknown = [](const ComponentListRow& row) {
+    return row.at_least || (row.exists && !row.available);
+  };
   if (std::any_of(rows.begin(), rows.end(), missing)) return Verdict::does_not_fit;
   return std::any_of(rows.begin(), rows.end(), unknown) ? Verdict::cannot_tell : Verdict::fits;
 }
 
-std::vector<std::string> Bill::absent() const {
+std::vector<std::string> ComponentList::absent() const {
   std::vector<std::string> kinds;
-  for (const BillRow& row : rows) {
+  for (const ComponentListRow& row : rows) {
     if (!row.exists) kinds.push_back(row.element);
   }
   return kinds;
 }
 
-Bill bill_of(const diagram::FlatDiagram& diagram, const diagram::MachineProfile& machine) {
-  return Counter(diagram, machine).bill();
+ComponentList component_list_of(const diagram::FlatDiagram& diagram, const diagram::MachineProfile& machine) {
+  return Counter(diagram, machine).components();
 }
 
 }  // namespace oblique::machine

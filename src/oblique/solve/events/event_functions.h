@@ -8,20 +8,21 @@
 #include <vector>
 
 #include <oblique/network/program/program.h>
-#include <oblique/solve/events/surface_errors.h>
+#include <oblique/solve/events/event_function_errors.h>
 #include <oblique/solve/events/thresholds.h>
 #include <oblique/solve/interruption.h>
 
 namespace oblique::solve {
 
-/// Of each switch the position that it takes when everything is settled next; nothing: as its surface is.
+/// Of each switch the position that it takes when everything is settled next; nothing: as its event function
+/// is.
 using Announced = std::vector<std::optional<double>>;
 
-/// The surfaces of all switches at one instant, and how well they are known there. Not installed.
-class SwitchSurfaces {
+/// The event functions of all switches at one instant, and how well they are known there. Not installed.
+class EventFunctions {
  public:
-  /// The tolerances are those of SurfaceErrors. All but these must outlive this.
-  SwitchSurfaces(const network::Program& program, network::Workspace& workspace, double tolerance,
+  /// The tolerances are those of EventFunctionErrors. All but these must outlive this.
+  EventFunctions(const network::Program& program, network::Workspace& workspace, double tolerance,
                  double absolute_tolerance, const std::string& file);
 
   /// Evaluates all at (t, x). Throws SolveError where an algebraic loop has no solution; but it may have one
@@ -35,18 +36,19 @@ class SwitchSurfaces {
   std::size_t size() const { return values_.size(); }
   double operator[](std::size_t s) const { return values_[s]; }
   bool is_off_zero(std::size_t s) const { return std::abs(values_[s]) > thresholds_[s]; }
-  /// How far a surface lies on the side on which its switch does not stand.
+  /// How far an event function lies on the side on which its switch does not stand.
   double against(std::size_t s) const;
-  /// d surface/dt of a switch whose surface depends on time alone, linearly; nothing for another.
+  /// d(event function)/dt of a switch whose event function depends on time alone, linearly; nothing for
+  /// another.
   std::optional<double> known_rate(std::size_t s) const { return known_rates_[s]; }
   bool is_known(std::size_t s) const { return program_.switches()[s].rate.has_value(); }
 
   /// What else `evaluate` has found, as long as nothing has been evaluated since and no switch turned over.
   const network::Evaluation& here() const { return here_.value(); }
   /// The errors there, weighed when they are first asked for: from `here`, so before a switch turns over.
-  const SurfaceErrors& weigh_errors();
+  const EventFunctionErrors& weigh_errors();
   /// Those that were weighed last, here or where a switch turned over before.
-  const SurfaceErrors& last_errors() const { return errors_; }
+  const EventFunctionErrors& last_errors() const { return errors_; }
   std::vector<std::size_t> states_behind(std::uint32_t s) const {
     return errors_.states_behind(s, here(), states_);
   }
@@ -62,7 +64,7 @@ class SwitchSurfaces {
   const std::string& file_;
   Interruption interruption_;
   Thresholds thresholds_;
-  SurfaceErrors errors_;
+  EventFunctionErrors errors_;
   std::optional<network::Evaluation> here_;
   std::vector<double> values_, states_;
   std::vector<std::optional<double>> known_rates_;
