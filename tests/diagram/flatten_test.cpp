@@ -343,6 +343,7 @@ TEST_F(Weights, SayWhatIsWrong) {
   EXPECT_EQ(weight_message("s.in[99999999999999999999]", "1"),
             "set s.in[99999999999999999999]=1: input 's.in' has no wire 99999999999999999999; expected a "
             "number from 1 to 4");
+  EXPECT_EQ(weight_message("C.x[2]", "1"), "set C.x[2]=1: input 'C.x' has no wire 2; expected 1");
   EXPECT_EQ(weight_message("s.in[r.z]", "1"),
             "set s.in[r.z]=1: no wire of input 's.in' comes from 'r.z'\n  remedy: did you mean 'r.y'?");
   EXPECT_EQ(weight_message("s.in[a]", "1"),

@@ -7,8 +7,9 @@
 #include <fmt/format.h>
 
 #include <oblique/mechanism/analysis/analysis.h>
-#include <oblique/mechanism/model/read_mechanism.h>
 #include <oblique/mechanism/structure/structure.h>
+
+#include "mechanism_text.h"
 
 // The mechanisms that the tests of their analysis share.
 namespace oblique::mechanism::analysed {
@@ -16,10 +17,6 @@ namespace oblique::mechanism::analysed {
 inline constexpr double kPi = std::numbers::pi;
 /// Zeros of a rate are found to the last bits of the place; their times carry a few roundings more.
 inline constexpr double kExact = 1e-9;
-
-inline Mechanism mechanism(const std::string& text) {
-  return parse_mechanism("format = \"oblique-mechanism/1\"\n" + text, "test.toml");
-}
 
 inline MechanismAnalysis analysis_of(const Mechanism& mechanism) {
   return analyse(mechanism, decompose(mechanism));

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <oblique/mechanism/model/read_mechanism.h>
+#include "mechanism_text.h"
 
 namespace oblique::mechanism {
 namespace {
@@ -12,10 +12,6 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using ::testing::UnorderedElementsAre;
-
-Mechanism mechanism(const std::string& text) {
-  return parse_mechanism("format = \"oblique-mechanism/1\"\n" + text, "test.toml");
-}
 
 const std::string kFourBar = R"([frame]
 A = [0, 0]

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include <oblique/mechanism/model/read_mechanism.h>
 #include <oblique/mechanism/motion/motion_range.h>
@@ -162,6 +163,130 @@ TEST(Crossing, GoesThroughInfinity) {
   ASSERT_TRUE(motion_range.range.forward && motion_range.range.backward);
   EXPECT_EQ(motion_range.range.forward->kind, Kind::infinity);
   EXPECT_NEAR(motion_range.range.backward->time, -kPi / 2, 1e-9);
+}
+
+/// The rounding of scale·tan ψ. A body that is told of by a point so far away is turned by that point's
+/// rounding, 1 + |tan ψ| times that of a number; dy/dψ magnifies it. 4e-15 are some twenty of them.
+double rounding_at(double scale, double psi) {
+  const double tangent = std::tan(psi);
+  return 4e-15 * scale * (1 + tangent * tangent) * (1 + std::abs(tangent));
+}
+
+/// Whether a point runs along x = `scale` as y = `scale`·tan ψ, ψ rising at 1 rad/s, in axes that are turned
+/// by `turn`. Each rate is as much steeper in ψ.
+void expect_tangent(const PointState& point, double scale, double psi, double turn = 0) {
+  const Eigen::Rotation2Dd back(-turn);
+  const double tangent = std::tan(psi), secant = 1 + tangent * tangent, steep = 1 + std::abs(tangent);
+  const double rounding = rounding_at(scale, psi);
+  EXPECT_NEAR((back * point.position).x(), scale, rounding);
+  EXPECT_NEAR((back * point.position).y(), scale * tangent, rounding);
+  EXPECT_NEAR((back * point.velocity).y(), scale * secant, rounding * steep);
+  EXPECT_NEAR((back * point.acceleration).y(), 2 * scale * tangent * secant, rounding * steep * steep);
+}
+
+// A plate with two slots, 60 apart, on pins at P and at the crank's tip Q: n·(Q − P) = 150 sin(φ − ψ) = 60
+// gives its direction ψ = φ − asin(0.4). Its point C, on the first slot, runs on x = 100: y = 100 tan ψ. The
+// group has three slides, is followed by Newton's method and goes away where the slots stand along the guide.
+// Turned by 80°, with nearly no way along one of the axes, it does the same.
+TEST(Crossing, TakesATriadThroughInfinity) {
+  const double lag = std::asin(0.4);
+  for (const double turn : {0.0, 80 * kDegree}) {
+    const auto place = [&](double x, double y) {
+      const Vector2d turned = Eigen::Rotation2Dd(turn) * Vector2d(x, y);
+      return fmt::format("[{}, {}]", turned.x(), turned.y());
+    };
+    const Mechanism mechanism =
+        parse_mechanism(fmt::format(R"(format = "oblique-mechanism/1"
+[frame]
+P = [0, 0]
+F = {}
+E = {}
+[bodies]
+arm = {{ points = ["P", "Q"], length = 150 }}
+plate = {{ points = ["C", "K"], length = 30, marks = {{ L = [0, 60], M = [30, 60] }} }}
+[slides]
+first = {{ point = "P", along = ["C", "K"] }}
+second = {{ point = "Q", along = ["L", "M"] }}
+guide = {{ point = "C", along = ["F", "E"] }}
+[drives]
+crank = {{ turns = "arm", about = "P", speed = 1, start = {} }}
+[sketch]
+C = {}
+K = {}
+)",
+                                    place(100, 0), place(100, 100), turn, place(100, -45), place(127, -57)),
+                        "plate.toml");
+    ASSERT_EQ(decompose(mechanism).groups.at(1).form.kind, GroupKind::triad);
+    const std::size_t c = mechanism.find_point("C").value(), k = mechanism.find_point("K").value();
+    for (const int positions : {8, 91, 361, 10000}) {
+      const Motion motion = solve_motion(mechanism, positions);
+      ASSERT_EQ(motion.events.size(), 2U) << positions;
+      for (const std::size_t i : {0U, 1U}) {
+        EXPECT_EQ(motion.events[i].kind, Kind::infinity);
+        EXPECT_NEAR(motion.events[i].time, kPi / 2 + lag + static_cast<double>(i) * kPi, 1e-9);
+      }
+      for (std::size_t row = 0; row < motion.times.size(); ++row) {
+        SCOPED_TRACE(motion.times[row]);
+        const Configuration& here = motion.configurations[row];
+        ASSERT_EQ(here.status, Status::ok);
+        const double psi = motion.times[row] - lag;
+        expect_tangent(here.points[c], 100, psi, turn);
+        // K is 30 along the slots from C
+        const double rounding = rounding_at(100, psi);
+        const Vector2d along = here.points[k].position - here.points[c].position;
+        EXPECT_NEAR(along.x(), 30 * std::cos(psi + turn), rounding);
+        EXPECT_NEAR(along.y(), 30 * std::sin(psi + turn), rounding);
+      }
+    }
+  }
+}
+
+// The arm's direction φ is driven, its joint B is not: B is carried along x = 112 by a block on two pins,
+// whose line is 12 from B (20·15/25), and the arm's slot is on the pin O, so that B stands at 112 tan φ. The
+// two bodies are solved together, and both are told of by the place of B.
+TEST(Crossing, TakesTwoBodiesWithOneBaseThroughInfinity) {
+  const Mechanism mechanism = parse_mechanism(R"(format = "oblique-mechanism/1"
+[frame]
+O = [0, 0]
+F = [100, 0]
+E = [100, 100]
+[bodies]
+arm = { points = ["B", "T"], length = 150 }
+block = { points = ["B", "L"], length = 20, marks = { K = [0, 15] } }
+[slides]
+slot = { point = "O", along = ["B", "T"] }
+upper = { point = "L", along = ["F", "E"] }
+lower = { point = "K", along = ["F", "E"] }
+[drives]
+crank = { turns = "arm", about = "B", speed = 1 }
+[sketch]
+B = [112, 0]
+L = [100, 16]
+K = [100, -9]
+)",
+                                              "arm.toml");
+  const Structure structure = decompose(mechanism);
+  ASSERT_EQ(structure.groups.at(0).form.placing, Placing::iteration);
+  ASSERT_EQ(structure.groups.at(0).bodies.size(), 2U);
+  const std::size_t b = mechanism.find_point("B").value(), l = mechanism.find_point("L").value();
+  for (const int positions : {8, 91, 361, 10000}) {
+    const Motion motion = solve_motion(mechanism, positions);
+    ASSERT_EQ(motion.events.size(), 2U) << positions;
+    for (const std::size_t i : {0U, 1U}) {
+      EXPECT_EQ(motion.events[i].kind, Kind::infinity);
+      EXPECT_NEAR(motion.events[i].time, kPi / 2 + static_cast<double>(i) * kPi, 1e-9);
+    }
+    for (std::size_t row = 0; row < motion.times.size(); ++row) {
+      const double t = motion.times[row];
+      SCOPED_TRACE(t);
+      const Configuration& here = motion.configurations[row];
+      const bool is_there = std::abs(std::cos(t)) < 1e-9;
+      ASSERT_EQ(here.status, is_there ? Status::open : Status::ok);
+      if (is_there) continue;
+      expect_tangent(here.points[b], 112, t);
+      EXPECT_NEAR(here.points[l].position.y(), 112 * std::tan(t) + 16, rounding_at(112, t));
+    }
+  }
 }
 
 }  // namespace

@@ -11,12 +11,10 @@
 #include <oblique/mechanism/motion/motion.h>
 #include <oblique/mechanism/structure/structure.h>
 
+#include "mechanism_text.h"
+
 namespace oblique::mechanism {
 namespace {
-
-Mechanism mechanism(const std::string& text) {
-  return parse_mechanism("format = \"oblique-mechanism/1\"\n" + text, "test.toml");
-}
 
 TEST(Grashof, NamesTheClassOfFrameInputCouplerAndOutput) {
   EXPECT_EQ(grashof_class({4, 1, 3.5, 3}), GrashofClass::crank_rocker);

@@ -14,6 +14,7 @@
 #include <oblique/mechanism/structure/structure.h>
 
 #include "../support/chain_of_dyads.h"
+#include "mechanism_text.h"
 
 namespace oblique::mechanism {
 namespace {
@@ -21,10 +22,6 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
-
-Mechanism mechanism(const std::string& text) {
-  return parse_mechanism("format = \"oblique-mechanism/1\"\n" + text, "test.toml");
-}
 
 Mechanism parallelogram(const std::string& start, const std::string& sketch) {
   return mechanism(fmt::format(R"([frame]

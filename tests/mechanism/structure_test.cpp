@@ -6,16 +6,14 @@
 
 #include <oblique/mechanism/model/read_mechanism.h>
 
+#include "mechanism_text.h"
+
 namespace oblique::mechanism {
 namespace {
 
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-
-Mechanism mechanism(const std::string& body) {
-  return parse_mechanism("format = \"oblique-mechanism/1\"\n" + body, "test.toml");
-}
 
 Mechanism shipped(const std::string& name) {
   return read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/" + name);

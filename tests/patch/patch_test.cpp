@@ -174,16 +174,6 @@ TEST(Patch, RefusesATriangleThatOpensBetweenItsPositions) {
   EXPECT_THROW(patch_triangles(mechanism), PatchError);
 }
 
-TEST(Patch, ChoosesABandwidthAHundredTimesTheFastestDrive) {
-  const auto of_speed = [](const std::string& speed) {
-    return default_bandwidth(
-        mechanism::parse_mechanism(replaced(kFourBar, "speed = 1", "speed = " + speed), "m.toml"));
-  };
-  EXPECT_EQ(of_speed("1"), 20);            // 100/(2π) = 15.9
-  EXPECT_EQ(of_speed("-100"), 2000);       // 1591
-  EXPECT_EQ(of_speed("\"60 rpm\""), 100);  // 100 exactly
-}
-
 TEST(Scaling, RoundsUpToShortNumbers) {
   EXPECT_EQ(round_scale_up(1), 1);
   EXPECT_EQ(round_scale_up(1.01), 2);

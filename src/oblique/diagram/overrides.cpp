@@ -160,7 +160,7 @@ class Finder {
       const auto [end, error] = std::from_chars(which.data(), which.data() + which.size(), number);
       if (error == std::errc() && number >= 1 && number <= wires.size()) return wires[number - 1];
       report(fmt::format("input '{}' has no wire {}", input, which),
-             fmt::format("a number from 1 to {}", wires.size()));
+             wires.size() == 1 ? "1" : fmt::format("a number from 1 to {}", wires.size()));
       return std::nullopt;
     }
     std::vector<Wire> found;

@@ -115,7 +115,8 @@ TEST(HeldSlide, IsToldOf) {
   ASSERT_EQ(run.warnings.size(), 1U);
   EXPECT_EQ(
       text::to_string(run.warnings.front()),
-      "d.toml: 's' (in > 0) stops on the surface that it slid along at t = 0.5 s, where nothing moves it "
+      "d.toml: 's' (in > 0) stops on the switching surface that it slid along at t = 0.5 s, where nothing "
+      "moves it "
       "any more: rounding decides on which side it stays\n  remedy: give the comparison a hysteresis, or "
       "do not read it while it rests");
   const oblique::solve::Run smooth =

@@ -19,8 +19,11 @@ constexpr double kSingular = 1e-6;
 /// crossing it is of third order in the way, of a fold of third order in its root. Where no step leads
 /// nearer, one of two folds a little way apart, farther away is near.
 constexpr double kNearCrossing = 1e-5, kNearFold = 1e-9, kNearLastFold = 1e-6;
-/// From this many sizes away on a group may go to infinity.
-constexpr double kFar = 300;
+/// From this many sizes away on a group may go to infinity. One that is followed by Newton's method passes it
+/// from there: its rounding grows with the third power of the distance (a body that is told of by a point so
+/// far away turns by that point's rounding, and the other end of the lever moves by as much more). So no pose
+/// of it is told beyond kFarthest.
+constexpr double kFar = 300, kFarthest = 1e6;
 
 /// Group `g` in `next`, at the states of `next_drives`, in that of its modes to which its velocity leads
 /// within `dt`; false where none is near.
@@ -150,35 +153,50 @@ Crossing end_at(BranchWalk& walk, std::size_t g, double t, double tau, const Sin
   return Crossing::limit;
 }
 
-/// Passes infinity: x = c + k/(t∞ − t), so that the time to it is Δ = 2 ẋ²/(ẋ·ẍ), and a way h from here
-/// stands x + ẋ Δ h/(Δ − h), on either side.
+/// How long a point that goes away as x = c + k/(t∞ − t) is from infinity: 2 ẋ²/(ẋ·ẍ).
+double time_to_infinity(const PointState& point) {
+  return 2 * point.velocity.squaredNorm() / point.velocity.dot(point.acceleration);
+}
+
+/// Passes infinity: a way h from here, and Δ before it, a point stands at x + ẋ Δ h/(Δ − h), on either side.
 Crossing cross_infinity(BranchWalk& walk, std::size_t g, double t) {
   GroupSolver& solver = walk.kinematics.solver(g);
   const Group& group = walk.kinematics.structure().groups[g];
+  const Vector2d origin = walk.here.points.front().position;  // the points of the frame come first
   const auto farthest =
       *std::max_element(group.points.begin(), group.points.end(), [&](std::size_t a, std::size_t b) {
-        return walk.here.points[a].position.norm() < walk.here.points[b].position.norm();
+        return (walk.here.points[a].position - origin).norm() <
+               (walk.here.points[b].position - origin).norm();
       });
   const PointState& point = walk.here.points[farthest];
-  const double left = 2 * point.velocity.squaredNorm() / point.velocity.dot(point.acceleration);
+  const double left = time_to_infinity(point);
   const double radian = walk.duration_of_degree * 180 / std::numbers::pi;
   constexpr double kBrief = 0.05, kAtIt = 1e-9;  // rad
   if (!((t - walk.time) * left > 0 && std::abs(left) < kBrief * radian)) return Crossing::regular;
+  const double away = solver.distance(walk.here);
+  const double at_it = solver.is_tracked() ? std::abs(left) * away / kFarthest : kAtIt * radian;
   const bool at_singularity = (t - walk.time - 2 * left) * left <= 0;
-  if (at_singularity && std::abs(t - walk.time - left) < kAtIt * radian) {
+  if (at_singularity && std::abs(t - walk.time - left) < at_it) {
     walk.show_open(t, g);
     return Crossing::at_singularity;
   }
   const double to = at_singularity ? t : walk.time + 2 * left;
-  const double h = to - walk.time, away = solver.distance(walk.here);
+  const double h = to - walk.time;
   walk.predict(h);
   for (const std::size_t p : group.points) walk.next.points[p] = walk.here.points[p];
   for (const std::size_t body : group.bodies) walk.next.bodies[body] = walk.here.bodies[body];
   Eigen::VectorXd step = solver.velocity(walk.here);
-  for (double& part : step) {
-    const bool goes_far = std::abs(part * left) > 0.1 * away * walk.mechanism.largest_length();
-    part *= goes_far ? left * h / (left - h) : h;
+  const auto leap = [&](Eigen::Index k) {  // a point as a whole: how its axes lie says nothing
+    const bool goes_far =
+        std::abs(left) * step.segment<2>(k).norm() > 0.1 * away * walk.mechanism.largest_length();
+    step.segment<2>(k) *= goes_far ? left * h / (left - h) : h;
+  };
+  Eigen::Index k = 0;
+  for (std::size_t i = 0; i < group.equations.platforms.size(); ++i, k += 3) {
+    leap(k);
+    step(k + 2) *= h;
   }
+  for (; k < step.size(); k += 2) leap(k);
   solver.displace(step, walk.next);
   walk.drives_at(to, walk.next_drives);
   walk.next.status = Status::ok;
@@ -191,7 +209,7 @@ Crossing cross_infinity(BranchWalk& walk, std::size_t g, double t) {
   const double beyond = solver.distance(walk.next), before = std::abs(walk.courses[g].determinant);
   const double there = std::abs(walk.determinants[g]);
   const bool is_beyond = (h - left) * left > 0;
-  const bool other_side = walk.next.points[farthest].position.dot(point.position) < 0;
+  const bool other_side = (walk.next.points[farthest].position - origin).dot(point.position - origin) < 0;
   if (other_side != is_beyond || !(beyond > away / 2)) return Crossing::regular;
   if (at_singularity) {
     walk.shown = walk.next;
@@ -199,7 +217,10 @@ Crossing cross_infinity(BranchWalk& walk, std::size_t g, double t) {
     return Crossing::at_singularity;
   }
   if (!(beyond < 2 * away && there > before / 4 && there < 4 * before)) return Crossing::regular;
-  walk.events.push_back({MotionEvent::Kind::infinity, walk.time + left, g});
+  // what is left out has other signs on the two sides
+  const double seen_back = to + time_to_infinity(walk.next.points[farthest]);
+  const double time = (walk.time + left + seen_back) / 2;
+  walk.events.push_back({MotionEvent::Kind::infinity, time, g});
   if (walk.stops_at_infinity) return Crossing::passed;
   walk.accept(to);
   walk.step = std::abs(left);
@@ -239,11 +260,15 @@ Crossing step_towards(BranchWalk& walk, double t) {
   // nearer to where modes meet than this no pose tells them apart, so none is taken there
   for (std::size_t g = 0; g < walk.courses.size(); ++g) {
     const BranchWalk::Course& course = walk.courses[g];
-    if (std::abs(course.determinant) < kSingular * course.peak &&
-        course.derivative * course.determinant * direction < 0) {
-      const Crossing crossing = cross_at(walk, g, t, false);
-      if (crossing != Crossing::regular) return crossing;
+    if (!(course.derivative * course.determinant * direction < 0)) continue;
+    Crossing crossing = Crossing::regular;
+    if (std::abs(course.determinant) < kSingular * course.peak) {
+      crossing = cross_at(walk, g, t, false);
+    } else if (const GroupSolver& solver = walk.kinematics.solver(g);
+               solver.is_tracked() && solver.distance(walk.here) > kFar) {
+      crossing = cross_infinity(walk, g, t);
     }
+    if (crossing != Crossing::regular) return crossing;
   }
   while (true) {
     // the last step ends at t itself

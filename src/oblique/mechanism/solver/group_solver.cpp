@@ -254,7 +254,11 @@ void GroupSolver::displace(const VectorXd& step, Configuration& here) const {
   Index k = 0;
   for (std::size_t i = 0; i < state_.platforms.size(); ++i, k += 3) {
     const std::size_t base = bodies_.platforms()[i].base;
-    if (std::binary_search(group_.points.begin(), group_.points.end(), base))
+    // two bodies that are pinned to each other may have the same base, which goes the way once
+    const auto is_moved =
+        std::any_of(bodies_.platforms().begin(), bodies_.platforms().begin() + static_cast<std::ptrdiff_t>(i),
+                    [&](const RigidBody& earlier) { return earlier.base == base; });
+    if (!is_moved && std::binary_search(group_.points.begin(), group_.points.end(), base))
       here.points[base].position += step.segment<2>(k);
     BodyState& body = here.bodies[equations_.platforms[i]];
     const double angle = step(k + 2) / system_.size();

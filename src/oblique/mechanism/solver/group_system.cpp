@@ -223,8 +223,20 @@ bool GroupSystem::solve() {
 }
 
 double GroupSystem::normalised_determinant() const {
+  // The determinant is the same whichever point of a body its place is told of, the lengths of the rows are
+  // not: a lever may be as long as the way to a body that is far away, which says nothing of its modes.
+  constexpr double kLongestLever = 4;  // sizes; of conditions within the reach of the links it is about 1
+  const auto levers = static_cast<Index>(3 * equations_.platforms.size());
   double lengths = 1;
-  for (Index row = 0; row < jacobian_.rows(); ++row) lengths *= jacobian_.row(row).norm();
+  for (Index row = 0; row < jacobian_.rows(); ++row) {
+    double squares = 0;
+    for (Index column = 0; column < jacobian_.cols(); ++column) {
+      const double part = std::abs(jacobian_(row, column));
+      const double counted = column < levers && column % 3 == 2 ? std::min(part, kLongestLever) : part;
+      squares += counted * counted;
+    }
+    lengths *= std::sqrt(squares);
+  }
   return determinant_ / lengths;
 }
 

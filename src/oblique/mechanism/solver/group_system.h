@@ -42,7 +42,8 @@ class GroupSystem {
   const Eigen::VectorXd& right() const { return right_; }
   const Eigen::VectorXd& solution() const { return solution_; }
 
-  /// The determinant of J, as it was solved last, over the product of the lengths of its rows; in [−1, 1].
+  /// The determinant of J, as it was solved last, over the product of the lengths of its rows; in [−1, 1],
+  /// but for bodies that are far away.
   double normalised_determinant() const;
 
  private:

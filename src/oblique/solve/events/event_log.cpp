@@ -88,7 +88,7 @@ void EventLog::warn_of_no_side(std::uint32_t unit, double t) {
 
 void EventLog::warn_of_halt(std::uint32_t unit, double t) {
   warn_of_unit(
-      unit, "stops on the surface that it slid along",
+      unit, "stops on the switching surface that it slid along",
       fmt::format(" at t = {:.9g} s, where nothing moves it any more: rounding decides on which side "
                   "it stays",
                   t),

@@ -10,87 +10,75 @@
 
 namespace oblique::solve {
 
-Segments::Segments(const Parts& parts)
-    : program_(parts.program),
-      diagram_(parts.diagram),
-      options_(parts.options),
-      workspace_(parts.workspace),
-      switching_(parts.switching),
-      clock_(parts.clock),
-      branches_(parts.branches),
-      sampler_(parts.sampler),
-      overloads_(parts.overloads),
-      states_(parts.states) {}
-
 void Segments::follow_phases(double t) {
   constexpr int kMostPhases = 1000;
-  if (diagram_.timeline.phases.empty()) return;
-  for (int begun = 0; clock_.is_over(t, switching_.evaluate(t, states_)); ++begun) {
+  if (parts_.diagram.timeline.phases.empty()) return;
+  for (int begun = 0; parts_.clock.is_over(t, parts_.switching.evaluate(t, parts_.states)); ++begun) {
     if (begun > kMostPhases) {
       throw SolveError(
           SolveError::Kind::chatter, t,
-          {{diagram_.file, {}},
+          {{parts_.diagram.file, {}},
            fmt::format("the phases of the timeline end at once, one after the other, at t = {:.6g} s", t),
            {},
            "give them a condition that is not true already, or a time"});
     }
-    clock_.advance(t);
-    switching_.settle(t, states_);
+    parts_.clock.advance(t);
+    parts_.switching.settle(t, parts_.states);
   }
 }
 
 /// Settles everything at t, where an event has come or a branch of an algebraic loop has ended.
 void Segments::settle(double t, bool at_branch_end) {
-  workspace_.follow_branches(false);
-  if (at_branch_end) branches_.pass(t, states_);
-  switching_.settle(t, states_);
+  parts_.workspace.follow_branches(false);
+  if (at_branch_end) parts_.branches.pass(t, parts_.states);
+  parts_.switching.settle(t, parts_.states);
   follow_phases(t);
-  workspace_.follow_branches(true);
+  parts_.workspace.follow_branches(true);
 }
 
 /// Whether a switch turns over between `from` and t, where a branch of an algebraic loop has ended; t is
 /// then its time. The branch may end only because the switch was not turned over.
 bool Segments::turns_before(double from, double& t, const Interpolant& solution) {
-  if (program_.switches().empty() || !(t > from)) return false;
+  if (parts_.program.switches().empty() || !(t > from)) return false;
   const double sample_times[] = {t};
-  workspace_.pass_failing_loops(true);
-  const auto event = switching_.search(from, sample_times, solution);
-  workspace_.pass_failing_loops(false);
+  parts_.workspace.pass_failing_loops(true);
+  const auto event = parts_.switching.search(from, sample_times, solution);
+  parts_.workspace.pass_failing_loops(false);
   if (event) t = *event;
   return event.has_value();
 }
 
 void Segments::end_branch(double from, const std::vector<double>& last, double& t) {
-  std::vector<double> rates(states_.size());
-  for (std::size_t i = 0; i < rates.size(); ++i) rates[i] = (states_[i] - last[i]) / (t - from);
+  std::vector<double> rates(parts_.states.size());
+  for (std::size_t i = 0; i < rates.size(); ++i) rates[i] = (parts_.states[i] - last[i]) / (t - from);
   const StraightLine ahead(from, last, rates);
   const bool turned = turns_before(from, t, ahead);
-  ahead.states_at(t, states_);
+  ahead.states_at(t, parts_.states);
   settle(t, !turned);
 }
 
 void Segments::begin(double t) {
   std::optional<double> wait;
-  if (switching_.active()) {
-    wait = switching_.known_wait(t, states_);
+  if (parts_.switching.active()) {
+    wait = parts_.switching.known_wait(t, parts_.states);
     for (int settled = 0; wait && !(*wait > 0); ++settled) {
       constexpr int kMostSettled = 1000;
-      if (settled > kMostSettled) switching_.throw_endless(t);
+      if (settled > kMostSettled) parts_.switching.throw_endless(t);
       settle(t, false);
-      wait = switching_.known_wait(t, states_);
+      wait = parts_.switching.known_wait(t, parts_.states);
     }
   }
-  const double last = std::min(clock_.end(), options_.until);
+  const double last = std::min(parts_.clock.end(), parts_.options.until);
   end_ = wait ? std::min(t + *wait, last) : last;
   length_ = wait ? std::min(*wait, last - t) : last - t;
 }
 
 bool Segments::finish_step(double from, double& t, std::span<const double> sample_times,
                            const Interpolant& solution) {
-  std::optional<double> branch_end = branches_.find(from, t, solution);
+  std::optional<double> branch_end = parts_.branches.find(from, t, solution);
   std::vector<double> times_before;
   if (branch_end) {
-    t = std::max(from, branches_.before(*branch_end));
+    t = std::max(from, parts_.branches.before(*branch_end));
     std::copy_if(sample_times.begin(), sample_times.end(), std::back_inserter(times_before),
                  [&](double sample_time) { return sample_time < t; });
     times_before.push_back(t);
@@ -101,7 +89,8 @@ bool Segments::finish_step(double from, double& t, std::span<const double> sampl
   for (double begin = from;;) {
     while (!sample_times.empty() && sample_times.front() <= begin) sample_times = sample_times.subspan(1);
     event.reset();
-    if (!program_.switches().empty() && t > begin) event = switching_.search(begin, sample_times, solution);
+    if (!parts_.program.switches().empty() && t > begin)
+      event = parts_.switching.search(begin, sample_times, solution);
     const double end = event ? *event : t;
     const double reached = look_through(begin, end, sample_times, solution);
     if (halted()) {
@@ -121,22 +110,22 @@ bool Segments::finish_step(double from, double& t, std::span<const double> sampl
     branch_end.reset();
     break;
   }
-  const bool ends = event || branch_end || (t >= end_ && t < options_.until);
-  if (!ends || t >= options_.until) return false;
+  const bool ends = event || branch_end || (t >= end_ && t < parts_.options.until);
+  if (!ends || t >= parts_.options.until) return false;
   if (branch_end) {
     if (turns_before(t, *branch_end, solution)) {
       t = *branch_end;
       branch_end.reset();
     } else {
-      branches_.find(t, *branch_end, solution);  // it jumps from the last place on the branch
+      parts_.branches.find(t, *branch_end, solution);  // it jumps from the last place on the branch
       t = *branch_end;
     }
   }
   if (!settled) {
-    solution.states_at(t, states_);
+    solution.states_at(t, parts_.states);
     settle(t, branch_end.has_value());
   }
-  if (overloads_) overloads_->restart(t, states_);
+  if (parts_.overloads) parts_.overloads->restart(t, parts_.states);
   return true;
 }
 
@@ -147,14 +136,14 @@ double Segments::look_through(double begin, double end, std::span<const double> 
   double from = begin;
   const auto to = [&](double time) {
     if (halted() || !(time > from)) return;
-    if (overloads_) time = overloads_->advance(time, solution);
-    sampler_.watch(from, time, solution);
+    if (parts_.overloads) time = parts_.overloads->advance(time, solution);
+    parts_.sampler.watch(from, time, solution);
     from = time;
   };
   for (const double sample_time : sample_times) to(std::min(sample_time, end));
   to(end);
   const double reached = halted() ? from : end;
-  sampler_.advance(reached, solution);
+  parts_.sampler.advance(reached, solution);
   return reached;
 }
 
@@ -164,29 +153,30 @@ double Segments::look_through(double begin, double end, std::span<const double> 
 bool Segments::turns_without_effect(double at, std::span<const double> sample_times,
                                     const Interpolant& solution) {
   std::vector<std::vector<double>> states_there, before;
-  std::vector<double> after(states_.size());
-  bool known = !switching_.slides();
+  std::vector<double> after(parts_.states.size());
+  bool known = !parts_.switching.slides();
   for (const double sample_time : sample_times) {
-    solution.states_at(sample_time, states_there.emplace_back(states_.size()));
-    known = known && switching_.derivatives(sample_time, states_there.back().data(),
-                                            before.emplace_back(states_.size()).data());
+    solution.states_at(sample_time, states_there.emplace_back(parts_.states.size()));
+    known = known && parts_.switching.derivatives(sample_time, states_there.back().data(),
+                                                  before.emplace_back(parts_.states.size()).data());
   }
-  std::vector<double> discrete_states(workspace_.discrete_states().begin(),
-                                      workspace_.discrete_states().end());
-  solution.states_at(at, states_);
-  const std::vector<double> states = states_;
+  std::vector<double> discrete_states(parts_.workspace.discrete_states().begin(),
+                                      parts_.workspace.discrete_states().end());
+  solution.states_at(at, parts_.states);
+  const std::vector<double> states = parts_.states;
   settle(at, false);
-  if (!known || switching_.slides() || states_ != states) return false;
-  for (const network::Switch& s : program_.switches())
-    discrete_states[s.discrete_state] = workspace_.discrete_state(s.discrete_state);
-  if (!std::equal(discrete_states.begin(), discrete_states.end(), workspace_.discrete_states().begin()))
+  if (!known || parts_.switching.slides() || parts_.states != states) return false;
+  for (const network::Switch& s : parts_.program.switches())
+    discrete_states[s.discrete_state] = parts_.workspace.discrete_state(s.discrete_state);
+  if (!std::equal(discrete_states.begin(), discrete_states.end(), parts_.workspace.discrete_states().begin()))
     return false;
   for (std::size_t k = 0; k < sample_times.size(); ++k) {
-    if (!switching_.derivatives(sample_times[k], states_there[k].data(), after.data()) || before[k] != after)
+    if (!parts_.switching.derivatives(sample_times[k], states_there[k].data(), after.data()) ||
+        before[k] != after)
       return false;
   }
-  if (overloads_) overloads_->restart(at, states_);
-  switching_.known_wait(at, states_);  // announces what ends the segment
+  if (parts_.overloads) parts_.overloads->restart(at, parts_.states);
+  parts_.switching.known_wait(at, parts_.states);  // announces what ends the segment
   return true;
 }
 

@@ -36,7 +36,7 @@ class Segments {
     std::vector<double>& states;
   };
   /// All of them must outlive this.
-  explicit Segments(const Parts& parts);
+  explicit Segments(const Parts& parts) : parts_(parts) {}
 
   /// Begins the phases that are due at t.
   void follow_phases(double t);
@@ -53,7 +53,7 @@ class Segments {
   /// Settles what there is at t, where a branch ends, the states having gone straight on from `last`.
   void end_branch(double from, const std::vector<double>& last, double& t);
   /// Whether an overload has ended the run.
-  bool halted() const { return overloads_ && overloads_->halted(); }
+  bool halted() const { return parts_.overloads && parts_.overloads->halted(); }
 
  private:
   void settle(double t, bool at_branch_end);
@@ -62,16 +62,7 @@ class Segments {
                       const Interpolant& solution);
   bool turns_without_effect(double at, std::span<const double> sample_times, const Interpolant& solution);
 
-  const network::Program& program_;
-  const diagram::FlatDiagram& diagram_;
-  const RunOptions& options_;
-  network::Workspace& workspace_;
-  Switching& switching_;
-  PhaseClock& clock_;
-  BranchWatch& branches_;
-  Sampler& sampler_;
-  std::optional<OverloadWatch>& overloads_;
-  std::vector<double>& states_;
+  Parts parts_;
   double end_ = 0, length_ = 0;  ///< [s]
 };
 
