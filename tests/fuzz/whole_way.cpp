@@ -66,7 +66,8 @@ bool is_moved_by_rounding(const Trial& trial) {
 /// known-gaps.md), and to refuse is not to answer wrongly.
 bool sought_in_vain(const Trial& trial) {
   constexpr std::string_view kInVain[] = {"not come to rest", "no position of its switch agrees",
-                                          "follow from each other in a circle", "is singular at t = 0 s"};
+                                          "follow from each other in a circle", "is singular at t = 0 s",
+                                          "has no solution near"};
   return trial.end == End::refused &&
          std::any_of(std::begin(kInVain), std::end(kInVain),
                      [&](std::string_view words) { return trial.message.find(words) != std::string::npos; });

@@ -55,10 +55,12 @@ bool FaintTurns::is_faint(const Approach& approach, double error, double excursi
   const double since = t - last_turn;
   constexpr double kAfar = 30, kNear = 10;  // errors
   constexpr double kSlow = 1000;            // errors: a decay to within them takes some 30 of its times
+  constexpr double kStandsStill = 1e-5;     // of the excursion: short steps make much of their errors
   constexpr double kZenoTime = 1e-4;        // of the run: turns that come more quickly may be those of a ball
   const bool piles_up = last_turn > 0 && since < kZenoTime * span_;
   const bool stays_near = excursion <= kNear * error && !piles_up;
-  const bool decays = excursion >= kAfar * error && approach.speed * since <= kSlow * error;
+  const bool decays = excursion >= kAfar * error &&
+                      approach.speed * since <= std::max(kSlow * error, kStandsStill * excursion);
   return approach.before <= error && (decays || stays_near);
 }
 

@@ -122,7 +122,8 @@ void Positions::prefer_where_nothing_changes(std::uint32_t unit, const std::vect
     return workspace_.discrete_state(program_.switches()[s].discrete_state) == preferred[s];
   };
   if (std::all_of(members.begin(), members.end(), is_preferred)) return;
-  const std::vector<double> positions(workspace_.discrete_states().begin(), workspace_.discrete_states().end());
+  const std::vector<double> positions(workspace_.discrete_states().begin(),
+                                      workspace_.discrete_states().end());
   using Equations = std::pair<std::vector<double>, std::vector<double>>;  // dx/dt and event functions
   const auto evaluate = [&]() -> std::optional<Equations> {
     Equations found{std::vector<double>(program_.n_states()), std::vector<double>(preferred.size())};
@@ -132,7 +133,8 @@ void Positions::prefer_where_nothing_changes(std::uint32_t unit, const std::vect
     return found;
   };
   const auto before = evaluate();
-  for (const std::uint32_t s : members) workspace_.set_discrete_state(program_.switches()[s].discrete_state, preferred[s]);
+  for (const std::uint32_t s : members)
+    workspace_.set_discrete_state(program_.switches()[s].discrete_state, preferred[s]);
   if (!before || evaluate() != before) workspace_.load_discrete_states(positions);
 }
 

@@ -69,10 +69,14 @@ double SwitchSettling::near_size(std::size_t s) const {
 
 /// Whether an event function counts as zero, so that the solution decides. That of a switch that is announced
 /// lies a little past it; one that rested beside a slide, and has left it by more than that drifts, does not
-/// rest.
+/// rest. One that is at zero to rounding and has not been announced, of a decay perhaps, waits until it is,
+/// unless the run starts or events have set states.
 bool SwitchSettling::is_near(std::size_t s) const {
-  const double near = near_size(s);
-  return std::abs(event_functions_[s]) <= (announced_[s] ? std::max(near, SlidingMode::drift()) : near);
+  const double near = near_size(s), size = std::abs(event_functions_[s]);
+  if (announced_[s]) return size <= std::max(near, SlidingMode::drift());
+  const bool waits = near <= event_functions_.thresholds().rounding(s) && !starting_ && !set_ &&
+                     !is_announced(program_.switch_structure().unit[s]);
+  return !waits && size <= near;
 }
 
 /// Whether any switch of a unit is.
@@ -126,7 +130,7 @@ bool SwitchSettling::turn_by_event_functions(double t, Units& at_zero, std::vect
       const std::uint32_t unit = structure.unit[s];
       if (!listed[unit]) at_zero.push_back(unit);
       listed[unit] = true;
-    } else {
+    } else if (event_functions_.is_off_zero(s)) {
       asked = event_functions_[s] > 0 ? 1 : 0;
     }
     if (asked == before) continue;

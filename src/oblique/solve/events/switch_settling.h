@@ -26,8 +26,8 @@ class SwitchSettling {
   SwitchSettling(const network::Program& program, network::Workspace& workspace, SlidingMode& slide,
                  EventFunctions& event_functions, const Announced& announced, EventLog& log, double span);
 
-  /// A new instant: events have set no states at it yet.
-  void begin_instant() { set_ = false; }
+  /// A new instant after the start: events have set no states at it yet.
+  void begin_instant() { set_ = starting_ = false; }
   /// Begins to settle: what lies on its switching surface is decided anew, and what slides is looked at as if
   /// it came there now.
   void begin();
@@ -88,6 +88,7 @@ class SwitchSettling {
 
   std::vector<bool> stays_;    ///< see `stays`
   std::vector<bool> decided_;  ///< of each unit: by where it drifts, once since `begin`
+  bool starting_ = true;       ///< until the first instant after the start
   bool set_ = false;           ///< whether events have set states at this instant
   Units slid_;                 ///< what slid when the settling began
   std::vector<bool> rested_;   ///< the event functions that then stayed at zero along with it
