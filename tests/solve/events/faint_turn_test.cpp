@@ -2,6 +2,7 @@
 // Comparisons of what decays: the sign is known for ever, and the absolute tolerance hides it.
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -134,6 +135,34 @@ pulses = { type = "pulse-train", period = 0.8, width = 0.28 }
         EXPECT_THAT(event.what, StartsWith("pulses")) << tolerance;
       EXPECT_THAT(found.warnings, IsEmpty()) << tolerance;
     }
+  }
+}
+
+// 0.5 cos t comes back to 0.5, the level of the counter, and no farther: what it counts, errors decide. The
+// counter at 0.4 passes its level, and that at 0.6 never comes to it.
+TEST(FaintTurn, OfWhatTouchesItsLevelIsToldOf) {
+  for (const auto& [weight, counts, warned] :
+       {std::tuple(0.5 / 0.4, 3.0, false), {1.0, -1.0, true}, {0.5 / 0.6, 0.0, false}}) {
+    const testing::Compiled made(fmt::format(R"(
+x = {{ type = "integrator", in = "v", initial = 1 }}
+v = {{ type = "integrator", in = "-x" }}
+n = {{ type = "counter", clock = "{}*x" }}
+)",
+                                             0.5 * weight));
+    bool any = false;
+    for (const double tolerance : {1e-5, 1e-6, 1e-7, 1e-8, 1e-9}) {
+      const oblique::solve::Run run = testing::run_of(made, {.until = 20, .tolerance = tolerance});
+      const double counted = testing::row_values(run, "n.out").back();
+      any = any || !run.warnings.empty();
+      if (counted != 0 && warned) {
+        EXPECT_THAT(run.warnings, SizeIs(1)) << tolerance;
+      }
+      if (!warned) {
+        EXPECT_EQ(counted, counts) << tolerance;
+        EXPECT_THAT(run.warnings, IsEmpty()) << tolerance;
+      }
+    }
+    EXPECT_EQ(any, warned) << "at no tolerance do errors let it pass, so that nothing is shown";
   }
 }
 

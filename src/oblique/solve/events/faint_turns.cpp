@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace oblique::solve {
 namespace {
@@ -27,7 +28,8 @@ FaintTurns::FaintTurns(const network::Program& program, network::Workspace& work
       span_(span),
       states_(program.n_states()),
       rates_(program.n_states()),
-      event_functions_(program.switches().size()) {}
+      event_functions_(program.switches().size()),
+      event_function_rates_(program.switches().size()) {}
 
 void FaintTurns::approach(double from, double at, const std::vector<std::pair<std::uint32_t, double>>& turned,
                           const Interpolant& solution) {
@@ -36,16 +38,28 @@ void FaintTurns::approach(double from, double at, const std::vector<std::pair<st
     if (!program_.switches()[s].rate) approaches_.push_back({s});  // the others follow the time alone
   }
   if (approaches_.empty() || states_.empty()) return approaches_.clear();
-  solution.states_at(from, states_);
-  if (!program_.event_functions(from, states_.data(), event_functions_.data(), workspace_))
-    return approaches_.clear();
-  for (Approach& a : approaches_) a.before = std::abs(event_functions_[a.number]);
-  solution.states_at(at, states_);
-  solution.rates_at(at, rates_);
-  const auto there = program_.event_functions(at, states_.data(), event_functions_.data(), workspace_);
-  if (!there) return approaches_.clear();
-  there->event_function_rates(rates_.data(), event_functions_.data());
-  for (Approach& a : approaches_) a.speed = std::abs(event_functions_[a.number]);
+  if (!evaluate(from, solution)) return approaches_.clear();
+  for (Approach& a : approaches_) {
+    a.before = std::abs(event_functions_[a.number]);
+    a.overshoot = event_function_rates_[a.number];
+  }
+  if (!evaluate(at, solution)) return approaches_.clear();
+  for (Approach& a : approaches_) {
+    const double rate = event_function_rates_[a.number];
+    const double deceleration = (a.overshoot - rate) / (at - from) * (rate > 0 ? 1 : -1);
+    a.speed = std::abs(rate);
+    a.overshoot =
+        deceleration > 0 ? rate * rate / (2 * deceleration) : std::numeric_limits<double>::infinity();
+  }
+}
+
+/// All event functions and their rates along a solution.
+bool FaintTurns::evaluate(double t, const Interpolant& solution) {
+  solution.states_at(t, states_);
+  solution.rates_at(t, rates_);
+  const auto there = program_.event_functions(t, states_.data(), event_functions_.data(), workspace_);
+  if (there) there->event_function_rates(rates_.data(), event_function_rates_.data());
+  return there.has_value();
 }
 
 /// At t, by the error of the event function, how far it has been from zero since it turned over last, and
@@ -61,7 +75,8 @@ bool FaintTurns::is_faint(const Approach& approach, double error, double excursi
   const bool stays_near = excursion <= kNear * error && !piles_up;
   const bool decays = excursion >= kAfar * error &&
                       approach.speed * since <= std::max(kSlow * error, kStandsStill * excursion);
-  return approach.before <= error && (decays || stays_near);
+  const bool touches = excursion >= kAfar * error && approach.overshoot <= error;
+  return (approach.before <= error && (decays || stays_near)) || touches;
 }
 
 std::vector<FaintTurn> FaintTurns::due(double t, const Announced& announced, EventFunctions& event_functions,

@@ -17,7 +17,8 @@ namespace oblique::solve {
 /// to zero, and never passes it; its states are known to the absolute tolerance, and one of their errors lets
 /// it pass. It is then within its error during the whole step in which it passes, and so slow that in all the
 /// time that it took to come it would not have moved by more than some errors. So is each half-wave of an
-/// oscillation that has decayed, and what never came farther than its errors. Not installed.
+/// oscillation that has decayed, what never came farther than its errors, and what turns back within them: a
+/// level that is as high as an amplitude. Not installed.
 class FaintTurns {
  public:
   /// `span` is the length of the run [s]. All must outlive this.
@@ -43,17 +44,19 @@ class FaintTurns {
  private:
   struct Approach {
     std::uint32_t number = 0;
-    double before = 0;  ///< magnitude of the event function where the step began
-    double speed = 0;   ///< magnitude of its rate at the turn [1/s]
+    double before = 0;     ///< magnitude of the event function where the step began
+    double speed = 0;      ///< magnitude of its rate at the turn [1/s]
+    double overshoot = 0;  ///< how far it gets if it goes on to slow down as before
   };
 
+  bool evaluate(double t, const Interpolant& solution);
   bool is_faint(const Approach& approach, double error, double excursion, double t, double last_turn) const;
 
   const network::Program& program_;
   network::Workspace& workspace_;
   double span_;
   std::vector<Approach> approaches_;
-  std::vector<double> states_, rates_, event_functions_;
+  std::vector<double> states_, rates_, event_functions_, event_function_rates_;
   std::vector<FaintTurn> found_;
 };
 
