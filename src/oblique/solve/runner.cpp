@@ -5,14 +5,12 @@
 
 #include <oblique/network/program/program.h>
 #include <oblique/solve/events/branch_end.h>
-#include <oblique/solve/integrator/cvodes_solver.h>
-#include <oblique/solve/integrator/lost_outputs.h>
+#include <oblique/solve/integrator/integration.h>
 #include <oblique/solve/integrator/method.h>
 #include <oblique/solve/integrator/overload.h>
 #include <oblique/solve/integrator/phase_clock.h>
 #include <oblique/solve/integrator/sampler.h>
 #include <oblique/solve/integrator/segments.h>
-#include <oblique/solve/integrator/short_steps.h>
 #include <oblique/solve/integrator/source_watch.h>
 #include <oblique/solve/integrator/switched_system.h>
 #include <oblique/solve/operating_point/run_start.h>
@@ -71,11 +69,7 @@ class Runner {
     try {
       sampler_.advance(begin_, ConstantStates(states_));
       if (overloads_) overloads_->restart(begin_, states_);
-      if (program_.n_states() > 0) {
-        integrate();
-      } else {
-        follow();
-      }
+      step_to_end();
     } catch (const Interrupted&) {
       end_ = last_whole_.time();
       last_whole_.restore(parts());
@@ -88,7 +82,10 @@ class Runner {
       sampler_.result.warnings.insert(sampler_.result.warnings.end(), warnings->begin(), warnings->end());
     for (text::Diagnostic& warning : sampler_.warnings())
       sampler_.result.warnings.push_back(std::move(warning));
-    if (lost_) add_warnings_of_lost_outputs();
+    if (integration_) {
+      for (text::Diagnostic& warning : integration_->warnings())
+        sampler_.result.warnings.push_back(std::move(warning));
+    }
     if (overloads_) {
       sampler_.result.peaks = overloads_->peaks();
       sampler_.result.overloads = overloads_->overloads();
@@ -101,13 +98,8 @@ class Runner {
   long steps() const { return steps_; }
   /// And what it did not see.
   Unseen unseen() const {
-    Unseen unseen;
-    if (growth_) unseen.growth = growth_->found();
-    if (small_) unseen.small = small_->found();
+    Unseen unseen = integration_ ? integration_->unseen() : Unseen{};
     unseen.faint = switching_.faint_turns();
-    std::erase_if(unseen.small, [this](const SmallState& small) {  // it was asked for
-      return program_.states()[small.state].tolerance > 0;
-    });
     return unseen;
   }
 
@@ -133,33 +125,9 @@ class Runner {
   /// Whether growth was not seen so long ago that the run, which must be made again, is not worth its end.
   bool ends_unseen() {
     constexpr long kMore = 1000;
-    if (!may_end_unseen_ || growth_->found().empty()) return false;
+    if (!may_end_unseen_ || !integration_ || !integration_->any_unseen_growth()) return false;
     if (!steps_unseen_) steps_unseen_ = steps_;
     return steps_ > 2 * *steps_unseen_ + kMore;
-  }
-
-  /// But of those that show a state that is too small, which is told of apart.
-  void add_warnings_of_lost_outputs() {
-    std::vector<bool> told(diagram_.outputs.size(), false);
-    for (const SmallState& small : unseen().small) {
-      if (small.reading < told.size()) told[small.reading] = true;
-    }
-    for (text::Diagnostic& warning : lost_->warnings(told))
-      sampler_.result.warnings.push_back(std::move(warning));
-  }
-
-  bool read_outputs(double t, const double* x, double* values) {
-    std::vector<double> signals(program_.n_signals());
-    if (!switching_.signals(t, x, signals.data())) return false;
-    for (const diagram::FlatOutput& output : diagram_.outputs)
-      *values++ = output.scale * signals[program_.signal_index(output.signal)];
-    return true;
-  }
-
-  /// What shows that a state is not known: the outputs, then the event functions of the switches.
-  bool read(double t, const double* x, double* values) {
-    return read_outputs(t, x, values) &&
-           program_.event_functions(t, x, values + diagram_.outputs.size(), workspace_).has_value();
   }
 
   bool goes_on(double t) {
@@ -169,102 +137,69 @@ class Runner {
     return true;
   }
 
-  void integrate() {
+  /// Begins the steps.
+  void begin_steps() {
+    t_ = begin_;
+    if (program_.n_states() == 0) return segments_.begin(t_);
     const MethodChoice method =
         choose_method(options_.method, program_, workspace_, begin_, states_, options_.until - begin_);
     sampler_.result.method = method;
-    settings_ = solver_settings(program_.states(), options_, method.method, refinement_);
-    double t = begin_;
-    segments_.begin(t);
-    CvodesSolver solver(system_, t, states_, segments_.end(), segments_.length(), settings_);
-    growth_.emplace(system_, settings_);
-    growth_->restart(t, states_);
-    const std::size_t n_outputs = diagram_.outputs.size();
-    small_.emplace(
-        system_, settings_, options_.tolerance, options_.until - begin_,
-        [this](double at, const double* x, double* values) { return read(at, x, values); },
-        n_outputs + program_.switches().size(), n_outputs);
-    small_->advance(t, states_);
-    lost_.emplace(diagram_, settings_,
-                  [this](double at, const double* x, double* values) { return read_outputs(at, x, values); });
-    ShortSteps short_steps(
-        HiddenMotion(system_, settings_.relative_tolerance,
-                     settings_.own_tolerances.empty()
-                         ? std::vector<double>(states_.size(), settings_.absolute_tolerance)
-                         : settings_.own_tolerances),
-        solver, options_.until - begin_);
-    constexpr long kStepsPerReport = 256;
-    try {
-      while (goes_on(t)) {
-        const double from = t;
-        try {
-          t = solver.step();
-        } catch (const SolverFailure& failure) {
-          if (failure.kind == SolverFailure::Kind::interrupted) throw Interrupted();
-          if (failure.kind == SolverFailure::Kind::step_budget) throw;
-          const std::vector<double> last = states_;
-          switch (branches_.look_ahead(t, segments_.end(), states_, solver)) {
-            case BranchWatch::Ahead::end:
-              segments_.end_branch(from, last, t);
-              if (overloads_) overloads_->restart(t, states_);
-              segments_.begin(t);
-              solver.restart(t, states_, segments_.end(), segments_.length());
-              continue;
-            case BranchWatch::Ahead::not_yet:
-              solver.restart(t, states_, segments_.end(), segments_.end() - t);
-              continue;
-            case BranchWatch::Ahead::nothing:
-              throw;
-          }
-        }
-        const std::vector<double>& sample_times = sources_.sample_times(from, t, solver);
-        // The states are still those of `from`.
-        if (short_steps.take_back(from, states_, sample_times, segments_.end())) {
-          t = from;
-          continue;
-        }
-        if (segments_.finish_step(from, t, sample_times, solver)) {
-          segments_.begin(t);
-          solver.restart(t, states_, segments_.end(), segments_.length());
-          growth_->restart(t, states_);
-          short_steps.restart();
-        } else {
-          std::copy(solver.states().begin(), solver.states().end(), states_.begin());
-          growth_->advance(t, states_);
-          short_steps.advance(t, states_, segments_.end());
-        }
-        small_->advance(t, states_);
-        lost_->advance(t, states_);
-        ++steps_;
-        if (ends_unseen()) break;
-        if (options_.progress && steps_ % kStepsPerReport == 0)
-          options_.progress((t - begin_) / (options_.until - begin_));
-      }
-      small_->end(t, states_);
-      lost_->end(t, states_);
-    } catch (const SolverFailure& failure) {
-      throw run_error(program_, failure, solver, workspace_, diagram_.file);
-    } catch (const Interrupted&) {
-      sampler_.result.statistics = solver.statistics();
-      throw;
-    }
-    sampler_.result.statistics = solver.statistics();
+    segments_.begin(t_);
+    integration_.emplace(Integration::Parts{program_, diagram_, options_, workspace_, switching_, system_,
+                                            branches_, sources_, segments_, overloads_, states_},
+                         solver_settings(program_.states(), options_, method.method, refinement_), begin_);
   }
 
-  /// A diagram without states follows the time alone: steps as long as the rows are apart, or shorter where
-  /// that is asked for.
-  void follow() {
-    const ConstantStates no_states({});
+  /// Takes the next step; false where none came of it. A diagram without states follows the time alone: in
+  /// steps as long as the rows are apart, or shorter where that is asked for.
+  bool take_step() {
+    if (integration_) return integration_->take_step(t_);
     const double step = std::min((options_.until - begin_) / (options_.samples - 1), options_.max_step);
-    double t = begin_;
-    segments_.begin(t);
-    while (goes_on(t)) {
-      const double from = t;
-      t = std::min(segments_.end(), t + step);
-      if (segments_.end() - t < kShortest * segments_.end()) t = segments_.end();
-      if (segments_.finish_step(from, t, sources_.sample_times(from, t, no_states), no_states))
-        segments_.begin(t);
+    const double from = t_;
+    t_ = std::min(segments_.end(), t_ + step);
+    if (segments_.end() - t_ < kShortest * segments_.end()) t_ = segments_.end();
+    segments_.take_step(from, t_, sources_.sample_times(from, t_, no_states_), no_states_);
+    return true;
+  }
+
+  /// Settles what ends the piece of a step that was looked at last, and goes on from there.
+  void pass() {
+    const Segments::Passed passed = segments_.pass(t_);
+    in_step_ = passed == Segments::Passed::piece;
+    if (in_step_) return;
+    if (!integration_) {
+      if (passed == Segments::Passed::segment) segments_.begin(t_);
+      return;
     }
+    integration_->end_step(passed, t_);
+    ++steps_;
+    constexpr long kStepsPerReport = 256;
+    if (options_.progress && steps_ % kStepsPerReport == 0)
+      options_.progress((t_ - begin_) / (options_.until - begin_));
+  }
+
+  /// Looks at the next piece of a step, which `pass` then passes; false at the end of the run.
+  bool look_ahead() {
+    while (!in_step_) {
+      if (ends_unseen() || !goes_on(t_)) return false;
+      in_step_ = take_step();
+    }
+    segments_.look_ahead();
+    return true;
+  }
+
+  void step_to_end() {
+    begin_steps();
+    try {
+      while (look_ahead()) pass();
+      if (integration_) integration_->end(t_);
+    } catch (const SolverFailure& failure) {
+      throw run_error(program_, failure, integration_->solver(), workspace_, diagram_.file);
+    } catch (const Interrupted&) {
+      if (integration_) sampler_.result.statistics = integration_->solver().statistics();
+      throw;
+    }
+    if (integration_) sampler_.result.statistics = integration_->solver().statistics();
   }
 
   static constexpr double kShortest = 1e-15;  ///< of the time: the clock cannot show less
@@ -288,10 +223,10 @@ class Runner {
   std::vector<double> states_;
   Segments segments_;
   std::vector<text::Diagnostic> warnings_at_start_;
-  SolverSettings settings_;
-  std::optional<GrowthWatch> growth_;
-  std::optional<SmallStates> small_;
-  std::optional<LostOutputs> lost_;
+  const ConstantStates no_states_{{}};
+  std::optional<Integration> integration_;
+  double t_ = 0;          ///< [s] where the last piece ended
+  bool in_step_ = false;  ///< whether a step has been taken of which pieces are left
   long steps_ = 0;
   std::optional<long> steps_unseen_;  ///< until growth was first unseen
 

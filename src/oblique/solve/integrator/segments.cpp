@@ -73,60 +73,68 @@ void Segments::begin(double t) {
   length_ = wait ? std::min(*wait, last - t) : last - t;
 }
 
-bool Segments::finish_step(double from, double& t, std::span<const double> sample_times,
-                           const Interpolant& solution) {
-  std::optional<double> branch_end = parts_.branches.find(from, t, solution);
-  std::vector<double> times_before;
-  if (branch_end) {
-    t = std::max(from, parts_.branches.before(*branch_end));
-    std::copy_if(sample_times.begin(), sample_times.end(), std::back_inserter(times_before),
-                 [&](double sample_time) { return sample_time < t; });
-    times_before.push_back(t);
-    sample_times = times_before;
+std::span<const double> Segments::Step::times_left() const {
+  const auto first = std::upper_bound(times.begin(), times.end(), begin);
+  return std::span(times).subspan(static_cast<std::size_t>(first - times.begin()));
+}
+
+void Segments::take_step(double from, double t, std::span<const double> sample_times,
+                         const Interpolant& solution) {
+  step_.begin = from;
+  step_.solution = &solution;
+  step_.branch_end = parts_.branches.find(from, t, solution);
+  step_.times.assign(sample_times.begin(), sample_times.end());
+  if (step_.branch_end) {
+    t = std::max(from, parts_.branches.before(*step_.branch_end));
+    std::erase_if(step_.times, [&](double sample_time) { return !(sample_time < t); });
+    step_.times.push_back(t);
   }
-  std::optional<double> event;
+  step_.end = t;
+}
+
+double Segments::look_ahead() {
+  step_.event.reset();
+  if (!parts_.program.switches().empty() && step_.end > step_.begin)
+    step_.event = parts_.switching.search(step_.begin, step_.times_left(), *step_.solution);
+  const double end = step_.event.value_or(step_.end);
+  step_.reached = look_through(step_.begin, end, step_.times_left(), *step_.solution);
+  return step_.reached;
+}
+
+Segments::Passed Segments::pass(double& t) {
+  t = step_.reached;
+  if (halted()) return Passed::step;
   bool settled = false;
-  for (double begin = from;;) {
-    while (!sample_times.empty() && sample_times.front() <= begin) sample_times = sample_times.subspan(1);
-    event.reset();
-    if (!parts_.program.switches().empty() && t > begin)
-      event = parts_.switching.search(begin, sample_times, solution);
-    const double end = event ? *event : t;
-    const double reached = look_through(begin, end, sample_times, solution);
-    if (halted()) {
-      t = reached;
-      return false;
+  if (step_.event && !step_.branch_end && *step_.event < step_.end && *step_.event < end_) {
+    settled = true;
+    if (turns_without_effect(*step_.event, step_.times_left(), *step_.solution)) {
+      step_.begin = *step_.event;
+      return Passed::piece;
     }
-    if (!event) break;
-    if (!branch_end && end < t && end < end_) {
-      settled = true;
-      if (turns_without_effect(end, sample_times, solution)) {
-        settled = false;
-        begin = end;
-        continue;
-      }
-    }
-    t = end;
-    branch_end.reset();
-    break;
   }
-  const bool ends = event || branch_end || (t >= end_ && t < parts_.options.until);
-  if (!ends || t >= parts_.options.until) return false;
+  const auto branch_end = step_.event ? std::nullopt : step_.branch_end;
+  const bool ends = step_.event || branch_end || (t >= end_ && t < parts_.options.until);
+  if (!ends || t >= parts_.options.until) return Passed::step;
+  pass_end(t, branch_end, settled);
+  return Passed::segment;
+}
+
+/// Settles what there is at t, where a switch turns over, or soon after, where a branch ends.
+void Segments::pass_end(double& t, std::optional<double> branch_end, bool settled) {
   if (branch_end) {
-    if (turns_before(t, *branch_end, solution)) {
+    if (turns_before(t, *branch_end, *step_.solution)) {
       t = *branch_end;
       branch_end.reset();
     } else {
-      parts_.branches.find(t, *branch_end, solution);  // it jumps from the last place on the branch
+      parts_.branches.find(t, *branch_end, *step_.solution);  // it jumps from the last place on the branch
       t = *branch_end;
     }
   }
   if (!settled) {
-    solution.states_at(t, parts_.states);
+    step_.solution->states_at(t, parts_.states);
     settle(t, branch_end.has_value());
   }
   if (parts_.overloads) parts_.overloads->restart(t, parts_.states);
-  return true;
 }
 
 /// Rows, extremes and overloads from `begin` to `end`, both within one step and without events between

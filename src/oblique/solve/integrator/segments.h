@@ -18,8 +18,9 @@
 namespace oblique::solve {
 
 /// The smooth segments of a run, and what lies between them: switches that turn over, phases of the timeline,
-/// ends of branches of algebraic loops. Whoever makes the steps gives each of them to `finish_step`, and
-/// starts anew where that settled something. Not installed.
+/// ends of branches of algebraic loops. Whoever makes the steps gives each of them to `take_step`, looks at
+/// it piece by piece, and starts anew where the end of a piece has settled something. Between `look_ahead`
+/// and `pass` the solution of the piece can be read up to its end. Not installed.
 class Segments {
  public:
   /// What a run is made of; `overloads` only where they are watched.
@@ -46,10 +47,20 @@ class Segments {
   double end() const { return end_; }
   double length() const { return length_; }
 
-  /// Samples the step from `from` to t, and settles an event that cuts it short (t is then the time of the
-  /// event) or ends the segment. `sample_times` are times at which to look at least. True where the solver
-  /// must start anew.
-  bool finish_step(double from, double& t, std::span<const double> sample_times, const Interpolant& solution);
+  /// Takes a step from `from` to t. `sample_times` are times at which to look at least; they and `solution`
+  /// must last until the last piece of the step is passed.
+  void take_step(double from, double t, std::span<const double> sample_times, const Interpolant& solution);
+  /// Finds the next piece of the step, up to where a switch turns over or the step ends, and samples it; when
+  /// it ends [s].
+  double look_ahead();
+  /// Where a step is when a piece of it has been passed.
+  enum class Passed {
+    piece,    ///< there is another
+    step,     ///< at its end, and the next may follow
+    segment,  ///< something was settled, or the segment ends: the solver must start anew
+  };
+  /// Settles what ends the piece; t is then when that was [s].
+  Passed pass(double& t);
   /// Settles what there is at t, where a branch ends, the states having gone straight on from `last`.
   void end_branch(double from, const std::vector<double>& last, double& t);
   /// Whether an overload has ended the run.
@@ -57,13 +68,25 @@ class Segments {
 
  private:
   void settle(double t, bool at_branch_end);
+  void pass_end(double& t, std::optional<double> branch_end, bool settled);
   bool turns_before(double from, double& t, const Interpolant& solution);
   double look_through(double begin, double end, std::span<const double> sample_times,
                       const Interpolant& solution);
   bool turns_without_effect(double at, std::span<const double> sample_times, const Interpolant& solution);
 
+  /// The step that was taken, from the beginning of its next piece, and what ends that.
+  struct Step {
+    double begin = 0, end = 0;  ///< [s]
+    std::vector<double> times;  ///< at which to look at least
+    const Interpolant* solution = nullptr;
+    std::optional<double> branch_end, event;  ///< [s]
+    double reached = 0;                       ///< [s] by the samples
+    std::span<const double> times_left() const;
+  };
+
   Parts parts_;
   double end_ = 0, length_ = 0;  ///< [s]
+  Step step_;
 };
 
 }  // namespace oblique::solve

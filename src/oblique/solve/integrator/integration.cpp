@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/solve/integrator/integration.h>
+
+#include <algorithm>
+#include <utility>
+
+#include <oblique/network/program/program.h>
+#include <oblique/solve/interruption.h>
+
+namespace oblique::solve {
+namespace {
+
+std::vector<double> absolute_tolerances(const SolverSettings& settings, std::size_t n_states) {
+  return settings.own_tolerances.empty() ? std::vector<double>(n_states, settings.absolute_tolerance)
+                                         : settings.own_tolerances;
+}
+
+}  // namespace
+
+Integration::Integration(const Parts& parts, SolverSettings settings, double t)
+    : parts_(parts),
+      settings_(std::move(settings)),
+      solver_(parts.system, t, parts.states, parts.segments.end(), parts.segments.length(), settings_),
+      growth_(parts.system, settings_),
+      small_(
+          parts.system, settings_, parts.options.tolerance, parts.options.until - t,
+          [this](double at, const double* x, double* values) { return read(at, x, values); },
+          parts.diagram.outputs.size() + parts.program.switches().size(), parts.diagram.outputs.size()),
+      lost_(parts.diagram, settings_,
+            [this](double at, const double* x, double* values) { return read_outputs(at, x, values); }),
+      short_steps_(HiddenMotion(parts.system, settings_.relative_tolerance,
+                                absolute_tolerances(settings_, parts.states.size())),
+                   solver_, parts.options.until - t) {
+  growth_.restart(t, parts.states);
+  small_.advance(t, parts.states);
+}
+
+bool Integration::take_step(double& t) {
+  const double from = t;
+  try {
+    t = solver_.step();
+  } catch (const SolverFailure& failure) {
+    if (failure.kind == SolverFailure::Kind::interrupted) throw Interrupted();
+    if (failure.kind == SolverFailure::Kind::step_budget) throw;
+    const std::vector<double> last = parts_.states;
+    switch (parts_.branches.look_ahead(t, parts_.segments.end(), parts_.states, solver_)) {
+      case BranchWatch::Ahead::end:
+        parts_.segments.end_branch(from, last, t);
+        if (parts_.overloads) parts_.overloads->restart(t, parts_.states);
+        restart(t);
+        return false;
+      case BranchWatch::Ahead::not_yet:
+        solver_.restart(t, parts_.states, parts_.segments.end(), parts_.segments.end() - t);
+        return false;
+      case BranchWatch::Ahead::nothing:
+        throw;
+    }
+  }
+  const std::vector<double>& sample_times = parts_.sources.sample_times(from, t, solver_);
+  // The states are still those of `from`.
+  if (short_steps_.take_back(from, parts_.states, sample_times, parts_.segments.end())) {
+    t = from;
+    return false;
+  }
+  parts_.segments.take_step(from, t, sample_times, solver_);
+  return true;
+}
+
+void Integration::restart(double t) {
+  parts_.segments.begin(t);
+  solver_.restart(t, parts_.states, parts_.segments.end(), parts_.segments.length());
+}
+
+void Integration::end_step(Segments::Passed passed, double t) {
+  if (passed == Segments::Passed::segment) {
+    restart(t);
+    growth_.restart(t, parts_.states);
+    short_steps_.restart();
+  } else {
+    std::copy(solver_.states().begin(), solver_.states().end(), parts_.states.begin());
+    growth_.advance(t, parts_.states);
+    short_steps_.advance(t, parts_.states, parts_.segments.end());
+  }
+  small_.advance(t, parts_.states);
+  lost_.advance(t, parts_.states);
+}
+
+void Integration::end(double t) {
+  small_.end(t, parts_.states);
+  lost_.end(t, parts_.states);
+}
+
+Unseen Integration::unseen() const {
+  Unseen unseen;
+  unseen.growth = growth_.found();
+  unseen.small = small_.found();
+  std::erase_if(unseen.small, [this](const SmallState& small) {  // it was asked for
+    return parts_.program.states()[small.state].tolerance > 0;
+  });
+  return unseen;
+}
+
+std::vector<text::Diagnostic> Integration::warnings() const {
+  // but of those that show a state that is too small, which is told of apart
+  std::vector<bool> told(parts_.diagram.outputs.size(), false);
+  for (const SmallState& small : unseen().small) {
+    if (small.reading < told.size()) told[small.reading] = true;
+  }
+  return lost_.warnings(told);
+}
+
+bool Integration::read_outputs(double t, const double* x, double* values) {
+  std::vector<double> signals(parts_.program.n_signals());
+  if (!parts_.switching.signals(t, x, signals.data())) return false;
+  for (const diagram::FlatOutput& output : parts_.diagram.outputs)
+    *values++ = output.scale * signals[parts_.program.signal_index(output.signal)];
+  return true;
+}
+
+/// What shows that a state is not known: the outputs, then the event functions of the switches.
+bool Integration::read(double t, const double* x, double* values) {
+  if (!read_outputs(t, x, values)) return false;
+  double* const of_switches = values + parts_.diagram.outputs.size();
+  return parts_.program.event_functions(t, x, of_switches, parts_.workspace).has_value();
+}
+
+}  // namespace oblique::solve

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <oblique/diagram/flat_diagram.h>
+#include <oblique/network/program/program.h>
+#include <oblique/solve/events/branch_end.h>
+#include <oblique/solve/events/switching.h>
+#include <oblique/solve/integrator/cvodes_solver.h>
+#include <oblique/solve/integrator/growth_watch.h>
+#include <oblique/solve/integrator/lost_outputs.h>
+#include <oblique/solve/integrator/overload.h>
+#include <oblique/solve/integrator/refinement.h>
+#include <oblique/solve/integrator/segments.h>
+#include <oblique/solve/integrator/short_steps.h>
+#include <oblique/solve/integrator/small_states.h>
+#include <oblique/solve/integrator/source_watch.h>
+#include <oblique/solve/integrator/switched_system.h>
+#include <oblique/solve/run.h>
+
+namespace oblique::solve {
+
+/// The steps of a run with states: those of a solver, and what watches them for what it does not see. Each
+/// is given to the segments; who runs looks at it there, piece by piece, and tells how it ended. Not
+/// installed.
+class Integration {
+ public:
+  /// What a run is made of; `overloads` only where they are watched.
+  struct Parts {
+    const network::Program& program;
+    const diagram::FlatDiagram& diagram;
+    const RunOptions& options;
+    network::Workspace& workspace;
+    Switching& switching;
+    SwitchedSystem& system;
+    BranchWatch& branches;
+    SourceWatch& sources;
+    Segments& segments;
+    std::optional<OverloadWatch>& overloads;
+    std::vector<double>& states;
+  };
+
+  /// Begins at time t with the settings of `solver_settings`. All must outlive this.
+  Integration(const Parts& parts, SolverSettings settings, double t);
+
+  /// Takes a step from t into the segments; t is then where it ends. False where none came of it: it is to be
+  /// tried again, from the t that is left. Throws SolverFailure, SolveError and
+  /// Interrupted.
+  bool take_step(double& t);
+  /// Goes on from t, where a step has ended or the segment with it.
+  void end_step(Segments::Passed passed, double t);
+  /// Looks at the end of the run.
+  void end(double t);
+
+  const CvodesSolver& solver() const { return solver_; }
+  /// What the steps did not see.
+  Unseen unseen() const;
+  /// Whether there was growth that they did not see.
+  bool any_unseen_growth() const { return !growth_.found().empty(); }
+  /// Warnings about outputs that the states do not give.
+  std::vector<text::Diagnostic> warnings() const;
+
+ private:
+  bool read_outputs(double t, const double* x, double* values);
+  bool read(double t, const double* x, double* values);
+  void restart(double t);
+
+  Parts parts_;
+  SolverSettings settings_;
+  CvodesSolver solver_;
+  GrowthWatch growth_;
+  SmallStates small_;
+  LostOutputs lost_;
+  ShortSteps short_steps_;
+};
+
+}  // namespace oblique::solve
