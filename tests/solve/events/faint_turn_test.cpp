@@ -166,6 +166,36 @@ n = {{ type = "counter", clock = "{}*x" }}
   }
 }
 
+// What another block sets at an instant does not move a decay: the sign of x = e^(−t/τ) stays, though a lag
+// is set back again and again while x is within rounding of zero.
+TEST(FaintTurn, IsNotMadeByWhatOthersSet) {
+  const diagram::BlockLibrary library = testing::shipped_blocks_and("spiker", R"toml(
+[inputs]
+in = { doc = "[machine unit]" }
+[outputs]
+out = { doc = "[machine unit]" }
+[equations]
+"der(out)" = "in - 0.5*out"
+[start]
+out = 0
+[[events]]
+when = "out > 0.1"
+set = { out = 0 }
+)toml");
+  const testing::Compiled made(R"(
+one = { type = "constant", value = 1 }
+x = { type = "transfer-lag", in = "0*x", time_constant = 0.2, initial = -1 }
+s = { type = "sign", in = "x" }
+k = { type = "spiker", in = "one" }
+)",
+                               "", library);
+  for (const double tolerance : {1e-5, 1e-6, 1e-7, 1e-8, 1e-9}) {
+    const oblique::solve::Run run = testing::run_of(made, {.until = 20, .tolerance = tolerance});
+    EXPECT_GT(run.event_count, 100);
+    EXPECT_THAT(testing::row_values(run, "s"), ::testing::Each(-1)) << tolerance;
+  }
+}
+
 // Four lags behind a sign, closed by it against its sense, at rest: any solution leaves zero, through
 // infinitely many turns, in a rhythm that nothing gives. So the first that the run sees is decided by errors.
 TEST(FaintTurn, AtTheStartIsToldOf) {

@@ -41,6 +41,7 @@ SwitchSettling::SwitchSettling(const network::Program& program, network::Workspa
       stays_(program.switches().size(), false),
       decided_(program.switch_structure().members.size(), false),
       rested_(program.switches().size(), false),
+      before_instant_(program.switches().size()),
       unrest_(program.switches().size()) {}
 
 /// Then the time at which one comes tells nothing of where it goes before the others are known.
@@ -69,14 +70,19 @@ double SwitchSettling::near_size(std::size_t s) const {
 
 /// Whether an event function counts as zero, so that the solution decides. That of a switch that is announced
 /// lies a little past it; one that rested beside a slide, and has left it by more than that drifts, does not
-/// rest. One that is at zero to rounding and has not been announced, of a decay perhaps, waits until it is,
-/// unless the run starts or events have set states.
+/// rest.
 bool SwitchSettling::is_near(std::size_t s) const {
-  const double near = near_size(s), size = std::abs(event_functions_[s]);
-  if (announced_[s]) return size <= std::max(near, SlidingMode::drift());
-  const bool waits = near <= event_functions_.thresholds().rounding(s) && !starting_ && !set_ &&
-                     !is_announced(program_.switch_structure().unit[s]);
-  return !waits && size <= near;
+  const double near = near_size(s);
+  return std::abs(event_functions_[s]) <= (announced_[s] ? std::max(near, SlidingMode::drift()) : near);
+}
+
+/// Whether an event function is at zero by the errors of the states, as that of a decay, and nothing at this
+/// instant has moved it: then the switch stays where it is until it is announced.
+bool SwitchSettling::waits(std::size_t s) {
+  const double rounding = event_functions_.thresholds().rounding(s), size = std::abs(event_functions_[s]);
+  if (starting_ || near_size(s) > rounding || is_announced(program_.switch_structure().unit[s])) return false;
+  if (!(std::abs(event_functions_[s] - before_instant_[s]) <= rounding)) return false;
+  return size <= rounding || size <= event_functions_.weigh_errors()[s];
 }
 
 /// Whether any switch of a unit is.
@@ -126,6 +132,8 @@ bool SwitchSettling::turn_by_event_functions(double t, Units& at_zero, std::vect
     if (event_functions_.is_known(s)) {
       if (chained_ && program_.is_ordered(s)) continue;  // is where it belongs
       asked = known_position(s);
+    } else if (waits(s)) {
+      continue;
     } else if (is_near(s)) {
       const std::uint32_t unit = structure.unit[s];
       if (!listed[unit]) at_zero.push_back(unit);
@@ -281,6 +289,12 @@ bool SwitchSettling::settle(double t, std::span<const double> x) {
   }
 }
 
+void SwitchSettling::begin_instant() {
+  set_ = false;
+  starting_ = std::exchange(resumes_, false);
+  for (std::size_t s = 0; s < before_instant_.size(); ++s) before_instant_[s] = event_functions_[s];
+}
+
 void SwitchSettling::begin() {
   decided_.assign(decided_.size(), false);
   if (!kept_.empty()) decided_.swap(kept_);
@@ -322,6 +336,7 @@ void SwitchSettling::let_touch(std::size_t s) {
 }
 
 void SwitchSettling::restore(std::vector<bool> sliding) {
+  resumes_ = true;
   restored_ = std::move(sliding);
   if (restored_.empty()) restored_.assign(event_functions_.size(), true);
 }

@@ -26,8 +26,8 @@ class SwitchSettling {
   SwitchSettling(const network::Program& program, network::Workspace& workspace, SlidingMode& slide,
                  EventFunctions& event_functions, const Announced& announced, EventLog& log, double span);
 
-  /// A new instant after the start: events have set no states at it yet.
-  void begin_instant() { set_ = starting_ = false; }
+  /// A new instant after the start, with the event functions evaluated: events have set no states at it yet.
+  void begin_instant();
   /// Begins to settle: what lies on its switching surface is decided anew, and what slides is looked at as if
   /// it came there now.
   void begin();
@@ -65,6 +65,7 @@ class SwitchSettling {
   double place_size(std::size_t s) const;
   double near_size(std::size_t s) const;
   bool is_near(std::size_t s) const;
+  bool waits(std::size_t s);
   bool is_announced(std::uint32_t unit) const;
   void turn(std::size_t s, double position, double t);
   double known_position(std::size_t s) const;
@@ -89,11 +90,14 @@ class SwitchSettling {
   std::vector<bool> stays_;    ///< see `stays`
   std::vector<bool> decided_;  ///< of each unit: by where it drifts, once since `begin`
   bool starting_ = true;       ///< until the first instant after the start
+  bool resumes_ = false;       ///< whether the next instant is a start, too
   bool set_ = false;           ///< whether events have set states at this instant
   Units slid_;                 ///< what slid when the settling began
   std::vector<bool> rested_;   ///< the event functions that then stayed at zero along with it
   /// Until the next settling begins: see `restore`, and the units to be kept where they are.
   std::vector<bool> restored_, kept_;
+
+  std::vector<double> before_instant_;  ///< the event functions
 
   /// How often a switch has turned over without leaving its place.
   struct Unrest {
