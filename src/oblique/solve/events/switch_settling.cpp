@@ -78,10 +78,10 @@ bool SwitchSettling::is_near(std::size_t s) const {
 
 /// Whether an event function is at zero by the errors of the states, as that of a decay, and nothing at this
 /// instant has moved it: then the switch stays where it is until it is announced.
-bool SwitchSettling::waits(std::size_t s) {
-  const double rounding = event_functions_.thresholds().rounding(s), size = std::abs(event_functions_[s]);
+bool SwitchSettling::waits(std::size_t s, double event_function) {
+  const double rounding = event_functions_.thresholds().rounding(s), size = std::abs(event_function);
   if (starting_ || near_size(s) > rounding || is_announced(program_.switch_structure().unit[s])) return false;
-  if (!(std::abs(event_functions_[s] - before_instant_[s]) <= rounding)) return false;
+  if (!(std::abs(event_function - before_instant_[s]) <= rounding)) return false;
   return size <= rounding || size <= event_functions_.weigh_errors()[s];
 }
 
@@ -132,7 +132,7 @@ bool SwitchSettling::turn_by_event_functions(double t, Units& at_zero, std::vect
     if (event_functions_.is_known(s)) {
       if (chained_ && program_.is_ordered(s)) continue;  // is where it belongs
       asked = known_position(s);
-    } else if (waits(s)) {
+    } else if (waits(s, event_functions_[s])) {
       continue;
     } else if (is_near(s)) {
       const std::uint32_t unit = structure.unit[s];
@@ -168,7 +168,7 @@ void SwitchSettling::turn_in_order(double t, std::span<const double> x) {
         }
         const bool decided = due || slide_.holds(s) || slide_.follows(s) || slide_.rests(s) || rested_[s] ||
                              decided_[program_.switch_structure().unit[s]];
-        if (!decided && away) turn(s, event_function > 0 ? 1 : 0, t);
+        if (!decided && away && !waits(s, event_function)) turn(s, event_function > 0 ? 1 : 0, t);
       });
 }
 

@@ -65,7 +65,7 @@ class SwitchSettling {
   double place_size(std::size_t s) const;
   double near_size(std::size_t s) const;
   bool is_near(std::size_t s) const;
-  bool waits(std::size_t s);
+  bool waits(std::size_t s, double event_function);
   bool is_announced(std::uint32_t unit) const;
   void turn(std::size_t s, double position, double t);
   double known_position(std::size_t s) const;
