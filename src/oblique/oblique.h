@@ -9,6 +9,7 @@
 #include <oblique/compare/compare.h>
 #include <oblique/compare/machine_comparison.h>
 #include <oblique/compare/monte_carlo.h>
+#include <oblique/console/console.h>
 #include <oblique/diagram/block_library.h>
 #include <oblique/diagram/diagram.h>
 #include <oblique/diagram/diagram_reader.h>

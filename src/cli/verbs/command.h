@@ -45,6 +45,11 @@ struct RunRequest {
 };
 ExitStatus run_diagram(const Session& session, const RunRequest& request);
 
+struct OperateRequest {
+  std::string diagram;
+};
+ExitStatus operate(const Session& session, const OperateRequest& request);
+
 struct CheckRequest {
   std::string file;
   std::string output;

@@ -38,6 +38,15 @@ void add_run(CLI::App& app, Chosen& chosen) {
   choose(verb, chosen, request, run_diagram);
 }
 
+void add_operate(CLI::App& app, Chosen& chosen) {
+  auto request = std::make_shared<OperateRequest>();
+  CLI::App* const verb = app.add_subcommand(
+      "operate", "Hold a diagram as a machine: modes, pots, a voltmeter and a scope, by commands on stdin");
+  verb->add_option("DIAGRAM", request->diagram, "diagram file (oblique-diagram/1)")->required();
+  verb->footer("The command `help` lists the commands; docs/operating.md shows them.");
+  choose(verb, chosen, request, operate);
+}
+
 void add_check(CLI::App& app, Chosen& chosen) {
   auto request = std::make_shared<CheckRequest>();
   CLI::App* const verb = app.add_subcommand(

@@ -62,20 +62,6 @@ Run run_seeing(const network::Program& program, const diagram::FlatDiagram& diag
   }
 }
 
-/// Chooses where the loops of elements without memory start; a run that goes on has chosen already.
-StartChoice start_of(const network::Program& program, const diagram::FlatDiagram& diagram,
-                     const RunOptions& options) {
-  if (options.from) return {};
-  const auto start = [&](const LoopStart& from) -> std::optional<StartOutcome> {
-    try {
-      return start_once(program, diagram, options, from);
-    } catch (const SolveError&) {
-      return std::nullopt;
-    }
-  };
-  return choose_start(program, 0, diagram.file, start);
-}
-
 /// A longest step that would use up the budget of steps is refused at once, and so is one that the clock
 /// cannot show.
 void check_longest_step(const diagram::FlatDiagram& diagram, const RunOptions& options) {

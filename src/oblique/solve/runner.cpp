@@ -284,4 +284,17 @@ StartOutcome start_once(const network::Program& program, const diagram::FlatDiag
   }
 }
 
+StartChoice start_of(const network::Program& program, const diagram::FlatDiagram& diagram,
+                     const RunOptions& options) {
+  if (options.from) return {};
+  const auto start = [&](const LoopStart& from) -> std::optional<StartOutcome> {
+    try {
+      return start_once(program, diagram, options, from);
+    } catch (const SolveError&) {
+      return std::nullopt;
+    }
+  };
+  return choose_start(program, 0, diagram.file, start);
+}
+
 }  // namespace oblique::solve

@@ -105,6 +105,10 @@ class Runner {
   RunSnapshot last_whole_;  ///< the last whole step, where the run may be interrupted
 };
 
+/// Chooses where the loops of elements without memory start; a run that goes on has chosen already.
+StartChoice start_of(const network::Program& program, const diagram::FlatDiagram& diagram,
+                     const RunOptions& options);
+
 /// What became apparent in one run, also in one that failed.
 struct Observed {
   Unseen unseen;

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/console/carried_state.h>
+
+#include <string>
+#include <string_view>
+#include <unordered_map>
+
+namespace oblique::console {
+namespace {
+
+using Values = std::unordered_map<std::string_view, double>;
+
+void add(const solve::RunState::Named& named, Values& values) {
+  for (const auto& [name, value] : named) values.emplace(name, value);
+}
+
+/// Of each item the value of its name, or else that of `otherwise`.
+template <class Items, class Otherwise>
+solve::RunState::Named taken(const Items& items, const Values& values, const Otherwise& otherwise) {
+  solve::RunState::Named named;
+  named.reserve(items.size());
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    const auto found = values.find(items[i].name);
+    named.emplace_back(items[i].name, found != values.end() ? found->second : otherwise(i));
+  }
+  return named;
+}
+
+}  // namespace
+
+solve::RunState carried_state(const solve::RunState& state, const network::Program& from,
+                              std::span<const double> signals, const network::Program& to) {
+  Values continuous, discrete;
+  add(state.states, continuous);
+  add(state.unknowns, continuous);
+  for (std::size_t s = 0; s < signals.size(); ++s) continuous.emplace(from.signal_names()[s], signals[s]);
+  add(state.memories, discrete);
+
+  const network::Workspace fresh(to);
+  const std::vector<double> start = to.start();
+  solve::RunState carried = state;
+  carried.states = taken(to.states(), continuous, [&](std::size_t i) { return start[i]; });
+  carried.unknowns = taken(to.unknowns(), continuous, [&](std::size_t i) { return fresh.unknown(i); });
+  carried.memories =
+      taken(to.discrete_states(), discrete, [&](std::size_t i) { return fresh.discrete_states()[i]; });
+  carried.sliding.clear();
+  carried.conditions.resize(to.events().size(), false);
+  return carried;
+}
+
+}  // namespace oblique::console

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <oblique/diagram/block_library.h>
+#include <oblique/diagram/diagram.h>
+#include <oblique/solve/run_records.h>
+#include <oblique/solve/run_state.h>
+#include <oblique/text/diagnostic.h>
+
+namespace oblique::console {
+
+/// Thrown for what a console cannot do: a name that there is not, a time that is over.
+class ConsoleError : public text::Error {
+ public:
+  using text::Error::Error;
+};
+
+/// A machine that is held: it runs as far as it is asked to, is read like with a voltmeter, and its pots are
+/// turned while it runs. Between two turns the steps are those of `solve::run`: how often and where it is
+/// asked in between changes none. What `run` only finds afterwards, and then begins anew for, is warned of
+/// here: a machine that was watched cannot be run again.
+class Console {
+ public:
+  /// The machine of a diagram, which begins at t = 0 as a run does: settled, and computing unless its
+  /// timeline says otherwise. `library` must outlive the console. Throws DiagramError, NetworkError and
+  /// SolveError.
+  Console(diagram::Diagram diagram, const diagram::BlockLibrary& library);
+  Console(Console&&) noexcept;
+  Console& operator=(Console&&) noexcept;
+  ~Console();
+
+  double time() const;  ///< [s]
+  /// Runs until that time [s]. Throws ConsoleError for one that is over, and SolveError; the console then
+  /// stands where it was last.
+  void advance(double until);
+
+  /// What the voltmeter shows.
+  struct Reading {
+    double value = 0;
+    std::string unit;
+  };
+  /// An output of the diagram, in its unit; else a signal by the name that a diagram calls it by ("c",
+  /// "b.cos") in machine units, or a pot ("c.gain") in the unit of the parameter. Throws ConsoleError.
+  Reading read(std::string_view name) const;
+  /// Its number alone.
+  double value(std::string_view name) const { return read(name).value; }
+  /// A signal in machine units, where an output has its name, too. Throws ConsoleError.
+  double signal(std::string_view name) const;
+  /// The names of all outputs, signals and pots that there are.
+  std::vector<std::string> output_names() const;
+  std::vector<std::string> signal_names() const;
+  std::vector<std::string> pot_names() const;
+
+  /// Turns a pot ("c.gain"), or the weight of a wire ("c.in[2]"), to a quantity ("1e4", "20 ms"). The diagram
+  /// is compiled anew and the machine goes on as it stands: states, elements of loops and discrete states are
+  /// carried over by name. Throws DiagramError, NetworkError and SolveError, and is then as it was.
+  void turn(const std::string& pot, const std::string& value);
+
+  /// Puts all integrators into a mode of operation. Throws ConsoleError where the diagram's timeline says in
+  /// which they are, and SolveError.
+  void set_mode(diagram::OperatingMode mode);
+
+  /// The state at `time`, with which `solve::run` and any console of the same diagram can go on.
+  solve::RunState save() const;
+  /// Goes on from such a state; pots stay as they are turned. Throws ReadError where it is another diagram's,
+  /// and SolveError, and is then as it was.
+  void restore(const solve::RunState& state);
+
+  /// What has happened until `time`.
+  std::vector<solve::EventRecord> events() const;
+  /// What could not be seen so far.
+  std::vector<text::Diagnostic> warnings() const;
+
+ private:
+  class Held;
+  std::unique_ptr<Held> held_;
+};
+
+}  // namespace oblique::console
