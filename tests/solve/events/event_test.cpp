@@ -2,6 +2,7 @@
 // Switches, and what they set off, against closed forms.
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -33,6 +34,30 @@ s = { type = "sign", in = "x" })");
   // x' = 0 there, so that the phase shows in x': a drift of 1e-6 of the period would be 5.7e-6.
   EXPECT_NEAR(row_values(result, "v").back(), 0, 1e-6 * period);
   EXPECT_NEAR(x.back(), 1, 1e-6);
+}
+
+// y = sin 10 t/(1 − t) changes its sign at every multiple of π/10, and through its pole at t = 1, where
+// nothing is known of its size: what comes later is seen as ever.
+TEST(Events, APoleHidesNoLaterCrossing) {
+  const Compiled made(R"toml(
+one = { type = "constant", value = 1 }
+x = { type = "integrator", in = "-one", initial = 1 }
+u = { type = "time-function", formula = "sin(10*time)" }
+y = { type = "divider", numerator = "u", denominator = "x", gain = inf, bandwidth = inf }
+s = { type = "sign", in = "y" }
+)toml",
+                      "[outputs]\ns = { signal = \"s\" }\n");
+  const auto result = run_of(made, {.until = 3});
+  std::vector<double> times;
+  for (const EventRecord& event : result.events) {
+    if (event.what.starts_with("s:")) times.push_back(event.time);
+  }
+  std::vector<double> expected{1};
+  for (int k = 1; k <= 9; ++k) expected.push_back(k * std::numbers::pi / 10);
+  std::sort(expected.begin(), expected.end());
+  ASSERT_EQ(times.size(), expected.size());
+  for (std::size_t k = 0; k < times.size(); ++k) EXPECT_NEAR(times[k], expected[k], 1e-6) << k;
+  EXPECT_EQ(row_values(result, "s").back(), 1);
 }
 
 TEST(Events, TwoCrossingsInsideOneStepAreFound) {

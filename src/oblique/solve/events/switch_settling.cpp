@@ -81,7 +81,8 @@ bool SwitchSettling::is_near(std::size_t s) const {
 bool SwitchSettling::waits(std::size_t s, double event_function) {
   const double rounding = event_functions_.thresholds().rounding(s), size = std::abs(event_function);
   if (starting_ || near_size(s) > rounding || is_announced(program_.switch_structure().unit[s])) return false;
-  if (!(std::abs(event_function - before_instant_[s]) <= rounding)) return false;
+  const bool is_put_on_zero = set_ && event_function == 0 && before_instant_[s] != 0;
+  if (is_put_on_zero || !(std::abs(event_function - before_instant_[s]) <= rounding)) return false;
   return size <= rounding || size <= event_functions_.weigh_errors()[s];
 }
 
@@ -345,9 +346,9 @@ void SwitchSettling::keep_positions_within_errors() {
   const EventFunctionErrors& errors = event_functions_.weigh_errors();
   kept_.assign(decided_.size(), false);
   for (std::size_t s = 0; s < event_functions_.size(); ++s) {
-    if (event_functions_.is_known(s) || restored_[s] || !(std::abs(event_functions_[s]) <= errors[s]))
-      continue;
-    event_functions_.thresholds().widen(s, errors[s]);
+    const double error = std::min(errors[s], Thresholds::kMostSlack);
+    if (event_functions_.is_known(s) || restored_[s] || !(std::abs(event_functions_[s]) <= error)) continue;
+    event_functions_.thresholds().widen(s, error);
     kept_[program_.switch_structure().unit[s]] = true;
   }
 }

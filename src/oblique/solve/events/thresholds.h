@@ -34,8 +34,10 @@ class Thresholds {
   }
 
   /// Lets an event function go back so far by the errors of the states, until it has left them behind; from
-  /// the next `update` on.
-  void give_slack(std::size_t s, double slack) { slack_[s] = slack; }
+  /// the next `update` on. Where the errors are large for a moment only, as beside a pole, that is no reason
+  /// to overlook what comes later: it is kMostSlack at the most.
+  void give_slack(std::size_t s, double slack) { slack_[s] = std::min(slack, kMostSlack); }
+  static constexpr double kMostSlack = 1e-6;
   /// The same, at once.
   void widen(std::size_t s, double slack) { now_[s] = slack_[s] = slack; }
   void take_all_slack() { std::fill(slack_.begin(), slack_.end(), 0.0); }
