@@ -36,8 +36,34 @@ s = { type = "sign", in = "x" })");
   EXPECT_NEAR(x.back(), 1, 1e-6);
 }
 
-// y = sin 10 t/(1 − t) changes its sign at every multiple of π/10, and through its pole at t = 1, where
-// nothing is known of its size: what comes later is seen as ever.
+// t − 1, 2(t − 1) and −3(t − 1) cross zero at one instant, wherever rounding puts each of them: between the
+// comparators there is no moment at which one has turned over and another has not.
+TEST(Events, WhatCrossesTogetherTurnsTogether) {
+  const Compiled made(R"(
+one = { type = "constant", value = 1 }
+a = { type = "integrator", in = "one", initial = -1 }
+b = { type = "integrator", in = "2*one", initial = -2 }
+c = { type = "integrator", in = "-3*one", initial = 3 }
+ca = { type = "comparator", in = "a" }
+cb = { type = "comparator", in = "b" }
+cc = { type = "comparator", in = "c" }
+d = { type = "summer", in = ["cb", "-ca"] }
+e = { type = "summer", in = ["ca", "cc", "-0.6*one"] }
+n = { type = "counter", clock = "d" }
+m = { type = "counter", clock = "e" }
+)");
+  for (double until = 1.5; until < 8; until += 0.25) {
+    const auto result = run_of(made, {.until = until});
+    EXPECT_EQ(row_values(result, "n.out").back(), 0) << until;
+    EXPECT_EQ(row_values(result, "m.out").back(), 0) << until;
+    EXPECT_EQ(row_values(result, "ca").back(), 1) << until;
+    EXPECT_EQ(row_values(result, "cb").back(), 1) << until;
+    EXPECT_EQ(row_values(result, "cc").back(), 0) << until;
+  }
+}
+
+// y = sin 9t/cos t changes its sign at every multiple of π/9, and through its pole at π/2, where nothing is
+// known of its size: what comes later is seen as ever.
 TEST(Events, APoleHidesNoLaterCrossing) {
   const Compiled made(R"toml(
 x = { type = "integrator", in = "-v", initial = 1 }

@@ -196,6 +196,20 @@ k = { type = "spiker", in = "one" }
   }
 }
 
+// What rests at its level until a step or a pulse sets it off is passed for good: x = 1 − e^(1 − t).
+TEST(FaintTurn, IsNotWhatAStepSetsOff) {
+  for (const char* const follows : {R"(x = { type = "transfer-lag", in = "u" })",
+                                    R"(x = { type = "integrator", in = "y" }
+y = { type = "integrator", in = ["u", "-y"] })"}) {
+    const testing::Compiled made("u = { type = \"step\", at = 1 }\n" + std::string(follows) +
+                                 "\nc = { type = \"comparator\", in = \"x\" }\n");
+    const oblique::solve::Run run = testing::run_of(made, {.until = 3});
+    EXPECT_THAT(run.warnings, IsEmpty());
+    EXPECT_EQ(testing::row_values(run, "c").back(), 1);
+    EXPECT_EQ(testing::row_values(run, "c").front(), 0);
+  }
+}
+
 // Four lags behind a sign, closed by it against its sense, at rest: any solution leaves zero, through
 // infinitely many turns, in a rhythm that nothing gives. So the first that the run sees is decided by errors.
 TEST(FaintTurn, AtTheStartIsToldOf) {

@@ -26,6 +26,7 @@ FaintTurns::FaintTurns(const network::Program& program, network::Workspace& work
     : program_(program),
       workspace_(workspace),
       span_(span),
+      farthest_(program.switches().size(), 0.0),
       states_(program.n_states()),
       rates_(program.n_states()),
       event_functions_(program.switches().size()),
@@ -71,12 +72,14 @@ bool FaintTurns::is_faint(const Approach& approach, double error, double excursi
   constexpr double kSlow = 1000;            // errors: a decay to within them takes some 30 of its times
   constexpr double kStandsStill = 1e-5;     // of the excursion: short steps make much of their errors
   constexpr double kZenoTime = 1e-4;        // of the run: turns that come more quickly may be those of a ball
-  const bool piles_up = last_turn > 0 && since < kZenoTime * span_;
-  const bool stays_near = excursion <= kNear * error && !piles_up;
-  const bool decays = excursion >= kAfar * error &&
-                      approach.speed * since <= std::max(kSlow * error, kStandsStill * excursion);
+  const bool is_near = excursion <= kNear * error;
+  const bool is_slow = approach.speed * since <= std::max(kSlow * error, kStandsStill * excursion);
+  const bool has_decayed =
+      is_near && farthest_[approach.number] >= kAfar * error && since >= kZenoTime * span_;
+  const bool never_left = is_near && is_slow && last_turn == 0;  // what a step sets off at a rest is not slow
+  const bool decays = excursion >= kAfar * error && is_slow;
   const bool touches = excursion >= kAfar * error && approach.overshoot <= error;
-  return (approach.before <= error && (decays || stays_near)) || touches;
+  return (approach.before <= error && (decays || has_decayed || never_left)) || touches;
 }
 
 std::vector<FaintTurn> FaintTurns::due(double t, const Announced& announced, EventFunctions& event_functions,
@@ -87,6 +90,7 @@ std::vector<FaintTurn> FaintTurns::due(double t, const Announced& announced, Eve
   for (const Approach& approach : approaches_) {
     const std::uint32_t s = approach.number;
     const double excursion = event_functions.thresholds().excursion(s);
+    farthest_[s] = std::max(farthest_[s], excursion);
     const bool told =
         std::any_of(found_.begin(), found_.end(), [s](const FaintTurn& turn) { return turn.number == s; });
     if (!told && announced[s] && is_faint(approach, errors[s], excursion, t, last_turn(s)))

@@ -56,6 +56,7 @@ class FaintTurns {
   network::Workspace& workspace_;
   double span_;
   std::vector<Approach> approaches_;
+  std::vector<double> farthest_;  ///< of each event function: how far from zero it has been
   std::vector<double> states_, rates_, event_functions_, event_function_rates_;
   std::vector<FaintTurn> found_;
 };

@@ -42,6 +42,8 @@ SwitchSettling::SwitchSettling(const network::Program& program, network::Workspa
       decided_(program.switch_structure().members.size(), false),
       rested_(program.switches().size(), false),
       before_instant_(program.switches().size()),
+      rates_before_(program.switches().size()),
+      derivatives_(program.n_states()),
       unrest_(program.switches().size()) {}
 
 /// Then the time at which one comes tells nothing of where it goes before the others are known.
@@ -76,14 +78,17 @@ bool SwitchSettling::is_near(std::size_t s) const {
   return std::abs(event_functions_[s]) <= (announced_[s] ? std::max(near, SlidingMode::drift()) : near);
 }
 
-/// Whether an event function is at zero by the errors of the states, as that of a decay, and nothing at this
-/// instant has moved it: then the switch stays where it is until it is announced.
-bool SwitchSettling::waits(std::size_t s, double event_function) {
+/// Whether an event function is at zero by the errors of the states, as that of a decay, moves so slowly that
+/// it may stay there, and nothing at this instant at t has moved it: then the switch stays where it is until
+/// it is announced. What crosses zero together with something else is not slow.
+bool SwitchSettling::waits(std::size_t s, double event_function, double t) {
+  constexpr double kSlow = 1000;  // errors, in the time since it turned over last
   const double rounding = event_functions_.thresholds().rounding(s), size = std::abs(event_function);
   if (starting_ || near_size(s) > rounding || is_announced(program_.switch_structure().unit[s])) return false;
   const bool is_put_on_zero = set_ && event_function == 0 && before_instant_[s] != 0;
   if (is_put_on_zero || !(std::abs(event_function - before_instant_[s]) <= rounding)) return false;
-  return size <= rounding || size <= event_functions_.weigh_errors()[s];
+  const double error = event_functions_.weigh_errors()[s];
+  return size <= std::max(rounding, error) && rates_before_[s] * (t - unrest_[s].last) <= kSlow * error;
 }
 
 /// Whether any switch of a unit is.
@@ -133,7 +138,7 @@ bool SwitchSettling::turn_by_event_functions(double t, Units& at_zero, std::vect
     if (event_functions_.is_known(s)) {
       if (chained_ && program_.is_ordered(s)) continue;  // is where it belongs
       asked = known_position(s);
-    } else if (waits(s, event_functions_[s])) {
+    } else if (waits(s, event_functions_[s], t)) {
       continue;
     } else if (is_near(s)) {
       const std::uint32_t unit = structure.unit[s];
@@ -169,7 +174,7 @@ void SwitchSettling::turn_in_order(double t, std::span<const double> x) {
         }
         const bool decided = due || slide_.holds(s) || slide_.follows(s) || slide_.rests(s) || rested_[s] ||
                              decided_[program_.switch_structure().unit[s]];
-        if (!decided && away && !waits(s, event_function)) turn(s, event_function > 0 ? 1 : 0, t);
+        if (!decided && away && !waits(s, event_function, t)) turn(s, event_function > 0 ? 1 : 0, t);
       });
 }
 
@@ -294,6 +299,9 @@ void SwitchSettling::begin_instant() {
   set_ = false;
   starting_ = std::exchange(resumes_, false);
   for (std::size_t s = 0; s < before_instant_.size(); ++s) before_instant_[s] = event_functions_[s];
+  event_functions_.here().derivatives(derivatives_.data());
+  event_functions_.here().event_function_rates(derivatives_.data(), rates_before_.data());
+  for (double& rate : rates_before_) rate = std::isfinite(rate) ? std::abs(rate) : 0;
 }
 
 void SwitchSettling::begin() {

@@ -65,7 +65,7 @@ class SwitchSettling {
   double place_size(std::size_t s) const;
   double near_size(std::size_t s) const;
   bool is_near(std::size_t s) const;
-  bool waits(std::size_t s, double event_function);
+  bool waits(std::size_t s, double event_function, double t);
   bool is_announced(std::uint32_t unit) const;
   void turn(std::size_t s, double position, double t);
   double known_position(std::size_t s) const;
@@ -97,7 +97,8 @@ class SwitchSettling {
   /// Until the next settling begins: see `restore`, and the units to be kept where they are.
   std::vector<bool> restored_, kept_;
 
-  std::vector<double> before_instant_;  ///< the event functions
+  std::vector<double> before_instant_, rates_before_;  ///< the event functions, and the size of their rates
+  std::vector<double> derivatives_;
 
   /// How often a switch has turned over without leaving its place.
   struct Unrest {

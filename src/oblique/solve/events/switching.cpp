@@ -80,13 +80,13 @@ bool Switching::serve_events(double t, std::vector<double>& x, bool starting) {
 }
 
 /// Records which of the announced switches have turned over; the solution leads the others back at once.
-void Switching::record_turns(const std::vector<double>& discrete_states_before, double t) {
+void Switching::record_turns(const std::vector<double>& before, double t) {
   for (std::uint32_t s = 0; s < event_functions_.size(); ++s) {
     const auto position = location_.announced()[s];
     if (!position) continue;
     const std::uint32_t discrete_state = program_.switches()[s].discrete_state;
-    if (workspace_.discrete_state(discrete_state) != discrete_states_before[discrete_state] ||
-        settling_.last_turn(s) == t || slide_.holds(s))
+    if (workspace_.discrete_state(discrete_state) != before[discrete_state] || settling_.last_turn(s) == t ||
+        slide_.holds(s))
       log_.record_turn(s, *position, t);
     else
       settling_.let_touch(s);
@@ -98,6 +98,7 @@ void Switching::settle(double t, std::vector<double>& x) {
   const std::vector<std::uint32_t> repelled = repelled_units(t, x);
   settling_.begin();
   event_functions_.evaluate(t, x, location_.announced());
+  settling_.begin_instant();
   location_.withdraw_early(t);
   const std::vector<double> before(workspace_.discrete_states().begin(), workspace_.discrete_states().end());
   std::vector<FaintTurn> faint = faint_turns_.due(t, location_.announced(), event_functions_,
@@ -105,7 +106,6 @@ void Switching::settle(double t, std::vector<double>& x) {
   if (!faint.empty() && !signals(t, x.data(), signals_.data())) faint.clear();
   const std::vector<double> signals_before = faint.empty() ? std::vector<double>() : signals_;
   actions_.begin_instant();
-  settling_.begin_instant();
   for (int round = 0;; ++round) {
     settling_.settle(t, x);
     if (round == 0) record_turns(before, t);

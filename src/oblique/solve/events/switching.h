@@ -100,7 +100,7 @@ class Switching {
  private:
   std::vector<std::uint32_t> repelled_units(double t, std::span<const double> x);
   bool serve_events(double t, std::vector<double>& x, bool starting);
-  void record_turns(const std::vector<double>& memories_before, double t);
+  void record_turns(const std::vector<double>& before, double t);
 
   const network::Program& program_;
   network::Workspace& workspace_;

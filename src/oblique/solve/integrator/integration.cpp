@@ -121,7 +121,13 @@ bool Integration::read_outputs(double t, const double* x, double* values) {
 bool Integration::read(double t, const double* x, double* values) {
   if (!read_outputs(t, x, values)) return false;
   double* const of_switches = values + parts_.diagram.outputs.size();
-  return parts_.program.event_functions(t, x, of_switches, parts_.workspace).has_value();
+  if (!parts_.program.event_functions(t, x, of_switches, parts_.workspace)) return false;
+  if (!parts_.switching.slides()) return true;
+  const std::vector<bool> sliding = parts_.switching.sliding();  // what is held at zero is known
+  for (std::size_t s = 0; s < sliding.size(); ++s) {
+    if (sliding[s]) of_switches[s] = 0;
+  }
+  return true;
 }
 
 }  // namespace oblique::solve
