@@ -183,6 +183,22 @@ a = "a"
   EXPECT_THAT(fault_of(judgement), HasSubstr("it is badly damped: the loops 'a'"));
 }
 
+// The ramp reaches 0.8; ten times that stays at the limit of 0.5 from 0.05 s on.
+TEST(Judge, TellsTheLargestSignalAsTheSwitchesStand) {
+  const diagram::Diagram diagram = diagram::parse_diagram(R"(
+format = "oblique-diagram/1"
+[run]
+until = 0.8
+[blocks]
+u       = { type = "ramp" }
+limited = { type = "limiter", in = "10*u", low = -0.5, high = 0.5 }
+)",
+                                                          "d.toml");
+  const Judgement judgement = judge(diagram, diagram::BlockLibrary::shipped());
+  EXPECT_EQ(judgement.largest_signal, "u");
+  EXPECT_NEAR(judgement.largest, 0.8, 1e-12);  // some roundings
+}
+
 TEST(Judge, SaysWhereTheLoopsOfADiagramStandNowhere) {
   // x² + t − 0.25 = 0 has no root from t = 0.25 on
   const diagram::Diagram diagram = diagram::parse_diagram(R"(

@@ -10,6 +10,7 @@
 
 #include <oblique/mechanism/model/read_mechanism.h>
 #include <oblique/solve/solve_error.h>
+#include <oblique/text/file.h>
 
 #include "../support/compiled.h"
 #include "four_bar.h"
@@ -30,6 +31,12 @@ MachineComparison compared(const std::string& mechanism, const std::string& mach
   return compare_on_machine(mechanism::read_mechanism(std::string(OBLIQUE_SOURCE_DIR) +
                                                       "/diagrams/mechanisms/" + mechanism + ".toml"),
                             testing::shipped_blocks(), *diagram::find_machine(machine), options);
+}
+
+/// A shipped mechanism with further tables.
+mechanism::Mechanism shipped_with(const std::string& name, const std::string& tables) {
+  const std::string path = std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/" + name + ".toml";
+  return mechanism::parse_mechanism(text::read_file(path) + "\n" + tables, name + ".toml");
 }
 
 struct Case {
@@ -92,6 +99,22 @@ TEST(MachineComparison, TellsWhatTheMachineHasNotAndWhatItLeavesOut) {
   const MachineComparison with = compared("four-bar", "tr-10", 1e3);
   EXPECT_THAT(with.absent, IsEmpty());
   EXPECT_THAT(with.scatter, ElementsAre("resistors, tolerance", "capacitors, tolerance"));
+}
+
+// From 0 backwards the four-bar errs less and less, so that all is largest in the first row. What the machine
+// adds is no less than what it errs by beyond ideal elements, and what a figure does no less than its share.
+TEST(MachineComparison, SeesTheStartOfAMotion) {
+  mechanism::Mechanism mechanism = shipped_with("four-bar", "[motion]\nuntil = 0.5\n");
+  mechanism.drives.front().speed = -1;
+  patch::PatchOptions options;
+  options.gain = 1e3;
+  options.samples = 5;
+  const MachineComparison result =
+      compare_on_machine(mechanism, testing::shipped_blocks(), *diagram::find_machine("ec-1"), options);
+  EXPECT_EQ(result.worst.time, 0);
+  EXPECT_GE(result.from_ideal, result.max_error - result.ideal_error);
+  for (const FigureError& figure : result.figures)
+    EXPECT_LE(std::abs(figure.share), figure.alone * (1 + 1e-12)) << figure.figure;  // rounding
 }
 
 // A machine without errors is the method alone.

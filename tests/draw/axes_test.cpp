@@ -81,6 +81,22 @@ TEST(Axes, KeepWithinTheirPlaceAndApartFromEachOther) {
   }
 }
 
+// 0 to 4 in ones would stand 22 px apart upwards and 35 px apart to the right, where lines keep 40 px and 62
+// px.
+TEST(Axes, OfASmallFrameHaveFewNumbers) {
+  const Axes axes(Extent(Vector2d(0, 0), Vector2d(140, 90)), range("x", "", 0, 4), range("y", "", 0, 4),
+                  Axes::Shape::stretched);
+  const std::vector<Mark> marks = axes.marks();
+  const auto count = [&](const std::string& text) {
+    return std::count_if(marks.begin(), marks.end(), [&](const Mark& mark) {
+      const auto* const label = std::get_if<Label>(&mark.shape);
+      return label != nullptr && label->text == text;
+    });
+  };
+  EXPECT_EQ(count("0") + count("2") + count("4"), 6);  // three of each axis
+  EXPECT_EQ(count("1") + count("3"), 0);
+}
+
 TEST(Axes, ShowWhatHasOneValue) {
   const Axes axes = stretched(range("x", "", 0, 1), range("y", "", 4, 4));
   EXPECT_NEAR(axes.at({0, 4}).y(), axes.frame().center().y(), 1e-9);

@@ -9,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <oblique/draw/chart/chart_layout.h>
 #include <oblique/draw/picture/scale.h>
 
 namespace oblique::draw {
@@ -233,6 +234,17 @@ TEST(Chart, StandsPanelsInColumns) {
   EXPECT_GT(plot_of(picture, 1).corner.y(), plot_of(picture, 0).corner.y() + plot_of(picture, 0).size.y());
   const auto labels = labels_of(picture);  // the x axis of each column once
   EXPECT_EQ(std::count_if(labels.begin(), labels.end(), [](const Label& l) { return l.text == "t [s]"; }), 3);
+}
+
+// Of a half pixel column the first, the last and the extreme points, in their order; of equally far ones the
+// first.
+TEST(Thinned, KeepsTheExtremesOfAColumn) {
+  const Vector2d first(0.20, 5), least_x(0.10, 5), lowest(0.22, 4), highest(0.24, 6), greatest_x(0.40, 5),
+      last(0.30, 5), next(0.60, 5);
+  const std::vector<Vector2d> points = {first,       {0.21, 5}, least_x, {0.10, 5.1}, lowest,
+                                        {0.23, 4},   {0.25, 5}, highest, {0.26, 6},   greatest_x,
+                                        {0.40, 5.1}, {0.27, 5}, last,    next};
+  EXPECT_THAT(thinned(points), ElementsAre(first, least_x, lowest, highest, greatest_x, last, next));
 }
 
 TEST(Chart, NotesStandUnderIt) {

@@ -76,6 +76,31 @@ c = { type = "comparator", in = ["r", "-1.2*one"] }
               0.4, {0.8});
 }
 
+// q = w/x by a loop, and what is compared a function of it alone.
+TEST(EventFunctionRate, PassesThroughFunctionsOfALoopsUnknown) {
+  for (const char* const function : {"sine", "exponential", "arc-tangent", "squarer", "inverter"}) {
+    SCOPED_TRACE(function);
+    expect_rate(Compiled(R"(x = { type = "integrator", in = ["-0.5*q"], initial = 1 }
+one = { type = "constant" }
+w = { type = "sine-source", frequency = 0.3 }
+xq = { type = "multiplier", in = ["x", "q"] }
+q = { type = "servo-amplifier", in = ["xq", "-w"], gain = inf, bandwidth = inf }
+f = { type = ")" + std::string(function) +
+                         R"(", in = "q" }
+c = { type = "comparator", in = ["f", "-0.2*one"] }
+)"),
+                0.4, {0.8});
+  }
+}
+
+/// The switch of a block.
+std::size_t switch_of(const Program& program, std::string_view block) {
+  for (std::size_t s = 0; s < program.switches().size(); ++s) {
+    if (program.switches()[s].block == block) return s;
+  }
+  throw std::out_of_range(std::string(block));
+}
+
 TEST(SwitchStructure, PutsOneSwitchingSurfaceIntoOneUnit) {
   const Compiled made(R"(x = { type = "integrator", in = ["-s", "-a"], initial = 1 }
 s = { type = "sign", in = "x" }
@@ -109,6 +134,118 @@ p = { type = "multiplier", in = ["s", "r"] }
 )"));
 }
 
+// s and r act on each other's quotient, which is no sum in either; u acts by itself.
+TEST(SwitchStructure, CouplesBothWaysAndNobodyElse) {
+  const diagram::BlockLibrary library = testing::shipped_blocks_and("reciprocal", R"toml(
+[inputs]
+in = { sum = true }
+[outputs]
+out = {}
+[equations]
+out = "1/(3 + in)"
+)toml");
+  const Compiled made(R"(x = { type = "integrator", in = ["-p", "-u"], initial = 1 }
+y = { type = "integrator", in = ["-r"] }
+z = { type = "integrator", in = ["-u"] }
+s = { type = "sign", in = "x" }
+r = { type = "sign", in = "y" }
+u = { type = "sign", in = "z" }
+p = { type = "reciprocal", in = ["s", "r"] }
+)",
+                      "", library);
+  const SwitchStructure& structure = made.program.switch_structure();
+  const auto coupled = [&](std::string_view one, std::string_view other) {
+    return structure.is_coupled(structure.unit[switch_of(made.program, one)],
+                                structure.unit[switch_of(made.program, other)]);
+  };
+  EXPECT_TRUE(coupled("s", "r"));
+  EXPECT_TRUE(coupled("r", "s"));
+  for (const char* const other : {"s", "r"}) {
+    EXPECT_FALSE(coupled("u", other));
+    EXPECT_FALSE(coupled(other, "u"));
+  }
+}
+
+/// Whether the units of the switches of blocks s and r are coupled.
+bool couples_s_and_r(const Program& program) {
+  const SwitchStructure& structure = program.switch_structure();
+  return structure.is_coupled(structure.unit[switch_of(program, "s")],
+                              structure.unit[switch_of(program, "r")]);
+}
+
+// The sum of two positions times a state, and a third of it, are linear in both.
+TEST(SwitchStructure, DoesNotCoupleWhatIsLinear) {
+  const diagram::BlockLibrary library = testing::shipped_blocks_and("third", R"toml(
+[inputs]
+in = { sum = true }
+[outputs]
+out = {}
+[equations]
+out = "in/3"
+)toml");
+  EXPECT_FALSE(couples_s_and_r(Compiled(R"(x = { type = "integrator", in = ["-p"], initial = 1 }
+y = { type = "integrator", in = ["-q"], initial = 1 }
+s = { type = "sign", in = "x" }
+r = { type = "sign", in = "y" }
+sum = { type = "summer", in = ["s", "r"] }
+p = { type = "multiplier", in = ["sum", "y"] }
+q = { type = "third", in = ["s", "r"] }
+)",
+                                        "", library)
+                                   .program));
+}
+
+// m = −(0.5 m − s): what the loop brings of s is multiplied by r; and so is what another loop brings of that
+// one.
+TEST(SwitchStructure, CouplesThroughLoops) {
+  for (const char* const last : {"m", "n"}) {
+    EXPECT_TRUE(couples_s_and_r(Compiled(R"(x = { type = "integrator", in = ["-p"], initial = 1 }
+y = { type = "integrator", in = ["-r"] }
+s = { type = "sign", in = "x" }
+r = { type = "sign", in = "y" }
+m = { type = "summer", in = ["-s", "0.5*m"] }
+n = { type = "summer", in = ["-m", "0.25*n"] }
+p = { type = "multiplier", in = ["r", ")" +
+                                         std::string(last) + "\"] }\n")
+                                    .program))
+        << last;
+  }
+}
+
+// s → p → q by positions alone; s itself and r follow states.
+TEST(SwitchStructure, KnowsWhatFollowsAPosition) {
+  const Compiled made(R"(x = { type = "integrator", in = ["-s"], initial = 1 }
+z = { type = "integrator", in = ["-r", "q"] }
+s = { type = "sign", in = "x" }
+sx = { type = "summer", in = ["s", "0.5*x"] }
+p = { type = "sign", in = "sx" }
+pz = { type = "summer", in = ["p", "0.2*s", "z"] }
+q = { type = "sign", in = "pz" }
+r = { type = "sign", in = "z" }
+)");
+  const Program& program = made.program;
+  const SwitchStructure& structure = program.switch_structure();
+  const std::size_t s = switch_of(program, "s"), p = switch_of(program, "p"), q = switch_of(program, "q"),
+                    r = switch_of(program, "r");
+  const auto followers_of = [&](std::size_t one) {
+    std::vector<bool> these(program.switches().size(), false);
+    these[one] = true;
+    return structure.followers_of(these);
+  };
+  std::vector<bool> expected(program.switches().size(), false);
+  EXPECT_EQ(followers_of(q), expected);
+  EXPECT_EQ(followers_of(r), expected);
+  expected[q] = true;
+  EXPECT_EQ(followers_of(p), expected);
+  expected[p] = true;
+  EXPECT_EQ(followers_of(s), expected);
+  const auto s_number = static_cast<std::uint32_t>(s), p_number = static_cast<std::uint32_t>(p);
+  EXPECT_EQ(structure.positions_below(q),
+            (std::vector<std::uint32_t>{std::min(s_number, p_number), std::max(s_number, p_number)}));
+  EXPECT_EQ(structure.positions_below(p), std::vector<std::uint32_t>{s_number});
+  EXPECT_TRUE(structure.positions_below(s).empty());
+}
+
 TEST(SwitchStructure, SeesWhatAPositionDependsOnThroughALoop) {
   const Compiled made(R"(m = { type = "summer", in = ["-x", "0.5*c"] }
 c = { type = "sign", in = "m" }
@@ -116,15 +253,10 @@ x = { type = "integrator", in = "c" }
 k = { type = "sign", in = "x" }
 )");
   const SwitchStructure& structure = made.program.switch_structure();
-  const auto number = [&](std::string_view block) {
-    for (std::size_t s = 0; s < made.program.switches().size(); ++s) {
-      if (made.program.switches()[s].block == block) return s;
-    }
-    return std::size_t{99};
-  };
-  EXPECT_TRUE(structure.depends(number("c"), number("c")));
-  EXPECT_FALSE(structure.depends(number("k"), number("c")));
-  EXPECT_FALSE(structure.depends(number("k"), number("k")));
+  const std::size_t c = switch_of(made.program, "c"), k = switch_of(made.program, "k");
+  EXPECT_TRUE(structure.depends(c, c));
+  EXPECT_FALSE(structure.depends(k, c));
+  EXPECT_FALSE(structure.depends(k, k));
 }
 
 }  // namespace

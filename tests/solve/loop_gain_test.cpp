@@ -54,6 +54,18 @@ TEST(OpenLoops, PositiveFeedbackHasANegativeMargin) {
   EXPECT_NEAR(margin->degrees, -degrees(std::atan(std::sqrt(99))), 1e-8);
 }
 
+// x′ = a x, of which p is its own: 1 + L = (s − a)/(s − p). At the eigenvalue L is −1, at the own pole
+// infinite, and 0 everywhere where nothing is fed back. All numbers here are exact.
+TEST(OpenLoops, GainIsItsFormulaAtItsPolesToo) {
+  const Eigen::MatrixXd a = Eigen::MatrixXd::Constant(1, 1, -2);
+  const OpenLoops loops(a);
+  EXPECT_EQ(loops.gain(0, -3, -2), -1.0);
+  EXPECT_TRUE(std::isinf(loops.gain(0, -3, -3).real()));
+  EXPECT_EQ(loops.gain(0, -3, -1), -0.5);
+  EXPECT_EQ(loops.gain(0, -2, -1), 0.0);
+  EXPECT_EQ(loops.gain(0, -2, 3), 0.0);
+}
+
 TEST(OpenLoops, AWeakLoopHasNoCrossover) {
   const Eigen::MatrixXd a = Eigen::MatrixXd::Constant(1, 1, -1 - 0.5);
   EXPECT_FALSE(OpenLoops(a).phase_margin(0, -1));

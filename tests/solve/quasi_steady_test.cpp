@@ -33,5 +33,37 @@ a = { type = "servo-amplifier", in = ["a", "-u"], gain = 1e3, bandwidth = 10, li
   }
 }
 
+// An amplifier that is twice as fast above 0.3, which the instant one has no use for: a + (a − u) μ = 0.
+TEST(QuasiSteadyInstants, SetTheSwitchesThatInstantAmplifiersDoNotHave) {
+  const diagram::BlockLibrary library = testing::shipped_blocks_and("two-speeds", R"toml(
+[inputs]
+in = { sum = true }
+[outputs]
+out = {}
+[parameters]
+bandwidth = { default = 10 }
+[[cases]]
+when = "bandwidth == inf"
+implicit = { out = "in + out/1000" }
+[equations]
+"der(out)" = "if(out > 0.3, 2, 1)*2*pi*bandwidth*(-out - 1000*in)"
+[start]
+out = { guess = "0", at_rest = true }
+)toml");
+  const Compiled made(R"toml(u = { type = "ramp" }
+a = { type = "two-speeds", in = ["a", "-u"] }
+)toml",
+                      "", library);
+  ASSERT_EQ(made.program.discrete_states().back().name, "a: out > 0.3");
+  RunOptions options;
+  options.until = 1;
+  options.samples = 11;
+  for (const Instant& instant : quasi_steady_instants(made.program, made.flat, options, 11)) {
+    ASSERT_EQ(instant.states.size(), 1U);
+    EXPECT_NEAR(instant.states[0], instant.t / 1.001, 1e-12) << instant.t;  // a few roundings
+    EXPECT_EQ(instant.discrete_states.back(), instant.t > 0.3003 ? 1 : 0) << instant.t;
+  }
+}
+
 }  // namespace
 }  // namespace oblique::solve

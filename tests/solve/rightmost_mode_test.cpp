@@ -121,6 +121,17 @@ TEST(RightmostModes, OfAHeatedRodDecayAndAreProvenTo) {
   EXPECT_NEAR(modes[0].pole.real(), slowest, 1e-12);
 }
 
+// A chain of two decays of −1, of which the first hears the second as loud: the rows sum to 0, and the bound
+// is below it only with weights. It lies above the eigenvalues, which are −1.
+TEST(RealPartBound, WeighsTheStatesWhereRowsAloneDoNotTell) {
+  Sparse a(2, 2);
+  const std::vector<Eigen::Triplet<double>> entries = {{0, 0, -1.0}, {0, 1, 1.0}, {1, 1, -1.0}};
+  a.setFromTriplets(entries.begin(), entries.end());
+  EXPECT_LT(real_part_bound(a), 0);
+  EXPECT_GE(real_part_bound(a), -1);
+  EXPECT_TRUE(is_proven_stable(a));
+}
+
 TEST(RightmostModes, JudgeADiagramOfFiveThousandStates) {
   constexpr int kStates = 5000;
   std::string blocks;

@@ -237,5 +237,16 @@ TEST(Run, GoesToAShortPulseByLongSteps) {
   }
 }
 
+// A pulse upon a signal that does not vanish beside it: twice as high as that, and two milliseconds long.
+TEST(Run, SeesAPulseUponASteadySignal) {
+  const Compiled made(R"toml(
+p = { type = "time-function", formula = "1 + 2*exp(-((time - 7.3)*1e3)^2)" }
+x = { type = "integrator", in = ["p"] }
+)toml");
+  const auto result = run_of(made, {.until = 10, .samples = 11});
+  // each of some hundred steps errs by up to a tolerance of 1e-8 of 10; the pulse is 3.5e-3
+  EXPECT_NEAR(row_values(result, "x").back(), 10 + 2e-3 * std::sqrt(kPi), 1e-5);
+}
+
 }  // namespace
 }  // namespace oblique::solve

@@ -118,6 +118,27 @@ TEST(PathCurve, FindsTheNearestPlace) {
   }
 }
 
+// Two pieces, each as fast as one of its ends alone tells: x = 100 (3 t² − t³), at rest at t = 0 and t = 2.
+// The places are beside x(0.8) = 140.8 and x(1.4) = 313.6, and both nearer to where the second piece begins,
+// at 200, than to where the first one does.
+TEST(PathCurve, FindsTheNearestPlaceOfAPieceThatBeginsOrEndsAtRest) {
+  mechanism::Motion motion;
+  for (const double t : {0.0, 1.0, 2.0}) {
+    motion.times.push_back(t);
+    mechanism::Configuration here;
+    here.points.push_back(
+        {{100 * (3 * t * t - t * t * t), 0}, {100 * (6 * t - 3 * t * t), 0}, {100 * (6 - 6 * t), 0}});
+    motion.configurations.push_back(here);
+  }
+  const PathCurve curve(motion, 0);
+  for (const auto& [t, x] : {std::pair(0.8, 140.8), std::pair(1.4, 313.6)}) {
+    const auto foot = curve.nearest({x, 5});
+    ASSERT_TRUE(foot);
+    EXPECT_NEAR(foot->time, t, 1e-12);  // some roundings
+    EXPECT_NEAR(foot->difference.norm(), 5, 1e-12);
+  }
+}
+
 TEST(PathCurve, EndsWhereTheMechanismOpens) {
   mechanism::Motion motion = ellipse(360);
   for (std::size_t row = 90; row <= 270; ++row) motion.configurations[row].status = mechanism::Status::open;

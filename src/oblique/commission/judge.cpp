@@ -29,8 +29,10 @@ void find_largest_signal(const network::Program& program, const std::vector<solv
   network::Workspace workspace(program);
   std::vector<double> values(program.n_signals());
   for (const solve::Instant& instant : instants) {
-    if (!program.signals(instant.t, instant.states.data(), values.data(), workspace)) continue;
-    for (std::size_t s = 0; s < values.size(); ++s) {
+    workspace.load_discrete_states(instant.discrete_states);
+    const bool known =
+        program.signals(instant.t, instant.states.data(), values.data(), workspace).has_value();
+    for (std::size_t s = 0; known && s < values.size(); ++s) {
       if (std::abs(values[s]) <= judgement.largest) continue;
       judgement.largest = std::abs(values[s]);
       judgement.largest_signal = program.signal_names()[s];

@@ -22,21 +22,6 @@ constexpr long kMostTimes = 20;
 constexpr double kFarthest = 0.1;
 constexpr int kMostSteps = 30;
 
-/// Where the signals put a point [length unit]; nothing where a loop has no solution.
-std::optional<Eigen::Vector2d> place_in(const PatchedMechanism& patched, const PointOutputs& point,
-                                        const solve::Instant& instant) {
-  network::Workspace workspace(patched.program);
-  std::vector<double> signals(patched.program.n_signals());
-  workspace.load_discrete_states(instant.discrete_states);
-  if (!patched.program.signals(instant.t, instant.states.data(), signals.data(), workspace))
-    return std::nullopt;
-  const auto value = [&](std::size_t column) {
-    const diagram::FlatOutput& output = patched.flat.outputs[column];
-    return output.scale * signals[patched.program.signal_index(output.signal)] + output.offset;
-  };
-  return Eigen::Vector2d(value(point.x), value(point.y));
-}
-
 std::optional<RecordedRun> tighter_run(const PatchedMechanism& patched, const solve::Run& run,
                                        const std::function<void(double)>& progress) {
   for (const double part : kTighter) {

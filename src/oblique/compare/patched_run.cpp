@@ -93,6 +93,20 @@ std::vector<PointOutputs> point_outputs(const mechanism::Mechanism& mechanism,
   return outputs;
 }
 
+std::optional<Eigen::Vector2d> place_in(const PatchedMechanism& patched, const PointOutputs& point,
+                                        const solve::Instant& instant) {
+  network::Workspace workspace(patched.program);
+  std::vector<double> signals(patched.program.n_signals());
+  workspace.load_discrete_states(instant.discrete_states);
+  if (!patched.program.signals(instant.t, instant.states.data(), signals.data(), workspace))
+    return std::nullopt;
+  const auto value = [&](std::size_t column) {
+    const diagram::FlatOutput& output = patched.flat.outputs[column];
+    return output.scale * signals[patched.program.signal_index(output.signal)] + output.offset;
+  };
+  return Eigen::Vector2d(value(point.x), value(point.y));
+}
+
 Eigen::Vector2d place_of(const PointOutputs& point, const solve::Trajectory& analog, std::size_t row) {
   return {analog.at(row, 1 + point.x), analog.at(row, 1 + point.y)};  // the first column is the time
 }

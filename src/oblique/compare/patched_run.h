@@ -69,6 +69,10 @@ struct Distances {
 Distances distances(const mechanism::Mechanism& mechanism, const diagram::FlatDiagram& flat,
                     const solve::Trajectory& analog, const mechanism::Motion& exact);
 
+/// Where a point stands at an instant [length unit]; nothing where a loop has no solution.
+std::optional<Eigen::Vector2d> place_in(const PatchedMechanism& patched, const PointOutputs& point,
+                                        const solve::Instant& instant);
+
 /// Where a point stands in a row of a run [length unit].
 Eigen::Vector2d place_of(const PointOutputs& point, const solve::Trajectory& analog, std::size_t row);
 

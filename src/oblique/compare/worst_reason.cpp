@@ -9,7 +9,6 @@
 
 #include <oblique/mechanism/motion/follower.h>
 #include <oblique/mechanism/structure/structure.h>
-#include <oblique/network/program/program.h>
 #include <oblique/solve/events/driving_states.h>
 #include <oblique/solve/stability/loop_report.h>
 #include <oblique/solve/stability/stability_report.h>
@@ -34,23 +33,15 @@ double sine_at_pivot(const mechanism::Dyad& dyad, const mechanism::Configuration
 /// Whether states act on an output: directly, or through other states.
 std::vector<bool> states_behind(const PatchedMechanism& patched, const solve::Instant& instant,
                                 const PointOutputs& point) {
-  const network::Program& program = patched.program;
-  network::Workspace workspace(program);
-  std::vector<double> signals(program.n_signals());
-  workspace.load_discrete_states(instant.discrete_states);
-  std::vector<bool> behind(program.n_states(), false);
-  const auto place = [&](std::vector<double> states) {
-    program.signals(instant.t, states.data(), signals.data(), workspace);
-    return Eigen::Vector2d(signals[program.signal_index(patched.flat.outputs[point.x].signal)],
-                           signals[program.signal_index(patched.flat.outputs[point.y].signal)]);
-  };
-  const Eigen::Vector2d here = place(instant.states);
-  for (std::size_t i = 0; i < program.n_states(); ++i) {
-    std::vector<double> moved = instant.states;
-    moved[i] += 0.0371;  // an odd part of a machine unit
-    behind[i] = place(std::move(moved)) != here;
+  const auto here = place_in(patched, point, instant);
+  solve::Instant moved = instant;
+  std::vector<bool> behind(instant.states.size(), false);
+  for (std::size_t i = 0; i < behind.size(); ++i) {
+    moved.states[i] += 0.0371;  // an odd part of a machine unit
+    behind[i] = place_in(patched, point, moved) != here;
+    moved.states[i] = instant.states[i];
   }
-  return solve::with_driving_states(program.jacobian_pattern(), std::move(behind));
+  return solve::with_driving_states(patched.program.jacobian_pattern(), std::move(behind));
 }
 
 }  // namespace

@@ -147,11 +147,10 @@ class Fitter {
       minimum = *next;
     }
     const auto residuals = problem_.residuals(minimum.x);
-    if (!residuals) return false;
-    consider({minimum.x, residuals->squaredNorm(), true});
+    if (residuals) consider({minimum.x, residuals->squaredNorm(), minimum.blocked});
     const auto last = minimise(least_squares_, minimum.x);
     if (last && !last->blocked) consider(*last);
-    return true;
+    return residuals.has_value();
   }
 
   void consider(const Minimum& minimum) {

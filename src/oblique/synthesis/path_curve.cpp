@@ -60,8 +60,10 @@ Vector2d PathCurve::Piece::tangent(double s) const {
 double PathCurve::Piece::nearest(const Vector2d& target) const {
   constexpr int kHalvings = 52;  // to the last bit of s
   const auto derivative = [&](double s) { return (position(s) - target).dot(tangent(s)); };
-  if (derivative(0) >= 0) return 0;
-  if (derivative(1) <= 0) return 1;
+  // At rest at an end, as in a cusp, the tangent there is rounding: what is beside the end tells.
+  constexpr double kBeside = 1e-6;
+  if (derivative(0) >= 0 && derivative(kBeside) >= 0) return 0;
+  if (derivative(1) <= 0 && derivative(1 - kBeside) <= 0) return 1;
   double nearing = 0, leaving = 1;
   for (int k = 0; k < kHalvings; ++k) {
     const double middle = (nearing + leaving) / 2;

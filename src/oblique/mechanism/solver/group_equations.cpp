@@ -73,27 +73,32 @@ class Reduction {
   /// Of a link that takes part in one prismatic joint only, a full one, and otherwise in one revolute joint.
   void find_blocks() {
     for (const std::size_t body : members_.bodies) {
-      if (is_driven(body)) continue;
-      std::optional<std::size_t> only;
-      bool single = true;
-      for (const std::size_t s : members_.slides) {
-        const Slide& slide = mechanism_.slides[s];
-        const bool takes_part =
-            slide.carrier == body || slide.of == body || mechanism_.bodies[body].find(slide.point) != nullptr;
-        if (!takes_part) continue;
-        single = single && !only;
-        only = s;
-      }
-      if (!only || !single || is_driven_slide(*only)) continue;
-      const Slide& slide = mechanism_.slides[*only];
-      if (!slide.of || (slide.of != body && slide.carrier != body)) continue;
-      const auto other = slide.of == body ? slide.carrier : slide.of;
-      if (other && block_slide(*other)) continue;
-      if (joints(body, slide).size() != 1) continue;
-      // what it slides on has to be more than a link
-      if (other && has(binary_links_, *other)) continue;
-      block_slides_.emplace_back(body, *only);
+      if (const auto slide = slide_as_block(body)) block_slides_.emplace_back(body, *slide);
     }
+  }
+
+  /// The prismatic joint in which a link is a block, of those that are not blocks yet.
+  std::optional<std::size_t> slide_as_block(std::size_t body) const {
+    if (is_driven(body)) return std::nullopt;
+    std::optional<std::size_t> only;
+    bool single = true;
+    for (const std::size_t s : members_.slides) {
+      const Slide& slide = mechanism_.slides[s];
+      const bool takes_part =
+          slide.carrier == body || slide.of == body || mechanism_.bodies[body].find(slide.point) != nullptr;
+      if (!takes_part) continue;
+      single = single && !only;
+      only = s;
+    }
+    if (!only || !single || is_driven_slide(*only)) return std::nullopt;
+    const Slide& slide = mechanism_.slides[*only];
+    if (!slide.of || (slide.of != body && slide.carrier != body)) return std::nullopt;
+    const auto other = slide.of == body ? slide.carrier : slide.of;
+    if (other && block_slide(*other)) return std::nullopt;
+    if (joints(body, slide).size() != 1) return std::nullopt;
+    // what it slides on has to be more than a link
+    if (other && has(binary_links_, *other)) return std::nullopt;
+    return only;
   }
 
   /// The revolute joints of a link: its active points, but the one that merely slides.

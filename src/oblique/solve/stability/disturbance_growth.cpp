@@ -69,11 +69,7 @@ std::optional<DisturbanceGrowth> disturbance_growth(const network::Program& prog
     const auto linear = look(row);
     if (!linear) return std::nullopt;
     for (std::size_t g = 0; g < groups.size(); ++g) {
-      if (varies[g]) continue;
-      if (groups[g].size() > kMostStates)
-        varies[g] = (first->sparse_block(groups[g]) - linear->sparse_block(groups[g])).norm() != 0;
-      else
-        varies[g] = first->block(groups[g]) != linear->block(groups[g]);
+      varies[g] = varies[g] || (first->sparse_block(groups[g]) - linear->sparse_block(groups[g])).norm() != 0;
     }
   }
   double work = 0;

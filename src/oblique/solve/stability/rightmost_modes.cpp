@@ -40,7 +40,7 @@ double largest_row_sum(const Sparse& a) {
   for (Eigen::Index c = 0; c < a.outerSize(); ++c) {
     for (Sparse::InnerIterator entry(a, c); entry; ++entry) sums[entry.row()] += std::abs(entry.value());
   }
-  return sums.size() == 0 ? 0 : sums.maxCoeff();
+  return sums.lpNorm<Eigen::Infinity>();
 }
 
 template <class Matrix, class Scalar>
