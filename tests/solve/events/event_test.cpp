@@ -36,6 +36,20 @@ s = { type = "sign", in = "x" })");
   EXPECT_NEAR(x.back(), 1, 1e-6);
 }
 
+// Within its limits a limiter gives what it reads: the difference is exactly zero for a while, which bounds
+// of the two signals do not tell. sin t is above 1/2 from π/6 to 5π/6.
+TEST(Events, ADifferenceThatIsZeroForAWhileIsFollowed) {
+  const Compiled made(R"toml(
+x = { type = "sine-source", frequency = "1/(2*pi)" }
+l = { type = "limiter", in = "x", low = -0.5, high = 0.5 }
+c = { type = "comparator", in = ["x", "-l"] }
+)toml");
+  const auto result = run_of(made, {.until = 2.5});
+  const auto t = row_values(result, "t"), c = row_values(result, "c");
+  for (std::size_t k = 0; k < t.size(); ++k)
+    if (t[k] < 2.6) EXPECT_EQ(c[k], t[k] > std::numbers::pi / 6 ? 1 : 0) << t[k];
+}
+
 // t − 1, 2(t − 1) and −3(t − 1) cross zero at one instant, wherever rounding puts each of them: between the
 // comparators there is no moment at which one has turned over and another has not.
 TEST(Events, WhatCrossesTogetherTurnsTogether) {

@@ -19,6 +19,11 @@ constexpr double kSmooth = 0.25;
 /// What is below this part of the largest value that a source has had is nothing.
 constexpr double kNothing = 1e-9;
 
+/// An event function that is exactly zero at both ends of a part, and within it by bounds as near to zero as
+/// this [machine unit], is the same throughout: a difference of two signals that are one, for a while, whose
+/// bounds cannot know that.
+constexpr double kStaysAtZero = 1e-4;
+
 constexpr int kDeepest = 40;
 constexpr int kDeepestUnknown = 6;  ///< of a source by states that may be any number, as a quotient of zeros
 constexpr std::size_t kMostSamples = 1'000'000;  ///< in a step
@@ -90,7 +95,8 @@ bool SourceWatch::is_plain(double from, const Values& at_from, double to, const 
       value.high = std::min(value.high, a + derivative.high * (to - from));
     }
     if (watched_[k].switch_index) {
-      if (value.contains(0)) return false;
+      const bool stays_at_zero = a == 0 && b == 0 && value.width() <= kStaysAtZero;
+      if (value.contains(0) && !stays_at_zero) return false;
       continue;
     }
     const double shown =
