@@ -46,8 +46,26 @@ c = { type = "comparator", in = ["x", "-l"] }
 )toml");
   const auto result = run_of(made, {.until = 2.5});
   const auto t = row_values(result, "t"), c = row_values(result, "c");
-  for (std::size_t k = 0; k < t.size(); ++k)
-    if (t[k] < 2.6) EXPECT_EQ(c[k], t[k] > std::numbers::pi / 6 ? 1 : 0) << t[k];
+  for (std::size_t k = 0; k < t.size(); ++k) EXPECT_EQ(c[k], t[k] > std::numbers::pi / 6 ? 1 : 0) << t[k];
+}
+
+// A relay of three positions: z = cos t less its part within ±1/2 is exactly zero while that is, and then
+// neither z > 0 nor −z > 0 holds, from whichever side it came.
+TEST(Events, WhatRestsAtItsLevelIsNotAboveIt) {
+  const Compiled made(R"(
+x = { type = "integrator", in = "-y", initial = 1 }
+y = { type = "integrator", in = "x" }
+z = { type = "dead-zone", in = "x", low = -0.5, high = 0.5 }
+c = { type = "comparator", in = "z" }
+d = { type = "comparator", in = "-z" }
+)");
+  const auto result = run_of(made, {.until = 13});
+  const auto t = row_values(result, "t"), c = row_values(result, "c"), d = row_values(result, "d");
+  EXPECT_THAT(result.warnings, ::testing::IsEmpty());
+  for (std::size_t k = 0; k < t.size(); ++k) {
+    EXPECT_EQ(c[k], std::cos(t[k]) > 0.5 ? 1 : 0) << t[k];
+    EXPECT_EQ(d[k], std::cos(t[k]) < -0.5 ? 1 : 0) << t[k];
+  }
 }
 
 // t − 1, 2(t − 1) and −3(t − 1) cross zero at one instant, wherever rounding puts each of them: between the

@@ -108,20 +108,15 @@ bool Positions::take(Combination sides, const std::vector<double>& preferred, do
     if (trials_.is_undecided(sides, u)) undecided_.push_back(trials_.units()[u]);
   }
   if (!trials_.place(sides, bends_, t, x)) return false;
-  for (const std::uint32_t unit : resting_) prefer_where_nothing_changes(unit, preferred, t, x);
   resting_.insert(resting_.end(), bends_.resting().begin(), bends_.resting().end());
+  for (const std::uint32_t unit : resting_) prefer_where_nothing_changes(unit, preferred, t, x);
   return true;
 }
 
-/// Puts the switches of a unit that stays at zero where each prefers to be, which no side of it may be: none
-/// of them need hold at zero. But only where the equations are then the same.
+/// Puts the switches of a unit that stays at zero where each prefers to be, which no side of it may be: at
+/// zero exactly none of them need hold. But only where the equations are then the same.
 void Positions::prefer_where_nothing_changes(std::uint32_t unit, const std::vector<double>& preferred,
                                              double t, std::span<const double> x) {
-  const auto& members = program_.switch_structure().members[unit];
-  const auto is_preferred = [&](std::uint32_t s) {
-    return workspace_.discrete_state(program_.switches()[s].discrete_state) == preferred[s];
-  };
-  if (std::all_of(members.begin(), members.end(), is_preferred)) return;
   const std::vector<double> positions(workspace_.discrete_states().begin(),
                                       workspace_.discrete_states().end());
   using Equations = std::pair<std::vector<double>, std::vector<double>>;  // dx/dt and event functions
@@ -133,9 +128,11 @@ void Positions::prefer_where_nothing_changes(std::uint32_t unit, const std::vect
     return found;
   };
   const auto before = evaluate();
-  for (const std::uint32_t s : members)
-    workspace_.set_discrete_state(program_.switches()[s].discrete_state, preferred[s]);
-  if (!before || evaluate() != before) workspace_.load_discrete_states(positions);
+  if (!before) return;
+  for (const std::uint32_t s : program_.switch_structure().members[unit])
+    workspace_.set_discrete_state(program_.switches()[s].discrete_state,
+                                  before->second[s] == 0 ? 0 : preferred[s]);
+  if (evaluate() != before) workspace_.load_discrete_states(positions);
 }
 
 /// Slides along as few units as possible. To events, what slides stays where it was.

@@ -190,6 +190,7 @@ void SwitchSettling::add_preferred(std::uint32_t unit, std::vector<double>& pref
       const double there = *announced_[member];
       preferred[s] = structure.opposite[member] == structure.opposite[s] ? there : 1 - there;
     }
+    if (event_functions_[s] == 0) preferred[s] = 0;
   }
 }
 
