@@ -51,7 +51,7 @@ Case six_bar() {
   made.steps = {dyad({2, 0, 1, 0.7, 0.75, 1, 1.4}), carried({3, 0, 2, 50.0 / 140, 0}),
                 carried({4, 0, 2, 50.0 / 140, 45.0 / 140})};
   made.shown = {0, 2, 3, 4};
-  return {"six-bar", "six-bar-above", made, {"B", "C", "E", "F"}, 100, 200};
+  return {"six-bar-above", "six-bar", made, {"B", "C", "E", "F"}, 100, 200};
 }
 
 /// Points: P1 … P6 are 0 … 5, Q1 … Q6 are 6 … 11, and O2 is 12; 1 machine unit is 200 mm.
