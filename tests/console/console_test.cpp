@@ -3,11 +3,13 @@
 #include <oblique/console/console.h>
 
 #include <cmath>
+#include <filesystem>
 #include <numbers>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <oblique/diagram/diagram_reader.h>
 #include <oblique/solve/run.h>
 #include <oblique/solve/run_state.h>
 
@@ -55,6 +57,43 @@ TEST(Console, ReadsWhatARunHas) {
     EXPECT_THAT(console.events(), SizeIs(run.events.size()));
     EXPECT_THAT(console.warnings(), IsEmpty());
   }
+}
+
+// The same of every diagram that is shipped. The elements of an algebraic loop are sought from where they
+// were evaluated last, which rows do in a run: there it is the same to the rounding of that search.
+TEST(Console, ReadsWhatTheRunsOfTheShippedDiagramsHave) {
+  for (const char* const folder : {"lessons", "historical"}) {
+    for (const auto& entry :
+         std::filesystem::directory_iterator(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/" + folder)) {
+      if (entry.path().extension() != ".toml") continue;
+      const diagram::Diagram diagram = diagram::read_diagram(entry.path());
+      const solve::Run run = solve::run(diagram, testing::shipped_blocks());
+      Console console(diagram, testing::shipped_blocks());
+      const double rounding = run.state.unknowns.empty() ? 0 : 1e-13;
+      const std::size_t rows = run.trajectory.rows();
+      for (std::size_t row = 0; row < rows; row += std::max<std::size_t>(1, rows / 40)) {
+        console.advance(run.trajectory.at(row, 0));
+        for (std::size_t c = 1; c < run.trajectory.columns().size(); ++c) {
+          const double has = run.trajectory.at(row, c);
+          ASSERT_NEAR(console.value(run.trajectory.columns()[c].name), has, rounding * (1 + std::abs(has)))
+              << entry.path() << " at row " << row;
+        }
+      }
+    }
+  }
+}
+
+// A machine that failed tells so again, and nothing else changes it: x′ = x² from 1 is infinite at t = 1.
+TEST(Console, StandsWhereTheMachineFailed) {
+  Console console = console_of(
+      "s = { type = \"squarer\", in = \"x\" }\nx = { type = \"integrator\", in = \"s\", initial = 1 }\n");
+  const solve::RunState start = console.save();
+  EXPECT_THROW(console.advance(3), solve::SolveError);
+  EXPECT_NEAR(console.time(), 1, 1e-3);
+  EXPECT_THROW(console.advance(3), solve::SolveError);
+  console.restore(start);
+  console.advance(0.5);
+  EXPECT_NEAR(console.value("x"), 2, 1e-7);
 }
 
 // Beyond the end of [run] the machine goes on: e^(−t).

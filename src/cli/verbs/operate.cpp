@@ -63,7 +63,8 @@ class Operator {
       turn(needed(verb, rest, "BLOCK.PARAMETER VALUE"));
     } else if (verb == "read") {
       const console::Console::Reading reading = console_.read(needed(verb, rest, "NAME"));
-      print(fmt::format("{} = {} {}\n", rest, reading.value, reading.unit));
+      const std::string unit = reading.unit == "1" ? "" : " " + reading.unit;
+      print(fmt::format("{} = {}{}\n", rest, reading.value, unit));
     } else if (verb == "scope") {
       set_scope(rest);
     } else if (verb == "overloads") {

@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <vector>
 
 namespace oblique::console {
 namespace {
@@ -26,6 +27,23 @@ solve::RunState::Named taken(const Items& items, const Values& values, const Oth
   return named;
 }
 
+/// Whether the condition of each event of `to` held: that of the event of `from` that is as many of its
+/// block. One that there was not has not held.
+std::vector<bool> conditions_by_block(const solve::RunState& state, const network::Program& from,
+                                      const network::Program& to) {
+  std::unordered_map<std::string_view, std::vector<bool>> of_block;
+  for (std::size_t e = 0; e < from.events().size(); ++e)
+    of_block[from.events()[e].block].push_back(state.conditions[e]);
+  std::unordered_map<std::string_view, std::size_t> taken;
+  std::vector<bool> held;
+  for (const network::Event& event : to.events()) {
+    const std::vector<bool>& before = of_block[event.block];
+    const std::size_t number = taken[event.block]++;
+    held.push_back(number < before.size() && before[number]);
+  }
+  return held;
+}
+
 }  // namespace
 
 solve::RunState carried_state(const solve::RunState& state, const network::Program& from,
@@ -44,7 +62,7 @@ solve::RunState carried_state(const solve::RunState& state, const network::Progr
   carried.memories =
       taken(to.discrete_states(), discrete, [&](std::size_t i) { return fresh.discrete_states()[i]; });
   carried.sliding.clear();
-  carried.conditions.resize(to.events().size(), false);
+  carried.conditions = conditions_by_block(state, from, to);
   return carried;
 }
 

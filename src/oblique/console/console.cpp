@@ -81,15 +81,14 @@ class Console::Held {
                                           fmt::format("a time from {} s on, where it stands", time_),
                                           "restore an earlier state to run from there again"});
     }
+    known_ = false;
     while (until > machine_->runner.piece_end()) {
-      const double reached = machine_->runner.piece_end();
-      if (looks_ahead_) machine_->runner.pass();
+      time_ = machine_->runner.piece_end();
+      if (std::exchange(looks_ahead_, false)) machine_->runner.pass();
       looks_ahead_ = machine_->runner.look_ahead();
-      time_ = std::max(time_, reached);
       if (!looks_ahead_) go_on_beyond(until);
     }
     time_ = until;
-    known_ = false;
   }
 
   Reading read(std::string_view name) {

@@ -36,7 +36,7 @@ class Console {
 
   double time() const;  ///< [s]
   /// Runs until that time [s]. Throws ConsoleError for one that is over, and SolveError; the console then
-  /// stands where it was last.
+  /// stands where the machine failed.
   void advance(double until);
 
   /// What the voltmeter shows.

@@ -43,9 +43,13 @@ RunSnapshot::RunSnapshot(const RunState& state)
       sliding_(state.sliding),
       position_(state.position) {}
 
-void RunSnapshot::restore(const RunParts& parts) const {
+void RunSnapshot::restore_values(const RunParts& parts) const {
   parts.states = states_;
   for (std::size_t u = 0; u < unknowns_.size(); ++u) parts.workspace.set_unknown(u, unknowns_[u]);
+}
+
+void RunSnapshot::restore(const RunParts& parts) const {
+  restore_values(parts);
   parts.workspace.load_discrete_states(discrete_states_);
   parts.clock.restore(position_);
   parts.switching.restore(conditions_, sliding_);

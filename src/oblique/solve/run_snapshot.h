@@ -30,6 +30,8 @@ class RunSnapshot {
   double time() const { return time_; }
   /// Brings the parts back to this state; what slides is to be resumed.
   void restore(const RunParts& parts) const;
+  /// Brings only the states and the unknowns of loops back.
+  void restore_values(const RunParts& parts) const;
   RunState named(const network::Program& program) const;
 
  private:

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include <oblique/network/program/program.h>
+#include <oblique/solve/events/along_branch.h>
 #include <oblique/solve/events/branch_end.h>
 #include <oblique/solve/integrator/integration.h>
 #include <oblique/solve/integrator/method.h>
@@ -128,7 +129,6 @@ std::vector<text::Diagnostic> Runner::warnings() const {
   return all;
 }
 
-/// And what it did not see.
 Unseen Runner::unseen() const {
   Unseen unseen = integration_ ? integration_->unseen() : Unseen{};
   unseen.faint = switching_.faint_turns();
@@ -239,21 +239,41 @@ void Runner::pass() {
   }
 }
 
-void Runner::signals_at(double t, std::vector<double>& signals) {
+/// Evaluates at a time of the piece; leaves the states and the unknowns of loops there.
+void Runner::go_to(double t, std::vector<double>& signals) {
   signals.resize(program_.n_signals());
-  std::vector<double> states = states_;
-  if (in_step_ && integration_) integration_->solver().states_at(t, states);
-  if (!switching_.signals(t, states.data(), signals.data()))
-    throw loop_error(program_, workspace_.trouble(), t, diagram_.file);
+  const double reached = evaluate_along_branch(piece_end_, t, workspace_, [&](double at) {
+    if (in_step_ && integration_) integration_->solver().states_at(at, states_);
+    return switching_.signals(at, states_.data(), signals.data());
+  });
+  if (reached != t) throw loop_error(program_, workspace_.trouble(), t, diagram_.file);
+}
+
+/// Does some work, and brings the states and the unknowns of loops back to what they were: what is read
+/// changes none of the steps that follow.
+template <class Work>
+void Runner::undone(const Work& work) {
+  const RunSnapshot here(t_, parts());
+  try {
+    work();
+  } catch (...) {
+    here.restore_values(parts());
+    throw;
+  }
+  here.restore_values(parts());
+}
+
+void Runner::signals_at(double t, std::vector<double>& signals) {
+  undone([&] { go_to(t, signals); });
 }
 
 RunState Runner::state_at(double t) {
+  RunState state;
   std::vector<double> signals;
-  signals_at(t, signals);  // the unknowns of loops, too, are then those at t
-  const std::vector<double> states = states_;
-  if (in_step_ && integration_) integration_->solver().states_at(t, states_);
-  RunState state = RunSnapshot(t, parts()).named(program_);
-  states_ = states;
+  undone([&] {
+    go_to(t, signals);
+    state = RunSnapshot(t, parts()).named(program_);
+  });
   return state;
 }
 

@@ -65,6 +65,9 @@ class Runner {
   StartParts start_parts() { return {program_, diagram_, options_, loop_start_, workspace_, switching_}; }
   RunParts parts() { return {program_, states_, workspace_, switching_, clock_}; }
   void resume(const RunState& state);
+  void go_to(double t, std::vector<double>& signals);
+  template <class Work>
+  void undone(const Work& work);
   bool ends_unseen();
   bool goes_on(double t);
   void begin_steps();

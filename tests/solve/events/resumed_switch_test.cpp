@@ -50,13 +50,16 @@ s = { type = "sign", in = "x" }
   }
 }
 
-// x′ = 0.5 − sgn x slides along zero from t = 2/3 on, where the mean of the sign is 0.5, to the tolerance.
-TEST(ResumedSwitch, ThatSlidGoesOnSliding) {
-  const testing::Compiled made(R"(
+// x′ = 0.5 − sgn x slides along zero from t = 2/3 on.
+const char* const kSlide = R"(
 half = { type = "constant", value = 0.5 }
 x = { type = "integrator", in = ["half", "-s"], initial = 0.3333333333333333 }
 s = { type = "sign", in = "x" }
-)");
+)";
+
+// The mean of the sign is 0.5, to the tolerance.
+TEST(ResumedSwitch, ThatSlidGoesOnSliding) {
+  const testing::Compiled made(kSlide);
   const Halves halves(made, 4, 1e-8);
   EXPECT_THAT(halves.first.state.sliding, ::testing::Contains(true));
   EXPECT_THAT(halves.second.warnings, IsEmpty());
@@ -67,11 +70,7 @@ s = { type = "sign", in = "x" }
 
 // Of a run that goes on with a slide nothing is too small, and none of it is run finer.
 TEST(ResumedSwitch, ThatSlidIsKnown) {
-  const testing::Compiled made(R"(
-half = { type = "constant", value = 0.5 }
-x = { type = "integrator", in = ["half", "-s"], initial = 0.3333333333333333 }
-s = { type = "sign", in = "x" }
-)");
+  const testing::Compiled made(kSlide);
   for (const double until : {1.8, 2.7, 5.0, 7.4, 14.2}) {
     const Halves halves(made, until, 1e-8);
     EXPECT_THAT(halves.second.warnings, IsEmpty()) << until;
@@ -81,11 +80,7 @@ s = { type = "sign", in = "x" }
 
 // A state that was saved before it said what slides goes on, too: all that lies at zero may have slid.
 TEST(ResumedSwitch, OfAStateThatDoesNotSayWhatSlid) {
-  const testing::Compiled made(R"(
-half = { type = "constant", value = 0.5 }
-x = { type = "integrator", in = ["half", "-s"], initial = 0.3333333333333333 }
-s = { type = "sign", in = "x" }
-)");
+  const testing::Compiled made(kSlide);
   const Halves halves(made, 4, 1e-8);
   std::string text = to_text(halves.first.state);
   const std::size_t at = text.find("sliding = ");

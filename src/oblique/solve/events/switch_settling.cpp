@@ -124,8 +124,8 @@ double SwitchSettling::known_position(std::size_t s) const {
   return position(s);
 }
 
-/// Turns every switch over whose event function asks for it, and collects the units that lie on their event
-/// functions and have not been decided yet. True where any turned over.
+/// Turns every switch over whose event function asks for it, and collects the units that lie on their
+/// switching surfaces and have not been decided yet. True where any turned over.
 bool SwitchSettling::turn_by_event_functions(double t, Units& at_zero, std::vector<std::uint32_t>& turned) {
   const network::SwitchStructure& structure = program_.switch_structure();
   at_zero.clear();
