@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A pot of a patched four-bar that is turned while it runs: the diagram compiled anew, the state carried
-// over.
+// A pot of a patched four-bar that is turned while it runs: with other numbers in the same equations, and
+// where the equations are others and compiled anew, the state carried over.
 #include <string>
 #include <vector>
 
@@ -12,27 +12,54 @@
 namespace oblique::bench {
 namespace {
 
-void turn_a_pot(benchmark::State& state) {
-  const std::string folder = std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/";
-  const auto mechanism = mechanism::read_mechanism(folder + "four-bar.toml");
-  const auto library = diagram::BlockLibrary::shipped();
-  console::Console machine(patch::patch_triangles(mechanism), library);
-  machine.advance(0.1);
+/// A patched four-bar on its way, and the gain of one of its amplifiers.
+struct Held {
+  diagram::BlockLibrary library = diagram::BlockLibrary::shipped();
+  console::Console machine{patch::patch_triangles(mechanism::read_mechanism(
+                               std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/four-bar.toml")),
+                           library};
   std::string pot;
-  for (const std::string& name : machine.pot_names()) {
-    if (name.ends_with(".gain")) pot = name;
+
+  Held() {
+    machine.advance(0.1);
+    for (const std::string& name : machine.pot_names()) {
+      if (name.ends_with(".gain")) pot = name;
+    }
   }
-  std::vector<double> times;
-  int k = 0;
+};
+
+/// The time that `turn` takes, and until the machine can be read again.
+void turn_a_pot(benchmark::State& state, const std::vector<std::string>& values, console::Turned how,
+                const std::string& what, double asked, const std::string& unit, double scale) {
+  Held held;
+  held.machine.turn(held.pot, values.back());
+  std::vector<double> turns, wholes;
+  std::size_t k = 0;
   for (auto _ : state) {
+    const std::string& value = values[k++ % values.size()];
     const double begin = cpu_seconds();
-    machine.turn(pot, k++ % 2 == 0 ? "2e4" : "1e4");
-    times.push_back(cpu_seconds() - begin);
-    state.SetIterationTime(times.back());
+    const console::Turned turned = held.machine.turn(held.pot, value);
+    const double middle = cpu_seconds();
+    held.machine.value(held.pot);
+    benchmark::DoNotOptimize(held.machine.signal(held.machine.signal_names().front()));
+    wholes.push_back(cpu_seconds() - begin);
+    turns.push_back(middle - begin);
+    if (turned != how) state.SkipWithError("turned otherwise");
+    state.SetIterationTime(wholes.back());
   }
-  record({"a pot of a four-bar turned, compiled anew", 1e3 * median(times), 2, "ms"});
+  record({"a pot of a four-bar turned, " + what, scale * median(turns), asked, unit});
+  record({what + ", until the machine is read again", 1e3 * median(wholes), 2, "ms"});
 }
-BENCHMARK(turn_a_pot)->Name("console/turn")->UseManualTime()->Iterations(200);
+
+void turn_at_once(benchmark::State& state) {
+  turn_a_pot(state, {"2e4", "1e4"}, console::Turned::at_once, "without compilation", 2, "us", 1e6);
+}
+BENCHMARK(turn_at_once)->Name("console/turn")->UseManualTime()->Iterations(2000);
+
+void turn_and_compile(benchmark::State& state) {
+  turn_a_pot(state, {"inf", "1e4"}, console::Turned::compiled_anew, "compiled anew", 2, "ms", 1e3);
+}
+BENCHMARK(turn_and_compile)->Name("console/turn and compile")->UseManualTime()->Iterations(200);
 
 }  // namespace
 }  // namespace oblique::bench

@@ -139,6 +139,99 @@ TEST(Console, CarriesAnAmplifierFromOneCaseToTheOther) {
   EXPECT_NEAR(console.value("c"), 0.49, 1e-9);
 }
 
+// The rows of a probe are what the voltmeter shows at these times, and it changes nothing.
+TEST(Console, RecordsWithProbes) {
+  const diagram::Diagram diagram = diagram_of(kRelayServo, "[run]\nuntil = 20\n");
+  Console watched(diagram, testing::shipped_blocks()), other(diagram, testing::shipped_blocks());
+  ProbeSettings settings;
+  settings.names = {"x", "u"};
+  settings.interval = 0.125;
+  const std::size_t rows = watched.set_probe(settings);
+  settings.interval = 0;
+  const std::size_t steps = watched.set_probe(settings);
+  settings.trigger = Trigger{"u", 0, Trigger::Slope::falling, 0};
+  settings.length = 0.5;
+  const std::size_t scope = watched.set_probe(settings);
+  watched.advance(0.7);
+  watched.advance(20);
+  const Trace& trace = watched.traces(rows).front();
+  ASSERT_THAT(trace.times, SizeIs(161));
+  for (std::size_t k = 0; k < trace.times.size(); ++k) {
+    other.advance(trace.times[k]);
+    EXPECT_EQ(trace.values[0][k], other.value("x"));
+    EXPECT_EQ(trace.values[1][k], other.value("u"));
+  }
+  // The relay turns over by jumps, which have two rows.
+  const Trace& every = watched.traces(steps).front();
+  std::vector<double> jumps;
+  for (std::size_t k = 1; k < every.times.size(); ++k) {
+    if (every.times[k] == every.times[k - 1] && every.values[1][k] < every.values[1][k - 1])
+      jumps.push_back(every.times[k]);
+  }
+  EXPECT_THAT(jumps, SizeIs(1));
+  ASSERT_THAT(watched.traces(scope), SizeIs(jumps.size()));
+  for (std::size_t k = 0; k < jumps.size(); ++k) EXPECT_EQ(watched.traces(scope)[k].begin, jumps[k]);
+  watched.remove_probe(rows);
+  EXPECT_EQ(
+      testing::message_of<ConsoleError>([&] { watched.traces(rows); }),
+      "d.toml: there is no probe number 0; expected a number that 'set_probe' has given, of a probe that "
+      "is not taken away");
+}
+
+TEST(Console, RefusesBadProbes) {
+  Console console = console_of(kDecay);
+  const auto refusal = [&](ProbeSettings settings) {
+    return testing::message_of<ConsoleError>([&] { console.set_probe(std::move(settings)); });
+  };
+  ProbeSettings settings;
+  EXPECT_EQ(refusal(settings), "d.toml: a probe cannot be set: it has no names; expected at least one");
+  settings.names = {"y"};
+  EXPECT_EQ(
+      refusal(settings),
+      "d.toml: there is no signal 'y' for a probe; expected the name of an output, a block or one of its "
+      "outputs\n  remedy: known: x");
+  settings.names = {"x"};
+  settings.interval = std::nan("");
+  EXPECT_EQ(refusal(settings),
+            "d.toml: a probe cannot be set: its interval is no time; expected 0 or more seconds");
+  settings.interval = 0;
+  settings.length = 0;
+  EXPECT_EQ(refusal(settings),
+            "d.toml: a probe cannot be set: its traces have no length; expected more than 0 seconds");
+  settings.length = 1;
+  settings.trigger = Trigger{"x", 0, Trigger::Slope::rising, -1};
+  EXPECT_EQ(refusal(settings),
+            "d.toml: a probe cannot be set: its hold-off is no time; expected 0 or more seconds");
+}
+
+// A pot that is turned between two reads acts once, from the time at which the machine stands; what cannot
+// be solved is told by those who run it, until the pot is turned again.
+TEST(Console, GoesOnOnceAPotCanBeSolvedAgain) {
+  Console console = console_of(
+      "b = { type = \"constant\", value = 0.5 }\n"
+      "p = { type = \"potentiometer\", in = \"s\", setting = 0.5 }\n"
+      "s = { type = \"summer\", in = [\"b\", \"p\"] }\n"
+      "x = { type = \"integrator\", in = \"s\" }\n");
+  console.advance(1);
+  EXPECT_NEAR(console.value("x"), 1, 1e-12);  // s = 0.5/(1 − 0.5)
+  EXPECT_EQ(console.turn("p.setting", "0.75"), Turned::at_once);
+  EXPECT_EQ(console.turn("p.setting", "1"), Turned::compiled_anew);
+  EXPECT_THROW(console.advance(2), solve::SolveError);
+  EXPECT_THROW(console.value("s"), solve::SolveError);
+  console.turn("p.setting", "0.75");
+  console.advance(2);
+  EXPECT_NEAR(console.value("x"), 1 + 2, 1e-12);
+}
+
+TEST(Console, ShowsOverloads) {
+  Console console =
+      console_of("a = { type = \"constant\", value = 1.5 }\nx = { type = \"integrator\", in = \"a\" }\n");
+  ASSERT_THAT(console.overloads(), SizeIs(1));
+  EXPECT_EQ(console.overloads()[0].signal, "a");
+  console.advance(1);
+  EXPECT_THAT(console.overloads(), SizeIs(2));
+}
+
 TEST(Console, HasTheModesOfAMachine) {
   Console console = console_of(kDecay);
   console.advance(1);

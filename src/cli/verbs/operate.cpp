@@ -114,7 +114,9 @@ class Operator {
                                              "turn BLOCK.PARAMETER VALUE",
                                              fmt::format("'read {}' shows what it is", rest)});
     }
-    console_.turn(rest.substr(0, space), trimmed(rest.substr(space)));
+    const std::string pot = rest.substr(0, space);
+    if (console_.turn(pot, trimmed(rest.substr(space))) == console::Turned::compiled_anew)
+      note(fmt::format("turned '{}' by compiling anew\n", pot));
   }
 
   void set_scope(const std::string& names) {
@@ -132,34 +134,37 @@ class Operator {
     constexpr int kPoints = 240;  // two dots of Braille a column
     const double from = console_.time();
     if (probes_.empty() || !(until > from) || !std::isfinite(until)) return console_.advance(until);
+    console::ProbeSettings settings;
+    settings.names = probes_;
+    settings.interval = (until - from) / kPoints;
+    const std::size_t probe = console_.set_probe(settings);
+    try {
+      console_.advance(until);
+    } catch (...) {
+      console_.remove_probe(probe);
+      throw;
+    }
+    const console::Trace& trace = console_.traces(probe).front();
     draw::Panel panel;
     panel.x = {"t", "s"};
     for (const std::string& name : probes_) {
       draw::Curve curve;
       curve.name = name;
       curve.number = panel.curves.size();
+      for (std::size_t row = 0; row < trace.times.size(); ++row)
+        curve.points.emplace_back(trace.times[row], trace.values[curve.number][row]);
       panel.curves.push_back(std::move(curve));
     }
-    for (int k = 0; k <= kPoints; ++k) {
-      const double t = k == kPoints ? until : from + (until - from) * k / kPoints;
-      console_.advance(t);
-      for (std::size_t p = 0; p < probes_.size(); ++p)
-        panel.curves[p].points.emplace_back(t, console_.value(probes_[p]));
-    }
+    console_.remove_probe(probe);
     draw::Chart chart;
     chart.panels.push_back(std::move(panel));
     plot(chart, "-", draw::Theme::automatic);
   }
 
   void show_overloads() {
-    bool any = false;
-    for (const std::string& name : console_.signal_names()) {
-      const double value = console_.signal(name);
-      if (!(std::abs(value) > 1)) continue;
-      print(fmt::format("{} = {:.6g} machine unit\n", name, value));
-      any = true;
-    }
-    if (!any) print("no signal is beyond ±1 machine unit\n");
+    const std::vector<console::Console::Overload> lit = console_.overloads();
+    for (const auto& [signal, value] : lit) print(fmt::format("{} = {:.6g} machine unit\n", signal, value));
+    if (lit.empty()) print("no signal is beyond ±1 machine unit\n");
   }
 
   void tell_warnings() {

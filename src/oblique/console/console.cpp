@@ -10,9 +10,7 @@
 #include <fmt/format.h>
 
 #include <oblique/console/carried_state.h>
-#include <oblique/diagram/flatten.h>
-#include <oblique/network/assembly/network.h>
-#include <oblique/network/program/program.h>
+#include <oblique/console/pots.h>
 #include <oblique/solve/run.h>
 #include <oblique/solve/runner.h>
 
@@ -64,61 +62,52 @@ constexpr diagram::OperatingMode kModes[] = {diagram::OperatingMode::operate, di
 class Console::Held {
  public:
   Held(diagram::Diagram diagram, const diagram::BlockLibrary& library)
-      : diagram_(std::move(diagram)),
-        library_(library),
-        has_timeline_(!diagram_.timeline.phases.empty()),
-        horizon_(diagram_.run.until) {
-    const Compiled made = compiled(diagram_, overrides_);
-    machine_ = std::make_unique<Machine>(made.flat, made.program, options_of(diagram_.run, horizon_, {}));
-  }
+      : pots_(std::move(diagram), library),
+        has_timeline_(!pots_.diagram().timeline.phases.empty()),
+        horizon_(pots_.diagram().run.until),
+        machine_(std::make_unique<Machine>(pots_.flat(), pots_.program(),
+                                           options_of(pots_.diagram().run, horizon_, {}))) {}
 
   double time() const { return time_; }
 
   void advance(double until) {
     if (!(until >= time_) || !std::isfinite(until)) {
-      throw ConsoleError(text::Diagnostic{{diagram_.file, {}},
+      throw ConsoleError(text::Diagnostic{{pots_.diagram().file, {}},
                                           fmt::format("the machine cannot run until {} s", until),
                                           fmt::format("a time from {} s on, where it stands", time_),
                                           "restore an earlier state to run from there again"});
     }
+    take_turned_pots();
     known_ = false;
     while (until > machine_->runner.piece_end()) {
+      show_probes(machine_->runner.piece_end());
       time_ = machine_->runner.piece_end();
       if (std::exchange(looks_ahead_, false)) machine_->runner.pass();
       looks_ahead_ = machine_->runner.look_ahead();
       if (!looks_ahead_) go_on_beyond(until);
     }
+    show_probes(until);
     time_ = until;
   }
 
   Reading read(std::string_view name) {
-    for (const diagram::FlatOutput& output : machine_->flat->outputs) {
-      if (output.name != name) continue;
-      const double signal = signals()[machine_->program->signal_index(output.signal)];
-      return {output.scale * signal + output.offset, output.unit};
-    }
-    if (const auto known = signal_named(name)) return {*known, "machine unit"};
-    if (const auto pot = pot_reading(name)) return *pot;
+    if (const auto channel = channel_of(name)) return {channel->value(signals()), channel->unit};
+    if (const auto pot = pots_.setting_of(name)) return {pot->value, pot->unit};
     std::vector<std::string> candidates = output_names();
-    const std::vector<std::string>&names = signal_names(), pots = pot_names();
+    const std::vector<std::string>&names = signal_names(), pots = pots_.names();
     candidates.insert(candidates.end(), names.begin(), names.end());
     candidates.insert(candidates.end(), pots.begin(), pots.end());
-    throw ConsoleError(text::Diagnostic{{diagram_.file, {}},
+    throw ConsoleError(text::Diagnostic{{pots_.diagram().file, {}},
                                         fmt::format("there is no signal or pot '{}'", name),
                                         "the name of an output, a block, one of its outputs or a parameter",
                                         text::suggest(name, candidates)});
   }
 
-  std::optional<double> signal_named(std::string_view name) {
+  double signal(std::string_view name) {
     const std::vector<std::string>& names = signal_names();
     const auto found = std::find(names.begin(), names.end(), name);
-    if (found == names.end()) return std::nullopt;
-    return signals()[static_cast<std::size_t>(found - names.begin())];
-  }
-
-  double signal(std::string_view name) {
-    if (const auto known = signal_named(name)) return *known;
-    throw ConsoleError(text::Diagnostic{{diagram_.file, {}},
+    if (found != names.end()) return signals()[static_cast<std::size_t>(found - names.begin())];
+    throw ConsoleError(text::Diagnostic{{pots_.diagram().file, {}},
                                         fmt::format("there is no signal '{}'", name),
                                         "the name of a block, or of one of its outputs",
                                         text::suggest(name, signal_names())});
@@ -126,55 +115,84 @@ class Console::Held {
 
   std::vector<std::string> output_names() const {
     std::vector<std::string> names;
-    for (const diagram::FlatOutput& output : machine_->flat->outputs) names.push_back(output.name);
+    for (const diagram::FlatOutput& output : pots_.flat()->outputs) names.push_back(output.name);
     return names;
   }
 
-  const std::vector<std::string>& signal_names() const { return machine_->program->signal_names(); }
+  const std::vector<std::string>& signal_names() { return pots_.program()->signal_names(); }
 
-  std::vector<std::string> pot_names() const {
-    std::vector<std::string> names;
-    for (const diagram::FlatBlock& block : machine_->flat->blocks) {
-      for (const auto& parameter : block.definition->parameters)
-        names.push_back(fmt::format("{}.{}", block.path, parameter.name));
+  Pots& pots() { return pots_; }
+
+  std::vector<Overload> overloads() {
+    std::vector<Overload> lit;
+    const std::vector<double>& values = signals();
+    for (std::size_t s = 0; s < values.size(); ++s) {
+      if (std::abs(values[s]) > 1) lit.push_back({signal_names()[s], values[s]});
     }
-    return names;
+    return lit;
   }
 
-  void turn(const std::string& pot, const std::string& value) {
-    std::vector<diagram::ParameterOverride> overrides = overrides_;
-    std::erase_if(overrides, [&](const diagram::ParameterOverride& other) { return other.path == pot; });
-    overrides.push_back({pot, value});
-    go_on_as(diagram_, overrides);
-    overrides_ = std::move(overrides);
+  std::size_t set_probe(ProbeSettings settings) {
+    SetProbe made;
+    for (const std::string& name : settings.names) made.channels.push_back(known_channel(name));
+    if (settings.names.empty()) refuse_probe("it has no names", "at least one");
+    if (!(settings.interval >= 0)) refuse_probe("its interval is no time", "0 or more seconds");
+    if (!(settings.length > 0)) refuse_probe("its traces have no length", "more than 0 seconds");
+    if (const auto& trigger = settings.trigger) {
+      made.channels.push_back(known_channel(trigger->name));
+      if (!std::isfinite(trigger->level)) refuse_probe("its level is no number", "a finite number");
+      if (!(trigger->hold_off >= 0)) refuse_probe("its hold-off is no time", "0 or more seconds");
+    }
+    take_turned_pots();
+    made.probe = std::make_unique<Probe>(std::move(settings), time_);
+    probes_.push_back(std::move(made));
+    show_probe(probes_.back(), time_);
+    return probes_.size() - 1;
+  }
+
+  const std::vector<Trace>& traces(std::size_t number) const { return probe(number).probe->traces(); }
+
+  void remove_probe(std::size_t number) {
+    probe(number);
+    probes_[number].probe.reset();
   }
 
   void set_mode(diagram::OperatingMode mode) {
     if (has_timeline_) {
-      throw ConsoleError(text::Diagnostic{{diagram_.file, {}},
+      throw ConsoleError(text::Diagnostic{{pots_.diagram().file, {}},
                                           "the timeline of the diagram says which mode is on",
                                           "a diagram without [timeline]",
                                           "remove the timeline to set the modes by hand"});
     }
     const auto phase =
         static_cast<std::size_t>(std::find(std::begin(kModes), std::end(kModes), mode) - std::begin(kModes));
-    if (!diagram_.timeline.phases.empty()) {
-      solve::RunState state = save();
+    solve::RunState state = save();
+    if (!pots_.diagram().timeline.phases.empty()) {
       state.position.phase = phase;
-      return go_on_from(machine_->flat, machine_->program, std::move(state));
+      return go_on(pots_, std::move(state));
     }
-    diagram::Diagram with_modes = diagram_;
-    for (const diagram::OperatingMode each : kModes) with_modes.timeline.phases.push_back(whole_phase(each));
-    go_on_as(with_modes, overrides_, phase);
-    diagram_ = std::move(with_modes);
+    diagram::Timeline timeline;
+    for (const diagram::OperatingMode each : kModes) timeline.phases.push_back(whole_phase(each));
+    Pots with_modes = pots_;
+    with_modes.set_timeline(std::move(timeline));
+    state = carried_state(state, *pots_.program(), signals(), *with_modes.program());
+    state.position.phase = phase;
+    go_on(with_modes, std::move(state));
+    pots_ = std::move(with_modes);
   }
 
-  solve::RunState save() { return machine_->runner.state_at(time_); }
+  solve::RunState save() {
+    take_turned_pots();
+    return machine_->runner.state_at(time_);
+  }
 
   void restore(const solve::RunState& state) {
-    solve::check_run_state(state, *machine_->program, diagram_.file);
+    solve::check_run_state(state, *pots_.program(), pots_.diagram().file);
     horizon_ = std::max(horizon_, 2 * state.time);
-    go_on_from(machine_->flat, machine_->program, state);
+    go_on(pots_, state);
+    for (const SetProbe& set : probes_) {
+      if (set.probe) set.probe->jump(time_);
+    }
   }
 
   std::vector<solve::EventRecord> events() const {
@@ -196,51 +214,94 @@ class Console::Held {
   }
 
  private:
-  struct Compiled {
-    std::shared_ptr<const diagram::FlatDiagram> flat;
-    std::shared_ptr<const network::Program> program;
+  /// An output or a signal as it is read.
+  struct Channel {
+    std::size_t signal = 0;
+    double scale = 1, offset = 0;
+    std::string unit;
+
+    double value(const std::vector<double>& signals) const { return scale * signals[signal] + offset; }
+  };
+  struct SetProbe {
+    std::vector<Channel> channels;  ///< of its names and, at the end, of its trigger
+    std::unique_ptr<Probe> probe;   ///< none once it is taken away
   };
 
-  Compiled compiled(const diagram::Diagram& diagram,
-                    const std::vector<diagram::ParameterOverride>& overrides) const {
-    auto flat = std::make_shared<const diagram::FlatDiagram>(diagram::flatten(diagram, library_, overrides));
-    auto program = std::make_shared<const network::Program>(network::assemble(*flat));
-    return {std::move(flat), std::move(program)};
+  std::optional<Channel> channel_of(std::string_view name) {
+    for (const diagram::FlatOutput& output : pots_.flat()->outputs) {
+      if (output.name == name)
+        return Channel{pots_.program()->signal_index(output.signal), output.scale, output.offset,
+                       output.unit};
+    }
+    const std::vector<std::string>& names = signal_names();
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found == names.end()) return std::nullopt;
+    return Channel{static_cast<std::size_t>(found - names.begin()), 1, 0, "machine unit"};
+  }
+
+  Channel known_channel(std::string_view name) {
+    if (auto channel = channel_of(name)) return *channel;
+    std::vector<std::string> candidates = output_names();
+    for (const std::string& signal : signal_names()) {
+      if (std::find(candidates.begin(), candidates.end(), signal) == candidates.end())
+        candidates.push_back(signal);
+    }
+    throw ConsoleError(text::Diagnostic{{pots_.diagram().file, {}},
+                                        fmt::format("there is no signal '{}' for a probe", name),
+                                        "the name of an output, a block or one of its outputs",
+                                        text::suggest(name, candidates)});
+  }
+
+  [[noreturn]] void refuse_probe(const std::string& what, const std::string& expected) const {
+    throw ConsoleError(
+        text::Diagnostic{{pots_.diagram().file, {}}, "a probe cannot be set: " + what, expected, {}});
+  }
+
+  const SetProbe& probe(std::size_t number) const {
+    if (number < probes_.size() && probes_[number].probe) return probes_[number];
+    throw ConsoleError(
+        text::Diagnostic{{pots_.diagram().file, {}},
+                         fmt::format("there is no probe number {}", number),
+                         "a number that 'set_probe' has given, of a probe that is not taken away",
+                         {}});
+  }
+
+  /// Shows the probes what the machine does from where it stands until `end`, within one piece.
+  void show_probes(double end) {
+    for (const SetProbe& set : probes_) {
+      if (set.probe) show_probe(set, end);
+    }
+  }
+
+  void show_probe(const SetProbe& set, double end) {
+    set.probe->look(time_, end, end == machine_->runner.piece_end(),
+                    [&](double t, std::vector<double>& values) {
+                      machine_->runner.signals_at(t, probed_);
+                      values.clear();
+                      for (const Channel& channel : set.channels) values.push_back(channel.value(probed_));
+                    });
   }
 
   const std::vector<double>& signals() {
+    take_turned_pots();
     if (!known_) machine_->runner.signals_at(time_, signals_);
     known_ = true;
     return signals_;
   }
 
-  std::optional<Reading> pot_reading(std::string_view name) const {
-    const std::size_t dot = name.rfind('.');
-    if (dot == std::string_view::npos) return std::nullopt;
-    for (const diagram::FlatBlock& block : machine_->flat->blocks) {
-      if (block.path != name.substr(0, dot)) continue;
-      const auto parameter = block.definition->find_parameter(name.substr(dot + 1));
-      if (parameter)
-        return Reading{block.parameters[*parameter], block.definition->parameters[*parameter].unit};
-    }
-    return std::nullopt;
+  /// Lets the machine go on from where it stands, with the pots as they are turned.
+  void take_turned_pots() {
+    const auto& program = pots_.program();
+    if (program == machine_->program) return;
+    machine_->runner.signals_at(time_, signals_);
+    go_on(pots_, carried_state(machine_->runner.state_at(time_), *machine_->program, signals_, *program));
   }
 
-  /// Goes on from the present state as another diagram, in a phase of its timeline if one is given.
-  void go_on_as(const diagram::Diagram& diagram, const std::vector<diagram::ParameterOverride>& overrides,
-                std::optional<std::size_t> phase = {}) {
-    const Compiled made = compiled(diagram, overrides);
-    solve::RunState state = carried_state(save(), *machine_->program, signals(), *made.program);
-    if (phase) state.position.phase = *phase;
-    go_on_from(made.flat, made.program, std::move(state));
-  }
-
-  void go_on_from(std::shared_ptr<const diagram::FlatDiagram> flat,
-                  std::shared_ptr<const network::Program> program, solve::RunState state) {
+  void go_on(Pots& pots, solve::RunState state) {
     const double from = state.time;
     if (!(horizon_ > from)) horizon_ = 2 * from;
-    auto next = std::make_unique<Machine>(std::move(flat), std::move(program),
-                                          options_of(diagram_.run, horizon_, std::move(state)));
+    auto next = std::make_unique<Machine>(pots.flat(), pots.program(),
+                                          options_of(pots.diagram().run, horizon_, std::move(state)));
     events_ = events();
     warnings_ = warnings();
     machine_ = std::move(next);
@@ -252,18 +313,18 @@ class Console::Held {
   void go_on_beyond(double until) {
     time_ = machine_->runner.piece_end();
     horizon_ = std::max(2 * horizon_, until);
-    go_on_from(machine_->flat, machine_->program, save());
+    go_on(pots_, save());
   }
 
-  diagram::Diagram diagram_;
-  const diagram::BlockLibrary& library_;
-  std::vector<diagram::ParameterOverride> overrides_;
+  Pots pots_;
   bool has_timeline_;
   double horizon_, time_ = 0;  ///< [s]
   std::unique_ptr<Machine> machine_;
   bool looks_ahead_ = false;  ///< whether a piece was looked at that has not been passed
   std::vector<double> signals_;
-  bool known_ = false;                      ///< whether these are those at `time_`
+  bool known_ = false;  ///< whether these are those at `time_`
+  std::vector<SetProbe> probes_;
+  std::vector<double> probed_;
   std::vector<solve::EventRecord> events_;  ///< of the machines before
   std::vector<text::Diagnostic> warnings_;
 };
@@ -293,10 +354,22 @@ std::vector<std::string> Console::signal_names() const {
   return held_->signal_names();
 }
 std::vector<std::string> Console::pot_names() const {
-  return held_->pot_names();
+  return held_->pots().names();
 }
-void Console::turn(const std::string& pot, const std::string& value) {
-  held_->turn(pot, value);
+Turned Console::turn(const std::string& pot, const std::string& value) {
+  return held_->pots().turn(pot, value);
+}
+std::vector<Console::Overload> Console::overloads() const {
+  return held_->overloads();
+}
+std::size_t Console::set_probe(ProbeSettings settings) {
+  return held_->set_probe(std::move(settings));
+}
+const std::vector<Trace>& Console::traces(std::size_t probe) const {
+  return held_->traces(probe);
+}
+void Console::remove_probe(std::size_t probe) {
+  held_->remove_probe(probe);
 }
 void Console::set_mode(diagram::OperatingMode mode) {
   held_->set_mode(mode);

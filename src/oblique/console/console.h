@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include <oblique/console/probe.h>
 #include <oblique/diagram/block_library.h>
 #include <oblique/diagram/diagram.h>
 #include <oblique/solve/run_records.h>
@@ -18,6 +19,12 @@ namespace oblique::console {
 class ConsoleError : public text::Error {
  public:
   using text::Error::Error;
+};
+
+/// How a pot was turned.
+enum class Turned {
+  at_once,        ///< the equations stayed, with other numbers
+  compiled_anew,  ///< they are others now: another case of a block, a factor that became 0 or 1
 };
 
 /// A machine that is held: it runs as far as it is asked to, is read like with a voltmeter, and its pots are
@@ -56,10 +63,26 @@ class Console {
   std::vector<std::string> signal_names() const;
   std::vector<std::string> pot_names() const;
 
-  /// Turns a pot ("c.gain"), or the weight of a wire ("c.in[2]"), to a quantity ("1e4", "20 ms"). The diagram
-  /// is compiled anew and the machine goes on as it stands: states, elements of loops and discrete states are
-  /// carried over by name. Throws DiagramError, NetworkError and SolveError, and is then as it was.
-  void turn(const std::string& pot, const std::string& value);
+  /// The lamps: what signals are beyond ±1 machine unit at `time`, in their order.
+  struct Overload {
+    std::string signal;
+    double value = 0;  ///< [machine unit]
+  };
+  std::vector<Overload> overloads() const;
+
+  /// Records from now on, and gives the number of the probe. Throws ConsoleError for a name that there is
+  /// not, and for an interval, a length or a hold-off that is none.
+  std::size_t set_probe(ProbeSettings settings);
+  /// What a probe has recorded until `time`. Throws ConsoleError for a number that no probe has.
+  const std::vector<Trace>& traces(std::size_t probe) const;
+  /// Takes a probe away.
+  void remove_probe(std::size_t probe);
+
+  /// Turns a pot ("c.gain"), or the weight of a wire ("c.in[2]"), to a quantity ("1e4", "20 ms"), and says
+  /// how. The machine goes on as it stands when it next runs or is read: states, elements of loops and
+  /// discrete states are carried over by name. Throws DiagramError and NetworkError, and is then as it was;
+  /// what it then cannot solve, those that run and read tell, until the pot is turned again.
+  Turned turn(const std::string& pot, const std::string& value);
 
   /// Puts all integrators into a mode of operation. Throws ConsoleError where the diagram's timeline says in
   /// which they are, and SolveError.

@@ -44,13 +44,18 @@ class BlockContext final : public ExpressionContext {
     return network::interpolated(assembly_, block_, call);
   }
 
-  double weights(const text::Expression& call) const override {
+  NodeId weights(const text::Expression& call) override {
     const diagram::FlatBlock& flat = assembly_.diagram.blocks[block_];
     const auto input = flat.definition->find_input(call.operands[0].name);
     if (!input)
       throw text::ExpressionError{call.column, "weights() takes an input", "the name of an input", {}};
-    double sum = 0;
-    for (const diagram::FlatTerm& term : flat.inputs[*input].terms) sum += std::abs(term.weight);
+    ExpressionGraph& graph = assembly_.network.graph;
+    NodeId sum = graph.constant(0);
+    for (std::size_t k = 0; k < flat.inputs[*input].terms.size(); ++k) {
+      const NodeId weight = assembly_.weight(block_, *input, k);
+      const bool negative = flat.inputs[*input].terms[k].weight < 0;  // which its kind tells
+      sum = graph.apply(Op::add, sum, negative ? graph.apply(Op::negate, weight) : weight);
+    }
     return sum;
   }
 
@@ -61,7 +66,6 @@ class BlockContext final : public ExpressionContext {
 
 std::optional<double> constant_of(const diagram::FlatBlock& block, std::string_view name) {
   if (name == "polarity") return block.polarity;
-  if (const auto parameter = block.definition->find_parameter(name)) return block.parameters[*parameter];
   if (const auto input = block.definition->find_input(name); input && block.inputs[*input].terms.empty())
     return block.inputs[*input].constant;
   if (name == "in_operate") return 1;  // where there is a timeline, these are asked for earlier
@@ -69,12 +73,13 @@ std::optional<double> constant_of(const diagram::FlatBlock& block, std::string_v
   return std::nullopt;
 }
 
-NodeId sum_of(Assembly& a, const diagram::FlatInput& input) {
+NodeId sum_of(Assembly& a, std::size_t block, std::size_t input) {
   ExpressionGraph& graph = a.network.graph;
-  NodeId sum = graph.constant(input.constant);
-  for (const diagram::FlatTerm& term : input.terms) {
-    const NodeId signal = a.quantities[a.quantity_of(term.signal)].node;
-    sum = graph.apply(Op::add, sum, graph.apply(Op::multiply, graph.constant(term.weight), signal));
+  const diagram::FlatInput& wired = a.diagram.blocks[block].inputs[input];
+  NodeId sum = graph.constant(wired.constant);
+  for (std::size_t k = 0; k < wired.terms.size(); ++k) {
+    const NodeId signal = a.quantities[a.quantity_of(wired.terms[k].signal)].node;
+    sum = graph.apply(Op::add, sum, graph.apply(Op::multiply, a.weight(block, input, k), signal));
   }
   return sum;
 }
@@ -122,17 +127,24 @@ bool Assembly::is_constant(std::size_t block, const text::Expression& expression
 
 std::optional<double> Assembly::constant_value(std::size_t block, const text::Expression& expression) {
   if (!is_constant(block, expression)) return std::nullopt;
-  return network.graph[built_operand(block, expression)].value;
+  return network.graph.frozen_value(built_operand(block, expression));
+}
+
+NodeId Assembly::weight(std::size_t block, std::size_t input, std::size_t wire) {
+  return network.graph.parameter(numbers.weight(block, input, wire),
+                                 diagram.blocks[block].inputs[input].terms[wire].weight);
 }
 
 NodeId Assembly::node_of(std::size_t block, std::string_view name) {
   const diagram::FlatBlock& flat = diagram.blocks[block];
-  if (const auto input = flat.definition->find_input(name)) return sum_of(*this, flat.inputs[*input]);
+  if (const auto input = flat.definition->find_input(name)) return sum_of(*this, block, *input);
   if (const std::uint32_t own = quantity_of(block, name); own != kNone) return quantities[own].node;
   if (name == "time") return network.graph.variable(0);
   if (const auto discrete_state = flat.definition->find_memory(name))
     return discrete_state_node(*this, block, *discrete_state);
   if (const auto mode = mode_node(*this, block, name)) return *mode;
+  if (const auto parameter = flat.definition->find_parameter(name))
+    return network.graph.parameter(numbers.parameter(block, *parameter), flat.parameters[*parameter]);
   return network.graph.constant(constant_of(flat, name).value());  // parse_block admits no other names
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <oblique/network/assembly/network.h>
+#include <oblique/network/assembly/parameter_numbers.h>
 #include <oblique/network/program/tangents.h>
 
 namespace oblique::network {
@@ -28,7 +29,7 @@ struct Quantity {
 /// for later what they compare, since nothing algebraic passes through them. What it is made of the other
 /// units of this room add.
 struct Assembly {
-  explicit Assembly(const diagram::FlatDiagram& flat) : diagram(flat) {}
+  explicit Assembly(const diagram::FlatDiagram& flat) : diagram(flat), numbers(flat) {}
 
   struct PendingSwitch {
     std::size_t block;
@@ -62,8 +63,10 @@ struct Assembly {
   std::uint32_t new_discrete_state(std::string name, double start);
   /// Whether an expression never changes.
   bool is_constant(std::size_t block, const text::Expression& expression);
-  /// Its value; nothing for one that changes.
+  /// Its value, by which something is decided; nothing for one that changes.
   std::optional<double> constant_value(std::size_t block, const text::Expression& expression);
+  /// The weight of a wire at an input.
+  NodeId weight(std::size_t block, std::size_t input, std::size_t wire);
   /// What a name in a block's equations stands for.
   NodeId node_of(std::size_t block, std::string_view name);
   /// The node of an expression of a block. What is wrong in it becomes a diagnostic, which says that it is
@@ -74,6 +77,7 @@ struct Assembly {
   NodeId built_operand(std::size_t block, const text::Expression& expression);
 
   const diagram::FlatDiagram& diagram;
+  ParameterNumbers numbers;
   std::vector<ModeLines> modes;  ///< of each group
   std::vector<ModeLine> mode_lines;
   std::vector<std::pair<std::size_t, const diagram::EventRule*>> active_events;

@@ -29,14 +29,23 @@ void collect_quantities(Assembly& a) {
   a.first_quantity.push_back(static_cast<std::uint32_t>(a.quantities.size()));
 }
 
-double start_value(Assembly& a, const Quantity& quantity, const diagram::StartRule& rule) {
-  const diagram::FlatBlock& block = a.block_of(quantity);
-  const double value = a.constant_value(quantity.block, rule.value).value_or(0);
-  if (!std::isfinite(value)) {
-    a.diagnostics.add({block.place, fmt::format("'{}' would start at {}", a.name_of(quantity), value),
-                       "a finite start value", "give the block another 'initial'"});
-  }
+void require_finite_start(Assembly& a, const Quantity& quantity, double value) {
+  if (std::isfinite(value)) return;
+  a.diagnostics.add({a.block_of(quantity).place,
+                     fmt::format("'{}' would start at {}", a.name_of(quantity), value),
+                     "a finite start value", "give the block another 'initial'"});
+}
+
+/// Where the search for an unknown begins.
+double guess_of(Assembly& a, const Quantity& quantity) {
+  const double value = a.constant_value(quantity.block, a.start_of(quantity).value).value_or(0);
+  require_finite_start(a, quantity, value);
   return value;
+}
+
+void start_at(const Assembly& a, State& state, NodeId constant) {
+  state.start = a.network.graph[constant].value;
+  state.start_constant = constant;
 }
 
 void make_states(Assembly& a) {
@@ -44,10 +53,14 @@ void make_states(Assembly& a) {
     if (quantity.equation->kind != diagram::Equation::Kind::derivative) continue;
     const diagram::StartRule& rule = a.start_of(quantity);
     quantity.variable_index = static_cast<std::uint32_t>(a.network.states.size());
-    const bool fixed = a.is_constant(quantity.block, rule.value);
-    const double start = fixed ? start_value(a, quantity, rule) : 0;
-    a.network.states.push_back(
-        {a.name_of(quantity), start, rule.at_rest, 0, a.block_of(quantity).tolerance, {}});
+    State& state = a.network.states.emplace_back();
+    state.name = a.name_of(quantity);
+    state.at_rest = rule.at_rest;
+    state.tolerance = a.block_of(quantity).tolerance;
+    if (a.is_constant(quantity.block, rule.value)) {
+      start_at(a, state, a.built_operand(quantity.block, rule.value));
+      require_finite_start(a, quantity, state.start);
+    }
     quantity.node = a.network.graph.variable(a.network.state_variable(quantity.variable_index));
   }
 }
@@ -140,7 +153,7 @@ void define(Assembly& a, const OrderStep& step) {
     Quantity& quantity = a.quantities[q];
     const bool torn = quantity.equation->kind == diagram::Equation::Kind::assignment;
     quantity.variable_index = static_cast<std::uint32_t>(a.network.unknowns.size());
-    const double guess = torn ? 0.0 : start_value(a, quantity, a.start_of(quantity));
+    const double guess = torn ? 0.0 : guess_of(a, quantity);
     const bool held = !torn && a.start_of(quantity).at_rest;
     loop.unknowns.push_back(a.network.unknowns.size());
     a.network.unknowns.push_back({a.name_of(quantity), guess, 0, torn, a.block_of(quantity).place, held});
@@ -174,8 +187,8 @@ void make_starts(Assembly& a) {
     const NodeId value = a.built(quantity.block, rule.value, quantity.equation->place, "the start value");
     State& state = a.network.states[quantity.variable_index];
     // A potentiometer at the reference gives a number: loops can be solved with it from the beginning.
-    if (a.network.graph[value].op == Op::constant) {
-      state.start = a.network.graph[value].value;
+    if (a.network.graph.is_constant(value)) {
+      start_at(a, state, value);
     } else {
       state.start_node = value;
     }
@@ -206,6 +219,7 @@ Network assemble(const diagram::FlatDiagram& diagram) {
   define_switches(a);
   define_tables(a);
   a.diagnostics.throw_if_any<NetworkError>();
+  a.network.n_parameters = a.numbers.size();
   return std::move(a.network);
 }
 

@@ -27,6 +27,7 @@ struct State {
   NodeId derivative = 0;
   double tolerance = 0;              ///< absolute [machine unit]; 0: that of the run
   std::optional<NodeId> start_node;  ///< where the start follows from signals; `start` is then no use
+  std::optional<NodeId> start_constant = std::nullopt;  ///< else: it has the value `start`
 };
 
 /// A value that only events change.
@@ -110,6 +111,7 @@ struct Network {
   std::vector<NodeId> signals;     ///< one for each output of each flat block, in their order
   std::vector<std::string> signal_names;
   std::vector<std::size_t> first_signal;  ///< of each flat block
+  std::size_t n_parameters = 0;           ///< their numbers are those of ParameterNumbers
 
   std::uint32_t state_variable(std::size_t state) const { return static_cast<std::uint32_t>(1 + state); }
   std::uint32_t unknown_variable(std::size_t unknown) const {

@@ -160,12 +160,45 @@ class Builder {
 
   static text::Expression zero() { return {}; }
 
-  /// What switches, folded to a constant; the operands must be constants.
+  /// a < b ? x : y of constants: which it is their kinds decide.
+  NodeId where_less(NodeId a, NodeId b, NodeId x, NodeId y) {
+    return graph_.is_constant(graph_.apply(Op::less, a, b), 1) ? x : y;
+  }
+  NodeId smaller(NodeId a, NodeId b) { return where_less(b, a, b, a); }
+  NodeId larger(NodeId a, NodeId b) { return where_less(a, b, b, a); }
+
+  /// What would switch if its operands were no constants.
   NodeId constant_of(const text::Expression& e) {
+    std::vector<NodeId> x;
+    for (const text::Expression& operand : e.operands) x.push_back(build(operand));
+    const NodeId zero = graph_.constant(0), one = graph_.constant(1);
+    switch (e.function) {
+      case text::Function::abs:
+        return where_less(x[0], zero, graph_.apply(Op::negate, x[0]), x[0]);
+      case text::Function::sign:
+        return where_less(zero, x[0], one, where_less(x[0], zero, graph_.constant(-1), zero));
+      case text::Function::step:
+        return where_less(x[0], zero, zero, one);
+      case text::Function::min:
+      case text::Function::max: {
+        NodeId extreme = x[0];
+        for (const NodeId other : x)
+          extreme = e.function == text::Function::min ? smaller(extreme, other) : larger(extreme, other);
+        return extreme;
+      }
+      case text::Function::clip:
+        return larger(x[1], smaller(x[0], x[2]));
+      case text::Function::deadzone:
+        return where_less(
+            x[1], x[0], graph_.apply(Op::subtract, x[0], x[1]),
+            where_less(x[0], graph_.apply(Op::negate, x[1]), graph_.apply(Op::add, x[0], x[1]), zero));
+      default:
+        break;
+    }
     text::Expression folded = e;
-    for (std::size_t i = 0; i < e.operands.size(); ++i) {
+    for (std::size_t i = 0; i < x.size(); ++i) {
       folded.operands[i] = text::Expression{};
-      folded.operands[i].number = graph_[build(e.operands[i])].value;
+      folded.operands[i].number = graph_.frozen_value(x[i]);
     }
     return graph_.constant(text::evaluate(folded));
   }
@@ -192,7 +225,7 @@ NodeId Builder::function(const text::Expression& e) {
   if (e.function == text::Function::sqrt && is_kept_positive(e.operands[0]))
     return graph_.apply(Op::sqrt, graph_.apply(Op::hypot, build(e.operands[0]), graph_.constant(0)));
   if (const auto operation = text::smooth_operation(e.function)) return smooth(*operation, e);
-  if (e.function == text::Function::weights) return graph_.constant(context_.weights(e));
+  if (e.function == text::Function::weights) return context_.weights(e);
   if (e.function == text::Function::table &&
       (e.operands.size() == 2 || change_of(e, context_) != Change::never))
     return context_.interpolated(e);

@@ -25,8 +25,8 @@ class ExpressionContext {
   virtual NodeId greater(const text::Expression& left, const text::Expression& right, Turning turning) = 0;
   /// The function through points: the parameter that holds them, or numbers.
   virtual NodeId interpolated(const text::Expression& call) = 0;
-  /// Sum of the magnitudes of the weights at an input.
-  virtual double weights(const text::Expression& call) const = 0;
+  /// Sum of the magnitudes of the weights at an input: a constant.
+  virtual NodeId weights(const text::Expression& call) = 0;
 };
 
 /// How an expression changes: as the quickest of its names.

@@ -142,6 +142,66 @@ NodeId ExpressionGraph::constant(double value) {
   return intern(node);
 }
 
+ConstantKind kind_of(double value) {
+  if (std::isnan(value)) return ConstantKind::no_number;
+  if (std::isinf(value)) return value > 0 ? ConstantKind::infinity : ConstantKind::minus_infinity;
+  if (value == 0) return ConstantKind::zero;
+  if (value < 0) return value == -1 ? ConstantKind::minus_one : ConstantKind::negative;
+  return value == 1 ? ConstantKind::one : value == 2 ? ConstantKind::two : ConstantKind::positive;
+}
+
+NodeId ExpressionGraph::intern(const ConstantFormula& formula, double value) {
+  const bool leaf = formula.parameter != ConstantFormula::kNoParameter;
+  const Key key{formula.op, leaf ? formula.parameter + 1 : formula.a, formula.b, 0, 0};
+  const auto [found, inserted] = index_.try_emplace(key, static_cast<NodeId>(nodes_.size()));
+  if (!inserted) return found->second;
+  formulas_.push_back(formula);
+  formulas_.back().node = found->second;
+  Node node;
+  node.value = value == 0 ? 0.0 : value;
+  node.variable = static_cast<std::uint32_t>(formulas_.size());
+  nodes_.push_back(node);
+  return found->second;
+}
+
+NodeId ExpressionGraph::parameter(std::uint32_t number, double value) {
+  ConstantFormula formula;
+  formula.parameter = number;
+  return intern(formula, value);
+}
+
+NodeId ExpressionGraph::folded(Op op, NodeId a, NodeId b) {
+  const double value = evaluate(op, nodes_[a].value, nodes_[b].value);
+  const bool follows = nodes_[a].variable != 0 || (operand_count(op) == 2 && nodes_[b].variable != 0);
+  if (!follows) return constant(value);
+  ConstantFormula formula;
+  formula.op = op;
+  formula.a = a;
+  formula.b = operand_count(op) == 2 ? b : a;
+  return intern(formula, value);
+}
+
+const ConstantFormula* ExpressionGraph::formula_of(NodeId id) const {
+  const Node& node = nodes_[id];
+  return node.op == Op::constant && node.variable != 0 ? &formulas_[node.variable - 1] : nullptr;
+}
+
+Node ExpressionGraph::with_operands(NodeId id) const {
+  Node node = nodes_[id];
+  const ConstantFormula* const formula = formula_of(id);
+  if (formula == nullptr || formula->op == Op::constant) return node;
+  node.op = formula->op;
+  node.a = formula->a;
+  node.b = formula->b;
+  return node;
+}
+
+double ExpressionGraph::frozen_value(NodeId id) {
+  const Node& node = nodes_[id];
+  if (node.op == Op::constant && node.variable != 0) formulas_[node.variable - 1].frozen = true;
+  return node.value;
+}
+
 NodeId ExpressionGraph::variable(std::uint32_t number) {
   Node node;
   node.op = Op::variable;
@@ -189,7 +249,7 @@ NodeId ExpressionGraph::simplified(Op op, NodeId a, NodeId b, NodeId c, bool& do
       if (nodes_[a].op == Op::negate) return apply(Op::negate, apply(Op::multiply, nodes_[a].a, b));
       if (nodes_[b].op == Op::negate) return apply(Op::negate, apply(Op::multiply, a, nodes_[b].a));
       if (is_constant(a) && nodes_[b].op == Op::multiply && is_constant(nodes_[b].a)) {
-        return apply(Op::multiply, constant(nodes_[a].value * nodes_[nodes_[b].a].value), nodes_[b].b);
+        return apply(Op::multiply, folded(Op::multiply, a, nodes_[b].a), nodes_[b].b);
       }
       break;
     case Op::divide:
@@ -218,7 +278,7 @@ NodeId ExpressionGraph::apply(Op op, NodeId a, NodeId b, NodeId c) {
   if (operands < 3) c = 0;
   const bool has_value = op < Op::table_value && op != Op::select;  // of constants; tables come with the tape
   if (has_value && is_constant(a) && (operands < 2 || is_constant(b))) {
-    return constant(evaluate(op, nodes_[a].value, nodes_[b].value));
+    return folded(op, a, b);
   }
   // A product keeps its constant in front and a commutative pair has one order, so that equal ones meet.
   const auto smooth = smooth_operation(op);
@@ -255,7 +315,7 @@ bool ExpressionGraph::has_value_everywhere(NodeId id, NodeId derivative) const {
 }
 
 NodeId ExpressionGraph::partial(NodeId id, int operand) {
-  const Node node = nodes_[id];  // a copy: new nodes may move the array
+  const Node node = with_operands(id);  // a copy: new nodes may move the array
   if (const auto operation = smooth_operation(node.op)) {
     return text::partial_derivative(*operation, operand, Term{this, node.a}, Term{this, node.b},
                                     Term{this, id})

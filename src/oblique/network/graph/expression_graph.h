@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <unordered_map>
 #include <vector>
@@ -48,17 +49,49 @@ struct Node {
   NodeId b = 0;
   NodeId c = 0;
   double value = 0;            ///< of a constant
-  std::uint32_t variable = 0;  ///< number of a variable or discrete state
+  std::uint32_t variable = 0;  ///< number of a variable or discrete state; of a constant that follows from
+                               ///< parameters that of its formula + 1
   bool continuous = false;     ///< depends on a variable: may change between events
 
   NodeId operand(int i) const { return i == 0 ? a : i == 1 ? b : c; }
 };
 
+/// How a constant follows from parameters: it is one, or an operation on constants.
+struct ConstantFormula {
+  static constexpr std::uint32_t kNoParameter = std::numeric_limits<std::uint32_t>::max();
+
+  NodeId node = 0;  ///< of the constant
+  Op op = Op::constant;
+  NodeId a = 0, b = 0;
+  std::uint32_t parameter = kNoParameter;  ///< its number
+  bool frozen = false;                     ///< something was decided by its exact value
+};
+
+/// What simplification looks at in a constant.
+enum class ConstantKind : std::uint8_t {
+  no_number,
+  minus_infinity,
+  negative,
+  minus_one,
+  zero,
+  positive,
+  one,
+  two,
+  infinity
+};
+ConstantKind kind_of(double value);
+
 /// Expressions as a directed acyclic graph in which equal sub-expressions are one node. Constants are folded
 /// and neutral operands dropped (x+0, x·1, x·0, x/1, x^1, x^2 = x·x, −−x) as the nodes are made.
+///
+/// A constant that follows from parameters knows how: with other parameters the graph is the same one with
+/// other numbers for as long as the kinds of all these constants stay, and those that are frozen as they are.
+/// Two of them are one node where their formulas are equal, not where their values are.
 class ExpressionGraph {
  public:
   NodeId constant(double value);
+  /// A parameter, which may get another value when all is built: a constant by its number.
+  NodeId parameter(std::uint32_t number, double value);
   NodeId variable(std::uint32_t number);
   NodeId discrete_state(std::uint32_t number);
 
@@ -70,7 +103,16 @@ class ExpressionGraph {
   std::size_t size() const { return nodes_.size(); }
 
   bool is_constant(NodeId id) const { return nodes_[id].op == Op::constant; }
+  /// Whether it is 0, 1, −1 or 2, which its kind tells.
   bool is_constant(NodeId id, double value) const { return is_constant(id) && nodes_[id].value == value; }
+  /// The value of a constant by which more is decided than its kind tells: freezes it.
+  double frozen_value(NodeId id);
+  /// How a constant follows from parameters; nothing of one that does not, and of other nodes.
+  const ConstantFormula* formula_of(NodeId id) const;
+  /// A node; of a constant that is an operation on other ones, as if it were no constant.
+  Node with_operands(NodeId id) const;
+  /// Of all constants that follow from parameters, each after those that it needs.
+  const std::vector<ConstantFormula>& formulas() const { return formulas_; }
 
   /// Partial derivatives of `root` with respect to every variable it depends on, by variable number, zeros
   /// left out. Reverse accumulation: the cost is proportional to the sub-graph below `root`. Adds nodes to
@@ -94,11 +136,14 @@ class ExpressionGraph {
   };
 
   NodeId intern(const Node& node);
+  NodeId intern(const ConstantFormula& formula, double value);
+  NodeId folded(Op op, NodeId a, NodeId b);
   NodeId simplified(Op op, NodeId a, NodeId b, NodeId c, bool& done);
   /// adjoint · (partial derivative of a node by one of its operands).
   NodeId passed_on(NodeId adjoint, NodeId id, int operand);
 
   std::vector<Node> nodes_;
+  std::vector<ConstantFormula> formulas_;
   std::unordered_map<Key, NodeId, Hash> index_;
 };
 

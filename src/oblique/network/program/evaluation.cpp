@@ -29,34 +29,34 @@ void Evaluation::derivatives(double* dxdt) const {
 }
 
 double Evaluation::compared_size(std::size_t s) const {
-  return std::abs(value(program_->code_.compared_slots[s]));
+  return std::abs(value(program_->code_->compared_slots[s]));
 }
 
 std::optional<double> Evaluation::known_rate(std::size_t s) const {
-  const auto& slot = program_->code_.rate_slots[s];
+  const auto& slot = program_->code_->rate_slots[s];
   return slot ? std::optional(value(*slot)) : std::nullopt;
 }
 
 bool Evaluation::pieces_meet(std::size_t s) const {
   constexpr double kMeet = 1e-9;  // a jump that is smaller is below any tolerance of a run
-  const auto& pieces = program_->code_.pieces[s];
-  return program_->code_.has_pieces[s] && std::all_of(pieces.begin(), pieces.end(), [&](const auto& pair) {
+  const auto& pieces = program_->code_->pieces[s];
+  return program_->code_->has_pieces[s] && std::all_of(pieces.begin(), pieces.end(), [&](const auto& pair) {
            const double a = value(pair.first), b = value(pair.second);
            return std::abs(a - b) <= kMeet * std::max({1.0, std::abs(a), std::abs(b)});
          });
 }
 
 bool Evaluation::condition(std::size_t event) const {
-  return value(program_->code_.event_slots[event].condition) != 0;
+  return value(program_->code_->event_slots[event].condition) != 0;
 }
 
 bool Evaluation::phase_ends(std::size_t end) const {
-  return value(program_->code_.phase_end_slots[end]) != 0;
+  return value(program_->code_->phase_end_slots[end]) != 0;
 }
 
 double Evaluation::event_function_rates(const double* dxdt, double* values) const {
   check();
-  const ProgramCode& program = program_->code_;
+  const ProgramCode& program = *program_->code_;
   if (program.switches.empty()) return 0;
   // What this computes stands on slots of its own, and makes nothing stale.
   double* const slots = workspace_->slots_.data();
@@ -85,16 +85,16 @@ double Evaluation::event_function_rates(const double* dxdt, double* values) cons
 }
 
 double SignalEvaluation::action_value(std::size_t event, std::size_t action) const {
-  return value(program_->code_.event_slots[event].values[action]);
+  return value(program_->code_->event_slots[event].values[action]);
 }
 
 std::optional<double> SignalEvaluation::start_value(std::size_t state) const {
-  const auto& slot = program_->code_.start_slots[state];
+  const auto& slot = program_->code_->start_slots[state];
   return slot ? std::optional(value(*slot)) : std::nullopt;
 }
 
 Eigen::MatrixXd SignalEvaluation::loop_jacobian(std::size_t loop) const {
-  const LoopCode& code = program_->code_.loop_codes[loop];
+  const LoopCode& code = program_->code_->loop_codes[loop];
   const auto n = static_cast<Eigen::Index>(code.size());
   Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(n, n);
   for (const MatrixEntry& entry : code.jacobian) jacobian(entry.row, entry.column) = value(entry.slot);

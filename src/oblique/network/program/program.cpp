@@ -4,27 +4,35 @@
 #include <algorithm>
 #include <cmath>
 
+#include <oblique/network/program/parameter_setting.h>
 #include <oblique/network/program/program_compiler.h>
 
 namespace oblique::network {
 
-Program::Program(Network network) : code_(compile(std::move(network))) {}
+Program::Program(Network network)
+    : code_(std::make_shared<const ProgramCode>(compile(std::move(network)))),
+      initial_slots_(code_->initial_slots) {}
+
+Program::Program(const Program& other, const ParameterSetting& parameters)
+    : code_(other.code_), initial_slots_(other.initial_slots_) {
+  parameters.write(initial_slots_);
+}
 
 std::vector<double> Program::start() const {
   std::vector<double> x;
-  x.reserve(code_.states.size());
-  for (const State& state : code_.states) x.push_back(state.start);
+  x.reserve(code_->states.size());
+  for (const auto& slot : code_->fixed_start_slots) x.push_back(slot ? initial_slots_[*slot] : 0);
   return x;
 }
 
 bool Program::run(const std::vector<ProgramCode::Step>& steps, Workspace& workspace) const {
   double* const slots = workspace.slots_.data();
-  const std::span<const Instruction> tape(code_.tape);
-  const std::size_t first_unknown = 1 + code_.states.size();
+  const std::span<const Instruction> tape(code_->tape);
+  const std::size_t first_unknown = 1 + code_->states.size();
   for (const ProgramCode::Step& step : steps) {
     run_tape(tape.subspan(step.segment.begin, step.segment.end - step.segment.begin), slots);
     if (!step.loop) continue;
-    const LoopCode& loop = code_.loop_codes[*step.loop];
+    const LoopCode& loop = code_->loop_codes[*step.loop];
     const LoopFailure failure = workspace.loops_[*step.loop].solve_loop(loop, tape, slots);
     if (failure != LoopFailure::none) {
       const double derivative = loop.size() == 1 && !loop.jacobian.empty() ? slots[loop.jacobian[0].slot] : 0;
@@ -43,8 +51,8 @@ bool Program::run(const std::vector<ProgramCode::Step>& steps, Workspace& worksp
 bool Program::load_and_run(double t, const double* x, Workspace& workspace) const {
   ++workspace.generation_;
   workspace.slots_[0] = t;
-  std::copy(x, x + code_.states.size(), workspace.slots_.begin() + 1);
-  return run(code_.derivative_steps, workspace);
+  std::copy(x, x + code_->states.size(), workspace.slots_.begin() + 1);
+  return run(code_->derivative_steps, workspace);
 }
 
 bool Program::derivatives(double t, const double* x, double* dxdt, Workspace& workspace) const {
@@ -54,25 +62,25 @@ bool Program::derivatives(double t, const double* x, double* dxdt, Workspace& wo
 }
 
 void Program::copy_derivatives(const Workspace& workspace, double* dxdt) const {
-  for (std::size_t i = 0; i < code_.derivative_slots.size(); ++i)
-    dxdt[i] = workspace.slots_[code_.derivative_slots[i]];
+  for (std::size_t i = 0; i < code_->derivative_slots.size(); ++i)
+    dxdt[i] = workspace.slots_[code_->derivative_slots[i]];
 }
 
 std::optional<SignalEvaluation> Program::signals(double t, const double* x, double* values,
                                                  Workspace& workspace) const {
-  if (!load_and_run(t, x, workspace) || !run(code_.event_function_steps, workspace) ||
-      !run(code_.signal_steps, workspace))
+  if (!load_and_run(t, x, workspace) || !run(code_->event_function_steps, workspace) ||
+      !run(code_->signal_steps, workspace))
     return std::nullopt;
-  for (std::size_t i = 0; i < code_.signal_slots.size(); ++i)
-    values[i] = workspace.slots_[code_.signal_slots[i]];
+  for (std::size_t i = 0; i < code_->signal_slots.size(); ++i)
+    values[i] = workspace.slots_[code_->signal_slots[i]];
   return SignalEvaluation(*this, workspace);
 }
 
 std::optional<Evaluation> Program::event_functions(double t, const double* x, double* values,
                                                    Workspace& workspace) const {
-  if (!load_and_run(t, x, workspace) || !run(code_.event_function_steps, workspace)) return std::nullopt;
-  for (std::size_t i = 0; i < code_.event_function_slots.size(); ++i)
-    values[i] = workspace.slots_[code_.event_function_slots[i]];
+  if (!load_and_run(t, x, workspace) || !run(code_->event_function_steps, workspace)) return std::nullopt;
+  for (std::size_t i = 0; i < code_->event_function_slots.size(); ++i)
+    values[i] = workspace.slots_[code_->event_function_slots[i]];
   return Evaluation(*this, workspace);
 }
 
@@ -81,43 +89,43 @@ void Program::decide_in_order(double t, const double* x, const double* dxdt, Wor
   ++workspace.generation_;
   double* const slots = workspace.slots_.data();
   slots[0] = t;
-  std::copy(x, x + code_.states.size(), slots + 1);
-  std::copy(dxdt, dxdt + code_.states.size(), slots + code_.first_rate);
-  for (const auto& [segment, s] : code_.switch_order) {
-    run_tape(std::span(code_.tape).subspan(segment.begin, segment.end - segment.begin), slots);
-    decide(s, slots[code_.event_function_slots[s]], slots[code_.event_function_rate_slots[s]]);
+  std::copy(x, x + code_->states.size(), slots + 1);
+  std::copy(dxdt, dxdt + code_->states.size(), slots + code_->first_rate);
+  for (const auto& [segment, s] : code_->switch_order) {
+    run_tape(std::span(code_->tape).subspan(segment.begin, segment.end - segment.begin), slots);
+    decide(s, slots[code_->event_function_slots[s]], slots[code_->event_function_rate_slots[s]]);
   }
 }
 
 std::vector<Interval> Program::source_slots() const {
   std::vector<Interval> slots;
-  if (code_.sources.empty()) return slots;
-  slots.reserve(code_.initial_slots.size());
-  for (const double value : code_.initial_slots) slots.push_back({value, value});
+  if (code_->sources.empty()) return slots;
+  slots.reserve(initial_slots_.size());
+  for (const double value : initial_slots_) slots.push_back({value, value});
   return slots;
 }
 
 void Program::source_ranges(const Interval& time, std::span<const Interval> states,
                             const Workspace& workspace, std::span<Interval> slots) const {
   slots[0] = time;
-  for (std::size_t k = 0; k < states.size(); ++k) slots[1 + code_.source_states[k]] = states[k];
-  for (std::size_t m = code_.first_discrete_state;
-       m < code_.first_discrete_state + code_.discrete_states.size(); ++m)
+  for (std::size_t k = 0; k < states.size(); ++k) slots[1 + code_->source_states[k]] = states[k];
+  for (std::size_t m = code_->first_discrete_state;
+       m < code_->first_discrete_state + code_->discrete_states.size(); ++m)
     slots[m] = {workspace.slots_[m], workspace.slots_[m]};
-  run_tape(std::span(code_.tape)
-               .subspan(code_.source_segment.begin, code_.source_segment.end - code_.source_segment.begin),
+  run_tape(std::span(code_->tape)
+               .subspan(code_->source_segment.begin, code_->source_segment.end - code_->source_segment.begin),
            slots);
 }
 
 bool Program::derivatives_need(std::size_t loop) const {
-  return std::any_of(code_.derivative_steps.begin(), code_.derivative_steps.end(),
+  return std::any_of(code_->derivative_steps.begin(), code_->derivative_steps.end(),
                      [&](const ProgramCode::Step& step) { return step.loop == loop; });
 }
 
 bool Program::differentiate_loops(Workspace& workspace) const {
   const double* const slots = workspace.slots_.data();
-  for (const std::uint32_t l : code_.sensitivity_order) {
-    const ProgramCode::Sensitivity& sensitivity = code_.sensitivities[l];
+  for (const std::uint32_t l : code_->sensitivity_order) {
+    const ProgramCode::Sensitivity& sensitivity = code_->sensitivities[l];
     Eigen::MatrixXd& dz_dx = workspace.dz_dx_[l];
     dz_dx.setZero();
     for (const MatrixEntry& entry : sensitivity.direct) dz_dx(entry.row, entry.column) -= slots[entry.slot];
@@ -130,8 +138,8 @@ bool Program::differentiate_loops(Workspace& workspace) const {
         }
       }
     }
-    if (!workspace.loops_[l].matrix().factor(code_.loop_codes[l], slots)) {
-      const std::uint32_t first = code_.loop_codes[l].unknown_slots.front();
+    if (!workspace.loops_[l].matrix().factor(code_->loop_codes[l], slots)) {
+      const std::uint32_t first = code_->loop_codes[l].unknown_slots.front();
       workspace.trouble_ = {l, LoopFailure::singular, 0, slots[first]};
       return false;
     }
@@ -143,18 +151,18 @@ bool Program::differentiate_loops(Workspace& workspace) const {
 bool Program::jacobian(double t, const double* x, double* values, Workspace& workspace) const {
   if (!load_and_run(t, x, workspace)) return false;
   double* const slots = workspace.slots_.data();
-  run_tape(
-      std::span(code_.tape)
-          .subspan(code_.jacobian_segment.begin, code_.jacobian_segment.end - code_.jacobian_segment.begin),
-      slots);
+  run_tape(std::span(code_->tape)
+               .subspan(code_->jacobian_segment.begin,
+                        code_->jacobian_segment.end - code_->jacobian_segment.begin),
+           slots);
   if (!differentiate_loops(workspace)) return false;
-  std::fill(values, values + code_.pattern.entries(), 0.0);
-  for (const ProgramCode::DirectEntry& entry : code_.direct_entries)
+  std::fill(values, values + code_->pattern.entries(), 0.0);
+  for (const ProgramCode::DirectEntry& entry : code_->direct_entries)
     values[entry.position] += slots[entry.slot];
-  for (const ProgramCode::RowCoupling& coupling : code_.row_couplings) {
+  for (const ProgramCode::RowCoupling& coupling : code_->row_couplings) {
     const Eigen::MatrixXd& dz_dx = workspace.dz_dx_[coupling.loop];
     for (Eigen::Index k = 0; k < dz_dx.cols(); ++k) {
-      values[code_.row_positions[coupling.first_position + static_cast<std::size_t>(k)]] +=
+      values[code_->row_positions[coupling.first_position + static_cast<std::size_t>(k)]] +=
           slots[coupling.slot] * dz_dx(coupling.unknown, k);
     }
   }
@@ -163,13 +171,13 @@ bool Program::jacobian(double t, const double* x, double* values, Workspace& wor
 
 Workspace::Workspace(const Program& program)
     : program_(&program),
-      first_discrete_state_(program.code_.first_discrete_state),
-      slots_(program.code_.initial_slots) {
-  for (std::size_t l = 0; l < program.code_.loop_codes.size(); ++l) {
-    const std::size_t size = program.code_.loop_codes[l].size();
+      first_discrete_state_(program.code_->first_discrete_state),
+      slots_(program.initial_slots_) {
+  for (std::size_t l = 0; l < program.code_->loop_codes.size(); ++l) {
+    const std::size_t size = program.code_->loop_codes[l].size();
     loops_.emplace_back(size);
     dz_dx_.emplace_back(static_cast<Eigen::Index>(size),
-                        static_cast<Eigen::Index>(program.code_.sensitivities[l].states.size()));
+                        static_cast<Eigen::Index>(program.code_->sensitivities[l].states.size()));
     dz_dt_.emplace_back(static_cast<Eigen::Index>(size), 1);
   }
   reset();
@@ -187,13 +195,13 @@ void Workspace::follow_branches(bool follow) {
 }
 
 void Workspace::hold_loop(std::size_t loop, double t, const std::vector<double>& unknowns, bool whatever) {
-  const Loop& members = program_->code_.loops[loop];
+  const Loop& members = program_->code_->loops[loop];
   for (std::size_t i = 0; i < unknowns.size(); ++i) set_unknown(members.unknowns[i], unknowns[i]);
   loops_[loop].hold(t, unknowns, whatever);
 }
 
 std::span<const double> Workspace::discrete_states() const {
-  return std::span(slots_).subspan(first_discrete_state_, program_->code_.discrete_states.size());
+  return std::span(slots_).subspan(first_discrete_state_, program_->code_->discrete_states.size());
 }
 
 void Workspace::load_discrete_states(std::span<const double> discrete_states) {
@@ -203,14 +211,14 @@ void Workspace::load_discrete_states(std::span<const double> discrete_states) {
 }
 
 void Workspace::reset_discrete_states() {
-  for (std::size_t m = 0; m < program_->code_.discrete_states.size(); ++m)
-    set_discrete_state(m, program_->code_.discrete_states[m].start);
+  for (std::size_t m = 0; m < program_->code_->discrete_states.size(); ++m)
+    set_discrete_state(m, program_->code_->discrete_states[m].start);
 }
 
 void Workspace::reset() {
   ++generation_;
   solved_.clear();
-  for (const Unknown& unknown : program_->code_.unknowns) solved_.push_back(unknown.guess);
+  for (const Unknown& unknown : program_->code_->unknowns) solved_.push_back(unknown.guess);
   std::copy(solved_.begin(), solved_.end(),
             slots_.begin() + static_cast<std::ptrdiff_t>(1 + program_->n_states()));
   for (LoopWorkspace& loop : loops_) loop.reset();

@@ -19,6 +19,7 @@
 
 namespace oblique::network {
 
+class ParameterSetting;
 class Workspace;
 
 /// The equations of a diagram, compiled: immutable, and shared between threads as long as each has a
@@ -27,17 +28,19 @@ class Program {
  public:
   /// Compiles a network: differentiates, shares and drops expressions, lays out the tape.
   explicit Program(Network network);
+  /// The same equations with other constants: shares the code.
+  Program(const Program& other, const ParameterSetting& parameters);
 
-  std::size_t n_states() const { return code_.states.size(); }
-  std::size_t n_signals() const { return code_.signal_names.size(); }
-  const std::vector<State>& states() const { return code_.states; }
-  const std::vector<Unknown>& unknowns() const { return code_.unknowns; }
-  const std::vector<Loop>& loops() const { return code_.loops; }
-  const std::vector<std::string>& signal_names() const { return code_.signal_names; }
+  std::size_t n_states() const { return code_->states.size(); }
+  std::size_t n_signals() const { return code_->signal_names.size(); }
+  const std::vector<State>& states() const { return code_->states; }
+  const std::vector<Unknown>& unknowns() const { return code_->unknowns; }
+  const std::vector<Loop>& loops() const { return code_->loops; }
+  const std::vector<std::string>& signal_names() const { return code_->signal_names; }
   std::size_t signal_index(diagram::SignalRef signal) const {
-    return code_.first_signal[signal.block] + signal.output;
+    return code_->first_signal[signal.block] + signal.output;
   }
-  std::size_t n_instructions() const { return code_.tape.size(); }
+  std::size_t n_instructions() const { return code_->tape.size(); }
 
   /// Start values of the states, before servo loops are brought to rest.
   std::vector<double> start() const;
@@ -49,7 +52,7 @@ class Program {
   /// d(dx/dt)/dx in the order of `jacobian_pattern`, algebraic loops included: f_x − f_z g_z⁻¹ g_x. False as
   /// above.
   bool jacobian(double t, const double* x, double* values, Workspace& workspace) const;
-  const SparsePattern& jacobian_pattern() const { return code_.pattern; }
+  const SparsePattern& jacobian_pattern() const { return code_->pattern; }
 
   /// Every signal of every block at (t, x), `n_signals` of them, and what else follows from them; nothing
   /// where `derivatives` would give false.
@@ -58,20 +61,20 @@ class Program {
 
   // --- events: all of the above hold for the discrete states as they are in the workspace
 
-  const std::vector<DiscreteState>& discrete_states() const { return code_.discrete_states; }
-  const std::vector<Switch>& switches() const { return code_.switches; }
-  const std::vector<Event>& events() const { return code_.events; }
+  const std::vector<DiscreteState>& discrete_states() const { return code_->discrete_states; }
+  const std::vector<Switch>& switches() const { return code_->switches; }
+  const std::vector<Event>& events() const { return code_->events; }
   /// Of each group of integrators, the discrete state with its mode of operation; empty without a timeline.
-  const std::vector<std::uint32_t>& mode_states() const { return code_.mode_states; }
+  const std::vector<std::uint32_t>& mode_states() const { return code_->mode_states; }
 
   /// The event function of every switch at (t, x), and what else follows there; nothing as above.
   std::optional<Evaluation> event_functions(double t, const double* x, double* values,
                                             Workspace& workspace) const;
-  const SwitchStructure& switch_structure() const { return code_.switch_structure; }
+  const SwitchStructure& switch_structure() const { return code_->switch_structure; }
 
   /// Whether a switch follows from no algebraic loop, and its event function does not depend on its own
   /// position.
-  bool is_ordered(std::size_t s) const { return code_.is_ordered[s]; }
+  bool is_ordered(std::size_t s) const { return code_->is_ordered[s]; }
   /// What `decide_in_order` calls: a switch, its event function, and d(event function)/dt.
   using Decide = std::function<void(std::uint32_t s, double event_function, double rate)>;
   /// Goes once through all ordered switches at (t, x), where the states move with `dxdt`: each comes after
@@ -79,11 +82,11 @@ class Program {
   void decide_in_order(double t, const double* x, const double* dxdt, Workspace& workspace,
                        const Decide& decide) const;
 
-  const std::vector<Source>& sources() const { return code_.sources; }
+  const std::vector<Source>& sources() const { return code_->sources; }
   /// The states that sources depend on. The first `clocks` of them go along a straight line between events:
   /// integrators of what only events change.
-  const std::vector<std::size_t>& source_states() const { return code_.source_states; }
-  std::size_t clocks() const { return code_.n_clocks; }
+  const std::vector<std::size_t>& source_states() const { return code_->source_states; }
+  std::size_t clocks() const { return code_->n_clocks; }
   /// The values of all sources, and their derivatives, for times within `time` and the source states within
   /// `states`, on slots of the kind that `source_slots` gives, with the discrete states as they are in the
   /// workspace.
@@ -92,9 +95,9 @@ class Program {
   std::vector<Interval> source_slots() const;
 
   /// Whether dg/dz of a loop does not depend on its own unknowns.
-  bool loop_is_linear(std::size_t loop) const { return code_.loop_codes[loop].linear; }
+  bool loop_is_linear(std::size_t loop) const { return code_->loop_codes[loop].linear; }
   /// Whether amplifiers choose among several solutions of a loop.
-  bool loop_has_branches(std::size_t loop) const { return code_.loop_codes[loop].has_branches(); }
+  bool loop_has_branches(std::size_t loop) const { return code_->loop_codes[loop].has_branches(); }
   /// Whether derivatives depend on a loop.
   bool derivatives_need(std::size_t loop) const;
 
@@ -102,13 +105,15 @@ class Program {
   friend class Workspace;
   friend class Evaluation;
   friend class SignalEvaluation;
+  friend class ParameterSetting;
 
   bool run(const std::vector<ProgramCode::Step>& steps, Workspace& workspace) const;
   bool load_and_run(double t, const double* x, Workspace& workspace) const;
   bool differentiate_loops(Workspace& workspace) const;
   void copy_derivatives(const Workspace& workspace, double* dxdt) const;
 
-  ProgramCode code_;
+  std::shared_ptr<const ProgramCode> code_;
+  std::vector<double> initial_slots_;
 };
 
 /// The scratch memory of one run of a Program. It keeps the last solution of every algebraic loop, from which

@@ -78,6 +78,16 @@ struct ProgramCode {
     std::vector<std::uint32_t> values;
   };
 
+  /// A constant that follows from parameters, or is an operand of one that does.
+  struct Constant {
+    Op op = Op::constant;
+    std::uint32_t a = 0, b = 0;  ///< constants, by their places in the list
+    std::uint32_t parameter = ConstantFormula::kNoParameter;
+    bool frozen = false;  ///< the program is another one where the value is
+    double value = 0;     ///< as compiled
+    std::optional<std::uint32_t> slot;
+  };
+
   struct OrderedSwitch {
     TapeRange segment;  ///< computes its event function and the rate of it
     std::uint32_t switch_index;
@@ -91,6 +101,9 @@ struct ProgramCode {
 
   std::vector<Instruction> tape;
   std::vector<double> initial_slots;
+  std::vector<Constant> constants;  ///< each after its operands
+  std::size_t n_parameters = 0;
+  std::vector<std::optional<std::uint32_t>> fixed_start_slots;  ///< of each state
   std::vector<LoopCode> loop_codes;
   std::vector<Step> derivative_steps;
   std::vector<Step> event_function_steps;  ///< after `derivative_steps`

@@ -2,6 +2,7 @@
 #include <oblique/network/program/program_compiler.h>
 
 #include <algorithm>
+#include <unordered_map>
 #include <utility>
 
 #include <oblique/network/program/compilation.h>
@@ -189,6 +190,32 @@ std::vector<ProgramCode::Step> write_steps(Compilation& c, const Compilation::Ne
   return steps;
 }
 
+/// How the constants on slots follow from parameters.
+void write_constants(Compilation& c) {
+  const ExpressionGraph& graph = c.network.graph;
+  std::unordered_map<NodeId, std::uint32_t> place;
+  const auto add = [&](NodeId node, ProgramCode::Constant made) {
+    place.emplace(node, static_cast<std::uint32_t>(c.code.constants.size()));
+    made.value = graph[node].value;
+    made.slot = c.writer->known_slot(node);
+    c.code.constants.push_back(made);
+  };
+  for (const ConstantFormula& formula : graph.formulas()) {
+    ProgramCode::Constant made;
+    made.parameter = formula.parameter;
+    made.frozen = formula.frozen;
+    if (formula.parameter == ConstantFormula::kNoParameter) {
+      for (const NodeId operand : {formula.a, formula.b}) {
+        if (!place.contains(operand)) add(operand, {});
+      }
+      made.op = formula.op;
+      made.a = place.at(formula.a);
+      made.b = place.at(formula.b);
+    }
+    add(formula.node, made);
+  }
+}
+
 void write_tapes(Compilation& c) {
   const bool with_rates = !c.network.switches.empty();
   const std::size_t n_rates = with_rates ? c.network.states.size() + c.network.unknowns.size() : 0;
@@ -220,6 +247,10 @@ void write_tapes(Compilation& c) {
   write_sources(c);
   write_switch_order(c);
   write_pieces(c);
+  for (const State& state : c.network.states) {
+    c.code.fixed_start_slots.push_back(
+        state.start_constant ? std::optional(c.writer->slot(*state.start_constant)) : std::nullopt);
+  }
 }
 
 }  // namespace
@@ -235,6 +266,8 @@ ProgramCode compile(Network network) {
   find_needs(c);
   write_tapes(c);
   lay_out_jacobian(c);
+  write_constants(c);
+  c.code.n_parameters = c.network.n_parameters;
   c.code.tape = c.writer->instructions();
   c.code.initial_slots = c.writer->initial_slots();
   c.code.first_discrete_state = c.network.n_variables();

@@ -5,8 +5,11 @@
 
 namespace oblique::network {
 
-Tangents::Tangents(ExpressionGraph& graph, std::function<NodeId(std::uint32_t)> rate_of)
-    : graph_(graph), rate_of_(std::move(rate_of)) {}
+Tangents::Tangents(ExpressionGraph& graph, Rates rates) : graph_(graph), rates_(std::move(rates)) {}
+
+bool Tangents::may_move(NodeId id) const {
+  return graph_[id].continuous || rates_.discrete_state || (rates_.parameter && graph_.formula_of(id));
+}
 
 NodeId Tangents::of(NodeId root) {
   known_.resize(graph_.size(), kUnknown);
@@ -15,8 +18,8 @@ NodeId Tangents::of(NodeId root) {
   while (!pending.empty()) {
     const NodeId id = pending.back();
     const std::size_t before = pending.size();
-    if (known_[id] == kUnknown && graph_[id].continuous) {
-      const Node& node = graph_[id];
+    if (known_[id] == kUnknown && may_move(id)) {
+      const Node node = graph_.with_operands(id);
       for (int i = 0; i < operand_count(node.op); ++i) {
         if (known_[node.operand(i)] == kUnknown) pending.push_back(node.operand(i));
       }
@@ -31,14 +34,16 @@ NodeId Tangents::of(NodeId root) {
 /// The operands are known. Below a `select` that is closed nothing moves, even where the derivative of what
 /// reads it is no number.
 void Tangents::differentiate(NodeId id) {
-  const Node node = graph_[id];  // a copy: new nodes may move the array
-  if (!node.continuous) {
-    known_[id] = graph_.constant(0);
-    return;
-  }
-  if (node.op == Op::variable) {
-    known_[id] = rate_of_(node.variable);
-    return;
+  const Node node = graph_.with_operands(id);
+  const auto leaf = [&](const RateOf& rate_of, std::uint32_t number) {
+    known_[id] = rate_of ? rate_of(number) : graph_.constant(0);
+  };
+  if (!may_move(id)) return leaf({}, 0);
+  if (node.op == Op::variable) return leaf(rates_.variable, node.variable);
+  if (node.op == Op::discrete_state) return leaf(rates_.discrete_state, node.variable);
+  if (node.op == Op::constant) {
+    const ConstantFormula* const formula = graph_.formula_of(id);
+    return formula == nullptr ? leaf({}, 0) : leaf(rates_.parameter, formula->parameter);
   }
   bool branches = node.op == Op::select;
   for (int i = 0; i < operand_count(node.op); ++i) branches = branches || branches_[node.operand(i)];

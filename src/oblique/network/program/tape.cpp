@@ -189,6 +189,10 @@ std::uint32_t TapeWriter::slot(NodeId id) {
   return slots_[id];
 }
 
+std::optional<std::uint32_t> TapeWriter::known_slot(NodeId id) const {
+  return slots_[id] == kNoSlot ? std::nullopt : std::optional(slots_[id]);
+}
+
 bool TapeWriter::can_fuse(NodeId id) const {
   return (*graph_)[id].op == Op::multiply && uses_[id] == 1 && segment_[id] == current_segment_;
 }

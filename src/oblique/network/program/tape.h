@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -59,6 +60,8 @@ class TapeWriter {
 
   /// The slot of a node, made on first request.
   std::uint32_t slot(NodeId id);
+  /// The slot of a node that was asked for.
+  std::optional<std::uint32_t> known_slot(NodeId id) const;
 
   const std::vector<Instruction>& instructions() const { return instructions_; }
   /// What every slot holds before the first instruction: the constants in their places, zeros elsewhere.

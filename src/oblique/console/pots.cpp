@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/console/pots.h>
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <oblique/diagram/machine_profile.h>
+#include <oblique/network/assembly/network.h>
+#include <oblique/text/expression.h>
+#include <oblique/text/quantity.h>
+
+namespace oblique::console {
+namespace {
+
+const diagram::Behaviour* behaviour_of(const diagram::FlatBlock& block) {
+  return block.definition->choose_behaviour(block.parameters, block.polarity);
+}
+
+}  // namespace
+
+Pots::Pots(diagram::Diagram diagram, const diagram::BlockLibrary& library)
+    : diagram_(std::move(diagram)), library_(&library) {
+  compile(flattened(overrides_));
+}
+
+const std::shared_ptr<const network::Program>& Pots::program() {
+  if (turned_) program_ = std::make_shared<const network::Program>(*compiled_, *setting_);
+  turned_ = false;
+  return program_;
+}
+
+Turned Pots::turn(const std::string& pot, const std::string& value) {
+  if (turn_known(pot, value)) return Turned::at_once;
+  std::vector<diagram::ParameterOverride> overrides = overrides_;
+  const auto same = std::find_if(overrides.begin(), overrides.end(),
+                                 [&](const diagram::ParameterOverride& other) { return other.path == pot; });
+  const auto index = static_cast<std::size_t>(same - overrides.begin());
+  if (same == overrides.end()) overrides.push_back({pot, {}});
+  overrides[index].value = value;
+  auto flat = flattened(overrides);
+  const auto others = changed(*flat);
+  const bool at_once = others && setting_->set(*others);
+  if (at_once) {
+    flat_ = std::move(flat);
+    turned_ = true;
+  } else {
+    compile(std::move(flat));
+  }
+  overrides_ = std::move(overrides);
+  if (const auto place = place_of(pot); place && flat_->blocks[place->block].formulas.empty()) {
+    const diagram::FlatBlock& block = flat_->blocks[place->block];
+    known_.insert_or_assign(pot, Known{*place,
+                                       diagram::unit_on(diagram_.machine.profile,
+                                                        block.definition->parameters[place->parameter].unit),
+                                       index});
+  }
+  return at_once ? Turned::at_once : Turned::compiled_anew;
+}
+
+/// Turns a pot that was turned before and leaves the equations as they are; false where nothing was done.
+bool Pots::turn_known(const std::string& name, const std::string& value) {
+  const auto found = known_.find(name);
+  if (found == known_.end()) return false;
+  const auto& [place, unit, index] = found->second;
+  diagram::FlatBlock& block = flat_->blocks[place.block];
+  double now = 0;
+  try {
+    now = text::parse_quantity(value, unit);
+  } catch (const text::ExpressionError&) {
+    return false;  // whoever reads the whole diagram tells of it
+  }
+  if (!block.definition->parameters[place.parameter].allows(now)) return false;
+  const double before = std::exchange(block.parameters[place.parameter], now);
+  const Parameter parameter{numbers_->parameter(place.block, place.parameter), now};
+  if (behaviour_of(block) != block.behaviour || !setting_->set({&parameter, 1})) {
+    block.parameters[place.parameter] = before;
+    return false;
+  }
+  overrides_[index].value = value;
+  turned_ = true;
+  return true;
+}
+
+void Pots::set_timeline(diagram::Timeline timeline) {
+  diagram_.timeline = std::move(timeline);
+  compile(flattened(overrides_));
+}
+
+std::vector<std::string> Pots::names() const {
+  std::vector<std::string> names;
+  for (const diagram::FlatBlock& block : flat_->blocks) {
+    for (const auto& parameter : block.definition->parameters)
+      names.push_back(fmt::format("{}.{}", block.path, parameter.name));
+  }
+  return names;
+}
+
+std::optional<Pots::Setting> Pots::setting_of(std::string_view name) const {
+  const auto place = place_of(name);
+  if (!place) return std::nullopt;
+  const diagram::FlatBlock& block = flat_->blocks[place->block];
+  return Setting{block.parameters[place->parameter], block.definition->parameters[place->parameter].unit};
+}
+
+std::optional<Pots::Place> Pots::place_of(std::string_view name) const {
+  const std::size_t dot = name.rfind('.');
+  if (dot == std::string_view::npos) return std::nullopt;
+  for (std::size_t b = 0; b < flat_->blocks.size(); ++b) {
+    if (flat_->blocks[b].path != name.substr(0, dot)) continue;
+    const auto parameter = flat_->blocks[b].definition->find_parameter(name.substr(dot + 1));
+    return parameter ? std::optional(Place{b, *parameter}) : std::nullopt;
+  }
+  return std::nullopt;
+}
+
+std::shared_ptr<diagram::FlatDiagram> Pots::flattened(
+    const std::vector<diagram::ParameterOverride>& overrides) const {
+  return std::make_shared<diagram::FlatDiagram>(diagram::flatten(diagram_, *library_, overrides));
+}
+
+void Pots::compile(std::shared_ptr<diagram::FlatDiagram> flat) {
+  compiled_ = std::make_shared<const network::Program>(network::assemble(*flat));
+  flat_ = std::move(flat);
+  program_ = compiled_;
+  numbers_.emplace(*flat_);
+  setting_.emplace(*compiled_);
+  turned_ = false;
+}
+
+/// The parameters that are others in `now`; nothing where more than parameters is.
+std::optional<std::vector<Pots::Parameter>> Pots::changed(const diagram::FlatDiagram& now) const {
+  std::vector<Parameter> changed;
+  const auto compare = [&](double before, double after, std::uint32_t number) {
+    if (before != after) changed.push_back({number, after});
+  };
+  if (flat_->blocks.size() != now.blocks.size()) return std::nullopt;
+  for (std::size_t b = 0; b < now.blocks.size(); ++b) {
+    const diagram::FlatBlock &before = flat_->blocks[b], &after = now.blocks[b];
+    if (behaviour_of(before) != behaviour_of(after) || before.saturation != after.saturation)
+      return std::nullopt;
+    for (std::size_t k = 0; k < after.parameters.size(); ++k)
+      compare(before.parameters[k], after.parameters[k], numbers_->parameter(b, k));
+    for (std::size_t input = 0; input < after.inputs.size(); ++input) {
+      const diagram::FlatInput &old = before.inputs[input], &other = after.inputs[input];
+      if (old.constant != other.constant || old.terms.size() != other.terms.size()) return std::nullopt;
+      for (std::size_t wire = 0; wire < other.terms.size(); ++wire)
+        compare(old.terms[wire].weight, other.terms[wire].weight, numbers_->weight(b, input, wire));
+    }
+  }
+  return changed;
+}
+
+}  // namespace oblique::console
