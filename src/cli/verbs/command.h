@@ -41,7 +41,8 @@ struct RunRequest {
   bool events = false;
   bool static_test = false;
   bool halt_on_overload = false;
-  bool trust = false;  ///< estimate the errors
+  bool trust = false;                    ///< estimate the errors
+  std::vector<std::string> sensitivity;  ///< parameters by which the outputs are differentiated
 };
 ExitStatus run_diagram(const Session& session, const RunRequest& request);
 
@@ -120,6 +121,7 @@ struct CompareRequest {
   std::vector<std::string> methods{"triangles"};
   TriadChoice triads;
   std::string machine;  ///< in whose elements besides
+  bool budget = false;  ///< whose tolerances the errors come from
   int runs = 0;         ///< of --monte-carlo; 0: none
   std::uint64_t seed = 1;
   std::uint64_t first_run = 0;

@@ -10,11 +10,13 @@
 #include <nlohmann/json.hpp>
 
 #include <oblique/commission/on_machine.h>
+#include <oblique/compare/budget.h>
 #include <oblique/compare/machine_comparison.h>
 #include <oblique/compare/monte_carlo.h>
 #include <oblique/mechanism/model/read_mechanism.h>
 
 #include <oblique/diagram/flatten.h>
+#include <oblique/report/budget_report.h>
 #include <oblique/report/comparison_chart.h>
 #include <oblique/report/comparison_report.h>
 #include <oblique/report/json_text.h>
@@ -106,8 +108,11 @@ std::vector<diagram::BlockFigure> scatters_of(const CompareRequest& request,
       refuse(fmt::format("--tolerance {}", request.tolerance), "a number above 0 and up to 50%");
     return compare::scatters_of_tolerance(library, tolerance);
   }
-  if (machine == nullptr)
-    refuse("--monte-carlo without how far the elements scatter", "--tolerance, such as 0.1%, or a --machine");
+  if (machine == nullptr) {
+    refuse(
+        fmt::format("{} without how far the elements scatter", request.budget ? "--budget" : "--monte-carlo"),
+        "--tolerance, such as 0.1%, or a --machine");
+  }
   if (machine->scatters.empty()) {
     refuse(fmt::format("nothing is published of how the elements of {} scatter", machine->title),
            "--tolerance, such as 0.1%");
@@ -146,6 +151,22 @@ report::MonteCarloReport draw_elements(const CompareRequest& request, const mech
   return report;
 }
 
+report::BudgetReport budget_of(const CompareRequest& request, const mechanism::Mechanism& mechanism,
+                               const diagram::Diagram& diagram, const diagram::BlockLibrary& library,
+                               const diagram::MachineProfile* machine, bool turning) {
+  report::BudgetReport report;
+  report.unit = mechanism.length_unit;
+  report.turning = turning;
+  report.scatter = request.tolerance.empty() ? fmt::format("as those of {} scatter", machine->title)
+                                             : fmt::format("within ±{}", request.tolerance);
+  compare::BudgetOptions options;
+  options.scatters = scatters_of(request, library, machine);
+  Progress progress("differentiating");
+  options.progress = [&](double fraction) { progress.show(fraction); };
+  report.budget = compare::error_budget(mechanism, diagram, library, options);
+  return report;
+}
+
 }  // namespace
 
 ExitStatus compare_mechanism(const Session& session, const CompareRequest& request) {
@@ -161,16 +182,22 @@ ExitStatus compare_mechanism(const Session& session, const CompareRequest& reque
       request.machine.empty() ? nullptr : diagram::find_machine(request.machine);
   if (machine == nullptr && !request.machine.empty())
     throw text::ReadError(diagram::unknown_machine(request.machine));
+  const bool scattered = request.runs > 0 || request.budget;
+  if (!request.tolerance.empty() && !scattered)
+    refuse("--tolerance says how elements scatter, and nothing asks for it", "--budget or --monte-carlo N");
   patch::PatchOptions single;
-  if (machine != nullptr || request.runs > 0) {
-    single = single_patch(machine != nullptr ? "--machine" : "--monte-carlo", request, options);
+  if (machine != nullptr || scattered) {
+    const char* const option = machine != nullptr ? "--machine"
+                               : request.budget   ? "--budget"
+                                                  : "--monte-carlo";
+    single = single_patch(option, request, options);
     options.gains = {single.gain};
   }
-  if (request.runs > 0) scatters_of(request, library, machine);  // before the work, not after it
+  if (scattered) scatters_of(request, library, machine);  // before the work, not after it
   const mechanism::Mechanism mechanism = patch::within_range(mechanism::read_mechanism(request.mechanism));
   std::optional<commission::MachinePatch> on_elements;
   diagram::Diagram drawn;  // whose elements scatter
-  if (machine != nullptr || request.runs > 0) {
+  if (machine != nullptr || scattered) {
     commission::JudgedPatch patched = commission::judged_patch(mechanism, library, single);
     single = patched.options;
     drawn = patched.diagram;
@@ -198,6 +225,12 @@ ExitStatus compare_mechanism(const Session& session, const CompareRequest& reque
     text += report::to_text(on_machine, comparison, command_line()) +
             report::bandwidth_text(*on_elements, *machine);
     json["machine"] = report::to_json(on_machine);
+  }
+  if (request.budget) {
+    const report::BudgetReport report =
+        budget_of(request, mechanism, drawn, library, machine, comparison.turning);
+    text += report::to_text(report);
+    json["budget"] = report::to_json(report);
   }
   if (request.runs > 0) {
     const report::MonteCarloReport report = draw_elements(request, mechanism, drawn, library, machine);

@@ -35,6 +35,10 @@ void add_run(CLI::App& app, Chosen& chosen) {
   verb->add_flag(
       "--trust", request->trust,
       "run again, finer and by the other method, and say how many digits of each output can be trusted");
+  verb->add_option("--sensitivity", request->sensitivity,
+                   "add columns with the derivatives of the outputs by these parameters: c.gain,x.in[1]")
+      ->type_name("NAMES")
+      ->delimiter(',');
   choose(verb, chosen, request, run_diagram);
 }
 

@@ -102,6 +102,10 @@ void add_compare(CLI::App& app, Chosen& chosen) {
           "run it in this machine's elements too, and say what each published figure adds to the error "
           "(oblique machines lists them); one gain (default 1e6)")
       ->type_name("NAME");
+  verb->add_flag(
+      "--budget", request->budget,
+      "say whose tolerances the errors come from: how far that of each element displaces the points "
+      "(with --tolerance or --machine); one gain (default 1e6)");
   CLI::Option* const monte_carlo =
       verb->add_option("--monte-carlo", request->runs,
                        "run it N times more, each with tolerances drawn anew; one gain (default 1e6)")
@@ -110,8 +114,7 @@ void add_compare(CLI::App& app, Chosen& chosen) {
   verb->add_option("--tolerance", request->tolerance,
                    "how far the weights of summers and integrators and the errors of multipliers scatter, "
                    "uniformly on both sides, for example 0.1% (default with --machine: as its profile says)")
-      ->type_name("X")
-      ->needs(monte_carlo);
+      ->type_name("X");
   verb->add_option("--seed", request->seed, "chooses the random numbers")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber)

@@ -59,16 +59,17 @@ void check_request(const RunRequest& request) {
   check_plot(request.plot, request.theme);
   if (!request.save.empty()) check_output(request.save, ".toml");
   if (!request.static_test) return;
-  const char* const other = request.check              ? "--check"
-                            : request.halt_on_overload ? "--halt-on-overload"
-                            : !request.until.empty()   ? "--until"
-                            : !request.output.empty()  ? "-o"
-                            : !request.save.empty()    ? "--save"
-                            : !request.from.empty()    ? "--from"
-                            : request.events           ? "--events"
-                            : request.trust            ? "--trust"
-                            : !request.plot.empty()    ? "--plot"
-                                                       : nullptr;
+  const char* const other = request.check                  ? "--check"
+                            : request.halt_on_overload     ? "--halt-on-overload"
+                            : !request.until.empty()       ? "--until"
+                            : !request.output.empty()      ? "-o"
+                            : !request.save.empty()        ? "--save"
+                            : !request.from.empty()        ? "--from"
+                            : request.events               ? "--events"
+                            : request.trust                ? "--trust"
+                            : !request.sensitivity.empty() ? "--sensitivity"
+                            : !request.plot.empty()        ? "--plot"
+                                                           : nullptr;
   if (other == nullptr) return;
   throw text::ReadError(
       text::Diagnostic{{},
@@ -101,16 +102,17 @@ ExitStatus run_diagram(const Session& session, const RunRequest& request) {
   for (const std::string& text : request.settings) overrides.push_back(parse_override(text));
 
   const diagram::FlatDiagram flat = diagram::flatten(diagram, library, overrides);
-  const ColumnChoice choice(solve::output_columns(flat), request.columns);
+  solve::RunOptions options = solve::options_of(diagram.run);
+  options.sensitivity = request.sensitivity;
+  const std::vector<text::TableColumn> columns = solve::run_columns(flat, options);
+  const ColumnChoice choice(columns, request.columns);
   std::optional<report::DrawnColumns> drawn;
-  if (!request.plot.empty())
-    drawn = report::drawn_columns(solve::output_columns(flat), {request.columns, request.against});
+  if (!request.plot.empty()) drawn = report::drawn_columns(columns, {request.columns, request.against});
   const network::Program program(network::assemble(flat));
   if (request.static_test) {
     print(report::static_test_text(solve::static_test(program, diagram.file)));
     return ExitStatus::done;
   }
-  solve::RunOptions options = solve::options_of(diagram.run);
   options.halt_on_overload = request.halt_on_overload;
   options.trust = request.trust;
   options.watch_overloads = diagram.machine.profile != "ideal";
@@ -126,7 +128,7 @@ ExitStatus run_diagram(const Session& session, const RunRequest& request) {
     }
   }
   if (request.check) report::ask_for_expectations(diagram, options);
-  if (drawn) report::ask_for_curves(options, solve::output_columns(flat).size());
+  if (drawn) report::ask_for_curves(options, columns.size());
   solve::Run result;
   {
     Progress progress("running");

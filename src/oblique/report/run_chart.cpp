@@ -95,6 +95,7 @@ std::vector<double> rounding_of(const diagram::FlatDiagram& diagram, const solve
   std::vector<double> rounding{0};  // of the time
   for (const diagram::FlatOutput& output : diagram.outputs)
     rounding.push_back(of_unit * std::max(std::abs(output.scale), std::abs(output.offset)));
+  rounding.resize(1 + diagram.outputs.size() * (1 + options.sensitivity.size()), 0.0);
   return rounding;
 }
 

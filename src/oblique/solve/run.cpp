@@ -12,6 +12,7 @@
 #include <oblique/network/program/program.h>
 #include <oblique/solve/run_warnings.h>
 #include <oblique/solve/runner.h>
+#include <oblique/solve/sensitivity/sensitivities.h>
 #include <oblique/solve/solve_error.h>
 
 namespace oblique::solve {
@@ -81,6 +82,22 @@ void check_longest_step(const diagram::FlatDiagram& diagram, const RunOptions& o
 std::vector<text::TableColumn> output_columns(const diagram::FlatDiagram& diagram) {
   std::vector<text::TableColumn> columns{{"t", "s"}};
   for (const diagram::FlatOutput& output : diagram.outputs) columns.push_back({output.name, output.unit});
+  return columns;
+}
+
+std::vector<text::TableColumn> run_columns(const diagram::FlatDiagram& diagram, const RunOptions& options) {
+  std::vector<text::TableColumn> columns = output_columns(diagram);
+  if (options.sensitivity.empty()) return columns;
+  const std::vector<SensitivityParameter> parameters = sensitivity_parameters(diagram, options.sensitivity);
+  for (const diagram::FlatOutput& output : diagram.outputs) {
+    for (const SensitivityParameter& parameter : parameters) {
+      const bool plain = parameter.unit.find_first_of("*/") == std::string::npos;
+      const std::string unit = parameter.unit == "1" || parameter.unit.empty() ? output.unit
+                               : plain ? fmt::format("{}/{}", output.unit, parameter.unit)
+                                       : fmt::format("{}/({})", output.unit, parameter.unit);
+      columns.push_back({fmt::format("d({})/d({})", output.name, parameter.name), unit});
+    }
+  }
   return columns;
 }
 

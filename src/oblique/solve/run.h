@@ -47,7 +47,9 @@ struct RunOptions {
   std::function<void()> on_restart;  ///< called where the run begins anew, finer: its rows come once more
   bool watch_overloads = false;   ///< look for overloads at every step, at the price of two evaluations each
   bool halt_on_overload = false;  ///< end the run at the first overload; watches too
-  bool trust = false;             ///< estimate the error of the outputs, at the price of further runs
+  /// Parameters ("c.gain") and weights ("c.in[2]") by which the outputs are differentiated along the run.
+  std::vector<std::string> sensitivity;
+  bool trust = false;  ///< estimate the error of the outputs, at the price of further runs
 };
 
 /// The options that a diagram states.
@@ -61,10 +63,13 @@ struct Extremes {
 
 /// The columns of a run: `t`, then the outputs of the diagram.
 std::vector<text::TableColumn> output_columns(const diagram::FlatDiagram& diagram);
+/// The same and, where they are asked for, of each output its derivatives by the parameters:
+/// "d(x)/d(c.gain)". Throws ReadError for a parameter that there is not.
+std::vector<text::TableColumn> run_columns(const diagram::FlatDiagram& diagram, const RunOptions& options);
 
 /// What came out of a run.
 struct Run {
-  Trajectory trajectory;            ///< with `output_columns`
+  Trajectory trajectory;            ///< with `run_columns`
   Trajectory extra;                 ///< the same columns at `extra_times`
   std::vector<EventRecord> events;  ///< the first thousand
   long event_count = 0;

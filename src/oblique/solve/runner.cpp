@@ -60,6 +60,15 @@ Runner::Runner(const network::Program& program, const diagram::FlatDiagram& diag
   switching_.end_when(interruption_);
   switching_.limit_samples(kSamplesAStep * static_cast<double>(options.max_steps) + 1e6);
   sources_.limit_samples(kSourceSamplesAStep * static_cast<double>(options.max_steps) + 1e6);
+  if (!options.sensitivity.empty()) {
+    sensitivities_.emplace(program, diagram, sensitivity_parameters(diagram, options.sensitivity),
+                           options.until - begin_);
+    sampler_.further_columns = [this](double t, std::span<const double> x, std::span<double> columns) {
+      sensitivities_->outputs(
+          t, x, integration_ ? integration_->solver().sensitivities_at(t) : sensitivities_->states(),
+          columns);
+    };
+  }
   if (options.watch_overloads || options.halt_on_overload)
     overloads_.emplace(program, switching_, diagram.file, options.halt_on_overload);
 }
@@ -74,6 +83,10 @@ void Runner::start() {
   }
   segments_.follow_phases(begin_);
   workspace_.follow_branches(true);
+  if (sensitivities_) {
+    if (switching_.slides()) sensitivities_->refuse_slide(begin_);
+    sensitivities_->start(begin_, states_, workspace_, options_.from.has_value());
+  }
   last_whole_ = RunSnapshot(begin_, parts());
   piece_begin_ = piece_end_ = begin_;
 }
@@ -172,15 +185,21 @@ void Runner::begin_steps() {
       choose_method(options_.method, program_, workspace_, begin_, states_, options_.until - begin_);
   sampler_.result.method = method;
   segments_.begin(t_);
-  integration_.emplace(Integration::Parts{program_, diagram_, options_, workspace_, switching_, system_,
-                                          branches_, sources_, segments_, overloads_, states_},
-                       solver_settings(program_.states(), options_, method.method, refinement_), begin_);
+  integration_.emplace(
+      Integration::Parts{program_, diagram_, options_, workspace_, switching_, system_, branches_, sources_,
+                         segments_, overloads_, states_, sensitivities_},
+      solver_settings(program_.states(), options_, method.method, refinement_), begin_);
 }
 
 /// Takes the next step; false where none came of it. A diagram without states follows the time alone: in
 /// steps as long as the rows are apart, or shorter where that is asked for.
 bool Runner::take_step() {
-  if (integration_) return integration_->take_step(t_);
+  if (integration_) {
+    const std::size_t jumps = branches_.jumps().size();
+    const bool taken = integration_->take_step(t_);
+    if (sensitivities_ && branches_.jumps().size() > jumps) sensitivities_->refuse_jump(t_);
+    return taken;
+  }
   const double step = std::min((options_.until - begin_) / (options_.samples - 1), options_.max_step);
   const double from = t_;
   t_ = std::min(segments_.end(), t_ + step);
@@ -207,6 +226,14 @@ bool Runner::look_at_piece() {
 
 void Runner::pass_piece() {
   const Segments::Passed passed = segments_.pass(t_);
+  if (sensitivities_ && passed == Segments::Passed::segment) {
+    if (switching_.slides()) sensitivities_->refuse_slide(t_);
+    std::vector<double> before = states_;
+    if (integration_) integration_->solver().states_at(t_, before);
+    sensitivities_->before_event(
+        t_, before, integration_ ? integration_->solver().sensitivities_at(t_) : sensitivities_->states());
+    sensitivities_->after_event(t_, states_, workspace_);
+  }
   piece_begin_ = t_;
   in_step_ = passed == Segments::Passed::piece;
   if (in_step_) return;

@@ -20,6 +20,7 @@
 #include <oblique/solve/operating_point/run_start.h>
 #include <oblique/solve/run.h>
 #include <oblique/solve/run_snapshot.h>
+#include <oblique/solve/sensitivity/sensitivities.h>
 
 namespace oblique::solve {
 
@@ -97,6 +98,7 @@ class Runner {
   Segments segments_;
   std::vector<text::Diagnostic> warnings_at_start_;
   const ConstantStates no_states_{{}};
+  std::optional<Sensitivities> sensitivities_;
   std::optional<Integration> integration_;
   double t_ = 0;                            ///< [s] where the last piece ended
   double piece_begin_ = 0, piece_end_ = 0;  ///< [s]

@@ -92,6 +92,7 @@ RunOptions silent(const RunOptions& options) {
   check.trust = false;
   check.progress = nullptr;
   check.on_sample = nullptr;
+  check.sensitivity.clear();
   check.on_restart = nullptr;
   check.watch_overloads = check.halt_on_overload = false;
   check.extremes = false;

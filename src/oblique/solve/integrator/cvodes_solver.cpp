@@ -94,6 +94,7 @@ struct CvodesSolver::Handles {
   double clock = 0;  ///< CVODES' own: since `start` [s]
   double length;     ///< from `start` to `end` [s]
   double max_step;   ///< [s]
+  double relative_tolerance, absolute_tolerance;
   std::vector<double> start_states;
   long max_steps;
   long steps = 0;
@@ -109,6 +110,11 @@ struct CvodesSolver::Handles {
   Owned<SUNLinearSolver, LinearSolverDeleter> linear_solver;
   std::unique_ptr<void, CvodesDeleter> memory;
 
+  Sensitivities* sensitivities = nullptr;
+  std::vector<std::vector<double>> start_sensitivities;
+  std::vector<Owned<N_Vector, VectorDeleter>> sensitivity_vectors;
+  std::vector<N_Vector> sensitivity_handles;  ///< the same as CVODES wants them
+
   Handles(OdeSystem& ode, double t0, std::span<const double> x0, double last_time, double until_then,
           const SolverSettings& settings)
       : system(&ode),
@@ -117,6 +123,8 @@ struct CvodesSolver::Handles {
         end(last_time),
         length(until_then),
         max_step(settings.max_step),
+        relative_tolerance(settings.relative_tolerance),
+        absolute_tolerance(settings.absolute_tolerance),
         start_states(x0.begin(), x0.end()),
         max_steps(settings.max_steps),
         context(make_context()) {
@@ -151,6 +159,71 @@ struct CvodesSolver::Handles {
     check_setup(CVodeSetJacEvalFrequency(cvodes, 1));
     if (std::isfinite(max_step)) check_setup(CVodeSetMaxStep(cvodes, max_step));
     check_setup(CVodeSetStopTime(cvodes, length));
+  }
+
+  void load_sensitivities() {
+    for (std::size_t k = 0; k < sensitivity_handles.size(); ++k)
+      std::copy(start_sensitivities[k].begin(), start_sensitivities[k].end(),
+                N_VGetArrayPointer(sensitivity_handles[k]));
+  }
+
+  void follow(Sensitivities& what) {
+    sensitivities = &what;
+    start_sensitivities = what.states();
+    for (std::size_t k = 0; k < what.count(); ++k) {
+      sensitivity_vectors.emplace_back(N_VClone(states.get()));
+      sensitivity_handles.push_back(sensitivity_vectors.back().get());
+    }
+    load_sensitivities();
+    void* const cvodes = memory.get();
+    std::vector<double> scales = what.scales(), tolerances;
+    for (const double scale : scales) tolerances.push_back(absolute_tolerance / scale);
+    check_setup(CVodeSensInit1(cvodes, static_cast<int>(what.count()), CV_STAGGERED, evaluate_sensitivity,
+                               sensitivity_handles.data()));
+    check_setup(CVodeSensSStolerances(cvodes, relative_tolerance, tolerances.data()));
+    check_setup(CVodeSetSensErrCon(cvodes, SUNTRUE));
+  }
+
+  /// CVODES begins at `start` with the states as they are in their vector.
+  void begin() {
+    check_setup(CVodeReInit(memory.get(), 0, states.get()));
+    if (sensitivities != nullptr) {
+      load_sensitivities();
+      check_setup(CVodeSensReInit(memory.get(), CV_STAGGERED, sensitivity_handles.data()));
+    }
+    check_setup(CVodeSetStopTime(memory.get(), length));
+  }
+
+  static int evaluate_sensitivity(int, sunrealtype t, N_Vector x, N_Vector, int k, N_Vector s, N_Vector rates,
+                                  void* user, N_Vector, N_Vector) {
+    auto& self = *static_cast<Handles*>(user);
+    if (self.system->is_to_end()) return kGiveUp;
+    double* const values = N_VGetArrayPointer(rates);
+    if (!self.sensitivities->rates(self.start + t, N_VGetArrayPointer(x), static_cast<std::size_t>(k),
+                                   N_VGetArrayPointer(s), values)) {
+      self.saw_refusal = true;
+      return 1;
+    }
+    return all_finite(values, self.system->size()) ? 0 : 1;
+  }
+
+  /// The time of CVODES' own clock that is t, within its last step: the end of the step to the bit, and no
+  /// rounding beyond its ends, which CVODES would refuse.
+  double own_time(double at) const {
+    sunrealtype last = 0;
+    CVodeGetLastStep(memory.get(), &last);
+    return at >= t ? clock : std::clamp(at - start, clock - last, clock);
+  }
+
+  std::vector<std::vector<double>> sensitivities_at(double at) const {
+    if (clock == 0) return start_sensitivities;
+    std::vector<std::vector<double>> values;
+    for (std::size_t k = 0; k < sensitivity_handles.size(); ++k) {
+      check_setup(CVodeGetSensDky1(memory.get(), own_time(at), 0, static_cast<int>(k), scratch.get()));
+      const double* const found = N_VGetArrayPointer(scratch.get());
+      values.emplace_back(found, found + system->size());
+    }
+    return values;
   }
 
   /// In one-step mode the time to go tells the direction, and of the first step the size; it must not be the
@@ -196,11 +269,7 @@ struct CvodesSolver::Handles {
 
   /// The states, or with `derivative` 1 their rates, at a time within the last step.
   void interpolate(double at, int derivative, std::span<double> values) const {
-    sunrealtype last = 0;
-    CVodeGetLastStep(memory.get(), &last);
-    // The end of the step to the bit, and no rounding beyond its ends, which CVODES would refuse.
-    const double own = at >= t ? clock : std::clamp(at - start, clock - last, clock);
-    check_setup(CVodeGetDky(memory.get(), own, derivative, scratch.get()));
+    check_setup(CVodeGetDky(memory.get(), own_time(at), derivative, scratch.get()));
     const double* const found = N_VGetArrayPointer(scratch.get());
     std::copy(found, found + values.size(), values.begin());
   }
@@ -230,15 +299,28 @@ CvodesSolver& CvodesSolver::operator=(CvodesSolver&&) noexcept = default;
 void CvodesSolver::restart(double t, std::span<const double> x, double end, double length) {
   Handles& h = *handles_;
   h.before_restart = statistics();
+  if (h.sensitivities != nullptr) h.start_sensitivities = h.sensitivities_at(t);
   std::copy(x.begin(), x.end(), N_VGetArrayPointer(h.states.get()));
-  check_setup(CVodeReInit(h.memory.get(), 0, h.states.get()));
-  check_setup(CVodeSetStopTime(h.memory.get(), length));
   h.start = h.t = t;
   h.start_states.assign(x.begin(), x.end());
   h.clock = 0;
   h.end = end;
   h.length = length;
   h.small_steps = 0;
+  h.begin();
+}
+
+void CvodesSolver::follow(Sensitivities& sensitivities) {
+  handles_->follow(sensitivities);
+}
+
+void CvodesSolver::set_sensitivities(const std::vector<std::vector<double>>& values) {
+  handles_->start_sensitivities = values;
+  handles_->begin();
+}
+
+std::vector<std::vector<double>> CvodesSolver::sensitivities_at(double t) const {
+  return handles_->sensitivities_at(t);
 }
 
 void CvodesSolver::limit_step(double longest) {
@@ -257,8 +339,7 @@ double CvodesSolver::step() {
   constexpr double kNearer = 1e-6, kNearest = 1e-20;
   for (double part = kNearer; code == CV_ERR_FAILURE && before == 0 && part > kNearest; part *= kNearer) {
     std::copy(h.start_states.begin(), h.start_states.end(), N_VGetArrayPointer(h.states.get()));
-    check_setup(CVodeReInit(h.memory.get(), 0, h.states.get()));
-    check_setup(CVodeSetStopTime(h.memory.get(), h.length));
+    h.begin();
     code = h.take_step(part);
   }
   h.t = h.clock >= h.length ? h.end : std::min(h.start + h.clock, h.end);

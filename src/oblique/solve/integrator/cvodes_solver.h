@@ -9,6 +9,7 @@
 #include <oblique/solve/integrator/interpolant.h>
 #include <oblique/solve/integrator/ode_system.h>
 #include <oblique/solve/run_records.h>
+#include <oblique/solve/sensitivity/sensitivities.h>
 
 namespace oblique::solve {
 
@@ -54,6 +55,14 @@ class CvodesSolver final : public Interpolant {
 
   /// Starts anew at (t, x), where the system has jumped, and will not pass `end`, which comes after `length`.
   void restart(double t, std::span<const double> x, double end, double length);
+
+  /// Integrates these sensitivities along with the states from the start on, each after the states' step
+  /// (staggered), and holds their errors within the tolerances, too. Must outlive this.
+  void follow(Sensitivities& sensitivities);
+  /// After a restart: they are now these.
+  void set_sensitivities(const std::vector<std::vector<double>>& values);
+  /// Those that are followed, at a time within the last step.
+  std::vector<std::vector<double>> sensitivities_at(double t) const;
 
   /// No step is longer than this from now on [s]; infinity: as long as the tolerance lets it be.
   void limit_step(double longest);

@@ -31,6 +31,7 @@ Integration::Integration(const Parts& parts, SolverSettings settings, double t)
       short_steps_(HiddenMotion(parts.system, settings_.relative_tolerance,
                                 absolute_tolerances(settings_, parts.states.size())),
                    solver_, parts.options.until - t) {
+  if (parts_.sensitivities) solver_.follow(*parts_.sensitivities);
   growth_.restart(t, parts.states);
   small_.advance(t, parts.states);
 }
@@ -69,6 +70,7 @@ bool Integration::take_step(double& t) {
 void Integration::restart(double t) {
   parts_.segments.begin(t);
   solver_.restart(t, parts_.states, parts_.segments.end(), parts_.segments.length());
+  if (parts_.sensitivities) solver_.set_sensitivities(parts_.sensitivities->states());
 }
 
 void Integration::end_step(Segments::Passed passed, double t) {

@@ -27,7 +27,8 @@ namespace oblique::solve {
 /// installed.
 class Integration {
  public:
-  /// What a run is made of; `overloads` only where they are watched.
+  /// What a run is made of; `overloads` only where they are watched, `sensitivities` where they are asked
+  /// for.
   struct Parts {
     const network::Program& program;
     const diagram::FlatDiagram& diagram;
@@ -40,6 +41,7 @@ class Integration {
     Segments& segments;
     std::optional<OverloadWatch>& overloads;
     std::vector<double>& states;
+    std::optional<Sensitivities>& sensitivities;
   };
 
   /// Begins at time t with the settings of `solver_settings`. All must outlive this.

@@ -34,8 +34,8 @@ Sampler::Sampler(const network::Program& program, const diagram::FlatDiagram& di
       runaway_(program, options.from ? options.from->time : 0, options.until, options.watch_overloads),
       states_(program.n_states()),
       signals_(program.n_signals()),
-      row_(diagram.outputs.size() + 1) {
-  result.trajectory = Trajectory(output_columns(diagram));
+      row_(run_columns(diagram, options).size()) {
+  result.trajectory = Trajectory(run_columns(diagram, options));
   result.extra = result.trajectory;
   result.peaks.resize(program.n_signals());
   if (options.extremes) result.extremes.resize(diagram.outputs.size());
@@ -53,6 +53,7 @@ void Sampler::advance(double t, const Interpolant& solution) {
     evaluate(last, time, solution);
     last = time;
     runaway_.look_at(time, signals_);
+    if (further_columns) further_columns(time, states_, std::span(row_).subspan(1 + diagram_.outputs.size()));
     if (grid_left && grid_time == time) {
       result.trajectory.add_row(row_);
       if (options_.on_sample) options_.on_sample(time, states_, workspace_.discrete_states());
@@ -81,7 +82,7 @@ void Sampler::watch(double from, double to, const Interpolant& solution) {
   middle_ = row_;
   at(to);
   const std::vector<double> end = row_;
-  for (std::size_t c = 1; c < end.size(); ++c) {
+  for (std::size_t c = 1; c <= diagram_.outputs.size(); ++c) {
     const double curvature = begin_[c] - 2 * middle_[c] + end[c];
     if (curvature == 0) continue;
     const double top = 0.5 - (end[c] - begin_[c]) / (4 * curvature);

@@ -28,6 +28,9 @@ class Sampler {
   /// What the rows alone warn of.
   std::vector<text::Diagnostic> warnings() const { return runaway_.warnings(diagram_.file); }
 
+  /// Fills the columns of a row behind those of the outputs; set where there are some.
+  std::function<void(double t, std::span<const double> states, std::span<double> columns)> further_columns;
+
   Run result;
 
  private:

@@ -1,0 +1,398 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/solve/sensitivity/sensitivities.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+#include <Eigen/Dense>
+
+#include <oblique/network/assembly/network.h>
+#include <oblique/network/assembly/parameter_numbers.h>
+#include <oblique/network/program/parameter_setting.h>
+#include <oblique/solve/solve_error.h>
+
+namespace oblique::solve {
+namespace {
+
+/// How far beside its value a parameter is put for the equations to be compiled: there nothing is left out
+/// because a factor is 0 or 1.
+double beside(double value) {
+  constexpr double kPart = 7.2360679e-4;
+  return value == 0 ? kPart : value * (1 + kPart);
+}
+
+[[noreturn]] void refuse_name(const diagram::FlatDiagram& diagram, const std::string& name,
+                              const std::vector<std::string>& candidates) {
+  throw text::ReadError(text::Diagnostic{
+      {diagram.file, {}},
+      fmt::format("there is no sensitivity to '{}': no block has such a parameter", name),
+      "BLOCK.PARAMETER of a block that is no composite, or BLOCK.INPUT[NUMBER] for the weight of a wire",
+      text::suggest(name, candidates)});
+}
+
+/// A block's parameter or weight, where the name behind the block's means one.
+std::optional<SensitivityParameter> found_in(const diagram::FlatBlock& block, std::size_t b,
+                                             std::string_view rest,
+                                             const network::ParameterNumbers& numbers) {
+  if (const auto parameter = block.definition->find_parameter(rest)) {
+    const diagram::ParameterDefinition& known = block.definition->parameters[*parameter];
+    if (known.points || known.formula) return std::nullopt;
+    return SensitivityParameter{
+        {}, numbers.parameter(b, *parameter), block.parameters[*parameter], known.unit};
+  }
+  const std::size_t bracket = rest.find('[');
+  if (bracket == std::string_view::npos || !rest.ends_with(']')) return std::nullopt;
+  const std::string_view port = rest.substr(0, bracket);
+  std::size_t number = 0;
+  for (const char digit : rest.substr(bracket + 1, rest.size() - bracket - 2)) {
+    if (digit < '0' || digit > '9' || number > 100'000) return std::nullopt;
+    number = 10 * number + static_cast<std::size_t>(digit - '0');
+  }
+  // As for settings: of a block of several inputs, "in" counts them all.
+  const auto own = block.definition->find_input(port);
+  for (std::size_t input = 0; input < block.inputs.size(); ++input) {
+    if (own ? input != *own : port != "in") continue;
+    for (std::size_t wire = 0; wire < block.inputs[input].terms.size(); ++wire) {
+      if (--number == 0)
+        return SensitivityParameter{
+            {}, numbers.weight(b, input, wire), block.inputs[input].terms[wire].weight, "1"};
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::vector<SensitivityParameter> sensitivity_parameters(const diagram::FlatDiagram& diagram,
+                                                         const std::vector<std::string>& names) {
+  const network::ParameterNumbers numbers(diagram);
+  std::vector<SensitivityParameter> found;
+  for (const std::string& name : names) {
+    const std::size_t dot = name.rfind('.', name.find('['));
+    std::optional<SensitivityParameter> parameter;
+    std::vector<std::string> candidates;
+    for (std::size_t b = 0; b < diagram.blocks.size() && !parameter; ++b) {
+      const diagram::FlatBlock& block = diagram.blocks[b];
+      for (const auto& known : block.definition->parameters)
+        candidates.push_back(block.path + "." + known.name);
+      if (dot != std::string::npos && block.path == name.substr(0, dot))
+        parameter = found_in(block, b, std::string_view(name).substr(dot + 1), numbers);
+    }
+    if (!parameter) refuse_name(diagram, name, candidates);
+    if (!std::isfinite(parameter->value)) {
+      throw text::ReadError(
+          text::Diagnostic{{diagram.file, {}},
+                           fmt::format("there is no sensitivity to '{}': it is infinite", name),
+                           "a parameter that can change a little",
+                           {text::Setting{"set", fmt::format("{}=1e6", name)}, " makes it finite"}});
+    }
+    parameter->name = name;
+    found.push_back(std::move(*parameter));
+  }
+  return found;
+}
+
+Sensitivities::Sensitivities(const network::Program& program, const diagram::FlatDiagram& diagram,
+                             std::vector<SensitivityParameter> parameters, double span)
+    : diagram_(diagram),
+      parameters_(std::move(parameters)),
+      span_(span),
+      run_states_(program.states()),
+      run_switches_(program.switches()),
+      run_events_(program.events()),
+      mode_states_(program.mode_states()),
+      n_unknowns_(program.unknowns().size()),
+      n_discrete_states_(program.discrete_states().size()),
+      memories_(parameters_.size(), std::vector<double>(n_discrete_states_)),
+      states_(parameters_.size(), std::vector<double>(run_states_.size())),
+      phase_delays_(parameters_.size()) {
+  const network::ParameterNumbers numbers(diagram);
+  diagram::FlatDiagram other = diagram;
+  std::vector<std::uint32_t> wanted;
+  std::vector<network::ParameterSetting::Parameter> values;
+  for (const SensitivityParameter& parameter : parameters_) {
+    wanted.push_back(parameter.number);
+    values.push_back({parameter.number, parameter.value});
+  }
+  for (std::size_t b = 0; b < other.blocks.size(); ++b) {
+    diagram::FlatBlock& block = other.blocks[b];
+    bool changed = false;
+    const auto put_beside = [&](std::uint32_t number, double& value) {
+      if (std::find(wanted.begin(), wanted.end(), number) == wanted.end()) return;
+      value = beside(value);
+      changed = true;
+    };
+    for (std::size_t k = 0; k < block.parameters.size(); ++k)
+      put_beside(numbers.parameter(b, k), block.parameters[k]);
+    for (std::size_t input = 0; input < block.inputs.size(); ++input) {
+      for (std::size_t wire = 0; wire < block.inputs[input].terms.size(); ++wire)
+        put_beside(numbers.weight(b, input, wire), block.inputs[input].terms[wire].weight);
+    }
+    if (changed) block.choose_behaviour();
+  }
+  network::Network made = network::assemble(other);
+  const auto same = [](const auto& ours, const auto& theirs) {
+    return std::equal(ours.begin(), ours.end(), theirs.begin(), theirs.end(),
+                      [](const auto& a, const auto& b) { return a.name == b.name; });
+  };
+  if (!same(made.states, program.states()) || !same(made.unknowns, program.unknowns()) ||
+      !same(made.discrete_states, program.discrete_states()) || made.events.size() != run_events_.size())
+    refuse(0, "next to its value a parameter makes another circuit, of other elements");
+  layout_ = network::with_tangents(std::move(made), wanted);
+  program_ = std::make_unique<network::Program>(std::move(layout_.network));
+  network::ParameterSetting setting(*program_);
+  if (!setting.set_beside(values))
+    refuse(0, "a parameter decides what the equations are (a table, a check interval, a value at the start)");
+  program_ = std::make_unique<network::Program>(*program_, setting);
+  workspace_ = std::make_unique<network::Workspace>(*program_);
+  held_.resize(program_->discrete_states().size());
+  values_.resize(program_->n_signals());
+}
+
+std::vector<double> Sensitivities::scales() const {
+  std::vector<double> scales;
+  for (const SensitivityParameter& parameter : parameters_)
+    scales.push_back(parameter.value == 0 ? 1 : std::abs(parameter.value));
+  return scales;
+}
+
+void Sensitivities::refuse(double t, const std::string& why) const {
+  throw SolveError(SolveError::Kind::other, t,
+                   {{diagram_.file, {}},
+                    fmt::format("the sensitivities are not known at t = {:.6g} s: {}", t, why),
+                    {},
+                    "run without sensitivities, or until before then"});
+}
+
+void Sensitivities::refuse_slide(double t) const {
+  refuse(t, "the solution slides along a switching surface from there");
+}
+
+void Sensitivities::refuse_jump(double t) const {
+  refuse(t, "an algebraic loop leaves its branch and jumps to another solution");
+}
+
+void Sensitivities::load(const network::Workspace& run) {
+  discrete_states_.assign(run.discrete_states().begin(), run.discrete_states().end());
+  for (std::size_t u = 0; u < n_unknowns_; ++u) workspace_->set_unknown(u, run.unknown(u));
+}
+
+bool Sensitivities::evaluate(double t, const double* x, const Direction& along) {
+  std::copy(discrete_states_.begin(), discrete_states_.end(), held_.begin());
+  std::fill(held_.begin() + static_cast<std::ptrdiff_t>(n_discrete_states_), held_.end(), 0.0);
+  held_[layout_.time] = along.time;
+  std::copy(along.states.begin(), along.states.end(),
+            held_.begin() + static_cast<std::ptrdiff_t>(layout_.first_state));
+  if (along.parameter) {
+    const std::vector<double>& memories = memories_[*along.parameter];
+    std::copy(memories.begin(), memories.end(),
+              held_.begin() + static_cast<std::ptrdiff_t>(layout_.first_discrete_state));
+    held_[layout_.first_parameter + *along.parameter] = 1;
+  }
+  workspace_->load_discrete_states(held_);
+  return program_->signals(t, x, values_.data(), *workspace_).has_value();
+}
+
+void Sensitivities::evaluate_or_refuse(double t, std::span<const double> x, const Direction& along) {
+  if (!evaluate(t, x.data(), along)) refuse(t, "an algebraic loop has no derivative there");
+}
+
+bool Sensitivities::rates(double t, const double* x, std::size_t k, const double* s, double* rates) {
+  if (!evaluate(t, x, {0, {s, run_states_.size()}, k})) return false;
+  std::copy_n(values_.begin() + static_cast<std::ptrdiff_t>(layout_.derivatives), run_states_.size(), rates);
+  return true;
+}
+
+void Sensitivities::outputs(double t, std::span<const double> x, const std::vector<std::vector<double>>& s,
+                            std::span<double> values) {
+  for (std::size_t k = 0; k < count(); ++k) {
+    evaluate_or_refuse(t, x, {0, s[k], k});
+    for (std::size_t o = 0; o < diagram_.outputs.size(); ++o) {
+      const diagram::FlatOutput& output = diagram_.outputs[o];
+      values[o * count() + k] =
+          output.scale * values_[layout_.signals + program_->signal_index(output.signal)];
+    }
+  }
+}
+
+/// Where f of a state is held at zero, ∂f/∂x s + ∂f/∂p is; where it is given by a value, s is the derivative
+/// of that: one linear system for all.
+void Sensitivities::start(double t, std::span<const double> x, const network::Workspace& run,
+                          bool from_state) {
+  load(run);
+  if (from_state) return;
+  const auto n = static_cast<Eigen::Index>(run_states_.size());
+  const std::vector<double> starts = program_->start();
+  evaluate_or_refuse(t, x, {});
+  const std::vector<double> rates = [&] {
+    std::vector<double> all(run_states_.size());
+    if (!program_->derivatives(t, x.data(), all.data(), *workspace_)) refuse(t, "an algebraic loop fails");
+    return all;
+  }();
+  std::vector<bool> rests(run_states_.size());
+  bool any_rests = false, all_given = true;
+  for (std::size_t i = 0; i < rests.size(); ++i) {
+    constexpr double kAtRest = 1e-6;  // of what its own start would make of it
+    rests[i] = run_states_[i].at_rest && std::abs(rates[i]) <= kAtRest * (1 + std::abs(x[i]));
+    any_rests = any_rests || rests[i];
+    all_given = all_given && (rests[i] || run_states_[i].start_node || x[i] == starts[i]);
+  }
+  const auto column = [&](const Direction& along) {
+    evaluate_or_refuse(t, x, along);
+    Eigen::VectorXd values(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      values(i) = rests[at] ? values_[layout_.derivatives + at] : -values_[layout_.starts + at];
+    }
+    return values;
+  };
+  if (!all_given) refuse(t, "an event has set a state where the run starts");
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n, n);
+  std::vector<double> unit(run_states_.size());
+  const bool dense = any_rests || std::any_of(run_states_.begin(), run_states_.end(),
+                                              [](const auto& state) { return state.start_node.has_value(); });
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const auto at = static_cast<std::size_t>(j);
+    if (dense) {
+      unit[at] = 1;
+      matrix.col(j) = column({0, unit, {}});
+      unit[at] = 0;
+    }
+    if (!rests[at]) matrix(j, j) += 1;
+  }
+  const Eigen::PartialPivLU<Eigen::MatrixXd> lu(matrix);
+  for (std::size_t k = 0; k < count(); ++k) {
+    const Eigen::VectorXd s = -lu.solve(column({0, {}, k}));
+    if (!s.allFinite()) refuse(t, "the rest from which the run starts is singular");
+    for (Eigen::Index i = 0; i < n; ++i) states_[k][static_cast<std::size_t>(i)] = s(i);
+  }
+}
+
+void Sensitivities::before_event(double t, std::span<const double> x, std::vector<std::vector<double>> s) {
+  before_.x.assign(x.begin(), x.end());
+  before_.s = std::move(s);
+  before_.rates.resize(x.size());
+  evaluate_or_refuse(t, x, {});
+  if (!program_->derivatives(t, x.data(), before_.rates.data(), *workspace_))
+    refuse(t, "an algebraic loop fails");
+  evaluate_or_refuse(t, x, {1, before_.rates, {}});
+  const auto values = [&](std::size_t first) {
+    const auto begin = values_.begin() + static_cast<std::ptrdiff_t>(first);
+    return std::vector<double>(begin, begin + static_cast<std::ptrdiff_t>(run_switches_.size()));
+  };
+  before_.event_values = values(layout_.event_values);
+  before_.event_rates = values(layout_.event_functions);
+}
+
+/// dt*/dp of each parameter: of the switch whose event function is zero, whether it has stayed turned over or
+/// a reset has brought it back. `acts`: something depends on when that was.
+std::vector<double> Sensitivities::delays(double t, const std::vector<double>& discrete_states, bool acts) {
+  constexpr double kSameTime = 1e-8;   // of the run: how exactly an event is located, at the worst
+  constexpr double kSameDelay = 1e-6;  // relative
+  std::vector<double> delays(count());
+  const auto turned = [&](std::size_t w) {
+    const std::uint32_t m = run_switches_[w].discrete_state;
+    return discrete_states[m] != discrete_states_[m];
+  };
+  bool found = false, any_turned = false;
+  for (const bool of_turned : {true, false}) {
+    if (found) break;
+    for (std::size_t w = 0; w < run_switches_.size(); ++w) {
+      any_turned = any_turned || turned(w);
+      if (turned(w) != of_turned) continue;
+      const double rate = before_.event_rates[w];
+      if (!(std::abs(before_.event_values[w]) <= std::abs(rate) * kSameTime * span_) || rate == 0) continue;
+      std::vector<double> other;
+      for (std::size_t k = 0; k < count(); ++k) {
+        evaluate_or_refuse(t, before_.x, {0, before_.s[k], k});
+        other.push_back(-values_[layout_.event_functions + w] / rate);
+      }
+      for (std::size_t k = 0; found && acts && k < count(); ++k) {
+        if (std::abs(other[k] - delays[k]) > kSameDelay * (std::abs(delays[k]) + span_ / scales()[k] * 1e-9))
+          refuse(t, fmt::format("'{}' of block '{}' turns over at the same time as another switch, and with "
+                                "another parameter it would not",
+                                run_switches_[w].comparison, run_switches_[w].block));
+      }
+      if (!found) delays = other;
+      found = true;
+    }
+  }
+  const bool by_time = std::any_of(mode_states_.begin(), mode_states_.end(), [&](std::uint32_t mode) {
+    return discrete_states[mode] != discrete_states_[mode];
+  });
+  if (!found && !by_time && acts && any_turned)
+    refuse(t, "a switch turns over where its event function only touches zero");
+  // A phase of a given length ends later by as much as it began later.
+  if (by_time && found) phase_delays_ = delays;
+  return by_time && !found ? phase_delays_ : delays;
+}
+
+/// An action of an event that would set this to that value, as the place of its signals.
+std::optional<std::size_t> Sensitivities::matching_action(double t, bool on_state, std::size_t index,
+                                                          double value) {
+  evaluate_or_refuse(t, before_.x, {});
+  constexpr double kSame = 1e-9;
+  for (std::size_t e = 0; e < run_events_.size(); ++e) {
+    for (std::size_t a = 0; a < run_events_[e].actions.size(); ++a) {
+      const network::Event::Action& action = run_events_[e].actions[a];
+      if (action.on_state != on_state || action.index != index) continue;
+      const std::size_t place = layout_.actions[e][a];
+      if (std::abs(values_[place] - value) <= kSame * (1 + std::abs(value))) return place;
+    }
+  }
+  return std::nullopt;
+}
+
+void Sensitivities::after_event(double t, std::span<const double> x, const network::Workspace& run) {
+  const std::vector<double> discrete_states(run.discrete_states().begin(), run.discrete_states().end());
+  const std::size_t n = run_states_.size();
+  struct Set {
+    std::size_t index, action;
+  };
+  std::vector<Set> set_states, set_memories;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (x[i] == before_.x[i]) continue;
+    const auto action = matching_action(t, true, i, x[i]);
+    if (!action)
+      refuse(t, fmt::format("several events one after the other have set '{}'", run_states_[i].name));
+    set_states.push_back({i, *action});
+  }
+  std::vector<bool> is_position(n_discrete_states_, false);
+  for (const network::Switch& s : run_switches_) is_position[s.discrete_state] = true;
+  for (const std::uint32_t mode : mode_states_) is_position[mode] = true;
+  for (std::size_t m = 0; m < n_discrete_states_; ++m) {
+    if (is_position[m] || discrete_states[m] == discrete_states_[m]) continue;
+    const auto action = matching_action(t, false, m, discrete_states[m]);
+    if (!action) refuse(t, "several events one after the other have set a discrete state");
+    set_memories.push_back({m, *action});
+  }
+  // dx/dt on the other side, with the positions as they are now.
+  const std::vector<double> positions_before = discrete_states_;
+  load(run);
+  std::vector<double> rates(n);
+  evaluate_or_refuse(t, x, {});
+  if (!program_->derivatives(t, x.data(), rates.data(), *workspace_)) refuse(t, "an algebraic loop fails");
+  discrete_states_ = positions_before;
+
+  const bool acts = rates != before_.rates || !set_states.empty() || !set_memories.empty();
+  const std::vector<double> delay = delays(t, discrete_states, acts);
+  states_ = before_.s;
+  std::vector<std::vector<double>> memories = memories_;
+  for (std::size_t k = 0; k < count(); ++k) {
+    std::vector<double> moved(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      moved[i] = before_.s[k][i] + before_.rates[i] * delay[k];
+      states_[k][i] = moved[i] - rates[i] * delay[k];
+    }
+    if (set_states.empty() && set_memories.empty()) continue;
+    evaluate_or_refuse(t, before_.x, {delay[k], moved, k});
+    for (const auto& [i, action] : set_states) states_[k][i] = values_[action + 1] - rates[i] * delay[k];
+    for (const auto& [m, action] : set_memories) memories[k][m] = values_[action + 1];
+  }
+  memories_ = std::move(memories);
+  load(run);
+}
+
+}  // namespace oblique::solve

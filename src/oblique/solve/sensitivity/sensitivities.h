@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <oblique/diagram/flat_diagram.h>
+#include <oblique/network/program/program.h>
+#include <oblique/network/program/tangent_network.h>
+
+namespace oblique::solve {
+
+/// A parameter of a flat diagram by which a run is differentiated.
+struct SensitivityParameter {
+  std::string name;          ///< "c.gain", or "c.in[2]" for a weight
+  std::uint32_t number = 0;  ///< as network::ParameterNumbers has it
+  double value = 0;          ///< [unit]
+  std::string unit;
+};
+
+/// Finds parameters by name. Throws text::ReadError for one that there is not, and for one that is infinite.
+std::vector<SensitivityParameter> sensitivity_parameters(const diagram::FlatDiagram& diagram,
+                                                         const std::vector<std::string>& names);
+
+/// The sensitivities s = dx/dp of a run by some of its parameters, and of all that follows from them.
+///
+/// Between events they obey s′ = ∂f/∂x s + ∂f/∂p, exactly: the equations are differentiated symbolically,
+/// algebraic loops with them. At an event, which comes dt*/dp later where p is larger, they jump: with the
+/// event function g(t, x, p), dt*/dp = −(∂g/∂x s + ∂g/∂p)/(dg/dt), and
+///
+///     s⁺ = s⁻ + (f⁻ − f⁺) dt*/dp                                  of a state that goes on,
+///     s⁺ = ∂R/∂x (s⁻ + f⁻ dt*/dp) + ∂R/∂t dt*/dp + ∂R/∂p − f⁺ dt*/dp   of one that is set to R(t, x, p)
+///
+/// (Rozenvasser 1967; Galán, Feehery and Barton 1999). States that start at rest start where ∂f/∂x s + ∂f/∂p
+/// of them is zero. What is not known in this way is refused, by a SolveError. Not installed.
+class Sensitivities {
+ public:
+  /// Of a run of `program`, which `diagram` was compiled to, over `span` seconds. `diagram` must outlive it.
+  /// Throws SolveError where a parameter next to its value makes another circuit.
+  Sensitivities(const network::Program& program, const diagram::FlatDiagram& diagram,
+                std::vector<SensitivityParameter> parameters, double span);
+
+  std::size_t count() const { return parameters_.size(); }
+  /// The size of each parameter: of its sensitivities, tolerances are those of the states over it.
+  std::vector<double> scales() const;
+
+  /// dx/dp of each parameter where the run starts, or where the last event has left it.
+  const std::vector<std::vector<double>>& states() const { return states_; }
+
+  /// The run starts there, settled. A run that goes on from a saved state has none yet.
+  void start(double t, std::span<const double> x, const network::Workspace& run, bool from_state);
+  /// d(dx/dt)/dp of parameter k where dx/dp = s; false where there is no value.
+  bool rates(double t, const double* x, std::size_t k, const double* s, double* rates);
+  /// d output/dp, of each output by each parameter, in the units of the outputs and the parameters.
+  void outputs(double t, std::span<const double> x, const std::vector<std::vector<double>>& s,
+               std::span<double> values);
+
+  /// An event is about to be settled; then it is.
+  void before_event(double t, std::span<const double> x, std::vector<std::vector<double>> s);
+  void after_event(double t, std::span<const double> x, const network::Workspace& run);
+  /// What is not followed. Throw SolveError.
+  [[noreturn]] void refuse_slide(double t) const;
+  [[noreturn]] void refuse_jump(double t) const;
+
+ private:
+  struct Direction {
+    double time = 0;
+    std::span<const double> states;             ///< none: they stand still
+    std::optional<std::size_t> parameter = {};  ///< and the discrete states as they move with it
+  };
+  bool evaluate(double t, const double* x, const Direction& along);
+  void evaluate_or_refuse(double t, std::span<const double> x, const Direction& along);
+  void load(const network::Workspace& run);
+  [[noreturn]] void refuse(double t, const std::string& why) const;
+
+  /// What is known just before an event.
+  struct Moment {
+    std::vector<double> x, rates, event_values, event_rates;
+    std::vector<std::vector<double>> s;
+  };
+  std::vector<double> delays(double t, const std::vector<double>& discrete_states, bool acts);
+  std::optional<std::size_t> matching_action(double t, bool on_state, std::size_t index, double value);
+
+  const diagram::FlatDiagram& diagram_;
+  std::vector<SensitivityParameter> parameters_;
+  double span_;
+  std::vector<network::State> run_states_;
+  std::vector<network::Switch> run_switches_;
+  std::vector<network::Event> run_events_;
+  std::vector<std::uint32_t> mode_states_;
+  std::size_t n_unknowns_, n_discrete_states_;
+  network::TangentNetwork layout_;  ///< without its network
+  std::unique_ptr<network::Program> program_;
+  std::unique_ptr<network::Workspace> workspace_;
+  std::vector<double> discrete_states_;        ///< of the run
+  std::vector<std::vector<double>> memories_;  ///< d discrete states/dp of each parameter
+  std::vector<std::vector<double>> states_;
+  std::vector<double> held_, values_;
+  Moment before_;
+  std::vector<double> phase_delays_;  ///< by which the present phase of the timeline began later, over dp
+};
+
+}  // namespace oblique::solve

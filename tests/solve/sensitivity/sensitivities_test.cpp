@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: MIT
+// d/dp of runs, against closed forms; and against differences of whole runs.
+#include <oblique/solve/sensitivity/sensitivities.h>
+
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <oblique/diagram/diagram_reader.h>
+
+#include "../../support/runs.h"
+
+namespace oblique::solve {
+namespace {
+
+using testing::Compiled;
+using ::testing::HasSubstr;
+
+oblique::solve::Run differentiated(const Compiled& made, std::vector<std::string> names, double until = 2,
+                                   double tolerance = 1e-9) {
+  RunOptions options;
+  options.until = until;
+  options.samples = 41;
+  options.tolerance = tolerance;
+  options.sensitivity = std::move(names);
+  return solve::run(made.program, made.flat, options);
+}
+
+/// Compares a column with a function of time.
+template <class Function>
+void expect_column(const oblique::solve::Run& run, std::string_view name, double within,
+                   const Function& truth) {
+  const auto column = run.trajectory.find(name);
+  ASSERT_TRUE(column) << name;
+  for (std::size_t row = 0; row < run.trajectory.rows(); ++row) {
+    const double t = run.trajectory.at(row, 0);
+    EXPECT_NEAR(run.trajectory.at(row, *column), truth(t), within) << name << " at " << t;
+  }
+}
+
+std::string refusal(const Compiled& made, const std::string& name) {
+  return testing::message_of<text::Error>([&] { differentiated(made, {name}); });
+}
+
+constexpr double kTolerance = 1e-7;  // a hundred times that of the run
+
+// x = x₀ e^(−k w t): by the coefficient, by the weight of a wire, by the start.
+TEST(Sensitivities, OfADecay) {
+  const Compiled made(
+      "p = { type = \"potentiometer\", in = \"x\", setting = 0.5 }\n"
+      "x = { type = \"integrator\", in = \"-3*p\", initial = 0.7 }\n");
+  const auto run = differentiated(made, {"p.setting", "x.in[1]", "x.initial"});
+  const auto x = [](double t) { return 0.7 * std::exp(-1.5 * t); };
+  expect_column(run, "x", kTolerance, x);
+  expect_column(run, "d(x)/d(p.setting)", kTolerance, [&](double t) { return -3 * t * x(t); });
+  expect_column(run, "d(x)/d(x.in[1])", kTolerance, [&](double t) { return 0.5 * t * x(t); });
+  expect_column(run, "d(x)/d(x.initial)", kTolerance, [&](double t) { return std::exp(-1.5 * t); });
+  expect_column(run, "d(p)/d(p.setting)", kTolerance, [&](double t) { return x(t) - 1.5 * t * x(t); });
+}
+
+// Where the equations leave out what the parameter multiplies: 0·x, and 1·x.
+TEST(Sensitivities, WhereAFactorIsZeroOrOne) {
+  const Compiled made(
+      "p = { type = \"potentiometer\", in = \"x\", setting = 0 }\n"
+      "q = { type = \"potentiometer\", in = \"x\", setting = 1 }\n"
+      "x = { type = \"integrator\", in = [\"p\"], initial = 0.7 }\n"
+      "y = { type = \"integrator\", in = [\"-q\"] }\n");
+  const auto run = differentiated(made, {"p.setting", "q.setting"});
+  expect_column(run, "d(x)/d(p.setting)", kTolerance, [](double t) { return 0.7 * t; });
+  expect_column(run, "d(y)/d(q.setting)", kTolerance, [](double t) { return -0.7 * t; });
+  expect_column(run, "d(y)/d(p.setting)", kTolerance, [](double t) { return -0.35 * t * t; });
+}
+
+// s = b + p s, so s = b/(1 − p), and x its integral.
+TEST(Sensitivities, ThroughAnAlgebraicLoop) {
+  const Compiled made(
+      "b = { type = \"constant\", value = 0.3 }\n"
+      "p = { type = \"potentiometer\", in = \"s\", setting = 0.25 }\n"
+      "s = { type = \"summer\", in = [\"b\", \"p\"] }\n"
+      "x = { type = \"integrator\", in = \"s\" }\n");
+  const auto run = differentiated(made, {"p.setting", "b.value"});
+  const double by_p = 0.3 / (0.75 * 0.75), by_b = 1 / 0.75;
+  expect_column(run, "d(s)/d(p.setting)", 1e-12, [&](double) { return by_p; });
+  expect_column(run, "d(x)/d(p.setting)", kTolerance, [&](double t) { return by_p * t; });
+  expect_column(run, "d(x)/d(b.value)", kTolerance, [&](double t) { return by_b * t; });
+}
+
+// An ideal amplifier that divides: c b = a, c = a/b, nonlinear in the unknown's loop.
+TEST(Sensitivities, ThroughAnIdealAmplifier) {
+  const Compiled made(
+      "a = { type = \"constant\", value = 0.3 }\nb = { type = \"constant\", value = 0.6 }\n"
+      "m = { type = \"squarer\", in = \"c\" }\n"
+      "c = { type = \"servo-amplifier\", in = [\"m\", \"-a\"], gain = inf, initial = 0.5 }\n"
+      "x = { type = \"integrator\", in = \"c\" }\n");  // c = √a
+  const auto run = differentiated(made, {"a.value"});
+  expect_column(run, "d(c)/d(a.value)", 1e-10, [](double) { return 0.5 / std::sqrt(0.3); });
+  expect_column(run, "d(x)/d(a.value)", kTolerance, [](double t) { return 0.5 / std::sqrt(0.3) * t; });
+}
+
+// c = μ b/(1 + μ) from the rest before the clock starts, and dc/dμ = b/(1 + μ)² from the first row on.
+TEST(Sensitivities, OfTheRestFromWhichARunStarts) {
+  const Compiled made(
+      "b = { type = \"constant\", value = 0.5 }\n"
+      "c = { type = \"servo-amplifier\", in = [\"c\", \"-b\"], gain = 99, bandwidth = 1000 }\n");
+  const auto run = differentiated(made, {"c.gain", "b.value", "c.bandwidth"});
+  expect_column(run, "d(c)/d(c.gain)", 1e-10, [](double) { return 0.5 / 1e4; });
+  expect_column(run, "d(c)/d(b.value)", 1e-8, [](double) { return 0.99; });
+  expect_column(run, "d(c)/d(c.bandwidth)", 1e-12, [](double) { return 0; });
+}
+
+// x′ = 1 passes p, and then y′ = 2 in the place of 1: y = 2t − p from there on.
+TEST(Sensitivities, JumpWhereTheRateDoes) {
+  const Compiled made(
+      "one = { type = \"constant\", value = 1 }\np = { type = \"constant\", value = 0.8 }\n"
+      "x = { type = \"integrator\", in = \"one\" }\n"
+      "k = { type = \"comparator\", in = [\"x\", \"-p\"], low = 1, high = 2 }\n"
+      "y = { type = \"integrator\", in = \"k\" }\n");
+  const auto run = differentiated(made, {"p.value", "one.value"}, 2.01);
+  expect_column(run, "d(y)/d(p.value)", kTolerance, [](double t) { return t > 0.8 ? -1 : 0; });
+  // x passes p at p/one: y = 2t − p/one
+  expect_column(run, "d(y)/d(one.value)", kTolerance, [](double t) { return t > 0.8 ? 0.8 : 0; });
+}
+
+const char* const kSawtooth = R"toml([parameters]
+rate = { default = 0.5 }
+level = { default = 0.3 }
+[outputs]
+out = { }
+[equations]
+"der(out)" = "rate"
+[start]
+out = "0"
+[[events]]
+when = "out > level"
+set = { out = "0" }
+)toml";
+
+// From level to 0 again and again: x = r t − n l, so ∂x/∂r = t and ∂x/∂l = −n.
+TEST(Sensitivities, OfWhatAnEventSets) {
+  const diagram::BlockLibrary library = testing::shipped_blocks_and("sawtooth", kSawtooth);
+  const Compiled made("x = { type = \"sawtooth\" }\n", "", library);
+  const auto run = differentiated(made, {"x.rate", "x.level"}, 2.01);
+  const auto n = [](double t) { return std::floor(0.5 * t / 0.3); };
+  expect_column(run, "x", kTolerance, [&](double t) { return 0.5 * t - n(t) * 0.3; });
+  expect_column(run, "d(x)/d(x.rate)", kTolerance, [](double t) { return t; });
+  expect_column(run, "d(x)/d(x.level)", kTolerance, [&](double t) { return -n(t); });
+}
+
+TEST(Sensitivities, RefuseWhatTheyDoNotKnow) {
+  const Compiled made(
+      "b = { type = \"constant\", value = 0.5 }\n"
+      "c = { type = \"servo-amplifier\", in = [\"c\", \"-b\"], gain = inf }\n"
+      "x = { type = \"integrator\", in = \"-r\", initial = 1 }\n"
+      "r = { type = \"comparator\", in = \"x\", low = -0.5, high = 0.5 }\n");
+  EXPECT_EQ(
+      refusal(made, "c.gain"),
+      "d.toml: there is no sensitivity to 'c.gain': it is infinite; expected a parameter that can change a "
+      "little\n  remedy: set c.gain=1e6 makes it finite");
+  EXPECT_EQ(
+      refusal(made, "b.valeu"),
+      "d.toml: there is no sensitivity to 'b.valeu': no block has such a parameter; expected "
+      "BLOCK.PARAMETER of a block that is no composite, or BLOCK.INPUT[NUMBER] for the weight of a wire\n"
+      "  remedy: did you mean 'b.value'?");
+  EXPECT_THAT(refusal(made, "c.in[3]"), HasSubstr("no block has such a parameter"));
+  // x comes to 0 at t = 2, and slides there.
+  EXPECT_THAT(testing::message_of<SolveError>([&] { differentiated(made, {"b.value"}, 3); }),
+              HasSubstr("the sensitivities are not known at t = 2 s: the solution slides along a switching "
+                        "surface from there"));
+}
+
+// Of the shipped diagrams, by their first parameters: central differences of whole runs, which err by about
+// as much as those over half the step differ from them.
+TEST(Sensitivities, AgreeWithDifferencesOfRuns) {
+  constexpr double kLongest = 4.9371;  // [s]: what swings for long has no differences; no row is at an event
+  int compared = 0, refused = 0;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/lessons")) {
+    if (entry.path().extension() != ".toml") continue;
+    diagram::Diagram diagram = diagram::read_diagram(entry.path());
+    diagram.run.samples = 21;
+    diagram.run.tolerance = 1e-10;
+    diagram.run.until = std::min(diagram.run.until, kLongest);
+    if (entry.path().stem() == "relay-oscillator") diagram.run.until = 0.0937;  // four of its periods
+    const diagram::FlatDiagram flat = diagram::flatten(diagram, testing::shipped_blocks());
+    if (flat.blocks.size() > 40) continue;
+    int of_diagram = 0;
+    for (std::size_t b = 0; b < flat.blocks.size() && of_diagram < 3; ++b) {
+      const diagram::FlatBlock& block = flat.blocks[b];
+      for (std::size_t k = 0; k < block.parameters.size() && of_diagram < 3; ++k) {
+        const double value = block.parameters[k];
+        const diagram::ParameterDefinition& parameter = block.definition->parameters[k];
+        if (!std::isfinite(value) || value == 0 || parameter.points || parameter.formula) continue;
+        const double h = 1e-4 * std::abs(value);
+        const auto run_with = [&](double other, std::vector<std::string> names) {
+          diagram::FlatDiagram changed = flat;
+          changed.blocks[b].parameters[k] = other;
+          RunOptions options = options_of(diagram.run);
+          options.sensitivity = std::move(names);
+          return solve::run(network::Program(network::assemble(changed)), changed, options).trajectory;
+        };
+        const std::string name = block.path + "." + parameter.name;
+        ++of_diagram;
+        try {
+          const Trajectory run = run_with(value, {name});
+          const Trajectory above = run_with(value + h, {}), below = run_with(value - h, {}),
+                           nearer_above = run_with(value + h / 2, {}),
+                           nearer_below = run_with(value - h / 2, {});
+          ++compared;
+          const std::size_t n = flat.outputs.size();
+          for (std::size_t c = 1; c <= n; ++c) {
+            double size = 0;
+            for (std::size_t row = 0; row < run.rows(); ++row)
+              size = std::max({size, std::abs(run.at(row, c)), std::abs(value * run.at(row, n + c))});
+            for (std::size_t row = 0; row < run.rows(); ++row) {
+              const double wide = (above.at(row, c) - below.at(row, c)) / (2 * h);
+              const double narrow = (nearer_above.at(row, c) - nearer_below.at(row, c)) / h;
+              const double errs = std::abs(value * (wide - narrow));
+              EXPECT_NEAR(value * run.at(row, n + c), value * narrow, 2e-5 * size + 2 * errs)
+                  << entry.path() << " d(" << flat.outputs[c - 1].name << ")/d(" << name
+                  << ") at t = " << run.at(row, 0);
+            }
+          }
+        } catch (const text::Error&) {
+          ++refused;
+        }
+      }
+    }
+  }
+  EXPECT_GT(compared, 30);
+  EXPECT_LT(refused, compared);
+}
+
+}  // namespace
+}  // namespace oblique::solve
