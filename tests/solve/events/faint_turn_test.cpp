@@ -196,6 +196,25 @@ k = { type = "spiker", in = "one" }
   }
 }
 
+// e^(−10 t) is 6e-14 at t = 3.05, where a step comes: nearer to zero than rounding of a machine unit, but
+// known to a millionth of itself, it has not passed it.
+TEST(FaintTurn, IsNotDecidedByAnotherEventWhereTheSideIsKnown) {
+  const testing::Compiled made(R"(
+u = { type = "step", at = 3.05 }
+x = { type = "transfer-lag", in = "0*x", time_constant = 0.1, initial = 1 }
+c = { type = "comparator", in = "x" }
+y = { type = "integrator", in = ["u", "-y"] }
+)",
+                               "[outputs]\nc = { signal = \"c\" }\n");
+  RunOptions options;
+  options.until = 3.1;
+  options.tolerance = 1e-6;
+  options.absolute_tolerance = 1e-30;
+  const oblique::solve::Run run = oblique::solve::run(made.program, made.flat, options);
+  EXPECT_THAT(testing::row_values(run, "c"), ::testing::Each(1));
+  EXPECT_THAT(run.warnings, IsEmpty());
+}
+
 // What rests at its level until a step or a pulse sets it off is passed for good: x = 1 − e^(1 − t).
 TEST(FaintTurn, IsNotWhatAStepSetsOff) {
   for (const char* const follows : {R"(x = { type = "transfer-lag", in = "u" })",
