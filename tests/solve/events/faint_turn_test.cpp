@@ -215,6 +215,26 @@ y = { type = "integrator", in = ["u", "-y"] }
   EXPECT_THAT(run.warnings, IsEmpty());
 }
 
+// A decay that the errors of the states let touch zero, at t = 0.44, and go back: what steps later, by which
+// time it is anywhere within them, does not turn it over either. (−x stays below zero for ever.)
+TEST(FaintTurn, IsNotDecidedByAnotherEventWhereZeroWasTouched) {
+  const testing::Compiled made(R"(
+u = { type = "step", at = 1.6 }
+m = { type = "minimum", x = "-x", y = "-2*x" }
+x = { type = "transfer-lag", in = "0.5*m", time_constant = 0.03125, initial = 0.5 }
+f = { type = "function-generator", in = "-x", points = [[-1, 0.5], [0, 0], [0, 1], [1, 1]] }
+)");
+  for (const double tolerance : {1e-7, 1e-8, 1e-9}) {
+    RunOptions options;
+    options.until = 4;
+    options.tolerance = tolerance;
+    options.method = diagram::IntegrationMethod::bdf;
+    const oblique::solve::Run run = oblique::solve::run(made.program, made.flat, options);
+    EXPECT_NEAR(testing::row_values(run, "f").back(), 0, 1e-10) << tolerance;  // of the jump nothing
+    EXPECT_THAT(run.warnings, IsEmpty());
+  }
+}
+
 // What rests at its level until a step or a pulse sets it off is passed for good: x = 1 − e^(1 − t).
 TEST(FaintTurn, IsNotWhatAStepSetsOff) {
   for (const char* const follows : {R"(x = { type = "transfer-lag", in = "u" })",

@@ -85,7 +85,9 @@ bool SwitchSettling::is_near(std::size_t s) const {
 bool SwitchSettling::waits(std::size_t s, double event_function, double t) {
   constexpr double kSlow = 1000;  // errors, in the time since it turned over last
   const double rounding = event_functions_.thresholds().rounding(s), size = std::abs(event_function);
-  if (starting_ || near_size(s) > rounding || is_announced(program_.switch_structure().unit[s])) return false;
+  if (starting_ || near_size(s) > event_functions_.thresholds()[s] ||
+      is_announced(program_.switch_structure().unit[s]))
+    return false;
   const bool is_put_on_zero = set_ && event_function == 0 && before_instant_[s] != 0;
   if (is_put_on_zero || !(std::abs(event_function - before_instant_[s]) <= rounding)) return false;
   const double error = event_functions_.weigh_errors()[s];
