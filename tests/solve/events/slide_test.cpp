@@ -105,6 +105,22 @@ l = { type = "limiter", in = "z", low = -0.5, high = 5 }
   for (std::size_t k = 1; k < t.size(); ++k) EXPECT_NEAR(l[k], std::max(-2 * t[k], -0.5), 1e-6) << t[k];
 }
 
+// x rises to zero and is held there: −2 x − 2 c is −2 on the one side of the surface and 0 on the other, and
+// never above it. How far the states drift from the surface does not show.
+TEST(Slides, WhatIsAtZeroOnTheSurfaceIsNotAboveItBesideASlide) {
+  const Compiled made(R"(
+x = { type = "integrator", in = ["0.3*c", "-0.5*x", "-p"], rate = 3.7, initial = -0.125 }
+c = { type = "comparator", in = "-1.7*x" }
+p = { type = "pulse-train", period = 0.875, width = 0.1328125, delay = 0.625, high = 0.375 }
+d = { type = "comparator", in = ["-2*x", "-2*c"], high = 0.75 }
+)");
+  for (const double tolerance : {1e-6, 1e-8, 1e-10}) {
+    const auto result = run_of(made, {.until = 4, .tolerance = tolerance});
+    EXPECT_GT(result.event_count, 12);
+    EXPECT_THAT(row_values(result, "d"), ::testing::Each(0)) << tolerance;
+  }
+}
+
 TEST(Slides, WhatASlideDoesPassesThroughASquarer) {
   // x' = 0.2 − u slides at x = 0 with a mean u of 0.2; u² is 1 on both sides, whatever the mean is.
   const Compiled made(R"(one = { type = "constant" }

@@ -59,7 +59,8 @@ void SlidingMode::find_followers() {
   }
 }
 
-/// Puts the units on a side, and what follows them where its event functions then are.
+/// Puts the units on a side, and what follows them where its event functions then are. Of one that is at zero
+/// on the switching surface, no further off than the states drift from that, none need hold.
 bool SlidingMode::settle(SlideSide& side, double t, std::span<const double> x) {
   const network::SwitchStructure& structure = program_.switch_structure();
   for (std::size_t u = 0; u < units_.size(); ++u) {
@@ -74,9 +75,11 @@ bool SlidingMode::settle(SlideSide& side, double t, std::span<const double> x) {
     if (round > 2 * followers_.size() + 2) return false;
     if (!program_.event_functions(t, x.data(), side.event_functions.data(), workspace_)) return false;
     settled = true;
+    side.follower_rests.clear();
     for (const std::uint32_t s : followers_) {
       const std::uint32_t discrete_state = program_.switches()[s].discrete_state;
-      const double position = side.event_functions[s] > 0 ? 1 : 0;
+      const double position = side.event_functions[s] > drift() ? 1 : 0;
+      side.follower_rests.push_back(std::abs(side.event_functions[s]) <= drift());
       settled = settled && workspace_.discrete_state(discrete_state) == position;
       workspace_.set_discrete_state(discrete_state, position);
     }
@@ -246,7 +249,8 @@ double SlidingMode::crossed(std::size_t side, std::size_t follower) const {
   const SlideSide& at = sides_[side];
   const std::size_t s = followers_[follower];
   const double position = at.positions[at.positions.size() - followers_.size() + follower].second;
-  return position == 1 ? -at.event_functions[s] : at.event_functions[s];
+  const double against = position == 1 ? -at.event_functions[s] : at.event_functions[s];
+  return at.follower_rests[follower] ? against - drift() : against;
 }
 
 bool SlidingMode::is_torn(std::size_t s) const {
