@@ -30,7 +30,13 @@ FaintTurns::FaintTurns(const network::Program& program, network::Workspace& work
       states_(program.n_states()),
       rates_(program.n_states()),
       event_functions_(program.switches().size()),
-      event_function_rates_(program.switches().size()) {}
+      event_function_rates_(program.switches().size()) {
+  for (const network::Event& event : program.events()) {
+    for (const network::Event::Action& action : event.actions) {
+      if (!action.on_state && !event.repeats) memories_.push_back(action.index);
+    }
+  }
+}
 
 void FaintTurns::approach(double from, double at, const std::vector<std::pair<std::uint32_t, double>>& turned,
                           const Interpolant& solution) {
@@ -99,6 +105,10 @@ std::vector<FaintTurn> FaintTurns::due(double t, const Announced& announced, Eve
   }
   approaches_.clear();
   return found;
+}
+
+void FaintTurns::add_memories(std::vector<double>& signals) const {
+  for (const std::uint32_t m : memories_) signals.push_back(workspace_.discrete_state(m));
 }
 
 void FaintTurns::keep(std::vector<FaintTurn> turns, const std::vector<double>& before,
