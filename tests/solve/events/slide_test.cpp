@@ -121,6 +121,22 @@ d = { type = "comparator", in = ["-2*x", "-2*c"], high = 0.75 }
   }
 }
 
+// x' = 1/2 − s slides at zero with s at 1 for three quarters of the time, at −1 for one: f is 2 and 4 there,
+// and g(f) 1 and 7, each on its own segment of the points. ∫ f is 2 t until t = 2, and 5/2 t from there on.
+TEST(Slides, WhatASlideDoesPassesThroughFunctionGenerators) {
+  const Compiled made(R"(half = { type = "constant", value = 0.5 }
+x = { type = "integrator", in = ["half", "-s"], initial = 1 }
+s = { type = "sign", in = "x" }
+f = { type = "function-generator", in = "s", points = [[-1, 4], [0, 0], [1, 2]] }
+g = { type = "function-generator", in = "f", points = [[0, 0], [2.5, 1.25], [3, 3], [3.5, 6], [4, 7], [5, 0]] }
+y = { type = "integrator", in = "f" })");
+  const auto result = run_of(made, {.until = 4, .samples = 5});
+  EXPECT_TRUE(result.warnings.empty());
+  EXPECT_NEAR(row_values(result, "f").back(), 2.5, 1e-9);  // the mixture is known as the states are held
+  EXPECT_NEAR(row_values(result, "g").back(), 0.75 * 1 + 0.25 * 7, 1e-9);
+  EXPECT_NEAR(row_values(result, "y").back(), 9, 1e-7);  // some tolerances
+}
+
 TEST(Slides, WhatASlideDoesPassesThroughASquarer) {
   // x' = 0.2 − u slides at x = 0 with a mean u of 0.2; u² is 1 on both sides, whatever the mean is.
   const Compiled made(R"(one = { type = "constant" }
