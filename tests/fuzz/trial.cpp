@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "trial.h"
 
-#include <cctype>
 #include <cmath>
 #include <exception>
 #include <functional>
+#include <regex>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -22,16 +23,11 @@ namespace {
 /// A random diagram takes some hundred steps; one that chatters as fast as its solver can, many more.
 constexpr long kMostSteps = 5'000;
 
-/// A message without what renaming and rounding change: quoted names and numbers.
+/// A message without what renaming, the order of the blocks and rounding change: quoted names, also where
+/// several are listed, and numbers.
 std::string without_particulars(std::string_view message) {
-  std::string text;
-  bool quoted = false;
-  for (const char c : message) {
-    if (c == '\'') quoted = !quoted;
-    if (quoted || c == '\'' || std::isdigit(static_cast<unsigned char>(c)) != 0) continue;
-    text += c;
-  }
-  return text;
+  static const std::regex particulars("'[^']*'(, '[^']*')*(, …)?|[0-9]+([.][0-9]+)?(e[-+]?[0-9]+)?");
+  return std::regex_replace(std::string(message), particulars, "");
 }
 
 bool is_finite(const solve::Trajectory& table) {
@@ -106,10 +102,13 @@ void run_whole(const diagram::Diagram& diagram, const TrialOptions& asked, Trial
     return;
   }
   trial.end = trial.run->warnings.empty() ? Trial::End::clean : Trial::End::warned;
+  std::multiset<std::string>
+      said;  // of several at one instant, the order of the blocks says which comes first
   for (const text::Diagnostic& warning : trial.run->warnings) {
-    trial.says += without_particulars(warning.what.substr(0, warning.what.find(':'))) + ";";
+    said.insert(without_particulars(warning.what.substr(0, warning.what.find(':'))));
     trial.message += text::to_string(warning) + "\n";
   }
+  for (const std::string& what : said) trial.says += what + ";";
 }
 
 }  // namespace

@@ -36,11 +36,12 @@ bool leaves_the_machine(const Trial& trial) {
   return tells(trial, "leaves the machine");
 }
 
-/// Whether one run chose among several solutions of an algebraic loop, which nothing in the diagram does. The
-/// order of the blocks says which element is the unknown, and so from where the others are sought: what the
-/// one run sees the other may not (see known-gaps.md), and either solution is right.
+/// Whether one run chose among several solutions of an algebraic loop, which nothing in the diagram does, or
+/// found only one that amplifiers do not hold. The order of the blocks says which element is the unknown, and
+/// so from where the others are sought: what the one run sees the other may not (see known-gaps.md), and
+/// either solution is right.
 bool chooses_blindly(const Trial& trial) {
-  return tells(trial, "has several solutions");
+  return tells(trial, "has several solutions") || tells(trial, "where a machine would not settle");
 }
 
 /// Whether the run tells of something that rounding alone has done: it was pushed off an unstable

@@ -49,6 +49,42 @@ c = { type = "comparator", in = ["x", "-l"] }
   for (std::size_t k = 0; k < t.size(); ++k) EXPECT_EQ(c[k], t[k] > std::numbers::pi / 6 ? 1 : 0) << t[k];
 }
 
+// c turns over at t = ln 2 and changes no rate, so that the solver goes on with its step; but from then on
+// the limiter reads t instead of −t, and meets its limit at t = 2.
+TEST(Events, ATurnWithoutEffectOnTheStatesBringsAKnownOneForward) {
+  const Compiled made(R"(
+one = { type = "constant" }
+x = { type = "transfer-lag", in = "one", time_constant = 1, initial = -1 }
+c = { type = "comparator", in = "x", low = -1, high = 1 }
+r = { type = "ramp", slope = 1 }
+p = { type = "multiplier", in = ["c", "r"] }
+l = { type = "limiter", in = "p", low = -9, high = 2 }
+)");
+  const auto result = run_of(made, {.until = 3, .samples = 301});
+  const auto t = row_values(result, "t"), l = row_values(result, "l");
+  for (std::size_t k = 0; k < t.size(); ++k)
+    EXPECT_NEAR(l[k], t[k] < std::log(2.0) ? -t[k] : std::min(t[k], 2.0), 1e-15) << t[k];  // rounding
+}
+
+// max(x, −x) and |x| turn over at one instant, within rounding one after the other: their difference is zero
+// before and after, and neither it nor its negative is ever above zero.
+TEST(Events, WhatBendsTogetherAtZeroStaysEqual) {
+  const Compiled made(R"(
+x = { type = "integrator", in = "v" }
+v = { type = "integrator", in = "-x", initial = 2 }
+m = { type = "maximum", in = ["x", "-x"] }
+a = { type = "absolute-value", in = "x" }
+c = { type = "comparator", in = ["m", "-a"] }
+d = { type = "comparator", in = ["a", "-m"] }
+)");
+  for (const double tolerance : {1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10}) {
+    const auto result = run_of(made, {.until = 20, .tolerance = tolerance});
+    EXPECT_TRUE(result.warnings.empty());
+    EXPECT_THAT(row_values(result, "c"), ::testing::Each(0)) << tolerance;
+    EXPECT_THAT(row_values(result, "d"), ::testing::Each(0)) << tolerance;
+  }
+}
+
 // A relay of three positions: z = cos t less its part within ±1/2 is exactly zero while that is, and then
 // neither z > 0 nor −z > 0 holds, from whichever side it came.
 TEST(Events, WhatRestsAtItsLevelIsNotAboveIt) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Comparisons of what decays: the sign is known for ever, and the absolute tolerance hides it.
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <tuple>
@@ -194,6 +195,67 @@ k = { type = "spiker", in = "one" }
     EXPECT_GT(run.event_count, 100);
     EXPECT_THAT(testing::row_values(run, "s"), ::testing::Each(-1)) << tolerance;
   }
+}
+
+// e^(−10 t) is 6e-14 at t = 3.05, where a step comes: nearer to zero than rounding of a machine unit, but
+// known to a millionth of itself, it has not passed it.
+TEST(FaintTurn, IsNotDecidedByAnotherEventWhereTheSideIsKnown) {
+  const testing::Compiled made(R"(
+u = { type = "step", at = 3.05 }
+x = { type = "transfer-lag", in = "0*x", time_constant = 0.1, initial = 1 }
+c = { type = "comparator", in = "x" }
+y = { type = "integrator", in = ["u", "-y"] }
+)",
+                               "[outputs]\nc = { signal = \"c\" }\n");
+  RunOptions options;
+  options.until = 3.1;
+  options.tolerance = 1e-6;
+  options.absolute_tolerance = 1e-30;
+  const oblique::solve::Run run = oblique::solve::run(made.program, made.flat, options);
+  EXPECT_THAT(testing::row_values(run, "c"), ::testing::Each(1));
+  EXPECT_THAT(run.warnings, IsEmpty());
+}
+
+// A decay that the errors of the states let touch zero, at t = 0.44, and go back: what steps later, by which
+// time it is anywhere within them, does not turn it over either. (−x stays below zero for ever.)
+TEST(FaintTurn, IsNotDecidedByAnotherEventWhereZeroWasTouched) {
+  const testing::Compiled made(R"(
+u = { type = "step", at = 1.6 }
+m = { type = "minimum", x = "-x", y = "-2*x" }
+x = { type = "transfer-lag", in = "0.5*m", time_constant = 0.03125, initial = 0.5 }
+f = { type = "function-generator", in = "-x", points = [[-1, 0.5], [0, 0], [0, 1], [1, 1]] }
+)");
+  for (const double tolerance : {1e-7, 1e-8, 1e-9}) {
+    RunOptions options;
+    options.until = 4;
+    options.tolerance = tolerance;
+    options.method = diagram::IntegrationMethod::bdf;
+    const oblique::solve::Run run = oblique::solve::run(made.program, made.flat, options);
+    EXPECT_NEAR(testing::row_values(run, "f").back(), 0, 1e-10) << tolerance;  // of the jump nothing
+    EXPECT_THAT(run.warnings, IsEmpty());
+  }
+}
+
+// A relay that pulls in at an amplitude is never above it; where errors let it be, what is made of that comes
+// later only, by its delay, and is told of all the same. (What else is there cuts the steps.)
+TEST(FaintTurn, ThatOnlyAMemoryKeepsIsToldOf) {
+  const testing::Compiled made(R"(
+x = { type = "crank-generator", rate = -2.5 }
+y = { type = "crank-generator", rate = 1 }
+z = { type = "transfer-lag", in = "x.sin", time_constant = 0.09375, gain = 1.5 }
+c = { type = "comparator", in = ["y.sin", "-0.5*y.cos", "-2*z"], hysteresis = 0.5 }
+r = { type = "relay", coil = "-x.cos", make = "one", pull_in = 1, drop_out = 0.1, delay = 0.06 }
+one = { type = "constant" }
+)");
+  int wrong = 0;
+  for (double tolerance = 1e-9; tolerance < 2e-6; tolerance *= 2) {
+    const oblique::solve::Run run = testing::run_of(made, {.until = 3.5, .tolerance = tolerance});
+    const auto r = testing::row_values(run, "r");
+    const bool pulls_in = std::find(r.begin(), r.end(), 1) != r.end();
+    EXPECT_TRUE(!pulls_in || !run.warnings.empty()) << tolerance;
+    wrong += pulls_in ? 1 : 0;
+  }
+  EXPECT_GT(wrong, 0);  // else there is nothing to tell of
 }
 
 // What rests at its level until a step or a pulse sets it off is passed for good: x = 1 − e^(1 − t).

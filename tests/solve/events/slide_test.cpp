@@ -105,6 +105,38 @@ l = { type = "limiter", in = "z", low = -0.5, high = 5 }
   for (std::size_t k = 1; k < t.size(); ++k) EXPECT_NEAR(l[k], std::max(-2 * t[k], -0.5), 1e-6) << t[k];
 }
 
+// x rises to zero and is held there: −2 x − 2 c is −2 on the one side of the surface and 0 on the other, and
+// never above it. How far the states drift from the surface does not show.
+TEST(Slides, WhatIsAtZeroOnTheSurfaceIsNotAboveItBesideASlide) {
+  const Compiled made(R"(
+x = { type = "integrator", in = ["0.3*c", "-0.5*x", "-p"], rate = 3.7, initial = -0.125 }
+c = { type = "comparator", in = "-1.7*x" }
+p = { type = "pulse-train", period = 0.875, width = 0.1328125, delay = 0.625, high = 0.375 }
+d = { type = "comparator", in = ["-2*x", "-2*c"], high = 0.75 }
+)");
+  for (const double tolerance : {1e-6, 1e-8, 1e-10}) {
+    const auto result = run_of(made, {.until = 4, .tolerance = tolerance});
+    EXPECT_GT(result.event_count, 12);
+    EXPECT_THAT(row_values(result, "d"), ::testing::Each(0)) << tolerance;
+  }
+}
+
+// x' = 1/2 − s slides at zero with s at 1 for three quarters of the time, at −1 for one: f is 2 and 4 there,
+// and g(f) 1 and 7, each on its own segment of the points. ∫ f is 2 t until t = 2, and 5/2 t from there on.
+TEST(Slides, WhatASlideDoesPassesThroughFunctionGenerators) {
+  const Compiled made(R"(half = { type = "constant", value = 0.5 }
+x = { type = "integrator", in = ["half", "-s"], initial = 1 }
+s = { type = "sign", in = "x" }
+f = { type = "function-generator", in = "s", points = [[-1, 4], [0, 0], [1, 2]] }
+g = { type = "function-generator", in = "f", points = [[0, 0], [2.5, 1.25], [3, 3], [3.5, 6], [4, 7], [5, 0]] }
+y = { type = "integrator", in = "f" })");
+  const auto result = run_of(made, {.until = 4, .samples = 5});
+  EXPECT_TRUE(result.warnings.empty());
+  EXPECT_NEAR(row_values(result, "f").back(), 2.5, 1e-9);  // the mixture is known as the states are held
+  EXPECT_NEAR(row_values(result, "g").back(), 0.75 * 1 + 0.25 * 7, 1e-9);
+  EXPECT_NEAR(row_values(result, "y").back(), 9, 1e-7);  // some tolerances
+}
+
 TEST(Slides, WhatASlideDoesPassesThroughASquarer) {
   // x' = 0.2 − u slides at x = 0 with a mean u of 0.2; u² is 1 on both sides, whatever the mean is.
   const Compiled made(R"(one = { type = "constant" }

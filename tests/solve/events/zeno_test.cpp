@@ -15,6 +15,7 @@ namespace {
 using testing::Compiled;
 using ::testing::HasSubstr;
 using testing::message_of;
+using testing::row_values;
 using testing::run_of;
 using testing::shipped_blocks_and;
 
@@ -147,6 +148,37 @@ TEST(Zeno, IsSeenInARunThatGoesOn) {
         const Heights heights = heights_of(run(made.program, made.flat, options));
         EXPECT_GE(heights.least, -10 * tolerance) << part;  // an event is as exact as the height
         EXPECT_EQ(heights.last, 0) << e << ' ' << part << ' ' << tolerance;
+      }
+    }
+  }
+}
+
+// What reads the ball comes to its own events as often, and knows no more of their end than that it is the
+// ball's: a function generator with a breakpoint at the floor, and a counter of the impacts.
+TEST(Zeno, OfABallIsNotThatOfWhatReadsIt) {
+  const diagram::BlockLibrary library = library_with_resting_ball();
+  for (const double e : {0.35, 0.5, 0.66}) {
+    const Compiled made(fmt::format(R"toml(
+f = {{ type = "function-generator", in = "-1.7*b.x", points = [[-1, 0.75], [0, 0], [0.5, 1], [1, -0.75]] }}
+n = {{ type = "counter", clock = "rises", step = 0.01 }}
+rises = {{ type = "comparator", in = "b.v" }}
+b = {{ type = "ball", e = {} }}
+)toml",
+                                    e),
+                        "", library);
+    for (const double tolerance : {1e-6, 1e-8, 1e-10}) {
+      const auto result = run_of(made, {.until = 5, .tolerance = tolerance, .samples = 501});
+      EXPECT_TRUE(result.warnings.empty()) << e;
+      const auto t = row_values(result, "t"), x = row_values(result, "b.x"), f = row_values(result, "f");
+      const auto n = row_values(result, "n.out");
+      for (std::size_t row = 0; row < t.size(); ++row)
+        EXPECT_NEAR(f[row], 0.75 * 1.7 * x[row], 10 * tolerance) << t[row];  // of an event at the floor
+      EXPECT_EQ(x.back(), 0);
+      // As soon as it has come n times: Σ of the flights.
+      for (std::size_t row = 0; row < t.size(); ++row) {
+        const int impacts = static_cast<int>(std::lround(n[row] / 0.01));
+        if (impacts > 0) EXPECT_GE(t[row] + 1e-6, impact_time(impacts, 1, e, 10)) << t[row];
+        if (t[row] < impact_time(5, 1, e, 10)) EXPECT_LE(t[row] - 1e-6, impact_time(impacts + 1, 1, e, 10));
       }
     }
   }

@@ -52,6 +52,8 @@ struct Switch {
   std::optional<NodeId> rate = std::nullopt;
   double check_interval = std::numeric_limits<double>::infinity();  ///< [s] how often at least to look
   Turning turning = Turning::jumps;
+  /// The event that moves a table to its next segment as long as this switch holds.
+  std::optional<std::size_t> moves_along = std::nullopt;
 };
 
 /// What happens when a condition becomes true: all values are those of the moment before.

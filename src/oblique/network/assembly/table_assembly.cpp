@@ -118,6 +118,7 @@ void define_tables(Assembly& a) {
       made.comparison = text::to_string(pending.x) + (up ? " after its segment" : " before its segment");
       made.event_function = up ? graph.apply(Op::subtract, x, edge) : graph.apply(Op::subtract, edge, x);
       made.turning = Turning::bends;
+      made.moves_along = a.network.events.size();
       // At least to the next one, which rounding may hide from the search.
       const NodeId next = graph.apply(up ? Op::add : Op::subtract, segment, graph.constant(1));
       const NodeId farther = up ? graph.apply(Op::less, next, found) : graph.apply(Op::less, found, next);

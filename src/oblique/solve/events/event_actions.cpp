@@ -37,13 +37,24 @@ EventActions::EventActions(const network::Program& program, network::Workspace& 
       paces_(program.events().size()),
       signals_(program.n_signals()) {}
 
+/// Whether events come ever faster at t that know what they go over into: others may follow them.
+bool EventActions::is_any_to_pile_up(double t) const {
+  for (std::size_t e = 0; e < paces_.size(); ++e) {
+    const EventPace& pace = paces_[e];
+    if (program_.events()[e].piling_up && pace.shorter > 0 && t - pace.last <= *pace.interval) return true;
+  }
+  return false;
+}
+
 /// Whether an event shows Zeno behaviour, so that the one that takes its place is to come. Throws SolveError
-/// where none does.
+/// where none does. A table's segments follow what it reads, and make no end.
 bool EventActions::is_zeno(const Come& come, double t) {
+  const network::Event& what = program_.events()[come.event];
+  if (what.repeats) return false;
   const auto zeno = paces_[come.event].come(t, span_, end_);
   if (!zeno && !come.at_once) return false;
-  const network::Event& what = program_.events()[come.event];
   if (what.piling_up) return true;
+  if (!come.at_once && is_any_to_pile_up(t)) return false;
   const std::string told =
       zeno
           ? fmt::format(

@@ -57,6 +57,7 @@ class EventActions {
 
   std::vector<Come> look(double t, std::span<const double> x, bool starting);
   bool comes_at_once(std::size_t event, double t, std::span<const double> x);
+  bool is_any_to_pile_up(double t) const;
   bool is_zeno(const Come& come, double t);
   void add_changes(std::size_t event, const network::SignalEvaluation& here, double t,
                    std::vector<Change>& changes) const;

@@ -30,7 +30,13 @@ FaintTurns::FaintTurns(const network::Program& program, network::Workspace& work
       states_(program.n_states()),
       rates_(program.n_states()),
       event_functions_(program.switches().size()),
-      event_function_rates_(program.switches().size()) {}
+      event_function_rates_(program.switches().size()) {
+  for (const network::Event& event : program.events()) {
+    for (const network::Event::Action& action : event.actions) {
+      if (!action.on_state && !event.repeats) memories_.push_back(action.index);
+    }
+  }
+}
 
 void FaintTurns::approach(double from, double at, const std::vector<std::pair<std::uint32_t, double>>& turned,
                           const Interpolant& solution) {
@@ -77,7 +83,8 @@ bool FaintTurns::is_faint(const Approach& approach, double error, double excursi
   const bool has_decayed =
       is_near && farthest_[approach.number] >= kAfar * error && since >= kZenoTime * span_;
   const bool never_left = is_near && is_slow && last_turn == 0;  // what a step sets off at a rest is not slow
-  const bool decays = excursion >= kAfar * error && is_slow;
+  // What does not slow down comes back at least as fast as it went away: the short flights of a ball.
+  const bool decays = excursion >= kAfar * error && is_slow && approach.speed * since < excursion;
   const bool touches = excursion >= kAfar * error && approach.overshoot <= error;
   return (approach.before <= error && (decays || has_decayed || never_left)) || touches;
 }
@@ -98,6 +105,10 @@ std::vector<FaintTurn> FaintTurns::due(double t, const Announced& announced, Eve
   }
   approaches_.clear();
   return found;
+}
+
+void FaintTurns::add_memories(std::vector<double>& signals) const {
+  for (const std::uint32_t m : memories_) signals.push_back(workspace_.discrete_state(m));
 }
 
 void FaintTurns::keep(std::vector<FaintTurn> turns, const std::vector<double>& before,

@@ -35,7 +35,11 @@ class FaintTurns {
   std::vector<FaintTurn> due(double t, const Announced& announced, EventFunctions& event_functions,
                              const std::function<double(std::uint32_t)>& last_turn);
 
-  /// Keeps those of the turns that have an effect on the signals, by their values before and after.
+  /// Adds what events keep to all signals: the discrete states that they set, but segments of tables, which
+  /// meet.
+  void add_memories(std::vector<double>& signals) const;
+  /// Keeps those of the turns that have an effect on the signals and memories, by their values before and
+  /// after.
   void keep(std::vector<FaintTurn> turns, const std::vector<double>& before,
             const std::vector<double>& after);
   /// The first of each switch.
@@ -55,6 +59,7 @@ class FaintTurns {
   const network::Program& program_;
   network::Workspace& workspace_;
   double span_;
+  std::vector<std::uint32_t> memories_;  ///< see `add_memories`
   std::vector<Approach> approaches_;
   std::vector<double> farthest_;  ///< of each event function: how far from zero it has been
   std::vector<double> states_, rates_, event_functions_, event_function_rates_;

@@ -15,6 +15,8 @@
 namespace oblique::solve {
 namespace {
 
+constexpr std::size_t kMostRounds = 3;  ///< of bends and others that follow each other
+
 int sign_of(double value) {
   return value > 0 ? 1 : value < 0 ? -1 : 0;
 }
@@ -68,7 +70,26 @@ std::optional<network::Evaluation> SideTrials::place(Combination sides, Bends& b
   }
   for (const auto& [s, position] : bends.positions()) put(s, position);
   auto here = place_others(program_, workspace_, thresholds_, placed, t, x, event_functions_);
-  return here && bends.any() ? bends.follow(*here, t, x, event_functions_) : here;
+  if (!bends.any()) return here;
+  // Within rounding the others may have gone where the bends have no reason to be: they begin anew by these.
+  std::vector<double> bent, followed;
+  const auto positions_of = [&](std::vector<double>& of_bends) {
+    of_bends.clear();
+    for (const auto& bend : bends.positions())
+      of_bends.push_back(workspace_.discrete_state(program_.switches()[bend.first].discrete_state));
+  };
+  for (std::size_t round = 0; here; ++round) {
+    positions_of(bent);
+    here = bends.follow(*here, t, x, event_functions_);
+    positions_of(followed);
+    if (!here || followed == bent || round > kMostRounds) return here;
+    for (std::uint32_t s = 0; s < placed.size(); ++s) {
+      const std::uint32_t discrete_state = program_.switches()[s].discrete_state;
+      if (!placed[s]) workspace_.set_discrete_state(discrete_state, before_[discrete_state]);
+    }
+    here = place_others(program_, workspace_, thresholds_, placed, t, x, event_functions_);
+  }
+  return here;
 }
 
 std::optional<SideTrials::Trial> SideTrials::attempt(Combination sides, Bends& bends, double t,

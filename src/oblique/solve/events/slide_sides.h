@@ -24,6 +24,8 @@ struct SlideSide {
   std::optional<std::uint32_t> cluster;  ///< nothing for the first side, which is of all
   std::vector<std::pair<std::uint32_t, double>>
       positions;  ///< discrete states, of what slides and what follows
+  /// Of each follower: its event function is at zero on the switching surface, where it began or since.
+  std::vector<bool> follower_rests;
   std::vector<double> dxdt;
   std::vector<double> event_functions, rates;  ///< of every switch
   double weight = 0;

@@ -57,9 +57,15 @@ void SlidingMode::find_followers() {
     follows_[s] = follows_[s] && !held[s];
     if (follows_[s]) followers_.push_back(s);
   }
+  segments_.clear();
+  for (const std::uint32_t s : followers_) {
+    if (const auto event = program_.switches()[s].moves_along)
+      segments_.push_back(program_.events()[*event].actions.front().index);
+  }
 }
 
-/// Puts the units on a side, and what follows them where its event functions then are.
+/// Puts the units on a side, and what follows them where its event functions then are. Of one that is at zero
+/// on the switching surface, no further off than the states drift from that, none need hold.
 bool SlidingMode::settle(SlideSide& side, double t, std::span<const double> x) {
   const network::SwitchStructure& structure = program_.switch_structure();
   for (std::size_t u = 0; u < units_.size(); ++u) {
@@ -69,17 +75,21 @@ bool SlidingMode::settle(SlideSide& side, double t, std::span<const double> x) {
                                     above != structure.opposite[s] ? 1 : 0);
   }
   side.event_functions.resize(program_.switches().size());
+  const std::size_t most = 2 * followers_.size() + 2;
   bool settled = followers_.empty();
   for (std::size_t round = 0; !settled; ++round) {
-    if (round > 2 * followers_.size() + 2) return false;
+    if (round > most) return false;
     if (!program_.event_functions(t, x.data(), side.event_functions.data(), workspace_)) return false;
     settled = true;
+    side.follower_rests.clear();
     for (const std::uint32_t s : followers_) {
       const std::uint32_t discrete_state = program_.switches()[s].discrete_state;
-      const double position = side.event_functions[s] > 0 ? 1 : 0;
+      const double position = side.event_functions[s] > drift() ? 1 : 0;
+      side.follower_rests.push_back(std::abs(side.event_functions[s]) <= drift());
       settled = settled && workspace_.discrete_state(discrete_state) == position;
       workspace_.set_discrete_state(discrete_state, position);
     }
+    if (settled && !move_tables_along(t, x, settled)) return false;
   }
   side.positions.clear();
   const auto keep = [&](std::uint32_t s) {
@@ -90,6 +100,26 @@ bool SlidingMode::settle(SlideSide& side, double t, std::span<const double> x) {
     for (const std::uint32_t s : structure.members[unit]) keep(s);
   }
   for (const std::uint32_t s : followers_) keep(s);
+  for (const std::uint32_t segment : segments_)
+    side.positions.emplace_back(segment, workspace_.discrete_state(segment));
+  return true;
+}
+
+/// Moves the tables on whose ends followers stand to their next segments; `still` where there are none. False
+/// where a loop has no solution.
+bool SlidingMode::move_tables_along(double t, std::span<const double> x, bool& still) {
+  std::vector<std::pair<std::uint32_t, double>> moved;
+  for (const std::uint32_t s : followers_) {
+    const network::Switch& follower = program_.switches()[s];
+    if (!follower.moves_along || workspace_.discrete_state(follower.discrete_state) == 0) continue;
+    signals_.resize(program_.n_signals());
+    const auto here = program_.signals(t, x.data(), signals_.data(), workspace_);
+    if (!here) return false;
+    const auto segment = program_.events()[*follower.moves_along].actions.front().index;
+    moved.emplace_back(segment, here->action_value(*follower.moves_along, 0));
+  }
+  for (const auto& [segment, to] : moved) workspace_.set_discrete_state(segment, to);
+  still = moved.empty();
   return true;
 }
 
@@ -115,6 +145,8 @@ bool SlidingMode::begin(std::vector<std::uint32_t> units, double t, std::span<co
     if (holds(s) || follows_[s])
       base_.emplace_back(discrete_state, workspace_.discrete_state(discrete_state));
   }
+  for (const std::uint32_t segment : segments_)
+    base_.emplace_back(segment, workspace_.discrete_state(segment));
   bool possible = sides_.are_all();
   for (SlideSide& side : sides_) possible = possible && settle(side, t, x);
   const std::vector<std::uint64_t> broken = broken_by(program_, units_);
@@ -140,6 +172,7 @@ void SlidingMode::end() {
   if (active()) load_base();
   units_.clear();
   followers_.clear();
+  segments_.clear();
   std::fill(follows_.begin(), follows_.end(), false);
   std::fill(rests_.begin(), rests_.end(), false);
   sides_.clear();
@@ -245,8 +278,10 @@ void SlidingMode::mixed_rates(std::span<double> rates) const {
 double SlidingMode::crossed(std::size_t side, std::size_t follower) const {
   const SlideSide& at = sides_[side];
   const std::size_t s = followers_[follower];
-  const double position = at.positions[at.positions.size() - followers_.size() + follower].second;
-  return position == 1 ? -at.event_functions[s] : at.event_functions[s];
+  const std::size_t first = at.positions.size() - segments_.size() - followers_.size();
+  const double position = at.positions[first + follower].second;
+  const double against = position == 1 ? -at.event_functions[s] : at.event_functions[s];
+  return at.follower_rests[follower] ? against - drift() : against;
 }
 
 bool SlidingMode::is_torn(std::size_t s) const {

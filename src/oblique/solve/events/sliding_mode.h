@@ -76,6 +76,7 @@ class SlidingMode {
  private:
   void find_followers();
   bool settle(SlideSide& side, double t, std::span<const double> x);
+  bool move_tables_along(double t, std::span<const double> x, bool& still);
   void load(const SlideSide& side);
   void load_base();
   bool evaluate(SlideSide& side, double t, std::span<const double> x);
@@ -90,12 +91,13 @@ class SlidingMode {
   std::vector<std::uint32_t> units_;
   std::vector<bool> follows_, rests_;
   std::vector<std::uint32_t> followers_;
+  std::vector<std::uint32_t> segments_;  ///< the discrete states of tables whose ends are followers
   SlideSides sides_;
   std::vector<std::pair<std::uint32_t, double>> base_;  ///< positions that events see
   std::vector<double> shares_;
   std::vector<double> strongest_;  ///< drive together of each unit of the program in all slides of the run
   bool begun_ = false;
-  std::vector<double> scratch_, moved_;
+  std::vector<double> scratch_, moved_, signals_;
 };
 
 }  // namespace oblique::solve

@@ -80,14 +80,20 @@ bool SwitchSettling::is_near(std::size_t s) const {
 
 /// Whether an event function is at zero by the errors of the states, as that of a decay, moves so slowly that
 /// it may stay there, and nothing at this instant at t has moved it: then the switch stays where it is until
-/// it is announced. What crosses zero together with something else is not slow.
+/// it is announced. What crosses zero together with something else is not slow. So does one that is nearer to
+/// zero than rounding of a machine unit, but known to be on its side: what decays to zero does not reach it.
 bool SwitchSettling::waits(std::size_t s, double event_function, double t) {
   constexpr double kSlow = 1000;  // errors, in the time since it turned over last
   const double rounding = event_functions_.thresholds().rounding(s), size = std::abs(event_function);
-  if (starting_ || near_size(s) > rounding || is_announced(program_.switch_structure().unit[s])) return false;
+  const double may_be_near = unrest_[s].touches ? event_functions_.thresholds()[s] : rounding;
+  if (starting_ || near_size(s) > may_be_near || is_announced(program_.switch_structure().unit[s]))
+    return false;
   const bool is_put_on_zero = set_ && event_function == 0 && before_instant_[s] != 0;
   if (is_put_on_zero || !(std::abs(event_function - before_instant_[s]) <= rounding)) return false;
   const double error = event_functions_.weigh_errors()[s];
+  const double known_to = std::max(error, event_functions_.thresholds().resolution(s));
+  const bool is_in_place = position(s) == (event_function > 0 ? 1 : 0);
+  if (is_in_place && size <= rounding && size > known_to) return true;
   return size <= std::max(rounding, error) && rates_before_[s] * (t - unrest_[s].last) <= kSlow * error;
 }
 
@@ -109,6 +115,7 @@ void SwitchSettling::turn(std::size_t s, double position, double t) {
   const bool same_place = known ? t <= unrest.last : thresholds.excursion(s) < place_size(s);
   if (!same_place) unrest.turns = 0;
   unrest.last = t;
+  unrest.touches = false;
   thresholds.forget(s);
   // An event function that is merely touched goes back and forth by the errors of the states.
   if (!known && is_announced(program_.switch_structure().unit[s])) thresholds.give_slack(s, errors[s]);
@@ -343,6 +350,7 @@ void SwitchSettling::let_touch(std::size_t s) {
   if (event_functions_.is_known(s) || !(std::abs(event_functions_[s]) <= error)) return;
   event_functions_.thresholds().forget(s);
   event_functions_.thresholds().widen(s, error);
+  unrest_[s].touches = true;
 }
 
 void SwitchSettling::restore(std::vector<bool> sliding) {

@@ -104,6 +104,7 @@ class SwitchSettling {
   struct Unrest {
     double last = 0;
     long turns = 0;
+    bool touches = false;  ///< since it turned over last it was announced, and did not
   };
   std::vector<Unrest> unrest_;
 };

@@ -25,8 +25,7 @@ Switching::Switching(const network::Program& program, network::Workspace& worksp
       location_(program, workspace, slide_, event_functions_, span, file),
       settling_(program, workspace, slide_, event_functions_, location_.announced(), log_, span),
       actions_(program, workspace, event_functions_, slide_, settling_, log_, span, file),
-      faint_turns_(program, workspace, span),
-      signals_(program.n_signals()) {}
+      faint_turns_(program, workspace, span) {}
 
 void Switching::end_when(const Interruption& interruption) {
   interruption_ = interruption;
@@ -103,8 +102,8 @@ void Switching::settle(double t, std::vector<double>& x) {
   const std::vector<double> before(workspace_.discrete_states().begin(), workspace_.discrete_states().end());
   std::vector<FaintTurn> faint = faint_turns_.due(t, location_.announced(), event_functions_,
                                                   [this](std::uint32_t s) { return settling_.last_turn(s); });
-  if (!faint.empty() && !signals(t, x.data(), signals_.data())) faint.clear();
-  const std::vector<double> signals_before = faint.empty() ? std::vector<double>() : signals_;
+  const std::vector<double> before_turns = faint.empty() ? std::vector<double>() : readings(t, x);
+  if (before_turns.empty()) faint.clear();
   actions_.begin_instant();
   for (int round = 0;; ++round) {
     settling_.settle(t, x);
@@ -117,8 +116,17 @@ void Switching::settle(double t, std::vector<double>& x) {
   location_.withdraw_all();
   event_functions_.evaluate(t, x, location_.announced());
   settling_.allow_wrong_sides();
-  if (faint.empty() || !signals(t, x.data(), signals_.data())) return;
-  faint_turns_.keep(std::move(faint), signals_before, signals_);
+  if (faint.empty()) return;
+  const std::vector<double> after_turns = readings(t, x);
+  if (!after_turns.empty()) faint_turns_.keep(std::move(faint), before_turns, after_turns);
+}
+
+/// All signals and what events keep; nothing where the signals have no values.
+std::vector<double> Switching::readings(double t, std::span<const double> x) {
+  std::vector<double> values(program_.n_signals());
+  if (!signals(t, x.data(), values.data())) return {};
+  faint_turns_.add_memories(values);
+  return values;
 }
 
 std::vector<bool> Switching::sliding() const {

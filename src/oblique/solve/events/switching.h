@@ -100,6 +100,7 @@ class Switching {
  private:
   std::vector<std::uint32_t> repelled_units(double t, std::span<const double> x);
   bool serve_events(double t, std::vector<double>& x, bool starting);
+  std::vector<double> readings(double t, std::span<const double> x);
   void record_turns(const std::vector<double>& before, double t);
 
   const network::Program& program_;
@@ -113,7 +114,6 @@ class Switching {
   SwitchSettling settling_;
   EventActions actions_;
   FaintTurns faint_turns_;
-  std::vector<double> signals_;
 };
 
 }  // namespace oblique::solve

@@ -16,6 +16,7 @@ Thresholds::Thresholds(const network::Program& program)
     : program_(program),
       now_(program.switches().size(), 0.0),
       roundings_(program.switches().size(), 0.0),
+      resolutions_(program.switches().size(), 0.0),
       slack_(program.switches().size(), 0.0),
       excursions_(program.switches().size(), 0.0),
       of_time_(program.switches().size(), false) {
@@ -28,6 +29,7 @@ void Thresholds::update(double t, const network::Evaluation& here) {
   for (std::size_t s = 0; s < now_.size(); ++s) {
     const double size = here.compared_size(s);
     roundings_[s] = rounding_of(s, size);
+    resolutions_[s] = std::isfinite(size) ? 8 * kEpsilon * size : std::numeric_limits<double>::infinity();
     if (program_.switches()[s].rate) {  // known to rounding of the time
       now_[s] = 8 * kEpsilon * (std::isfinite(size) ? size : std::abs(t));
     } else {

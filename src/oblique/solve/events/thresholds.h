@@ -25,7 +25,9 @@ class Thresholds {
 
   /// Rounding of the event function of a switch at the last `update`.
   double rounding(std::size_t s) const { return roundings_[s]; }
-  /// That where it compares what has this magnitude: a part of it, at least of a machine unit.
+  /// What an evaluation then leaves of it, however small what it compares is.
+  double resolution(std::size_t s) const { return resolutions_[s]; }
+  /// Rounding where it compares what has this magnitude: a part of it, at least of a machine unit.
   double rounding_of(std::size_t s, double compared_size) const;
   /// The threshold in a search along a solution, by the rounding there: what the time alone does is known to
   /// that.
@@ -51,7 +53,7 @@ class Thresholds {
 
  private:
   const network::Program& program_;
-  std::vector<double> now_, roundings_;
+  std::vector<double> now_, roundings_, resolutions_;
   std::vector<double> slack_;  ///< of them, for the errors of the states
   std::vector<double> excursions_;
   std::vector<bool> of_time_;  ///< the event function follows the time alone, to rounding

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <oblique/solve/events/time_resolution.h>
 #include <oblique/solve/solve_error.h>
 
 namespace oblique::solve {
@@ -156,8 +157,9 @@ double Segments::look_through(double begin, double end, std::span<const double> 
 }
 
 /// Settles what turns over at `at`, and tells whether the solver may go on with its step as if nothing had
-/// been: no state, continuous or discrete, changes, and dx/dt is the same at every one of `sample_times`,
-/// which show what the time alone does. (A condition that others mask may turn over at every rounding.)
+/// been: no state, continuous or discrete, changes, dx/dt is the same at every one of `sample_times`, which
+/// show what the time alone does, and the segment does not end earlier. (A condition that others mask may
+/// turn over at every rounding.)
 bool Segments::turns_without_effect(double at, std::span<const double> sample_times,
                                     const Interpolant& solution) {
   std::vector<std::vector<double>> states_there, before;
@@ -183,8 +185,10 @@ bool Segments::turns_without_effect(double at, std::span<const double> sample_ti
         before[k] != after)
       return false;
   }
+  // What it turned over may have brought the next switch forward that follows the time alone.
+  const auto wait = parts_.switching.known_wait(at, parts_.states);
+  if (wait && at + *wait < end_ - time_resolution(end_)) return false;
   if (parts_.overloads) parts_.overloads->restart(at, parts_.states);
-  parts_.switching.known_wait(at, parts_.states);  // announces what ends the segment
   return true;
 }
 
