@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "binding.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 namespace oblique::python {
@@ -31,16 +33,18 @@ const text::Vocabulary& python_words() {
   static const text::Vocabulary spelled{
       [](const text::Setting& setting) {
         if (setting.name == "rescale") return std::string("`.rescaled()`");
-        if (setting.value.empty()) return (setting.name == "from" ? "state" : setting.name) + "=";
-        if (setting.name == "split") {
-          std::string list = "\"";
-          for (const char c : setting.value) list += c == ',' ? std::string("\", \"") : std::string(1, c);
-          return "split=[" + list + "\"]";
+        std::string name = setting.name == "from" ? "state" : setting.name;  // `from` is a word of Python's
+        std::replace(name.begin(), name.end(), '-', '_');
+        const std::string& value = setting.value;
+        if (value.empty()) return name + "=";
+        if (name == "split") {
+          std::string list;
+          for (const char c : value) list += c == ',' ? std::string("\", \"") : std::string(1, c);
+          return fmt::format("{}=[\"{}\"]", name, list);
         }
-        if (setting.value == "True") return setting.name + "=True";
-        const bool is_number = setting.value.find_first_not_of("0123456789.e+-") == std::string::npos;
-        return is_number ? fmt::format("{}={}", setting.name, setting.value)
-                         : fmt::format("{}=\"{}\"", setting.name, setting.value);
+        const bool is_plain =
+            value == "True" || value.find_first_not_of("0123456789.e+-") == std::string::npos;
+        return is_plain ? fmt::format("{}={}", name, value) : fmt::format("{}=\"{}\"", name, value);
       },
       [](const text::Action& action) {
         return action.name == "machines" ? std::string("`oblique.machines`")

@@ -129,7 +129,7 @@ std::shared_ptr<FinishedRun> run_diagram(const DiagramModel& model, const Settin
       ends.run.until = options.until;
       report::ask_for_expectations(ends, options);
     }
-    options.interrupted = [&watch] { return watch.asked(); };
+    options.interrupted = [&watch] { return watch.asked_often(); };
     finished->run = solve::run(finished->compiled->program, finished->compiled->flat, options);
     if (check) finished->expectations = report::check_expectations(model.diagram(), finished->run);
     return 0;

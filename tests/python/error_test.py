@@ -4,6 +4,7 @@
 import copy
 import math
 import pickle
+import sys
 
 import numpy as np
 import pytest
@@ -138,6 +139,15 @@ def test_of_a_fit():
     refused(ob.RequestError, lambda: four_bar.fit({}, "AB=0.5..2"))
     refused(ob.RequestError, lambda: four_bar.fit({"M.x": [[1, 2]], "M.y": [[1, 2]]}, "AB=0.5..2"))
     refused(ob.Error, lambda: four_bar.fit({"Q.x": [1, 2, 3], "Q.y": [1, 2, 3]}, "AB=0.5..2"))
+
+
+def test_of_packages_that_are_not_there(decay, monkeypatch):
+    run = decay.run()
+    for package, work in (("pandas", run.to_pandas), ("xarray", run.to_xarray)):
+        monkeypatch.setitem(sys.modules, package, None)
+        assert f"python3-{package}" in refused(ob.RequestError, work).remedy
+    monkeypatch.setitem(sys.modules, "matplotlib.pyplot", None)
+    assert "python3-matplotlib" in refused(ob.RequestError, run.plot).remedy
 
 
 def test_what_stands_in_the_way_is_told_with_the_remedy():

@@ -57,6 +57,7 @@ def convergence(comparison: "Comparison", *, ax: Optional["matplotlib.axes.Axes"
     """The largest error over the gain, a line a method and bandwidth, with its order; dashed what the solver leaves."""
     ax = _axes(ax)
     several = len(comparison.orders) > 1
+    told = False
     for (method, bandwidth), order in comparison.orders.items():
         runs = [run for run in comparison.runs if (run.method, run.bandwidth) == (method, bandwidth)]
         label = f"{method}, {bandwidth:g} Hz" if several else "largest error"
@@ -66,7 +67,9 @@ def convergence(comparison: "Comparison", *, ax: Optional["matplotlib.axes.Axes"
                           **{"marker": "o", "label": label, **style})
         floor = comparison.floors[method, bandwidth]
         if floor:
-            ax.axhline(floor, color=line.get_color(), linestyle="--", linewidth=0.8, label="the solver's tolerance")
+            ax.axhline(floor, color=line.get_color(), linestyle="--", linewidth=0.8,
+                       label=None if told else "the solver's tolerance")
+            told = True
     ax.set_xlabel("gain of the servo amplifiers")
     ax.set_ylabel(f"largest error [{comparison.unit}]")
     ax.grid(True, which="major", alpha=0.3)
@@ -80,12 +83,14 @@ def errors_along(comparison: "Comparison", *, ax: Optional["matplotlib.axes.Axes
     ax = _axes(ax)
     turning = comparison.drive_unit == "rad"
     x = np.degrees(comparison.drive) if turning else comparison.drive
+    several = len({run.method for run in comparison.runs}) > 1
     for run in comparison.runs:
-        ax.semilogy(x, run.error_along, **{"label": f"{run.method}, gain {run.gain:g}", **style})
+        label = f"{run.method}, gain {run.gain:.3g}" if several else f"gain {run.gain:.3g}"
+        ax.semilogy(x, run.error_along, **{"label": label, **style})
     ax.set_xlabel("first drive [°]" if turning else f"first drive [{comparison.drive_unit}]")
     ax.set_ylabel(f"largest error [{comparison.unit}]")
     ax.grid(True, which="major", alpha=0.3)
-    ax.legend()
+    ax.legend(loc="center left", bbox_to_anchor=(1, 0.5))
     return ax
 
 
