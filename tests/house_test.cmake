@@ -170,7 +170,7 @@ endforeach()
 # What may stand at the top; the last line is what git ignores.
 set(allowed_at_top
   CMakeLists.txt src blocks diagrams tests docs
-  README.md LICENSE CHANGELOG.md CMakePresets.json bootstrap .ci .clang-format .clang-tidy .gitignore
+  README.md LICENSE CHANGELOG.md CMakePresets.json bootstrap pyproject.toml .ci .clang-format .clang-tidy .gitignore
   .git build .cache compile_commands.json)
 file(GLOB entries LIST_DIRECTORIES true RELATIVE ${SOURCE} ${SOURCE}/* ${SOURCE}/.*)
 foreach(entry IN LISTS entries)

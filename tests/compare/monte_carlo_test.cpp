@@ -181,6 +181,19 @@ TEST(MonteCarlo, IsTheSameForAnyNumberOfThreads) {
   }
 }
 
+// A caller ends it from its progress: the other threads do not go through what is left, here hours of it.
+TEST(MonteCarlo, EndsWhereItsProgressThrows) {
+  struct Asked {};
+  for (const int threads : {1, 3}) {
+    MonteCarloOptions options;
+    options.scatters = {{"summer", "tolerance", 0.01, ""}};
+    options.runs = 10'000'000;
+    options.threads = threads;
+    options.progress = [](double) { throw Asked{}; };
+    EXPECT_THROW(drawn(crank(), options), Asked);
+  }
+}
+
 TEST(MonteCarlo, GoesOnFromAnyRun) {
   MonteCarloOptions options;
   options.scatters = scatters_of_tolerance(diagram::BlockLibrary::shipped(), 1e-3);

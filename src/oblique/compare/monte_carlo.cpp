@@ -65,11 +65,12 @@ class Queue {
     for (std::size_t k = next_++; k < runs; k = next_++) {
       try {
         serve(k);
-      } catch (...) {  // no finding about this run: out of memory, a fault of the program
+        if (watch) watch(static_cast<double>(std::min(next_.load(), runs)) / static_cast<double>(runs));
+      } catch (
+          ...) {  // no finding about this run: out of memory, a fault of the program, a caller who ends it
         if (!broken_.exchange(true)) exception_ = std::current_exception();
         next_ = runs;
       }
-      if (watch) watch(static_cast<double>(std::min(next_.load(), runs)) / static_cast<double>(runs));
     }
   }
 

@@ -20,7 +20,8 @@ struct MonteCarloOptions {
   std::uint64_t first_run = 0;  ///< number of the first run: with `runs` = 1 it repeats one
   int threads = 1;              ///< at most as many as there are runs; the result does not depend on it
   int positions = 73;           ///< rows over the turn, both ends included
-  std::function<void(double fraction)> progress;  ///< called from the calling thread
+  /// Called from the calling thread; what it throws ends the runs of all threads.
+  std::function<void(double fraction)> progress;
 };
 
 /// A run that gave no error.

@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: MIT
+"""Oblique: an analog computer in software, from Python.
+
+>>> import oblique as ob
+>>> run = ob.Diagram("diagrams/lessons/triangle-side.toml").run()
+>>> print(f"{run['side'].max():.4f} {run.units['side']}")
+0.7000 m
+
+`Diagram` runs, checks and draws block diagrams, and builds them; `Mechanism` solves plane linkages exactly, patches them
+into diagrams and compares the two; `Console` is a machine that one holds; `blocks` and `machines` are the libraries. All
+that goes wrong is an `Error`. docs/python.md is the page about it.
+"""
+
+from . import plots
+from ._errors import (ConsoleError, Diagnostic, DiagramError, Error, MechanismError, NetworkError, PatchError, ReadError,
+                      RealiseError, RequestError, SolveError, SynthesisError, UnknownNameError)
+from ._oblique import __version__
+from ._tables import Table
+from ._blocks import Block, BlockLibrary, blocks
+from .comparison import ComparedRun, Comparison, MonteCarlo
+from .console import Console, Reading
+from .diagram import Diagram, DiagramCheck
+from ._machines import Machine, machines
+from .mechanism import Fit, Mechanism, MechanismCheck, Patch
+from .motion import Motion
+from .pictures import Animation, Page, Picture
+from .run import Event, Overload, Run, State, Trust
+from .signals import Signal, Sum
+
+__all__ = [
+    "Animation", "Block", "BlockLibrary", "ComparedRun", "Comparison", "Console", "ConsoleError", "Diagnostic", "Diagram",
+    "DiagramCheck", "DiagramError", "Error", "Event", "Fit", "Machine", "Mechanism", "MechanismCheck", "MechanismError",
+    "MonteCarlo", "Motion", "NetworkError", "Overload", "Page", "Patch", "PatchError", "Picture", "ReadError", "Reading",
+    "RealiseError", "RequestError", "Run", "Signal", "SolveError", "State", "Sum", "SynthesisError", "Table", "Trust",
+    "UnknownNameError", "__version__", "blocks", "machines", "plots"]
