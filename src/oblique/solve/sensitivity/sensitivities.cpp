@@ -141,12 +141,25 @@ Sensitivities::Sensitivities(const network::Program& program, const diagram::Fla
       !same(made.discrete_states, program.discrete_states()) || made.events.size() != run_events_.size())
     refuse(0, "next to its value a parameter makes another circuit, of other elements");
   layout_ = network::with_tangents(std::move(made), wanted);
-  program_ = std::make_unique<network::Program>(std::move(layout_.network));
-  network::ParameterSetting setting(*program_);
-  if (!setting.set_beside(values))
-    refuse(0, "a parameter decides what the equations are (a table, a check interval, a value at the start)");
-  program_ = std::make_unique<network::Program>(*program_, setting);
+  network::Network rates = layout_.network;
+  for (std::size_t i = 0; i < rates.states.size(); ++i)
+    rates.states[i].derivative = rates.signals[layout_.derivatives + i];
+  rates.signals.clear();
+  rates.signal_names.clear();
+  const auto compiled = [&](network::Network network) {
+    const network::Program program(std::move(network));
+    network::ParameterSetting setting(program);
+    if (!setting.set_beside(values))
+      refuse(0,
+             "a parameter decides what the equations are (a table, a check interval, a value at the start)");
+    return std::make_unique<network::Program>(program, setting);
+  };
+  program_ = compiled(std::move(layout_.network));
+  rates_program_ = compiled(std::move(rates));
   workspace_ = std::make_unique<network::Workspace>(*program_);
+  rates_workspace_ = std::make_unique<network::Workspace>(*rates_program_);
+  jacobian_.resize(program_->jacobian_pattern().entries());
+  by_parameter_.resize(parameters_.size());
   held_.resize(program_->discrete_states().size());
   values_.resize(program_->n_signals());
 }
@@ -176,10 +189,14 @@ void Sensitivities::refuse_jump(double t) const {
 
 void Sensitivities::load(const network::Workspace& run) {
   discrete_states_.assign(run.discrete_states().begin(), run.discrete_states().end());
-  for (std::size_t u = 0; u < n_unknowns_; ++u) workspace_->set_unknown(u, run.unknown(u));
+  for (std::size_t u = 0; u < n_unknowns_; ++u) {
+    workspace_->set_unknown(u, run.unknown(u));
+    rates_workspace_->set_unknown(u, run.unknown(u));
+  }
+  known_time_.reset();
 }
 
-bool Sensitivities::evaluate(double t, const double* x, const Direction& along) {
+void Sensitivities::hold(const Direction& along) {
   std::copy(discrete_states_.begin(), discrete_states_.end(), held_.begin());
   std::fill(held_.begin() + static_cast<std::ptrdiff_t>(n_discrete_states_), held_.end(), 0.0);
   held_[layout_.time] = along.time;
@@ -191,6 +208,10 @@ bool Sensitivities::evaluate(double t, const double* x, const Direction& along) 
               held_.begin() + static_cast<std::ptrdiff_t>(layout_.first_discrete_state));
     held_[layout_.first_parameter + *along.parameter] = 1;
   }
+}
+
+bool Sensitivities::evaluate(double t, const double* x, const Direction& along) {
+  hold(along);
   workspace_->load_discrete_states(held_);
   return program_->signals(t, x, values_.data(), *workspace_).has_value();
 }
@@ -199,9 +220,35 @@ void Sensitivities::evaluate_or_refuse(double t, std::span<const double> x, cons
   if (!evaluate(t, x.data(), along)) refuse(t, "an algebraic loop has no derivative there");
 }
 
+/// A solver asks at one place for all parameters, several times: only the product with s is made each time.
 bool Sensitivities::rates(double t, const double* x, std::size_t k, const double* s, double* rates) {
-  if (!evaluate(t, x, {0, {s, run_states_.size()}, k})) return false;
-  std::copy_n(values_.begin() + static_cast<std::ptrdiff_t>(layout_.derivatives), run_states_.size(), rates);
+  const std::size_t n = run_states_.size();
+  if (known_time_ != t || !std::equal(known_states_.begin(), known_states_.end(), x)) {
+    known_time_.reset();
+    hold({});
+    workspace_->load_discrete_states(held_);
+    if (!program_->jacobian(t, x, jacobian_.data(), *workspace_)) return false;
+    known_states_.assign(x, x + n);
+    known_time_ = t;
+    for (std::vector<double>& some : by_parameter_) some.clear();
+  }
+  std::vector<double>& direct = by_parameter_[k];
+  if (direct.empty()) {
+    hold({0, {}, k});
+    rates_workspace_->load_discrete_states(held_);
+    direct.resize(n);
+    if (!rates_program_->derivatives(t, x, direct.data(), *rates_workspace_)) {
+      direct.clear();
+      return false;
+    }
+  }
+  std::copy(direct.begin(), direct.end(), rates);
+  const network::SparsePattern& pattern = program_->jacobian_pattern();
+  for (std::size_t column = 0; column < n; ++column) {
+    for (auto entry = pattern.column_starts[column]; entry < pattern.column_starts[column + 1]; ++entry)
+      rates[pattern.rows[static_cast<std::size_t>(entry)]] +=
+          jacobian_[static_cast<std::size_t>(entry)] * s[column];
+  }
   return true;
 }
 
@@ -214,6 +261,18 @@ void Sensitivities::outputs(double t, std::span<const double> x, const std::vect
       values[o * count() + k] =
           output.scale * values_[layout_.signals + program_->signal_index(output.signal)];
     }
+  }
+}
+
+void Sensitivities::output_by_states(double t, std::span<const double> x, std::size_t output,
+                                     std::span<double> values) {
+  const diagram::FlatOutput& wanted = diagram_.outputs[output];
+  std::vector<double> unit(run_states_.size());
+  for (std::size_t i = 0; i < unit.size(); ++i) {
+    unit[i] = 1;
+    evaluate_or_refuse(t, x, {0, unit, {}});
+    unit[i] = 0;
+    values[i] = wanted.scale * values_[layout_.signals + program_->signal_index(wanted.signal)];
   }
 }
 

@@ -60,6 +60,9 @@ class Sensitivities {
   void outputs(double t, std::span<const double> x, const std::vector<std::vector<double>>& s,
                std::span<double> values);
 
+  /// d output/dx of one output, by each state; with the unknowns of algebraic loops as they follow.
+  void output_by_states(double t, std::span<const double> x, std::size_t output, std::span<double> values);
+
   /// An event is about to be settled; then it is.
   void before_event(double t, std::span<const double> x, std::vector<std::vector<double>> s);
   void after_event(double t, std::span<const double> x, const network::Workspace& run);
@@ -73,6 +76,7 @@ class Sensitivities {
     std::span<const double> states;             ///< none: they stand still
     std::optional<std::size_t> parameter = {};  ///< and the discrete states as they move with it
   };
+  void hold(const Direction& along);
   bool evaluate(double t, const double* x, const Direction& along);
   void evaluate_or_refuse(double t, std::span<const double> x, const Direction& along);
   void load(const network::Workspace& run);
@@ -101,6 +105,13 @@ class Sensitivities {
   std::vector<std::vector<double>> memories_;  ///< d discrete states/dp of each parameter
   std::vector<std::vector<double>> states_;
   std::vector<double> held_, values_;
+
+  // The rates at one place: ∂f/∂x, and of the parameters asked for ∂f/∂p, by a program that computes no more.
+  std::unique_ptr<network::Program> rates_program_;
+  std::unique_ptr<network::Workspace> rates_workspace_;
+  std::optional<double> known_time_;
+  std::vector<double> known_states_, jacobian_;
+  std::vector<std::vector<double>> by_parameter_;  ///< empty where it was not asked for
   Moment before_;
   std::vector<double> phase_delays_;  ///< by which the present phase of the timeline began later, over dp
 };
