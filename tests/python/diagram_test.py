@@ -141,10 +141,10 @@ def test_reads_and_goes_on_building():
 
 def test_writes_what_it_reads(tmp_path):
     d = ob.Diagram(title='A "quoted" ütle', until="2*pi", machine="tr-10", tolerance=1e-9, method="adams", samples=11)
-    x = d.integrator(initial=1, name="x", label="ẋ")
-    x.input = -x
+    x = d.integrator(initial=0.5, name="x", label="ẋ")
+    x.input = x  # inverts there
     d.output("x")
-    d.expect("x at 0", 1, within=1e-9)
+    d.expect("x at 0", 0.5, within=1e-9)
     d.save(tmp_path / "d.toml")
     again = ob.Diagram(tmp_path / "d.toml")
     assert again.toml() == d.toml() and again.title == 'A "quoted" ütle' and again.machine == "tr-10"

@@ -11,7 +11,7 @@ from typing import Any, Optional, Union
 
 from . import _arguments, _oblique, _toml
 from ._arguments import PathLike, Quantity
-from ._errors import DiagramError, Diagnostic, RequestError
+from ._errors import DiagramError, Diagnostic, RequestError, warn
 from ._blocks import BlockLibrary, blocks as shipped_blocks
 from .pictures import Picture
 from .run import Run, State
@@ -126,6 +126,9 @@ class Diagram:
         if how:
             self._data["run"] = how
         self._data["blocks"] = {}
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_made": None, "_signals": {}}
 
     # --- the text and what is made of it
 
@@ -393,8 +396,8 @@ class Diagram:
         `gain` is that of every servo amplifier. `method` is "auto", "bdf" or "adams"; `samples` is the number of rows.
         `check` holds it against `[expect]`, `trust` estimates the error of each output.
 
-        Python's lock is released meanwhile, so runs in threads go side by side; Ctrl-C ends a run. Throws
-        RequestError, DiagramError, NetworkError and SolveError.
+        What the run warns of is a RunWarning of Python, too. Python's lock is released meanwhile, so runs in threads go
+        side by side; Ctrl-C ends a run. Throws RequestError, DiagramError, NetworkError and SolveError.
 
         >>> import oblique as ob
         >>> side = ob.Diagram("diagrams/lessons/triangle-side.toml")
@@ -424,7 +427,14 @@ class Diagram:
                                remedy="diagram.expect(…) adds one")
         if until is None and not 0 < model.until < float("inf"):
             raise RequestError(f"the run would end at t = {model.until} s", "a finite time above 0", "give until=")
-        return Run(model.run(self._turned(gain, set), options))
+        run = Run(model.run(self._turned(gain, set), options))
+        for warning in run.warnings:
+            warn(warning.message)
+        if watch_overloads is None and run.overloads and not run.halted:
+            first = run.overloads[0]
+            warn(f"{len(run.overloads)} signal{'s' if len(run.overloads) > 1 else ''} left ±1 machine unit, '{first.signal}' "
+                 f"first, at t = {first.first:.6g} s; run.overloads has them")
+        return run
 
     def _turned(self, gain: Optional[float], set: Optional[Mapping[str, Quantity]]) -> list[tuple[str, str]]:
         turned = _arguments.settings("set", set)
