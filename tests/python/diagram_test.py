@@ -182,6 +182,7 @@ def test_refuses_what_makes_no_sense():
             (lambda: d.signal("z"), "there is no block 'z'"),
             (lambda: d.connect(x, other), "no block of this diagram"),
             (lambda: d.output("y"), "there is no block 'y'"),
+            (lambda: (d.output("x"), d.output("x", 2 * x)), "there is an output 'x' already"),
             (lambda: d.sin(x), "no method and no block type 'sin'"),
             (lambda: d.set_input(x, x, "out"), "has no input 'out'")):
         with pytest.raises(ob.RequestError) as thrown:

@@ -140,7 +140,7 @@ class Diagram:
 
     @property
     def text(self) -> str:
-        """The text of its file: as it was read, or as it was built."""
+        """The text of its file: as it was read, or as it was built. Lines in messages are those of it."""
         return self._text if self._data is None else _toml.document(self._data)
 
     def toml(self) -> str:
@@ -338,7 +338,9 @@ class Diagram:
                offset: float = 0.0) -> None:
         """Makes a signal (the block of that name, where none is given) a column of the run: scale · signal + offset,
         in `unit`. Without any output all blocks are columns."""
-        _arguments.text("name", name)
+        outputs = self._data.get("outputs", {}) if self._data is not None else tomllib.loads(self._text).get("outputs", {})
+        if _arguments.text("name", name) in outputs:
+            raise RequestError(f"there is an output '{name}' already", "another name")
         if signal is None:
             signal = self.signal(name)
         if isinstance(signal, str):
@@ -478,4 +480,4 @@ class Diagram:
             return None
 
     def __repr__(self) -> str:
-        return f"<Diagram: {len(self._blocks_of_file())} blocks, {self._file}>"
+        return f"<{type(self).__name__}: {len(self._blocks_of_file())} blocks, {self._file}>"
