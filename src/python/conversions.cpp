@@ -42,9 +42,15 @@ const text::Vocabulary& python_words() {
           for (const char c : value) list += c == ',' ? std::string("\", \"") : std::string(1, c);
           return fmt::format("{}=[\"{}\"]", name, list);
         }
-        const bool is_plain =
-            value == "True" || value.find_first_not_of("0123456789.e+-") == std::string::npos;
-        return is_plain ? fmt::format("{}={}", name, value) : fmt::format("{}=\"{}\"", name, value);
+        const auto spelled = [](const std::string& text) {
+          const bool is_number =
+              !text.empty() && text.find_first_not_of("0123456789.e+-") == std::string::npos;
+          return is_number || text == "True" ? text : "\"" + text + "\"";
+        };
+        if (const std::size_t equals = value.find('='); name == "set" && equals != std::string::npos)
+          return fmt::format("set={{\"{}\": {}}}", value.substr(0, equals),
+                             spelled(value.substr(equals + 1)));
+        return fmt::format("{}={}", name, spelled(value));
       },
       [](const text::Action& action) {
         return action.name == "machines" ? std::string("`oblique.machines`")

@@ -54,8 +54,8 @@ struct FinishedRun {
   std::vector<report::ExpectationResult> expectations;
 };
 
-/// Runs a diagram as its [run] and `options` say.
+/// Runs a diagram as its [run] says, and what is `asked` beside it: until, tolerance, …, check, trust, state.
 std::shared_ptr<FinishedRun> run_diagram(const DiagramModel& model, const Settings& settings,
-                                         const py::dict& options);
+                                         const py::dict& asked);
 
 }  // namespace oblique::python

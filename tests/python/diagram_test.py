@@ -141,10 +141,10 @@ def test_reads_and_goes_on_building():
 
 def test_writes_what_it_reads(tmp_path):
     d = ob.Diagram(title='A "quoted" ütle', until="2*pi", machine="tr-10", tolerance=1e-9, method="adams", samples=11)
-    x = d.integrator(initial=1, name="x", label="ẋ")
-    x.input = -x
+    x = d.integrator(initial=0.5, name="x", label="ẋ")
+    x.input = x  # inverts there
     d.output("x")
-    d.expect("x at 0", 1, within=1e-9)
+    d.expect("x at 0", 0.5, within=1e-9)
     d.save(tmp_path / "d.toml")
     again = ob.Diagram(tmp_path / "d.toml")
     assert again.toml() == d.toml() and again.title == 'A "quoted" ütle' and again.machine == "tr-10"
@@ -182,6 +182,7 @@ def test_refuses_what_makes_no_sense():
             (lambda: d.signal("z"), "there is no block 'z'"),
             (lambda: d.connect(x, other), "no block of this diagram"),
             (lambda: d.output("y"), "there is no block 'y'"),
+            (lambda: (d.output("x"), d.output("x", 2 * x)), "there is an output 'x' already"),
             (lambda: d.sin(x), "no method and no block type 'sin'"),
             (lambda: d.set_input(x, x, "out"), "has no input 'out'")):
         with pytest.raises(ob.RequestError) as thrown:

@@ -141,6 +141,20 @@ def test_of_a_fit():
     refused(ob.Error, lambda: four_bar.fit({"Q.x": [1, 2, 3], "Q.y": [1, 2, 3]}, "AB=0.5..2"))
 
 
+def test_warnings_are_seen():
+    circle = ob.Diagram("diagrams/lessons/circle.toml")
+    with pytest.warns(ob.RunWarning) as told:  # Adams at such a tolerance lets oscillations grow
+        run = circle.run(method="adams", tolerance=1e-2)
+    assert told[0].filename == __file__, "the line of the user"
+    assert [str(one.message) for one in told] == [one.message for one in run.warnings]
+    d = ob.Diagram(until=1, machine="tr-10")
+    d.integrator(2, name="x")
+    with pytest.warns(ob.RunWarning, match="left ±1 machine unit, 'x' first"):
+        assert d.run().overloads
+    with pytest.warns(ob.RunWarning, match="cannot be assembled"):
+        assert (ob.Mechanism("diagrams/mechanisms/double-rocker.toml").solve(91, at_limit="open").status == "open").any()
+
+
 def test_of_packages_that_are_not_there(decay, monkeypatch):
     run = decay.run()
     for package, work in (("pandas", run.to_pandas), ("xarray", run.to_xarray)):

@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: MIT
 """Threads: Python's lock is released, and what they share is not disturbed."""
 
+import copy
+import multiprocessing
+import pickle
 import threading
 import time
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 
 import numpy as np
 
@@ -50,6 +53,27 @@ def test_threads_share_a_console(decay):
     with ThreadPoolExecutor(8) as pool:
         readings = set(pool.map(look, range(200)))
     assert len(readings) == 1
+
+
+def test_processes_take_copies():
+    diagram = ob.Diagram(until=1)
+    x = diagram.integrator(initial=1, name="x")
+    x.input = -x
+    own = ob.Diagram("diagrams/own-blocks/triangle-wave.toml", blocks="diagrams/own-blocks/blocks")
+    four_bar = ob.Mechanism("diagrams/mechanisms/four-bar.toml")
+    for again in (pickle.loads(pickle.dumps((diagram, own, four_bar))), copy.deepcopy((diagram, own, four_bar))):
+        np.testing.assert_array_equal(again[0].run()["x"], diagram.run()["x"])
+        np.testing.assert_array_equal(again[1].run().rows, own.run().rows)
+        np.testing.assert_array_equal(again[2].solve(9).rows, four_bar.solve(9).rows)
+        again[0].integrator("x", name="y")
+        assert "y" not in diagram.block_types
+    with ProcessPoolExecutor(2, mp_context=multiprocessing.get_context("spawn")) as pool:
+        ends = [table[-1] for table in pool.map(end_of, [diagram] * 2, [1.0, 2.0])]
+    assert ends == [diagram.run(end)["x"][-1] for end in (1.0, 2.0)]
+
+
+def end_of(diagram, until):
+    return diagram.run(until)["x"].copy()
 
 
 def test_threads_compare_mechanisms():

@@ -54,24 +54,11 @@ TEST(RunText, SaysTheWorkAndTheMethod) {
             "method bdf: it is asked for\n");
 }
 
-TEST(RunText, WarnsOfAdamsAtACoarseToleranceAlone) {
-  solve::Run run;
-  run.method.method = diagram::IntegrationMethod::adams;
-  solve::RunOptions options;
-  options.tolerance = 1e-3;
-  EXPECT_EQ(warnings_text(run, options), "");
-  options.tolerance = 0.01;
-  EXPECT_EQ(warnings_text(run, options),
-            "warning: at a tolerance of 0.01 Adams lets oscillations grow; 1e-3 or less is safe\n");
-  run.method.method = diagram::IntegrationMethod::bdf;
-  EXPECT_EQ(warnings_text(run, options), "");
-}
-
 TEST(RunText, SpellsTheSettingsOfWarningsAsTheHostDoes) {
   solve::Run run;
   run.warnings = {{{"d.toml", {}}, "the run is short", {}, {"set ", text::Setting{"until"}}}};
   const text::Vocabulary buttons{[](const text::Setting& s) { return "[" + s.name + "]"; }, {}};
-  EXPECT_EQ(warnings_text(run, {}, buttons), "warning: d.toml: the run is short\n  remedy: set [until]\n");
+  EXPECT_EQ(warnings_text(run, buttons), "warning: d.toml: the run is short\n  remedy: set [until]\n");
 }
 
 TEST(RunText, TellsEachOverloadOrTheOneThatEndedTheRun) {

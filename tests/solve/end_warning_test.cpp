@@ -25,6 +25,24 @@ Compiled recording(const std::string& points, const std::string& beyond = "extra
 
 constexpr const char* kPoints = "[[0, 0], [0.9, 0.3], [1, 0.5]]";
 
+TEST(CoarseTolerance, IsToldOfAdamsAlone) {
+  const Compiled made("x = { type = \"integrator\", in = [\"-x\"], initial = 1 }\n");
+  const auto warnings = [&](double tolerance, diagram::IntegrationMethod method) {
+    RunOptions options;
+    options.tolerance = tolerance;
+    options.method = method;
+    std::vector<std::string> texts;
+    for (const text::Diagnostic& warning : oblique::solve::run(made.program, made.flat, options).warnings)
+      texts.push_back(text::to_string(warning));
+    return texts;
+  };
+  EXPECT_THAT(warnings(0.01, diagram::IntegrationMethod::adams),
+              ::testing::ElementsAre(
+                  "d.toml: at a tolerance of 0.01 Adams lets oscillations grow; expected 1e-3 or less"));
+  EXPECT_THAT(warnings(1e-3, diagram::IntegrationMethod::adams), ::testing::IsEmpty());
+  EXPECT_THAT(warnings(0.01, diagram::IntegrationMethod::bdf), ::testing::IsEmpty());
+}
+
 TEST(EndOfARecording, IsTold) {
   EXPECT_THAT(
       warnings_of(recording(kPoints), 10),

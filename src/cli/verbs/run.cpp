@@ -166,7 +166,7 @@ ExitStatus run_diagram(const Session& session, const RunRequest& request) {
     note(fmt::format("{}; --events lists them\n",
                      report::count(static_cast<std::size_t>(result.event_count), "event", "events")));
   }
-  note(report::warnings_text(result, options, command_line()));
+  note(report::warnings_text(result, command_line()));
   note(report::overloads_text(program, result));
   if (result.trust) note(report::trust_text(*result.trust));
   if (result.halted) return ExitStatus::no;

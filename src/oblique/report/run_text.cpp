@@ -54,14 +54,8 @@ std::string solver_text(const network::Program& program, const solve::Run& run,
   return text;
 }
 
-std::string warnings_text(const solve::Run& run, const solve::RunOptions& options,
-                          const text::Vocabulary& vocabulary) {
-  constexpr double kCoarseForAdams = 1e-3;
+std::string warnings_text(const solve::Run& run, const text::Vocabulary& vocabulary) {
   std::string text;
-  if (run.method.method == diagram::IntegrationMethod::adams && options.tolerance > kCoarseForAdams) {
-    text += fmt::format("warning: at a tolerance of {} Adams lets oscillations grow; 1e-3 or less is safe\n",
-                        options.tolerance);
-  }
   for (const text::Diagnostic& warning : run.warnings)
     text += "warning: " + text::to_string(warning, vocabulary) + "\n";
   return text;

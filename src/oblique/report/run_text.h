@@ -27,7 +27,7 @@ std::string solver_text(const network::Program& program, const solve::Run& run,
                         const solve::RunOptions& options);
 
 /// A line, and its remedy, for each warning.
-std::string warnings_text(const solve::Run& run, const solve::RunOptions& options,
+std::string warnings_text(const solve::Run& run,
                           const text::Vocabulary& vocabulary = text::plain_vocabulary());
 
 /// A line for each signal that left the machine unit; of a run that this ended, one.

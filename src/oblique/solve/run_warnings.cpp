@@ -51,6 +51,17 @@ void warn_of_points(const diagram::FlatBlock& block, const text::PointTable& poi
     warn("end", x[last], end, "last");
 }
 
+/// Of an oscillation that is damped a little the formulas make one that grows.
+void warn_of_coarse_adams(const std::string& file, const RunOptions& options, const Run& run,
+                          std::vector<text::Diagnostic>& warnings) {
+  constexpr double kCoarse = 1e-3;
+  if (run.method.method != diagram::IntegrationMethod::adams || options.tolerance <= kCoarse) return;
+  warnings.push_back({{file, {}},
+                      fmt::format("at a tolerance of {} Adams lets oscillations grow", options.tolerance),
+                      "1e-3 or less",
+                      {}});
+}
+
 void warn_of_timeline(const diagram::FlatTimeline& timeline, const std::string& file, const RunState& state,
                       std::vector<text::Diagnostic>& warnings) {
   const bool by_condition =
@@ -87,6 +98,7 @@ std::vector<text::Diagnostic> warnings_at_end(const diagram::FlatDiagram& diagra
     }
   }
   const bool came_to_its_end = !run.halted && run.state.time >= options.until;
+  warn_of_coarse_adams(diagram.file, options, run, warnings);
   if (came_to_its_end) warn_of_timeline(diagram.timeline, diagram.file, run.state, warnings);
   return warnings;
 }

@@ -7,8 +7,8 @@
 
 namespace oblique::solve {
 
-/// What the end of a run leaves of what its diagram asks for: points over the time that the run goes beyond,
-/// and cycles of a timeline that it does not come to.
+/// What is to be told of a whole run: points over the time that it goes beyond, cycles of a timeline that it
+/// does not come to, and a tolerance that is too coarse for its method.
 std::vector<text::Diagnostic> warnings_at_end(const diagram::FlatDiagram& diagram, const RunOptions& options,
                                               const Run& run);
 

@@ -13,7 +13,7 @@ that goes wrong is an `Error`. docs/python.md is the page about it.
 
 from . import plots
 from ._errors import (ConsoleError, Diagnostic, DiagramError, Error, MechanismError, NetworkError, PatchError, ReadError,
-                      RealiseError, RequestError, SolveError, SynthesisError, UnknownNameError)
+                      RealiseError, RequestError, RunWarning, SolveError, SynthesisError, UnknownNameError)
 from ._oblique import __version__
 from ._tables import Table
 from ._blocks import Block, BlockLibrary, blocks
@@ -31,5 +31,5 @@ __all__ = [
     "Animation", "Block", "BlockLibrary", "ComparedRun", "Comparison", "Console", "ConsoleError", "Diagnostic", "Diagram",
     "DiagramCheck", "DiagramError", "Error", "Event", "Fit", "Machine", "Mechanism", "MechanismCheck", "MechanismError",
     "MonteCarlo", "Motion", "NetworkError", "Overload", "Page", "Patch", "PatchError", "Picture", "ReadError", "Reading",
-    "RealiseError", "RequestError", "Run", "Signal", "SolveError", "State", "Sum", "SynthesisError", "Table", "Trust",
+    "RealiseError", "RequestError", "Run", "RunWarning", "Signal", "SolveError", "State", "Sum", "SynthesisError", "Table", "Trust",
     "UnknownNameError", "__version__", "blocks", "machines", "plots"]

@@ -25,7 +25,9 @@ def shown(value: object) -> str:
 
 def number_in(unit: str, kind: str = "a number") -> str:
     """What is expected: "a number above 0 [s]"."""
-    return kind if unit == "1" else f"{kind} [{unit}]"
+    if unit == "1":
+        return kind
+    return f"{kind} {unit}" if unit.startswith(("in ", "of ")) else f"{kind} [{unit}]"
 
 
 def quantity(name: str, value: Any, unit: str) -> float:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import html
 from collections.abc import Iterator, Mapping
-from typing import NamedTuple, Optional
+from typing import Any, NamedTuple, Optional
 
 from . import _arguments, _oblique
 from ._arguments import PathLike
@@ -70,9 +70,13 @@ class BlockLibrary(Mapping[str, Block]):
 
     def __init__(self, *folders: PathLike) -> None:
         """Throws DiagramError with all that is wrong in the files of the folders."""
-        self._raw = _oblique.BlockLibrary([_arguments.path("a folder of blocks", folder) for folder in folders])
+        self._folders = [_arguments.path("a folder of blocks", folder) for folder in folders]
+        self._raw = _oblique.BlockLibrary(self._folders)
         self._names = tuple(self._raw.names())
         self._known: dict[str, Block] = {}
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (BlockLibrary, tuple(self._folders))
 
     def __getitem__(self, name: str) -> Block:
         if name not in self._known:

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import sys
+import warnings
 from typing import Any, NamedTuple, Optional, Sequence, TypeVar
 
 _E = TypeVar("_E", bound="Error")
@@ -153,6 +155,21 @@ class ConsoleError(Error):
 
 class RequestError(Error, ValueError):
     """An argument from Python that makes no sense: NaN, a wrong shape, a wrong type, options that contradict each other."""
+
+
+class RunWarning(UserWarning):
+    """What a run, a console, a motion or a comparison has not seen, or has done in another way than asked. It is raised
+    as a warning of Python, so that it is seen, and kept in the result."""
+
+
+def warn(message: str) -> None:
+    """Warns of it in the line outside of this package that has led to it."""
+    depth = 2
+    frame = sys._getframe(1)
+    while frame.f_back is not None and str(frame.f_globals.get("__name__", "")).split(".")[0] == "oblique":
+        frame = frame.f_back
+        depth += 1
+    warnings.warn(message, RunWarning, stacklevel=depth)
 
 
 class UnknownNameError(RequestError, KeyError):

@@ -12,7 +12,7 @@ import numpy as np
 
 from . import _arguments, _oblique
 from ._arguments import PathLike, Quantity
-from ._errors import ConsoleError, Diagnostic, RequestError
+from ._errors import ConsoleError, Diagnostic, RequestError, warn
 from ._tables import Table
 from .diagram import Diagram
 from .run import Event, State
@@ -49,6 +49,7 @@ class Console:
         DiagramError, NetworkError and SolveError."""
         self._diagram = diagram if isinstance(diagram, Diagram) else Diagram(diagram)
         self._changes = self._diagram._changes
+        self._told: set[str] = set()
         self._raw: Optional[_oblique.Console] = _oblique.Console(self._diagram._model)
 
     def _held(self) -> "_oblique.Console":
@@ -88,6 +89,14 @@ class Console:
         if not math.isfinite(time):
             raise RequestError(f"until={_arguments.shown(until)}", "a finite time [s]")
         self._held().advance(time)
+        self._tell()
+
+    def _tell(self) -> None:
+        """Warns of what it has not warned of yet."""
+        for warning in self.warnings:
+            if warning.message not in self._told:
+                self._told.add(warning.message)
+                warn(warning.message)
 
     def read(self, name: str) -> Reading:
         """An output of the diagram in its unit, a signal in machine units, or a pot in the unit of the parameter.
@@ -135,6 +144,7 @@ class Console:
             raise ConsoleError(f"the scope cannot run until {time} s", f"a time after {held.time} s, where it stands")
         times = np.linspace(held.time, time, rows)
         values = held.scope(probes, times.tolist())
+        self._tell()
         return Table([("t", "s"), *zip(probes, units)], np.column_stack([times, values]))
 
     def save(self) -> State:

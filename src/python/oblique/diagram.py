@@ -11,7 +11,7 @@ from typing import Any, Optional, Union
 
 from . import _arguments, _oblique, _toml
 from ._arguments import PathLike, Quantity
-from ._errors import DiagramError, Diagnostic, RequestError
+from ._errors import DiagramError, Diagnostic, RequestError, warn
 from ._blocks import BlockLibrary, blocks as shipped_blocks
 from .pictures import Picture
 from .run import Run, State
@@ -127,6 +127,9 @@ class Diagram:
             self._data["run"] = how
         self._data["blocks"] = {}
 
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_made": None, "_signals": {}}
+
     # --- the text and what is made of it
 
     @property
@@ -137,7 +140,7 @@ class Diagram:
 
     @property
     def text(self) -> str:
-        """The text of its file: as it was read, or as it was built."""
+        """The text of its file: as it was read, or as it was built. Lines in messages are those of it."""
         return self._text if self._data is None else _toml.document(self._data)
 
     def toml(self) -> str:
@@ -335,7 +338,9 @@ class Diagram:
                offset: float = 0.0) -> None:
         """Makes a signal (the block of that name, where none is given) a column of the run: scale · signal + offset,
         in `unit`. Without any output all blocks are columns."""
-        _arguments.text("name", name)
+        outputs = self._data.get("outputs", {}) if self._data is not None else tomllib.loads(self._text).get("outputs", {})
+        if _arguments.text("name", name) in outputs:
+            raise RequestError(f"there is an output '{name}' already", "another name")
         if signal is None:
             signal = self.signal(name)
         if isinstance(signal, str):
@@ -393,8 +398,8 @@ class Diagram:
         `gain` is that of every servo amplifier. `method` is "auto", "bdf" or "adams"; `samples` is the number of rows.
         `check` holds it against `[expect]`, `trust` estimates the error of each output.
 
-        Python's lock is released meanwhile, so runs in threads go side by side; Ctrl-C ends a run. Throws
-        RequestError, DiagramError, NetworkError and SolveError.
+        What the run warns of is a RunWarning of Python, too. Python's lock is released meanwhile, so runs in threads go
+        side by side; Ctrl-C ends a run. Throws RequestError, DiagramError, NetworkError and SolveError.
 
         >>> import oblique as ob
         >>> side = ob.Diagram("diagrams/lessons/triangle-side.toml")
@@ -424,7 +429,14 @@ class Diagram:
                                remedy="diagram.expect(…) adds one")
         if until is None and not 0 < model.until < float("inf"):
             raise RequestError(f"the run would end at t = {model.until} s", "a finite time above 0", "give until=")
-        return Run(model.run(self._turned(gain, set), options))
+        run = Run(model.run(self._turned(gain, set), options))
+        for warning in run.warnings:
+            warn(warning.message)
+        if watch_overloads is None and run.overloads and not run.halted:
+            first = run.overloads[0]
+            warn(f"{len(run.overloads)} signal{'s' if len(run.overloads) > 1 else ''} left ±1 machine unit, '{first.signal}' "
+                 f"first, at t = {first.first:.6g} s; run.overloads has them")
+        return run
 
     def _turned(self, gain: Optional[float], set: Optional[Mapping[str, Quantity]]) -> list[tuple[str, str]]:
         turned = _arguments.settings("set", set)
@@ -468,4 +480,4 @@ class Diagram:
             return None
 
     def __repr__(self) -> str:
-        return f"<Diagram: {len(self._blocks_of_file())} blocks, {self._file}>"
+        return f"<{type(self).__name__}: {len(self._blocks_of_file())} blocks, {self._file}>"

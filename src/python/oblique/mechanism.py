@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from . import _arguments, _oblique, _toml
 from ._arguments import PathLike, Quantity
-from ._errors import MechanismError, RequestError
+from ._errors import MechanismError, RequestError, warn
 from ._blocks import BlockLibrary, blocks as shipped_blocks
 from .comparison import Comparison
 from .diagram import Diagram
@@ -185,6 +185,9 @@ class Mechanism:
         if length is not None:
             self._data["units"] = {"length": _arguments.text("length", length)}
 
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_made": None}
+
     @property
     def _model(self) -> "_oblique.Mechanism":
         if self._made is None or self._made[0] != self._changes:
@@ -290,8 +293,11 @@ class Mechanism:
         transmission angles and others. Throws MechanismError.
         """
         limit = "" if at_limit is None else _arguments.choice("at_limit", at_limit, ("open", "stop", "reverse"))
-        return Motion(self._model.solve(_arguments.count("positions", positions, 2),
-                                        _arguments.optional_positive("until", until, "s"), limit, bool(analysis)))
+        motion = Motion(self._model.solve(_arguments.count("positions", positions, 2),
+                                          _arguments.optional_positive("until", until, "s"), limit, bool(analysis)))
+        if (motion.status == "open").any():
+            warn(motion.remarks.strip())
+        return motion
 
     def expectations(self) -> tuple[Expected, ...]:
         """The lines of `[expect]`, held against the motion. Throws MechanismError where there are none."""
@@ -396,7 +402,17 @@ class Mechanism:
             raise RequestError("tolerance= without elements that are drawn", "monte_carlo=1000 beside it")
         library = shipped_blocks if blocks is None else blocks
         name = "" if machine is None else machines[machine].name
-        return Comparison(self._model.compare(library._raw, options, name, draws))
+        study = Comparison(self._model.compare(library._raw, options, name, draws))
+        for one in study.refused:
+            gain = "" if one["gain"] is None else f", gain {one['gain']:g}"
+            warn(f"method {one['method']}{gain} is left out: {one['why']}")
+        for run in study.runs:
+            if run.left_branch is not None:
+                warn(f"{run.method}, gain {run.gain:g}: its loops hold another assembly mode from {run.left_branch:.4g} "
+                     f"{study.drive_unit} of the first drive on; that is no error of the gain, and not in its order")
+            if not run.stable:
+                warn(f"{run.method}, gain {run.gain:g}: not every servo loop would return to rest")
+        return study
 
     # --- dimensions that fit
 
