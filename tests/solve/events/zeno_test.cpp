@@ -251,5 +251,67 @@ set = { stuck = 0 }
   EXPECT_NEAR(result.trajectory.at(60, x), 1 - 4 / pi * (2 - 4 / pi), 1e-7);
 }
 
+// A. T. Fuller's problem (1960): x″ = −sgn(x + C x′|x′|) from (1, 0) turns over infinitely often, each time
+// with ρ = √((½ − C)/(½ + C)) of the speed of the turn before; the first comes at t = |x′| = 1/√(½ + C), and
+// after them all it stays at the origin.
+TEST(Zeno, OfTurnsThatComeToRestEndsInASlide) {
+  constexpr double kC = 0.4446;
+  const Compiled made(fmt::format(R"(
+v = {{ type = "integrator", in = "-u" }}
+x = {{ type = "integrator", in = "v", initial = 1 }}
+m = {{ type = "absolute-value", in = "v" }}
+vv = {{ type = "multiplier", in = ["v", "m"] }}
+u = {{ type = "sign", in = "y" }}
+y = {{ type = "summer", in = ["x", "{}*vv"] }}
+)",
+                                  kC));
+  const double first = 1 / std::sqrt(0.5 + kC), shrinks = std::sqrt((0.5 - kC) / (0.5 + kC));
+  const double end = first + first * (1 + shrinks) / (1 - shrinks);
+  for (const double tolerance : {1e-6, 1e-7, 1e-8, 1e-9, 1e-10}) {
+    const auto result = run_of(made, {.until = 6, .tolerance = tolerance});
+    EXPECT_LT(result.event_count, 10'000) << tolerance;  // it used to go on, with a million
+    const auto slides = std::find_if(result.events.begin(), result.events.end(), [](const EventRecord& e) {
+      return e.what.find("slides") != std::string::npos;
+    });
+    ASSERT_NE(slides, result.events.end());
+    EXPECT_NEAR(slides->time, end, 1e-3)
+        << tolerance;  // what the errors of the states leave to the last turns
+    const auto t = row_values(result, "t"), x = row_values(result, "x"), v = row_values(result, "v");
+    for (std::size_t k = 0; k < t.size(); ++k) {
+      if (t[k] < first) EXPECT_NEAR(x[k], 1 - t[k] * t[k] / 2, 100 * tolerance) << t[k];
+      if (t[k] < end + 1e-3) continue;
+      EXPECT_NEAR(x[k], 0, 100 * tolerance) << t[k];
+      EXPECT_NEAR(v[k], 0, std::sqrt(100 * tolerance)) << t[k];  // x is within its error for that long
+    }
+  }
+}
+
+// The super-twisting controller (A. Levant 1993): no slide holds x, which does not depend on the sign there.
+// In dτ = dt/(2√|x|) it is linear: half a turn leaves r = e^(−kπ/2ω) of z, and takes Δz/a.
+TEST(Zeno, OfTurnsThatNothingHoldsIsEndedByName) {
+  constexpr double kK = 1.5, kA = 1.1;
+  const diagram::BlockLibrary library = shipped_blocks_and("twist", fmt::format(R"toml([outputs]
+x = {{}}
+z = {{}}
+[equations]
+"der(x)" = "-{}*sqrt(abs(x))*sign(x) + z"
+"der(z)" = "-{}*sign(x)"
+[start]
+x = 1
+z = 0
+)toml",
+                                                                                kK, kA));
+  const Compiled made("s = { type = \"twist\" }", "", library);
+  const double omega = std::sqrt(2 * kA - kK * kK / 4),
+               half = std::exp(-kK * 3.141592653589793 / (2 * omega));
+  const double first = std::exp(-kK / (2 * omega) * std::atan(2 * omega / kK)) * std::sqrt(2 / kA);
+  for (const double tolerance : {1e-8, 1e-9, 1e-10}) {
+    EXPECT_THAT(message_of<SolveError>([&] { run_of(made, {.until = 10, .tolerance = tolerance}); }),
+                HasSubstr(fmt::format("'s' (x > 0) turns over ever faster: its turns pile up at t = {:.3g}",
+                                      2 * first / (1 - half))))
+        << tolerance;
+  }
+}
+
 }  // namespace
 }  // namespace oblique::solve

@@ -124,6 +124,19 @@ SolveError EventLog::endless(const std::string& block, const std::string& what, 
            "give the switch a hysteresis, or end what it repeats before it becomes endlessly fast"}};
 }
 
+SolveError EventLog::piled_up(const std::string& block, const std::string& comparison, double at,
+                              double t) const {
+  return {
+      SolveError::Kind::chatter,
+      t,
+      {{file_, {}},
+       fmt::format("'{}' ({}) turns over ever faster: its turns pile up at t = {:.4g} s, and what follows "
+                   "is decided by errors",
+                   block, comparison, at),
+       {},
+       "end the run before, or give the switch a hysteresis"}};
+}
+
 SolveError EventLog::endless(const std::string& what, double t) const {
   return endless(records_.empty() ? "" : records_.back().what, what, t);
 }

@@ -38,6 +38,8 @@ class EventLog {
   SolveError endless(const std::string& block, const std::string& what, double t) const;
   /// The same of what was recorded last.
   SolveError endless(const std::string& what, double t) const;
+  /// That of one whose turns have piled up at `at`, where it goes on at t by errors alone.
+  SolveError piled_up(const std::string& block, const std::string& comparison, double at, double t) const;
 
   /// The first thousand events, and how many there were.
   const std::vector<EventRecord>& records() const { return records_; }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <oblique/network/program/program.h>
@@ -16,6 +17,8 @@ namespace {
 /// chatters.
 constexpr long kRestless = 5;
 constexpr long kMostTurns = 1000;
+/// Turns within the errors of the states after all of them have piled up.
+constexpr long kMostBeyond = 20;
 
 constexpr double kSamePlace =
     10;  ///< roundings: an event function that is no farther off has not left its place
@@ -67,6 +70,7 @@ double SwitchSettling::near_size(std::size_t s) const {
   const double threshold = event_functions_.thresholds()[s];
   const bool drifted = slide_.rests(s) || (!decided_[unit] && (rested_[s] || contains(slid_, unit)));
   const double near = drifted ? std::max(SlidingMode::drift(), threshold) : threshold;
+  if (unrest_[s].beyond > 0) return std::max(near, kSamePlace * place_size(s));
   return unrest_[s].turns > kRestless ? std::max(near, place_size(s)) : near;
 }
 
@@ -114,12 +118,30 @@ void SwitchSettling::turn(std::size_t s, double position, double t) {
   const bool known = event_functions_.is_known(s);
   const bool same_place = known ? t <= unrest.last : thresholds.excursion(s) < place_size(s);
   if (!same_place) unrest.turns = 0;
+  if (!known) watch_pace(s, t);
   unrest.last = t;
   unrest.touches = false;
   thresholds.forget(s);
   // An event function that is merely touched goes back and forth by the errors of the states.
   if (!known && is_announced(program_.switch_structure().unit[s])) thresholds.give_slack(s, errors[s]);
   if (++unrest.turns > kMostTurns) throw log_.endless(made.block, made.comparison, t);
+}
+
+/// Turns that come ever faster end at a time at which infinitely many have come. What the errors of the
+/// states make of them after that is no solution: what lies at zero within ten of these may slide, and the
+/// run ends where nothing does.
+void SwitchSettling::watch_pace(std::size_t s, double t) {
+  constexpr double kWider = 100;  // than for events, of the run: errors hide the last turns
+  constexpr double kRest = 1e-3;  // of the run: it has slid in between
+  Unrest& unrest = unrest_[s];
+  if (const auto zeno = unrest.pace.come(t, kWider * span_, std::numeric_limits<double>::infinity()))
+    unrest.piles_up = zeno->at;
+  const bool beyond = unrest.piles_up && t > *unrest.piles_up && t - unrest.last < kRest * span_ &&
+                      event_functions_.thresholds().excursion(s) < kSamePlace * place_size(s);
+  unrest.beyond = beyond ? unrest.beyond + 1 : 0;
+  if (unrest.beyond <= kMostBeyond) return;
+  const network::Switch& made = program_.switches()[s];
+  throw log_.piled_up(made.block, made.comparison, *unrest.piles_up, t);
 }
 
 /// Where a switch goes that follows time alone.

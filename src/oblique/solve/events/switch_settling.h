@@ -2,12 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include <oblique/network/program/program.h>
 #include <oblique/solve/events/event_functions.h>
 #include <oblique/solve/events/event_log.h>
+#include <oblique/solve/events/event_pace.h>
 #include <oblique/solve/events/positions.h>
 #include <oblique/solve/events/sliding_mode.h>
 
@@ -68,6 +70,7 @@ class SwitchSettling {
   bool waits(std::size_t s, double event_function, double t);
   bool is_announced(std::uint32_t unit) const;
   void turn(std::size_t s, double position, double t);
+  void watch_pace(std::size_t s, double t);
   double known_position(std::size_t s) const;
   bool turn_by_event_functions(double t, Units& at_zero, std::vector<std::uint32_t>& turned);
   void turn_in_order(double t, std::span<const double> x);
@@ -105,6 +108,9 @@ class SwitchSettling {
     double last = 0;
     long turns = 0;
     bool touches = false;  ///< since it turned over last it was announced, and did not
+    EventPace pace;
+    std::optional<double> piles_up;  ///< [s] its turns, which have come ever faster
+    long beyond = 0;                 ///< turns after that, within the errors of the states
   };
   std::vector<Unrest> unrest_;
 };
