@@ -7,11 +7,13 @@
 #include <nlohmann/json.hpp>
 
 #include <oblique/commission/on_machine.h>
+#include <oblique/compare/budget.h>
 #include <oblique/compare/compare.h>
 #include <oblique/compare/machine_comparison.h>
 #include <oblique/compare/monte_carlo.h>
 #include <oblique/diagram/machine_profile.h>
 #include <oblique/draw/chart/chart.h>
+#include <oblique/report/budget_report.h>
 #include <oblique/report/comparison_chart.h>
 #include <oblique/report/comparison_report.h>
 #include <oblique/report/json_text.h>
@@ -22,6 +24,39 @@
 namespace oblique::python {
 namespace {
 
+/// How the elements scatter: within a tolerance, or as those of a machine.
+std::vector<diagram::BlockFigure> scatters_of(const Library& library, const diagram::MachineProfile* machine,
+                                              std::optional<double> tolerance) {
+  if (tolerance) return compare::scatters_of_tolerance(*library, *tolerance);
+  if (machine != nullptr && !machine->scatters.empty()) return machine->scatters;
+  throw text::ReadError(text::Diagnostic{
+      {},
+      machine == nullptr ? std::string("nothing says how far the elements scatter")
+                         : "nothing is published of how the elements of " + machine->title + " scatter",
+      "a tolerance, such as 0.001",
+      text::Remedy{"give ", text::Setting{"tolerance"}, machine == nullptr ? " or " : "",
+                   machine == nullptr ? text::Remedy::Piece(text::Setting{"machine"}) : std::string()}});
+}
+
+/// Whose tolerances the errors come from.
+report::BudgetReport budget_of(const mechanism::Mechanism& mechanism, const diagram::Diagram& diagram,
+                               const Library& library, const diagram::MachineProfile* machine,
+                               std::optional<double> tolerance, bool turning) {
+  report::BudgetReport report;
+  report.unit = mechanism.length_unit;
+  report.turning = turning;
+  compare::BudgetOptions options;
+  options.scatters = scatters_of(library, machine, tolerance);
+  report.scatter = tolerance ? "within ±" + nlohmann::json(*tolerance).dump()
+                             : "as those of " + machine->title + " scatter";
+  unlocked([&](SignalWatch& watch) {
+    options.progress = watch.progress();
+    report.budget = compare::error_budget(mechanism, diagram, *library, options);
+    return 0;
+  });
+  return report;
+}
+
 /// How the elements are to be drawn: what is set of `tolerance`, `runs`, `seed`, `first_run`, `threads`.
 report::MonteCarloReport draw_elements(const mechanism::Mechanism& mechanism, const diagram::Diagram& diagram,
                                        const Library& library, const diagram::MachineProfile* machine,
@@ -29,20 +64,11 @@ report::MonteCarloReport draw_elements(const mechanism::Mechanism& mechanism, co
   report::MonteCarloReport report;
   report.unit = mechanism.length_unit;
   const auto tolerance = entry<std::optional<double>>(asked, "tolerance", std::nullopt);
+  report.options.scatters = scatters_of(library, machine, tolerance);
   if (tolerance) {
     report.tolerance = nlohmann::json(*tolerance).dump();
-    report.options.scatters = compare::scatters_of_tolerance(*library, *tolerance);
-  } else if (machine == nullptr || machine->scatters.empty()) {
-    throw text::ReadError(text::Diagnostic{
-        {},
-        machine == nullptr ? std::string("nothing says how far the elements scatter")
-                           : "nothing is published of how the elements of " + machine->title + " scatter",
-        "a tolerance, such as 0.001",
-        text::Remedy{"give ", text::Setting{"tolerance"}, machine == nullptr ? " or " : "",
-                     machine == nullptr ? text::Remedy::Piece(text::Setting{"machine"}) : std::string()}});
   } else {
     report.machine = machine->title;
-    report.options.scatters = machine->scatters;
   }
   report.options.runs = entry(asked, "runs", 1000);
   report.options.seed = entry<std::uint64_t>(asked, "seed", 1);
@@ -75,7 +101,9 @@ py::dict compared(const MechanismModel& model, const Library& library, const py:
       machine_name.empty() ? nullptr : diagram::find_machine(machine_name);
   if (machine == nullptr && !machine_name.empty())
     throw diagram::DiagramError(diagram::unknown_machine(machine_name));
-  const bool draws = !monte_carlo.is_none();
+  const bool draws = !monte_carlo.is_none(), with_budget = entry(asked, "budget", false);
+  const auto tolerance = entry<std::optional<double>>(asked, "tolerance", std::nullopt);
+  if (with_budget) scatters_of(library, machine, tolerance);  // before the work, not after it
 
   mechanism::Mechanism mechanism;
   diagram::Diagram drawn;  // whose elements scatter
@@ -85,7 +113,7 @@ py::dict compared(const MechanismModel& model, const Library& library, const py:
   std::optional<compare::MachineComparison> on_machine;
   unlocked([&](SignalWatch& watch) {
     mechanism = patch::within_range(model.mechanism);
-    if (machine != nullptr || draws) {
+    if (machine != nullptr || draws || with_budget) {
       single.method = options.methods.front();
       single.split = options.split;
       single.slower = options.slower;
@@ -115,6 +143,12 @@ py::dict compared(const MechanismModel& model, const Library& library, const py:
   if (on_machine) {
     text += report::to_text(*on_machine, comparison, python_words()) + bandwidth_text;
     json["machine"] = report::to_json(*on_machine);
+  }
+  if (with_budget) {
+    const report::BudgetReport budget =
+        budget_of(mechanism, drawn, library, machine, tolerance, comparison.turning);
+    text += report::to_text(budget);
+    json["budget"] = report::to_json(budget);
   }
   if (draws) {
     const report::MonteCarloReport drawn_report =

@@ -81,6 +81,37 @@ diagram::OperatingMode mode_of(const std::string& name) {
                        text::suggest(name, {"potset", "initial", "operate", "hold"})});
 }
 
+std::size_t set_probe(HeldConsole& held, const std::vector<std::string>& names, const py::dict& asked) {
+  console::ProbeSettings settings;
+  settings.names = names;
+  settings.interval = entry(asked, "interval", settings.interval);
+  settings.length = entry(asked, "length", settings.length);
+  settings.most_traces = entry(asked, "most_traces", settings.most_traces);
+  if (const auto name = entry<std::string>(asked, "trigger", ""); !name.empty()) {
+    const auto slope = entry<std::string>(asked, "slope", "rising");
+    settings.trigger = {name, entry(asked, "level", 0.0),
+                        slope == "falling"  ? console::Trigger::Slope::falling
+                        : slope == "either" ? console::Trigger::Slope::either
+                                            : console::Trigger::Slope::rising,
+                        entry(asked, "hold_off", 0.0)};
+  }
+  return held.with([&](auto& c) { return c.set_probe(std::move(settings)); });
+}
+
+/// Of each trace when it was triggered, and its rows: the time, then the values.
+py::list traces_of(HeldConsole& held, std::size_t probe) {
+  py::list list;
+  for (const console::Trace& trace : held.with([&](auto& c) { return c.traces(probe); })) {
+    std::vector<double> rows;
+    for (std::size_t row = 0; row < trace.times.size(); ++row) {
+      rows.push_back(trace.times[row]);
+      for (const std::vector<double>& values : trace.values) rows.push_back(values[row]);
+    }
+    list.append(py::make_tuple(trace.begin, to_array(std::move(rows), 1 + trace.values.size())));
+  }
+  return list;
+}
+
 }  // namespace
 
 void bind_consoles(py::module_& module) {
@@ -102,8 +133,14 @@ void bind_consoles(py::module_& module) {
            })
       .def("turn",
            [](HeldConsole& held, const std::string& pot, const std::string& value) {
+             return held.with([&](auto& c) { return c.turn(pot, value) == console::Turned::at_once; });
+           })
+      .def("set_probe", &set_probe)
+      .def("traces", &traces_of)
+      .def("remove_probe",
+           [](HeldConsole& held, std::size_t probe) {
              held.with([&](auto& c) {
-               c.turn(pot, value);
+               c.remove_probe(probe);
                return 0;
              });
            })
@@ -131,10 +168,7 @@ void bind_consoles(py::module_& module) {
            [](HeldConsole& held) {
              return held.with([](auto& c) {
                std::vector<std::pair<std::string, double>> beyond;
-               for (const std::string& name : c.signal_names()) {
-                 if (const double value = c.signal(name); std::abs(value) > 1)
-                   beyond.emplace_back(name, value);
-               }
+               for (const auto& [signal, value] : c.overloads()) beyond.emplace_back(signal, value);
                return beyond;
              });
            })

@@ -121,6 +121,7 @@ void bind_diagrams(py::module_& module) {
            })
       .def("servo_amplifiers", &servo_amplifiers)
       .def("run", &run_diagram)
+      .def("gradient", &gradient_of)
       .def("check", &check)
       .def("rescaled", &rescaled)
       .def("static_test", &static_test)

@@ -9,6 +9,7 @@
 #include <oblique/report/run_chart.h>
 #include <oblique/report/run_text.h>
 #include <oblique/solve/run_state.h>
+#include <oblique/solve/sensitivity/gradient.h>
 
 namespace oblique::python {
 namespace {
@@ -61,7 +62,7 @@ py::dict statistics_of(const FinishedRun& run) {
 std::string chart_of(const FinishedRun& run, const std::vector<std::string>& columns,
                      const std::string& against, const std::string& theme) {
   const report::DrawnColumns drawn =
-      report::drawn_columns(solve::output_columns(run.compiled->flat), {columns, against});
+      report::drawn_columns(solve::run_columns(run.compiled->flat, run.options), {columns, against});
   const draw::Chart chart =
       report::chart_of(run.run, report::rounding_of(run.compiled->flat, run.options), drawn, run.title);
   return draw::to_svg(draw::draw_chart(chart), theme_of(theme));
@@ -105,6 +106,7 @@ std::shared_ptr<FinishedRun> run_diagram(const DiagramModel& model, const Settin
   options.settle = entry(asked, "settle", options.settle);
   options.halt_on_overload = entry(asked, "halt_on_overload", false);
   options.trust = entry(asked, "trust", false);
+  options.sensitivity = entry(asked, "sensitivity", options.sensitivity);
   options.watch_overloads = entry(asked, "watch_overloads", model.diagram().machine.profile != "ideal");
   const auto method = entry<std::string>(asked, "method", "");
   if (method == "auto") options.method = diagram::IntegrationMethod::automatic;
@@ -137,6 +139,22 @@ std::shared_ptr<FinishedRun> run_diagram(const DiagramModel& model, const Settin
   options.interrupted = nullptr;
   finished->options = std::move(options);
   return finished;
+}
+
+std::pair<double, std::vector<double>> gradient_of(const DiagramModel& model, const Settings& settings,
+                                                   const std::string& output, std::optional<double> at,
+                                                   std::optional<double> until,
+                                                   const std::vector<std::string>& by) {
+  return unlocked([&](SignalWatch& watch) {
+    const auto compiled = model.compiled(overrides_of(settings));
+    solve::RunOptions options = solve::options_of(model.diagram().run);
+    options.until = until.value_or(options.until);
+    options.interrupted = [&watch] { return watch.asked_often(); };
+    solve::RunNumber number{solve::RunNumber::Kind::integral, output, 0};
+    if (at) number = {solve::RunNumber::Kind::value, output, *at};
+    solve::Gradient found = solve::gradient(compiled->program, compiled->flat, options, number, by);
+    return std::pair(found.value, std::move(found.by_parameter));
+  });
 }
 
 void bind_runs(py::module_& module) {

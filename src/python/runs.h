@@ -58,4 +58,10 @@ struct FinishedRun {
 std::shared_ptr<FinishedRun> run_diagram(const DiagramModel& model, const Settings& settings,
                                          const py::dict& asked);
 
+/// A number of a run and its derivatives by parameters: an output at a time, or its integral until the end.
+std::pair<double, std::vector<double>> gradient_of(const DiagramModel& model, const Settings& settings,
+                                                   const std::string& output, std::optional<double> at,
+                                                   std::optional<double> until,
+                                                   const std::vector<std::string>& by);
+
 }  // namespace oblique::python

@@ -125,6 +125,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadRequestCase{"SplitOfTheGradient",
                        "oblique patch diagrams/mechanisms/class-iii.toml --method gradient --split AB,O1C,DE",
                        2, "--split AB,O1C,DE with --method gradient, which takes no group apart"},
+        BadRequestCase{"SensitivityToNothing", "oblique run diagrams/lessons/circle.toml --sensitivity x.rat",
+                       2, "there is no sensitivity to 'x.rat': no block has such a parameter"},
         BadRequestCase{
             "MonteCarloWithoutTolerance",
             "oblique compare diagrams/mechanisms/four-bar.toml --monte-carlo 10", 2,

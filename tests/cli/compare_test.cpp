@@ -158,5 +158,36 @@ TEST_F(CompareVerb, MonteCarloTellsWhatFailed) {
               ::testing::ContainsRegex("FAILED [0-9]+ of 12 runs, left out above; the first, run "));
 }
 
+TEST_F(CompareVerb, SaysWhoseToleranceAnErrorIs) {
+  const Outcome outcome =
+      oblique("compare diagrams/mechanisms/four-bar.toml --budget --tolerance 0.1% -o " + file("b.json"));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out,
+              HasSubstr("Error budget: 30 tolerances, uniform within ±0.1%; together they displace "
+                        "point C by "));
+  EXPECT_THAT(outcome.out, HasSubstr("(10 others together 0.1 %)"));
+  std::ifstream stream(file("b.json"));
+  const auto budget = nlohmann::json::parse(stream).at("budget");
+  ASSERT_EQ(budget.at("elements").size(), 30U);
+  EXPECT_EQ(budget.at("point"), "C");
+  double shares = 0;
+  for (const auto& element : budget.at("elements")) shares += element.at("share").get<double>();
+  EXPECT_NEAR(shares, 1, 1e-12);
+  EXPECT_GE(budget.at("elements").at(0).at("share"), budget.at("elements").at(1).at("share"));
+}
+
+TEST_F(CompareVerb, TellsOfTheScatterThatABudgetNeeds) {
+  const std::string four_bar = "compare diagrams/mechanisms/four-bar.toml ";
+  const Outcome without = oblique(four_bar + "--budget");
+  EXPECT_EQ(without.status, 2);
+  EXPECT_THAT(without.err,
+              HasSubstr("--budget without how far the elements scatter; expected --tolerance, such as "
+                        "0.1%, or a --machine"));
+  const Outcome alone = oblique(four_bar + "--tolerance 1%");
+  EXPECT_EQ(alone.status, 2);
+  EXPECT_THAT(alone.err, HasSubstr("--tolerance says how elements scatter, and nothing asks for it; expected "
+                                   "--budget or --monte-carlo N"));
+}
+
 }  // namespace
 }  // namespace oblique::test

@@ -50,6 +50,36 @@ def test_records_with_a_scope(decay):
     assert ob.Console(decay).scope(["x", "x.rate"], 1).rows.shape == (241, 3)
 
 
+def test_says_how_a_pot_was_turned(decay):
+    machine = ob.Console(decay)
+    assert machine.turn("x.rate", 3) is False  # a factor of 1 was left out
+    assert machine.turn("x.rate", 4) is True
+    machine.advance(0.5)
+    assert machine["x"] == pytest.approx(math.exp(-2), abs=1e-7)
+
+
+def test_records_with_a_probe(decay):
+    machine = ob.Console(decay)
+    steps, rows = machine.probe("x"), machine.probe(["x"], interval=0.5)
+    shot = machine.probe("x", trigger="x", level=0.5, slope="falling", interval=0.1, length=0.25, single=True)
+    machine.advance(2)
+    assert steps.traces[0]["t"][0] == 0 and steps.traces[0].rows.shape[0] > 10
+    np.testing.assert_allclose(rows.traces[0]["x"], np.exp(-0.5 * np.arange(5)), atol=1e-7)
+    assert rows.traces[0].units["x"] == "machine unit"
+    trace, = shot.traces
+    assert trace.begin == pytest.approx(math.log(2), abs=1e-7)
+    assert trace.rows.shape == (3, 2)
+    rows.remove()
+    with pytest.raises(ob.ConsoleError, match="no probe number"):
+        rows.traces
+    with pytest.raises(ob.ConsoleError, match="no signal 'y'"):
+        machine.probe("y")
+    with pytest.raises(ob.ConsoleError, match="no length"):
+        machine.probe("x", length=0)
+    with pytest.raises(ob.RequestError, match="slope"):
+        machine.probe("x", trigger="x", slope="up")
+
+
 def test_saves_and_restores(decay):
     machine = ob.Console(decay)
     machine.advance(1)

@@ -184,3 +184,13 @@ def test_machines_and_blocks(program):
     assert str(ob.blocks["multiplier"]) == program("blocks", "multiplier")
     assert str(ob.machines["tr-10"]) == program("machines", "tr-10")
     assert "<table>" in ob.blocks._repr_html_() and "<table>" in ob.machines._repr_html_()
+
+
+def test_budget_has_shares():
+    study = ob.Mechanism("diagrams/mechanisms/four-bar.toml").compare(budget=True, tolerance=0.001, positions=37)
+    budget = study.budget
+    assert sum(one["share"] for one in budget["elements"]) == pytest.approx(1)
+    assert budget["elements"][0]["error"] <= budget["error"] and budget["point"] == "C"
+    assert "Error budget" in study.text
+    with pytest.raises(ob.ReadError, match="nothing says how far"):
+        ob.Mechanism("diagrams/mechanisms/four-bar.toml").compare(budget=True)

@@ -2,6 +2,7 @@
 """Runs: numbers, names, units, and what becomes of them in NumPy, pandas, xarray and Matplotlib."""
 
 import gc
+import math
 import pathlib
 import xml.etree.ElementTree
 
@@ -155,3 +156,19 @@ def test_saves_pictures(decay, tmp_path):
         assert pathlib.Path(name).read_text(encoding="utf-8") == picture.svg
     picture.save(tmp_path / "a.png")
     assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_differentiates_by_parameters(decay):
+    run = decay.run(2, sensitivity=["x.rate", "x.initial"], tolerance=1e-9)
+    t = run["t"]
+    np.testing.assert_allclose(run["d(x)/d(x.rate)"], -t * np.exp(-t), atol=1e-7)  # a hundred times the tolerance
+    np.testing.assert_allclose(run["d(x)/d(x.initial)"], np.exp(-t), atol=1e-7)
+    value, gradient = decay.gradient("x", ["x.rate", "x.initial"], at=2)
+    assert value == pytest.approx(math.exp(-2), abs=1e-6)
+    np.testing.assert_allclose(gradient, [-2 * math.exp(-2), math.exp(-2)], atol=1e-6)
+    integral, (by_initial,) = decay.gradient("x", "x.initial", until=2)
+    assert integral == pytest.approx(1 - math.exp(-2), abs=1e-6) and by_initial == pytest.approx(integral, abs=1e-6)
+    with pytest.raises(ob.ReadError, match="no sensitivity to 'x.rat'"):
+        decay.run(2, sensitivity="x.rat")
+    with pytest.raises(ob.ReadError, match="no output 'y'"):
+        decay.gradient("y", "x.rate", at=1)

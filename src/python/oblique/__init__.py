@@ -18,7 +18,7 @@ from ._oblique import __version__
 from ._tables import Table
 from ._blocks import Block, BlockLibrary, blocks
 from .comparison import ComparedRun, Comparison, MonteCarlo
-from .console import Console, Reading
+from .console import Console, Probe, Reading, Trace
 from .diagram import Diagram, DiagramCheck
 from ._machines import Machine, machines
 from .mechanism import Fit, Mechanism, MechanismCheck, Patch
@@ -30,6 +30,6 @@ from .signals import Signal, Sum
 __all__ = [
     "Animation", "Block", "BlockLibrary", "ComparedRun", "Comparison", "Console", "ConsoleError", "Diagnostic", "Diagram",
     "DiagramCheck", "DiagramError", "Error", "Event", "Fit", "Machine", "Mechanism", "MechanismCheck", "MechanismError",
-    "MonteCarlo", "Motion", "NetworkError", "Overload", "Page", "Patch", "PatchError", "Picture", "ReadError", "Reading",
-    "RealiseError", "RequestError", "Run", "RunWarning", "Signal", "SolveError", "State", "Sum", "SynthesisError", "Table", "Trust",
-    "UnknownNameError", "__version__", "blocks", "machines", "plots"]
+    "MonteCarlo", "Motion", "NetworkError", "Overload", "Page", "Patch", "PatchError", "Picture", "Probe", "ReadError", "Reading",
+    "RealiseError", "RequestError", "Run", "RunWarning", "Signal", "SolveError", "State", "Sum", "SynthesisError", "Table", "Trace",
+    "Trust",    "UnknownNameError", "__version__", "blocks", "machines", "plots"]

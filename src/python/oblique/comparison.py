@@ -98,6 +98,8 @@ class Comparison:
         """What was asked for and could not be had, with "why"."""
         drawn = self.data.get("monte_carlo")
         self.monte_carlo = None if drawn is None else MonteCarlo(drawn, self.unit)
+        self.budget: Optional[dict[str, Any]] = self.data.get("budget")
+        """Whose tolerances the errors come from, the largest share first (docs/trust.md has the keys)."""
         self.machine: Optional[dict[str, Any]] = self.data.get("machine")
         """The errors on a machine's elements, figure by figure."""
         self._chart = found["chart"]

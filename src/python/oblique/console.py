@@ -9,6 +9,7 @@ from types import TracebackType
 from typing import Any, NamedTuple, Optional, Union
 
 import numpy as np
+import numpy.typing as npt
 
 from . import _arguments, _oblique
 from ._arguments import PathLike, Quantity
@@ -23,6 +24,34 @@ class Reading(NamedTuple):
 
     value: float
     unit: str
+
+
+class Trace(Table):
+    """What a probe has recorded from one trigger on: a table with `t` [s] first."""
+
+    def __init__(self, begin: float, columns: Sequence[tuple[str, str]], rows: npt.NDArray[np.float64]) -> None:
+        super().__init__(columns, rows)
+        self.begin = begin
+        """When it was triggered [s]."""
+
+
+class Probe:
+    """A probe of a console: its oscilloscope. Made by `console.probe`."""
+
+    def __init__(self, console: "Console", number: int, columns: Sequence[tuple[str, str]]) -> None:
+        self._console = console
+        self._number = number
+        self._columns = columns
+
+    @property
+    def traces(self) -> tuple[Trace, ...]:
+        """What was recorded so far, one trace a trigger; without a trigger a single one."""
+        return tuple(Trace(begin, self._columns, rows)
+                     for begin, rows in self._console._held().traces(self._number))
+
+    def remove(self) -> None:
+        """Takes it away."""
+        self._console._held().remove_probe(self._number)
 
 
 class Console:
@@ -107,10 +136,12 @@ class Console:
         """The number that `read` gives."""
         return self.read(name).value
 
-    def turn(self, pot: str, value: Quantity) -> None:
+    def turn(self, pot: str, value: Quantity) -> bool:
         """Turns a pot ("c.gain") or the weight of a wire ("c.in[2]") to a number in the unit of the parameter, or to a
-        quantity ("20 ms"). The machine goes on as it stands. Throws DiagramError, and is then as it was."""
-        self._held().turn(_arguments.text("pot", pot), _arguments.setting(f"the value of {pot}", value))
+        quantity ("20 ms"). The machine goes on as it stands when it next runs or is read. True: the equations stay, with
+        another number; False: they are others (an infinite gain, a factor that becomes 0 or 1), and were compiled anew.
+        Throws DiagramError, and is then as it was."""
+        return self._held().turn(_arguments.text("pot", pot), _arguments.setting(f"the value of {pot}", value))
 
     def __setitem__(self, pot: str, value: Quantity) -> None:
         """The same as `turn`."""
@@ -146,6 +177,37 @@ class Console:
         values = held.scope(probes, times.tolist())
         self._tell()
         return Table([("t", "s"), *zip(probes, units)], np.column_stack([times, values]))
+
+    def probe(self, names: Union[str, Sequence[str]], *, interval: Quantity = 0, trigger: Optional[str] = None,
+              level: float = 0, slope: str = "rising", hold_off: Quantity = 0, length: Quantity = math.inf,
+              single: bool = False) -> Probe:
+        """Records outputs and signals from now on, at every step, or `interval` [s] apart.
+
+        With a `trigger`, an output or a signal, it begins a trace of `length` [s] wherever that one passes `level` on its
+        `slope` ("rising", "falling" or "either"), but not within `hold_off` [s] of the last; `single`: only once. Throws
+        ConsoleError for a name that there is not.
+
+        >>> import oblique as ob
+        >>> d = ob.Diagram()
+        >>> x, v = d.integrator(name="x"), d.integrator(initial=1, name="v")
+        >>> x.input, v.input = v, -x
+        >>> machine = ob.Console(d)
+        >>> scope = machine.probe("x", interval=0.1, trigger="x", length=1)
+        >>> machine.advance(20)
+        >>> [f"{trace.begin:.6f}" for trace in scope.traces]   # a turn apart
+        ['0.000000', '6.283185', '12.566371', '18.849556']
+        """
+        probes = _arguments.names("names", names)
+        options = {"interval": _arguments.quantity("interval", interval, "s"),
+                   "length": _arguments.quantity("length", length, "s"),
+                   "most_traces": 1 if single else None,
+                   "trigger": None if trigger is None else _arguments.text("trigger", trigger),
+                   "level": _arguments.quantity("level", level, "1"),
+                   "slope": _arguments.choice("slope", slope, ("rising", "falling", "either")),
+                   "hold_off": _arguments.quantity("hold_off", hold_off, "s")}
+        held = self._held()
+        number = held.set_probe(probes, options)
+        return Probe(self, number, [("t", "s"), *((name, self.read(name).unit) for name in probes)])
 
     def save(self) -> State:
         """The state where it stands, with which a run or any console of the same diagram can go on."""

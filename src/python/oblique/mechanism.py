@@ -364,13 +364,13 @@ class Mechanism:
                 methods: Union[str, Sequence[str]] = "triangles", split: Optional[Sequence[str]] = None,
                 slower: Optional[float] = None, positions: int = 361, machine: Optional[str] = None,
                 monte_carlo: int = 0, tolerance: Optional[Quantity] = None, seed: int = 1, first_run: int = 0,
-                threads: int = 0, blocks: Optional[BlockLibrary] = None) -> Comparison:
+                threads: int = 0, budget: bool = False, blocks: Optional[BlockLibrary] = None) -> Comparison:
         """Patches it with each method, bandwidth [Hz] and gain (1e2 … 1e6), runs the diagrams over the motion, and
         holds them against the exact one.
 
         With `machine`, with the figures of one besides; with `monte_carlo`, so many runs with elements drawn anew within
         `tolerance` (a part: 0.001, "0.1 %"), or as the machine's scatter: then one gain, bandwidth and method (a gain of
-        1e6 where none is given). `threads` is how many work at that, 0 as many as there are processors; the result does
+        1e6 where none is given). `budget` says whose tolerances the errors come from. `threads` is how many work at that, 0 as many as there are processors; the result does
         not depend on it. Throws RequestError, PatchError, SolveError.
         """
         wanted = [_arguments.choice("methods", one, _METHODS) for one in _arguments.names("methods", methods)]
@@ -384,22 +384,24 @@ class Mechanism:
         options.update(split=chosen["split"], slower=chosen["slower"])
         runs = _arguments.count("monte_carlo", monte_carlo, 0)
         draws: Optional[dict[str, Any]] = None
-        if runs or machine is not None:
-            what = "machine=" if machine is not None else "monte_carlo="
+        part = None if tolerance is None else _arguments.positive("tolerance", tolerance, "1")
+        if part is not None and part > 0.5:
+            raise RequestError(f"tolerance={_arguments.shown(tolerance)}", "a number above 0 and up to 0.5")
+        if budget:
+            options.update(budget=True, tolerance=part)
+        if runs or budget or machine is not None:
+            what = "machine=" if machine is not None else "budget=" if budget else "monte_carlo="
             for name, several in (("gains", options["gains"]), ("bandwidths", options["bandwidths"]),
                                   ("methods", wanted)):
                 if several is not None and len(several) > 1:
                     raise RequestError(f"{what} with {len(several)} {name}", "one")
             options["gains"] = options["gains"] or [1e6]
         if runs:
-            part = None if tolerance is None else _arguments.positive("tolerance", tolerance, "1")
-            if part is not None and part > 0.5:
-                raise RequestError(f"tolerance={_arguments.shown(tolerance)}", "a number above 0 and up to 0.5")
             draws = {"runs": runs, "tolerance": part, "seed": _arguments.count("seed", seed, 0, 2**63 - 1),
                      "first_run": _arguments.count("first_run", first_run, 0, 2**63 - 1),
                      "threads": _arguments.count("threads", threads, 0, 4096)}
-        elif tolerance is not None:
-            raise RequestError("tolerance= without elements that are drawn", "monte_carlo=1000 beside it")
+        elif tolerance is not None and not budget:
+            raise RequestError("tolerance= without elements that are drawn", "monte_carlo=1000 or budget=True beside it")
         library = shipped_blocks if blocks is None else blocks
         name = "" if machine is None else machines[machine].name
         study = Comparison(self._model.compare(library._raw, options, name, draws))
