@@ -6,7 +6,6 @@
 #include <oblique/draw/animation/animation.h>
 #include <oblique/draw/chart/point_plots.h>
 #include <oblique/mechanism/motion/motion.h>
-#include <oblique/mechanism/structure/structure.h>
 #include <oblique/report/drive_caption.h>
 #include <oblique/report/linkage_scene.h>
 #include <oblique/report/magnified.h>
@@ -14,29 +13,6 @@
 
 namespace oblique::python {
 namespace {
-
-/// The moments of a round and its frames: a closed motion once, another one to its end and back.
-struct Round {
-  std::vector<mechanism::Configuration> frames;
-  std::vector<double> times;  ///< [s]
-};
-
-Round round_of(const mechanism::Mechanism& mechanism, int frames) {
-  const mechanism::Structure structure = mechanism::decompose(mechanism);
-  report::DrawnMotion motion = report::drawn_motion(mechanism, structure, frames + 1);
-  if (!motion.closed) motion = report::drawn_motion(mechanism, structure, (frames + 1) / 2 + 1);
-  Round round;
-  const auto add = [&](std::size_t k, bool back) {
-    if (motion.rows[k].status == mechanism::Status::open) return;
-    round.frames.push_back(motion.rows[k]);
-    if (back) mechanism::turn_back(round.frames.back());
-    round.times.push_back(motion.times[k]);
-  };
-  for (std::size_t k = 0; k < motion.rows.size(); ++k) add(k, false);
-  if (motion.closed) return round;
-  for (std::size_t k = motion.rows.size() - 1; k-- > 0;) add(k, true);
-  return round;
-}
 
 /// A picture and a remark about its magnified errors; `patch` is None where no patch is drawn over it.
 py::tuple drawn(const MechanismModel& model, const Library& library, std::optional<double> at, int positions,
@@ -84,14 +60,14 @@ py::tuple animated(const MechanismModel& model, const Library& library, int fram
     const mechanism::Mechanism mechanism = magnify ? patch::within_range(model.mechanism) : model.mechanism;
     const std::vector<std::size_t> traces = report::traced_points(mechanism, trace);
     const report::TimedScene timed = report::linkage_scene(mechanism, 0, 1);
-    const Round round = round_of(mechanism, frames);
+    const report::DrawnMotion round = report::drawn_round(mechanism, frames);
     draw::LinkageAnimation animation;
     animation.duration = duration;
     animation.width = width;
     animation.scene = timed.scene;
     animation.scene.traces = traces;
     animation.scene.caption.clear();
-    animation.frames = round.frames;
+    animation.frames = round.rows;
     for (const double time : round.times)
       animation.captions.push_back(report::drive_caption(mechanism, time));
     if (magnify) {
@@ -99,7 +75,7 @@ py::tuple animated(const MechanismModel& model, const Library& library, int fram
                                            watch.progress());
       animation.scene.analog = analog.overlay(timed);
       for (std::size_t k = 0; k < round.times.size(); ++k)
-        animation.analog_frames.push_back(analog.points(round.times[k], round.frames[k]));
+        animation.analog_frames.push_back(analog.points(round.times[k], round.rows[k]));
       remark = analog.remark(python_words());
     }
     svg = draw::animated_svg(mechanism, animation, colours);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/report/linkage_scene.h>
 
+#include <numbers>
+
 #include <gtest/gtest.h>
 
 #include <oblique/mechanism/model/read_mechanism.h>
@@ -38,6 +40,39 @@ C = [3.5, 2]
   EXPECT_NEAR(distance(0), 4, 1e-3);
   EXPECT_NEAR(distance(4), 4, 1e-3);
   EXPECT_LT(distance(2), 3.5);
+}
+
+mechanism::Mechanism crank(const std::string& more) {
+  return mechanism::parse_mechanism(R"(format = "oblique-mechanism/1"
+[frame]
+A = [0, 0]
+[bodies]
+AB = { points = ["A", "B"], length = 3 }
+[drives]
+crank = { turns = "AB", about = "A", speed = 1 }
+)" + more,
+                                    "crank.toml");
+}
+
+// A turn is gone through once, a quarter of one there and back, with the velocities of the way back.
+TEST(DrawnRound, EndsAsItBegins) {
+  const DrawnMotion turn = drawn_round(crank(""), 8);
+  EXPECT_TRUE(turn.closed);
+  EXPECT_EQ(turn.rows.size(), 9U);
+  EXPECT_NEAR(turn.times.back(), 2 * std::numbers::pi, 1e-12);  // rounding
+  const DrawnMotion quarter = drawn_round(crank("[motion]\nuntil = \"pi/2\"\n"), 8);
+  EXPECT_FALSE(quarter.closed);
+  ASSERT_EQ(quarter.rows.size(), 9U);
+  const std::size_t b = 1;
+  for (std::size_t k = 0; k < 9; ++k) {
+    const mechanism::PointState &one = quarter.rows[k].points[b], &other = quarter.rows[8 - k].points[b];
+    EXPECT_EQ(quarter.times[k], quarter.times[8 - k]);
+    EXPECT_EQ(one.position, other.position);
+    if (k != 4) {
+      EXPECT_EQ(one.velocity, -other.velocity);
+    }
+  }
+  EXPECT_NEAR(quarter.rows[4].points[b].position.y(), 3, 1e-12);  // rounding
 }
 
 }  // namespace

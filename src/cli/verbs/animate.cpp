@@ -9,7 +9,6 @@
 #include <oblique/mechanism/motion/motion.h>
 
 #include <oblique/draw/animation/animated_page.h>
-#include <oblique/mechanism/structure/structure.h>
 #include <oblique/report/drive_caption.h>
 #include <oblique/report/linkage_scene.h>
 #include <oblique/report/magnified.h>
@@ -22,33 +21,6 @@
 #include "verbs/patch_choice.h"
 
 namespace oblique::cli {
-namespace {
-
-/// The moments of a round and its frames: a closed motion once, another one to its end and back.
-struct Round {
-  std::vector<mechanism::Configuration> frames;
-  std::vector<double> times;  ///< [s]
-};
-
-Round round_of(const mechanism::Mechanism& mechanism, int frames) {
-  const mechanism::Structure structure = mechanism::decompose(mechanism);
-  report::DrawnMotion motion = report::drawn_motion(mechanism, structure, frames + 1);
-  const bool closed = motion.closed;
-  if (!closed) motion = report::drawn_motion(mechanism, structure, (frames + 1) / 2 + 1);
-  Round round;
-  const auto add = [&](std::size_t k, bool back) {
-    if (motion.rows[k].status == oblique::mechanism::Status::open) return;
-    round.frames.push_back(motion.rows[k]);
-    if (back) mechanism::turn_back(round.frames.back());
-    round.times.push_back(motion.times[k]);
-  };
-  for (std::size_t k = 0; k < motion.rows.size(); ++k) add(k, false);
-  if (closed) return round;
-  for (std::size_t k = motion.rows.size() - 1; k-- > 0;) add(k, true);
-  return round;
-}
-
-}  // namespace
 
 ExitStatus animate_mechanism(const Session& session, const AnimateRequest& request) {
   constexpr std::array<std::string_view, 3> kEndings{".svg", ".html", ".gif"};
@@ -64,7 +36,7 @@ ExitStatus animate_mechanism(const Session& session, const AnimateRequest& reque
   if (magnification) mechanism = patch::within_range(mechanism);
   const std::vector<std::size_t> traces = report::traced_points(mechanism, request.trace);
   const report::TimedScene timed = report::linkage_scene(mechanism, 0, 1);
-  const Round round = round_of(mechanism, timing.frames);
+  const report::DrawnMotion round = report::drawn_round(mechanism, timing.frames);
 
   draw::LinkageAnimation animation;
   animation.duration = timing.duration;
@@ -72,7 +44,7 @@ ExitStatus animate_mechanism(const Session& session, const AnimateRequest& reque
   animation.scene = timed.scene;
   animation.scene.traces = traces;
   animation.scene.caption.clear();
-  animation.frames = round.frames;
+  animation.frames = round.rows;
   for (const double time : round.times) animation.captions.push_back(report::drive_caption(mechanism, time));
   if (magnification) {
     const report::MagnifiedAnalog analog = [&] {
@@ -83,7 +55,7 @@ ExitStatus animate_mechanism(const Session& session, const AnimateRequest& reque
     }();
     animation.scene.analog = analog.overlay(timed);
     for (std::size_t k = 0; k < round.times.size(); ++k)
-      animation.analog_frames.push_back(analog.points(round.times[k], round.frames[k]));
+      animation.analog_frames.push_back(analog.points(round.times[k], round.rows[k]));
     note(analog.remark(command_line()));
   }
 

@@ -86,6 +86,25 @@ DrawnMotion drawn_motion(const mechanism::Mechanism& mechanism, const mechanism:
   return motion;
 }
 
+DrawnMotion drawn_round(const mechanism::Mechanism& mechanism, int frames) {
+  const mechanism::Structure structure = mechanism::decompose(mechanism);
+  DrawnMotion motion = drawn_motion(mechanism, structure, frames + 1);
+  if (!motion.closed) motion = drawn_motion(mechanism, structure, (frames + 1) / 2 + 1);
+  DrawnMotion round;
+  round.closed = motion.closed;
+  round.ends_at_limit = motion.ends_at_limit;
+  const auto add = [&](std::size_t k, bool back) {
+    if (motion.rows[k].status == mechanism::Status::open) return;
+    round.rows.push_back(motion.rows[k]);
+    if (back) mechanism::turn_back(round.rows.back());
+    round.times.push_back(motion.times[k]);
+  };
+  for (std::size_t k = 0; k < motion.rows.size(); ++k) add(k, false);
+  if (motion.closed) return round;
+  for (std::size_t k = motion.rows.size() - 1; k-- > 0;) add(k, true);
+  return round;
+}
+
 std::vector<std::size_t> traced_points(const mechanism::Mechanism& mechanism,
                                        const std::vector<std::string>& names) {
   if (names.empty()) return draw::points_to_trace(mechanism);

@@ -21,6 +21,10 @@ struct DrawnMotion {
 DrawnMotion drawn_motion(const mechanism::Mechanism& mechanism, const mechanism::Structure& structure,
                          int rows);
 
+/// The same as a round to be repeated, in `frames` parts: a closed motion once, another one to its end and
+/// back. Positions that cannot be assembled are left out.
+DrawnMotion drawn_round(const mechanism::Mechanism& mechanism, int frames);
+
 /// The points with these names; "none" for none, no name for those worth it. Throws ReadError, of the setting
 /// 'trace'.
 std::vector<std::size_t> traced_points(const mechanism::Mechanism& mechanism,
