@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
+#include <ranges>
 
 #include <oblique/network/program/program_code.h>
 
@@ -55,7 +56,7 @@ bool ParameterSetting::set(std::span<const Parameter> parameters, bool kinds_cou
   const bool same = std::all_of(was_.begin(), was_.end(),
                                 [&](const auto& entry) { return holds(entry.first, kinds_count); });
   if (!same) {
-    for (auto entry = was_.rbegin(); entry != was_.rend(); ++entry) values_[entry->first] = entry->second;
+    for (const auto& [c, value] : std::views::reverse(was_)) values_[c] = value;
   }
   return same;
 }

@@ -34,6 +34,6 @@ struct TangentNetwork {
 };
 
 /// `parameters` are numbers of ParameterNumbers.
-TangentNetwork with_tangents(Network network, std::span<const std::uint32_t> parameters);
+TangentNetwork with_tangents(Network made, std::span<const std::uint32_t> parameters);
 
 }  // namespace oblique::network
