@@ -137,6 +137,24 @@ y = { type = "integrator", in = "f" })");
   EXPECT_NEAR(row_values(result, "y").back(), 9, 1e-7);  // some tolerances
 }
 
+// x' = 1/2 − s slides at zero, above it for three quarters of the time: so is every other multiple of x, and
+// every comparison of one shows its part of it.
+TEST(Slides, EveryComparisonOfWhatSlidesTakesItsShare) {
+  const Compiled made(R"(half = { type = "constant", value = 0.5 }
+x = { type = "integrator", in = ["half", "-s"], initial = 1 }
+s = { type = "sign", in = "x" }
+twice = { type = "comparator", in = "2*x" }
+back = { type = "comparator", in = "-1.7*x" }
+sum = { type = "summer", in = ["x", "0.3*x"] }
+both = { type = "comparator", in = ["sum", "-0.1*x"] })");
+  const auto result = run_of(made, {.until = 4, .samples = 5});
+  EXPECT_TRUE(result.warnings.empty());
+  EXPECT_NEAR(row_values(result, "s").back(), 0.5, 1e-9);  // the mixture is known as the states are held
+  EXPECT_NEAR(row_values(result, "twice").back(), 0.75, 1e-9);
+  EXPECT_NEAR(row_values(result, "back").back(), 0.25, 1e-9);
+  EXPECT_NEAR(row_values(result, "both").back(), 0.75, 1e-9);
+}
+
 TEST(Slides, WhatASlideDoesPassesThroughASquarer) {
   // x' = 0.2 − u slides at x = 0 with a mean u of 0.2; u² is 1 on both sides, whatever the mean is.
   const Compiled made(R"(one = { type = "constant" }

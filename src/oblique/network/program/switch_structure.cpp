@@ -2,6 +2,7 @@
 #include <oblique/network/program/switch_structure.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -34,23 +35,67 @@ class Finder {
   }
   std::size_t loop_of(const Node& node) const { return loop_of_[node.variable - 1 - network_.states.size()]; }
 
-  /// a − b and b − a, x and −x are one event function.
+  /// A sum of multiples of nodes, by node; a constant is a multiple of kNone.
+  using Sum = std::map<NodeId, double>;
+
+  /// Adds a multiple of a node to a sum, taken apart as far as it is linear. False where that is too long.
+  bool add_to(Sum& sum, NodeId id, double factor, int& left) const {
+    const ExpressionGraph& graph = network_.graph;
+    const Node& node = graph[id];
+    if (--left < 0) return false;
+    switch (node.op) {
+      case Op::constant:
+        sum[SwitchStructure::kNone] += factor * node.value;
+        return true;
+      case Op::negate:
+        return add_to(sum, node.a, -factor, left);
+      case Op::add:
+        return add_to(sum, node.a, factor, left) && add_to(sum, node.b, factor, left);
+      case Op::subtract:
+        return add_to(sum, node.a, factor, left) && add_to(sum, node.b, -factor, left);
+      case Op::multiply:
+        if (graph.is_constant(node.a)) return add_to(sum, node.b, factor * graph[node.a].value, left);
+        if (graph.is_constant(node.b)) return add_to(sum, node.a, factor * graph[node.b].value, left);
+        break;
+      case Op::divide:
+        if (graph.is_constant(node.b)) return add_to(sum, node.a, factor / graph[node.b].value, left);
+        break;
+      default:
+        break;
+    }
+    sum[id] += factor;
+    return true;
+  }
+
+  /// An event function as a sum of which the first multiple is 1, and whether that turned it round. Multiples
+  /// that differ by rounding are one.
+  std::pair<std::vector<std::pair<NodeId, double>>, bool> without_factor(NodeId event_function) const {
+    constexpr double kRounding = 1e-13;
+    constexpr double kSteps = 0x1p40;
+    int left = 64;
+    Sum sum;
+    if (!add_to(sum, event_function, 1, left)) sum = {{event_function, 1.0}};
+    double largest = 0;
+    for (const auto& [node, factor] : sum) largest = std::max(largest, std::abs(factor));
+    std::erase_if(sum, [&](const auto& term) { return std::abs(term.second) <= kRounding * largest; });
+    if (sum.empty() || !std::isfinite(largest)) sum = {{event_function, 1.0}};
+    const double first = sum.begin()->second;
+    std::vector<std::pair<NodeId, double>> terms;
+    for (const auto& [node, factor] : sum) {
+      int exponent = 0;
+      const double digits = std::frexp(factor / first, &exponent);
+      terms.emplace_back(node, std::ldexp(std::round(digits * kSteps) / kSteps, exponent));
+    }
+    return {std::move(terms), first < 0};
+  }
+
+  /// a − b and b − a, x and −x, x and 2 x have one switching surface.
   void find_units() {
-    std::map<std::pair<NodeId, NodeId>, std::uint32_t> units;
+    std::map<std::vector<std::pair<NodeId, double>>, std::uint32_t> units;
     for (std::size_t s = 0; s < network_.switches.size(); ++s) {
-      NodeId id = network_.switches[s].event_function;
-      bool opposite = false;
-      if (network_.graph[id].op == Op::negate) {
-        id = network_.graph[id].a;
-        opposite = true;
-      }
-      std::pair<NodeId, NodeId> key{id, id};
-      if (const Node& node = network_.graph[id]; node.op == Op::subtract) {
-        opposite = opposite != (node.a > node.b);
-        key = std::minmax(node.a, node.b);
-      }
+      auto [key, opposite] = without_factor(network_.switches[s].event_function);
       const auto [found, inserted] =
-          units.try_emplace(key, static_cast<std::uint32_t>(structure_.members.size()));
+          units.try_emplace(std::move(key), static_cast<std::uint32_t>(structure_.members.size()));
       if (inserted) structure_.members.emplace_back();
       structure_.members[found->second].push_back(static_cast<std::uint32_t>(s));
       structure_.unit.push_back(found->second);

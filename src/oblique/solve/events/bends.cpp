@@ -116,6 +116,7 @@ void Bends::keep_where_both_sides_lead_back(double t, std::span<const double> x,
 bool Bends::rest_with(SlidingMode& slide, const std::vector<double>& rates, double fastest) const {
   return std::all_of(positions_.begin(), positions_.end(), [&](const auto& placed) {
     const std::uint32_t s = placed.first;
+    if (slide.follows(s)) return true;  // placed on each side apart
     const double largest = std::max(kRounding * fastest, std::abs(first_rates_[s]));
     if (std::abs(rates[s]) > kNoLaterRate * largest)
       return (rates[s] > 0) == (workspace_.discrete_state(program_.switches()[s].discrete_state) == 1);

@@ -170,7 +170,8 @@ bool Positions::fits_slide(Combination sliding, Combination sides) {
   std::vector<double> rates(program_.switches().size());
   slide_.mixed_rates(rates);
   for (std::size_t u = 0; u < trials_.units().size(); ++u) {
-    if (has(sliding, u)) continue;
+    if (has(sliding, u) || slide_.follows(program_.switch_structure().members[trials_.units()[u]].front()))
+      continue;  // placed on each side apart
     const double rate = trials_.of_unit(rates, u);
     if (std::abs(rate) <= kNoLaterRate * trials_.largest_rate(u)) {
       for (const std::uint32_t s : program_.switch_structure().members[trials_.units()[u]])
