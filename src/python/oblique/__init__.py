@@ -15,8 +15,9 @@ try:
     from . import _oblique
 except ImportError as error:
     import sys
+    _found = "" if "cannot import name" in str(error) else f": {error}"
     raise ImportError(
-        f"the compiled part of oblique is not for this Python ({sys.version.split()[0]}, {sys.executable}): {error}\n"
+        f"the compiled part of oblique is not for this Python ({sys.version.split()[0]}, {sys.executable}){_found}\n"
         "  remedy: use the Python that it was built with (./bootstrap python: /usr/bin/python3), or build it for this "
         "one: pip install .") from error
 
