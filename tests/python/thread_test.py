@@ -19,9 +19,6 @@ def long_run():
 
 
 def test_python_goes_on_while_the_machine_runs():
-    begin = time.perf_counter()
-    long_run()
-    alone = time.perf_counter() - begin
     done = threading.Event()
     runner = threading.Thread(target=lambda: (long_run(), done.set()))
     runner.start()
@@ -30,8 +27,8 @@ def test_python_goes_on_while_the_machine_runs():
         time.sleep(0.001)
         beats += 1
     runner.join()
-    # Were the lock held, there would be a beat or two; on a busy machine at least one each 50 ms can be had.
-    assert beats > 20 * alone
+    # Some hundreds; were the lock held all the while, one before and one after the run.
+    assert beats > 5
 
 
 def test_threads_share_a_diagram():

@@ -11,6 +11,16 @@ into diagrams and compares the two; `Console` is a machine that one holds; `bloc
 that goes wrong is an `Error`. docs/python.md is the page about it.
 """
 
+try:
+    from . import _oblique
+except ImportError as error:
+    import sys
+    _found = "" if "cannot import name" in str(error) else f": {error}"
+    raise ImportError(
+        f"the compiled part of oblique is not for this Python ({sys.version.split()[0]}, {sys.executable}){_found}\n"
+        "  remedy: use the Python that it was built with (./bootstrap python: /usr/bin/python3), or build it for this "
+        "one: pip install .") from error
+
 from . import plots
 from ._errors import (ConsoleError, Diagnostic, DiagramError, Error, MechanismError, NetworkError, PatchError, ReadError,
                       RealiseError, RequestError, RunWarning, SolveError, SynthesisError, UnknownNameError)
