@@ -23,9 +23,8 @@ ErrorBudget error_budget(const mechanism::Mechanism& whole, const diagram::Diagr
   how.samples = options.positions;
   how.progress = options.progress;
   ErrorBudget budget;
-  for (std::size_t b = 0; b < flat.blocks.size(); ++b) {
+  for (const diagram::FlatBlock& block : flat.blocks) {
     for (const diagram::BlockFigure& scatter : options.scatters) {
-      const diagram::FlatBlock& block = flat.blocks[b];
       const auto parameter = scatter.acts_on(*block.definition);
       if (!parameter) continue;
       budget.entries.push_back(
