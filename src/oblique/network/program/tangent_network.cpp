@@ -22,6 +22,30 @@ std::size_t add_signal(Network& network, NodeId node) {
   return network.signals.size() - 1;
 }
 
+/// The rate of an unknown is the unknown of an equation that is linear in it.
+void add_tangent_of_unknown(Network& network, std::size_t u, Tangents& tangents) {
+  Unknown moved;
+  moved.name = "a tangent of " + network.unknowns[u].name;
+  moved.residual = tangents.of(network.unknowns[u].residual);
+  moved.torn = network.unknowns[u].torn;
+  moved.place = network.unknowns[u].place;
+  network.unknowns.push_back(std::move(moved));
+}
+
+/// The same loop of the unknowns that stand `offset` behind its own.
+void add_loop(Network& network, std::size_t l, std::size_t offset) {
+  Loop moved = network.loops[l];
+  for (std::size_t& unknown : moved.unknowns) unknown += offset;
+  network.loops.push_back(std::move(moved));
+}
+
+void drop_events(Network& network) {
+  network.switches.clear();
+  network.events.clear();
+  network.phase_ends.clear();
+  network.mode_states.clear();
+}
+
 }  // namespace
 
 TangentNetwork with_tangents(Network made, std::span<const std::uint32_t> parameters) {
@@ -56,19 +80,8 @@ TangentNetwork with_tangents(Network made, std::span<const std::uint32_t> parame
   };
   Tangents tangents(graph, rates);
 
-  for (std::size_t u = 0; u < n_unknowns; ++u) {
-    Unknown moved;
-    moved.name = "a tangent of " + network.unknowns[u].name;
-    moved.residual = tangents.of(network.unknowns[u].residual);
-    moved.torn = network.unknowns[u].torn;
-    moved.place = network.unknowns[u].place;
-    network.unknowns.push_back(std::move(moved));
-  }
-  for (std::size_t l = 0; l < n_loops; ++l) {
-    Loop moved = network.loops[l];
-    for (std::size_t& unknown : moved.unknowns) unknown += n_unknowns;
-    network.loops.push_back(std::move(moved));
-  }
+  for (std::size_t u = 0; u < n_unknowns; ++u) add_tangent_of_unknown(network, u, tangents);
+  for (std::size_t l = 0; l < n_loops; ++l) add_loop(network, l, n_unknowns);
   const auto add_tangent = [&](NodeId node) { return add_signal(network, tangents.of(node)); };
   t.derivatives = network.signals.size();
   for (const State& state : network.states) add_tangent(state.derivative);
@@ -90,11 +103,39 @@ TangentNetwork with_tangents(Network made, std::span<const std::uint32_t> parame
       add_tangent(action.value);
     }
   }
-  network.switches.clear();
-  network.events.clear();
-  network.phase_ends.clear();
-  network.mode_states.clear();
+  drop_events(network);
   return t;
+}
+
+ParameterDerivatives with_parameter_derivatives(Network made, std::span<const std::uint32_t> parameters) {
+  ParameterDerivatives p;
+  p.network = std::move(made);
+  Network& network = p.network;
+  ExpressionGraph& graph = network.graph;
+  const std::size_t n_states = network.states.size(), n_unknowns = network.unknowns.size(),
+                    n_loops = network.loops.size();
+  network.signals.clear();
+  network.signal_names.clear();
+  for (std::uint32_t k = 0; k < parameters.size(); ++k) {
+    const std::size_t offset = n_unknowns * (k + 1);
+    Tangents::Rates rates;
+    rates.variable = [&](std::uint32_t variable) {
+      return variable <= n_states ? graph.constant(0)
+                                  : graph.variable(static_cast<std::uint32_t>(variable + offset));
+    };
+    rates.parameter = [&](std::uint32_t number) { return graph.constant(number == parameters[k] ? 1 : 0); };
+    Tangents tangents(graph, rates);
+    for (std::size_t u = 0; u < n_unknowns; ++u) add_tangent_of_unknown(network, u, tangents);
+    for (std::size_t l = 0; l < n_loops; ++l) add_loop(network, l, offset);
+    for (std::uint32_t i = 0; i < n_states; ++i) {
+      const NodeId node = tangents.of(network.states[i].derivative);
+      if (graph.is_constant(node, 0)) continue;
+      add_signal(network, node);
+      p.entries.push_back({i, k});
+    }
+  }
+  drop_events(network);
+  return p;
 }
 
 }  // namespace oblique::network

@@ -36,4 +36,16 @@ struct TangentNetwork {
 /// `parameters` are numbers of ParameterNumbers.
 TangentNetwork with_tangents(Network made, std::span<const std::uint32_t> parameters);
 
+/// A network whose signals are the derivatives of dx/dt by parameters, those that are not zero, each computed
+/// by itself: all of them together in one evaluation, where a TangentNetwork gives one column after the
+/// other.
+struct ParameterDerivatives {
+  Network network;
+  struct Entry {
+    std::uint32_t state = 0, parameter = 0;  ///< the parameter by its place in the request
+  };
+  std::vector<Entry> entries;  ///< what each signal is
+};
+ParameterDerivatives with_parameter_derivatives(Network made, std::span<const std::uint32_t> parameters);
+
 }  // namespace oblique::network

@@ -8,7 +8,7 @@ namespace oblique::network {
 Tangents::Tangents(ExpressionGraph& graph, Rates rates) : graph_(graph), rates_(std::move(rates)) {}
 
 bool Tangents::may_move(NodeId id) const {
-  return graph_[id].continuous || rates_.discrete_state || (rates_.parameter && graph_.formula_of(id));
+  return graph_[id].continuous || rates_.discrete_state || rates_.parameter;
 }
 
 NodeId Tangents::of(NodeId root) {

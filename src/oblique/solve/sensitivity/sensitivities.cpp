@@ -107,6 +107,7 @@ Sensitivities::Sensitivities(const network::Program& program, const diagram::Fla
       n_discrete_states_(program.discrete_states().size()),
       memories_(parameters_.size(), std::vector<double>(n_discrete_states_)),
       states_(parameters_.size(), std::vector<double>(run_states_.size())),
+      memories_move_(parameters_.size()),
       phase_delays_(parameters_.size()) {
   const network::ParameterNumbers numbers(diagram);
   diagram::FlatDiagram other = diagram;
@@ -140,6 +141,7 @@ Sensitivities::Sensitivities(const network::Program& program, const diagram::Fla
   if (!same(made.states, program.states()) || !same(made.unknowns, program.unknowns()) ||
       !same(made.discrete_states, program.discrete_states()) || made.events.size() != run_events_.size())
     refuse(0, "next to its value a parameter makes another circuit, of other elements");
+  network::ParameterDerivatives columns = network::with_parameter_derivatives(made, wanted);
   layout_ = network::with_tangents(std::move(made), wanted);
   network::Network rates = layout_.network;
   for (std::size_t i = 0; i < rates.states.size(); ++i)
@@ -147,19 +149,23 @@ Sensitivities::Sensitivities(const network::Program& program, const diagram::Fla
   rates.signals.clear();
   rates.signal_names.clear();
   const auto compiled = [&](network::Network network) {
-    const network::Program program(std::move(network));
-    network::ParameterSetting setting(program);
+    const network::Program beside_them(std::move(network));
+    network::ParameterSetting setting(beside_them);
     if (!setting.set_beside(values))
       refuse(0,
              "a parameter decides what the equations are (a table, a check interval, a value at the start)");
-    return std::make_unique<network::Program>(program, setting);
+    return std::make_unique<network::Program>(beside_them, setting);
   };
   program_ = compiled(std::move(layout_.network));
   rates_program_ = compiled(std::move(rates));
+  columns_program_ = compiled(std::move(columns.network));
+  entries_ = std::move(columns.entries);
+  entry_values_.resize(entries_.size());
   workspace_ = std::make_unique<network::Workspace>(*program_);
+  columns_workspace_ = std::make_unique<network::Workspace>(*columns_program_);
   rates_workspace_ = std::make_unique<network::Workspace>(*rates_program_);
   jacobian_.resize(program_->jacobian_pattern().entries());
-  by_parameter_.resize(parameters_.size());
+  by_parameter_.assign(parameters_.size(), std::vector<double>(run_states_.size()));
   held_.resize(program_->discrete_states().size());
   values_.resize(program_->n_signals());
 }
@@ -192,6 +198,12 @@ void Sensitivities::load(const network::Workspace& run) {
   for (std::size_t u = 0; u < n_unknowns_; ++u) {
     workspace_->set_unknown(u, run.unknown(u));
     rates_workspace_->set_unknown(u, run.unknown(u));
+    columns_workspace_->set_unknown(u, run.unknown(u));
+  }
+  columns_workspace_->load_discrete_states(discrete_states_);
+  for (std::size_t k = 0; k < count(); ++k) {
+    memories_move_[k] =
+        std::any_of(memories_[k].begin(), memories_[k].end(), [](double moves) { return moves != 0; });
   }
   known_time_.reset();
 }
@@ -220,31 +232,36 @@ void Sensitivities::evaluate_or_refuse(double t, std::span<const double> x, cons
   if (!evaluate(t, x.data(), along)) refuse(t, "an algebraic loop has no derivative there");
 }
 
-/// A solver asks at one place for all parameters, several times: only the product with s is made each time.
-bool Sensitivities::rates(double t, const double* x, std::size_t k, const double* s, double* rates) {
+/// ∂f/∂x and ∂f/∂p, of which a solver asks at one place for all parameters, several times.
+bool Sensitivities::differentiate_rates(double t, const double* x) {
   const std::size_t n = run_states_.size();
-  if (known_time_ != t || !std::equal(known_states_.begin(), known_states_.end(), x)) {
-    known_time_.reset();
-    hold({});
-    workspace_->load_discrete_states(held_);
-    if (!program_->jacobian(t, x, jacobian_.data(), *workspace_)) return false;
-    known_states_.assign(x, x + n);
-    known_time_ = t;
-    for (std::vector<double>& some : by_parameter_) some.clear();
-  }
-  std::vector<double>& direct = by_parameter_[k];
-  if (direct.empty()) {
+  if (known_time_ == t && std::equal(known_states_.begin(), known_states_.end(), x)) return true;
+  known_time_.reset();
+  hold({});
+  workspace_->load_discrete_states(held_);
+  if (!program_->jacobian(t, x, jacobian_.data(), *workspace_)) return false;
+  if (!columns_program_->signals(t, x, entry_values_.data(), *columns_workspace_)) return false;
+  for (std::size_t k = 0; k < count(); ++k) {
+    std::fill(by_parameter_[k].begin(), by_parameter_[k].end(), 0.0);
+    if (!memories_move_[k]) continue;
     hold({0, {}, k});
     rates_workspace_->load_discrete_states(held_);
-    direct.resize(n);
-    if (!rates_program_->derivatives(t, x, direct.data(), *rates_workspace_)) {
-      direct.clear();
-      return false;
-    }
+    if (!rates_program_->derivatives(t, x, by_parameter_[k].data(), *rates_workspace_)) return false;
   }
-  std::copy(direct.begin(), direct.end(), rates);
+  for (std::size_t e = 0; e < entries_.size(); ++e) {
+    const auto& [state, k] = entries_[e];
+    if (!memories_move_[k]) by_parameter_[k][state] = entry_values_[e];
+  }
+  known_states_.assign(x, x + n);
+  known_time_ = t;
+  return true;
+}
+
+bool Sensitivities::rates(double t, const double* x, std::size_t k, const double* s, double* rates) {
+  if (!differentiate_rates(t, x)) return false;
+  std::copy(by_parameter_[k].begin(), by_parameter_[k].end(), rates);
   const network::SparsePattern& pattern = program_->jacobian_pattern();
-  for (std::size_t column = 0; column < n; ++column) {
+  for (std::size_t column = 0; column < run_states_.size(); ++column) {
     for (auto entry = pattern.column_starts[column]; entry < pattern.column_starts[column + 1]; ++entry)
       rates[pattern.rows[static_cast<std::size_t>(entry)]] +=
           jacobian_[static_cast<std::size_t>(entry)] * s[column];

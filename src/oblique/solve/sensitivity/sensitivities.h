@@ -79,6 +79,7 @@ class Sensitivities {
   void hold(const Direction& along);
   bool evaluate(double t, const double* x, const Direction& along);
   void evaluate_or_refuse(double t, std::span<const double> x, const Direction& along);
+  bool differentiate_rates(double t, const double* x);
   void load(const network::Workspace& run);
   [[noreturn]] void refuse(double t, const std::string& why) const;
 
@@ -106,13 +107,17 @@ class Sensitivities {
   std::vector<std::vector<double>> states_;
   std::vector<double> held_, values_;
 
-  // The rates at one place: ∂f/∂x, and of the parameters asked for ∂f/∂p, by a program that computes no more.
-  std::unique_ptr<network::Program> rates_program_;
-  std::unique_ptr<network::Workspace> rates_workspace_;
+  // The rates at one place: ∂f/∂x, and ∂f/∂p of all parameters; of one with which discrete states move, by a
+  // program of its own.
+  std::unique_ptr<network::Program> columns_program_, rates_program_;
+  std::unique_ptr<network::Workspace> columns_workspace_, rates_workspace_;
+  std::vector<network::ParameterDerivatives::Entry> entries_;
+  std::vector<double> entry_values_;
   std::optional<double> known_time_;
   std::vector<double> known_states_, jacobian_;
-  std::vector<std::vector<double>> by_parameter_;  ///< empty where it was not asked for
+  std::vector<std::vector<double>> by_parameter_;
   Moment before_;
+  std::vector<bool> memories_move_;   ///< of each parameter
   std::vector<double> phase_delays_;  ///< by which the present phase of the timeline began later, over dp
 };
 
