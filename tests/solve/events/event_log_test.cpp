@@ -44,6 +44,15 @@ TEST_F(EventLogOfComparator, WarnsOfAUnitOnce) {
   EXPECT_THAT(log_.warnings()[0].what, ::testing::HasSubstr(" at t = 0.5 s"));
 }
 
+// What settles in rounds is told of with what it has settled to.
+TEST_F(EventLogOfComparator, WarnsOfTheLastOfWhatItSaysAgain) {
+  log_.warn({{file_, {}}, "x in a circle: at x = 0.01", {}, {}});
+  log_.warn({{file_, {}}, "y in a circle: at y = 2", {}, {}});
+  log_.warn({{file_, {}}, "x in a circle: at x = 0", {}, {}});
+  ASSERT_THAT(log_.warnings(), SizeIs(2));
+  EXPECT_EQ(log_.warnings()[0].what, "x in a circle: at x = 0");
+}
+
 TEST_F(EventLogOfComparator, SaysWhatIsEndless) {
   EXPECT_EQ(log_.endless("'c'", "why", 2).kind(), SolveError::Kind::chatter);
   log_.record(1, "c: x");

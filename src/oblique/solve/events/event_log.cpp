@@ -50,9 +50,14 @@ void EventLog::record_slides(const std::vector<std::uint32_t>& before,
 }
 
 void EventLog::warn(text::Diagnostic warning) {
-  const bool told = std::any_of(warnings_.begin(), warnings_.end(),
-                                [&](const text::Diagnostic& other) { return other.what == warning.what; });
-  if (!told) warnings_.push_back(std::move(warning));
+  const auto subject = [](const text::Diagnostic& of) { return of.what.substr(0, of.what.find(':')); };
+  const auto told = std::find_if(warnings_.begin(), warnings_.end(), [&](const text::Diagnostic& other) {
+    return subject(other) == subject(warning);
+  });
+  if (told != warnings_.end())
+    *told = std::move(warning);  // on the way to where it settles it was told of before
+  else
+    warnings_.push_back(std::move(warning));
 }
 
 /// A warning about a unit that is the same each time but for what follows `what`; once for each unit: it may
