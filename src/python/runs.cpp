@@ -2,6 +2,7 @@
 #include "runs.h"
 
 #include <algorithm>
+#include <span>
 
 #include <oblique/draw/chart/chart.h>
 #include <oblique/draw/picture/svg.h>
@@ -131,12 +132,21 @@ std::shared_ptr<FinishedRun> run_diagram(const DiagramModel& model, const Settin
       ends.run.until = options.until;
       report::ask_for_expectations(ends, options);
     }
-    options.interrupted = [&watch] { return watch.asked_often(); };
+    // With `interrupted` a run keeps a copy of its state at every step, a tenth of the time of a small
+    // diagram: what is thrown here leaves no state behind, which nobody would see. Estimates know no
+    // progress.
+    if (options.trust) options.interrupted = [&watch] { return watch.asked_often(); };
+    options.progress = watch.progress();
+    options.on_sample = [&watch](double, std::span<const double>, std::span<const double>) {
+      if (watch.asked_often()) throw Interrupt{};
+    };
     finished->run = solve::run(finished->compiled->program, finished->compiled->flat, options);
     if (check) finished->expectations = report::check_expectations(model.diagram(), finished->run);
     return 0;
   });
   options.interrupted = nullptr;
+  options.progress = nullptr;
+  options.on_sample = nullptr;
   finished->options = std::move(options);
   return finished;
 }

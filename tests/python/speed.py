@@ -28,10 +28,10 @@ def program(*arguments):
     subprocess.run([PROGRAM, *map(str, arguments)], check=True, capture_output=True)
 
 
-def one_run(repetitions=5):
+def one_run(repetitions=10):
     """A run of some seconds, reading the file and taking the rows included, in turns with the program."""
-    pairs = [(seconds(lambda: ob.Diagram(LONG).run(LONG_END).rows), seconds(lambda: program("run", LONG, "--until", LONG_END)))
-             for _ in range(repetitions)]
+    pairs = [(seconds(lambda: ob.Diagram(LONG).run(LONG_END).rows),
+              seconds(lambda: program("run", LONG, "--until", LONG_END))) for _ in range(repetitions)]
     python, command = (min(times) for times in zip(*pairs))  # on a busy machine the least disturbed
     return python, command
 
