@@ -152,6 +152,13 @@ void bind_consoles(py::module_& module) {
                return 0;
              });
            })
+      .def("repeat",
+           [](HeldConsole& held, double initial, double operate) {
+             held.with([&](auto& c) {
+               c.repeat(initial, operate);
+               return 0;
+             });
+           })
       .def("save",
            [](HeldConsole& held) { return held.with([](auto& c) { return solve::to_text(c.save()); }); })
       .def("restore",

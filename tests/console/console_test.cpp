@@ -250,6 +250,26 @@ TEST(Console, HasTheModesOfAMachine) {
   EXPECT_NEAR(console.value("x"), std::exp(-1), 1e-8);
 }
 
+// From 1 down to e^(−2) again and again, half a second in initial condition between.
+TEST(Console, Repeats) {
+  Console console = console_of(kDecay);
+  console.advance(1);
+  console.repeat(0.5, 2);
+  console.advance(1.25);
+  EXPECT_NEAR(console.value("x"), 1, 1e-12);
+  for (int cycle = 0; cycle < 3; ++cycle) {
+    console.advance(1 + 2.5 * cycle + 0.5 + 1.5);
+    EXPECT_NEAR(console.value("x"), std::exp(-1.5), 1e-8) << cycle;
+  }
+  console.set_mode(OperatingMode::operate);
+  const double x = console.value("x"), t = console.time();
+  console.advance(t + 3);
+  EXPECT_NEAR(console.value("x"), x * std::exp(-3), 1e-8) << "no more repeated";
+  EXPECT_EQ(testing::message_of<ConsoleError>([&] { console.repeat(0, 1); }),
+            "d.toml: the machine cannot repeat with a phase of 0 s; expected two times above 0: in initial "
+            "condition, and in operation");
+}
+
 TEST(Console, LeavesTheModesToATimeline) {
   Console console = console_of(
       kDecay, "[timeline]\nphases = [{ mode = \"operate\", for = 1 }, { mode = \"hold\", for = 1 }]\n");

@@ -50,6 +50,15 @@ def test_records_with_a_scope(decay):
     assert ob.Console(decay).scope(["x", "x.rate"], 1).rows.shape == (241, 3)
 
 
+def test_repeats(decay):
+    machine = ob.Console(decay)
+    machine.repeat(0.5, "2 s")
+    machine.advance(2.5 + 0.5 + 1)
+    assert machine["x"] == pytest.approx(math.exp(-1), abs=1e-7)
+    with pytest.raises(ob.RequestError, match="operate"):
+        machine.repeat(0.5, 0)
+
+
 def test_says_how_a_pot_was_turned(decay):
     machine = ob.Console(decay)
     assert machine.turn("x.rate", 3) is False  # a factor of 1 was left out

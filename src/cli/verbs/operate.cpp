@@ -23,6 +23,7 @@ namespace {
 
 constexpr const char* kCommands =
     "ic, operate, hold                  put the machine into a mode\n"
+    "rep-op INITIAL, OPERATE            repeat: so long in initial condition, so long in operation\n"
     "advance TIME                       run until then, for example 2*pi or \"500 ms\"\n"
     "turn BLOCK.PARAMETER VALUE         turn a pot; BLOCK.in[2] is the weight of the second wire\n"
     "read NAME                          the voltmeter: an output, a signal or a pot\n"
@@ -57,6 +58,16 @@ class Operator {
       console_.set_mode(verb == "ic"     ? diagram::OperatingMode::initial
                         : verb == "hold" ? diagram::OperatingMode::hold
                                          : diagram::OperatingMode::operate);
+    } else if (verb == "rep-op") {
+      const std::string& times = needed(verb, rest, "INITIAL, OPERATE");
+      const std::size_t comma = std::min(times.find(','), times.size());
+      if (comma == times.size())
+        throw text::ReadError(text::Diagnostic{{},
+                                               fmt::format("'rep-op {}' names one time", times),
+                                               "rep-op INITIAL, OPERATE",
+                                               "rep-op 100 ms, 2 s"});
+      console_.repeat(quantity_option("rep-op", trimmed(times.substr(0, comma)), "s"),
+                      quantity_option("rep-op", trimmed(times.substr(comma + 1)), "s"));
     } else if (verb == "advance") {
       advance(quantity_option("advance", needed(verb, rest, "TIME"), "s"));
     } else if (verb == "turn") {
@@ -82,12 +93,12 @@ class Operator {
     } else if (verb == "help") {
       print(kCommands);
     } else {
-      throw text::ReadError(
-          text::Diagnostic{{},
-                           fmt::format("there is no command '{}'", verb),
-                           {},
-                           text::suggest(verb, {"ic", "operate", "hold", "advance", "turn", "read", "scope",
-                                                "overloads", "events", "save", "restore", "help", "quit"})});
+      throw text::ReadError(text::Diagnostic{
+          {},
+          fmt::format("there is no command '{}'", verb),
+          {},
+          text::suggest(verb, {"ic", "operate", "hold", "rep-op", "advance", "turn", "read", "scope",
+                               "overloads", "events", "save", "restore", "help", "quit"})});
     }
     tell_warnings();
     return true;

@@ -158,27 +158,32 @@ class Console::Held {
   }
 
   void set_mode(diagram::OperatingMode mode) {
-    if (has_timeline_) {
-      throw ConsoleError(text::Diagnostic{{pots_.diagram().file, {}},
-                                          "the timeline of the diagram says which mode is on",
-                                          "a diagram without [timeline]",
-                                          "remove the timeline to set the modes by hand"});
-    }
-    const auto phase =
+    refuse_with_timeline();
+    solve::PhasePosition position;
+    position.phase =
         static_cast<std::size_t>(std::find(std::begin(kModes), std::end(kModes), mode) - std::begin(kModes));
-    solve::RunState state = save();
-    if (!pots_.diagram().timeline.phases.empty()) {
-      state.position.phase = phase;
-      return go_on(pots_, std::move(state));
-    }
     diagram::Timeline timeline;
     for (const diagram::OperatingMode each : kModes) timeline.phases.push_back(whole_phase(each));
-    Pots with_modes = pots_;
-    with_modes.set_timeline(std::move(timeline));
-    state = carried_state(state, *pots_.program(), signals(), *with_modes.program());
-    state.position.phase = phase;
-    go_on(with_modes, std::move(state));
-    pots_ = std::move(with_modes);
+    go_through(std::move(timeline), position);
+  }
+
+  void repeat(double initial, double operate) {
+    refuse_with_timeline();
+    for (const double duration : {initial, operate}) {
+      if (duration > 0 && std::isfinite(duration)) continue;
+      throw ConsoleError(
+          text::Diagnostic{{pots_.diagram().file, {}},
+                           fmt::format("the machine cannot repeat with a phase of {} s", duration),
+                           "two times above 0: in initial condition, and in operation",
+                           {}});
+    }
+    diagram::Timeline timeline;
+    timeline.phases = {whole_phase(diagram::OperatingMode::initial),
+                       whole_phase(diagram::OperatingMode::operate)};
+    timeline.phases[0].duration = initial;
+    timeline.phases[1].duration = operate;
+    timeline.cycles = std::numeric_limits<double>::infinity();
+    go_through(std::move(timeline), {0, 0, time_});
   }
 
   solve::RunState save() {
@@ -289,6 +294,27 @@ class Console::Held {
     return signals_;
   }
 
+  void refuse_with_timeline() const {
+    if (!has_timeline_) return;
+    throw ConsoleError(text::Diagnostic{{pots_.diagram().file, {}},
+                                        "the timeline of the diagram says which mode is on",
+                                        "a diagram without [timeline]",
+                                        "remove the timeline to set the modes by hand"});
+  }
+
+  /// Goes on in a phase of these.
+  void go_through(diagram::Timeline timeline, const solve::PhasePosition& position) {
+    solve::RunState state = save();
+    Pots with_modes = pots_;
+    if (timeline != pots_.diagram().timeline) {
+      with_modes.set_timeline(std::move(timeline));
+      state = carried_state(state, *pots_.program(), signals(), *with_modes.program());
+    }
+    state.position = position;
+    go_on(with_modes, std::move(state));
+    pots_ = std::move(with_modes);
+  }
+
   /// Lets the machine go on from where it stands, with the pots as they are turned.
   void take_turned_pots() {
     const auto& program = pots_.program();
@@ -373,6 +399,9 @@ void Console::remove_probe(std::size_t probe) {
 }
 void Console::set_mode(diagram::OperatingMode mode) {
   held_->set_mode(mode);
+}
+void Console::repeat(double initial, double operate) {
+  held_->repeat(initial, operate);
 }
 solve::RunState Console::save() const {
   return held_->save();

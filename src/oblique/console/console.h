@@ -88,6 +88,10 @@ class Console {
   /// which they are, and SolveError.
   void set_mode(diagram::OperatingMode mode);
 
+  /// Repetitive operation from now on: in initial condition for so long, then in operation, and from the
+  /// beginning again [s], until a mode is set. Throws ConsoleError as above, and for times that are none.
+  void repeat(double initial, double operate);
+
   /// The state at `time`, with which `solve::run` and any console of the same diagram can go on.
   solve::RunState save() const;
   /// Goes on from such a state; pots stay as they are turned. Throws ReadError where it is another diagram's,

@@ -163,6 +163,11 @@ class Console:
         """"potset", "initial", "operate" or "hold"."""
         self._held().set_mode(_arguments.text("mode", mode))
 
+    def repeat(self, initial: Quantity, operate: Quantity) -> None:
+        """Repetitive operation from now on: so long in initial condition [s], then so long in operation, and again, until
+        a mode is set."""
+        self._held().repeat(_arguments.positive("initial", initial, "s"), _arguments.positive("operate", operate, "s"))
+
     def scope(self, names: Union[str, Sequence[str]], until: Quantity, samples: int = 241) -> Table:
         """Runs until that time [s] and records outputs, signals or pots at equal distances of time, both ends
         included: a table with `t` [s] first."""
