@@ -74,6 +74,13 @@ TEST(Sensitivities, WhereAFactorIsZeroOrOne) {
   expect_column(run, "d(y)/d(p.setting)", kTolerance, [](double t) { return -0.35 * t * t; });
 }
 
+// However small the parameter is beside the tolerance of the states, it is the derivative that is asked for.
+TEST(Sensitivities, OfATinyParameter) {
+  const Compiled made("x = { type = \"integrator\", in = \"x\", initial = 1e-12 }\n");
+  const auto run = differentiated(made, {"x.initial", "x.rate"}, 3);
+  expect_column(run, "d(x)/d(x.initial)", 1e-6, [](double t) { return std::exp(t); });  // of e³
+}
+
 // s = b + p s, so s = b/(1 − p), and x its integral.
 TEST(Sensitivities, ThroughAnAlgebraicLoop) {
   const Compiled made(

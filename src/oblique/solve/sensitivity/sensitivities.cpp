@@ -173,7 +173,7 @@ Sensitivities::Sensitivities(const network::Program& program, const diagram::Fla
 std::vector<double> Sensitivities::scales() const {
   std::vector<double> scales;
   for (const SensitivityParameter& parameter : parameters_)
-    scales.push_back(parameter.value == 0 ? 1 : std::abs(parameter.value));
+    scales.push_back(std::max(1.0, std::abs(parameter.value)));
   return scales;
 }
 

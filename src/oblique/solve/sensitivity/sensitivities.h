@@ -46,7 +46,8 @@ class Sensitivities {
                 std::vector<SensitivityParameter> parameters, double span);
 
   std::size_t count() const { return parameters_.size(); }
-  /// The size of each parameter: of its sensitivities, tolerances are those of the states over it.
+  /// The size of each parameter, 1 at least: of its sensitivities, tolerances are those of the states over
+  /// it.
   std::vector<double> scales() const;
 
   /// dx/dp of each parameter where the run starts, or where the last event has left it.
