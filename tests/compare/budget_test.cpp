@@ -17,6 +17,7 @@
 #include <oblique/solve/run.h>
 
 #include "../support/compiled.h"
+#include "crank.h"
 
 namespace oblique::compare {
 namespace {
@@ -26,16 +27,7 @@ using ::testing::SizeIs;
 // B = 2 ((1 + e) cos φ, (1 + f) sin φ), each coordinate a summer: e displaces it by 2 |cos φ| w/√3, f by
 // 2 |sin φ| w/√3, and both by 2 w/√3 wherever the crank stands.
 TEST(ErrorBudget, OfACrank) {
-  const mechanism::Mechanism crank = mechanism::parse_mechanism(R"(
-format = "oblique-mechanism/1"
-[frame]
-A = [0, 0]
-[bodies]
-AB = { points = ["A", "B"], length = 2 }
-[drives]
-crank = { turns = "AB", about = "A", speed = "1 rad/s" }
-)",
-                                                                "crank.toml");
+  const mechanism::Mechanism crank = testing::crank();
   BudgetOptions options;
   options.scatters = {{"summer", "tolerance", 0.01, ""}};
   const ErrorBudget budget = error_budget(crank, patch::patch(crank, {}), testing::shipped_blocks(), options);

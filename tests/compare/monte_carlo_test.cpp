@@ -15,6 +15,8 @@
 #include <oblique/mechanism/model/read_mechanism.h>
 #include <oblique/patch/patch.h>
 
+#include "crank.h"
+
 namespace oblique::compare {
 namespace {
 
@@ -31,24 +33,11 @@ MonteCarlo drawn(const mechanism::Mechanism& mechanism, const MonteCarloOptions&
                      options);
 }
 
-mechanism::Mechanism crank() {
-  return mechanism::parse_mechanism(R"(
-format = "oblique-mechanism/1"
-[frame]
-A = [0, 0]
-[bodies]
-AB = { points = ["A", "B"], length = 2 }
-[drives]
-crank = { turns = "AB", about = "A", speed = "1 rad/s" }
-)",
-                                    "crank.toml");
-}
-
 // A crank alone: B = r ((1 + e) cos φ, (1 + f) sin φ), each coordinate a summer, errs most on an axis, by
 // r max(|e|, |f|): of two uniform variables on [0, 1] the larger has the mean 2/3, the variance 1/18, and is
 // below q with the probability q².
 TEST(MonteCarlo, OfACrankIsTheLargerOfTwoTolerances) {
-  const mechanism::Mechanism mechanism = crank();
+  const mechanism::Mechanism mechanism = testing::crank();
   MonteCarloOptions options;
   options.scatters = {{"summer", "tolerance", 0.01, ""}};
   options.runs = 4000;
@@ -71,7 +60,7 @@ TEST(MonteCarlo, OfACrankIsTheLargerOfTwoTolerances) {
 // The same crank errs by r √(e² cos² φ + f² sin² φ) at φ, with the e and f that `draw` tells of each run. Of
 // 200 runs the k-th smallest is the percentile 100 k/200. The solver adds 1e-5 of 2e-2.
 TEST(MonteCarlo, PercentilesAlongTheTurnAreThoseOfTheSortedRuns) {
-  const mechanism::Mechanism mechanism = crank();
+  const mechanism::Mechanism mechanism = testing::crank();
   MonteCarloOptions options;
   options.scatters = {{"summer", "tolerance", 0.01, ""}};
   options.runs = 200;
@@ -190,7 +179,7 @@ TEST(MonteCarlo, EndsWhereItsProgressThrows) {
     options.runs = 10'000'000;
     options.threads = threads;
     options.progress = [](double) { throw Asked{}; };
-    EXPECT_THROW(drawn(crank(), options), Asked);
+    EXPECT_THROW(drawn(testing::crank(), options), Asked);
   }
 }
 

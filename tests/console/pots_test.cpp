@@ -41,6 +41,9 @@ TEST(Pots, AreTurnedAtOnceWhereTheEquationsStay) {
   EXPECT_EQ(pots.turn("x.in[1]", "-0.3"), Turned::at_once);
   EXPECT_EQ(slope(pots), -0.3 * (1.0 / 7));
   EXPECT_NE(pots.program(), before);
+  EXPECT_EQ(pots.setting_of("x.in[1]")->value, -0.3) << "of a weight, too";
+  EXPECT_FALSE(pots.setting_of("x.in[2]"));
+  EXPECT_FALSE(pots.setting_of("x.in[0]"));
 }
 
 TEST(Pots, AreCompiledAnewWhereTheEquationsAreOthers) {

@@ -49,12 +49,10 @@ Turned Pots::turn(const std::string& pot, const std::string& value) {
     compile(std::move(flat));
   }
   overrides_ = std::move(overrides);
-  if (const auto place = place_of(pot); place && flat_->blocks[place->block].formulas.empty()) {
-    const diagram::FlatBlock& block = flat_->blocks[place->block];
-    known_.insert_or_assign(pot, Known{*place,
-                                       diagram::unit_on(diagram_.machine.profile,
-                                                        block.definition->parameters[place->parameter].unit),
-                                       index});
+  const auto found = network::find_parameter(*flat_, *numbers_, pot);
+  if (found && found->parameter && flat_->blocks[found->block].formulas.empty()) {
+    known_.insert_or_assign(pot, Known{found->block, *found->parameter, found->number,
+                                       diagram::unit_on(diagram_.machine.profile, found->unit), index});
   }
   return at_once ? Turned::at_once : Turned::compiled_anew;
 }
@@ -63,19 +61,19 @@ Turned Pots::turn(const std::string& pot, const std::string& value) {
 bool Pots::turn_known(const std::string& name, const std::string& value) {
   const auto found = known_.find(name);
   if (found == known_.end()) return false;
-  const auto& [place, unit, index] = found->second;
-  diagram::FlatBlock& block = flat_->blocks[place.block];
+  const auto& [place, parameter, number, unit, index] = found->second;
+  diagram::FlatBlock& block = flat_->blocks[place];
   double now = 0;
   try {
     now = text::parse_quantity(value, unit);
   } catch (const text::ExpressionError&) {
     return false;  // whoever reads the whole diagram tells of it
   }
-  if (!block.definition->parameters[place.parameter].allows(now)) return false;
-  const double before = std::exchange(block.parameters[place.parameter], now);
-  const Parameter parameter{numbers_->parameter(place.block, place.parameter), now};
-  if (behaviour_of(block) != block.behaviour || !setting_->set({&parameter, 1})) {
-    block.parameters[place.parameter] = before;
+  if (!block.definition->parameters[parameter].allows(now)) return false;
+  const double before = std::exchange(block.parameters[parameter], now);
+  const Parameter changed{number, now};
+  if (behaviour_of(block) != block.behaviour || !setting_->set({&changed, 1})) {
+    block.parameters[parameter] = before;
     return false;
   }
   overrides_[index].value = value;
@@ -91,28 +89,17 @@ void Pots::set_timeline(diagram::Timeline timeline) {
 std::vector<std::string> Pots::names() const {
   std::vector<std::string> names;
   for (const diagram::FlatBlock& block : flat_->blocks) {
-    for (const auto& parameter : block.definition->parameters)
-      names.push_back(fmt::format("{}.{}", block.path, parameter.name));
+    for (const auto& parameter : block.definition->parameters) {
+      if (!parameter.points && !parameter.formula)
+        names.push_back(fmt::format("{}.{}", block.path, parameter.name));
+    }
   }
   return names;
 }
 
 std::optional<Pots::Setting> Pots::setting_of(std::string_view name) const {
-  const auto place = place_of(name);
-  if (!place) return std::nullopt;
-  const diagram::FlatBlock& block = flat_->blocks[place->block];
-  return Setting{block.parameters[place->parameter], block.definition->parameters[place->parameter].unit};
-}
-
-std::optional<Pots::Place> Pots::place_of(std::string_view name) const {
-  const std::size_t dot = name.rfind('.');
-  if (dot == std::string_view::npos) return std::nullopt;
-  for (std::size_t b = 0; b < flat_->blocks.size(); ++b) {
-    if (flat_->blocks[b].path != name.substr(0, dot)) continue;
-    const auto parameter = flat_->blocks[b].definition->find_parameter(name.substr(dot + 1));
-    return parameter ? std::optional(Place{b, *parameter}) : std::nullopt;
-  }
-  return std::nullopt;
+  const auto found = network::find_parameter(*flat_, *numbers_, name);
+  return found ? std::optional(Setting{found->value, found->unit}) : std::nullopt;
 }
 
 std::shared_ptr<diagram::FlatDiagram> Pots::flattened(

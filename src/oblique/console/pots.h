@@ -38,7 +38,7 @@ class Pots {
 
   /// Of all parameters of flat blocks.
   std::vector<std::string> names() const;
-  /// What a pot is set to, in the unit of the parameter.
+  /// What a pot, or the weight of a wire, is set to, in the unit of the parameter.
   struct Setting {
     double value = 0;
     std::string unit;
@@ -48,13 +48,10 @@ class Pots {
  private:
   using Parameter = network::ParameterSetting::Parameter;
 
-  /// A parameter of a flat block by its place, which saves a pot that is turned often the way through the
-  /// whole diagram.
-  struct Place {
-    std::size_t block, parameter;
-  };
+  /// A parameter of a flat block, which saves a pot that is turned often the way through the whole diagram.
   struct Known {
-    Place place;
+    std::size_t block, parameter;
+    std::uint32_t number;
     text::Unit unit;
     std::size_t override;  ///< in `overrides_`
   };
@@ -63,7 +60,6 @@ class Pots {
       const std::vector<diagram::ParameterOverride>& overrides) const;
   void compile(std::shared_ptr<diagram::FlatDiagram> flat);
   bool turn_known(const std::string& name, const std::string& value);
-  std::optional<Place> place_of(std::string_view name) const;
   std::optional<std::vector<Parameter>> changed(const diagram::FlatDiagram& now) const;
 
   diagram::Diagram diagram_;

@@ -4,11 +4,11 @@
 from __future__ import annotations
 
 import html
-from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple, Optional
 
 from . import _arguments, _oblique
 from ._arguments import PathLike
+from ._libraries import Library
 
 
 class Input(NamedTuple):
@@ -56,7 +56,7 @@ class Block:
         return f"<pre>{html.escape(self.text)}</pre>"
 
 
-class BlockLibrary(Mapping[str, Block]):
+class BlockLibrary(Library[Block]):
     """Blocks by their names: those that are shipped, and those of the folders that are given, which replace shipped
     ones of their names.
 
@@ -72,35 +72,20 @@ class BlockLibrary(Mapping[str, Block]):
         """Throws DiagramError with all that is wrong in the files of the folders."""
         self._folders = [_arguments.path("a folder of blocks", folder) for folder in folders]
         self._raw = _oblique.BlockLibrary(self._folders)
-        self._names = tuple(self._raw.names())
-        self._known: dict[str, Block] = {}
+        super().__init__("block type", self._raw.names())
 
     def __reduce__(self) -> tuple[Any, ...]:
         return (BlockLibrary, tuple(self._folders))
 
-    def __getitem__(self, name: str) -> Block:
-        if name not in self._known:
-            found = self._raw.describe(name) if isinstance(name, str) else None
-            if found is None:
-                raise _arguments.unknown("block type", name, self._names)
-            self._known[name] = Block(name, found)
-        return self._known[name]
+    def _made(self, name: str) -> Optional[Block]:
+        found = self._raw.describe(name)
+        return None if found is None else Block(name, found)
 
-    def __contains__(self, name: object) -> bool:
-        return name in self._names
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._names)
-
-    def __len__(self) -> int:
-        return len(self._names)
+    def _line(self, item: Block) -> str:
+        return item.summary
 
     def __repr__(self) -> str:
         return f"<BlockLibrary of {len(self)} blocks>"
-
-    def _repr_html_(self) -> str:
-        rows = "".join(f"<tr><td>{html.escape(name)}</td><td>{html.escape(self[name].summary)}</td></tr>" for name in self)
-        return f"<table><thead><tr><th>block</th><th>what it does</th></tr></thead><tbody>{rows}</tbody></table>"
 
 
 blocks = BlockLibrary()

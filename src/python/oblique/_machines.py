@@ -5,10 +5,10 @@ from __future__ import annotations
 
 import html
 import json
-from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import Any, Optional
 
-from . import _arguments, _oblique
+from . import _oblique
+from ._libraries import Library
 
 
 class Machine:
@@ -30,7 +30,7 @@ class Machine:
         return f"<pre>{html.escape(self.text)}</pre>"
 
 
-class MachineLibrary(Mapping[str, Machine]):
+class MachineLibrary(Library[Machine]):
     """Machines by their names.
 
     >>> import oblique as ob
@@ -39,32 +39,17 @@ class MachineLibrary(Mapping[str, Machine]):
     """
 
     def __init__(self) -> None:
-        self._names = tuple(_oblique.machine_names())
-        self._known: dict[str, Machine] = {}
+        super().__init__("machine", _oblique.machine_names())
 
-    def __getitem__(self, name: str) -> Machine:
-        if name not in self._known:
-            found = _oblique.machine(name) if isinstance(name, str) else None
-            if found is None:
-                raise _arguments.unknown("machine", name, self._names)
-            self._known[name] = Machine(name, *found)
-        return self._known[name]
+    def _made(self, name: str) -> Optional[Machine]:
+        found = _oblique.machine(name)
+        return None if found is None else Machine(name, *found)
 
-    def __contains__(self, name: object) -> bool:
-        return name in self._names
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._names)
-
-    def __len__(self) -> int:
-        return len(self._names)
+    def _line(self, item: Machine) -> str:
+        return item.title
 
     def __repr__(self) -> str:
         return f"<MachineLibrary of {len(self)} machines>"
-
-    def _repr_html_(self) -> str:
-        rows = "".join(f"<tr><td>{html.escape(name)}</td><td>{html.escape(self[name].title)}</td></tr>" for name in self)
-        return f"<table><thead><tr><th>name</th><th>machine</th></tr></thead><tbody>{rows}</tbody></table>"
 
 
 machines = MachineLibrary()

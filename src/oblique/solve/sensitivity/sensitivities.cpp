@@ -23,76 +23,7 @@ double beside(double value) {
   return value == 0 ? kPart : value * (1 + kPart);
 }
 
-[[noreturn]] void refuse_name(const diagram::FlatDiagram& diagram, const std::string& name,
-                              const std::vector<std::string>& candidates) {
-  throw text::ReadError(text::Diagnostic{
-      {diagram.file, {}},
-      fmt::format("there is no sensitivity to '{}': no block has such a parameter", name),
-      "BLOCK.PARAMETER of a block that is no composite, or BLOCK.INPUT[NUMBER] for the weight of a wire",
-      text::suggest(name, candidates)});
-}
-
-/// A block's parameter or weight, where the name behind the block's means one.
-std::optional<SensitivityParameter> found_in(const diagram::FlatBlock& block, std::size_t b,
-                                             std::string_view rest,
-                                             const network::ParameterNumbers& numbers) {
-  if (const auto parameter = block.definition->find_parameter(rest)) {
-    const diagram::ParameterDefinition& known = block.definition->parameters[*parameter];
-    if (known.points || known.formula) return std::nullopt;
-    return SensitivityParameter{
-        {}, numbers.parameter(b, *parameter), block.parameters[*parameter], known.unit};
-  }
-  const std::size_t bracket = rest.find('[');
-  if (bracket == std::string_view::npos || !rest.ends_with(']')) return std::nullopt;
-  const std::string_view port = rest.substr(0, bracket);
-  std::size_t number = 0;
-  for (const char digit : rest.substr(bracket + 1, rest.size() - bracket - 2)) {
-    if (digit < '0' || digit > '9' || number > 100'000) return std::nullopt;
-    number = 10 * number + static_cast<std::size_t>(digit - '0');
-  }
-  // As for settings: of a block of several inputs, "in" counts them all.
-  const auto own = block.definition->find_input(port);
-  for (std::size_t input = 0; input < block.inputs.size(); ++input) {
-    if (own ? input != *own : port != "in") continue;
-    for (std::size_t wire = 0; wire < block.inputs[input].terms.size(); ++wire) {
-      if (--number == 0)
-        return SensitivityParameter{
-            {}, numbers.weight(b, input, wire), block.inputs[input].terms[wire].weight, "1"};
-    }
-  }
-  return std::nullopt;
-}
-
 }  // namespace
-
-std::vector<SensitivityParameter> sensitivity_parameters(const diagram::FlatDiagram& diagram,
-                                                         const std::vector<std::string>& names) {
-  const network::ParameterNumbers numbers(diagram);
-  std::vector<SensitivityParameter> found;
-  for (const std::string& name : names) {
-    const std::size_t dot = name.rfind('.', name.find('['));
-    std::optional<SensitivityParameter> parameter;
-    std::vector<std::string> candidates;
-    for (std::size_t b = 0; b < diagram.blocks.size() && !parameter; ++b) {
-      const diagram::FlatBlock& block = diagram.blocks[b];
-      for (const auto& known : block.definition->parameters)
-        candidates.push_back(block.path + "." + known.name);
-      if (dot != std::string::npos && block.path == name.substr(0, dot))
-        parameter = found_in(block, b, std::string_view(name).substr(dot + 1), numbers);
-    }
-    if (!parameter) refuse_name(diagram, name, candidates);
-    if (!std::isfinite(parameter->value)) {
-      throw text::ReadError(
-          text::Diagnostic{{diagram.file, {}},
-                           fmt::format("there is no sensitivity to '{}': it is infinite", name),
-                           "a parameter that can change a little",
-                           {text::Setting{"set", fmt::format("{}=1e6", name)}, " makes it finite"}});
-    }
-    parameter->name = name;
-    found.push_back(std::move(*parameter));
-  }
-  return found;
-}
 
 Sensitivities::Sensitivities(const network::Program& program, const diagram::FlatDiagram& diagram,
                              std::vector<SensitivityParameter> parameters, double span)

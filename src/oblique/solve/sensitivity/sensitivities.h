@@ -12,20 +12,9 @@
 #include <oblique/diagram/flat_diagram.h>
 #include <oblique/network/program/program.h>
 #include <oblique/network/program/tangent_network.h>
+#include <oblique/solve/sensitivity/sensitivity_parameters.h>
 
 namespace oblique::solve {
-
-/// A parameter of a flat diagram by which a run is differentiated.
-struct SensitivityParameter {
-  std::string name;          ///< "c.gain", or "c.in[2]" for a weight
-  std::uint32_t number = 0;  ///< as network::ParameterNumbers has it
-  double value = 0;          ///< [unit]
-  std::string unit;
-};
-
-/// Finds parameters by name. Throws text::ReadError for one that there is not, and for one that is infinite.
-std::vector<SensitivityParameter> sensitivity_parameters(const diagram::FlatDiagram& diagram,
-                                                         const std::vector<std::string>& names);
 
 /// The sensitivities s = dx/dp of a run by some of its parameters, and of all that follows from them.
 ///
