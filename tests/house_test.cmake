@@ -17,9 +17,10 @@ set(allowed_mechanism text)
 set(allowed_patch text diagram mechanism)
 set(allowed_console text diagram network solve)
 set(allowed_commission text diagram network solve mechanism patch machine)
-set(allowed_compare text diagram network solve mechanism patch machine commission)
+set(allowed_ensemble text diagram network solve mechanism patch)
+set(allowed_compare text diagram network solve mechanism patch machine commission ensemble)
 set(allowed_synthesis text mechanism)
-set(allowed_report text diagram network solve mechanism patch machine commission compare draw)
+set(allowed_report text diagram network solve mechanism patch machine commission ensemble compare draw)
 set(allowed_draw text diagram mechanism)
 
 # A stage asks a block for its role, its symbol, its ports, never for its name. A comparison with the name of a block, a
