@@ -28,6 +28,7 @@
 #include <oblique/draw/picture/text_width.h>
 #include <oblique/draw/schematic/diagram_drawing.h>
 #include <oblique/ensemble/engine/ensemble.h>
+#include <oblique/ensemble/study/study.h>
 #include <oblique/machine/component_list.h>
 #include <oblique/machine/realise.h>
 #include <oblique/machine/sheets.h>

@@ -27,7 +27,7 @@ namespace {
 /// How the elements scatter: within a tolerance, or as those of a machine.
 std::vector<diagram::BlockFigure> scatters_of(const Library& library, const diagram::MachineProfile* machine,
                                               std::optional<double> tolerance) {
-  if (tolerance) return compare::scatters_of_tolerance(*library, *tolerance);
+  if (tolerance) return ensemble::scatters_of_tolerance(*library, *tolerance);
   if (machine != nullptr && !machine->scatters.empty()) return machine->scatters;
   throw text::ReadError(text::Diagnostic{
       {},

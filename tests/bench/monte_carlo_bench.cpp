@@ -18,7 +18,7 @@ void monte_carlo_four_bar(benchmark::State& state) {
   const diagram::BlockLibrary library = diagram::BlockLibrary::shipped();
   const diagram::Diagram diagram = patch::patch_triangles(mechanism);
   compare::MonteCarloOptions options;
-  options.scatters = compare::scatters_of_tolerance(library, 1e-3);
+  options.scatters = ensemble::scatters_of_tolerance(library, 1e-3);
   options.runs = kRuns;
   std::vector<double> seconds;
   for (auto _ : state) {

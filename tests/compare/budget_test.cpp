@@ -8,8 +8,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <oblique/compare/scatter.h>
 #include <oblique/diagram/flatten.h>
+#include <oblique/ensemble/study/scatter.h>
 #include <oblique/mechanism/model/read_mechanism.h>
 #include <oblique/network/assembly/network.h>
 #include <oblique/network/program/program.h>
@@ -85,7 +85,7 @@ TEST(ErrorBudget, AgreesWithDifferencesAndWithDrawnMachines) {
   const FourBar bar;
   constexpr double kWidth = 1e-3;
   BudgetOptions options;
-  options.scatters = scatters_of_tolerance(testing::shipped_blocks(), kWidth);
+  options.scatters = ensemble::scatters_of_tolerance(testing::shipped_blocks(), kWidth);
   const ErrorBudget budget = error_budget(bar.mechanism, bar.diagram, testing::shipped_blocks(), options);
   ASSERT_EQ(budget.point, "C");
   ASSERT_GT(budget.entries.size(), 20U);
@@ -101,7 +101,7 @@ TEST(ErrorBudget, AgreesWithDifferencesAndWithDrawnMachines) {
     const double nominal = bar.flat.blocks[block].parameters[parameter];
     const auto at = [&](double value) {
       diagram::FlatDiagram changed = bar.flat;
-      apply_draws({{block, parameter, value}}, changed);
+      ensemble::apply_draws({{block, parameter, value}}, changed);
       return bar.place(changed, budget.row, kOfRun);
     };
     const auto [above_x, above_y] = at(nominal + kStep);
@@ -118,7 +118,8 @@ TEST(ErrorBudget, AgreesWithDifferencesAndWithDrawnMachines) {
   double sum = 0;
   for (int run = 0; run < kMachines; ++run) {
     diagram::FlatDiagram drawn = bar.flat;
-    apply_draws(draw(drawn, options.scatters, {7, static_cast<std::uint64_t>(run)}), drawn);
+    ensemble::apply_draws(ensemble::draw(drawn, options.scatters, {7, static_cast<std::uint64_t>(run)}),
+                          drawn);
     const auto [drawn_x, drawn_y] = bar.place(drawn, budget.row, 1e-6);
     sum += (drawn_x - x) * (drawn_x - x) + (drawn_y - y) * (drawn_y - y);
   }

@@ -73,7 +73,7 @@ TEST(MonteCarlo, PercentilesAlongTheTurnAreThoseOfTheSortedRuns) {
   std::vector<std::array<double, 2>> scatter;
   for (std::uint64_t run = 0; run < 200; ++run) {
     std::array<double, 2> e{};
-    for (const Draw& draw : draw(flat, options.scatters, {options.seed, run}))
+    for (const ensemble::Draw& draw : ensemble::draw(flat, options.scatters, {options.seed, run}))
       e.at(flat.blocks[draw.block].path.ends_with("x") ? 0 : 1) = draw.value;
     scatter.push_back(e);
   }
@@ -158,7 +158,7 @@ TEST(MonteCarlo, OfTheFourBarIsThatOfItsClosedForm) {
 
 TEST(MonteCarlo, IsTheSameForAnyNumberOfThreads) {
   MonteCarloOptions options;
-  options.scatters = scatters_of_tolerance(diagram::BlockLibrary::shipped(), 1e-3);
+  options.scatters = ensemble::scatters_of_tolerance(diagram::BlockLibrary::shipped(), 1e-3);
   options.runs = 40;
   const MonteCarlo one = drawn(four_bar(), options);
   for (const int threads : {2, 3, 100}) {
@@ -185,7 +185,7 @@ TEST(MonteCarlo, EndsWhereItsProgressThrows) {
 
 TEST(MonteCarlo, GoesOnFromAnyRun) {
   MonteCarloOptions options;
-  options.scatters = scatters_of_tolerance(diagram::BlockLibrary::shipped(), 1e-3);
+  options.scatters = ensemble::scatters_of_tolerance(diagram::BlockLibrary::shipped(), 1e-3);
   options.runs = 10;
   const MonteCarlo all = drawn(four_bar(), options);
   options.runs = 3;
@@ -252,7 +252,7 @@ TEST(MonteCarlo, SwingsWhatCannotTurn) {
 // good as others: it is off by about its tolerance.
 TEST(MonteCarlo, TriesFinerWhereTheSolverFindsNoStep) {
   MonteCarloOptions options;
-  options.scatters = scatters_of_tolerance(diagram::BlockLibrary::shipped(), 0.002);
+  options.scatters = ensemble::scatters_of_tolerance(diagram::BlockLibrary::shipped(), 0.002);
   options.runs = 1;
   options.first_run = 5;
   const MonteCarlo result = drawn(four_bar(), options);

@@ -106,7 +106,7 @@ std::vector<diagram::BlockFigure> scatters_of(const CompareRequest& request,
     const double tolerance = quantity_option("--tolerance", request.tolerance, "1");
     if (!(tolerance > 0 && tolerance <= kMost))
       refuse(fmt::format("--tolerance {}", request.tolerance), "a number above 0 and up to 50%");
-    return compare::scatters_of_tolerance(library, tolerance);
+    return ensemble::scatters_of_tolerance(library, tolerance);
   }
   if (machine == nullptr) {
     refuse(
@@ -136,8 +136,8 @@ report::MonteCarloReport draw_elements(const CompareRequest& request, const mech
                                : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   if (report.options.runs == 1) {
     const diagram::FlatDiagram flat = diagram::flatten(diagram, library);
-    for (const compare::Draw& drawn :
-         compare::draw(flat, report.options.scatters, {request.seed, request.first_run})) {
+    for (const ensemble::Draw& drawn :
+         ensemble::draw(flat, report.options.scatters, {request.seed, request.first_run})) {
       const diagram::FlatBlock& block = flat.blocks[drawn.block];
       report.draws.emplace_back(block.path + "." + block.definition->parameters[drawn.parameter].name,
                                 drawn.value);

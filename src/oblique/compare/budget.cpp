@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include <oblique/compare/patched_run.h>
-#include <oblique/compare/scatter.h>
 #include <oblique/diagram/flatten.h>
+#include <oblique/ensemble/study/scatter.h>
 #include <oblique/network/assembly/network.h>
 #include <oblique/network/program/program.h>
 #include <oblique/solve/run.h>

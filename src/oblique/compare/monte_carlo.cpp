@@ -87,7 +87,8 @@ class Queue {
   void serve(std::size_t k) {
     const MonteCarloOptions& options = experiment_.options;
     diagram::FlatDiagram diagram = experiment_.flat;
-    apply_draws(draw(diagram, options.scatters, {options.seed, options.first_run + k}), diagram);
+    ensemble::apply_draws(ensemble::draw(diagram, options.scatters, {options.seed, options.first_run + k}),
+                          diagram);
     try {
       Distances found = experiment_.errors_of(diagram);
       result_.errors[k] = found.largest;
@@ -152,7 +153,7 @@ MonteCarlo monte_carlo(const mechanism::Mechanism& whole, const diagram::Diagram
   experiment.how.max_steps = kStepsOfAFailure * std::max(undisturbed.statistics.steps, 1L);
 
   MonteCarlo result;
-  result.drawn = draw(experiment.flat, options.scatters, {}).size();
+  result.drawn = ensemble::draw(experiment.flat, options.scatters, {}).size();
   result.tolerance = experiment.how.tolerance;
   result.errors.resize(static_cast<std::size_t>(options.runs));
   result.along.resize(std::min(result.errors.size(), MonteCarlo::kMostAlong));

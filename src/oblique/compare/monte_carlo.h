@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include <oblique/compare/scatter.h>
+#include <oblique/ensemble/study/scatter.h>
 #include <oblique/mechanism/model/mechanism.h>
 
 namespace oblique::compare {

@@ -43,7 +43,9 @@ struct Plan {
   std::string file;        ///< of the plan itself; empty where it is made of options
   std::string subject;     ///< path of the diagram or mechanism
   bool mechanism = false;  ///< the subject is one
-  std::optional<std::uint64_t> runs;  ///< else as many as the combinations
+  /// Of a grid: so many machines a combination, where elements scatter (else 1, and it may not be given).
+  /// Otherwise: so many altogether, and it must be given.
+  std::optional<std::uint64_t> runs;
   std::uint64_t seed = 1;
   Sampling sampling = Sampling::grid;
   std::vector<Variation> vary;
@@ -54,7 +56,7 @@ struct Plan {
   std::optional<double> tolerance;  ///< of each run, relative; else that of the subject
   std::optional<int> samples;       ///< rows of each run
   // of a mechanism
-  std::optional<double> gain;   ///< of its servo loops
+  std::optional<double> gain;         ///< of its servo loops
   std::optional<std::string> method;  ///< "triangles", "gradient"
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/compare/scatter.h>
 #include <oblique/diagram/diagram_reader.h>
 #include <oblique/diagram/flatten.h>
+#include <oblique/ensemble/study/scatter.h>
 #include <oblique/network/assembly/network.h>
 #include <oblique/network/program/program.h>
 
@@ -12,7 +12,7 @@
 
 #include "../support/compiled.h"
 
-namespace oblique::compare {
+namespace oblique::ensemble {
 namespace {
 
 using Words = std::array<std::uint32_t, 4>;
@@ -116,4 +116,4 @@ TEST(Scatter, OfAToleranceTakesWeightsAndMultipliers) {
 }
 
 }  // namespace
-}  // namespace oblique::compare
+}  // namespace oblique::ensemble

@@ -1,0 +1,338 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/ensemble/study/study.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+#include <oblique/ensemble/engine/work_queue.h>
+#include <oblique/ensemble/study/flat_difference.h>
+#include <oblique/ensemble/study/plan_reader.h>
+#include <oblique/network/assembly/network.h>
+#include <oblique/network/program/program.h>
+
+namespace oblique::ensemble {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+std::string first_line(const text::Error& error) {
+  const std::string& what = error.diagnostics().front().what;
+  return what.substr(0, what.find('\n'));
+}
+
+/// Ends the runs of an ensemble from within.
+struct Interrupted {};
+
+}  // namespace
+
+struct Study::Parts {
+  Understood plan;
+  std::vector<text::TableColumn> columns;
+  solve::RunOptions options;
+  int threads = 1;
+
+  Machine base;  ///< whose parameters the ensemble varies
+  std::vector<std::uint32_t> varied;
+  std::vector<DrawnElement> drawn;
+  std::vector<std::size_t> drawn_at;  ///< of each drawn element: its place among `varied`
+  /// Where each varied name is one parameter or weight: its place among `varied`; else machines are made one
+  /// by one.
+  std::optional<std::vector<std::size_t>> direct;
+  std::optional<Ensemble> ensemble;
+
+  void choose_numbers();
+  DrawKey key_of(std::uint64_t number) const { return {plan.seed, plan.combinations.draw_number(number)}; }
+  std::vector<double> values_of(std::uint64_t number) const {
+    std::vector<double> values(plan.names.size());
+    plan.combinations.values(number, values);
+    return values;
+  }
+  StudyRow row_of(std::uint64_t number) const {
+    StudyRow row;
+    row.number = number;
+    row.values = values_of(number);
+    row.values.resize(columns.size(), kNone);
+    return row;
+  }
+  void measure(const MachineRun& run, const Machine& machine, StudyRow& row) const;
+
+  /// Rows that were done, and by what.
+  struct Table {
+    std::vector<StudyRow> rows;
+    std::vector<char> done;
+    std::mutex guard;
+    EnsembleCount count;
+
+    void finish(std::size_t at, const std::string& no_lane) {
+      const std::lock_guard lock(guard);
+      done[at] = 1;
+      ++(no_lane.empty() ? count.in_lanes : count.by_cvodes);
+      if (!no_lane.empty()) ++count.reasons[no_lane];
+      if (!rows[at].failure.empty()) ++count.failed;
+    }
+  };
+  void run_directly(std::uint64_t first, std::uint64_t count, Table& table,
+                    const Ensemble::Progress& progress) const;
+  void run_made(std::uint64_t first, std::uint64_t count, Table& table,
+                const Ensemble::Progress& progress) const;
+  /// A machine that was made one by one, before it is run.
+  struct Made {
+    std::size_t at = 0;  ///< its place in the table
+    Machine machine;
+    std::vector<double> values;  ///< of `varied`; none where it differs in more
+  };
+  Made make(std::uint64_t number) const;
+  void run_alone(Made& made, StudyRow& row) const;
+};
+
+/// Finds the parameters that machines differ in, from what the bounds of the varied names do to the diagram:
+/// the same for every chunk of a plan.
+void Study::Parts::choose_numbers() {
+  const std::vector<double>& lowest = plan.lowest;
+  base = plan.subject->machine(lowest);
+  const network::ParameterNumbers numbers(base.flat);
+  const auto add = [&](std::uint32_t number) {
+    const auto found = std::find(varied.begin(), varied.end(), number);
+    if (found == varied.end()) varied.push_back(number);
+    return static_cast<std::size_t>(std::find(varied.begin(), varied.end(), number) - varied.begin());
+  };
+  direct.emplace();
+  for (std::size_t k = 0; k < lowest.size(); ++k) {
+    std::vector<double> values = lowest;
+    values[k] = plan.highest[k];
+    std::optional<std::vector<std::uint32_t>> changed;
+    try {
+      changed = difference(base.flat, numbers, plan.subject->machine(values).flat);
+    } catch (const text::Error&) {  // of a mechanism that cannot be: a row with its reason
+    }
+    if (changed) {
+      for (const std::uint32_t number : *changed) add(number);
+    }
+    const auto one = network::find_parameter(base.flat, numbers, plan.names[k]);
+    const bool is_one =
+        one && one->value == lowest[k] &&
+        (lowest[k] == plan.highest[k] || (changed && *changed == std::vector<std::uint32_t>{one->number}));
+    if (is_one && direct) {
+      direct->push_back(add(one->number));
+    } else {
+      direct.reset();
+    }
+  }
+  for (const DrawnElement& element : drawn_elements(base.flat, plan.scatters)) {
+    drawn.push_back(element);
+    drawn_at.push_back(add(numbers.parameter(element.block, element.parameter)));
+  }
+}
+
+void Study::Parts::measure(const MachineRun& run, const Machine& machine, StudyRow& row) const {
+  if (!run.failure.empty()) {
+    row.failure = run.failure;
+    return;
+  }
+  const std::size_t n = 1 + machine.flat.outputs.size(), n_rows = run.rows.size() / n;
+  std::vector<std::vector<double>> outputs(n, std::vector<double>(n_rows));
+  for (std::size_t c = 0; c < n; ++c) {
+    const double scale = c == 0 ? 1 : machine.flat.outputs[c - 1].scale;
+    const double offset = c == 0 ? 0 : machine.flat.outputs[c - 1].offset;
+    for (std::size_t r = 0; r < n_rows; ++r) outputs[c][r] = scale * run.rows[r * n + c] + offset;
+  }
+  const MotionErrors errors = plan.asks_for_errors ? machine.errors(outputs) : MotionErrors{};
+  std::vector<std::vector<double>> table{outputs[0]};
+  for (const MeasuredColumn& column : plan.measured) {
+    table.push_back(column.exact.empty() ? outputs[1 + column.output] : machine.exact(column.exact));
+  }
+  const SampledRun sampled(std::move(table));
+  for (std::size_t k = 0; k < plan.measures.size(); ++k)
+    row.values[plan.names.size() + k] = plan.measures[k].value(sampled, errors);
+}
+
+void Study::Parts::run_directly(std::uint64_t first, std::uint64_t count, Table& table,
+                                const Ensemble::Progress& progress) const {
+  const auto values = [&](std::uint64_t number, std::span<double> all) {
+    const std::vector<double> chosen = values_of(number);
+    for (std::size_t k = 0; k < chosen.size(); ++k) all[(*direct)[k]] = chosen[k];
+    for (std::size_t k = 0; k < drawn.size(); ++k) {
+      double& value = all[drawn_at[k]];
+      value = drawn[k].draw(base.flat, value, key_of(number));
+    }
+  };
+  const auto take = [&](const MachineRun& run) {
+    const auto at = static_cast<std::size_t>(run.number - first);
+    measure(run, base, table.rows[at]);
+    table.finish(at, run.no_lane);
+  };
+  ensemble->run(first, count, values, take, progress);
+}
+
+Study::Parts::Made Study::Parts::make(std::uint64_t number) const {
+  Made made;
+  made.machine = plan.subject->machine(values_of(number));
+  const network::ParameterNumbers numbers(made.machine.flat);
+  std::vector<Draw> draws;
+  for (const DrawnElement& element : drawn_elements(made.machine.flat, plan.scatters)) {
+    const double nominal = made.machine.flat.blocks[element.block].parameters[element.parameter];
+    draws.push_back(
+        {element.block, element.parameter, element.draw(made.machine.flat, nominal, key_of(number))});
+  }
+  apply_draws(draws, made.machine.flat);
+  const auto changed = difference(base.flat, network::ParameterNumbers(base.flat), made.machine.flat);
+  const bool is_alike = changed && made.machine.until == base.until &&
+                        std::all_of(changed->begin(), changed->end(), [&](std::uint32_t one) {
+                          return std::find(varied.begin(), varied.end(), one) != varied.end();
+                        });
+  if (!is_alike) return made;
+  const std::vector<double> all = network::parameter_values(made.machine.flat);
+  for (const std::uint32_t one : varied) made.values.push_back(all[one]);
+  return made;
+}
+
+void Study::Parts::run_alone(Made& made, StudyRow& row) const {
+  diagram::FlatDiagram flat = made.machine.flat;
+  for (diagram::FlatOutput& output : flat.outputs) {
+    output.scale = 1;
+    output.offset = 0;
+  }
+  MachineRun done;
+  solve::Run run;
+  try {
+    solve::RunOptions how = options;
+    how.until = made.machine.until;
+    run = solve::run(network::Program(network::assemble(flat)), flat, how);
+    done.rows = run.trajectory.values();
+  } catch (const text::Error& error) {
+    done.failure = first_line(error);
+  }
+  measure(done, made.machine, row);
+}
+
+void Study::Parts::run_made(std::uint64_t first, std::uint64_t count, Table& table,
+                            const Ensemble::Progress& progress) const {
+  constexpr std::uint64_t kBatch = 1024;  // that are held at a time
+  for (std::uint64_t begin = 0; begin < count; begin += kBatch) {
+    const std::uint64_t n = std::min(kBatch, count - begin);
+    std::vector<Made> alike;
+    std::mutex guard;
+    work_off(
+        begin, n, threads,
+        [&](const Next& next) {
+          for (std::uint64_t at = 0; next(at);) {
+            StudyRow& row = table.rows[at];
+            try {
+              Made made = make(first + at);
+              made.at = at;
+              if (!made.values.empty() || varied.empty()) {
+                const std::lock_guard lock(guard);
+                alike.push_back(std::move(made));
+                continue;
+              }
+              run_alone(made, row);
+            } catch (const text::Error& error) {
+              row.failure = first_line(error);
+            }
+            table.finish(
+                at, row.failure.empty() ? "its diagram differs in more than numbers" : "it cannot be made");
+          }
+        },
+        [&](std::uint64_t) {
+          if (progress) progress(begin);
+        });
+    std::sort(alike.begin(), alike.end(), [](const Made& a, const Made& b) { return a.at < b.at; });
+    ensemble->run(
+        0, alike.size(),
+        [&](std::uint64_t k, std::span<double> all) {
+          std::copy(alike[k].values.begin(), alike[k].values.end(), all.begin());
+        },
+        [&](const MachineRun& run) {
+          const Made& made = alike[run.number];
+          measure(run, made.machine, table.rows[made.at]);
+          table.finish(made.at, run.no_lane);
+        },
+        [&](std::uint64_t done) {
+          if (progress) progress(begin + (n - alike.size()) + done);
+        });
+  }
+}
+
+Study::Study(const Plan& plan, const std::string& text, const diagram::BlockLibrary& library, int threads) {
+  auto parts = std::make_unique<Parts>();
+  parts->plan = understand(plan, text, library);
+  parts->threads = std::max(threads, 1);
+  for (std::size_t k = 0; k < parts->plan.names.size(); ++k) {
+    const std::string& unit = parts->plan.units[k];
+    parts->columns.push_back({parts->plan.names[k], unit == "1" ? "" : unit});
+  }
+  for (const std::string& name : parts->plan.measure_names) parts->columns.push_back({name});
+  parts->options = parts->plan.subject->run_options();
+  if (plan.tolerance) parts->options.tolerance = *plan.tolerance;
+  if (plan.samples) parts->options.samples = *plan.samples;
+  parts->choose_numbers();
+  parts->options.until = parts->base.until;
+  EnsembleOptions options;
+  options.run = parts->options;
+  options.threads = parts->threads;
+  diagram::FlatDiagram flat = parts->base.flat;
+  for (diagram::FlatOutput& output : flat.outputs) {
+    output.scale = 1;
+    output.offset = 0;
+  }
+  parts->ensemble.emplace(std::move(flat), parts->varied, std::move(options));
+  parts_ = std::move(parts);
+}
+
+Study::~Study() = default;
+Study::Study(Study&&) noexcept = default;
+
+std::uint64_t Study::runs() const {
+  return parts_->plan.combinations.runs();
+}
+
+const std::vector<text::TableColumn>& Study::columns() const {
+  return parts_->columns;
+}
+
+std::size_t Study::n_varied() const {
+  return parts_->plan.names.size();
+}
+
+bool Study::is_logarithmic(std::size_t varied) const {
+  return parts_->plan.logarithmic[varied];
+}
+
+std::size_t Study::n_drawn() const {
+  return parts_->drawn.size();
+}
+
+const solve::RunOptions& Study::run_options() const {
+  return parts_->options;
+}
+
+Study::Rows Study::run(std::uint64_t first, std::uint64_t count, const Ensemble::Progress& progress,
+                       const std::function<bool()>& interrupted) const {
+  Parts::Table table;
+  table.done.resize(count);
+  for (std::uint64_t k = 0; k < count; ++k) table.rows.push_back(parts_->row_of(first + k));
+  const auto watch = [&](std::uint64_t done) {
+    if (interrupted && interrupted()) throw Interrupted();
+    if (progress) progress(done);
+  };
+  try {
+    if (parts_->direct) {
+      parts_->run_directly(first, count, table, watch);
+    } else {
+      parts_->run_made(first, count, table, watch);
+    }
+  } catch (const Interrupted&) {
+  }
+  Rows done;
+  for (std::size_t k = 0; k < table.rows.size(); ++k) {
+    if (table.done[k] != 0) done.rows.push_back(std::move(table.rows[k]));
+  }
+  done.count = std::move(table.count);
+  return done;
+}
+
+}  // namespace oblique::ensemble

@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/ensemble/study/study.h>
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "../support/compiled.h"
+
+namespace oblique::ensemble {
+namespace {
+
+constexpr const char* kDecay = R"toml(format = "oblique-diagram/1"
+[run]
+until = 2
+[blocks]
+x = { type = "integrator", in = ["-1*x"], initial = 1 }
+y = { type = "multiplier", in = ["x", "x"] }
+[outputs]
+height = { signal = "x", scale = 10, unit = "m" }
+)toml";
+
+constexpr const char* kSpring = R"toml(format = "oblique-diagram/1"
+[run]
+until = 3
+[blocks]
+v = { type = "integrator", in = ["-4*x"], initial = 0 }
+x = { type = "integrator", in = ["v"], initial = 0.5 }
+)toml";
+
+Plan plan_of(std::vector<Variation> vary, std::vector<std::string> measures) {
+  Plan plan;
+  plan.subject = "d.toml";
+  plan.vary = std::move(vary);
+  for (std::string& measure : measures) plan.measures.push_back({"", std::move(measure), {}});
+  return plan;
+}
+
+Study study_of(const Plan& plan, const std::string& text) {
+  return Study(plan, text, testing::shipped_blocks(), 2);
+}
+
+std::vector<std::string> names_of(const Study& study) {
+  std::vector<std::string> names;
+  for (const text::TableColumn& column : study.columns()) names.push_back(column.name);
+  return names;
+}
+
+TEST(Study, RunsAGridOfDecays) {
+  Plan plan = plan_of({{"x.in[1]", "-1..-3:3", {}}, {"x.initial", "0.5,1", {}}},
+                      {"end(x)", "end(height)", "integral(x)", "max(y)"});
+  const Study study = study_of(plan, kDecay);
+  EXPECT_EQ(names_of(study), (std::vector<std::string>{"x.in[1]", "x.initial", "end(x)", "end(height)",
+                                                       "integral(x)", "max(y)"}));
+  ASSERT_EQ(study.runs(), 6U);
+  const Study::Rows done = study.run(0, 6);
+  ASSERT_EQ(done.rows.size(), 6U);
+  EXPECT_EQ(done.count.failed, 0U);
+  for (std::size_t k = 0; k < 6; ++k) {
+    const std::vector<double>& row = done.rows[k].values;
+    const double rate = 1 + static_cast<double>(k / 2), height = k % 2 == 0 ? 0.5 : 1;
+    EXPECT_EQ(row[0], -rate);
+    EXPECT_EQ(row[1], height);
+    // the run's tolerance, 1e-8, with a factor for its sum along the run
+    EXPECT_NEAR(row[2], height * std::exp(-2 * rate), 1e-7);
+    EXPECT_NEAR(row[3], 10 * height * std::exp(-2 * rate), 1e-6);
+    EXPECT_NEAR(row[4], height * (1 - std::exp(-2 * rate)) / rate, 1e-7);
+    EXPECT_NEAR(row[5], height * height, 1e-12);
+  }
+}
+
+// x'' = −kx from 0.5 at rest: the first zero at π/2ω, ω = √k.
+TEST(Study, FindsTheFrequencyOfASpring) {
+  const Study study =
+      study_of(plan_of({{"v.in[1]", "-4,-9,-16", {}}}, {"pi/2/time(x < 0)", "max(v)", "min(x)"}), kSpring);
+  const Study::Rows done = study.run(0, 3);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double omega = 2 + static_cast<double>(k);
+    EXPECT_NEAR(done.rows[k].values[1], omega, 1e-6);
+    EXPECT_NEAR(done.rows[k].values[2], 0.5 * omega, 1e-6);
+    EXPECT_NEAR(done.rows[k].values[3], -0.5, 1e-7);
+  }
+}
+
+TEST(Study, GivesTheSameRowsInChunksAndThreads) {
+  Plan plan = plan_of({{"x.in[1]", "-3..-1", {}}, {"x.initial", "0.1..1:log", {}}}, {"end(x)"});
+  plan.sampling = Sampling::latin_hypercube;
+  plan.runs = 20;
+  plan.scatter.push_back({"integrator", "tolerance", 0.01, {}});
+  const Study study = study_of(plan, kDecay);
+  const Study alone(plan, kDecay, testing::shipped_blocks(), 1);
+  const Study::Rows all = study.run(0, 20), begin = alone.run(0, 7), rest = alone.run(7, 13);
+  for (std::size_t k = 0; k < 20; ++k) {
+    const StudyRow& part = k < 7 ? begin.rows[k] : rest.rows[k - 7];
+    EXPECT_EQ(all.rows[k].number, k);
+    EXPECT_EQ(all.rows[k].values, part.values);
+  }
+}
+
+// dx/dt = −(1 + e)x, e uniform within ±1 %: log x(2)/−2 is uniform within 1 ± 1 %.
+TEST(Study, DrawsElements) {
+  Plan plan = plan_of({}, {"log(end(x))/-2 - 1"});
+  plan.runs = 400;
+  plan.scatter.push_back({"integrator", "tolerance", 0.01, {}});
+  const Study study = study_of(plan, kDecay);
+  EXPECT_EQ(study.n_drawn(), 1U);
+  double sum = 0, squares = 0;
+  for (const StudyRow& row : study.run(0, 400).rows) {
+    EXPECT_LE(std::abs(row.values[0]), 0.01 + 1e-6);
+    sum += row.values[0];
+    squares += row.values[0] * row.values[0];
+  }
+  // four standard deviations of means over 400: of one on ±w w/√3, of its square w²·√(4/45)
+  EXPECT_NEAR(sum / 400, 0, 4 * 0.01 / std::sqrt(3 * 400.0));
+  EXPECT_NEAR(squares / 400, 1e-4 / 3, 4 * 1e-4 * std::sqrt(4.0 / 45 / 400));
+}
+
+TEST(Study, DrawsAlikeAtEveryCombination) {
+  Plan plan = plan_of({{"x.initial", "0.5,1", {}}}, {"end(x)/start(x)"});
+  plan.runs = 3;
+  plan.scatter.push_back({"integrator", "tolerance", 0.01, {}});
+  const Study study = study_of(plan, kDecay);
+  ASSERT_EQ(study.runs(), 6U);
+  const std::vector<StudyRow> rows = study.run(0, 6).rows;
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_EQ(rows[k].values[0], 0.5);
+    EXPECT_EQ(rows[k + 3].values[0], 1);
+    EXPECT_NEAR(rows[k].values[1], rows[k + 3].values[1], 1e-7);  // the tolerance of the runs
+  }
+  EXPECT_GT(std::abs(rows[0].values[1] - rows[1].values[1]), 1e-5);
+}
+
+// 1 V on an RC of its own making: a composite whose parameter becomes a weight inside.
+TEST(Study, VariesTheParametersOfComposites) {
+  diagram::BlockLibrary library = testing::shipped_blocks_and("low-pass", R"toml(
+[inputs]
+in = {}
+[outputs]
+out = { wire = "v" }
+[parameters]
+rate = { default = 1, above = 0, doc = "1/RC" }
+[blocks]
+v = { type = "integrator", in = ["rate*in", "-rate*v"] }
+)toml");
+  const std::string text = R"toml(format = "oblique-diagram/1"
+[blocks]
+one = { type = "constant", value = 1 }
+rc  = { type = "low-pass", in = "one" }
+)toml";
+  const Study study(plan_of({{"rc.rate", "1,2,5", {}}}, {"end(rc)", "end(rc.v)", "time(rc > 0.5)"}), text,
+                    library, 1);
+  const std::vector<StudyRow> rows = study.run(0, 3).rows;
+  const double rates[]{1, 2, 5};
+  for (std::size_t k = 0; k < 3; ++k) {
+    ASSERT_EQ(rows[k].failure, "");
+    EXPECT_NEAR(rows[k].values[1], 1 - std::exp(-rates[k]), 1e-7);
+    EXPECT_EQ(rows[k].values[2], rows[k].values[1]);
+    EXPECT_NEAR(rows[k].values[3], std::log(2) / rates[k], 1e-6);
+  }
+}
+
+TEST(Study, EndsAtEveryOutputWhereNothingIsAsked) {
+  const Study study = study_of(plan_of({{"x.initial", "1,2", {}}}, {}), kDecay);
+  EXPECT_EQ(names_of(study), (std::vector<std::string>{"x.initial", "end(height)"}));
+}
+
+TEST(Study, TellsOfAMachineThatFails) {
+  const Study study = study_of(plan_of({{"x.in[1]", "-1,1e300", {}}}, {"end(x)"}), kDecay);
+  const Study::Rows done = study.run(0, 2);
+  EXPECT_EQ(done.rows[0].failure, "");
+  EXPECT_NE(done.rows[1].failure, "");
+  EXPECT_TRUE(std::isnan(done.rows[1].values[1]));
+  EXPECT_EQ(done.rows[1].values[0], 1e300);
+  EXPECT_EQ(done.count.failed, 1U);
+}
+
+TEST(Study, KeepsWhatIsDoneWhenItIsInterrupted) {
+  const Study study(plan_of({{"x.initial", "1..2:100", {}}}, {"end(x)"}), kDecay, testing::shipped_blocks(),
+                    1);
+  int asked = 0;
+  const Study::Rows done = study.run(0, 100, {}, [&] { return ++asked > 30; });
+  EXPECT_GE(done.rows.size(), 1U);
+  EXPECT_LT(done.rows.size(), 100U);
+  for (const StudyRow& row : done.rows) EXPECT_FALSE(std::isnan(row.values[1]));
+}
+
+struct BadPlan {
+  std::string name, values, measure, message;
+};
+
+TEST(Study, RefusesWhatMakesNoSense) {
+  const BadPlan bad[]{
+      {"z.initial", "1,2", "end(x)", "there is no block 'z'; remedy"},
+      {"x.initiall", "1,2", "end(x)",
+       "'initiall' of block type 'integrator' is not a parameter\n"
+       "  remedy: did you mean 'initial'?"},
+      {"x.initial", "", "end(x)",
+       "values of 'x.initial': there are no values; expected a list such as 1,2,5, or a range such as "
+       "0.8..1.2:9"},
+      {"x.initial", "1,,2", "end(x)",
+       "values of 'x.initial': '1,,2' has a comma and no value beside it; expected a value"},
+      {"x.initial", "-1..1:5:log", "end(x)",
+       "values of 'x.initial': a logarithmic range cannot go from -1 to 1; expected both bounds above 0, or "
+       "both below"},
+      {"x.initial", "0..1:1.5", "end(x)",
+       "values of 'x.initial': '1.5' in '0..1:1.5' is no number of values; expected a whole number from 2 to "
+       "1000000, and ':log' for even steps of the logarithm"},
+      {"x.initial", "0..1", "end(x)",
+       "the range '0..1' of 'x.initial' does not say how many values it has; expected '0..1:5', for example"},
+      {"x.initial", "1..1:3", "end(x)",
+       "values of 'x.initial': the range '1..1:3' has equal bounds; expected two bounds\n"
+       "  remedy: the value alone: 1"},
+      {"x.initial", "1 Hz,2", "end(x)", "values of 'x.initial': '1 Hz': "},
+      {"x.initial", "1,2", "end(hight)",
+       "measure 'end(hight)': there is no output or signal 'hight'\n  remedy: did you mean 'height'?"},
+      {"x.initial", "1,2", "x",
+       "measure 'x': 'x' has a value at every moment, and a measure is one number of a run; expected end(x), "
+       "max(x), mean(x) …"},
+  };
+  for (const BadPlan& one : bad) {
+    const std::string message = testing::message_of<StudyError>([&] {
+      study_of(plan_of({{one.name, one.values, {}}}, {one.measure}), kDecay);
+    });
+    if (one.message.ends_with("; remedy")) {
+      EXPECT_NE(message.find(one.message.substr(0, one.message.size() - 8)), std::string::npos) << message;
+    } else {
+      EXPECT_EQ(message.substr(0, one.message.size()), one.message);
+    }
+  }
+}
+
+TEST(Study, NamesAllFindingsAtTheirPlaces) {
+  Plan plan =
+      plan_of({{"x.initial", "1,2", {"p.toml", {4, 13}}}, {"x.initial", "1,2", {"p.toml", {5, 13}}}}, {});
+  plan.measures.push_back({"m", "end(zz)", {"p.toml", {7, 5}}});
+  const std::string message = testing::message_of<StudyError>([&] { study_of(plan, kDecay); });
+  EXPECT_NE(message.find("p.toml:5:13: 'x.initial' is varied twice"), std::string::npos) << message;
+  EXPECT_NE(message.find("p.toml:7:10: measure 'end(zz)': there is no output or signal 'zz'"),
+            std::string::npos)
+      << message;
+}
+
+TEST(Study, RefusesNumbersOfRunsThatMakeNoSense) {
+  const auto message = [](Plan plan) {
+    return testing::message_of<StudyError>([&] { study_of(plan, kDecay); });
+  };
+  Plan plan = plan_of({{"x.initial", "1,2", {}}}, {});
+  plan.runs = 5;
+  EXPECT_EQ(message(plan),
+            "5 runs of each combination would be the same one; expected no number of runs with a grid, or "
+            "elements that scatter");
+  plan.runs.reset();
+  plan.sampling = Sampling::sobol;
+  EXPECT_EQ(message(plan), "it is not said how many points are to be chosen; expected a number of runs");
+  EXPECT_EQ(
+      message(plan_of({}, {})),
+      "nothing is varied and nothing scatters, so that all machines are one; expected names with values, "
+      "such as c.gain=1e2..1e6:5:log");
+  Plan scattered = plan_of({}, {});
+  scattered.runs = 3;
+  scattered.scatter.push_back({"summer", "tolerance", 0.01, {}});
+  EXPECT_EQ(message(scattered).substr(0, 58), "no block of the diagram is a 'summer', so that none scatte");
+}
+
+}  // namespace
+}  // namespace oblique::ensemble
