@@ -46,6 +46,24 @@ struct RunRequest {
 };
 ExitStatus run_diagram(const Session& session, const RunRequest& request);
 
+struct SweepRequest {
+  std::string file;
+  std::string output;
+  std::vector<std::string> vary, measures, scatter;
+  std::string tolerance_of_elements;
+  std::string machine;
+  std::optional<std::uint64_t> runs;
+  bool latin = false, sobol = false;
+  std::uint64_t seed = 1;
+  std::string gain, method;  ///< of a mechanism
+  std::string tolerance;
+  std::optional<int> samples;
+  int jobs = 0;       ///< 0: as many as the processor has
+  std::string plot;   ///< where the picture goes; "-": the terminal
+  std::string theme;  ///< of the picture; empty: auto
+};
+ExitStatus sweep(const Session& session, const SweepRequest& request);
+
 struct OperateRequest {
   std::string diagram;
 };

@@ -231,8 +231,9 @@ class PlanReader {
     } catch (const text::ExpressionError& error) {
       text::Place place = measure.place;
       if (place.position.column > 0) place.position.column += error.column;
-      report(place, fmt::format("measure '{}': {}", measure.expression, error.what), error.expected,
-             error.remedy);
+      const bool told = !place.setting.name.empty();  // by the place itself
+      report(place, (told ? "" : fmt::format("measure '{}': ", measure.expression)) + error.what,
+             error.expected, error.remedy);
     }
   }
 

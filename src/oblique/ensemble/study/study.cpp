@@ -286,6 +286,10 @@ Study::Study(const Plan& plan, const std::string& text, const diagram::BlockLibr
 Study::~Study() = default;
 Study::Study(Study&&) noexcept = default;
 
+const std::string& Study::title() const {
+  return parts_->plan.subject->diagram().title;
+}
+
 std::uint64_t Study::runs() const {
   return parts_->plan.combinations.runs();
 }
