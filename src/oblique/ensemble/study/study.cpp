@@ -45,6 +45,7 @@ struct Study::Parts {
   std::optional<Ensemble> ensemble;
 
   void choose_numbers();
+  std::vector<std::uint32_t> changed_by(std::size_t name) const;
   DrawKey key_of(std::uint64_t number) const { return {plan.seed, plan.combinations.draw_number(number)}; }
   std::vector<double> values_of(std::uint64_t number) const {
     std::vector<double> values(plan.names.size());
@@ -89,34 +90,51 @@ struct Study::Parts {
   void run_alone(Made& made, StudyRow& row) const;
 };
 
+/// The parameters that a varied name changes on its way to its bounds. A mechanism need not reach them: then
+/// half of the way counts, or half of that.
+std::vector<std::uint32_t> Study::Parts::changed_by(std::size_t name) const {
+  constexpr int kHalvings = 5;
+  const network::ParameterNumbers numbers(base.flat);
+  std::vector<std::uint32_t> all;
+  for (const double bound : {plan.lowest[name], plan.highest[name]}) {
+    double way = bound - plan.usual[name];
+    for (int k = 0; k < kHalvings && way != 0; ++k, way /= 2) {
+      std::vector<double> values = plan.usual;
+      values[name] = k == 0 ? bound : plan.usual[name] + way;
+      try {
+        const auto changed = difference(base.flat, numbers, plan.subject->machine(values).flat);
+        if (!changed) continue;
+        for (const std::uint32_t one : *changed) {
+          if (std::find(all.begin(), all.end(), one) == all.end()) all.push_back(one);
+        }
+        break;
+      } catch (const text::Error&) {  // of a mechanism that cannot be: a row with its reason
+      }
+    }
+  }
+  return all;
+}
+
 /// Finds the parameters that machines differ in, from what the bounds of the varied names do to the diagram:
 /// the same for every chunk of a plan.
 void Study::Parts::choose_numbers() {
-  const std::vector<double>& lowest = plan.lowest;
-  base = plan.subject->machine(lowest);
+  base = plan.subject->machine(plan.usual);
   const network::ParameterNumbers numbers(base.flat);
   const auto add = [&](std::uint32_t number) {
     const auto found = std::find(varied.begin(), varied.end(), number);
     if (found == varied.end()) varied.push_back(number);
     return static_cast<std::size_t>(std::find(varied.begin(), varied.end(), number) - varied.begin());
   };
-  direct.emplace();
-  for (std::size_t k = 0; k < lowest.size(); ++k) {
-    std::vector<double> values = lowest;
-    values[k] = plan.highest[k];
-    std::optional<std::vector<std::uint32_t>> changed;
-    try {
-      changed = difference(base.flat, numbers, plan.subject->machine(values).flat);
-    } catch (const text::Error&) {  // of a mechanism that cannot be: a row with its reason
-    }
-    if (changed) {
-      for (const std::uint32_t number : *changed) add(number);
-    }
+  if (!plan.mechanism) direct.emplace();
+  for (std::size_t k = 0; k < plan.names.size(); ++k) {
+    const std::vector<std::uint32_t> changed = changed_by(k);
+    for (const std::uint32_t number : changed) add(number);
+    if (!direct) continue;
     const auto one = network::find_parameter(base.flat, numbers, plan.names[k]);
     const bool is_one =
-        one && one->value == lowest[k] &&
-        (lowest[k] == plan.highest[k] || (changed && *changed == std::vector<std::uint32_t>{one->number}));
-    if (is_one && direct) {
+        one && one->value == plan.usual[k] &&
+        (plan.lowest[k] == plan.highest[k] || changed == std::vector<std::uint32_t>{one->number});
+    if (is_one) {
       direct->push_back(add(one->number));
     } else {
       direct.reset();
@@ -143,7 +161,7 @@ void Study::Parts::measure(const MachineRun& run, const Machine& machine, StudyR
   const MotionErrors errors = plan.asks_for_errors ? machine.errors(outputs) : MotionErrors{};
   std::vector<std::vector<double>> table{outputs[0]};
   for (const MeasuredColumn& column : plan.measured) {
-    table.push_back(column.exact.empty() ? outputs[1 + column.output] : machine.exact(column.exact));
+    table.push_back(column.exact.empty() ? outputs[1 + column.output] : machine.exact(column.exact, n_rows));
   }
   const SampledRun sampled(std::move(table));
   for (std::size_t k = 0; k < plan.measures.size(); ++k)
