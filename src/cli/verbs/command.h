@@ -143,7 +143,9 @@ struct CompareRequest {
   int runs = 0;         ///< of --monte-carlo; 0: none
   std::uint64_t seed = 1;
   std::uint64_t first_run = 0;
-  int threads = 0;  ///< 0: as many as the processor has
+  int threads = 0;           ///< 0: as many as the processor has
+  std::string yield;         ///< below which error a machine is good
+  std::string until_within;  ///< how well the part of good ones is to be known
   std::string tolerance;
   bool json = false;
   bool timings = false;  ///< in the JSON

@@ -38,6 +38,7 @@ struct Study::Parts {
   Machine base;  ///< whose parameters the ensemble varies
   std::vector<std::uint32_t> varied;
   std::vector<DrawnElement> drawn;
+  std::vector<double> nominal;        ///< of `varied`: the values of `base`
   std::vector<std::size_t> drawn_at;  ///< of each drawn element: its place among `varied`
   /// Where each varied name is one parameter or weight: its place among `varied`; else machines are made one
   /// by one.
@@ -144,6 +145,8 @@ void Study::Parts::choose_numbers() {
     drawn.push_back(element);
     drawn_at.push_back(add(numbers.parameter(element.block, element.parameter)));
   }
+  const std::vector<double> all = network::parameter_values(base.flat);
+  for (const std::uint32_t number : varied) nominal.push_back(all[number]);
 }
 
 void Study::Parts::measure(const MachineRun& run, const Machine& machine, StudyRow& row) const {
@@ -171,12 +174,12 @@ void Study::Parts::measure(const MachineRun& run, const Machine& machine, StudyR
 void Study::Parts::run_directly(std::uint64_t first, std::uint64_t count, Table& table,
                                 const Ensemble::Progress& progress) const {
   const auto values = [&](std::uint64_t number, std::span<double> all) {
+    std::copy(nominal.begin(), nominal.end(), all.begin());
     const std::vector<double> chosen = values_of(number);
     for (std::size_t k = 0; k < chosen.size(); ++k) all[(*direct)[k]] = chosen[k];
-    for (std::size_t k = 0; k < drawn.size(); ++k) {
-      double& value = all[drawn_at[k]];
-      value = drawn[k].draw(base.flat, value, key_of(number));
-    }
+    const std::vector<double> about(all.begin(), all.end());
+    for (std::size_t k = 0; k < drawn.size(); ++k)
+      all[drawn_at[k]] = drawn[k].draw(base.flat, about[drawn_at[k]], key_of(number));
   };
   const auto take = [&](const MachineRun& run) {
     const auto at = static_cast<std::size_t>(run.number - first);
@@ -192,9 +195,9 @@ Study::Parts::Made Study::Parts::make(std::uint64_t number) const {
   const network::ParameterNumbers numbers(made.machine.flat);
   std::vector<Draw> draws;
   for (const DrawnElement& element : drawn_elements(made.machine.flat, plan.scatters)) {
-    const double nominal = made.machine.flat.blocks[element.block].parameters[element.parameter];
+    const double about = made.machine.flat.blocks[element.block].parameters[element.parameter];
     draws.push_back(
-        {element.block, element.parameter, element.draw(made.machine.flat, nominal, key_of(number))});
+        {element.block, element.parameter, element.draw(made.machine.flat, about, key_of(number))});
   }
   apply_draws(draws, made.machine.flat);
   const auto changed = difference(base.flat, network::ParameterNumbers(base.flat), made.machine.flat);
@@ -292,7 +295,9 @@ Study::Study(const Plan& plan, const std::string& text, const diagram::BlockLibr
   EnsembleOptions options;
   options.run = parts->options;
   options.threads = parts->threads;
+  // A machine that draws: elements that scatter may be other cases of their equations than ideal ones.
   diagram::FlatDiagram flat = parts->base.flat;
+  apply_draws(draw(flat, parts->plan.scatters, {parts->plan.seed, 0}), flat);
   for (diagram::FlatOutput& output : flat.outputs) {
     output.scale = 1;
     output.offset = 0;
