@@ -5,11 +5,13 @@
 #include <fmt/format.h>
 
 #include <oblique/ensemble/study/study.h>
+#include <oblique/report/study/effects.h>
 #include <oblique/report/study/study_chart.h>
 #include <oblique/report/study/study_text.h>
 #include <oblique/text/file.h>
 #include <oblique/text/quantity.h>
 #include "terminal/file_kind.h"
+#include "terminal/picture_output.h"
 #include "terminal/plot_output.h"
 #include "terminal/signals.h"
 #include "terminal/table_output.h"
@@ -108,6 +110,17 @@ void write(const report::StudyResult& result, const std::string& path) {
   table.finish();
 }
 
+void draw(const report::StudyResult& result, const SweepRequest& request) {
+  constexpr std::size_t kMostOfCurves = 2;  // varied names
+  if (!plots_in_terminal(request.plot)) {
+    save_picture(report::picture_of(result), request.plot, plot_theme(request.theme));
+  } else if (result.n_varied > kMostOfCurves) {
+    print(report::effects_text(result));
+  } else {
+    plot(report::chart_of(result), request.plot, plot_theme(request.theme));
+  }
+}
+
 }  // namespace
 
 ExitStatus sweep(const Session& session, const SweepRequest& request) {
@@ -147,9 +160,10 @@ ExitStatus sweep(const Session& session, const SweepRequest& request) {
     constexpr std::size_t kColumnWidth = 14;
     if (request.output.empty()) print(report::rows_text(result, columns_that_fit(kColumnWidth)) + "\n");
     print(report::summary_text(result));
+    if (result.n_varied > 1) print("\n" + report::effects_text(result));
   }
   if (!request.output.empty()) write(result, request.output);
-  if (!request.plot.empty()) plot(report::chart_of(result), request.plot, plot_theme(request.theme));
+  if (!request.plot.empty()) draw(result, request);
   note(report::count_text(result));
   return result.done.count.failed == result.done.rows.size() ? ExitStatus::solver_failed : ExitStatus::done;
 }

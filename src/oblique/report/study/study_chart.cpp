@@ -7,6 +7,9 @@
 
 #include <fmt/format.h>
 
+#include <oblique/draw/chart/effect_bars.h>
+#include <oblique/draw/chart/heat_map.h>
+#include <oblique/report/study/effects.h>
 #include <oblique/report/text_table.h>
 
 namespace oblique::report {
@@ -64,6 +67,18 @@ draw::Panel histogram(const StudyResult& result, std::size_t measure) {
   return panel;
 }
 
+/// Whether values are above 0 and so far apart that a logarithmic axis shows them better.
+bool wants_decades(const std::vector<double>& values) {
+  constexpr double kApart = 100;
+  double least = INFINITY, greatest = 0;
+  for (const double value : values) {
+    if (!std::isfinite(value)) continue;
+    least = std::min(least, value);
+    greatest = std::max(greatest, value);
+  }
+  return least > 0 && greatest > kApart * least;
+}
+
 /// A measure over the one varied name.
 draw::Panel curve(const StudyResult& result, std::size_t measure) {
   const text::TableColumn &x = result.columns[0], &y = result.columns[1 + measure];
@@ -83,8 +98,7 @@ draw::Panel curve(const StudyResult& result, std::size_t measure) {
   if (at.size() <= kFew) middle.style = draw::Curve::Style::dotted_line;
   if (!result.grid && result.drawn > 0) middle.style = draw::Curve::Style::marks;
   draw::Curve band{"5 % … 95 %", {}, 0, draw::Curve::Style::band};
-  bool positive = true;
-  double least = INFINITY, greatest = 0;
+  std::vector<double> all;
   for (auto& [value, values] : at) {
     std::sort(values.begin(), values.end());
     const double none = std::nan("");
@@ -92,30 +106,125 @@ draw::Panel curve(const StudyResult& result, std::size_t measure) {
     if (values.empty()) continue;
     band.points.emplace_back(value, percentile_of(values, kLow));
     band.other_edge.emplace_back(value, percentile_of(values, kHigh));
-    positive = positive && values.front() > 0;
-    least = std::min(least, values.front());
-    greatest = std::max(greatest, values.back());
+    all.insert(all.end(), values.begin(), values.end());
   }
-  constexpr double kDecades = 100;  // more between the values: a logarithmic axis
-  panel.y.logarithmic = positive && greatest > kDecades * least;
+  panel.y.logarithmic = wants_decades(all);
   if (repeats) panel.curves.push_back(std::move(band));
   panel.curves.push_back(std::move(middle));
   return panel;
 }
 
+/// The values of a varied name, ascending.
+std::vector<double> levels_of(const StudyResult& result, std::size_t name) {
+  std::vector<double> levels;
+  for (const ensemble::StudyRow& row : result.done.rows) levels.push_back(row.values[name]);
+  std::sort(levels.begin(), levels.end());
+  levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
+  return levels;
+}
+
+/// Of machines of the same two values the median of a measure, of each second value all first ones; "not a
+/// number" where there is none.
+std::vector<double> medians(const StudyResult& result, std::size_t measure, const std::vector<double>& xs,
+                            const std::vector<double>& ys) {
+  std::vector<std::vector<double>> found(xs.size() * ys.size());
+  for (std::size_t row = 0; row < result.done.rows.size(); ++row) {
+    const std::vector<double>& values = result.done.rows[row].values;
+    const auto i = std::lower_bound(xs.begin(), xs.end(), values[0]) - xs.begin();
+    const auto j = std::lower_bound(ys.begin(), ys.end(), values[1]) - ys.begin();
+    const double value = result.measure(row, measure);
+    if (!std::isnan(value))
+      found[static_cast<std::size_t>(j) * xs.size() + static_cast<std::size_t>(i)].push_back(value);
+  }
+  std::vector<double> middles;
+  for (std::vector<double>& values : found) {
+    std::sort(values.begin(), values.end());
+    middles.push_back(values.empty() ? std::nan("") : percentile_of(values, 50));
+  }
+  return middles;
+}
+
+/// A measure over the first varied name, a curve for each value of the second one, or for some of them.
+draw::Panel family(const StudyResult& result, std::size_t measure) {
+  constexpr std::size_t kMost = 7;
+  const text::TableColumn &x = result.columns[0], &along = result.columns[1],
+                          &y = result.columns[2 + measure];
+  draw::Panel panel{{x.name, x.unit, result.logarithmic[0]}, {y.name, y.unit}, {}, kHeight};
+  const std::vector<double> xs = levels_of(result, 0), ys = levels_of(result, 1);
+  const std::vector<double> values = medians(result, measure, xs, ys);
+  panel.y.logarithmic = wants_decades(values);
+  for (const std::size_t j : spread_rows(ys.size(), kMost)) {
+    draw::Curve curve{
+        fmt::format("{} = {:.4g}{}{}", along.name, ys[j], along.unit.empty() ? "" : " ", along.unit),
+        {},
+        panel.curves.size()};
+    for (std::size_t i = 0; i < xs.size(); ++i) curve.points.emplace_back(xs[i], values[j * xs.size() + i]);
+    panel.curves.push_back(std::move(curve));
+  }
+  return panel;
+}
+
+std::string note_of(const StudyResult& result) {
+  const auto failed = static_cast<std::size_t>(result.done.count.failed);
+  if (failed == 0) return {};
+  return fmt::format("{} of {} failed and {} not drawn.", failed,
+                     count(result.done.rows.size(), "machine", "machines"), failed == 1 ? "is" : "are");
+}
+
+draw::Picture maps_of(const StudyResult& result, const std::vector<double>& xs,
+                      const std::vector<double>& ys) {
+  std::vector<draw::HeatMap> maps;
+  for (std::size_t k = 0; k < result.n_measures(); ++k) {
+    const text::TableColumn &x = result.columns[0], &y = result.columns[1], &value = result.columns[2 + k];
+    draw::HeatMap map{{x.name, x.unit, result.logarithmic[0]},
+                      {y.name, y.unit, result.logarithmic[1]},
+                      {value.name, value.unit},
+                      xs,
+                      ys,
+                      medians(result, k, xs, ys)};
+    map.value.logarithmic = wants_decades(map.values);
+    maps.push_back(std::move(map));
+  }
+  return draw::draw_heat_maps(result.title, maps, note_of(result));
+}
+
+draw::Picture effects_picture(const StudyResult& result) {
+  std::vector<draw::EffectBars> panels;
+  for (std::size_t k = 0; k < result.n_measures(); ++k) {
+    const text::TableColumn& column = result.columns[result.n_varied + k];
+    draw::EffectBars panel;
+    panel.axis = result.grid ? draw::Axis{"mean of " + column.name, column.unit}
+                             : draw::Axis{"rank correlation with " + column.name};
+    panel.middle = result.grid ? mean_of(result, k) : 0;
+    for (const Effect& effect : effects_of(result, k)) {
+      const auto label = [&](double at) { return result.grid ? fmt::format("{:.4g}", at) : std::string(); };
+      panel.bars.push_back({result.columns[effect.name].name, effect.low, effect.high, label(effect.low_at),
+                            label(effect.high_at)});
+    }
+    panels.push_back(std::move(panel));
+  }
+  return draw::draw_effect_bars(result.title, panels, note_of(result));
+}
+
 }  // namespace
+
+draw::Picture picture_of(const StudyResult& result) {
+  if (result.n_varied == 2 && result.grid) {
+    const std::vector<double> xs = levels_of(result, 0), ys = levels_of(result, 1);
+    if (xs.size() > 1 && ys.size() > 1) return maps_of(result, xs, ys);
+  }
+  return result.n_varied >= 2 ? effects_picture(result) : draw::draw_chart(chart_of(result));
+}
 
 draw::Chart chart_of(const StudyResult& result) {
   draw::Chart chart;
   chart.title = result.title;
   for (std::size_t k = 0; k < result.n_measures(); ++k) {
-    chart.panels.push_back(result.n_varied == 1 ? curve(result, k) : histogram(result, k));
+    chart.panels.push_back(result.n_varied == 1   ? curve(result, k)
+                           : result.n_varied == 2 ? family(result, k)
+                                                  : histogram(result, k));
   }
-  const auto failed = static_cast<std::size_t>(result.done.count.failed);
-  if (failed > 0) {
-    chart.note = fmt::format("{} of {} failed and is not drawn.", failed,
-                             count(result.done.rows.size(), "machine", "machines"));
-  }
+  chart.note = note_of(result);
   return chart;
 }
 

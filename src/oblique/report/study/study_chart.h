@@ -7,7 +7,12 @@
 namespace oblique::report {
 
 /// A panel for each measure. Of one varied name: the measure over it, of machines that draw the median and a
-/// band that holds nine tenths of them. Of none: how many machines have which value, with percentiles.
+/// band that holds nine tenths of them. Of two: a family of curves. Of none: how many machines have which
+/// value, with percentiles.
 draw::Chart chart_of(const StudyResult& result);
+
+/// What is drawn on paper: of a grid of two varied names a map in colours, of more names what each of them
+/// does to the measures, else the chart.
+draw::Picture picture_of(const StudyResult& result);
 
 }  // namespace oblique::report
