@@ -148,5 +148,26 @@ TEST_F(Sweep, DrawsACurveAndAHistogram) {
   }
 }
 
+TEST_F(Sweep, RunGivesAFamilyOfCurves) {
+  const Outcome outcome = oblique("run " + decay_ + " --vary x.initial=0.25..1:4 -o " + file("f.csv") +
+                                  " --plot " + file("f.svg"));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  std::string header;
+  const auto rows = csv_rows(file("f.csv"), header);
+  EXPECT_EQ(header, "t,x (x.initial = 0.25),x (x.initial = 0.5),x (x.initial = 0.75),x (x.initial = 1)");
+  for (const auto& row : rows) {
+    for (std::size_t k = 1; k <= 4; ++k)
+      ASSERT_NEAR(row[k], 0.25 * static_cast<double>(k) * std::exp(-row[0]), 1e-7);  // the tolerance is 1e-8
+  }
+  const std::string svg = bytes_of("f.svg");
+  EXPECT_THAT(svg, HasSubstr("id=\"curve-0-3\""));
+  EXPECT_THAT(svg, HasSubstr("x.initial = 0.75"));
+  const Outcome refused = oblique("run " + decay_ + " --vary x.initial=1,2 --trust");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_EQ(
+      refused.err,
+      "error: --vary runs the diagram several times, and --trust is of one run; expected one of the two\n");
+}
+
 }  // namespace
 }  // namespace oblique::test

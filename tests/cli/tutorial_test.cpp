@@ -112,7 +112,7 @@ INSTANTIATE_TEST_SUITE_P(Docs, Page,
                                          "docs/blocks.md", "docs/check.md", "docs/machines.md",
                                          "docs/patching-a-machine.md", "docs/mechanisms.md",
                                          "docs/drawing.md", "docs/synthesis.md", "docs/trust.md",
-                                         "README.md"),
+                                         "docs/sweeps.md", "README.md"),
                          [](const auto& tested) {
                            std::string name = std::filesystem::path(tested.param).stem().string();
                            std::replace(name.begin(), name.end(), '-', '_');

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <oblique/ensemble/study/family.h>
+
 #include "../support/compiled.h"
 
 namespace oblique::ensemble {
@@ -182,6 +184,28 @@ TEST(Study, KeepsWhatIsDoneWhenItIsInterrupted) {
   EXPECT_GE(done.rows.size(), 1U);
   EXPECT_LT(done.rows.size(), 100U);
   for (const StudyRow& row : done.rows) EXPECT_FALSE(std::isnan(row.values[1]));
+}
+
+TEST(Family, RunsEachValue) {
+  const diagram::Diagram diagram = diagram::parse_diagram(kDecay, "d.toml");
+  solve::RunOptions options = solve::options_of(diagram.run);
+  options.samples = 21;
+  const Family family = run_family(diagram, testing::shipped_blocks(), {{"x.initial", "2"}},
+                                   {"x.in[1]", "-1..-3:3", {}}, options, 2);
+  ASSERT_EQ(family.runs.size(), 3U);
+  EXPECT_EQ(family.label(1), "x.in[1] = -2");
+  for (std::size_t k = 0; k < 3; ++k) {
+    const solve::Trajectory& rows = family.runs[k].run.trajectory;
+    ASSERT_EQ(rows.rows(), 21U);
+    for (std::size_t r = 0; r < 21; ++r) {
+      const double exact = 20 * std::exp(-(1 + static_cast<double>(k)) * rows.at(r, 0));
+      EXPECT_NEAR(rows.at(r, 1), exact, 2e-6);  // ten times the run's tolerance of 1e-8, of 20 m
+    }
+  }
+  EXPECT_EQ(testing::message_of<StudyError>([&] {
+              run_family(diagram, testing::shipped_blocks(), {}, {"x.in[3]", "1,2", {}}, options, 1);
+            }),
+            "input 'x.in' has no wire 3; expected 1");
 }
 
 constexpr const char* kFourBar = R"toml(format = "oblique-mechanism/1"

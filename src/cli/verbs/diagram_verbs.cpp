@@ -18,6 +18,10 @@ void add_run(CLI::App& app, Chosen& chosen) {
   verb->add_option("--set", request->settings, "change a parameter: block.parameter=value; may be repeated")
       ->type_name("SETTING")
       ->allow_extra_args(false);
+  verb->add_option("--vary", request->vary,
+                   "run with each of these values of a parameter or a weight, and give a family of curves: "
+                   "c.gain=1e2,1e3,1e4 or x.in[1]=0.1..1:10")
+      ->type_name("NAME=VALUES");
   verb->add_option("--from", request->from,
                    "go on from the state that an earlier run saved; --until is then later")
       ->type_name("STATE");

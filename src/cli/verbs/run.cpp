@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <thread>
 
 #include <fmt/format.h>
 
@@ -11,9 +12,11 @@
 
 #include <oblique/diagram/diagram_reader.h>
 #include <oblique/diagram/flatten.h>
+#include <oblique/ensemble/study/family.h>
 #include <oblique/network/assembly/network.h>
 #include <oblique/report/run_chart.h>
 #include <oblique/report/run_text.h>
+#include <oblique/report/study/family_report.h>
 #include <oblique/report/text_table.h>
 #include <oblique/text/file.h>
 #include "terminal/output_files.h"
@@ -38,10 +41,9 @@ diagram::ParameterOverride parse_override(const std::string& text) {
 }
 
 /// The columns that fit on a terminal, and what became of the others.
-std::string table_of(const solve::Trajectory& trajectory) {
-  constexpr std::size_t kColumnWidth = 14;
+std::string table_of(const solve::Trajectory& trajectory, std::size_t column_width = 14) {
   const std::size_t all = trajectory.columns().size();
-  const std::size_t shown = std::min(all, columns_that_fit(kColumnWidth));
+  const std::size_t shown = std::min(all, columns_that_fit(column_width));
   std::string text = report::rows_of(trajectory, shown).text();
   if (shown < all) {
     text += fmt::format("({} more columns; -o FILE.csv writes all of them, and all {} rows)\n", all - shown,
@@ -50,7 +52,27 @@ std::string table_of(const solve::Trajectory& trajectory) {
   return text;
 }
 
+/// A family is runs from the start to the end, and nothing else.
+void check_family(const RunRequest& request) {
+  const char* const other = request.check                  ? "--check"
+                            : request.halt_on_overload     ? "--halt-on-overload"
+                            : request.static_test          ? "--static-test"
+                            : !request.save.empty()        ? "--save"
+                            : !request.from.empty()        ? "--from"
+                            : request.events               ? "--events"
+                            : request.trust                ? "--trust"
+                            : !request.sensitivity.empty() ? "--sensitivity"
+                                                           : nullptr;
+  if (other == nullptr) return;
+  throw text::ReadError(
+      text::Diagnostic{{},
+                       fmt::format("--vary runs the diagram several times, and {} is of one run", other),
+                       "one of the two",
+                       {}});
+}
+
 void check_request(const RunRequest& request) {
+  if (!request.vary.empty()) check_family(request);
   const bool columns_are_drawn = !request.plot.empty();
   check_table_output(request.output, columns_are_drawn ? std::vector<std::string>{} : request.columns);
   if (request.plot.empty() && !request.against.empty())
@@ -78,6 +100,53 @@ void check_request(const RunRequest& request) {
                        {}});
 }
 
+/// Runs the diagram with each value of --vary.
+ExitStatus run_family(const RunRequest& request, const diagram::Diagram& diagram,
+                      const diagram::BlockLibrary& library,
+                      const std::vector<diagram::ParameterOverride>& overrides) {
+  const std::size_t equals = request.vary.find('=');
+  if (equals == std::string::npos || equals == 0)
+    throw text::ReadError(text::Diagnostic{{},
+                                           fmt::format("--vary {}: this varies nothing", request.vary),
+                                           "NAME=VALUES",
+                                           "for example --vary c.gain=1e2,1e3,1e4"});
+  const ensemble::Variation variation{
+      request.vary.substr(0, equals), request.vary.substr(equals + 1), {{}, {}, {"vary", request.vary}}};
+  const diagram::FlatDiagram flat = diagram::flatten(diagram, library, overrides);
+  solve::RunOptions options = solve::options_of(diagram.run);
+  const std::vector<text::TableColumn> columns = solve::run_columns(flat, options);
+  std::optional<report::DrawnColumns> drawn;
+  if (!request.plot.empty()) {
+    drawn = report::drawn_columns(columns, {request.columns, request.against});
+    report::ask_for_curves(options, columns.size());
+  }
+  const int threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  const ensemble::Family family =
+      ensemble::run_family(diagram, library, overrides, variation, options, threads);
+  const solve::Trajectory table = report::table_of(family, columns);
+  const std::size_t width = table.columns().back().name.size() + 2;
+  if (!plots_in_terminal(request.plot)) print(table_of(table, width));
+  if (drawn) {
+    plot(report::chart_of(family, columns, report::rounding_of(flat, options), *drawn, diagram.title),
+         request.plot, plot_theme(request.theme));
+  }
+  if (!request.output.empty()) {
+    const ColumnChoice all(table.columns(), drawn ? std::vector<std::string>{} : request.columns);
+    TableOutput file(request.output, all, table.rows());
+    file.add(table.values());
+    file.finish();
+  }
+  bool failed = false;
+  for (std::size_t k = 0; k < family.runs.size(); ++k) {
+    for (const text::Diagnostic& warning : family.runs[k].run.warnings)
+      note(fmt::format("warning: with {}: {}\n", family.label(k), text::to_string(warning, command_line())));
+    if (family.runs[k].failure.empty()) continue;
+    note(fmt::format("FAILED with {}: {}\n", family.label(k), family.runs[k].failure));
+    failed = true;
+  }
+  return failed ? ExitStatus::solver_failed : ExitStatus::done;
+}
+
 }  // namespace
 
 ExitStatus run_diagram(const Session& session, const RunRequest& request) {
@@ -100,6 +169,7 @@ ExitStatus run_diagram(const Session& session, const RunRequest& request) {
   }
   std::vector<diagram::ParameterOverride> overrides;
   for (const std::string& text : request.settings) overrides.push_back(parse_override(text));
+  if (!request.vary.empty()) return run_family(request, diagram, library, overrides);
 
   const diagram::FlatDiagram flat = diagram::flatten(diagram, library, overrides);
   solve::RunOptions options = solve::options_of(diagram.run);

@@ -34,8 +34,9 @@ std::string machine_text(const StudyResult& result, std::size_t row) {
   std::vector<std::string> parts;
   for (std::size_t k = 0; k < result.n_varied; ++k) {
     const text::TableColumn& column = result.columns[k];
+    const bool told = !column.unit.empty() && column.unit != "machine unit";
     parts.push_back(fmt::format("{} = {:.6g}{}{}", column.name, result.done.rows[row].values[k],
-                                column.unit.empty() ? "" : " ", column.unit));
+                                told ? " " : "", told ? column.unit : ""));
   }
   if (result.drawn > 0) parts.push_back(fmt::format("machine {}", result.done.rows[row].number));
   return fmt::format("{}", fmt::join(parts, ", "));
