@@ -238,6 +238,7 @@ TEST(Study, VariesTheDimensionsOfAMechanism) {
                kFourBar);
   EXPECT_EQ(names_of(study)[0], "AB.length");
   EXPECT_EQ(study.columns()[0].unit, "m");
+  EXPECT_EQ(study.columns()[2].unit, "m");
   const Study::Rows done = study.run(0, 9);
   ASSERT_EQ(done.count.failed, 0U) << done.rows[0].failure;
   EXPECT_EQ(done.count.reasons.count("its diagram differs in more than numbers"), 0U);
@@ -280,6 +281,24 @@ TEST(Study, GivesTheSameMechanismsInChunks) {
     EXPECT_EQ(row.failure, "");
     EXPECT_GT(row.values[2], 1e-5);  // elements of 0.1 % leave far more than the gain of 1e6
     EXPECT_LT(row.values[2], 0.1);
+  }
+}
+
+// Where nothing but its elements changes the mechanism is patched once.
+TEST(Study, DrawsTheElementsOfOneMechanism) {
+  Plan plan = mechanism_plan({}, {"error()", "end(exact(C.x))"});
+  plan.runs = 40;
+  plan.tolerance_of_elements = 0.001;
+  plan.samples = 37;
+  const Study study = study_of(plan, kFourBar), alone(plan, kFourBar, testing::shipped_blocks(), 1);
+  const std::vector<StudyRow> rows = study.run(0, 40).rows, some = alone.run(11, 5).rows;
+  for (std::size_t k = 0; k < 5; ++k) EXPECT_EQ(some[k].values, rows[11 + k].values);
+  plan.vary.push_back({"AB", "1,1", {}});  // the same mechanism, patched for each machine
+  const std::vector<StudyRow> patched = study_of(plan, kFourBar).run(0, 40).rows;
+  for (std::size_t k = 0; k < 40; ++k) {
+    EXPECT_GT(rows[k].values[0], 1e-5);
+    EXPECT_NEAR(patched[k].values[1], rows[k].values[0], 1e-9);  // the tolerance of the runs
+    EXPECT_EQ(patched[k].values[2], rows[k].values[1]);
   }
 }
 

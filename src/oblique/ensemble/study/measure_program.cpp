@@ -108,13 +108,13 @@ class MeasureProgram::Reader {
       stand_in(outer, call->begin, call->end, places.size() - 1);
       from = call->end;
     }
-    program.combination_ =
-        RowExpression(text::parse_expression(outer), [&](const Expression& name) -> std::size_t {
-          const auto place =
-              std::find(places.begin(), places.end(), static_cast<std::size_t>(name.column - 1));
-          if (place != places.end()) return static_cast<std::size_t>(place - places.begin());
-          refuse_name(name);
-        });
+    const Expression whole = text::parse_expression(outer);
+    program.combination_ = RowExpression(whole, [&](const Expression& name) -> std::size_t {
+      const auto place = std::find(places.begin(), places.end(), static_cast<std::size_t>(name.column - 1));
+      if (place != places.end()) return static_cast<std::size_t>(place - places.begin());
+      refuse_name(name);
+    });
+    program.is_distance_ = whole.kind == Kind::name && program.asks_for_errors();
     if (places.empty())
       fail(0, fmt::format("'{}' takes nothing from the run", text_), "max(x), end(x), mean(x) …");
   }

@@ -32,6 +32,7 @@ class MeasureProgram {
   MeasureProgram(std::string_view text, bool mechanism, const ColumnOf& column_of);
 
   bool asks_for_errors() const;
+  bool is_distance() const { return is_distance_; }  ///< nothing but `error()` or `rms_error()`
   double value(const SampledRun& run, const MotionErrors& errors) const;
 
  private:
@@ -47,6 +48,7 @@ class MeasureProgram {
 
   std::vector<RunNumber> numbers_;
   RowExpression combination_;  ///< of them
+  bool is_distance_ = false;
 };
 
 }  // namespace oblique::ensemble

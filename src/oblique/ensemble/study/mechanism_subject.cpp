@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <optional>
 #include <utility>
 
@@ -33,6 +34,33 @@ struct PointOutput {
   std::size_t point = 0, x = 0, y = 0;
 };
 
+/// The exact motion of a mechanism at the rows of its runs, which all have as many; made where it is first
+/// asked for, by any of the threads.
+class ExactMotion {
+ public:
+  explicit ExactMotion(mechanism::Mechanism mechanism) : mechanism_(std::move(mechanism)) {}
+
+  const mechanism::Motion& motion(std::size_t rows) {
+    std::call_once(motion_made_,
+                   [&] { motion_ = mechanism::solve_motion(mechanism_, static_cast<int>(rows)); });
+    return motion_;
+  }
+
+  std::vector<double> column(const std::string& name, std::size_t rows) {
+    std::call_once(columns_made_, [&] { columns_ = mechanism::motion_columns(mechanism_, motion(rows)); });
+    for (const mechanism::MotionColumn& one : columns_) {
+      if (one.name == name) return one.values;
+    }
+    return std::vector<double>(rows, std::nan(""));
+  }
+
+ private:
+  mechanism::Mechanism mechanism_;
+  std::once_flag motion_made_, columns_made_;
+  mechanism::Motion motion_;
+  std::vector<mechanism::MotionColumn> columns_;
+};
+
 class MechanismSubject : public Subject {
  public:
   MechanismSubject(const Plan& plan, const std::string& text, const diagram::BlockLibrary& library)
@@ -57,6 +85,7 @@ class MechanismSubject : public Subject {
 
   solve::RunOptions run_options() const override { return solve::options_of(diagram_.run); }
   const diagram::Diagram& diagram() const override { return diagram_; }
+  std::string length_unit() const override { return mechanism_.length_unit; }
   std::vector<Measure> usual_measures() const override { return {{"error()", "error()", {}}}; }
 
   text::Unit unit_of(const std::string& name) override {
@@ -123,9 +152,8 @@ class MechanismSubject : public Subject {
         (names_[k].name == kGain ? options.gain : options.bandwidth.emplace()) = values[k];
       }
     }
-    auto made = std::make_shared<mechanism::Mechanism>(
-        patch::within_range(space_ ? space_->mechanism(dimensions) : mechanism_));
-    diagram::Diagram diagram = patch::patch(*made, options);
+    mechanism::Mechanism made = patch::within_range(space_ ? space_->mechanism(dimensions) : mechanism_);
+    diagram::Diagram diagram = patch::patch(made, options);
     diagram.file = file_;
     std::vector<diagram::OutputSpec> outputs;
     for (const diagram::OutputSpec& asked : asked_) {
@@ -137,19 +165,12 @@ class MechanismSubject : public Subject {
     Machine machine;
     machine.flat = diagram::flatten(diagram, library_);
     machine.until = diagram.run.until;
-    auto motion = std::make_shared<std::optional<mechanism::Motion>>();  // made where it is asked for
-    const auto exact = [made, motion](std::size_t rows) -> const mechanism::Motion& {
-      if (!*motion) motion->emplace(mechanism::solve_motion(*made, static_cast<int>(rows)));
-      return **motion;
-    };
-    machine.exact = [made, exact](const std::string& column, std::size_t rows) {
-      for (mechanism::MotionColumn& one : mechanism::motion_columns(*made, exact(rows))) {
-        if (one.name == column) return std::move(one.values);
-      }
-      return std::vector<double>(rows, std::nan(""));
+    const auto exact = std::make_shared<ExactMotion>(std::move(made));
+    machine.exact = [exact](const std::string& column, std::size_t rows) {
+      return exact->column(column, rows);
     };
     machine.errors = [points = points_, exact](std::span<const std::vector<double>> table) {
-      return errors_of(points, exact(table[0].size()), table);
+      return errors_of(points, exact->motion(table[0].size()), table);
     };
     return machine;
   }

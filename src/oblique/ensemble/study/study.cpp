@@ -41,7 +41,7 @@ struct Study::Parts {
   std::vector<double> nominal;        ///< of `varied`: the values of `base`
   std::vector<std::size_t> drawn_at;  ///< of each drawn element: its place among `varied`
   /// Where each varied name is one parameter or weight: its place among `varied`; else machines are made one
-  /// by one.
+  /// by one. Of a mechanism only where nothing but its elements changes.
   std::optional<std::vector<std::size_t>> direct;
   std::optional<Ensemble> ensemble;
 
@@ -126,7 +126,7 @@ void Study::Parts::choose_numbers() {
     if (found == varied.end()) varied.push_back(number);
     return static_cast<std::size_t>(std::find(varied.begin(), varied.end(), number) - varied.begin());
   };
-  if (!plan.mechanism) direct.emplace();
+  if (!plan.mechanism || plan.names.empty()) direct.emplace();
   for (std::size_t k = 0; k < plan.names.size(); ++k) {
     const std::vector<std::uint32_t> changed = changed_by(k);
     for (const std::uint32_t number : changed) add(number);
@@ -287,6 +287,10 @@ Study::Study(const Plan& plan, const std::string& text, const diagram::BlockLibr
     parts->columns.push_back({parts->plan.names[k], unit == "1" ? "" : unit});
   }
   for (const std::string& name : parts->plan.measure_names) parts->columns.push_back({name});
+  for (std::size_t k = 0; k < parts->plan.measures.size(); ++k) {
+    if (parts->plan.measures[k].is_distance())
+      parts->columns[parts->plan.names.size() + k].unit = parts->plan.subject->length_unit();
+  }
   parts->options = parts->plan.subject->run_options();
   if (plan.tolerance) parts->options.tolerance = *plan.tolerance;
   if (plan.samples) parts->options.samples = *plan.samples;

@@ -38,6 +38,7 @@ class Subject {
   /// How a single machine is run, unless the plan says otherwise.
   virtual solve::RunOptions run_options() const = 0;
   virtual const diagram::Diagram& diagram() const = 0;
+  virtual std::string length_unit() const { return {}; }  ///< of a mechanism
   /// The measures of a plan that has none.
   virtual std::vector<Measure> usual_measures() const = 0;
   /// The unit in which the values of a name are. Throws where there is no such name.
