@@ -111,6 +111,7 @@ std::optional<ExitStatus> parse_arguments(int argc, char** argv, Chosen& chosen)
   app.require_subcommand(1);
   app.fallthrough();
   add_run(app, chosen);
+  add_sweep(app, chosen);
   add_operate(app, chosen);
   add_check(app, chosen);
   add_solve(app, chosen);

@@ -151,6 +151,17 @@ INSTANTIATE_TEST_SUITE_P(
         BadRequestCase{"ToleranceOfAFactor",
                        "oblique compare diagrams/mechanisms/four-bar.toml --monte-carlo 10 --tolerance 2", 2,
                        "--tolerance 2; expected a number above 0 and up to 50%"},
+        BadRequestCase{"YieldWithoutMonteCarlo",
+                       "oblique compare diagrams/mechanisms/four-bar.toml --yield 1%", 2,
+                       "--yield requires --monte-carlo"},
+        BadRequestCase{
+            "YieldBelowNothing",
+            "oblique compare diagrams/mechanisms/four-bar.toml --monte-carlo 3 --tolerance 1% --yield 0%", 2,
+            "--yield 0%; expected a part of the largest link above 0, such as 1%, or a length"},
+        BadRequestCase{"YieldWithinEverything",
+                       "oblique compare diagrams/mechanisms/four-bar.toml --monte-carlo 3 --tolerance 1% "
+                       "--yield 1% --until-within 2",
+                       2, "--until-within 2; expected a part above 0 and below 1, such as 1%"},
         BadRequestCase{"SeedWithoutMonteCarlo", "oblique compare diagrams/mechanisms/four-bar.toml --seed 3",
                        2, "--seed requires --monte-carlo"},
         BadRequestCase{

@@ -133,6 +133,22 @@ TEST_F(CompareVerb, MonteCarloGivesTheSameForAnyNumberOfThreadsAndRepeatsItsWors
   EXPECT_LE(std::abs(again.at("draws").at("C.cx.tolerance").get<double>()), 1e-3);
 }
 
+TEST_F(CompareVerb, TellsTheYieldOfTheMachinesThatItDraws) {
+  const std::string command =
+      "compare diagrams/mechanisms/four-bar.toml --gain 1e4 --tolerance 0.5% --monte-carlo 300 --yield 1%";
+  EXPECT_THAT(oblique(command).out,
+              HasSubstr(" of 300 machines err by less than 0.035 m (1 % of the largest link): "));
+  const auto drawn =
+      nlohmann::json::parse(oblique(command + " --until-within 10% --json").out).at("monte_carlo");
+  const auto& yield = drawn.at("yield");
+  EXPECT_EQ(yield.at("machines"), 100);  // 1.96·½/√100 is within 10 % whatever the yield
+  EXPECT_EQ(drawn.at("errors").size(), 100U);
+  int good = 0;
+  for (const auto& error : drawn.at("errors")) good += error.get<double>() < 0.035 ? 1 : 0;
+  EXPECT_EQ(yield.at("good"), good);
+  EXPECT_LT(yield.at("low").get<double>(), yield.at("part").get<double>());
+}
+
 TEST_F(CompareVerb, OnAMachineGivesTheBudgetAndItsScatter) {
   const std::string command =
       "compare diagrams/mechanisms/four-bar.toml --machine tr-10 --gain 1e3 --monte-carlo 5";

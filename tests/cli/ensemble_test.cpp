@@ -211,6 +211,31 @@ TEST_F(EnsembleVerb, RefusesWhatMakesNoSense) {
   }
 }
 
+// What a sweep writes as a plan is that sweep.
+TEST_F(EnsembleVerb, IsTheSweepThatWroteThePlan) {
+  for (const std::string options :
+       {"--vary 'x.initial=1..2:20' --vary 'x.in[1]=-1,-2' --measure 'last = end(x)' --samples 101",
+        "--vary 'x.initial=1..2:20' --latin --runs 30 --seed 18446744073709551615 --tolerance 1e-9",
+        "--scatter integrator.initial=0.1 --runs 50 --measure 'max(x)'",
+        "--tolerance-of-elements 1% --runs 20 --seed 3"}) {
+    SCOPED_TRACE(options);
+    const Outcome written =
+        in_folder("mkdir -p plans; oblique sweep decay.toml " + options + " --plan plans/p.toml");
+    EXPECT_EQ(written.status, 0) << written.err;
+    EXPECT_EQ(written.err, "wrote plans/p.toml\n");
+    EXPECT_THAT(bytes_of("plans/p.toml"),
+                AllOf(HasSubstr("diagram = \"../decay.toml\"\n"), HasSubstr("version = \"")));
+    const Outcome swept = in_folder("oblique sweep decay.toml " + options + " -o swept.npy");
+    EXPECT_EQ(swept.status, 0) << swept.err;
+    const Outcome ran =
+        in_folder("rm -rf c; oblique ensemble run plans/p.toml --chunks 3 -o c --jobs 2 --table ran.npy");
+    EXPECT_EQ(ran.status, 0) << ran.err;
+    EXPECT_THAT(ran.err, Not(HasSubstr("warning")));
+    EXPECT_FALSE(bytes_of("swept.npy").empty());
+    EXPECT_TRUE(bytes_of("ran.npy") == bytes_of("swept.npy"));
+  }
+}
+
 TEST_F(EnsembleVerb, TellsOfAFullDisk) {
   // A limit of the shell in place of a disk: a block of 512 bytes, and no signal.
   const Outcome outcome =
@@ -219,6 +244,43 @@ TEST_F(EnsembleVerb, TellsOfAFullDisk) {
   EXPECT_THAT(outcome.err, HasSubstr("cannot write the file: File too large"));
   EXPECT_EQ(files_in("c"), 0U);
 }
+
+#ifdef OBLIQUE_FAULTS
+// Each read and write fails in turn, once (tests/support/faults.cpp): what is there then is whole, and going
+// on gives what it gives without a fault.
+TEST_F(EnsembleVerb, LosesNothingWhereAReadOrWriteFails) {
+  write("plan.toml", plan("1..2:3"));
+  const std::string command = "oblique ensemble run plan.toml --chunks 2 --jobs 1 -o c --table t.csv";
+  in_folder(command + " && mv t.csv good.csv");
+  bool reached_the_end = false;
+  int told = 0;
+  for (int call = 1; call < 200 && !reached_the_end; ++call) {
+    SCOPED_TRACE("file:" + std::to_string(call));
+    const Outcome outcome =
+        in_folder("rm -rf c t.csv; LD_PRELOAD=" OBLIQUE_FAULTS " OBLIQUE_FAULT=file:" + std::to_string(call) +
+                  " OBLIQUE_FAULT_COUNTS=counts " + command);
+    if (outcome.status != 0) {
+      ++told;
+      EXPECT_EQ(outcome.status, 2);
+      EXPECT_THAT(outcome.err, HasSubstr("error: "));
+      // Whole or not there: also where only what is said on stdout was lost.
+      if (std::filesystem::exists(file("t.csv"))) {
+        EXPECT_EQ(bytes_of("t.csv"), bytes_of("good.csv"));
+      }
+    }
+    const Outcome status =
+        in_folder("mkdir -p c; oblique ensemble status plan.toml -o c; ls -A c | grep -v 'chunk$'");
+    EXPECT_THAT(status.out + status.err, AllOf(Not(HasSubstr("damaged")), Not(HasSubstr("part"))));
+    EXPECT_EQ(in_folder(command).status, 0);
+    EXPECT_EQ(bytes_of("t.csv"), bytes_of("good.csv"));
+    long memory_calls = 0, file_calls = 0;
+    std::ifstream(file("counts")) >> memory_calls >> file_calls;
+    reached_the_end = file_calls < call;
+  }
+  EXPECT_TRUE(reached_the_end);
+  EXPECT_GT(told, 8);  // plan, subject, two chunks and the table are read and written
+}
+#endif
 
 TEST_F(EnsembleVerb, ScriptRunsWithoutSlurm) {
   const Outcome written = in_folder(

@@ -51,6 +51,7 @@ const std::vector<Call> kCalls{
     {"MonteCarlo",
      "compare four-bar.toml --gain 1e3 --monte-carlo 3 --tolerance 1% --threads 2 --json -o out.json",
      "four-bar.toml", "out.json"},
+    {"Sweep", "sweep division.toml --vary q.gain=1e3,1e4 --jobs 2 -o out.csv", "division.toml", "out.csv"},
     {"Report", "report four-bar.toml -o out.html", "four-bar.toml", "out.html"},
     {"Fit", "fit four-bar.toml --path path.csv --free AB=0.9..1.1 --starts 1 -o out.toml", "four-bar.toml",
      "out.toml"},

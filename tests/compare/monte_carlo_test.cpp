@@ -93,6 +93,30 @@ TEST(MonteCarlo, PercentilesAlongTheTurnAreThoseOfTheSortedRuns) {
   }
 }
 
+// Of that crank the part q² of all machines errs by less than q r w: a quarter by less than half.
+TEST(MonteCarlo, TellsTheYieldAndStopsWhereItIsKnown) {
+  MonteCarloOptions options;
+  options.scatters = {{"summer", "tolerance", 0.01, ""}};
+  options.runs = 2000;
+  options.threads = 2;
+  options.good_below = 0.01;
+  const MonteCarlo all = drawn(testing::crank(), options);
+  ASSERT_TRUE(all.yield);
+  EXPECT_EQ(all.yield->machines, 2000U);
+  const auto good =
+      std::count_if(all.errors.begin(), all.errors.end(), [](const auto& e) { return *e < 0.01; });
+  EXPECT_EQ(all.yield->good, static_cast<std::uint64_t>(good));
+  EXPECT_NEAR(all.yield->part(), 0.25, 4 * std::sqrt(0.25 * 0.75 / 2000));  // four standard deviations
+  options.until_within = 0.05;
+  const MonteCarlo some = drawn(testing::crank(), options);
+  // 1.96 √(0.25·0.75/n) = 0.05 at n = 288
+  EXPECT_GE(some.errors.size(), 200U);
+  EXPECT_LE(some.errors.size(), 400U);
+  EXPECT_LE(some.yield->high - some.yield->low, 0.1);
+  EXPECT_EQ(some.along.size(), some.errors.size());
+  EXPECT_TRUE(std::equal(some.errors.begin(), some.errors.end(), all.errors.begin()));
+}
+
 /// The largest error of the four-bar over 73 positions when the summers of its patch err in their ratio:
 /// those of B, of the vector B → D, of C and of M, each for x and y; exact triangles, in closed form.
 double four_bar_error(const std::array<double, 8>& e) {

@@ -184,6 +184,95 @@ TEST(Study, KeepsWhatIsDoneWhenItIsInterrupted) {
   for (const StudyRow& row : done.rows) EXPECT_FALSE(std::isnan(row.values[1]));
 }
 
+constexpr const char* kFourBar = R"toml(format = "oblique-mechanism/1"
+title = "Crank and rocker"
+[frame]
+A = [0, 0]
+D = [4, 0]
+[bodies]
+AB  = { points = ["A", "B"], length = 1 }
+BCM = { points = ["B", "C"], length = 3.5, marks = { M = [1.75, 1] } }
+CD  = { points = ["C", "D"], length = 3 }
+[drives]
+crank = { turns = "AB", about = "A", speed = "1 rad/s", start = "0 deg" }
+[sketch]
+C = [3.5, 2.9]
+)toml";
+
+Plan mechanism_plan(std::vector<Variation> vary, std::vector<std::string> measures) {
+  Plan plan = plan_of(std::move(vary), std::move(measures));
+  plan.mechanism = true;
+  return plan;
+}
+
+// At the start, and after a turn, B is at (a, 0): C stands above the middle of BD, by Pythagoras.
+TEST(Study, VariesTheDimensionsOfAMechanism) {
+  const Study study =
+      study_of(mechanism_plan(
+                   {{"AB.length", "0.8,1,1.2", {}}, {"gain", "1e3..1e5:3:log", {}}},
+                   {"error()", "rms_error()", "end(exact(C.x))", "end(exact(C.y))", "end(C.x)", "min(B.x)"}),
+               kFourBar);
+  EXPECT_EQ(names_of(study)[0], "AB.length");
+  EXPECT_EQ(study.columns()[0].unit, "m");
+  const Study::Rows done = study.run(0, 9);
+  ASSERT_EQ(done.count.failed, 0U) << done.rows[0].failure;
+  EXPECT_EQ(done.count.reasons.count("its diagram differs in more than numbers"), 0U);
+  for (std::size_t k = 0; k < 9; ++k) {
+    const std::vector<double>& row = done.rows[k].values;
+    const double a = row[0], d = 4 - a, x = (d * d + 3.5 * 3.5 - 9) / (2 * d);
+    EXPECT_NEAR(row[4], a + x, 1e-13);
+    EXPECT_NEAR(row[5], std::sqrt(3.5 * 3.5 - x * x), 1e-13);
+    EXPECT_LE(std::abs(row[6] - row[4]), row[2]);
+    EXPECT_LE(row[3], row[2]);
+    EXPECT_NEAR(row[7], -a, 2e-9);  // the run's tolerance, 1e-10, along a turn
+    // the error of a servo loop is in proportion to 1/gain
+    if (k % 3 > 0) {
+      EXPECT_NEAR(row[2] / done.rows[k - 1].values[2], 0.1, 1e-3);
+    }
+  }
+}
+
+TEST(Study, TellsWhichMechanismCannotBe) {
+  const Study study = study_of(mechanism_plan({{"CD", "3,9", {}}, {"gain", "1e3,1e4", {}}}, {}), kFourBar);
+  EXPECT_EQ(names_of(study), (std::vector<std::string>{"CD", "gain", "error()"}));
+  const std::vector<StudyRow> rows = study.run(0, 4).rows;
+  EXPECT_EQ(rows[0].failure, "");
+  EXPECT_NE(rows[2].failure, "");
+  EXPECT_EQ(rows[2].failure, rows[3].failure);
+  EXPECT_TRUE(std::isnan(rows[3].values[2]));
+}
+
+TEST(Study, GivesTheSameMechanismsInChunks) {
+  Plan plan = mechanism_plan({{"AB", "0.9..1.1", {}}, {"BCM.M.x", "1..2", {}}}, {"error()"});
+  plan.sampling = Sampling::sobol;
+  plan.runs = 10;
+  plan.tolerance_of_elements = 0.001;
+  plan.samples = 37;
+  const Study study = study_of(plan, kFourBar);
+  EXPECT_GT(study.n_drawn(), 10U);
+  const std::vector<StudyRow> all = study.run(0, 10).rows, part = study.run(6, 3).rows;
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(part[k].values, all[6 + k].values);
+  for (const StudyRow& row : all) {
+    EXPECT_EQ(row.failure, "");
+    EXPECT_GT(row.values[2], 1e-5);  // elements of 0.1 % leave far more than the gain of 1e6
+    EXPECT_LT(row.values[2], 0.1);
+  }
+}
+
+TEST(Study, RefusesNamesThatNoMechanismHas) {
+  const auto message = [](const char* name, const char* measure) {
+    return testing::message_of<StudyError>([&] {
+      study_of(mechanism_plan({{name, "1,2", {}}}, {measure}), kFourBar);
+    });
+  };
+  EXPECT_EQ(message("AC", "error()"), "'AC' is no dimension of the mechanism\n  remedy: did you mean 'AB'?");
+  EXPECT_EQ(message("BCM.M", "error()"), "'BCM.M' is 2 numbers; expected one of BCM.M.x, BCM.M.y");
+  EXPECT_EQ(message("AB", "end(exact(C.z))"),
+            "measure 'end(exact(C.z))': the exact motion has no column 'C.z'\n  remedy: did you mean 'C.x'?");
+  EXPECT_EQ(message("AB", "end(C.q)"),
+            "measure 'end(C.q)': there is no output or signal 'C.q'\n  remedy: did you mean 'C.x'?");
+}
+
 struct BadPlan {
   std::string name, values, measure, message;
 };

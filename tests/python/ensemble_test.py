@@ -126,7 +126,7 @@ def test_what_makes_no_sense_is_refused(folder):
                   {"measure": "end(x)"}, {"seed": -1}, {"seed": 1.5}, {"sampling": "sobel"}, {"runs": 0}, {"samples": 1},
                   {"tolerance": 0}, {"jobs": 0}, {"tolerance_of_elements": math.nan}):
         refused(ob.RequestError, lambda: ob.sweep(ob.Diagram(text=DECAY), **{**sides, **wrong}))
-    refused(ob.PlanError, lambda: ob.sweep(ob.Diagram(text=DECAY), **{**sides, "measure": None}))
+    refused(ob.PlanError, lambda: ob.sweep(ob.Diagram(text=DECAY), **{**sides, "measure": {}}))
     refused(ob.PlanError, lambda: ob.sweep(ob.Diagram(text=DECAY), **{**sides, "gain": 1e4}))
     refused(ob.PlanError, lambda: plan.make_chunk(4, 3, folder / "c"))
     refused(ob.PlanError, lambda: plan.make_chunk(0, 61, folder / "c"))

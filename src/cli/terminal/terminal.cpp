@@ -97,7 +97,13 @@ void Progress::show(double fraction) {
   if (now - begin_ < std::chrono::seconds(1) || now - last_ < std::chrono::milliseconds(200)) return;
   last_ = now;
   shown_ = true;
-  write_note(fmt::format("\r{}: {:3.0f} %\033[K", what_, 100 * fraction));
+  constexpr double kTells = 0.02;  // of the work: less says little of the rest
+  std::string left;
+  if (fraction > kTells) {
+    const double elapsed = std::chrono::duration<double>(now - begin_).count();
+    left = fmt::format(", {:.0f} s left", std::ceil(elapsed * (1 - fraction) / fraction));
+  }
+  write_note(fmt::format("\r{}: {:3.0f} %{}\033[K", what_, 100 * fraction, left));
 }
 
 double quantity_option(const std::string& option, const std::string& text, std::string_view unit) {

@@ -46,6 +46,25 @@ struct RunRequest {
 };
 ExitStatus run_diagram(const Session& session, const RunRequest& request);
 
+struct SweepRequest {
+  std::string file;
+  std::string output;
+  std::string plan;  ///< where it is written as a plan
+  std::vector<std::string> vary, measures, scatter;
+  std::string tolerance_of_elements;
+  std::string machine;
+  std::optional<std::uint64_t> runs;
+  bool latin = false, sobol = false;
+  std::uint64_t seed = 1;
+  std::string gain, method;  ///< of a mechanism
+  std::string tolerance;
+  std::optional<int> samples;
+  int jobs = 0;       ///< 0: as many as the processor has
+  std::string plot;   ///< where the picture goes; "-": the terminal
+  std::string theme;  ///< of the picture; empty: auto
+};
+ExitStatus sweep(const Session& session, const SweepRequest& request);
+
 struct OperateRequest {
   std::string diagram;
 };
@@ -125,7 +144,9 @@ struct CompareRequest {
   int runs = 0;         ///< of --monte-carlo; 0: none
   std::uint64_t seed = 1;
   std::uint64_t first_run = 0;
-  int threads = 0;  ///< 0: as many as the processor has
+  int threads = 0;           ///< 0: as many as the processor has
+  std::string yield;         ///< below which error a machine is good
+  std::string until_within;  ///< how well the part of good ones is to be known
   std::string tolerance;
   bool json = false;
   bool timings = false;  ///< in the JSON

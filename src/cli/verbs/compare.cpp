@@ -120,9 +120,29 @@ std::vector<diagram::BlockFigure> scatters_of(const CompareRequest& request,
   return machine->scatters;
 }
 
+/// The error below which a machine is good [length unit].
+double yield_option(const std::string& text, const mechanism::Mechanism& mechanism) {
+  const bool relative = text.ends_with("%");
+  const double below = relative ? mechanism.largest_length() * quantity_option("--yield", text, "1")
+                                : quantity_option("--yield", text, mechanism.length_unit);
+  if (!(below > 0 && std::isfinite(below)))
+    refuse(fmt::format("--yield {}", text), "a part of the largest link above 0, such as 1%, or a length");
+  return below;
+}
+
+/// How well the part of good machines is to be known.
+std::optional<double> until_within_option(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  const double within = quantity_option("--until-within", text, "1");
+  if (!(within > 0 && within < 1))
+    refuse(fmt::format("--until-within {}", text), "a part above 0 and below 1, such as 1%");
+  return within;
+}
+
 report::MonteCarloReport draw_elements(const CompareRequest& request, const mechanism::Mechanism& mechanism,
                                        const diagram::Diagram& diagram, const diagram::BlockLibrary& library,
-                                       const diagram::MachineProfile* machine) {
+                                       const diagram::MachineProfile* machine,
+                                       std::optional<double> good_below, std::optional<double> until_within) {
   report::MonteCarloReport report;
   report.tolerance = request.tolerance;
   if (request.tolerance.empty()) report.machine = machine->title;
@@ -134,6 +154,9 @@ report::MonteCarloReport draw_elements(const CompareRequest& request, const mech
   report.options.threads = request.threads > 0
                                ? request.threads
                                : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  report.size = mechanism.largest_length();
+  report.options.good_below = good_below;
+  report.options.until_within = until_within;
   if (report.options.runs == 1) {
     const diagram::FlatDiagram flat = diagram::flatten(diagram, library);
     for (const ensemble::Draw& drawn :
@@ -195,6 +218,9 @@ ExitStatus compare_mechanism(const Session& session, const CompareRequest& reque
   }
   if (scattered) scatters_of(request, library, machine);  // before the work, not after it
   const mechanism::Mechanism mechanism = patch::within_range(mechanism::read_mechanism(request.mechanism));
+  const std::optional<double> good_below =
+      request.yield.empty() ? std::nullopt : std::optional(yield_option(request.yield, mechanism));
+  const std::optional<double> until_within = until_within_option(request.until_within);
   std::optional<commission::MachinePatch> on_elements;
   diagram::Diagram drawn;  // whose elements scatter
   if (machine != nullptr || scattered) {
@@ -233,7 +259,8 @@ ExitStatus compare_mechanism(const Session& session, const CompareRequest& reque
     json["budget"] = report::to_json(report);
   }
   if (request.runs > 0) {
-    const report::MonteCarloReport report = draw_elements(request, mechanism, drawn, library, machine);
+    const report::MonteCarloReport report =
+        draw_elements(request, mechanism, drawn, library, machine, good_below, until_within);
     text += report::to_text(report, command_line());
     json["monte_carlo"] = report::to_json(report, request.timings);
     for (draw::Panel& panel : report::panels_of(comparison, report)) chart.panels.push_back(std::move(panel));

@@ -129,6 +129,17 @@ void add_compare(CLI::App& app, Chosen& chosen) {
       ->type_name("T")
       ->check(CLI::Range(1, 1024))
       ->needs(monte_carlo);
+  CLI::Option* const yield =
+      verb->add_option(
+              "--yield", request->yield,
+              "say in how many of these runs, and of all machines, the largest error is below X: 1% of "
+              "the largest link, or a length")
+          ->type_name("X")
+          ->needs(monte_carlo);
+  verb->add_option("--until-within", request->until_within,
+                   "run only as many as it takes to know that part within ±P, N at the most, for example 1%")
+      ->type_name("P")
+      ->needs(yield);
   add_plot_option(verb, *request,
                   "draw the error over the gain with its slope, the error along the turn, and of "
                   "--monte-carlo the bands of the error along the turn and how often which error occurs");

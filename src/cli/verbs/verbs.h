@@ -84,6 +84,7 @@ inline void add_patch_choice(CLI::App* verb, PatchChoice& choice, CLI::Option* n
 
 // Each adds a verb with its options.
 void add_run(CLI::App& app, Chosen& chosen);
+void add_sweep(CLI::App& app, Chosen& chosen);
 void add_operate(CLI::App& app, Chosen& chosen);
 void add_check(CLI::App& app, Chosen& chosen);
 void add_solve(CLI::App& app, Chosen& chosen);

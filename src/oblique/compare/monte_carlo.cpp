@@ -2,17 +2,16 @@
 #include <oblique/compare/monte_carlo.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <exception>
-#include <system_error>
-#include <thread>
+#include <numeric>
+#include <span>
+#include <utility>
 
 #include <oblique/compare/patched_run.h>
 #include <oblique/diagram/flatten.h>
 #include <oblique/network/assembly/network.h>
+#include <oblique/network/assembly/parameter_numbers.h>
 #include <oblique/network/program/program.h>
-#include <oblique/solve/solve_error.h>
 
 namespace oblique::compare {
 namespace {
@@ -29,83 +28,115 @@ double tolerance_for(const std::vector<diagram::BlockFigure>& scatters) {
   return std::clamp(kFinerThanScatter * narrowest, kFinest, kCoarsest);
 }
 
-/// What the runs have in common; nothing in it changes while they go on.
-struct Experiment {
-  const mechanism::Mechanism& mechanism;
-  const MonteCarloOptions& options;
-  diagram::FlatDiagram flat;
-  mechanism::Motion exact;
-  solve::RunOptions how;
-
-  /// At a coarse tolerance the solver may find no step in a stiff loop that a finer one passes: such a run is
-  /// tried again, ten and a hundred times finer.
-  Distances errors_of(const diagram::FlatDiagram& diagram) const {
-    const network::Program program(network::assemble(diagram));
-    solve::RunOptions finer = how;
-    for (int attempt = 0; attempt < 2; ++attempt) {
-      try {
-        return distances(mechanism, diagram, solve::run(program, diagram, finer).trajectory, exact);
-      } catch (const solve::SolveError&) {
-        finer.tolerance /= 10;
-      }
-    }
-    return distances(mechanism, diagram, solve::run(program, diagram, finer).trajectory, exact);
-  }
-};
-
-/// One run after the other until none is left, in as many threads as call this.
-class Queue {
+/// Runs machines by their numbers, at the tolerance of the options or finer ones, and measures them.
+class Experiment {
  public:
-  Queue(const Experiment& experiment, MonteCarlo& result)
-      : experiment_(experiment), result_(result), messages_(result.errors.size()) {}
-
-  /// `watch` is called after every run with the part that is done.
-  void work(const std::function<void(double)>& watch) {
-    const std::size_t runs = result_.errors.size();
-    for (std::size_t k = next_++; k < runs; k = next_++) {
-      try {
-        serve(k);
-        if (watch) watch(static_cast<double>(std::min(next_.load(), runs)) / static_cast<double>(runs));
-      } catch (
-          ...) {  // no finding about this run: out of memory, a fault of the program, a caller who ends it
-        if (!broken_.exchange(true)) exception_ = std::current_exception();
-        next_ = runs;
-      }
+  Experiment(const mechanism::Mechanism& mechanism, const MonteCarloOptions& options,
+             diagram::FlatDiagram flat, solve::RunOptions how)
+      : options_(options),
+        flat_(std::move(flat)),
+        elements_(ensemble::drawn_elements(flat_, options.scatters)),
+        how_(std::move(how)),
+        exact_(mechanism::solve_motion(mechanism, options.positions)),
+        points_(point_outputs(mechanism, flat_)) {
+    const network::ParameterNumbers numbers(flat_);
+    const std::vector<double> all = network::parameter_values(flat_);
+    for (const ensemble::DrawnElement& element : elements_) {
+      const std::uint32_t number = numbers.parameter(element.block, element.parameter);
+      const auto known = std::find(varied_.begin(), varied_.end(), number);
+      places_.push_back(static_cast<std::size_t>(known - varied_.begin()));
+      if (known != varied_.end()) continue;  // of two scatters of one parameter the last one counts
+      varied_.push_back(number);
+      nominal_.push_back(all[number]);
     }
+    typical_ = flat_;
+    ensemble::apply_draws(ensemble::draw(flat_, options.scatters, {options.seed, 0}), typical_);
+    ensemble_.emplace(typical_, varied_, options_of(how_.tolerance));
   }
 
-  /// Call it when all threads have come back.
-  void finish() {
-    if (exception_) std::rethrow_exception(exception_);
-    for (std::size_t k = 0; k < messages_.size(); ++k) {
-      const std::uint64_t number = experiment_.options.first_run + k;
-      if (!result_.errors[k]) result_.failures.push_back({number, messages_[k]});
+  const mechanism::Motion& exact() const { return exact_; }
+  std::size_t drawn() const { return elements_.size(); }
+
+  /// Runs `count` machines of the experiment from its k-th on. At a coarse tolerance the solver may find no
+  /// step in a stiff loop that a finer one passes: a run that fails is tried again, ten and a hundred times
+  /// finer.
+  void run(std::size_t first, std::size_t count, MonteCarlo& result,
+           const std::function<void(std::uint64_t)>& progress) const {
+    std::vector<std::size_t> places(count);
+    std::iota(places.begin(), places.end(), first);
+    std::vector<FailedRun> failed;
+    run(*ensemble_, places, result, failed, &result.count, progress);
+    double tolerance = how_.tolerance;
+    for (int attempt = 0; attempt < 2 && !failed.empty(); ++attempt) {
+      tolerance /= 10;
+      places.clear();
+      for (const FailedRun& one : failed)
+        places.push_back(static_cast<std::size_t>(one.number - options_.first_run));
+      failed.clear();
+      run(ensemble::Ensemble(typical_, varied_, options_of(tolerance)), places, result, failed, nullptr, {});
     }
+    result.count.failed += failed.size();
+    result.failures.insert(result.failures.end(), failed.begin(), failed.end());
   }
 
  private:
-  void serve(std::size_t k) {
-    const MonteCarloOptions& options = experiment_.options;
-    diagram::FlatDiagram diagram = experiment_.flat;
-    ensemble::apply_draws(ensemble::draw(diagram, options.scatters, {options.seed, options.first_run + k}),
-                          diagram);
-    try {
-      Distances found = experiment_.errors_of(diagram);
-      result_.errors[k] = found.largest;
-      if (k < result_.along.size()) result_.along[k] = std::move(found.along);
-    } catch (const text::Error& error) {
-      const std::string& what = error.diagnostics().front().what;
-      messages_[k] = what.substr(0, what.find('\n'));
-    }
+  ensemble::EnsembleOptions options_of(double tolerance) const {
+    ensemble::EnsembleOptions options;
+    options.run = how_;
+    options.run.tolerance = tolerance;
+    options.threads = options_.threads;
+    return options;
   }
 
-  const Experiment& experiment_;
-  MonteCarlo& result_;
-  std::vector<std::string> messages_;  ///< of failed runs
-  std::atomic<std::size_t> next_ = 0;
-  std::atomic<bool> broken_ = false;
-  std::exception_ptr exception_;
+  void run(const ensemble::Ensemble& ensemble, const std::vector<std::size_t>& places, MonteCarlo& result,
+           std::vector<FailedRun>& failed, ensemble::EnsembleCount* count,
+           const std::function<void(std::uint64_t)>& progress) const {
+    std::vector<std::string> failures(places.size());
+    const auto values = [&](std::uint64_t k, std::span<double> drawn) {
+      const ensemble::DrawKey key{options_.seed, options_.first_run + places[k]};
+      std::copy(nominal_.begin(), nominal_.end(), drawn.begin());
+      for (std::size_t e = 0; e < elements_.size(); ++e)
+        drawn[places_[e]] = elements_[e].draw(flat_, nominal_[places_[e]], key);
+    };
+    const auto take = [&](const ensemble::MachineRun& run) {
+      const std::size_t place = places[run.number];
+      failures[run.number] = run.failure;
+      if (!run.failure.empty()) return;
+      Distances found = distances(points_, run.rows, 1 + flat_.outputs.size(), exact_);
+      result.errors[place] = found.largest;
+      if (place < result.along.size()) result.along[place] = std::move(found.along);
+    };
+    const ensemble::EnsembleCount done = ensemble.run(0, places.size(), values, take, progress);
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      if (!failures[k].empty()) failed.push_back({options_.first_run + places[k], failures[k]});
+    }
+    if (count == nullptr) return;
+    count->in_lanes += done.in_lanes;
+    count->by_cvodes += done.by_cvodes;
+    for (const auto& [reason, machines] : done.reasons) count->reasons[reason] += machines;
+  }
+
+  const MonteCarloOptions& options_;
+  diagram::FlatDiagram flat_;     ///< undisturbed
+  diagram::FlatDiagram typical_;  ///< a machine that draws, with the cases of equations that this chooses
+  std::vector<ensemble::DrawnElement> elements_;
+  std::vector<std::uint32_t> varied_;
+  std::vector<double> nominal_;
+  std::vector<std::size_t> places_;  ///< of each element among `varied_`
+  solve::RunOptions how_;
+  mechanism::Motion exact_;
+  std::vector<PointOutputs> points_;
+  std::optional<ensemble::Ensemble> ensemble_;
 };
+
+/// How many of the first runs are good.
+Yield yield_of_first(const MonteCarlo& result, std::size_t runs, double good_below) {
+  const auto end = result.errors.begin() + static_cast<std::ptrdiff_t>(runs);
+  const auto good = std::count_if(result.errors.begin(), end, [&](const std::optional<double>& error) {
+    return error && *error < good_below;
+  });
+  return yield_of(static_cast<std::uint64_t>(good), runs);
+}
 
 /// The one of `values`, of which there is at least one, that `percent` of them do not exceed.
 double nearest_rank(std::vector<double> values, double percent) {
@@ -142,33 +173,37 @@ std::vector<double> MonteCarlo::percentile_along(double percent) const {
 
 MonteCarlo monte_carlo(const mechanism::Mechanism& whole, const diagram::Diagram& diagram,
                        const diagram::BlockLibrary& library, const MonteCarloOptions& options) {
+  constexpr std::size_t kBatch = 100;  // between two looks at the yield
   const mechanism::Mechanism mechanism = patch::within_range(whole);
-  Experiment experiment{mechanism, options, diagram::flatten(diagram, library),
-                        mechanism::solve_motion(mechanism, options.positions),
-                        solve::options_of(diagram.run)};
-  experiment.how.samples = options.positions;
-  experiment.how.tolerance = tolerance_for(options.scatters);
-  const solve::Run undisturbed =
-      solve::run(network::Program(network::assemble(experiment.flat)), experiment.flat, experiment.how);
-  experiment.how.max_steps = kStepsOfAFailure * std::max(undisturbed.statistics.steps, 1L);
+  const diagram::FlatDiagram flat = diagram::flatten(diagram, library);
+  solve::RunOptions how = solve::options_of(diagram.run);
+  how.samples = options.positions;
+  how.tolerance = tolerance_for(options.scatters);
+  const solve::Run undisturbed = solve::run(network::Program(network::assemble(flat)), flat, how);
+  how.max_steps = kStepsOfAFailure * std::max(undisturbed.statistics.steps, 1L);
+  const Experiment experiment(mechanism, options, flat, how);
 
+  const auto runs = static_cast<std::size_t>(options.runs);
   MonteCarlo result;
-  result.drawn = ensemble::draw(experiment.flat, options.scatters, {}).size();
-  result.tolerance = experiment.how.tolerance;
-  result.errors.resize(static_cast<std::size_t>(options.runs));
-  result.along.resize(std::min(result.errors.size(), MonteCarlo::kMostAlong));
-  for (const auto& drives : experiment.exact.drives) result.drive.push_back(drives.front().value);
-  Queue queue(experiment, result);
-  {
-    std::vector<std::jthread> others;
-    try {
-      for (int t = 1; t < std::min(options.threads, options.runs); ++t)
-        others.emplace_back([&queue] { queue.work({}); });
-    } catch (const std::system_error&) {  // no more threads to be had: those there are do the work
-    }
-    queue.work(options.progress);
+  result.drawn = experiment.drawn();
+  result.tolerance = how.tolerance;
+  result.errors.resize(runs);
+  result.along.resize(std::min(runs, MonteCarlo::kMostAlong));
+  for (const auto& drives : experiment.exact().drives) result.drive.push_back(drives.front().value);
+  const bool looks = options.good_below && options.until_within;
+  std::size_t done = 0;
+  while (done < runs) {
+    const std::size_t count = looks ? std::min(kBatch, runs - done) : runs - done;
+    experiment.run(done, count, result, [&](std::uint64_t k) {
+      if (options.progress)
+        options.progress((static_cast<double>(done) + static_cast<double>(k)) / static_cast<double>(runs));
+    });
+    done += count;
+    if (options.good_below) result.yield = yield_of_first(result, done, *options.good_below);
+    if (looks && (result.yield->high - result.yield->low) / 2 <= *options.until_within) break;
   }
-  queue.finish();
+  result.errors.resize(done);
+  result.along.resize(std::min(done, result.along.size()));
   const auto worst =
       std::max_element(result.errors.begin(), result.errors.end());  // nothing is below all values
   if (worst != result.errors.end() && *worst)

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include <oblique/compare/yield.h>
+#include <oblique/ensemble/engine/ensemble.h>
 #include <oblique/ensemble/study/scatter.h>
 #include <oblique/mechanism/model/mechanism.h>
 
@@ -17,9 +19,13 @@ struct MonteCarloOptions {
   std::vector<diagram::BlockFigure> scatters;
   int runs = 1000;
   std::uint64_t seed = 1;
-  std::uint64_t first_run = 0;  ///< number of the first run: with `runs` = 1 it repeats one
-  int threads = 1;              ///< at most as many as there are runs; the result does not depend on it
-  int positions = 73;           ///< rows over the turn, both ends included
+  std::uint64_t first_run = 0;       ///< number of the first run: with `runs` = 1 it repeats one
+  int threads = 1;                   ///< at most as many as there are runs; the result does not depend on it
+  int positions = 73;                ///< rows over the turn, both ends included
+  std::optional<double> good_below;  ///< machines of a smaller error are good [length unit]
+  /// With `good_below`: the runs end where the part of good machines is known within ± this, at whole
+  /// hundreds of them, and at `runs` in any case.
+  std::optional<double> until_within;
   /// Called from the calling thread; what it throws ends the runs of all threads.
   std::function<void(double fraction)> progress;
 };
@@ -37,6 +43,8 @@ struct MonteCarlo {
   std::vector<std::optional<double>>
       errors;                              ///< of each run from the first on [length unit]; none: it failed
   std::vector<FailedRun> failures;         ///< in the order of their numbers
+  ensemble::EnsembleCount count;           ///< by what they were run
+  std::optional<Yield> yield;              ///< where it is asked for; a failed machine is not good
   std::optional<std::uint64_t> worst_run;  ///< number of the one with the largest error
   std::vector<double> drive;               ///< value of the first drive in each row [rad] or [length unit]
   /// The largest distance of any moving point in each row, of each of the first kMostAlong runs [length
@@ -52,9 +60,8 @@ struct MonteCarlo {
 };
 
 /// Runs the diagram of a mechanism (as `patch` gives it) with elements drawn anew for each run, and measures
-/// the largest distance of any moving point from its exact place. Each run is compiled by itself: the cases
-/// of a block's equations may change with what it draws. The solver is a thousand times finer than the
-/// narrowest scatter, 1e-6 at the most, and up to a hundred times finer where it finds no step; a run that
+/// the largest distance of any moving point from its exact place. The solver is a thousand times finer than
+/// the narrowest scatter, 1e-6 at the most, and up to a hundred times finer where a run fails; a run that
 /// takes a hundred times the steps of the undisturbed one has failed. Throws as `flatten`, `solve_motion`,
 /// and as `run` where the undisturbed run fails.
 MonteCarlo monte_carlo(const mechanism::Mechanism& whole, const diagram::Diagram& diagram,

@@ -113,14 +113,21 @@ Eigen::Vector2d place_of(const PointOutputs& point, const solve::Trajectory& ana
 
 Distances distances(const mechanism::Mechanism& mechanism, const diagram::FlatDiagram& flat,
                     const solve::Trajectory& analog, const mechanism::Motion& exact) {
+  return distances(point_outputs(mechanism, flat), analog.values(), analog.columns().size(), exact);
+}
+
+Distances distances(const std::vector<PointOutputs>& points, std::span<const double> rows,
+                    std::size_t columns, const mechanism::Motion& exact) {
   Distances found;
-  found.along.assign(analog.rows(), 0);
+  const std::size_t n_rows = rows.size() / columns;
+  found.along.assign(n_rows, 0);
   double sum = 0;
   std::size_t count = 0;
-  for (const PointOutputs& point : point_outputs(mechanism, flat)) {
-    for (std::size_t row = 0; row < analog.rows(); ++row, ++count) {
+  for (const PointOutputs& point : points) {
+    for (std::size_t row = 0; row < n_rows; ++row, ++count) {
+      const double* const values = &rows[row * columns + 1];  // the first column is the time
       const Eigen::Vector2d& place = exact.configurations[row].points[point.point].position;
-      const double error = (place_of(point, analog, row) - place).norm();
+      const double error = (Eigen::Vector2d(values[point.x], values[point.y]) - place).norm();
       sum += error * error;
       found.along[row] = std::max(found.along[row], error);
       if (count > 0 && error <= found.largest) continue;

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -68,6 +69,9 @@ struct Distances {
 };
 Distances distances(const mechanism::Mechanism& mechanism, const diagram::FlatDiagram& flat,
                     const solve::Trajectory& analog, const mechanism::Motion& exact);
+/// The same of the rows of a run with so many columns, of the points of `point_outputs`.
+Distances distances(const std::vector<PointOutputs>& points, std::span<const double> rows,
+                    std::size_t columns, const mechanism::Motion& exact);
 
 /// Where a point stands at an instant [length unit]; nothing where a loop has no solution.
 std::optional<Eigen::Vector2d> place_in(const PatchedMechanism& patched, const PointOutputs& point,

@@ -33,6 +33,23 @@ std::string failures(const compare::MonteCarlo& result) {
                      count(result.errors.size(), "run", "runs"), first.number, first.message);
 }
 
+std::string yield_text(const MonteCarloReport& report) {
+  if (!report.result.yield) return {};
+  const compare::Yield& yield = *report.result.yield;
+  const double bound = *report.options.good_below;
+  const std::string part =
+      report.size > 0 ? fmt::format(" ({:.3g} % of the largest link)", 100 * bound / report.size) : "";
+  std::string text = fmt::format(
+      "yield: {} of {} err by less than {:.4g} {}{}: {:.2f} %, of all machines between {:.2f} and {:.2f} % "
+      "with 95 % confidence\n",
+      yield.good, count(yield.machines, "machine", "machines"), bound, report.unit, part, 100 * yield.part(),
+      100 * yield.low, 100 * yield.high);
+  const auto& within = report.options.until_within;
+  if (within && (yield.high - yield.low) / 2 > *within)
+    text += fmt::format("not known within ±{:.3g} % after these; more of them would tell\n", 100 * *within);
+  return text;
+}
+
 std::string what_scatters(const MonteCarloReport& report) {
   return report.machine.empty() ? fmt::format("within ±{}", report.tolerance)
                                 : fmt::format("as those of {} scatter", report.machine);
@@ -61,7 +78,7 @@ std::string to_text(const MonteCarloReport& report, const text::Vocabulary& voca
     text += table.text(1);
     text += fmt::format("\nlargest error with these {:.3e} {}\n", *result.errors.front(), report.unit);
   }
-  return text + failures(result);
+  return text + yield_text(report) + failures(result);
 }
 
 Json to_json(const MonteCarloReport& report, bool timings) {
@@ -79,6 +96,14 @@ Json to_json(const MonteCarloReport& report, bool timings) {
   json["along"] = {{"drive", result.drive}};
   for (const double percent : kPercentsAlong)
     json["along"][fmt::format("{}", percent)] = result.percentile_along(percent);
+  if (result.yield) {
+    json["yield"] = {{"below", *report.options.good_below},
+                     {"good", result.yield->good},
+                     {"machines", result.yield->machines},
+                     {"part", result.yield->part()},
+                     {"low", result.yield->low},
+                     {"high", result.yield->high}};
+  }
   json["worst_run"] = result.worst_run ? Json(*result.worst_run) : Json(nullptr);
   json["errors"] = Json::array();
   for (const auto& error : result.errors) json["errors"].push_back(error ? Json(*error) : Json(nullptr));

@@ -16,6 +16,7 @@ struct MonteCarloReport {
   std::string unit;                                   ///< of lengths
   std::string machine;                                ///< whose elements scatter; empty: by --tolerance
   std::string tolerance;                              ///< as --tolerance has it
+  double size = 0;                                    ///< the largest link [length unit]
   std::vector<std::pair<std::string, double>> draws;  ///< "C.cx.tolerance" and its value, of a single run
   double seconds = 0;
 };

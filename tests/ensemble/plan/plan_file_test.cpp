@@ -135,8 +135,6 @@ tolerance = 2
 [vary]
 c.gain = 1
 )"),
-            "p.toml:1:1: the plan measures nothing; expected [measure] with lines such as largest = "
-            "\"max(abs(x))\"\n"
             "p.toml:3:1: unknown key 'run' in the plan\n"
             "  remedy: did you mean 'runs'?\n"
             "p.toml:4:12: there is no sampling 'sobel'\n"
@@ -159,6 +157,9 @@ TEST(PlanFile, SaysWhatIsMissing) {
               HasSubstr("p.toml:1:1: nothing varies in this plan: it has neither [vary] nor [scatter]"));
   EXPECT_THAT(finding_with("diagram = \"x\"\n[vary]\n"), HasSubstr("p.toml:3:1: [vary] names nothing"));
   EXPECT_THAT(finding_with("diagram = \"x\"\n[scatter]\n"), HasSubstr("p.toml:3:1: [scatter] names nothing"));
+  EXPECT_THAT(finding_with("diagram = \"x\"\n[vary]\na = 1\n", "[measure]\n"),
+              HasSubstr("p.toml:5:1: [measure] names nothing"));
+  EXPECT_EQ(finding_with("diagram = \"x\"\n[vary]\na = 1\n", ""), "none");
   EXPECT_THAT(finding_with("diagram = \"\"\n[vary]\na = 1\n"),
               HasSubstr("p.toml:2:11: 'diagram' of the plan names no file"));
 }

@@ -238,14 +238,12 @@ class PlanReader {
     return found ? fmt::format("did you mean '{}'?", *found) : "";
   }
 
+  /// Without any the end of each output is measured.
   void read_measures() {
     const text::Value* const table = reader_.table("measure");
-    if (table == nullptr || table->entries.empty()) {
-      if (table != nullptr || reader_.table().find("measure") == nullptr)
-        report("measure", "the plan measures nothing",
-               R"toml([measure] with lines such as largest = "max(abs(x))")toml");
-      return;
-    }
+    if (table == nullptr) return;
+    if (table->entries.empty())
+      report("measure", "[measure] names nothing", R"toml(lines such as largest = "max(abs(x))")toml");
     for (const text::Entry& entry : table->entries) {
       if (entry.value.kind != text::Value::Kind::string) {
         diagnostics_.add(
@@ -330,7 +328,7 @@ std::string write_plan(const PlanFile& file, const std::filesystem::path& path) 
     for (const Scattered& one : plan.scatter)
       write_line(out, one.block + "." + one.parameter, number_text(one.half_width));
   }
-  out += "\n[measure]\n";
+  if (!plan.measures.empty()) out += "\n[measure]\n";
   for (const Measure& one : plan.measures) write_line(out, one.name, text::toml_string(one.expression));
   return out;
 }

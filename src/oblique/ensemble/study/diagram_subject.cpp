@@ -58,10 +58,11 @@ class DiagramSubject : public Subject {
 
   text::Unit unit_of(const std::string& name) override { return unit_in(diagram_, library_, name); }
 
-  void vary(const std::string& name, double lowest, double highest) override {
+  double vary(const std::string& name, double lowest, double highest) override {
     overrides_.push_back({name, {}});
     for (const double value : {lowest, highest})
       diagram::flatten(diagram_, library_, {{name, fmt::format("{}", value)}});
+    return lowest;
   }
 
   std::size_t add_output(const std::string& name) override {

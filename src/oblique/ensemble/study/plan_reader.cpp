@@ -27,6 +27,7 @@ class PlanReader {
     result_.subject =
         plan.mechanism ? mechanism_subject(plan, text, library) : diagram_subject(plan, text, library);
     result_.seed = plan.seed;
+    result_.mechanism = plan.mechanism;
   }
 
   Understood read() {
@@ -70,10 +71,11 @@ class PlanReader {
                fmt::format("'{}:5', for example", variation.values));
         return;
       }
-      result_.subject->vary(variation.name, levels.lowest(), levels.highest());
+      const double usual = result_.subject->vary(variation.name, levels.lowest(), levels.highest());
       result_.names.push_back(variation.name);
       result_.units.push_back(unit.name);
       result_.lowest.push_back(levels.lowest());
+      result_.usual.push_back(usual);
       result_.highest.push_back(levels.highest());
       result_.logarithmic.push_back(levels.logarithmic());
       levels_.push_back(std::move(levels));
@@ -231,8 +233,9 @@ class PlanReader {
     } catch (const text::ExpressionError& error) {
       text::Place place = measure.place;
       if (place.position.column > 0) place.position.column += error.column;
-      report(place, fmt::format("measure '{}': {}", measure.expression, error.what), error.expected,
-             error.remedy);
+      const bool told = !place.setting.name.empty();  // by the place itself
+      report(place, (told ? "" : fmt::format("measure '{}': ", measure.expression)) + error.what,
+             error.expected, error.remedy);
     }
   }
 

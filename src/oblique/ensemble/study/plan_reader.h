@@ -24,12 +24,13 @@ struct MeasuredColumn {
 /// A plan whose names and expressions are understood.
 struct Understood {
   std::unique_ptr<Subject> subject;
+  bool mechanism = false;
   std::uint64_t seed = 1;
   Combinations combinations;
 
   // of the varied names
   std::vector<std::string> names, units;
-  std::vector<double> lowest, highest;
+  std::vector<double> lowest, highest, usual;
   std::vector<bool> logarithmic;
 
   std::vector<diagram::BlockFigure> scatters;

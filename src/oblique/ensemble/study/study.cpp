@@ -38,6 +38,7 @@ struct Study::Parts {
   Machine base;  ///< whose parameters the ensemble varies
   std::vector<std::uint32_t> varied;
   std::vector<DrawnElement> drawn;
+  std::vector<double> nominal;        ///< of `varied`: the values of `base`
   std::vector<std::size_t> drawn_at;  ///< of each drawn element: its place among `varied`
   /// Where each varied name is one parameter or weight: its place among `varied`; else machines are made one
   /// by one.
@@ -45,6 +46,7 @@ struct Study::Parts {
   std::optional<Ensemble> ensemble;
 
   void choose_numbers();
+  std::vector<std::uint32_t> changed_by(std::size_t name) const;
   DrawKey key_of(std::uint64_t number) const { return {plan.seed, plan.combinations.draw_number(number)}; }
   std::vector<double> values_of(std::uint64_t number) const {
     std::vector<double> values(plan.names.size());
@@ -89,34 +91,51 @@ struct Study::Parts {
   void run_alone(Made& made, StudyRow& row) const;
 };
 
+/// The parameters that a varied name changes on its way to its bounds. A mechanism need not reach them: then
+/// half of the way counts, or half of that.
+std::vector<std::uint32_t> Study::Parts::changed_by(std::size_t name) const {
+  constexpr int kHalvings = 5;
+  const network::ParameterNumbers numbers(base.flat);
+  std::vector<std::uint32_t> all;
+  for (const double bound : {plan.lowest[name], plan.highest[name]}) {
+    double way = bound - plan.usual[name];
+    for (int k = 0; k < kHalvings && way != 0; ++k, way /= 2) {
+      std::vector<double> values = plan.usual;
+      values[name] = k == 0 ? bound : plan.usual[name] + way;
+      try {
+        const auto changed = difference(base.flat, numbers, plan.subject->machine(values).flat);
+        if (!changed) continue;
+        for (const std::uint32_t one : *changed) {
+          if (std::find(all.begin(), all.end(), one) == all.end()) all.push_back(one);
+        }
+        break;
+      } catch (const text::Error&) {  // of a mechanism that cannot be: a row with its reason
+      }
+    }
+  }
+  return all;
+}
+
 /// Finds the parameters that machines differ in, from what the bounds of the varied names do to the diagram:
 /// the same for every chunk of a plan.
 void Study::Parts::choose_numbers() {
-  const std::vector<double>& lowest = plan.lowest;
-  base = plan.subject->machine(lowest);
+  base = plan.subject->machine(plan.usual);
   const network::ParameterNumbers numbers(base.flat);
   const auto add = [&](std::uint32_t number) {
     const auto found = std::find(varied.begin(), varied.end(), number);
     if (found == varied.end()) varied.push_back(number);
     return static_cast<std::size_t>(std::find(varied.begin(), varied.end(), number) - varied.begin());
   };
-  direct.emplace();
-  for (std::size_t k = 0; k < lowest.size(); ++k) {
-    std::vector<double> values = lowest;
-    values[k] = plan.highest[k];
-    std::optional<std::vector<std::uint32_t>> changed;
-    try {
-      changed = difference(base.flat, numbers, plan.subject->machine(values).flat);
-    } catch (const text::Error&) {  // of a mechanism that cannot be: a row with its reason
-    }
-    if (changed) {
-      for (const std::uint32_t number : *changed) add(number);
-    }
+  if (!plan.mechanism) direct.emplace();
+  for (std::size_t k = 0; k < plan.names.size(); ++k) {
+    const std::vector<std::uint32_t> changed = changed_by(k);
+    for (const std::uint32_t number : changed) add(number);
+    if (!direct) continue;
     const auto one = network::find_parameter(base.flat, numbers, plan.names[k]);
     const bool is_one =
-        one && one->value == lowest[k] &&
-        (lowest[k] == plan.highest[k] || (changed && *changed == std::vector<std::uint32_t>{one->number}));
-    if (is_one && direct) {
+        one && one->value == plan.usual[k] &&
+        (plan.lowest[k] == plan.highest[k] || changed == std::vector<std::uint32_t>{one->number});
+    if (is_one) {
       direct->push_back(add(one->number));
     } else {
       direct.reset();
@@ -126,6 +145,8 @@ void Study::Parts::choose_numbers() {
     drawn.push_back(element);
     drawn_at.push_back(add(numbers.parameter(element.block, element.parameter)));
   }
+  const std::vector<double> all = network::parameter_values(base.flat);
+  for (const std::uint32_t number : varied) nominal.push_back(all[number]);
 }
 
 void Study::Parts::measure(const MachineRun& run, const Machine& machine, StudyRow& row) const {
@@ -143,7 +164,7 @@ void Study::Parts::measure(const MachineRun& run, const Machine& machine, StudyR
   const MotionErrors errors = plan.asks_for_errors ? machine.errors(outputs) : MotionErrors{};
   std::vector<std::vector<double>> table{outputs[0]};
   for (const MeasuredColumn& column : plan.measured) {
-    table.push_back(column.exact.empty() ? outputs[1 + column.output] : machine.exact(column.exact));
+    table.push_back(column.exact.empty() ? outputs[1 + column.output] : machine.exact(column.exact, n_rows));
   }
   const SampledRun sampled(std::move(table));
   for (std::size_t k = 0; k < plan.measures.size(); ++k)
@@ -153,12 +174,12 @@ void Study::Parts::measure(const MachineRun& run, const Machine& machine, StudyR
 void Study::Parts::run_directly(std::uint64_t first, std::uint64_t count, Table& table,
                                 const Ensemble::Progress& progress) const {
   const auto values = [&](std::uint64_t number, std::span<double> all) {
+    std::copy(nominal.begin(), nominal.end(), all.begin());
     const std::vector<double> chosen = values_of(number);
     for (std::size_t k = 0; k < chosen.size(); ++k) all[(*direct)[k]] = chosen[k];
-    for (std::size_t k = 0; k < drawn.size(); ++k) {
-      double& value = all[drawn_at[k]];
-      value = drawn[k].draw(base.flat, value, key_of(number));
-    }
+    const std::vector<double> about(all.begin(), all.end());
+    for (std::size_t k = 0; k < drawn.size(); ++k)
+      all[drawn_at[k]] = drawn[k].draw(base.flat, about[drawn_at[k]], key_of(number));
   };
   const auto take = [&](const MachineRun& run) {
     const auto at = static_cast<std::size_t>(run.number - first);
@@ -174,9 +195,9 @@ Study::Parts::Made Study::Parts::make(std::uint64_t number) const {
   const network::ParameterNumbers numbers(made.machine.flat);
   std::vector<Draw> draws;
   for (const DrawnElement& element : drawn_elements(made.machine.flat, plan.scatters)) {
-    const double nominal = made.machine.flat.blocks[element.block].parameters[element.parameter];
+    const double about = made.machine.flat.blocks[element.block].parameters[element.parameter];
     draws.push_back(
-        {element.block, element.parameter, element.draw(made.machine.flat, nominal, key_of(number))});
+        {element.block, element.parameter, element.draw(made.machine.flat, about, key_of(number))});
   }
   apply_draws(draws, made.machine.flat);
   const auto changed = difference(base.flat, network::ParameterNumbers(base.flat), made.machine.flat);
@@ -274,7 +295,9 @@ Study::Study(const Plan& plan, const std::string& text, const diagram::BlockLibr
   EnsembleOptions options;
   options.run = parts->options;
   options.threads = parts->threads;
+  // A machine that draws: elements that scatter may be other cases of their equations than ideal ones.
   diagram::FlatDiagram flat = parts->base.flat;
+  apply_draws(draw(flat, parts->plan.scatters, {parts->plan.seed, 0}), flat);
   for (diagram::FlatOutput& output : flat.outputs) {
     output.scale = 1;
     output.offset = 0;
@@ -285,6 +308,10 @@ Study::Study(const Plan& plan, const std::string& text, const diagram::BlockLibr
 
 Study::~Study() = default;
 Study::Study(Study&&) noexcept = default;
+
+const std::string& Study::title() const {
+  return parts_->plan.subject->diagram().title;
+}
 
 std::uint64_t Study::runs() const {
   return parts_->plan.combinations.runs();

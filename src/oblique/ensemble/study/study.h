@@ -36,6 +36,7 @@ class Study {
   ~Study();
   Study(Study&&) noexcept;
 
+  const std::string& title() const;  ///< of the subject
   /// So many machines. Of a grid each combination has one, or where elements scatter `Plan::runs`, one after
   /// the other; else there are `Plan::runs` altogether.
   std::uint64_t runs() const;

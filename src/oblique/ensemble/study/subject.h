@@ -21,7 +21,7 @@ struct Machine {
   diagram::FlatDiagram flat;  ///< its outputs are those that were asked for
   double until = 0;           ///< [s]
   /// Of a mechanism: the values of an exact column at the rows of the run.
-  std::function<std::vector<double>(const std::string& column)> exact;
+  std::function<std::vector<double>(const std::string& column, std::size_t rows)> exact;
   /// Of a mechanism: how far the outputs, column by column behind the time, are from its exact motion.
   std::function<MotionErrors(std::span<const std::vector<double>> outputs)> errors;
 };
@@ -40,11 +40,11 @@ class Subject {
   virtual const diagram::Diagram& diagram() const = 0;
   /// The measures of a plan that has none.
   virtual std::vector<Measure> usual_measures() const = 0;
-  /// The unit in which the values of a name are. Throws DiagramError where there is no such name.
+  /// The unit in which the values of a name are. Throws where there is no such name.
   virtual text::Unit unit_of(const std::string& name) = 0;
-  /// From now on `machine` gets a value for this name, too. Throws DiagramError where a machine cannot have
-  /// one of these two.
-  virtual void vary(const std::string& name, double lowest, double highest) = 0;
+  /// From now on `machine` gets a value for this name, too. Gives one with which there is a machine. Throws
+  /// where a machine cannot have one of these two.
+  virtual double vary(const std::string& name, double lowest, double highest) = 0;
   /// Has the machines give an output; its place among them. Throws ExpressionError for a name that is none.
   virtual std::size_t add_output(const std::string& name) = 0;
   /// Has them give all outputs that `Machine::errors` takes.

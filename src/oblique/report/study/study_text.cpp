@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/report/study/study_text.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <oblique/report/text_table.h>
+
+namespace oblique::report {
+namespace {
+
+std::string with_unit(const text::TableColumn& column) {
+  return column.unit.empty() ? column.name : fmt::format("{} [{}]", column.name, column.unit);
+}
+
+/// The rows that have a value of a measure, the least value first.
+std::vector<std::size_t> order_of(const StudyResult& result, std::size_t measure) {
+  std::vector<std::size_t> order;
+  for (std::size_t row = 0; row < result.done.rows.size(); ++row) {
+    if (!std::isnan(result.measure(row, measure))) order.push_back(row);
+  }
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return result.measure(a, measure) < result.measure(b, measure);
+  });
+  return order;
+}
+
+}  // namespace
+
+std::string machine_text(const StudyResult& result, std::size_t row) {
+  std::vector<std::string> parts;
+  for (std::size_t k = 0; k < result.n_varied; ++k) {
+    const text::TableColumn& column = result.columns[k];
+    parts.push_back(fmt::format("{} = {:.6g}{}{}", column.name, result.done.rows[row].values[k],
+                                column.unit.empty() ? "" : " ", column.unit));
+  }
+  if (result.drawn > 0) parts.push_back(fmt::format("machine {}", result.done.rows[row].number));
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+std::string rows_text(const StudyResult& result, std::size_t columns_shown) {
+  constexpr std::size_t kShown = 10;  // at the beginning, and at the end
+  const std::size_t all = result.done.rows.size(), width = result.columns.size();
+  const std::size_t shown = std::min(width, columns_shown);
+  std::vector<std::string> header;
+  for (std::size_t c = 0; c < shown; ++c) header.push_back(with_unit(result.columns[c]));
+  Table table(header);
+  for (std::size_t row = 0; row < all; ++row) {
+    if (all > 2 * kShown && row == kShown) {
+      table.add(std::vector<std::string>(shown, "…"));
+      row = all - kShown;
+    }
+    std::vector<std::string> cells;
+    for (std::size_t c = 0; c < shown; ++c) cells.push_back(short_number(result.done.rows[row].values[c]));
+    table.add(std::move(cells));
+  }
+  std::string text = table.text();
+  if (all > 2 * kShown || shown < width) {
+    text += fmt::format("(of {}; -o FILE.csv writes all of them", count(all, "machine", "machines"));
+    text += shown < width ? fmt::format(", and {})\n", count(width - shown, "more column", "more columns"))
+                          : ")\n";
+  }
+  return text;
+}
+
+std::string summary_text(const StudyResult& result) {
+  Table table({"", "least", "median", "greatest", "least at", "greatest at"});
+  std::string missing;
+  for (std::size_t k = 0; k < result.n_measures(); ++k) {
+    const std::vector<std::size_t> order = order_of(result, k);
+    const text::TableColumn& column = result.columns[result.n_varied + k];
+    if (order.empty()) {
+      table.add({with_unit(column), "", "", "", "", ""});
+      continue;
+    }
+    const auto value = [&](std::size_t row) { return fmt::format("{:.6g}", result.measure(row, k)); };
+    table.add({with_unit(column), value(order.front()), value(order[(order.size() - 1) / 2]),
+               value(order.back()), machine_text(result, order.front()), machine_text(result, order.back())});
+    const auto failed = static_cast<std::size_t>(result.done.count.failed);
+    if (order.size() + failed < result.done.rows.size()) {
+      missing += fmt::format("{} has no value in {} of {}\n", column.name,
+                             result.done.rows.size() - failed - order.size(),
+                             count(result.done.rows.size(), "machine", "machines"));
+    }
+  }
+  return table.text(1) + missing;
+}
+
+std::string count_text(const StudyResult& result) {
+  const ensemble::EnsembleCount& count_of = result.done.count;
+  std::vector<std::string> reasons;
+  for (const auto& [reason, machines] : count_of.reasons)
+    reasons.push_back(count_of.reasons.size() == 1 ? reason : fmt::format("{}: {}", reason, machines));
+  std::string text = count(result.done.rows.size(), "machine", "machines");
+  if (count_of.by_cvodes == 0) {
+    text += ", all in lanes\n";
+  } else if (count_of.in_lanes == 0) {
+    text += fmt::format(", all by CVODES ({})\n", fmt::join(reasons, "; "));
+  } else {
+    text += fmt::format(": {} in lanes, {} by CVODES ({})\n", count_of.in_lanes, count_of.by_cvodes,
+                        fmt::join(reasons, "; "));
+  }
+  if (count_of.failed == 0) return text;
+  const auto first = std::find_if(result.done.rows.begin(), result.done.rows.end(),
+                                  [](const ensemble::StudyRow& row) { return !row.failure.empty(); });
+  const auto row = static_cast<std::size_t>(first - result.done.rows.begin());
+  const std::string which = machine_text(result, row);
+  return text + fmt::format("FAILED {} of {}, without values; the first, {}: {}\n", count_of.failed,
+                            count(result.done.rows.size(), "machine", "machines"), which, first->failure);
+}
+
+double percentile_of(const std::vector<double>& ascending, double percent) {
+  const double rank = std::ceil(percent / 100 * static_cast<double>(ascending.size()));
+  return ascending[static_cast<std::size_t>(
+      std::clamp(rank - 1, 0.0, static_cast<double>(ascending.size()) - 1))];
+}
+
+}  // namespace oblique::report

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: MIT
+#include "verbs.h"
+
+#include <gmock/gmock.h>
+
+namespace oblique::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+constexpr const char* kDecay = R"toml(format = "oblique-diagram/1"
+title = "Decay"
+[blocks]
+x = { type = "integrator", in = ["-1*x"], initial = 1 }
+)toml";
+
+class Sweep : public Verbs {
+ protected:
+  Sweep() {
+    std::ofstream(file("decay.toml")) << kDecay;
+    decay_ = file("decay.toml");
+  }
+  std::string decay_;
+};
+
+TEST_F(Sweep, WritesARowForEachCombination) {
+  const Outcome outcome = oblique("sweep " + decay_ +
+                                  " --vary 'x.in[1]=-1,-2' --vary x.initial=0.5..1:2 --measure 'max(x)'"
+                                  " --measure 'half = time(x <= start)' -o " +
+                                  file("t.csv"));
+  EXPECT_EQ(outcome.status, 2);  // start is a function
+  const Outcome again = oblique("sweep " + decay_ +
+                                " --vary 'x.in[1]=-1,-2' --vary x.initial=0.5..1:2 --measure 'max(x)'"
+                                " --measure 'late = time(x <= 0.4)' -o " +
+                                file("t.csv"));
+  ASSERT_EQ(again.status, 0) << again.err;
+  std::string header;
+  const auto rows = csv_rows(file("t.csv"), header);
+  EXPECT_EQ(header, "x.in[1],x.initial,max(x),late");
+  ASSERT_EQ(rows.size(), 4U);
+  for (std::size_t k = 0; k < 4; ++k) {
+    const double rate = k < 2 ? 1 : 2, height = k % 2 == 0 ? 0.5 : 1;
+    EXPECT_EQ(rows[k][0], -rate);
+    EXPECT_EQ(rows[k][1], height);
+    EXPECT_EQ(rows[k][2], height);
+    EXPECT_NEAR(rows[k][3], std::log(height / 0.4) / rate, 1e-7);  // ten times the run's tolerance
+  }
+  EXPECT_THAT(again.out, HasSubstr("least"));
+  EXPECT_THAT(again.err, StartsWith("wrote "));
+  EXPECT_THAT(again.err, HasSubstr("\n4 machines"));
+}
+
+TEST_F(Sweep, ShowsTheFirstAndTheLastRows) {
+  const Outcome outcome = oblique("sweep " + decay_ + " --vary x.initial=0..1:101 --measure 'start(x)'");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, StartsWith("x.initial [machine unit]  start(x)\n"
+                                      "                       0         0\n"
+                                      "                    0.01      0.01\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("(of 101 machines; -o FILE.csv writes all of them)\n\n"
+                                     "          least  median  greatest"));
+}
+
+TEST_F(Sweep, GivesTheSameNumbersWithAnyNumberOfThreads) {
+  for (const std::string jobs : {"1", "2"}) {
+    const Outcome outcome = oblique("sweep " + decay_ + " --scatter 'integrator.tolerance=±1%' --runs 20" +
+                                    " --measure 'end(x)' --jobs " + jobs + " -o " + file(jobs + ".csv"));
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+  }
+  EXPECT_EQ(bytes_of("1.csv"), bytes_of("2.csv"));
+}
+
+TEST_F(Sweep, TellsOfMachinesThatFailAndGoesOn) {
+  const Outcome outcome =
+      oblique("sweep " + decay_ + " --vary 'x.in[1]=-1,1e300' --measure 'end(x)' -o " + file("t.csv"));
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.err,
+              HasSubstr("FAILED 1 of 2 machines, without values; the first, x.in[1] = 1e+300: "));
+  std::string header;
+  const auto rows = csv_rows(file("t.csv"), header);
+  ASSERT_EQ(rows.size(), 2U);
+  EXPECT_EQ(rows[1].size(), 1U);  // the cell of the measure is empty
+  EXPECT_EQ(oblique("sweep " + decay_ + " --vary 'x.in[1]=1e300,2e300'").status, 3);
+}
+
+TEST_F(Sweep, KeepsWhatIsDoneWhereCtrlCEndsIt) {
+  const Outcome outcome =
+      run_command("timeout --preserve-status -s INT 1 oblique sweep " + decay_ +
+                      " --vary x.initial=0..1:500000 --jobs 2 --measure 'start(x)' -o " + file("t.csv"),
+                  OBLIQUE_SOURCE_DIR);
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("interrupted: "));
+  EXPECT_THAT(outcome.err, HasSubstr(" of 500000 machines were run\nwrote "));
+  std::string header;
+  const auto rows = csv_rows(file("t.csv"), header);
+  EXPECT_GE(rows.size(), 1U);
+  EXPECT_LT(rows.size(), 500'000U);
+  for (const auto& row : rows) ASSERT_EQ(row[0], row[1]);
+}
+
+struct BadSweep {
+  const char *arguments, *message;
+};
+
+TEST_F(Sweep, RefusesWhatMakesNoSense) {
+  const BadSweep bad[]{
+      {"--vary 'x.initial'",
+       "error: --vary x.initial: this varies nothing; expected NAME=VALUES\n"
+       "  remedy: for example --vary c.gain=1e2..1e6:5:log\n"},
+      {"--vary x.inital=1,2",
+       "error: --vary x.inital=1,2: 'inital' of block type 'integrator' is not a parameter\n"
+       "  remedy: did you mean 'initial'?\n"},
+      {"--vary x.initial=1,2 --measure 'end(y)'",
+       "error: --measure end(y): there is no output or signal 'y'\n  remedy: known: x\n"},
+      {"--vary x.initial=1,2 --measure x",
+       "error: --measure x: 'x' has a value at every moment, and a measure is one number of a run; expected "
+       "end(x), max(x), mean(x) …\n"},
+      {"--vary x.initial=1,2 --gain 1e3",
+       "error: --gain is of a mechanism's patch, and DECAY is a diagram; expected --vary 'c.gain=…' of a "
+       "block "
+       "of the diagram\n"},
+      {"--vary x.initial=1..2 --latin --sobol --runs 3",
+       "error: --latin and --sobol both choose the points; expected one of the two\n"},
+      {"--scatter multiplier --runs 3",
+       "error: --scatter multiplier: nothing scatters; expected TYPE.PARAMETER=±HALF-WIDTH\n"
+       "  remedy: for example --scatter multiplier.error=0.1%\n"},
+      {"",
+       "error: nothing is varied and nothing scatters, so that all machines are one; expected names with "
+       "values, such as c.gain=1e2..1e6:5:log\n"},
+  };
+  for (const BadSweep& one : bad) {
+    const Outcome outcome = oblique("sweep " + decay_ + " " + one.arguments);
+    EXPECT_EQ(outcome.status, 2) << one.arguments;
+    std::string message = one.message;
+    if (const std::size_t at = message.find("DECAY"); at != std::string::npos) message.replace(at, 5, decay_);
+    EXPECT_EQ(outcome.err, message);
+    EXPECT_EQ(outcome.out, "");
+  }
+}
+
+TEST_F(Sweep, DrawsACurveAndAHistogram) {
+  for (const std::string what :
+       {"--vary x.initial=0.1..1:9:log", "--scatter integrator.tolerance=1% --runs 50"}) {
+    const Outcome outcome =
+        oblique("sweep " + decay_ + " " + what + " --measure 'end(x)' --plot " + file("p.svg"));
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_THAT(bytes_of("p.svg"), HasSubstr("id=\"curve-0-0\""));
+  }
+}
+
+}  // namespace
+}  // namespace oblique::test
