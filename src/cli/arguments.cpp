@@ -52,34 +52,50 @@ std::optional<std::string> first_word(const CLI::App& app, const std::vector<std
   return std::nullopt;
 }
 
+/// Of a verb that has verbs of its own, as `ensemble`, the one that was chosen with it; else the verb.
+const CLI::App& innermost(const CLI::App& verb) {
+  const std::vector<CLI::App*> chosen = verb.get_subcommands();
+  return chosen.empty() ? verb : innermost(*chosen.front());
+}
+
+/// What the verb is called, with those around it: "ensemble run".
+std::string full_name(const CLI::App& verb) {
+  const CLI::App* const around = verb.get_parent();
+  const bool is_innermost = around == nullptr || around->get_parent() == nullptr;
+  return is_innermost ? verb.get_name() : full_name(*around) + " " + verb.get_name();
+}
+
+/// That a word stands where the name of a verb of `app` should, or that none does.
+text::Diagnostic explain_verb(const CLI::App& app, const std::optional<std::string>& word,
+                              const CLI::ParseError& error, const std::string& program) {
+  const std::vector<std::string> verbs = verb_names(app);
+  if (!word) return {{}, error.what(), {}, program + " --help lists the commands"};
+  if (std::find(verbs.begin(), verbs.end(), *word) != verbs.end()) {  // hidden behind "--"
+    return {{}, fmt::format("'--' stands before the command '{}'", *word), {}, "leave '--' out there"};
+  }
+  return {{}, fmt::format("there is no command '{}'", *word), {}, text::suggest(*word, verbs)};
+}
+
 /// CLI11's finding with the nearest verb or option added, which it does not know.
 text::Diagnostic explain(const CLI::App& app, const CLI::ParseError& error,
                          const std::vector<std::string>& arguments) {
-  const auto chosen = app.get_subcommands();
-  if (chosen.empty()) {
-    const auto word = first_word(app, arguments);
-    const std::vector<std::string> verbs = verb_names(app);
-    if (!word) return {{}, error.what(), {}, "oblique --help lists the commands"};
-    if (std::find(verbs.begin(), verbs.end(), *word) != verbs.end()) {  // hidden behind "--"
-      return {{}, fmt::format("'--' stands before the command '{}'", *word), {}, "leave '--' out there"};
-    }
-    return {{}, fmt::format("there is no command '{}'", *word), {}, text::suggest(*word, verbs)};
+  if (app.get_subcommands().empty()) return explain_verb(app, first_word(app, arguments), error, "oblique");
+  const CLI::App& chosen = innermost(app);
+  const std::string verb = full_name(chosen);
+  if (!chosen.get_subcommands({}).empty()) {
+    const auto name = std::find(arguments.begin(), arguments.end(), chosen.get_name());
+    const auto word = first_word(chosen, std::vector<std::string>(std::next(name), arguments.end()));
+    return explain_verb(chosen, word, error, "oblique " + verb);
   }
-  std::vector<std::string> names = option_names(*chosen.front());
+  std::vector<std::string> names = option_names(chosen);
   for (const std::string& name : option_names(app)) names.push_back(name);
   for (const std::string& argument : arguments) {
     const std::string name = argument.substr(0, argument.find('='));
     if (argument == "--") break;
     if (!argument.starts_with("--") || std::find(names.begin(), names.end(), name) != names.end()) continue;
-    return {{},
-            fmt::format("'{}' has no option '{}'", chosen.front()->get_name(), name),
-            {},
-            text::suggest(name, names)};
+    return {{}, fmt::format("'{}' has no option '{}'", verb, name), {}, text::suggest(name, names)};
   }
-  return {{},
-          error.what(),
-          {},
-          fmt::format("oblique {} --help tells how to call it", chosen.front()->get_name())};
+  return {{}, error.what(), {}, fmt::format("oblique {} --help tells how to call it", verb)};
 }
 
 }  // namespace
@@ -104,6 +120,7 @@ std::optional<ExitStatus> parse_arguments(int argc, char** argv, Chosen& chosen)
   add_compare(app, chosen);
   add_report(app, chosen);
   add_fit(app, chosen);
+  add_ensemble(app, chosen);
   add_draw(app, chosen);
   add_animate(app, chosen);
   add_blocks(app, chosen);

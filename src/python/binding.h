@@ -124,6 +124,7 @@ void bind_libraries(py::module_& module);
 void bind_runs(py::module_& module);
 void bind_diagrams(py::module_& module);
 void bind_consoles(py::module_& module);
+void bind_ensembles(py::module_& module);
 void bind_mechanisms(py::module_& module);
 void bind_patches(py::class_<MechanismModel, std::shared_ptr<MechanismModel>>& model);
 void bind_comparisons(py::class_<MechanismModel, std::shared_ptr<MechanismModel>>& model);

@@ -53,6 +53,7 @@ const text::Vocabulary& python_words() {
         return fmt::format("{}={}", name, spelled(value));
       },
       [](const text::Action& action) {
+        if (action.name == "ensemble run") return std::string("`oblique.Plan`");
         return action.name == "machines" ? std::string("`oblique.machines`")
                                          : fmt::format("`.{}()`", action.name);
       }};

@@ -3,6 +3,8 @@
 #include "binding.h"
 
 #include <oblique/console/console.h>
+#include <oblique/ensemble/plan/plan_file.h>
+#include <oblique/ensemble/study/study.h>
 #include <oblique/machine/realise.h>
 #include <oblique/network/assembly/network.h>
 #include <oblique/solve/solve_error.h>
@@ -85,6 +87,10 @@ void translate(std::exception_ptr thrown) {
     raise("RealiseError", error.diagnostics());
   } catch (const console::ConsoleError& error) {
     raise("ConsoleError", error.diagnostics());
+  } catch (const ensemble::PlanError& error) {
+    raise("PlanError", error.diagnostics());
+  } catch (const ensemble::StudyError& error) {
+    raise("PlanError", error.diagnostics());
   } catch (const text::ReadError& error) {
     raise("ReadError", error.diagnostics());
   } catch (const text::Error& error) {

@@ -10,5 +10,6 @@ PYBIND11_MODULE(_oblique, module) {
   bind_runs(module);
   bind_diagrams(module);
   bind_consoles(module);
+  bind_ensembles(module);
   bind_mechanisms(module);
 }

@@ -50,6 +50,7 @@ ExitStatus run_diagram(const Session& session, const RunRequest& request);
 struct SweepRequest {
   std::string file;
   std::string output;
+  std::string plan;  ///< where it is written as a plan
   std::vector<std::string> vary, measures, scatter;
   std::string tolerance_of_elements;
   std::string machine;
@@ -208,6 +209,22 @@ struct AnimateRequest {
   PatchChoice patch;
 };
 ExitStatus animate_mechanism(const Session& session, const AnimateRequest& request);
+
+struct EnsembleRequest {
+  std::string plan;
+  std::string folder;          ///< of the chunks
+  std::string chunk;           ///< "i/n"; empty: all of them
+  std::optional<long> chunks;  ///< into how many the ensemble is cut
+  int jobs = 0;                ///< threads; 0: as many as the processor has
+  std::string table;
+  bool slurm = false;
+  std::string time, memory;  ///< of each job
+  std::string output;        ///< of the script; empty: stdout
+};
+ExitStatus run_ensemble(const Session& session, const EnsembleRequest& request);
+ExitStatus gather_ensemble(const Session& session, const EnsembleRequest& request);
+ExitStatus show_ensemble(const Session& session, const EnsembleRequest& request);
+ExitStatus script_ensemble(const Session& session, const EnsembleRequest& request);
 
 struct BlocksRequest {
   std::string name;

@@ -60,6 +60,10 @@ void add_sweep(CLI::App& app, Chosen& chosen) {
           "write a row a machine, the varied values first, to TABLE, which ends in .csv, .npy, .mat or "
           ".json")
       ->type_name("TABLE");
+  verb->add_option("--plan", request->plan,
+                   "write all this as a plan to PLAN.toml, for `oblique ensemble`; without -o and --plot "
+                   "nothing is run")
+      ->type_name("PLAN");
   add_plot_option(verb, *request,
                   "draw the measures: curves over one varied name, a map over two, the effects of more, a "
                   "histogram of what scatters");

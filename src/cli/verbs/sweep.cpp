@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <oblique/ensemble/plan/plan_file.h>
 #include <oblique/ensemble/study/study.h>
 #include <oblique/report/study/effects.h>
 #include <oblique/report/study/study_chart.h>
@@ -11,6 +12,7 @@
 #include <oblique/text/file.h>
 #include <oblique/text/quantity.h>
 #include "terminal/file_kind.h"
+#include "terminal/output_files.h"
 #include "terminal/picture_output.h"
 #include "terminal/plot_output.h"
 #include "terminal/signals.h"
@@ -126,6 +128,7 @@ void draw(const report::StudyResult& result, const SweepRequest& request) {
 ExitStatus sweep(const Session& session, const SweepRequest& request) {
   check_table_output(request.output, {});
   check_plot(request.plot, request.theme);
+  if (!request.plan.empty()) check_output(request.plan, ".toml");
   const diagram::BlockLibrary library = session.blocks();
   const std::string text = text::read_file(request.file);
   const bool mechanism = kind_of_file(text, request.file) == FileKind::mechanism;
@@ -133,6 +136,10 @@ ExitStatus sweep(const Session& session, const SweepRequest& request) {
       request.jobs > 0 ? request.jobs : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   const ensemble::Plan plan = plan_of(request, library, mechanism);
   const ensemble::Study study(plan, text, library, threads);
+  if (!request.plan.empty()) {
+    save(request.plan, ensemble::write_plan({study.title(), OBLIQUE_VERSION, plan}, request.plan));
+    if (request.output.empty() && request.plot.empty()) return ExitStatus::done;
+  }
   report::StudyResult result;
   result.columns = study.columns();
   result.n_varied = study.n_varied();

@@ -7,6 +7,7 @@
 
 #include <oblique/diagram/expectations.h>
 #include <oblique/diagram/timeline.h>
+#include <oblique/text/toml_text.h>
 
 namespace oblique::diagram {
 namespace {
@@ -16,35 +17,13 @@ bool is_control(char c) {
   return (c >= 0 && c < 0x20) || c == 0x7F;
 }
 
-std::string toml_string(std::string_view text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') {
-      out += '\\';
-      out += c;
-    } else if (is_control(c)) {
-      out += fmt::format("\\u{:04X}", static_cast<unsigned>(c));
-    } else {
-      out += c;
-    }
-  }
-  return out + '"';
-}
-
-std::string key_text(std::string_view key) {
-  const bool bare = !key.empty() && std::all_of(key.begin(), key.end(), [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
-  });
-  return bare ? std::string(key) : toml_string(key);
-}
-
 /// The value of a setting: a number, a string, or lists and tables of these.
 std::string value_text(const text::Value& value) {
-  if (value.kind == text::Value::Kind::string) return toml_string(value.text);
+  if (value.kind == text::Value::Kind::string) return text::toml_string(value.text);
   if (value.kind == text::Value::Kind::table) {
     std::string out = "{ ";
     for (const text::Entry& entry : value.entries)
-      out += (out.size() > 2 ? ", " : "") + key_text(entry.key) + " = " + value_text(entry.value);
+      out += (out.size() > 2 ? ", " : "") + text::toml_key(entry.key) + " = " + value_text(entry.value);
     return out + " }";
   }
   if (value.kind != text::Value::Kind::array) return fmt::format("{}", value.number);
@@ -54,10 +33,10 @@ std::string value_text(const text::Value& value) {
 }
 
 std::string block_text(const BlockInstance& block) {
-  std::string out = "{ type = " + toml_string(block.type);
-  if (!block.label.empty()) out += ", label = " + toml_string(block.label);
+  std::string out = "{ type = " + text::toml_string(block.type);
+  if (!block.label.empty()) out += ", label = " + text::toml_string(block.label);
   for (const text::Entry& setting : block.settings) {
-    out += fmt::format(", {} = {}", key_text(setting.key), value_text(setting.value));
+    out += fmt::format(", {} = {}", text::toml_key(setting.key), value_text(setting.value));
   }
   return out + " }";
 }
@@ -65,10 +44,10 @@ std::string block_text(const BlockInstance& block) {
 std::string output_text(const OutputSpec& output) {
   const OutputSpec usual;
   if (output.scale == usual.scale && output.unit == usual.unit && output.offset == usual.offset)
-    return toml_string(output.signal);
+    return text::toml_string(output.signal);
   const std::string offset = output.offset == 0 ? "" : fmt::format("offset = {}, ", output.offset);
-  return fmt::format("{{ signal = {}, scale = {}, {}unit = {} }}", toml_string(output.signal), output.scale,
-                     offset, toml_string(output.unit));
+  return fmt::format("{{ signal = {}, scale = {}, {}unit = {} }}", text::toml_string(output.signal),
+                     output.scale, offset, text::toml_string(output.unit));
 }
 
 /// Width of a text on a terminal, near enough: code points.
@@ -115,7 +94,7 @@ std::string write_layout(const std::vector<BlockPlace>& layout) {
   std::vector<Line> lines;
   lines.reserve(layout.size());
   for (const BlockPlace& place : layout)
-    lines.push_back({{}, key_text(place.name), fmt::format("[{}, {}]", place.x, place.y)});
+    lines.push_back({{}, text::toml_key(place.name), fmt::format("[{}, {}]", place.x, place.y)});
   std::string out;
   write_table("layout", lines, out);
   return out;
@@ -126,17 +105,17 @@ std::string write_diagram(const Diagram& diagram) {
   write_comment(diagram.comment, out);
   if (!diagram.comment.empty()) out += "\n";
   out += "format = \"oblique-diagram/1\"\n";
-  if (!diagram.title.empty()) out += "title  = " + toml_string(diagram.title) + "\n";
-  if (!diagram.source.empty()) out += "source = " + toml_string(diagram.source) + "\n";
+  if (!diagram.title.empty()) out += "title  = " + text::toml_string(diagram.title) + "\n";
+  if (!diagram.source.empty()) out += "source = " + text::toml_string(diagram.source) + "\n";
 
   const RunSettings& run = diagram.run;
   write_table("machine",
-              {{{}, "profile", toml_string(diagram.machine.profile)},
+              {{{}, "profile", text::toml_string(diagram.machine.profile)},
                {{}, "inverting", diagram.machine.inverting ? "true" : "false"}},
               out);
   std::vector<Line> settings{{{}, "until", fmt::format("{}", run.until)},
                              {{}, "tolerance", fmt::format("{}", run.tolerance)},
-                             {{}, "method", toml_string(method_name(run.method))},
+                             {{}, "method", text::toml_string(method_name(run.method))},
                              {{}, "samples", fmt::format("{}", run.samples)},
                              {{}, "max_steps", fmt::format("{}", run.max_steps)}};
   if (run.absolute_tolerance)
@@ -146,7 +125,7 @@ std::string write_diagram(const Diagram& diagram) {
   if (!run.tolerances.empty()) {
     std::string value = "{ ";
     for (const auto& [block, tolerance] : run.tolerances)
-      value += (value.size() > 2 ? ", " : "") + toml_string(block) + fmt::format(" = {}", tolerance);
+      value += (value.size() > 2 ? ", " : "") + text::toml_string(block) + fmt::format(" = {}", tolerance);
     settings.push_back({{}, "tolerances", value + " }"});
   }
   write_table("run", settings, out);
@@ -155,11 +134,11 @@ std::string write_diagram(const Diagram& diagram) {
   for (const ModeGroup& group : diagram.groups) {
     std::string value = "{ blocks = [";
     for (const std::string& name : group.blocks)
-      value += (value.back() == '[' ? "" : ", ") + toml_string(name);
+      value += (value.back() == '[' ? "" : ", ") + text::toml_string(name);
     value += "]";
-    if (!group.initial.empty()) value += ", initial = " + toml_string(group.initial);
-    if (!group.hold.empty()) value += ", hold = " + toml_string(group.hold);
-    groups.push_back({{}, key_text(group.name), value + " }"});
+    if (!group.initial.empty()) value += ", initial = " + text::toml_string(group.initial);
+    if (!group.hold.empty()) value += ", hold = " + text::toml_string(group.hold);
+    groups.push_back({{}, text::toml_key(group.name), value + " }"});
   }
   write_table("groups", groups, out);
   if (!diagram.timeline.phases.empty()) {
@@ -172,15 +151,15 @@ std::string write_diagram(const Diagram& diagram) {
 
   std::vector<Line> blocks, outputs, expectations;
   for (const BlockInstance& block : diagram.blocks) {
-    blocks.push_back({block.comment, key_text(block.name), block_text(block)});
+    blocks.push_back({block.comment, text::toml_key(block.name), block_text(block)});
   }
   for (const OutputSpec& output : diagram.outputs)
-    outputs.push_back({{}, key_text(output.name), output_text(output)});
+    outputs.push_back({{}, text::toml_key(output.name), output_text(output)});
   for (const Expectation& expectation : diagram.expectations) {
     const std::string key = expectation.text.empty() ? expectation_key(expectation) : expectation.text;
     expectations.push_back(
         {{},
-         toml_string(key),
+         text::toml_string(key),
          fmt::format("{{ value = {}, within = {} }}", expectation.value, expectation.within)});
   }
   write_table("blocks", blocks, out);

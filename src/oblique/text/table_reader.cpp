@@ -179,12 +179,13 @@ bool check_format(TableReader& reader, std::string_view expected) {
     std::string_view format;
     Remedy remedy;
   };
-  const std::array<Kind, 5> kinds{
+  const std::array<Kind, 6> kinds{
       {{"oblique-diagram/1",
         {"this is a diagram: ", Action{"run"}, ", ", Action{"check"}, " and ", Action{"draw"}, " take it"}},
        {"oblique-mechanism/1",
         {"this is a mechanism: ", Action{"solve"}, ", ", Action{"compare"}, " and ", Action{"draw"},
          " take it, ", Action{"patch"}, " makes a diagram of it"}},
+       {"oblique-ensemble/1", {"this is a plan of an ensemble: ", Action{"ensemble run"}, " takes it"}},
        {"oblique-block/1", {"this is a block: its folder belongs among the ", Setting{"blocks"}}},
        {"oblique-machine/1", "this is a machine's profile"},
        {"oblique-state/1",

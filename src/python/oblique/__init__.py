@@ -22,14 +22,15 @@ except ImportError as error:
         "one: pip install .") from error
 
 from . import plots
-from ._errors import (ConsoleError, Diagnostic, DiagramError, Error, MechanismError, NetworkError, PatchError, ReadError,
-                      RealiseError, RequestError, RunWarning, SolveError, SynthesisError, UnknownNameError)
+from ._errors import (ConsoleError, Diagnostic, DiagramError, Error, MechanismError, NetworkError, PatchError, PlanError,
+                      ReadError, RealiseError, RequestError, RunWarning, SolveError, SynthesisError, UnknownNameError)
 from ._oblique import __version__
 from ._tables import Table
 from ._blocks import Block, BlockLibrary, blocks
 from .comparison import ComparedRun, Comparison, MonteCarlo
 from .console import Console, Probe, Reading, Trace
 from .diagram import Diagram, DiagramCheck
+from .ensemble import EnsembleRun, Plan, sweep
 from ._machines import Machine, machines
 from .mechanism import Fit, Mechanism, MechanismCheck, Patch
 from .motion import Motion
@@ -39,7 +40,7 @@ from .signals import Signal, Sum
 
 __all__ = [
     "Animation", "Block", "BlockLibrary", "ComparedRun", "Comparison", "Console", "ConsoleError", "Diagnostic", "Diagram",
-    "DiagramCheck", "DiagramError", "Error", "Event", "Fit", "Machine", "Mechanism", "MechanismCheck", "MechanismError",
-    "MonteCarlo", "Motion", "NetworkError", "Overload", "Page", "Patch", "PatchError", "Picture", "Probe", "ReadError", "Reading",
+    "DiagramCheck", "DiagramError", "EnsembleRun", "Error", "Event", "Fit", "Machine", "Mechanism", "MechanismCheck", "MechanismError",
+    "MonteCarlo", "Motion", "NetworkError", "Overload", "Page", "Patch", "PatchError", "Picture", "Plan", "PlanError", "Probe", "ReadError", "Reading",
     "RealiseError", "RequestError", "Run", "RunWarning", "Signal", "SolveError", "State", "Sum", "SynthesisError", "Table", "Trace",
-    "Trust",    "UnknownNameError", "__version__", "blocks", "machines", "plots"]
+    "Trust",    "UnknownNameError", "__version__", "blocks", "machines", "plots", "sweep"]

@@ -153,6 +153,10 @@ class ConsoleError(Error):
     """What a console cannot do: a name that there is not, a time that is over, a console that is closed."""
 
 
+class PlanError(Error):
+    """A plan of an ensemble that is wrong, a chunk that does not belong to it, or what cannot be had of them."""
+
+
 class RequestError(Error, ValueError):
     """An argument from Python that makes no sense: NaN, a wrong shape, a wrong type, options that contradict each other."""
 
