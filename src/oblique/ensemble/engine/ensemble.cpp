@@ -5,12 +5,20 @@
 #include <utility>
 
 #include <oblique/ensemble/engine/work_queue.h>
+#include <oblique/ensemble/lanes/lane_kernels.h>
+#include <oblique/ensemble/lanes/lane_program.h>
+#include <oblique/ensemble/lanes/lane_runner.h>
 #include <oblique/network/assembly/network.h>
 #include <oblique/network/assembly/parameter_numbers.h>
 #include <oblique/network/program/program.h>
 #include <oblique/text/diagnostic.h>
 
 namespace oblique::ensemble {
+namespace {
+
+constexpr int kWidth = 16;  ///< lanes
+
+}  // namespace
 
 struct Ensemble::Parts {
   diagram::FlatDiagram diagram;
@@ -18,6 +26,7 @@ struct Ensemble::Parts {
   EnsembleOptions options;
   network::ParameterNumbers numbers;
   std::vector<double> base;  ///< of each varied parameter: that of the diagram
+  LaneCompilation lanes;
 
   /// Runs one machine by CVODES, compiled by itself.
   void run_alone(std::span<const double> values, MachineRun& done, solve::Run& run) const {
@@ -39,8 +48,10 @@ Ensemble::Ensemble(diagram::FlatDiagram diagram, std::vector<std::uint32_t> vari
   const std::vector<double> all = network::parameter_values(diagram);
   std::vector<double> base;
   for (const std::uint32_t number : varied) base.push_back(all[number]);
-  parts_ = std::make_unique<const Parts>(
-      Parts{std::move(diagram), std::move(varied), std::move(options), std::move(numbers), std::move(base)});
+  LaneCompilation lanes{nullptr, "asked for"};
+  if (options.lanes) lanes = compile_for_lanes(diagram, varied, options.run);
+  parts_ = std::make_unique<const Parts>(Parts{std::move(diagram), std::move(varied), std::move(options),
+                                               std::move(numbers), std::move(base), std::move(lanes)});
 }
 
 Ensemble::~Ensemble() = default;
@@ -59,22 +70,49 @@ EnsembleCount Ensemble::run(std::uint64_t first, std::uint64_t count, const Valu
   EnsembleCount all;
   std::mutex guard;
   const auto work = [&](const Next& next) {
-    std::vector<double> drawn;
+    EnsembleCount mine;
     solve::Run run;
     MachineRun done;
-    while (next(done.number)) {
-      drawn = parts_->base;
-      values(done.number, drawn);
+    const auto by_cvodes = [&](std::uint64_t number, std::span<const double> drawn, const std::string& why) {
+      done.number = number;
       done.rows = {};
       done.failure.clear();
-      done.no_lane = "asked for";
+      done.no_lane = why;
       parts_->run_alone(drawn, done, run);
+      ++mine.by_cvodes;
+      ++mine.reasons[why];
+      if (!done.failure.empty()) ++mine.failed;
       take(done);
-      const std::lock_guard lock(guard);
-      ++all.by_cvodes;
-      ++all.reasons[done.no_lane];
-      if (!done.failure.empty()) ++all.failed;
+    };
+    if (parts_->lanes.program) {
+      const LaneKernels& kernels =
+          *lane_kernels(parts_->options.width > 0 ? parts_->options.width : kWidth,
+                        parts_->options.set.empty() ? nullptr : parts_->options.set.c_str());
+      LaneRunner lanes(*parts_->lanes.program, parts_->base, kernels);
+      const auto from_lane = [&](std::uint64_t number, std::span<const double> rows, std::size_t steps) {
+        done.number = number;
+        done.rows = rows;
+        done.steps = steps;
+        done.failure.clear();
+        done.no_lane.clear();
+        ++mine.in_lanes;
+        take(done);
+      };
+      lanes.work(next, values, from_lane, by_cvodes);
+    } else {
+      std::vector<double> drawn;
+      std::uint64_t number = 0;
+      while (next(number)) {
+        drawn = parts_->base;
+        values(number, drawn);
+        by_cvodes(number, drawn, parts_->lanes.why_not);
+      }
     }
+    const std::lock_guard lock(guard);
+    all.in_lanes += mine.in_lanes;
+    all.by_cvodes += mine.by_cvodes;
+    all.failed += mine.failed;
+    for (const auto& [why, how_many] : mine.reasons) all.reasons[why] += how_many;
   };
   work_off(first, count, parts_->options.threads, work, progress);
   return all;

@@ -20,7 +20,8 @@ struct EnsembleOptions {
   solve::RunOptions run;  ///< of each machine: until, tolerance, rows, the most steps; nothing that is called
   int threads = 1;        ///< the results do not depend on it
   bool lanes = true;      ///< else every machine is run by CVODES
-  int width = 0;          ///< machines side by side: 4, 8 or 16; 0: as many as are fastest here
+  int width = 0;    ///< machines side by side: 4, 8 or 16; 0: as many as are fastest
+  std::string set;  ///< instructions: "sse2", "avx2", "avx512"; else the best that there are
 };
 
 /// What came out of one machine.
@@ -47,7 +48,8 @@ struct EnsembleCount {
 /// machines, nor on threads, lanes, or the order.
 class Ensemble {
  public:
-  /// `varied`: numbers of parameters (network::ParameterNumbers). Throws what assembling the diagram throws.
+  /// `diagram`: a machine as most are, whose cases of blocks and equations the lanes are made for. `varied`:
+  /// numbers of parameters (network::ParameterNumbers). Throws what assembling the diagram throws.
   Ensemble(diagram::FlatDiagram diagram, std::vector<std::uint32_t> varied, EnsembleOptions options);
   ~Ensemble();
   Ensemble(Ensemble&&) noexcept;

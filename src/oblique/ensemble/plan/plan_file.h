@@ -28,8 +28,8 @@ PlanFile parse_plan(std::string_view text, std::string file);
 PlanFile read_plan(const std::filesystem::path& path);
 
 /// A plan as text: every key in one order, so that equal plans are equal texts. The path of the subject is
-/// written as it would be read from the folder of `file`.
-std::string write_plan(const PlanFile& plan, const std::filesystem::path& file);
+/// written as it would be read from the folder of `path`.
+std::string write_plan(const PlanFile& file, const std::filesystem::path& path);
 
 /// "grid", "latin-hypercube", "sobol".
 std::string_view sampling_name(Sampling sampling);

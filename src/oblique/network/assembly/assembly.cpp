@@ -53,8 +53,7 @@ class BlockContext final : public ExpressionContext {
     NodeId sum = graph.constant(0);
     for (std::size_t k = 0; k < flat.inputs[*input].terms.size(); ++k) {
       const NodeId weight = assembly_.weight(block_, *input, k);
-      const bool negative = flat.inputs[*input].terms[k].weight < 0;  // which its kind tells
-      sum = graph.apply(Op::add, sum, negative ? graph.apply(Op::negate, weight) : weight);
+      sum = graph.apply(Op::add, sum, graph.apply(Op::hypot, weight, graph.constant(0)));
     }
     return sum;
   }
@@ -128,6 +127,19 @@ bool Assembly::is_constant(std::size_t block, const text::Expression& expression
 std::optional<double> Assembly::constant_value(std::size_t block, const text::Expression& expression) {
   if (!is_constant(block, expression)) return std::nullopt;
   return network.graph.frozen_value(built_operand(block, expression));
+}
+
+void Assembly::decide_cases() {
+  for (std::size_t b = 0; b < diagram.blocks.size(); ++b) {
+    const diagram::FlatBlock& block = diagram.blocks[b];
+    const std::vector<diagram::Behaviour>& cases = block.definition->behaviours;
+    const diagram::Behaviour* const chosen =
+        block.definition->choose_behaviour(block.parameters, block.polarity);
+    for (const diagram::Behaviour& behaviour : cases) {
+      if (behaviour.when) network.graph.value_of_kind(built_operand(b, *behaviour.when));
+      if (&behaviour == chosen) break;
+    }
+  }
 }
 
 NodeId Assembly::weight(std::size_t block, std::size_t input, std::size_t wire) {

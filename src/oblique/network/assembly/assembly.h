@@ -65,6 +65,9 @@ struct Assembly {
   bool is_constant(std::size_t block, const text::Expression& expression);
   /// Its value, by which something is decided; nothing for one that changes.
   std::optional<double> constant_value(std::size_t block, const text::Expression& expression);
+  /// Has the conditions decide by which blocks have chosen the cases of their equations: with held
+  /// parameters, which change when all is built.
+  void decide_cases();
   /// The weight of a wire at an input.
   NodeId weight(std::size_t block, std::size_t input, std::size_t wire);
   /// What a name in a block's equations stands for.

@@ -197,8 +197,9 @@ void make_starts(Assembly& a) {
 
 }  // namespace
 
-Network assemble(const diagram::FlatDiagram& diagram) {
+Network assemble(const diagram::FlatDiagram& diagram, std::span<const std::uint32_t> held) {
   Assembly a(diagram);
+  a.network.graph = ExpressionGraph({held.begin(), held.end()});
   collect_quantities(a);
   make_modes(a);
   find_active_events(a);
@@ -218,6 +219,7 @@ Network assemble(const diagram::FlatDiagram& diagram) {
   define_phase_ends(a);
   define_switches(a);
   define_tables(a);
+  if (!held.empty()) a.decide_cases();
   a.diagnostics.throw_if_any<NetworkError>();
   a.network.n_parameters = a.numbers.size();
   return std::move(a.network);

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -127,6 +128,9 @@ struct Network {
 
 /// Puts the equations of all blocks into one network; wires become shared sub-expressions and feedback
 /// without a state in it becomes algebraic loops. Throws NetworkError with all findings.
-Network assemble(const diagram::FlatDiagram& diagram);
+///
+/// With `held` parameters (by their ParameterNumbers) it is that of all diagrams that differ in these alone
+/// and choose the same cases: nothing is left out because one of them is 0 or 1.
+Network assemble(const diagram::FlatDiagram& diagram, std::span<const std::uint32_t> held = {});
 
 }  // namespace oblique::network

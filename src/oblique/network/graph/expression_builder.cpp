@@ -71,7 +71,7 @@ class Builder {
 
   bool is_never_negative(const text::Expression& e, bool& by_switch) {
     using Kind = text::Expression::Kind;
-    if (change_of(e, context_) == Change::never) return graph_[build(e)].value >= 0;
+    if (change_of(e, context_) == Change::never) return graph_.value_of_kind(build(e)) >= 0;
     const auto is_nowhere = [&](const text::Expression& part) { return is_never_negative(part, by_switch); };
     if (e.kind == Kind::add || e.kind == Kind::multiply || e.kind == Kind::divide)
       return std::all_of(e.operands.begin(), e.operands.end(), is_nowhere);
@@ -87,7 +87,7 @@ class Builder {
   NodeId function(const text::Expression& e);
 
   NodeId choose(NodeId chosen, const text::Expression& a, const text::Expression& b) {
-    if (graph_.is_constant(chosen)) return build(graph_[chosen].value != 0 ? a : b);
+    if (graph_.is_constant(chosen)) return build(graph_.value_of_kind(chosen) != 0 ? a : b);
     const NodeId first = build(a);
     return graph_.apply(Op::select, chosen, first, build(b));
   }
@@ -152,7 +152,7 @@ class Builder {
     // Nothing that changes is beyond infinity.
     for (const text::Expression* const side : {&left, &right}) {
       if (change_of(*side, context_) != Change::never) continue;
-      const double value = graph_[build(*side)].value;
+      const double value = graph_.value_of_kind(build(*side));
       if (std::isinf(value)) return graph_.constant((side == &left) == (value > 0) ? 1 : 0);
     }
     return context_.greater(left, right, turning);
@@ -162,7 +162,7 @@ class Builder {
 
   /// a < b ? x : y of constants: which it is their kinds decide.
   NodeId where_less(NodeId a, NodeId b, NodeId x, NodeId y) {
-    return graph_.is_constant(graph_.apply(Op::less, a, b), 1) ? x : y;
+    return graph_.value_of_kind(graph_.apply(Op::less, a, b)) == 1 ? x : y;
   }
   NodeId smaller(NodeId a, NodeId b) { return where_less(b, a, b, a); }
   NodeId larger(NodeId a, NodeId b) { return where_less(a, b, b, a); }
@@ -174,7 +174,7 @@ class Builder {
     const NodeId zero = graph_.constant(0), one = graph_.constant(1);
     switch (e.function) {
       case text::Function::abs:
-        return where_less(x[0], zero, graph_.apply(Op::negate, x[0]), x[0]);
+        return graph_.apply(Op::hypot, x[0], zero);  // for which the sign decides nothing
       case text::Function::sign:
         return where_less(zero, x[0], one, where_less(x[0], zero, graph_.constant(-1), zero));
       case text::Function::step:

@@ -150,6 +150,18 @@ ConstantKind kind_of(double value) {
   return value == 1 ? ConstantKind::one : value == 2 ? ConstantKind::two : ConstantKind::positive;
 }
 
+bool stays(Decided decided, double before, double now) {
+  switch (decided) {
+    case Decided::nothing:
+      return true;
+    case Decided::kind:
+      return kind_of(before) == kind_of(now);
+    case Decided::value:
+      break;
+  }
+  return std::bit_cast<std::uint64_t>(before) == std::bit_cast<std::uint64_t>(now);
+}
+
 NodeId ExpressionGraph::intern(const ConstantFormula& formula, double value) {
   const bool leaf = formula.parameter != ConstantFormula::kNoParameter;
   const Key key{formula.op, leaf ? formula.parameter + 1 : formula.a, formula.b, 0, 0};
@@ -167,6 +179,8 @@ NodeId ExpressionGraph::intern(const ConstantFormula& formula, double value) {
 NodeId ExpressionGraph::parameter(std::uint32_t number, double value) {
   ConstantFormula formula;
   formula.parameter = number;
+  formula.held = held_.contains(number);
+  if (formula.held) formula.decided = Decided::nothing;
   return intern(formula, value);
 }
 
@@ -178,6 +192,8 @@ NodeId ExpressionGraph::folded(Op op, NodeId a, NodeId b) {
   formula.op = op;
   formula.a = a;
   formula.b = operand_count(op) == 2 ? b : a;
+  formula.held = follows_held(a) || follows_held(formula.b);
+  if (formula.held) formula.decided = Decided::nothing;
   return intern(formula, value);
 }
 
@@ -196,9 +212,12 @@ Node ExpressionGraph::with_operands(NodeId id) const {
   return node;
 }
 
-double ExpressionGraph::frozen_value(NodeId id) {
+double ExpressionGraph::value_deciding(NodeId id, Decided what) {
   const Node& node = nodes_[id];
-  if (node.op == Op::constant && node.variable != 0) formulas_[node.variable - 1].frozen = true;
+  if (node.op == Op::constant && node.variable != 0) {
+    Decided& decided = formulas_[node.variable - 1].decided;
+    decided = std::max(decided, what);
+  }
   return node.value;
 }
 
@@ -221,7 +240,7 @@ NodeId ExpressionGraph::simplified(Op op, NodeId a, NodeId b, NodeId c, bool& do
   done = true;
   switch (op) {
     case Op::select:
-      if (is_constant(a)) return nodes_[a].value != 0 ? b : c;
+      if (is_constant(a)) return value_of_kind(a) != 0 ? b : c;
       if (b == c) return b;
       break;
     case Op::gate:

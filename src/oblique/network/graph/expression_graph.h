@@ -5,6 +5,8 @@
 #include <limits>
 #include <optional>
 #include <unordered_map>
+#include <unordered_set>
+#include <utility>
 #include <vector>
 
 #include <oblique/text/operations.h>
@@ -56,6 +58,9 @@ struct Node {
   NodeId operand(int i) const { return i == 0 ? a : i == 1 ? b : c; }
 };
 
+/// What the equations owe to the value of a constant: nothing, its kind, or all of it.
+enum class Decided : std::uint8_t { nothing, kind, value };
+
 /// How a constant follows from parameters: it is one, or an operation on constants.
 struct ConstantFormula {
   static constexpr std::uint32_t kNoParameter = std::numeric_limits<std::uint32_t>::max();
@@ -64,7 +69,8 @@ struct ConstantFormula {
   Op op = Op::constant;
   NodeId a = 0, b = 0;
   std::uint32_t parameter = kNoParameter;  ///< its number
-  bool frozen = false;                     ///< something was decided by its exact value
+  bool held = false;                       ///< it follows from a held parameter
+  Decided decided = Decided::kind;
 };
 
 /// What simplification looks at in a constant.
@@ -81,14 +87,22 @@ enum class ConstantKind : std::uint8_t {
 };
 ConstantKind kind_of(double value);
 
+/// Whether what was decided by a constant stays when it gets another value.
+bool stays(Decided decided, double before, double now);
+
 /// Expressions as a directed acyclic graph in which equal sub-expressions are one node. Constants are folded
 /// and neutral operands dropped (x+0, x·1, x·0, x/1, x^1, x^2 = x·x, −−x) as the nodes are made.
 ///
 /// A constant that follows from parameters knows how: with other parameters the graph is the same one with
-/// other numbers for as long as the kinds of all these constants stay, and those that are frozen as they are.
-/// Two of them are one node where their formulas are equal, not where their values are.
+/// other numbers for as long as all that was decided by these constants stays. Two of them are one node where
+/// their formulas are equal, not where their values are.
+/// What follows from held parameters is not simplified by its value: of it only choices between cases decide.
 class ExpressionGraph {
  public:
+  ExpressionGraph() = default;
+  /// With these parameters held.
+  explicit ExpressionGraph(std::unordered_set<std::uint32_t> held) : held_(std::move(held)) {}
+
   NodeId constant(double value);
   /// A parameter, which may get another value when all is built: a constant by its number.
   NodeId parameter(std::uint32_t number, double value);
@@ -103,10 +117,14 @@ class ExpressionGraph {
   std::size_t size() const { return nodes_.size(); }
 
   bool is_constant(NodeId id) const { return nodes_[id].op == Op::constant; }
-  /// Whether it is 0, 1, −1 or 2, which its kind tells.
-  bool is_constant(NodeId id, double value) const { return is_constant(id) && nodes_[id].value == value; }
+  /// Whether it is 0, 1, −1 or 2, which its kind tells, and may be simplified by.
+  bool is_constant(NodeId id, double value) const {
+    return is_constant(id) && nodes_[id].value == value && !follows_held(id);
+  }
+  /// The value of a constant of which the kind decides.
+  double value_of_kind(NodeId id) { return value_deciding(id, Decided::kind); }
   /// The value of a constant by which more is decided than its kind tells: freezes it.
-  double frozen_value(NodeId id);
+  double frozen_value(NodeId id) { return value_deciding(id, Decided::value); }
   /// How a constant follows from parameters; nothing of one that does not, and of other nodes.
   const ConstantFormula* formula_of(NodeId id) const;
   /// A node; of a constant that is an operation on other ones, as if it were no constant.
@@ -135,6 +153,10 @@ class ExpressionGraph {
     std::size_t operator()(const Key& key) const;
   };
 
+  bool follows_held(NodeId id) const {
+    return nodes_[id].variable != 0 && formulas_[nodes_[id].variable - 1].held;
+  }
+  double value_deciding(NodeId id, Decided what);
   NodeId intern(const Node& node);
   NodeId intern(const ConstantFormula& formula, double value);
   NodeId folded(Op op, NodeId a, NodeId b);
@@ -142,6 +164,7 @@ class ExpressionGraph {
   /// adjoint · (partial derivative of a node by one of its operands).
   NodeId passed_on(NodeId adjoint, NodeId id, int operand);
 
+  std::unordered_set<std::uint32_t> held_;
   std::vector<Node> nodes_;
   std::vector<ConstantFormula> formulas_;
   std::unordered_map<Key, NodeId, Hash> index_;

@@ -57,8 +57,9 @@ struct Compilation {
   /// if the loop's own unknowns stood still.
   std::map<std::size_t, std::vector<NodeId>> loop_rates;
   std::vector<FoundSource> sources;
-  std::vector<bool> in_body;         ///< of a node: written as part of its loop
-  std::optional<TapeWriter> writer;  ///< made once the graph is complete
+  std::optional<std::vector<NodeId>> turning_rates;  ///< as in the code
+  std::vector<bool> in_body;                         ///< of a node: written as part of its loop
+  std::optional<TapeWriter> writer;                  ///< made once the graph is complete
 
  private:
   void require_loop(std::size_t loop, Needs& needs, std::vector<NodeId>& pending) const;

@@ -17,7 +17,10 @@ void find_sensitivity(Compilation& c, std::size_t loop) {
     const auto row = static_cast<std::uint32_t>(i);
     for (const auto& [variable, node] : c.residual_gradients[members.unknowns[i]]) {
       const std::uint32_t slot = c.writer->slot(node);
-      if (c.is_state(variable)) {
+      if (variable == 0) {
+        const std::size_t row_of_all = c.network.states.size() + members.unknowns[i];
+        c.code.time_entries.emplace_back(static_cast<std::uint32_t>(row_of_all), slot);
+      } else if (c.is_state(variable)) {
         const auto state = static_cast<std::uint32_t>(c.state_of(variable));
         sensitivity.direct.push_back({row, state, slot});
         sensitivity.states.push_back(state);
@@ -88,6 +91,7 @@ void lay_out_jacobian(Compilation& c) {
   for (std::size_t i = 0; i < n; ++i) {
     for (const auto& [variable, node] : c.state_gradients[i]) {
       const std::uint32_t slot = c.writer->slot(node);
+      if (variable == 0) c.code.time_entries.emplace_back(static_cast<std::uint32_t>(i), slot);
       if (c.is_state(variable)) c.code.direct_entries.push_back({position(i, c.state_of(variable)), slot});
       if (!c.is_unknown(variable)) continue;
       const std::uint32_t loop = c.loop_of_unknown[c.unknown_of(variable)];
@@ -95,7 +99,8 @@ void lay_out_jacobian(Compilation& c) {
       for (const std::uint32_t state : c.code.sensitivities[loop].states) {
         c.code.row_positions.push_back(position(i, state));
       }
-      c.code.row_couplings.push_back({loop, c.place_in_loop[c.unknown_of(variable)], slot, first});
+      c.code.row_couplings.push_back(
+          {static_cast<std::uint32_t>(i), loop, c.place_in_loop[c.unknown_of(variable)], slot, first});
     }
   }
 }

@@ -63,9 +63,8 @@ bool ParameterSetting::set(std::span<const Parameter> parameters, bool kinds_cou
 
 bool ParameterSetting::holds(std::uint32_t c, bool kinds_count) const {
   const ProgramCode::Constant& constant = code_->constants[c];
-  if (constant.frozen)
-    return std::bit_cast<std::uint64_t>(values_[c]) == std::bit_cast<std::uint64_t>(constant.value);
-  return !kinds_count || kind_of(values_[c]) == kind_of(constant.value);
+  return stays(constant.decided, constant.value, values_[c]) ||
+         (constant.decided == Decided::kind && !kinds_count);
 }
 
 const std::vector<std::uint32_t>& ParameterSetting::followers(std::uint32_t leaf) {

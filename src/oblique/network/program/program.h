@@ -19,6 +19,8 @@
 
 namespace oblique::network {
 
+struct FlatEquations;
+class ParameterPrologue;
 class ParameterSetting;
 class Workspace;
 
@@ -83,6 +85,12 @@ class Program {
                        const Decide& decide) const;
 
   const std::vector<Source>& sources() const { return code_->sources; }
+  /// Where the sources that act are sums and products of sines and cosines of what goes along a straight
+  /// line: the slots of constants that say how fast [1/s]. A step that no argument turns far in hides
+  /// nothing.
+  const std::optional<std::vector<std::uint32_t>>& turning_rate_slots() const {
+    return code_->turning_rate_slots;
+  }
   /// The states that sources depend on. The first `clocks` of them go along a straight line between events:
   /// integrators of what only events change.
   const std::vector<std::size_t>& source_states() const { return code_->source_states; }
@@ -106,6 +114,8 @@ class Program {
   friend class Evaluation;
   friend class SignalEvaluation;
   friend class ParameterSetting;
+  friend class ParameterPrologue;
+  friend FlatEquations flat_equations(const Program& program, std::span<const std::size_t> signals);
 
   bool run(const std::vector<ProgramCode::Step>& steps, Workspace& workspace) const;
   bool load_and_run(double t, const double* x, Workspace& workspace) const;

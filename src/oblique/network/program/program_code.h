@@ -61,7 +61,7 @@ struct ProgramCode {
   };
   /// One row of f_z: entry k of dz/dx's columns goes to `positions[k]` of the Jacobian.
   struct RowCoupling {
-    std::uint32_t loop, unknown, slot;
+    std::uint32_t row, loop, unknown, slot;
     std::uint32_t first_position;  ///< in `row_positions`
   };
 
@@ -83,8 +83,8 @@ struct ProgramCode {
     Op op = Op::constant;
     std::uint32_t a = 0, b = 0;  ///< constants, by their places in the list
     std::uint32_t parameter = ConstantFormula::kNoParameter;
-    bool frozen = false;  ///< the program is another one where the value is
-    double value = 0;     ///< as compiled
+    Decided decided = Decided::kind;  ///< where it does not stay, the program is another one
+    double value = 0;                 ///< as compiled
     std::optional<std::uint32_t> slot;
   };
 
@@ -137,9 +137,14 @@ struct ProgramCode {
   std::vector<std::size_t> source_states;
   std::size_t n_clocks = 0;
   TapeRange source_segment;
+  /// How fast the arguments of all sines and cosines go that are the only bends of acting sources; nothing
+  /// where there are other ones.
+  std::optional<std::vector<std::uint32_t>> turning_rate_slots;
 
   SparsePattern pattern;
   std::vector<DirectEntry> direct_entries;
+  /// ∂/∂t of dx/dt and of the residuals that derivatives need: row among states and unknowns, slot.
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> time_entries;
   std::vector<Sensitivity> sensitivities;        ///< of each loop; empty for those no derivative needs
   std::vector<std::uint32_t> sensitivity_order;  ///< loops that derivatives need
   std::vector<RowCoupling> row_couplings;

@@ -203,7 +203,7 @@ void write_constants(Compilation& c) {
   for (const ConstantFormula& formula : graph.formulas()) {
     ProgramCode::Constant made;
     made.parameter = formula.parameter;
-    made.frozen = formula.frozen;
+    made.decided = formula.decided;
     if (formula.parameter == ConstantFormula::kNoParameter) {
       for (const NodeId operand : {formula.a, formula.b}) {
         if (!place.contains(operand)) add(operand, {});

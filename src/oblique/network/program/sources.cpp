@@ -84,6 +84,39 @@ void find_peaks(Compilation& c, const std::vector<bool>& acts, const std::vector
   }
 }
 
+/// The rates of the arguments of sines and cosines; nothing where an acting source bends otherwise.
+std::optional<std::vector<NodeId>> turning_rates(const Compilation& c, const std::vector<bool>& acts,
+                                                 const std::vector<Follows>& follows, Tangents& derivatives) {
+  const ExpressionGraph& graph = c.network.graph;
+  if (!c.sources.empty()) return std::nullopt;  // by states
+  std::vector<NodeId> rates;
+  for (NodeId id = 0; id < acts.size(); ++id) {
+    if (!acts[id] || follows[id] != Follows::time) continue;
+    const Node node = graph[id];  // a copy: new nodes may move the array
+    switch (node.op) {
+      case Op::add:
+      case Op::subtract:
+      case Op::negate:
+      case Op::multiply:
+        break;
+      case Op::divide:
+        if (follows[node.b] != Follows::nothing) return std::nullopt;
+        break;
+      case Op::sin:
+      case Op::cos: {
+        if (follows[node.a] != Follows::time_linearly) return std::nullopt;
+        const NodeId rate = derivatives.of(node.a);
+        if (!graph.is_constant(rate)) return std::nullopt;
+        rates.push_back(rate);
+        break;
+      }
+      default:
+        return std::nullopt;
+    }
+  }
+  return rates;
+}
+
 }  // namespace
 
 void find_sources(Compilation& c) {
@@ -126,6 +159,7 @@ void find_sources(Compilation& c) {
   Tangents derivatives(graph, [&](std::uint32_t variable) {
     return variable == 0 ? graph.constant(1) : c.network.states[variable - 1].derivative;
   });
+  c.turning_rates = turning_rates(c, acts, follows, derivatives);
   std::map<NodeId, std::size_t> source_of;
   for (NodeId id = 0; id < size; ++id) {
     if (!is_root[id] || follows[id] != Follows::time) continue;
@@ -155,6 +189,10 @@ void write_sources(Compilation& c) {
     if (c.for_sources.nodes[id]) nodes.push_back(id);
   }
   c.code.source_segment = c.writer->write(nodes);
+  if (c.turning_rates) {
+    c.code.turning_rate_slots.emplace();
+    for (const NodeId rate : *c.turning_rates) c.code.turning_rate_slots->push_back(c.writer->slot(rate));
+  }
   for (const Compilation::FoundSource& source : c.sources)
     c.code.sources.push_back({c.writer->slot(source.value), c.writer->slot(source.derivative), source.acts,
                               source.by_states, source.switch_index});

@@ -82,6 +82,30 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
+int operand_count(Instruction::Code code) {
+  switch (code) {
+#define OBLIQUE_OPERATION(name, operands, ...) \
+  case Instruction::Code::name:                \
+    return operands;
+#include <oblique/text/operations.def>
+    case Instruction::Code::select:
+    case Instruction::Code::table_value:
+    case Instruction::Code::multiply_add:
+    case Instruction::Code::multiply_subtract:
+      return 3;
+    case Instruction::Code::gate:
+    case Instruction::Code::less:
+    case Instruction::Code::less_equal:
+    case Instruction::Code::equal:
+    case Instruction::Code::table_slope:
+    case Instruction::Code::table_end:
+    case Instruction::Code::table_begin:
+    case Instruction::Code::table_segment:
+      break;
+  }
+  return 2;
+}
+
 void run_tape(std::span<const Instruction> instructions, double* slots) {
   using Code = Instruction::Code;
   for (const Instruction& i : instructions) {

@@ -35,6 +35,9 @@ struct Instruction {
   std::uint32_t result;
 };
 
+/// How many operands an instruction has.
+int operand_count(Instruction::Code code);
+
 /// A segment of instructions, half open.
 struct TapeRange {
   std::uint32_t begin = 0;

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdlib>
+#include <memory>
+
+// Not installed.
+namespace oblique::ensemble {
+
+/// Numbers of lanes, on a boundary that all instruction sets like.
+class LaneArray {
+ public:
+  LaneArray() = default;
+  explicit LaneArray(std::size_t size)
+      : data_(static_cast<double*>(
+            std::aligned_alloc(kAlign, (size * sizeof(double) + kAlign - 1) / kAlign * kAlign))) {
+    for (std::size_t i = 0; i < size; ++i) data_.get()[i] = 0;
+  }
+  double* data() { return data_.get(); }
+  const double* data() const { return data_.get(); }
+  double& operator[](std::size_t i) { return data_.get()[i]; }
+
+ private:
+  static constexpr std::size_t kAlign = 128;
+  struct Free {
+    void operator()(double* data) const { std::free(data); }
+  };
+  std::unique_ptr<double, Free> data_;
+};
+
+/// Rodas5P: a linearly implicit (Rosenbrock) method of order 5 in 8 stages for M u′ = F(t, u), with an
+/// embedded one of order 4 and a polynomial of order 4 between the ends of a step. Stiffly accurate, so that
+/// algebraic unknowns come out as exactly as states (G. Steinebach, "Construction of Rosenbrock–Wanner method
+/// Rodas5P and numerical benchmarks within the Julia Differential Equations package", BIT 63:27, 2023).
+///
+/// With W = M/(hγ) − ∂F/∂u, for i = 1 … 8 (Hairer & Wanner II, IV.7.25):
+///
+///     W kᵢ = F(t + cᵢ h, u + Σ aᵢⱼ kⱼ) + M Σ (Cᵢⱼ/h) kⱼ + h dᵢ ∂F/∂t,
+///
+/// the last three stages each begin where the last ended; u + … + k₈ is the result, and k₈ the error.
+struct Rodas5p {
+  static constexpr int kStages = 8;
+  static constexpr double kGamma = 0.21193756319429014;
+  static const double c[kStages];
+  static const double d[kStages];           ///< of stages from the sixth on 0
+  static const double a[kStages][kStages];  ///< of the first six; the others add the last stage to its place
+  static const double C[kStages][kStages];
+  static const double between[3][kStages];  ///< coefficients of the polynomial between the ends
+};
+
+}  // namespace oblique::ensemble
