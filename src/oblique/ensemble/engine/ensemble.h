@@ -20,8 +20,8 @@ struct EnsembleOptions {
   solve::RunOptions run;  ///< of each machine: until, tolerance, rows, the most steps; nothing that is called
   int threads = 1;        ///< the results do not depend on it
   bool lanes = true;      ///< else every machine is run by CVODES
-  int width = 0;    ///< machines side by side: 4, 8 or 16; 0: as many as are fastest
-  std::string set;  ///< instructions: "sse2", "avx2", "avx512"; else the best that there are
+  int width = 0;          ///< machines side by side: 4, 8 or 16; 0: as many as are fastest
+  std::string set;        ///< instructions: "sse2", "avx2", "avx512"; else the best that there are
 };
 
 /// What came out of one machine.

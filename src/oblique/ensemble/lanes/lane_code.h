@@ -93,9 +93,9 @@ struct LaneKernels {
                const double* absolute, double relative, double* out);
   /// to = from in the lanes where `where` is not 0.
   void (*take)(std::uint32_t n, const double* where, const double* from, double* to);
-  /// The polynomial of a step between its ends at `theta` [width].
+  /// The polynomial of a step between its ends at `theta` [width], and its derivative by `theta`.
   void (*between)(std::uint32_t n, const double* theta, const double* before, const double* after,
-                  const double* c1, const double* c2, const double* c3, double* out);
+                  const double* c1, const double* c2, const double* c3, double* out, double* slope);
 };
 
 /// What a lane does that the kernels do not: one operation on numbers.

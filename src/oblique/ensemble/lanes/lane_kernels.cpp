@@ -6,6 +6,7 @@
 #include <limits>
 #include <string_view>
 
+#include <oblique/ensemble/lanes/kernels_of_set.h>
 #include <oblique/network/graph/expression_graph.h>
 #include <oblique/network/program/tape.h>
 #include <oblique/text/noise.h>

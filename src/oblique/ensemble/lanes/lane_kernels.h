@@ -6,9 +6,6 @@
 // Not installed.
 namespace oblique::ensemble {
 
-inline constexpr int kWidths = 3;  ///< 4, 8 and 16 lanes
-extern const LaneKernels kKernelsSse2[kWidths], kKernelsAvx2[kWidths], kKernelsAvx512[kWidths];
-
 /// Those of the best instruction set that this processor has, or of `set` ("sse2", "avx2", "avx512") where it
 /// has that, for 4, 8 or 16 lanes; null where there are none.
 const LaneKernels* lane_kernels(int width, const char* set = nullptr);

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include <oblique/ensemble/lanes/lane_array.h>
 #include <oblique/ensemble/lanes/lane_kernels.h>
 #include <oblique/ensemble/lanes/rosenbrock.h>
 #include <oblique/network/assembly/network.h>

@@ -60,6 +60,8 @@ LaneRunner::LaneRunner(const LaneProgram& program, std::span<const double> base,
   c2_ = variables();
   c3_ = variables();
   between_ = variables();
+  slope_ = variables();
+  change_ = variables();
   growth_ = numbers();
   error_ = numbers();
   scale_ = numbers();
@@ -268,6 +270,24 @@ void LaneRunner::step() {
                 error_.data());
 }
 
+/// The polynomial is of order 4 where nothing is stiff. What follows others fast it misses by a hundred times
+/// more: there F at the polynomial tells by how much, and W, which is still that of the step, takes it away.
+void LaneRunner::correct_between() {
+  double* const variables = slots_.data() + width_;
+  std::copy_n(between_.data(), n_ * width_, variables);
+  for (std::size_t l = 0; l < width_; ++l) slots_[l] = lanes_[l].t + theta_[l] * lanes_[l].h;
+  kernels_.run(program_.rates.code(), slots_.data());
+  constexpr double minus = -1;
+  const double* const slope = slope_.data();
+  kernels_.right_side(static_cast<std::uint32_t>(n_), static_cast<std::uint32_t>(program_.n_states), 1,
+                      &minus, &slope, inverse_.data(), nullptr, nullptr, rate_.data(), right_side_.data());
+  kernels_.solve(program_.lu.code(), entries_.data(), reciprocals_.data(), right_side_.data(), work_.data(),
+                 change_.data());
+  constexpr double one = 1;
+  const double* const change = change_.data();
+  kernels_.combine(static_cast<std::uint32_t>(n_), 1, &one, &change, between_.data(), between_.data());
+}
+
 /// Takes the rows that lie in the steps just taken, which stand in `where_`.
 void LaneRunner::keep_rows() {
   const auto n = static_cast<std::uint32_t>(n_);
@@ -293,7 +313,8 @@ void LaneRunner::keep_rows() {
       first = false;
     }
     kernels_.between(n, theta_.data(), u_.data(), after_.data(), c1_.data(), c2_.data(), c3_.data(),
-                     between_.data());
+                     between_.data(), slope_.data());
+    correct_between();
     for (std::size_t l = 0; l < width_; ++l) {
       if (theta_[l] < 0) continue;
       double* const row =

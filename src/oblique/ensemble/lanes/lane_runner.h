@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <oblique/ensemble/engine/work_queue.h>
+#include <oblique/ensemble/lanes/lane_array.h>
 #include <oblique/ensemble/lanes/lane_kernels.h>
 #include <oblique/ensemble/lanes/lane_program.h>
 #include <oblique/ensemble/lanes/rosenbrock.h>
@@ -68,6 +69,7 @@ class LaneRunner {
   void step();
   void judge(const Take& take, const Refuse& refuse);
   void keep_rows();
+  void correct_between();
   void end(std::size_t lane, const Take& take);
   void refuse_lane(std::size_t lane, const std::string& why, const Refuse& refuse);
   void evaluate(std::span<const std::size_t> batch, const Take& take);
@@ -89,7 +91,7 @@ class LaneRunner {
 
   LaneArray slots_, output_slots_;
   LaneArray u_, after_, stages_, right_side_, work_, by_time_, entries_, reciprocals_, c1_, c2_, c3_,
-      between_;
+      between_, slope_, change_;
   LaneArray growth_, error_, scale_, inverse_, time_scale_, theta_, where_;
   std::vector<const double*> stage_, rate_;  ///< where they stand
 };

@@ -130,18 +130,19 @@ FlatEquations flat_equations(const Program& program, std::span<const std::size_t
   std::vector<bool> none(tape.size());
   flat.outputs = extraction.needed_by(flat.output_slots, none);
 
-  for (const auto* part : {&flat.rates, &flat.outputs}) {
-    for (const Instruction& i : *part) {
-      for (const std::uint32_t operand : {i.a, i.b}) {
-        const bool unknown = operand > n && operand <= n + code.unknowns.size();
-        if (unknown && row_of[operand - 1 - n] == kNone)
-          throw NetworkError({{},
-                              fmt::format("an output follows '{}', from a loop that no state depends on",
-                                          code.unknowns[operand - 1 - n].name),
-                              {},
-                              {}});
-      }
-    }
+  const auto check = [&](std::uint32_t slot) {
+    const bool unknown = slot > n && slot <= n + code.unknowns.size();
+    if (!unknown || row_of[slot - 1 - n] != kNone) return;
+    throw NetworkError({{},
+                        fmt::format("an output follows '{}', of a loop that no state depends on",
+                                    code.unknowns[slot - 1 - n].name),
+                        {},
+                        {}});
+  };
+  std::for_each(flat.output_slots.begin(), flat.output_slots.end(), check);
+  for (const Instruction& i : flat.outputs) {
+    const std::uint32_t operands[] = {i.a, i.b, i.c};
+    std::for_each(operands, operands + operand_count(i.code), check);
   }
   return flat;
 }

@@ -84,35 +84,94 @@ void find_peaks(Compilation& c, const std::vector<bool>& acts, const std::vector
   }
 }
 
-/// The rates of the arguments of sines and cosines; nothing where an acting source bends otherwise.
-std::optional<std::vector<NodeId>> turning_rates(const Compilation& c, const std::vector<bool>& acts,
+/// Bounds of what follows the time through sums, products, sines and cosines: of its magnitude, and of how
+/// fast it goes [1/s]. Both are constants, or nothing where there is none.
+class TimeBounds {
+ public:
+  TimeBounds(Compilation& c, const std::vector<Follows>& follows, Tangents& derivatives)
+      : graph_(c.network.graph), follows_(follows), derivatives_(derivatives), known_(follows.size()) {}
+
+  struct Bounds {
+    std::optional<NodeId> size, rate;
+  };
+
+  /// Of a node whose operands were asked for before, as all do that bend.
+  const Bounds& of(NodeId id) {
+    std::optional<Bounds>& known = known_[id];
+    if (!known) known = found(id, graph_[id]);
+    return *known;
+  }
+
+ private:
+  NodeId magnitude(NodeId constant) { return graph_.apply(Op::hypot, constant, graph_.constant(0)); }
+  std::optional<NodeId> combined(Op op, std::optional<NodeId> a, std::optional<NodeId> b) {
+    if (!a || !b) return std::nullopt;
+    return graph_.apply(op, *a, *b);
+  }
+
+  Bounds found(NodeId id, Node node) {  // a copy: new nodes may move the array
+    if (graph_.is_constant(id)) return {magnitude(id), graph_.constant(0)};
+    if (follows_[id] == Follows::time_linearly) {
+      const NodeId rate = derivatives_.of(id);
+      if (!graph_.is_constant(rate)) return {};
+      return {std::nullopt, magnitude(rate)};
+    }
+    if (follows_[id] != Follows::time) return {};
+    switch (node.op) {
+      case Op::add:
+      case Op::subtract: {
+        const Bounds a = of(node.a), b = of(node.b);
+        return {combined(Op::add, a.size, b.size), combined(Op::add, a.rate, b.rate)};
+      }
+      case Op::negate:
+        return of(node.a);
+      case Op::multiply: {
+        const Bounds a = of(node.a), b = of(node.b);
+        return {combined(Op::multiply, a.size, b.size),
+                combined(Op::add, combined(Op::multiply, a.size, b.rate),
+                         combined(Op::multiply, a.rate, b.size))};
+      }
+      case Op::divide: {
+        if (!graph_.is_constant(node.b)) return {};
+        const Bounds a = of(node.a);
+        const NodeId divisor = magnitude(node.b);
+        return {combined(Op::divide, a.size, divisor), combined(Op::divide, a.rate, divisor)};
+      }
+      case Op::sin:
+      case Op::cos:
+        return {graph_.constant(1), of(node.a).rate};
+      default:
+        return {};
+    }
+  }
+
+  ExpressionGraph& graph_;
+  const std::vector<Follows>& follows_;
+  Tangents& derivatives_;
+  std::vector<std::optional<Bounds>> known_;
+};
+
+/// How fast the arguments of sines and cosines go at most; nothing where an acting source bends otherwise, or
+/// there is no bound.
+std::optional<std::vector<NodeId>> turning_rates(Compilation& c, const std::vector<bool>& acts,
                                                  const std::vector<Follows>& follows, Tangents& derivatives) {
   const ExpressionGraph& graph = c.network.graph;
   if (!c.sources.empty()) return std::nullopt;  // by states
+  TimeBounds bounds(c, follows, derivatives);
   std::vector<NodeId> rates;
   for (NodeId id = 0; id < acts.size(); ++id) {
     if (!acts[id] || follows[id] != Follows::time) continue;
-    const Node node = graph[id];  // a copy: new nodes may move the array
-    switch (node.op) {
-      case Op::add:
-      case Op::subtract:
-      case Op::negate:
-      case Op::multiply:
-        break;
-      case Op::divide:
-        if (follows[node.b] != Follows::nothing) return std::nullopt;
-        break;
-      case Op::sin:
-      case Op::cos: {
-        if (follows[node.a] != Follows::time_linearly) return std::nullopt;
-        const NodeId rate = derivatives.of(node.a);
-        if (!graph.is_constant(rate)) return std::nullopt;
-        rates.push_back(rate);
-        break;
-      }
-      default:
-        return std::nullopt;
-    }
+    const Node node = graph[id];
+    const bool turns = node.op == Op::sin || node.op == Op::cos;
+    const bool smooth = turns || node.op == Op::add || node.op == Op::subtract || node.op == Op::negate ||
+                        node.op == Op::multiply ||
+                        (node.op == Op::divide && follows[node.b] == Follows::nothing);
+    if (!smooth) return std::nullopt;
+    bounds.of(id);
+    if (!turns) continue;
+    const std::optional<NodeId> rate = bounds.of(node.a).rate;
+    if (!rate) return std::nullopt;
+    rates.push_back(*rate);
   }
   return rates;
 }

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
-// The kernels, as templates of the number of lanes. A unit that includes this is compiled for one instruction
-// set, so nothing here may be an inline function of a library: the linker could take it for all units.
+// Compiled once for each instruction set: OBLIQUE_LANE_KERNELS is then the name of what it gives, and
+// OBLIQUE_LANE_SET that of the set. So nothing here may be an inline function of a library: the linker could
+// take it for all units. Each operation is rounded by itself (-ffp-contract=off), so that all sets give the
+// same numbers.
+#include <oblique/ensemble/lanes/kernels_of_set.h>
+
 #include <cstddef>
 #include <cstdint>
-
-#include <oblique/ensemble/lanes/lane_code.h>
 
 extern "C" double sin(double) noexcept;
 extern "C" double cos(double) noexcept;
@@ -30,9 +32,9 @@ struct Vectors {
   typedef std::int64_t Whole __attribute__((vector_size(8 * size), aligned(8 * size), may_alias));
 };
 
-// --- sine and cosine: the argument less the nearest odd or even multiple of π/2, which is known to 33 + 33 + 53
-// bits (Cody and Waite), then a polynomial for the sine within ±π/2, of least relative error. 1.5 units in the last
-// place up to kFarthest.
+// --- sine and cosine: the argument less the nearest odd or even multiple of π/2, which is known to 33 + 33 +
+// 53 bits (Cody and Waite), then a polynomial for the sine within ±π/2, of least relative error. Three units
+// in the last place up to kFarthest.
 
 constexpr double kFarthest = 1e5;
 constexpr double kRound = 6755399441055744.0;  // 1.5 · 2^52: what is added rounds to a whole number
@@ -107,17 +109,17 @@ struct Kernels {
       const LaneStep* const end = tape.steps + range.end;
       const LaneStep* i = tape.steps + range.begin;
       switch (range.op) {
-#define OBLIQUE_LANE_OP(name, formula)                                             \
-  case LaneOp::name:                                                               \
-    for (; i != end; ++i) {                                                        \
+#define OBLIQUE_LANE_OP(name, formula)                                                            \
+  case LaneOp::name:                                                                              \
+    for (; i != end; ++i) {                                                                       \
       const V *const a = at(slots, i->a), *const b = at(slots, i->b), *const c = at(slots, i->c); \
-      (void)b;                                                                     \
-      (void)c;                                                                     \
-      V results[parts];                                                            \
-      for (Index p = 0; p < parts; ++p) results[p] = formula;                        \
-      V* const result = at(slots, i->result);                                      \
-      for (Index p = 0; p < parts; ++p) result[p] = results[p];                      \
-    }                                                                              \
+      (void)b;                                                                                    \
+      (void)c;                                                                                    \
+      V results[parts];                                                                           \
+      for (Index p = 0; p < parts; ++p) results[p] = formula;                                     \
+      V* const result = at(slots, i->result);                                                     \
+      for (Index p = 0; p < parts; ++p) result[p] = results[p];                                   \
+    }                                                                                             \
     break;
         OBLIQUE_LANE_OP(add, a[p] + b[p])
         OBLIQUE_LANE_OP(subtract, a[p] - b[p])
@@ -193,8 +195,8 @@ struct Kernels {
     for (Index p = 0; p < parts; ++p) ((V*)growth)[p] = largest[p];
   }
 
-  static void solve(const StraightLuCode& lu, const double* entries, const double* reciprocals, const double* b,
-                    double* work, double* x) {
+  static void solve(const StraightLuCode& lu, const double* entries, const double* reciprocals,
+                    const double* b, double* work, double* x) {
     const Index* code = lu.forward;
     for (Index k = 0; k < lu.n; ++k) {
       V sum[parts];
@@ -277,21 +279,28 @@ struct Kernels {
   }
 
   static void between(Index n, const double* theta, const double* before, const double* after,
-                      const double* c1, const double* c2, const double* c3, double* out) {
+                      const double* c1, const double* c2, const double* c3, double* out, double* slope) {
     for (Index i = 0; i < n; ++i) {
       for (Index p = 0; p < parts; ++p) {
         const V t = ((const V*)theta)[p], s = 1.0 - t;
-        const V bend = at(c1, i)[p] + t * (at(c2, i)[p] + t * at(c3, i)[p]);
-        at(out, i)[p] = s * at(before, i)[p] + t * (at(after, i)[p] + s * bend);
+        const V a = at(before, i)[p], b = at(after, i)[p], k1 = at(c1, i)[p], k2 = at(c2, i)[p],
+                k3 = at(c3, i)[p];
+        const V bend = k1 + t * (k2 + t * k3);
+        at(out, i)[p] = s * a + t * (b + s * bend);
+        at(slope, i)[p] = (b - a) + (s - t) * bend + t * s * (k2 + 2.0 * t * k3);
       }
     }
   }
 
   static constexpr LaneKernels all(const char* set) {
-    return {set,    static_cast<int>(width),   run,        matrix, factor, solve, combine, right_side, norm,
-            take,   between};
+    return {set,    static_cast<int>(width), run, matrix, factor, solve, combine, right_side, norm, take,
+            between};
   }
 };
 
 }  // namespace
+
+const LaneKernels OBLIQUE_LANE_KERNELS[kWidths] = {
+    Kernels<4>::all(OBLIQUE_LANE_SET), Kernels<8>::all(OBLIQUE_LANE_SET), Kernels<16>::all(OBLIQUE_LANE_SET)};
+
 }  // namespace oblique::ensemble

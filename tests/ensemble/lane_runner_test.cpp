@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: MIT
+// What lanes give, against closed forms.
+#include <oblique/ensemble/lanes/lane_runner.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include <oblique/ensemble/engine/ensemble.h>
+#include <oblique/network/assembly/parameter_numbers.h>
+
+#include "../support/compiled.h"
+
+namespace oblique::ensemble {
+namespace {
+
+using Rows = std::vector<double>;
+
+struct Machines {
+  testing::Compiled compiled;
+  std::vector<std::uint32_t> varied;
+  EnsembleOptions options;
+  EnsembleCount count;
+  std::map<std::uint64_t, std::size_t> steps;
+
+  Machines(std::string_view blocks, const std::vector<std::string>& names,
+           const std::string& outputs = "x = \"x\"")
+      : compiled(blocks, "\n[outputs]\n" + outputs + "\n") {
+    const network::ParameterNumbers numbers(compiled.flat);
+    for (const std::string& name : names)
+      varied.push_back(network::find_parameter(compiled.flat, numbers, name).value().number);
+    options.run.samples = 11;
+    options.run.tolerance = 1e-6;
+  }
+
+  /// Machine k with these values of what varies.
+  std::map<std::uint64_t, Rows> run(std::uint64_t count_, const Ensemble::Values& values) {
+    const Ensemble ensemble(compiled.flat, varied, options);
+    std::map<std::uint64_t, Rows> all;
+    count = ensemble.run(0, count_, values, [&](const MachineRun& run) {
+      all[run.number] = {run.rows.begin(), run.rows.end()};
+      steps[run.number] = run.steps;
+    });
+    return all;
+  }
+};
+
+double at(std::uint64_t number) {
+  return static_cast<double>(number);
+}
+
+TEST(LaneRunner, DecaysOfDrawnRatesAndStarts) {
+  Machines decays("x = { type = \"integrator\", in = [\"-1*x\"], initial = 1 }", {"x.in[1]", "x.initial"});
+  const auto all = decays.run(100, [](std::uint64_t k, std::span<double> values) {
+    values[0] = -0.1 * at(k);
+    values[1] = 1 - 0.005 * at(k);
+  });
+  EXPECT_EQ(decays.count.in_lanes, 100U);
+  for (const auto& [k, rows] : all) {
+    ASSERT_EQ(rows.size(), 22U);
+    for (std::size_t r = 0; r < 11; ++r) {
+      const double t = 0.1 * static_cast<double>(r);
+      EXPECT_NEAR(rows[2 * r], t, 1e-15);
+      // the tolerance asked for
+      EXPECT_NEAR(rows[2 * r + 1], (1 - 0.005 * at(k)) * std::exp(-0.1 * at(k) * t), 1e-6) << k;
+    }
+  }
+}
+
+// x″ = −ω² x + sin(Ω t) with ω and Ω drawn: the drive may turn some thousand times within what would else be
+// a step.
+TEST(LaneRunner, DrivesThatTurnFastAreNotSteppedOver) {
+  Machines driven(R"(
+      drive = { type = "sine-source", amplitude = 1, frequency = 10 }
+      x = { type = "integrator", in = ["v"] }
+      v = { type = "integrator", in = ["-1*x", "drive"] })",
+                  {"drive.frequency", "v.in[1]"});
+  driven.options.run.until = 3;
+  const auto all = driven.run(8, [](std::uint64_t k, std::span<double> values) {
+    values[0] = 0.3 * std::pow(3.0, at(k));
+    values[1] = -(2.0 + at(k));
+  });
+  EXPECT_EQ(driven.count.in_lanes, 8U);
+  for (const auto& [k, rows] : all) {
+    const double drive = 2 * std::numbers::pi * 0.3 * std::pow(3.0, at(k)), own = std::sqrt(2.0 + at(k));
+    for (std::size_t r = 0; r < 11; ++r) {
+      const double t = rows[2 * r];
+      const double truth =
+          (std::sin(drive * t) - drive / own * std::sin(own * t)) / (own * own - drive * drive);
+      EXPECT_NEAR(rows[2 * r + 1], truth, 2e-6)
+          << k;  // the tolerance, and twice it for the length of the run
+    }
+  }
+}
+
+// A multiplier of the class of real ones, whose error is ε sin(7π cos Ωt) sin(7π · 0.5): x is an integral of
+// what turns 7π times as fast as the drive.
+TEST(LaneRunner, ErrorsOfMultipliersOfTheTimeAreNotSteppedOver) {
+  Machines product(R"(
+      half = { type = "constant", value = 0.5 }
+      drive = { type = "sine-source", amplitude = 1, frequency = 2 }
+      m = { type = "multiplier", in = ["drive", "half"], error = 0.01 }
+      x = { type = "integrator", in = ["10*m"] })",
+                   {"m.error"});
+  product.options.run.until = 0.9;
+  const auto all =
+      product.run(4, [](std::uint64_t k, std::span<double> values) { values[0] = 0.01 * at(k + 1); });
+  EXPECT_EQ(product.count.in_lanes, 4U);
+  const double pi = std::numbers::pi;
+  for (const auto& [k, rows] : all) {
+    double truth = 0;  // by the rule of midpoints, whose error is 1e-9 here
+    constexpr int kParts = 200'000;
+    for (int i = 0; i < kParts; ++i) {
+      const double drive = std::sin(2 * pi * 2 * 0.9 * (i + 0.5) / kParts);
+      truth += 10 * (drive / 2 + 0.01 * at(k + 1) * std::sin(7 * pi * drive) * std::sin(7 * pi / 2)) * 0.9 /
+               kParts;
+    }
+    EXPECT_NEAR(rows[21], truth, 1e-6) << k;
+  }
+}
+
+// s = a x − b s, so that dx/dt = −s = −a x/(1 + b): the loop is an unknown of its own in the lanes.
+TEST(LaneRunner, LoopsAreUnknowns) {
+  Machines loops(R"(
+      s = { type = "summer", in = ["1*x", "-0.5*s"] }
+      x = { type = "integrator", in = ["-1*s"], initial = 1 })",
+                 {"s.in[1]", "s.in[2]"}, "x = \"x\"\ns = \"s\"");
+  const auto all = loops.run(20, [](std::uint64_t k, std::span<double> values) {
+    values[0] = 1 + 0.1 * at(k);
+    values[1] = -0.04 * at(k);
+  });
+  EXPECT_EQ(loops.count.in_lanes, 20U);
+  for (const auto& [k, rows] : all) {
+    const double rate = (1 + 0.1 * at(k)) / (1 + 0.04 * at(k));
+    for (std::size_t r = 0; r < 11; ++r) {
+      EXPECT_NEAR(rows[3 * r + 1], std::exp(-rate * rows[3 * r]), 1e-6);
+      EXPECT_NEAR(rows[3 * r + 2], rate * std::exp(-rate * rows[3 * r]), 2e-6);
+    }
+  }
+}
+
+// A servo amplifier that follows √x: at rest before the clock starts, stiff afterwards (a rate of 6e7/s), and
+// between the ends of a step no worse than there.
+TEST(LaneRunner, ServosComeToRestAndFollowBetweenTheStepsToo) {
+  Machines roots(R"(
+      one = { type = "constant" }
+      x = { type = "integrator", in = ["0.8*one"], initial = 0.1 }
+      y = { type = "servo-amplifier", in = ["square", "-x"], gain = 1e6, bandwidth = 100, initial = 1 }
+      square = { type = "squarer", in = "y" })",
+                 {"x.in[1]", "x.initial"}, "y = \"y\"");
+  roots.options.run.samples = 301;
+  const auto all = roots.run(20, [](std::uint64_t k, std::span<double> values) {
+    values[0] = 0.4 + 0.02 * at(k);
+    values[1] = 0.05 + 0.01 * at(k);
+  });
+  EXPECT_EQ(roots.count.in_lanes, 20U);
+  for (const auto& [k, rows] : all) {
+    EXPECT_LT(roots.steps.at(k), 100U);  // so that most rows lie between
+    for (std::size_t r = 0; r < 301; ++r) {
+      const double x = 0.05 + 0.01 * at(k) + (0.4 + 0.02 * at(k)) * rows[2 * r];
+      EXPECT_NEAR(rows[2 * r + 1], std::sqrt(x), 1e-6 + 1e-6 / std::sqrt(x))
+          << k << " row " << r;  // 1/gain of the loop
+    }
+  }
+}
+
+// Ten times finer, of order 5: the steps grow by 10^(1/5).
+TEST(LaneRunner, IsOfOrderFive) {
+  Machines swings(R"(
+      x = { type = "integrator", in = ["v"], initial = 1 }
+      v = { type = "integrator", in = ["-1*sine"] }
+      sine = { type = "sine", in = "x" })",
+                  {"v.in[1]"});
+  swings.options.run.until = 10;
+  swings.options.run.samples = 2;
+  const auto steps_at = [&](double tolerance) {
+    swings.options.run.tolerance = tolerance;
+    swings.run(4, [](std::uint64_t, std::span<double> values) { values[0] = -1; });
+    return static_cast<double>(swings.steps.at(0));
+  };
+  // 1e-4 between the two: ×6.3; the start and the last step weigh some per cent
+  EXPECT_NEAR(std::log10(steps_at(1e-10) / steps_at(1e-6)) / 4, 0.2, 0.02);
+}
+
+TEST(LaneRunner, TheSameNumbersHoweverTheyAreRun) {
+  const auto run = [](int width, const char* set, int threads, std::uint64_t first) {
+    Machines decays(R"(
+        x = { type = "integrator", in = ["v"], initial = 1 }
+        v = { type = "integrator", in = ["-1*cube", "0.3*c"] }
+        c = { type = "sine-source", amplitude = 1, frequency = 0.3 }
+        square = { type = "squarer", in = "x" }
+        cube = { type = "multiplier", in = ["square", "x"] })",
+                    {"v.in[1]", "v.in[2]"});
+    decays.options.width = width;
+    decays.options.set = set;
+    decays.options.threads = threads;
+    decays.options.run.until = 5;
+    const Ensemble ensemble(decays.compiled.flat, decays.varied, decays.options);
+    std::vector<Rows> all(60);
+    const EnsembleCount count = ensemble.run(
+        first, 60 - first,
+        [](std::uint64_t k, std::span<double> values) {
+          values[0] = -0.2 - 0.7 * at(k);
+          values[1] = 0.1 * at(k);
+        },
+        [&](const MachineRun& one) {
+          all[one.number] = {one.rows.begin(), one.rows.end()};
+        });
+    EXPECT_EQ(count.in_lanes, 60 - first);
+    return all;
+  };
+  const std::vector<Rows> truth = run(4, "sse2", 1, 0);
+  for (const char* set : {"sse2", "avx2", "avx512"}) {
+    if (lane_kernels(4, set) == nullptr) continue;
+    for (const int width : {4, 8, 16}) EXPECT_EQ(run(width, set, 1, 0), truth) << set << " " << width;
+  }
+  EXPECT_EQ(run(0, "", 2, 0), truth);
+  std::vector<Rows> last = run(0, "", 1, 37);
+  EXPECT_TRUE(std::equal(last.begin() + 37, last.end(), truth.begin() + 37));
+}
+
+// What a lane cannot do is told of, and its neighbours have the numbers that they have without it.
+TEST(LaneRunner, AMachineThatGrowsWithoutBoundLeavesItsNeighboursAlone) {
+  Machines squares(R"(
+      x = { type = "integrator", in = ["-1*square"], initial = 0.5 }
+      square = { type = "squarer", in = "x" })",
+                   {"x.in[1]"});
+  const auto values = [](std::uint64_t k, std::span<double> rates) { rates[0] = k == 5 ? 4 : -0.1 * at(k); };
+  const auto all = squares.run(16, values);
+  EXPECT_EQ(squares.count.in_lanes, 15U);
+  EXPECT_EQ(squares.count.by_cvodes, 1U);
+  EXPECT_EQ(squares.count.failed, 1U);  // x = 1/(2 − 4 t) has no end
+  for (const auto& [k, rows] : all) {
+    if (k == 5) continue;
+    EXPECT_NEAR(rows[21], 1 / (2 + 0.1 * at(k)), 1e-6) << k;
+  }
+}
+
+// Of the servo y² = x with x below zero there is no rest near that of the typical machine.
+TEST(LaneRunner, AMachineWithoutRestIsLeftToCvodes) {
+  Machines roots(R"(
+      one = { type = "constant" }
+      x = { type = "integrator", in = ["0.2*one"], initial = 0.5 }
+      y = { type = "servo-amplifier", in = ["square", "-x"], gain = 1e6, bandwidth = 100, initial = 1 }
+      square = { type = "squarer", in = "y" })",
+                 {"x.initial"}, "y = \"y\"");
+  const auto all =
+      roots.run(8, [](std::uint64_t k, std::span<double> values) { values[0] = k == 3 ? -0.5 : 0.5; });
+  EXPECT_EQ(roots.count.in_lanes, 7U);
+  EXPECT_EQ(roots.count.reasons,
+            (std::map<std::string, std::uint64_t>{{"no rest near that of the typical machine", 1}}));
+}
+
+}  // namespace
+}  // namespace oblique::ensemble
