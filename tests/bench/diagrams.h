@@ -3,6 +3,7 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include <oblique/diagram/flat_diagram.h>
 #include <oblique/diagram/flatten.h>
@@ -28,9 +29,9 @@ std::string dyad_row_text(int n);
 /// A diagram with all that `run` needs. `library` must outlive it.
 struct CompiledDiagram {
   CompiledDiagram(const diagram::Diagram& diagram, const diagram::BlockLibrary& library)
-      : flat(diagram::flatten(diagram, library)),
-        program(network::assemble(flat)),
-        options(solve::options_of(diagram.run)) {}
+      : CompiledDiagram(diagram::flatten(diagram, library), solve::options_of(diagram.run)) {}
+  CompiledDiagram(diagram::FlatDiagram flattened, solve::RunOptions with)
+      : flat(std::move(flattened)), program(network::assemble(flat)), options(std::move(with)) {}
 
   diagram::FlatDiagram flat;
   network::Program program;

@@ -9,7 +9,9 @@
 
 #include <cvodes/cvodes.h>
 #include <nvector/nvector_serial.h>
+#include <sunlinsol/sunlinsol_dense.h>
 #include <sunlinsol/sunlinsol_klu.h>
+#include <sunmatrix/sunmatrix_dense.h>
 #include <sunmatrix/sunmatrix_sparse.h>
 
 #include "figures.h"
@@ -82,6 +84,7 @@ class Linkage {
   }
 
   Index size() const { return size_; }
+  std::size_t columns() const { return 1 + 2 * made_.shown.size(); }
   Index entries() const { return static_cast<Index>(rows_.size()); }
 
   void derivatives(const double* x, double* d) {
@@ -109,9 +112,22 @@ class Linkage {
   }
 
   void jacobian(const double* x, SUNMatrix matrix) {
-    std::copy(columns_.begin(), columns_.end(), SUNSparseMatrix_IndexPointers(matrix));
-    std::copy(rows_.begin(), rows_.end(), SUNSparseMatrix_IndexValues(matrix));
-    double* const j = SUNSparseMatrix_Data(matrix);
+    if (SUNMatGetID(matrix) == SUNMATRIX_SPARSE) {
+      std::copy(columns_.begin(), columns_.end(), SUNSparseMatrix_IndexPointers(matrix));
+      std::copy(rows_.begin(), rows_.end(), SUNSparseMatrix_IndexValues(matrix));
+      jacobian(x, SUNSparseMatrix_Data(matrix));
+      return;
+    }
+    entries_.resize(rows_.size());
+    jacobian(x, entries_.data());
+    for (Index column = 0; column < size_; ++column) {
+      double* const to = SUNDenseMatrix_Column(matrix, column);
+      for (Index k = columns_[at(column)]; k < columns_[at(column) + 1]; ++k)
+        to[rows_[at(k)]] = entries_[at(k)];
+    }
+  }
+
+  void jacobian(const double* x, double* j) {
     const double hold = kHold * std::abs(speed_), c = x[0], s = x[1];
     j[crank_[0]] = hold * (1 - 3 * c * c - s * s);
     j[crank_[1]] = speed_ - 2 * hold * c * s;
@@ -310,7 +326,7 @@ class Linkage {
     }
   }
 
-  const HandLinkage& made_;
+  HandLinkage made_;
   double rate_, gain_;  ///< 1/τ of the amplifiers [1/s], and times μ and the weight of the residuals
   double speed_;
   Index size_ = 0, variable_ = 0;
@@ -321,6 +337,7 @@ class Linkage {
   std::array<std::vector<double>, kMostPoints> gx_, gy_;
   std::array<double, kMostPoints> x_{}, y_{};
   std::vector<Index> columns_, rows_, loop_entries_;
+  std::vector<double> entries_;
   std::array<Index, 4> crank_{};
   Index loop_own_ = 0;
 };
@@ -338,46 +355,88 @@ int jacobian(sunrealtype, N_Vector states, N_Vector, SUNMatrix matrix, void* use
 
 }  // namespace
 
-HandRun run_by_hand(const HandLinkage& made, const HandSettings& settings, std::span<const double> start) {
-  Linkage linkage(made, settings);
-  check(start.size() == at(linkage.size()));
-  HandRun result;
-  result.columns = 1 + 2 * made.shown.size();
-  const double begin = cpu_seconds();
+struct HandSolver::Parts {
+  HandSettings settings;
+  Algebra algebra;
+  std::optional<Linkage> linkage;
   SUNContext context = nullptr;
-  check(SUNContext_Create(nullptr, &context) == 0);
-  N_Vector states = N_VNew_Serial(linkage.size(), context);
-  N_Vector between = N_VNew_Serial(linkage.size(), context);
-  std::copy(start.begin(), start.end(), N_VGetArrayPointer(states));
-  SUNMatrix matrix = SUNSparseMatrix(linkage.size(), linkage.size(), linkage.entries(), CSC_MAT, context);
-  SUNLinearSolver solver = SUNLinSol_KLU(states, matrix, context);
-  void* memory = CVodeCreate(CV_BDF, context);
-  check(CVodeInit(memory, derivatives, 0, states) == CV_SUCCESS);
-  check(CVodeSetUserData(memory, &linkage) == CV_SUCCESS);
-  check(CVodeSStolerances(memory, settings.tolerance, settings.absolute_tolerance) == CV_SUCCESS);
-  check(CVodeSetLinearSolver(memory, solver, matrix) == CV_SUCCESS);
-  check(CVodeSetJacFn(memory, jacobian) == CV_SUCCESS);
-  check(CVodeSetStopTime(memory, settings.until) == CV_SUCCESS);
+  N_Vector states = nullptr, between = nullptr;
+  SUNMatrix matrix = nullptr;
+  SUNLinearSolver solver = nullptr;
+  void* memory = nullptr;
+};
 
-  linkage.show(0, start.data(), settings.scale, result.values);
+HandSolver::HandSolver(const HandLinkage& linkage, const HandSettings& settings, Algebra algebra)
+    : parts_(std::make_unique<Parts>()) {
+  Parts& p = *parts_;
+  p.settings = settings;
+  p.algebra = algebra;
+  p.linkage.emplace(linkage, settings);
+  const Index n = p.linkage->size();
+  check(SUNContext_Create(nullptr, &p.context) == 0);
+  p.states = N_VNew_Serial(n, p.context);
+  p.between = N_VNew_Serial(n, p.context);
+  if (algebra == Algebra::dense) {
+    p.matrix = SUNDenseMatrix(n, n, p.context);
+    p.solver = SUNLinSol_Dense(p.states, p.matrix, p.context);
+  } else {
+    p.matrix = SUNSparseMatrix(n, n, p.linkage->entries(), CSC_MAT, p.context);
+    p.solver = SUNLinSol_KLU(p.states, p.matrix, p.context);
+  }
+  N_VConst(0, p.states);
+  p.memory = CVodeCreate(CV_BDF, p.context);
+  check(CVodeInit(p.memory, derivatives, 0, p.states) == CV_SUCCESS);
+  check(CVodeSetUserData(p.memory, &*p.linkage) == CV_SUCCESS);
+  check(CVodeSStolerances(p.memory, settings.tolerance, settings.absolute_tolerance) == CV_SUCCESS);
+  check(CVodeSetLinearSolver(p.memory, p.solver, p.matrix) == CV_SUCCESS);
+  check(CVodeSetJacFn(p.memory, jacobian) == CV_SUCCESS);
+  check(CVodeSetMaxNumSteps(p.memory, 1'000'000) == CV_SUCCESS);
+}
+
+HandSolver::~HandSolver() {
+  CVodeFree(&parts_->memory);
+  SUNLinSolFree(parts_->solver);
+  SUNMatDestroy(parts_->matrix);
+  N_VDestroy(parts_->between);
+  N_VDestroy(parts_->states);
+  SUNContext_Free(&parts_->context);
+}
+
+void HandSolver::use(const HandLinkage& linkage) {
+  parts_->linkage.emplace(linkage, parts_->settings);
+}
+
+HandRun HandSolver::run(std::span<const double> start) {
+  Parts& p = *parts_;
+  const HandSettings& settings = p.settings;
+  check(start.size() == at(p.linkage->size()));
+  HandRun result;
+  result.columns = p.linkage->columns();
+  const double begin = cpu_seconds();
+  std::copy(start.begin(), start.end(), N_VGetArrayPointer(p.states));
+  check(CVodeReInit(p.memory, 0, p.states) == CV_SUCCESS);
+  check(CVodeSetStopTime(p.memory, settings.until) == CV_SUCCESS);
+  p.linkage->show(0, start.data(), settings.scale, result.values);
   int rows = 1;
   for (double t = 0; t < settings.until;) {
-    check(CVode(memory, 2 * settings.until, states, &t, CV_ONE_STEP) >= 0);
+    check(CVode(p.memory, 2 * settings.until, p.states, &t, CV_ONE_STEP) >= 0);
     for (; rows < settings.samples; ++rows) {
       const double time =
           rows + 1 == settings.samples ? settings.until : settings.until * rows / (settings.samples - 1);
       if (time > t) break;
-      check(CVodeGetDky(memory, time, 0, between) == CV_SUCCESS);
-      linkage.show(time, N_VGetArrayPointer(between), settings.scale, result.values);
+      check(CVodeGetDky(p.memory, time, 0, p.between) == CV_SUCCESS);
+      p.linkage->show(time, N_VGetArrayPointer(p.between), settings.scale, result.values);
     }
   }
-  CVodeGetNumSteps(memory, &result.steps);
-  CVodeFree(&memory);
-  SUNLinSolFree(solver);
-  SUNMatDestroy(matrix);
-  N_VDestroy(between);
-  N_VDestroy(states);
-  SUNContext_Free(&context);
+  CVodeGetNumSteps(p.memory, &result.steps);
+  result.seconds = cpu_seconds() - begin;
+  return result;
+}
+
+HandRun run_by_hand(const HandLinkage& made, const HandSettings& settings, std::span<const double> start) {
+  const double begin = cpu_seconds();
+  HandSolver solver(made, settings);
+  HandRun result = solver.run(start);
   result.seconds = cpu_seconds() - begin;
   return result;
 }

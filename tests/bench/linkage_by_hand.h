@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -63,8 +64,28 @@ struct HandRun {
 };
 
 /// What someone would write who has such linkages to run and knows CVODES: the equations of their
-/// servo-tracked triangles in C++, with their sparse Jacobian. `start` has all states at rest: cos and sin of
-/// the crank, then of each dyad L, cos ψ, sin ψ, cos γ, sin γ, then the variable length.
+/// servo-tracked triangles in C++, with their Jacobian, in one solver that is started anew for each. `start`
+/// has all states at rest: cos and sin of the crank, then of each dyad L, cos ψ, sin ψ, cos γ, sin γ, then
+/// the variable length.
+class HandSolver {
+ public:
+  enum class Algebra { sparse, dense };
+  /// All linkages that it runs are of the form of this one.
+  HandSolver(const HandLinkage& linkage, const HandSettings& settings, Algebra algebra = Algebra::sparse);
+  ~HandSolver();
+  HandSolver(const HandSolver&) = delete;
+  HandSolver& operator=(const HandSolver&) = delete;
+
+  /// Takes another linkage of the form, before its time is taken.
+  void use(const HandLinkage& linkage);
+  HandRun run(std::span<const double> start);
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+/// One run of one.
 HandRun run_by_hand(const HandLinkage& linkage, const HandSettings& settings, std::span<const double> start);
 
 }  // namespace oblique::bench
