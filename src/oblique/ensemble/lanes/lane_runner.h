@@ -9,9 +9,9 @@
 #include <vector>
 
 #include <oblique/ensemble/engine/work_queue.h>
+#include <oblique/ensemble/lanes/lane_array.h>
 #include <oblique/ensemble/lanes/lane_kernels.h>
 #include <oblique/ensemble/lanes/lane_program.h>
-#include <oblique/ensemble/lanes/rosenbrock.h>
 
 // Not installed.
 namespace oblique::ensemble {
