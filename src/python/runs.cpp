@@ -110,9 +110,9 @@ std::shared_ptr<FinishedRun> run_diagram(const DiagramModel& model, const Settin
   options.sensitivity = entry(asked, "sensitivity", options.sensitivity);
   options.watch_overloads = entry(asked, "watch_overloads", model.diagram().machine.profile != "ideal");
   const auto method = entry<std::string>(asked, "method", "");
-  if (method == "auto") options.method = diagram::IntegrationMethod::automatic;
-  if (method == "bdf") options.method = diagram::IntegrationMethod::bdf;
-  if (method == "adams") options.method = diagram::IntegrationMethod::adams;
+  for (const diagram::IntegrationMethod known : diagram::kIntegrationMethods) {
+    if (method == diagram::method_name(known)) options.method = known;
+  }
   const auto state = entry<std::string>(asked, "state", "");
   const bool check = entry(asked, "check", false);
 

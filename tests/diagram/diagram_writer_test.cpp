@@ -189,8 +189,8 @@ Diagram any_diagram() {
   d.machine.inverting = *rc::gen::arbitrary<bool>();
   d.run.until = 100 + *positive_number();
   d.run.tolerance = 1 / (1 + *positive_number());
-  d.run.method =
-      *rc::gen::element(IntegrationMethod::automatic, IntegrationMethod::bdf, IntegrationMethod::adams);
+  d.run.method = *rc::gen::elementOf(
+      std::vector<IntegrationMethod>(std::begin(kIntegrationMethods), std::end(kIntegrationMethods)));
   d.run.samples = *rc::gen::inRange(2, 1'000'000);
   d.run.max_steps = *rc::gen::inRange(1L, 1'000'000'000'000L);
   if (*rc::gen::arbitrary<bool>()) d.run.absolute_tolerance = *positive_number();

@@ -163,7 +163,7 @@ class Writer {
 
 DiagramPlan plan_diagram(Dice& dice) {
   constexpr double kTolerances[] = {1e-8, 1e-6, 1e-7, 1e-9};
-  constexpr const char* kMethods[] = {"auto", "auto", "bdf", "adams"};
+  constexpr const char* kMethods[] = {"auto", "auto", "bdf", "adams", "rodas"};
   constexpr const char* kProfiles[] = {"tr-10", "rat-700", "mn-7", "the-analog-thing"};
   DiagramPlan plan;
   plan.until = dice.number(0.5, 8.5);

@@ -3,6 +3,7 @@
 // whether it knows.
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -55,7 +56,7 @@ struct Found {
   std::vector<double> estimated;  ///< over the true error, of each output
 };
 
-Found solve(const SmoothProblem& problem, double tolerance) {
+Found solve(const SmoothProblem& problem, double tolerance, diagram::IntegrationMethod method) {
   const diagram::BlockLibrary library = library_with(problem);
   std::string outputs = "[outputs]\n";
   for (const std::string& state : problem.shown)
@@ -64,6 +65,7 @@ Found solve(const SmoothProblem& problem, double tolerance) {
   RunOptions options;
   options.until = problem.until;
   options.tolerance = tolerance;
+  options.method = method;
   options.samples = static_cast<int>(problem.truths.size()) + 1;
   options.trust = true;
   const oblique::solve::Run result = run(made.program, made.flat, options);
@@ -87,14 +89,17 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-class Catalogue : public ::testing::TestWithParam<double> {};
-INSTANTIATE_TEST_SUITE_P(Tolerances, Catalogue, ::testing::Values(1e-5, 1e-8, 1e-11));
+class Catalogue : public ::testing::TestWithParam<std::tuple<double, diagram::IntegrationMethod>> {};
+INSTANTIATE_TEST_SUITE_P(Tolerances, Catalogue,
+                         ::testing::Combine(::testing::Values(1e-5, 1e-8, 1e-11),
+                                            ::testing::Values(diagram::IntegrationMethod::automatic,
+                                                              diagram::IntegrationMethod::rodas)));
 
 TEST_P(Catalogue, IsRightToItsToleranceAndKnowsByHowMuch) {
-  const double tolerance = GetParam();
+  const auto [tolerance, method] = GetParam();
   std::vector<double> smooth, stiff, estimates;
   for (const SmoothProblem& problem : problems()) {
-    const Found found = solve(problem, tolerance);
+    const Found found = solve(problem, tolerance, method);
     (problem.stiff ? stiff : smooth).push_back(found.error / tolerance);
     // Of 36 problems the worst is 60 times the tolerance off at 1e-8: a pendulum that passes near its top. At
     // 1e-11 a thousand turns of a circle carry their rounding, 7e-9.

@@ -38,6 +38,8 @@ std::string_view method_name(IntegrationMethod method) {
       return "bdf";
     case IntegrationMethod::adams:
       return "adams";
+    case IntegrationMethod::rodas:
+      return "rodas";
   }
   return "auto";
 }

@@ -28,9 +28,12 @@ enum class IntegrationMethod {
   automatic,  ///< chosen for the diagram; the run says which and why
   bdf,        ///< backward differentiation: for servo loops and everything that holds fast decays
   adams,      ///< Adams-Moulton: for oscillators, whose amplitude it keeps better
+  rodas,      ///< Rodas5P, linearly implicit: for fast decays too; keeps nothing of the steps before
 };
+inline constexpr IntegrationMethod kIntegrationMethods[] = {
+    IntegrationMethod::automatic, IntegrationMethod::bdf, IntegrationMethod::adams, IntegrationMethod::rodas};
 
-/// "auto", "bdf", "adams".
+/// "auto", "bdf", "adams", "rodas".
 std::string_view method_name(IntegrationMethod method);
 
 /// How a diagram is run unless the request says otherwise.

@@ -80,8 +80,7 @@ class DiagramReader {
     const auto name = reader.string("method");
     if (!name) return;
     std::vector<std::string> names;
-    for (const auto method :
-         {IntegrationMethod::automatic, IntegrationMethod::bdf, IntegrationMethod::adams}) {
+    for (const IntegrationMethod method : kIntegrationMethods) {
       names.emplace_back(method_name(method));
       if (*name == names.back()) {
         diagram_.run.method = method;

@@ -77,6 +77,15 @@ void check_longest_step(const diagram::FlatDiagram& diagram, const RunOptions& o
        {"raise max_step or max_steps in [run], or end the run earlier with ", text::Setting{"until"}}});
 }
 
+/// Sensitivities are integrated by CVODES beside the states; the other method does not know them.
+void check_sensitivity(const diagram::FlatDiagram& diagram, const RunOptions& options) {
+  if (options.sensitivity.empty() || options.method != diagram::IntegrationMethod::rodas) return;
+  throw text::ReadError(text::Diagnostic{{diagram.file, {}},
+                                         "sensitivities are integrated by CVODES, and the method is 'rodas'",
+                                         "'auto', 'bdf' or 'adams'",
+                                         "leave out method = \"rodas\" in [run]"});
+}
+
 }  // namespace
 
 std::vector<text::TableColumn> output_columns(const diagram::FlatDiagram& diagram) {
@@ -118,6 +127,7 @@ Run run(const network::Program& program, const diagram::FlatDiagram& diagram, co
   const auto begin = std::chrono::steady_clock::now();
   if (options.from) check_run_state(*options.from, program, diagram.file);
   check_longest_step(diagram, options);
+  check_sensitivity(diagram, options);
   StartChoice start = start_of(program, diagram, options);
   Run result = run_seeing(program, diagram, options, start.from);
   std::move(start.warnings.begin(), start.warnings.end(), std::back_inserter(result.warnings));

@@ -86,7 +86,7 @@ struct Run {
   double seconds = 0;          ///< wall clock of the run itself, compilation and estimates apart
 };
 
-/// Runs a compiled diagram from t = 0: brings servo loops to rest, integrates with BDF or Adams and KLU, and
+/// Runs a compiled diagram from t = 0: brings servo loops to rest, integrates with BDF, Adams or Rodas5P, and
 /// samples the solver's own interpolant on an exact grid. A diagram without states is evaluated on that grid.
 /// Throws SolveError.
 Run run(const network::Program& program, const diagram::FlatDiagram& diagram, const RunOptions& options);

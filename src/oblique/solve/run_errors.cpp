@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/network/program/program.h>
-#include <oblique/solve/integrator/cvodes_solver.h>
+#include <oblique/solve/integrator/solver.h>
 #include <oblique/solve/run_errors.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ std::string loop_path(const network::Loop& loop) {
   return fmt::format("{}", fmt::join(names, " → "));
 }
 
-std::string worst_blocks(const network::Program& program, const CvodesSolver& solver) {
+std::string worst_blocks(const network::Program& program, const Solver& solver) {
   const std::vector<double> errors = solver.weighted_errors();
   const auto states = solver.states();
   std::vector<std::size_t> order(errors.size());
@@ -41,7 +41,7 @@ std::string worst_blocks(const network::Program& program, const CvodesSolver& so
   return text;
 }
 
-std::size_t largest_state(const CvodesSolver& solver) {
+std::size_t largest_state(const Solver& solver) {
   const auto states = solver.states();
   const auto largest = std::max_element(states.begin(), states.end(),
                                         [](double a, double b) { return std::abs(a) < std::abs(b); });
@@ -107,9 +107,8 @@ SolveError loop_error(const network::Program& program, const network::Workspace:
   return {SolveError::Kind::singular_loop, t, {place, what, {}, remedy}};
 }
 
-SolveError run_error(const network::Program& program, const SolverFailure& failure,
-                     const CvodesSolver& solver, const network::Workspace& workspace,
-                     const std::string& file) {
+SolveError run_error(const network::Program& program, const SolverFailure& failure, const Solver& solver,
+                     const network::Workspace& workspace, const std::string& file) {
   using Kind = SolverFailure::Kind;
   if (failure.kind == Kind::no_value && workspace.trouble().failure != network::LoopFailure::none) {
     return loop_error(program, workspace.trouble(), failure.time, file);

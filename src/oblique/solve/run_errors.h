@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <oblique/network/program/program.h>
-#include <oblique/solve/integrator/cvodes_solver.h>
+#include <oblique/solve/integrator/solver.h>
 #include <oblique/solve/solve_error.h>
 
 namespace oblique::solve {
@@ -18,9 +18,8 @@ SolveError loop_error(const network::Program& program, const network::Workspace:
 
 /// The error of a run that the solver gave up: why, where, and the signals with the largest weighted local
 /// errors.
-SolveError run_error(const network::Program& program, const SolverFailure& failure,
-                     const CvodesSolver& solver, const network::Workspace& workspace,
-                     const std::string& file);
+SolveError run_error(const network::Program& program, const SolverFailure& failure, const Solver& solver,
+                     const network::Workspace& workspace, const std::string& file);
 
 /// The error of servo loops that do not settle; `worst` are states by how fast they still move, fastest
 /// first, and `loop` all states through which their loops close.

@@ -38,7 +38,7 @@ struct PhasePosition {
 
 /// The method of a run and why.
 struct MethodChoice {
-  diagram::IntegrationMethod method = diagram::IntegrationMethod::bdf;  ///< bdf or adams
+  diagram::IntegrationMethod method = diagram::IntegrationMethod::bdf;  ///< never automatic
   std::string reason;
 };
 

@@ -65,8 +65,7 @@ Runner::Runner(const network::Program& program, const diagram::FlatDiagram& diag
                            options.until - begin_);
     sampler_.further_columns = [this](double t, std::span<const double> x, std::span<double> columns) {
       sensitivities_->outputs(
-          t, x, integration_ ? integration_->solver().sensitivities_at(t) : sensitivities_->states(),
-          columns);
+          t, x, integration_ ? integration_->sensitivities_at(t) : sensitivities_->states(), columns);
     };
   }
   if (options.watch_overloads || options.halt_on_overload)
@@ -231,7 +230,7 @@ void Runner::pass_piece() {
     std::vector<double> before = states_;
     if (integration_) integration_->solver().states_at(t_, before);
     sensitivities_->before_event(
-        t_, before, integration_ ? integration_->solver().sensitivities_at(t_) : sensitivities_->states());
+        t_, before, integration_ ? integration_->sensitivities_at(t_) : sensitivities_->states());
     sensitivities_->after_event(t_, states_, workspace_);
   }
   piece_begin_ = t_;

@@ -20,7 +20,7 @@ from .pictures import Picture
 from .run import Run, State
 from .signals import Signal, Sum, Wire, UnknownBlockError, wire_text, wired_terms
 
-_METHODS = ("auto", "bdf", "adams")
+_METHODS = ("auto", "bdf", "adams", "rodas")
 _RUN_KEYS = ("until", "tolerance", "absolute_tolerance", "max_step", "method", "samples", "max_steps", "settle")
 
 
@@ -399,7 +399,7 @@ class Diagram:
         """Runs the diagram from t = 0, or from `state`, to `until` [s]; what is not given is as its `[run]` says.
 
         `set` turns pots and weights for this run: ``{"c.gain": 1e4, "b.in[2]": -0.5, "lag.time_constant": "20 ms"}``;
-        `gain` is that of every servo amplifier. `method` is "auto", "bdf" or "adams"; `samples` is the number of rows.
+        `gain` is that of every servo amplifier. `method` is "auto", "bdf", "adams" or "rodas"; `samples` is the number of rows.
         `check` holds it against `[expect]`, `trust` estimates the error of each output. `sensitivity` names parameters
         ("c.gain", "x.in[1]"); the derivative of the output x by one is the column "d(x)/d(c.gain)".
 

@@ -12,10 +12,10 @@
 
 #include <oblique/ensemble/lanes/lane_array.h>
 #include <oblique/ensemble/lanes/lane_kernels.h>
-#include <oblique/ensemble/lanes/rosenbrock.h>
 #include <oblique/network/assembly/network.h>
 #include <oblique/network/assembly/parameter_numbers.h>
 #include <oblique/network/program/flat_equations.h>
+#include <oblique/solve/integrator/rosenbrock.h>
 #include <oblique/solve/operating_point/rest.h>
 #include <oblique/solve/solve_error.h>
 
@@ -265,7 +265,8 @@ LaneCompilation compile_for_lanes(const diagram::FlatDiagram& diagram, std::span
     for (const double part : {1e-2, 1e-4, 1e-6}) {
       std::vector<double> matrix;
       for (const double entry : jacobian) matrix.push_back(-entry);
-      for (const std::uint32_t k : lanes.diagonal) matrix[k] += 1 / (Rodas5p::kGamma * part * options.until);
+      for (const std::uint32_t k : lanes.diagonal)
+        matrix[k] += 1 / (solve::Rodas5p::kGamma * part * options.until);
       samples.push_back(std::move(matrix));
     }
     if (!lanes.needs_rest) continue;

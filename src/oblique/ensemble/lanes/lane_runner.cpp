@@ -6,8 +6,12 @@
 #include <limits>
 #include <numbers>
 
+#include <oblique/solve/integrator/rosenbrock.h>
+
 namespace oblique::ensemble {
 namespace {
+
+using solve::Rodas5p;
 
 constexpr double kSafety = 0.9, kLeastFactor = 0.2, kMostFactor = 6;  ///< of the next step
 constexpr double kShortest = 1e-14;                                   ///< step, of the run

@@ -12,7 +12,6 @@
 #include <oblique/ensemble/lanes/lane_array.h>
 #include <oblique/ensemble/lanes/lane_kernels.h>
 #include <oblique/ensemble/lanes/lane_program.h>
-#include <oblique/ensemble/lanes/rosenbrock.h>
 
 // Not installed.
 namespace oblique::ensemble {

@@ -20,12 +20,6 @@ namespace {
 
 static_assert(sizeof(sunindextype) == sizeof(std::int64_t), "SparsePattern shares its arrays with SUNDIALS");
 
-/// Steps shorter than this fraction of the time reached, some roundings of it, cannot move the clock any
-/// more. (The length of the run is no measure: a fast decay at the head of a long run takes steps that are
-/// nothing beside it.)
-constexpr double kSmallestStep = 8 * std::numeric_limits<double>::epsilon();
-constexpr int kMostSmallSteps = 20;
-
 constexpr int kGiveUp = -1;  ///< of what CVODES calls: it is not to try again
 
 /// SUNDIALS' sentences are for its own log; ours are made from the return code.
@@ -136,7 +130,8 @@ struct CvodesSolver::Handles {
     matrix.reset(made(SUNSparseMatrix(n, n, entries, CSC_MAT, context.get())));
     matrix->ops->clone = clone_matrix_or_throw;
     linear_solver.reset(made(SUNLinSol_KLU(states.get(), matrix.get(), context.get())));
-    memory.reset(made(CVodeCreate(settings.adams ? CV_ADAMS : CV_BDF, context.get())));
+    memory.reset(made(CVodeCreate(settings.method == diagram::IntegrationMethod::adams ? CV_ADAMS : CV_BDF,
+                                  context.get())));
     void* const cvodes = memory.get();
     check_setup(CVodeSetErrHandlerFn(cvodes, ignore_message, nullptr));
     const int started = CVodeInit(cvodes, evaluate, 0, states.get());

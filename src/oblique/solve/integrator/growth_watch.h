@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include <oblique/solve/integrator/cvodes_solver.h>
 #include <oblique/solve/integrator/ode_system.h>
+#include <oblique/solve/integrator/solver.h>
 #include <oblique/solve/stability/coupled_modes.h>
 
 namespace oblique::solve {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <oblique/network/program/program.h>
+#include <oblique/solve/integrator/rosenbrock_solver.h>
 #include <oblique/solve/interruption.h>
 
 namespace oblique::solve {
@@ -20,7 +21,7 @@ std::vector<double> absolute_tolerances(const SolverSettings& settings, std::siz
 Integration::Integration(const Parts& parts, SolverSettings settings, double t)
     : parts_(parts),
       settings_(std::move(settings)),
-      solver_(parts.system, t, parts.states, parts.segments.end(), parts.segments.length(), settings_),
+      solver_(make_solver(t)),
       growth_(parts.system, settings_),
       small_(
           parts.system, settings_, parts.options.tolerance, parts.options.until - t,
@@ -30,47 +31,59 @@ Integration::Integration(const Parts& parts, SolverSettings settings, double t)
             [this](double at, const double* x, double* values) { return read_outputs(at, x, values); }),
       short_steps_(HiddenMotion(parts.system, settings_.relative_tolerance,
                                 absolute_tolerances(settings_, parts.states.size())),
-                   solver_, parts.options.until - t) {
-  if (parts_.sensitivities) solver_.follow(*parts_.sensitivities);
+                   *solver_, parts.options.until - t) {
+  if (parts_.sensitivities) cvodes_->follow(*parts_.sensitivities);
   growth_.restart(t, parts.states);
   small_.advance(t, parts.states);
+}
+
+std::unique_ptr<Solver> Integration::make_solver(double t) {
+  const Segments& segments = parts_.segments;
+  if (settings_.method == diagram::IntegrationMethod::rodas) {
+    return std::make_unique<RosenbrockSolver>(parts_.system, t, parts_.states, segments.end(),
+                                              segments.length(), settings_);
+  }
+  auto cvodes = std::make_unique<CvodesSolver>(parts_.system, t, parts_.states, segments.end(),
+                                               segments.length(), settings_);
+  cvodes_ = cvodes.get();
+  return cvodes;
 }
 
 bool Integration::take_step(double& t) {
   const double from = t;
   try {
-    t = solver_.step();
+    t = solver_->step();
   } catch (const SolverFailure& failure) {
     if (failure.kind == SolverFailure::Kind::interrupted) throw Interrupted();
     if (failure.kind == SolverFailure::Kind::step_budget) throw;
     const std::vector<double> last = parts_.states;
-    switch (parts_.branches.look_ahead(t, parts_.segments.end(), parts_.states, solver_)) {
+    switch (parts_.branches.look_ahead(t, parts_.segments.end(), parts_.states, *solver_)) {
       case BranchWatch::Ahead::end:
         parts_.segments.end_branch(from, last, t);
         if (parts_.overloads) parts_.overloads->restart(t, parts_.states);
         restart(t);
         return false;
       case BranchWatch::Ahead::not_yet:
-        solver_.restart(t, parts_.states, parts_.segments.end(), parts_.segments.end() - t);
+        solver_->restart(t, parts_.states, parts_.segments.end(), parts_.segments.end() - t);
         return false;
       case BranchWatch::Ahead::nothing:
         throw;
     }
   }
-  const std::vector<double>& sample_times = parts_.sources.sample_times(from, t, solver_);
+  const std::vector<double>& sample_times = parts_.sources.sample_times(from, t, *solver_);
   // The states are still those of `from`.
   if (short_steps_.take_back(from, parts_.states, sample_times, parts_.segments.end())) {
     t = from;
     return false;
   }
-  parts_.segments.take_step(from, t, sample_times, solver_);
+  parts_.segments.take_step(from, t, sample_times, *solver_);
   return true;
 }
 
 void Integration::restart(double t) {
   parts_.segments.begin(t);
-  solver_.restart(t, parts_.states, parts_.segments.end(), parts_.segments.length());
-  if (parts_.sensitivities) solver_.set_sensitivities(parts_.sensitivities->states());
+  solver_->restart(t, parts_.states, parts_.segments.end(), parts_.segments.length());
+  if (parts_.sensitivities) cvodes_->set_sensitivities(parts_.sensitivities->states());
 }
 
 void Integration::end_step(Segments::Passed passed, double t) {
@@ -79,7 +92,7 @@ void Integration::end_step(Segments::Passed passed, double t) {
     growth_.restart(t, parts_.states);
     short_steps_.restart();
   } else {
-    std::copy(solver_.states().begin(), solver_.states().end(), parts_.states.begin());
+    std::copy(solver_->states().begin(), solver_->states().end(), parts_.states.begin());
     growth_.advance(t, parts_.states);
     short_steps_.advance(t, parts_.states, parts_.segments.end());
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -56,7 +57,9 @@ class Integration {
   /// Looks at the end of the run.
   void end(double t);
 
-  const CvodesSolver& solver() const { return solver_; }
+  const Solver& solver() const { return *solver_; }
+  /// The sensitivities that are followed, at a time within the last step.
+  std::vector<std::vector<double>> sensitivities_at(double t) const { return cvodes_->sensitivities_at(t); }
   /// What the steps did not see.
   Unseen unseen() const;
   /// Whether there was growth that they did not see.
@@ -65,13 +68,15 @@ class Integration {
   std::vector<text::Diagnostic> warnings() const;
 
  private:
+  std::unique_ptr<Solver> make_solver(double t);
   bool read_outputs(double t, const double* x, double* values);
   bool read(double t, const double* x, double* values);
   void restart(double t);
 
   Parts parts_;
   SolverSettings settings_;
-  CvodesSolver solver_;
+  CvodesSolver* cvodes_ = nullptr;  ///< the solver, if that is what it is
+  std::unique_ptr<Solver> solver_;
   GrowthWatch growth_;
   SmallStates small_;
   LostOutputs lost_;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <oblique/diagram/flatten.h>
-#include <oblique/solve/integrator/cvodes_solver.h>
+#include <oblique/solve/integrator/solver.h>
 #include <oblique/text/diagnostic.h>
 
 namespace oblique::solve {

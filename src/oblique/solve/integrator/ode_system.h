@@ -17,6 +17,10 @@ class OdeSystem {
   virtual bool derivatives(double t, const double* x, double* dxdt) = 0;
   /// df/dx in the order of `pattern`; false as above.
   virtual bool jacobian(double t, const double* x, double* values) = 0;
+  /// Whether `jacobian` is df/dx to rounding, and has all its entries; else it is good for Newton's method.
+  virtual bool is_jacobian_exact() const { return true; }
+  /// Whether f may depend on the time.
+  virtual bool depends_on_time() const { return true; }
   /// Whether the solver is to end, also in the midst of a step.
   virtual bool is_to_end() const { return false; }
 };

@@ -7,9 +7,9 @@
 
 #include <oblique/network/program/program.h>
 #include <oblique/solve/events/faint_turn.h>
-#include <oblique/solve/integrator/cvodes_solver.h>
 #include <oblique/solve/integrator/growth_watch.h>
 #include <oblique/solve/integrator/small_states.h>
+#include <oblique/solve/integrator/solver.h>
 #include <oblique/solve/run.h>
 
 namespace oblique::solve {

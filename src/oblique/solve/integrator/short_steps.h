@@ -5,8 +5,8 @@
 #include <span>
 #include <utility>
 
-#include <oblique/solve/integrator/cvodes_solver.h>
 #include <oblique/solve/integrator/hidden_motion.h>
+#include <oblique/solve/integrator/solver.h>
 
 namespace oblique::solve {
 
@@ -16,7 +16,7 @@ namespace oblique::solve {
 class ShortSteps {
  public:
   /// `span` is the length of the run [s]. The solver must outlive this.
-  ShortSteps(HiddenMotion hidden, CvodesSolver& solver, double span)
+  ShortSteps(HiddenMotion hidden, Solver& solver, double span)
       : hidden_(std::move(hidden)), solver_(solver), span_(span) {}
 
   /// Whether the step from `from`, where the states were x, has hidden something at one of `sample_times`:
@@ -33,7 +33,7 @@ class ShortSteps {
   static constexpr double kNone = std::numeric_limits<double>::infinity();
 
   HiddenMotion hidden_;
-  CvodesSolver& solver_;
+  Solver& solver_;
   double span_;                ///< [s]
   double limit_ = kNone;       ///< of a step [s]
   double short_until_ = 0;     ///< [s]

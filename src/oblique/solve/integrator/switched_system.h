@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
+
 #include <oblique/network/program/program.h>
 #include <oblique/solve/events/switching.h>
 #include <oblique/solve/integrator/ode_system.h>
@@ -22,12 +24,17 @@ class SwitchedSystem final : public OdeSystem {
   bool jacobian(double t, const double* x, double* values) override {
     return switching_.jacobian(t, x, values);
   }
+  /// In a slide the shares of its sides depend on the states and on the time, and their derivatives are not
+  /// in the Jacobian.
+  bool is_jacobian_exact() const override { return !switching_.slides(); }
+  bool depends_on_time() const override;
   bool is_to_end() const override { return interruption_.is_asked(); }
 
  private:
   const network::Program& program_;
   Switching& switching_;
   const Interruption& interruption_;
+  mutable std::optional<bool> by_time_;  ///< whether the equations depend on the time, once that was asked
 };
 
 }  // namespace oblique::solve

@@ -2,7 +2,7 @@
 #pragma once
 
 // Not installed.
-namespace oblique::ensemble {
+namespace oblique::solve {
 
 /// Rodas5P: a linearly implicit (Rosenbrock) method of order 5 in 8 stages for M u′ = F(t, u), with an
 /// embedded one of order 4 and a polynomial of order 4 between the ends of a step. Stiffly accurate, so that
@@ -24,4 +24,4 @@ struct Rodas5p {
   static const double between[3][kStages];  ///< coefficients of the polynomial between the ends
 };
 
-}  // namespace oblique::ensemble
+}  // namespace oblique::solve

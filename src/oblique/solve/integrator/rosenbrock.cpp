@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/ensemble/lanes/rosenbrock.h>
+#include <oblique/solve/integrator/rosenbrock.h>
 
-namespace oblique::ensemble {
+namespace oblique::solve {
 
 const double Rodas5p::c[kStages] = {
     0, 0.6358126895828704, 0.4095798393397535, 0.9769306725060716, 0.4288403609558664, 1, 1, 1};
@@ -47,4 +47,4 @@ const double Rodas5p::between[3][kStages] = {
     {11.419903575922262, 2.8879645146136994, 72.92137995996029, 80.12511834622643, -52.072871366152654,
      -59.78993625266729, -0.15582684282751913, 4.883087185713722}};
 
-}  // namespace oblique::ensemble
+}  // namespace oblique::solve

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <limits>
+#include <span>
+#include <vector>
+
+#include <oblique/diagram/diagram.h>
+#include <oblique/solve/integrator/interpolant.h>
+#include <oblique/solve/run_records.h>
+
+namespace oblique::solve {
+
+struct SolverSettings {
+  double relative_tolerance = 1e-8;
+  double absolute_tolerance = 1e-8;  ///< [machine unit]
+  long max_steps = 10'000'000;
+  double max_step = std::numeric_limits<double>::infinity();  ///< [s] the longest step
+  diagram::IntegrationMethod method = diagram::IntegrationMethod::bdf;
+  std::vector<double> own_tolerances = {};  ///< [machine unit] of each state, where not all have that one
+};
+
+/// Why a solver could not go on.
+struct SolverFailure {
+  enum class Kind {
+    not_finite,   ///< dx/dt or a state is not a number
+    no_value,     ///< the system refused to give dx/dt, however short the step
+    small_step,   ///< the step fell below what the time can resolve
+    step_budget,  ///< `max_steps` are used up
+    interrupted,  ///< the system is to end
+    other,        ///< anything else CVODES reports
+  };
+  Kind kind = Kind::other;
+  double time = 0;  ///< [s] reached
+  int code = 0;     ///< CVODES' return value
+};
+
+/// What integrates a smooth segment of a run, step by step. Its own clock starts at zero with every start, so
+/// that a segment far shorter than what the time itself resolves late in a run keeps its length. Errors are
+/// measured by the state that is worst beside its tolerance, so that no number of other states hides it.
+class Solver : public Interpolant {
+ public:
+  /// Starts anew at (t, x), where the system has jumped, and will not pass `end`, which comes after `length`.
+  virtual void restart(double t, std::span<const double> x, double end, double length) = 0;
+
+  /// No step is longer than this from now on [s]; infinity: as long as the tolerance lets it be.
+  virtual void limit_step(double longest) = 0;
+
+  /// Takes one step and returns the time reached [s], exactly `end` at last. Throws SolverFailure.
+  virtual double step() = 0;
+
+  /// The states at the time reached.
+  virtual std::span<const double> states() const = 0;
+
+  virtual SolverStatistics statistics() const = 0;
+
+  /// Of each state: estimated local error of the last step over its tolerance; the test is that these are
+  /// below 1.
+  virtual std::vector<double> weighted_errors() const = 0;
+};
+
+/// Steps shorter than this fraction of the time reached, some roundings of it, cannot move the clock any
+/// more. (The length of the run is no measure: a fast decay at the head of a long run takes steps that are
+/// nothing beside it.) After so many in a row a solver gives up.
+inline constexpr double kSmallestStep = 8 * std::numeric_limits<double>::epsilon();
+inline constexpr int kMostSmallSteps = 20;
+
+}  // namespace oblique::solve
