@@ -167,8 +167,8 @@ TEST(LaneRunner, ServosComeToRestAndFollowBetweenTheStepsToo) {
   }
 }
 
-// Ten times finer, of order 5: the steps grow by 10^(1/5).
-TEST(LaneRunner, IsOfOrderFive) {
+// Of order p, ten times finer: the steps grow by 10^(1/p). The start and the last step weigh some per cent.
+TEST(LaneRunner, IsOfOrderFiveOrSeven) {
   Machines swings(R"(
       x = { type = "integrator", in = ["v"], initial = 1 }
       v = { type = "integrator", in = ["-1*sine"] }
@@ -176,13 +176,41 @@ TEST(LaneRunner, IsOfOrderFive) {
                   {"v.in[1]"});
   swings.options.run.until = 10;
   swings.options.run.samples = 2;
-  const auto steps_at = [&](double tolerance) {
+  const auto steps_at = [&](diagram::IntegrationMethod method, double tolerance) {
+    swings.options.run.method = method;
     swings.options.run.tolerance = tolerance;
     swings.run(4, [](std::uint64_t, std::span<double> values) { values[0] = -1; });
+    EXPECT_EQ(swings.count.in_lanes, 4U);
     return static_cast<double>(swings.steps.at(0));
   };
-  // 1e-4 between the two: ×6.3; the start and the last step weigh some per cent
-  EXPECT_NEAR(std::log10(steps_at(1e-10) / steps_at(1e-6)) / 4, 0.2, 0.02);
+  using Method = diagram::IntegrationMethod;
+  EXPECT_NEAR(std::log10(steps_at(Method::bdf, 1e-10) / steps_at(Method::bdf, 1e-6)) / 4, 1. / 5, 0.02);
+  EXPECT_NEAR(std::log10(steps_at(Method::adams, 1e-11) / steps_at(Method::adams, 1e-6)) / 5, 1. / 7, 0.02);
+}
+
+// x″ = −x, by both methods, at many rows within each step.
+TEST(LaneRunner, BothMethodsAreExactBetweenTheSteps) {
+  for (const auto method : {diagram::IntegrationMethod::bdf, diagram::IntegrationMethod::adams}) {
+    Machines circles(R"(
+        x = { type = "integrator", in = ["2*v"], initial = 1 }
+        v = { type = "integrator", in = ["-2*x"] })",
+                     {"x.in[1]", "v.in[1]"});
+    circles.options.run.method = method;
+    circles.options.run.until = 10;
+    circles.options.run.samples = 1001;
+    circles.options.run.tolerance = 1e-8;
+    const auto all = circles.run(5, [](std::uint64_t k, std::span<double> values) {
+      values[0] = 1 + at(k);
+      values[1] = -1 - at(k);
+    });
+    EXPECT_EQ(circles.count.in_lanes, 5U);
+    for (const auto& [k, rows] : all) {
+      for (std::size_t r = 0; r < 1001; ++r) {
+        // the tolerance, for each of the up to 8 turns
+        EXPECT_NEAR(rows[2 * r + 1], std::cos((1 + at(k)) * rows[2 * r]), 8e-8) << k << " row " << r;
+      }
+    }
+  }
 }
 
 TEST(LaneRunner, TheSameNumbersHoweverTheyAreRun) {

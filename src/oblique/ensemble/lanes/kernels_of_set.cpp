@@ -236,6 +236,35 @@ struct Kernels {
     }
   }
 
+  static void advance(Index n, Index n_terms, const double* factors, const double* const* terms,
+                      const double* scale, const double* base, double* out) {
+    for (Index i = 0; i < n; ++i) {
+      V sum[parts] = {};
+      for (Index k = 0; k < n_terms; ++k) {
+        if (factors[k] == 0) continue;
+        const V* const term = at(terms[k], i);
+        for (Index p = 0; p < parts; ++p) sum[p] += factors[k] * term[p];
+      }
+      for (Index p = 0; p < parts; ++p) {
+        const V change = sum[p] * ((const V*)scale)[p];
+        at(out, i)[p] = base == nullptr ? change : at(base, i)[p] + change;
+      }
+    }
+  }
+
+  static void weigh(Index n, Index n_terms, const double* weights, const double* const* terms,
+                    const double* base, double* out) {
+    for (Index i = 0; i < n; ++i) {
+      V sum[parts];
+      for (Index p = 0; p < parts; ++p) sum[p] = at(base, i)[p];
+      for (Index k = 0; k < n_terms; ++k) {
+        const V *const term = at(terms[k], i), *const weight = at(weights, k);
+        for (Index p = 0; p < parts; ++p) sum[p] += weight[p] * term[p];
+      }
+      for (Index p = 0; p < parts; ++p) at(out, i)[p] = sum[p];
+    }
+  }
+
   static void right_side(Index n, Index n_states, Index n_terms, const double* factors,
                          const double* const* terms, const double* scale, const double* by_time,
                          const double* time_scale, const double* const* rates, double* out) {
@@ -293,7 +322,12 @@ struct Kernels {
   }
 
   static constexpr LaneKernels all(const char* set) {
-    return {set,    static_cast<int>(width), run, matrix, factor, solve, combine, right_side, norm, take,
+    return {set,     static_cast<int>(width),
+            run,     matrix,
+            factor,  solve,
+            combine, advance,
+            weigh,   right_side,
+            norm,    take,
             between};
   }
 };

@@ -82,6 +82,12 @@ struct LaneKernels {
   /// out = base + Σ factors[k] · terms[k].
   void (*combine)(std::uint32_t n, std::uint32_t n_terms, const double* factors, const double* const* terms,
                   const double* base, double* out);
+  /// out = base + scale · Σ factors[k] · terms[k]; `scale` [width]; `base` may be null, and is then 0.
+  void (*advance)(std::uint32_t n, std::uint32_t n_terms, const double* factors, const double* const* terms,
+                  const double* scale, const double* base, double* out);
+  /// out = base + Σ weights[k] · terms[k]; `weights` [n_terms, width].
+  void (*weigh)(std::uint32_t n, std::uint32_t n_terms, const double* weights, const double* const* terms,
+                const double* base, double* out);
   /// out = F + M · (Σ factors[k] · terms[k]) · scale + by_time · time_scale; `scale`, `time_scale` [width];
   /// `by_time` may be null.
   void (*right_side)(std::uint32_t n, std::uint32_t n_states, std::uint32_t n_terms, const double* factors,

@@ -55,6 +55,7 @@ struct LaneProgram {
   /// What entries of rows are that are not solved for before the clock starts.
   std::vector<std::pair<std::uint32_t, double>> fixed_entries;
   StraightLu lu;
+  bool is_explicit = false;  ///< nothing is stiff: an explicit method, without matrix and LU
   LaneMatrixCode matrix() const {
     return {lu.n_entries(), static_cast<std::uint32_t>(matrix_steps.size() / 2), matrix_steps.data(),
             static_cast<std::uint32_t>(n_states), diagonal.data()};

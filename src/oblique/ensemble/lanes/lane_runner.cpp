@@ -6,15 +6,10 @@
 #include <limits>
 #include <numbers>
 
-#include <oblique/solve/integrator/rosenbrock.h>
-
 namespace oblique::ensemble {
 namespace {
 
-using solve::Rodas5p;
-
-constexpr double kSafety = 0.9, kLeastFactor = 0.2, kMostFactor = 6;  ///< of the next step
-constexpr double kShortest = 1e-14;                                   ///< step, of the run
+constexpr double kShortest = 1e-14;  ///< step, of the run
 constexpr double kMostGrowth = 1e6;  ///< of a multiplier: beyond, the fixed order of pivots does not suit
 /// How far the argument of a sine or cosine of the time may go in a step [rad].
 constexpr double kMostTurn = std::numbers::pi / 2;
@@ -22,21 +17,6 @@ constexpr int kMostNewton = 15;
 constexpr double kAtRest = 1e-12;     ///< a step of Newton's method, of its variable and a machine unit
 constexpr double kContracts = 0.5;    ///< such a step, of the one before it
 constexpr double kSurelyNear = 1e-9;  ///< from here on rounding may end the contraction
-
-/// 0.9 error^(−1/5) within bounds, as a polynomial in the exponent: the library's power costs as much as what
-/// it is for. To 2e-5, which is more than is known of the next step.
-double step_factor(double error) {
-  if (!std::isfinite(error)) return kLeastFactor;
-  if (error < 1e-5) return kMostFactor;
-  if (error > 1e4) return kLeastFactor;
-  int exponent = 0;
-  const double x = 2 * std::frexp(error, &exponent) - 1.5;  // error = (x + 1.5) 2^(exponent − 1)
-  const double root = 0.92211035 + x * (-0.12278577 + x * (0.04900795 + x * (-0.02653251 + x * 0.01457163)));
-  static const double powers[] = {1, 0.8705505632961241, 0.757858283255199, 0.6597539553864471,
-                                  0.5743491774985175};
-  const int k = exponent - 1 + 100;
-  return std::clamp(kSafety * root * powers[k % 5] * std::ldexp(1.0, 20 - k / 5), kLeastFactor, kMostFactor);
-}
 
 }  // namespace
 
@@ -48,33 +28,13 @@ LaneRunner::LaneRunner(const LaneProgram& program, std::span<const double> base,
       n_(program.n_variables),
       lanes_(width_),
       scratch_(program.prologue->scratch_size()),
-      slots_(slots_of(program.integration)),
-      output_slots_(slots_of(program.output)) {
-  const auto variables = [&] { return LaneArray(n_ * width_); };
-  const auto numbers = [&] { return LaneArray(width_); };
-  u_ = variables();
-  after_ = variables();
-  stages_ = LaneArray(Rodas5p::kStages * n_ * width_);
-  right_side_ = variables();
-  work_ = variables();
-  by_time_ = variables();
-  entries_ = LaneArray(program.lu.n_entries() * width_);
-  reciprocals_ = variables();
-  c1_ = variables();
-  c2_ = variables();
-  c3_ = variables();
-  between_ = variables();
-  slope_ = variables();
-  change_ = variables();
-  growth_ = numbers();
-  error_ = numbers();
-  scale_ = numbers();
-  inverse_ = numbers();
-  time_scale_ = numbers();
-  theta_ = numbers();
-  where_ = numbers();
-  for (std::size_t i = 0; i < Rodas5p::kStages; ++i) stage_.push_back(stages_.data() + i * n_ * width_);
-  for (const std::uint32_t slot : program.rate_slots) rate_.push_back(slots_.data() + slot * width_);
+      output_slots_(slots_of(program.output)),
+      where_(width_) {
+  at_.slots = slots_of(program.integration);
+  for (LaneArray* const variables : {&at_.u, &at_.after, &at_.between}) *variables = LaneArray(n_ * width_);
+  for (LaneArray* const numbers : {&at_.t, &at_.h, &at_.error, &at_.growth, &at_.theta})
+    *numbers = LaneArray(width_);
+  method_ = make_lane_method(program, kernels, at_);
 }
 
 LaneArray LaneRunner::slots_of(const LaneSpace& space) const {
@@ -228,102 +188,35 @@ void LaneRunner::bring_to_rest(std::span<const std::size_t> batch) {
 
 void LaneRunner::put(std::size_t lane, std::size_t m) {
   Machine& machine = machines_[m];
-  set_constants(program_.integration, lane, machine, slots_);
-  for (std::size_t i = 0; i < n_; ++i) u_[i * width_ + lane] = machine.start[i];
+  set_constants(program_.integration, lane, machine, at_.slots);
+  for (std::size_t i = 0; i < n_; ++i) at_.u[i * width_ + lane] = machine.start[i];
   machine.rows.resize(static_cast<std::size_t>(program_.rows) * n_);
   std::copy(machine.start.begin(), machine.start.end(), machine.rows.begin());
-  lanes_[lane] = {m, true, 0, machine.first_step, false, 1};
-}
-
-/// All lanes try their next step.
-void LaneRunner::step() {
-  double* const variables = slots_.data() + width_;
-  const auto n = static_cast<std::uint32_t>(n_), n_states = static_cast<std::uint32_t>(program_.n_states);
-  const StraightLuCode lu = program_.lu.code();
-  const auto set_times = [&](double part) {
-    for (std::size_t l = 0; l < width_; ++l) slots_[l] = lanes_[l].t + part * lanes_[l].h;
-  };
-  for (std::size_t l = 0; l < width_; ++l) {
-    inverse_[l] = 1 / lanes_[l].h;
-    scale_[l] = 1 / (lanes_[l].h * Rodas5p::kGamma);
-  }
-  for (std::uint32_t i = 0; i < Rodas5p::kStages; ++i) {
-    set_times(Rodas5p::c[i]);
-    kernels_.combine(n, i, Rodas5p::a[i], stage_.data(), u_.data(), variables);
-    kernels_.run(program_.rates.code(), slots_.data());
-    if (i == 0) {
-      kernels_.run(program_.derivatives.code(), slots_.data());
-      kernels_.matrix(program_.matrix(), slots_.data(), scale_.data(), entries_.data());
-      kernels_.factor(lu, entries_.data(), reciprocals_.data(), growth_.data());
-      for (const LaneConstant& entry : program_.by_time)
-        std::copy_n(slots_.data() + entry.slot * width_, width_, by_time_.data() + entry.drawn * width_);
-    }
-    const bool by_time = !program_.by_time.empty() && Rodas5p::d[i] != 0;
-    if (by_time) {
-      for (std::size_t l = 0; l < width_; ++l) time_scale_[l] = lanes_[l].h * Rodas5p::d[i];
-    }
-    kernels_.right_side(n, n_states, i, Rodas5p::C[i], stage_.data(), inverse_.data(),
-                        by_time ? by_time_.data() : nullptr, time_scale_.data(), rate_.data(),
-                        right_side_.data());
-    kernels_.solve(lu, entries_.data(), reciprocals_.data(), right_side_.data(), work_.data(),
-                   stages_.data() + i * n_ * width_);
-  }
-  constexpr double one = 1;
-  kernels_.combine(n, 1, &one, stage_.data() + Rodas5p::kStages - 1, variables, after_.data());
-  kernels_.norm(n, stage_.back(), u_.data(), after_.data(), program_.absolute.data(), program_.relative,
-                error_.data());
-}
-
-/// The polynomial is of order 4 where nothing is stiff. What follows others fast it misses by a hundred times
-/// more: there F at the polynomial tells by how much, and W, which is still that of the step, takes it away.
-void LaneRunner::correct_between() {
-  double* const variables = slots_.data() + width_;
-  std::copy_n(between_.data(), n_ * width_, variables);
-  for (std::size_t l = 0; l < width_; ++l) slots_[l] = lanes_[l].t + theta_[l] * lanes_[l].h;
-  kernels_.run(program_.rates.code(), slots_.data());
-  constexpr double minus = -1;
-  const double* const slope = slope_.data();
-  kernels_.right_side(static_cast<std::uint32_t>(n_), static_cast<std::uint32_t>(program_.n_states), 1,
-                      &minus, &slope, inverse_.data(), nullptr, nullptr, rate_.data(), right_side_.data());
-  kernels_.solve(program_.lu.code(), entries_.data(), reciprocals_.data(), right_side_.data(), work_.data(),
-                 change_.data());
-  constexpr double one = 1;
-  const double* const change = change_.data();
-  kernels_.combine(static_cast<std::uint32_t>(n_), 1, &one, &change, between_.data(), between_.data());
+  lanes_[lane] = {m, true, false, 1};
+  at_.t[lane] = 0;
+  at_.h[lane] = machine.first_step;
 }
 
 /// Takes the rows that lie in the steps just taken, which stand in `where_`.
 void LaneRunner::keep_rows() {
-  const auto n = static_cast<std::uint32_t>(n_);
-  bool first = true;
   while (true) {
     bool any = false;
     for (std::size_t l = 0; l < width_; ++l) {
-      theta_[l] = -1;
+      at_.theta[l] = -1;
       const Lane& lane = lanes_[l];
       if (where_[l] == 0 || lane.row >= program_.rows) continue;
-      const double t = row_time(lane.row);
-      const bool last = lane.t + lane.h >= program_.until;
-      if (t > lane.t + lane.h && !last) continue;
-      theta_[l] = std::min((t - lane.t) / lane.h, 1.0);
+      const double t = row_time(lane.row), end = at_.t[l] + at_.h[l];
+      if (t > end && end < program_.until) continue;
+      at_.theta[l] = std::min((t - at_.t[l]) / at_.h[l], 1.0);
       any = true;
     }
     if (!any) return;
-    if (first) {
-      for (int k = 0; k < 3; ++k) {
-        LaneArray& out = k == 0 ? c1_ : k == 1 ? c2_ : c3_;
-        kernels_.combine(n, Rodas5p::kStages, Rodas5p::between[k], stage_.data(), nullptr, out.data());
-      }
-      first = false;
-    }
-    kernels_.between(n, theta_.data(), u_.data(), after_.data(), c1_.data(), c2_.data(), c3_.data(),
-                     between_.data(), slope_.data());
-    correct_between();
+    method_->find_between(at_);
     for (std::size_t l = 0; l < width_; ++l) {
-      if (theta_[l] < 0) continue;
+      if (at_.theta[l] < 0) continue;
       double* const row =
           machines_[lanes_[l].machine].rows.data() + static_cast<std::size_t>(lanes_[l].row) * n_;
-      for (std::size_t i = 0; i < n_; ++i) row[i] = between_[i * width_ + l];
+      for (std::size_t i = 0; i < n_; ++i) row[i] = at_.between[i * width_ + l];
       ++lanes_[l].row;
     }
   }
@@ -343,39 +236,40 @@ void LaneRunner::judge(const Take& take, const Refuse& refuse) {
     where_[l] = 0;
     if (!lane.busy) continue;
     Machine& machine = machines_[lane.machine];
-    if (!(growth_[l] < kMostGrowth)) {
+    if (!(at_.growth[l] < kMostGrowth)) {
       refuse_lane(l, "the order of pivots does not suit", refuse);
     } else if (++machine.steps > program_.most_steps) {
       refuse_lane(l, "too many steps", refuse);
-    } else if (error_[l] <= 1) {
+    } else if (at_.error[l] <= 1) {
       where_[l] = 1;
     }
   }
   keep_rows();
-  kernels_.take(static_cast<std::uint32_t>(n_), where_.data(), after_.data(), u_.data());
+  kernels_.take(static_cast<std::uint32_t>(n_), where_.data(), at_.after.data(), at_.u.data());
   for (std::size_t l = 0; l < width_; ++l) {
     Lane& lane = lanes_[l];
     if (!lane.busy) continue;
     const Machine& machine = machines_[lane.machine];
     const bool taken = where_[l] != 0;
-    double factor = step_factor(error_[l]);
+    double factor = method_->step_factor(at_.error[l]);
     if (taken) {
-      if (lane.t + lane.h >= program_.until) {
+      if (at_.t[l] + at_.h[l] >= program_.until) {
         end(l, take);
         continue;
       }
-      lane.t += lane.h;
+      at_.t[l] += at_.h[l];
       if (lane.rejected) factor = std::min(factor, 1.0);
     }
     lane.rejected = !taken;
-    lane.h = std::min(lane.h * factor, machine.longest_step);
-    const double left = program_.until - lane.t;
-    if (lane.h >= left) {
-      lane.h = left;
-    } else if (2 * lane.h > left) {
-      lane.h = left / 2;
+    double& h = at_.h[l];
+    h = std::min(h * factor, machine.longest_step);
+    const double left = program_.until - at_.t[l];
+    if (h >= left) {
+      h = left;
+    } else if (2 * h > left) {
+      h = left / 2;
     }
-    if (!(lane.h > kShortest * program_.until)) refuse_lane(l, "no step is short enough", refuse);
+    if (!(h > kShortest * program_.until)) refuse_lane(l, "no step is short enough", refuse);
   }
 }
 
@@ -434,11 +328,12 @@ void LaneRunner::work(const Next& next, const Values& values, const Take& take, 
     for (std::size_t l = 0; l < width_; ++l) {  // idle lanes do what a busy one does
       if (lanes_[l].busy) continue;
       const auto busy =
-          std::find_if(lanes_.begin(), lanes_.end(), [](const Lane& lane) { return lane.busy; });
-      lanes_[l].t = busy->t;
-      lanes_[l].h = busy->h;
+          std::find_if(lanes_.begin(), lanes_.end(), [](const Lane& lane) { return lane.busy; }) -
+          lanes_.begin();
+      at_.t[l] = at_.t[static_cast<std::size_t>(busy)];
+      at_.h[l] = at_.h[static_cast<std::size_t>(busy)];
     }
-    step();
+    method_->step(at_);
     judge(take, refuse);
   }
   if (!done_.empty()) evaluate(done_, take);

@@ -4,14 +4,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 #include <oblique/ensemble/engine/work_queue.h>
-#include <oblique/ensemble/lanes/lane_array.h>
-#include <oblique/ensemble/lanes/lane_kernels.h>
-#include <oblique/ensemble/lanes/lane_program.h>
+#include <oblique/ensemble/lanes/lane_method.h>
 
 // Not installed.
 namespace oblique::ensemble {
@@ -55,7 +54,6 @@ class LaneRunner {
   struct Lane {
     std::size_t machine = 0;  ///< in `machines_`
     bool busy = false;
-    double t = 0, h = 0;
     bool rejected = false;  ///< the last step
     int row = 0;            ///< the next one
   };
@@ -65,10 +63,8 @@ class LaneRunner {
   void bring_to_rest(std::span<const std::size_t> batch);
   void first_steps(std::span<const std::size_t> batch);
   void put(std::size_t lane, std::size_t machine);
-  void step();
   void judge(const Take& take, const Refuse& refuse);
   void keep_rows();
-  void correct_between();
   void end(std::size_t lane, const Take& take);
   void refuse_lane(std::size_t lane, const std::string& why, const Refuse& refuse);
   void evaluate(std::span<const std::size_t> batch, const Take& take);
@@ -88,11 +84,10 @@ class LaneRunner {
   std::vector<Lane> lanes_;
   std::vector<double> scratch_, table_;
 
-  LaneArray slots_, output_slots_;
-  LaneArray u_, after_, stages_, right_side_, work_, by_time_, entries_, reciprocals_, c1_, c2_, c3_,
-      between_, slope_, change_;
-  LaneArray growth_, error_, scale_, inverse_, time_scale_, theta_, where_;
-  std::vector<const double*> stage_, rate_;  ///< where they stand
+  LaneStates at_;
+  std::unique_ptr<LaneMethod> method_;
+  LaneArray output_slots_;
+  LaneArray where_;  ///< lanes whose step was taken
 };
 
 }  // namespace oblique::ensemble
