@@ -120,9 +120,9 @@ std::vector<std::string> machine_names() {
 
 text::Unit unit_on(std::string_view profile, std::string_view unit) {
   text::Unit wanted = text::parse_unit(unit).value_or(text::Unit{});
-  const MachineProfile* const machine = find_machine(profile);
   wanted.machine = profile;
-  if (machine != nullptr && profile != kIdeal) wanted.volts = machine->unit;
+  if (profile == kIdeal) return wanted;
+  if (const MachineProfile* const machine = find_machine(profile)) wanted.volts = machine->unit;
   return wanted;
 }
 
