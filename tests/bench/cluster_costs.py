@@ -2,15 +2,17 @@
 # SPDX-License-Identifier: MIT
 """What an ensemble costs on a cluster: chunks are timed here, and a cluster with failures is simulated from that.
 
-    tests/bench/cluster_costs.py measure --program build/release/src/cli/oblique > times.json
+    tests/bench/cluster_costs.py measure > times.json               # on a quiet machine; fails where a chunk costs too much
+    tests/bench/cluster_costs.py measure --plan plan.toml …         # of a plan of one's own
     tests/bench/cluster_costs.py simulate times.json                # the tables of docs/ensembles.md, "A million runs"
 
-A chunk of r runs takes a + b r as a process of its own: a for the start of the program, the reading, the patch, the file;
-b a run. `measure` takes both from chunks of 1 to 1000 runs of the plans below, by least squares on the shortest of several
-times. In a process that goes on, as a worker of Dask, a chunk takes c + b r, and a is there once: c comes from short
-runs of a diagram of one block, in one chunk and in many. `simulate` then gives chunks to cores as they come free, through a
-scheduler that needs some time for each, and lets nodes fail at random: what ran there is lost and run again, and the node is
-away for a while. A chunk's time is drawn from a normal distribution of the measured spread.
+A chunk of r runs takes a + b r as a process of its own: a for the start of the program, the reading, the patch, the first
+run, from which the lanes are made; b a run. a is the processor's time of `oblique ensemble status`, which does all that and
+runs nothing, b that of a chunk of 1000 runs without a, the shortest of several. In a process that goes on, as `oblique
+ensemble run` for all chunks, or a worker of Dask, a chunk takes c + b r, and a is there once: c, until the file is on the
+disk, comes from short runs of a diagram of one block, in one chunk and in many. `simulate` then gives chunks to cores as they
+come free, through a scheduler that needs some time for each, and lets nodes fail at random: what ran there is lost and run
+again, and the node is away for a while. A chunk's time is drawn from a normal distribution of the measured spread.
 """
 
 from __future__ import annotations
@@ -21,16 +23,22 @@ import json
 import math
 import pathlib
 import random
+import resource
 import statistics
 import subprocess
 import sys
 import tempfile
 import time
+import tomllib
 from collections import deque
+from collections.abc import Sequence
+from typing import IO
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PLANS = {"Jansen's leg": "jansen", "four-bar": "four-bar"}
 RUNS = 1_000_000
+# What a chunk costs beside its runs is held at so many of them, to such a part of them.
+LEAST, MOST_BESIDE = 1000, 0.05
 # Cores, in nodes of so many at the most.
 CLUSTERS = (2, 64, 1024)
 NODE = 64
@@ -43,43 +51,57 @@ SIZES = (100, 1000, 10_000, 100_000)
 TRIALS = 5
 
 
-def measure(program: str, repeats: int, most: int) -> dict[str, dict[str, float]]:
-    """a, b and the spread of each plan, from chunks that one core makes."""
+def measure(program: str, plans: dict[str, str], repeats: int, size: int) -> dict[str, dict[str, float]]:
+    """a, b, c and the spread of each plan, by chunks of `size` runs that one core makes; all in seconds."""
     found = {}
+    all_runs = [runs_of(text) for text in plans.values()]
     c = more_for_many(program, repeats)
-    sizes = [runs for runs in (1, 10, 100, 1000) if runs <= most]
-    for name, mechanism in PLANS.items():
+    for (name, text), runs in zip(plans.items(), all_runs):
         with tempfile.TemporaryDirectory() as folder:
             plan = pathlib.Path(folder) / "plan.toml"
-            plan.write_text(
-                f'format = "oblique-ensemble/1"\nmechanism = "{ROOT}/diagrams/mechanisms/{mechanism}.toml"\nruns = {RUNS}\n'
-                '[scatter]\ntolerance = "0.1%"\n[measure]\nworst = "error()"\n', encoding="utf-8")
-            shortest, spread = [], 0.0
-            for runs in sizes:
-                times = []
-                for k in range(repeats):
-                    begin = time.perf_counter()
-                    subprocess.run([program, "ensemble", "run", str(plan), "--chunk", f"{k}/{RUNS // runs}", "--jobs", "1", "-o",
-                                    f"{folder}/chunks"], check=True, capture_output=True)
-                    times.append(time.perf_counter() - begin)
-                shortest.append(min(times))
-                spread = statistics.stdev(times) / statistics.mean(times) if repeats > 1 else 0.0
-            # weighted by 1/time², so that each size counts for its part alike
-            weights = [1 / t**2 for t in shortest]
-            total = sum(weights)
-            mean_r = sum(w * r for w, r in zip(weights, sizes)) / total
-            mean_t = sum(w * t for w, t in zip(weights, shortest)) / total
-            b = (sum(w * (r - mean_r) * (t - mean_t) for w, r, t in zip(weights, sizes, shortest)) /
-                 sum(w * (r - mean_r)**2 for w, r in zip(weights, sizes)))
-            a = max(0.0, mean_t - b * mean_r)
-            found[name] = {"start": a, "chunk": 0.0, "run": b, "spread": spread}
-    for name, times in found.items():
-        times["chunk"] = c
-        a, b = times["start"], times["run"]
-        print(f"{name}: {1e3 * b:.3f} ms a run, {1e3 * c:.2f} ms a chunk, {1e3 * a:.1f} ms a process; beyond its runs a chunk of "
-              f"1000 costs {100 * c / (1000 * b):.2f} % in a process that goes on (at most 5 %), {100 * a / (1000 * b):.2f} % as "
-              "one of its own", file=sys.stderr)
+            plan.write_text(text, encoding="utf-8")
+            (pathlib.Path(folder) / "none").mkdir()
+            a = min(cpu([program, "ensemble", "status", plan, "-o", f"{folder}/none"], 1) for _ in range(3 * repeats))
+            chunks = max(1, runs // size)
+            taken = [cpu([program, "ensemble", "run", plan, "--chunk", f"{k % chunks}/{chunks}", "--jobs", "1", "-o",
+                          f"{folder}/{k}"]) for k in range(repeats)]
+            spread = statistics.stdev(taken) / statistics.mean(taken) if repeats > 1 else 0.0
+            found[name] = {"start": a, "chunk": c, "run": max(0.0, min(taken) - a) * chunks / runs, "spread": spread}
     return found
+
+
+def cpu(command: Sequence[object], status: int = 0) -> float:
+    """The processor's time of a command [s]."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    done = subprocess.run([str(word) for word in command], capture_output=True, check=False)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    if done.returncode != status:
+        sys.exit(f"{' '.join(map(str, command))} ended with {done.returncode}:\n{done.stderr.decode()}")
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
+def runs_of(plan: str) -> int:
+    """So many runs a plan has by its `runs`."""
+    found = tomllib.loads(plan).get("runs")
+    if not isinstance(found, int) or found < LEAST:
+        sys.exit(f"a plan with at least {LEAST} runs is needed, and this one says runs = {found}")
+    return found
+
+
+def judge(found: dict[str, dict[str, float]], file: IO[str]) -> bool:
+    """Says what a chunk of 1000 runs costs beside them, and whether that is little enough."""
+    good = True
+    for name, times in found.items():
+        runs = LEAST * times["run"]
+        print(f"{name}: {1e3 * times['run']:.3f} ms a run, {1e3 * times['chunk']:.2f} ms a chunk, {1e3 * times['start']:.1f} ms a "
+              "process", file=file)
+        for what, part in (("in a process that goes on", times["chunk"] / runs),
+                           ("as a process of its own", (times["start"] + times["chunk"]) / runs)):
+            met = part < MOST_BESIDE
+            good = good and met
+            print(f"  {'met' if met else 'MISSED'}: a chunk of {LEAST} runs {what} costs {100 * part:.2f} % beside them (less than "
+                  f"{100 * MOST_BESIDE:.0f} %)", file=file)
+    return good
 
 
 def more_for_many(program: str, repeats: int) -> float:
@@ -168,27 +190,46 @@ def simulate(found: dict[str, dict[str, float]]) -> None:
         print()
 
 
+def shipped(mechanism: str) -> str:
+    return (f'format = "oblique-ensemble/1"\nmechanism = "{ROOT}/diagrams/mechanisms/{mechanism}.toml"\nruns = {RUNS}\n'
+            '[scatter]\ntolerance = "0.1%"\n[measure]\nworst = "error()"\n')
+
+
+def plan_at(file: str) -> tuple[str, str]:
+    """A name and the text of a plan, which may lie elsewhere."""
+    path = pathlib.Path(file).resolve()
+    text = path.read_text(encoding="utf-8")
+    for key in ("diagram", "mechanism"):
+        subject = tomllib.loads(text).get(key)
+        if isinstance(subject, str):
+            text = text.replace(f'"{subject}"', json.dumps(str(path.parent / subject)), 1)
+    return path.stem, text
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     verbs = parser.add_subparsers(dest="verb", required=True)
     timing = verbs.add_parser("measure", help="times chunks here, and prints JSON")
     timing.add_argument("--program", default=str(ROOT / "build/release/src/cli/oblique"))
-    timing.add_argument("--repeats", type=int, default=3)
-    timing.add_argument("--most", type=int, default=1000, help="runs of the longest chunk")
+    timing.add_argument("--plan", action="append", default=[], help="in place of Jansen's leg and the four-bar")
+    timing.add_argument("--repeats", type=int, default=5)
+    timing.add_argument("--size", type=int, default=LEAST, help="runs of a chunk that is timed")
     simulation = verbs.add_parser("simulate", help="prints tables")
     simulation.add_argument("times", help="what `measure` printed; - for stdin")
     simulation.add_argument("--run", type=float, help="in place of the measured time of a run [s]")
     asked = parser.parse_args()
     if asked.verb == "measure":
-        print(json.dumps(measure(asked.program, asked.repeats, asked.most), indent=1))
-    else:
-        text = sys.stdin.read() if asked.times == "-" else pathlib.Path(asked.times).read_text(encoding="utf-8")
-        found = json.loads(text)
-        if not all(math.isfinite(value) for times in found.values() for value in times.values()):
-            sys.exit("these are no times")
-        if asked.run is not None:
-            found = {name: {**times, "run": asked.run} for name, times in found.items()}
-        simulate(found)
+        plans = dict(map(plan_at, asked.plan)) or {name: shipped(mechanism) for name, mechanism in PLANS.items()}
+        found = measure(asked.program, plans, asked.repeats, asked.size)
+        print(json.dumps(found, indent=1))
+        sys.exit(0 if judge(found, sys.stderr) else 1)
+    text = sys.stdin.read() if asked.times == "-" else pathlib.Path(asked.times).read_text(encoding="utf-8")
+    found = json.loads(text)
+    if not all(math.isfinite(value) for times in found.values() for value in times.values()):
+        sys.exit("these are no times")
+    if asked.run is not None:
+        found = {name: {**times, "run": asked.run} for name, times in found.items()}
+    simulate(found)
 
 
 if __name__ == "__main__":

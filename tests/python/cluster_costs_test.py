@@ -2,10 +2,15 @@
 """The simulation behind the figures of docs/ensembles.md, where its answer is known without it."""
 
 import importlib.util
+import io
+import json
+import os
+import subprocess
+import sys
 
 import pytest
 
-from conftest import ROOT
+from conftest import DECAY, ROOT
 
 _spec = importlib.util.spec_from_file_location("cluster_costs", ROOT / "tests/bench/cluster_costs.py")
 costs = importlib.util.module_from_spec(_spec)
@@ -39,3 +44,28 @@ def test_what_is_lost_is_run_again():
     # a chunk that is lost has cost no more than a whole one, and a node is away for ten minutes each time
     assert busy - without <= lost * 101 / 3600
     assert hours - calm <= lost * (101 + costs.AWAY) / 3600
+
+
+def test_a_plan_is_timed(tmp_path):
+    (tmp_path / "decay.toml").write_text(DECAY, encoding="utf-8")
+    (tmp_path / "decays.toml").write_text('format = "oblique-ensemble/1"\ndiagram = "decay.toml"\nsampling = "latin-hypercube"\n[vary]\n'
+                                          '"x.initial" = "1..2"\n', encoding="utf-8")
+    command = [sys.executable, ROOT / "tests/bench/cluster_costs.py", "measure", "--program", os.environ["OBLIQUE_PROGRAM"],
+               "--repeats", "2", "--plan"]
+    done = subprocess.run([*command, tmp_path / "decays.toml"], capture_output=True, text=True, check=False, timeout=100)
+    assert done.returncode == 1 and "this one says runs = None" in done.stderr
+    (tmp_path / "decays.toml").write_text((tmp_path / "decays.toml").read_text().replace("[vary]", "runs = 3000\n[vary]"))
+    done = subprocess.run([*command, tmp_path / "decays.toml"], capture_output=True, text=True, check=False, timeout=100)
+    times = json.loads(done.stdout)["decays"]
+    assert 0 < times["run"] < times["start"] and 0 <= times["chunk"] and 0 <= times["spread"]
+    # runs of some microseconds: a process for a thousand of them is a waste, and that is told
+    assert "MISSED: a chunk of 1000 runs as a process of its own" in done.stderr and done.returncode == 1
+
+
+@pytest.mark.parametrize("start, chunk, words", [(0.04, 0.001, ["met", "met"]), (0.05, 0.001, ["met", "MISSED"]),
+                                                 (0.0, 0.06, ["MISSED", "MISSED"])])
+def test_a_chunk_that_costs_too_much_is_told_of(start, chunk, words):
+    said = io.StringIO()
+    good = costs.judge({"any": {"start": start, "chunk": chunk, "run": 1e-3, "spread": 0.0}}, said)
+    assert [line.split(":")[0].strip() for line in said.getvalue().splitlines()[1:]] == words
+    assert good == ("MISSED" not in words)
