@@ -67,20 +67,19 @@ py::tuple contents_of(ensemble::Chunk&& chunk, std::size_t columns) {
   return py::make_tuple(to_array(std::move(chunk.rows), columns), failures, count_of(chunk.head.count));
 }
 
-/// Lets the work end for Ctrl-C, and where it takes longer than so many seconds.
-ensemble::Ensemble::Progress watching(SignalWatch& watch, const ensemble::ChunkPlace& place,
-                                      std::optional<double> seconds) {
+/// Lets the making of a chunk end for Ctrl-C, and where it takes longer than so many seconds.
+ensemble::Ensemble::Progress watching(SignalWatch& watch, std::optional<double> seconds = {}) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point begin = Clock::now();
-  return [&watch, place, seconds, begin](std::uint64_t) {
+  return [&watch, seconds, begin](std::uint64_t) {
     watch.check();
     if (seconds && std::chrono::duration<double>(Clock::now() - begin).count() > *seconds)
-      throw ensemble::PlanError(text::Diagnostic{
-          {},
-          fmt::format("chunk {} took longer than {:g} s", ensemble::name_of(place), *seconds),
-          {},
-          text::Remedy{"cut the ensemble into more ", text::Setting{"chunks"}, ", or allow a longer ",
-                       text::Setting{"time_limit"}}});
+      throw ensemble::PlanError(
+          text::Diagnostic{{},
+                           fmt::format("it took longer than {:g} s", *seconds),
+                           {},
+                           text::Remedy{"cut the ensemble into more ", text::Setting{"chunks"},
+                                        ", or allow a longer ", text::Setting{"time_limit"}}});
   };
 }
 
@@ -139,7 +138,7 @@ py::bytes chunk_bytes(const PlanModel& plan, std::uint64_t number, std::uint64_t
                       std::optional<double> seconds) {
   const ensemble::ChunkPlace place = place_of(plan, number, chunks);
   return unlocked([&](SignalWatch& watch) {
-    return ensemble::to_bytes(ensemble::run_chunk(plan.work, place, watching(watch, place, seconds)));
+    return ensemble::to_bytes(ensemble::run_chunk(plan.work, place, watching(watch, seconds)));
   });
 }
 
@@ -148,7 +147,7 @@ bool make_chunk(const PlanModel& plan, std::uint64_t number, std::uint64_t chunk
   const ensemble::ChunkPlace place = place_of(plan, number, chunks);
   return unlocked([&](SignalWatch& watch) {
     ensemble::make_folder(folder);
-    return ensemble::make_chunk(folder, plan.work, place, watching(watch, place, std::nullopt));
+    return ensemble::make_chunk(folder, plan.work, place, watching(watch));
   });
 }
 

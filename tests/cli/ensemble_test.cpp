@@ -136,6 +136,37 @@ TEST_F(EnsembleVerb, RefusesChunksOfSomethingElse) {
   EXPECT_EQ(gathered.status, 2);
   EXPECT_THAT(gathered.err,
               HasSubstr("this chunk is of another diagram or mechanism, or of an earlier state of it"));
+  // Where the table is asked for that is known before the work.
+  EXPECT_EQ(in_folder("oblique ensemble run plan.toml -o c --table t.csv").status, 2);
+  EXPECT_EQ(files_in("c"), 1U);
+}
+
+TEST_F(EnsembleVerb, LeavesOutWhatIsNoChunkOfThePlan) {
+  in_folder(
+      "oblique ensemble run plan.toml --chunk 0/2 -o c; : >c/notes.chunk; for k in $(seq 20); do : "
+      ">c/1-of-2-$k.chunk; done");
+  const Outcome gathered = in_folder("oblique ensemble gather plan.toml -o c --table t.csv");
+  EXPECT_EQ(gathered.status, 1);
+  EXPECT_THAT(gathered.err,
+              AllOf(HasSubstr("1.chunk: this is no chunk of the plan, and is left out: the file is empty\n  "
+                              "remedy: delete it\n"),
+                    HasSubstr("error: c: 11 more are damaged (`oblique ensemble status` lists them)\n"),
+                    HasSubstr("error: c: 1 of 2 chunks is missing: 1/2\n")));
+  EXPECT_THAT(in_folder("oblique ensemble status plan.toml -o c").out,
+              HasSubstr("no chunk of the plan: c/notes.chunk: the file is empty\n"));
+  EXPECT_EQ(in_folder("oblique ensemble run plan.toml --chunks 2 -o c --table t.csv").status, 0);
+}
+
+TEST_F(EnsembleVerb, SaysHowFarItCameBeforeAChunkCouldNotBeWritten) {
+  in_folder("oblique ensemble run plan.toml --chunk 1/2 -o d; mkdir c; mkdir c/$(ls d)");
+  const Outcome outcome = in_folder("oblique ensemble run plan.toml --chunks 2 -o c");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(
+      outcome.err,
+      AllOf(HasSubstr("1 chunk was made in c before that; the same command goes on with what is missing\n"),
+            HasSubstr("cannot write the file: Is a directory")));
+  EXPECT_EQ(in_folder("rmdir c/1-of-2*; oblique ensemble run plan.toml --chunks 2 -o c --table t.csv").status,
+            0);
 }
 
 TEST_F(EnsembleVerb, WarnsOfAPlanOfAnotherVersion) {

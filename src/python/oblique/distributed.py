@@ -76,6 +76,8 @@ def run(plan: Union[Plan, PathLike], client: Union["distributed.Client", str], *
     limit = None if time_limit is None else _arguments.positive("time_limit", time_limit, "s")
     most = None if batch is None else _arguments.count("batch", batch)
     into = None if folder is None else _arguments.path("folder", folder)
+    if into is not None and os.path.isdir(into):
+        plan.status(into)  # what does not belong there is known before the work
     run_ = _Run(plan, cut, into, _arguments.count("retries", retries, 0), limit,
                 _arguments.count("allowed_failures", allowed_failures, 0), _arguments.positive("patience", patience, "s"))
     cluster = _Cluster(client, run_.allowed_failures, run_.patience)
