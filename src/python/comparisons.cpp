@@ -57,7 +57,8 @@ report::BudgetReport budget_of(const mechanism::Mechanism& mechanism, const diag
   return report;
 }
 
-/// How the elements are to be drawn: what is set of `tolerance`, `runs`, `seed`, `first_run`, `threads`.
+/// How the elements are to be drawn: what is set of `tolerance`, `runs`, `seed`, `first_run`, `threads`,
+/// `good_below` (a part of the largest link where `of_the_largest`), `until_within`.
 report::MonteCarloReport draw_elements(const mechanism::Mechanism& mechanism, const diagram::Diagram& diagram,
                                        const Library& library, const diagram::MachineProfile* machine,
                                        const py::dict& asked) {
@@ -73,6 +74,11 @@ report::MonteCarloReport draw_elements(const mechanism::Mechanism& mechanism, co
   report.options.runs = entry(asked, "runs", 1000);
   report.options.seed = entry<std::uint64_t>(asked, "seed", 1);
   report.options.first_run = entry<std::uint64_t>(asked, "first_run", 0);
+  report.size = mechanism.largest_length();
+  report.options.good_below = entry<std::optional<double>>(asked, "good_below", std::nullopt);
+  if (report.options.good_below && entry(asked, "of_the_largest", false))
+    *report.options.good_below *= report.size;
+  report.options.until_within = entry<std::optional<double>>(asked, "until_within", std::nullopt);
   const int threads = entry(asked, "threads", 0);
   report.options.threads =
       threads > 0 ? threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));

@@ -67,21 +67,67 @@ py::tuple contents_of(ensemble::Chunk&& chunk, std::size_t columns) {
   return py::make_tuple(to_array(std::move(chunk.rows), columns), failures, count_of(chunk.head.count));
 }
 
-/// Lets the work end for Ctrl-C, and where it takes longer than so many seconds.
-ensemble::Ensemble::Progress watching(SignalWatch& watch, const ensemble::ChunkPlace& place,
-                                      std::optional<double> seconds) {
+/// Lets the making of a chunk end for Ctrl-C, and where it takes longer than so many seconds.
+ensemble::Ensemble::Progress watching(SignalWatch& watch, std::optional<double> seconds = {}) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point begin = Clock::now();
-  return [&watch, place, seconds, begin](std::uint64_t) {
+  return [&watch, seconds, begin](std::uint64_t) {
     watch.check();
     if (seconds && std::chrono::duration<double>(Clock::now() - begin).count() > *seconds)
-      throw ensemble::PlanError(text::Diagnostic{
-          {},
-          fmt::format("chunk {} took longer than {:g} s", ensemble::name_of(place), *seconds),
-          {},
-          text::Remedy{"cut the ensemble into more ", text::Setting{"chunks"}, ", or allow a longer ",
-                       text::Setting{"time_limit"}}});
+      throw ensemble::PlanError(
+          text::Diagnostic{{},
+                           fmt::format("it took longer than {:g} s", *seconds),
+                           {},
+                           text::Remedy{"cut the ensemble into more ", text::Setting{"chunks"},
+                                        ", or allow a longer ", text::Setting{"time_limit"}}});
   };
+}
+
+/// Runs all machines, or those that are done when a signal comes or `progress` throws: (rows, failures,
+/// count, numbers of the machines, what was thrown).
+py::tuple run(const PlanModel& plan, const py::object& progress) {
+  using Clock = std::chrono::steady_clock;
+  constexpr auto kBetweenTwo = std::chrono::milliseconds(200);
+  SignalWatch watch;
+  std::exception_ptr thrown;
+  Clock::time_point next = Clock::now() + kBetweenTwo;
+  const std::uint64_t runs = plan.work.runs;
+  const auto tell = [&](std::uint64_t done) {
+    if (thrown || Clock::now() < next) return;
+    const py::gil_scoped_acquire lock;
+    try {
+      progress(done, runs);
+    } catch (...) {
+      thrown = std::current_exception();
+    }
+    next = Clock::now() + kBetweenTwo;
+  };
+  ensemble::Study::Rows found;
+  {
+    const py::gil_scoped_release release;
+    found = plan.study->run(0, runs, progress.is_none() ? ensemble::Ensemble::Progress() : tell,
+                            [&] { return thrown || watch.asked(); });
+  }
+  py::object stop = py::none();
+  try {
+    watch.rethrow();
+    if (thrown) std::rethrow_exception(thrown);
+  } catch (const py::error_already_set& error) {
+    stop = error.value();
+  }
+  thrown = nullptr;
+  std::vector<double> rows;
+  rows.reserve(found.rows.size() * plan.work.columns.size());
+  std::vector<std::pair<std::uint64_t, std::string>> failures;
+  py::array_t<std::int64_t> numbers(static_cast<py::ssize_t>(found.rows.size()));
+  std::int64_t* number = numbers.mutable_data();
+  for (ensemble::StudyRow& row : found.rows) {
+    *number++ = static_cast<std::int64_t>(row.number);
+    rows.insert(rows.end(), row.values.begin(), row.values.end());
+    if (!row.failure.empty()) failures.emplace_back(row.number, std::move(row.failure));
+  }
+  return py::make_tuple(to_array(std::move(rows), plan.work.columns.size()), failures_of(failures),
+                        count_of(found.count), numbers, stop);
 }
 
 ensemble::ChunkPlace place_of(const PlanModel& plan, std::uint64_t number, std::uint64_t chunks) {
@@ -92,7 +138,7 @@ py::bytes chunk_bytes(const PlanModel& plan, std::uint64_t number, std::uint64_t
                       std::optional<double> seconds) {
   const ensemble::ChunkPlace place = place_of(plan, number, chunks);
   return unlocked([&](SignalWatch& watch) {
-    return ensemble::to_bytes(ensemble::run_chunk(plan.work, place, watching(watch, place, seconds)));
+    return ensemble::to_bytes(ensemble::run_chunk(plan.work, place, watching(watch, seconds)));
   });
 }
 
@@ -101,7 +147,7 @@ bool make_chunk(const PlanModel& plan, std::uint64_t number, std::uint64_t chunk
   const ensemble::ChunkPlace place = place_of(plan, number, chunks);
   return unlocked([&](SignalWatch& watch) {
     ensemble::make_folder(folder);
-    return ensemble::make_chunk(folder, plan.work, place, watching(watch, place, std::nullopt));
+    return ensemble::make_chunk(folder, plan.work, place, watching(watch));
   });
 }
 
@@ -165,6 +211,12 @@ void bind_ensembles(py::module_& module) {
                       const std::string& file) { return to_str(ensemble::write_plan(plan.file, file)); })
       .def("usual_chunks", [](const PlanModel& plan) { return ensemble::usual_chunks(plan.work.runs); })
       .def("check_chunks", [](const PlanModel& plan, std::uint64_t chunks) { place_of(plan, 0, chunks); })
+      .def("first_run", [](const PlanModel& plan, std::uint64_t number,
+                           std::uint64_t chunks) { return place_of(plan, number, chunks).first; })
+      .def("file_name",
+           [](const PlanModel& plan, std::uint64_t number, std::uint64_t chunks) {
+             return ensemble::file_name_of(plan.work.identity, place_of(plan, number, chunks));
+           })
       .def("is_done",
            [](const PlanModel& plan, std::uint64_t number, std::uint64_t chunks, const std::string& folder) {
              const ensemble::ChunkPlace place = place_of(plan, number, chunks);
@@ -172,6 +224,7 @@ void bind_ensembles(py::module_& module) {
                  std::filesystem::path(folder) / ensemble::file_name_of(plan.work.identity, place), plan.work,
                  place);
            })
+      .def("run", &run)
       .def("chunk_bytes", &chunk_bytes)
       .def("make_chunk", &make_chunk)
       .def("read_chunk",

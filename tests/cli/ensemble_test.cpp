@@ -136,6 +136,37 @@ TEST_F(EnsembleVerb, RefusesChunksOfSomethingElse) {
   EXPECT_EQ(gathered.status, 2);
   EXPECT_THAT(gathered.err,
               HasSubstr("this chunk is of another diagram or mechanism, or of an earlier state of it"));
+  // Where the table is asked for that is known before the work.
+  EXPECT_EQ(in_folder("oblique ensemble run plan.toml -o c --table t.csv").status, 2);
+  EXPECT_EQ(files_in("c"), 1U);
+}
+
+TEST_F(EnsembleVerb, LeavesOutWhatIsNoChunkOfThePlan) {
+  in_folder(
+      "oblique ensemble run plan.toml --chunk 0/2 -o c; : >c/notes.chunk; for k in $(seq 20); do : "
+      ">c/1-of-2-$k.chunk; done");
+  const Outcome gathered = in_folder("oblique ensemble gather plan.toml -o c --table t.csv");
+  EXPECT_EQ(gathered.status, 1);
+  EXPECT_THAT(gathered.err,
+              AllOf(HasSubstr("1.chunk: this is no chunk of the plan, and is left out: the file is empty\n  "
+                              "remedy: delete it\n"),
+                    HasSubstr("error: c: 11 more are damaged (`oblique ensemble status` lists them)\n"),
+                    HasSubstr("error: c: 1 of 2 chunks is missing: 1/2\n")));
+  EXPECT_THAT(in_folder("oblique ensemble status plan.toml -o c").out,
+              HasSubstr("no chunk of the plan: c/notes.chunk: the file is empty\n"));
+  EXPECT_EQ(in_folder("oblique ensemble run plan.toml --chunks 2 -o c --table t.csv").status, 0);
+}
+
+TEST_F(EnsembleVerb, SaysHowFarItCameBeforeAChunkCouldNotBeWritten) {
+  in_folder("oblique ensemble run plan.toml --chunk 1/2 -o d; mkdir c; mkdir c/$(ls d)");
+  const Outcome outcome = in_folder("oblique ensemble run plan.toml --chunks 2 -o c");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(
+      outcome.err,
+      AllOf(HasSubstr("1 chunk was made in c before that; the same command goes on with what is missing\n"),
+            HasSubstr("cannot write the file: Is a directory")));
+  EXPECT_EQ(in_folder("rmdir c/1-of-2*; oblique ensemble run plan.toml --chunks 2 -o c --table t.csv").status,
+            0);
 }
 
 TEST_F(EnsembleVerb, WarnsOfAPlanOfAnotherVersion) {
@@ -365,17 +396,21 @@ bool is_there(const std::string& program) {
 TEST_F(EnsembleVerb, IsResumedByParallel) {
   if (!is_there("parallel")) GTEST_SKIP() << "GNU parallel is not installed (Debian: parallel)";
   const std::string command =
-      "parallel --will-cite --jobs 2 --joblog jobs.log --resume-failed 'oblique ensemble run plan.toml "
+      "HOME=$PWD parallel --will-cite --jobs 2 --joblog jobs.log --resume-failed 'oblique ensemble run "
+      "plan.toml "
       "--chunk {}/5 -o c' ::: 1 2 3 4 5";
-  in_folder("mkdir c; : >c/blocked; HOME=$PWD " + command);
-  in_folder("mv decay.toml away.toml; rm c/*; rm jobs.log; HOME=$PWD " + command);  // all fail
+  in_folder("mv decay.toml away.toml");
+  EXPECT_EQ(in_folder(command).status, 5);  // so many failed
   in_folder("mv away.toml decay.toml; oblique ensemble run plan.toml --chunk 3/5 -o c");
-  const Outcome again = in_folder("HOME=$PWD " + command);
+  const Outcome again = in_folder(command);
   EXPECT_EQ(again.status, 0) << again.err;
   EXPECT_THAT(again.err, HasSubstr("0 chunks made in c, 1 there already"));  // the third
-  const Outcome nothing = in_folder("HOME=$PWD " + command);
+  const Outcome nothing = in_folder(command);
+  EXPECT_EQ(nothing.status, 0) << nothing.err;
   EXPECT_THAT(nothing.err, Not(HasSubstr("made in c")));
   EXPECT_EQ(in_folder("oblique ensemble gather plan.toml -o c --table t.csv").status, 0);
+  in_folder("oblique ensemble run plan.toml -o all --table all.csv");
+  EXPECT_EQ(bytes_of("t.csv"), bytes_of("all.csv"));
 }
 
 }  // namespace

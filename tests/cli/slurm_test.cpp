@@ -22,6 +22,24 @@ constexpr const char* kDiagram = R"(format = "oblique-diagram/1"
 x = { type = "integrator", in = ["-1*x"], initial = 1 }
 )";
 
+/// Some fifteen hundred turns at 1e-10: a chunk of it takes a second or so, time to stop it in the middle.
+constexpr const char* kSlowPlan = R"toml(format = "oblique-ensemble/1"
+diagram = "swing.toml"
+[vary]
+"x.initial" = "1..2:600"
+[measure]
+last = "end(x)"
+)toml";
+
+constexpr const char* kSlowDiagram = R"(format = "oblique-diagram/1"
+[run]
+until = 3000
+tolerance = 1e-10
+[blocks]
+x = { type = "integrator", in = ["v"], initial = 1 }
+v = { type = "integrator", in = ["-x"] }
+)";
+
 /// Starts munge, slurmctld and slurmd in the folder, does what stands in work.sh, and ends them. Status 77:
 /// they do not start here.
 constexpr const char* kCluster = R"script(
@@ -54,6 +72,7 @@ ProctrackType=proctrack/linuxproc
 TaskPlugin=task/none
 SwitchType=switch/none
 MpiDefault=none
+KillWait=2
 SelectType=select/cons_tres
 SelectTypeParameters=CR_CPU
 SchedulerParameters=sched_interval=1,batch_sched_delay=0
@@ -72,11 +91,25 @@ slurmd -D -N "$name" >slurmd.log 2>&1 &
 pids+=($!)
 for k in {1..100}; do sinfo --noheader --format=%T 2>/dev/null | grep -q idle && break; sleep 0.1; done
 sinfo --noheader --format=%T 2>/dev/null | grep -q idle || { cat ./*.log >&2; exit 77; }
-# run FILE [OPTION…]: until all its jobs have ended
-run() {
-  sbatch "${@:2}" "$1" || return
+# ended: until all jobs have ended
+ended() {
   for k in {1..300}; do [[ -z $(squeue --noheader) ]] && return; sleep 0.1; done
   squeue; return 1
+}
+# run FILE [OPTION…]: until all its jobs have ended
+run() {
+  sbatch "${@:2}" "$1" && ended
+}
+# stop CHUNK: stops the process that makes it, whose number is then in $maker
+stop() {
+  for k in {1..500}; do
+    for maker in $(scontrol listpids 2>/dev/null | awk '$1 > 0 { print $1 }'); do
+      tr '\0' ' ' 2>/dev/null <"/proc/$maker/cmdline" | grep -q "^[^ ]*oblique ensemble run .* --chunk $1/" || continue
+      kill -STOP "$maker" && return
+    done
+    sleep 0.02
+  done
+  echo "no process makes chunk $1"; return 1
 }
 set -e
 oblique ensemble script plan.toml --slurm --chunks 5 --time 5 -o job.sh
@@ -87,6 +120,23 @@ oblique ensemble gather plan.toml -o plan.chunks --table missing.csv && exit 1
 run job.sh --array=2,3
 oblique ensemble gather plan.toml -o plan.chunks --table again.csv
 cat plan.chunks/*.log
+# One that is requeued in the middle of its chunk, and one whose process is killed there.
+oblique ensemble script slow.toml --slurm --chunks 3 --time 5 -o slow.sh
+job=$(sbatch --parsable --array=0-2%1 slow.sh)
+stop 0
+[[ ! -e $(echo slow.chunks/0-of-3-*) ]]
+scontrol requeue "${job}_0"
+stop 1
+kill -KILL "$maker"
+# Slurm waits two minutes before a job that was requeued begins again: here it need not.
+for k in {1..100}; do squeue --noheader --array --format='%K %r' | grep -q '^0 BeginTime' && break; sleep 0.1; done
+scontrol update "jobid=${job}_0" starttime=now
+ended
+scontrol show job "${job}_0" | grep -o 'Restarts=1'
+cat slow.chunks/*_0.log
+oblique ensemble gather slow.toml -o slow.chunks --table missing.csv 2>&1 && exit 1
+run slow.sh --array=1
+oblique ensemble gather slow.toml -o slow.chunks --table slow.csv
 )script";
 
 class Slurm : public Verbs {};
@@ -99,6 +149,8 @@ TEST_F(Slurm, RunsTheScript) {
   }
   std::ofstream(file("plan.toml")) << kPlan;
   std::ofstream(file("decay.toml")) << kDiagram;
+  std::ofstream(file("slow.toml")) << kSlowPlan;
+  std::ofstream(file("swing.toml")) << kSlowDiagram;
   std::ofstream(file("cluster.sh")) << kCluster;
   const Outcome outcome = run_command("bash cluster.sh", file(""));
   if (outcome.status == 77) GTEST_SKIP() << "Slurm does not start here:\n" << outcome.err;
@@ -110,6 +162,13 @@ TEST_F(Slurm, RunsTheScript) {
   EXPECT_FALSE(std::filesystem::exists(file("missing.csv")));
   // The chunk that was there was not made again.
   EXPECT_THAT(outcome.out, testing::HasSubstr("0 chunks made in "));
+
+  EXPECT_THAT(outcome.out,
+              testing::AllOf(testing::HasSubstr("Restarts=1"), testing::HasSubstr("DUE TO JOB REQUEUE"),
+                             testing::HasSubstr("1 of 3 chunks is missing: 1/3\n")));
+  run_command("oblique ensemble run slow.toml -o serial-slow --table serial-slow.csv", file(""));
+  EXPECT_FALSE(bytes_of("serial-slow.csv").empty());
+  EXPECT_EQ(bytes_of("slow.csv"), bytes_of("serial-slow.csv"));
 }
 
 }  // namespace

@@ -45,7 +45,7 @@ v = { type = "integrator", in = ["-x"] }
 def plan(tmp_path):
     (tmp_path / "oscillator.toml").write_text(SLOW, encoding="utf-8")
     (tmp_path / "plan.toml").write_text(PLAN, encoding="utf-8")
-    return ob.Plan(tmp_path / "plan.toml", jobs=1)
+    return ob.Plan(tmp_path / "plan.toml", threads=1)
 
 
 class Cluster:
@@ -141,8 +141,25 @@ def test_what_is_killed_changes_no_byte(plan, cluster, tmp_path):
                                progress=lambda *both: asked.append(both))
         assert asked == [(CHUNKS, CHUNKS)] and again.rows.tobytes() == serial.rows.tobytes()
 
+        # What does not belong there is told of before the work, not after it.
+        ob.Plan(text=PLAN.replace("1..2", "1..3"), file=plan._file).make_chunk(0, CHUNKS, tmp_path / "other")
+        with pytest.raises(ob.PlanError, match="this chunk is of another plan"):
+            on_cluster.run(plan, client, folder=tmp_path / "other", progress=lambda *_: pytest.fail("it runs"))
+
+        # Ctrl-C, after some chunks: what is done is there, in memory and as files.
+        def stop(done, _):
+            if done >= 3:
+                raise KeyboardInterrupt
+
+        for folder in (None, tmp_path / "stopped"):
+            with pytest.raises(ob.Interrupted, match="of 200 machines were run") as stopped:
+                on_cluster.run(plan, client, chunks=CHUNKS, batch=2, folder=folder, progress=stop)
+            part = stopped.value.run
+            assert 30 <= len(part.rows) < 200 and part.rows.tobytes() == serial.rows[part.numbers].tobytes()
+        assert len(list(folder.iterdir())) * 10 == len(part.rows) and "called again" in str(stopped.value)
+
         # A chunk that takes too long, and one that cannot be had.
-        with pytest.raises(ob.PlanError, match=r"failed 2 times: chunk .* took longer than 1e-09 s"):
+        with pytest.raises(ob.PlanError, match=r"failed 2 times: it took longer than 1e-09 s"):
             on_cluster.run(plan, cluster.address, chunks=CHUNKS, retries=1, time_limit=1e-9)
 
 

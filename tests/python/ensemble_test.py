@@ -50,7 +50,7 @@ def test_a_plan_is_run(folder):
 
 def test_the_bytes_are_those_of_the_program(folder, program):
     program("ensemble", "run", folder / "plan.toml", "-o", folder / "all", "--table", folder / "all.npy")
-    plan = ob.Plan(folder / "plan.toml", jobs=2)
+    plan = ob.Plan(folder / "plan.toml", threads=2)
     for number in (2, 0, 1):
         assert plan.make_chunk(number, 3, folder / "mine")
     assert not plan.make_chunk(3, 3, folder / "mine")  # 3 of 3 is 0 of 3
@@ -74,6 +74,55 @@ def test_a_plan_without_a_file(folder):
     run = ob.sweep(d, scatter={"integrator.initial": 0.5}, runs=20, seed=2**64 - 1, measure={"last": "end(x)"})
     assert run.rows.shape == (20, 1) and run.varied == ()
     assert np.all(np.abs(run["last"] * math.e - 1) <= 0.5 + 1e-6) and np.ptp(run["last"]) > 0.01
+
+
+@pytest.mark.parametrize("arguments, options", [
+    (("diagrams/lessons/triangle-side.toml", "--vary", "c.gain=1e2..1e5:7:log", "--vary", "a.value=0.2,0.3",
+      "--scatter", "multiplier.error=0.1%", "--runs", "3", "--seed", "7", "--measure", "largest = max(side)"),
+     {"vary": {"c.gain": "1e2..1e5:7:log", "a.value": "0.2,0.3"}, "scatter": {"multiplier.error": "0.1%"}, "runs": 3, "seed": 7,
+      "measure": {"largest": "max(side)"}}),
+    (("diagrams/mechanisms/four-bar.toml", "--vary", "AB=0.8..1.2", "--vary", "gain=1e3..1e6:log", "--sobol", "--runs", "12",
+      "--measure", "worst = error()"),
+     {"vary": {"AB": "0.8..1.2", "gain": "1e3..1e6:log"}, "sampling": "sobol", "runs": 12, "measure": {"worst": "error()"}}),
+    (("diagrams/mechanisms/four-bar.toml", "--tolerance-of-elements", "0.1%", "--runs", "40", "--samples", "91",
+      "--measure", "worst = error()"),
+     {"tolerance_of_elements": "0.1%", "runs": 40, "samples": 91, "measure": {"worst": "error()"}}),
+])
+def test_a_sweep_is_that_of_the_program(tmp_path, program, arguments, options):
+    program("sweep", *arguments, "-o", tmp_path / "swept.npy")
+    swept = np.load(tmp_path / "swept.npy")
+    for threads in (1, 3):
+        for subject in (arguments[0], ob.Mechanism(arguments[0]) if "mech" in arguments[0] else ob.Diagram(arguments[0])):
+            run = ob.sweep(subject, threads=threads, **options)
+            assert run.names == swept.dtype.names
+            for name in run:
+                assert run[name].tobytes() == swept[name].tobytes()
+            assert list(run.numbers) == list(range(len(swept)))
+
+
+def test_progress_is_told_and_may_end_it(folder):
+    many = {"vary": {"x.initial": "1..2:100000"}, "measure": {"last": "end(x)"}, "threads": 1}
+    seen = []
+
+    def tell(done, machines):
+        seen.append((done, machines))
+        if len(seen) == 2:
+            raise LookupError("enough")
+
+    with pytest.raises(LookupError, match="enough"):
+        ob.sweep(folder / "decay.toml", progress=tell, **many)
+    assert len(seen) == 2 and 0 < seen[0][0] <= seen[1][0] < 100_000 and seen[0][1] == 100_000
+
+    def stop(done, _):
+        raise KeyboardInterrupt
+
+    with pytest.raises(ob.Interrupted, match="of 100000 machines were run") as caught:
+        ob.sweep(folder / "decay.toml", progress=stop, **many)
+    run = caught.value.run
+    assert 0 < len(run.rows) < 100_000 and len(run.numbers) == len(run.rows)
+    # what was done is done: x(2) = x(0) exp(-2), with the tolerance of 1e-8 as above
+    np.testing.assert_allclose(run["x.initial"], 1 + run.numbers / 99_999, rtol=1e-12)
+    np.testing.assert_allclose(run["last"], run["x.initial"] * math.exp(-2), atol=1e-7)
 
 
 def test_a_plan_is_written_and_copied(folder):
@@ -124,7 +173,7 @@ def test_what_makes_no_sense_is_refused(folder):
         ob.Diagram(text=DECAY), vary={"x.initail": [1, 2]}, measure={"last": "end(x)"})))
     for wrong in ({"vary": [1]}, {"vary": {3: [1]}}, {"vary": {"x.initial": []}}, {"vary": {"x.initial": [math.nan]}},
                   {"measure": "end(x)"}, {"seed": -1}, {"seed": 1.5}, {"sampling": "sobel"}, {"runs": 0}, {"samples": 1},
-                  {"tolerance": 0}, {"jobs": 0}, {"tolerance_of_elements": math.nan}):
+                  {"tolerance": 0}, {"threads": -1}, {"tolerance_of_elements": math.nan}):
         refused(ob.RequestError, lambda: ob.sweep(ob.Diagram(text=DECAY), **{**sides, **wrong}))
     refused(ob.PlanError, lambda: ob.sweep(ob.Diagram(text=DECAY), **{**sides, "measure": {}}))
     refused(ob.PlanError, lambda: ob.sweep(ob.Diagram(text=DECAY), **{**sides, "gain": 1e4}))

@@ -16,7 +16,8 @@ import oblique as ob
 print("begun", flush=True)
 try:
     {work}
-except KeyboardInterrupt:
+except KeyboardInterrupt as error:
+    stop = error
     print("interrupted")
 print("goes on:", {after})
 """
@@ -29,6 +30,8 @@ print("goes on:", {after})
     ("c = ob.Console('diagrams/lessons/circle.toml')", "c.scope('x', 1e9)", "c.time < 1e9 and abs(c['x']) < 1.01"),
     ("m = ob.Mechanism('diagrams/mechanisms/four-bar.toml')",
      "m.compare(1e6, monte_carlo=10**6, tolerance=1e-3, threads=2)", "m.compare(1e4).order is None"),
+    ("m = ob.Mechanism('diagrams/mechanisms/four-bar.toml')",
+     "ob.sweep(m, tolerance_of_elements=1e-3, runs=10**6)", "0 < len(stop.run.rows) < 10**6"),
     ("m = ob.Mechanism('diagrams/mechanisms/four-bar.toml')",
      "[m.compare([1e3, 1e4]) for _ in range(10**6)]", "m.compare(1e4).order is None"),
     ("m = ob.Mechanism('diagrams/mechanisms/four-bar.toml')", "m.solve(10**8)", "len(m.solve(3).t) == 3"),

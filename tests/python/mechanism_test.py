@@ -194,3 +194,22 @@ def test_budget_has_shares():
     assert "Error budget" in study.text
     with pytest.raises(ob.ReadError, match="nothing says how far"):
         ob.Mechanism("diagrams/mechanisms/four-bar.toml").compare(budget=True)
+
+
+def test_the_yield_is_that_of_the_program(program):
+    four_bar = ob.Mechanism("diagrams/mechanisms/four-bar.toml")
+    options = {"monte_carlo": 300, "tolerance": "0.5%", "until_within": "5%"}
+    drawn = four_bar.compare(1e6, good_below="1%", **options).monte_carlo
+    printed = program("compare", four_bar.file, "--gain", "1e6", "--monte-carlo", "300", "--tolerance", "0.5%",
+                      "--yield", "1%", "--until-within", "5%", "--json")
+    assert drawn.yield_._asdict() == json.loads(printed)["monte_carlo"]["yield"]
+    assert drawn.yield_.machines < 300
+    assert drawn.yield_.good == np.count_nonzero(drawn.errors < drawn.yield_.below)
+    assert f"{100 * drawn.yield_.part:.3g} % below" in repr(drawn)
+    # a length
+    assert four_bar.compare(1e6, good_below=drawn.yield_.below, **options).monte_carlo.yield_ == drawn.yield_
+    assert four_bar.compare(1e6, monte_carlo=20, tolerance="0.5%").monte_carlo.yield_ is None
+    for wrong in ({"good_below": 0}, {"good_below": "1 s"}, {"good_below": "1%", "until_within": 1}, {"until_within": 0.1},
+                  {"good_below": "1%", "monte_carlo": 0}):
+        with pytest.raises(ob.Error):
+            four_bar.compare(1e6, **{"monte_carlo": 20, "tolerance": "0.5%", **wrong})

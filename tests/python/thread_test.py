@@ -9,6 +9,7 @@ import time
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 
 import numpy as np
+import pytest
 
 import oblique as ob
 
@@ -18,9 +19,15 @@ def long_run():
     return ob.Diagram("diagrams/lessons/circle.toml").run(until=20_000)
 
 
-def test_python_goes_on_while_the_machine_runs():
+def many_runs():
+    """The same of an ensemble."""
+    return ob.sweep("diagrams/mechanisms/four-bar.toml", tolerance_of_elements=1e-3, runs=2000, threads=1)
+
+
+@pytest.mark.parametrize("work", [long_run, many_runs])
+def test_python_goes_on_while_the_machine_runs(work):
     done = threading.Event()
-    runner = threading.Thread(target=lambda: (long_run(), done.set()))
+    runner = threading.Thread(target=lambda: (work(), done.set()))
     runner.start()
     beats = 0
     while not done.is_set():

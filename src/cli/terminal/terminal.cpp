@@ -87,12 +87,14 @@ void print_error(std::string_view text) {
   note(line);
 }
 
+Progress::Progress(std::string what) : what_(std::move(what)), terminal_(isatty(STDERR_FILENO) != 0) {}
+
 Progress::~Progress() {
   if (shown_) write_note("\r\033[K");
 }
 
 void Progress::show(double fraction) {
-  if (isatty(STDERR_FILENO) == 0) return;
+  if (!terminal_) return;
   const auto now = std::chrono::steady_clock::now();
   if (now - begin_ < std::chrono::seconds(1) || now - last_ < std::chrono::milliseconds(200)) return;
   last_ = now;

@@ -46,7 +46,7 @@ void print_error_mark();
 /// terminal.
 class Progress {
  public:
-  explicit Progress(std::string what) : what_(std::move(what)) {}
+  explicit Progress(std::string what);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -56,6 +56,7 @@ class Progress {
   std::string what_;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   std::chrono::steady_clock::time_point last_ = begin_;
+  bool terminal_;  ///< whether there is one, to which it is shown
   bool shown_ = false;
 };
 

@@ -91,9 +91,19 @@ std::string run_command(const EnsembleRequest& request, const ensemble::Gatherin
 
 /// Says what is missing and what is damaged.
 void tell_missing(const EnsembleRequest& request, const ensemble::Gathering& gathering) {
-  for (const ensemble::Gathering::Damaged& one : gathering.damaged)
-    print_error(fmt::format("{}: this chunk counts as missing: {}\n  remedy: run it again, which replaces it",
-                            one.file.string(), one.trouble));
+  constexpr std::size_t kShown = 10;
+  for (std::size_t k = 0; k < std::min(kShown, gathering.damaged.size()); ++k) {
+    const ensemble::Gathering::Damaged& one = gathering.damaged[k];
+    print_error(
+        one.is_ours
+            ? fmt::format("{}: this chunk counts as missing: {}\n  remedy: run it again, which replaces it",
+                          one.file.string(), one.trouble)
+            : fmt::format("{}: this is no chunk of the plan, and is left out: {}\n  remedy: delete it",
+                          one.file.string(), one.trouble));
+  }
+  if (gathering.damaged.size() > kShown)
+    print_error(fmt::format("{}: {} more are damaged (`oblique ensemble status` lists them)", request.folder,
+                            gathering.damaged.size() - kShown));
   if (gathering.chunks == 0) {
     print_error(fmt::format("{}: there is no chunk of {} here\n  remedy: {} makes them", request.folder,
                             request.plan, run_command(request, gathering)));
@@ -151,6 +161,9 @@ ExitStatus run_ensemble(const Session& session, const EnsembleRequest& request) 
   const Opened plan = open_plan(session, request);
   const std::vector<ensemble::ChunkPlace> places = places_of(request, plan.work.runs);
   ensemble::make_folder(request.folder);
+  // What does not belong there is known before the work, not after it.
+  if (!request.table.empty())
+    ensemble::look_through(request.folder, plan.work.identity, plan.work.runs, plan.work.columns.size());
   std::uint64_t all = 0, before = 0, made = 0;
   for (const ensemble::ChunkPlace& place : places) all += place.count;
   bool interrupted = false;
@@ -168,6 +181,11 @@ ExitStatus run_ensemble(const Session& session, const EnsembleRequest& request) 
     }
   } catch (const Interrupted&) {
     interrupted = true;
+  } catch (...) {
+    if (made > 0)
+      note(fmt::format("{} made in {} before that; the same command goes on with what is missing\n",
+                       report::count(made, "chunk was", "chunks were"), request.folder));
+    throw;
   }
   note(fmt::format("{} made in {}, {} there already\n", report::count(made, "chunk", "chunks"),
                    request.folder, places.size() - made));
@@ -195,7 +213,8 @@ ExitStatus show_ensemble(const Session& session, const EnsembleRequest& request)
     print(fmt::format("missing: {} (machines {} to {})\n", ensemble::name_of(place), place.first,
                       place.first + place.count - 1));
   for (const ensemble::Gathering::Damaged& one : gathering.damaged)
-    print(fmt::format("damaged: {}: {}\n", one.file.string(), one.trouble));
+    print(fmt::format("{}: {}: {}\n", one.is_ours ? "damaged" : "no chunk of the plan", one.file.string(),
+                      one.trouble));
   return gathering.complete() ? ExitStatus::done : ExitStatus::no;
 }
 

@@ -156,11 +156,11 @@ Judgement judge(const diagram::Diagram& diagram, const diagram::BlockLibrary& li
     });
     judgement.growth = solve::judge_stability(program, flow, {*first}).slowest_servo->mode.pole.real();
     judgement.growing = main_participants(program, stability.slowest_servo->mode);
-  }
-  for (const solve::LoopReport& loop : solve::explain_loops(program, flow, instants)) {
-    for (const solve::LoopUnknown& unknown : loop.unknowns) {
-      if (!unknown.sign_changes.empty())
-        judgement.flips.push_back({unknown.signal, unknown.sign_changes.front()});
+    for (const solve::LoopReport& loop : solve::explain_loops(program, flow, instants)) {
+      for (const solve::LoopUnknown& unknown : loop.unknowns) {
+        if (!unknown.sign_changes.empty())
+          judgement.flips.push_back({unknown.signal, unknown.sign_changes.front()});
+      }
     }
   }
   find_largest_signal(program, instants, judgement);

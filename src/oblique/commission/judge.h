@@ -28,7 +28,7 @@ struct Judgement {
     std::string loop;  ///< servo amplifier
     double time = 0;   ///< [s]
   };
-  /// Loops whose gain changes its sign, the rest of them closed: a cause where one grows.
+  /// Where one grows: loops whose gain changes its sign, the rest of them closed, as a cause of it.
   std::vector<Flip> flips;
 
   std::string largest_signal;

@@ -2,7 +2,11 @@
 #include <oblique/diagram/machine_profile.h>
 
 #include <algorithm>
+#include <map>
+#include <mutex>
+#include <optional>
 #include <sstream>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -16,23 +20,48 @@ namespace {
 
 constexpr std::string_view kIdeal = "ideal";
 
-std::vector<MachineProfile> read_shipped() {
-  const BlockLibrary library = BlockLibrary::shipped();
-  std::vector<MachineProfile> machines;
-  for (const ShippedFile& file : shipped_machines()) {
-    machines.push_back(parse_machine(file.text, fmt::format("src/machines/{}.toml", file.name),
-                                     std::string(file.name), library));
+/// The shipped machines, the ideal one first and then by name; each is read where it is first asked for.
+class Shipped {
+ public:
+  static Shipped& all() {
+    static Shipped machines;
+    return machines;
   }
-  const auto rank = [](const MachineProfile& m) { return std::pair(m.name != kIdeal, m.name); };
-  std::sort(machines.begin(), machines.end(),
-            [&](const MachineProfile& a, const MachineProfile& b) { return rank(a) < rank(b); });
-  return machines;
-}
 
-const std::vector<MachineProfile>& shipped() {
-  static const std::vector<MachineProfile> machines = read_shipped();
-  return machines;
-}
+  const std::vector<std::string>& names() const { return names_; }
+
+  const MachineProfile* find(std::string_view name) {
+    const auto found = entries_.find(name);
+    if (found == entries_.end()) return nullptr;
+    const std::lock_guard lock(guard_);
+    Entry& entry = found->second;
+    if (!entry.profile) {
+      entry.profile = parse_machine(entry.text, fmt::format("src/machines/{}.toml", name), std::string(name),
+                                    BlockLibrary::shipped());
+    }
+    return &*entry.profile;
+  }
+
+ private:
+  struct Entry {
+    std::string_view text;
+    std::optional<MachineProfile> profile;
+  };
+
+  Shipped() {
+    for (const ShippedFile& file : shipped_machines()) {
+      names_.emplace_back(file.name);
+      entries_[names_.back()].text = file.text;
+    }
+    const auto rank = [](const std::string& name) { return std::pair(name != kIdeal, name); };
+    std::sort(names_.begin(), names_.end(),
+              [&](const std::string& a, const std::string& b) { return rank(a) < rank(b); });
+  }
+
+  std::mutex guard_;
+  std::vector<std::string> names_;
+  std::map<std::string, Entry, std::less<>> entries_;
+};
 
 /// Latin capitals made small; other letters stay.
 std::string lower(std::string_view text) {
@@ -59,10 +88,10 @@ std::optional<std::string> nearest_machine(std::string_view name) {
   const std::string small = lower(name);
   if (auto nearest = text::nearest_name(small, machine_names())) return nearest;
   std::vector<std::string> words, machines;
-  for (const MachineProfile& machine : shipped()) {
-    for (std::string& word : words_of(machine.title)) {
+  for (const std::string& machine : machine_names()) {
+    for (std::string& word : words_of(find_machine(machine)->title)) {
       words.push_back(std::move(word));
-      machines.push_back(machine.name);
+      machines.push_back(machine);
     }
   }
   const auto nearest = text::nearest_name(small, words);
@@ -106,23 +135,18 @@ const ElementCount* MachineProfile::find(ElementKind kind) const {
 }
 
 const MachineProfile* find_machine(std::string_view name) {
-  const std::vector<MachineProfile>& machines = shipped();
-  const auto found =
-      std::find_if(machines.begin(), machines.end(), [&](const MachineProfile& m) { return m.name == name; });
-  return found == machines.end() ? nullptr : &*found;
+  return Shipped::all().find(name);
 }
 
 std::vector<std::string> machine_names() {
-  std::vector<std::string> names;
-  for (const MachineProfile& machine : shipped()) names.push_back(machine.name);
-  return names;
+  return Shipped::all().names();
 }
 
 text::Unit unit_on(std::string_view profile, std::string_view unit) {
   text::Unit wanted = text::parse_unit(unit).value_or(text::Unit{});
-  const MachineProfile* const machine = find_machine(profile);
   wanted.machine = profile;
-  if (machine != nullptr && profile != kIdeal) wanted.volts = machine->unit;
+  if (profile == kIdeal) return wanted;
+  if (const MachineProfile* const machine = find_machine(profile)) wanted.volts = machine->unit;
   return wanted;
 }
 

@@ -27,10 +27,10 @@ from ._errors import (ConsoleError, Diagnostic, DiagramError, Error, MechanismEr
 from ._oblique import __version__
 from ._tables import Table
 from ._blocks import Block, BlockLibrary, blocks
-from .comparison import ComparedRun, Comparison, MonteCarlo
+from .comparison import ComparedRun, Comparison, MonteCarlo, Yield
 from .console import Console, Probe, Reading, Trace
 from .diagram import Diagram, DiagramCheck
-from .ensemble import EnsembleRun, Plan, sweep
+from .ensemble import EnsembleRun, Interrupted, Plan, sweep
 from ._machines import Machine, machines
 from .mechanism import Fit, Mechanism, MechanismCheck, Patch
 from .motion import Motion
@@ -40,7 +40,8 @@ from .signals import Signal, Sum
 
 __all__ = [
     "Animation", "Block", "BlockLibrary", "ComparedRun", "Comparison", "Console", "ConsoleError", "Diagnostic", "Diagram",
-    "DiagramCheck", "DiagramError", "EnsembleRun", "Error", "Event", "Fit", "Machine", "Mechanism", "MechanismCheck", "MechanismError",
-    "MonteCarlo", "Motion", "NetworkError", "Overload", "Page", "Patch", "PatchError", "Picture", "Plan", "PlanError", "Probe", "ReadError", "Reading",
-    "RealiseError", "RequestError", "Run", "RunWarning", "Signal", "SolveError", "State", "Sum", "SynthesisError", "Table", "Trace",
-    "Trust",    "UnknownNameError", "__version__", "blocks", "machines", "plots", "sweep"]
+    "DiagramCheck", "DiagramError", "EnsembleRun", "Error", "Event", "Fit", "Interrupted", "Machine", "Mechanism",
+    "MechanismCheck", "MechanismError", "MonteCarlo", "Motion", "NetworkError", "Overload", "Page", "Patch", "PatchError",
+    "Picture", "Plan", "PlanError", "Probe", "ReadError", "Reading", "RealiseError", "RequestError", "Run", "RunWarning",
+    "Signal", "SolveError", "State", "Sum", "SynthesisError", "Table", "Trace", "Trust", "UnknownNameError", "Yield",
+    "__version__", "blocks", "machines", "plots", "sweep"]

@@ -6,7 +6,7 @@ from __future__ import annotations
 import html
 import json
 import math
-from typing import TYPE_CHECKING, Any, Mapping, Optional
+from typing import TYPE_CHECKING, Any, Mapping, NamedTuple, Optional
 
 import numpy as np
 
@@ -47,6 +47,20 @@ class ComparedRun:
         return f"<ComparedRun: {self.method}, gain {self.gain:g}, error {self.max_error:.4g} {self.unit}>"
 
 
+class Yield(NamedTuple):
+    """How many of the machines that were drawn are good, and what that tells of all machines."""
+
+    below: float
+    """The error below which one is good [length unit]."""
+    good: int
+    machines: int
+    part: float
+    """good / machines."""
+    low: float
+    """With 95 % confidence the part of all machines lies between this and `high`, by Wilson's interval."""
+    high: float
+
+
 class MonteCarlo:
     """The largest errors of many machines that differ in the tolerances of their elements."""
 
@@ -59,6 +73,9 @@ class MonteCarlo:
         self.seed: int = data["seed"]
         self.worst_run: Optional[int] = data["worst_run"]
         self.failures: list[dict[str, Any]] = data["failures"]
+        drawn_yield = data.get("yield")
+        self.yield_: Optional[Yield] = None if drawn_yield is None else Yield(**drawn_yield)
+        """Where `good_below` asked for it."""
         self.data = dict(data)
 
     def percentile(self, percent: float) -> float:
@@ -72,7 +89,12 @@ class MonteCarlo:
 
     def __repr__(self) -> str:
         return (f"<MonteCarlo: {self.errors.size} runs, median {self.percentile(50):.4g} {self.unit}, "
-                f"95 % within {self.percentile(95):.4g} {self.unit}>")
+                f"95 % within {self.percentile(95):.4g} {self.unit}{self._yield_text()}>")
+
+    def _yield_text(self) -> str:
+        if self.yield_ is None:
+            return ""
+        return f", {100 * self.yield_.part:.3g} % below {self.yield_.below:.4g} {self.unit}"
 
 
 class Comparison:

@@ -16,6 +16,7 @@ diagram itself).
 from __future__ import annotations
 
 import collections
+import os
 import time
 from collections.abc import Callable
 from functools import lru_cache
@@ -23,11 +24,11 @@ from typing import TYPE_CHECKING, Any, Optional, Union
 
 import numpy as np
 
-from . import _arguments
+from . import _arguments, _oblique
 from ._arguments import Number, PathLike, Quantity
 from ._errors import Error, PlanError, RequestError
 from ._tables import _missing
-from .ensemble import EnsembleRun, Plan
+from .ensemble import EnsembleRun, Interrupted, Plan
 
 if TYPE_CHECKING:
     import distributed
@@ -66,15 +67,17 @@ def run(plan: Union[Plan, PathLike], client: Union["distributed.Client", str], *
     file as soon as it has come, what is there already is not run, and `oblique ensemble gather` reads it; without one the rows
     stay in memory. A chunk that fails is tried `retries` times more; `time_limit` [s] ends it between two machines.
     A worker that dies is no failure of the chunks on it: it may happen to each `allowed_failures` times. A scheduler that is
-    lost is waited for so long [s]: `patience`. `progress(done, chunks)` is called after each chunk.
+    lost is waited for so long [s]: `patience`. `progress(done, chunks)` is called when chunks have come.
 
-    Throws PlanError where a chunk cannot be had, and what reading the plan throws."""
+    Ctrl-C throws Interrupted, which has the rows of the chunks that are done. Throws PlanError where a chunk cannot be had, and what reading the plan throws."""
     if not isinstance(plan, Plan):
         plan = Plan(plan)
     cut = plan.chunks(chunks)
     limit = None if time_limit is None else _arguments.positive("time_limit", time_limit, "s")
     most = None if batch is None else _arguments.count("batch", batch)
     into = None if folder is None else _arguments.path("folder", folder)
+    if into is not None and os.path.isdir(into):
+        plan.status(into)  # what does not belong there is known before the work
     run_ = _Run(plan, cut, into, _arguments.count("retries", retries, 0), limit,
                 _arguments.count("allowed_failures", allowed_failures, 0), _arguments.positive("patience", patience, "s"))
     cluster = _Cluster(client, run_.allowed_failures, run_.patience)
@@ -176,6 +179,17 @@ class _Run:
         self._with_cluster: dict[Any, int] = {}
 
     def finish(self, cluster: _Cluster, batch: Optional[int], progress: Optional[Callable[[int, int], object]]) -> None:
+        try:
+            self._work(cluster, batch, progress)
+        except KeyboardInterrupt:
+            self._cancel()
+            again = "; called again with the same folder= it goes on" if self.folder is not None else ""
+            raise Interrupted(self.done(), self.plan.runs, again) from None
+        except BaseException:
+            self._cancel()
+            raise
+
+    def _work(self, cluster: _Cluster, batch: Optional[int], progress: Optional[Callable[[int, int], object]]) -> None:
         waited = time.monotonic()
         while self._todo or self._with_cluster:
             try:
@@ -183,15 +197,11 @@ class _Run:
                     self._submit(cluster, batch if batch is not None else max(2, 2 * cluster.threads()))
                 came = self._take()
             except Error:
-                self._cancel()
                 raise
             except Exception:  # the connection: the scheduler is lost, and with it all that it knew
                 came = 0
                 self._give_back()
                 cluster.come_back()
-            except BaseException:  # Ctrl-C
-                self._cancel()
-                raise
             if came:
                 waited = time.monotonic()
                 if progress is not None:
@@ -202,7 +212,6 @@ class _Run:
                     cluster.come_back()
                     waited = time.monotonic()
                 elif time.monotonic() - waited > self.patience and not cluster.threads():
-                    self._cancel()
                     raise PlanError(f"the scheduler at {cluster.address} has had no worker for {self.patience:g} s",
                                     remedy="start workers (dask-worker) and call this again")
                 time.sleep(_PAUSE)
@@ -264,16 +273,31 @@ class _Run:
         self._with_cluster.clear()
 
     def result(self) -> EnsembleRun:
+        return self.done() if self.folder is None else self.plan.gather(self.folder)
+
+    def done(self) -> EnsembleRun:
+        """Of the chunks that there are."""
         raw = self.plan._raw
-        if self.folder is not None:
-            return self.plan.gather(self.folder)
-        rows, failures, counts = [], [], collections.Counter[str]()
+        rows, failures, counts, numbers = [], [], collections.Counter[str](), []
         reasons = collections.Counter[str]()
         for number in range(self.chunks):
-            found, failed, count = raw.read_chunk(number, self.chunks, self._kept[number])
+            content = self._content(number)
+            if content is None:
+                continue
+            found, failed, count = raw.read_chunk(number, self.chunks, content)
             rows.append(found)
+            numbers.append(np.arange(len(found)) + raw.first_run(number, self.chunks))
             failures += failed
             counts.update({"in_lanes": count["in_lanes"], "by_cvodes": count["by_cvodes"]})
             reasons.update(count["reasons"])
-        return EnsembleRun(raw.columns, raw.n_varied, np.concatenate(rows), failures,
-                           {"in_lanes": counts["in_lanes"], "by_cvodes": counts["by_cvodes"], "reasons": reasons})
+        return EnsembleRun(raw.columns, raw.n_varied, np.concatenate(rows) if rows else np.empty((0, len(raw.columns))), failures,
+                           {"in_lanes": counts["in_lanes"], "by_cvodes": counts["by_cvodes"], "reasons": reasons},
+                           np.concatenate(numbers) if numbers else np.empty(0, dtype=np.int64))
+
+    def _content(self, number: int) -> Optional[bytes]:
+        if self.folder is None:
+            return self._kept.get(number)
+        raw = self.plan._raw
+        if not raw.is_done(number, self.chunks, self.folder):
+            return None
+        return _oblique.read_file(os.path.join(self.folder, raw.file_name(number, self.chunks)))

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union
 
 import numpy as np
@@ -38,17 +38,20 @@ class EnsembleRun(Table):
     """
 
     def __init__(self, columns: Sequence[tuple[str, str]], n_varied: int, rows: FloatArray,
-                 failures: Iterable[tuple[int, str]], count: Mapping[str, Any]) -> None:
+                 failures: Iterable[tuple[int, str]], count: Mapping[str, Any],
+                 numbers: Optional[npt.NDArray[np.int64]] = None) -> None:
         super().__init__(columns, rows)
+        self.numbers: npt.NDArray[np.int64] = np.arange(len(rows)) if numbers is None else numbers
+        """The number of the machine of each row, of shape (machines,): 0, 1, 2 …, unless Ctrl-C ended it."""
         self.varied = self.names[:n_varied]
         """The names that were varied."""
         self.measures = self.names[n_varied:]
         self.failures = dict(failures)
         """The machines that failed, by their numbers, and why; their measures are NaN."""
         self.in_lanes: int = count["in_lanes"]
-        """So many machines ran side by side."""
+        """So many machines ran side by side, in lanes."""
         self.by_cvodes: int = count["by_cvodes"]
-        """So many ran by themselves."""
+        """So many ran one by one, by CVODES."""
         self.reasons: dict[str, int] = dict(count["reasons"])
         """Why they did."""
 
@@ -89,6 +92,19 @@ class EnsembleRun(Table):
         return super().plot(*(names or self.measures), against=against or self.varied[0], ax=ax, **style)
 
 
+class Interrupted(KeyboardInterrupt):
+    """Ctrl-C in the middle of an ensemble: what was done until then is `run`.
+
+    It is a KeyboardInterrupt, so it ends what any other one would. In a notebook ``sys.last_value.run`` has it afterwards.
+    """
+
+    def __init__(self, run: EnsembleRun, machines: int, remedy: str = "") -> None:
+        super().__init__(f"{len(run.rows)} of {machines} machines were run, and are kept in .run of this exception"
+                         f" (at a prompt: sys.last_value.run){remedy}")
+        self.run = run
+        """The rows that were done; `run.numbers` says of which machines."""
+
+
 class Missing(NamedTuple):
     """A chunk that is not there: the machines `first` to `first + runs - 1`."""
 
@@ -123,33 +139,34 @@ class Plan:
     """
 
     def __init__(self, source: Optional[PathLike] = None, *, text: Optional[str] = None, file: Optional[str] = None,
-                 blocks: Optional[Union[BlockLibrary, PathLike]] = None, jobs: Optional[int] = None) -> None:
-        """`file` is the name that paths in a `text` are meant from; `blocks` as for a Diagram; `jobs` threads run it (as
-        many as the processor has). Throws PlanError, ReadError and what reading the diagram or mechanism throws."""
+                 blocks: Optional[Union[BlockLibrary, PathLike]] = None, threads: int = 0) -> None:
+        """`file` is the name that paths in a `text` are meant from; `blocks` as for a Diagram; `threads` run it (0: as
+        many as there are processors). Throws PlanError, ReadError and what reading the diagram or mechanism throws."""
         if (source is None) == (text is None):
             raise RequestError("a plan is from a file or a text", "one of the two")
         if source is not None:
             file = _arguments.path("source", source)
             text = _arguments.read(file)
-        self._open(_arguments.text("text", text), file or "", None, blocks, jobs)
+        self._open(_arguments.text("text", text), file or "", None, blocks, threads)
 
     def _open(self, text: str, file: str, subject: Optional[bytes], blocks: Optional[Union[BlockLibrary, PathLike]],
-              jobs: Optional[int]) -> None:
+              threads: int) -> None:
         if blocks is None:
             blocks = shipped_blocks
         self._blocks = blocks if isinstance(blocks, BlockLibrary) else BlockLibrary(blocks)
         self._text = text
         self._file = file
-        self._jobs = _arguments.count("jobs", jobs, 1, 10_000) if jobs is not None else os.cpu_count() or 1
-        self._raw = _oblique.Plan(text, file, subject, self._blocks._raw, self._blocks._folders, self._jobs)
+        self._threads = _arguments.count("threads", threads, 0, 4096)
+        self._raw = _oblique.Plan(text, file, subject, self._blocks._raw, self._blocks._folders,
+                                  self._threads or os.cpu_count() or 1)
         if self._raw.version not in ("", _oblique.__version__):
             warn(f"{file or 'the plan'} was written by version {self._raw.version} of Oblique, this is "
                  f"{_oblique.__version__}: the numbers may differ from those it was made for")
 
     @classmethod
-    def _of_parts(cls, text: str, file: str, subject: Optional[bytes], blocks: Any, jobs: Optional[int]) -> "Plan":
+    def _of_parts(cls, text: str, file: str, subject: Optional[bytes], blocks: Any, threads: int) -> "Plan":
         plan = cls.__new__(cls)
-        plan._open(text, file, subject, blocks, jobs)
+        plan._open(text, file, subject, blocks, threads)
         return plan
 
     @classmethod
@@ -158,7 +175,7 @@ class Plan:
            tolerance_of_elements: Optional[Quantity] = None, machine: Optional[str] = None, runs: Optional[int] = None,
            seed: int = 1, sampling: str = "grid", samples: Optional[int] = None, tolerance: Optional[Number] = None,
            gain: Optional[Quantity] = None, method: Optional[str] = None, title: str = "",
-           blocks: Optional[Union[BlockLibrary, PathLike]] = None, jobs: Optional[int] = None) -> "Plan":
+           blocks: Optional[Union[BlockLibrary, PathLike]] = None, threads: int = 0) -> "Plan":
         """A plan without a file.
 
         `subject` is a Diagram or a Mechanism, or its file. `vary` gives the values of names ("c.gain", "crank.length"),
@@ -202,14 +219,14 @@ class Plan:
             data["scatter"] = spread
         if measure is not None:
             data["measure"] = {name: _arguments.text(f"measure[{name!r}]", one) for name, one in _names("measure", measure)}
-        return cls._of_parts(_text_of(data), "", text.encode("utf-8", "surrogateescape"), blocks, jobs)
+        return cls._of_parts(_text_of(data), "", text.encode("utf-8", "surrogateescape"), blocks, threads)
 
     def __getstate__(self) -> dict[str, Any]:
         return {"text": self._text, "file": self._file, "subject": self._raw.subject, "blocks": self._blocks,
-                "jobs": self._jobs}
+                "threads": self._threads}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        self._open(state["text"], state["file"], state["subject"], state["blocks"], state["jobs"])
+        self._open(state["text"], state["file"], state["subject"], state["blocks"], state["threads"])
 
     @property
     def runs(self) -> int:
@@ -253,9 +270,16 @@ class Plan:
         self._raw.check_chunks(number)
         return number
 
-    def run(self) -> EnsembleRun:
-        """Runs all machines here, and gives their rows."""
-        return self._result(self._raw.read_chunk(0, 1, self._raw.chunk_bytes(0, 1, None)))
+    def run(self, progress: Optional[Callable[[int, int], object]] = None) -> EnsembleRun:
+        """Runs all machines here, and gives their rows. `progress(done, machines)` is called five times a second. Ctrl-C
+        throws Interrupted, which has the rows that were done; what `progress` throws ends the runs too."""
+        rows, failures, count, numbers, stop = self._raw.run(progress)
+        run = EnsembleRun(self._raw.columns, self._raw.n_varied, rows, failures, count, numbers)
+        if stop is None:
+            return run
+        if isinstance(stop, KeyboardInterrupt):
+            raise Interrupted(run, self.runs) from None
+        raise stop
 
     def make_chunk(self, number: int, chunks: int, folder: PathLike) -> bool:
         """Makes the file of a chunk, which `oblique ensemble gather` knows too; False where it is there already. The chunk
@@ -285,15 +309,26 @@ class Plan:
         return f"<Plan: {self.runs} runs, {', '.join(name for name, _ in self._raw.columns)}>"
 
 
-def sweep(subject: Union[PathLike, Diagram, Mechanism], **options: Any) -> EnsembleRun:
-    """Runs a diagram or a mechanism many times, and gives a row a machine: `Plan.of(subject, **options).run()`.
+def sweep(subject: Union[PathLike, Diagram, Mechanism], *, vary: Optional[Mapping[str, Values]] = None,
+          measure: Optional[Mapping[str, str]] = None, scatter: Optional[Mapping[str, Quantity]] = None,
+          tolerance_of_elements: Optional[Quantity] = None, machine: Optional[str] = None, runs: Optional[int] = None,
+          seed: int = 1, sampling: str = "grid", samples: Optional[int] = None, tolerance: Optional[Number] = None,
+          gain: Optional[Quantity] = None, method: Optional[str] = None, title: str = "",
+          blocks: Optional[Union[BlockLibrary, PathLike]] = None, threads: int = 0,
+          progress: Optional[Callable[[int, int], object]] = None) -> EnsembleRun:
+    """Runs a diagram or a mechanism many times, and gives a row a machine: ``Plan.of(subject, …).run(progress)``. The
+    numbers are those of `oblique sweep`, bit for bit, with however many threads. Ctrl-C throws Interrupted, which has the
+    rows that were done.
 
     >>> import oblique as ob
     >>> rates = ob.sweep("diagrams/lessons/triangle-side.toml", vary={"c.gain": "1e3,1e4"}, measure={"last": "end(side)"})
     >>> rates.varied, rates.measures, rates.failures
     (('c.gain',), ('last',), {})
     """
-    return Plan.of(subject, **options).run()
+    plan = Plan.of(subject, vary=vary, measure=measure, scatter=scatter, tolerance_of_elements=tolerance_of_elements,
+                   machine=machine, runs=runs, seed=seed, sampling=sampling, samples=samples, tolerance=tolerance, gain=gain,
+                   method=method, title=title, blocks=blocks, threads=threads)
+    return plan.run(progress)
 
 
 def _incomplete(folder: str, found: Status) -> Exception:

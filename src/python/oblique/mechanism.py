@@ -364,14 +364,17 @@ class Mechanism:
                 methods: Union[str, Sequence[str]] = "triangles", split: Optional[Sequence[str]] = None,
                 slower: Optional[float] = None, positions: int = 361, machine: Optional[str] = None,
                 monte_carlo: int = 0, tolerance: Optional[Quantity] = None, seed: int = 1, first_run: int = 0,
-                threads: int = 0, budget: bool = False, blocks: Optional[BlockLibrary] = None) -> Comparison:
+                threads: int = 0, good_below: Optional[Quantity] = None, until_within: Optional[Quantity] = None,
+                budget: bool = False, blocks: Optional[BlockLibrary] = None) -> Comparison:
         """Patches it with each method, bandwidth [Hz] and gain (1e2 … 1e6), runs the diagrams over the motion, and
         holds them against the exact one.
 
         With `machine`, with the figures of one besides; with `monte_carlo`, so many runs with elements drawn anew within
         `tolerance` (a part: 0.001, "0.1 %"), or as the machine's scatter: then one gain, bandwidth and method (a gain of
-        1e6 where none is given). `budget` says whose tolerances the errors come from. `threads` is how many work at that, 0 as many as there are processors; the result does
-        not depend on it. Throws RequestError, PatchError, SolveError.
+        1e6 where none is given). Machines that err by less than `good_below` (of the largest link: "1 %"; or a length) are good,
+        and `.monte_carlo.yield_` says how many are; `until_within` ends the runs where their part is known within ± that
+        ("2 %"). `budget` says whose tolerances the errors come from. `threads` is how many work at that, 0 as many as there
+        are processors; the result does not depend on it. Throws RequestError, PatchError, SolveError.
         """
         wanted = [_arguments.choice("methods", one, _METHODS) for one in _arguments.names("methods", methods)]
         wanted = list(dict.fromkeys(wanted))
@@ -400,6 +403,10 @@ class Mechanism:
             draws = {"runs": runs, "tolerance": part, "seed": _arguments.count("seed", seed, 0, 2**63 - 1),
                      "first_run": _arguments.count("first_run", first_run, 0, 2**63 - 1),
                      "threads": _arguments.count("threads", threads, 0, 4096)}
+            draws.update(_good(good_below, until_within, self.length_unit))
+        elif good_below is not None or until_within is not None:
+            name = "good_below" if good_below is not None else "until_within"
+            raise RequestError(f"{name}= without elements that are drawn", "monte_carlo=1000 beside it")
         elif tolerance is not None and not budget:
             raise RequestError("tolerance= without elements that are drawn", "monte_carlo=1000 or budget=True beside it")
         library = shipped_blocks if blocks is None else blocks
@@ -495,3 +502,20 @@ class Mechanism:
 
     def __repr__(self) -> str:
         return f"<Mechanism: {self._file}>"
+
+
+def _good(below: Optional[Quantity], within: Optional[Quantity], unit: str) -> dict[str, Any]:
+    """What says which machines are good, and how well their part is to be known."""
+    found: dict[str, Any] = {}
+    if below is not None:
+        of_the_largest = isinstance(below, str) and below.endswith("%")
+        found["good_below"] = _arguments.positive("good_below", below, "1" if of_the_largest else unit)
+        found["of_the_largest"] = of_the_largest
+    if within is not None:
+        if below is None:
+            raise RequestError("until_within= without a yield", 'good_below= beside it, such as good_below="1 %"')
+        part = _arguments.positive("until_within", within, "1")
+        if part >= 1:
+            raise RequestError(f"until_within={_arguments.shown(within)}", "a part above 0 and below 1, such as 0.02")
+        found["until_within"] = part
+    return found

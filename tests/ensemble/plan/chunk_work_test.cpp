@@ -166,7 +166,7 @@ TEST_F(ChunkWorkTest, TellsOfAFolderThatTakesNoFile) {
   EXPECT_THAT(finding_of([&] { make_folder(folder / "file"); }),
               ::testing::AllOf(HasSubstr("/file: no folder can be made here: "),
                                HasSubstr("expected a folder for the chunks, which you may write to\n"
-                                         "  remedy: name another one, or make room there")));
+                                         "  remedy: name another one, or see to its permissions")));
   EXPECT_THAT(finding_of([&] { make_folder(folder / "file/below"); }),
               HasSubstr("/file/below: no folder can be made here"));
   make_folder(folder / "new/folder");

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/ensemble/plan/gather.h>
 
+#include <algorithm>
+
 #include <fstream>
 #include <iterator>
 #include <numeric>
@@ -150,7 +152,7 @@ TEST_F(GatherTest, RefusesWhatDoesNotBelong) {
   const Identity own = fake.work.identity;
   const std::vector<Case> cases{
       {{"0.2.0", own.plan, own.subject, own.blocks},
-       ": this chunk was made by version 0.2.0 of the program; expected version 0.1.0, which reads it: "
+       ": this chunk is of version 0.2.0 of the program; expected version 0.1.0, which reads it: "
        "another one may "
        "give other numbers\n  remedy: gather it with the version that made it, or delete it and run the "
        "chunk again"},
@@ -160,7 +162,8 @@ TEST_F(GatherTest, RefusesWhatDoesNotBelong) {
        "this chunk to another folder, or gather those of the plan from one of their own"},
       {{own.version, own.plan, "another", own.blocks},
        ": this chunk is of another diagram or mechanism, or of an earlier state of it"},
-      {{own.version, own.plan, own.subject, "another"}, ": this chunk was made with other further blocks"}};
+      {{own.version, own.plan, own.subject, "another"},
+       ": this chunk is of a run with other further blocks"}};
   for (const Case& one : cases) {
     FakeWork other(100);
     other.work.identity = one.identity;
@@ -169,6 +172,31 @@ TEST_F(GatherTest, RefusesWhatDoesNotBelong) {
     EXPECT_THAT(finding(), HasSubstr(file.string() + one.says));
     std::filesystem::remove(file);
   }
+}
+
+// A thousand chunks of another plan are one finding, and one more of another kind is another.
+TEST_F(GatherTest, CountsWhatDoesNotBelong) {
+  FakeWork other(100), old(100);
+  other.work.identity.plan = "another";
+  old.work.identity.version = "0.0.7";
+  for (const std::uint64_t k : {0U, 1U, 2U})
+    make_chunk(folder / "chunks", other.work, chunk_place(k, 3, 100));
+  make_chunk(folder / "chunks", old.work, chunk_place(0, 2, 100));
+  const std::string found = finding();
+  EXPECT_THAT(found, HasSubstr("this chunk is of another plan, and so are 2 more in the folder; expected"));
+  EXPECT_THAT(found, HasSubstr("this chunk is of version 0.0.7 of the program; expected version 0.1.0"));
+  EXPECT_EQ(std::count(found.begin(), found.end(), '\n'), 3) << found;  // two findings, each with its remedy
+}
+
+TEST_F(GatherTest, KnowsItsOwnBrokenFiles) {
+  for (const std::uint64_t k : {0U, 1U}) make(k, 2);
+  std::ofstream(file_of(1, 2), std::ios::binary) << "";
+  std::ofstream(folder / "chunks/1-of-4-00.chunk") << "";
+  std::ofstream(folder / "chunks/notes.chunk") << "hello";
+  const Gathering gathering = look();
+  EXPECT_EQ(gathering.chunks, 2U);
+  ASSERT_EQ(gathering.damaged.size(), 3U);
+  for (const Gathering::Damaged& one : gathering.damaged) EXPECT_EQ(one.is_ours, one.file == file_of(1, 2));
 }
 
 TEST_F(GatherTest, TellsOfAFolderThatIsNotThere) {

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/ensemble/plan/chunk_work.h>
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -57,14 +60,19 @@ bool make_chunk(const std::filesystem::path& folder, const ChunkWork& work, cons
 
 void make_folder(const std::filesystem::path& folder) {
   std::error_code error;
+  const char* what = "no folder can be made here";
   std::filesystem::create_directories(folder, error);
   if (!error && !std::filesystem::is_directory(folder))
     error = std::make_error_code(std::errc::not_a_directory);
+  if (!error && access(folder.c_str(), W_OK | X_OK) != 0) {
+    error = std::error_code(errno, std::generic_category());
+    what = "no chunk can be written here";
+  }
   if (error)
     throw text::ReadError(text::Diagnostic{{folder.string(), {}},
-                                           fmt::format("no folder can be made here: {}", error.message()),
+                                           fmt::format("{}: {}", what, error.message()),
                                            "a folder for the chunks, which you may write to",
-                                           "name another one, or make room there"});
+                                           "name another one, or see to its permissions"});
 }
 
 std::uint64_t usual_chunks(std::uint64_t runs) {

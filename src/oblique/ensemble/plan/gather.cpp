@@ -21,7 +21,7 @@ text::Diagnostic stranger(const std::filesystem::path& file, const ChunkHead& he
   const char* const elsewhere =
       "move this chunk to another folder, or gather those of the plan from one of their own";
   if (head.identity.version != identity.version) {
-    found.what = fmt::format("this chunk was made by version {} of the program", head.identity.version);
+    found.what = fmt::format("this chunk is of version {} of the program", head.identity.version);
     found.expected =
         fmt::format("version {}, which reads it: another one may give other numbers", identity.version);
     found.remedy = "gather it with the version that made it, or delete it and run the chunk again";
@@ -34,7 +34,7 @@ text::Diagnostic stranger(const std::filesystem::path& file, const ChunkHead& he
     found.expected = "chunks with just the settings and the seed of the plan";
     found.remedy = elsewhere;
   } else if (head.identity.blocks != identity.blocks) {
-    found.what = "this chunk was made with other further blocks";
+    found.what = "this chunk is of a run with other further blocks";
     found.expected = "the same folders of blocks as now";
     found.remedy = text::Remedy{"give the same ", text::Setting{"blocks"}, ", or run the chunk again"};
   }
@@ -55,6 +55,18 @@ std::vector<std::filesystem::path> chunk_files(const std::filesystem::path& fold
                                            {}});
   std::sort(files.begin(), files.end());
   return files;
+}
+
+/// Into how many chunks an ensemble was cut of which this is the file of one, by its name; 0: it is none.
+std::uint64_t chunks_by_name(const std::filesystem::path& file, const Identity& identity,
+                             std::uint64_t runs) {
+  const std::string name = file.filename().string();  // NUMBER-of-CHUNKS-….chunk
+  const std::size_t of = name.find("-of-");
+  if (of == std::string::npos) return 0;
+  const std::uint64_t number = std::strtoull(name.c_str(), nullptr, 10);
+  const std::uint64_t chunks = std::strtoull(name.c_str() + of + 4, nullptr, 10);
+  const bool can_be = chunks > 0 && chunks <= std::min(runs, kMostChunks) && number < chunks;
+  return can_be && name == file_name_of(identity, chunk_place(number, chunks, runs)) ? chunks : 0;
 }
 
 /// Takes runs from the parts, in order, always from the one that reaches farthest.
@@ -84,16 +96,11 @@ void choose_pieces(Gathering& gathering, std::uint64_t runs) {
 }
 
 /// The chunks with runs that are not there, of the way of cutting that most of those that are there have.
-void find_missing(Gathering& gathering, std::uint64_t runs) {
+void find_missing(Gathering& gathering, const Identity& identity, std::uint64_t runs) {
   std::map<std::uint64_t, std::size_t> ways;
   for (const Gathering::Part& part : gathering.parts) ++ways[part.head.place.chunks];
   for (const Gathering::Damaged& one : gathering.damaged) {
-    // The name tells it, if it was not changed: NUMBER-of-CHUNKS-….
-    const std::string name = one.file.filename().string();
-    const std::size_t of = name.find("-of-");
-    if (of == std::string::npos) continue;
-    const std::uint64_t chunks = std::strtoull(name.c_str() + of + 4, nullptr, 10);
-    if (chunks > 0 && chunks <= std::min(runs, kMostChunks)) ++ways[chunks];
+    if (one.is_ours) ++ways[chunks_by_name(one.file, identity, runs)];
   }
   std::size_t most = 0;
   for (const auto& [chunks, times] : ways) {
@@ -166,26 +173,41 @@ std::vector<std::pair<std::uint64_t, std::string>> Gathering::failures() const {
 Gathering look_through(const std::filesystem::path& folder, const Identity& identity, std::uint64_t runs,
                        std::size_t columns) {
   Gathering gathering;
-  text::Diagnostics strangers;
+  std::vector<std::pair<text::Diagnostic, std::size_t>> strangers;  // of each kind one, and how many more
+  const auto add_damaged = [&](const std::filesystem::path& file, std::string trouble) {
+    gathering.damaged.push_back({file, std::move(trouble), chunks_by_name(file, identity, runs) > 0});
+  };
   for (const std::filesystem::path& file : chunk_files(folder)) {
     ReadChunk read = parse_chunk(text::read_file(file));
     if (!read.chunk) {
-      gathering.damaged.push_back({file, std::move(read.trouble)});
+      add_damaged(file, std::move(read.trouble));
       continue;
     }
     ChunkHead& head = read.chunk->head;
     if (text::Diagnostic found = stranger(file, head, identity); !found.what.empty()) {
-      strangers.add(std::move(found));
+      const auto alike = std::find_if(strangers.begin(), strangers.end(),
+                                      [&](const auto& one) { return one.first.what == found.what; });
+      if (alike == strangers.end()) {
+        strangers.emplace_back(std::move(found), 0);
+      } else {
+        ++alike->second;
+      }
     } else if (head.columns.size() != columns || head.place.count > runs ||
                head.place.first > runs - head.place.count) {
-      gathering.damaged.push_back({file, "it has other columns or runs than the plan"});
+      add_damaged(file, "it has other columns or runs than the plan");
     } else {
       gathering.parts.push_back({file, std::move(head)});
     }
   }
-  strangers.throw_if_any<PlanError>();
+  text::Diagnostics findings;
+  for (auto& [found, more] : strangers) {
+    if (more > 0)
+      found.what += fmt::format(", and so {} {} more in the folder", more == 1 ? "is" : "are", more);
+    findings.add(std::move(found));
+  }
+  findings.throw_if_any<PlanError>();
   choose_pieces(gathering, runs);
-  find_missing(gathering, runs);
+  find_missing(gathering, identity, runs);
   return gathering;
 }
 

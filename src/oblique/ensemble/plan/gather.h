@@ -19,6 +19,7 @@ struct Gathering {
   struct Damaged {
     std::filesystem::path file;
     std::string trouble;
+    bool is_ours = false;  ///< by its name; else it is in nobody's way, and nothing replaces it
   };
   /// Some runs of a part; the next ones begin where they end.
   struct Piece {
@@ -42,8 +43,9 @@ struct Gathering {
 };
 
 /// Looks through a folder for the chunks of an ensemble (files that end in .chunk). A chunk that is damaged
-/// counts as missing. One of something else (another plan, subject or version) does not belong there: all of
-/// these are thrown as a PlanError. The chunks may be of an ensemble that was cut in several ways.
+/// counts as missing. One of something else (another plan, subject or version) does not belong there: the
+/// first of each kind is thrown in a PlanError, with how many there are. The chunks may be of an ensemble
+/// that was cut in several ways.
 Gathering look_through(const std::filesystem::path& folder, const Identity& identity, std::uint64_t runs,
                        std::size_t columns);
 
