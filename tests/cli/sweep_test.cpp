@@ -61,6 +61,23 @@ TEST_F(Sweep, ShowsTheFirstAndTheLastRows) {
                                      "          least  median  greatest"));
 }
 
+// x(1) = h e^(−1): in proportion to h, whatever the rate; and at the fixed time it does not go as a power of
+// the rate.
+TEST_F(Sweep, TellsHowMeasuresGoWithWhatIsSpacedLogarithmically) {
+  const Outcome outcome =
+      oblique("sweep " + decay_ +
+              " --vary x.initial=1e-3..1:4:log --measure 'end(x)' --measure 'p = 1/end(x)^2'"
+              " --measure 'zero = end(x) - end(x)' --measure 'same = 1 + 0*end(x)'");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out,
+              HasSubstr("\n\nend(x) goes as x.initial^1.00, from 1.00 to 1.00 between neighbours\n"
+                        "p goes as x.initial^-2.00, from -2.00 to -2.00 between neighbours\n"));
+  EXPECT_EQ(outcome.out.find("zero goes"), std::string::npos);
+  EXPECT_EQ(outcome.out.find("same goes"), std::string::npos);
+  const Outcome linear = oblique("sweep " + decay_ + " --vary x.initial=1,2,3 --measure 'end(x)'");
+  EXPECT_EQ(linear.out.find("goes as"), std::string::npos);
+}
+
 TEST_F(Sweep, GivesTheSameNumbersWithAnyNumberOfThreads) {
   for (const std::string jobs : {"1", "2"}) {
     const Outcome outcome = oblique("sweep " + decay_ + " --scatter 'integrator.tolerance=±1%' --runs 20" +

@@ -167,6 +167,7 @@ ExitStatus sweep(const Session& session, const SweepRequest& request) {
     constexpr std::size_t kColumnWidth = 14;
     if (request.output.empty()) print(report::rows_text(result, columns_that_fit(kColumnWidth)) + "\n");
     print(report::summary_text(result));
+    if (const std::string orders = report::order_text(result); !orders.empty()) print("\n" + orders);
     if (result.n_varied > 1) print("\n" + report::effects_text(result));
   }
   if (!request.output.empty()) write(result, request.output);

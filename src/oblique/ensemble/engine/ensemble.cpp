@@ -47,6 +47,7 @@ Ensemble::Ensemble(diagram::FlatDiagram diagram, std::vector<std::uint32_t> vari
   network::ParameterNumbers numbers(diagram);
   const std::vector<double> all = network::parameter_values(diagram);
   std::vector<double> base;
+  base.reserve(varied.size());
   for (const std::uint32_t number : varied) base.push_back(all[number]);
   LaneCompilation lanes{nullptr, "asked for"};
   if (options.lanes) lanes = compile_for_lanes(diagram, varied, options.run);

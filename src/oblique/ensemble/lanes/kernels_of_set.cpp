@@ -26,10 +26,13 @@ constexpr std::uint32_t kBest = 2;
 
 template <std::uint32_t width>
 struct Vectors {
-  static constexpr Index size = width < kBest ? width : kBest;
-  static constexpr Index parts = width / size;
-  typedef double Vector __attribute__((vector_size(8 * size), aligned(8 * size), may_alias));
-  typedef std::int64_t Whole __attribute__((vector_size(8 * size), aligned(8 * size), may_alias));
+  static constexpr Index kSize = width < kBest ? width : kBest;
+  static constexpr Index kParts = width / kSize;
+  // (an alias with an attribute that depends on a parameter: typedef alone has it)
+  typedef double Vector
+      __attribute__((vector_size(8 * kSize), aligned(8 * kSize), may_alias));  // NOLINT(modernize-use-using)
+  typedef std::int64_t Whole
+      __attribute__((vector_size(8 * kSize), aligned(8 * kSize), may_alias));  // NOLINT(modernize-use-using)
 };
 
 // --- sine and cosine: the argument less the nearest odd or even multiple of π/2, which is known to 33 + 33 +
@@ -41,16 +44,16 @@ constexpr double kRound = 6755399441055744.0;  // 1.5 · 2^52: what is added rou
 
 /// The sine or cosine of a slot, and the largest magnitude so far.
 template <std::uint32_t width>
-void turn(const double* x, double* out, bool of_cosine, double* largest) {
+void turn(const double* x, double* out, bool of_cosine, typename Vectors<width>::Vector* largest) {
   using Vs = Vectors<width>;
   using V = typename Vs::Vector;
   using W = typename Vs::Whole;
   const double half = of_cosine ? 0.5 : 0;
   const std::int64_t quarter = of_cosine ? 1 : 0;
-  V sine[Vs::parts];
-  for (Index p = 0; p < Vs::parts; ++p) {
+  V sine[Vs::kParts];
+  for (Index p = 0; p < Vs::kParts; ++p) {
     const V argument = ((const V*)x)[p];
-    V& most = ((V*)largest)[p];
+    V& most = largest[p];
     const V size = argument < 0 ? -argument : argument;
     most = size <= most ? most : size;
     const V shifted = (argument * 3.18309886183790691216e-01 - half) + kRound;
@@ -68,7 +71,7 @@ void turn(const double* x, double* out, bool of_cosine, double* largest) {
     const W odd = ((W)shifted + quarter) << 63;  // of π, as the sign bit
     sine[p] = (V)((W)sine[p] ^ odd);
   }
-  for (Index p = 0; p < Vs::parts; ++p) ((V*)out)[p] = sine[p];
+  for (Index p = 0; p < Vs::kParts; ++p) ((V*)out)[p] = sine[p];
 }
 
 template <std::uint32_t width>
@@ -76,7 +79,7 @@ struct Kernels {
   using Vs = Vectors<width>;
   using V = typename Vs::Vector;
   using W = typename Vs::Whole;
-  static constexpr Index parts = Vs::parts;
+  static constexpr Index kParts = Vs::kParts;
 
   static const V* at(const double* array, Index i) {
     return (const V*)(array + static_cast<std::size_t>(i) * width);
@@ -86,16 +89,15 @@ struct Kernels {
 
   /// Those of a range; what is too far for the polynomial is left to the library.
   static void turn_all(const LaneStep* begin, const LaneStep* end, bool of_cosine, double* slots) {
-    V most[parts] = {};
-    double* const largest = (double*)most;
+    V largest[kParts] = {};
     for (const LaneStep* i = begin; i != end; ++i)
       turn<width>((const double*)at(slots, i->a), (double*)at(slots, i->result), of_cosine, largest);
     bool far = false;
-    for (Index l = 0; l < width; ++l) far = far || !(largest[l] < kFarthest);
+    for (Index l = 0; l < width; ++l) far = far || !(((const double*)largest)[l] < kFarthest);
     if (!far) return;
     for (const LaneStep* i = begin; i != end; ++i) {  // once more, each before those that may read it
-      const double* const x = (const double*)at(slots, i->a);
-      double* const result = (double*)at(slots, i->result);
+      const auto* const x = (const double*)at(slots, i->a);
+      auto* const result = (double*)at(slots, i->result);
       turn<width>(x, result, of_cosine, largest);
       for (Index l = 0; l < width; ++l) {
         if (!(x[l] < kFarthest && x[l] > -kFarthest)) result[l] = of_cosine ? ::cos(x[l]) : ::sin(x[l]);
@@ -115,10 +117,10 @@ struct Kernels {
       const V *const a = at(slots, i->a), *const b = at(slots, i->b), *const c = at(slots, i->c); \
       (void)b;                                                                                    \
       (void)c;                                                                                    \
-      V results[parts];                                                                           \
-      for (Index p = 0; p < parts; ++p) results[p] = formula;                                     \
+      V results[kParts];                                                                          \
+      for (Index p = 0; p < kParts; ++p) results[p] = formula;                                    \
       V* const result = at(slots, i->result);                                                     \
-      for (Index p = 0; p < parts; ++p) result[p] = results[p];                                   \
+      for (Index p = 0; p < kParts; ++p) result[p] = results[p];                                  \
     }                                                                                             \
     break;
         OBLIQUE_LANE_OP(add, a[p] + b[p])
@@ -131,8 +133,8 @@ struct Kernels {
 #undef OBLIQUE_LANE_OP
         case LaneOp::sqrt:
           for (; i != end; ++i) {
-            const double* const a = (const double*)at(slots, i->a);
-            double* const result = (double*)at(slots, i->result);
+            const auto* const a = (const double*)at(slots, i->a);
+            auto* const result = (double*)at(slots, i->result);
             for (Index l = 0; l < width; ++l) result[l] = __builtin_sqrt(a[l]);
           }
           break;
@@ -142,9 +144,9 @@ struct Kernels {
           break;
         case LaneOp::other:
           for (; i != end; ++i) {
-            const double *const a = (const double*)at(slots, i->a), *const b = (const double*)at(slots, i->b),
-                                *const c = (const double*)at(slots, i->c);
-            double* const result = (double*)at(slots, i->result);
+            const auto *const a = (const double*)at(slots, i->a), *const b = (const double*)at(slots, i->b),
+                              *const c = (const double*)at(slots, i->c);
+            auto* const result = (double*)at(slots, i->result);
             for (Index l = 0; l < width; ++l) result[l] = lane_other(range.code, a[l], b[l], c[l]);
           }
           break;
@@ -154,33 +156,33 @@ struct Kernels {
 
   static void matrix(const LaneMatrixCode& code, const double* slots, const double* scale, double* entries) {
     for (Index k = 0; k < code.n_entries; ++k) {
-      for (Index p = 0; p < parts; ++p) at(entries, k)[p] = V{};
+      for (Index p = 0; p < kParts; ++p) at(entries, k)[p] = V{};
     }
     for (Index k = 0; k < code.n_steps; ++k) {
-      V* const entry = at(entries, code.steps[2 * k]);
-      const V* const slot = at(slots, code.steps[2 * k + 1]);
-      for (Index p = 0; p < parts; ++p) entry[p] -= slot[p];
+      V* const entry = at(entries, code.steps[std::size_t{2} * k]);
+      const V* const slot = at(slots, code.steps[std::size_t{2} * k + 1]);
+      for (Index p = 0; p < kParts; ++p) entry[p] -= slot[p];
     }
     for (Index i = 0; i < code.n_states; ++i) {
       V* const entry = at(entries, code.diagonal[i]);
-      for (Index p = 0; p < parts; ++p) entry[p] += ((const V*)scale)[p];
+      for (Index p = 0; p < kParts; ++p) entry[p] += ((const V*)scale)[p];
     }
   }
 
   static void factor(const StraightLuCode& lu, double* entries, double* reciprocals, double* growth) {
-    V largest[parts] = {};
+    V largest[kParts] = {};
     const Index* code = lu.factor;
     for (Index k = 0; k < lu.n; ++k) {
       const V* const pivot = at(entries, *code++);
       const Index n_rows = *code++, n_columns = *code++;
       const Index* const columns = code;
       code += n_columns;
-      V reciprocal[parts];
-      for (Index p = 0; p < parts; ++p) at(reciprocals, k)[p] = reciprocal[p] = 1.0 / pivot[p];
+      V reciprocal[kParts];
+      for (Index p = 0; p < kParts; ++p) at(reciprocals, k)[p] = reciprocal[p] = 1.0 / pivot[p];
       for (Index r = 0; r < n_rows; ++r) {
         V* const multiplier = at(entries, *code++);
-        V m[parts];
-        for (Index p = 0; p < parts; ++p) {
+        V m[kParts];
+        for (Index p = 0; p < kParts; ++p) {
           multiplier[p] = m[p] = multiplier[p] * reciprocal[p];
           const V size = magnitude(m[p]);
           largest[p] = size <= largest[p] ? largest[p] : size;
@@ -188,64 +190,64 @@ struct Kernels {
         for (Index c = 0; c < n_columns; ++c) {
           V* const entry = at(entries, *code++);
           const V* const above = at(entries, columns[c]);
-          for (Index p = 0; p < parts; ++p) entry[p] -= m[p] * above[p];
+          for (Index p = 0; p < kParts; ++p) entry[p] -= m[p] * above[p];
         }
       }
     }
-    for (Index p = 0; p < parts; ++p) ((V*)growth)[p] = largest[p];
+    for (Index p = 0; p < kParts; ++p) ((V*)growth)[p] = largest[p];
   }
 
   static void solve(const StraightLuCode& lu, const double* entries, const double* reciprocals,
                     const double* b, double* work, double* x) {
     const Index* code = lu.forward;
     for (Index k = 0; k < lu.n; ++k) {
-      V sum[parts];
+      V sum[kParts];
       const V* const right = at(b, *code++);
-      for (Index p = 0; p < parts; ++p) sum[p] = right[p];
+      for (Index p = 0; p < kParts; ++p) sum[p] = right[p];
       for (Index left = *code++; left > 0; --left) {
         const V* const entry = at(entries, *code++);
         const V* const known = at(work, *code++);
-        for (Index p = 0; p < parts; ++p) sum[p] -= entry[p] * known[p];
+        for (Index p = 0; p < kParts; ++p) sum[p] -= entry[p] * known[p];
       }
-      for (Index p = 0; p < parts; ++p) at(work, k)[p] = sum[p];
+      for (Index p = 0; p < kParts; ++p) at(work, k)[p] = sum[p];
     }
     code = lu.backward;
     for (Index k = lu.n; k-- > 0;) {
-      V sum[parts];
-      for (Index p = 0; p < parts; ++p) sum[p] = at(work, k)[p];
+      V sum[kParts];
+      for (Index p = 0; p < kParts; ++p) sum[p] = at(work, k)[p];
       V* const unknown = at(x, *code++);
       for (Index right = *code++; right > 0; --right) {
         const V* const entry = at(entries, *code++);
         const V* const known = at(work, *code++);
-        for (Index p = 0; p < parts; ++p) sum[p] -= entry[p] * known[p];
+        for (Index p = 0; p < kParts; ++p) sum[p] -= entry[p] * known[p];
       }
-      for (Index p = 0; p < parts; ++p) at(work, k)[p] = unknown[p] = sum[p] * at(reciprocals, k)[p];
+      for (Index p = 0; p < kParts; ++p) at(work, k)[p] = unknown[p] = sum[p] * at(reciprocals, k)[p];
     }
   }
 
   static void combine(Index n, Index n_terms, const double* factors, const double* const* terms,
                       const double* base, double* out) {
     for (Index i = 0; i < n; ++i) {
-      V sum[parts];
-      for (Index p = 0; p < parts; ++p) sum[p] = base == nullptr ? V{} : at(base, i)[p];
+      V sum[kParts];
+      for (Index p = 0; p < kParts; ++p) sum[p] = base == nullptr ? V{} : at(base, i)[p];
       for (Index k = 0; k < n_terms; ++k) {
         const V* const term = at(terms[k], i);
-        for (Index p = 0; p < parts; ++p) sum[p] += factors[k] * term[p];
+        for (Index p = 0; p < kParts; ++p) sum[p] += factors[k] * term[p];
       }
-      for (Index p = 0; p < parts; ++p) at(out, i)[p] = sum[p];
+      for (Index p = 0; p < kParts; ++p) at(out, i)[p] = sum[p];
     }
   }
 
   static void advance(Index n, Index n_terms, const double* factors, const double* const* terms,
                       const double* scale, const double* base, double* out) {
     for (Index i = 0; i < n; ++i) {
-      V sum[parts] = {};
+      V sum[kParts] = {};
       for (Index k = 0; k < n_terms; ++k) {
         if (factors[k] == 0) continue;
         const V* const term = at(terms[k], i);
-        for (Index p = 0; p < parts; ++p) sum[p] += factors[k] * term[p];
+        for (Index p = 0; p < kParts; ++p) sum[p] += factors[k] * term[p];
       }
-      for (Index p = 0; p < parts; ++p) {
+      for (Index p = 0; p < kParts; ++p) {
         const V change = sum[p] * ((const V*)scale)[p];
         at(out, i)[p] = base == nullptr ? change : at(base, i)[p] + change;
       }
@@ -255,13 +257,13 @@ struct Kernels {
   static void weigh(Index n, Index n_terms, const double* weights, const double* const* terms,
                     const double* base, double* out) {
     for (Index i = 0; i < n; ++i) {
-      V sum[parts];
-      for (Index p = 0; p < parts; ++p) sum[p] = at(base, i)[p];
+      V sum[kParts];
+      for (Index p = 0; p < kParts; ++p) sum[p] = at(base, i)[p];
       for (Index k = 0; k < n_terms; ++k) {
         const V *const term = at(terms[k], i), *const weight = at(weights, k);
-        for (Index p = 0; p < parts; ++p) sum[p] += weight[p] * term[p];
+        for (Index p = 0; p < kParts; ++p) sum[p] += weight[p] * term[p];
       }
-      for (Index p = 0; p < parts; ++p) at(out, i)[p] = sum[p];
+      for (Index p = 0; p < kParts; ++p) at(out, i)[p] = sum[p];
     }
   }
 
@@ -269,40 +271,40 @@ struct Kernels {
                          const double* const* terms, const double* scale, const double* by_time,
                          const double* time_scale, const double* const* rates, double* out) {
     for (Index i = 0; i < n; ++i) {
-      V sum[parts] = {};
+      V sum[kParts] = {};
       if (i < n_states) {
         for (Index k = 0; k < n_terms; ++k) {
           const V* const term = at(terms[k], i);
-          for (Index p = 0; p < parts; ++p) sum[p] += factors[k] * term[p];
+          for (Index p = 0; p < kParts; ++p) sum[p] += factors[k] * term[p];
         }
-        for (Index p = 0; p < parts; ++p) sum[p] *= ((const V*)scale)[p];
+        for (Index p = 0; p < kParts; ++p) sum[p] *= ((const V*)scale)[p];
       }
       const V* const rate = (const V*)rates[i];
-      for (Index p = 0; p < parts; ++p) sum[p] += rate[p];
+      for (Index p = 0; p < kParts; ++p) sum[p] += rate[p];
       if (by_time != nullptr) {
-        for (Index p = 0; p < parts; ++p) sum[p] += at(by_time, i)[p] * ((const V*)time_scale)[p];
+        for (Index p = 0; p < kParts; ++p) sum[p] += at(by_time, i)[p] * ((const V*)time_scale)[p];
       }
-      for (Index p = 0; p < parts; ++p) at(out, i)[p] = sum[p];
+      for (Index p = 0; p < kParts; ++p) at(out, i)[p] = sum[p];
     }
   }
 
   static void norm(Index n, const double* error, const double* before, const double* after,
                    const double* absolute, double relative, double* out) {
-    V largest[parts] = {}, nothing[parts] = {};
+    V largest[kParts] = {}, nothing[kParts] = {};
     for (Index i = 0; i < n; ++i) {
-      for (Index p = 0; p < parts; ++p) {
+      for (Index p = 0; p < kParts; ++p) {
         const V a = magnitude(at(before, i)[p]), b = magnitude(at(after, i)[p]);
         const V size = magnitude(at(error, i)[p]) / (absolute[i] + relative * (a > b ? a : b));
         largest[p] = size > largest[p] ? size : largest[p];
         nothing[p] += 0.0 * size + 0.0 * b;  // no number where one of them is none
       }
     }
-    for (Index p = 0; p < parts; ++p) ((V*)out)[p] = largest[p] + nothing[p];
+    for (Index p = 0; p < kParts; ++p) ((V*)out)[p] = largest[p] + nothing[p];
   }
 
   static void take(Index n, const double* where, const double* from, double* to) {
     for (Index i = 0; i < n; ++i) {
-      for (Index p = 0; p < parts; ++p)
+      for (Index p = 0; p < kParts; ++p)
         at(to, i)[p] = ((const V*)where)[p] != 0 ? at(from, i)[p] : at(to, i)[p];
     }
   }
@@ -310,7 +312,7 @@ struct Kernels {
   static void between(Index n, const double* theta, const double* before, const double* after,
                       const double* c1, const double* c2, const double* c3, double* out, double* slope) {
     for (Index i = 0; i < n; ++i) {
-      for (Index p = 0; p < parts; ++p) {
+      for (Index p = 0; p < kParts; ++p) {
         const V t = ((const V*)theta)[p], s = 1.0 - t;
         const V a = at(before, i)[p], b = at(after, i)[p], k1 = at(c1, i)[p], k2 = at(c2, i)[p],
                 k3 = at(c3, i)[p];

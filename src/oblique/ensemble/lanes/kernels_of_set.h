@@ -10,6 +10,6 @@ namespace oblique::ensemble {
 inline constexpr int kWidths = 3;
 
 // One source, compiled three times.
-extern const LaneKernels kKernelsSse2[kWidths], kKernelsAvx2[kWidths], kKernelsAvx512[kWidths];
+extern const LaneKernels kernels_sse2[kWidths], kernels_avx2[kWidths], kernels_avx512[kWidths];
 
 }  // namespace oblique::ensemble

@@ -2,31 +2,27 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdlib>
 #include <memory>
+#include <new>
 
 // Not installed.
 namespace oblique::ensemble {
 
-/// Numbers of lanes, on a boundary that all instruction sets like.
+/// Numbers of lanes, on a boundary that all instruction sets like; 0 at first.
 class LaneArray {
  public:
   LaneArray() = default;
-  explicit LaneArray(std::size_t size)
-      : data_(static_cast<double*>(
-            std::aligned_alloc(kAlign, (size * sizeof(double) + kAlign - 1) / kAlign * kAlign))) {
-    for (std::size_t i = 0; i < size; ++i) data_.get()[i] = 0;
-  }
+  explicit LaneArray(std::size_t size) : data_(new (kAlign) double[size]()) {}
   double* data() { return data_.get(); }
   const double* data() const { return data_.get(); }
   double& operator[](std::size_t i) { return data_.get()[i]; }
 
  private:
-  static constexpr std::size_t kAlign = 128;
+  static constexpr std::align_val_t kAlign{128};
   struct Free {
-    void operator()(double* data) const { std::free(data); }
+    void operator()(double* data) const { ::operator delete[](data, kAlign); }
   };
-  std::unique_ptr<double, Free> data_;
+  std::unique_ptr<double[], Free> data_;
 };
 
 }  // namespace oblique::ensemble

@@ -26,7 +26,7 @@ bool has(std::string_view set) {
 }  // namespace
 
 const LaneKernels* lane_kernels(int width, const char* set) {
-  for (const LaneKernels* const kernels : {kKernelsAvx512, kKernelsAvx2, kKernelsSse2}) {
+  for (const LaneKernels* const kernels : {kernels_avx512, kernels_avx2, kernels_sse2}) {
     if (!has(kernels->set) || (set != nullptr && std::string_view(set) != kernels->set)) continue;
     for (int k = 0; k < kWidths; ++k) {
       if (kernels[k].width == width) return &kernels[k];

@@ -114,7 +114,7 @@ struct Pattern {
   std::uint32_t at(std::uint32_t row, std::uint32_t column) {
     const auto [found, inserted] =
         index.try_emplace({row, column}, static_cast<std::uint32_t>(places.size()));
-    if (inserted) places.push_back({row, column});
+    if (inserted) places.emplace_back(row, column);
     return found->second;
   }
 };
@@ -135,6 +135,11 @@ std::vector<double> jacobian_at(const LaneProgram& program, const Moment& moment
   std::vector<double> values(n_places, 0);
   for (std::size_t k = 0; k < program.matrix_steps.size(); k += 2)
     values[program.matrix_steps[k]] += slots.data()[program.matrix_steps[k + 1] * width];
+  return values;
+}
+
+std::vector<double> negated(std::vector<double> values) {
+  for (double& value : values) value = -value;
   return values;
 }
 
@@ -267,15 +272,13 @@ LaneCompilation compile_for_lanes(const diagram::FlatDiagram& diagram, std::span
     const std::vector<double> jacobian = jacobian_at(lanes, moment, pattern.places.size());
     if (!std::all_of(jacobian.begin(), jacobian.end(), [](double x) { return std::isfinite(x); })) continue;
     for (const double part : {1e-2, 1e-4, 1e-6}) {
-      std::vector<double> matrix;
-      for (const double entry : jacobian) matrix.push_back(-entry);
+      std::vector<double> matrix = negated(jacobian);
       for (const std::uint32_t k : lanes.diagonal)
         matrix[k] += 1 / (solve::Rodas5p::kGamma * part * options.until);
       samples.push_back(std::move(matrix));
     }
     if (!lanes.needs_rest) continue;
-    std::vector<double> matrix;
-    for (const double entry : jacobian) matrix.push_back(-entry);
+    std::vector<double> matrix = negated(jacobian);
     for (const auto& [entry, value] : lanes.fixed_entries) matrix[entry] = value;
     samples.push_back(std::move(matrix));
   }

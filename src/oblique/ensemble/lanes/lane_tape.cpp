@@ -76,14 +76,15 @@ LaneTape::LaneTape(std::span<const Instruction> instructions,
     if (most == ready.end() || most->second.empty()) break;
     std::vector<std::uint32_t>& mine = most->second;
     const auto begin = static_cast<std::uint32_t>(steps_.size());
-    for (std::size_t next = 0; next < mine.size(); ++next) {  // it may grow
-      const Instruction& instruction = instructions[mine[next]];
+    std::size_t next = 0;
+    while (next < mine.size()) {  // it may grow
+      const std::uint32_t now = mine[next++];
+      const Instruction& instruction = instructions[now];
       const int operands = network::operand_count(instruction.code);
       const std::uint32_t a = slot_of(instruction.a);
       steps_.push_back({a, operands >= 2 ? slot_of(instruction.b) : a,
                         operands >= 3 ? slot_of(instruction.c) : a, slot_of(instruction.result)});
-      const std::vector<std::uint32_t> now = readers[mine[next]];
-      for (const std::uint32_t reader : now) {
+      for (const std::uint32_t reader : readers[now]) {
         if (--waits_for[reader] == 0) ready[instructions[reader].code].push_back(reader);
       }
     }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -88,6 +89,46 @@ std::string summary_text(const StudyResult& result) {
     }
   }
   return table.text(1) + missing;
+}
+
+std::string order_text(const StudyResult& result) {
+  if (!result.grid || result.drawn > 0) return {};
+  constexpr double kNone = 0.02;  // no order is told of what hardly changes
+  std::string text;
+  for (std::size_t name = 0; name < result.n_varied; ++name) {
+    if (!result.logarithmic[name]) continue;
+    // rows that differ in this name alone stand side by side
+    std::vector<std::size_t> rows(result.done.rows.size());
+    std::iota(rows.begin(), rows.end(), std::size_t{0});
+    const auto others = [&](std::size_t row) {
+      std::vector<double> values = result.done.rows[row].values;
+      values.resize(result.n_varied);
+      std::rotate(values.begin() + static_cast<std::ptrdiff_t>(name),
+                  values.begin() + static_cast<std::ptrdiff_t>(name) + 1, values.end());
+      return values;  // with this one last
+    };
+    std::sort(rows.begin(), rows.end(), [&](std::size_t a, std::size_t b) { return others(a) < others(b); });
+    for (std::size_t k = 0; k < result.n_measures(); ++k) {
+      std::vector<double> orders;
+      bool has_orders = true;
+      for (std::size_t i = 0; i + 1 < rows.size(); ++i) {
+        std::vector<double> a = others(rows[i]), b = others(rows[i + 1]);
+        const double step = std::log(b.back() / a.back());
+        a.pop_back(), b.pop_back();
+        if (a != b || !(step > 0)) continue;
+        const double ratio = result.measure(rows[i + 1], k) / result.measure(rows[i], k);
+        has_orders = has_orders && ratio > 0 && std::isfinite(ratio);
+        orders.push_back(std::log(ratio) / step);
+      }
+      if (!has_orders || orders.size() < 2) continue;
+      std::sort(orders.begin(), orders.end());
+      if (std::max(std::abs(orders.front()), std::abs(orders.back())) < kNone) continue;
+      text += fmt::format("{} goes as {}^{:.2f}, from {:.2f} to {:.2f} between neighbours\n",
+                          result.columns[result.n_varied + k].name, result.columns[name].name,
+                          percentile_of(orders, 50), orders.front(), orders.back());
+    }
+  }
+  return text;
 }
 
 std::string count_text(const StudyResult& result) {

@@ -32,6 +32,11 @@ std::string rows_text(const StudyResult& result, std::size_t columns_shown);
 /// Of each measure the least, the median and the greatest value, and which machines have them.
 std::string summary_text(const StudyResult& result);
 
+/// How measures go with the names whose values are spaced logarithmically, on a grid without scatter: the
+/// order p of "measure ~ name^p" between neighbours, its median and its range. Nothing of a measure that is 0
+/// somewhere, changes its sign, or hardly depends on the name.
+std::string order_text(const StudyResult& result);
+
 /// How many machines ran in lanes and how many by CVODES, and why; how many failed, and the first of them.
 std::string count_text(const StudyResult& result);
 

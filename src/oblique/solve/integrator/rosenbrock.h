@@ -20,7 +20,7 @@ struct Rodas5p {
   static const double c[kStages];
   static const double d[kStages];           ///< of stages from the sixth on 0
   static const double a[kStages][kStages];  ///< of the first six; the others add the last stage to its place
-  static const double C[kStages][kStages];
+  static const double C[kStages][kStages];  // NOLINT(readability-identifier-naming): as in the formula
   static const double between[3][kStages];  ///< coefficients of the polynomial between the ends
 };
 
