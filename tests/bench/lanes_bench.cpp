@@ -275,9 +275,10 @@ constexpr double kTolerances[] = {1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9};
 using Run = std::function<std::vector<Table>(double tolerance, double& seconds)>;
 
 /// Lanes against another solver, at the same error.
-void compare_at_equal_error(benchmark::State& state, const std::string& title, const std::string& other_name,
-                            double unit, std::span<const double> tolerances, const std::vector<Table>& truth,
-                            const Run& in_lanes, const Run& other, double least) {
+void compare_at_equal_error(benchmark::State& state, const std::string& name, const std::string& title,
+                            const std::string& other_name, double unit, std::span<const double> tolerances,
+                            const std::vector<Table>& truth, const Run& in_lanes, const Run& other,
+                            double least) {
   constexpr double kError = 1e-6;  // of a machine unit
   std::vector<double> ratios, lane_times, other_times;
   std::vector<Point> lanes, others;
@@ -303,7 +304,7 @@ void compare_at_equal_error(benchmark::State& state, const std::string& title, c
   state.counters["other_us"] = median(other_times);
   state.counters["times_faster"] = 1 / median(ratios);
   record({fmt::format("{}: in lanes over {}, error 1e-6", title, other_name), median(ratios), 1 / least, ""});
-  draw_work(fmt::format("{}-{}", title, other_name), title, other_name, others, lanes);
+  draw_work(name, title, other_name, others, lanes);
 }
 
 Run in_lanes(const Machines& machines) {
@@ -319,7 +320,7 @@ Run in_lanes(const Machines& machines) {
 void lengths(benchmark::State& state, const LinkageCase& chosen, double least) {
   const Machines machines(chosen, true);
   compare_at_equal_error(
-      state, chosen.title, "CVODES by hand", machines.size(), kTolerances,
+      state, chosen.file, chosen.title, "CVODES by hand", machines.size(), kTolerances,
       loop_by_hand(machines, 1e-12, HandSolver::Algebra::sparse).tables, in_lanes(machines),
       [&](double tolerance, double& seconds) {
         Loop loop = best_loop_by_hand(machines, tolerance);
@@ -335,7 +336,7 @@ void elements(benchmark::State& state, const LinkageCase& chosen, double least) 
   Machines machines(chosen, false);
   double seconds = 0;
   compare_at_equal_error(
-      state, chosen.title + ", elements", "CVODES", machines.size(),
+      state, chosen.file + "-elements", chosen.title + ", elements", "CVODES", machines.size(),
       std::span(kTolerances).subspan(1),  // the first is too coarse for some
       machines.by_engine(1e-11, seconds), in_lanes(machines),
       [&](double tolerance, double& time) { return machines.by_engine(tolerance, time); }, least);

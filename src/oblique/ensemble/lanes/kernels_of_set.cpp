@@ -28,11 +28,10 @@ template <std::uint32_t width>
 struct Vectors {
   static constexpr Index kSize = width < kBest ? width : kBest;
   static constexpr Index kParts = width / kSize;
-  // (an alias with an attribute that depends on a parameter: typedef alone has it)
-  typedef double Vector
-      __attribute__((vector_size(8 * kSize), aligned(8 * kSize), may_alias));  // NOLINT(modernize-use-using)
-  typedef std::int64_t Whole
-      __attribute__((vector_size(8 * kSize), aligned(8 * kSize), may_alias));  // NOLINT(modernize-use-using)
+  // An attribute that depends on a parameter: only typedef takes it. NOLINTBEGIN(modernize-use-using)
+  typedef double Vector __attribute__((vector_size(8 * kSize), aligned(8 * kSize), may_alias));
+  typedef std::int64_t Whole __attribute__((vector_size(8 * kSize), aligned(8 * kSize), may_alias));
+  // NOLINTEND(modernize-use-using)
 };
 
 // --- sine and cosine: the argument less the nearest odd or even multiple of π/2, which is known to 33 + 33 +

@@ -9,19 +9,26 @@ namespace oblique::ensemble {
 
 using solve::Rodas5p;
 
+namespace {
+
+constexpr double kOne = 1, kMinusOne = -1;  // factors of a kernel
+
+}  // namespace
+
 RosenbrockLanes::RosenbrockLanes(const LaneProgram& program, const LaneKernels& kernels,
                                  const LaneStates& lanes)
     : program_(program),
       kernels_(kernels),
       width_(static_cast<std::size_t>(kernels.width)),
       n_(static_cast<std::uint32_t>(program.n_variables)),
-      stages_(Rodas5p::kStages * n_ * width_),
+      size_(program.n_variables * static_cast<std::size_t>(kernels.width)),
+      stages_(Rodas5p::kStages * size_),
       entries_(program.lu.n_entries() * width_) {
   for (LaneArray* const variables : {&right_side_, &work_, &by_time_, &reciprocals_, &bends_[0], &bends_[1],
                                      &bends_[2], &slope_, &change_})
-    *variables = LaneArray(n_ * width_);
+    *variables = LaneArray(size_);
   for (LaneArray* const numbers : {&scale_, &inverse_, &time_scale_}) *numbers = LaneArray(width_);
-  for (std::size_t i = 0; i < Rodas5p::kStages; ++i) stage_.push_back(stages_.data() + i * n_ * width_);
+  for (std::size_t i = 0; i < Rodas5p::kStages; ++i) stage_.push_back(stages_.data() + i * size_);
   for (const std::uint32_t slot : program.rate_slots) rate_.push_back(lanes.slots.data() + slot * width_);
 }
 
@@ -54,10 +61,9 @@ void RosenbrockLanes::step(LaneStates& lanes) {
                         by_time ? by_time_.data() : nullptr, time_scale_.data(), rate_.data(),
                         right_side_.data());
     kernels_.solve(lu, entries_.data(), reciprocals_.data(), right_side_.data(), work_.data(),
-                   stages_.data() + i * n_ * width_);
+                   stages_.data() + i * size_);
   }
-  constexpr double one = 1;
-  kernels_.combine(n_, 1, &one, stage_.data() + Rodas5p::kStages - 1, variables, lanes.after.data());
+  kernels_.combine(n_, 1, &kOne, stage_.data() + Rodas5p::kStages - 1, variables, lanes.after.data());
   kernels_.norm(n_, stage_.back(), lanes.u.data(), lanes.after.data(), program_.absolute.data(),
                 program_.relative, lanes.error.data());
 }
@@ -77,25 +83,23 @@ void RosenbrockLanes::find_between(LaneStates& lanes) {
 /// more: there F at the polynomial tells by how much, and W, which is still that of the step, takes it away.
 void RosenbrockLanes::correct_between(LaneStates& lanes) {
   double* const slots = lanes.slots.data();
-  std::copy_n(lanes.between.data(), n_ * width_, slots + width_);
+  std::copy_n(lanes.between.data(), size_, slots + width_);
   for (std::size_t l = 0; l < width_; ++l) slots[l] = lanes.t[l] + lanes.theta[l] * lanes.h[l];
   kernels_.run(program_.rates.code(), slots);
-  constexpr double minus = -1;
   const double* const slope = slope_.data();
-  kernels_.right_side(n_, static_cast<std::uint32_t>(program_.n_states), 1, &minus, &slope, inverse_.data(),
-                      nullptr, nullptr, rate_.data(), right_side_.data());
+  kernels_.right_side(n_, static_cast<std::uint32_t>(program_.n_states), 1, &kMinusOne, &slope,
+                      inverse_.data(), nullptr, nullptr, rate_.data(), right_side_.data());
   kernels_.solve(program_.lu.code(), entries_.data(), reciprocals_.data(), right_side_.data(), work_.data(),
                  change_.data());
-  constexpr double one = 1;
   const double* const change = change_.data();
-  kernels_.combine(n_, 1, &one, &change, lanes.between.data(), lanes.between.data());
+  kernels_.combine(n_, 1, &kOne, &change, lanes.between.data(), lanes.between.data());
 }
 
 double RosenbrockLanes::step_factor(double error) const {
-  constexpr double root[] = {0.92211035, -0.12278577, 0.04900795, -0.02653251, 0.01457163};
-  constexpr double powers[] = {1, 0.8705505632961241, 0.757858283255199, 0.6597539553864471,
-                               0.5743491774985175};
-  return step_factor_of(error, 5, root, powers);
+  constexpr double kRoot[] = {0.92211035, -0.12278577, 0.04900795, -0.02653251, 0.01457163};
+  constexpr double kPowers[] = {1, 0.8705505632961241, 0.757858283255199, 0.6597539553864471,
+                                0.5743491774985175};
+  return step_factor_of(error, 5, kRoot, kPowers);
 }
 
 }  // namespace oblique::ensemble

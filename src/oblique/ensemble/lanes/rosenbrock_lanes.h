@@ -23,7 +23,8 @@ class RosenbrockLanes final : public LaneMethod {
   const LaneProgram& program_;
   const LaneKernels& kernels_;
   std::size_t width_;
-  std::uint32_t n_;
+  std::uint32_t n_;   ///< variables
+  std::size_t size_;  ///< of an array of variables
   LaneArray stages_, right_side_, work_, by_time_, entries_, reciprocals_, bends_[3], slope_, change_;
   LaneArray scale_, inverse_, time_scale_;
   bool bends_known_ = false;

@@ -12,10 +12,11 @@ VernerLanes::VernerLanes(const LaneProgram& program, const LaneKernels& kernels,
       kernels_(kernels),
       width_(static_cast<std::size_t>(kernels.width)),
       n_(static_cast<std::uint32_t>(program.n_variables)),
-      stages_(Verner7::kAllStages * n_ * width_),
-      error_(n_ * width_),
+      size_(program.n_variables * static_cast<std::size_t>(kernels.width)),
+      stages_(Verner7::kAllStages * size_),
+      error_(size_),
       weights_(Verner7::kAllStages * width_) {
-  for (std::size_t i = 0; i < Verner7::kAllStages; ++i) stage_.push_back(stages_.data() + i * n_ * width_);
+  for (std::size_t i = 0; i < Verner7::kAllStages; ++i) stage_.push_back(stages_.data() + i * size_);
 }
 
 void VernerLanes::find_stage(LaneStates& lanes, std::size_t stage) {
@@ -24,7 +25,7 @@ void VernerLanes::find_stage(LaneStates& lanes, std::size_t stage) {
   kernels_.advance(n_, static_cast<std::uint32_t>(stage), Verner7::a[stage], stage_.data(), lanes.h.data(),
                    lanes.u.data(), slots + width_);
   kernels_.run(program_.rates.code(), slots);
-  double* to = stages_.data() + stage * n_ * width_;
+  double* to = stages_.data() + stage * size_;
   for (const std::uint32_t slot : program_.rate_slots) to = std::copy_n(slots + slot * width_, width_, to);
 }
 
@@ -55,15 +56,15 @@ void VernerLanes::find_between(LaneStates& lanes) {
 }
 
 double VernerLanes::step_factor(double error) const {
-  constexpr double root[] = {0.943723115, -0.089799773, 0.034152001, -0.017729683, 0.009554881};
-  constexpr double powers[] = {1,
-                               0.9057236642639067,
-                               0.820335356007638,
-                               0.7429971445684742,
-                               0.6729500963161781,
-                               0.6095068271022377,
-                               0.5520447568369062};
-  return step_factor_of(error, 7, root, powers);
+  constexpr double kRoot[] = {0.943723115, -0.089799773, 0.034152001, -0.017729683, 0.009554881};
+  constexpr double kPowers[] = {1,
+                                0.9057236642639067,
+                                0.820335356007638,
+                                0.7429971445684742,
+                                0.6729500963161781,
+                                0.6095068271022377,
+                                0.5520447568369062};
+  return step_factor_of(error, 7, kRoot, kPowers);
 }
 
 }  // namespace oblique::ensemble

@@ -23,7 +23,8 @@ class VernerLanes final : public LaneMethod {
   const LaneProgram& program_;
   const LaneKernels& kernels_;
   std::size_t width_;
-  std::uint32_t n_;
+  std::uint32_t n_;   ///< variables
+  std::size_t size_;  ///< of an array of variables
   LaneArray stages_, error_, weights_;
   bool all_known_ = false;            ///< also the stages between the ends
   std::vector<const double*> stage_;  ///< where they stand

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
-#include <ranges>
 
 #include <oblique/network/program/program_code.h>
 
@@ -56,7 +55,7 @@ bool ParameterSetting::set(std::span<const Parameter> parameters, bool kinds_cou
   const bool same = std::all_of(was_.begin(), was_.end(),
                                 [&](const auto& entry) { return holds(entry.first, kinds_count); });
   if (!same) {
-    for (const auto& [c, value] : std::views::reverse(was_)) values_[c] = value;
+    for (auto was = was_.rbegin(); was != was_.rend(); ++was) values_[was->first] = was->second;
   }
   return same;
 }
