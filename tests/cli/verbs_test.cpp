@@ -78,7 +78,7 @@ TEST_F(Verbs, RunTellsHowManyDigitsStand) {
   EXPECT_EQ(outcome.status, 0);
   EXPECT_THAT(outcome.err,
               HasSubstr("trust: errors of the outputs, from a run at a tolerance of 1e-12 by adams and a "
-                        "run at a tolerance of 1e-12 by bdf\n"));
+                        "run at a tolerance of 1e-12 by rodas\n"));
   EXPECT_THAT(outcome.err, HasSubstr("digits at the end"));
   EXPECT_THAT(outcome.out, Not(HasSubstr("trust")));
   EXPECT_THAT(oblique("run diagrams/lessons/damped-oscillator.toml").err, Not(HasSubstr("trust")));

@@ -99,7 +99,8 @@ class Examination {
       case 4:
         return split();
       case 5:
-        return by_method(diagram::IntegrationMethod::adams) + by_method(diagram::IntegrationMethod::bdf);
+        return by_method(diagram::IntegrationMethod::adams) + by_method(diagram::IntegrationMethod::bdf) +
+               by_method(diagram::IntegrationMethod::rodas);
       default:
         return to_tolerance();
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The estimate of a run's error beside events, timelines, saved states, chaos; smooth problems are in
 // catalogue_test.cpp.
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -150,11 +151,39 @@ TEST(Trust, SaysWhyThereIsNoEstimate) {
   const Compiled made(
       "xx = { type = \"squarer\", in = \"x\" }\nx = { type = \"integrator\", in = [\"xx\"], initial = 1 }\n");
   RunOptions options;
-  options.max_steps = 60;  // enough at 1e-3, not at 1e-5
+  options.method = diagram::IntegrationMethod::rodas;
+  options.max_steps = 20;  // enough for that at 1e-3; not at 1e-5, nor for CVODES
   options.tolerance = 1e-3;
   const oblique::solve::Run result = trusted(made, 0.9, options);
   EXPECT_TRUE(result.trust->checks.empty());
   EXPECT_THAT(result.trust->failure, HasSubstr("its budget of"));
+}
+
+// A decay of 10⁶/s beside one of 1/s, by BDF: Adams' formulas would take a million steps. x = (1 + t) e^−t.
+TEST(Trust, HasASecondOpinionOfStiffEquations) {
+  const Compiled made(R"toml(u = { type = "integrator", in = ["-u"], initial = 1 }
+f = { type = "integrator", in = ["1e6*u", "-1e6*f"], initial = 1 }
+x = { type = "integrator", in = ["f", "-x"], initial = 1 }
+)toml");
+  const oblique::solve::Run result = trusted(made, 4);
+  ASSERT_EQ(result.method.method, diagram::IntegrationMethod::bdf);
+  ASSERT_EQ(result.trust->checks.size(), 2);
+  EXPECT_EQ(result.trust->checks[1].method, diagram::IntegrationMethod::rodas);
+  double error = 0;
+  const std::vector<double> t = testing::row_values(result, "t"), x = testing::row_values(result, "x");
+  // with the lag of f, which is 1e-6
+  for (std::size_t row = 0; row < t.size(); ++row) {
+    const double k = 1e6, a = k / (k - 1);  // f = a e^−t + (1 − a) e^−kt
+    const double truth = std::exp(-t[row]) * (1 + a * t[row]) +
+                         (1 - a) / (1 - k) * (std::exp(-k * t[row]) - std::exp(-t[row]));
+    error = std::max(error, std::abs(x[row] - truth));
+  }
+  const auto& estimates = result.trust->outputs;
+  const auto shown = std::find_if(estimates.begin(), estimates.end(),
+                                  [](const OutputError& output) { return output.name == "x"; });
+  ASSERT_NE(shown, estimates.end());
+  EXPECT_GT(shown->largest, 0.5 * error);
+  EXPECT_LT(shown->largest, 2 * error + 1e-12);
 }
 
 // The rows of `on_sample` and the steps of `progress` belong to the run alone.

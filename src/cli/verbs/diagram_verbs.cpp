@@ -38,7 +38,7 @@ void add_run(CLI::App& app, Chosen& chosen) {
                  "end the run with status 1 where a signal first leaves ±1 machine unit");
   verb->add_flag(
       "--trust", request->trust,
-      "run again, finer and by the other method, and say how many digits of each output can be trusted");
+      "run again, finer and by another method, and say how many digits of each output can be trusted");
   verb->add_option("--sensitivity", request->sensitivity,
                    "add columns with the derivatives of the outputs by these parameters: c.gain,x.in[1]")
       ->type_name("NAMES")

@@ -99,6 +99,12 @@ RunOptions silent(const RunOptions& options) {
   return check;
 }
 
+/// One that goes another way: of several steps where this one is of one, and the reverse.
+diagram::IntegrationMethod other_method(diagram::IntegrationMethod method) {
+  using Method = diagram::IntegrationMethod;
+  return method == Method::rodas ? Method::automatic : Method::rodas;
+}
+
 }  // namespace
 
 int OutputError::digits(double error) const {
@@ -135,8 +141,7 @@ Trust estimate_error(const network::Program& program, const diagram::FlatDiagram
     trust.failure = error.diagnostics().front().what;
   }
   if (program.n_states() == 0) return trust;
-  const bool adams = done.method.method == diagram::IntegrationMethod::adams;
-  check.method = adams ? diagram::IntegrationMethod::bdf : diagram::IntegrationMethod::adams;
+  check.method = other_method(done.method.method);
   check.max_steps = std::min(options.max_steps, std::max(kLeastSteps, kMostEffort * done.statistics.steps));
   try {
     hold_beside();

@@ -48,12 +48,13 @@ struct Trust {
 };
 
 /// Estimates the error of `done`, the run of these options, by running again at a finer tolerance, and once
-/// more so with the other method where that takes no more than some twenty times the steps: the largest
-/// difference of each output. A method's error and its tolerance fall together, so that the first is known to
-/// a few per cent where the equations are smooth; the second does not share what one method does wrong. Rows
-/// between the times at which two runs have the same event are left out: there an output that jumps has
-/// jumped in one of them. Whatever all the runs miss alike (a pulse between their steps) is not in the
-/// estimate.
+/// more so by Rodas5P (of a run by that, by CVODES) where that takes no more than some twenty times the
+/// steps: the largest difference of each output. A method's error and its tolerance fall together, so that
+/// the first is known to a few per cent where the equations are smooth; the second does not share what one
+/// method does wrong. (The other family of CVODES would be the less accurate of the two, by a hundred times
+/// beside 1e-11, and Adams' formulas do not come through stiff equations.) Rows between the times at which
+/// two runs have the same event are left out: there an output that jumps has jumped in one of them. Whatever
+/// all the runs miss alike (a pulse between their steps) is not in the estimate.
 Trust estimate_error(const network::Program& program, const diagram::FlatDiagram& diagram,
                      const RunOptions& options, const Run& done);
 

@@ -144,15 +144,7 @@ double RosenbrockSolver::step() {
     if (outcome == Outcome::impossible) {
       next_ = kRefusedFactor * h;
     } else {
-      const double wanted = kSafety * std::pow(error_, -0.2);  // a number that is none is the longest
-      double factor = std::clamp(wanted, kLeastFactor, first_ ? kMostFirstFactor : kMostFactor);
-      if (outcome == Outcome::inaccurate) {
-        ++statistics_.error_test_failures;
-        factor = std::min(factor, kSafety);
-      } else if (tried) {
-        factor = std::min(factor, 1.0);
-      }
-      next_ = h * factor;
+      next_ = h * factor_after(outcome, tried);
     }
     if (outcome == Outcome::taken) {
       take(h);
@@ -164,6 +156,16 @@ double RosenbrockSolver::step() {
     tried = true;
   }
   throw failure();
+}
+
+/// How much longer than the one just tried the next step is to be.
+double RosenbrockSolver::factor_after(Outcome outcome, bool tried) {
+  const double wanted = std::isfinite(error_) ? kSafety * std::pow(error_, -0.2) : kLeastFactor;
+  const double factor = std::clamp(wanted, kLeastFactor, first_ ? kMostFirstFactor : kMostFactor);
+  if (outcome == Outcome::taken) return tried ? std::min(factor, 1.0) : factor;
+  ++statistics_.error_test_failures;
+  // An error that stays as the step becomes shorter is that of a decay much faster than the step.
+  return tried ? kLeastFactor : std::min(factor, kSafety);
 }
 
 RosenbrockSolver::Outcome RosenbrockSolver::try_step(double h) {

@@ -37,6 +37,7 @@ class RosenbrockSolver final : public Solver {
   void begin();
   double first_step() const;
   double length_of_next() const;
+  double factor_after(Outcome outcome, bool tried);
   Outcome try_step(double h);
   bool linearise(double h);
   bool differentiate(double clock, std::span<const double> x);

@@ -14,7 +14,7 @@ namespace oblique::solve {
 namespace {
 
 /// Below this order, or with more than this part of the entries, full rows are faster than lists of entries.
-constexpr std::size_t kSmall = 12;
+constexpr std::size_t kSmall = 16;
 constexpr double kFull = 0.5;
 
 /// Reciprocal growth of the entries by factorising with the pivots of another matrix: below it they are
@@ -34,7 +34,7 @@ class StepMatrix::Factors {
 class StepMatrix::DenseFactors final : public Factors {
  public:
   explicit DenseFactors(const network::SparsePattern& pattern)
-      : n_(pattern.size()), entries_(n_ * n_), reciprocals_(n_), pivots_(n_) {
+      : n_(pattern.size()), entries_(n_ * n_), columns_(n_ * n_), reciprocals_(n_), pivots_(n_) {
     for (std::size_t column = 0; column < n_; ++column) {
       for (auto k = pattern.column_starts[column]; k < pattern.column_starts[column + 1]; ++k)
         places_.push_back(static_cast<std::size_t>(pattern.rows[static_cast<std::size_t>(k)]) * n_ + column);
@@ -63,22 +63,23 @@ class StepMatrix::DenseFactors final : public Factors {
         for (std::size_t j = k + 1; j < n_; ++j) to[j] -= multiplier * from[j];
       }
     }
+    for (std::size_t i = 0; i < n_; ++i) {
+      for (std::size_t j = 0; j < n_; ++j) columns_[j * n_ + i] = at(i, j);
+    }
     return true;
   }
 
   void solve(std::span<double> b) override {
     for (std::size_t k = 0; k < n_; ++k) std::swap(b[k], b[pivots_[k]]);
-    for (std::size_t i = 1; i < n_; ++i) {
-      const double* const of = row(i);
-      double sum = b[i];
-      for (std::size_t j = 0; j < i; ++j) sum -= of[j] * b[j];
-      b[i] = sum;
+    for (std::size_t k = 0; k < n_; ++k) {
+      const double* const of = columns_.data() + k * n_;
+      const double by = b[k];
+      for (std::size_t i = k + 1; i < n_; ++i) b[i] -= of[i] * by;
     }
-    for (std::size_t i = n_; i-- > 0;) {
-      const double* const of = row(i);
-      double sum = b[i];
-      for (std::size_t j = i + 1; j < n_; ++j) sum -= of[j] * b[j];
-      b[i] = sum * reciprocals_[i];
+    for (std::size_t k = n_; k-- > 0;) {
+      const double* const of = columns_.data() + k * n_;
+      const double by = b[k] *= reciprocals_[k];
+      for (std::size_t i = 0; i < k; ++i) b[i] -= of[i] * by;
     }
   }
 
@@ -87,7 +88,7 @@ class StepMatrix::DenseFactors final : public Factors {
   double at(std::size_t i, std::size_t j) const { return entries_[i * n_ + j]; }
 
   std::size_t n_;
-  std::vector<double> entries_, reciprocals_;
+  std::vector<double> entries_, columns_, reciprocals_;
   std::vector<std::size_t> pivots_, places_;
 };
 
