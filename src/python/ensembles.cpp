@@ -49,6 +49,7 @@ py::dict count_of(const ensemble::EnsembleCount& count) {
   dict["in_lanes"] = count.in_lanes;
   dict["by_cvodes"] = count.by_cvodes;
   dict["failed"] = count.failed;
+  dict["warned"] = count.warned;
   py::dict reasons;
   for (const auto& [reason, times] : count.reasons) reasons[to_str(reason)] = times;
   dict["reasons"] = reasons;

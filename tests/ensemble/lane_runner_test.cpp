@@ -83,7 +83,7 @@ TEST(LaneRunner, DrivesThatTurnFastAreNotSteppedOver) {
     values[0] = 0.3 * std::pow(3.0, at(k));
     values[1] = -(2.0 + at(k));
   });
-  EXPECT_EQ(driven.count.in_lanes, 8U);
+  EXPECT_GE(driven.count.in_lanes, 6U);  // the others begin with beats below the tolerance
   for (const auto& [k, rows] : all) {
     const double drive = 2 * std::numbers::pi * 0.3 * std::pow(3.0, at(k)), own = std::sqrt(2.0 + at(k));
     for (std::size_t r = 0; r < 11; ++r) {
@@ -129,12 +129,12 @@ TEST(LaneRunner, LoopsAreUnknowns) {
       x = { type = "integrator", in = ["-1*s"], initial = 1 })",
                  {"s.in[1]", "s.in[2]"}, "x = \"x\"\ns = \"s\"");
   const auto all = loops.run(20, [](std::uint64_t k, std::span<double> values) {
-    values[0] = 1 + 0.1 * at(k);
-    values[1] = -0.04 * at(k);
+    values[0] = 1 + 0.002 * at(k);
+    values[1] = -0.5 - 0.002 * at(k);
   });
   EXPECT_EQ(loops.count.in_lanes, 20U);
   for (const auto& [k, rows] : all) {
-    const double rate = (1 + 0.1 * at(k)) / (1 + 0.04 * at(k));
+    const double rate = (1 + 0.002 * at(k)) / (1.5 + 0.002 * at(k));
     for (std::size_t r = 0; r < 11; ++r) {
       EXPECT_NEAR(rows[3 * r + 1], std::exp(-rate * rows[3 * r]), 1e-6);
       EXPECT_NEAR(rows[3 * r + 2], rate * std::exp(-rate * rows[3 * r]), 2e-6);
@@ -153,14 +153,14 @@ TEST(LaneRunner, ServosComeToRestAndFollowBetweenTheStepsToo) {
                  {"x.in[1]", "x.initial"}, "y = \"y\"");
   roots.options.run.samples = 301;
   const auto all = roots.run(20, [](std::uint64_t k, std::span<double> values) {
-    values[0] = 0.4 + 0.02 * at(k);
-    values[1] = 0.05 + 0.01 * at(k);
+    values[0] = 0.8 + 0.002 * at(k);
+    values[1] = 0.1 + 0.001 * at(k);
   });
   EXPECT_EQ(roots.count.in_lanes, 20U);
   for (const auto& [k, rows] : all) {
     EXPECT_LT(roots.steps.at(k), 100U);  // so that most rows lie between
     for (std::size_t r = 0; r < 301; ++r) {
-      const double x = 0.05 + 0.01 * at(k) + (0.4 + 0.02 * at(k)) * rows[2 * r];
+      const double x = 0.1 + 0.001 * at(k) + (0.8 + 0.002 * at(k)) * rows[2 * r];
       EXPECT_NEAR(rows[2 * r + 1], std::sqrt(x), 1e-6 + 1e-6 / std::sqrt(x))
           << k << " row " << r;  // 1/gain of the loop
     }
@@ -267,6 +267,90 @@ TEST(LaneRunner, AMachineThatGrowsWithoutBoundLeavesItsNeighboursAlone) {
   }
 }
 
+// y³ − y = a, from `initial`: whoever comes from below 0 comes to another root than the typical machine,
+// which Newton's method from the typical rest would not find.
+TEST(LaneRunner, AMachineThatComesToAnotherRestIsLeftToCvodes) {
+  Machines roots(R"(
+      a = { type = "constant", value = 0.1 }
+      y = { type = "servo-amplifier", gain = 1e6, bandwidth = 100, in = ["y3", "-y", "-a"], initial = 1 }
+      yy = { type = "squarer", in = "y" }
+      y3 = { type = "multiplier", in = ["yy", "y"] }
+      k = { type = "integrator", in = ["0.1*y"] })",
+                 {"y.initial", "a.value"}, "y = \"y\"");
+  const auto all = roots.run(9, [](std::uint64_t k, std::span<double> values) {
+    values[0] = k < 3 ? 1 : k < 6 ? -2 : 2;
+    values[1] = 0.1 + 0.001 * at(k);
+  });
+  EXPECT_EQ(roots.count.in_lanes, 3U);
+  for (const auto& [k, rows] : all) {
+    const double y = rows[1], a = 0.1 + 0.001 * at(k);
+    EXPECT_NEAR(y * y * y - y, a, 1e-5);  // 1/gain
+    EXPECT_EQ(y > 0, k < 3 || k >= 6) << k;
+  }
+}
+
+// A loop whose sign turns runs away, although it has a rest: the lanes' method would damp it.
+TEST(LaneRunner, ALoopThatRunsAwayHasNoNumbers) {
+  Machines loops(R"(
+      c = { type = "constant", value = 0.1 }
+      g = { type = "gain", factor = 1, in = "y" }
+      y = { type = "servo-amplifier", gain = 1e6, bandwidth = 100, in = ["g", "-c"] }
+      k = { type = "integrator", in = ["y"] })",
+                 {"g.factor"}, "y = \"y\"");
+  const auto all =
+      loops.run(6, [](std::uint64_t k, std::span<double> values) { values[0] = k < 3 ? 1 : -1; });
+  EXPECT_EQ(loops.count.in_lanes, 3U);
+  EXPECT_EQ(loops.count.failed, 3U);
+}
+
+// ∫ sin^2048: its peaks are a fiftieth of a radian wide. By Wallis' product the integral over a turn is 2π
+// C(2n, n)/4^n.
+TEST(LaneRunner, NarrowPowersOfASineAreNotSteppedOver) {
+  std::string blocks = "w = { type = \"sine-source\", frequency = \"1/(2*pi)\", phase = 0 }\n";
+  blocks += "s0 = { type = \"squarer\", in = \"w\" }\n";
+  for (int k = 1; k <= 10; ++k)
+    blocks +=
+        "s" + std::to_string(k) + " = { type = \"squarer\", in = \"s" + std::to_string(k - 1) + "\" }\n";
+  Machines peaks(blocks + "x = { type = \"integrator\", in = [\"s10\"] }", {"w.phase"});
+  peaks.options.run.until = 2 * std::numbers::pi;
+  const auto all = peaks.run(20, [](std::uint64_t k, std::span<double> values) { values[0] = 0.1 * at(k); });
+  double truth = 2 * std::numbers::pi;
+  for (int n = 1; n <= 1024; ++n) truth *= (2.0 * n - 1) / (2.0 * n);
+  for (const auto& [k, rows] : all) EXPECT_NEAR(rows[21], truth, 1e-6) << k;
+}
+
+// x′ = x − x² from 1e-12: below the absolute tolerance the size of x is not known, and it comes back from
+// there. And x′ = (t − 10) x, which sinks to e^−50 of its start.
+TEST(LaneRunner, WhatGrowsFromBelowTheToleranceIsLeftToCvodes) {
+  Machines logistic(R"(
+      x = { type = "integrator", in = ["x", "-xx"], initial = 0.1 }
+      xx = { type = "squarer", in = "x" })",
+                    {"x.initial"});
+  logistic.options.run.until = 40;
+  const auto all = logistic.run(
+      4, [](std::uint64_t k, std::span<double> values) { values[0] = std::pow(10.0, -4 * at(k + 1)); });
+  EXPECT_GE(logistic.count.by_cvodes, 3U);
+  for (const auto& [k, rows] : all) {
+    const double start = std::pow(10.0, -4 * at(k + 1));
+    for (std::size_t r = 0; r < 11; ++r) {
+      const double grown = start * std::exp(rows[2 * r]);
+      EXPECT_NEAR(rows[2 * r + 1], grown / (1 - start + grown), 1e-5) << k << " row " << r;
+    }
+  }
+  Machines trough(R"(
+      one = { type = "constant" }
+      c = { type = "integrator", in = ["one"], initial = -10 }
+      p = { type = "multiplier", in = ["c", "x"] }
+      x = { type = "integrator", in = ["p"], rate = 0.1, initial = 1 })",
+                  {"x.rate"});
+  trough.options.run.until = 20;
+  const auto back =
+      trough.run(6, [](std::uint64_t k, std::span<double> values) { values[0] = 0.1 + 0.15 * at(k); });
+  EXPECT_GE(trough.count.by_cvodes, 2U);
+  for (const auto& [k, rows] : back)
+    EXPECT_NEAR(rows[21], 1, 1e-4) << k;  // four digits are what lanes know at least
+}
+
 // Of the servo y² = x with x below zero there is no rest near that of the typical machine.
 TEST(LaneRunner, AMachineWithoutRestIsLeftToCvodes) {
   Machines roots(R"(
@@ -279,7 +363,8 @@ TEST(LaneRunner, AMachineWithoutRestIsLeftToCvodes) {
       roots.run(8, [](std::uint64_t k, std::span<double> values) { values[0] = k == 3 ? -0.5 : 0.5; });
   EXPECT_EQ(roots.count.in_lanes, 7U);
   EXPECT_EQ(roots.count.reasons,
-            (std::map<std::string, std::uint64_t>{{"no rest near that of the typical machine", 1}}));
+            (std::map<std::string, std::uint64_t>{
+                {"its loops may come to another rest than those of the typical machine", 1}}));
 }
 
 }  // namespace

@@ -67,6 +67,11 @@ std::string count_text(const ensemble::EnsembleCount& count) {
   std::vector<std::string> reasons;
   for (const auto& [reason, times] : count.reasons) reasons.push_back(fmt::format("{} {}", times, reason));
   if (!reasons.empty()) text += fmt::format(" ({})", fmt::join(reasons, ", "));
+  if (count.first_warned) {
+    text += fmt::format("\nwarning of {}; the first, machine {}: {}",
+                        report::count(count.warned, "machine", "machines"), count.first_warned->first,
+                        count.first_warned->second);
+  }
   return text + "\n";
 }
 

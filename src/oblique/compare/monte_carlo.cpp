@@ -111,9 +111,9 @@ class Experiment {
       if (!failures[k].empty()) failed.push_back({options_.first_run + places[k], failures[k]});
     }
     if (count == nullptr) return;
-    count->in_lanes += done.in_lanes;
-    count->by_cvodes += done.by_cvodes;
-    for (const auto& [reason, machines] : done.reasons) count->reasons[reason] += machines;
+    const std::uint64_t failures_known = count->failed;  // of the last attempt, counted by the caller
+    *count += done;
+    count->failed = failures_known;
   }
 
   const MonteCarloOptions& options_;

@@ -18,7 +18,27 @@ namespace {
 
 constexpr int kWidth = 16;  ///< lanes
 
+std::string first_line(const std::string& text) {
+  return text.substr(0, text.find('\n'));
+}
+
 }  // namespace
+
+void EnsembleCount::warn(std::uint64_t number, const std::string& warning) {
+  ++warned;
+  if (!first_warned || number < first_warned->first) first_warned.emplace(number, warning);
+}
+
+EnsembleCount& EnsembleCount::operator+=(const EnsembleCount& others) {
+  in_lanes += others.in_lanes;
+  by_cvodes += others.by_cvodes;
+  failed += others.failed;
+  warned += others.warned;
+  for (const auto& [why, how_many] : others.reasons) reasons[why] += how_many;
+  if (others.first_warned && (!first_warned || others.first_warned->first < first_warned->first))
+    first_warned = others.first_warned;
+  return *this;
+}
 
 struct Ensemble::Parts {
   diagram::FlatDiagram diagram;
@@ -36,9 +56,9 @@ struct Ensemble::Parts {
       run = solve::run(network::Program(network::assemble(machine)), machine, options.run);
       done.rows = run.trajectory.values();
       done.steps = static_cast<std::size_t>(run.statistics.steps);
+      if (!run.warnings.empty()) done.warning = first_line(run.warnings.front().what);
     } catch (const text::Error& error) {
-      const std::string& what = error.diagnostics().front().what;
-      done.failure = what.substr(0, what.find('\n'));
+      done.failure = first_line(error.diagnostics().front().what);
     }
   }
 };
@@ -78,11 +98,13 @@ EnsembleCount Ensemble::run(std::uint64_t first, std::uint64_t count, const Valu
       done.number = number;
       done.rows = {};
       done.failure.clear();
+      done.warning.clear();
       done.no_lane = why;
       parts_->run_alone(drawn, done, run);
       ++mine.by_cvodes;
       ++mine.reasons[why];
       if (!done.failure.empty()) ++mine.failed;
+      if (!done.warning.empty()) mine.warn(number, done.warning);
       take(done);
     };
     if (parts_->lanes.program) {
@@ -95,6 +117,7 @@ EnsembleCount Ensemble::run(std::uint64_t first, std::uint64_t count, const Valu
         done.rows = rows;
         done.steps = steps;
         done.failure.clear();
+        done.warning.clear();
         done.no_lane.clear();
         ++mine.in_lanes;
         take(done);
@@ -110,10 +133,7 @@ EnsembleCount Ensemble::run(std::uint64_t first, std::uint64_t count, const Valu
       }
     }
     const std::lock_guard lock(guard);
-    all.in_lanes += mine.in_lanes;
-    all.by_cvodes += mine.by_cvodes;
-    all.failed += mine.failed;
-    for (const auto& [why, how_many] : mine.reasons) all.reasons[why] += how_many;
+    all += mine;
   };
   work_off(first, count, parts_->options.threads, work, progress);
   return all;

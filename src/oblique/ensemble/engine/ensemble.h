@@ -6,8 +6,10 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <oblique/diagram/flat_diagram.h>
@@ -30,6 +32,7 @@ struct MachineRun {
   /// The table of a run, row by row: `t` and the outputs of the diagram; empty where the machine failed.
   std::span<const double> rows;
   std::string failure;    ///< why it failed, in a line; else empty
+  std::string warning;    ///< the first one of its run, in a line; of a lane none
   std::string no_lane;    ///< why CVODES ran it, in a line; empty where a lane did
   std::size_t steps = 0;  ///< of the solver
 };
@@ -40,6 +43,14 @@ struct EnsembleCount {
   std::uint64_t by_cvodes = 0;  ///< the failed ones among them
   std::uint64_t failed = 0;
   std::map<std::string, std::uint64_t> reasons;  ///< why CVODES ran how many
+  std::uint64_t warned = 0;                      ///< how many ran with a warning
+  /// The warned machine of the least number, and of what.
+  std::optional<std::pair<std::uint64_t, std::string>> first_warned;
+
+  /// Counts a machine that ran with a warning.
+  void warn(std::uint64_t number, const std::string& warning);
+  /// Adds those of other machines.
+  EnsembleCount& operator+=(const EnsembleCount& others);
 };
 
 /// The same diagram many times over, each machine with other values of some parameters.

@@ -217,6 +217,10 @@ LaneCompilation compile_for_lanes(const diagram::FlatDiagram& diagram, std::span
 
   Pattern pattern;
   for (std::uint32_t i = 0; i < flat.n_states; ++i) lanes.diagonal.push_back(pattern.at(i, i));
+  lanes.grows.assign(flat.n_states, false);
+  for (const network::MatrixEntry& entry : flat.jacobian) {
+    if (entry.row < flat.n_states) lanes.grows[entry.row] = true;
+  }
   std::vector<std::pair<std::uint32_t, std::uint32_t>> steps;
   for (const network::MatrixEntry& entry : flat.jacobian)
     steps.emplace_back(pattern.at(entry.row, entry.column), in_integration(entry.slot));

@@ -61,6 +61,7 @@ struct LaneProgram {
             static_cast<std::uint32_t>(n_states), diagonal.data()};
   }
 
+  std::vector<bool> grows;          ///< of the states: its rate depends on a state
   std::vector<LaneNumber> starts;   ///< of the states
   std::vector<double> guess;        ///< of all variables: the start of the diagram as it is
   std::vector<bool> at_rest;        ///< of all variables: those that are solved for before the clock starts

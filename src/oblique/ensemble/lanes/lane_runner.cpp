@@ -14,6 +14,14 @@ constexpr double kMostGrowth = 1e6;  ///< of a multiplier: beyond, the fixed ord
 /// How far the argument of a sine or cosine of the time may go in a step [rad].
 constexpr double kMostTurn = std::numbers::pi / 2;
 constexpr int kMostNewton = 15;
+/// How far what a machine draws may be from what the typical one does, of that and absolutely, so that its
+/// servo loops come to the rest that is near the typical one's: what would decide between two rests is far.
+constexpr double kNear = 0.03;
+/// A state in a trough below kLow absolute tolerances, of which no more than 4 digits are known, that rises
+/// to kRisen times of it.
+constexpr double kLow = 1e4, kRisen = 100;
+constexpr double kGrown = 1;  ///< times e: what a state has grown by of itself is no less
+constexpr double kNoTrough = std::numeric_limits<double>::infinity();
 constexpr double kAtRest = 1e-12;     ///< a step of Newton's method, of its variable and a machine unit
 constexpr double kContracts = 0.5;    ///< such a step, of the one before it
 constexpr double kSurelyNear = 1e-9;  ///< from here on rounding may end the contraction
@@ -35,6 +43,19 @@ LaneRunner::LaneRunner(const LaneProgram& program, std::span<const double> base,
   for (LaneArray* const numbers : {&at_.t, &at_.h, &at_.error, &at_.growth, &at_.theta})
     *numbers = LaneArray(width_);
   method_ = make_lane_method(program, kernels, at_);
+  typical_.resize(program.prologue->slots().size());
+  program.prologue->run(base, scratch_, typical_);
+  for (std::size_t i = 0; i < program.n_states; ++i) {
+    if (program.at_rest[i] || !program.grows[i]) continue;
+    std::vector<std::uint32_t> own;
+    for (std::size_t k = 0; k < program.matrix_steps.size(); k += 2) {
+      if (program.matrix_steps[k] == program.diagonal[i]) own.push_back(program.matrix_steps[k + 1]);
+    }
+    watched_.emplace_back(i, std::move(own));
+  }
+  trough_ = LaneArray((watched_.size() + 1) * width_);
+  trough_time_ = LaneArray((watched_.size() + 1) * width_);
+  risen_ = LaneArray(width_);
 }
 
 LaneArray LaneRunner::slots_of(const LaneSpace& space) const {
@@ -68,6 +89,10 @@ bool LaneRunner::draw(Machine& machine) {
     machine.refused = "another case of the equations";
     return false;
   }
+  if (program_.needs_rest && !is_near(machine.draws)) {
+    machine.refused = "its loops may come to another rest than those of the typical machine";
+    return false;
+  }
   machine.start = program_.guess;
   for (std::size_t i = 0; i < program_.n_states; ++i) {
     if (!program_.at_rest[i]) machine.start[i] = program_.starts[i].of(machine.draws);
@@ -78,6 +103,13 @@ bool LaneRunner::draw(Machine& machine) {
     return false;
   }
   machine.longest_step = longest_step(machine);
+  return true;
+}
+
+bool LaneRunner::is_near(std::span<const double> draws) const {
+  for (std::size_t k = 0; k < draws.size(); ++k) {
+    if (!(std::abs(draws[k] - typical_[k]) <= kNear * (1 + std::abs(typical_[k])))) return false;
+  }
   return true;
 }
 
@@ -192,6 +224,13 @@ void LaneRunner::put(std::size_t lane, std::size_t m) {
   for (std::size_t i = 0; i < n_; ++i) at_.u[i * width_ + lane] = machine.start[i];
   machine.rows.resize(static_cast<std::size_t>(program_.rows) * n_);
   std::copy(machine.start.begin(), machine.start.end(), machine.rows.begin());
+  double largest = 0;
+  for (std::size_t k = 0; k <= watched_.size(); ++k) {
+    const double start = k < watched_.size() ? std::abs(machine.start[watched_[k].first]) : largest;
+    largest = std::max(largest, start);
+    trough_[k * width_ + lane] = start > 0 ? start : kNoTrough;
+    trough_time_[k * width_ + lane] = 0;
+  }
   lanes_[lane] = {m, true, false, 1};
   at_.t[lane] = 0;
   at_.h[lane] = machine.first_step;
@@ -229,6 +268,56 @@ void LaneRunner::refuse_lane(std::size_t l, const std::string& why, const Refuse
   lanes_[l].busy = false;
 }
 
+/// Whether a state's own growth has brought it up from its trough: ∂F/∂x of its own, for the time since then.
+/// Else what drives it has, and its error stays what it was.
+bool LaneRunner::grows_by_itself(std::size_t watched, std::size_t lane, bool& evaluated) {
+  if (!evaluated) {
+    std::copy_n(at_.after.data(), n_ * width_, at_.slots.data() + width_);
+    for (std::size_t l = 0; l < width_; ++l) at_.slots[l] = at_.t[l] + at_.h[l];
+    kernels_.run(program_.rates.code(), at_.slots.data());
+    kernels_.run(program_.derivatives.code(), at_.slots.data());
+    evaluated = true;
+  }
+  double rate = 0;
+  for (const std::uint32_t slot : watched_[watched].second) rate += at_.slots[slot * width_ + lane];
+  return rate * (at_.t[lane] + at_.h[lane] - trough_time_[watched * width_ + lane]) > kGrown;
+}
+
+/// A state that comes near its absolute tolerance and grows again is known to few digits: down there the
+/// solver looks at the tolerance alone. (A single run begins anew, finer.) So are all of them where they come
+/// near it together. What others drive through 0 is no such state, nor what rises from an exact 0. Sees the
+/// steps just taken, which stand in `where_`.
+void LaneRunner::watch_troughs() {
+  bool evaluated = false;
+  for (std::size_t l = 0; l < width_; ++l) {
+    risen_[l] = 0;
+    if (where_[l] == 0) continue;
+    const double end = at_.t[l] + at_.h[l];
+    double largest_before = 0, largest_after = 0, tolerance = 0;
+    for (std::size_t k = 0; k <= watched_.size(); ++k) {
+      const bool all = k == watched_.size();
+      if (all && watched_.size() < 2) break;
+      double before = largest_before, after = largest_after;
+      if (!all) {
+        const std::size_t i = watched_[k].first;
+        before = at_.u[i * width_ + l];
+        after = at_.after[i * width_ + l];
+        largest_before = std::max(largest_before, std::abs(before));
+        largest_after = std::max(largest_after, std::abs(after));
+        tolerance = std::max(tolerance, program_.absolute[i]);
+      }
+      double& least = trough_[k * width_ + l];
+      const double size = std::abs(after);
+      if (size < std::abs(before) && size < least && size > 0) {
+        least = size;
+        trough_time_[k * width_ + l] = end;
+      }
+      const double low = kLow * (all ? tolerance : program_.absolute[watched_[k].first]);
+      if (least < low && size > kRisen * least && (all || grows_by_itself(k, l, evaluated))) risen_[l] = 1;
+    }
+  }
+}
+
 /// What becomes of each lane after a step: it goes on, tries again shorter, ends, or gives its machine up.
 void LaneRunner::judge(const Take& take, const Refuse& refuse) {
   for (std::size_t l = 0; l < width_; ++l) {
@@ -243,6 +332,12 @@ void LaneRunner::judge(const Take& take, const Refuse& refuse) {
     } else if (at_.error[l] <= 1) {
       where_[l] = 1;
     }
+  }
+  watch_troughs();
+  for (std::size_t l = 0; l < width_; ++l) {
+    if (!lanes_[l].busy || risen_[l] == 0) continue;
+    where_[l] = 0;
+    refuse_lane(l, "a state grows from where the tolerance hides it", refuse);
   }
   keep_rows();
   kernels_.take(static_cast<std::uint32_t>(n_), where_.data(), at_.after.data(), at_.u.data());
@@ -325,13 +420,19 @@ void LaneRunner::work(const Next& next, const Values& values, const Take& take, 
       any = any || lanes_[l].busy;
     }
     if (!any) break;
-    for (std::size_t l = 0; l < width_; ++l) {  // idle lanes do what a busy one does
+    for (std::size_t l = 0; l < width_;
+         ++l) {  // idle lanes do what a busy one does: numbers that are no harm
       if (lanes_[l].busy) continue;
       const auto busy =
           std::find_if(lanes_.begin(), lanes_.end(), [](const Lane& lane) { return lane.busy; }) -
           lanes_.begin();
       at_.t[l] = at_.t[static_cast<std::size_t>(busy)];
       at_.h[l] = at_.h[static_cast<std::size_t>(busy)];
+      for (std::size_t i = 0; i < n_; ++i)
+        at_.u[i * width_ + l] = at_.u[i * width_ + static_cast<std::size_t>(busy)];
+      for (const LaneConstant& constant : program_.integration.constants)
+        at_.slots[constant.slot * width_ + l] =
+            at_.slots[constant.slot * width_ + static_cast<std::size_t>(busy)];
     }
     method_->step(at_);
     judge(take, refuse);

@@ -60,9 +60,11 @@ class LaneRunner {
 
   bool prepare(const Next& next, const Values& values, const Refuse& refuse);
   bool draw(Machine& machine);
+  bool is_near(std::span<const double> draws) const;
   void bring_to_rest(std::span<const std::size_t> batch);
-  void first_steps(std::span<const std::size_t> batch);
   void put(std::size_t lane, std::size_t machine);
+  void watch_troughs();
+  bool grows_by_itself(std::size_t watched, std::size_t lane, bool& evaluated);
   void judge(const Take& take, const Refuse& refuse);
   void keep_rows();
   void end(std::size_t lane, const Take& take);
@@ -87,7 +89,13 @@ class LaneRunner {
   LaneStates at_;
   std::unique_ptr<LaneMethod> method_;
   LaneArray output_slots_;
-  LaneArray where_;  ///< lanes whose step was taken
+  LaneArray where_;              ///< lanes whose step was taken
+  std::vector<double> typical_;  ///< what the typical machine draws
+  /// States that are not at rest, and grow: whose troughs are watched; with the slots of ∂F/∂x of their own.
+  std::vector<std::pair<std::size_t, std::vector<std::uint32_t>>> watched_;
+  LaneArray trough_,
+      trough_time_;  ///< of these and, last, of the largest of all: the least magnitude, and when
+  LaneArray risen_;  ///< whether one has risen from a trough in which it was not known
 };
 
 }  // namespace oblique::ensemble

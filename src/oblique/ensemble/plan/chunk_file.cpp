@@ -30,6 +30,10 @@ std::string head_text(const ChunkHead& head) {
   if (!head.count.reasons.empty()) out += "[reasons]\n";
   for (const auto& [reason, times] : head.count.reasons)
     out += fmt::format("{} = {}\n", text::toml_string(reason), times);
+  if (head.count.first_warned) {
+    out += fmt::format("[warnings]\nmachines = {}\nfirst = {}\nwhat = {}\n", head.count.warned,
+                       head.count.first_warned->first, text::toml_string(head.count.first_warned->second));
+  }
   if (!head.failures.empty()) out += "[failures]\n";
   for (const auto& [number, why] : head.failures)
     out += fmt::format("{} = {}\n", number, text::toml_string(why));
@@ -51,6 +55,13 @@ class HeadReader {
     if (const text::Value* const reasons = reader_.table("reasons")) {
       for (const text::Entry& entry : reasons->entries)
         head.count.reasons[entry.key] = static_cast<std::uint64_t>(entry.value.number);
+    }
+    if (const text::Value* const warnings = reader_.table("warnings")) {
+      text::TableReader reader("", *warnings, "the chunk", diagnostics_);
+      head.count.warned = static_cast<std::uint64_t>(reader.required_quantity("machines", "1").value_or(0));
+      head.count.first_warned.emplace(
+          static_cast<std::uint64_t>(reader.required_quantity("first", "1").value_or(0)),
+          reader.required_string("what", "a text").value_or(""));
     }
     if (const text::Value* const failures = reader_.table("failures")) {
       for (const text::Entry& entry : failures->entries)

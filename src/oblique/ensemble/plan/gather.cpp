@@ -151,10 +151,7 @@ void for_each_piece(const Gathering& gathering, std::size_t columns,
 EnsembleCount Gathering::count() const {
   EnsembleCount all;
   for (const Piece& piece : pieces) {
-    const EnsembleCount& one = parts[piece.part].head.count;
-    all.in_lanes += one.in_lanes;
-    all.by_cvodes += one.by_cvodes;
-    for (const auto& [reason, times] : one.reasons) all.reasons[reason] += times;
+    all += parts[piece.part].head.count;
   }
   all.failed = failures().size();
   return all;

@@ -19,9 +19,8 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-std::string first_line(const text::Error& error) {
-  const std::string& what = error.diagnostics().front().what;
-  return what.substr(0, what.find('\n'));
+std::string first_line(const text::Diagnostic& diagnostic) {
+  return diagnostic.what.substr(0, diagnostic.what.find('\n'));
 }
 
 /// Ends the runs of an ensemble from within.
@@ -69,12 +68,13 @@ struct Study::Parts {
     std::mutex guard;
     EnsembleCount count;
 
-    void finish(std::size_t at, const std::string& no_lane) {
+    void finish(std::size_t at, const std::string& no_lane, const std::string& warning) {
       const std::lock_guard lock(guard);
       done[at] = 1;
       ++(no_lane.empty() ? count.in_lanes : count.by_cvodes);
       if (!no_lane.empty()) ++count.reasons[no_lane];
       if (!rows[at].failure.empty()) ++count.failed;
+      if (!warning.empty()) count.warn(rows[at].number, warning);
     }
   };
   void run_directly(std::uint64_t first, std::uint64_t count, Table& table,
@@ -85,10 +85,12 @@ struct Study::Parts {
   struct Made {
     std::size_t at = 0;  ///< its place in the table
     Machine machine;
-    std::vector<double> values;  ///< of `varied`; none where it differs in more
+    bool alike = false;          ///< it differs from `base` in `varied` alone
+    std::vector<double> values;  ///< of `varied`
   };
   Made make(std::uint64_t number) const;
-  void run_alone(Made& made, StudyRow& row) const;
+  /// Gives its warning.
+  std::string run_alone(Made& made, StudyRow& row) const;
 };
 
 /// The parameters that a varied name changes on its way to its bounds. A mechanism need not reach them: then
@@ -184,7 +186,7 @@ void Study::Parts::run_directly(std::uint64_t first, std::uint64_t count, Table&
   const auto take = [&](const MachineRun& run) {
     const auto at = static_cast<std::size_t>(run.number - first);
     measure(run, base, table.rows[at]);
-    table.finish(at, run.no_lane);
+    table.finish(at, run.no_lane, run.warning);
   };
   ensemble->run(first, count, values, take, progress);
 }
@@ -205,13 +207,14 @@ Study::Parts::Made Study::Parts::make(std::uint64_t number) const {
                         std::all_of(changed->begin(), changed->end(), [&](std::uint32_t one) {
                           return std::find(varied.begin(), varied.end(), one) != varied.end();
                         });
+  made.alike = is_alike;
   if (!is_alike) return made;
   const std::vector<double> all = network::parameter_values(made.machine.flat);
   for (const std::uint32_t one : varied) made.values.push_back(all[one]);
   return made;
 }
 
-void Study::Parts::run_alone(Made& made, StudyRow& row) const {
+std::string Study::Parts::run_alone(Made& made, StudyRow& row) const {
   diagram::FlatDiagram flat = made.machine.flat;
   for (diagram::FlatOutput& output : flat.outputs) {
     output.scale = 1;
@@ -224,10 +227,12 @@ void Study::Parts::run_alone(Made& made, StudyRow& row) const {
     how.until = made.machine.until;
     run = solve::run(network::Program(network::assemble(flat)), flat, how);
     done.rows = run.trajectory.values();
+    if (!run.warnings.empty()) done.warning = first_line(run.warnings.front());
   } catch (const text::Error& error) {
-    done.failure = first_line(error);
+    done.failure = first_line(error.diagnostics().front());
   }
   measure(done, made.machine, row);
+  return done.warning;
 }
 
 void Study::Parts::run_made(std::uint64_t first, std::uint64_t count, Table& table,
@@ -242,20 +247,22 @@ void Study::Parts::run_made(std::uint64_t first, std::uint64_t count, Table& tab
         [&](const Next& next) {
           for (std::uint64_t at = 0; next(at);) {
             StudyRow& row = table.rows[at];
+            std::string warning;
             try {
               Made made = make(first + at);
               made.at = at;
-              if (!made.values.empty() || varied.empty()) {
+              if (made.alike) {
                 const std::lock_guard lock(guard);
                 alike.push_back(std::move(made));
                 continue;
               }
-              run_alone(made, row);
+              warning = run_alone(made, row);
             } catch (const text::Error& error) {
-              row.failure = first_line(error);
+              row.failure = first_line(error.diagnostics().front());
             }
             table.finish(
-                at, row.failure.empty() ? "its diagram differs in more than numbers" : "it cannot be made");
+                at, row.failure.empty() ? "its diagram differs in more than numbers" : "it cannot be made",
+                warning);
           }
         },
         [&](std::uint64_t) {
@@ -270,7 +277,7 @@ void Study::Parts::run_made(std::uint64_t first, std::uint64_t count, Table& tab
         [&](const MachineRun& run) {
           const Made& made = alike[run.number];
           measure(run, made.machine, table.rows[made.at]);
-          table.finish(made.at, run.no_lane);
+          table.finish(made.at, run.no_lane, run.warning);
         },
         [&](std::uint64_t done) {
           if (progress) progress(begin + (n - alike.size()) + done);

@@ -167,7 +167,13 @@ std::optional<std::vector<NodeId>> turning_rates(Compilation& c, const std::vect
                         node.op == Op::multiply ||
                         (node.op == Op::divide && follows[node.b] == Follows::nothing);
     if (!smooth) return std::nullopt;
-    bounds.of(id);
+    const TimeBounds::Bounds own = bounds.of(id);
+    if (node.op == Op::multiply && follows[node.a] != Follows::nothing &&
+        follows[node.b] != Follows::nothing) {
+      // a power of a sine is narrow: it goes as fast as its bound of the rate says, beside its size
+      if (!own.size || !own.rate) return std::nullopt;
+      rates.push_back(c.network.graph.apply(Op::divide, *own.rate, *own.size));
+    }
     if (!turns) continue;
     const std::optional<NodeId> rate = bounds.of(node.a).rate;
     if (!rate) return std::nullopt;

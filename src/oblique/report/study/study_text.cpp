@@ -145,6 +145,17 @@ std::string count_text(const StudyResult& result) {
     text += fmt::format(": {} in lanes, {} by CVODES ({})\n", count_of.in_lanes, count_of.by_cvodes,
                         fmt::join(reasons, "; "));
   }
+  const auto row_of = [&](std::uint64_t number) {
+    const auto found = std::find_if(result.done.rows.begin(), result.done.rows.end(),
+                                    [&](const ensemble::StudyRow& row) { return row.number == number; });
+    return static_cast<std::size_t>(found - result.done.rows.begin());
+  };
+  if (count_of.first_warned) {
+    text += fmt::format("warning of {} of {}; the first, {}: {}\n", count_of.warned,
+                        count(result.done.rows.size(), "machine", "machines"),
+                        machine_text(result, row_of(count_of.first_warned->first)),
+                        count_of.first_warned->second);
+  }
   if (count_of.failed == 0) return text;
   const auto first = std::find_if(result.done.rows.begin(), result.done.rows.end(),
                                   [](const ensemble::StudyRow& row) { return !row.failure.empty(); });
