@@ -243,6 +243,31 @@ TEST(RosenbrockSolver, KeepsSegmentsThatTheTimeDoesNotResolve) {
   EXPECT_NEAR(solver.states()[0] / 1e20, 1, 1e-12);
 }
 
+// Of what was before nothing is left, to the bit; the work goes on being counted.
+TEST(RosenbrockSolver, StartsAnew) {
+  Equations system = bell();
+  const std::vector<double> one{1}, four{4};
+  RosenbrockSolver solver(system, 0, four, 2, 2, at_tolerance(1e-8)),
+      other(system, 0.5, one, 2, 1.5, at_tolerance(1e-8));
+  for (int k = 0; k < 10; ++k) solver.step();
+  const SolverStatistics before = solver.statistics();
+  solver.restart(0.5, one, 2, 1.5);
+  std::vector<double> x(1);
+  solver.states_at(0.5, x);
+  EXPECT_EQ(x, one);
+  for (double t = 0.5; t < 2;) {
+    t = solver.step();
+    EXPECT_EQ(t, other.step());
+    EXPECT_EQ(solver.states()[0], other.states()[0]);
+    solver.states_at(t - 1e-4, x);
+    const double read = x[0];
+    other.states_at(t - 1e-4, x);
+    EXPECT_EQ(read, x[0]);
+  }
+  EXPECT_EQ(solver.statistics().steps, before.steps + other.statistics().steps);
+  EXPECT_EQ(solver.statistics().evaluations, before.evaluations + other.statistics().evaluations);
+}
+
 // d/dt of the polynomial, against differences of it: (1e-6 of a step)² and rounding over that.
 TEST(RosenbrockSolver, GivesTheRatesOfItsPolynomial) {
   Equations system = prothero_robinson(10);
