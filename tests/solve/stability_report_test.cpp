@@ -77,5 +77,23 @@ x = { type = "integrator", in = ["-x", "q"] }
               ::testing::ElementsAre("1 of 2 instants, at which the equations have no linearisation"));
 }
 
+TEST(StabilityReport, HasTheSameModesWithoutMargins) {
+  const Compiled made(R"toml(one = { type = "constant" }
+lag = { type = "integrator", in = ["c", "-lag"] }
+c = { type = "servo-amplifier", in = ["lag", "c", "-one"], gain = 1e4, bandwidth = "10 Hz" }
+)toml");
+  const SignalFlow flow(made.flat, made.program);
+  const std::vector<Instant> instants(1, Instant{0, made.program.start()});
+  const StabilityReport with = judge_stability(made.program, flow, instants);
+  const StabilityReport without = judge_stability(made.program, flow, instants, {}, false);
+  EXPECT_EQ(with.margins.size(), 1U);
+  EXPECT_TRUE(without.margins.empty());
+  EXPECT_EQ(without.verdict, with.verdict);
+  ASSERT_TRUE(with.servo_mode && without.servo_mode);
+  EXPECT_EQ(without.servo_mode->mode.pole, with.servo_mode->mode.pole);
+  EXPECT_EQ(without.slowest_servo->mode.pole, with.slowest_servo->mode.pole);
+  EXPECT_EQ(without.left_out, with.left_out);
+}
+
 }  // namespace
 }  // namespace oblique::solve

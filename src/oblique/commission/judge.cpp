@@ -140,7 +140,7 @@ Judgement judge(const diagram::Diagram& diagram, const diagram::BlockLibrary& li
     return judgement;
   }
   const solve::SignalFlow flow(flat, program);
-  const solve::StabilityReport stability = solve::judge_stability(program, flow, instants);
+  const solve::StabilityReport stability = solve::judge_stability(program, flow, instants, {}, false);
   if (stability.slowest_servo) {
     judgement.slowest_pole = stability.slowest_servo->mode.pole.real();
     judgement.pole_time = stability.slowest_servo->time;
@@ -154,7 +154,8 @@ Judgement judge(const diagram::Diagram& diagram, const diagram::BlockLibrary& li
     const auto first = std::find_if(instants.begin(), instants.end(), [&](const solve::Instant& instant) {
       return instant.t == *stability.grows_from;
     });
-    judgement.growth = solve::judge_stability(program, flow, {*first}).slowest_servo->mode.pole.real();
+    judgement.growth =
+        solve::judge_stability(program, flow, {*first}, {}, false).slowest_servo->mode.pole.real();
     judgement.growing = main_participants(program, stability.slowest_servo->mode);
     for (const solve::LoopReport& loop : solve::explain_loops(program, flow, instants)) {
       for (const solve::LoopUnknown& unknown : loop.unknowns) {

@@ -26,7 +26,8 @@ using Complex = std::complex<double>;
 
 class Judge {
  public:
-  Judge(const network::Program& program, const SignalFlow& flow, const std::vector<Instant>& instants)
+  Judge(const network::Program& program, const SignalFlow& flow, const std::vector<Instant>& instants,
+        bool margins)
       : program_(program),
         flow_(flow),
         instants_(instants),
@@ -42,7 +43,7 @@ class Judge {
         most = std::max(most, static_cast<std::size_t>(kMostWork / std::pow(static_cast<double>(n), 3)));
       group.stride = std::max<std::size_t>(1, (instants.size() + most - 2) / (most - 1));
     }
-    find_margins_to_seek();
+    if (margins) find_margins_to_seek();
   }
 
   StabilityReport judge(const std::optional<DisturbanceGrowth>& growth) {
@@ -278,8 +279,8 @@ ModeVerdict verdict_on(const WorstMode& worst) {
 
 StabilityReport judge_stability(const network::Program& program, const SignalFlow& flow,
                                 const std::vector<Instant>& instants,
-                                const std::optional<DisturbanceGrowth>& growth) {
-  return Judge(program, flow, instants).judge(growth);
+                                const std::optional<DisturbanceGrowth>& growth, bool margins) {
+  return Judge(program, flow, instants, margins).judge(growth);
 }
 
 }  // namespace oblique::solve

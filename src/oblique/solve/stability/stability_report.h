@@ -87,9 +87,10 @@ struct StabilityReport {
 /// Judges a run by its instants. Groups of more than 200 states that act on each other are searched for their
 /// rightmost modes (see rightmost_modes), at three instants; dense ones at fewer instants the larger they
 /// are. Phase margins are sought in groups of up to 60 states. What is left out the report says. `growth` is
-/// that along the run, where it is known.
+/// that along the run, where it is known. Without `margins`, which take most of the time, the verdict and the
+/// modes are the same.
 StabilityReport judge_stability(const network::Program& program, const SignalFlow& flow,
                                 const std::vector<Instant>& instants,
-                                const std::optional<DisturbanceGrowth>& growth = {});
+                                const std::optional<DisturbanceGrowth>& growth = {}, bool margins = true);
 
 }  // namespace oblique::solve
