@@ -161,6 +161,56 @@ rc  = { type = "low-pass", in = "one" }
   }
 }
 
+// Weights p·p and p·q: the bounds of p alone, and of each name by itself, change nothing in the diagram.
+TEST(Study, VariesWhatTheBoundsDoNotShow) {
+  const diagram::BlockLibrary library = testing::shipped_blocks_and("product-of", R"(
+summary = "out = p q x"
+[inputs]
+x = { doc = "d" }
+[outputs]
+out = { wire = "g" }
+[parameters]
+p = { default = 0, doc = "p" }
+q = { default = 0, doc = "q" }
+[blocks]
+g = { type = "gain", in = "x", factor = "p*q" }
+)");
+  const std::string text = R"toml(format = "oblique-diagram/1"
+[blocks]
+one = { type = "constant" }
+C = { type = "product-of", in = "one" }
+x = { type = "integrator", in = ["C"] }
+)toml";
+  const Study study(plan_of({{"C.p", "0,1,2", {}}, {"C.q", "0,1,2", {}}}, {"end(x)"}), text, library, 1);
+  const Study::Rows done = study.run(0, 9);
+  ASSERT_EQ(done.rows.size(), 9U);
+  for (const StudyRow& row : done.rows) {
+    EXPECT_EQ(row.failure, "");
+    EXPECT_NEAR(row.values[2], row.values[0] * row.values[1], 1e-7);
+  }
+}
+
+TEST(Study, CountsTheMachinesThatRunWithAWarning) {
+  // x′ = x(1 − x)(x − 2) rises from just above the unstable 1
+  const std::string text = R"toml(format = "oblique-diagram/1"
+[run]
+until = 60
+[blocks]
+one = { type = "constant" }
+a = { type = "summer", in = ["one", "-x"] }
+b = { type = "summer", in = ["x", "-2*one"] }
+xa = { type = "multiplier", in = ["x", "a"] }
+xab = { type = "multiplier", in = ["xa", "b"] }
+x = { type = "integrator", in = ["xab"], initial = 1.5 }
+)toml";
+  const Study study = study_of(plan_of({{"x.initial", "1.00000000000001,1.5", {}}}, {"end(x)"}), text);
+  const Study::Rows done = study.run(0, 2);
+  EXPECT_EQ(done.count.warned, 1U);
+  ASSERT_TRUE(done.count.first_warned);
+  EXPECT_EQ(done.count.first_warned->first, 0U);
+  EXPECT_NE(done.count.first_warned->second.find("unstable"), std::string::npos);
+}
+
 TEST(Study, EndsAtEveryOutputWhereNothingIsAsked) {
   const Study study = study_of(plan_of({{"x.initial", "1,2", {}}}, {}), kDecay);
   EXPECT_EQ(names_of(study), (std::vector<std::string>{"x.initial", "end(height)"}));
