@@ -16,7 +16,7 @@ constexpr double kMostTurn = std::numbers::pi / 2;
 constexpr int kMostNewton = 15;
 /// How far what a machine draws may be from what the typical one does, of that and absolutely, so that its
 /// servo loops come to the rest that is near the typical one's: what would decide between two rests is far.
-constexpr double kNear = 0.03;
+constexpr double kNear = 0.05;
 /// A state in a trough below kLow absolute tolerances, of which no more than 4 digits are known, that rises
 /// to kRisen times of it.
 constexpr double kLow = 1e4, kRisen = 100;
@@ -43,8 +43,6 @@ LaneRunner::LaneRunner(const LaneProgram& program, std::span<const double> base,
   for (LaneArray* const numbers : {&at_.t, &at_.h, &at_.error, &at_.growth, &at_.theta})
     *numbers = LaneArray(width_);
   method_ = make_lane_method(program, kernels, at_);
-  typical_.resize(program.prologue->slots().size());
-  program.prologue->run(base, scratch_, typical_);
   for (std::size_t i = 0; i < program.n_states; ++i) {
     if (program.at_rest[i] || !program.grows[i]) continue;
     std::vector<std::uint32_t> own;
@@ -89,7 +87,7 @@ bool LaneRunner::draw(Machine& machine) {
     machine.refused = "another case of the equations";
     return false;
   }
-  if (program_.needs_rest && !is_near(machine.draws)) {
+  if (program_.needs_rest && !is_near(machine.values)) {
     machine.refused = "its loops may come to another rest than those of the typical machine";
     return false;
   }
@@ -106,9 +104,9 @@ bool LaneRunner::draw(Machine& machine) {
   return true;
 }
 
-bool LaneRunner::is_near(std::span<const double> draws) const {
-  for (std::size_t k = 0; k < draws.size(); ++k) {
-    if (!(std::abs(draws[k] - typical_[k]) <= kNear * (1 + std::abs(typical_[k])))) return false;
+bool LaneRunner::is_near(std::span<const double> values) const {
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (!(std::abs(values[k] - base_[k]) <= kNear * (1 + std::abs(base_[k])))) return false;
   }
   return true;
 }

@@ -60,7 +60,7 @@ class LaneRunner {
 
   bool prepare(const Next& next, const Values& values, const Refuse& refuse);
   bool draw(Machine& machine);
-  bool is_near(std::span<const double> draws) const;
+  bool is_near(std::span<const double> values) const;
   void bring_to_rest(std::span<const std::size_t> batch);
   void put(std::size_t lane, std::size_t machine);
   void watch_troughs();
@@ -89,8 +89,7 @@ class LaneRunner {
   LaneStates at_;
   std::unique_ptr<LaneMethod> method_;
   LaneArray output_slots_;
-  LaneArray where_;              ///< lanes whose step was taken
-  std::vector<double> typical_;  ///< what the typical machine draws
+  LaneArray where_;  ///< lanes whose step was taken
   /// States that are not at rest, and grow: whose troughs are watched; with the slots of ∂F/∂x of their own.
   std::vector<std::pair<std::size_t, std::vector<std::uint32_t>>> watched_;
   LaneArray trough_,
