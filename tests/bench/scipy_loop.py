@@ -133,7 +133,7 @@ def main():
         folder = pathlib.Path(name)
         points = []
         for tolerance in (1e-2, 1e-3, 1e-4, 1e-5, 1e-6):
-            rows, seconds = by_oblique(program, folder, 20000, tolerance)
+            rows, seconds = by_oblique(program, folder, 100000, tolerance)
             machines = [(row[0], row[1]) for row in rows[:6]]
             truth, _ = runs(machines, "Radau", 1e-12)
             # metres: a machine unit is 4 m
