@@ -78,6 +78,25 @@ TEST_F(Sweep, TellsHowMeasuresGoWithWhatIsSpacedLogarithmically) {
   EXPECT_EQ(linear.out.find("goes as"), std::string::npos);
 }
 
+// Ten periods of a sine in 61 rows: six rows a period, where the polynomial is not taken. max is a row's, up
+// to 1 − cos(π/6) = 13 % below 1; with 1001 rows there is nothing to tell.
+TEST_F(Sweep, TellsWhereRowsAreFewForWhatIsMeasured) {
+  std::ofstream(file("swing.toml")) << R"toml(format = "oblique-diagram/1"
+[run]
+until = 10
+[blocks]
+w = { type = "sine-source", amplitude = 1, frequency = 1, phase = 0.4 }
+x = { type = "integrator", in = ["1*w"] }
+)toml";
+  const std::string sweep = "sweep " + file("swing.toml") + " --vary w.amplitude=0.5,1 --measure 'max(w)'";
+  const Outcome few = oblique(sweep + " --samples 61");
+  ASSERT_EQ(few.status, 0) << few.err;
+  EXPECT_THAT(few.err,
+              HasSubstr("note: in 2 machines the rows are few for what is measured: between them a signal "
+                        "bends, and a measure may err by "));
+  EXPECT_EQ(oblique(sweep + " --samples 1001").err.find("note: "), std::string::npos);
+}
+
 TEST_F(Sweep, GivesTheSameNumbersWithAnyNumberOfThreads) {
   for (const std::string jobs : {"1", "2"}) {
     const Outcome outcome = oblique("sweep " + decay_ + " --scatter 'integrator.tolerance=±1%' --runs 20" +

@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include <oblique/ensemble/plan/gather.h>
+#include <oblique/report/study/study_text.h>
 #include <oblique/report/text_table.h>
 #include <oblique/text/file.h>
 
@@ -72,7 +73,7 @@ std::string count_text(const ensemble::EnsembleCount& count) {
                         report::count(count.warned, "machine", "machines"), count.first_warned->first,
                         count.first_warned->second);
   }
-  return text + "\n";
+  return text + "\n" + report::coarse_text(count);
 }
 
 void warn_of(const std::vector<std::pair<std::uint64_t, std::string>>& failures) {

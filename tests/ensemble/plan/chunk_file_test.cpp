@@ -27,8 +27,15 @@ TEST(ChunkFile, ReadsBackToTheSameBits) {
   chunk.rows[0] = -0.0;
   chunk.rows[2] = std::numeric_limits<double>::infinity();
   chunk.rows[4] = std::numeric_limits<double>::denorm_min();
+  chunk.head.count.warn(31, "it grew from \"nearly\" nothing");
+  chunk.head.count.warn(27, "too near");
+  chunk.head.count.measured(0.1 / 3);
   const ReadChunk read = parse_chunk(to_bytes(chunk));
   ASSERT_TRUE(read.chunk) << read.trouble;
+  EXPECT_EQ(read.chunk->head.count.warned, 2U);
+  EXPECT_EQ(read.chunk->head.count.first_warned, std::pair(std::uint64_t{27}, std::string("too near")));
+  EXPECT_EQ(read.chunk->head.count.coarse, 1U);
+  EXPECT_EQ(read.chunk->head.count.doubt, 0.1 / 3);
   EXPECT_EQ(read.chunk->head.identity, chunk.head.identity);
   EXPECT_EQ(read.chunk->head.place.number, 1U);
   EXPECT_EQ(read.chunk->head.place.chunks, 4U);

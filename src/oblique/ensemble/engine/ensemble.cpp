@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/ensemble/engine/ensemble.h>
 
+#include <algorithm>
 #include <mutex>
 #include <utility>
 
@@ -29,11 +30,19 @@ void EnsembleCount::warn(std::uint64_t number, const std::string& warning) {
   if (!first_warned || number < first_warned->first) first_warned.emplace(number, warning);
 }
 
+void EnsembleCount::measured(double part) {
+  constexpr double kCoarse = 1e-3;
+  if (part > kCoarse) ++coarse;
+  doubt = std::max(doubt, part);
+}
+
 EnsembleCount& EnsembleCount::operator+=(const EnsembleCount& others) {
   in_lanes += others.in_lanes;
   by_cvodes += others.by_cvodes;
   failed += others.failed;
   warned += others.warned;
+  coarse += others.coarse;
+  doubt = std::max(doubt, others.doubt);
   for (const auto& [why, how_many] : others.reasons) reasons[why] += how_many;
   if (others.first_warned && (!first_warned || others.first_warned->first < first_warned->first))
     first_warned = others.first_warned;

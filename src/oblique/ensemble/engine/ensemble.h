@@ -47,6 +47,13 @@ struct EnsembleCount {
   /// The warned machine of the least number, and of what.
   std::optional<std::pair<std::uint64_t, std::string>> first_warned;
 
+  /// Machines some measure of which may err by more than a thousandth because of few rows, and the most it
+  /// may: a part of its size.
+  std::uint64_t coarse = 0;
+  double doubt = 0;
+
+  /// Counts a machine whose measures may err by this part.
+  void measured(double part);
   /// Counts a machine that ran with a warning.
   void warn(std::uint64_t number, const std::string& warning);
   /// Adds those of other machines.

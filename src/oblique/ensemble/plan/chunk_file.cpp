@@ -27,6 +27,8 @@ std::string head_text(const ChunkHead& head) {
       text::toml_string(head.identity.version), head.identity.plan, head.identity.subject,
       head.identity.blocks, head.place.number, head.place.chunks, head.place.first, head.place.count,
       fmt::join(columns, ", "), head.count.in_lanes, head.count.by_cvodes, head.count.failed);
+  if (head.count.coarse > 0)
+    out += fmt::format("coarse = {}\ndoubt = {}\n", head.count.coarse, head.count.doubt);
   if (!head.count.reasons.empty()) out += "[reasons]\n";
   for (const auto& [reason, times] : head.count.reasons)
     out += fmt::format("{} = {}\n", text::toml_string(reason), times);
@@ -52,6 +54,8 @@ class HeadReader {
     head.count.in_lanes = whole("in_lanes");
     head.count.by_cvodes = whole("by_cvodes");
     head.count.failed = whole("failed");
+    head.count.coarse = static_cast<std::uint64_t>(reader_.quantity("coarse", "1").value_or(0));
+    head.count.doubt = reader_.quantity("doubt", "1").value_or(0);
     if (const text::Value* const reasons = reader_.table("reasons")) {
       for (const text::Entry& entry : reasons->entries)
         head.count.reasons[entry.key] = static_cast<std::uint64_t>(entry.value.number);

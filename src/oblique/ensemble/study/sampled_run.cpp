@@ -127,6 +127,42 @@ bool may_pass(std::span<const double> f, std::size_t k, double sign, double bar)
 
 }  // namespace
 
+namespace {
+
+double largest_of(std::span<const double> f) {
+  double largest = 0;
+  for (const double value : f) largest = std::max(largest, std::abs(value));
+  return largest;
+}
+
+/// What the straight line misses at the most of the parabola through three rows; nothing where it is not
+/// taken.
+double missed_beside(std::span<const double> f, std::size_t k) {
+  if (k == 0 || k + 1 >= f.size()) return 0;
+  if (f.size() >= kPoints && smooth(f.subspan(window_of(k, f.size())).first<kPoints>())) return 0;
+  return std::abs(f[k - 1] - 2 * f[k] + f[k + 1]) / 8;
+}
+
+}  // namespace
+
+void SampledRun::doubt_extreme(std::span<const double> f, double sign) const {
+  std::size_t best = 0;
+  for (std::size_t k = 0; k < f.size(); ++k) {
+    if (sign * f[k] > sign * f[best]) best = k;
+  }
+  const double missed = missed_beside(f, best);
+  if (missed > 0) doubt_ = std::max(doubt_, missed / largest_of(f));
+}
+
+void SampledRun::doubt_integral(std::span<const double> f) const {
+  double missed = 0, sum = 0;
+  for (std::size_t k = 0; k < f.size(); ++k) {
+    missed += 2.0 / 3 * missed_beside(f, k);  // the mean of what a parabola misses, of its greatest
+    sum += std::abs(f[k]);
+  }
+  if (missed > 0) doubt_ = std::max(doubt_, missed / sum);
+}
+
 std::vector<double> SampledRun::values(const RowExpression& expression) const {
   std::vector<const double*> columns(columns_.size());
   for (std::size_t c = 0; c < columns.size(); ++c) columns[c] = columns_[c].data();
@@ -150,6 +186,7 @@ double SampledRun::extreme(const RowExpression& expression, double sign) const {
     greatest = std::max(greatest, sign * value);
   }
   if (!std::isfinite(greatest)) return sign * greatest;
+  doubt_extreme(f, sign);
   const double bar = greatest;
   for (std::size_t k = 0; k < f.size(); ++k) {
     if (!may_pass(f, k, sign, bar)) continue;
@@ -172,6 +209,11 @@ double SampledRun::minimum(const RowExpression& expression) const {
 
 double SampledRun::integral(const RowExpression& expression, bool squared) const {
   const std::size_t n = rows() - 1;
+  std::vector<double> at_rows = values(expression);
+  if (squared) {
+    for (double& value : at_rows) value *= value;
+  }
+  doubt_integral(at_rows);
   double sum = 0;
   for (const GaussPoint& point : kGauss) {
     std::vector<std::vector<double>> columns(columns_.size());

@@ -42,12 +42,21 @@ class SampledRun {
   /// differences that change their signs where it may come to hold.
   double first_time(const RowExpression& condition, std::span<const RowExpression> sides) const;
 
+  /// By what part of the largest value the rows may be too few for the extremes and integrals that were asked
+  /// for, as far as rows tell: where the straight line is taken, what it misses of a parabola through three
+  /// of them.
+  double doubt() const { return doubt_; }
+
  private:
   double extreme(const RowExpression& expression, double sign) const;
   double integral(const RowExpression& expression, bool squared) const;
   double value_at(const RowExpression& expression, std::size_t interval, double place) const;
 
+  void doubt_extreme(std::span<const double> f, double sign) const;
+  void doubt_integral(std::span<const double> f) const;
+
   std::vector<std::vector<double>> columns_;
+  mutable double doubt_ = 0;
 };
 
 }  // namespace oblique::ensemble

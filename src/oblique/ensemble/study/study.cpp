@@ -6,6 +6,7 @@
 #include <limits>
 #include <mutex>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include <oblique/ensemble/engine/work_queue.h>
@@ -59,7 +60,8 @@ struct Study::Parts {
     row.values.resize(columns.size(), kNone);
     return row;
   }
-  void measure(const MachineRun& run, const Machine& machine, StudyRow& row) const;
+  /// Gives by what part of their size the measures may err because of few rows.
+  double measure(const MachineRun& run, const Machine& machine, StudyRow& row) const;
 
   /// Rows that were done, and by what.
   struct Table {
@@ -68,13 +70,14 @@ struct Study::Parts {
     std::mutex guard;
     EnsembleCount count;
 
-    void finish(std::size_t at, const std::string& no_lane, const std::string& warning) {
+    void finish(std::size_t at, const std::string& no_lane, const std::string& warning, double doubt) {
       const std::lock_guard lock(guard);
       done[at] = 1;
       ++(no_lane.empty() ? count.in_lanes : count.by_cvodes);
       if (!no_lane.empty()) ++count.reasons[no_lane];
       if (!rows[at].failure.empty()) ++count.failed;
       if (!warning.empty()) count.warn(rows[at].number, warning);
+      count.measured(doubt);
     }
   };
   void run_directly(std::uint64_t first, std::uint64_t count, Table& table,
@@ -89,8 +92,8 @@ struct Study::Parts {
     std::vector<double> values;  ///< of `varied`
   };
   Made make(std::uint64_t number) const;
-  /// Gives its warning.
-  std::string run_alone(Made& made, StudyRow& row) const;
+  /// Gives its warning, and what `measure` gives.
+  std::pair<std::string, double> run_alone(Made& made, StudyRow& row) const;
 };
 
 /// The parameters that a varied name changes on its way to its bounds. A mechanism need not reach them: then
@@ -151,10 +154,10 @@ void Study::Parts::choose_numbers() {
   for (const std::uint32_t number : varied) nominal.push_back(all[number]);
 }
 
-void Study::Parts::measure(const MachineRun& run, const Machine& machine, StudyRow& row) const {
+double Study::Parts::measure(const MachineRun& run, const Machine& machine, StudyRow& row) const {
   if (!run.failure.empty()) {
     row.failure = run.failure;
-    return;
+    return 0;
   }
   const std::size_t n = 1 + machine.flat.outputs.size(), n_rows = run.rows.size() / n;
   std::vector<std::vector<double>> outputs(n, std::vector<double>(n_rows));
@@ -171,6 +174,7 @@ void Study::Parts::measure(const MachineRun& run, const Machine& machine, StudyR
   const SampledRun sampled(std::move(table));
   for (std::size_t k = 0; k < plan.measures.size(); ++k)
     row.values[plan.names.size() + k] = plan.measures[k].value(sampled, errors);
+  return sampled.doubt();
 }
 
 void Study::Parts::run_directly(std::uint64_t first, std::uint64_t count, Table& table,
@@ -185,8 +189,8 @@ void Study::Parts::run_directly(std::uint64_t first, std::uint64_t count, Table&
   };
   const auto take = [&](const MachineRun& run) {
     const auto at = static_cast<std::size_t>(run.number - first);
-    measure(run, base, table.rows[at]);
-    table.finish(at, run.no_lane, run.warning);
+    const double doubt = measure(run, base, table.rows[at]);
+    table.finish(at, run.no_lane, run.warning, doubt);
   };
   ensemble->run(first, count, values, take, progress);
 }
@@ -214,7 +218,7 @@ Study::Parts::Made Study::Parts::make(std::uint64_t number) const {
   return made;
 }
 
-std::string Study::Parts::run_alone(Made& made, StudyRow& row) const {
+std::pair<std::string, double> Study::Parts::run_alone(Made& made, StudyRow& row) const {
   diagram::FlatDiagram flat = made.machine.flat;
   for (diagram::FlatOutput& output : flat.outputs) {
     output.scale = 1;
@@ -231,8 +235,8 @@ std::string Study::Parts::run_alone(Made& made, StudyRow& row) const {
   } catch (const text::Error& error) {
     done.failure = first_line(error.diagnostics().front());
   }
-  measure(done, made.machine, row);
-  return done.warning;
+  const double doubt = measure(done, made.machine, row);
+  return {done.warning, doubt};
 }
 
 void Study::Parts::run_made(std::uint64_t first, std::uint64_t count, Table& table,
@@ -248,6 +252,7 @@ void Study::Parts::run_made(std::uint64_t first, std::uint64_t count, Table& tab
           for (std::uint64_t at = 0; next(at);) {
             StudyRow& row = table.rows[at];
             std::string warning;
+            double doubt = 0;
             try {
               Made made = make(first + at);
               made.at = at;
@@ -256,13 +261,13 @@ void Study::Parts::run_made(std::uint64_t first, std::uint64_t count, Table& tab
                 alike.push_back(std::move(made));
                 continue;
               }
-              warning = run_alone(made, row);
+              std::tie(warning, doubt) = run_alone(made, row);
             } catch (const text::Error& error) {
               row.failure = first_line(error.diagnostics().front());
             }
             table.finish(
                 at, row.failure.empty() ? "its diagram differs in more than numbers" : "it cannot be made",
-                warning);
+                warning, doubt);
           }
         },
         [&](std::uint64_t) {
@@ -276,8 +281,8 @@ void Study::Parts::run_made(std::uint64_t first, std::uint64_t count, Table& tab
         },
         [&](const MachineRun& run) {
           const Made& made = alike[run.number];
-          measure(run, made.machine, table.rows[made.at]);
-          table.finish(made.at, run.no_lane, run.warning);
+          const double doubt = measure(run, made.machine, table.rows[made.at]);
+          table.finish(made.at, run.no_lane, run.warning, doubt);
         },
         [&](std::uint64_t done) {
           if (progress) progress(begin + (n - alike.size()) + done);

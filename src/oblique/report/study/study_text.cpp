@@ -156,6 +156,7 @@ std::string count_text(const StudyResult& result) {
                         machine_text(result, row_of(count_of.first_warned->first)),
                         count_of.first_warned->second);
   }
+  text += coarse_text(count_of);
   if (count_of.failed == 0) return text;
   const auto first = std::find_if(result.done.rows.begin(), result.done.rows.end(),
                                   [](const ensemble::StudyRow& row) { return !row.failure.empty(); });
@@ -163,6 +164,15 @@ std::string count_text(const StudyResult& result) {
   const std::string which = machine_text(result, row);
   return text + fmt::format("FAILED {} of {}, without values; the first, {}: {}\n", count_of.failed,
                             count(result.done.rows.size(), "machine", "machines"), which, first->failure);
+}
+
+std::string coarse_text(const ensemble::EnsembleCount& count_of) {
+  if (count_of.coarse == 0) return {};
+  return fmt::format(
+      "note: in {} the rows are few for what is measured: between them a signal bends, and a measure may err "
+      "by {:.2g} % "
+      "of the largest value; more --samples\n",
+      count(count_of.coarse, "machine", "machines"), 100 * count_of.doubt);
 }
 
 double percentile_of(const std::vector<double>& ascending, double percent) {

@@ -40,6 +40,9 @@ std::string order_text(const StudyResult& result);
 /// How many machines ran in lanes and how many by CVODES, and why; how many failed, and the first of them.
 std::string count_text(const StudyResult& result);
 
+/// "note: …" of rows that are too few for measures, with the most they may err by; empty where they are not.
+std::string coarse_text(const ensemble::EnsembleCount& count);
+
 /// The value that this part [%] of the values, which ascend and of which there is at least one, do not
 /// exceed: one of them, by the nearest rank.
 double percentile_of(const std::vector<double>& ascending, double percent);
