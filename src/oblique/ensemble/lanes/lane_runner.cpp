@@ -14,8 +14,8 @@ constexpr double kMostGrowth = 1e6;  ///< of a multiplier: beyond, the fixed ord
 /// How far the argument of a sine or cosine of the time may go in a step [rad].
 constexpr double kMostTurn = std::numbers::pi / 2;
 constexpr int kMostNewton = 15;
-/// How far what a machine draws may be from what the typical one does, of that and absolutely, so that its
-/// servo loops come to the rest that is near the typical one's: what would decide between two rests is far.
+/// How far a value of a machine may be from the typical one, of that or of 1, so that its servo loops come to
+/// the rest that is near the typical one's: what would decide between two rests is far.
 constexpr double kNear = 0.05;
 /// A state in a trough below kLow absolute tolerances, of which no more than 4 digits are known, that rises
 /// to kRisen times of it.
@@ -106,7 +106,7 @@ bool LaneRunner::draw(Machine& machine) {
 
 bool LaneRunner::is_near(std::span<const double> values) const {
   for (std::size_t k = 0; k < values.size(); ++k) {
-    if (!(std::abs(values[k] - base_[k]) <= kNear * (1 + std::abs(base_[k])))) return false;
+    if (!(std::abs(values[k] - base_[k]) <= kNear * std::max(1.0, std::abs(base_[k])))) return false;
   }
   return true;
 }

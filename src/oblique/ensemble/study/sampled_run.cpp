@@ -45,7 +45,7 @@ std::array<double, kPoints> lagrange(double x) {
 struct GaussPoint {
   double place, weight;
 };
-const std::array<GaussPoint, 3> kGauss{
+const std::array<GaussPoint, 3> gauss_points{
     {{0.5 - std::sqrt(0.15), 5.0 / 18}, {0.5, 8.0 / 18}, {0.5 + std::sqrt(0.15), 5.0 / 18}}};
 
 /// The value of a column between two rows, at a place from 0 to 1. `weights` are those of Lagrange's
@@ -215,7 +215,7 @@ double SampledRun::integral(const RowExpression& expression, bool squared) const
   }
   doubt_integral(at_rows);
   double sum = 0;
-  for (const GaussPoint& point : kGauss) {
+  for (const GaussPoint& point : gauss_points) {
     std::vector<std::vector<double>> columns(columns_.size());
     std::vector<const double*> begins(columns_.size(), nullptr);
     for (const std::size_t c : expression.columns()) {
