@@ -55,7 +55,7 @@ bool ParameterSetting::set(std::span<const Parameter> parameters, bool kinds_cou
   const bool same = std::all_of(was_.begin(), was_.end(),
                                 [&](const auto& entry) { return holds(entry.first, kinds_count); });
   if (!same) {
-    for (auto was = was_.rbegin(); was != was_.rend(); ++was) values_[was->first] = was->second;
+    std::for_each(was_.rbegin(), was_.rend(), [&](const auto& was) { values_[was.first] = was.second; });
   }
   return same;
 }

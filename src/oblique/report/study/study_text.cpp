@@ -171,7 +171,7 @@ std::string coarse_text(const ensemble::EnsembleCount& count_of) {
   return fmt::format(
       "note: in {} the rows are few for what is measured: between them a signal bends, and a measure may err "
       "by {:.2g} % "
-      "of the largest value; more --samples\n",
+      "of the largest value; more rows mend it\n",
       count(count_of.coarse, "machine", "machines"), 100 * count_of.doubt);
 }
 
