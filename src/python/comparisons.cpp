@@ -57,6 +57,11 @@ report::BudgetReport budget_of(const mechanism::Mechanism& mechanism, const diag
   return report;
 }
 
+int threads_of(const py::dict& asked) {
+  const int threads = entry(asked, "threads", 0);
+  return threads > 0 ? threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+}
+
 /// How the elements are to be drawn: what is set of `tolerance`, `runs`, `seed`, `first_run`, `threads`,
 /// `good_below` (a part of the largest link where `of_the_largest`), `until_within`.
 report::MonteCarloReport draw_elements(const mechanism::Mechanism& mechanism, const diagram::Diagram& diagram,
@@ -79,9 +84,7 @@ report::MonteCarloReport draw_elements(const mechanism::Mechanism& mechanism, co
   if (report.options.good_below && entry(asked, "of_the_largest", false))
     *report.options.good_below *= report.size;
   report.options.until_within = entry<std::optional<double>>(asked, "until_within", std::nullopt);
-  const int threads = entry(asked, "threads", 0);
-  report.options.threads =
-      threads > 0 ? threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  report.options.threads = threads_of(asked);
   unlocked([&](SignalWatch& watch) {
     report.options.progress = watch.progress();
     report.result = compare::monte_carlo(mechanism, diagram, *library, report.options);
@@ -100,6 +103,7 @@ py::dict compared(const MechanismModel& model, const Library& library, const py:
   options.split = entry(asked, "split", options.split);
   options.slower = entry(asked, "slower", options.slower);
   options.positions = entry(asked, "positions", options.positions);
+  options.threads = threads_of(asked);
   options.methods.clear();
   for (const std::string& name : entry(asked, "methods", std::vector<std::string>{"triangles"}))
     options.methods.push_back(patch_method(name));

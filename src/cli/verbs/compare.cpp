@@ -33,8 +33,8 @@
 namespace oblique::cli {
 namespace {
 
-[[noreturn]] void refuse(const std::string& what, const std::string& expected,
-                         const std::string& remedy = {}) {
+[[noreturn]] void refuse_comparison(const std::string& what, const std::string& expected,
+                                    const std::string& remedy = {}) {
   throw text::ReadError(text::Diagnostic{{}, what, expected, remedy});
 }
 
@@ -45,10 +45,15 @@ std::vector<double> numbers_option(const std::string& option, const std::vector<
   for (const std::string& text : texts) {
     values.push_back(quantity_option(option, text, unit));
     if (!(values.back() > 0 && std::isfinite(values.back())))
-      refuse(fmt::format("{} {}", option, text), expected);
+      refuse_comparison(fmt::format("{} {}", option, text), expected);
     if (std::find(values.begin(), values.end() - 1, values.back()) != values.end() - 1) values.pop_back();
   }
   return values;
+}
+
+int threads_of(const CompareRequest& request) {
+  return request.threads > 0 ? request.threads
+                             : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
 }
 
 compare::CompareOptions options_of(const CompareRequest& request) {
@@ -64,6 +69,7 @@ compare::CompareOptions options_of(const CompareRequest& request) {
   options.bandwidths = numbers_option("--bandwidth", request.bandwidths, "Hz",
                                       "finite bandwidths above 0, such as 10,100 or \"1 kHz\"");
   take_apart(request.triads, options.methods, options.split, options.slower);
+  options.threads = threads_of(request);
   return options;
 }
 
@@ -83,7 +89,8 @@ patch::PatchOptions single_patch(const std::string& option, const CompareRequest
                                  const compare::CompareOptions& options) {
   const auto one_of = [&](const char* several, std::size_t n) {
     if (n > 1)
-      refuse(fmt::format("{} with {} of {}", option, report::count(n, "value", "values"), several), "one");
+      refuse_comparison(fmt::format("{} with {} of {}", option, report::count(n, "value", "values"), several),
+                        "one");
   };
   one_of("--gain", request.gains.size());
   one_of("--bandwidth", options.bandwidths.size());
@@ -105,17 +112,17 @@ std::vector<diagram::BlockFigure> scatters_of(const CompareRequest& request,
   if (!request.tolerance.empty()) {
     const double tolerance = quantity_option("--tolerance", request.tolerance, "1");
     if (!(tolerance > 0 && tolerance <= kMost))
-      refuse(fmt::format("--tolerance {}", request.tolerance), "a number above 0 and up to 50%");
+      refuse_comparison(fmt::format("--tolerance {}", request.tolerance), "a number above 0 and up to 50%");
     return ensemble::scatters_of_tolerance(library, tolerance);
   }
   if (machine == nullptr) {
-    refuse(
+    refuse_comparison(
         fmt::format("{} without how far the elements scatter", request.budget ? "--budget" : "--monte-carlo"),
         "--tolerance, such as 0.1%, or a --machine");
   }
   if (machine->scatters.empty()) {
-    refuse(fmt::format("nothing is published of how the elements of {} scatter", machine->title),
-           "--tolerance, such as 0.1%");
+    refuse_comparison(fmt::format("nothing is published of how the elements of {} scatter", machine->title),
+                      "--tolerance, such as 0.1%");
   }
   return machine->scatters;
 }
@@ -126,7 +133,8 @@ double yield_option(const std::string& text, const mechanism::Mechanism& mechani
   const double below = relative ? mechanism.largest_length() * quantity_option("--yield", text, "1")
                                 : quantity_option("--yield", text, mechanism.length_unit);
   if (!(below > 0 && std::isfinite(below)))
-    refuse(fmt::format("--yield {}", text), "a part of the largest link above 0, such as 1%, or a length");
+    refuse_comparison(fmt::format("--yield {}", text),
+                      "a part of the largest link above 0, such as 1%, or a length");
   return below;
 }
 
@@ -135,7 +143,7 @@ std::optional<double> until_within_option(const std::string& text) {
   if (text.empty()) return std::nullopt;
   const double within = quantity_option("--until-within", text, "1");
   if (!(within > 0 && within < 1))
-    refuse(fmt::format("--until-within {}", text), "a part above 0 and below 1, such as 1%");
+    refuse_comparison(fmt::format("--until-within {}", text), "a part above 0 and below 1, such as 1%");
   return within;
 }
 
@@ -151,9 +159,7 @@ report::MonteCarloReport draw_elements(const CompareRequest& request, const mech
   report.options.runs = request.runs;
   report.options.seed = request.seed;
   report.options.first_run = request.first_run;
-  report.options.threads = request.threads > 0
-                               ? request.threads
-                               : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  report.options.threads = threads_of(request);
   report.size = mechanism.largest_length();
   report.options.good_below = good_below;
   report.options.until_within = until_within;
@@ -196,9 +202,10 @@ ExitStatus compare_mechanism(const Session& session, const CompareRequest& reque
   if (!request.output.empty()) check_output(request.output, ".json");
   check_plot(request.plot, request.theme);
   if (request.json && plots_in_terminal(request.plot))
-    refuse("--json and --plot - would both print", "one of the two", "--plot FILE.svg beside --json");
+    refuse_comparison("--json and --plot - would both print", "one of the two",
+                      "--plot FILE.svg beside --json");
   if (request.timings && !request.json && request.output.empty())
-    refuse("--timings adds to the JSON, and none is written", "--json or -o FILE.json beside it");
+    refuse_comparison("--timings adds to the JSON, and none is written", "--json or -o FILE.json beside it");
   const diagram::BlockLibrary library = session.blocks();
   compare::CompareOptions options = options_of(request);
   const diagram::MachineProfile* const machine =
@@ -207,7 +214,8 @@ ExitStatus compare_mechanism(const Session& session, const CompareRequest& reque
     throw text::ReadError(diagram::unknown_machine(request.machine));
   const bool scattered = request.runs > 0 || request.budget;
   if (!request.tolerance.empty() && !scattered)
-    refuse("--tolerance says how elements scatter, and nothing asks for it", "--budget or --monte-carlo N");
+    refuse_comparison("--tolerance says how elements scatter, and nothing asks for it",
+                      "--budget or --monte-carlo N");
   patch::PatchOptions single;
   if (machine != nullptr || scattered) {
     const char* const option = machine != nullptr ? "--machine"

@@ -127,8 +127,7 @@ void add_compare(CLI::App& app, Chosen& chosen) {
   verb->add_option("--threads", request->threads,
                    "runs at a time, which changes no result (default: what the processor has)")
       ->type_name("T")
-      ->check(CLI::Range(1, 1024))
-      ->needs(monte_carlo);
+      ->check(CLI::Range(1, 1024));
   CLI::Option* const yield =
       verb->add_option(
               "--yield", request->yield,

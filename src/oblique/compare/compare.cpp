@@ -2,8 +2,10 @@
 #include <oblique/compare/compare.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <exception>
+#include <thread>
 
 #include <fmt/format.h>
 
@@ -12,6 +14,7 @@
 #include <oblique/compare/error_parts.h>
 #include <oblique/compare/patched_run.h>
 #include <oblique/compare/worst_reason.h>
+#include <oblique/ensemble/engine/work_queue.h>
 #include <oblique/mechanism/structure/structure.h>
 #include <oblique/solve/solve_error.h>
 
@@ -23,7 +26,20 @@ namespace {
 /// Jansen leg.
 constexpr double kFloorGain = 1e12;
 
-/// The runs of a comparison, one after the other.
+/// The runs of one method and one bandwidth, and what came out of each.
+struct AskedSeries {
+  patch::PatchOptions asked;    ///< of the highest gain
+  patch::PatchOptions patched;  ///< as they were judged
+  std::exception_ptr refusal;   ///< a patch::PatchError, where there is no patch and so no run
+  struct Outcome {
+    std::optional<ComparedRun> run;
+    std::exception_ptr failure;  ///< a solve::SolveError, where there is no run
+  };
+  std::vector<Outcome> outcomes;  ///< a gain each
+  std::optional<double> floor;
+};
+
+/// The runs of a comparison, in any order and from any thread.
 class Comparer {
  public:
   Comparer(const mechanism::Mechanism& mechanism, const diagram::BlockLibrary& library,
@@ -35,6 +51,39 @@ class Comparer {
         structure_(structure),
         exact_(exact),
         reasons_(reasons) {}
+
+  /// Has all runs of the series done: of each gain, and at last the floor.
+  void run(std::vector<AskedSeries>& series) {
+    const std::size_t n_gains = options_.gains.size(), of_series = n_gains + 1;
+    for (AskedSeries& each : series) {
+      each.outcomes.resize(n_gains);
+      if (!each.refusal) total_ += static_cast<double>(2 * n_gains + 1);
+    }
+    ensemble::work_off(0, series.size() * of_series, options_.threads,
+                       [&](const ensemble::Next& next) {
+                         for (std::uint64_t number = 0; next(number);) {
+                           AskedSeries& of = series[number / of_series];
+                           if (of.refusal) continue;
+                           const std::size_t gain = number % of_series;
+                           if (gain == n_gains) {
+                             of.floor = floor(of.patched);
+                           } else {
+                             of.outcomes[gain] = outcome(of.patched, options_.gains[gain]);
+                           }
+                         }
+                       },
+                       {});
+  }
+
+ private:
+  AskedSeries::Outcome outcome(patch::PatchOptions options, double gain) {
+    options.gain = gain;
+    try {
+      return {compared(options), {}};
+    } catch (const solve::SolveError&) {
+      return {{}, std::current_exception()};
+    }
+  }
 
   ComparedRun compared(const patch::PatchOptions& options) {
     const PatchedMechanism patched(patch_named(mechanism_, options), library_);
@@ -78,7 +127,6 @@ class Comparer {
     }
   }
 
- private:
   /// "amplifiers of gain 1000 and 20 Hz, method gradient": bandwidth and method where there was a choice.
   std::string name_of(const patch::PatchOptions& options) const {
     std::string name = fmt::format("amplifiers of gain {:.6g}", options.gain);
@@ -92,12 +140,12 @@ class Comparer {
     if (options_.progress) progress()(0);
   }
 
+  /// Tells nothing from other threads than the one that asked for the comparison.
   std::function<void(double)> progress() const {
     if (!options_.progress) return {};
-    const auto bandwidths = std::max<std::size_t>(options_.bandwidths.size(), 1);
-    const auto total =
-        static_cast<double>(options_.methods.size() * bandwidths * (2 * options_.gains.size() + 1));
-    return [this, total](double fraction) { options_.progress((done_ + fraction) / total); };
+    return [this](double fraction) {
+      if (std::this_thread::get_id() == asker_) options_.progress((done_ + fraction) / total_);
+    };
   }
 
   const mechanism::Mechanism& mechanism_;
@@ -106,7 +154,9 @@ class Comparer {
   const mechanism::Structure& structure_;
   const mechanism::Motion& exact_;
   const WorstReasons& reasons_;
-  double done_ = 0;  ///< runs
+  const std::thread::id asker_ = std::this_thread::get_id();
+  double total_ = 0;  ///< runs
+  std::atomic<int> done_ = 0;
 };
 
 /// Least-squares slope of log error over log gain among the runs that the floor does not hide.
@@ -140,15 +190,19 @@ Comparison compare_within_range(const mechanism::Mechanism& mechanism, const dia
   const mechanism::Motion exact = mechanism::solve_motion(mechanism, options.positions);
   for (const auto& drives : exact.drives) comparison.drive.push_back(drives.front().value);
   const WorstReasons reasons(mechanism, exact);
-  Comparer comparer(mechanism, library, options, structure, exact, reasons);
   std::vector<std::optional<double>> bandwidths(options.bandwidths.begin(), options.bandwidths.end());
   if (bandwidths.empty()) bandwidths.emplace_back();
   std::exception_ptr first_refusal;
   const auto refuse = [&](const patch::PatchOptions& asked, std::optional<double> gain,
-                          const text::Error& error) {
-    comparison.refused.push_back({asked.method, asked.bandwidth, gain, error.diagnostics().front()});
-    if (!first_refusal) first_refusal = std::current_exception();
+                          const std::exception_ptr& why) {
+    if (!first_refusal) first_refusal = why;
+    try {
+      std::rethrow_exception(why);
+    } catch (const text::Error& error) {
+      comparison.refused.push_back({asked.method, asked.bandwidth, gain, error.diagnostics().front()});
+    }
   };
+  std::vector<AskedSeries> all;
   for (const patch::PatchMethod method : options.methods) {
     for (const std::optional<double>& bandwidth : bandwidths) {
       patch::PatchOptions asked;
@@ -160,33 +214,37 @@ Comparison compare_within_range(const mechanism::Mechanism& mechanism, const dia
         asked.split = options.split;
         asked.slower = options.slower;
       }
-      patch::PatchOptions patched;
+      AskedSeries& of = all.emplace_back();
+      of.asked = asked;
       try {
-        patched = commission::judged_patch(mechanism, library, asked).options;
+        of.patched = commission::judged_patch(mechanism, library, asked).options;
       } catch (const patch::PatchError& error) {
         if (error.kind() == patch::PatchError::Kind::request) throw;
-        refuse(asked, {}, error);
+        of.refusal = std::current_exception();
+      }
+    }
+  }
+  Comparer(mechanism, library, options, structure, exact, reasons).run(all);
+  for (AskedSeries& of : all) {
+    if (of.refusal) {
+      refuse(of.asked, {}, of.refusal);
+      continue;
+    }
+    const std::size_t first = comparison.runs.size();
+    for (std::size_t g = 0; g < options.gains.size(); ++g) {
+      AskedSeries::Outcome& outcome = of.outcomes[g];
+      if (outcome.run) {
+        comparison.runs.push_back(std::move(*outcome.run));
         continue;
       }
-      const std::size_t first = comparison.runs.size();
-      for (const double gain : options.gains) {
-        patched.gain = gain;
-        try {
-          comparison.runs.push_back(comparer.compared(patched));
-        } catch (const solve::SolveError& error) {
-          refuse(asked, gain, error);
-        }
-      }
-      if (comparison.runs.size() == first) continue;
-      GainSeries series{method,
-                        bandwidth.value_or(patch::default_bandwidth(mechanism)),
-                        first,
-                        comparison.runs.size() - first,
-                        comparer.floor(patched),
-                        {}};
-      series.order = fitted_order(comparison.runs_of(series), series.floor.value_or(0));
-      comparison.series.push_back(series);
+      refuse(of.asked, options.gains[g], outcome.failure);
     }
+    if (comparison.runs.size() == first) continue;
+    GainSeries series{of.asked.method, of.asked.bandwidth.value_or(patch::default_bandwidth(mechanism)),
+                      first,           comparison.runs.size() - first,
+                      of.floor,        {}};
+    series.order = fitted_order(comparison.runs_of(series), series.floor.value_or(0));
+    comparison.series.push_back(series);
   }
   if (comparison.runs.empty()) std::rethrow_exception(first_refusal);
   return comparison;

@@ -22,6 +22,8 @@ struct CompareOptions {
   std::vector<std::string> split = {};  ///< of a triad, and
   std::optional<double> slower = {};    ///< the speed of its outer loop, as PatchOptions has them
   int positions = 361;                  ///< rows over one turn, both ends included
+  int threads = 1;  ///< runs at a time; but for their wall clocks the result does not depend on it
+  /// Called from the calling thread; what it throws ends the runs of all threads.
   std::function<void(double fraction)> progress;
 };
 

@@ -382,7 +382,8 @@ class Mechanism:
             "gains": None if gains is None else _arguments.numbers("gains", gains, "1"),
             "bandwidths": None if bandwidths is None else _arguments.numbers("bandwidths", bandwidths, "Hz"),
             "methods": wanted,
-            "positions": _arguments.count("positions", positions, 2)}
+            "positions": _arguments.count("positions", positions, 2),
+            "threads": _arguments.count("threads", threads, 0, 4096)}
         chosen = self._patching(None, None, "gradient" if wanted == ["gradient"] else "triangles", split, slower)
         options.update(split=chosen["split"], slower=chosen["slower"])
         runs = _arguments.count("monte_carlo", monte_carlo, 0)
@@ -401,8 +402,7 @@ class Mechanism:
             options["gains"] = options["gains"] or [1e6]
         if runs:
             draws = {"runs": runs, "tolerance": part, "seed": _arguments.count("seed", seed, 0, 2**63 - 1),
-                     "first_run": _arguments.count("first_run", first_run, 0, 2**63 - 1),
-                     "threads": _arguments.count("threads", threads, 0, 4096)}
+                     "first_run": _arguments.count("first_run", first_run, 0, 2**63 - 1), "threads": options["threads"]}
             draws.update(_good(good_below, until_within, self.length_unit))
         elif good_below is not None or until_within is not None:
             name = "good_below" if good_below is not None else "until_within"
