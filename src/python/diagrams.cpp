@@ -66,8 +66,8 @@ py::list static_test(const DiagramModel& model, const Settings& settings) {
   return list;
 }
 
-std::string drawn(const DiagramModel& model, const std::string& symbols, int depth,
-                  const std::string& theme) {
+std::string drawn_diagram(const DiagramModel& model, const std::string& symbols, int depth,
+                          const std::string& theme) {
   draw::DiagramDrawing options;
   if (symbols == "din") options.symbols = draw::SymbolStyle::din;
   options.depth = depth;
@@ -125,7 +125,7 @@ void bind_diagrams(py::module_& module) {
       .def("check", &check)
       .def("rescaled", &rescaled)
       .def("static_test", &static_test)
-      .def("draw", &drawn);
+      .def("draw", &drawn_diagram);
   module.def("read_file", [](const std::string& path) { return py::bytes(text::read_file(path)); });
   module.def("write_file",
              [](const std::string& path, const std::string& text) { text::write_file(path, text); });

@@ -97,7 +97,7 @@ py::list expectations(const MechanismModel& model) {
   return list;
 }
 
-py::dict check(const MechanismModel& model) {
+py::dict check_mechanism(const MechanismModel& model) {
   std::string text, json;
   std::optional<std::string> finding;
   unlocked([&](SignalWatch&) {
@@ -180,7 +180,7 @@ void bind_mechanisms(py::module_& module) {
                              [](const MechanismModel& m) { return !m.mechanism.expectations.empty(); })
       .def("solve", &solve)
       .def("expectations", &expectations)
-      .def("check", &check)
+      .def("check", &check_mechanism)
       .def("modes", &modes)
       .def("fit", &fit)
       .def("time_at",

@@ -364,7 +364,7 @@ void threads(benchmark::State& state) {
 }
 BENCHMARK(threads)->Name("lanes_threads")->UseManualTime()->Unit(benchmark::kMillisecond)->Iterations(5);
 
-const bool kRegistered = [] {
+const bool kLanesRegistered = [] {
   struct Asked {
     LinkageCase chosen;
     double least, least_of_elements;  ///< times faster

@@ -90,7 +90,7 @@ void rodas(benchmark::State& state, const Case& chosen) {
           chosen.bound, ""});
 }
 
-const bool kRegistered = [] {
+const bool kRodasRegistered = [] {
   const std::string linkages = "diagrams/mechanisms/";
   const Case cases[] = {
       {linkages + "four-bar.toml", "four-bar", 1e-4, 0.9, 1e-12},

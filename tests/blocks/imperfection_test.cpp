@@ -20,8 +20,6 @@ using testing::row_values;
 using testing::run_of;
 using testing::shipped_blocks_and;
 
-constexpr double kPi = std::numbers::pi;
-
 // --- without imperfections a block is its one equation
 
 struct Ideal {
@@ -88,7 +86,7 @@ TEST(RealSummer, AnswersAStepWithTheBandwidthOverItsNoiseGain) {
   // N = 4: der(out) = ω_t/4 (… − (1 + 4/A) out), at rest before the step.
   const Compiled made(R"(a = { type = "step", at = 0.1, from = 0.1, to = 0.3 }
 s = { type = "summer", in = ["-3*a"], bandwidth = 8, gain = 50, offset = 0.01 })");
-  const double rate = 2 * kPi * 8 / 4 * 1.08;
+  const double rate = 2 * std::numbers::pi * 8 / 4 * 1.08;
   expect_form(run_of(made, {.samples = 102}), "s", kIntegrated, [&](double t) {
     const double before = (-0.3 + 0.04) / 1.08, after = (-0.9 + 0.04) / 1.08;
     return t < 0.1 ? before : after + (before - after) * std::exp(-rate * (t - 0.1));
@@ -122,7 +120,7 @@ TEST(RealInverter, IsASummerOfOneInput) {
 // --- multiplier: the product of two squarers with a wave for each segment
 
 TEST(RealMultiplier, ErrsAsItsTwoSquarers) {
-  const auto square = [](double u) { return u * u - 0.004 / 2 * std::cos(2 * kPi * 7 * u); };
+  const auto square = [](double u) { return u * u - 0.004 / 2 * std::cos(2 * std::numbers::pi * 7 * u); };
   for (const double x : {-1.0, -0.37, 0.0, 0.21, 0.93}) {
     for (const double y : {-0.8, 0.0, 0.45, 1.0}) {
       const Compiled made(fmt::format(R"(x = {{ type = "constant", value = {} }}
@@ -139,8 +137,9 @@ m = {{ type = "multiplier", in = ["x", "y"], error = 0.004, offset = 0.002 }})",
 TEST(RealMultiplier, FollowsWithItsBandwidth) {
   const Compiled made(R"(x = { type = "step", at = 0.1, from = 0.5, to = 1 }
 m = { type = "multiplier", in = ["x", "x"], bandwidth = 5 })");
-  expect_form(run_of(made, {.samples = 102}), "m", kIntegrated,
-              [](double t) { return t < 0.1 ? 0.25 : 1 - 0.75 * std::exp(-2 * kPi * 5 * (t - 0.1)); });
+  expect_form(run_of(made, {.samples = 102}), "m", kIntegrated, [](double t) {
+    return t < 0.1 ? 0.25 : 1 - 0.75 * std::exp(-2 * std::numbers::pi * 5 * (t - 0.1));
+  });
 }
 
 // --- potentiometer

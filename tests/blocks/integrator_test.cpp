@@ -21,8 +21,6 @@ using testing::last;
 using testing::row_values;
 using testing::run_of;
 
-constexpr double kPi = std::numbers::pi;
-
 TEST(Integrator, TakesItsInitialValueFromAnotherElement) {
   const Compiled made(R"(c = { type = "constant", value = 0.4 }
 a = { type = "integrator", in = ["c"], initial = 0.3 }
@@ -49,10 +47,10 @@ TEST_P(LimitedIntegratorTest, StaysWithinItsLimitAndRecoversAtOnce) {
       std::string(kCosineAndSine) +
       fmt::format("x = {{ type = \"integrator\", in = [\"cosine\"], {} limit = 0.5 }}", GetParam()));
   // ∫ cos t from 0: at 0.5 from π/6 to π/2, at −0.5 from π to 3π/2, and so on.
-  expect_form(run_of(made, {.until = 6 * kPi, .samples = 601}), "x", kIntegrated, [](double t) {
-    if (t < kPi / 2) return std::min(0.5, std::sin(t));
-    const double phase = std::fmod(t, 2 * kPi);
-    const bool falls = phase > kPi / 2 && phase < 3 * kPi / 2;
+  expect_form(run_of(made, {.until = 6 * std::numbers::pi, .samples = 601}), "x", kIntegrated, [](double t) {
+    if (t < std::numbers::pi / 2) return std::min(0.5, std::sin(t));
+    const double phase = std::fmod(t, 2 * std::numbers::pi);
+    const bool falls = phase > std::numbers::pi / 2 && phase < 3 * std::numbers::pi / 2;
     return falls ? std::max(-0.5, std::sin(phase) - 0.5) : std::min(0.5, std::sin(phase) + 0.5);
   });
 }
@@ -110,7 +108,7 @@ TEST(RealIntegrator, AnswersAStepWithItsFiniteBandwidth) {
   // s out (1 + s/ω_t + k/ω_t) = k in, exactly, with the gain inf.
   const Compiled made(R"(u = { type = "step", at = 0.1 }
 x = { type = "integrator", in = ["u"], rate = 2, bandwidth = 5 })");
-  const double w = 2 * kPi * 5, a = w + 2;  // out = k w/a (t − (1 − e^{−a t})/a)
+  const double w = 2 * std::numbers::pi * 5, a = w + 2;  // out = k w/a (t − (1 − e^{−a t})/a)
   expect_form(run_of(made, {.samples = 102}), "x", kIntegrated, [&](double t) {
     const double s = std::max(0.0, t - 0.1);
     return 2 * w / a * (s - (1 - std::exp(-a * s)) / a);

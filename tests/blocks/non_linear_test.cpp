@@ -20,8 +20,6 @@ using testing::kRounding;
 using testing::last;
 using testing::run_of;
 
-constexpr double kPi = std::numbers::pi;
-
 /// A block "out" of the signal u, which rises from −2 to 2.
 struct Characteristic {
   std::string name;
@@ -63,15 +61,15 @@ TEST_P(CharacteristicTest, IsItsDefinition) {
 TEST(AbsoluteValue, IsIntegratedAcrossItsCorners) {
   const Compiled made(std::string(kCosineAndSine) + R"(magnitude = { type = "absolute-value", in = "sine" }
 sum = { type = "integrator", in = ["magnitude"] })");
-  EXPECT_NEAR(last(run_of(made, {.until = 4 * kPi, .samples = 2}), "sum"), 8, kIntegrated);
+  EXPECT_NEAR(last(run_of(made, {.until = 4 * std::numbers::pi, .samples = 2}), "sum"), 8, kIntegrated);
 }
 
 TEST(Limiter, CutsASineAtTheRightTimes) {
   // ∫ of sin t cut at ½ over half a period: 2 (1 − cos π/6) + (2π/3)/2.
   const Compiled made(std::string(kCosineAndSine) + R"(cut = { type = "limiter", in = "sine", high = 0.5 }
 sum = { type = "integrator", in = ["cut"] })");
-  const double area = 2 * (1 - std::cos(kPi / 6)) + kPi / 3;
-  EXPECT_NEAR(last(run_of(made, {.until = kPi, .samples = 2}), "sum"), area, kIntegrated);
+  const double area = 2 * (1 - std::cos(std::numbers::pi / 6)) + std::numbers::pi / 3;
+  EXPECT_NEAR(last(run_of(made, {.until = std::numbers::pi, .samples = 2}), "sum"), area, kIntegrated);
 }
 
 TEST(Backlash, IsDraggedBehindARampWithItsLag) {
@@ -90,10 +88,11 @@ TEST(Backlash, RunsRoundItsLoop) {
   const Compiled made(std::string(kCosineAndSine) +
                       R"(out = { type = "backlash", in = "cosine", play = 0.4, rate = 1e4, initial = 0.8 })");
   // Ideal backlash, and the lag of at most 1/k that the speed of at most 1 leaves.
-  expect_form(run_of(made, {.until = 2 * kPi, .samples = 201}), "out", 1.01 / kRate, [&](double t) {
-    const double in = std::cos(t);
-    return t < kPi ? std::min(0.8, in + kHalf) : std::max(-0.8, in - kHalf);
-  });
+  expect_form(run_of(made, {.until = 2 * std::numbers::pi, .samples = 201}), "out", 1.01 / kRate,
+              [&](double t) {
+                const double in = std::cos(t);
+                return t < std::numbers::pi ? std::min(0.8, in + kHalf) : std::max(-0.8, in - kHalf);
+              });
 }
 
 }  // namespace

@@ -15,8 +15,6 @@ using testing::Compiled;
 using testing::row_values;
 using testing::run_of;
 
-constexpr double kPi = std::numbers::pi;
-
 /// A vector whose angle is `start` + `speed` t and whose length is 0.5 + 0.4 t, there and back.
 std::string there_and_back(double start, double speed, const std::string& parameters) {
   return fmt::format(R"toml(one    = {{ type = "constant" }}
@@ -39,14 +37,14 @@ TEST(Resolver, GivesTheCoordinates) {
 }
 
 TEST(PolarResolver, FollowsAVectorThatTurnsOnAndOn) {
-  constexpr double kSpeed = 2 * kPi * 5;  // five turns
+  constexpr double kSpeed = 2 * std::numbers::pi * 5;  // five turns
   const auto result = run_of(Compiled(there_and_back(0.2, kSpeed, "")), {.samples = 501});
   const auto angle = row_values(result, "angle"), length = row_values(result, "length");
   const auto found = row_values(result, "back.angle"), side = row_values(result, "back.length");
   for (std::size_t r = 0; r < angle.size(); ++r) {
     // Static error φ/(μ w r) and lag φ̇ τ/(μ w r), μ w = 1e7, τ = 1/(20π); 1e-8 the solver's, in 31 rad.
     const double loop = 1e7 * length[r];
-    const double predicted = -angle[r] / loop - kSpeed / (20 * kPi) / loop;
+    const double predicted = -angle[r] / loop - kSpeed / (20 * std::numbers::pi) / loop;
     EXPECT_NEAR(found[r] - angle[r], predicted, 0.2 * std::abs(predicted) + 5e-7) << angle[r];
     EXPECT_NEAR(side[r], length[r], 1e-11) << angle[r];  // r δφ²/2
   }
@@ -66,7 +64,7 @@ TEST(PolarResolver, LeavesTheStaticErrorOfItsGain) {
 
 TEST(PolarResolver, FindsTheAngleWithinHalfATurnOfItsInitialOne) {
   for (const double angle : {-3.1, -1.6, 0.0, 1.5, 2.5, 3.1}) {
-    for (const double initial : {0.0, 2 * kPi}) {
+    for (const double initial : {0.0, 2 * std::numbers::pi}) {
       const auto result =
           run_of(Compiled(there_and_back(angle, 0, fmt::format(", initial = {}", initial))), {.samples = 2});
       EXPECT_NEAR(row_values(result, "back.angle").front(), angle + initial, 1e-5) << angle << ' ' << initial;

@@ -20,8 +20,7 @@ using testing::kRounding;
 using testing::last;
 using testing::run_of;
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kTau = 1 / (2 * kPi * 10);  // of 10 Hz [s]
+constexpr double kTau = 1 / (2 * std::numbers::pi * 10);  // of 10 Hz [s]
 
 TEST(ServoAmplifier, StaysWithinItsLimitAndRecoversAtOnce) {
   // r = −1 until t = 0.5, then 0.1: towards 5 until the limit of 1, and from there towards −0.5.
@@ -47,7 +46,7 @@ TEST_P(LimitedServoTest, FollowsUpToItsLimit) {
       fmt::format("a = {{ type = \"servo-amplifier\", in = [\"a\", \"-cosine\"], {} limit = 0.5 }}",
                   GetParam()));
   // Lag of 1e-5 s and static error of 1e-6; beginning and ending each run at the limit.
-  expect_form(run_of(made, {.until = 4 * kPi, .samples = 401}), "a", 2e-5,
+  expect_form(run_of(made, {.until = 4 * std::numbers::pi, .samples = 401}), "a", 2e-5,
               [](double t) { return std::clamp(std::cos(t), -0.5, 0.5); });
 }
 

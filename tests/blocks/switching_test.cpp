@@ -19,8 +19,6 @@ using testing::last;
 using testing::row_values;
 using testing::run_of;
 
-constexpr double kPi = std::numbers::pi;
-
 /// How often the events of a block came.
 long events_of(const solve::Run& result, std::string_view block) {
   return std::count_if(result.events.begin(), result.events.end(),
@@ -31,10 +29,10 @@ TEST(Comparator, SwitchesOnceAtEachEndOfItsHysteresis) {
   const Compiled made(std::string(kCosineAndSine) +
                       R"(c = { type = "comparator", in = ["cosine"], hysteresis = 0.5, low = -1, high = 3 }
 sum = { type = "integrator", in = ["c"] })");
-  const auto result = run_of(made, {.until = 2 * kPi, .samples = 2});
+  const auto result = run_of(made, {.until = 2 * std::numbers::pi, .samples = 2});
   EXPECT_EQ(events_of(result, "c"), 3);  // the start, and one at each end
-  const double low = 2 * kPi - std::acos(0.25) - std::acos(-0.25);
-  EXPECT_NEAR(last(result, "sum"), 3 * (2 * kPi - low) - low, kIntegrated);
+  const double low = 2 * std::numbers::pi - std::acos(0.25) - std::acos(-0.25);
+  EXPECT_NEAR(last(result, "sum"), 3 * (2 * std::numbers::pi - low) - low, kIntegrated);
 }
 
 TEST(Comparator, BeginsInsideItsHysteresisAsItIsTold) {

@@ -12,10 +12,10 @@ namespace oblique::test {
 namespace {
 
 using Eigen::Vector2d;
-using testing::Each;
-using testing::Eq;
-using testing::HasSubstr;
-using testing::Not;
+using ::testing::Each;
+using ::testing::Eq;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 int brightness(const ShownGif& gif, std::size_t frame, const Vector2d& at) {
   const auto x = static_cast<std::size_t>(at.x()), y = static_cast<std::size_t>(at.y());

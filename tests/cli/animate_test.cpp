@@ -10,9 +10,9 @@ namespace oblique::test {
 namespace {
 
 using Eigen::Vector2d;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::Not;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
 
 // The analog mechanism by `patch` and `run`, the exact one by `solve`: what is drawn is exact + 500 · (analog
 // − exact). The runs are sampled in other ways, which with the tolerance of 1e-10 is worth less than 1e-4 px;
@@ -103,54 +103,58 @@ until = 1
     EXPECT_NEAR(std::remainder(turned[k] - (k < 5 ? up + 180 : up), 360), 0, 1e-3) << k;
 }
 
-struct Refused {
+struct RefusedAnimation {
   const char* name;
   const char* arguments;
   int status;
   const char* says;
 };
 
-void PrintTo(const Refused& refused, std::ostream* out) {
+void PrintTo(const RefusedAnimation& refused, std::ostream* out) {
   *out << refused.arguments;
 }
 
-class RefusedAnimations : public testing::TestWithParam<Refused> {};
+class RefusedAnimations : public ::testing::TestWithParam<RefusedAnimation> {};
 INSTANTIATE_TEST_SUITE_P(
     Cli, RefusedAnimations,
-    testing::Values(
-        Refused{"UnknownEnding", "four-bar -o x.mp4", 2,
-                "x.mp4: cannot write a '.mp4' file; expected a name that ends in .svg, .html or .gif"},
-        Refused{"NoFolder", "four-bar -o nowhere/x.gif", 2,
-                "nowhere/x.gif: the folder of this file does not exist"},
-        Refused{"SizeZero", "four-bar --size 0 -o x.svg", 2, "--size: Value 0 not in range 100 to 4000"},
-        Refused{"RateZero", "four-bar --rate 0 -o x.gif", 2, "--rate 0; expected a finite number above 0"},
-        Refused{"RateNoNumber", "four-bar --rate fast -o x.gif", 2, "--rate fast"},
-        Refused{"RateTooHigh", "four-bar --rate 60 -o x.gif", 2,
-                "60 frames a second in a GIF; expected at most 50, and at least one in 655 s"},
-        Refused{"FramesTooFast", "four-bar --frames 300 -o x.gif", 2,
-                "75 frames a second in a GIF; expected at most 50, and at least one in 655 s\n"
-                "  remedy: choose other --frames or another --duration"},
-        Refused{"RateTooLow", "four-bar --rate 0.001 --frames 10 -o x.gif", 2,
-                "0.001 frames a second in a GIF"},
-        Refused{"TooFewFrames", "four-bar --duration 0.1 -o x.gif", 2,
-                "0.1 s at 25 frames a second are 3 frames; expected 8 to 3600 frames"},
-        Refused{"Contradiction", "four-bar --frames 90 --duration 4 --rate 10 -o x.gif", 2,
-                "--frames 90, --duration 4 s and --rate 10 contradict each other: 4 s at 10 frames a second "
-                "are 40 "
-                "frames\n  remedy: leave one of the three out"},
-        Refused{"RateOfSvg", "four-bar --rate 10 -o x.svg", 2,
-                "--rate 10 is for a .gif: others move evenly between their frames\n"
-                "  remedy: leave it out; --frames says how many positions are computed"},
-        Refused{"RateOfPage", "four-bar --rate 10 -o x.html", 2, "--rate 10 is for a .gif"},
-        Refused{"MagnifyZero", "four-bar --magnify 0 -o x.svg", 2,
-                "--magnify 0; expected a finite number above 0"},
-        Refused{"GainAlone", "four-bar --gain 1e3 -o x.svg", 2, "--gain requires --magnify"},
-        Refused{"UnknownMethod", "four-bar --magnify 10 --method triangle -o x.svg", 2,
-                "--method triangle; expected triangles, gradient or paper"},
-        Refused{"GainZero", "four-bar --magnify 10 --gain 0 -o x.svg", 2,
-                "--gain 0; expected a finite number above 0"},
-        Refused{"CannotBePatched", "class-iv --magnify 10 -o x.svg", 1,
-                "cannot be taken apart into triangles; expected drives"}),
+    ::testing::Values(
+        RefusedAnimation{
+            "UnknownEnding", "four-bar -o x.mp4", 2,
+            "x.mp4: cannot write a '.mp4' file; expected a name that ends in .svg, .html or .gif"},
+        RefusedAnimation{"NoFolder", "four-bar -o nowhere/x.gif", 2,
+                         "nowhere/x.gif: the folder of this file does not exist"},
+        RefusedAnimation{"SizeZero", "four-bar --size 0 -o x.svg", 2,
+                         "--size: Value 0 not in range 100 to 4000"},
+        RefusedAnimation{"RateZero", "four-bar --rate 0 -o x.gif", 2,
+                         "--rate 0; expected a finite number above 0"},
+        RefusedAnimation{"RateNoNumber", "four-bar --rate fast -o x.gif", 2, "--rate fast"},
+        RefusedAnimation{"RateTooHigh", "four-bar --rate 60 -o x.gif", 2,
+                         "60 frames a second in a GIF; expected at most 50, and at least one in 655 s"},
+        RefusedAnimation{"FramesTooFast", "four-bar --frames 300 -o x.gif", 2,
+                         "75 frames a second in a GIF; expected at most 50, and at least one in 655 s\n"
+                         "  remedy: choose other --frames or another --duration"},
+        RefusedAnimation{"RateTooLow", "four-bar --rate 0.001 --frames 10 -o x.gif", 2,
+                         "0.001 frames a second in a GIF"},
+        RefusedAnimation{"TooFewFrames", "four-bar --duration 0.1 -o x.gif", 2,
+                         "0.1 s at 25 frames a second are 3 frames; expected 8 to 3600 frames"},
+        RefusedAnimation{
+            "Contradiction", "four-bar --frames 90 --duration 4 --rate 10 -o x.gif", 2,
+            "--frames 90, --duration 4 s and --rate 10 contradict each other: 4 s at 10 frames a second "
+            "are 40 "
+            "frames\n  remedy: leave one of the three out"},
+        RefusedAnimation{"RateOfSvg", "four-bar --rate 10 -o x.svg", 2,
+                         "--rate 10 is for a .gif: others move evenly between their frames\n"
+                         "  remedy: leave it out; --frames says how many positions are computed"},
+        RefusedAnimation{"RateOfPage", "four-bar --rate 10 -o x.html", 2, "--rate 10 is for a .gif"},
+        RefusedAnimation{"MagnifyZero", "four-bar --magnify 0 -o x.svg", 2,
+                         "--magnify 0; expected a finite number above 0"},
+        RefusedAnimation{"GainAlone", "four-bar --gain 1e3 -o x.svg", 2, "--gain requires --magnify"},
+        RefusedAnimation{"UnknownMethod", "four-bar --magnify 10 --method triangle -o x.svg", 2,
+                         "--method triangle; expected triangles, gradient or paper"},
+        RefusedAnimation{"GainZero", "four-bar --magnify 10 --gain 0 -o x.svg", 2,
+                         "--gain 0; expected a finite number above 0"},
+        RefusedAnimation{"CannotBePatched", "class-iv --magnify 10 -o x.svg", 1,
+                         "cannot be taken apart into triangles; expected drives"}),
     [](const auto& tested) { return tested.param.name; });
 
 TEST_P(RefusedAnimations, EndWithAMessageAndNoFile) {

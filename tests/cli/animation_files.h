@@ -58,7 +58,7 @@ struct Scale {
   }
 };
 
-class Animations : public testing::Test {
+class Animations : public ::testing::Test {
  protected:
   Animations() : folder_(make_scratch_folder()) { std::filesystem::create_directories(folder_); }
   ~Animations() override { std::filesystem::remove_all(folder_); }

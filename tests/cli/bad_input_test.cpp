@@ -12,8 +12,8 @@
 namespace oblique::test {
 namespace {
 
-using testing::HasSubstr;
-using testing::IsEmpty;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 
 struct BadInput {
   const char* name;
@@ -186,8 +186,8 @@ void PrintTo(const BadInput& input, std::ostream* out) {
   *out << input.name;
 }
 
-class BadInputs : public testing::TestWithParam<BadInput> {};
-INSTANTIATE_TEST_SUITE_P(Cli, BadInputs, testing::ValuesIn(kCases),
+class BadInputs : public ::testing::TestWithParam<BadInput> {};
+INSTANTIATE_TEST_SUITE_P(Cli, BadInputs, ::testing::ValuesIn(kCases),
                          [](const auto& tested) { return tested.param.name; });
 
 TEST_P(BadInputs, EndWithTheirStatusAndAMessage) {
@@ -197,7 +197,7 @@ TEST_P(BadInputs, EndWithTheirStatusAndAMessage) {
       run_command(std::string("oblique ") + GetParam().verb + " input.toml", folder.path().string());
   EXPECT_EQ(outcome.status, GetParam().status) << outcome.err;
   EXPECT_THAT(outcome.out, IsEmpty());
-  EXPECT_THAT(outcome.err, testing::StartsWith("error: "));
+  EXPECT_THAT(outcome.err, ::testing::StartsWith("error: "));
   for (const char* part : GetParam().says) EXPECT_THAT(outcome.err, HasSubstr(part));
 }
 
@@ -212,10 +212,10 @@ void PrintTo(const ManyFaults& tested, std::ostream* out) {
   *out << tested.name;
 }
 
-class ManyInputs : public testing::TestWithParam<ManyFaults> {};
+class ManyInputs : public ::testing::TestWithParam<ManyFaults> {};
 INSTANTIATE_TEST_SUITE_P(
     Cli, ManyInputs,
-    testing::Values(
+    ::testing::Values(
         ManyFaults{"UnknownSignals", "type = \"gain\", in = \"no{}\"",
                    "error: input.toml:3:29: input 'b0.in': there is no signal 'no0'\n"
                    "  remedy: known: b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11 and 2988 more\n"},
@@ -245,8 +245,8 @@ TEST_P(ManyInputs, AreToldOfByTheFirstOfThem) {
   std::ofstream(folder / "input.toml") << diagram(blocks);
   const Outcome outcome = run_command("oblique run input.toml", folder.path().string());
   EXPECT_EQ(outcome.status, 2);
-  EXPECT_THAT(outcome.err, testing::StartsWith(GetParam().first));
-  EXPECT_THAT(outcome.err, testing::EndsWith("\nerror: … and 2980 more\n"));
+  EXPECT_THAT(outcome.err, ::testing::StartsWith(GetParam().first));
+  EXPECT_THAT(outcome.err, ::testing::EndsWith("\nerror: … and 2980 more\n"));
   std::size_t findings = 0;
   for (std::size_t at = 0; (at = outcome.err.find("error: ", at)) != std::string::npos; ++at) ++findings;
   EXPECT_EQ(findings, 21U);

@@ -10,7 +10,7 @@
 namespace oblique::test {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 TEST(BadRequest, MissingFileSaysWhere) {
   const Outcome outcome = run_command("oblique run nowhere.toml", OBLIQUE_SOURCE_DIR);
@@ -43,10 +43,10 @@ void PrintTo(const BadRequestCase& request, std::ostream* out) {
   *out << request.command;
 }
 
-class BadRequests : public testing::TestWithParam<BadRequestCase> {};
+class BadRequests : public ::testing::TestWithParam<BadRequestCase> {};
 INSTANTIATE_TEST_SUITE_P(
     Cli, BadRequests,
-    testing::Values(
+    ::testing::Values(
         BadRequestCase{"UnknownVerb", "oblique rnu x", 2,
                        "there is no command 'rnu'\n  remedy: did you mean 'run'?"},
         BadRequestCase{"UnknownOption", "oblique run x --chek", 2,

@@ -15,13 +15,13 @@
 namespace oblique::test {
 namespace {
 
-using testing::ContainsRegex;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::Not;
+using ::testing::ContainsRegex;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
 
-class Check : public testing::Test {
+class Check : public ::testing::Test {
  protected:
   Check() : folder_(make_scratch_folder()) { std::filesystem::create_directories(folder_); }
   ~Check() override { std::filesystem::remove_all(folder_); }
@@ -61,9 +61,9 @@ TEST_F(Check, JsonHasTheDocumentedKeysAlone) {
   const auto json = nlohmann::json::parse(outcome.out);
   std::vector<std::string> keys;
   for (const auto& [key, value] : json.items()) keys.push_back(key);
-  EXPECT_THAT(keys, testing::UnorderedElementsAre("file", "kind", "title", "blocks", "elements", "states",
-                                                  "servo_amplifiers", "outputs", "run", "loops", "stability",
-                                                  "overloads", "scaling", "bill"));
+  EXPECT_THAT(keys, ::testing::UnorderedElementsAre("file", "kind", "title", "blocks", "elements", "states",
+                                                    "servo_amplifiers", "outputs", "run", "loops",
+                                                    "stability", "overloads", "scaling", "bill"));
   const auto& unknown = json.at("loops").at(0).at("unknowns").at(0);
   // μ ∂r/∂c = 1e5 · 2 c, with c = 0.1 − 5e-6 at the start.
   EXPECT_NEAR(unknown.at("least_gain").get<double>(), 2e5 * (0.1 - 5e-6), 0.1);

@@ -11,8 +11,8 @@
 namespace oblique::test {
 namespace {
 
-using testing::ContainsRegex;
-using testing::HasSubstr;
+using ::testing::ContainsRegex;
+using ::testing::HasSubstr;
 
 using CompareVerb = Verbs;
 
@@ -49,7 +49,7 @@ TEST_F(CompareVerb, LeavesOutAMethodThatDoesNotFit) {
   const Outcome table = oblique(command);
   EXPECT_EQ(table.status, 0);
   EXPECT_THAT(table.err,
-              testing::StartsWith(
+              ::testing::StartsWith(
                   "warning: method paper is left out: diagrams/mechanisms/four-bar.toml:23:1: the group "
                   "BCM-CD (RRR) is of a kind that the source does not have"));
   EXPECT_THAT(table.out, HasSubstr("servo-tracked triangles"));
@@ -63,12 +63,12 @@ TEST_F(CompareVerb, TakesTheSplitThatARefusalNames) {
   const std::string command = "compare diagrams/mechanisms/stephenson-ii.toml --method paper --gain 1e3";
   const Outcome refused = oblique(command);
   EXPECT_EQ(refused.status, 1);
-  EXPECT_THAT(refused.err, testing::EndsWith("remedy: --split HG,BC,EF never flips\n"));
+  EXPECT_THAT(refused.err, ::testing::EndsWith("remedy: --split HG,BC,EF never flips\n"));
   EXPECT_EQ(oblique(command + " --split HG,BC,EF").status, 0);
   const Outcome patched = oblique("patch diagrams/mechanisms/stephenson-ii.toml --method paper");
   EXPECT_THAT(
       patched.err,
-      testing::EndsWith("remedy: --split HG,BC,EF never flips; --force writes this one all the same\n"));
+      ::testing::EndsWith("remedy: --split HG,BC,EF never flips; --force writes this one all the same\n"));
 }
 
 TEST_F(CompareVerb, HoldsMethodsAndBandwidthsAgainstEachOther) {
@@ -78,7 +78,7 @@ TEST_F(CompareVerb, HoldsMethodsAndBandwidthsAgainstEachOther) {
   const Outcome table = oblique(command);
   ASSERT_EQ(table.status, 0) << table.err;
   EXPECT_THAT(table.out, HasSubstr("   method     Hz   gain  max error [mm]"));
-  EXPECT_THAT(table.out, testing::Not(HasSubstr("wrong branch")));
+  EXPECT_THAT(table.out, ::testing::Not(HasSubstr("wrong branch")));
   EXPECT_THAT(
       table.out,
       HasSubstr("worst at C, 180°: the triangle B–C–D is nearest to collinear there (sin γ = 0.27 at B)"));

@@ -11,7 +11,7 @@
 namespace oblique::test {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 class ComparisonPlot : public PlotTest {};
 

@@ -15,11 +15,11 @@
 namespace oblique::test {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 const std::string kDiagrams = std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/";
 
-class DrawDiagram : public testing::Test {
+class DrawDiagram : public ::testing::Test {
  protected:
   DrawDiagram() : folder_(make_scratch_folder()) { std::filesystem::create_directories(folder_); }
   ~DrawDiagram() override { std::filesystem::remove_all(folder_); }

@@ -14,9 +14,9 @@
 namespace oblique::test {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 class EnsembleVerb : public Verbs {
  protected:

@@ -25,7 +25,7 @@
 namespace oblique::test {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 constexpr const char* kOld = "what stood there before";
 constexpr const char* kNoMemory =
@@ -80,7 +80,7 @@ std::string without_times(const std::string& text) {
   return std::regex_replace(text, time, "TIME");
 }
 
-class Faults : public testing::TestWithParam<Call> {
+class Faults : public ::testing::TestWithParam<Call> {
  protected:
   struct Ending {
     int status = 0;  ///< below 0: the signal that ended it
@@ -107,7 +107,7 @@ class Faults : public testing::TestWithParam<Call> {
 
   std::filesystem::path folder_;
 };
-INSTANTIATE_TEST_SUITE_P(Cli, Faults, testing::ValuesIn(kCalls),
+INSTANTIATE_TEST_SUITE_P(Cli, Faults, ::testing::ValuesIn(kCalls),
                          [](const auto& tested) { return tested.param.name; });
 
 /// Where SUNHashMap_New and SUNLogger_Create stand in the program (in each of the libraries of SUNDIALS there
@@ -191,10 +191,10 @@ void Faults::expect_promises(const std::string& fault, const Ending& whole) cons
   if (fault.starts_with("memory")) {
     EXPECT_THAT(ending.err, HasSubstr(kNoMemory));
   } else {
-    EXPECT_THAT(ending.err,
-                testing::ContainsRegex("(four-bar.toml|division.toml|path.csv|out\\.[a-z]*|/picture\\.[a-z]*"
-                                       "): (cannot (open|read|write) the file|rsvg-convert could not be "
-                                       "started): |could not be written to stdout|no temporary folder"));
+    EXPECT_THAT(ending.err, ::testing::ContainsRegex(
+                                "(four-bar.toml|division.toml|path.csv|out\\.[a-z]*|/picture\\.[a-z]*"
+                                "): (cannot (open|read|write) the file|rsvg-convert could not be "
+                                "started): |could not be written to stdout|no temporary folder"));
   }
 }
 

@@ -16,12 +16,12 @@
 namespace oblique::test {
 namespace {
 
-using testing::ContainsRegex;
-using testing::HasSubstr;
-using testing::Not;
+using ::testing::ContainsRegex;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 /// A folder with a crank of 80 mm to be made one of 83 mm, by the circle of its end.
-class FitVerb : public testing::Test {
+class FitVerb : public ::testing::Test {
  protected:
   FitVerb() : folder_(make_scratch_folder()) {
     std::filesystem::create_directories(folder_);
@@ -59,7 +59,7 @@ TEST_F(FitVerb, PrintsWhatChangedAndWritesIt) {
   EXPECT_THAT(outcome.out, HasSubstr("it turns fully, as before"));
   EXPECT_THAT(outcome.err, HasSubstr("wrote new.toml"));
   EXPECT_THAT(read("new.toml"),
-              testing::StartsWith("# Fitted from six-bar.toml: AB changed so that B follows"));
+              ::testing::StartsWith("# Fitted from six-bar.toml: AB changed so that B follows"));
   EXPECT_EQ(oblique("check new.toml").status, 0);
 }
 
@@ -96,7 +96,7 @@ struct Refused {
 class FitRefusal : public FitVerb, public testing::WithParamInterface<Refused> {};
 INSTANTIATE_TEST_SUITE_P(
     Cli, FitRefusal,
-    testing::Values(
+    ::testing::Values(
         Refused{"UnknownBody", "--path circle.csv --free BFC",
                 "error: six-bar.toml: free dimensions: 'BFC' is no dimension of the mechanism\n  remedy: did "
                 "you mean "
@@ -115,7 +115,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST_P(FitRefusal, EndsWithTwoAndAMessage) {
   const Outcome outcome = oblique(std::string("fit six-bar.toml ") + GetParam().arguments);
   EXPECT_EQ(outcome.status, 2) << outcome.out;
-  EXPECT_THAT(outcome.out, testing::IsEmpty());
+  EXPECT_THAT(outcome.out, ::testing::IsEmpty());
   EXPECT_THAT(outcome.err, HasSubstr(GetParam().says));
 }
 

@@ -16,14 +16,14 @@
 namespace oblique::test {
 namespace {
 
-using testing::AllOf;
-using testing::ContainsRegex;
-using testing::HasSubstr;
-using testing::Not;
-using testing::StartsWith;
+using ::testing::AllOf;
+using ::testing::ContainsRegex;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
 
 /// An empty folder with the program at hand.
-class PatchForMachine : public testing::Test {
+class PatchForMachine : public ::testing::Test {
  protected:
   PatchForMachine() : folder_(make_scratch_folder()) {
     std::filesystem::remove_all(folder_);

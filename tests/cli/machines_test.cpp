@@ -13,9 +13,9 @@ namespace oblique::test {
 namespace {
 
 using nlohmann::json;
-using testing::ContainsRegex;
-using testing::HasSubstr;
-using testing::Not;
+using ::testing::ContainsRegex;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 Outcome oblique(const std::string& arguments) {
   return run_command("oblique " + arguments, OBLIQUE_SOURCE_DIR);

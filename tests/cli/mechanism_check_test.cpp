@@ -17,12 +17,12 @@
 namespace oblique::test {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::Not;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
 
-class MechanismCheck : public testing::Test {
+class MechanismCheck : public ::testing::Test {
  protected:
   MechanismCheck() : folder_(make_scratch_folder()) { std::filesystem::create_directories(folder_); }
   ~MechanismCheck() override { std::filesystem::remove_all(folder_); }
@@ -168,7 +168,7 @@ TEST_F(MechanismCheck, JsonHasTheDocumentedKeysAlone) {
   const auto json = nlohmann::json::parse(oblique("check --json " + file("s.toml", kSliderCrank)).out);
   std::vector<std::string> keys;
   for (const auto& [key, value] : json.items()) keys.push_back(key);
-  EXPECT_THAT(keys, testing::UnorderedElementsAre(
+  EXPECT_THAT(keys, ::testing::UnorderedElementsAre(
                         "file", "kind", "title", "bodies", "mobility", "drives", "groups", "ok", "finding",
                         "length_unit", "mobility_by_rank", "four_bars", "sliders", "tour", "transmissions",
                         "swings", "paths", "instant_centres", "inertia", "remarks"));
@@ -248,9 +248,11 @@ TEST_F(MechanismCheck, SolveAddsTheColumnsOfTheAnalysis) {
   const Outcome outcome =
       oblique("solve " + file("s.toml", kSliderCrank) + " --analysis --positions 5 -o " + path);
   EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_THAT(column(path, "B.dy"), testing::Pointwise(testing::DoubleNear(1e-12), {50., 0., -50., 0., 50.}));
-  EXPECT_THAT(column(path, "BC.icx").at(0), testing::DoubleNear(50 + std::sqrt(150. * 150 - 40 * 40), 1e-9));
-  EXPECT_THAT(column(path, "BC.pressure").at(3), testing::DoubleNear(std::asin(90. / 150), 1e-12));
+  EXPECT_THAT(column(path, "B.dy"),
+              ::testing::Pointwise(::testing::DoubleNear(1e-12), {50., 0., -50., 0., 50.}));
+  EXPECT_THAT(column(path, "BC.icx").at(0),
+              ::testing::DoubleNear(50 + std::sqrt(150. * 150 - 40 * 40), 1e-9));
+  EXPECT_THAT(column(path, "BC.pressure").at(3), ::testing::DoubleNear(std::asin(90. / 150), 1e-12));
   EXPECT_EQ(column(path, "crank.inertia").size(), 5U);
   EXPECT_EQ(column(path, "crank.energy").size(), 5U);
   EXPECT_EQ(column(path, "piston.ddposition").size(), 5U);

@@ -13,12 +13,12 @@
 namespace oblique::test {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::Not;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
 
-class Operate : public testing::Test {
+class Operate : public ::testing::Test {
  protected:
   Operate() {
     std::ofstream(folder_ / "decay.toml")

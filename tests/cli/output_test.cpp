@@ -14,7 +14,7 @@
 namespace oblique::test {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 struct Replacement {
   const char* name;
@@ -22,7 +22,7 @@ struct Replacement {
   const char* says;  ///< before the remedy
 };
 
-class OutputFiles : public testing::Test {
+class OutputFiles : public ::testing::Test {
  protected:
   OutputFiles() {
     const std::filesystem::path diagrams = std::filesystem::path(OBLIQUE_SOURCE_DIR) / "diagrams";
@@ -71,7 +71,7 @@ class OutputFiles : public testing::Test {
 class Replacements : public OutputFiles, public testing::WithParamInterface<Replacement> {};
 INSTANTIATE_TEST_SUITE_P(
     Cli, Replacements,
-    testing::Values(
+    ::testing::Values(
         Replacement{"ComparedMechanismByTheNumbers", "compare m.json --gain 1e3 -o m.json",
                     "m.json: this file is read, and would be replaced"},
         Replacement{"ComparedMechanismByTheCurves", "compare m.svg --gain 1e3 --plot m.svg",
@@ -124,7 +124,7 @@ TEST_P(Replacements, OfInputsAreRefused) {
       run_command(std::string("oblique ") + GetParam().arguments, folder_.path().string());
   EXPECT_EQ(outcome.status, 2);
   EXPECT_THAT(outcome.err, HasSubstr(std::string("error: ") + GetParam().says));
-  EXPECT_THAT(outcome.err, testing::EndsWith("\n  remedy: write to another file\n"));
+  EXPECT_THAT(outcome.err, ::testing::EndsWith("\n  remedy: write to another file\n"));
   EXPECT_EQ(outcome.out, "") << "it worked before it looked";
   EXPECT_TRUE(contents() == before);
 }

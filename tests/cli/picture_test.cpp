@@ -16,12 +16,12 @@
 namespace oblique::test {
 namespace {
 
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::Not;
-using testing::StartsWith;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+using ::testing::StartsWith;
 
-class Pictures : public testing::Test {
+class Pictures : public ::testing::Test {
  protected:
   Pictures() : folder_(make_scratch_folder()) { std::filesystem::create_directories(folder_); }
   ~Pictures() override { std::filesystem::remove_all(folder_); }
@@ -133,10 +133,10 @@ void PrintTo(const RefusedPicture& refused, std::ostream* out) {
   *out << refused.arguments;
 }
 
-class RefusedPictures : public testing::TestWithParam<RefusedPicture> {};
+class RefusedPictures : public ::testing::TestWithParam<RefusedPicture> {};
 INSTANTIATE_TEST_SUITE_P(
     Cli, RefusedPictures,
-    testing::Values(
+    ::testing::Values(
         RefusedPicture{"UnknownEnding", "draw diagrams/mechanisms/four-bar.toml -o x.bmp", 2,
                        "x.bmp: cannot write a '.bmp' file; expected a name that ends in .svg or .png"},
         RefusedPicture{

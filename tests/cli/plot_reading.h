@@ -126,7 +126,7 @@ class Svg {
 };
 
 /// A folder of its own, and the program.
-class PlotTest : public testing::Test {
+class PlotTest : public ::testing::Test {
  protected:
   PlotTest() : folder_(make_scratch_folder()) { std::filesystem::create_directories(folder_); }
   ~PlotTest() override { std::filesystem::remove_all(folder_); }

@@ -11,8 +11,8 @@
 namespace oblique::test {
 namespace {
 
-using testing::HasSubstr;
-using testing::Not;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 class Plot : public PlotTest {};
 

@@ -16,7 +16,7 @@
 namespace oblique::test {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 std::string text_of(const std::filesystem::path& path) {
   std::ostringstream text;
@@ -33,10 +33,10 @@ void PrintTo(const ReadmePicture& picture, std::ostream* out) {
   *out << picture.name;
 }
 
-class Readme : public testing::TestWithParam<ReadmePicture> {};
+class Readme : public ::testing::TestWithParam<ReadmePicture> {};
 INSTANTIATE_TEST_SUITE_P(
     Pictures, Readme,
-    testing::Values(
+    ::testing::Values(
         ReadmePicture{"walking-leg.svg",
                       "oblique animate diagrams/mechanisms/jansen.toml --magnify 500 --gain 1e4 --frames 36"},
         ReadmePicture{"triangle-side.svg", "oblique draw diagrams/lessons/triangle-side.toml"}));

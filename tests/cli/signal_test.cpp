@@ -36,7 +36,7 @@ bool comes_true(const Condition& condition) {
   return false;
 }
 
-class Signalled : public testing::Test {
+class Signalled : public ::testing::Test {
  protected:
   Signalled() {
     for (const char* name : {"temporary", "programs", "work"})
@@ -64,7 +64,7 @@ class Signalled : public testing::Test {
   ScratchFolder folder_;
 };
 class Signals : public Signalled, public testing::WithParamInterface<int> {};
-INSTANTIATE_TEST_SUITE_P(Cli, Signals, testing::Values(SIGINT, SIGTERM, SIGHUP));
+INSTANTIATE_TEST_SUITE_P(Cli, Signals, ::testing::Values(SIGINT, SIGTERM, SIGHUP));
 
 TEST_P(Signals, LeaveNothingOfAPictureInTheMaking) {
   const std::string mechanism = std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/four-bar.toml";

@@ -161,11 +161,11 @@ TEST_F(Slurm, RunsTheScript) {
   EXPECT_EQ(bytes_of("again.csv"), bytes_of("serial.csv"));
   EXPECT_FALSE(std::filesystem::exists(file("missing.csv")));
   // The chunk that was there was not made again.
-  EXPECT_THAT(outcome.out, testing::HasSubstr("0 chunks made in "));
+  EXPECT_THAT(outcome.out, ::testing::HasSubstr("0 chunks made in "));
 
   EXPECT_THAT(outcome.out,
-              testing::AllOf(testing::HasSubstr("Restarts=1"), testing::HasSubstr("DUE TO JOB REQUEUE"),
-                             testing::HasSubstr("1 of 3 chunks is missing: 1/3\n")));
+              ::testing::AllOf(::testing::HasSubstr("Restarts=1"), ::testing::HasSubstr("DUE TO JOB REQUEUE"),
+                               ::testing::HasSubstr("1 of 3 chunks is missing: 1/3\n")));
   run_command("oblique ensemble run slow.toml -o serial-slow --table serial-slow.csv", file(""));
   EXPECT_FALSE(bytes_of("serial-slow.csv").empty());
   EXPECT_EQ(bytes_of("slow.csv"), bytes_of("serial-slow.csv"));

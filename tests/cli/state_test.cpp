@@ -13,10 +13,10 @@
 namespace oblique::test {
 namespace {
 
-using testing::HasSubstr;
-using testing::IsEmpty;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 
-class SavedRun : public testing::Test {
+class SavedRun : public ::testing::Test {
  protected:
   SavedRun() : folder_(make_scratch_folder()) {
     std::filesystem::create_directories(folder_);

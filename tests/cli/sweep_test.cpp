@@ -6,8 +6,8 @@
 namespace oblique::test {
 namespace {
 
-using testing::HasSubstr;
-using testing::StartsWith;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
 
 constexpr const char* kDecay = R"toml(format = "oblique-diagram/1"
 title = "Decay"

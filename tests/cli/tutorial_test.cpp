@@ -106,13 +106,13 @@ void expect_output(const Example& example, const std::string& printed) {
   }
 }
 
-class Page : public testing::TestWithParam<const char*> {};
+class Page : public ::testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Docs, Page,
-                         testing::Values("docs/tutorial.md", "docs/running.md", "docs/operating.md",
-                                         "docs/blocks.md", "docs/check.md", "docs/machines.md",
-                                         "docs/patching-a-machine.md", "docs/mechanisms.md",
-                                         "docs/drawing.md", "docs/synthesis.md", "docs/trust.md",
-                                         "docs/sweeps.md", "README.md"),
+                         ::testing::Values("docs/tutorial.md", "docs/running.md", "docs/operating.md",
+                                           "docs/blocks.md", "docs/check.md", "docs/machines.md",
+                                           "docs/patching-a-machine.md", "docs/mechanisms.md",
+                                           "docs/drawing.md", "docs/synthesis.md", "docs/trust.md",
+                                           "docs/sweeps.md", "README.md"),
                          [](const auto& tested) {
                            std::string name = std::filesystem::path(tested.param).stem().string();
                            std::replace(name.begin(), name.end(), '-', '_');

@@ -17,7 +17,7 @@
 namespace oblique::test {
 
 /// Runs the program in the folder of the sources, with files in a folder of its own.
-class Verbs : public testing::Test {
+class Verbs : public ::testing::Test {
  protected:
   Verbs() : folder_(make_scratch_folder()) { std::filesystem::create_directories(folder_); }
   ~Verbs() override { std::filesystem::remove_all(folder_); }

@@ -16,8 +16,8 @@
 namespace oblique::test {
 namespace {
 
-using testing::ContainsRegex;
-using testing::HasSubstr;
+using ::testing::ContainsRegex;
+using ::testing::HasSubstr;
 
 TEST_F(Verbs, VersionTellsOfTheSolverToo) {
   const Outcome outcome = oblique("--version");
@@ -100,8 +100,8 @@ TEST_F(Verbs, SolveWritesTheColumnsOfTheContract) {
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   std::string header;
   const auto rows = csv_rows(file("motion.csv"), header);
-  EXPECT_THAT(header, testing::StartsWith("t,crank,B.x,B.y,B.vx,B.vy,B.ax,B.ay,C.x"));
-  EXPECT_THAT(header, testing::EndsWith(".angle,CD.omega,CD.alpha,status"));
+  EXPECT_THAT(header, ::testing::StartsWith("t,crank,B.x,B.y,B.vx,B.vy,B.ax,B.ay,C.x"));
+  EXPECT_THAT(header, ::testing::EndsWith(".angle,CD.omega,CD.alpha,status"));
   ASSERT_EQ(rows.size(), 13U);
   for (const auto& row : rows) {
     EXPECT_NEAR(row[2], std::cos(row[1]), 1e-12);
@@ -203,7 +203,7 @@ TEST_F(Verbs, PatchWritesADiagramThatRuns) {
   std::string header;
   const auto rows = csv_rows(file("analog.csv"), header);
   EXPECT_EQ(rows.size(), 361U);
-  EXPECT_THAT(header, testing::StartsWith("t,B.x,B.y,C.x,C.y,E.x,E.y,F.x,F.y"));
+  EXPECT_THAT(header, ::testing::StartsWith("t,B.x,B.y,C.x,C.y,E.x,E.y,F.x,F.y"));
   // The link BC is 140 mm long; the gain of 1e5 costs 1e-3 mm.
   for (const auto& row : rows) EXPECT_NEAR(std::hypot(row[3] - row[1], row[4] - row[2]), 140, 2e-3);
 }
@@ -234,10 +234,10 @@ struct JsonCall {
   std::string name, arguments;
 };
 
-class Json : public testing::TestWithParam<JsonCall> {};
+class Json : public ::testing::TestWithParam<JsonCall> {};
 INSTANTIATE_TEST_SUITE_P(
     Cli, Json,
-    testing::Values(
+    ::testing::Values(
         JsonCall{"CheckDiagram", "check diagrams/lessons/division.toml --json"},
         JsonCall{"CheckMechanism", "check diagrams/mechanisms/four-bar.toml --json"},
         JsonCall{"Modes", "modes diagrams/mechanisms/four-bar.toml --json"},

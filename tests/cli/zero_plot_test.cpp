@@ -11,8 +11,8 @@
 namespace oblique::test {
 namespace {
 
-using testing::HasSubstr;
-using testing::Not;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 class ZeroPlot : public PlotTest {
  protected:
@@ -66,10 +66,10 @@ void expect_zero(const Svg& svg, int panel, int curve) {
     const double off = plot.center().y() - (number.at.y() - kHalfDigit);
     (off > 1 ? above : off < -1 ? below : beside).push_back(number.text);
   }
-  EXPECT_THAT(beside, testing::ElementsAre("0.0"));
+  EXPECT_THAT(beside, ::testing::ElementsAre("0.0"));
   EXPECT_GE(above.size(), 2U);
   for (std::string& number : above) number = "−" + number;
-  EXPECT_THAT(below, testing::UnorderedElementsAreArray(above));
+  EXPECT_THAT(below, ::testing::UnorderedElementsAreArray(above));
 }
 
 std::string texts_of(const Svg& svg) {

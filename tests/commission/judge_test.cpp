@@ -15,17 +15,15 @@
 #include <oblique/patch/triad_split.h>
 #include <oblique/solve/run.h>
 
+#include "../support/shipped.h"
+
 namespace oblique::commission {
 namespace {
 
-using testing::Contains;
-using testing::ElementsAre;
-using testing::HasSubstr;
-
-mechanism::Mechanism shipped(const std::string& name) {
-  return mechanism::read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/" + name +
-                                   ".toml");
-}
+using test::shipped;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 
 /// The measurement that the project's method rests on: the largest real part [1/s] of the frozen Jacobian
 /// over 361 positions, μ = 10⁴ and τ = 10 ms in every amplifier, the outer one slower as stated, a metre a
@@ -37,18 +35,18 @@ struct SplitPole {
   double slower;
   double pole;
 };
-class Split : public testing::TestWithParam<SplitPole> {};
+class Split : public ::testing::TestWithParam<SplitPole> {};
 INSTANTIATE_TEST_SUITE_P(
     Paper, Split,
-    testing::Values(SplitPole{"AB", "O1C", "DE", 1, 6.3e5}, SplitPole{"AB", "O1C", "DE", 10, 2.7e5},
-                    SplitPole{"AB", "O1C", "DE", 100, -2.5e4}, SplitPole{"AB", "DE", "O1C", 1, -6.9e5},
-                    SplitPole{"AB", "DE", "O1C", 10, -1.7e5}, SplitPole{"AB", "DE", "O1C", 100, -1.5e4},
-                    SplitPole{"DE", "AB", "O1C", 1, 2.0e5}, SplitPole{"DE", "AB", "O1C", 10, -6.5e4},
-                    SplitPole{"DE", "AB", "O1C", 100, -6.1e4}, SplitPole{"DE", "O1C", "AB", 1, -5.9e5},
-                    SplitPole{"DE", "O1C", "AB", 10, -5.3e5}, SplitPole{"DE", "O1C", "AB", 100, -5.4e4},
-                    SplitPole{"O1C", "AB", "DE", 1, 1.0e6}, SplitPole{"O1C", "AB", "DE", 10, -3.4e4},
-                    SplitPole{"O1C", "AB", "DE", 100, -6.0e4}, SplitPole{"O1C", "DE", "AB", 1, -1.1e5},
-                    SplitPole{"O1C", "DE", "AB", 10, -1.9e5}, SplitPole{"O1C", "DE", "AB", 100, -2.1e4}));
+    ::testing::Values(SplitPole{"AB", "O1C", "DE", 1, 6.3e5}, SplitPole{"AB", "O1C", "DE", 10, 2.7e5},
+                      SplitPole{"AB", "O1C", "DE", 100, -2.5e4}, SplitPole{"AB", "DE", "O1C", 1, -6.9e5},
+                      SplitPole{"AB", "DE", "O1C", 10, -1.7e5}, SplitPole{"AB", "DE", "O1C", 100, -1.5e4},
+                      SplitPole{"DE", "AB", "O1C", 1, 2.0e5}, SplitPole{"DE", "AB", "O1C", 10, -6.5e4},
+                      SplitPole{"DE", "AB", "O1C", 100, -6.1e4}, SplitPole{"DE", "O1C", "AB", 1, -5.9e5},
+                      SplitPole{"DE", "O1C", "AB", 10, -5.3e5}, SplitPole{"DE", "O1C", "AB", 100, -5.4e4},
+                      SplitPole{"O1C", "AB", "DE", 1, 1.0e6}, SplitPole{"O1C", "AB", "DE", 10, -3.4e4},
+                      SplitPole{"O1C", "AB", "DE", 100, -6.0e4}, SplitPole{"O1C", "DE", "AB", 1, -1.1e5},
+                      SplitPole{"O1C", "DE", "AB", 10, -1.9e5}, SplitPole{"O1C", "DE", "AB", 100, -2.1e4}));
 
 patch::PatchOptions options_of(const SplitPole& split) {
   patch::PatchOptions options;
@@ -105,12 +103,12 @@ TEST(JudgedPatch, NamesAllSettingsThatWouldHelp) {
   }
 }
 
-class UnstableSplit : public testing::TestWithParam<SplitPole> {};
+class UnstableSplit : public ::testing::TestWithParam<SplitPole> {};
 INSTANTIATE_TEST_SUITE_P(Paper, UnstableSplit,
-                         testing::Values(SplitPole{"AB", "O1C", "DE", 1, 6.3e5},
-                                         SplitPole{"AB", "O1C", "DE", 10, 2.7e5},
-                                         SplitPole{"DE", "AB", "O1C", 1, 2.0e5},
-                                         SplitPole{"O1C", "AB", "DE", 1, 1.0e6}));
+                         ::testing::Values(SplitPole{"AB", "O1C", "DE", 1, 6.3e5},
+                                           SplitPole{"AB", "O1C", "DE", 10, 2.7e5},
+                                           SplitPole{"DE", "AB", "O1C", 1, 2.0e5},
+                                           SplitPole{"O1C", "AB", "DE", 1, 1.0e6}));
 
 TEST_P(UnstableSplit, SwingsUpWhereItIsForced) {
   patch::PatchOptions options = options_of(GetParam());

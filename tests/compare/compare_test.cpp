@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <thread>
+#include <tuple>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,13 +16,12 @@
 #include <oblique/network/program/program.h>
 #include <oblique/solve/run.h>
 
+#include "../support/shipped.h"
+
 namespace oblique::compare {
 namespace {
 
-mechanism::Mechanism shipped(const std::string& name) {
-  return mechanism::read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/" + name +
-                                   ".toml");
-}
+using test::shipped;
 
 struct Case {
   const char* mechanism;
@@ -31,9 +32,10 @@ void PrintTo(const Case& tested, std::ostream* out) {
   *out << tested.mechanism;
 }
 
-class Convergence : public testing::TestWithParam<Case> {};
+class Convergence : public ::testing::TestWithParam<Case> {};
 INSTANTIATE_TEST_SUITE_P(Compare, Convergence,
-                         testing::Values(Case{"four-bar", 1e-6}, Case{"six-bar", 1e-6}, Case{"jansen", 1e-5}),
+                         ::testing::Values(Case{"four-bar", 1e-6}, Case{"six-bar", 1e-6},
+                                           Case{"jansen", 1e-5}),
                          [](const auto& tested) {
                            std::string name = tested.param.mechanism;
                            name.erase(std::remove(name.begin(), name.end(), '-'), name.end());
@@ -136,9 +138,60 @@ TEST(Compare, LeavesOutWhatIsRefusedAndWhatFails) {
   EXPECT_EQ(comparison.refused.front().method, patch::PatchMethod::paper);
   EXPECT_FALSE(comparison.refused.front().gain);
   EXPECT_THAT(comparison.refused.front().why.what,
-              testing::HasSubstr("is of a kind that the source does not have"));
+              ::testing::HasSubstr("is of a kind that the source does not have"));
   options.methods = {patch::PatchMethod::paper};
   EXPECT_THROW(compare(shipped("four-bar"), diagram::BlockLibrary::shipped(), options), patch::PatchError);
+}
+
+TEST(Compare, IsTheSameWithAnyNumberOfThreads) {
+  CompareOptions options;
+  options.methods = {patch::PatchMethod::paper, patch::PatchMethod::triangles, patch::PatchMethod::gradient};
+  options.gains = {1e3, 1e4, 1e5};
+  options.bandwidths = {
+      20, 1e-3};  // far too slow for a turn a second: its runs err by as much as the links are long
+  const Comparison one = compare(shipped("four-bar"), diagram::BlockLibrary::shipped(), options);
+  std::vector<double> told;
+  const std::thread::id asker = std::this_thread::get_id();
+  options.threads = 5;
+  options.progress = [&](double fraction) {
+    EXPECT_EQ(std::this_thread::get_id(), asker);
+    told.push_back(fraction);
+  };
+  const Comparison five = compare(shipped("four-bar"), diagram::BlockLibrary::shipped(), options);
+  ASSERT_EQ(one.runs.size(), five.runs.size());
+  for (std::size_t k = 0; k < one.runs.size(); ++k) {
+    const ComparedRun &a = one.runs[k], &b = five.runs[k];
+    EXPECT_EQ(std::tie(a.method, a.gain, a.bandwidth, a.max_error, a.rms_error, a.error_along, a.steps,
+                       a.slowest_pole, a.worst.point, a.worst.reason),
+              std::tie(b.method, b.gain, b.bandwidth, b.max_error, b.rms_error, b.error_along, b.steps,
+                       b.slowest_pole, b.worst.point, b.worst.reason));
+    ASSERT_EQ(a.parts.has_value(), b.parts.has_value());
+    if (a.parts) EXPECT_EQ(a.parts->solver, b.parts->solver);
+  }
+  ASSERT_EQ(one.series.size(), five.series.size());
+  for (std::size_t k = 0; k < one.series.size(); ++k) {
+    EXPECT_EQ(one.series[k].floor, five.series[k].floor);
+    EXPECT_EQ(one.series[k].order, five.series[k].order);
+  }
+  ASSERT_EQ(one.refused.size(), five.refused.size());
+  for (std::size_t k = 0; k < one.refused.size(); ++k) {
+    EXPECT_EQ(one.refused[k].method, five.refused[k].method);
+    EXPECT_EQ(one.refused[k].gain, five.refused[k].gain);
+    EXPECT_EQ(one.refused[k].why.what, five.refused[k].why.what);
+  }
+  EXPECT_FALSE(told.empty());
+  EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+  EXPECT_LE(told.back(), 1);
+}
+
+TEST(Compare, EndsWhereItsProgressThrows) {
+  struct Stop {};
+  CompareOptions options;
+  options.threads = 3;
+  options.progress = [](double fraction) {
+    if (fraction > 0.2) throw Stop();
+  };
+  EXPECT_THROW(compare(shipped("four-bar"), diagram::BlockLibrary::shipped(), options), Stop);
 }
 
 TEST(Compare, ReportsProgressUpToTheEnd) {

@@ -12,23 +12,20 @@
 #include "../support/arm.h"
 #include "../support/chain_of_dyads.h"
 #include "../support/compiled.h"
+#include "../support/shipped.h"
 #include "four_bar.h"
 
 namespace oblique::compare {
 namespace {
 
 using std::numbers::pi;
+using test::shipped;
 using testing::crank_end;
 using testing::kCoupler;
 using testing::kPivot;
 using testing::kRocker;
 using testing::rocker_end;
 using testing::rocker_end_at_rest;
-
-mechanism::Mechanism shipped(const std::string& name) {
-  return mechanism::read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/" + name +
-                                   ".toml");
-}
 
 ComparedRun compared(const std::string& mechanism, patch::PatchMethod method, double gain, double bandwidth) {
   CompareOptions options;

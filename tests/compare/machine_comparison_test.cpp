@@ -39,30 +39,30 @@ mechanism::Mechanism shipped_with(const std::string& name, const std::string& ta
   return mechanism::parse_mechanism(text::read_file(path) + "\n" + tables, name + ".toml");
 }
 
-struct Case {
+struct MachineCase {
   const char* mechanism;
   const char* machine;
   patch::PatchMethod method;
 };
 
-void PrintTo(const Case& tested, std::ostream* out) {
+void PrintTo(const MachineCase& tested, std::ostream* out) {
   *out << tested.mechanism << " on " << tested.machine << ", " << patch::method_name(tested.method);
 }
 
-class Budget : public ::testing::TestWithParam<Case> {};
+class Budget : public ::testing::TestWithParam<MachineCase> {};
 INSTANTIATE_TEST_SUITE_P(MachineComparison, Budget,
-                         ::testing::Values(Case{"four-bar", "ec-1", patch::PatchMethod::triangles},
-                                           Case{"four-bar", "tr-10", patch::PatchMethod::triangles},
-                                           Case{"four-bar", "ec-1", patch::PatchMethod::gradient},
-                                           Case{"four-bar", "tr-10", patch::PatchMethod::gradient},
-                                           Case{"jansen", "ec-1", patch::PatchMethod::triangles},
-                                           Case{"class-iii", "the-analog-thing",
-                                                patch::PatchMethod::triangles}));
+                         ::testing::Values(MachineCase{"four-bar", "ec-1", patch::PatchMethod::triangles},
+                                           MachineCase{"four-bar", "tr-10", patch::PatchMethod::triangles},
+                                           MachineCase{"four-bar", "ec-1", patch::PatchMethod::gradient},
+                                           MachineCase{"four-bar", "tr-10", patch::PatchMethod::gradient},
+                                           MachineCase{"jansen", "ec-1", patch::PatchMethod::triangles},
+                                           MachineCase{"class-iii", "the-analog-thing",
+                                                       patch::PatchMethod::triangles}));
 
 // The errors are small beside the links, up to 4 %, so they add up but for products of two of them: those are
 // smaller than the errors by as much, magnified where triangles are flat.
 TEST_P(Budget, IsTheSumOfTheProfilesFigures) {
-  const Case& tested = GetParam();
+  const MachineCase& tested = GetParam();
   const MachineComparison result = compared(tested.mechanism, tested.machine, 1e3, tested.method);
   EXPECT_NEAR(result.explained(), 1, 0.02);
   EXPECT_TRUE(result.stable);

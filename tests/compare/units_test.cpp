@@ -60,11 +60,11 @@ mechanism::Mechanism in_unit(const mechanism::Mechanism& mechanism, const Unit& 
   return result;
 }
 
-class Units : public testing::TestWithParam<std::string> {
+class Units : public ::testing::TestWithParam<std::string> {
  protected:
   mechanism::Mechanism read() const { return mechanism::read_mechanism(kCatalogue / (GetParam() + ".toml")); }
 };
-INSTANTIATE_TEST_SUITE_P(Catalogue, Units, testing::ValuesIn(names()), [](const auto& tested) {
+INSTANTIATE_TEST_SUITE_P(Catalogue, Units, ::testing::ValuesIn(names()), [](const auto& tested) {
   std::string name = tested.param;
   std::replace(name.begin(), name.end(), '-', '_');
   return name;

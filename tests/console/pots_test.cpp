@@ -26,12 +26,12 @@ double slope(Pots& pots) {
   return derivative;
 }
 
-const char* const kDecay =
+const char* const kTurnedDecay =
     "p = { type = \"potentiometer\", in = \"x\", setting = 0.5 }\n"
     "x = { type = \"integrator\", in = \"-3*p\", initial = 1 }\n";
 
 TEST(Pots, AreTurnedAtOnceWhereTheEquationsStay) {
-  Pots pots = pots_of(kDecay);
+  Pots pots = pots_of(kTurnedDecay);
   const auto before = pots.program();
   EXPECT_EQ(pots.program(), before) << "the same until a pot is turned";
   EXPECT_EQ(pots.turn("p.setting", "0.25"), Turned::at_once);
@@ -47,7 +47,7 @@ TEST(Pots, AreTurnedAtOnceWhereTheEquationsStay) {
 }
 
 TEST(Pots, AreCompiledAnewWhereTheEquationsAreOthers) {
-  Pots pots = pots_of(kDecay);
+  Pots pots = pots_of(kTurnedDecay);
   EXPECT_EQ(pots.turn("p.setting", "0.25"), Turned::at_once);
   EXPECT_EQ(pots.turn("p.setting", "1"), Turned::compiled_anew);
   EXPECT_EQ(slope(pots), -3);
@@ -82,7 +82,7 @@ b = { type = "potentiometer", in = "a", setting = "k/2" }
 }
 
 TEST(Pots, AreAsTheyWereAfterABadTurn) {
-  Pots pots = pots_of(kDecay);
+  Pots pots = pots_of(kTurnedDecay);
   for (int again = 0; again < 2; ++again) {
     EXPECT_EQ(testing::message_of<diagram::DiagramError>([&] { pots.turn("p.setting", "often"); }),
               "set p.setting=often: 'often' is not a known constant; expected a number, 'pi' or 'inf'");

@@ -14,15 +14,15 @@ namespace {
 using ::testing::HasSubstr;
 using testing::message_of;
 
-const std::string kHead =
+const std::string kExpressionsHead =
     "format = \"oblique-block/1\"\ntitle = \"T\"\n[inputs]\nx = {}\n[outputs]\ny = {}\n"
     "[parameters]\nk = { default = 2 }\n";  // eight lines
 
 BlockDefinition block(const std::string& body) {
-  return parse_block(kHead + body, "b.toml", "b");
+  return parse_block(kExpressionsHead + body, "b.toml", "b");
 }
 
-std::string block_message(const std::string& body) {
+std::string expressions_message(const std::string& body) {
   return message_of([&] { block(body); });
 }
 
@@ -84,45 +84,48 @@ set = { m = "k/2 + (k/2*x - y)" }
 
 TEST(Let, MayNameWhatOnlySomeCasesHave) {
   const std::string let = "[let]\nsum = \"x + inner\"\n[[cases]]\nwhen = \"k > 1\"\n";
-  EXPECT_EQ(block_message(let + "equations = { inner = \"2*x\", y = \"sum\" }\n[equations]\ny = 1\n"), "");
-  EXPECT_EQ(block_message(let + "equations = { inner = \"2*x\", y = 1 }\n[equations]\ny = \"1 + sum\"\n"),
-            "b.toml:15:10: equation 'y': 'sum' of [let] names 'inner'; expected what may be named here\n"
-            "  remedy: there is no 'inner' here");
-  EXPECT_THAT(block_message("[let]\nsum = \"x + k\"\n[[cases]]\nwhen = \"sum > 0\"\nequations = { y = 1 }\n"
-                            "[equations]\ny = 2\n"),
-              HasSubstr("b.toml:12:9: 'when': 'sum' of [let] names 'x'; expected what may be named here"))
+  EXPECT_EQ(expressions_message(let + "equations = { inner = \"2*x\", y = \"sum\" }\n[equations]\ny = 1\n"),
+            "");
+  EXPECT_EQ(
+      expressions_message(let + "equations = { inner = \"2*x\", y = 1 }\n[equations]\ny = \"1 + sum\"\n"),
+      "b.toml:15:10: equation 'y': 'sum' of [let] names 'inner'; expected what may be named here\n"
+      "  remedy: there is no 'inner' here");
+  EXPECT_THAT(
+      expressions_message("[let]\nsum = \"x + k\"\n[[cases]]\nwhen = \"sum > 0\"\nequations = { y = 1 }\n"
+                          "[equations]\ny = 2\n"),
+      HasSubstr("b.toml:12:9: 'when': 'sum' of [let] names 'x'; expected what may be named here"))
       << "a condition of a case is of parameters";
 }
 
 TEST(Let, ReportsItsOwnMistakesOnceAndInTheirPlace) {
   const std::string rest = "[equations]\ny = \"a + a\"\n";
-  EXPECT_EQ(block_message("[let]\na = \"x*kk\"\n" + rest),
+  EXPECT_EQ(expressions_message("[let]\na = \"x*kk\"\n" + rest),
             "b.toml:10:8: 'a' of [let]: there is no name 'kk'\n  remedy: known: k, polarity, time, "
             "in_initial, in_operate, "
             "in_hold, x, y");
-  EXPECT_THAT(block_message("[let]\na = \"x +\"\n" + rest),
+  EXPECT_THAT(expressions_message("[let]\na = \"x +\"\n" + rest),
               HasSubstr("b.toml:10:9: 'a' of [let]: the expression ends too early"));
-  EXPECT_EQ(block_message("[let]\na = [1]\n" + rest),
+  EXPECT_EQ(expressions_message("[let]\na = [1]\n" + rest),
             "b.toml:10:5: 'a' of [let] is an array; expected a number or an expression");
-  EXPECT_EQ(block_message("[let]\nb = \"2*a\"\na = \"x\"\n" + rest),
+  EXPECT_EQ(expressions_message("[let]\nb = \"2*a\"\na = \"x\"\n" + rest),
             "b.toml:10:8: 'b' of [let]: there is no name 'a' yet\n  remedy: [let] names what stands above: "
             "put it there");
-  EXPECT_THAT(block_message("[let]\nfed = \"x\"\n[equations]\ny = \"feed\"\n"),
+  EXPECT_THAT(expressions_message("[let]\nfed = \"x\"\n[equations]\ny = \"feed\"\n"),
               HasSubstr("b.toml:12:6: equation 'y': there is no name 'feed'\n  remedy: did you mean 'fed'?"));
 }
 
 TEST(Let, HasNamesOfItsOwn) {
   for (const char* const taken : {"x", "y", "k"}) {
-    EXPECT_EQ(block_message("[let]\n" + std::string(taken) + " = 1\n[equations]\ny = 1\n"),
+    EXPECT_EQ(expressions_message("[let]\n" + std::string(taken) + " = 1\n[equations]\ny = 1\n"),
               "b.toml:10:1: the name '" + std::string(taken) +
                   "' is used twice; expected different names for inputs, outputs, parameters and [let]");
   }
-  EXPECT_THAT(block_message("[let]\ntime = 1\n[equations]\ny = 1\n"),
+  EXPECT_THAT(expressions_message("[let]\ntime = 1\n[equations]\ny = 1\n"),
               HasSubstr("b.toml:10:1: 'time' cannot be the name of an expression of [let]: it is reserved"));
-  EXPECT_EQ(block_message("[let]\na = 1\n[equations]\ny = 1\na = 2\n"),
+  EXPECT_EQ(expressions_message("[let]\na = 1\n[equations]\ny = 1\na = 2\n"),
             "b.toml:13:1: 'a' is an expression of [let] and cannot have an equation; expected an output or "
             "another name");
-  EXPECT_THAT(block_message("[let]\nm = 1\n[memories]\nm = 1\n[equations]\ny = 1\n"),
+  EXPECT_THAT(expressions_message("[let]\nm = 1\n[memories]\nm = 1\n[equations]\ny = 1\n"),
               HasSubstr("b.toml:12:1: the name 'm' is used twice"));
 }
 
@@ -143,7 +146,7 @@ TEST(Let, RefusesWhatGrowsWithoutEnd) {
     const std::string before = "a" + std::to_string(n - 1);
     let += "a" + std::to_string(n) + " = \"" + before + " + " + before + "\"\n";
   }
-  EXPECT_EQ(block_message(let + "[equations]\ny = \"a39\"\n"),
+  EXPECT_EQ(expressions_message(let + "[equations]\ny = \"a39\"\n"),
             "b.toml:19:7: 'a9' of [let]: with [let] put in it has 1023 operators; expected at most 1000\n"
             "  remedy: make it an equation with a name of its own");
 }

@@ -16,7 +16,7 @@
 namespace oblique::diagram {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kForever = std::numeric_limits<double>::infinity();
 
 TEST(WriteDiagram, IsReadable) {
   Diagram d;
@@ -27,7 +27,7 @@ TEST(WriteDiagram, IsReadable) {
   d.blocks = {
       {"a", "reference", "", "", {number_setting("value", 0.1)}, {}},
       {"long_one", "adder", "φ̇", "the sum\nof two", {wire_setting("in", {{2, "a"}, {-1, "long_one"}})}, {}},
-      {"c", "servo", "", "", {wire_setting("in", {{1, "a"}}), number_setting("gain", kInfinity)}, {}}};
+      {"c", "servo", "", "", {wire_setting("in", {{1, "a"}}), number_setting("gain", kForever)}, {}}};
   d.outputs = {{"c", "c", 1, "machine unit", {}}, {"C.x", "a", 2.5, "m", {}}};
   d.expectations = {{"", "C.x", Expectation::Kind::at_time, 0.0005, 0.25, 1e-3, {}},
                     {"c  maximum", "c ", Expectation::Kind::maximum, 0, 1, 0.5, {}}};
@@ -133,7 +133,7 @@ rc::Gen<double> any_number() {
   return rc::gen::oneOf(
       rc::gen::map(rc::gen::arbitrary<double>(), [](double x) { return std::isnan(x) ? 0 : x; }),
       rc::gen::map(rc::gen::inRange(-1000, 1000), [](int x) { return x / 8.0; }),
-      rc::gen::element(kInfinity, -kInfinity, 0.1, 1e-308, 5e-324, 1e15, 1e16, 1.7976931348623157e308));
+      rc::gen::element(kForever, -kForever, 0.1, 1e-308, 5e-324, 1e15, 1e16, 1.7976931348623157e308));
 }
 
 rc::Gen<double> positive_number() {

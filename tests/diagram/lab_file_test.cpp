@@ -24,7 +24,7 @@ using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using testing::message_of;
 
-const BlockLibrary& library() {
+const BlockLibrary& shipped_blocks() {
   static const BlockLibrary shipped = BlockLibrary::shipped();
   return shipped;
 }
@@ -35,7 +35,7 @@ std::string on(const std::string& machine) {
 
 FlatDiagram flat(const std::string& blocks, const std::string& rest = "",
                  const std::string& file = "d.toml") {
-  return flatten(parse_diagram(testing::diagram_text(blocks, rest), file), library());
+  return flatten(parse_diagram(testing::diagram_text(blocks, rest), file), shipped_blocks());
 }
 
 double parameter(const std::string& block, const std::string& name, const std::string& rest = "") {
@@ -129,7 +129,7 @@ TEST(LabFile, HasTypesetSignsInWires) {
 TEST(LabFile, OverridesInVolts) {
   const Diagram diagram = parse_diagram(
       testing::diagram_text("x = { type = \"integrator\", in = \"x\" }\n", on("ec-1")), "d.toml");
-  const FlatDiagram made = flatten(diagram, library(), {{"x.initial", "-15 V"}});
+  const FlatDiagram made = flatten(diagram, shipped_blocks(), {{"x.initial", "-15 V"}});
   EXPECT_DOUBLE_EQ(made.blocks[0].parameters[made.blocks[0].definition->find_parameter("initial").value()],
                    -0.25);
 }

@@ -17,7 +17,7 @@ using ::testing::HasSubstr;
 using testing::message_of;
 
 // Nine lines, so that what a test adds begins on line 10.
-constexpr const char* kHead =
+constexpr const char* kMachineHead =
     "format = \"oblique-machine/1\"\ntitle = \"Machine\"\nsource = \"its book\"\nunit = \"10 V\"\n"
     "input_gains = [1, 10]\nrates = \"any\"\n\n[elements]\namplifier = 3\n";
 
@@ -26,17 +26,17 @@ const BlockLibrary& library() {
   return shipped;
 }
 
-MachineProfile machine_with(const std::string& rest, const std::string& head = kHead) {
+MachineProfile machine_with(const std::string& rest, const std::string& head = kMachineHead) {
   return parse_machine(head + rest, "m.toml", "m", library());
 }
 
-std::string message_with(const std::string& rest, const std::string& head = kHead) {
+std::string message_with(const std::string& rest, const std::string& head = kMachineHead) {
   return message_of([&] { machine_with(rest, head); });
 }
 
 /// The head with one line replaced.
 std::string head_with(std::string_view line, const std::string& other) {
-  std::string head = kHead;
+  std::string head = kMachineHead;
   head.replace(head.find(line), line.size(), other);
   return head;
 }

@@ -19,7 +19,7 @@ using testing::small_library;
 
 constexpr int kVariants = 1000;  // of each kind of file
 
-const std::string kBlock = R"toml(format = "oblique-block/1"
+const std::string kOneBlock = R"toml(format = "oblique-block/1"
 title = "Box"
 [inputs]
 x = { sum = true, doc = "in" }
@@ -134,7 +134,7 @@ void expect_some_of_both(int good) {
 }
 
 TEST(Robustness, TheUnchangedFilesAreInOrder) {
-  EXPECT_TRUE(survives(kBlock, kDiagram));
+  EXPECT_TRUE(survives(kOneBlock, kDiagram));
   std::string diagram = kDiagram;
   diagram.replace(diagram.find("[\"b.t\", \"b.r.y\"]"), 16, "[\"b.y\", \"b.z\"]");
   EXPECT_TRUE(survives(kPrimitive, diagram));
@@ -143,14 +143,14 @@ TEST(Robustness, TheUnchangedFilesAreInOrder) {
 TEST(Robustness, BrokenDiagrams) {
   std::mt19937 random(1);
   int good = 0;
-  for (int i = 0; i < kVariants; ++i) good += survives(kBlock, mutate(kDiagram, random)) ? 1 : 0;
+  for (int i = 0; i < kVariants; ++i) good += survives(kOneBlock, mutate(kDiagram, random)) ? 1 : 0;
   expect_some_of_both(good);
 }
 
 TEST(Robustness, BrokenComposites) {
   std::mt19937 random(2);
   int good = 0;
-  for (int i = 0; i < kVariants; ++i) good += survives(mutate(kBlock, random), kDiagram) ? 1 : 0;
+  for (int i = 0; i < kVariants; ++i) good += survives(mutate(kOneBlock, random), kDiagram) ? 1 : 0;
   expect_some_of_both(good);
 }
 

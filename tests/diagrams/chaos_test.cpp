@@ -53,8 +53,8 @@ const std::vector<Equilibrium> kEquilibria{
      10},  // stable along the axis, which it cannot leave
 };
 
-class ChaoticDiagram : public testing::TestWithParam<Equilibrium> {};
-INSTANTIATE_TEST_SUITE_P(Chaos, ChaoticDiagram, testing::ValuesIn(kEquilibria),
+class ChaoticDiagram : public ::testing::TestWithParam<Equilibrium> {};
+INSTANTIATE_TEST_SUITE_P(Chaos, ChaoticDiagram, ::testing::ValuesIn(kEquilibria),
                          [](const auto& tested) { return tested.param.name; });
 
 TEST_P(ChaoticDiagram, StaysAtItsEquilibrium) {
@@ -86,10 +86,10 @@ std::size_t state_of(const network::Program& program, std::string_view name) {
   throw std::out_of_range(std::string(name));
 }
 
-class DeviationCircuit : public testing::TestWithParam<std::string> {};
+class DeviationCircuit : public ::testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Chaos, DeviationCircuit,
-                         testing::Values("historical_lorenz", "historical_roessler", "historical_chua",
-                                         "lessons_aizawa"),
+                         ::testing::Values("historical_lorenz", "historical_roessler", "historical_chua",
+                                           "lessons_aizawa"),
                          [](const auto& tested) { return tested.param; });
 
 /// e′ = J e − (e·J e) e with the J of the Program, which is derived from the equations and not wired.

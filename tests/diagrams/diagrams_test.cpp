@@ -34,7 +34,7 @@ std::vector<std::string> files_in(const std::string& folder) {
   return names;
 }
 
-std::string test_name(const testing::TestParamInfo<std::string>& tested) {
+std::string test_name(const ::testing::TestParamInfo<std::string>& tested) {
   std::string name;
   for (const char c : tested.param) {
     if (std::isalnum(static_cast<unsigned char>(c)) != 0) name += c;
@@ -53,8 +53,8 @@ std::vector<std::string> diagrams() {
   return names;
 }
 
-class ShippedDiagram : public testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(Diagrams, ShippedDiagram, testing::ValuesIn(diagrams()), test_name);
+class ShippedDiagram : public ::testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Diagrams, ShippedDiagram, ::testing::ValuesIn(diagrams()), test_name);
 
 TEST_P(ShippedDiagram, BeginsWithAParagraphOfItsOrigin) {
   std::istringstream text(text::read_file(path_of(GetParam())));
@@ -115,11 +115,12 @@ std::vector<Patched> patchable() {
   return all;
 }
 
-class PatchedMechanism : public testing::TestWithParam<Patched> {};
-INSTANTIATE_TEST_SUITE_P(Diagrams, PatchedMechanism, testing::ValuesIn(patchable()), [](const auto& tested) {
-  const testing::TestParamInfo<std::string> file(tested.param.file, tested.index);
-  return test_name(file) + std::string(patch::method_name(tested.param.method));
-});
+class PatchedMechanism : public ::testing::TestWithParam<Patched> {};
+INSTANTIATE_TEST_SUITE_P(Diagrams, PatchedMechanism, ::testing::ValuesIn(patchable()),
+                         [](const auto& tested) {
+                           const ::testing::TestParamInfo<std::string> file(tested.param.file, tested.index);
+                           return test_name(file) + std::string(patch::method_name(tested.param.method));
+                         });
 
 TEST_P(PatchedMechanism, AgreesWithItsExactMotion) {
   const mechanism::Mechanism mechanism = mechanism::read_mechanism(path_of(GetParam().file));

@@ -28,7 +28,7 @@ std::vector<std::string> foreign_diagrams() {
   return paths;
 }
 
-std::string test_name(const testing::TestParamInfo<std::string>& tested) {
+std::string foreign_name(const ::testing::TestParamInfo<std::string>& tested) {
   std::string name;
   for (const char c : std::filesystem::path(tested.param).stem().string()) {
     name += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : 'x';
@@ -46,8 +46,8 @@ const diagram::BlockLibrary& foreign_blocks() {
   return library;
 }
 
-class ForeignDiagram : public testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(Diagrams, ForeignDiagram, testing::ValuesIn(foreign_diagrams()), test_name);
+class ForeignDiagram : public ::testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Diagrams, ForeignDiagram, ::testing::ValuesIn(foreign_diagrams()), foreign_name);
 
 TEST_P(ForeignDiagram, GivesTheTruth) {
   const diagram::BlockLibrary& library = foreign_blocks();

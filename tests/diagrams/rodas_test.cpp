@@ -23,7 +23,7 @@
 namespace oblique::test {
 namespace {
 
-std::vector<std::string> files_in(const std::string& folder) {
+std::vector<std::string> paths_in(const std::string& folder) {
   std::vector<std::string> names;
   const std::string path = std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/" + folder;
   for (const auto& entry : std::filesystem::directory_iterator(path)) names.push_back(entry.path().string());
@@ -117,7 +117,7 @@ diagram::Diagram patched(const mechanism::Mechanism& mechanism) {
 TEST(ByRodas, ShippedDiagramsAreAsByCvodes) {
   const diagram::BlockLibrary library = diagram::BlockLibrary::shipped();
   for (const char* folder : {"historical", "lessons"}) {
-    for (const std::string& file : files_in(folder)) {
+    for (const std::string& file : paths_in(folder)) {
       SCOPED_TRACE(file);
       expect_alike(Compared(diagram::read_diagram(file), library));
     }
@@ -127,7 +127,7 @@ TEST(ByRodas, ShippedDiagramsAreAsByCvodes) {
 TEST(ByRodas, PatchedMechanismsAreAsByCvodes) {
   const diagram::BlockLibrary library = diagram::BlockLibrary::shipped();
   int count = 0;
-  for (const std::string& file : files_in("mechanisms")) {
+  for (const std::string& file : paths_in("mechanisms")) {
     SCOPED_TRACE(file);
     const mechanism::Mechanism mechanism = patch::within_range(mechanism::read_mechanism(file));
     if (mechanism::find_obstacle(mechanism, mechanism::decompose(mechanism))) continue;

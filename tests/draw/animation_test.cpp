@@ -12,21 +12,18 @@
 #include <oblique/mechanism/model/read_mechanism.h>
 #include <oblique/mechanism/motion/motion.h>
 
+#include "../support/shipped.h"
 #include "reading.h"
 
 namespace oblique::test {
 namespace {
 
 using Eigen::Vector2d;
-using testing::HasSubstr;
-using testing::Not;
+using test::shipped;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 constexpr int kFrames = 12;
-
-mechanism::Mechanism shipped(const std::string& name) {
-  return mechanism::read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/" + name +
-                                   ".toml");
-}
 
 draw::LinkageAnimation animation_of(const mechanism::Mechanism& mechanism) {
   draw::LinkageAnimation animation;

@@ -10,8 +10,8 @@
 namespace oblique::draw {
 namespace {
 
-using testing::HasSubstr;
-using testing::Not;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 std::vector<std::u32string> lines_of(const std::string& text) {
   std::vector<std::u32string> lines(1);

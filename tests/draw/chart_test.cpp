@@ -16,7 +16,7 @@ namespace oblique::draw {
 namespace {
 
 using Eigen::Vector2d;
-using testing::ElementsAre;
+using ::testing::ElementsAre;
 
 constexpr double kHundredth = 0.005;  // coordinates are written to a hundredth of a pixel
 

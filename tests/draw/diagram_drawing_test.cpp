@@ -10,11 +10,14 @@
 #include <oblique/draw/schematic/schematic.h>
 #include <oblique/draw/schematic/symbols.h>
 
+#include "reading.h"
+
 namespace oblique::draw {
 namespace {
 
 using Eigen::Vector2d;
-using testing::HasSubstr;
+using test::find_mark;
+using ::testing::HasSubstr;
 using Extent = Eigen::AlignedBox<double, 2>;
 
 const diagram::BlockLibrary& library() {
@@ -25,13 +28,6 @@ const diagram::BlockLibrary& library() {
 diagram::Diagram diagram(const std::string& blocks, const std::string& rest = "") {
   return diagram::parse_diagram("format = \"oblique-diagram/1\"\n" + rest + "[blocks]\n" + blocks,
                                 "test.toml");
-}
-
-const Mark* find_mark(const Picture& picture, const std::string& id) {
-  for (const Mark& mark : picture.marks) {
-    if (mark.id == id) return &mark;
-  }
-  return nullptr;
 }
 
 std::vector<std::string> texts(const Picture& picture) {
@@ -76,7 +72,7 @@ TEST(DiagramDrawing, IsNotOpenedBeyondAllMeasure) {
   const diagram::Diagram deep =
       diagram("one = { type = \"constant\" }\ne = { type = \"c39\", in = \"one\" }\n");
   EXPECT_THAT([&] { draw_diagram(deep, own, {.depth = 100}); },
-              testing::ThrowsMessage<diagram::DiagramError>(
+              ::testing::ThrowsMessage<diagram::DiagramError>(
                   "test.toml: opened that far, the drawing has more than 30000 blocks\n"
                   "  remedy: open fewer levels of composites"));
   EXPECT_NO_THROW(draw_diagram(deep, own, {.depth = 3}));
@@ -92,7 +88,7 @@ t   = { type = "summer", in = ["one", "s"] }
                                        library());
   const auto written = texts(picture);
   EXPECT_EQ(std::count(written.begin(), written.end(), "+1"), 2);
-  EXPECT_THAT(written, testing::Contains("a = −0.3"));
+  EXPECT_THAT(written, ::testing::Contains("a = −0.3"));
   EXPECT_EQ(find_mark(picture, "block-one"), nullptr);
 }
 
@@ -157,7 +153,7 @@ s     = { type = "summer", in = ["drive.excess"] }
   for (const int depth : {0, 1}) {
     const Picture picture = draw_diagram(taken, library(), {SymbolStyle::classic, depth});
     EXPECT_NE(find_mark(picture, "net-drive.excess"), nullptr) << depth;
-    EXPECT_THAT(texts(picture), testing::Contains("excess")) << depth;
+    EXPECT_THAT(texts(picture), ::testing::Contains("excess")) << depth;
   }
 }
 
@@ -167,7 +163,7 @@ TEST(DiagramDrawing, DinSymbolsAreBoxes) {
   EXPECT_TRUE(std::holds_alternative<Outline>(find_mark(draw_diagram(sum, library()), "block-a")->shape));
   const Picture din = draw_diagram(sum, library(), {SymbolStyle::din, 0});
   EXPECT_TRUE(std::holds_alternative<Box>(find_mark(din, "block-a")->shape));
-  EXPECT_THAT(texts(din), testing::Contains("Σ"));
+  EXPECT_THAT(texts(din), ::testing::Contains("Σ"));
 }
 
 TEST(DiagramDrawing, ReportsWhatIsWrongWithTheWiring) {

@@ -20,23 +20,23 @@ namespace {
 
 using Eigen::Vector2d;
 using test::find_mark;
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
-constexpr double kUnit = 16;     // of a [layout] [px]
-constexpr double kRounding = 4;  // boxes stand on a grid of 8 px: half of it [px]
+constexpr double kUnit = 16;           // of a [layout] [px]
+constexpr double kLayoutRounding = 4;  // boxes stand on a grid of 8 px: half of it [px]
 
-const diagram::BlockLibrary& library() {
+const diagram::BlockLibrary& layout_library() {
   static const diagram::BlockLibrary shipped = diagram::BlockLibrary::shipped();
   return shipped;
 }
 
-diagram::Diagram diagram(const std::string& text) {
+diagram::Diagram diagram_of(const std::string& text) {
   return diagram::parse_diagram("format = \"oblique-diagram/1\"\n" + text, "test.toml");
 }
 
 std::string message_of(const std::string& text) {
   try {
-    draw_diagram(diagram(text), library());
+    draw_diagram(diagram_of(text), layout_library());
   } catch (const diagram::DiagramError& error) {
     return error.what();
   }
@@ -56,8 +56,8 @@ c = { type = "divider", numerator = "b", denominator = "a" }
 )";
 
 TEST(DiagramLayout, BlocksStandWhereTheFileSays) {
-  const Picture picture =
-      draw_diagram(diagram(kPair + "[layout]\na = [4, 20]\nb = [14, 8.5]\nc = [30, 8.5]\n"), library());
+  const Picture picture = draw_diagram(
+      diagram_of(kPair + "[layout]\na = [4, 20]\nb = [14, 8.5]\nc = [30, 8.5]\n"), layout_library());
   const Vector2d a = middle(picture, "block-a"), b = middle(picture, "block-b"),
                  c = middle(picture, "block-c");
   EXPECT_EQ(b - a, kUnit * Vector2d(10, -11.5));
@@ -65,19 +65,19 @@ TEST(DiagramLayout, BlocksStandWhereTheFileSays) {
 }
 
 TEST(DiagramLayout, PlacesAreRoundedToHalfAUnit) {
-  const Picture picture =
-      draw_diagram(diagram(kPair + "[layout]\na = [4, 20]\nb = [14.1, 8.4]\nc = [30, 8.5]\n"), library());
+  const Picture picture = draw_diagram(
+      diagram_of(kPair + "[layout]\na = [4, 20]\nb = [14.1, 8.4]\nc = [30, 8.5]\n"), layout_library());
   EXPECT_EQ(middle(picture, "block-b") - middle(picture, "block-a"), kUnit * Vector2d(10, -11.5));
 }
 
 // Opening c makes room for its frame: b keeps its side.
 TEST(DiagramLayout, OpenCompositesPushTheOthersAway) {
-  const diagram::Diagram placed = diagram(kPair + "[layout]\na = [4, 20]\nb = [14, 8.5]\nc = [30, 8.5]\n");
-  const Picture picture = draw_diagram(placed, library(), {SymbolStyle::classic, 1});
+  const diagram::Diagram placed = diagram_of(kPair + "[layout]\na = [4, 20]\nb = [14, 8.5]\nc = [30, 8.5]\n");
+  const Picture picture = draw_diagram(placed, layout_library(), {SymbolStyle::classic, 1});
   const auto extent = [&](const std::string& id) { return extent_of(*find_mark(picture, id)); };
   EXPECT_LT(extent("block-b").max().x(), extent("block-c").min().x());
   EXPECT_LT(extent("block-a").max().x(), extent("block-b").min().x());
-  EXPECT_NEAR(middle(picture, "block-b").y(), middle(picture, "block-c").y(), kRounding);
+  EXPECT_NEAR(middle(picture, "block-b").y(), middle(picture, "block-c").y(), kLayoutRounding);
 }
 
 TEST(DiagramLayout, RefusesBlocksOverEachOther) {
@@ -127,10 +127,10 @@ std::vector<std::filesystem::path> shipped_diagrams() {
 TEST(DiagramLayout, TheDrawnPlacesGiveThemselves) {
   for (const auto& path : shipped_diagrams()) {
     diagram::Diagram shipped = diagram::read_diagram(path);
-    const std::vector<diagram::BlockPlace> places = drawn_places(shipped, library());
+    const std::vector<diagram::BlockPlace> places = drawn_places(shipped, layout_library());
     shipped.layout = places;
     const diagram::Diagram written = diagram::parse_diagram(diagram::write_diagram(shipped), "written.toml");
-    const std::vector<diagram::BlockPlace> again = drawn_places(written, library());
+    const std::vector<diagram::BlockPlace> again = drawn_places(written, layout_library());
     ASSERT_EQ(again.size(), places.size());
     const Vector2d shift(again[0].x - places[0].x, again[0].y - places[0].y);
     for (std::size_t k = 0; k < places.size(); ++k) {
@@ -142,7 +142,7 @@ TEST(DiagramLayout, TheDrawnPlacesGiveThemselves) {
 }
 
 TEST(DiagramLayout, ABlockFileMayPlaceItsInnerBlocks) {
-  diagram::BlockLibrary own = library();
+  diagram::BlockLibrary own = layout_library();
   own.add(diagram::parse_block(R"(format = "oblique-block/1"
 title = "Difference of squares"
 [inputs]
@@ -161,11 +161,11 @@ sum = [16, 12]
 )",
                                "own.toml", "own"));
   const diagram::Diagram uses =
-      diagram("[blocks]\ns = { type = \"sine-source\" }\na = { type = \"own\", p = \"s\", q = \"s\" }\n");
+      diagram_of("[blocks]\ns = { type = \"sine-source\" }\na = { type = \"own\", p = \"s\", q = \"s\" }\n");
   const Picture picture = draw_diagram(uses, own, {SymbolStyle::classic, 1});
   EXPECT_EQ(middle(picture, "block-a.q2") - middle(picture, "block-a.p2"), kUnit * Vector2d(0, 16));
   const Vector2d sum = middle(picture, "block-a.sum") - middle(picture, "block-a.p2");
-  EXPECT_LE((sum - kUnit * Vector2d(12, 8)).lpNorm<Eigen::Infinity>(), kRounding);
+  EXPECT_LE((sum - kUnit * Vector2d(12, 8)).lpNorm<Eigen::Infinity>(), kLayoutRounding);
 }
 
 /// The marks whose ids start so, without that start, in the picture's order.
@@ -194,7 +194,7 @@ TEST(DiagramLayout, AClassThreeMechanismIsTwoEqualHalves) {
   }
   ASSERT_EQ(halves.size(), 2U);
   for (const SymbolStyle style : {SymbolStyle::classic, SymbolStyle::din}) {
-    const Picture picture = draw_diagram(patched, library(), {style, 1});
+    const Picture picture = draw_diagram(patched, layout_library(), {style, 1});
     const auto one = marks_of(picture, halves[0] + "."), two = marks_of(picture, halves[1] + ".");
     ASSERT_EQ(one.size(), two.size());
     EXPECT_GT(one.size(), 40U) << "blocks and wires of a circuit";

@@ -23,7 +23,7 @@ using Extent = Eigen::AlignedBox<double, 2>;
 
 const std::filesystem::path kDiagrams = std::filesystem::path(OBLIQUE_SOURCE_DIR) / "diagrams";
 
-const diagram::BlockLibrary& library() {
+const diagram::BlockLibrary& text_library() {
   static const diagram::BlockLibrary with_own = [] {
     diagram::BlockLibrary blocks = diagram::BlockLibrary::shipped();
     blocks.add_directory(kDiagrams / "own-blocks" / "blocks");
@@ -51,7 +51,7 @@ std::vector<std::pair<std::string, diagram::Diagram>> all_diagrams() {
   diagrams.push_back({"patch of class-iii by paper", patch::patch_paper(mechanism("class-iii"))});
   const diagram::Diagram slider = patch::patch_triangles(mechanism("slider-crank"));
   diagrams.push_back({"patch of slider-crank for tr-10",
-                      machine::realise(slider, library(), *diagram::find_machine("tr-10")).diagram});
+                      machine::realise(slider, text_library(), *diagram::find_machine("tr-10")).diagram});
   return diagrams;
 }
 
@@ -91,8 +91,8 @@ TEST(DiagramTexts, AreClearOfMarksAndOfEachOther) {
   for (const auto& [name, diagram] : all_diagrams()) {
     for (const auto style : {SymbolStyle::classic, SymbolStyle::din}) {
       for (const int depth : {0, 1}) {
-        const Picture picture = draw_diagram(diagram, library(), {style, depth});
-        EXPECT_THAT(overlaps(picture), testing::IsEmpty())
+        const Picture picture = draw_diagram(diagram, text_library(), {style, depth});
+        EXPECT_THAT(overlaps(picture), ::testing::IsEmpty())
             << name << ", depth " << depth << (style == SymbolStyle::din ? ", din" : "");
         for (const Mark& mark : picture.marks) {
           const Extent extent = extent_of(mark);
@@ -110,9 +110,9 @@ TEST(DiagramTexts, OverlapsAreFound) {
   Picture picture;
   picture.marks.push_back(line_mark({0, 0}, {100, 100}));
   picture.marks.push_back(label_mark({80, 40}, "beside"));
-  EXPECT_THAT(overlaps(picture), testing::IsEmpty());
+  EXPECT_THAT(overlaps(picture), ::testing::IsEmpty());
   picture.marks.push_back(label_mark({40, 60}, "on it"));
-  EXPECT_THAT(overlaps(picture), testing::SizeIs(1));
+  EXPECT_THAT(overlaps(picture), ::testing::SizeIs(1));
 }
 
 }  // namespace

@@ -11,17 +11,14 @@
 #include <oblique/mechanism/motion/motion.h>
 #include <oblique/mechanism/structure/structure.h>
 
+#include "../support/shipped.h"
 #include "reading.h"
 
 namespace oblique::test {
 namespace {
 
 using Eigen::Vector2d;
-
-mechanism::Mechanism shipped(const std::string& name) {
-  return mechanism::read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/" + name +
-                                   ".toml");
-}
+using test::shipped;
 
 /// A block that is driven along an inclined guide, and the slot of a lever that it turns: two prismatic
 /// joints of one point, the driven one first.

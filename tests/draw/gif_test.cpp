@@ -15,8 +15,8 @@
 namespace oblique::test {
 namespace {
 
-using testing::Each;
-using testing::Eq;
+using ::testing::Each;
+using ::testing::Eq;
 
 constexpr draw::Rgb kPaper{255, 255, 255}, kInk{26, 26, 26}, kBlue{0, 114, 178};
 

@@ -11,7 +11,7 @@
 namespace oblique::draw {
 namespace {
 
-LayoutNode box(std::size_t inputs, std::size_t outputs) {
+LayoutNode plain_box(std::size_t inputs, std::size_t outputs) {
   LayoutNode node;
   const double rows = static_cast<double>(std::max(inputs, outputs)) + 1;
   node.size = {64, 2 * kLayoutGrid * rows};
@@ -24,7 +24,7 @@ LayoutNode box(std::size_t inputs, std::size_t outputs) {
 
 //   a ──► b ──► c
 TEST(Layout, AChainIsOneStraightLine) {
-  const LayoutGraph graph{{box(1, 1), box(1, 1), box(1, 1)}, {{0, 0, 1, 0}, {1, 0, 2, 0}}};
+  const LayoutGraph graph{{plain_box(1, 1), plain_box(1, 1), plain_box(1, 1)}, {{0, 0, 1, 0}, {1, 0, 2, 0}}};
   const DiagramLayout layout = lay_out(graph);
   expect_sound(graph, layout);
   EXPECT_EQ(layout.quality.bends, 0U);
@@ -37,7 +37,7 @@ TEST(Layout, AChainIsOneStraightLine) {
 //   ┌──────────────┐
 //   └─► a ──► b ──►┘      what is fed back runs around
 TEST(Layout, ALoopGoesBackOnce) {
-  const LayoutGraph graph{{box(1, 1), box(1, 1)}, {{0, 0, 1, 0}, {1, 0, 0, 0}}};
+  const LayoutGraph graph{{plain_box(1, 1), plain_box(1, 1)}, {{0, 0, 1, 0}, {1, 0, 0, 0}}};
   const DiagramLayout layout = lay_out(graph);
   expect_sound(graph, layout);
   EXPECT_EQ(layout.quality.feedbacks, 1U);
@@ -46,7 +46,7 @@ TEST(Layout, ALoopGoesBackOnce) {
 }
 
 TEST(Layout, ABlockMayFeedItself) {
-  const LayoutGraph graph{{box(2, 1)}, {{0, 0, 0, 1}}};
+  const LayoutGraph graph{{plain_box(2, 1)}, {{0, 0, 0, 1}}};
   const DiagramLayout layout = lay_out(graph);
   expect_sound(graph, layout);
   EXPECT_EQ(layout.quality.feedbacks, 1U);
@@ -55,7 +55,7 @@ TEST(Layout, ABlockMayFeedItself) {
 //   a ─┬─► b
 //      └─► c      one junction, one wire up to it
 TEST(Layout, WiresFromOneOutputShareTheirWay) {
-  const LayoutGraph graph{{box(0, 1), box(1, 0), box(1, 0)}, {{0, 0, 1, 0}, {0, 0, 2, 0}}};
+  const LayoutGraph graph{{plain_box(0, 1), plain_box(1, 0), plain_box(1, 0)}, {{0, 0, 1, 0}, {0, 0, 2, 0}}};
   const DiagramLayout layout = lay_out(graph);
   expect_sound(graph, layout);
   ASSERT_EQ(layout.nets.size(), 1U);
@@ -64,7 +64,7 @@ TEST(Layout, WiresFromOneOutputShareTheirWay) {
 
 // Inputs in the opposite order of the sources: the sources are turned round, so nothing crosses.
 TEST(Layout, SourcesStandInTheOrderOfThePins) {
-  const LayoutGraph graph{{box(0, 1), box(0, 1), box(0, 1), box(3, 0)},
+  const LayoutGraph graph{{plain_box(0, 1), plain_box(0, 1), plain_box(0, 1), plain_box(3, 0)},
                           {{0, 0, 3, 2}, {1, 0, 3, 1}, {2, 0, 3, 0}}};
   const DiagramLayout layout = lay_out(graph);
   expect_sound(graph, layout);
@@ -74,14 +74,15 @@ TEST(Layout, SourcesStandInTheOrderOfThePins) {
 
 // Two boxes exchange their signals crosswise: a circle of constraints in the channel.
 TEST(Layout, CrossedPairsFindTheirWay) {
-  const LayoutGraph graph{{box(0, 2), box(2, 0)}, {{0, 0, 1, 1}, {0, 1, 1, 0}}};
+  const LayoutGraph graph{{plain_box(0, 2), plain_box(2, 0)}, {{0, 0, 1, 1}, {0, 1, 1, 0}}};
   const DiagramLayout layout = lay_out(graph);
   expect_sound(graph, layout);
   EXPECT_EQ(layout.quality.crossings, 1U);
 }
 
 TEST(Layout, TerminalsStandAtTheEdges) {
-  LayoutGraph graph{{box(0, 1), box(1, 1), box(1, 1), box(1, 0)}, {{0, 0, 2, 0}, {1, 0, 2, 0}, {2, 0, 3, 0}}};
+  LayoutGraph graph{{plain_box(0, 1), plain_box(1, 1), plain_box(1, 1), plain_box(1, 0)},
+                    {{0, 0, 2, 0}, {1, 0, 2, 0}, {2, 0, 3, 0}}};
   graph.wires[1] = {2, 0, 1, 0};
   graph.nodes[0].rank = LayoutRank::first;
   graph.nodes[3].rank = LayoutRank::last;
@@ -104,7 +105,7 @@ TEST(Layout, RandomGraphsAreSound) {
   for (int round = 0; round < 150; ++round) {
     LayoutGraph graph;
     const std::size_t n = 2 + draw(25);
-    for (std::size_t v = 0; v < n; ++v) graph.nodes.push_back(box(1 + draw(4), 1 + draw(2)));
+    for (std::size_t v = 0; v < n; ++v) graph.nodes.push_back(plain_box(1 + draw(4), 1 + draw(2)));
     for (std::size_t v = 0; v < n; ++v) {
       for (std::size_t k = 0; k < graph.nodes[v].inputs.size(); ++k) {
         if (draw(5) == 0) continue;
@@ -126,7 +127,7 @@ TEST(Layout, DenseGraphsAreSound) {
   for (int round = 0; round < 40; ++round) {
     LayoutGraph graph;
     const std::size_t n = 2 + draw(60);
-    for (std::size_t v = 0; v < n; ++v) graph.nodes.push_back(box(1 + draw(5), 1 + draw(3)));
+    for (std::size_t v = 0; v < n; ++v) graph.nodes.push_back(plain_box(1 + draw(5), 1 + draw(3)));
     for (std::size_t v = 0; v < n; ++v) {
       for (std::size_t k = 0; k < graph.nodes[v].inputs.size(); ++k) {
         const std::size_t from = draw(n);
@@ -141,7 +142,7 @@ TEST(Layout, DenseGraphsAreSound) {
 
 TEST(Layout, IsTheSameEveryTime) {
   LayoutGraph graph;
-  for (int v = 0; v < 30; ++v) graph.nodes.push_back(box(2, 1));
+  for (int v = 0; v < 30; ++v) graph.nodes.push_back(plain_box(2, 1));
   for (std::size_t v = 0; v < 30; ++v) graph.wires.push_back({(7 * v + 3) % 30, 0, v, v % 2});
   const DiagramLayout one = lay_out(graph), two = lay_out(graph);
   EXPECT_EQ(one.corners, two.corners);

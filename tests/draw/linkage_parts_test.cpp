@@ -10,18 +10,16 @@
 #include <oblique/mechanism/model/read_mechanism.h>
 #include <oblique/mechanism/motion/motion.h>
 
+#include "../support/shipped.h"
+
 namespace oblique::test {
 namespace {
 
 using Eigen::Vector2d;
+using test::shipped;
 using Carrier = draw::LinkagePart::Carrier;
 
 constexpr double kScale = 2;  // px a millimetre
-
-mechanism::Mechanism shipped(const std::string& name) {
-  return mechanism::read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/" + name +
-                                   ".toml");
-}
 
 std::vector<draw::LinkagePart> parts_of(const mechanism::Mechanism& mechanism) {
   // Every third of a degree: the ends of a stroke are met within 10⁻⁵ of the crank's length.
@@ -35,7 +33,7 @@ const draw::LinkagePart& part_of(const std::vector<draw::LinkagePart>& parts, Ca
   return *found;
 }
 
-std::vector<Vector2d> corners_of(const draw::Mark& mark) {
+std::vector<Vector2d> corners_of_part(const draw::Mark& mark) {
   std::vector<Vector2d> corners;
   for (const draw::Segment& segment : std::get<draw::Outline>(mark.shape).segments) {
     if (segment.kind != draw::Segment::Kind::close) corners.push_back(segment.to);
@@ -48,7 +46,8 @@ TEST(LinkageParts, GuideReachesAsFarBeyondBothEndsOfTheStroke) {
   const auto parts = parts_of(shipped("slider-crank-offset"));
   const draw::LinkagePart& guide = part_of(parts, Carrier::guide);
   const double near = kScale * std::sqrt(100 * 100 - 40 * 40), far = kScale * std::sqrt(200 * 200 - 40 * 40);
-  const std::vector<Vector2d> line = corners_of(guide.marks.at(0)), ground = corners_of(guide.marks.at(1));
+  const std::vector<Vector2d> line = corners_of_part(guide.marks.at(0)),
+                              ground = corners_of_part(guide.marks.at(1));
   ASSERT_EQ(line.size(), 2U);
   const double overhang = near - line[0].x();
   EXPECT_GT(overhang, 15);  // half a block
@@ -67,7 +66,7 @@ TEST(LinkageParts, GroundIsHatchedAllAlongOnItsLowerSide) {
   const auto parts = parts_of(shipped("slider-crank-offset"));
   for (const draw::LinkagePart& part : parts) {
     if (part.carrier != Carrier::guide && part.carrier != Carrier::frame) continue;
-    const auto ground = corners_of(part.marks.at(1)), strokes = corners_of(part.marks.at(2));
+    const auto ground = corners_of_part(part.marks.at(1)), strokes = corners_of_part(part.marks.at(2));
     ASSERT_GE(strokes.size(), 8U);
     ASSERT_EQ(strokes.size() % 2, 0U);
     const double pitch = strokes[2].x() - strokes[0].x();
@@ -87,7 +86,7 @@ TEST(LinkageParts, GroundIsHatchedAllAlongOnItsLowerSide) {
 TEST(LinkageParts, SupportIsATriangleUnderItsPin) {
   const auto parts = parts_of(shipped("four-bar"));
   const draw::LinkagePart& support = part_of(parts, Carrier::frame);
-  const auto corners = corners_of(support.marks.at(0)), ground = corners_of(support.marks.at(1));
+  const auto corners = corners_of_part(support.marks.at(0)), ground = corners_of_part(support.marks.at(1));
   ASSERT_EQ(corners.size(), 3U);
   EXPECT_EQ(corners[0], Vector2d(0, 0));
   EXPECT_EQ(corners[1], Vector2d(-corners[2].x(), corners[2].y()));

@@ -16,20 +16,17 @@
 #include <oblique/mechanism/motion/motion.h>
 #include <oblique/mechanism/structure/structure.h>
 
+#include "../support/shipped.h"
 #include "reading.h"
 
 namespace oblique::test {
 namespace {
 
 using Eigen::Vector2d;
+using test::shipped;
 using Extent = Eigen::AlignedBox<double, 2>;
-using testing::ElementsAre;
-using testing::IsEmpty;
-
-mechanism::Mechanism shipped(const std::string& name) {
-  return mechanism::read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/" + name +
-                                   ".toml");
-}
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
 
 std::vector<std::string> shipped_names() {
   std::vector<std::string> names;
@@ -60,8 +57,8 @@ std::vector<std::string> names_of_traces(const std::string& name) {
   return names;
 }
 
-class Shipped : public testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(Mechanisms, Shipped, testing::ValuesIn(shipped_names()), [](const auto& tested) {
+class Shipped : public ::testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Mechanisms, Shipped, ::testing::ValuesIn(shipped_names()), [](const auto& tested) {
   std::string name = tested.param;
   std::replace(name.begin(), name.end(), '-', '_');
   return name;

@@ -22,13 +22,13 @@ namespace {
 using Eigen::Vector2d;
 using Extent = Eigen::AlignedBox<double, 2>;
 
-constexpr int kFrames = 48;
+constexpr int kMovingFrames = 48;
 
 std::string folder() {
   return std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms";
 }
 
-std::vector<std::string> shipped_names() {
+std::vector<std::string> names_of_shipped() {
   std::vector<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator(folder()))
     names.push_back(entry.path().stem().string());
@@ -37,9 +37,9 @@ std::vector<std::string> shipped_names() {
 }
 
 /// A motion there and back, which every mechanism has.
-draw::LinkageAnimation animation_of(const mechanism::Mechanism& mechanism) {
+draw::LinkageAnimation moving_of(const mechanism::Mechanism& mechanism) {
   mechanism::MotionOptions options;
-  options.positions = kFrames / 2 + 1;
+  options.positions = kMovingFrames / 2 + 1;
   options.at_limit = mechanism::AtLimit::stop;
   draw::LinkageAnimation animation;
   animation.frames = mechanism::solve_motion(mechanism, options).configurations;
@@ -54,8 +54,8 @@ draw::LinkageAnimation animation_of(const mechanism::Mechanism& mechanism) {
   return animation;
 }
 
-class Moving : public testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(Mechanisms, Moving, testing::ValuesIn(shipped_names()), [](const auto& tested) {
+class Moving : public ::testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Mechanisms, Moving, ::testing::ValuesIn(names_of_shipped()), [](const auto& tested) {
   std::string name = tested.param;
   std::replace(name.begin(), name.end(), '-', '_');
   return name;
@@ -63,7 +63,7 @@ INSTANTIATE_TEST_SUITE_P(Mechanisms, Moving, testing::ValuesIn(shipped_names()),
 
 TEST_P(Moving, EverythingLiesWithinThePictureAtAllTimes) {
   const mechanism::Mechanism mechanism = mechanism::read_mechanism(folder() + "/" + GetParam() + ".toml");
-  const draw::LinkageAnimation animation = animation_of(mechanism);
+  const draw::LinkageAnimation animation = moving_of(mechanism);
   const draw::AnimationFrames frames(mechanism, animation);
   for (std::size_t k = 0; k < animation.frames.size(); ++k) {
     const draw::Picture picture = frames.picture(k);
@@ -85,7 +85,7 @@ TEST_P(Moving, EverythingLiesWithinThePictureAtAllTimes) {
 // there is now and then no place. No name lies on another, and of 100 names 99 are clear.
 TEST_P(Moving, NamesStayClear) {
   const mechanism::Mechanism mechanism = mechanism::read_mechanism(folder() + "/" + GetParam() + ".toml");
-  const draw::LinkageAnimation animation = animation_of(mechanism);
+  const draw::LinkageAnimation animation = moving_of(mechanism);
   const draw::AnimationFrames frames(mechanism, animation);
   std::size_t covered = 0, all = 0;
   for (std::size_t k = 0; k < animation.frames.size(); ++k) {
@@ -116,7 +116,7 @@ TEST_P(Moving, NamesStayClear) {
 // A leader line comes out from under the pin while the name strays, and is hidden there while it does not.
 TEST_P(Moving, NamesThatStrayAreLedToTheirPins) {
   const mechanism::Mechanism mechanism = mechanism::read_mechanism(folder() + "/" + GetParam() + ".toml");
-  const draw::LinkageAnimation animation = animation_of(mechanism);
+  const draw::LinkageAnimation animation = moving_of(mechanism);
   const draw::AnimationFrames frames(mechanism, animation);
   for (std::size_t k = 0; k < animation.frames.size(); ++k) {
     const draw::Picture picture = frames.picture(k);
@@ -142,7 +142,7 @@ TEST_P(Moving, NamesThatStrayAreLedToTheirPins) {
 
 /// The four-bar linkage with an analog one that is off by 0.1 in x, and by 0.2 in y at the coupler's mark.
 draw::LinkageAnimation with_analog(const mechanism::Mechanism& mechanism) {
-  draw::LinkageAnimation animation = animation_of(mechanism);
+  draw::LinkageAnimation animation = moving_of(mechanism);
   const auto shifted = [&](const mechanism::Configuration& here) {
     std::vector<Vector2d> places;
     for (std::size_t p = 0; p < mechanism.points.size(); ++p) {
@@ -205,7 +205,7 @@ TEST(AnalogOverlay, IsToldInTheLegend) {
     if (const auto* const label = std::get_if<draw::Label>(&mark.shape)) texts.push_back(label->text);
   }
   for (const char* text : {"exact", "analog, error ×7", "largest error 0.03 m"})
-    EXPECT_THAT(texts, testing::Contains(text));
+    EXPECT_THAT(texts, ::testing::Contains(text));
   EXPECT_NE(find_mark(picture, "path-M")->pen.ink, find_mark(picture, "analog-path-M")->pen.ink);
 }
 
@@ -234,18 +234,18 @@ TEST(AnalogOverlay, BendsInBrowsers) {
   }
   EXPECT_EQ(frame, animation.frames.size());
   const std::string page = draw::animated_page(mechanism, animation, draw::Theme::light);
-  EXPECT_THAT(page, testing::HasSubstr("<path data-moves=\"\" id=\"analog-body-CD\""));
-  EXPECT_THAT(page, testing::HasSubstr("<path data-moves=\"closed\" id=\"analog-body-BC"));
+  EXPECT_THAT(page, ::testing::HasSubstr("<path data-moves=\"\" id=\"analog-body-CD\""));
+  EXPECT_THAT(page, ::testing::HasSubstr("<path data-moves=\"closed\" id=\"analog-body-BC"));
 }
 
 TEST(Animation, IsAsWideAsAskedFor) {
   const mechanism::Mechanism mechanism = mechanism::read_mechanism(folder() + "/four-bar.toml");
-  draw::LinkageAnimation animation = animation_of(mechanism);
+  draw::LinkageAnimation animation = moving_of(mechanism);
   animation.width = 380;  // half of 760
   EXPECT_THAT(draw::animated_svg(mechanism, animation, draw::Theme::light),
-              testing::HasSubstr("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"380\" "));
+              ::testing::HasSubstr("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"380\" "));
   EXPECT_THAT(draw::animated_page(mechanism, animation, draw::Theme::light),
-              testing::HasSubstr("max-width: 380px"));
+              ::testing::HasSubstr("max-width: 380px"));
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 namespace oblique::draw {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 TEST(Svg, EscapesWhatXmlReserves) {
   EXPECT_EQ(escape_xml("a<b & \"c\" > 'd'\x01"), "a&lt;b &amp; &quot;c&quot; &gt; &#39;d&#39;");

@@ -12,7 +12,7 @@
 namespace oblique::ensemble {
 namespace {
 
-constexpr const char* kDecay = R"toml(format = "oblique-diagram/1"
+constexpr const char* kStudiedDecay = R"toml(format = "oblique-diagram/1"
 [run]
 until = 2
 [blocks]
@@ -51,7 +51,7 @@ std::vector<std::string> names_of(const Study& study) {
 TEST(Study, RunsAGridOfDecays) {
   Plan plan = plan_of({{"x.in[1]", "-1..-3:3", {}}, {"x.initial", "0.5,1", {}}},
                       {"end(x)", "end(height)", "integral(x)", "max(y)"});
-  const Study study = study_of(plan, kDecay);
+  const Study study = study_of(plan, kStudiedDecay);
   EXPECT_EQ(names_of(study), (std::vector<std::string>{"x.in[1]", "x.initial", "end(x)", "end(height)",
                                                        "integral(x)", "max(y)"}));
   ASSERT_EQ(study.runs(), 6U);
@@ -89,8 +89,8 @@ TEST(Study, GivesTheSameRowsInChunksAndThreads) {
   plan.sampling = Sampling::latin_hypercube;
   plan.runs = 20;
   plan.scatter.push_back({"integrator", "tolerance", 0.01, {}});
-  const Study study = study_of(plan, kDecay);
-  const Study alone(plan, kDecay, testing::shipped_blocks(), 1);
+  const Study study = study_of(plan, kStudiedDecay);
+  const Study alone(plan, kStudiedDecay, testing::shipped_blocks(), 1);
   const Study::Rows all = study.run(0, 20), begin = alone.run(0, 7), rest = alone.run(7, 13);
   for (std::size_t k = 0; k < 20; ++k) {
     const StudyRow& part = k < 7 ? begin.rows[k] : rest.rows[k - 7];
@@ -104,7 +104,7 @@ TEST(Study, DrawsElements) {
   Plan plan = plan_of({}, {"log(end(x))/-2 - 1"});
   plan.runs = 400;
   plan.scatter.push_back({"integrator", "tolerance", 0.01, {}});
-  const Study study = study_of(plan, kDecay);
+  const Study study = study_of(plan, kStudiedDecay);
   EXPECT_EQ(study.n_drawn(), 1U);
   double sum = 0, squares = 0;
   for (const StudyRow& row : study.run(0, 400).rows) {
@@ -121,7 +121,7 @@ TEST(Study, DrawsAlikeAtEveryCombination) {
   Plan plan = plan_of({{"x.initial", "0.5,1", {}}}, {"end(x)/start(x)"});
   plan.runs = 3;
   plan.scatter.push_back({"integrator", "tolerance", 0.01, {}});
-  const Study study = study_of(plan, kDecay);
+  const Study study = study_of(plan, kStudiedDecay);
   ASSERT_EQ(study.runs(), 6U);
   const std::vector<StudyRow> rows = study.run(0, 6).rows;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -212,12 +212,12 @@ x = { type = "integrator", in = ["xab"], initial = 1.5 }
 }
 
 TEST(Study, EndsAtEveryOutputWhereNothingIsAsked) {
-  const Study study = study_of(plan_of({{"x.initial", "1,2", {}}}, {}), kDecay);
+  const Study study = study_of(plan_of({{"x.initial", "1,2", {}}}, {}), kStudiedDecay);
   EXPECT_EQ(names_of(study), (std::vector<std::string>{"x.initial", "end(height)"}));
 }
 
 TEST(Study, TellsOfAMachineThatFails) {
-  const Study study = study_of(plan_of({{"x.in[1]", "-1,1e300", {}}}, {"end(x)"}), kDecay);
+  const Study study = study_of(plan_of({{"x.in[1]", "-1,1e300", {}}}, {"end(x)"}), kStudiedDecay);
   const Study::Rows done = study.run(0, 2);
   EXPECT_EQ(done.rows[0].failure, "");
   EXPECT_NE(done.rows[1].failure, "");
@@ -227,8 +227,8 @@ TEST(Study, TellsOfAMachineThatFails) {
 }
 
 TEST(Study, KeepsWhatIsDoneWhenItIsInterrupted) {
-  const Study study(plan_of({{"x.initial", "1..2:100", {}}}, {"end(x)"}), kDecay, testing::shipped_blocks(),
-                    1);
+  const Study study(plan_of({{"x.initial", "1..2:100", {}}}, {"end(x)"}), kStudiedDecay,
+                    testing::shipped_blocks(), 1);
   int asked = 0;
   const Study::Rows done = study.run(0, 100, {}, [&] { return ++asked > 30; });
   EXPECT_GE(done.rows.size(), 1U);
@@ -237,7 +237,7 @@ TEST(Study, KeepsWhatIsDoneWhenItIsInterrupted) {
 }
 
 TEST(Family, RunsEachValue) {
-  const diagram::Diagram diagram = diagram::parse_diagram(kDecay, "d.toml");
+  const diagram::Diagram diagram = diagram::parse_diagram(kStudiedDecay, "d.toml");
   solve::RunOptions options = solve::options_of(diagram.run);
   options.samples = 21;
   const Family family = run_family(diagram, testing::shipped_blocks(), {{"x.initial", "2"}},
@@ -401,7 +401,7 @@ TEST(Study, RefusesWhatMakesNoSense) {
   };
   for (const BadPlan& one : bad) {
     const std::string message = testing::message_of<StudyError>([&] {
-      study_of(plan_of({{one.name, one.values, {}}}, {one.measure}), kDecay);
+      study_of(plan_of({{one.name, one.values, {}}}, {one.measure}), kStudiedDecay);
     });
     if (one.message.ends_with("; remedy")) {
       EXPECT_NE(message.find(one.message.substr(0, one.message.size() - 8)), std::string::npos) << message;
@@ -415,7 +415,7 @@ TEST(Study, NamesAllFindingsAtTheirPlaces) {
   Plan plan =
       plan_of({{"x.initial", "1,2", {"p.toml", {4, 13}}}, {"x.initial", "1,2", {"p.toml", {5, 13}}}}, {});
   plan.measures.push_back({"m", "end(zz)", {"p.toml", {7, 5}}});
-  const std::string message = testing::message_of<StudyError>([&] { study_of(plan, kDecay); });
+  const std::string message = testing::message_of<StudyError>([&] { study_of(plan, kStudiedDecay); });
   EXPECT_NE(message.find("p.toml:5:13: 'x.initial' is varied twice"), std::string::npos) << message;
   EXPECT_NE(message.find("p.toml:7:10: measure 'end(zz)': there is no output or signal 'zz'"),
             std::string::npos)
@@ -424,7 +424,7 @@ TEST(Study, NamesAllFindingsAtTheirPlaces) {
 
 TEST(Study, RefusesNumbersOfRunsThatMakeNoSense) {
   const auto message = [](Plan plan) {
-    return testing::message_of<StudyError>([&] { study_of(plan, kDecay); });
+    return testing::message_of<StudyError>([&] { study_of(plan, kStudiedDecay); });
   };
   Plan plan = plan_of({{"x.initial", "1,2", {}}}, {});
   plan.runs = 5;

@@ -7,7 +7,7 @@ namespace oblique::fuzz {
 namespace {
 
 /// It bounces, ever faster, and then lies still. (How often it bounced before that is said by no equation.)
-constexpr const char* kBall = R"toml(
+constexpr const char* kBallText = R"toml(
 [outputs]
 height = { doc = "[machine unit]" }
 speed = { doc = "[machine unit/s]" }
@@ -30,7 +30,7 @@ piling_up = { height = 0, speed = 0, rests = 1 }
 )toml";
 
 /// A lag that discharges whenever it has reached its threshold.
-constexpr const char* kSpiker = R"toml(
+constexpr const char* kSpikerText = R"toml(
 [inputs]
 in = { doc = "[machine unit]" }
 [outputs]
@@ -72,8 +72,8 @@ const diagram::BlockLibrary& library() {
       made.add(diagram::parse_block("format = \"oblique-block/1\"\ntitle = \"" + name + "\"\n" + text,
                                     name + ".toml", name));
     };
-    add("ball", kBall);
-    add("spiker", kSpiker);
+    add("ball", kBallText);
+    add("spiker", kSpikerText);
     add("swap", kSwap);
     return made;
   }();

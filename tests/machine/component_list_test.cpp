@@ -44,7 +44,7 @@ void remove(diagram::MachineProfile& machine, diagram::ElementKind kind) {
 }
 
 // An oscillator of two integrators and an inverter, with a servo amplifier and a product besides.
-const char* const kBlocks = R"(
+const char* const kListedBlocks = R"(
 x = { type = "integrator", in = ["y"], initial = 1 }
 y = { type = "integrator", in = ["n"] }
 n = { type = "inverter", in = "x" }
@@ -55,7 +55,7 @@ m = { type = "multiplier", in = ["q", "q"] }
 )";
 
 TEST(ComponentList, CountsEveryUncommittedAmplifierAndTheNetworksOfIntegrators) {
-  const ComponentList counted = components(kBlocks, inverting_machine());
+  const ComponentList counted = components(kListedBlocks, inverting_machine());
   EXPECT_EQ(row(counted, "amplifiers").needed, 5);
   EXPECT_EQ(row(counted, "amplifiers").note, "1 summer, 1 inverter, 2 integrators, 1 open amplifier");
   EXPECT_EQ(row(counted, "integrator networks").needed, 2);
@@ -70,13 +70,13 @@ TEST(ComponentList, TakesSummersForOpenAmplifiersAndForInvertersBeyondThoseThere
   remove(machine, diagram::ElementKind::amplifier);
   set_count(machine, diagram::ElementKind::integrator, 2);
   set_count(machine, diagram::ElementKind::summer, 3);
-  ComponentList counted = components(kBlocks, machine);  // without inverters of its own
+  ComponentList counted = components(kListedBlocks, machine);  // without inverters of its own
   EXPECT_EQ(row(counted, "integrators").needed, 2);
   EXPECT_EQ(row(counted, "summers").needed, 3);
   EXPECT_EQ(row(counted, "summers").note, "1 open amplifier, 1 inverter of these");
   EXPECT_EQ(counted.verdict(), ComponentList::Verdict::fits);
   set_count(machine, diagram::ElementKind::inverter, 4);
-  counted = components(kBlocks, machine);
+  counted = components(kListedBlocks, machine);
   EXPECT_EQ(row(counted, "summers").needed, 2);
   EXPECT_EQ(row(counted, "inverters").needed, 1);
 }
@@ -84,7 +84,7 @@ TEST(ComponentList, TakesSummersForOpenAmplifiersAndForInvertersBeyondThoseThere
 TEST(ComponentList, SaysWhatIsMissing) {
   diagram::MachineProfile machine = inverting_machine();
   set_count(machine, diagram::ElementKind::amplifier, 3);
-  const ComponentList counted = components(kBlocks, machine);
+  const ComponentList counted = components(kListedBlocks, machine);
   EXPECT_EQ(row(counted, "amplifiers").missing(), 2);
   EXPECT_EQ(row(counted, "multipliers").missing(), 0);
   EXPECT_EQ(counted.verdict(), ComponentList::Verdict::does_not_fit);
@@ -94,10 +94,10 @@ TEST(ComponentList, SaysWhatIsMissing) {
 TEST(ComponentList, CannotTellWhereACountIsNotPublished) {
   diagram::MachineProfile machine = inverting_machine();
   set_count(machine, diagram::ElementKind::multiplier, std::nullopt);
-  EXPECT_EQ(components(kBlocks, machine).verdict(), ComponentList::Verdict::cannot_tell);
-  EXPECT_EQ(row(components(kBlocks, machine), "multipliers").missing(), 0);
+  EXPECT_EQ(components(kListedBlocks, machine).verdict(), ComponentList::Verdict::cannot_tell);
+  EXPECT_EQ(row(components(kListedBlocks, machine), "multipliers").missing(), 0);
   set_count(machine, diagram::ElementKind::amplifier, 4);  // enough to know
-  EXPECT_EQ(components(kBlocks, machine).verdict(), ComponentList::Verdict::does_not_fit);
+  EXPECT_EQ(components(kListedBlocks, machine).verdict(), ComponentList::Verdict::does_not_fit);
 }
 
 // What is no gain of an input is a potentiometer, or not; a weight at a multiplier is one for certain.
@@ -117,7 +117,7 @@ TEST(ComponentList, CannotTellWhereTheGainsOfInputsAreNotPublished) {
 TEST(ComponentList, NamesKindsThatTheMachineHasNot) {
   diagram::MachineProfile machine = inverting_machine();
   remove(machine, diagram::ElementKind::multiplier);
-  const std::string blocks = std::string(kBlocks) + "c = { type = \"cosine\", in = \"x\" }\n";
+  const std::string blocks = std::string(kListedBlocks) + "c = { type = \"cosine\", in = \"x\" }\n";
   const ComponentList counted = components(blocks, machine);
   EXPECT_THAT(counted.absent(), ElementsAre("multipliers", "cosine"));
   EXPECT_EQ(counted.verdict(), ComponentList::Verdict::does_not_fit);

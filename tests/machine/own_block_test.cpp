@@ -52,7 +52,7 @@ std::string without_my(const std::string& text) {
   return std::regex_replace(text, std::regex("my-"), "");
 }
 
-const std::string kBlocks = R"(
+const std::string kOwnBlocks = R"(
 one = { type = "my-constant", value = 0.5 }
 x   = { type = "my-integrator", in = ["-v", "3*pot"], initial = 0.25, rate = 2 }
 v   = { type = "my-integrator", in = ["sum", "x"], leakage = 0.1 }
@@ -75,8 +75,8 @@ c = "curve"
 TEST_F(OwnBlocks, AreRealisedAsTheShippedOnes) {
   for (const char* const name : {"tr-10", "mn-7", "lucidac", "the-analog-thing"}) {
     const diagram::MachineProfile& machine = *diagram::find_machine(name);
-    const Realisation own = realise(parse(kBlocks), library_, machine);
-    const Realisation shipped = realise(parse(without_my(kBlocks)), shipped_blocks(), machine);
+    const Realisation own = realise(parse(kOwnBlocks), library_, machine);
+    const Realisation shipped = realise(parse(without_my(kOwnBlocks)), shipped_blocks(), machine);
     EXPECT_EQ(own.inverters, shipped.inverters) << name;
     const std::string text = diagram::write_diagram(own.diagram);
     EXPECT_THAT(text, HasSubstr("my-integrator")) << "it stays the user's block";

@@ -18,8 +18,6 @@ namespace {
 using Eigen::Vector2d;
 using Kind = MotionEvent::Kind;
 
-constexpr double kPi = std::numbers::pi;
-
 Motion solve(const Mechanism& mechanism, int positions) {
   return solve_motion(mechanism, positions);
 }
@@ -160,14 +158,14 @@ TEST(Branch, IsNotTakenForAnotherOfTheSameSide) {
   const double low = std::acos(9.76 / 12), high = std::acos(-4.64 / 12);
   for (std::size_t row = 0; row < motion.times.size(); ++row) {
     const double angle = motion.drives[row][0].value;
-    const bool on_it = (angle > low && angle < high) || angle > low + 2 * kPi;
+    const bool on_it = (angle > low && angle < high) || angle > low + 2 * std::numbers::pi;
     EXPECT_EQ(motion.configurations[row].status, on_it ? Status::ok : Status::open) << row;
   }
   ASSERT_EQ(motion.events.size(), 2U);
   EXPECT_EQ(motion.events[0].kind, Kind::limit);
-  EXPECT_NEAR(motion.events[0].time, high - kPi / 3, 1e-10);
+  EXPECT_NEAR(motion.events[0].time, high - std::numbers::pi / 3, 1e-10);
   EXPECT_EQ(motion.events[1].kind, Kind::return_);
-  EXPECT_NEAR(motion.events[1].time, low + 2 * kPi - kPi / 3, 1e-10);
+  EXPECT_NEAR(motion.events[1].time, low + 2 * std::numbers::pi - std::numbers::pi / 3, 1e-10);
 }
 
 // The drive turns back beyond the limit: the branch goes on where it was left, at whatever rows.
@@ -175,15 +173,15 @@ TEST(Branch, GoesOnWhereTheDriveComesBack) {
   std::string text = kTwoArcs;
   text.replace(text.find("speed = 1,"), 10, "speed = \"cos(time)\",");
   const Mechanism mechanism = parse_mechanism(text, "four.toml");
-  const double limit = std::asin(std::acos(-4.64 / 12) - kPi / 3);  // sin t is the crank's way
+  const double limit = std::asin(std::acos(-4.64 / 12) - std::numbers::pi / 3);  // sin t is the crank's way
   for (const int positions : {7, 100, 1000}) {
     MotionOptions options;
     options.positions = positions;
-    options.until = kPi;
+    options.until = std::numbers::pi;
     const Motion motion = solve_motion(mechanism, options);
     ASSERT_EQ(motion.events.size(), 2U) << positions;
     EXPECT_NEAR(motion.events[0].time, limit, 1e-9);
-    EXPECT_NEAR(motion.events[1].time, kPi - limit, 1e-9);
+    EXPECT_NEAR(motion.events[1].time, std::numbers::pi - limit, 1e-9);
     const Configuration& last = motion.configurations.back();
     EXPECT_EQ(last.status, Status::ok);
     EXPECT_LT((last.points[3].position - motion.configurations.front().points[3].position).norm(), 1e-12);
@@ -215,8 +213,9 @@ C = [1.5, 2.5]
   EXPECT_EQ(motion.events[1].kind, Kind::return_);
   for (std::size_t row = 0; row < motion.times.size(); ++row) {
     const double t = motion.times[row];
-    const Vector2d b(std::cos(kPi / 3 + t), std::sin(kPi / 3 + t));
-    const Vector2d e(3 + 1.5 * std::cos(2 * kPi / 3 - t), 1.5 * std::sin(2 * kPi / 3 - t));
+    const Vector2d b(std::cos(std::numbers::pi / 3 + t), std::sin(std::numbers::pi / 3 + t));
+    const Vector2d e(3 + 1.5 * std::cos(2 * std::numbers::pi / 3 - t),
+                     1.5 * std::sin(2 * std::numbers::pi / 3 - t));
     EXPECT_EQ(motion.configurations[row].status, (b - e).norm() < 4 ? Status::ok : Status::open) << row;
   }
   const Motion coarse = solve(mechanism, 50);

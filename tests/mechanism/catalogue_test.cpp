@@ -176,7 +176,7 @@ bool is_exact(const Mechanism& mechanism, const Comparison& c) {
   return exact;
 }
 
-class Catalogue : public testing::TestWithParam<std::string> {};
+class Catalogue : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(Catalogue, MotionIsThatOfTheNaturalCoordinates) {
   const MovingMechanism moving(GetParam());
@@ -208,7 +208,7 @@ TEST_P(Catalogue, GivesWhatItsFileExpects) {
 }
 
 /// "FourBar" for "four-bar".
-std::string test_name(const testing::TestParamInfo<std::string>& file) {
+std::string test_name(const ::testing::TestParamInfo<std::string>& file) {
   std::string name;
   bool first = true;
   for (const char c : file.param) {
@@ -218,7 +218,7 @@ std::string test_name(const testing::TestParamInfo<std::string>& file) {
   return name;
 }
 
-INSTANTIATE_TEST_SUITE_P(Mechanisms, Catalogue, testing::ValuesIn(catalogue_names()), test_name);
+INSTANTIATE_TEST_SUITE_P(Mechanisms, Catalogue, ::testing::ValuesIn(catalogue_names()), test_name);
 
 TEST(CatalogueComparison, AcceptsTheMotionItself) {
   const MovingMechanism four_bar("four-bar");

@@ -22,8 +22,7 @@ namespace {
 using Eigen::Vector2d;
 using Kind = MotionEvent::Kind;
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kDegree = kPi / 180;
+constexpr double kDegree = std::numbers::pi / 180;
 
 // A deltoid: C lies on the bisector of the crank and the frame, cos(φ/2) + √(4 − sin²(φ/2)) from A, over two
 // turns of the crank; at 360° B lies on D.
@@ -45,12 +44,13 @@ C = [2, 1.5]
   for (const int positions : {91, 721, 10000}) {
     MotionOptions options;
     options.positions = positions;
-    options.until = 4 * kPi;
+    options.until = 4 * std::numbers::pi;
     const Motion motion = solve_motion(mechanism, options);
     ASSERT_EQ(motion.events.size(), 2U) << positions;
     for (std::size_t k = 0; k < 2; ++k) {
       EXPECT_EQ(motion.events[k].kind, Kind::change);
-      EXPECT_NEAR(motion.events[k].time, 2 * kPi * static_cast<double>(k + 1) - 40 * kDegree, 1e-9);
+      EXPECT_NEAR(motion.events[k].time, 2 * std::numbers::pi * static_cast<double>(k + 1) - 40 * kDegree,
+                  1e-9);
     }
     for (std::size_t row = 0; row < motion.times.size(); ++row) {
       const double half = motion.drives[row][0].value / 2;
@@ -83,12 +83,13 @@ C = [2, 1.5]
                                            "kite.toml");
     MotionOptions options;
     options.positions = 91;
-    options.until = 4 * kPi / speed;
+    options.until = 4 * std::numbers::pi / speed;
     const Motion motion = solve_motion(kite, options);
     ASSERT_EQ(motion.events.size(), 2U) << speed;
     for (std::size_t k = 0; k < 2; ++k) {
       EXPECT_EQ(motion.events[k].kind, Kind::change);
-      EXPECT_NEAR(motion.events[k].time * speed, 2 * kPi * static_cast<double>(k + 1) - 40 * kDegree, 1e-9)
+      EXPECT_NEAR(motion.events[k].time * speed,
+                  2 * std::numbers::pi * static_cast<double>(k + 1) - 40 * kDegree, 1e-9)
           << speed;
     }
     const double half = motion.drives.back()[0].value / 2;
@@ -141,9 +142,9 @@ TEST(Crossing, GoesThroughInfinity) {
     const Motion motion = solve_motion(mechanism, positions);
     ASSERT_EQ(motion.events.size(), 2U) << positions;
     EXPECT_EQ(motion.events[0].kind, Kind::infinity);
-    EXPECT_NEAR(motion.events[0].time, kPi / 2, 1e-9);
+    EXPECT_NEAR(motion.events[0].time, std::numbers::pi / 2, 1e-9);
     EXPECT_EQ(motion.events[1].kind, Kind::infinity);
-    EXPECT_NEAR(motion.events[1].time, 3 * kPi / 2, 1e-9);
+    EXPECT_NEAR(motion.events[1].time, 3 * std::numbers::pi / 2, 1e-9);
     const std::size_t c = mechanism.find_point("C").value();
     for (std::size_t row = 0; row < motion.times.size(); ++row) {
       const double t = motion.times[row];
@@ -157,12 +158,12 @@ TEST(Crossing, GoesThroughInfinity) {
   MotionOptions options;
   options.at_limit = AtLimit::stop;
   const Motion stopped = solve_motion(mechanism, options);
-  EXPECT_NEAR(stopped.times.back(), kPi / 2 - 1e-3, 1e-9);
+  EXPECT_NEAR(stopped.times.back(), std::numbers::pi / 2 - 1e-3, 1e-9);
   EXPECT_EQ(stopped.configurations.back().status, Status::ok);
   const MotionRange motion_range = plan_motion_range(mechanism, decompose(mechanism));
   ASSERT_TRUE(motion_range.range.forward && motion_range.range.backward);
   EXPECT_EQ(motion_range.range.forward->kind, Kind::infinity);
-  EXPECT_NEAR(motion_range.range.backward->time, -kPi / 2, 1e-9);
+  EXPECT_NEAR(motion_range.range.backward->time, -std::numbers::pi / 2, 1e-9);
 }
 
 /// The rounding of scale·tan ψ. A body that is told of by a point so far away is turned by that point's
@@ -223,7 +224,8 @@ K = {}
       ASSERT_EQ(motion.events.size(), 2U) << positions;
       for (const std::size_t i : {0U, 1U}) {
         EXPECT_EQ(motion.events[i].kind, Kind::infinity);
-        EXPECT_NEAR(motion.events[i].time, kPi / 2 + lag + static_cast<double>(i) * kPi, 1e-9);
+        EXPECT_NEAR(motion.events[i].time,
+                    std::numbers::pi / 2 + lag + static_cast<double>(i) * std::numbers::pi, 1e-9);
       }
       for (std::size_t row = 0; row < motion.times.size(); ++row) {
         SCOPED_TRACE(motion.times[row]);
@@ -274,7 +276,8 @@ K = [100, -9]
     ASSERT_EQ(motion.events.size(), 2U) << positions;
     for (const std::size_t i : {0U, 1U}) {
       EXPECT_EQ(motion.events[i].kind, Kind::infinity);
-      EXPECT_NEAR(motion.events[i].time, kPi / 2 + static_cast<double>(i) * kPi, 1e-9);
+      EXPECT_NEAR(motion.events[i].time, std::numbers::pi / 2 + static_cast<double>(i) * std::numbers::pi,
+                  1e-9);
     }
     for (std::size_t row = 0; row < motion.times.size(); ++row) {
       const double t = motion.times[row];

@@ -15,7 +15,6 @@ namespace oblique::mechanism {
 namespace {
 
 using Complex = std::complex<double>;
-constexpr double kPi = std::numbers::pi;
 constexpr Complex kI{0, 1};
 
 /// A complex motion: z, ż, z̈.
@@ -51,15 +50,15 @@ void expect_jet(const PointState& ours, const Jet& exact, double size, double om
 TEST(ExactCurve, OfTheTrammelIsAnEllipse) {
   const MovingMechanism trammel("elliptical-trammel");
   for (std::size_t row = 0; row < trammel.rows(); ++row) {
-    const double phi = 2 * kPi * trammel.time(row);
-    const Jet turn = unit(phi, 2 * kPi, 0);
+    const double phi = 2 * std::numbers::pi * trammel.time(row);
+    const Jet turn = unit(phi, 2 * std::numbers::pi, 0);
     const auto flat = [&](double across, double up) {
       return Jet{{across * turn.z.real(), up * turn.z.imag()},
                  {across * turn.v.real(), up * turn.v.imag()},
                  {across * turn.a.real(), up * turn.a.imag()}};
     };
-    expect_jet(trammel.point("P", row), flat(80, 200), 200, 2 * kPi);
-    expect_jet(trammel.point("M", row), flat(-60, 60), 200, 2 * kPi);
+    expect_jet(trammel.point("P", row), flat(80, 200), 200, 2 * std::numbers::pi);
+    expect_jet(trammel.point("M", row), flat(-60, 60), 200, 2 * std::numbers::pi);
     const Eigen::Vector2d p = trammel.point("P", row).position;
     EXPECT_NEAR(p.x() * p.x() / 6400 + p.y() * p.y() / 40000, 1, 1e-13);
   }
@@ -69,7 +68,7 @@ TEST(ExactCurve, OfTheTrammelIsTheSameWhicheverPartIsDriven) {
   const MovingMechanism trammel("elliptical-trammel-by-slide");
   for (std::size_t row = 0; row < trammel.rows(); ++row) {
     // the law's integral, −90 sin 2πt
-    EXPECT_NEAR(trammel.drive(row).value, -90 * std::sin(2 * kPi * trammel.time(row)), 1e-11);
+    EXPECT_NEAR(trammel.drive(row).value, -90 * std::sin(2 * std::numbers::pi * trammel.time(row)), 1e-11);
     const Eigen::Vector2d p = trammel.point("P", row).position;
     EXPECT_NEAR(p.x() * p.x() / 6400 + p.y() * p.y() / 40000, 1, 1e-13);
   }
@@ -79,8 +78,10 @@ TEST(ExactCurve, OfTheTrammelIsTheSameWhicheverPartIsDriven) {
 void expect_straight_line(const MovingMechanism& inversor, double c, double power) {
   for (std::size_t row = 0; row < inversor.rows(); ++row) {
     const double t = inversor.time(row);
-    const double phi = kPi / 2 * std::sin(2 * kPi * t), omega = kPi * kPi * std::cos(2 * kPi * t),
-                 alpha = -2 * kPi * kPi * kPi * std::sin(2 * kPi * t);
+    const double phi = std::numbers::pi / 2 * std::sin(2 * std::numbers::pi * t),
+                 omega = std::numbers::pi * std::numbers::pi * std::cos(2 * std::numbers::pi * t),
+                 alpha = -2 * std::numbers::pi * std::numbers::pi * std::numbers::pi *
+                         std::sin(2 * std::numbers::pi * t);
     EXPECT_NEAR(inversor.drive(row).value, phi, 1e-13);
     const double tangent = std::tan(phi / 2), slope = (1 + tangent * tangent) / 2;
     const Jet line{
@@ -105,42 +106,45 @@ TEST(ExactCurve, OfHartsInversorIsAStraightLine) {
 TEST(ExactCurve, OfThePantographIsSimilar) {
   const MovingMechanism pantograph("pantograph");
   for (std::size_t row = 0; row < pantograph.rows(); ++row) {
-    const Jet circle = Complex(20) * unit(2 * kPi * pantograph.time(row), 2 * kPi, 0) + Jet{{60, 20}, 0, 0};
-    expect_jet(pantograph.point("T", row), circle, 150, 2 * kPi);
-    expect_jet(pantograph.point("P", row), Complex(3) * circle, 150, 2 * kPi);
+    const Jet circle =
+        Complex(20) * unit(2 * std::numbers::pi * pantograph.time(row), 2 * std::numbers::pi, 0) +
+        Jet{{60, 20}, 0, 0};
+    expect_jet(pantograph.point("T", row), circle, 150, 2 * std::numbers::pi);
+    expect_jet(pantograph.point("P", row), Complex(3) * circle, 150, 2 * std::numbers::pi);
   }
 }
 
 TEST(ExactCurve, OfTheScotchYokeIsASine) {
   const MovingMechanism straight("scotch-yoke"), inclined("scotch-yoke-inclined");
   for (std::size_t row = 0; row < straight.rows(); ++row) {
-    const Jet turn = unit(2 * kPi * straight.time(row), 2 * kPi, 0);
+    const Jet turn = unit(2 * std::numbers::pi * straight.time(row), 2 * std::numbers::pi, 0);
     const auto expect_across = [&](const MovingMechanism& yoke, double slope) {
       const auto across = [&](Complex z) { return 50 * (z.real() - slope * z.imag()); };
       const Jet exact{across(turn.z), across(turn.v), across(turn.a)};
-      expect_jet(yoke.point("C", row), exact, 50, 2 * kPi);
+      expect_jet(yoke.point("C", row), exact, 50, 2 * std::numbers::pi);
       const auto& guide = yoke.slide("guide", row);
       EXPECT_NEAR(guide.position, exact.z.real(), 1e-12 * 50);
-      EXPECT_NEAR(guide.velocity, exact.v.real(), 1e-10 * 50 * 2 * kPi);
-      EXPECT_NEAR(guide.acceleration, exact.a.real(), 1e-10 * 50 * 4 * kPi * kPi);
+      EXPECT_NEAR(guide.velocity, exact.v.real(), 1e-10 * 50 * 2 * std::numbers::pi);
+      EXPECT_NEAR(guide.acceleration, exact.a.real(), 1e-10 * 50 * 4 * std::numbers::pi * std::numbers::pi);
       const double stretch = std::hypot(1, slope);  // 1/sin β
       EXPECT_NEAR(yoke.slide("slot", row).position, 50 * stretch * turn.z.imag(), 1e-12 * 50);
-      EXPECT_NEAR(yoke.slide("slot", row).velocity, 50 * stretch * turn.v.imag(), 1e-10 * 50 * 2 * kPi);
+      EXPECT_NEAR(yoke.slide("slot", row).velocity, 50 * stretch * turn.v.imag(),
+                  1e-10 * 50 * 2 * std::numbers::pi);
       EXPECT_NEAR(yoke.body("yoke", row).omega, 0, 1e-14);
     };
     expect_across(straight, 0);
-    expect_across(inclined, 1 / std::tan(kPi / 3));
+    expect_across(inclined, 1 / std::tan(std::numbers::pi / 3));
   }
 }
 
 TEST(ExactCurve, OfOldhamsCrossIsACircleOfTwiceTheSpeed) {
   const MovingMechanism coupling("oldham");
   for (std::size_t row = 0; row < coupling.rows(); ++row) {
-    const double phi = 2 * kPi * coupling.time(row);
-    expect_jet(coupling.point("C", row), Complex(15) * unit(2 * phi, 4 * kPi, 0) + Jet{15, 0, 0}, 50,
-               4 * kPi);
-    EXPECT_NEAR(coupling.body("disc2", row).angle, phi + kPi / 2, 1e-12);
-    EXPECT_NEAR(coupling.body("disc2", row).omega, 2 * kPi, 1e-10);
+    const double phi = 2 * std::numbers::pi * coupling.time(row);
+    expect_jet(coupling.point("C", row), Complex(15) * unit(2 * phi, 4 * std::numbers::pi, 0) + Jet{15, 0, 0},
+               50, 4 * std::numbers::pi);
+    EXPECT_NEAR(coupling.body("disc2", row).angle, phi + std::numbers::pi / 2, 1e-12);
+    EXPECT_NEAR(coupling.body("disc2", row).omega, 2 * std::numbers::pi, 1e-10);
     EXPECT_NEAR(coupling.body("disc2", row).alpha, 0, 1e-10);
     EXPECT_NEAR(coupling.slide("groove1", row).position, 30 * std::cos(phi), 1e-11);
     EXPECT_NEAR(coupling.slide("groove2", row).position, 30 * std::sin(phi), 1e-11);
@@ -154,7 +158,7 @@ TEST(ExactCurve, OfHoekensIsThatOfItsCognateByChebyshev) {
   for (std::size_t row = 0; row < hoekens.rows(); ++row) {
     const PointState& p = hoekens.point("P", row);
     expect_jet(chebyshev.point("P", row), {complex(p.position), complex(p.velocity), complex(p.acceleration)},
-               100, 2 * kPi);
+               100, 2 * std::numbers::pi);
   }
 }
 
@@ -221,7 +225,7 @@ TEST(ExactCurve, OfTheFourBarIsThatOfBothItsCognates) {
 TEST(ExactCurve, OfRobertsLinkageMeetsItsLineInTheMiddle) {
   const MovingMechanism roberts("roberts");
   for (std::size_t row = 0; row < roberts.rows(); ++row) {
-    const double swing = 17 * kPi / 180 * std::sin(2 * kPi * roberts.time(row));
+    const double swing = 17 * std::numbers::pi / 180 * std::sin(2 * std::numbers::pi * roberts.time(row));
     EXPECT_NEAR(roberts.drive(row).value, std::acos(25.0 / 60) + swing, 1e-13);
     EXPECT_LT(std::abs(roberts.point("P", row).position.y()), 0.683);
   }
@@ -236,17 +240,18 @@ TEST(ExactCurve, OfRobertsLinkageMeetsItsLineInTheMiddle) {
 TEST(ExactCurve, OfTheParallelogramGoesStraightThroughItsPointsOfChange) {
   const MovingMechanism parallelogram("parallelogram");
   for (std::size_t row = 0; row < parallelogram.rows(); ++row) {
-    const double phi = 60.5 * kPi / 180 + 2 * kPi * parallelogram.time(row);
+    const double phi = 60.5 * std::numbers::pi / 180 + 2 * std::numbers::pi * parallelogram.time(row);
     const double slack = std::max(1.0, 1e-5 / std::abs(std::pow(std::sin(phi), 3)));
-    const Jet turn = Complex(40) * unit(phi, 2 * kPi, 0);
-    expect_jet(parallelogram.point("M", row), turn + Jet{40, 0, 0}, 80, 2 * kPi, slack);
-    expect_jet(parallelogram.point("C", row), turn + Jet{80, 0, 0}, 80, 2 * kPi, slack);
+    const Jet turn = Complex(40) * unit(phi, 2 * std::numbers::pi, 0);
+    expect_jet(parallelogram.point("M", row), turn + Jet{40, 0, 0}, 80, 2 * std::numbers::pi, slack);
+    expect_jet(parallelogram.point("C", row), turn + Jet{80, 0, 0}, 80, 2 * std::numbers::pi, slack);
   }
   ASSERT_EQ(parallelogram.motion.events.size(), 2U);
   for (std::size_t i = 0; i < 2; ++i) {
     const MotionEvent& event = parallelogram.motion.events[i];
     EXPECT_EQ(event.kind, MotionEvent::Kind::change);
-    EXPECT_NEAR(2 * kPi * event.time, (119.5 + 180 * static_cast<double>(i)) * kPi / 180, 1e-9);
+    EXPECT_NEAR(2 * std::numbers::pi * event.time,
+                (119.5 + 180 * static_cast<double>(i)) * std::numbers::pi / 180, 1e-9);
   }
 }
 
@@ -256,7 +261,7 @@ TEST(ExactCurve, OfTheThreeBarFollowsTheSourcesFormulas) {
   const double a = 100, d = 150, p = 300;
   ASSERT_EQ(three_bar.rows(), 361U);
   for (std::size_t row = 0; row < three_bar.rows(); ++row) {
-    const double theta2 = static_cast<double>(row) * kPi / 180;
+    const double theta2 = static_cast<double>(row) * std::numbers::pi / 180;
     const double theta3 = std::atan2(-a * std::sin(theta2), d - a * std::cos(theta2));
     const double b = (d - a * std::cos(theta2)) / std::cos(theta3);
     const Complex b_point = std::polar(a, theta2), p_point = b_point + std::polar(p, theta3);
@@ -273,7 +278,7 @@ void expect_six_bar(const std::string& name, double side) {
   const double bc = 140, cd = 150, omega = 100, arm = std::hypot(50, 45), arm_angle = std::atan2(45, 50);
   const Complex d_point = 200;
   for (std::size_t row = 0; row < six_bar.rows(); ++row) {
-    const Jet b = Complex(80) * unit(static_cast<double>(row) * kPi / 180, omega, 0);
+    const Jet b = Complex(80) * unit(static_cast<double>(row) * std::numbers::pi / 180, omega, 0);
     // position of the dyad BCD
     const Complex to_d = d_point - b.z;
     const double a_coefficient = 2 * bc * to_d.real(), b_coefficient = 2 * bc * to_d.imag(),
@@ -317,7 +322,7 @@ TEST(ExactCurve, OfJansensFootFollowsTheSourcesTransformations) {
                m = 15;
   const Complex o2(-38, -7.8);
   for (std::size_t row = 0; row < jansen.rows(); ++row) {
-    const Complex p1 = std::polar(m, static_cast<double>(row) * kPi / 180);
+    const Complex p1 = std::polar(m, static_cast<double>(row) * std::numbers::pi / 180);
     const Complex to_o2 = o2 - p1;
     const Complex p2 = p1 + turned(to_o2, -corner(std::abs(to_o2), j, b), j);
     const Complex p3 = o2 + turned(p2 - o2, corner(b, d, e), d);
@@ -357,14 +362,15 @@ TEST(ExactCurve, OfAndrewsSqueezerMeetsTheReferenceSolution) {
                delta_rate = 0.5735699284790808, omega_rate = -19.29337464421385,
                epsilon_rate = 0.3231791658026955;
   for (const Reference& reference :
-       {Reference{"K2", beta + theta + kPi, beta_rate + theta_rate},
-        Reference{"K3", gamma - kPi / 2, gamma_rate},
-        Reference{"K4", phi + delta - kPi / 2, phi_rate + delta_rate}, Reference{"K5", delta, delta_rate},
-        Reference{"K6", omega + epsilon, omega_rate + epsilon_rate},
-        Reference{"K7", epsilon - kPi / 2, epsilon_rate}}) {
+       {Reference{"K2", beta + theta + std::numbers::pi, beta_rate + theta_rate},
+        Reference{"K3", gamma - std::numbers::pi / 2, gamma_rate},
+        Reference{"K4", phi + delta - std::numbers::pi / 2, phi_rate + delta_rate},
+        Reference{"K5", delta, delta_rate}, Reference{"K6", omega + epsilon, omega_rate + epsilon_rate},
+        Reference{"K7", epsilon - std::numbers::pi / 2, epsilon_rate}}) {
     const BodyState& ours = squeezer.body(reference.body, 1);
     // the reference was integrated to 14 digits; of an equation of index 3 its velocities keep fewer
-    EXPECT_NEAR(std::remainder(ours.angle - reference.angle, 2 * kPi), 0, 1e-12) << reference.body;
+    EXPECT_NEAR(std::remainder(ours.angle - reference.angle, 2 * std::numbers::pi), 0, 1e-12)
+        << reference.body;
     EXPECT_NEAR(ours.omega / 100, reference.rate / beta_rate, 1e-10) << reference.body;
   }
 }
@@ -374,22 +380,23 @@ TEST(ExactCurve, OfTheDoubleRockerEndsAtItsLimits) {
   const MovingMechanism rocker("double-rocker");
   const double limit = std::acos(-8900.0 / 12000);
   for (std::size_t row = 0; row < rocker.rows(); ++row) {
-    const double angle = kPi / 6 + 2 * kPi * rocker.time(row);
-    const bool reaches = angle < limit || angle > 2 * kPi - limit;
+    const double angle = std::numbers::pi / 6 + 2 * std::numbers::pi * rocker.time(row);
+    const bool reaches = angle < limit || angle > 2 * std::numbers::pi - limit;
     EXPECT_EQ(rocker.motion.configurations[row].status, reaches ? Status::ok : Status::open) << "row " << row;
   }
   ASSERT_EQ(rocker.motion.events.size(), 2U);
   EXPECT_EQ(rocker.motion.events[0].kind, MotionEvent::Kind::limit);
   EXPECT_EQ(rocker.motion.events[1].kind, MotionEvent::Kind::return_);
-  EXPECT_NEAR(kPi / 6 + 2 * kPi * rocker.motion.events[0].time, limit, 1e-9);
-  EXPECT_NEAR(kPi / 6 + 2 * kPi * rocker.motion.events[1].time, 2 * kPi - limit, 1e-9);
+  EXPECT_NEAR(std::numbers::pi / 6 + 2 * std::numbers::pi * rocker.motion.events[0].time, limit, 1e-9);
+  EXPECT_NEAR(std::numbers::pi / 6 + 2 * std::numbers::pi * rocker.motion.events[1].time,
+              2 * std::numbers::pi - limit, 1e-9);
 }
 
 TEST(ExactCurve, OfTheToggleClampStandsStillWhereItIsLocked) {
   const MovingMechanism clamp("toggle-clamp");
   const std::size_t locked = 90;
-  EXPECT_NEAR(clamp.drive(locked).value, kPi / 6, 1e-13);
-  EXPECT_NEAR(clamp.body("arm", locked).angle, kPi / 2, 1e-12);
+  EXPECT_NEAR(clamp.drive(locked).value, std::numbers::pi / 6, 1e-13);
+  EXPECT_NEAR(clamp.body("arm", locked).angle, std::numbers::pi / 2, 1e-12);
   EXPECT_NEAR(clamp.body("arm", locked).omega, 0, 1e-10);
   for (std::size_t row = 0; row < clamp.rows(); ++row)
     EXPECT_LE(clamp.point("P", locked).position.y(), clamp.point("P", row).position.y() + 1e-12);

@@ -15,16 +15,16 @@
 namespace oblique::mechanism {
 namespace {
 
-using Real = LoopEquations::Real;
-using Complex = LoopEquations::Complex;
+using LongReal = LoopEquations::Real;
+using LongComplex = LoopEquations::Complex;
 using Chain = LoopEquations::Chain;
-constexpr Real kPi = std::numbers::pi_v<Real>;
+constexpr LongReal kPi = std::numbers::pi_v<LongReal>;
 
 /// A loop oracle with the names of its links' bodies and a first guess of the links' angles.
-struct Oracle {
+struct ExactOracle {
   LoopEquations equations;
   std::vector<std::string> bodies;
-  std::vector<Real> guess;
+  std::vector<LongReal> guess;
 };
 
 Chain join(Chain chain, const Chain& more, bool backwards = false) {
@@ -36,9 +36,9 @@ Chain join(Chain chain, const Chain& more, bool backwards = false) {
 }
 
 /// A + a + b + c = D, angles of A→B, B→C, C→D; M rides on the coupler.
-Oracle four_bar(Real a, Real b, Real c, Real d, Complex mark, const std::string& coupler,
-                const std::string& mark_name) {
-  Oracle oracle;
+ExactOracle four_bar(LongReal a, LongReal b, LongReal c, LongReal d, LongComplex mark,
+                     const std::string& coupler, const std::string& mark_name) {
+  ExactOracle oracle;
   oracle.equations.loops = {{{0, a}, {1, b}, {2, c}, {-1, d, kPi}}};
   oracle.equations.points = {{"B", 0, {{0, a}}},
                              {"C", 0, {{0, a}, {1, b}}},
@@ -49,19 +49,19 @@ Oracle four_bar(Real a, Real b, Real c, Real d, Complex mark, const std::string&
 }
 
 /// Angle between the sides `a` and `b` of a triangle whose third side is `c`.
-Real corner(Real a, Real b, Real c) {
+LongReal corner(LongReal a, LongReal b, LongReal c) {
   return std::acos((a * a + b * b - c * c) / (2 * a * b));
 }
 
 /// Adds one leg of Jansen's mechanism. Links in the order j, upper (angle of P2→O2), k, c, f, lower (P4→P5).
-void add_leg(Oracle& oracle, const std::string& point, const std::string& suffix, Real pin_offset,
-             const std::vector<Real>& guess) {
-  const Real a = 38, b = 41.5L, c = 39.3L, d = 40.1L, e = 55.8L, f = 39.4L, g = 36.7L, h = 65.7L, i = 49,
-             j = 50, k = 61.9L, l = 7.8L, m = 15;
+void add_leg(ExactOracle& oracle, const std::string& point, const std::string& suffix, LongReal pin_offset,
+             const std::vector<LongReal>& guess) {
+  const LongReal a = 38, b = 41.5L, c = 39.3L, d = 40.1L, e = 55.8L, f = 39.4L, g = 36.7L, h = 65.7L, i = 49,
+                 j = 50, k = 61.9L, l = 7.8L, m = 15;
   const int first = static_cast<int>(oracle.bodies.size());
   const int j_link = first, upper = first + 1, k_link = first + 2, c_link = first + 3, f_link = first + 4,
             lower = first + 5;
-  const Complex o2(-a, -l);
+  const LongComplex o2(-a, -l);
   const LoopEquations::Term to_o1{-1, std::abs(o2), std::arg(o2) + kPi};  // O2 → O1
   const Chain pin{{0, m, pin_offset}};
   // P3 lies to the right of P2 → O2: from O2 its direction is that of O2 → P2, turned left by the corner at
@@ -86,12 +86,12 @@ void add_leg(Oracle& oracle, const std::string& point, const std::string& suffix
   oracle.guess.insert(oracle.guess.end(), guess.begin(), guess.end());
 }
 
-Real radians(Real degrees) {
+LongReal radians(LongReal degrees) {
   return degrees * kPi / 180;
 }
 
-Oracle jansen() {
-  Oracle oracle;
+ExactOracle jansen() {
+  ExactOracle oracle;
   oracle.bodies = {"crank"};
   oracle.guess = {0};
   add_leg(oracle, "P", "", 0,
@@ -107,18 +107,18 @@ struct Departure {
   double position = 0, angle = 0, velocity = 0, acceleration = 0, omega = 0, alpha = 0;
 };
 
-Departure departure(const std::string& file, const Oracle& oracle) {
+Departure departure(const std::string& file, const ExactOracle& oracle) {
   const Mechanism mechanism =
       read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/" + file);
   const Motion motion = solve_motion(mechanism, 361);
   Departure worst;
   Departure largest;
-  const auto grow = [](double& value, Real candidate) {
+  const auto grow = [](double& value, LongReal candidate) {
     value = std::max(value, static_cast<double>(std::abs(candidate)));
   };
   const auto compare = [&](double& difference, double& size, const Eigen::Vector2d& ours,
-                           const Complex& theirs) {
-    grow(difference, std::abs(Complex(ours.x(), ours.y()) - theirs));
+                           const LongComplex& theirs) {
+    grow(difference, std::abs(LongComplex(ours.x(), ours.y()) - theirs));
     grow(size, std::abs(theirs));
   };
   LoopEquations::Vector guess = Eigen::Map<const LoopEquations::Vector>(
@@ -156,7 +156,7 @@ Departure departure(const std::string& file, const Oracle& oracle) {
 
 /// The accuracy that the project promises; roundings of a few dozen operations behind three dyads, whose
 /// triangles multiply them by 1/sin of an angle above 20°, stay two decimal places below it.
-void expect_exact(const std::string& file, const Oracle& oracle) {
+void expect_exact(const std::string& file, const ExactOracle& oracle) {
   const Departure worst = departure(file, oracle);
   EXPECT_LT(worst.position, 1e-12);
   EXPECT_LT(worst.angle, 1e-12);

@@ -76,7 +76,7 @@ std::vector<std::string> names() {
   return all;
 }
 
-class Invariance : public testing::TestWithParam<std::string> {
+class Invariance : public ::testing::TestWithParam<std::string> {
  protected:
   Mechanism mechanism_ = read_mechanism(OBLIQUE_SOURCE_DIR "/diagrams/mechanisms/" + GetParam() + ".toml");
   Motion motion_ = solve_motion(mechanism_, kRows);
@@ -104,7 +104,7 @@ class Invariance : public testing::TestWithParam<std::string> {
     }
   }
 };
-INSTANTIATE_TEST_SUITE_P(Catalogue, Invariance, testing::ValuesIn(names()), [](const auto& tested) {
+INSTANTIATE_TEST_SUITE_P(Catalogue, Invariance, ::testing::ValuesIn(names()), [](const auto& tested) {
   std::string name = tested.param;
   name.erase(std::remove(name.begin(), name.end(), '-'), name.end());
   return name;

@@ -106,7 +106,7 @@ second = {{ turns = "BE", about = "B", speed = 1, start = "90 deg" }}
   EXPECT_EQ(type(2, 2, 2), GrashofClass::triple_rocker);   // 2 + 3.5 < 2 + 2 does not hold
 }
 
-Mechanism slider_crank(double r, double l, double offset) {
+Mechanism slider_linkage(double r, double l, double offset) {
   return mechanism(fmt::format(R"([frame]
 A = [0, 0]
 X = [9, 0]
@@ -129,12 +129,12 @@ SliderLoop::Type type_of(const Mechanism& mechanism) {
 }
 
 TEST(SliderLoops, SayWhatTurnsOfASliderCrank) {
-  EXPECT_EQ(type_of(slider_crank(1, 3, 1)), SliderLoop::Type::crank_turns);
-  EXPECT_EQ(type_of(slider_crank(1, 3, -1)), SliderLoop::Type::crank_turns);
-  EXPECT_EQ(type_of(slider_crank(1, 3, 2)), SliderLoop::Type::change_point);
-  EXPECT_EQ(type_of(slider_crank(1, 3, 2.5)), SliderLoop::Type::none_turns);
-  EXPECT_EQ(type_of(slider_crank(3, 1, 1)), SliderLoop::Type::rod_turns);
-  const Mechanism offset = slider_crank(1, 3, 1);
+  EXPECT_EQ(type_of(slider_linkage(1, 3, 1)), SliderLoop::Type::crank_turns);
+  EXPECT_EQ(type_of(slider_linkage(1, 3, -1)), SliderLoop::Type::crank_turns);
+  EXPECT_EQ(type_of(slider_linkage(1, 3, 2)), SliderLoop::Type::change_point);
+  EXPECT_EQ(type_of(slider_linkage(1, 3, 2.5)), SliderLoop::Type::none_turns);
+  EXPECT_EQ(type_of(slider_linkage(3, 1, 1)), SliderLoop::Type::rod_turns);
+  const Mechanism offset = slider_linkage(1, 3, 1);
   const auto loops = slider_loops(offset, find_groups(offset));
   EXPECT_FALSE(loops.at(0).is_lever);
   EXPECT_EQ(loops.at(0).radius, 1);

@@ -18,8 +18,6 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr double kPi = std::numbers::pi;
-
 /// A four-bar ABCD with its frame on the x axis.
 Mechanism four_bar(double crank, double coupler, double rocker, double frame, const std::string& speed,
                    const std::string& start, const std::string& sketch) {
@@ -86,7 +84,7 @@ C = [3.3, 2.8]
   for (std::size_t row = 0; row < times.size(); ++row) {
     ASSERT_EQ(motion.configurations[row].status, Status::ok) << row;
     const Eigen::Vector2d b = place(row, "B").position, c = place(row, "C").position;
-    const double angle = kPi / 6 + 0.5 * times[row];
+    const double angle = std::numbers::pi / 6 + 0.5 * times[row];
     EXPECT_NEAR(b.norm(), 1, 1e-13) << row;  // roundings of numbers near 4
     EXPECT_NEAR((c - Eigen::Vector2d(4, 0)).norm(), 3, 1e-13) << row;
     EXPECT_LT((c - b - 3.5 * Eigen::Vector2d(std::cos(angle), std::sin(angle))).norm(), 1e-13) << row;
@@ -128,7 +126,7 @@ G = [190, 77]
     const auto place = [&](const char* point) -> Eigen::Vector2d {
       return motion.configurations[row].points[mechanism.find_point(point).value()].position;
     };
-    const double angle = 0.6 * kPi + 0.2 / 3 * std::sin(3 * times[row]);
+    const double angle = 0.6 * std::numbers::pi + 0.2 / 3 * std::sin(3 * times[row]);
     const Eigen::Vector2d along(std::cos(angle), std::sin(angle)), across(-along.y(), along.x());
     // roundings of numbers near 200, through six equations
     EXPECT_LT((place("F") - place("C") - 124 * along).norm(), 1e-10) << row;
@@ -146,8 +144,8 @@ TEST(Motion, SpansOneTurnWithBothEnds) {
   ASSERT_EQ(motion.times.size(), 5U);
   for (int k = 0; k < 5; ++k) {
     const auto row = static_cast<std::size_t>(k);
-    EXPECT_EQ(motion.times[row], kPi * k / 4);
-    EXPECT_DOUBLE_EQ(motion.drives[row][0].value, kPi / 6 - 2 * motion.times[row]);
+    EXPECT_EQ(motion.times[row], std::numbers::pi * k / 4);
+    EXPECT_DOUBLE_EQ(motion.drives[row][0].value, std::numbers::pi / 6 - 2 * motion.times[row]);
     EXPECT_EQ(motion.configurations[row].bodies[0].angle, motion.drives[row][0].value);
     EXPECT_EQ(motion.configurations[row].bodies[0].omega, -2);
   }
@@ -163,7 +161,7 @@ TEST(Motion, StartsFromRest) {
     const double direction = law.front() == '-' ? -1 : 1;
     ASSERT_EQ(mechanism.drives.front().speed, direction);
     // there it stands still again: the last 1e-15 of the way take (48e-15)^(1/3) s
-    EXPECT_NEAR(period(mechanism), 4 * kPi, 1e-4);
+    EXPECT_NEAR(period(mechanism), 4 * std::numbers::pi, 1e-4);
     const Motion motion = solve_motion(mechanism, 9);
     for (std::size_t k = 0; k < 9; ++k) {
       const double t = motion.times[k], angle = direction * (t / 2 - std::sin(t / 2));
@@ -173,9 +171,9 @@ TEST(Motion, StartsFromRest) {
       EXPECT_EQ(motion.configurations[k].status, Status::ok);
     }
     // a quarter of the turn, ahead: t/2 − sin(t/2) = π/2
-    const auto quarter = time_at_value(mechanism, direction * kPi / 2);
+    const auto quarter = time_at_value(mechanism, direction * std::numbers::pi / 2);
     ASSERT_TRUE(quarter);
-    EXPECT_NEAR(*quarter / 2 - std::sin(*quarter / 2), kPi / 2, 1e-12);
+    EXPECT_NEAR(*quarter / 2 - std::sin(*quarter / 2), std::numbers::pi / 2, 1e-12);
   }
 }
 
@@ -204,7 +202,7 @@ TEST(Motion, IsRefusedWhereADriveTurnsTooOftenToBeFollowed) {
                           "turns of the fastest drive at most"));
   }
   // seven thousand turns are followed; the closed form's phase carries a rounding of 4e4 rad
-  const double late = 7000 * 2 * kPi + 1;
+  const double late = 7000 * 2 * std::numbers::pi + 1;
   const Motion motion = solve_motion(mechanism, std::array{1.0, late});
   EXPECT_NEAR(motion.configurations[1].points[3].position.x(),
               motion.configurations[0].points[3].position.x(), 1e-10);
@@ -244,7 +242,7 @@ TEST(Motion, FollowsWholeTurnsOfAllBodiesHoweverFewThePositions) {
       // the crank's last angle is 2π to its rounding, and a triangle multiplies that by a few
       EXPECT_NEAR(
           motion.configurations.back().bodies[body].angle - motion.configurations.front().bodies[body].angle,
-          2 * kPi, 1e-14);
+          2 * std::numbers::pi, 1e-14);
     }
   }
 }
@@ -273,11 +271,11 @@ TEST(Motion, GivesTheSameAnglesForAnyRows) {
 // the crank. With equal links the triangle BCD is the same at both ends, and both links turn with the
 // direction from D to B.
 TEST(Motion, FollowsABodyThatTurnsMuchFasterThanItsDrive) {
-  const double end = 20.45 * kPi / 180;
+  const double end = 20.45 * std::numbers::pi / 180;
   const Mechanism mechanism = four_bar(2, 1.5, 1.5, 1.99999, "1 rad/s", "-20.45 deg", "[2.5, 0.5]");
   const Motion motion = solve_motion(mechanism, std::array{0.0, 2 * end});
   const double swing = 2 * std::atan2(2 * std::sin(end), 2 * std::cos(end) - 1.99999);
-  EXPECT_GT(swing, kPi);
+  EXPECT_GT(swing, std::numbers::pi);
   for (const std::size_t body : {1U, 2U}) {
     // roundings of lengths near 2 over |BD| = 0.7; a lost turn would be 2π
     EXPECT_NEAR(motion.configurations[1].bodies[body].angle - motion.configurations[0].bodies[body].angle,
@@ -356,7 +354,7 @@ TEST(Motion, MarksTheRowsWhereTheMechanismIsOpen) {
   int open = 0;
   for (std::size_t row = 0; row < motion.times.size(); ++row) {
     const Configuration& here = motion.configurations[row];
-    const bool closed = std::abs(std::remainder(motion.drives[row][0].value, 2 * kPi)) < limit;
+    const bool closed = std::abs(std::remainder(motion.drives[row][0].value, 2 * std::numbers::pi)) < limit;
     EXPECT_EQ(here.status, closed ? Status::ok : Status::open) << row;
     if (closed) continue;
     ++open;

@@ -15,8 +15,6 @@
 namespace oblique::mechanism {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 /// Crank 1 on a frame of 4: |BD|² = 17 − 8 cos φ goes from 3 at 0° to 5 at 180°.
 Mechanism four_bar(double coupler, double rocker, double start, const std::string& sketch = "[2.5, 2]") {
   return parse_mechanism(fmt::format(R"(format = "oblique-mechanism/1"
@@ -50,7 +48,7 @@ TEST(Obstacle, IsFoundBetweenPositionsHoweverShort) {
       const auto found = obstacle_of(four_bar(2.5, 2.5 - size, start > 179 ? 90 : start));
       ASSERT_TRUE(found) << start << " " << size;
       EXPECT_EQ(found->group, 1U);
-      const double angle = found->time + (start > 179 ? 90 : start) * kPi / 180;
+      const double angle = found->time + (start > 179 ? 90 : start) * std::numbers::pi / 180;
       const double limit = (17 - (5 - size) * (5 - size)) / 8;  // cos φ where it opens
       // the limit is told to 1e-11 rad; flat within 32 ε of 5 counts as a dead centre, 1e-14 more of |BD|
       EXPECT_LE(std::cos(angle), limit + 1e-11) << start << " " << size;
@@ -72,12 +70,12 @@ TEST(Obstacle, IsADeadCentreThatIsOnlyTouched) {
     ASSERT_TRUE(outer) << start;
     EXPECT_EQ(outer->status, Status::dead_centre);
     // flat within 32 ε of 5, 3.6e-14: |BD| = 5 − 0.4 τ² comes so near within τ = 3e-7
-    EXPECT_NEAR(outer->time, (180 - start) * kPi / 180, 4e-7);
+    EXPECT_NEAR(outer->time, (180 - start) * std::numbers::pi / 180, 4e-7);
   }
   const auto inner = obstacle_of(four_bar(5, 2, 90.25, "[2.5, 1]"));  // 5 − 2 is the least |BD|, at 360°
   ASSERT_TRUE(inner);
   EXPECT_EQ(inner->status, Status::dead_centre);
-  EXPECT_NEAR(inner->time, 269.75 * kPi / 180, 4e-7);
+  EXPECT_NEAR(inner->time, 269.75 * std::numbers::pi / 180, 4e-7);
   EXPECT_FALSE(obstacle_of(four_bar(5, 2 + 1e-9, 90.25, "[2.5, 1]")));
 }
 

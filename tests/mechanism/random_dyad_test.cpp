@@ -60,12 +60,13 @@ MovingDyad make_dyad(double crank_angle, double second_angle, double r1, double 
 }
 
 RC_GTEST_PROP(RandomDyad, IsPutTogetherAsItWasTakenApart, ()) {
-  constexpr double kPi = std::numbers::pi;
   const double r1 = *between(0.5, 3);
   const double r2 = *between(0.5, 3);
-  const double spread = *between(kPi / 18, 17 * kPi / 18) * *rc::gen::element(-1, 1);
-  const MovingDyad dyad = make_dyad(*between(-kPi, kPi), *between(-kPi, kPi), r1, r2, *between(-kPi, kPi),
-                                    spread, *between(-3, 3), *between(-3, 3));
+  const double spread =
+      *between(std::numbers::pi / 18, 17 * std::numbers::pi / 18) * *rc::gen::element(-1, 1);
+  const MovingDyad dyad = make_dyad(
+      *between(-std::numbers::pi, std::numbers::pi), *between(-std::numbers::pi, std::numbers::pi), r1, r2,
+      *between(-std::numbers::pi, std::numbers::pi), spread, *between(-3, 3), *between(-3, 3));
   const Mechanism& m = dyad.mechanism;
   const Structure structure = decompose(m);
   const Configuration here = start_configuration(m, structure);

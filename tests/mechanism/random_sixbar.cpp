@@ -17,10 +17,10 @@ namespace oblique::mechanism {
 namespace {
 
 using Eigen::Vector2d;
-using Chain = std::vector<std::string>;  ///< links by their joints, a letter each
+using SixbarChain = std::vector<std::string>;  ///< links by their joints, a letter each
 
-const std::array<Chain, 2> kChains{{{"hab", "hcd", "ae", "ec", "bf", "fd"},    // Watt
-                                    {"abc", "def", "ad", "be", "cg", "gf"}}};  // Stephenson
+const std::array<SixbarChain, 2> kChains{{{"hab", "hcd", "ae", "ec", "bf", "fd"},    // Watt
+                                          {"abc", "def", "ad", "be", "cg", "gf"}}};  // Stephenson
 
 }  // namespace
 
@@ -28,7 +28,7 @@ RandomSixbar random_sixbar(std::uint64_t seed) {
   std::mt19937_64 random(seed);
   const auto fraction = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
   const auto choice = [&](std::size_t count) { return static_cast<std::size_t>(random() % count); };
-  const Chain& chain = kChains.at(seed % 2);
+  const SixbarChain& chain = kChains.at(seed % 2);
   std::map<char, Vector2d> joints;
   double nearest = 0;
   while (nearest < 0.15) {

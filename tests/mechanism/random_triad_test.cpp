@@ -20,16 +20,14 @@ namespace {
 
 using Eigen::Matrix2d;
 using Eigen::Vector2d;
-using Kind = Leg::Kind;
-
-constexpr double kPi = std::numbers::pi;
+using LegKind = Leg::Kind;
 
 int number_of_triads(int usual) {
   const char* wanted = std::getenv("OBLIQUE_TRIADS");
   return wanted != nullptr ? std::stoi(wanted) : usual;
 }
 
-Vector2d quarter_turn(const Vector2d& v) {
+Vector2d quarter_turn_of(const Vector2d& v) {
   return {-v.y(), v.x()};
 }
 
@@ -42,7 +40,7 @@ class Dice {
   }
   Vector2d point() { return {between(-1, 1), between(-1, 1)}; }
   Vector2d direction() {
-    const double angle = between(-kPi, kPi);
+    const double angle = between(-std::numbers::pi, std::numbers::pi);
     return {std::cos(angle), std::sin(angle)};
   }
   bool even() { return (engine_() & 1U) != 0; }
@@ -53,11 +51,11 @@ class Dice {
 
 /// Random points for three legs of the given kinds.
 struct Sketch {
-  std::array<Kind, 3> kinds{};
+  std::array<LegKind, 3> kinds{};
   std::array<Vector2d, 3> locals, anchors, directions;
 };
 
-Sketch random_sketch(Dice& dice, const std::array<Kind, 3>& kinds) {
+Sketch random_sketch(Dice& dice, const std::array<LegKind, 3>& kinds) {
   Sketch sketch;
   sketch.kinds = kinds;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -81,10 +79,10 @@ std::array<Leg, 3> closed_in(const Sketch& sketch, const PlatformPose& pose) {
     Leg& leg = legs[i];
     leg = {sketch.kinds[i], sketch.locals[i], sketch.anchors[i], sketch.directions[i], 0};
     const Vector2d offset = pose.position + turn * leg.local - leg.anchor;
-    const Vector2d normal = quarter_turn(leg.direction);
-    if (leg.kind == Kind::circle) leg.length = offset.norm();
-    if (leg.kind == Kind::fixed_line) leg.anchor += normal * normal.dot(offset);
-    if (leg.kind == Kind::platform_line) leg.local -= normal * normal.dot(turn.transpose() * offset);
+    const Vector2d normal = quarter_turn_of(leg.direction);
+    if (leg.kind == LegKind::circle) leg.length = offset.norm();
+    if (leg.kind == LegKind::fixed_line) leg.anchor += normal * normal.dot(offset);
+    if (leg.kind == LegKind::platform_line) leg.local -= normal * normal.dot(turn.transpose() * offset);
   }
   return legs;
 }
@@ -151,7 +149,7 @@ std::string complaint(const std::array<Leg, 3>& legs, const PlatformModes& modes
 using Shape = std::function<void(Dice&, Sketch&)>;
 
 /// Tries random triads; every second is built about a known pose, the others may have none.
-void expect_all_found(unsigned seed, int number, const std::array<Kind, 3>& kinds, const Shape& shape) {
+void expect_all_found(unsigned seed, int number, const std::array<LegKind, 3>& kinds, const Shape& shape) {
   Dice dice(seed);
   std::array<int, 9> counts{};
   int complaints = 0;
@@ -167,7 +165,7 @@ void expect_all_found(unsigned seed, int number, const std::array<Kind, 3>& kind
     const PlatformModes modes = platform_modes(legs);
     ++counts[static_cast<std::size_t>(modes.count)];
     std::string wrong = complaint(legs, modes);
-    const bool three_circles = kinds == std::array{Kind::circle, Kind::circle, Kind::circle};
+    const bool three_circles = kinds == std::array{LegKind::circle, LegKind::circle, LegKind::circle};
     if (wrong.empty() && three_circles && modes.count % 2 != 0) wrong = "an odd number of modes";
     if (wrong.empty() && built && !found_by(modes, pose)) wrong = "the pose it was built about is missed";
     if (wrong.empty()) continue;
@@ -179,7 +177,7 @@ void expect_all_found(unsigned seed, int number, const std::array<Kind, 3>& kind
 
 const Shape kAnyShape = [](Dice&, Sketch&) {};
 
-constexpr std::array kThreeCircles = {Kind::circle, Kind::circle, Kind::circle};
+constexpr std::array kThreeCircles = {LegKind::circle, LegKind::circle, LegKind::circle};
 
 TEST(RandomTriad, OfThreeCirclesMissesNoMode) {
   expect_all_found(1, number_of_triads(10'000), kThreeCircles, kAnyShape);
@@ -187,7 +185,7 @@ TEST(RandomTriad, OfThreeCirclesMissesNoMode) {
 
 TEST(RandomTriad, OfEveryMixMissesNoMode) {
   for (unsigned mix = 1; mix < 27; ++mix) {
-    const auto kind = [](unsigned k) { return static_cast<Kind>(k % 3); };
+    const auto kind = [](unsigned k) { return static_cast<LegKind>(k % 3); };
     SCOPED_TRACE("mix " + std::to_string(mix));
     expect_all_found(100 + mix, number_of_triads(400), {kind(mix), kind(mix / 3), kind(mix / 9)}, kAnyShape);
   }
@@ -247,8 +245,10 @@ TEST(RandomTriad, OfASpecialShapeMissesNoMode) {
   for (const auto& [name, shape] : shapes) {
     SCOPED_TRACE(name);
     expect_all_found(++seed, number_of_triads(500), kThreeCircles, shape);
-    expect_all_found(++seed, number_of_triads(100), {Kind::circle, Kind::circle, Kind::fixed_line}, shape);
-    expect_all_found(++seed, number_of_triads(100), {Kind::platform_line, Kind::circle, Kind::circle}, shape);
+    expect_all_found(++seed, number_of_triads(100), {LegKind::circle, LegKind::circle, LegKind::fixed_line},
+                     shape);
+    expect_all_found(++seed, number_of_triads(100),
+                     {LegKind::platform_line, LegKind::circle, LegKind::circle}, shape);
   }
 }
 
@@ -258,9 +258,9 @@ TEST(RandomTriad, OnARevoluteJointOfTwoLinesMissesNoMode) {
     s.directions[0] = Vector2d::UnitX();
     s.directions[1] = Vector2d::UnitY();
   };
-  for (const Kind third : {Kind::circle, Kind::fixed_line, Kind::platform_line}) {
+  for (const LegKind third : {LegKind::circle, LegKind::fixed_line, LegKind::platform_line}) {
     expect_all_found(300 + static_cast<unsigned>(third), number_of_triads(500),
-                     {Kind::fixed_line, Kind::fixed_line, third}, revolute);
+                     {LegKind::fixed_line, LegKind::fixed_line, third}, revolute);
   }
 }
 
@@ -268,11 +268,12 @@ TEST(RandomTriad, OnParallelGuidesMissesNoMode) {
   const Shape parallel = [](Dice& d, Sketch& s) {
     s.directions[1] = d.even() ? s.directions[0] : -s.directions[0];
   };
-  expect_all_found(400, number_of_triads(500), {Kind::fixed_line, Kind::fixed_line, Kind::circle}, parallel);
-  expect_all_found(401, number_of_triads(500), {Kind::platform_line, Kind::platform_line, Kind::circle},
+  expect_all_found(400, number_of_triads(500), {LegKind::fixed_line, LegKind::fixed_line, LegKind::circle},
                    parallel);
-  expect_all_found(402, number_of_triads(500), {Kind::fixed_line, Kind::fixed_line, Kind::platform_line},
-                   parallel);
+  expect_all_found(401, number_of_triads(500),
+                   {LegKind::platform_line, LegKind::platform_line, LegKind::circle}, parallel);
+  expect_all_found(402, number_of_triads(500),
+                   {LegKind::fixed_line, LegKind::fixed_line, LegKind::platform_line}, parallel);
 }
 
 // Platform and base alike and nearly parallel: the circles about anchor − R·local are nearly one, and F has
@@ -285,7 +286,7 @@ TEST(RandomTriad, NearAParallelogramMissesNoMode) {
     sketch.locals = sketch.anchors;
     // a thin triangle multiplies the rounding over `off` once more
     const double area =
-        quarter_turn(sketch.locals[1] - sketch.locals[0]).dot(sketch.locals[2] - sketch.locals[0]);
+        quarter_turn_of(sketch.locals[1] - sketch.locals[0]).dot(sketch.locals[2] - sketch.locals[0]);
     if (std::abs(area) < 0.3) continue;
     const double off = std::pow(10, dice.between(-7, -1));
     const PlatformPose pose{dice.point(), std::cos(off), std::sin(off)};
@@ -296,7 +297,7 @@ TEST(RandomTriad, NearAParallelogramMissesNoMode) {
     EXPECT_EQ(modes.count % 2, 0) << off << "\n" << listing(legs);
     for (std::size_t k = 0; k < static_cast<std::size_t>(modes.count); ++k)
       EXPECT_LT(closing_error(legs, modes.poses[k]), 1e-10);
-    if (testing::Test::HasFailure()) return;
+    if (::testing::Test::HasFailure()) return;
   }
 }
 
@@ -306,19 +307,19 @@ TEST(RandomTriad, KeepsItsDeadCentre) {
   Dice dice(500);
   const int number = number_of_triads(50'000);
   for (int i = 0; i < number; ++i) {
-    const auto kind = [](int k) { return static_cast<Kind>(k % 3); };
+    const auto kind = [](int k) { return static_cast<LegKind>(k % 3); };
     Sketch sketch = random_sketch(dice, {kind(i), kind(i / 3), kind(i / 9)});
     const PlatformPose pose = random_pose(dice);
     const Vector2d centre = dice.point();
     const Matrix2d turn = (Matrix2d() << pose.cosine, -pose.sine, pose.sine, pose.cosine).finished();
     for (std::size_t k = 0; k < 3; ++k) {
       const Vector2d point = pose.position + turn * sketch.locals[k];
-      if (sketch.kinds[k] == Kind::circle)
+      if (sketch.kinds[k] == LegKind::circle)
         sketch.anchors[k] = centre + dice.between(-2, 2) * (point - centre);
-      if (sketch.kinds[k] == Kind::fixed_line)  // closed_in moves the line, not the point
-        sketch.directions[k] = quarter_turn(point - centre).normalized();
-      if (sketch.kinds[k] == Kind::platform_line)
-        sketch.directions[k] = turn.transpose() * quarter_turn(sketch.anchors[k] - centre).normalized();
+      if (sketch.kinds[k] == LegKind::fixed_line)  // closed_in moves the line, not the point
+        sketch.directions[k] = quarter_turn_of(point - centre).normalized();
+      if (sketch.kinds[k] == LegKind::platform_line)
+        sketch.directions[k] = turn.transpose() * quarter_turn_of(sketch.anchors[k] - centre).normalized();
     }
     const std::array<Leg, 3> legs = closed_in(sketch, pose);
     const PlatformModes modes = platform_modes(legs);
@@ -339,7 +340,7 @@ TEST(RandomTriad, KeepsItsDeadCentre) {
     if (!third_near) {
       EXPECT_LE(times, 2) << i << "\n" << listing(legs);
     }
-    if (testing::Test::HasFailure()) return;
+    if (::testing::Test::HasFailure()) return;
   }
 }
 

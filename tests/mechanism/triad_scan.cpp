@@ -15,8 +15,6 @@ namespace {
 using Eigen::Matrix2d;
 using Eigen::Vector2d;
 
-constexpr double kPi = std::numbers::pi;
-
 Vector2d quarter_turn(const Vector2d& v) {
   return {-v.y(), v.x()};
 }
@@ -26,7 +24,7 @@ Matrix2d rotation(const PlatformPose& pose) {
 }
 
 /// A motion of the platform, closed: a pose for each τ in [0, 2π).
-using Motion = std::function<PlatformPose(double tau)>;
+using PlatformMotion = std::function<PlatformPose(double tau)>;
 
 /// The motions that a circle and a second leg leave. The circle's point P lies at along·d ± height·d⊥ from
 /// its anchor, with d and `along` given by the second leg. That needs h = h₀ + h₁cos(θ − θ₀) in [low, high].
@@ -56,8 +54,8 @@ class TwoLegs {
     start_ = std::atan2(wave.y(), wave.x());
   }
 
-  std::vector<Motion> motions() const {
-    std::vector<Motion> result;
+  std::vector<PlatformMotion> motions() const {
+    std::vector<PlatformMotion> result;
     const auto whole_turn = [&](double sign) {
       result.emplace_back([*this, sign](double tau) { return pose(tau, sign); });
     };
@@ -75,11 +73,11 @@ class TwoLegs {
       return result;
     }
     const double from = top ? 0 : std::acos((high_ - h0_) / h1_);
-    const double to = bottom ? kPi : std::acos((low_ - h0_) / h1_);
+    const double to = bottom ? std::numbers::pi : std::acos((low_ - h0_) / h1_);
     if (top) {
       swing(-to, to);
     } else if (bottom) {
-      swing(from, 2 * kPi - from);
+      swing(from, 2 * std::numbers::pi - from);
     } else {
       swing(from, to);
       swing(-to, -from);
@@ -125,7 +123,7 @@ std::vector<double> periodic_zeros(const std::function<double(double)>& g, int s
     zeros.push_back((from + to) / 2);
   };
   std::vector<double> values;
-  const double step = 2 * kPi / steps;
+  const double step = 2 * std::numbers::pi / steps;
   const double offset = 0.1234;  // so that no place of a symmetric group is hit
   for (int i = 0; i < steps; ++i) values.push_back(g(offset + i * step));
   for (int i = 0; i < steps; ++i) {
@@ -209,7 +207,7 @@ std::vector<PlatformPose> scan_poses(const std::array<Leg, 3>& legs, int steps) 
   std::sort(order.begin(), order.end(), [](const Leg& a, const Leg& b) { return a.kind < b.kind; });
   if (order[0].kind != Leg::Kind::circle) return scan_lines(legs, steps);
   std::vector<PlatformPose> poses;
-  for (const Motion& motion : TwoLegs(order[0], order[1]).motions()) {
+  for (const PlatformMotion& motion : TwoLegs(order[0], order[1]).motions()) {
     const auto error = [&](double tau) { return closing_error(order[2], motion(tau)); };
     for (const double tau : periodic_zeros(error, steps)) poses.push_back(motion(tau));
   }

@@ -16,8 +16,6 @@ namespace {
 using Eigen::Matrix2d;
 using Eigen::Vector2d;
 
-constexpr double kPi = std::numbers::pi;
-
 Leg circle(const Vector2d& local, const Vector2d& anchor, double length) {
   return {Leg::Kind::circle, local, anchor, Vector2d::UnitX(), length};
 }
@@ -108,8 +106,8 @@ TEST(Triad, KeepsItsModesUnderMotionsAndScales) {
   const auto legs = six_mode_platform();
   const PlatformModes modes = platform_modes(legs);
   for (const double scale : {1e-6, 1.0, 1e6}) {
-    for (const double turn : {0.0, 0.7, kPi / 2, kPi, -2.5}) {
-      for (const double platform_turn : {0.0, 1.1, kPi}) {
+    for (const double turn : {0.0, 0.7, std::numbers::pi / 2, std::numbers::pi, -2.5}) {
+      for (const double platform_turn : {0.0, 1.1, std::numbers::pi}) {
         for (const double mirror : {1.0, -1.0}) {
           const Matrix2d reflection = (Matrix2d() << 1, 0, 0, mirror).finished();
           for (const double far : {0.0, 1e3}) {  // in sizes of the group: costs three digits of 1e-15·20
@@ -150,7 +148,7 @@ TEST(Triad, HangsOnARevoluteJointAndARod) {
   // the rod stretched: a dead centre, double
   const std::array<Leg, 3> stretched = {kUpright, kLevel, circle({2, 0}, {3.5, 0}, 1.5)};
   const PlatformModes modes = platform_modes(stretched);
-  EXPECT_THAT(modes.count, testing::AnyOf(1, 2));
+  EXPECT_THAT(modes.count, ::testing::AnyOf(1, 2));
   EXPECT_LT(distance_to(modes, {{0, 0}, 1, 0}), 1e-7);
   // out of reach
   EXPECT_EQ(platform_modes({kUpright, kLevel, circle({2, 0}, {3.6, 0}, 1.5)}).count, 0);
@@ -235,7 +233,8 @@ TEST(Triad, RunsOnParallelGuides) {
     poses.push_back({{x, 0}, std::sqrt(3) / 2, 0.5});
     poses.push_back({{x, 0}, -std::sqrt(3) / 2, 0.5});
   }
-  expect_modes({fixed_line({0, 0}, {5, 0}, 0), fixed_line({2, 0}, {-5, 1}, kPi), circle({0, 0}, {3, -1}, 2)},
+  expect_modes({fixed_line({0, 0}, {5, 0}, 0), fixed_line({2, 0}, {-5, 1}, std::numbers::pi),
+                circle({0, 0}, {3, -1}, 2)},
                poses);
 }
 
@@ -274,14 +273,15 @@ TEST(Triad, TakesAPlatformThatMirrorsItsBase) {
 
 TEST(Triad, IsMovableAsAParallelogram) {
   const std::array<Vector2d, 3> corners = {Vector2d(0, 0), Vector2d(3, 0), Vector2d(1, 2)};
-  for (const double turn : {0.0, 0.4, kPi}) {
+  for (const double turn : {0.0, 0.4, std::numbers::pi}) {
     std::array<Leg, 3> legs;
     for (std::size_t i = 0; i < 3; ++i) legs[i] = circle(corners[i], rotation(turn) * corners[i], 1.7);
     EXPECT_TRUE(platform_modes(legs).movable) << turn;
     // its isolated modes, turned about, remain: they close and are no translations
     const PlatformModes modes = platform_modes(legs);
     expect_closed(legs, modes, 1e-13);
-    for (const double theta : angles(modes)) EXPECT_GT(std::abs(std::remainder(theta - turn, 2 * kPi)), 1e-3);
+    for (const double theta : angles(modes))
+      EXPECT_GT(std::abs(std::remainder(theta - turn, 2 * std::numbers::pi)), 1e-3);
 
     legs[2].length += 1e-5;  // no parallelogram any more
     EXPECT_FALSE(platform_modes(legs).movable) << turn;
@@ -354,7 +354,8 @@ TEST(Triad, HasNoPoseOnParallelGuidesThatLieOtherwiseThanItsPoints) {
     const auto guide = [&](double x, double y, double turned) {
       return fixed_line({x, 0}, rotation(inclined) * Vector2d(0, y), inclined + turned);
     };
-    const PlatformModes modes = platform_modes({guide(0, 0, 0), guide(2, 1, kPi), guide(4, 2.5, 0)});
+    const PlatformModes modes =
+        platform_modes({guide(0, 0, 0), guide(2, 1, std::numbers::pi), guide(4, 2.5, 0)});
     EXPECT_FALSE(modes.movable) << inclined;
     EXPECT_EQ(modes.count, 0) << inclined;
   }

@@ -13,8 +13,6 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double kPi = std::numbers::pi;
-
 /// ∏ sin((θ − αᵢ)/2) over six angles α: of degree 3, with these zeros and no other.
 ///
 /// sin((θ − α)/2) = (z a⁻¹ − 1)·√(a/z)/2i with a = e^{iα}, so the product is z⁻³ times a polynomial in z.
@@ -47,7 +45,7 @@ double distance(const Directions& found, double angle) {
 
 TEST(TrigonometricZeros, AreSixSimpleOnes) {
   // the third at an end and the fourth in the middle of arcs; 1.0 and 1.001 in one arc
-  const std::array<double, 6> angles = {-3.0, -2.0, kPi / 12, kPi / 6, 1.0, 1.001};
+  const std::array<double, 6> angles = {-3.0, -2.0, std::numbers::pi / 12, std::numbers::pi / 6, 1.0, 1.001};
   const TrigonometricCubic f = with_zeros(angles);
   const Directions found = zeros(f, rounding_of(f));
   EXPECT_EQ(found.count, 6);
@@ -56,16 +54,18 @@ TEST(TrigonometricZeros, AreSixSimpleOnes) {
 }
 
 TEST(TrigonometricZeros, AreFoundAtPi) {
-  const TrigonometricCubic f = with_zeros({kPi, kPi, kPi / 2, -kPi / 2, 0, 0.3});
+  const TrigonometricCubic f =
+      with_zeros({std::numbers::pi, std::numbers::pi, std::numbers::pi / 2, -std::numbers::pi / 2, 0, 0.3});
   const Directions found = zeros(f, rounding_of(f));
-  for (const double angle : {kPi / 2, -kPi / 2, 0.0, 0.3}) EXPECT_LT(distance(found, angle), 1e-13);
-  EXPECT_LT(distance(found, kPi), 1e-7);  // double: the root of rounding
+  for (const double angle : {std::numbers::pi / 2, -std::numbers::pi / 2, 0.0, 0.3})
+    EXPECT_LT(distance(found, angle), 1e-13);
+  EXPECT_LT(distance(found, std::numbers::pi), 1e-7);  // double: the root of rounding
 }
 
 TEST(TrigonometricZeros, AreFoundHoweverManyMeet) {
   // An m-fold zero is known to the m-th root of rounding over the distances to the others.
   for (int meet = 2; meet <= 6; ++meet) {
-    for (const double angle : {0.3, kPi / 12, 0.0, 1.0, kPi, -2.2}) {
+    for (const double angle : {0.3, std::numbers::pi / 12, 0.0, 1.0, std::numbers::pi, -2.2}) {
       std::array<double, 6> angles = {angle + 1, angle + 2, angle + 3, angle + 4, angle + 5, angle};
       for (int i = 0; i < meet; ++i) angles[static_cast<std::size_t>(i)] = angle;
       const TrigonometricCubic f = with_zeros(angles);
@@ -85,8 +85,8 @@ TEST(TrigonometricZeros, AreNoneWhereItStaysAway) {
 TEST(TrigonometricZeros, AreThoseOfALowerDegree) {
   const Directions found = zeros({0.5, {Complex(1), 0, 0}}, 1e-15);  // cos θ = −1/2
   EXPECT_EQ(found.count, 2);
-  EXPECT_LT(distance(found, 2 * kPi / 3), 1e-15);
-  EXPECT_LT(distance(found, -2 * kPi / 3), 1e-15);
+  EXPECT_LT(distance(found, 2 * std::numbers::pi / 3), 1e-15);
+  EXPECT_LT(distance(found, -2 * std::numbers::pi / 3), 1e-15);
 }
 
 }  // namespace

@@ -169,8 +169,8 @@ TEST_F(ExpressionGraphTest, CountsEveryOccurrenceOfAVariable) {
 
 // Random smooth expressions, built twice: as a graph, and as a function of long doubles that knows no graph.
 
-using Vector = std::array<long double, 3>;
-using Smooth = std::function<long double(const Vector&)>;
+using Triple = std::array<long double, 3>;
+using Smooth = std::function<long double(const Triple&)>;
 
 struct Twin {
   NodeId node;
@@ -188,12 +188,12 @@ class Gardener {
     const Twin b = *rc::gen::arbitrary<bool>() ? grow(depth - 1) : leaf();
     const NodeId sine = g.apply(Op::sin, b.node);
     const Smooth f = a.value, h = b.value;
-    const Smooth s = [h](const Vector& v) { return std::sin(h(v)); };
-    const Twin above{g.apply(Op::add, sine, g.constant(2)), [s](const Vector& v) { return 2 + s(v); }};
+    const Smooth s = [h](const Triple& v) { return std::sin(h(v)); };
+    const Twin above{g.apply(Op::add, sine, g.constant(2)), [s](const Triple& v) { return 2 + s(v); }};
     const Twin inside{g.apply(Op::multiply, sine, g.constant(0.5)),
-                      [s](const Vector& v) { return s(v) / 2; }};
+                      [s](const Triple& v) { return s(v) / 2; }};
     const Smooth p = above.value, q = inside.value;
-    using V = const Vector&;
+    using V = const Triple&;
     // clang-format off
     switch (*rc::gen::inRange(0, 17)) {
       case 0: return {g.apply(Op::add, a.node, b.node), [=](V v) { return f(v) + h(v); }};
@@ -220,9 +220,9 @@ class Gardener {
  private:
   Twin leaf() {
     const auto which = *rc::gen::inRange<std::uint32_t>(0, 4);
-    if (which < 3) return {g.variable(which), [which](const Vector& v) { return v[which]; }};
+    if (which < 3) return {g.variable(which), [which](const Triple& v) { return v[which]; }};
     const double c = *rc::gen::inRange(-3, 4);
-    return {g.constant(c), [c](const Vector&) { return static_cast<long double>(c); }};
+    return {g.constant(c), [c](const Triple&) { return static_cast<long double>(c); }};
   }
 
   ExpressionGraph& g;
@@ -232,7 +232,7 @@ RC_GTEST_PROP(ExpressionGraph, GradientsAgreeWithCentralDifferences, ()) {
   ExpressionGraph g;
   const Twin twin = Gardener(g).grow(*rc::gen::inRange(1, 5));
   std::array<double, 3> point{};
-  Vector wide{};
+  Triple wide{};
   for (std::size_t i = 0; i < 3; ++i) wide[i] = point[i] = *rc::gen::inRange(-1000, 1001) / 1000.0;
 
   const auto value = static_cast<double>(twin.value(wide));
@@ -244,7 +244,7 @@ RC_GTEST_PROP(ExpressionGraph, GradientsAgreeWithCentralDifferences, ()) {
   for (std::size_t i = 0; i < 3; ++i) {
     // Truncation is h² f‴/6; with long doubles rounding is 1e-19/h. f‴ of products four deep may reach 1e5.
     constexpr long double kStep = 1e-6L;
-    Vector left = wide, right = wide;
+    Triple left = wide, right = wide;
     left[i] -= kStep;
     right[i] += kStep;
     const auto derivative = static_cast<double>((twin.value(right) - twin.value(left)) / (2 * kStep));

@@ -17,8 +17,8 @@ constexpr std::size_t kSize = 400;
 
 /// A loop whose derivatives stand on slots 0, 1, …: each row reads itself and its two neighbours, and the
 /// rows are in the order of `row_of`.
-struct Chain {
-  explicit Chain(unsigned seed) : row_of(kSize) {
+struct LoopChain {
+  explicit LoopChain(unsigned seed) : row_of(kSize) {
     std::iota(row_of.begin(), row_of.end(), 0U);
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> derivative(-1, 1);
@@ -49,7 +49,7 @@ struct Chain {
 
 TEST(LoopMatrix, ACopyHasTheFactorsToo) {
   for (const unsigned seed : {1U, 2U}) {
-    const Chain chain(seed);
+    const LoopChain chain(seed);
     LoopMatrix matrix(kSize);
     const LoopMatrix empty(matrix);
     ASSERT_TRUE(matrix.factor(chain.code, chain.slots.data()));
@@ -67,7 +67,7 @@ TEST(LoopMatrix, ACopyHasTheFactorsToo) {
 
 TEST(LoopMatrix, OfALongLoopSolvesWhatIsKnown) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
-    const Chain chain(seed);
+    const LoopChain chain(seed);
     Eigen::MatrixXd known(static_cast<Eigen::Index>(kSize), 2);
     for (Eigen::Index i = 0; i < known.rows(); ++i) {
       const double number = static_cast<double>(i) + 1;
@@ -86,7 +86,7 @@ TEST(LoopMatrix, OfALongLoopSolvesWhatIsKnown) {
 
 TEST(LoopMatrix, OfALongLoopKnowsTheSignOfItsDeterminant) {
   for (unsigned seed = 1; seed <= 8; ++seed) {
-    const Chain chain(seed);
+    const LoopChain chain(seed);
     std::vector<double> lower(kSize), diagonal(kSize), upper(kSize);
     std::size_t at = 0;
     for (std::size_t i = 0; i < kSize; ++i) {
@@ -108,7 +108,7 @@ TEST(LoopMatrix, OfALongLoopKnowsTheSignOfItsDeterminant) {
 }
 
 TEST(LoopMatrix, OfALongLoopTellsWhereItIsSingular) {
-  Chain chain(3);
+  LoopChain chain(3);
   LoopMatrix matrix(kSize);
   ASSERT_TRUE(matrix.factor(chain.code, chain.slots.data()));
   const std::vector<double> regular = chain.slots;

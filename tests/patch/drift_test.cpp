@@ -16,12 +16,12 @@
 namespace oblique::patch {
 namespace {
 
-class ThirdTurn : public testing::TestWithParam<std::pair<const char*, PatchMethod>> {};
+class ThirdTurn : public ::testing::TestWithParam<std::pair<const char*, PatchMethod>> {};
 INSTANTIATE_TEST_SUITE_P(Patch, ThirdTurn,
-                         testing::Values(std::pair("four-bar", PatchMethod::triangles),
-                                         std::pair("four-bar", PatchMethod::gradient),
-                                         std::pair("six-bar", PatchMethod::triangles),
-                                         std::pair("class-iii", PatchMethod::triangles)));
+                         ::testing::Values(std::pair("four-bar", PatchMethod::triangles),
+                                           std::pair("four-bar", PatchMethod::gradient),
+                                           std::pair("six-bar", PatchMethod::triangles),
+                                           std::pair("class-iii", PatchMethod::triangles)));
 
 TEST_P(ThirdTurn, IsLikeTheFirst) {
   const auto& [name, method] = GetParam();

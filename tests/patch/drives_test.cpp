@@ -15,7 +15,7 @@
 namespace oblique::patch {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 // Slow at the start and the end, backwards in between, and at a standstill twice: the exact motion has the
 // law's integral.

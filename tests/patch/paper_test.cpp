@@ -19,16 +19,14 @@
 #include <oblique/solve/run.h>
 #include <oblique/text/file.h>
 
+#include "../support/shipped.h"
+
 namespace oblique::patch {
 namespace {
 
-using testing::ElementsAre;
-using testing::HasSubstr;
-
-mechanism::Mechanism shipped(const std::string& name) {
-  return mechanism::read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/" + name +
-                                   ".toml");
-}
+using test::shipped;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 
 PatchOptions paper(double slower = 1000) {
   PatchOptions options;

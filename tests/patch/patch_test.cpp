@@ -24,10 +24,10 @@
 namespace oblique::patch {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
-class ShippedMechanism : public testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(Patch, ShippedMechanism, testing::Values("four-bar", "six-bar", "jansen"));
+class ShippedMechanism : public ::testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Patch, ShippedMechanism, ::testing::Values("four-bar", "six-bar", "jansen"));
 
 TEST_P(ShippedMechanism, KeepsEverySignalWithinOneMachineUnit) {
   const PatchedRun patched(patch_triangles(shipped(GetParam())));

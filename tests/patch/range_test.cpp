@@ -16,15 +16,13 @@
 #include <oblique/patch/patch.h>
 #include <oblique/solve/run.h>
 
+#include "../support/shipped.h"
+
 namespace oblique::patch {
 namespace {
 
-using testing::HasSubstr;
-
-mechanism::Mechanism shipped(const std::string& name) {
-  return mechanism::read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/" + name +
-                                   ".toml");
-}
+using test::shipped;
+using ::testing::HasSubstr;
 
 /// A slide-crank whose slide is driven: between its two dead centres, |x| < 1.5 − 0.5 … 1.5 + 0.5.
 const char* const kPump = R"(
@@ -104,8 +102,8 @@ TEST(WithinRange, MayStartNextToALimit) {
   EXPECT_NEAR(most, 1.99, 1e-4);
 }
 
-class Ranged : public testing::TestWithParam<PatchMethod> {};
-INSTANTIATE_TEST_SUITE_P(Patch, Ranged, testing::Values(PatchMethod::triangles, PatchMethod::gradient));
+class Ranged : public ::testing::TestWithParam<PatchMethod> {};
+INSTANTIATE_TEST_SUITE_P(Patch, Ranged, ::testing::Values(PatchMethod::triangles, PatchMethod::gradient));
 
 TEST_P(Ranged, IsPatchedOverItsRange) {
   for (const mechanism::Mechanism& mechanism :

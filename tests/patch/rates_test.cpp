@@ -15,7 +15,7 @@
 namespace oblique::patch {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 const char* const kFourBar = R"(
 format = "oblique-mechanism/1"
@@ -44,8 +44,8 @@ test::RateErrors errors_of(const mechanism::Mechanism& mechanism, const PatchOpt
   return test::rate_errors(mechanism, PatchedRun(patch(mechanism, options)).result.trajectory);
 }
 
-class Rates : public testing::TestWithParam<PatchMethod> {};
-INSTANTIATE_TEST_SUITE_P(Patch, Rates, testing::Values(PatchMethod::triangles, PatchMethod::gradient),
+class Rates : public ::testing::TestWithParam<PatchMethod> {};
+INSTANTIATE_TEST_SUITE_P(Patch, Rates, ::testing::Values(PatchMethod::triangles, PatchMethod::gradient),
                          [](const auto& tested) { return std::string(method_name(tested.param)); });
 
 // A servo's static error and its lag both fall as 1/μ, in the positions that feed it as in the rates

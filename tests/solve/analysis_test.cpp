@@ -20,7 +20,7 @@ using std::numbers::pi;
 using testing::Compiled;
 using ::testing::ElementsAre;
 
-constexpr double kTau = 1 / (2 * pi * 10);  // of the default of 10 Hz [s]
+constexpr double kLagTau = 1 / (2 * pi * 10);  // of the default of 10 Hz [s]
 
 Analysis analysis_of(const Compiled& made, double until = 1) {
   RunOptions options;
@@ -45,7 +45,7 @@ out = { type = "servo-amplifier", in = ["10*out", "-10*u"], gain = 500 }
   // Differences of an equation that is linear: rounding of numbers of size 2π·10·gain.
   EXPECT_NEAR(loop.unknowns[0].least_gain, kGain * kWeight, 1e-6);
   EXPECT_NEAR(loop.unknowns[0].static_error.value(), 1 / (kGain * kWeight), 1e-12);
-  EXPECT_NEAR(loop.time_constant.value(), kTau / (1 + kGain * kWeight), 1e-12);
+  EXPECT_NEAR(loop.time_constant.value(), kLagTau / (1 + kGain * kWeight), 1e-12);
   EXPECT_EQ(loop.unknowns[0].sign, 1);
   EXPECT_THAT(loop.unknowns[0].sign_changes, ElementsAre());
   // The predicted static error is that of the run: out = u L/(1 + L).
@@ -170,7 +170,7 @@ s = { type = "integrator", in = ["-2*s", "b"] }
   ASSERT_TRUE(report.servo_mode);
   const Mode& mode = report.servo_mode->mode;
   EXPECT_NEAR(mode.damping_ratio(), 0.1, 1e-9);
-  EXPECT_NEAR(mode.natural_frequency(), 10 / kTau, 1e-6);
+  EXPECT_NEAR(mode.natural_frequency(), 10 / kLagTau, 1e-6);
   EXPECT_EQ(verdict_on(mode), ModeVerdict::badly_damped);
   EXPECT_EQ(mode.participants.size(), 2U);
   EXPECT_NEAR(mode.participants[0].share, 0.5, 1e-9);

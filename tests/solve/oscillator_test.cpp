@@ -14,8 +14,6 @@ using testing::Compiled;
 using testing::row_values;
 using testing::run_of;
 
-constexpr double kPi = std::numbers::pi;
-
 //   ┌──(−1)──▶ ∫ ── x ──▶ ∫ ── y ──┐
 //   └──────────────────────────────┘
 constexpr const char* kCircle = R"toml(x = { type = "integrator", in = ["-y"], initial = 1 }
@@ -32,7 +30,7 @@ std::vector<double> radii(const Run& result) {
 
 TEST(Circle, KeepsItsRadiusOverAThousandTurns) {
   const Compiled made(kCircle);
-  const auto result = run_of(made, {.until = 2000 * kPi, .samples = 1001});  // a row a turn
+  const auto result = run_of(made, {.until = 2000 * std::numbers::pi, .samples = 1001});  // a row a turn
   const auto r = radii(result), x = row_values(result, "x");
   for (std::size_t k = 0; k < r.size(); ++k) {
     // The published drift of the default settings is 5e-6 in amplitude and phase; asked for is 1e-3.
@@ -45,7 +43,7 @@ TEST(Circle, ErrorFallsWithTheTolerance) {
   const Compiled made(kCircle);
   double last = 1;
   for (const double tolerance : {1e-4, 1e-6, 1e-8}) {
-    const auto result = run_of(made, {.until = 20 * kPi, .tolerance = tolerance, .samples = 2});
+    const auto result = run_of(made, {.until = 20 * std::numbers::pi, .tolerance = tolerance, .samples = 2});
     const double error = std::hypot(row_values(result, "x").back() - 1, row_values(result, "y").back());
     EXPECT_LT(error, 10 * tolerance);  // what the default run is calibrated for
     // A hundredth of the tolerance buys more than a tenth of the error, until the error is below it.
@@ -67,7 +65,7 @@ TEST(HarmonicOscillator, TurnsAtItsFrequency) {
   const Compiled made(R"toml(v = { type = "integrator", in = ["-4*x"] }
 x = { type = "integrator", in = ["v"], initial = 0.5 }
 )toml");
-  const auto result = run_of(made, {.until = 2 * kPi, .samples = 361});
+  const auto result = run_of(made, {.until = 2 * std::numbers::pi, .samples = 361});
   const auto t = row_values(result, "t"), x = row_values(result, "x"), v = row_values(result, "v");
   for (std::size_t k = 0; k < t.size(); ++k) {
     EXPECT_NEAR(x[k], std::cos(2 * t[k]) / 2, 2e-6) << t[k];

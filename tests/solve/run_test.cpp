@@ -23,14 +23,13 @@ using testing::Compiled;
 using testing::row_values;
 using testing::run_of;
 
-constexpr double kPi = std::numbers::pi;
-constexpr const char* kCircle = R"toml(x = { type = "integrator", in = ["-y"], initial = 1 }
+constexpr const char* kCircleText = R"toml(x = { type = "integrator", in = ["-y"], initial = 1 }
 y = { type = "integrator", in = ["x"] }
 )toml";
 
 TEST(Run, SamplesOnAnExactGrid) {
-  const Compiled made(kCircle);
-  for (const double until : {1.0, 2 * kPi, 0.23, 1e-3, 1e4}) {
+  const Compiled made(kCircleText);
+  for (const double until : {1.0, 2 * std::numbers::pi, 0.23, 1e-3, 1e4}) {
     const auto result = run_of(made, {.until = until, .tolerance = 1e-4, .samples = 72});
     const auto t = row_values(result, "t");
     ASSERT_EQ(t.size(), 72U);
@@ -61,7 +60,7 @@ x = { type = "integrator", in = ["q"] }
 }
 
 TEST(Run, DoesNotDependOnTheNumberOfRows) {
-  const Compiled made(kCircle);
+  const Compiled made(kCircleText);
   const auto few = run_of(made, {.until = 10, .samples = 11}),
              many = run_of(made, {.until = 10, .samples = 10001});
   EXPECT_EQ(few.statistics.steps, many.statistics.steps);  // rows are interpolated, never stepped to
@@ -72,7 +71,7 @@ TEST(Run, DoesNotDependOnTheNumberOfRows) {
 
 TEST(Run, InterpolatesAsWellAsItSteps) {
   // Far more rows than steps: the polynomial between two steps is as good as the steps.
-  const Compiled made(kCircle);
+  const Compiled made(kCircleText);
   const auto result = run_of(made, {.until = 10, .samples = 5001});
   EXPECT_LT(result.statistics.steps, 2500);
   const auto t = row_values(result, "t"), x = row_values(result, "x");
@@ -81,7 +80,7 @@ TEST(Run, InterpolatesAsWellAsItSteps) {
 }
 
 TEST(Run, GivesRowsAtExtraTimes) {
-  const Compiled made(kCircle);
+  const Compiled made(kCircleText);
   const std::vector<double> times{0, 0.3, 0.5, 1 / 3.0 + 0.5, 1};  // with both ends and one row of the grid
   const auto plain = run_of(made, {.samples = 11});
   const auto result = run_of(made, {.samples = 11, .extra_times = times});
@@ -100,11 +99,11 @@ TEST(Run, FindsPeaksOfEverySignal) {
       "o = { type = \"constant\", value = 0 }\n",
       "[outputs]\nx = \"x\"\n");
   // x = cos 2t, y = sin(2t)/2: on the first half turn y is largest at π/4, s = −3y there smallest.
-  const auto result = run_of(made, {.until = kPi / 2 - 0.1, .samples = 10001});
+  const auto result = run_of(made, {.until = std::numbers::pi / 2 - 0.1, .samples = 10001});
   const auto& peaks = result.peaks;
   ASSERT_EQ(peaks.size(), 4U);
   EXPECT_NEAR(peaks[made.signal("y")].value, 0.5, 1e-6);  // a grid of 1.5e-4 misses by its square at most
-  EXPECT_NEAR(peaks[made.signal("y")].time, kPi / 4, 2e-4);
+  EXPECT_NEAR(peaks[made.signal("y")].time, std::numbers::pi / 4, 2e-4);
   EXPECT_NEAR(peaks[made.signal("s")].value, -1.5, 1e-6);
   EXPECT_EQ(peaks[made.signal("x")].value, 1);
   EXPECT_EQ(peaks[made.signal("x")].time, 0);
@@ -143,7 +142,7 @@ TEST(Run, EvaluatesADiagramWithoutStates) {
 }
 
 TEST(Run, TellsItsProgressAndItsRows) {
-  const Compiled made(kCircle);
+  const Compiled made(kCircleText);
   std::vector<double> fractions, seen;
   RunOptions options;
   options.until = 200;
@@ -163,7 +162,7 @@ TEST(Run, TellsItsProgressAndItsRows) {
 }
 
 TEST(Run, TakesItsOptionsFromTheDiagram) {
-  const Compiled made(kCircle, "[run]\nuntil = 3\ntolerance = 1e-5\nsamples = 7\nmax_steps = 99\n");
+  const Compiled made(kCircleText, "[run]\nuntil = 3\ntolerance = 1e-5\nsamples = 7\nmax_steps = 99\n");
   const RunOptions options = options_of(made.diagram.run);
   EXPECT_EQ(options.until, 3);
   EXPECT_EQ(options.tolerance, 1e-5);
@@ -172,7 +171,7 @@ TEST(Run, TakesItsOptionsFromTheDiagram) {
 }
 
 TEST(Run, CountsItsWork) {
-  const Compiled made(kCircle);
+  const Compiled made(kCircleText);
   const SolverStatistics work = run_of(made).statistics;
   EXPECT_GT(work.steps, 10);
   EXPECT_GE(work.evaluations, work.steps);
@@ -229,7 +228,7 @@ TEST(Run, GoesToAShortPulseByLongSteps) {
                     "x = {{ type = \"integrator\", in = [\"p\"] }}\n",
                     sharpness));
     const auto result = run_of(made, {.until = 100, .samples = 11});
-    const double truth = std::sqrt(kPi) / 2 * (1 + std::erf(1e-3 * sharpness));
+    const double truth = std::sqrt(std::numbers::pi) / 2 * (1 + std::erf(1e-3 * sharpness));
     // Each of some hundred steps errs by up to a tolerance of 1e-8, and the time by its rounding there.
     EXPECT_NEAR(row_values(result, "x").back(), truth, 1e-6 + 1e-14 * sharpness) << sharpness;
     // At 1e8 the rounding of the time is 1e-6 of the pulse, which an error test of 1e-8 sees.
@@ -245,7 +244,7 @@ x = { type = "integrator", in = ["p"] }
 )toml");
   const auto result = run_of(made, {.until = 10, .samples = 11});
   // each of some hundred steps errs by up to a tolerance of 1e-8 of 10; the pulse is 3.5e-3
-  EXPECT_NEAR(row_values(result, "x").back(), 10 + 2e-3 * std::sqrt(kPi), 1e-5);
+  EXPECT_NEAR(row_values(result, "x").back(), 10 + 2e-3 * std::sqrt(std::numbers::pi), 1e-5);
 }
 
 }  // namespace

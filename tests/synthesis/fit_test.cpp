@@ -22,7 +22,7 @@ namespace oblique::synthesis {
 namespace {
 
 using namespace test;
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 FourBar four_bar_of(const Fit& fit) {  // of AB, BCF, CD, BCF.F
   const std::vector<double> v = values_of(fit);
@@ -43,8 +43,8 @@ double rms_at(const FourBar& four_bar, const std::vector<double>& angles, const 
   return std::sqrt(sum / static_cast<double>(angles.size()));
 }
 
-class BothTimings : public testing::TestWithParam<Timing> {};
-INSTANTIATE_TEST_SUITE_P(Fit, BothTimings, testing::Values(Timing::given, Timing::free));
+class BothTimings : public ::testing::TestWithParam<Timing> {};
+INSTANTIATE_TEST_SUITE_P(Fit, BothTimings, ::testing::Values(Timing::given, Timing::free));
 
 // The path is that of known lengths, by trigonometry; from others they must be found again. Ten digits are
 // written to the file, so 1e-6 of lengths of 100 is far above rounding.
@@ -77,8 +77,8 @@ TEST_P(BothTimings, FollowAShiftedPathWithTheFrame) {
   const Fit found =
       fit(FourBar{}.text(), {"A", "D"}, csv_of(FourBar{}, angles_of_a_turn(24), GetParam(), 0, shift));
   EXPECT_THAT(values_of(found),
-              testing::ElementsAre(testing::DoubleNear(10, 1e-6), testing::DoubleNear(15, 1e-6),
-                                   testing::DoubleNear(210, 1e-6), testing::DoubleNear(15, 1e-6)));
+              ::testing::ElementsAre(::testing::DoubleNear(10, 1e-6), ::testing::DoubleNear(15, 1e-6),
+                                     ::testing::DoubleNear(210, 1e-6), ::testing::DoubleNear(15, 1e-6)));
 }
 
 // With noise of ±a in each coordinate, the rms distance is a·sqrt(2/3) at the truth and less at the optimum;
@@ -230,7 +230,7 @@ TEST(Fit, MovesTheSketchOnlyWhereItWouldPickAnotherMode) {
   EXPECT_NEAR(turned.dimensions.at(0).after, 200 * std::cos(turn), 1e-6);
   EXPECT_NEAR(turned.dimensions.at(1).after, 200 * std::sin(turn), 1e-6);
   EXPECT_TRUE(turned.sketch_moved);
-  EXPECT_THAT(turned.text, testing::Not(HasSubstr("C = [180, 10]")));
+  EXPECT_THAT(turned.text, ::testing::Not(HasSubstr("C = [180, 10]")));
   const Fit little =
       fit(text, {"AB"}, csv_of({82, 140, 150, 200, 50, 45}, angles_of_a_turn(24), Timing::free), 1);
   EXPECT_FALSE(little.sketch_moved);
@@ -283,8 +283,8 @@ TEST(Fit, FindsTheSidesOfJansensLeg) {
   const Fit found = fit_path(text, "jansen.toml", std::vector<std::string>{"lower.sides"},
                              read_target_path(csv, "foot.csv", mechanism));
   EXPECT_THAT(values_of(found),
-              testing::ElementsAre(testing::DoubleNear(66.5, 1e-6), testing::DoubleNear(48, 1e-6),
-                                   testing::DoubleNear(36, 1e-6)));
+              ::testing::ElementsAre(::testing::DoubleNear(66.5, 1e-6), ::testing::DoubleNear(48, 1e-6),
+                                     ::testing::DoubleNear(36, 1e-6)));
   EXPECT_THAT(found.text,
               HasSubstr("lower2 = { points = [\"Q4\", \"Q5\", \"Q6\"], sides = [65.7, 49, 36.7]"));
 }

@@ -196,11 +196,11 @@ TEST(TargetPath, TurnsAnglesIntoTimesInTheirOrder) {
   const mechanism::Mechanism mechanism = mechanism::parse_mechanism(test::FourBar{}.text(), "m.toml");
   const TargetPath path = read_target_path("F.y,crank,F.x\n1,3,2\n4,1,5\n", "p.csv", mechanism);
   EXPECT_EQ(path.timing, "crank");
-  EXPECT_THAT(path.times, testing::ElementsAre(0.01, 0.03));  // at 100 rad/s
+  EXPECT_THAT(path.times, ::testing::ElementsAre(0.01, 0.03));  // at 100 rad/s
   EXPECT_EQ(path.positions.front(), Vector2d(5, 4));
   EXPECT_EQ(mechanism.points[path.point].name, "F");
   EXPECT_THAT(read_target_path("t,F.x,F.y\n0.01,1,2\n", "p.csv", mechanism).times,
-              testing::ElementsAre(0.01));
+              ::testing::ElementsAre(0.01));
   EXPECT_TRUE(read_target_path("F.x,F.y\n1,2\n", "p.csv", mechanism).times.empty());
 }
 

@@ -36,10 +36,10 @@ std::string mechanism_text() {
   return text;
 }
 
-class Refusal : public testing::TestWithParam<Refused> {};
+class Refusal : public ::testing::TestWithParam<Refused> {};
 INSTANTIATE_TEST_SUITE_P(
     Fit, Refusal,
-    testing::Values(
+    ::testing::Values(
         Refused{
             "UnknownDimension",
             {"AB", "BFC"},
@@ -185,7 +185,7 @@ TEST_P(Refusal, SaysWhy) {
     fit_path(text, "m.toml", GetParam().free, target);
     FAIL() << "was not refused";
   } catch (const text::Error& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr(GetParam().message));
+    EXPECT_THAT(error.what(), ::testing::HasSubstr(GetParam().message));
     EXPECT_EQ(error.diagnostics().size(), 1U);
   }
 }

@@ -43,7 +43,7 @@ TEST(Diagnostics, ThrowsEverythingInTheOrderOfTheFile) {
   diagnostics.add({{"a", {9, 30}}, "same place", {}, {}});
   EXPECT_EQ(diagnostics.size(), 4U);
   EXPECT_THAT([&] { diagnostics.throw_if_any<ReadError>(); },
-              testing::ThrowsMessage<ReadError>(
+              ::testing::ThrowsMessage<ReadError>(
                   "a:9:30: early\na:9:30: same place\na:10:2: late\nb:1:1: in another file"));
 }
 

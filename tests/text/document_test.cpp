@@ -10,12 +10,12 @@
 namespace oblique::text {
 namespace {
 
-using testing::HasSubstr;
-using testing::StartsWith;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
 
-using Kind = Value::Kind;
+using ValueKind = Value::Kind;
 
-std::string message_of(std::string_view text) {
+std::string document_message(std::string_view text) {
   try {
     parse_document(text, "test.toml");
   } catch (const ReadError& error) {
@@ -46,7 +46,7 @@ key = 0x10
   EXPECT_EQ(root.find("list")->elements.size(), 3U);
   EXPECT_EQ(root.find("list")->elements[1].text, "two");
   EXPECT_EQ(root.find("list")->elements[2].elements[0].number, 3);
-  EXPECT_EQ(root.find("day")->kind, Kind::date);
+  EXPECT_EQ(root.find("day")->kind, ValueKind::date);
   EXPECT_EQ(root.find("table")->find("key")->number, 16);
   EXPECT_EQ(root.find("nothing"), nullptr);
 }
@@ -55,7 +55,7 @@ TEST(Document, KeepsTheOrderOfTheFile) {
   const Document document = parse_document("zebra = 1\nant = 2\n[mouse]\n[bear]\n", "test.toml");
   std::vector<std::string> keys;
   for (const Entry& entry : document.root.entries) keys.push_back(entry.key);
-  EXPECT_THAT(keys, testing::ElementsAre("zebra", "ant", "mouse", "bear"));
+  EXPECT_THAT(keys, ::testing::ElementsAre("zebra", "ant", "mouse", "bear"));
 }
 
 TEST(Document, KnowsWhereKeysAndValuesStand) {
@@ -91,45 +91,46 @@ TEST(Document, ReadsNotANumberAndInfinityAsTomlHasThem) {
 }
 
 TEST(Document, NamesEveryKind) {
-  EXPECT_EQ(kind_name(Kind::boolean), "true or false");
-  EXPECT_EQ(kind_name(Kind::number), "a number");
-  EXPECT_EQ(kind_name(Kind::string), "a string");
-  EXPECT_EQ(kind_name(Kind::array), "an array");
-  EXPECT_EQ(kind_name(Kind::table), "a table");
-  EXPECT_EQ(kind_name(Kind::date), "a date");
+  EXPECT_EQ(kind_name(ValueKind::boolean), "true or false");
+  EXPECT_EQ(kind_name(ValueKind::number), "a number");
+  EXPECT_EQ(kind_name(ValueKind::string), "a string");
+  EXPECT_EQ(kind_name(ValueKind::array), "an array");
+  EXPECT_EQ(kind_name(ValueKind::table), "a table");
+  EXPECT_EQ(kind_name(ValueKind::date), "a date");
 }
 
 // The wording after "broken TOML:" is toml++'s own; the place and the rest are ours.
 TEST(DocumentMessages, GiveThePlaceAndHowToWriteIt) {
-  EXPECT_EQ(message_of("a = 1\nspeed = 100 rad/s\n"),
+  EXPECT_EQ(document_message("a = 1\nspeed = 100 rad/s\n"),
             "test.toml:2:13: broken TOML: parsing key-value pair: expected a comment or whitespace, saw 'r'\n"
             "  remedy: words, and numbers with a unit, stand in quotes (\"60 rpm\"); the syntax is at "
             "https://toml.io/en/v1.0.0");
-  EXPECT_THAT(message_of("type = summer\n"), StartsWith("test.toml:1:8: broken TOML: parsing value: "));
-  EXPECT_THAT(message_of("a = 1\na = 2\n"),
+  EXPECT_THAT(document_message("type = summer\n"), StartsWith("test.toml:1:8: broken TOML: parsing value: "));
+  EXPECT_THAT(document_message("a = 1\na = 2\n"),
               StartsWith("test.toml:2:5: broken TOML: parsing key-value pair: cannot redefine"));
-  EXPECT_THAT(message_of("a = \"\xFF\"\n"),
+  EXPECT_THAT(document_message("a = \"\xFF\"\n"),
               StartsWith("test.toml:1:5: broken TOML: Encountered invalid utf-8 sequence"));
-  EXPECT_THAT(message_of("a = 1e400"),
+  EXPECT_THAT(document_message("a = 1e400"),
               StartsWith("test.toml:1:10: broken TOML: parsing floating-point: '1e400'"));
-  EXPECT_THAT(message_of("a = 99999999999999999999"), HasSubstr("is not representable in 64 bits"));
+  EXPECT_THAT(document_message("a = 99999999999999999999"), HasSubstr("is not representable in 64 bits"));
 }
 
 // The assertions of toml++ 3.3 that malformed text breaks: each is a message with its place, in every
 // build type.
 TEST(DocumentMessages, GiveThePlaceWhereTheParserWouldAssert) {
-  EXPECT_THAT(message_of("[&"), StartsWith("test.toml:1:2: broken TOML: parsing key: expected bare key"));
-  EXPECT_THAT(message_of("[φ]\n"),
+  EXPECT_THAT(document_message("[&"),
+              StartsWith("test.toml:1:2: broken TOML: parsing key: expected bare key"));
+  EXPECT_THAT(document_message("[φ]\n"),
               HasSubstr("1:2: broken TOML: parsing key: expected bare key starting character or string "
                         "delimiter, saw 'φ'"));
-  EXPECT_THAT(message_of("a = [}"),
+  EXPECT_THAT(document_message("a = [}"),
               StartsWith("test.toml:1:6: broken TOML: parsing value: could not determine"));
-  EXPECT_THAT(message_of("a = 1984-07-20Tq20:17:40Z"),
+  EXPECT_THAT(document_message("a = 1984-07-20Tq20:17:40Z"),
               StartsWith("test.toml:1:16: broken TOML: parsing time: expected 2-digit hour"));
   // Longer than the parser can step back, in a function that is noexcept.
-  EXPECT_THAT(message_of("a = 2020" + std::string(116, '_') + "-01-01 00000"),
+  EXPECT_THAT(document_message("a = 2020" + std::string(116, '_') + "-01-01 00000"),
               StartsWith("test.toml:1:5: broken TOML: "));
-  EXPECT_THAT(message_of("a = 2020-01-01" + std::string(116, '_') + " 0" + std::string(200, '0')),
+  EXPECT_THAT(document_message("a = 2020-01-01" + std::string(116, '_') + " 0" + std::string(200, '0')),
               StartsWith("test.toml:1:"));
 }
 
@@ -143,21 +144,22 @@ std::string repeated(std::string_view text, int times) {
 TEST(DeepDocument, IsRefusedAndNotACrash) {
   const std::string values = "broken TOML: parsing value: exceeded maximum nested value depth of 32";
   const std::string keys = "a key has more than 20 parts\n  remedy: shorten it";
-  EXPECT_THAT(message_of("a = " + repeated("[", 200'000)), HasSubstr("test.toml:1:37: " + values));
-  EXPECT_THAT(message_of("a = " + repeated("{a = ", 200'000)), HasSubstr(values));
-  EXPECT_EQ(message_of("x = 1.5 # a\n a" + repeated(".a", 200'000) + " = 1"), "test.toml:2:41: " + keys);
-  EXPECT_THAT(message_of("[\"]\"" + repeated(" . 'a'", 200'000) + "]"), HasSubstr(keys));
-  EXPECT_THAT(message_of("[[a" + repeated(".a", 200'000) + "]]"), HasSubstr(keys));
+  EXPECT_THAT(document_message("a = " + repeated("[", 200'000)), HasSubstr("test.toml:1:37: " + values));
+  EXPECT_THAT(document_message("a = " + repeated("{a = ", 200'000)), HasSubstr(values));
+  EXPECT_EQ(document_message("x = 1.5 # a\n a" + repeated(".a", 200'000) + " = 1"),
+            "test.toml:2:41: " + keys);
+  EXPECT_THAT(document_message("[\"]\"" + repeated(" . 'a'", 200'000) + "]"), HasSubstr(keys));
+  EXPECT_THAT(document_message("[[a" + repeated(".a", 200'000) + "]]"), HasSubstr(keys));
 }
 
 TEST(DeepDocument, DotsElsewhereAreNoNesting) {
   const std::string dots = repeated("a.", 100);
-  EXPECT_EQ(message_of("# " + dots + "\na = \"" + dots + "\\\"" + dots + "\" # " + dots), "no error");
-  EXPECT_EQ(message_of("a = '" + dots + "'\nb = \"\"\"\n" + dots + "\"\"\"\"\" # \"" + dots + "\n"),
+  EXPECT_EQ(document_message("# " + dots + "\na = \"" + dots + "\\\"" + dots + "\" # " + dots), "no error");
+  EXPECT_EQ(document_message("a = '" + dots + "'\nb = \"\"\"\n" + dots + "\"\"\"\"\" # \"" + dots + "\n"),
             "no error");
-  EXPECT_EQ(message_of("a = [" + repeated("1.5, ", 1000) + "]"), "no error");
-  EXPECT_EQ(message_of("a" + repeated(".a", 19) + " = 1"), "no error");
-  EXPECT_EQ(message_of("a = " + repeated("[", 31) + repeated("]", 31)), "no error");
+  EXPECT_EQ(document_message("a = [" + repeated("1.5, ", 1000) + "]"), "no error");
+  EXPECT_EQ(document_message("a" + repeated(".a", 19) + " = 1"), "no error");
+  EXPECT_EQ(document_message("a = " + repeated("[", 31) + repeated("]", 31)), "no error");
 }
 
 TEST(Document, TakesAByteOrderMarkAndTypesetSigns) {
@@ -171,11 +173,12 @@ TEST(Document, TakesAByteOrderMarkAndTypesetSigns) {
 }
 
 TEST(Document, SaysWhatIsTypesetAndWhereACommaIsNoPoint) {
-  EXPECT_THAT(message_of("a = 1\nb = \u201cx\u201d\n"), HasSubstr("the quotes here are typeset"));
-  EXPECT_THAT(message_of("a = { x = 0,5 }\n"),
+  EXPECT_THAT(document_message("a = 1\nb = \u201cx\u201d\n"), HasSubstr("the quotes here are typeset"));
+  EXPECT_THAT(document_message("a = { x = 0,5 }\n"),
               HasSubstr("remedy: numbers have a decimal point, not a comma"));
-  EXPECT_THAT(message_of("a = [0,5, x]\n"), HasSubstr("words, and numbers with a unit, stand in quotes"));
-  EXPECT_THAT(message_of("\xFE\xFFx"), HasSubstr("the file is in UTF-16"));
+  EXPECT_THAT(document_message("a = [0,5, x]\n"),
+              HasSubstr("words, and numbers with a unit, stand in quotes"));
+  EXPECT_THAT(document_message("\xFE\xFFx"), HasSubstr("the file is in UTF-16"));
 }
 
 }  // namespace

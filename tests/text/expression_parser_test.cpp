@@ -161,22 +161,22 @@ TEST(ExpressionMessages, SayWhatConstantsThereAre) {
 }
 
 // Each text would overflow the stack by far, were it parsed, walked or freed without a limit.
-class DeepExpression : public testing::TestWithParam<const char*> {};
+class DeepExpression : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(DeepExpression, IsRefusedAndNotACrash) {
   std::string text;
   for (int i = 0; i < 200'000; ++i) text += GetParam();
   text += "1";
-  EXPECT_THAT(
-      message_of(text),
-      testing::AnyOf(testing::HasSubstr("the expression is nested too deeply; expected at most 200 levels"),
-                     testing::HasSubstr("the expression is too long; expected at most 1000 operators; "
-                                        "split it over several blocks")));
+  EXPECT_THAT(message_of(text),
+              ::testing::AnyOf(
+                  ::testing::HasSubstr("the expression is nested too deeply; expected at most 200 levels"),
+                  ::testing::HasSubstr("the expression is too long; expected at most 1000 operators; "
+                                       "split it over several blocks")));
 }
 
 INSTANTIATE_TEST_SUITE_P(Repeated, DeepExpression,
-                         testing::Values("- ", "+", "+-", "not ", "(", "2^", "2^-", "sin(", "max(1,",
-                                         "if(1,2,", "1+", "1/", "a and ", "not 1 or "));
+                         ::testing::Values("- ", "+", "+-", "not ", "(", "2^", "2^-", "sin(", "max(1,",
+                                           "if(1,2,", "1+", "1/", "a and ", "not 1 or "));
 
 TEST(DeepExpression, UpToTheLimitIsRead) {
   const std::string open(198, '(');

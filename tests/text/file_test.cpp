@@ -19,7 +19,7 @@ namespace oblique::text {
 namespace {
 
 /// A folder of its own for each test, empty at the start and gone at the end.
-class File : public testing::Test {
+class File : public ::testing::Test {
  protected:
   File() {
     std::string name = testing::TempDir() + "oblique-file-XXXXXX";
@@ -59,7 +59,7 @@ TEST_F(File, ThatCannotBeReadToItsEndIsRefused) {
 // A device may give bytes for ever.
 TEST_F(File, ThatIsTooLongIsRefused) {
   EXPECT_THAT([] { read_file("/dev/zero"); },
-              testing::ThrowsMessage<ReadError>(
+              ::testing::ThrowsMessage<ReadError>(
                   "/dev/zero: the file has more than 256 MiB\n  remedy: split it, or leave out rows"));
 }
 
@@ -68,7 +68,7 @@ TEST_F(File, HasNoNulInItsName) {
   write_file(folder_ / "a.csv", "text");
   const std::string name = (folder_ / "a.csv").string();
   EXPECT_THAT([&] { read_file(name + std::string("\0.csv", 5)); },
-              testing::ThrowsMessage<ReadError>(
+              ::testing::ThrowsMessage<ReadError>(
                   name + "␀.csv: no file has a NUL character in its name\n  remedy: correct the name"));
 }
 
@@ -100,8 +100,8 @@ TEST_F(File, BehindALinkThatLedNowhereIsMadeThere) {
 TEST_F(File, BehindALinkToItselfIsRefused) {
   std::filesystem::create_symlink("link", folder_ / "link");
   EXPECT_THAT([&] { write_file(folder_ / "link", "text"); },
-              testing::ThrowsMessage<ReadError>((folder_ / "link").string() +
-                                                ": cannot write the file: Too many levels of symbolic links\n"
+              ::testing::ThrowsMessage<ReadError>(
+                  (folder_ / "link").string() + ": cannot write the file: Too many levels of symbolic links\n"
                                                 "  remedy: name a file: this link leads back to itself"));
   EXPECT_EQ(files(), 1U);
 }
@@ -130,13 +130,13 @@ TEST_F(File, ThatIsClaimedIsNotReadUntilTheClaimEnds) {
   {
     const OutputClaim claim(folder_ / "b.csv");
     EXPECT_THAT([&] { read_file(folder_ / "a.csv"); },
-                testing::ThrowsMessage<ReadError>(
+                ::testing::ThrowsMessage<ReadError>(
                     (folder_ / "b.csv").string() + ": this file is read, as " + (folder_ / "a.csv").string() +
                     ", and would be replaced\n  remedy: write to another file"));
     EXPECT_THAT([&] { const OutputClaim again(folder_ / "a.csv"); },
-                testing::ThrowsMessage<ReadError>((folder_ / "a.csv").string() +
-                                                  ": two results would go to this file\n"
-                                                  "  remedy: name two files"));
+                ::testing::ThrowsMessage<ReadError>((folder_ / "a.csv").string() +
+                                                    ": two results would go to this file\n"
+                                                    "  remedy: name two files"));
   }
   EXPECT_EQ(read_file(folder_ / "a.csv"), "text");
 }
@@ -148,7 +148,7 @@ TEST_F(File, ThatIsADeviceIsWrittenToAndNotReplaced) {
   EXPECT_TRUE(std::filesystem::is_character_file(folder_ / "sink"));
   std::filesystem::create_symlink("/dev/full", folder_ / "full");
   EXPECT_THAT([&] { write_file(folder_ / "full", "text"); },
-              testing::ThrowsMessage<ReadError>(
+              ::testing::ThrowsMessage<ReadError>(
                   (folder_ / "full").string() +
                   ": cannot write the file: No space left on device\n  remedy: make room on "
                   "the disk"));
@@ -182,7 +182,7 @@ TEST_F(File, IsWrittenWholeOrNotAtAll) {
 
 TEST_F(File, InAMissingFolderCannotBeWritten) {
   EXPECT_THAT([&] { write_file(folder_ / "no" / "a.csv", "text"); },
-              testing::ThrowsMessage<ReadError>(
+              ::testing::ThrowsMessage<ReadError>(
                   (folder_ / "no" / "a.csv").string() +
                   ": cannot write the file: No such file or directory\n  remedy: name a file "
                   "in a folder that exists and that you may write to"));
@@ -190,17 +190,17 @@ TEST_F(File, InAMissingFolderCannotBeWritten) {
 
 TEST_F(File, ThatIsAFolderIsNoFile) {
   EXPECT_THAT([&] { write_file(folder_, "text"); },
-              testing::ThrowsMessage<ReadError>(
+              ::testing::ThrowsMessage<ReadError>(
                   folder_.string() + ": cannot write the file: Is a directory\n  remedy: name a file in it"));
   EXPECT_THAT([&] { read_file(folder_); },
-              testing::ThrowsMessage<ReadError>(
+              ::testing::ThrowsMessage<ReadError>(
                   folder_.string() + ": this is a directory, not a file\n  remedy: name a file in it"));
   EXPECT_TRUE(std::filesystem::is_directory(folder_));
 }
 
 TEST_F(File, ThatIsMissingCannotBeRead) {
   EXPECT_THAT([&] { read_document(folder_ / "no.toml"); },
-              testing::ThrowsMessage<ReadError>(
+              ::testing::ThrowsMessage<ReadError>(
                   (folder_ / "no.toml").string() +
                   ": cannot open the file: No such file or directory\n  remedy: check the "
                   "spelling and the folder you stand in"));

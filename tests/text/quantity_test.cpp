@@ -10,8 +10,6 @@
 namespace oblique::text {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 Unit unit(std::string_view text) {
   return parse_unit(text).value();
 }
@@ -20,7 +18,7 @@ double quantity(std::string_view text, std::string_view wanted) {
   return parse_quantity(text, unit(wanted));
 }
 
-std::string message_of(std::string_view text, std::string_view wanted) {
+std::string quantity_message(std::string_view text, std::string_view wanted) {
   try {
     quantity(text, wanted);
   } catch (const ExpressionError& error) {
@@ -68,9 +66,9 @@ TEST(Unit, IsEmptyWhereTheTextIsNone) {
 }
 
 TEST(Quantity, IsGivenInTheWantedUnit) {
-  EXPECT_DOUBLE_EQ(quantity("60 rpm", "rad/s"), 2 * kPi);
-  EXPECT_DOUBLE_EQ(quantity("30 deg", "rad"), kPi / 6);
-  EXPECT_DOUBLE_EQ(quantity("30°", "rad"), kPi / 6);
+  EXPECT_DOUBLE_EQ(quantity("60 rpm", "rad/s"), 2 * std::numbers::pi);
+  EXPECT_DOUBLE_EQ(quantity("30 deg", "rad"), std::numbers::pi / 6);
+  EXPECT_DOUBLE_EQ(quantity("30°", "rad"), std::numbers::pi / 6);
   EXPECT_DOUBLE_EQ(quantity("10 kHz", "Hz"), 10000);
   EXPECT_DOUBLE_EQ(quantity("1/2 s", "s"), 0.5);
   EXPECT_DOUBLE_EQ(quantity("1/2 s", "ms"), 500);
@@ -83,45 +81,45 @@ TEST(Quantity, IsGivenInTheWantedUnit) {
 }
 
 TEST(Quantity, WithoutAUnitIsInTheWantedOne) {
-  EXPECT_EQ(quantity("2*pi/3", "rad"), 2 * kPi / 3);
-  EXPECT_EQ(quantity("2*pi/3", "deg"), 2 * kPi / 3);
+  EXPECT_EQ(quantity("2*pi/3", "rad"), 2 * std::numbers::pi / 3);
+  EXPECT_EQ(quantity("2*pi/3", "deg"), 2 * std::numbers::pi / 3);
   EXPECT_EQ(quantity(" 7 ", "mm"), 7);
   EXPECT_TRUE(std::isinf(quantity("inf", "Hz")));
 }
 
 TEST(Quantity, SaysWhichUnitWasMeant) {
-  EXPECT_EQ(message_of("60 rmp", "rad/s"),
+  EXPECT_EQ(quantity_message("60 rmp", "rad/s"),
             "4: there is no unit 'rmp'; expected a quantity in 'rad/s'; did you mean 'rpm'?");
-  EXPECT_EQ(message_of("60 rpms", "rad/s"),
+  EXPECT_EQ(quantity_message("60 rpms", "rad/s"),
             "4: there is no unit 'rpms'; expected a quantity in 'rad/s'; did you mean 'rpm'?");
-  EXPECT_EQ(message_of("30 dge", "rad"),
+  EXPECT_EQ(quantity_message("30 dge", "rad"),
             "4: there is no unit 'dge'; expected a quantity in 'rad'; did you mean 'deg'?");
-  EXPECT_EQ(message_of("30 grade", "rad"),
+  EXPECT_EQ(quantity_message("30 grade", "rad"),
             "4: there is no unit 'grade'; expected a quantity in 'rad'; known: rad, mrad, deg, °, º, rev");
-  EXPECT_EQ(message_of("30 rads", "rad"),
+  EXPECT_EQ(quantity_message("30 rads", "rad"),
             "4: there is no unit 'rads'; expected a quantity in 'rad'; did you mean 'rad'?");
 }
 
 TEST(Quantity, SaysHowToWriteAProduct) {
-  EXPECT_EQ(message_of("2 pi", "rad"),
+  EXPECT_EQ(quantity_message("2 pi", "rad"),
             "3: there is no unit 'pi'; expected a quantity in 'rad'; a product is written with '*': 2*pi");
   EXPECT_EQ(
-      message_of("2 pi rad", "rad"),
+      quantity_message("2 pi rad", "rad"),
       "3: there is no unit 'pi rad'; expected a quantity in 'rad'; a product is written with '*': 2*pi rad");
   EXPECT_EQ(
-      message_of("2 (1+1)", "1"),
+      quantity_message("2 (1+1)", "1"),
       "3: there is no unit '(1+1)'; expected a quantity in '1'; a product is written with '*': 2*(1+1)");
 }
 
 TEST(Quantity, CountsTurnsWhereOneIsWantedAndTheOtherGiven) {
   EXPECT_DOUBLE_EQ(quantity("60 rpm", "Hz"), 1);
   EXPECT_DOUBLE_EQ(quantity("360 deg/s", "Hz"), 1);
-  EXPECT_DOUBLE_EQ(quantity("1 rad/s", "Hz"), 1 / (2 * kPi));
+  EXPECT_DOUBLE_EQ(quantity("1 rad/s", "Hz"), 1 / (2 * std::numbers::pi));
   EXPECT_DOUBLE_EQ(quantity("3000 1/min", "Hz"), 50);
-  EXPECT_DOUBLE_EQ(quantity("50 Hz", "rad/s"), 100 * kPi);
-  EXPECT_DOUBLE_EQ(quantity("2 kHz", "rad/s"), 4000 * kPi);
-  EXPECT_DOUBLE_EQ(quantity("60 1/min", "rad/s"), 2 * kPi);
-  EXPECT_DOUBLE_EQ(quantity("90º", "rad"), kPi / 2);
+  EXPECT_DOUBLE_EQ(quantity("50 Hz", "rad/s"), 100 * std::numbers::pi);
+  EXPECT_DOUBLE_EQ(quantity("2 kHz", "rad/s"), 4000 * std::numbers::pi);
+  EXPECT_DOUBLE_EQ(quantity("60 1/min", "rad/s"), 2 * std::numbers::pi);
+  EXPECT_DOUBLE_EQ(quantity("90º", "rad"), std::numbers::pi / 2);
 }
 
 /// A unit of signals on a machine of so many volts; 0: they are not known.
@@ -159,32 +157,32 @@ TEST(Quantity, RefusesVoltagesOfAMachineWithoutVolts) {
 TEST(Quantity, TakesTypesetSignsAndSpaces) {
   EXPECT_DOUBLE_EQ(quantity("\u22123\u00a0mm", "m"), -0.003);
   EXPECT_DOUBLE_EQ(quantity("5 \u2013 2\u00d73", "1"), -1);
-  EXPECT_DOUBLE_EQ(quantity("2\u00b7pi", "rad"), 2 * kPi);
+  EXPECT_DOUBLE_EQ(quantity("2\u00b7pi", "rad"), 2 * std::numbers::pi);
 }
 
 TEST(Quantity, AsksForADecimalPoint) {
-  EXPECT_EQ(message_of("0,5 mm", "m"),
+  EXPECT_EQ(quantity_message("0,5 mm", "m"),
             "2: there is a comma in the number; expected a decimal point; write 0.5 mm");
 }
 
 TEST(Quantity, RefusesTheWrongDimension) {
   EXPECT_EQ(
-      message_of("10 1/s", "rad/s"),
+      quantity_message("10 1/s", "rad/s"),
       "4: '1/s' is the wrong unit here; expected a quantity in 'rad/s'; of radians give it in 'rad/s', of "
       "turns in 'Hz' or 'rpm'");
   EXPECT_EQ(
-      message_of("30 V", "machine unit"),
+      quantity_message("30 V", "machine unit"),
       "4: 'V' is the wrong unit here; expected a quantity in 'machine unit'; give it in 'machine unit', or "
       "as a number without a unit");
-  EXPECT_EQ(message_of("3 mm", "s"),
+  EXPECT_EQ(quantity_message("3 mm", "s"),
             "3: 'mm' is the wrong unit here; expected a quantity in 's'; give it in 's', or as a number "
             "without a unit");
 }
 
 TEST(Quantity, PassesOnTheErrorsOfItsExpression) {
-  EXPECT_EQ(message_of("", "m"), "1: the expression ends too early; expected a number, a name or '('");
-  EXPECT_EQ(message_of("mm", "m"), "1: 'mm' is not a known constant; expected a number, 'pi' or 'inf'");
-  EXPECT_EQ(message_of("1e400 m", "m"),
+  EXPECT_EQ(quantity_message("", "m"), "1: the expression ends too early; expected a number, a name or '('");
+  EXPECT_EQ(quantity_message("mm", "m"), "1: 'mm' is not a known constant; expected a number, 'pi' or 'inf'");
+  EXPECT_EQ(quantity_message("1e400 m", "m"),
             "1: the number is out of range; expected a magnitude between 2.3e-308 and 1.7e308");
 }
 

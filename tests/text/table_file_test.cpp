@@ -41,9 +41,9 @@ using test::read_mat;
 using test::read_npy;
 using test::ReadTable;
 using test::written;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 
 struct Format {
   const char* ending;
@@ -66,8 +66,8 @@ std::vector<std::uint64_t> bits_of(const std::vector<double>& values) {
   return bits;
 }
 
-class TableFormats : public testing::TestWithParam<Format> {};
-INSTANTIATE_TEST_SUITE_P(TableFile, TableFormats, testing::ValuesIn(kFormats),
+class TableFormats : public ::testing::TestWithParam<Format> {};
+INSTANTIATE_TEST_SUITE_P(TableFile, TableFormats, ::testing::ValuesIn(kFormats),
                          [](const auto& tested) { return std::string(tested.param.ending + 1); });
 
 TEST_P(TableFormats, ReadBackToTheSameBits) {
@@ -189,7 +189,7 @@ TEST_P(TableFormats, SayThatADeviceIsFull) {
         file.add(std::array{1.0});
         file.finish();
       },
-      testing::ThrowsMessage<ReadError>(
+      ::testing::ThrowsMessage<ReadError>(
           path.string() +
           ": cannot write the file: No space left on device\n  remedy: make room on the disk"));
   EXPECT_TRUE(std::filesystem::is_character_file(path));
@@ -199,7 +199,7 @@ TEST_P(TableFormats, SayThatAFolderIsMissing) {
   const Folder folder;
   const auto path = folder / "no" / (std::string("a") + GetParam().ending);
   EXPECT_THAT([&] { TableFile(path, named({"t"}), 1); },
-              testing::ThrowsMessage<ReadError>(
+              ::testing::ThrowsMessage<ReadError>(
                   path.string() + ": cannot write the file: No such file or directory\n  remedy: name a file "
                                   "in a folder that exists and that you may write to"));
 }
@@ -228,12 +228,14 @@ RC_GTEST_PROP(TableFile, KeepsTheBitsOfAnyNumberInAnyFormat, ()) {
 }
 
 TEST(TableFile, OfAnUnknownKindNamesTheKnownOnes) {
-  EXPECT_THAT([&] { TableFile("no/such/x.xls", named({"t"}), 1); },
-              testing::ThrowsMessage<ReadError>("no/such/x.xls: cannot write a '.xls' file; expected a name "
-                                                "that ends in .csv, .npy, .mat or .json"));
-  EXPECT_THAT([&] { TableFile("table", named({"t"}), 1); },
-              testing::ThrowsMessage<ReadError>("table: the name of this file has no ending; expected a name "
-                                                "that ends in .csv, .npy, .mat or .json"));
+  EXPECT_THAT(
+      [&] { TableFile("no/such/x.xls", named({"t"}), 1); },
+      ::testing::ThrowsMessage<ReadError>("no/such/x.xls: cannot write a '.xls' file; expected a name "
+                                          "that ends in .csv, .npy, .mat or .json"));
+  EXPECT_THAT(
+      [&] { TableFile("table", named({"t"}), 1); },
+      ::testing::ThrowsMessage<ReadError>("table: the name of this file has no ending; expected a name "
+                                          "that ends in .csv, .npy, .mat or .json"));
 }
 
 TEST(TableFile, MayBeAPipeButForMat) {
@@ -248,7 +250,7 @@ TEST(TableFile, MayBeAPipeButForMat) {
       file.finish();
     };
     if (std::string(format.ending) == ".mat") {
-      EXPECT_THAT(write, testing::ThrowsMessage<ReadError>(
+      EXPECT_THAT(write, ::testing::ThrowsMessage<ReadError>(
                              path.string() + ": cannot write the file: Illegal seek\n  remedy: name a file "
                                              "on a disk: this format is not written in one pass"));
     } else {

@@ -20,8 +20,8 @@ using test::named;
 using test::read_mat;
 using test::read_npy;
 using test::written;
-using testing::ElementsAre;
-using testing::IsEmpty;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
 
 TEST(CsvFile, HasALineOfNamesAndALineARow) {
   EXPECT_EQ(written(".csv", {{"t", "s"}, {"C.x", "mm"}}, {0.0, 1.5, 0.1, -2e-300}),
@@ -112,7 +112,7 @@ TEST(MatFile, NamesVariablesAsMatlabAllows) {
 TEST(MatFile, SaysThatItCanHoldNoMore) {
   const Folder folder;
   EXPECT_THAT([&] { TableFile(folder / "a.mat", named({"t"}), 3'000'000'000); },
-              testing::ThrowsMessage<ReadError>(
+              ::testing::ThrowsMessage<ReadError>(
                   "the table is too long for a .mat file; expected 2147483647 rows at most\n  remedy: write "
                   ".npy"));
   EXPECT_THAT(folder.files(), IsEmpty());

@@ -9,10 +9,10 @@
 namespace oblique::text {
 namespace {
 
-using testing::ElementsAre;
+using ::testing::ElementsAre;
 
 /// Reads a text with a TableReader named "[run]" and keeps what it found.
-class TableReaderTest : public testing::Test {
+class TableReaderTest : public ::testing::Test {
  protected:
   TableReader& read(std::string_view text) {
     document_ = parse_document(text, "t.toml");

@@ -37,8 +37,8 @@ ReadTable read_npy(const std::string& bytes) {
   EXPECT_EQ(data % 64, 0U);
   EXPECT_EQ(bytes.at(data - 1), '\n');
   const std::string header = bytes.substr(8 + length_size, length);
-  EXPECT_THAT(header, testing::StartsWith("{'descr': [('"));
-  EXPECT_THAT(header, testing::HasSubstr("], 'fortran_order': False, 'shape': ("));
+  EXPECT_THAT(header, ::testing::StartsWith("{'descr': [('"));
+  EXPECT_THAT(header, ::testing::HasSubstr("], 'fortran_order': False, 'shape': ("));
   ReadTable table;
   const std::string separator = ", '<f8')";
   for (std::size_t at = header.find("('"); at != std::string::npos && at < header.find("], 'fortran");) {
@@ -146,7 +146,7 @@ std::string written(const std::string& ending, const std::vector<text::TableColu
     left = left.subspan(taken);
   }
   file.finish();
-  EXPECT_THAT(folder.files(), testing::ElementsAre("table" + ending));
+  EXPECT_THAT(folder.files(), ::testing::ElementsAre("table" + ending));
   return text::read_file(path);
 }
 

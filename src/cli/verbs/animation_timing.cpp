@@ -30,7 +30,8 @@ std::optional<double> duration_of(const AnimateRequest& request) {
       text::Diagnostic{{}, fmt::format("--duration {}", request.duration), "a time above 0", {}});
 }
 
-[[noreturn]] void refuse(const std::string& what, const std::string& expected, const std::string& remedy) {
+[[noreturn]] void refuse_timing(const std::string& what, const std::string& expected,
+                                const std::string& remedy) {
   throw text::ReadError(text::Diagnostic{{}, what, expected, remedy});
 }
 
@@ -38,7 +39,7 @@ AnimationTiming gif_timing(const std::optional<int>& frames, const std::optional
                            const std::optional<double>& asked_rate) {
   const double seconds = duration.value_or(kDuration);
   if (frames && duration && asked_rate && std::abs(*duration * *asked_rate - *frames) > 0.5) {
-    refuse(
+    refuse_timing(
         fmt::format("--frames {}, --duration {:.6g} s and --rate {:.6g} contradict each other: {:.6g} s at "
                     "{:.6g} frames a second are {:.6g} frames",
                     *frames, *duration, *asked_rate, *duration, *asked_rate, *duration * *asked_rate),
@@ -47,15 +48,16 @@ AnimationTiming gif_timing(const std::optional<int>& frames, const std::optional
   const double rate = asked_rate ? *asked_rate : frames ? *frames / seconds : kRate;
   const double delay = std::round(kHundredths / rate);
   if (rate > kHundredths / kLeastDelay || delay > kMostDelay) {
-    refuse(fmt::format("{:.6g} frames a second in a GIF", rate), "at most 50, and at least one in 655 s",
-           asked_rate ? "" : "choose other --frames or another --duration");
+    refuse_timing(fmt::format("{:.6g} frames a second in a GIF", rate),
+                  "at most 50, and at least one in 655 s",
+                  asked_rate ? "" : "choose other --frames or another --duration");
   }
   const double count = frames ? *frames : std::round(seconds * kHundredths / delay);
   if (count < kLeastFrames || count > kMostFrames) {
-    refuse(fmt::format("{:.6g} s at {:.6g} frames a second are {:.6g} frames", seconds, kHundredths / delay,
-                       count),
-           fmt::format("{} to {} frames", kLeastFrames, kMostFrames),
-           "choose another --duration or another --rate");
+    refuse_timing(fmt::format("{:.6g} s at {:.6g} frames a second are {:.6g} frames", seconds,
+                              kHundredths / delay, count),
+                  fmt::format("{} to {} frames", kLeastFrames, kMostFrames),
+                  "choose another --duration or another --rate");
   }
   return {static_cast<int>(count), count * delay / kHundredths, static_cast<int>(delay)};
 }
@@ -66,8 +68,9 @@ AnimationTiming timing_of(const AnimateRequest& request, bool gif) {
   const std::optional<double> duration = duration_of(request), rate = rate_of(request);
   if (gif) return gif_timing(request.frames, duration, rate);
   if (rate) {
-    refuse(fmt::format("--rate {} is for a .gif: others move evenly between their frames", request.rate), "",
-           "leave it out; --frames says how many positions are computed");
+    refuse_timing(
+        fmt::format("--rate {} is for a .gif: others move evenly between their frames", request.rate), "",
+        "leave it out; --frames says how many positions are computed");
   }
   AnimationTiming timing;
   timing.frames = request.frames.value_or(timing.frames);

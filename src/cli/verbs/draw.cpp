@@ -39,8 +39,8 @@ draw::Picture mechanism_picture(const Session& session, const mechanism::Mechani
   return draw::draw_linkage(mechanism, timed.scene);
 }
 
-void refuse(bool given, const std::string& option, const std::string& file, const char* kind,
-            const char* other) {
+void refuse_drawing(bool given, const std::string& option, const std::string& file, const char* kind,
+                    const char* other) {
   if (!given) return;
   throw text::ReadError(text::Diagnostic{
       {file, {}}, fmt::format("{} is for {}s, and this is a {}", option, other, kind), {}, "leave it out"});
@@ -48,7 +48,7 @@ void refuse(bool given, const std::string& option, const std::string& file, cons
 
 void check_options_of_diagram(const DrawRequest& request) {
   const auto refuse_option = [&](bool given, const char* option) {
-    refuse(given, option, request.file, "diagram", "mechanism");
+    refuse_drawing(given, option, request.file, "diagram", "mechanism");
   };
   refuse_option(!request.at.empty(), "--at");
   refuse_option(request.positions != 1, "--positions");
@@ -58,9 +58,9 @@ void check_options_of_diagram(const DrawRequest& request) {
 }
 
 void check_options_of_mechanism(const DrawRequest& request) {
-  refuse(!request.symbols.empty(), "--symbols", request.file, "mechanism", "diagram");
-  refuse(request.depth.has_value(), "--depth", request.file, "mechanism", "diagram");
-  refuse(request.layout, "--layout", request.file, "mechanism", "diagram");
+  refuse_drawing(!request.symbols.empty(), "--symbols", request.file, "mechanism", "diagram");
+  refuse_drawing(request.depth.has_value(), "--depth", request.file, "mechanism", "diagram");
+  refuse_drawing(request.layout, "--layout", request.file, "mechanism", "diagram");
 }
 
 }  // namespace

@@ -152,7 +152,7 @@ std::vector<ensemble::ChunkPlace> places_of(const EnsembleRequest& request, std:
   return places;
 }
 
-[[noreturn]] void refuse(const std::string& what, const std::string& expected) {
+[[noreturn]] void refuse_ensemble(const std::string& what, const std::string& expected) {
   throw text::ReadError(text::Diagnostic{{}, what, expected, {}});
 }
 
@@ -160,9 +160,9 @@ std::vector<ensemble::ChunkPlace> places_of(const EnsembleRequest& request, std:
 
 ExitStatus run_ensemble(const Session& session, const EnsembleRequest& request) {
   if (!request.chunk.empty() && request.chunks)
-    refuse("--chunk makes one chunk and --chunks all", "one of the two");
+    refuse_ensemble("--chunk makes one chunk and --chunks all", "one of the two");
   if (!request.chunk.empty() && !request.table.empty())
-    refuse("--table is for all chunks, and --chunk makes one", "one of the two");
+    refuse_ensemble("--table is for all chunks, and --chunk makes one", "one of the two");
   if (!request.table.empty()) check_table_output(request.table, {});
   const Opened plan = open_plan(session, request);
   const std::vector<ensemble::ChunkPlace> places = places_of(request, plan.work.runs);
@@ -225,7 +225,7 @@ ExitStatus show_ensemble(const Session& session, const EnsembleRequest& request)
 }
 
 ExitStatus script_ensemble(const Session& session, const EnsembleRequest& request) {
-  if (!request.slurm) refuse("nothing says which kind of script is wanted", "--slurm");
+  if (!request.slurm) refuse_ensemble("nothing says which kind of script is wanted", "--slurm");
   if (!request.output.empty()) check_output(request.output, ".sh");
   const Opened plan = open_plan(session, request);
   JobScript job;

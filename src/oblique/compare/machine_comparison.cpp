@@ -13,9 +13,6 @@
 namespace oblique::compare {
 namespace {
 
-/// Times the steps on ideal elements.
-constexpr long kStepsOfAFailure = 100;
-
 bool has_setting(const diagram::BlockInstance& block, const std::string& key) {
   return std::any_of(block.settings.begin(), block.settings.end(),
                      [&](const text::Entry& entry) { return entry.key == key; });

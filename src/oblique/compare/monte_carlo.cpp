@@ -18,7 +18,6 @@ namespace {
 
 constexpr double kFinerThanScatter = 1e-3;
 constexpr double kCoarsest = 1e-6, kFinest = 1e-10;  ///< of the solver's tolerance
-constexpr long kStepsOfAFailure = 100;               ///< times those of the undisturbed run
 
 double tolerance_for(const std::vector<diagram::BlockFigure>& scatters) {
   double narrowest = 1;

@@ -18,6 +18,9 @@
 // What comparisons share; not installed.
 namespace oblique::compare {
 
+/// A run that takes so many times the steps of the undisturbed one, or of that on ideal elements, has failed.
+inline constexpr long kStepsOfAFailure = 100;
+
 /// A mechanism's diagram with all that running it takes. The library must outlive it.
 struct PatchedMechanism {
   PatchedMechanism(diagram::Diagram patched, const diagram::BlockLibrary& library);

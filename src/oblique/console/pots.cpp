@@ -8,6 +8,7 @@
 
 #include <oblique/diagram/machine_profile.h>
 #include <oblique/network/assembly/network.h>
+#include <oblique/network/assembly/parameter_difference.h>
 #include <oblique/text/expression.h>
 #include <oblique/text/quantity.h>
 
@@ -118,24 +119,14 @@ void Pots::compile(std::shared_ptr<diagram::FlatDiagram> flat) {
 
 /// The parameters that are others in `now`; nothing where more than parameters is.
 std::optional<std::vector<Pots::Parameter>> Pots::changed(const diagram::FlatDiagram& now) const {
-  std::vector<Parameter> changed;
-  const auto compare = [&](double before, double after, std::uint32_t number) {
-    if (before != after) changed.push_back({number, after});
-  };
-  if (flat_->blocks.size() != now.blocks.size()) return std::nullopt;
+  const auto numbers = network::parameter_difference(*flat_, *numbers_, now);
+  if (!numbers) return std::nullopt;
   for (std::size_t b = 0; b < now.blocks.size(); ++b) {
-    const diagram::FlatBlock &before = flat_->blocks[b], &after = now.blocks[b];
-    if (behaviour_of(before) != behaviour_of(after) || before.saturation != after.saturation)
-      return std::nullopt;
-    for (std::size_t k = 0; k < after.parameters.size(); ++k)
-      compare(before.parameters[k], after.parameters[k], numbers_->parameter(b, k));
-    for (std::size_t input = 0; input < after.inputs.size(); ++input) {
-      const diagram::FlatInput &old = before.inputs[input], &other = after.inputs[input];
-      if (old.constant != other.constant || old.terms.size() != other.terms.size()) return std::nullopt;
-      for (std::size_t wire = 0; wire < other.terms.size(); ++wire)
-        compare(old.terms[wire].weight, other.terms[wire].weight, numbers_->weight(b, input, wire));
-    }
+    if (behaviour_of(flat_->blocks[b]) != behaviour_of(now.blocks[b])) return std::nullopt;
   }
+  const std::vector<double> values = network::parameter_values(now);
+  std::vector<Parameter> changed;
+  for (const std::uint32_t number : *numbers) changed.push_back({number, values[number]});
   return changed;
 }
 

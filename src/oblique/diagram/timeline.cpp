@@ -15,7 +15,6 @@
 namespace oblique::diagram {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::array kModes{OperatingMode::potset, OperatingMode::initial, OperatingMode::operate,
                             OperatingMode::hold};
 
@@ -90,7 +89,7 @@ Phase read_phase(const std::string& file, const text::Value& value, const std::s
     read_comparison(phase.until, phase.place, what, machine, diagnostics);
   }
   const auto duration = reader.quantity("for", "s");
-  phase.duration = duration.value_or(kInfinity);
+  phase.duration = duration.value_or(std::numeric_limits<double>::infinity());
   if (duration && !(*duration > 0)) {
     reader.report("for", fmt::format("{} lasts {} s", what, *duration), "a time above 0 [s]");
   } else if (std::isinf(phase.duration) && phase.until.empty()) {

@@ -16,7 +16,7 @@ namespace oblique::machine {
 namespace {
 
 /// What is left of a difference of equal weights is rounding.
-constexpr double kRounding = 1e-15;
+constexpr double kRoundingOfSum = 1e-15;
 
 /// A weight at which a passed-on signal still fits into the range, rounding allowed.
 constexpr double kUnit = 1 + 1e-12;
@@ -170,7 +170,7 @@ class Reducer {
       add(value);
     }
     std::erase_if(gathered.terms,
-                  [&](const CircuitTerm& t) { return std::abs(t.weight) <= kRounding * largest; });
+                  [&](const CircuitTerm& t) { return std::abs(t.weight) <= kRoundingOfSum * largest; });
     return gathered;
   }
 

@@ -17,7 +17,7 @@
 namespace oblique::patch {
 namespace {
 
-void check_groups(const PatchSetup& setup) {
+void check_groups_of_the_source(const PatchSetup& setup) {
   for (const mechanism::Group& group : setup.structure.groups) {
     if (group.form.placing == mechanism::Placing::rotation || group.form.is_triad_on_links()) continue;
     refuse(setup.mechanism(), group, "is of a kind that the source does not have",
@@ -224,7 +224,7 @@ class PaperWriter {
 
 diagram::Diagram patch_paper(const mechanism::Mechanism& mechanism, const PatchOptions& options) {
   PatchSetup setup(mechanism, options);
-  check_groups(setup);
+  check_groups_of_the_source(setup);
   const std::vector<TriadSplit> splits = choose_splits(setup);
   if (!options.unit) widen(setup.scaling, splits);
   Circuit circuit(setup);

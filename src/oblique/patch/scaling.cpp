@@ -16,8 +16,8 @@
 namespace oblique::patch {
 namespace {
 
-[[noreturn]] void refuse(const mechanism::Mechanism& mechanism, const mechanism::Structure& structure,
-                         const mechanism::Obstacle& obstacle) {
+[[noreturn]] void refuse_range(const mechanism::Mechanism& mechanism, const mechanism::Structure& structure,
+                               const mechanism::Obstacle& obstacle) {
   const bool open = obstacle.status == mechanism::Status::open;
   const mechanism::Drive& drive = mechanism.drives.front();
   const double value = mechanism::DriveClock(mechanism).at(0, obstacle.time).value;
@@ -58,7 +58,7 @@ double round_up(double value) {
 Scaling find_scaling(const mechanism::Mechanism& mechanism, const mechanism::Structure& structure,
                      const mechanism::Motion& motion) {
   if (const auto obstacle = mechanism::find_obstacle(mechanism, structure))
-    refuse(mechanism, structure, *obstacle);
+    refuse_range(mechanism, structure, *obstacle);
   Scaling scaling;
   scaling.triangles.resize(structure.groups.size());
   for (TriangleRange& range : scaling.triangles) range.shortest = std::numeric_limits<double>::infinity();

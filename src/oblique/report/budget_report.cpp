@@ -13,7 +13,7 @@
 namespace oblique::report {
 namespace {
 
-constexpr std::size_t kMostRows = 20;
+constexpr std::size_t kMostShares = 20;
 
 }  // namespace
 
@@ -30,7 +30,7 @@ std::string to_text(const BudgetReport& report) {
       report.unit, at);
   Table table({"tolerance of", "±", fmt::format("displaces it by [{}]", report.unit), "share",
                fmt::format("at most, anywhere [{}]", report.unit)});
-  const std::size_t shown = std::min(kMostRows, budget.entries.size());
+  const std::size_t shown = std::min(kMostShares, budget.entries.size());
   for (std::size_t k = 0; k < shown; ++k) {
     const compare::BudgetEntry& entry = budget.entries[k];
     table.add({entry.element, fmt::format("{:.3g}", entry.half_width), fmt::format("{:.3e}", entry.error),

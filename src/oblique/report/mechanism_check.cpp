@@ -14,8 +14,6 @@
 namespace oblique::report {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
-
 std::string poor_transmission(const MechanismCheck& check, const mechanism::Transmission& transmission) {
   const std::string& group = check.structure.groups[transmission.group].name;
   const auto say = [&](const char* what, const mechanism::Reading& at, const char* limit) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,6 +10,8 @@
 #include <oblique/mechanism/structure/structure.h>
 
 namespace oblique::report {
+
+inline constexpr double kDegree = std::numbers::pi / 180;  ///< [rad]
 
 /// What `check` finds out about a mechanism.
 struct MechanismCheck {

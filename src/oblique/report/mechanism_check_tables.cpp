@@ -10,8 +10,6 @@
 namespace oblique::report {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
-
 class Tables {
  public:
   explicit Tables(const MechanismCheck& check)

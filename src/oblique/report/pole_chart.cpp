@@ -8,7 +8,7 @@
 namespace oblique::report {
 namespace {
 
-constexpr double kHeight = 220;  // [px]
+constexpr double kPoleHeight = 220;  // [px]
 
 }  // namespace
 
@@ -45,7 +45,8 @@ draw::Chart pole_chart(const diagram::FlatDiagram& diagram, const network::Progr
     draw::Curve limit{
         "limit of stability", {{0, -highest}, {0, highest}}, draw::Curve::kPlain, draw::Curve::Style::guide};
     if (highest == 0) limit.points = {{0, -1}, {0, 1}};
-    chart.panels.push_back({{kNames[kind], "1/s"}, {"imaginary part", "1/s"}, {limit, kinds[kind]}, kHeight});
+    chart.panels.push_back(
+        {{kNames[kind], "1/s"}, {"imaginary part", "1/s"}, {limit, kinds[kind]}, kPoleHeight});
   }
   if (chart.panels.empty())
     chart.note = "There is nothing to draw: no state acts back on itself, so that all eigenvalues are 0.";

@@ -10,7 +10,7 @@
 namespace oblique::text {
 namespace {
 
-constexpr std::size_t kMost = 512, kLongest = 511;
+constexpr std::size_t kMostShown = 512, kLongest = 511;
 
 enum class Slot { free, taken, filled };
 
@@ -21,7 +21,7 @@ struct Remembered {
 
 // A signal reaches no other, and asks for no memory.
 // NOLINTNEXTLINE(*-avoid-non-const-global-variables)
-std::array<Remembered, kMost> remembered;
+std::array<Remembered, kMostShown> remembered;
 
 static_assert(std::atomic<Slot>::is_always_lock_free, "for the handler of a signal");
 
@@ -30,7 +30,7 @@ static_assert(std::atomic<Slot>::is_always_lock_free, "for the handler of a sign
 void Leftover::remember(std::string_view path) noexcept {
   forget();
   if (path.size() > kLongest) return;
-  for (std::size_t k = 0; k < kMost; ++k) {
+  for (std::size_t k = 0; k < kMostShown; ++k) {
     Slot expected = Slot::free;
     if (!remembered[k].slot.compare_exchange_strong(expected, Slot::taken)) continue;
     path.copy(remembered[k].path.data(), path.size());

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import html
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Optional
+from typing import TYPE_CHECKING, Any, Optional, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -74,14 +74,19 @@ class Table(Mapping[str, FloatArray]):
     def __array__(self, dtype: Any = None, copy: Optional[bool] = None) -> npt.NDArray[Any]:
         return np.array(self._rows, dtype=dtype) if copy else np.asarray(self._rows, dtype=dtype)
 
+    def _along(self) -> tuple[str, Union[FloatArray, range], dict[str, str]]:
+        """What the rows are told apart by: its name, its values, and its attributes."""
+        return "t", self.t, {"units": "s"}
+
     def to_pandas(self) -> Any:
         """A pandas.DataFrame with the index `t` [s]; its `attrs["units"]` are the units."""
         try:
             import pandas
         except ImportError:
             raise _missing("pandas") from None
-        frame = pandas.DataFrame({name: self[name] for name in self if name != "t"},
-                                 index=pandas.Index(self.t, name="t"))
+        along, values, _ = self._along()
+        frame = pandas.DataFrame({name: self[name] for name in self if name != along},
+                                 index=pandas.Index(values, name=along))
         frame.attrs["units"] = self.units
         return frame
 
@@ -92,9 +97,10 @@ class Table(Mapping[str, FloatArray]):
         except ImportError:
             raise _missing("xarray") from None
         units = self.units
+        along, values, attributes = self._along()
         return xarray.Dataset(
-            {name: ("t", self[name], {"units": units[name]}) for name in self if name != "t"},
-            coords={"t": ("t", self.t, {"units": "s"})})
+            {name: (along, self[name], {"units": units[name]}) for name in self if name != along},
+            coords={along: (along, np.asarray(values), attributes)})
 
     def plot(self, *names: str, against: str = "t", ax: Optional["matplotlib.axes.Axes"] = None,
              **style: Any) -> "matplotlib.axes.Axes":

@@ -14,7 +14,7 @@ from . import _arguments, _oblique, _toml
 from ._arguments import Number, PathLike, Quantity, shown
 from ._blocks import BlockLibrary, blocks as shipped_blocks
 from ._errors import RequestError, warn
-from ._tables import FloatArray, Table, _missing
+from ._tables import FloatArray, Table
 from .diagram import Diagram
 from .mechanism import Mechanism
 
@@ -64,25 +64,16 @@ class EnsembleRun(Table):
             table[name] = self[name]
         return table
 
+    def _along(self) -> tuple[str, range, dict[str, str]]:
+        return "machine", range(len(self.rows)), {}
+
     def to_pandas(self) -> Any:
         """A pandas.DataFrame, a row a machine; its `attrs["units"]` are the units."""
-        try:
-            import pandas
-        except ImportError:
-            raise _missing("pandas") from None
-        frame = pandas.DataFrame({name: self[name] for name in self}, index=pandas.RangeIndex(len(self.rows), name="machine"))
-        frame.attrs["units"] = self.units
-        return frame
+        return super().to_pandas()
 
     def to_xarray(self) -> Any:
         """An xarray.Dataset along `machine`; each variable has `attrs["units"]`."""
-        try:
-            import xarray
-        except ImportError:
-            raise _missing("xarray") from None
-        units = self.units
-        return xarray.Dataset({name: ("machine", self[name], {"units": units[name]}) for name in self},
-                              coords={"machine": np.arange(len(self.rows))})
+        return super().to_xarray()
 
     def plot(self, *names: str, against: str = "", ax: Optional["matplotlib.axes.Axes"] = None,
              **style: Any) -> "matplotlib.axes.Axes":

@@ -11,7 +11,7 @@ namespace oblique::ensemble {
 namespace {
 
 Chunk some_chunk() {
-  testing::FakeWork fake(100);
+  fake::FakeWork fake(100);
   return run_chunk(fake.work, chunk_place(1, 4, 100));
 }
 

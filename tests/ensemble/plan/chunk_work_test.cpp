@@ -20,13 +20,9 @@
 namespace oblique::ensemble {
 namespace {
 
-using testing::FakeWork;
+using fake::FakeWork;
+using test::bytes_of;
 using ::testing::HasSubstr;
-
-std::string bytes_of(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 std::size_t files_in(const std::filesystem::path& folder) {
   return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder), {}));

@@ -7,7 +7,7 @@
 
 #include <oblique/ensemble/plan/chunk_work.h>
 
-namespace oblique::ensemble::testing {
+namespace oblique::ensemble::fake {
 
 /// An ensemble whose machines are known beforehand: machine k has the values k and sin k, and every one that
 /// is divisible by seven but the first fails.
@@ -41,4 +41,4 @@ struct FakeWork {
   static bool fails(std::uint64_t k) { return k > 0 && k % 7 == 0; }
 };
 
-}  // namespace oblique::ensemble::testing
+}  // namespace oblique::ensemble::fake

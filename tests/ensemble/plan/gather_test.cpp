@@ -17,13 +17,9 @@
 namespace oblique::ensemble {
 namespace {
 
-using testing::FakeWork;
+using fake::FakeWork;
+using test::bytes_of;
 using ::testing::HasSubstr;
-
-std::string bytes_of(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 struct GatherTest : public ::testing::Test {
   test::ScratchFolder folder;

@@ -9,7 +9,7 @@
 namespace oblique::ensemble {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 constexpr const char* kWhole = R"toml(format = "oblique-ensemble/1"
 title = "Gains and lengths"

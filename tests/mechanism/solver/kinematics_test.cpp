@@ -14,8 +14,6 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kPi = std::numbers::pi;
-
 /// A crank that stands at 0.4 at time 0, turns at 1.3 rad/s and gains 0.7 rad/s².
 DriveState drive_at(double t) {
   return {0.4 + 1.3 * t + 0.35 * t * t, 1.3 + 0.7 * t, 0.7};
@@ -199,7 +197,7 @@ crank = { turns = "arm", about = "B", speed = 1, start = "30 deg" }
       EXPECT_NEAR(loaded.bodies[body].cosine, start.bodies[body].cosine, 1e-12);
       EXPECT_NEAR(loaded.bodies[body].sine, start.bodies[body].sine, 1e-12);
     }
-    EXPECT_NEAR(start.bodies[0].cosine, std::cos(kPi / 6), 1e-14);
+    EXPECT_NEAR(start.bodies[0].cosine, std::cos(std::numbers::pi / 6), 1e-14);
     EXPECT_EQ(loaded.points[carried.find_point("O").value()].position, Vector2d(0, 0));
     return start.points[carried.find_point("B").value()].position;
   };
@@ -243,11 +241,11 @@ E = [250, 150]
   const Configuration well = state_at(far, 1);
   EXPECT_EQ(well.status, Status::ok);
   EXPECT_FALSE(well.group);
-  const Configuration collinear = state_at(near, kPi);
+  const Configuration collinear = state_at(near, std::numbers::pi);
   EXPECT_EQ(collinear.status, Status::dead_centre);
   EXPECT_EQ(collinear.group, 1U);
   EXPECT_NEAR(collinear.points[near.find_point("C").value()].position.x(), 40, 1e-12);
-  const Configuration open = state_at(far, kPi);  // the parallelogram is collinear there too
+  const Configuration open = state_at(far, std::numbers::pi);  // the parallelogram is collinear there too
   EXPECT_EQ(open.status, Status::open);
   EXPECT_EQ(open.group, 2U);
   EXPECT_TRUE(std::isnan(open.points[far.find_point("C").value()].position.x()));

@@ -25,7 +25,7 @@ RunOptions until(double end) {
   return options;
 }
 
-constexpr double kTolerance = 1e-7;  // a hundred times that of the run
+constexpr double kGradientTolerance = 1e-7;  // a hundred times that of the run
 
 const char* const kDecay =
     "p = { type = \"potentiometer\", in = \"x\", setting = 0.5 }\n"
@@ -37,15 +37,15 @@ TEST(Gradient, OfAValue) {
   const std::vector<std::string> names{"p.setting", "x.in[1]", "x.initial"};
   const double x = 0.7 * std::exp(-3.0);
   const Gradient of_x = gradient(made.program, made.flat, until(5), {RunNumber::Kind::value, "x", 2}, names);
-  EXPECT_NEAR(of_x.value, x, kTolerance);
-  EXPECT_NEAR(of_x.by_parameter[0], -6 * x, kTolerance);
-  EXPECT_NEAR(of_x.by_parameter[1], x, kTolerance);
-  EXPECT_NEAR(of_x.by_parameter[2], std::exp(-3.0), kTolerance);
+  EXPECT_NEAR(of_x.value, x, kGradientTolerance);
+  EXPECT_NEAR(of_x.by_parameter[0], -6 * x, kGradientTolerance);
+  EXPECT_NEAR(of_x.by_parameter[1], x, kGradientTolerance);
+  EXPECT_NEAR(of_x.by_parameter[2], std::exp(-3.0), kGradientTolerance);
   const Gradient of_p = gradient(made.program, made.flat, until(5), {RunNumber::Kind::value, "p", 2}, names);
-  EXPECT_NEAR(of_p.by_parameter[0], x - 3 * x, kTolerance);
+  EXPECT_NEAR(of_p.by_parameter[0], x - 3 * x, kGradientTolerance);
   const Gradient by_run =
       gradient(made.diagram, testing::shipped_blocks(), {RunNumber::Kind::value, "x", 2}, names);
-  EXPECT_NEAR(by_run.by_parameter[0], -6 * x, 10 * kTolerance) << "at the tolerance of [run]";
+  EXPECT_NEAR(by_run.by_parameter[0], -6 * x, 10 * kGradientTolerance) << "at the tolerance of [run]";
 }
 
 // ∫ x dt = x₀ (1 − e^(−k w T))/(k w), with E = e^(−3) at T = 2.
@@ -54,9 +54,9 @@ TEST(Gradient, OfAnIntegral) {
   const Gradient found = gradient(made.program, made.flat, until(2), {RunNumber::Kind::integral, "x", 0},
                                   {"p.setting", "x.initial"});
   const double e = std::exp(-3.0), rate = 1.5;
-  EXPECT_NEAR(found.value, 0.7 * (1 - e) / rate, kTolerance);
-  EXPECT_NEAR(found.by_parameter[0], 3 * 0.7 * (2 * e / rate - (1 - e) / (rate * rate)), kTolerance);
-  EXPECT_NEAR(found.by_parameter[1], (1 - e) / rate, kTolerance);
+  EXPECT_NEAR(found.value, 0.7 * (1 - e) / rate, kGradientTolerance);
+  EXPECT_NEAR(found.by_parameter[0], 3 * 0.7 * (2 * e / rate - (1 - e) / (rate * rate)), kGradientTolerance);
+  EXPECT_NEAR(found.by_parameter[1], (1 - e) / rate, kGradientTolerance);
 }
 
 // A servo loop that starts at rest: the gradient holds what its rest depends on.

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <oblique/draw/chart/axes.h>
+#include <oblique/draw/chart/panel_stack.h>
 #include <oblique/draw/picture/text_width.h>
 
 namespace oblique::draw {
@@ -15,8 +16,8 @@ namespace {
 using Eigen::Vector2d;
 using Extent = Eigen::AlignedBox<double, 2>;
 
-constexpr double kMargin = 20, kTitle = 15, kText = 12, kNote = 11, kLabel = 11;  // [px]
-constexpr double kBar = 18, kStep = 28, kGap = 6, kBetweenPanels = 24;            // [px]
+constexpr double kBarText = 12, kBarLabel = 11;    // [px]
+constexpr double kBar = 18, kStep = 28, kGap = 6;  // [px]
 
 double widest(const EffectBars& panel, std::string EffectBars::Bar::*text, double size) {
   double width = 0;
@@ -30,9 +31,9 @@ double paint(const EffectBars& panel, std::size_t index, double top, double widt
   for (const EffectBars::Bar& bar : panel.bars) values.insert(values.end(), {bar.low, bar.high});
   const Scale x(panel.axis, values, true);
   Scale rows({""}, {0, 1}, false);
-  const double left = kMargin + widest(panel, &EffectBars::Bar::name, kText) + 2 * kGap +
-                      widest(panel, &EffectBars::Bar::low_label, kLabel);
-  const double right = width - kMargin - kGap - widest(panel, &EffectBars::Bar::high_label, kLabel);
+  const double left = kPanelMargin + widest(panel, &EffectBars::Bar::name, kBarText) + 2 * kGap +
+                      widest(panel, &EffectBars::Bar::low_label, kBarLabel);
+  const double right = width - kPanelMargin - kGap - widest(panel, &EffectBars::Bar::high_label, kBarLabel);
   const double height = kStep * static_cast<double>(panel.bars.size()) + kStep - kBar;
   const Axes axes(Extent(Vector2d(left, top), Vector2d(std::max(right, left + 120), top + height)), x, rows,
                   Axes::Shape::stretched);
@@ -55,9 +56,9 @@ double paint(const EffectBars& panel, std::size_t index, double top, double widt
     marks.back().id = fmt::format("bar-{}-{}", index, b);
     marks.back().tooltip = fmt::format("{}: {:.6g} … {:.6g}", bar.name, bar.low, bar.high);
     const double base = y + kBar / 2 + 4;
-    marks.push_back(label_mark({kMargin, base}, bar.name, Anchor::start, kText));
-    marks.push_back(label_mark({begin - kGap, base}, bar.low_label, Anchor::end, kLabel));
-    marks.push_back(label_mark({end + kGap, base}, bar.high_label, Anchor::start, kLabel));
+    marks.push_back(label_mark({kPanelMargin, base}, bar.name, Anchor::start, kBarText));
+    marks.push_back(label_mark({begin - kGap, base}, bar.low_label, Anchor::end, kBarLabel));
+    marks.push_back(label_mark({end + kGap, base}, bar.high_label, Anchor::start, kBarLabel));
   }
   marks.push_back(line_mark({middle, top}, {middle, top + height}, {Ink::line, 1.25}));
   return top + height + Axes::kFoot + 6;
@@ -67,24 +68,10 @@ double paint(const EffectBars& panel, std::size_t index, double top, double widt
 
 Picture draw_effect_bars(const std::string& title, const std::vector<EffectBars>& panels,
                          const std::string& note, double width) {
-  Picture picture{width, 0, title, {}};
-  double y = kMargin;
-  if (!title.empty()) {
-    picture.marks.push_back(label_mark({kMargin, y + kTitle}, title, Anchor::start, kTitle));
-    std::get<Label>(picture.marks.back().shape).bold = true;
-    y += kTitle + 16;
-  }
-  for (std::size_t p = 0; p < panels.size(); ++p)
-    y = paint(panels[p], p, y, width, picture.marks) + kBetweenPanels;
-  if (!note.empty()) {
-    picture.marks.push_back(label_mark({kMargin, y}, note, Anchor::start, kNote));
-    y += kBetweenPanels;
-  }
-  double end = 0;
-  for (const Mark& mark : picture.marks) end = std::max(end, extent_of(mark).max().x());
-  picture.width = std::max(width, end + kMargin);
-  picture.height = y - kBetweenPanels + kMargin;
-  return picture;
+  const auto panel = [&](std::size_t index, double top, std::vector<Mark>& marks) {
+    return paint(panels[index], index, top, width, marks);
+  };
+  return stack_panels(title, panels.size(), panel, note, width);
 }
 
 }  // namespace oblique::draw

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <oblique/draw/chart/axes.h>
+#include <oblique/draw/chart/panel_stack.h>
 #include <oblique/draw/picture/text_width.h>
 
 namespace oblique::draw {
@@ -15,10 +16,9 @@ namespace {
 using Eigen::Vector2d;
 using Extent = Eigen::AlignedBox<double, 2>;
 
-constexpr double kMargin = 20, kTitle = 15, kText = 12, kNote = 11;  // [px]
-constexpr double kHeight = 300, kBar = 16, kBeforeBar = 24;          // [px]
-constexpr double kBetweenMaps = 22;                                  // [px]
-constexpr int kShades = 64;                                          ///< of the scale of colours
+constexpr double kMapText = 12;                                           // [px]
+constexpr double kMapHeight = 300, kScaleBar = 16, kBeforeScaleBar = 24;  // [px]
+constexpr int kShades = 64;                                               ///< of the scale of colours
 
 /// A rectangle in the colour of a fraction from 0 to 1: blue over yellow, ever less transparent.
 void add_shade(const Vector2d& corner, const Vector2d& size, double fraction, const std::string& id,
@@ -51,23 +51,23 @@ class MapPainter {
 
   /// Gives where the map ends.
   double paint(std::size_t index, double top, double width, std::vector<Mark>& marks) const {
-    marks.push_back(label_mark({kMargin, top + kText}, value_.title(), Anchor::start, kText));
+    marks.push_back(label_mark({kPanelMargin, top + kMapText}, value_.title(), Anchor::start, kMapText));
     std::get<Label>(marks.back().shape).bold = true;
-    top += 2 * kText + Axes::kHead + 6;
-    const Extent anywhere(Vector2d(0, top), Vector2d(100, top + kHeight));
+    top += 2 * kMapText + Axes::kHead + 6;
+    const Extent anywhere(Vector2d(0, top), Vector2d(100, top + kMapHeight));
     const double numbers = Axes(anywhere, x_, y_, Axes::Shape::stretched).number_width();
     const double of_bar = Axes(anywhere, x_, value_, Axes::Shape::stretched).number_width();
-    const double left = std::ceil(kMargin + numbers + Axes::kTickGap), right = width - kMargin;
-    const double end = std::floor(right - kBar - Axes::kTickGap - of_bar - kBeforeBar);
-    const Axes axes(Extent(Vector2d(left, top), Vector2d(end, top + kHeight)), x_, y_,
+    const double left = std::ceil(kPanelMargin + numbers + Axes::kTickGap), right = width - kPanelMargin;
+    const double end = std::floor(right - kScaleBar - Axes::kTickGap - of_bar - kBeforeScaleBar);
+    const Axes axes(Extent(Vector2d(left, top), Vector2d(end, top + kMapHeight)), x_, y_,
                     Axes::Shape::stretched);
     std::vector<Mark> frame = axes.marks();
     marks.insert(marks.end(), frame.begin(), frame.end());
     paint_cells(axes.frame(), index, marks);
     marks.push_back(box_mark(axes.frame().min(), axes.frame().sizes(), Ink::none, {Ink::faint, 1}));
     marks.back().id = fmt::format("plot-{}", index);
-    paint_bar(Extent(Vector2d(right - kBar, top), Vector2d(right, top + kHeight)), marks);
-    return top + kHeight + Axes::kFoot + 6;
+    paint_bar(Extent(Vector2d(right - kScaleBar, top), Vector2d(right, top + kMapHeight)), marks);
+    return top + kMapHeight + Axes::kFoot + 6;
   }
 
  private:
@@ -120,24 +120,10 @@ class MapPainter {
 
 Picture draw_heat_maps(const std::string& title, const std::vector<HeatMap>& maps, const std::string& note,
                        double width) {
-  Picture picture{width, 0, title, {}};
-  double y = kMargin;
-  if (!title.empty()) {
-    picture.marks.push_back(label_mark({kMargin, y + kTitle}, title, Anchor::start, kTitle));
-    std::get<Label>(picture.marks.back().shape).bold = true;
-    y += kTitle + 16;
-  }
-  for (std::size_t m = 0; m < maps.size(); ++m)
-    y = MapPainter(maps[m]).paint(m, y, width, picture.marks) + kBetweenMaps;
-  if (!note.empty()) {
-    picture.marks.push_back(label_mark({kMargin, y}, note, Anchor::start, kNote));
-    y += kBetweenMaps;
-  }
-  double end = 0;
-  for (const Mark& mark : picture.marks) end = std::max(end, extent_of(mark).max().x());
-  picture.width = std::max(width, end + kMargin);
-  picture.height = y - kBetweenMaps + kMargin;
-  return picture;
+  const auto panel = [&](std::size_t index, double top, std::vector<Mark>& marks) {
+    return MapPainter(maps[index]).paint(index, top, width, marks);
+  };
+  return stack_panels(title, maps.size(), panel, note, width);
 }
 
 }  // namespace oblique::draw

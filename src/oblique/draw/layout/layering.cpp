@@ -20,7 +20,7 @@
 namespace oblique::draw::layered {
 namespace {
 
-constexpr int kRounds = 30;
+constexpr int kLayerSweeps = 30;
 
 struct Arc {
   std::size_t from, to;
@@ -151,7 +151,7 @@ std::vector<std::size_t> layers_of(std::size_t n, const std::vector<Arc>& forwar
   for (const std::size_t v : sequence) {
     for (const std::size_t a : in[v]) layer[v] = std::max(layer[v], layer[forward[a].from] + 1);
   }
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kLayerSweeps; ++round) {
     bool moved = false;
     for (std::size_t k = 0; k < n; ++k) {
       const std::size_t v = sequence[round % 2 == 0 ? n - 1 - k : k];

@@ -12,10 +12,10 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kFarthest = 8 * kLayoutGrid;  // that a box moves at once
-constexpr double kGap = 2 * kLayoutGrid;       // between boxes
-constexpr int kRounds = 3;
-constexpr double kMostWork = 3e6;  // points of the grids set up and of searches: about a tenth of a second
+constexpr double kFarthest = 8 * kLayoutGrid;      // that a box moves at once
+constexpr double kBetweenBoxes = 2 * kLayoutGrid;  // between boxes
+constexpr int kNudges = 3;
+constexpr double kMostNudging = 3e6;  // points of the grids set up and of searches: about a tenth of a second
 
 class Nudge {
  public:
@@ -29,14 +29,14 @@ class Nudge {
 
   void run() {
     bool better = true;
-    for (int round = 0; better && round < kRounds; ++round) {
+    for (int round = 0; better && round < kNudges; ++round) {
       better = false;
       for (std::size_t v = 0; v < graph_.nodes.size(); ++v) {
         if (graph_.nodes[v].rank != LayoutRank::free) continue;
         for (const double shift : shifts_of(v)) {
           if (!is_clear(v, shift)) continue;
           work_ += work_of_trial_;
-          if (work_ > kMostWork) return;
+          if (work_ > kMostNudging) return;
           if (!move(v, shift)) continue;
           better = true;
           break;
@@ -79,7 +79,7 @@ class Nudge {
       return from.x() <= high.x() && low.x() <= to.x() && from.y() < high.y() + gap && low.y() - gap < to.y();
     };
     for (std::size_t u = 0; u < graph_.nodes.size(); ++u) {
-      if (u != v && touches(layout_.corners[u], layout_.corners[u] + graph_.nodes[u].size, kGap))
+      if (u != v && touches(layout_.corners[u], layout_.corners[u] + graph_.nodes[u].size, kBetweenBoxes))
         return false;
     }
     for (std::size_t n = 0; n < layout_.nets.size(); ++n) {

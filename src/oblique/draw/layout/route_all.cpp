@@ -9,9 +9,9 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr int kRounds = 4;
+constexpr int kRoutings = 4;
 /// Points to look at in order to improve a layout: about a tenth of a second.
-constexpr long kMostWork = 300'000;
+constexpr long kMostRouting = 300'000;
 
 }  // namespace
 
@@ -35,9 +35,9 @@ std::vector<NetToRoute> nets_of(const LayoutGraph& graph, const std::vector<Vect
 }
 
 void improve(WireRouter& router, const std::vector<std::size_t>& order) {
-  const long most = router.work() + kMostWork;
+  const long most = router.work() + kMostRouting;
   bool better = true;
-  for (int round = 0; better && round < kRounds; ++round) {
+  for (int round = 0; better && round < kRoutings; ++round) {
     better = false;
     for (const std::size_t k : order) {
       if (router.work() > most) return;
@@ -61,13 +61,13 @@ std::vector<std::size_t> route_all(const LayoutGraph& graph, const std::vector<V
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return spread[a] < spread[b]; });
   std::vector<std::size_t> lost;
-  for (int attempt = 0; attempt < kRounds; ++attempt) {
+  for (int attempt = 0; attempt < kRoutings; ++attempt) {
     WireRouter router(graph, corners, nets, area);
     lost.clear();
     for (const std::size_t k : order) {
       if (nets[k].pieces.empty() && !router.route(k)) lost.push_back(k);
     }
-    if (!lost.empty() && attempt + 1 < kRounds) {  // those come first, then
+    if (!lost.empty() && attempt + 1 < kRoutings) {  // those come first, then
       std::stable_partition(order.begin(), order.end(), [&](std::size_t k) {
         return std::find(lost.begin(), lost.end(), k) != lost.end();
       });

@@ -18,8 +18,8 @@
 namespace oblique::draw::layered {
 namespace {
 
-constexpr int kRounds = 12;
-constexpr double kBend = 48;  // a bend is as bad as a way of this length [px]
+constexpr int kStraightenings = 12;
+constexpr double kCostOfBend = 48;  // a bend is as bad as a way of this length [px]
 
 /// What is moved as a whole: a box, or the places of a passing net in several layers.
 using Unit = std::vector<std::size_t>;
@@ -38,7 +38,7 @@ class Straightener {
   }
 
   void run() {
-    for (int round = 0; round < kRounds; ++round) {
+    for (int round = 0; round < kStraightenings; ++round) {
       bool better = false;
       for (const Unit& chain : chains_) {
         for (std::size_t first = 0; first < chain.size(); ++first)
@@ -106,7 +106,7 @@ class Straightener {
     for (const std::size_t s : unit) {
       for (const SlotLink& link : links_[s]) {
         const double off = std::abs(plan_.slots[link.other].y + link.shift - plan_.slots[s].y);
-        sum += link.weight * off + (off > 0 && !link.same_side ? kBend : 0);
+        sum += link.weight * off + (off > 0 && !link.same_side ? kCostOfBend : 0);
       }
     }
     return sum;

@@ -19,9 +19,9 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kWidest = 2400;   // layouts up to this stay in one row [px]
-constexpr double kLongest = 2.2;   // and those whose width is up to this many heights
-constexpr double kMostWork = 4e6;  // points of the grid times wires
+constexpr double kWidest = 2400;       // layouts up to this stay in one row [px]
+constexpr double kLongest = 2.2;       // and those whose width is up to this many heights
+constexpr double kMostWrapping = 4e6;  // points of the grid times wires
 
 /// The layers of a layout with the row that each is in.
 struct Rows {
@@ -100,7 +100,7 @@ class Wrapping {
     }
     end += Vector2d(gap, gap);
     const double points = end.x() / kLayoutGrid * end.y() / kLayoutGrid;
-    if (points * static_cast<double>(graph_.wires.size()) > kMostWork) return false;
+    if (points * static_cast<double>(graph_.wires.size()) > kMostWrapping) return false;
     if (!route_all(graph_, wrapped_.corners, {Vector2d::Zero(), end}, nets_).empty()) return false;
     for (std::size_t n = 0; n < nets_.size(); ++n) wrapped_.nets[n].pieces = nets_[n].pieces;
     return true;

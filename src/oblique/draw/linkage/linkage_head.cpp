@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kMargin = 16, kTextSize = 12;  // [px]
+constexpr double kHeadMargin = 16, kTextSize = 12;  // [px]
 
 const std::vector<std::vector<double>>& dashes() {
   static const std::vector<std::vector<double>> all{{}, {9, 4}, {2, 4}, {12, 3, 2, 3}};
@@ -54,8 +54,8 @@ class Legend {
   }
 
   void room_for(double width) {
-    if (any_ && x_ + width > picture_.width - kMargin) {
-      x_ = kMargin;
+    if (any_ && x_ + width > picture_.width - kHeadMargin) {
+      x_ = kHeadMargin;
       y_ += kLine;
     }
     any_ = true;
@@ -67,7 +67,7 @@ class Legend {
   }
 
   Picture& picture_;
-  double x_ = kMargin, y_;
+  double x_ = kHeadMargin, y_;
   bool any_ = false;
 };
 
@@ -87,8 +87,8 @@ double add_linkage_head(Picture& picture, const mechanism::Mechanism& mechanism,
   constexpr double kTitleSize = 17, kTitleBase = 30, kToText = 16, kTop = 12;
   double bottom = kTop;
   if (!picture.title.empty()) {
-    Label title{{kMargin, kTitleBase}, picture.title, Anchor::start, kTitleSize, true};
-    const double room = picture.width - 2 * kMargin;
+    Label title{{kHeadMargin, kTitleBase}, picture.title, Anchor::start, kTitleSize, true};
+    const double room = picture.width - 2 * kHeadMargin;
     title.size = std::min(kTitleSize, kTitleSize * room / text_width(title.text, kTitleSize, true));
     picture.marks.push_back({title, {Ink::none, 0}, Ink::line});
     bottom = kTitleBase + 6;

@@ -15,8 +15,8 @@
 namespace oblique::draw {
 namespace {
 
-constexpr std::size_t kColours = 255;  // of 256: one index is the transparent one
-constexpr int kMost = 65535;           // what 16 bits hold
+constexpr std::size_t kMostColours = 255;  // of 256: one index is the transparent one
+constexpr int kMost = 65535;               // what 16 bits hold
 
 using Indices = std::vector<std::uint8_t>;
 
@@ -146,7 +146,7 @@ std::string encode_gif(std::size_t frames, const std::function<Raster(std::size_
       throw std::invalid_argument("frames that make no GIF");
     colours.add(raster);
   }
-  const std::vector<Rgb> palette = colours.palette(kColours);
+  const std::vector<Rgb> palette = colours.palette(kMostColours);
   PaletteIndex index(palette);
   Writer writer(palette, width, height, delay);
   for (std::size_t k = 0; k < frames; ++k) writer.add(index.indices(frame(k)));

@@ -16,6 +16,7 @@ class LaneArray {
   double* data() { return data_.get(); }
   const double* data() const { return data_.get(); }
   double& operator[](std::size_t i) { return data_.get()[i]; }
+  double operator[](std::size_t i) const { return data_.get()[i]; }
 
  private:
   static constexpr std::align_val_t kAlign{128};

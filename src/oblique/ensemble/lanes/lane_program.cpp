@@ -143,6 +143,18 @@ std::vector<double> negated(std::vector<double> values) {
   return values;
 }
 
+RestGroup rest_group(const std::vector<std::size_t>& states, const std::vector<StraightLu::Place>& places) {
+  RestGroup group{static_cast<std::uint32_t>(states.size())};
+  const auto index_of = [&](std::uint32_t state) {
+    return static_cast<std::uint32_t>(std::find(states.begin(), states.end(), state) - states.begin());
+  };
+  for (std::uint32_t k = 0; k < places.size(); ++k) {
+    const std::uint32_t row = index_of(places[k].first), column = index_of(places[k].second);
+    if (row < group.size && column < group.size) group.entries.push_back({k, row, column});
+  }
+  return group;
+}
+
 void renumber(LaneSpace& space, const std::vector<std::uint32_t>& slot_of) {
   std::vector<double> slots(1 + *std::max_element(slot_of.begin(), slot_of.end()), 0);
   for (std::size_t k = 0; k < space.slots.size(); ++k) slots[slot_of[k]] = space.slots[k];
@@ -242,7 +254,10 @@ LaneCompilation compile_for_lanes(const diagram::FlatDiagram& diagram, std::span
   lanes.guess = nominal.moments.front().variables;
   lanes.at_rest.assign(flat.n_variables, false);
   if (options.settle) {
-    for (const std::size_t i : solve::rest_states(program)) lanes.at_rest[i] = true;
+    for (const std::vector<std::size_t>& group : solve::servo_groups(program)) {
+      for (const std::size_t i : group) lanes.at_rest[i] = true;
+      lanes.rest_groups.push_back(rest_group(group, pattern.places));
+    }
   }
   std::fill(lanes.at_rest.begin() + static_cast<std::ptrdiff_t>(flat.n_states), lanes.at_rest.end(), true);
   lanes.needs_rest = std::find(lanes.at_rest.begin(), lanes.at_rest.end(), true) != lanes.at_rest.end();

@@ -40,6 +40,16 @@ struct LaneNumber {
   double of(std::span<const double> draws) const { return drawn ? draws[*drawn] : value; }
 };
 
+/// Servo loops that act on each other, and their part of ∂F/∂u.
+struct RestGroup {
+  struct Entry {
+    std::uint32_t place;  ///< in the matrix
+    std::uint32_t row, column;
+  };
+  std::uint32_t size = 0;
+  std::vector<Entry> entries = {};
+};
+
 /// All that the lanes of an ensemble have in common: the equations with the varied parameters held, as tapes,
 /// the matrix, its factors in a straight line, where a machine starts. Immutable.
 struct LaneProgram {
@@ -61,12 +71,13 @@ struct LaneProgram {
             static_cast<std::uint32_t>(n_states), diagonal.data()};
   }
 
-  std::vector<bool> grows;          ///< of the states: its rate depends on a state
-  std::vector<LaneNumber> starts;   ///< of the states
-  std::vector<double> guess;        ///< of all variables: the start of the diagram as it is
-  std::vector<bool> at_rest;        ///< of all variables: those that are solved for before the clock starts
-  bool needs_rest = false;          ///< any of them
-  std::vector<LaneNumber> turning;  ///< how fast arguments of sines and cosines of the time go [1/s]
+  std::vector<bool> grows;         ///< of the states: its rate depends on a state
+  std::vector<LaneNumber> starts;  ///< of the states
+  std::vector<double> guess;       ///< of all variables: the start of the diagram as it is
+  std::vector<bool> at_rest;       ///< of all variables: those that are solved for before the clock starts
+  bool needs_rest = false;         ///< any of them
+  std::vector<RestGroup> rest_groups;  ///< of the servo loops that are brought to rest
+  std::vector<LaneNumber> turning;     ///< how fast arguments of sines and cosines of the time go [1/s]
 
   std::vector<double> absolute;  ///< tolerance of each variable
   double relative = 0;

@@ -11,6 +11,8 @@
 
 #include <oblique/ensemble/engine/work_queue.h>
 #include <oblique/ensemble/lanes/lane_method.h>
+#include <oblique/ensemble/lanes/lane_starts.h>
+#include <oblique/ensemble/lanes/trough_watch.h>
 
 // Not installed.
 namespace oblique::ensemble {
@@ -48,6 +50,7 @@ class LaneRunner {
     std::vector<double> rows;   ///< of all variables, row by row
     double first_step = 0, longest_step = 0;
     std::size_t steps = 0;
+    bool is_near = true;  ///< to the typical machine, where there is to be a rest
     std::string refused;
   };
   /// A lane's place in its machine's run.
@@ -58,21 +61,17 @@ class LaneRunner {
     int row = 0;            ///< the next one
   };
 
+  std::vector<double> typical_draws();
   bool prepare(const Next& next, const Values& values, const Refuse& refuse);
   bool draw(Machine& machine);
   bool is_near(std::span<const double> values) const;
-  void bring_to_rest(std::span<const std::size_t> batch);
   void put(std::size_t lane, std::size_t machine);
-  void watch_troughs();
-  bool grows_by_itself(std::size_t watched, std::size_t lane, bool& evaluated);
+  void occupy_idle_lanes();
   void judge(const Take& take, const Refuse& refuse);
   void keep_rows();
   void end(std::size_t lane, const Take& take);
   void refuse_lane(std::size_t lane, const std::string& why, const Refuse& refuse);
   void evaluate(std::span<const std::size_t> batch, const Take& take);
-  void set_constants(const LaneSpace& space, std::size_t lane, const Machine& machine,
-                     LaneArray& slots) const;
-  LaneArray slots_of(const LaneSpace& space) const;
   double row_time(int row) const;
   double longest_step(const Machine& machine) const;
 
@@ -88,13 +87,10 @@ class LaneRunner {
 
   LaneStates at_;
   std::unique_ptr<LaneMethod> method_;
+  LaneStarts starts_;
+  TroughWatch troughs_;
   LaneArray output_slots_;
-  LaneArray where_;  ///< lanes whose step was taken
-  /// States that are not at rest, and grow: whose troughs are watched; with the slots of ∂F/∂x of their own.
-  std::vector<std::pair<std::size_t, std::vector<std::uint32_t>>> watched_;
-  LaneArray trough_,
-      trough_time_;  ///< of these and, last, of the largest of all: the least magnitude, and when
-  LaneArray risen_;  ///< whether one has risen from a trough in which it was not known
+  LaneArray taken_;  ///< 1 in lanes whose step was taken
 };
 
 }  // namespace oblique::ensemble

@@ -12,6 +12,9 @@
 // Not installed.
 namespace oblique::ensemble {
 
+/// The largest multiplier at which the order of pivots still suits a matrix.
+inline constexpr double kMostGrowth = 1e6;
+
 /// An LU factorisation of sparse matrices of one pattern without a choice in it: which pivot comes when, and
 /// what fills in, is fixed by samples, so that it runs as a straight line in all lanes. Each pivot is the
 /// entry that fills in least (Markowitz) among those that are no less than a tenth of the largest in their

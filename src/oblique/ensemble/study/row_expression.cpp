@@ -10,45 +10,45 @@
 namespace oblique::ensemble {
 namespace {
 
-using Kind = text::Expression::Kind;
+using Node = text::Expression::Kind;
 
 constexpr std::size_t kBlock = 64;  ///< rows that are evaluated together
 
-double combine(Kind kind, double a, double b) {
+double combine(Node kind, double a, double b) {
   switch (kind) {
-    case Kind::negate:
+    case Node::negate:
       return -a;
-    case Kind::add:
+    case Node::add:
       return a + b;
-    case Kind::subtract:
+    case Node::subtract:
       return a - b;
-    case Kind::multiply:
+    case Node::multiply:
       return a * b;
-    case Kind::divide:
+    case Node::divide:
       return a / b;
-    case Kind::power:
+    case Node::power:
       return text::evaluate(text::Operation::power, a, b);
-    case Kind::less:
+    case Node::less:
       return a < b ? 1 : 0;
-    case Kind::less_equal:
+    case Node::less_equal:
       return a <= b ? 1 : 0;
-    case Kind::greater:
+    case Node::greater:
       return a > b ? 1 : 0;
-    case Kind::greater_equal:
+    case Node::greater_equal:
       return a >= b ? 1 : 0;
-    case Kind::equal:
+    case Node::equal:
       return a == b ? 1 : 0;
-    case Kind::not_equal:
+    case Node::not_equal:
       return a != b ? 1 : 0;
-    case Kind::logical_and:
+    case Node::logical_and:
       return a != 0 && b != 0 ? 1 : 0;
-    case Kind::logical_or:
+    case Node::logical_or:
       return a != 0 || b != 0 ? 1 : 0;
-    case Kind::logical_not:
+    case Node::logical_not:
       return a == 0 ? 1 : 0;
-    case Kind::number:
-    case Kind::name:
-    case Kind::call:
+    case Node::number:
+    case Node::name:
+    case Node::call:
       break;
   }
   return std::nan("");
@@ -64,10 +64,10 @@ void RowExpression::add(const text::Expression& expression, const ColumnOf& colu
   for (const text::Expression& operand : expression.operands) add(operand, column_of);
   Instruction instruction{expression.kind, expression.function, expression.operands.size(),
                           expression.number};
-  if (expression.kind == Kind::name && (expression.name == "pi" || expression.name == "inf")) {
-    instruction.kind = Kind::number;
+  if (expression.kind == Node::name && (expression.name == "pi" || expression.name == "inf")) {
+    instruction.kind = Node::number;
     instruction.number = text::evaluate(expression);
-  } else if (expression.kind == Kind::name) {
+  } else if (expression.kind == Node::name) {
     instruction.count = column_of(expression);
     if (std::find(columns_.begin(), columns_.end(), instruction.count) == columns_.end())
       columns_.push_back(instruction.count);
@@ -97,16 +97,16 @@ void RowExpression::evaluate_block(std::span<const double* const> columns, std::
   std::vector<double> arguments;
   double* top = stack.data();  // one past the last operand
   for (const Instruction& at : instructions_) {
-    if (at.kind == Kind::number) {
+    if (at.kind == Node::number) {
       std::fill_n(top, n, at.number);
       top += n;
-    } else if (at.kind == Kind::name) {
+    } else if (at.kind == Node::name) {
       std::copy_n(columns[at.count] + first, n, top);
       top += n;
     } else {
       top -= at.count * n;
       const double* const second = at.count > 1 ? top + n : top;
-      if (at.kind != Kind::call) {
+      if (at.kind != Node::call) {
         for (std::size_t k = 0; k < n; ++k) top[k] = combine(at.kind, top[k], second[k]);
       } else {
         arguments.resize(at.count);

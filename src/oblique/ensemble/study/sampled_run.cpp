@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kPoints = 6;  ///< that a polynomial goes through
 constexpr double kSmooth = 0.25;    ///< fourth differences against second ones, at the most
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 
 /// The first of the rows whose polynomial is taken between `interval` and the next row.
 std::size_t window_of(std::size_t interval, std::size_t rows) {
@@ -182,7 +182,7 @@ double SampledRun::extreme(const RowExpression& expression, double sign) const {
   const std::vector<double> f = values(expression);
   double greatest = -std::numeric_limits<double>::infinity();
   for (const double value : f) {
-    if (std::isnan(value)) return kNone;
+    if (std::isnan(value)) return kNoValue;
     greatest = std::max(greatest, sign * value);
   }
   if (!std::isfinite(greatest)) return sign * greatest;
@@ -268,7 +268,7 @@ double SampledRun::first_time(const RowExpression& condition, std::span<const Ro
       return columns_[0][k] + spacing * high;
     }
   }
-  return kNone;
+  return kNoValue;
 }
 
 }  // namespace oblique::ensemble

@@ -10,9 +10,9 @@
 #include <utility>
 
 #include <oblique/ensemble/engine/work_queue.h>
-#include <oblique/ensemble/study/flat_difference.h>
 #include <oblique/ensemble/study/plan_reader.h>
 #include <oblique/network/assembly/network.h>
+#include <oblique/network/assembly/parameter_difference.h>
 #include <oblique/network/program/program.h>
 
 namespace oblique::ensemble {
@@ -108,7 +108,8 @@ std::vector<std::uint32_t> Study::Parts::changed_by(std::size_t name) const {
       std::vector<double> values = plan.usual;
       values[name] = k == 0 ? bound : plan.usual[name] + way;
       try {
-        const auto changed = difference(base.flat, numbers, plan.subject->machine(values).flat);
+        const auto changed =
+            network::parameter_difference(base.flat, numbers, plan.subject->machine(values).flat);
         if (!changed) continue;
         for (const std::uint32_t one : *changed) {
           if (std::find(all.begin(), all.end(), one) == all.end()) all.push_back(one);
@@ -206,7 +207,8 @@ Study::Parts::Made Study::Parts::make(std::uint64_t number) const {
         {element.block, element.parameter, element.draw(made.machine.flat, about, key_of(number))});
   }
   apply_draws(draws, made.machine.flat);
-  const auto changed = difference(base.flat, network::ParameterNumbers(base.flat), made.machine.flat);
+  const auto changed =
+      network::parameter_difference(base.flat, network::ParameterNumbers(base.flat), made.machine.flat);
   const bool is_alike = changed && made.machine.until == base.until &&
                         std::all_of(changed->begin(), changed->end(), [&](std::uint32_t one) {
                           return std::find(varied.begin(), varied.end(), one) != varied.end();

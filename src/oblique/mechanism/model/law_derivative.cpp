@@ -8,7 +8,7 @@
 namespace oblique::mechanism {
 namespace {
 
-using Kind = text::Expression::Kind;
+using Node = text::Expression::Kind;
 
 text::Expression number(double value) {
   text::Expression e;
@@ -17,10 +17,10 @@ text::Expression number(double value) {
 }
 
 bool is(const text::Expression& e, double value) {
-  return e.kind == Kind::number && e.number == value;
+  return e.kind == Node::number && e.number == value;
 }
 
-text::Expression node(Kind kind, text::Expression a, text::Expression b) {
+text::Expression node(Node kind, text::Expression a, text::Expression b) {
   text::Expression e;
   e.kind = kind;
   e.operands = {std::move(a), std::move(b)};
@@ -29,46 +29,46 @@ text::Expression node(Kind kind, text::Expression a, text::Expression b) {
 
 text::Expression call(text::Function function, std::vector<text::Expression> operands) {
   text::Expression e;
-  e.kind = Kind::call;
+  e.kind = Node::call;
   e.function = function;
   e.operands = std::move(operands);
   return e;
 }
 
 bool is_negation(const text::Expression& e) {
-  return e.kind == Kind::negate;
+  return e.kind == Node::negate;
 }
 
 text::Expression negative(text::Expression a) {
   if (is(a, 0)) return a;
   text::Expression e;
-  e.kind = Kind::negate;
+  e.kind = Node::negate;
   e.operands = {std::move(a)};
   return e;
 }
 
 text::Expression difference(text::Expression a, text::Expression b) {
   if (is(b, 0)) return a;
-  if (a.kind == Kind::number && b.kind == Kind::number) return number(a.number - b.number);
+  if (a.kind == Node::number && b.kind == Node::number) return number(a.number - b.number);
   if (is(a, 0)) return negative(std::move(b));
-  return node(Kind::subtract, std::move(a), std::move(b));
+  return node(Node::subtract, std::move(a), std::move(b));
 }
 
 text::Expression sum(text::Expression a, text::Expression b) {
   if (is(a, 0)) return b;
   if (is(b, 0)) return a;
   if (is_negation(b)) return difference(std::move(a), std::move(b.operands[0]));
-  return node(Kind::add, std::move(a), std::move(b));
+  return node(Node::add, std::move(a), std::move(b));
 }
 
 text::Expression quotient(text::Expression a, text::Expression b) {
   if (is(a, 0) || is(b, 1)) return a;
-  return node(Kind::divide, std::move(a), std::move(b));
+  return node(Node::divide, std::move(a), std::move(b));
 }
 
 text::Expression power(text::Expression a, text::Expression b) {
   if (is(b, 1)) return a;
-  return node(Kind::power, std::move(a), std::move(b));
+  return node(Node::power, std::move(a), std::move(b));
 }
 
 /// What is negative or a quotient stays so: (1/x)·y is y/x.
@@ -77,11 +77,11 @@ text::Expression product(text::Expression a, text::Expression b) {
   if (is(b, 0) || is(a, 1)) return b;
   if (is(a, -1)) return negative(std::move(b));
   if (is_negation(a)) return negative(product(std::move(a.operands[0]), std::move(b)));
-  if (b.kind == Kind::divide && is(b.operands[0], 1)) return quotient(std::move(a), std::move(b.operands[1]));
-  if (a.kind == Kind::divide && a.operands[0].kind == Kind::number)
+  if (b.kind == Node::divide && is(b.operands[0], 1)) return quotient(std::move(a), std::move(b.operands[1]));
+  if (a.kind == Node::divide && a.operands[0].kind == Node::number)
     return quotient(product(std::move(a.operands[0]), std::move(b)), std::move(a.operands[1]));
-  if (a.kind != Kind::number && a == b) return power(std::move(a), number(2));
-  return node(Kind::multiply, std::move(a), std::move(b));
+  if (a.kind != Node::number && a == b) return power(std::move(a), number(2));
+  return node(Node::multiply, std::move(a), std::move(b));
 }
 
 /// An expression as what the table of operations writes derivatives of.
@@ -127,9 +127,9 @@ text::Expression Formula::applied(text::Operation operation, const text::Express
 text::Expression law_derivative(const text::Expression& law) {
   const auto operation = text::smooth_operation(law);
   if (!operation) {
-    if (law.kind != Kind::number && law.kind != Kind::name)
+    if (law.kind != Node::number && law.kind != Node::name)
       throw text::ExpressionError{law.column, "what switches has no derivative", {}, {}};
-    return number(law.kind == Kind::name && law.name == "time" ? 1 : 0);
+    return number(law.kind == Node::name && law.name == "time" ? 1 : 0);
   }
   const Formula f{law, law.column}, a{law.operands.front(), law.column}, b{law.operands.back(), law.column};
   text::Expression derivative = number(0);

@@ -2,10 +2,13 @@
 #pragma once
 
 #include <cmath>
+#include <numbers>
 
 #include <Eigen/Core>
 
 namespace oblique::mechanism {
+
+inline constexpr double kTurn = 2 * std::numbers::pi;  ///< [rad]
 
 /// v turned by 90° to the left.
 inline Eigen::Vector2d left_normal(const Eigen::Vector2d& v) {

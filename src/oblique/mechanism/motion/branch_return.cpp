@@ -6,14 +6,14 @@
 #include <limits>
 #include <numbers>
 
+#include <oblique/mechanism/model/plane.h>
 #include <oblique/mechanism/motion/crossings.h>
 
 namespace oblique::mechanism {
 namespace {
 
-constexpr double kTurn = 2 * std::numbers::pi;
 /// A branch that goes on for more turns of its drive than this is not looked at to its other end.
-constexpr double kMostTurns = 16;
+constexpr double kMostTurnsBack = 16;
 /// How far within its ends a branch is taken up again [rad], where both are known to 1e-11 or so.
 constexpr double kInside = 1e-9;
 
@@ -160,7 +160,7 @@ Gap leave_branch(BranchWalk& walk) {
     gap.outward = gap.end > from ? 1 : -1;
     if (!walk.mechanism.drives.front().slide && gap.end != from) {
       BranchWalk back(walk, walk.last_clear, {-gap.outward});
-      if (const auto other = walk_to_limit(back, kMostTurns * kTurn)) {
+      if (const auto other = walk_to_limit(back, kMostTurnsBack * kTurn)) {
         const double length = std::abs(gap.end - from) + other->time;
         const double turns = std::ceil(length / kTurn);
         gap.width = turns * kTurn - length;

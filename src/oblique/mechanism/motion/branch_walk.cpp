@@ -5,12 +5,13 @@
 #include <cmath>
 #include <numbers>
 
+#include <oblique/mechanism/model/plane.h>
+
 namespace oblique::mechanism {
 namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kTurn = 2 * std::numbers::pi;
 /// Largest turn of a drive in a step.
 constexpr double kDriveStep = std::numbers::pi / 180;
 /// How far the fastest drive turns while limits are still told apart [rad].

@@ -6,16 +6,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include <oblique/mechanism/model/plane.h>
+
 namespace oblique::mechanism {
 namespace {
-
-constexpr double kTurn = 2 * std::numbers::pi;
 
 [[noreturn]] void refuse(const Mechanism& mechanism, std::string what, std::string expected,
                          std::string remedy) {

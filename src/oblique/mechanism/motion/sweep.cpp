@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
-#include <numbers>
+
+#include <oblique/mechanism/model/plane.h>
 
 namespace oblique::mechanism {
 namespace {
 
-constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kBand = 0.01;         ///< of the stroke
 constexpr double kShortest = 1.0 / 8;  ///< of the motion range
 constexpr double kRests = 1e-9;        ///< of the signal's scale

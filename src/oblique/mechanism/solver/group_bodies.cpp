@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
@@ -42,7 +42,7 @@ void GroupBodies::place(const GroupState& state, Configuration& here) const {
   for (std::size_t i = 0; i < platforms_.size(); ++i) {
     const GroupState::Platform& platform = state.platforms[i];
     const RigidBody& rigid = platforms_[i];
-    here.bodies[rigid.body] = {kNaN, platform.omega, platform.alpha, platform.cosine, platform.sine};
+    here.bodies[rigid.body] = {kUnknown, platform.omega, platform.alpha, platform.cosine, platform.sine};
     if (std::binary_search(group_.points.begin(), group_.points.end(), rigid.base))
       here.points[rigid.base] = platform.origin;
     place_arms(rigid, platform.cosine, platform.sine, platform.omega, platform.alpha, here);
@@ -60,7 +60,7 @@ void GroupBodies::place(const GroupState& state, Configuration& here) const {
     const double alpha = across.dot(to.acceleration - from.acceleration);
     const double cosine = (link.cosine * e.x() + link.sine * e.y()) / length;
     const double sine = (link.cosine * e.y() - link.sine * e.x()) / length;
-    here.bodies[link.body] = {kNaN, omega, alpha, cosine, sine};
+    here.bodies[link.body] = {kUnknown, omega, alpha, cosine, sine};
     place_arms(binary_links_[i], cosine, sine, omega, alpha, here);
   }
   for (std::size_t i = 0; i < group_.equations.blocks.size(); ++i) {
@@ -68,7 +68,7 @@ void GroupBodies::place(const GroupState& state, Configuration& here) const {
     const BodyState on = block.on ? here.bodies[*block.on] : BodyState{0, 0, 0, 1, 0};
     const double cosine = on.cosine * block.cosine - on.sine * block.sine;
     const double sine = on.sine * block.cosine + on.cosine * block.sine;
-    here.bodies[block.body] = {kNaN, on.omega, on.alpha, cosine, sine};
+    here.bodies[block.body] = {kUnknown, on.omega, on.alpha, cosine, sine};
     place_arms(blocks_[i], cosine, sine, on.omega, on.alpha, here);
   }
 }

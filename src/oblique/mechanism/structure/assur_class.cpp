@@ -5,14 +5,6 @@
 #include <queue>
 
 namespace oblique::mechanism {
-namespace {
-
-bool has(const std::vector<std::size_t>& list, std::size_t item) {
-  return std::find(list.begin(), list.end(), item) != list.end();
-}
-
-}  // namespace
-
 int order_of(const Mechanism& mechanism, const GroupMembers& members, const std::vector<bool>& known) {
   int pairs = 0;
   for (const std::size_t body : members.bodies) {

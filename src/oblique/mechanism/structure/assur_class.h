@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include <oblique/mechanism/solver/group_equations.h>
 
 namespace oblique::mechanism {
+
+inline bool has(const std::vector<std::size_t>& list, std::size_t item) {
+  return std::find(list.begin(), list.end(), item) != list.end();
+}
 
 /// The order of a group: its pairs with what is placed before. `known` says of each point whether it is.
 int order_of(const Mechanism& mechanism, const GroupMembers& members, const std::vector<bool>& known);

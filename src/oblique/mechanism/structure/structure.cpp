@@ -17,10 +17,6 @@
 namespace oblique::mechanism {
 namespace {
 
-bool has(const std::vector<std::size_t>& list, std::size_t item) {
-  return std::find(list.begin(), list.end(), item) != list.end();
-}
-
 void add_once(std::vector<std::size_t>& list, std::size_t item) {
   if (!has(list, item)) list.push_back(item);
 }

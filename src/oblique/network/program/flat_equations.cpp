@@ -11,7 +11,7 @@
 namespace oblique::network {
 namespace {
 
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kNoSlot = std::numeric_limits<std::uint32_t>::max();
 
 /// The tape in the order in which an evaluation of everything runs it.
 std::vector<Instruction> in_order(const ProgramCode& code) {
@@ -33,7 +33,7 @@ std::vector<Instruction> in_order(const ProgramCode& code) {
 class Extraction {
  public:
   Extraction(const std::vector<Instruction>& tape, std::size_t n_slots)
-      : tape_(tape), writer_(n_slots, kNone) {
+      : tape_(tape), writer_(n_slots, kNoSlot) {
     for (std::uint32_t i = 0; i < tape.size(); ++i) writer_[tape[i].result] = i;
   }
 
@@ -45,7 +45,7 @@ class Extraction {
     while (!pending.empty()) {
       const std::uint32_t i = writer_[pending.back()];
       pending.pop_back();
-      if (i == kNone || done[i] || mine[i]) continue;
+      if (i == kNoSlot || done[i] || mine[i]) continue;
       mine[i] = true;
       const int operands = operand_count(tape_[i].code);
       pending.push_back(tape_[i].a);
@@ -78,7 +78,7 @@ FlatEquations flat_equations(const Program& program, std::span<const std::size_t
   for (const std::size_t s : signals) flat.output_slots.push_back(code.signal_slots[s]);
 
   // The unknowns of loops that derivatives need come behind the states, on slots that follow on them.
-  std::vector<std::uint32_t> row_of(code.unknowns.size(), kNone);
+  std::vector<std::uint32_t> row_of(code.unknowns.size(), kNoSlot);
   for (const std::uint32_t l : code.sensitivity_order) {
     const LoopCode& loop = code.loop_codes[l];
     for (std::size_t i = 0; i < loop.size(); ++i) {
@@ -132,7 +132,7 @@ FlatEquations flat_equations(const Program& program, std::span<const std::size_t
 
   const auto check = [&](std::uint32_t slot) {
     const bool unknown = slot > n && slot <= n + code.unknowns.size();
-    if (!unknown || row_of[slot - 1 - n] != kNone) return;
+    if (!unknown || row_of[slot - 1 - n] != kNoSlot) return;
     throw NetworkError({{},
                         fmt::format("an output follows '{}', of a loop that no state depends on",
                                     code.unknowns[slot - 1 - n].name),

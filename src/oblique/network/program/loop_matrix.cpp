@@ -10,10 +10,6 @@
 namespace oblique::network {
 namespace {
 
-Eigen::Index index(std::size_t i) {
-  return static_cast<Eigen::Index>(i);
-}
-
 /// Up to here dense factors are as quick.
 constexpr std::size_t kShort = 100;
 /// Entries of the Jacobian for an unknown, on the average, up to which sparse factors stay sparse.
@@ -31,13 +27,14 @@ class LoopMatrix::Sparse : public Eigen::SparseLU<Eigen::SparseMatrix<double>, E
     for (const MatrixEntry& entry : loop.jacobian)
       places.emplace_back(static_cast<int>(entry.row), static_cast<int>(entry.column), 0.0);
     for (int i = 0; i < static_cast<int>(loop.size()); ++i) places.emplace_back(i, i, 0.0);
-    matrix.resize(index(loop.size()), index(loop.size()));
+    matrix.resize(eigen_index(loop.size()), eigen_index(loop.size()));
     matrix.setFromTriplets(places.begin(), places.end());
     const auto place_of = [&](Eigen::Index row, Eigen::Index column) {
       return static_cast<std::size_t>(&matrix.coeffRef(row, column) - matrix.valuePtr());
     };
     for (const MatrixEntry& entry : loop.jacobian) of_entry.push_back(place_of(entry.row, entry.column));
-    for (std::size_t i = 0; i < loop.size(); ++i) of_diagonal.push_back(place_of(index(i), index(i)));
+    for (std::size_t i = 0; i < loop.size(); ++i)
+      of_diagonal.push_back(place_of(eigen_index(i), eigen_index(i)));
     analyzePattern(matrix);
   }
 
@@ -72,10 +69,11 @@ bool LoopCode::has_branches() const {
          std::find(held_by_amplifier.begin(), held_by_amplifier.end(), true) != held_by_amplifier.end();
 }
 
-LoopMatrix::LoopMatrix(std::size_t size) : scale_(index(size)), permuted_(index(size)), visited_(size) {
+LoopMatrix::LoopMatrix(std::size_t size)
+    : scale_(eigen_index(size)), permuted_(eigen_index(size)), visited_(size) {
   if (size > kShort) return;  // it may be sparse
-  matrix_.resize(index(size), index(size));
-  lu_ = Eigen::PartialPivLU<Eigen::MatrixXd>(index(size));
+  matrix_.resize(eigen_index(size), eigen_index(size));
+  lu_ = Eigen::PartialPivLU<Eigen::MatrixXd>(eigen_index(size));
 }
 
 LoopMatrix::~LoopMatrix() = default;
@@ -101,8 +99,8 @@ void LoopMatrix::prepare(const LoopCode& loop) {
   if (loop.jacobian.size() <= kFew * loop.size()) {
     sparse_ = std::make_unique<Sparse>(loop);
   } else {
-    matrix_.resize(index(loop.size()), index(loop.size()));
-    lu_ = Eigen::PartialPivLU<Eigen::MatrixXd>(index(loop.size()));
+    matrix_.resize(eigen_index(loop.size()), eigen_index(loop.size()));
+    lu_ = Eigen::PartialPivLU<Eigen::MatrixXd>(eigen_index(loop.size()));
   }
 }
 
@@ -116,16 +114,16 @@ bool LoopMatrix::factor_sparse(const LoopCode& loop, const double* slots, double
     values[sparse_->of_entry[k]] = derivative / scale_[loop.jacobian[k].row];
   }
   for (std::size_t i = 0; i < loop.size(); ++i) {
-    if (loop.held_by_amplifier[i]) values[sparse_->of_diagonal[i]] += mass / scale_[index(i)];
+    if (loop.held_by_amplifier[i]) values[sparse_->of_diagonal[i]] += mass / scale_[eigen_index(i)];
   }
   sparse_->factorize(sparse_->matrix);
   return sparse_->info() == Eigen::Success && sparse_->smallest_pivot() > smallest_pivot;
 }
 
 bool LoopMatrix::factor(const LoopCode& loop, const double* slots, double mass) {
-  scale_ = Eigen::Map<const Eigen::VectorXd>(loop.natural_scale.data(), index(loop.size()));
+  scale_ = Eigen::Map<const Eigen::VectorXd>(loop.natural_scale.data(), eigen_index(loop.size()));
   for (std::size_t i = 0; i < loop.size(); ++i) {
-    if (loop.held_by_amplifier[i]) scale_[index(i)] = std::max(scale_[index(i)], mass);
+    if (loop.held_by_amplifier[i]) scale_[eigen_index(i)] = std::max(scale_[eigen_index(i)], mass);
   }
   for (const MatrixEntry& entry : loop.jacobian) {
     scale_[entry.row] = std::max(scale_[entry.row], std::abs(slots[entry.slot]));
@@ -139,7 +137,7 @@ bool LoopMatrix::factor(const LoopCode& loop, const double* slots, double mass) 
     matrix_(entry.row, entry.column) = slots[entry.slot] / scale_[entry.row];
   }
   for (std::size_t i = 0; i < loop.size(); ++i) {
-    if (loop.held_by_amplifier[i]) matrix_(index(i), index(i)) += mass / scale_[index(i)];
+    if (loop.held_by_amplifier[i]) matrix_(eigen_index(i), eigen_index(i)) += mass / scale_[eigen_index(i)];
   }
   if (loop.size() == 1) return std::abs(matrix_(0, 0)) > smallest_pivot;
   lu_.compute(matrix_);
@@ -192,7 +190,7 @@ double LoopMatrix::residual_norm(const LoopCode& loop, const double* slots) cons
   for (std::size_t i = 0; i < loop.size(); ++i) {
     const double residual = slots[loop.residual_slots[i]];
     if (!std::isfinite(residual)) return std::numeric_limits<double>::infinity();
-    norm = std::max(norm, std::abs(residual) / scale_[index(i)]);
+    norm = std::max(norm, std::abs(residual) / scale_[eigen_index(i)]);
   }
   return norm;
 }

@@ -11,6 +11,10 @@
 
 namespace oblique::network {
 
+inline Eigen::Index eigen_index(std::size_t i) {
+  return static_cast<Eigen::Index>(i);
+}
+
 /// A number on a slot that belongs at (row, column) of a matrix.
 struct MatrixEntry {
   std::uint32_t row, column, slot;

@@ -22,18 +22,14 @@ double magnitude(double z) {
   return std::abs(z) + std::numeric_limits<double>::min();
 }
 
-Eigen::Index index(std::size_t i) {
-  return static_cast<Eigen::Index>(i);
-}
-
 }  // namespace
 
 LoopWorkspace::LoopWorkspace(std::size_t size)
     : matrix_(size),
-      step_(index(size), 1),
-      start_(index(size)),
-      origin_(index(size)),
-      target_(index(size)),
+      step_(eigen_index(size), 1),
+      start_(eigen_index(size)),
+      origin_(eigen_index(size)),
+      target_(eigen_index(size)),
       held_(size) {}
 
 void LoopWorkspace::reset() {
@@ -51,19 +47,19 @@ void LoopWorkspace::hold(double t, std::vector<double> unknowns, bool whatever) 
 double LoopWorkspace::move(const LoopCode& loop, double* slots, double fraction) const {
   double change = 0;
   for (std::size_t i = 0; i < loop.size(); ++i) {
-    const double by = fraction * step_(index(i), 0);
-    slots[loop.unknown_slots[i]] = start_[index(i)] + by;
-    change = std::max(change, std::abs(by) / magnitude(start_[index(i)]));
+    const double by = fraction * step_(eigen_index(i), 0);
+    slots[loop.unknown_slots[i]] = start_[eigen_index(i)] + by;
+    change = std::max(change, std::abs(by) / magnitude(start_[eigen_index(i)]));
   }
   return change;
 }
 
 void LoopWorkspace::read(const LoopCode& loop, const double* slots, Eigen::VectorXd& unknowns) const {
-  for (std::size_t i = 0; i < loop.size(); ++i) unknowns[index(i)] = slots[loop.unknown_slots[i]];
+  for (std::size_t i = 0; i < loop.size(); ++i) unknowns[eigen_index(i)] = slots[loop.unknown_slots[i]];
 }
 
 void LoopWorkspace::write(const LoopCode& loop, double* slots, const Eigen::VectorXd& unknowns) const {
-  for (std::size_t i = 0; i < loop.size(); ++i) slots[loop.unknown_slots[i]] = unknowns[index(i)];
+  for (std::size_t i = 0; i < loop.size(); ++i) slots[loop.unknown_slots[i]] = unknowns[eigen_index(i)];
 }
 
 LoopFailure LoopWorkspace::solve_loop(const LoopCode& loop, std::span<const Instruction> tape,
@@ -118,8 +114,8 @@ LoopFailure LoopWorkspace::solve_linear(const LoopCode& loop, std::span<const In
   }
   solved_ = true;
   for (std::size_t i = 0; i < loop.size(); ++i) {
-    step_(index(i), 0) = -slots[loop.residual_slots[i]];
-    start_[index(i)] = 0;
+    step_(eigen_index(i), 0) = -slots[loop.residual_slots[i]];
+    start_[eigen_index(i)] = 0;
   }
   if (matrix_.residual_norm(loop, slots) == 0) return LoopFailure::none;
   matrix_.solve(step_);
@@ -149,8 +145,8 @@ LoopWorkspace::Search LoopWorkspace::newton(const LoopCode& loop, std::span<cons
     if (!matrix_.factor(loop, slots))
       return ended(iteration == 0 ? LoopFailure::singular : LoopFailure::diverged);
     for (std::size_t i = 0; i < loop.size(); ++i) {
-      step_(index(i), 0) = -slots[loop.residual_slots[i]];
-      start_[index(i)] = slots[loop.unknown_slots[i]];
+      step_(eigen_index(i), 0) = -slots[loop.residual_slots[i]];
+      start_[eigen_index(i)] = slots[loop.unknown_slots[i]];
     }
     const double norm = matrix_.residual_norm(loop, slots);
     if (norm == 0) return search;
@@ -231,7 +227,7 @@ LoopFailure LoopWorkspace::solve_branched(const LoopCode& loop, std::span<const 
 double LoopWorkspace::way(const LoopCode& loop, const double* slots) const {
   double longest = 0;
   for (std::size_t i = 0; i < loop.size(); ++i) {
-    const double from = origin_[index(i)];
+    const double from = origin_[eigen_index(i)];
     longest = std::max(longest, std::abs(slots[loop.unknown_slots[i]] - from) / (1 + std::abs(from)));
   }
   return longest;
@@ -303,7 +299,7 @@ bool LoopWorkspace::relax(const LoopCode& loop, std::span<const Instruction> bod
     bool good = rising != 0 && matrix_.factor(loop, slots, 1 / h) && matrix_.determinant_sign() == rising;
     double change = 0;
     if (good) {
-      for (std::size_t i = 0; i < n; ++i) step_(index(i), 0) = -slots[loop.residual_slots[i]];
+      for (std::size_t i = 0; i < n; ++i) step_(eigen_index(i), 0) = -slots[loop.residual_slots[i]];
       matrix_.solve(step_);
       change = (step_.col(0).array().abs() / (1 + target_.array().abs())).maxCoeff();
       start_ = target_ + step_.col(0);

@@ -9,14 +9,14 @@
 namespace oblique::network {
 namespace {
 
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kNoLeaf = std::numeric_limits<std::uint32_t>::max();
 
 }  // namespace
 
 ParameterPrologue::ParameterPrologue(const Program& program, std::span<const std::uint32_t> varied) {
   const ProgramCode& code = *program.code_;
   const std::vector<ProgramCode::Constant>& constants = code.constants;
-  std::vector<std::uint32_t> leaf(code.n_parameters, kNone);
+  std::vector<std::uint32_t> leaf(code.n_parameters, kNoLeaf);
   for (std::uint32_t c = 0; c < constants.size(); ++c) {
     const ProgramCode::Constant& constant = constants[c];
     values_.push_back(constant.slot ? program.initial_slots_[*constant.slot] : constant.value);
@@ -25,7 +25,7 @@ ParameterPrologue::ParameterPrologue(const Program& program, std::span<const std
   std::vector<bool> follows(constants.size());
   for (const std::uint32_t parameter : varied) {
     leaves_.push_back(leaf[parameter]);
-    if (leaf[parameter] != kNone) follows[leaf[parameter]] = true;
+    if (leaf[parameter] != kNoLeaf) follows[leaf[parameter]] = true;
   }
   for (std::uint32_t c = 0; c < constants.size(); ++c) {
     const ProgramCode::Constant& constant = constants[c];
@@ -45,7 +45,7 @@ bool ParameterPrologue::run(std::span<const double> varied, std::span<double> sc
                             std::span<double> out) const {
   std::copy(values_.begin(), values_.end(), scratch.begin());
   for (std::size_t k = 0; k < varied.size(); ++k) {
-    if (leaves_[k] != kNone) scratch[leaves_[k]] = varied[k] == 0 ? 0.0 : varied[k];
+    if (leaves_[k] != kNoLeaf) scratch[leaves_[k]] = varied[k] == 0 ? 0.0 : varied[k];
   }
   for (const Step& step : steps_) {
     const double value = evaluate(step.op, scratch[step.a], scratch[step.b]);

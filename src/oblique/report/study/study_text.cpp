@@ -100,22 +100,26 @@ std::string order_text(const StudyResult& result) {
     // rows that differ in this name alone stand side by side
     std::vector<std::size_t> rows(result.done.rows.size());
     std::iota(rows.begin(), rows.end(), std::size_t{0});
-    const auto others = [&](std::size_t row) {
-      std::vector<double> values = result.done.rows[row].values;
-      values.resize(result.n_varied);
-      std::rotate(values.begin() + static_cast<std::ptrdiff_t>(name),
-                  values.begin() + static_cast<std::ptrdiff_t>(name) + 1, values.end());
-      return values;  // with this one last
+    const auto values = [&](std::size_t row) -> const std::vector<double>& {
+      return result.done.rows[row].values;
     };
-    std::sort(rows.begin(), rows.end(), [&](std::size_t a, std::size_t b) { return others(a) < others(b); });
+    // the first name in whose value two rows differ, this one last; n_varied where there is none.
+    const auto difference = [&](std::size_t a, std::size_t b) {
+      for (std::size_t other = 0; other < result.n_varied; ++other)
+        if (other != name && values(a)[other] != values(b)[other]) return other;
+      return values(a)[name] != values(b)[name] ? name : result.n_varied;
+    };
+    std::sort(rows.begin(), rows.end(), [&](std::size_t a, std::size_t b) {
+      const std::size_t other = difference(a, b);
+      return other < result.n_varied && values(a)[other] < values(b)[other];
+    });
     for (std::size_t k = 0; k < result.n_measures(); ++k) {
       std::vector<double> orders;
       bool has_orders = true;
       for (std::size_t i = 0; i + 1 < rows.size(); ++i) {
-        std::vector<double> a = others(rows[i]), b = others(rows[i + 1]);
-        const double step = std::log(b.back() / a.back());
-        a.pop_back(), b.pop_back();
-        if (a != b || !(step > 0)) continue;
+        if (difference(rows[i], rows[i + 1]) != name) continue;
+        const double step = std::log(values(rows[i + 1])[name] / values(rows[i])[name]);
+        if (!(step > 0)) continue;
         const double ratio = result.measure(rows[i + 1], k) / result.measure(rows[i], k);
         has_orders = has_orders && ratio > 0 && std::isfinite(ratio);
         orders.push_back(std::log(ratio) / step);

@@ -15,7 +15,7 @@
 namespace oblique::solve {
 namespace {
 
-constexpr std::size_t kMostRounds = 3;  ///< of bends and others that follow each other
+constexpr std::size_t kMostTrials = 3;  ///< of bends and others that follow each other
 
 int sign_of(double value) {
   return value > 0 ? 1 : value < 0 ? -1 : 0;
@@ -82,7 +82,7 @@ std::optional<network::Evaluation> SideTrials::place(Combination sides, Bends& b
     positions_of(bent);
     here = bends.follow(*here, t, x, event_functions_);
     positions_of(followed);
-    if (!here || followed == bent || round > kMostRounds) return here;
+    if (!here || followed == bent || round > kMostTrials) return here;
     for (std::uint32_t s = 0; s < placed.size(); ++s) {
       const std::uint32_t discrete_state = program_.switches()[s].discrete_state;
       if (!placed[s]) workspace_.set_discrete_state(discrete_state, before_[discrete_state]);

@@ -19,7 +19,7 @@ constexpr double kMostReturn = 1e-6;
 
 /// How far beyond 0 and 1 the shares may be where a slide begins: a solution may run along a
 /// switching surface by itself.
-constexpr double kEdge = 2 * kMostReturn;
+constexpr double kEdgeOfSlide = 2 * kMostReturn;
 
 /// How far the states are moved to see whether a slide lasts [machine unit].
 constexpr double kProbe = 1e-6;
@@ -152,7 +152,7 @@ bool SlidingMode::begin(std::vector<std::uint32_t> units, double t, std::span<co
   const std::vector<std::uint64_t> broken = broken_by(program_, units_);
   possible = possible && std::none_of(broken.begin(), broken.end(), [](std::uint64_t by) { return by != 0; });
   shares_.assign(units_.size(), 0.5);
-  const auto within = [](double share) { return share >= -kEdge && share <= 1 + kEdge; };
+  const auto within = [](double share) { return share >= -kEdgeOfSlide && share <= 1 + kEdgeOfSlide; };
   if (possible && evaluate(t, x) && std::all_of(shares_.begin(), shares_.end(), within) && lasts(t, x)) {
     bool attracts = true;
     for (std::size_t u = 0; u < units_.size(); ++u)

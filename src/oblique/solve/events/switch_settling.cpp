@@ -23,7 +23,7 @@ constexpr long kMostBeyond = 20;
 constexpr double kSamePlace =
     10;  ///< roundings: an event function that is no farther off has not left its place
 
-bool contains(const std::vector<std::uint32_t>& units, std::uint32_t unit) {
+bool has_unit(const std::vector<std::uint32_t>& units, std::uint32_t unit) {
   return std::find(units.begin(), units.end(), unit) != units.end();
 }
 
@@ -68,7 +68,7 @@ double SwitchSettling::place_size(std::size_t s) const {
 double SwitchSettling::near_size(std::size_t s) const {
   const std::uint32_t unit = program_.switch_structure().unit[s];
   const double threshold = event_functions_.thresholds()[s];
-  const bool drifted = slide_.rests(s) || (!decided_[unit] && (rested_[s] || contains(slid_, unit)));
+  const bool drifted = slide_.rests(s) || (!decided_[unit] && (rested_[s] || has_unit(slid_, unit)));
   const double near = drifted ? std::max(SlidingMode::drift(), threshold) : threshold;
   if (unrest_[s].beyond > 0) return std::max(near, kSamePlace * place_size(s));
   return unrest_[s].turns > kRestless ? std::max(near, place_size(s)) : near;
@@ -228,7 +228,7 @@ void SwitchSettling::add_preferred(std::uint32_t unit, std::vector<double>& pref
 void SwitchSettling::decide(Units units, double t, std::span<const double> x) {
   const network::SwitchStructure& structure = program_.switch_structure();
   for (const std::uint32_t unit : slide_.units()) {
-    if (!contains(units, unit)) units.push_back(unit);
+    if (!has_unit(units, unit)) units.push_back(unit);
   }
   slide_.end();
   std::vector<double> preferred(event_functions_.size());
@@ -277,10 +277,10 @@ bool SwitchSettling::matters(std::uint32_t unit, double t, std::span<const doubl
 void SwitchSettling::note_choice(double t, std::span<const double> x) {
   for (const std::uint32_t unit : positions_.resting()) {
     for (const std::uint32_t member : program_.switch_structure().members[unit]) stays_[member] = true;
-    if (contains(slid_, unit) && matters(unit, t, x)) log_.warn_of_halt(unit, t);
+    if (has_unit(slid_, unit) && matters(unit, t, x)) log_.warn_of_halt(unit, t);
   }
   for (const std::uint32_t unit : positions_.undecided()) {
-    if (contains(slid_, unit) || is_announced(unit)) continue;  // what slid is told of apart
+    if (has_unit(slid_, unit) || is_announced(unit)) continue;  // what slid is told of apart
     log_.warn_of_no_side(unit, t);
   }
 }
@@ -358,7 +358,7 @@ void SwitchSettling::begin_after_events(bool set_states, bool jumped) {
 void SwitchSettling::end(const std::vector<std::uint32_t>& slid) {
   slid_.clear();
   for (const std::uint32_t unit : slid) {
-    if (contains(slide_.units(), unit)) continue;
+    if (has_unit(slide_.units(), unit)) continue;
     // It may lie on the wrong side by what the integration let it drift off; after a jump it lies elsewhere.
     for (const std::uint32_t s : program_.switch_structure().members[unit]) {
       const double off = std::abs(event_functions_[s]);

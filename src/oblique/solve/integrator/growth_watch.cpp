@@ -13,7 +13,7 @@ namespace {
 constexpr double kNear = 1e-4;
 
 /// In powers of e: what has grown more is judged. Less is the growth of every step that turns away.
-constexpr double kMuch = 2;
+constexpr double kGrown = 2;
 
 /// A Jacobian is looked at after so many steps, or where the step has become longer by so much.
 constexpr int kStepsBetween = 8;
@@ -97,7 +97,7 @@ void GrowthWatch::judge(double t, std::span<const double> x, double step) {
       unstable[i] = true;
       distance_[i] = growth_[i] == 0 ? distance : std::min(distance_[i], distance);
       growth_[i] += rate * (t - judged_);
-      much = much || growth_[i] > kMuch;
+      much = much || growth_[i] > kGrown;
       told = told || told_[i];
       least = std::min(least, distance_[i]);
     }

@@ -14,7 +14,7 @@ namespace oblique::solve {
 namespace {
 
 /// Below this order, or with more than this part of the entries, full rows are faster than lists of entries.
-constexpr std::size_t kSmall = 16;
+constexpr std::size_t kSmallMatrix = 16;
 constexpr double kFull = 0.5;
 
 /// Reciprocal growth of the entries by factorising with the pivots of another matrix: below it they are
@@ -170,7 +170,7 @@ class StepMatrix::SparseFactors final : public Factors {
 
 StepMatrix::StepMatrix(const network::SparsePattern& pattern) {
   const auto n = static_cast<double>(pattern.size());
-  if (pattern.size() <= kSmall || static_cast<double>(pattern.entries()) > kFull * n * n) {
+  if (pattern.size() <= kSmallMatrix || static_cast<double>(pattern.entries()) > kFull * n * n) {
     factors_ = std::make_unique<DenseFactors>(pattern);
   } else {
     factors_ = std::make_unique<SparseFactors>(pattern);

@@ -13,13 +13,6 @@
 #include <oblique/network/program/program.h>
 
 namespace oblique::solve {
-namespace {
-
-/// Below this part of the largest entry a pole is rounding.
-constexpr double kZeroPole = 1e-13;
-
-}  // namespace
-
 std::vector<std::vector<std::size_t>> coupled_groups(const network::Program& program) {
   const network::SparsePattern& pattern = program.jacobian_pattern();
   std::vector<std::vector<std::uint32_t>> needed(program.n_states());

@@ -13,6 +13,9 @@
 
 namespace oblique::solve {
 
+/// Below this part of the largest entry of a matrix, or of its norm, a pole is rounding.
+inline constexpr double kZeroPole = 1e-13;
+
 /// A moment of a run.
 struct Instant {
   double t = 0;                              ///< [s]

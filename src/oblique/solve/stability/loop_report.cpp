@@ -12,7 +12,7 @@
 namespace oblique::solve {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 /// Derivatives that differ by less are the same: far above rounding, far below what a term of second order
 /// does.
 constexpr double kSameDerivative = 1e-9;
@@ -30,7 +30,7 @@ LoopUnknown summary_of(const GainHistory& history) {
   LoopUnknown unknown;
   unknown.signal = history.signal;
   constexpr double kSame = 1e-6;  // of two instants of the same gain the first is named
-  double least = kInfinity, greatest = -1;
+  double least = kUnbounded, greatest = -1;
   const auto sign_of = [](double value) { return value > 0 ? 1 : value < 0 ? -1 : 0; };
   for (std::size_t k = 0; k < history.gains.size(); ++k) {
     const double gain = history.gains[k];
@@ -84,7 +84,7 @@ class ServoLoopHistory {
       const double gain = loops.gain(place - loop_.states.begin(), *own, 0).real();
       constexpr double kBehindAnIntegrator = 1e14;  // a pole of L at 0, to rounding
       histories_[k].times.push_back(instant.t);
-      histories_[k].gains.push_back(std::abs(gain) > kBehindAnIntegrator ? std::copysign(kInfinity, gain)
+      histories_[k].gains.push_back(std::abs(gain) > kBehindAnIntegrator ? std::copysign(kUnbounded, gain)
                                                                          : gain);
     }
     for (const Mode& mode : modes_of(block, loop_.states)) {
@@ -126,7 +126,7 @@ class ServoLoopHistory {
   const SignalFlow& flow_;
   ServoLoop loop_;
   std::vector<GainHistory> histories_;
-  double slowest_ = -kInfinity;
+  double slowest_ = -kUnbounded;
   bool linear_ = true;
   int trials_ = 0;  ///< of its linearity
 };
@@ -154,7 +154,7 @@ class AlgebraicLoop {
       // With the other unknowns solved for, dg_k/dz_k is 1/(G⁻¹)_kk = own (1 + L).
       const auto place = static_cast<Eigen::Index>(k);
       const double total = histories_.size() == 1 ? jacobian(0, 0) : 1 / inverse(place, place);
-      const double gain = *own == 0 ? std::copysign(kInfinity, total) : (total - *own) / *own;
+      const double gain = *own == 0 ? std::copysign(kUnbounded, total) : (total - *own) / *own;
       if (std::isnan(gain)) continue;
       histories_[k].times.push_back(instant.t);
       histories_[k].gains.push_back(gain);

@@ -24,8 +24,6 @@ constexpr double kPromising = 1e-2;      ///< relative residual of a guess that 
 constexpr std::size_t kMostRefined = 4;  ///< of the rightmost, and of the least damped
 constexpr std::size_t kMostTried = 12;
 constexpr double kZeroGuess = 1e-11;  ///< of the norm: a guess that will be 0
-/// An eigenvalue of less than this part of the norm is 0 to rounding.
-constexpr double kZeroPole = 1e-13;
 
 /// Numbers without a pattern, the same in every run: multiples of an irrational number.
 Eigen::VectorXd start_vector(Eigen::Index n) {

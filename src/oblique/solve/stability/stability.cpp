@@ -14,7 +14,7 @@
 namespace oblique::solve {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNoPole = std::numeric_limits<double>::infinity();
 
 /// The Jacobian of one group of servo loops: a diagonal block of that of the diagram.
 class GroupJacobian {
@@ -88,15 +88,15 @@ bool visit_groups(const network::Program& program, network::Workspace& workspace
 
 double servo_stability(const network::Program& program, network::Workspace& workspace, double t,
                        std::span<const double> states) {
-  double largest = -kInfinity;
+  double largest = -kNoPole;
   const bool known =
       visit_groups(program, workspace, t, states, [&](const auto&, const GroupJacobian& group) {
         const double pole =
             group.size() <= kMostLoopsForEigenvalues ? group.largest_real_part() : group.bound();
         largest = std::max(largest, pole);
-        return pole < kInfinity;
+        return pole < kNoPole;
       });
-  return known && largest < kInfinity ? largest : std::numeric_limits<double>::quiet_NaN();
+  return known && largest < kNoPole ? largest : std::numeric_limits<double>::quiet_NaN();
 }
 
 std::vector<std::size_t> unstable_group(const network::Program& program, network::Workspace& workspace,

@@ -15,11 +15,11 @@
 namespace oblique::solve {
 namespace {
 
-constexpr std::size_t kMostStates = kMostStatesForModes;
+constexpr std::size_t kMostReported = kMostStatesForModes;
 constexpr std::size_t kMostStatesForMargins = 60;
-constexpr double kRounding = 1e-9;  ///< of a damping ratio
+constexpr double kRoundingOfDamping = 1e-9;  ///< of a damping ratio
 /// Instants times n³ that are given to the QR algorithm, some seconds.
-constexpr double kMostWork = 2e8;
+constexpr double kMostReportWork = 2e8;
 constexpr std::size_t kInstantsOfLargeGroups = 3;
 
 using Complex = std::complex<double>;
@@ -39,8 +39,9 @@ class Judge {
       group.states = std::move(states);
       const std::size_t n = group.states.size();
       std::size_t most = kInstantsOfLargeGroups;
-      if (n <= kMostStates)
-        most = std::max(most, static_cast<std::size_t>(kMostWork / std::pow(static_cast<double>(n), 3)));
+      if (n <= kMostReported)
+        most =
+            std::max(most, static_cast<std::size_t>(kMostReportWork / std::pow(static_cast<double>(n), 3)));
       group.stride = std::max<std::size_t>(1, (instants.size() + most - 2) / (most - 1));
     }
     if (margins) find_margins_to_seek();
@@ -131,7 +132,7 @@ class Judge {
 
   void judge_group(Group& group, double t) {
     group.machine = ideal_->differs_in(group.states);
-    const bool large = group.states.size() > kMostStates;
+    const bool large = group.states.size() > kMostReported;
     const std::vector<Mode> modes = large ? rightmost_modes(group.last, group.states)
                                           : modes_of(Eigen::MatrixXd(group.last), group.states);
     if (large) group.proven = (group.proven || !group.seen) && is_proven_stable(group.last);
@@ -171,7 +172,7 @@ class Judge {
   /// By the damping ratio; among those alike (real poles have ±1) the one further to the right.
   static bool is_worse(const Mode& mode, const Mode& than) {
     const double difference = mode.damping_ratio() - than.damping_ratio();
-    if (std::abs(difference) > kRounding) return difference < 0;
+    if (std::abs(difference) > kRoundingOfDamping) return difference < 0;
     return mode.pole.real() > than.pole.real();
   }
 
@@ -198,13 +199,13 @@ class Judge {
     for (const Group& group : groups_) {
       report_.varies = report_.varies || group.varies;
       if (!group.seen) continue;
-      if (group.states.size() > kMostStates) {
+      if (group.states.size() > kMostReported) {
         report_.proven = report_.proven && group.proven;
         if (group.proven) continue;
         report_.left_out.push_back(fmt::format(
             "all but the rightmost modes of {}: beyond {} states they are sought, and one that is "
             "hidden among many alike may be missed",
-            name(group), kMostStates));
+            name(group), kMostReported));
       }
     }
     for (const Group& group : groups_) {
@@ -236,7 +237,7 @@ class Judge {
     if (growth && !growth->does_not_grow()) return Verdict::not_told;
     if (!report_.rightmost) {
       const bool large = std::any_of(groups_.begin(), groups_.end(), [](const Group& group) {
-        return group.states.size() > kMostStates && !group.has_modes;
+        return group.states.size() > kMostReported && !group.has_modes;
       });
       return large ? Verdict::not_told : Verdict::no_feedback;
     }
@@ -263,7 +264,7 @@ class Judge {
 }  // namespace
 
 ModeVerdict verdict_on(const Mode& mode) {
-  const double rounding = std::max(kRounding * std::abs(mode.pole), mode.rounding);
+  const double rounding = std::max(kRoundingOfDamping * std::abs(mode.pole), mode.rounding);
   if (mode.pole.real() > rounding) return ModeVerdict::grows;
   if (mode.pole.real() >= -rounding) return ModeVerdict::undamped;
   return mode.damping_ratio() < kBadDamping ? ModeVerdict::badly_damped : ModeVerdict::well_damped;
@@ -272,7 +273,7 @@ ModeVerdict verdict_on(const Mode& mode) {
 ModeVerdict verdict_on(const WorstMode& worst) {
   const auto& ideal = worst.ideal_pole;
   constexpr double kMillionth = 1e-6;
-  const bool undamped_by_design = ideal && std::abs(ideal->real()) <= kRounding * std::abs(*ideal) &&
+  const bool undamped_by_design = ideal && std::abs(ideal->real()) <= kRoundingOfDamping * std::abs(*ideal) &&
                                   std::abs(worst.mode.damping_ratio()) <= kMillionth;
   return undamped_by_design ? ModeVerdict::undamped : verdict_on(worst.mode);
 }

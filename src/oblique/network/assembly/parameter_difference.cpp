@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/ensemble/study/flat_difference.h>
+#include <oblique/network/assembly/parameter_difference.h>
 
-namespace oblique::ensemble {
+namespace oblique::network {
 namespace {
 
 bool alike(const diagram::FlatBlock& a, const diagram::FlatBlock& b) {
@@ -29,9 +29,9 @@ bool alike(const diagram::FlatTimeline& a, const diagram::FlatTimeline& b) {
 
 }  // namespace
 
-std::optional<std::vector<std::uint32_t>> difference(const diagram::FlatDiagram& before,
-                                                     const network::ParameterNumbers& numbers,
-                                                     const diagram::FlatDiagram& now) {
+std::optional<std::vector<std::uint32_t>> parameter_difference(const diagram::FlatDiagram& before,
+                                                               const ParameterNumbers& numbers,
+                                                               const diagram::FlatDiagram& now) {
   if (before.blocks.size() != now.blocks.size() || !alike(before.timeline, now.timeline)) return std::nullopt;
   std::vector<std::uint32_t> found;
   for (std::size_t b = 0; b < now.blocks.size(); ++b) {
@@ -52,4 +52,4 @@ std::optional<std::vector<std::uint32_t>> difference(const diagram::FlatDiagram&
   return found;
 }
 
-}  // namespace oblique::ensemble
+}  // namespace oblique::network
