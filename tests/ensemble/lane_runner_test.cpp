@@ -394,6 +394,36 @@ TEST(LaneRunner, FarMachinesComeToTheRestThatTheirLoopsRunTo) {
   }
 }
 
+// x′ = g x: e^(10 g) is above 100 from g = 0.47 on, and grows by √2 and more in an eighth of the run from
+// 0.28 on. The square that no output has passes 100 from 0.23 on, and grows twice as fast.
+TEST(LaneRunner, WhatARunWarnsOfOrFailsForIsLeftToCvodes) {
+  Machines growing(R"(
+      g = { type = "gain", factor = 0.1, in = "x" }
+      x = { type = "integrator", in = ["g"], initial = 1 }
+      square = { type = "squarer", in = "x" })",
+                   {"g.factor"});
+  growing.options.run.until = 10;
+  growing.options.run.samples = 81;
+  const auto all =
+      growing.run(21, [](std::uint64_t k, std::span<double> values) { values[0] = 0.05 * at(k) + 0.01; });
+  EXPECT_EQ(growing.count.in_lanes, 5U);
+  EXPECT_EQ(growing.count.warned, 16U);
+  EXPECT_EQ(growing.count.first_warned.value().first, 5U);
+  EXPECT_EQ(growing.count.reasons,
+            (std::map<std::string, std::uint64_t>{{"a signal leaves the machine", 16}}));
+  for (const auto& [k, rows] : all) EXPECT_NEAR(rows.back() * std::exp(-0.5 * at(k) - 0.1), 1, 1e-4) << k;
+
+  Machines logarithms(R"(
+      x = { type = "integrator", in = ["-1*x"], initial = 1 }
+      log = { type = "logarithm", in = "x" })",
+                      {"x.initial"});
+  logarithms.run(8, [](std::uint64_t k, std::span<double> values) { values[0] = 1 - 0.4 * at(k) + 0.01; });
+  EXPECT_EQ(logarithms.count.in_lanes, 3U);
+  EXPECT_EQ(logarithms.count.failed, 5U);
+  EXPECT_EQ(logarithms.count.reasons,
+            (std::map<std::string, std::uint64_t>{{"a signal that is no number", 5}}));
+}
+
 // Of y² = x with y below zero the servo runs away, and CVODES says so.
 TEST(LaneRunner, LoopsThatDoNotSettleAreLeftToCvodes) {
   Machines roots(R"(

@@ -39,6 +39,21 @@ std::string obstacle(const network::Program& program) {
   return {};
 }
 
+/// With all signals as outputs, behind those asked for, where lanes can have them: so that they see what a
+/// run by CVODES warns of.
+network::FlatEquations equations_with_all_signals(const network::Program& program,
+                                                  const std::vector<std::size_t>& outputs) {
+  std::vector<std::size_t> all = outputs;
+  for (std::size_t s = 0; s < program.n_signals(); ++s) all.push_back(s);
+  try {
+    network::FlatEquations flat = network::flat_equations(program, all);
+    if (lanes_can_run(flat.outputs)) return flat;
+  } catch (
+      const network::NetworkError&) {  // a signal that no state depends on: it may be none of the outputs
+  }
+  return network::flat_equations(program, outputs);
+}
+
 /// Gives slots in lanes to those of the equations that a tape uses.
 class SlotMap {
  public:
@@ -174,9 +189,10 @@ void share_slots(LaneProgram& lanes) {
     lanes.matrix_steps[k] = slot_of[lanes.matrix_steps[k]];
   for (LaneConstant& entry : lanes.by_time) entry.slot = slot_of[entry.slot];
   LaneTape* const output[] = {&lanes.outputs};
-  const auto output_slot_of = LaneTape::share_slots(output, lanes.output_slots, lanes.output.slots.size());
+  const auto output_slot_of = LaneTape::share_slots(output, lanes.signal_slots, lanes.output.slots.size());
   renumber(lanes.output, output_slot_of);
   for (std::uint32_t& slot : lanes.output_slots) slot = output_slot_of[slot];
+  for (std::uint32_t& slot : lanes.signal_slots) slot = output_slot_of[slot];
 }
 
 }  // namespace
@@ -195,7 +211,7 @@ LaneCompilation compile_for_lanes(const diagram::FlatDiagram& diagram, std::span
     if (std::string why = obstacle(*compiled); !why.empty()) return refused(std::move(why));
     for (const diagram::FlatOutput& output : diagram.outputs)
       signals.push_back(compiled->signal_index(output.signal));
-    flat = network::flat_equations(*compiled, signals);
+    flat = equations_with_all_signals(*compiled, signals);
     if (flat.n_variables > kMostVariables)
       return refused(fmt::format("the diagram has more than {} states and unknowns", kMostVariables));
     nominal = run_as_it_is(*compiled, diagram, flat, options);
@@ -224,7 +240,13 @@ LaneCompilation compile_for_lanes(const diagram::FlatDiagram& diagram, std::span
   lanes.derivatives = LaneTape(flat.derivatives, std::ref(in_integration));
   lanes.outputs = LaneTape(flat.outputs, std::ref(in_output));
   for (const std::uint32_t slot : flat.rate_slots) lanes.rate_slots.push_back(in_integration(slot));
-  for (const std::uint32_t slot : flat.output_slots) lanes.output_slots.push_back(in_output(slot));
+  for (const std::uint32_t slot : flat.output_slots) lanes.signal_slots.push_back(in_output(slot));
+  lanes.output_slots.assign(lanes.signal_slots.begin(),
+                            lanes.signal_slots.begin() + static_cast<std::ptrdiff_t>(signals.size()));
+  std::sort(lanes.signal_slots.begin(), lanes.signal_slots.end());
+  lanes.signal_slots.erase(std::unique(lanes.signal_slots.begin(), lanes.signal_slots.end()),
+                           lanes.signal_slots.end());
+  lanes.bound_to_unit = options.watch_overloads;
   for (const auto& [row, slot] : flat.by_time) lanes.by_time.push_back({row, in_integration(slot)});
 
   Pattern pattern;

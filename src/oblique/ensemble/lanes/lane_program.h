@@ -59,6 +59,8 @@ struct LaneProgram {
   LaneSpace integration, output;
   LaneTape rates, derivatives, outputs;
   std::vector<std::uint32_t> rate_slots, output_slots;  ///< in their spaces
+  std::vector<std::uint32_t> signal_slots;              ///< of what is watched, in the space of the outputs
+  bool bound_to_unit = false;                           ///< signals are to stay within the machine unit
   std::vector<LaneConstant> by_time;                    ///< row, slot
 
   std::vector<std::uint32_t> matrix_steps, diagonal;

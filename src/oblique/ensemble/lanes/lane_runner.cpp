@@ -29,6 +29,7 @@ LaneRunner::LaneRunner(const LaneProgram& program, std::span<const double> base,
       scratch_(program.prologue->scratch_size()),
       starts_(program, kernels, typical_draws()),
       troughs_(program, kernels),
+      signals_(program, width_),
       output_slots_(slots_of(program.output, width_)),
       taken_(width_) {
   at_.slots = slots_of(program.integration, width_);
@@ -113,6 +114,7 @@ bool LaneRunner::prepare(const Next& next, const Values& values, const Refuse& r
   }
   if (batch.empty()) return any;
   std::vector<LaneStarts::Start> starts;
+  starts.reserve(batch.size());
   for (const std::size_t m : batch)
     starts.push_back({machines_[m].draws, machines_[m].start, machines_[m].is_near});
   starts_.find(starts);
@@ -206,7 +208,7 @@ void LaneRunner::judge(const Take& take, const Refuse& refuse) {
     double factor = method_->step_factor(at_.error[l]);
     if (taken) {
       if (at_.t[l] + at_.h[l] >= program_.until) {
-        end(l, take);
+        end(l, take, refuse);
         continue;
       }
       at_.t[l] += at_.h[l];
@@ -225,23 +227,25 @@ void LaneRunner::judge(const Take& take, const Refuse& refuse) {
   }
 }
 
-void LaneRunner::end(std::size_t l, const Take& take) {
+void LaneRunner::end(std::size_t l, const Take& take, const Refuse& refuse) {
   done_.push_back(lanes_[l].machine);
   lanes_[l].busy = false;
   if (done_.size() < width_) return;
-  evaluate(done_, take);
+  evaluate(done_, take, refuse);
   free_.insert(free_.end(), done_.begin(), done_.end());
   done_.clear();
 }
 
-/// The outputs of machines that are done, row by row.
-void LaneRunner::evaluate(std::span<const std::size_t> batch, const Take& take) {
+/// The outputs of machines that are done, row by row; those in which there is something to warn of are left
+/// to CVODES.
+void LaneRunner::evaluate(std::span<const std::size_t> batch, const Take& take, const Refuse& refuse) {
   const std::size_t columns = 1 + program_.output_slots.size();
   const auto rows = static_cast<std::size_t>(program_.rows);
   table_.resize(batch.size() * rows * columns);
   for (std::size_t l = 0; l < width_; ++l)
     set_constants(program_.output, l, machines_[batch[std::min(l, batch.size() - 1)]].draws, width_,
                   output_slots_);
+  signals_.begin();
   for (std::size_t r = 0; r < rows; ++r) {
     const double t = row_time(static_cast<int>(r));
     for (std::size_t l = 0; l < width_; ++l) {
@@ -250,6 +254,7 @@ void LaneRunner::evaluate(std::span<const std::size_t> batch, const Take& take) 
       for (std::size_t i = 0; i < n_; ++i) output_slots_[(1 + i) * width_ + l] = row[i];
     }
     kernels_.run(program_.outputs.code(), output_slots_.data());
+    signals_.look_at(t / program_.until, output_slots_);
     for (std::size_t l = 0; l < batch.size(); ++l) {
       double* const row = table_.data() + (l * rows + r) * columns;
       row[0] = t;
@@ -261,6 +266,10 @@ void LaneRunner::evaluate(std::span<const std::size_t> batch, const Take& take) 
   }
   for (std::size_t l = 0; l < batch.size(); ++l) {
     const Machine& machine = machines_[batch[l]];
+    if (const std::string found = signals_.finding(l); !found.empty()) {
+      refuse(machine.number, machine.values, found);
+      continue;
+    }
     take(machine.number, std::span(table_).subspan(l * rows * columns, rows * columns), machine.steps);
   }
 }
@@ -297,7 +306,7 @@ void LaneRunner::work(const Next& next, const Values& values, const Take& take, 
     method_->step(at_);
     judge(take, refuse);
   }
-  if (!done_.empty()) evaluate(done_, take);
+  if (!done_.empty()) evaluate(done_, take, refuse);
   free_.insert(free_.end(), done_.begin(), done_.end());
   done_.clear();
 }

@@ -12,6 +12,7 @@
 #include <oblique/ensemble/engine/work_queue.h>
 #include <oblique/ensemble/lanes/lane_method.h>
 #include <oblique/ensemble/lanes/lane_starts.h>
+#include <oblique/ensemble/lanes/signal_watch.h>
 #include <oblique/ensemble/lanes/trough_watch.h>
 
 // Not installed.
@@ -69,9 +70,9 @@ class LaneRunner {
   void occupy_idle_lanes();
   void judge(const Take& take, const Refuse& refuse);
   void keep_rows();
-  void end(std::size_t lane, const Take& take);
+  void end(std::size_t lane, const Take& take, const Refuse& refuse);
   void refuse_lane(std::size_t lane, const std::string& why, const Refuse& refuse);
-  void evaluate(std::span<const std::size_t> batch, const Take& take);
+  void evaluate(std::span<const std::size_t> batch, const Take& take, const Refuse& refuse);
   double row_time(int row) const;
   double longest_step(const Machine& machine) const;
 
@@ -89,6 +90,7 @@ class LaneRunner {
   std::unique_ptr<LaneMethod> method_;
   LaneStarts starts_;
   TroughWatch troughs_;
+  SignalWatch signals_;
   LaneArray output_slots_;
   LaneArray taken_;  ///< 1 in lanes whose step was taken
 };

@@ -15,6 +15,12 @@ namespace oblique::solve {
 /// From so many machine units on a signal has left any machine.
 inline constexpr double kFarOutside = 100;
 
+/// The largest |signal| in each eighth of a run, and whether it grows without end, as RunawayWatch has it.
+using SizeAlong = std::array<double, 8>;
+bool grows_without_end(const SizeAlong& largest);
+/// The eighth in which this part of the run lies, from 0 on.
+std::size_t eighth_of(double part);
+
 /// Notices signals that leave the machine by far. Where no machine unit binds them, as on an ideal machine
 /// with a problem in its own units, large numbers alone mean nothing: then only those count that grow without
 /// end: in each of the last eighths of the run by at least a factor √2 and in the very last one about as fast
@@ -32,11 +38,10 @@ class RunawayWatch {
 
  private:
   struct Record {
-    std::array<double, 8> largest{};  ///< in each eighth of the run
-    double peak = 0, peak_time = 0;   ///< with its sign
-    double left = -1;                 ///< [s] when it passed kFarOutside
+    SizeAlong largest{};
+    double peak = 0, peak_time = 0;  ///< with its sign
+    double left = -1;                ///< [s] when it passed kFarOutside
   };
-  bool grows_without_end(const Record& record) const;
 
   const network::Program& program_;
   double begin_, end_;
