@@ -108,7 +108,7 @@ std::vector<std::size_t> signal_sequence(std::size_t n, const std::vector<Arc>& 
   for (const std::size_t start : starts) {
     if (seen[start]) continue;
     seen[start] = true;
-    stack.push_back({start, 0});
+    stack.emplace_back(start, 0);
     while (!stack.empty()) {
       const std::size_t v = stack.back().first;
       if (stack.back().second == out[v].size()) {
@@ -119,7 +119,7 @@ std::vector<std::size_t> signal_sequence(std::size_t n, const std::vector<Arc>& 
       const std::size_t next = out[v][stack.back().second++];
       if (seen[next]) continue;
       seen[next] = true;
-      stack.push_back({next, 0});
+      stack.emplace_back(next, 0);
     }
   }
   return {finished.rbegin(), finished.rend()};

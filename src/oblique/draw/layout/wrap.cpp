@@ -79,7 +79,7 @@ class Wrapping {
     double y = 0;
     std::vector<Vector2d> shifts;
     for (std::size_t r = 0; r < low_.size(); ++r) {
-      shifts.push_back(Vector2d(gap, y) - low_[r]);
+      shifts.emplace_back(Vector2d(gap, y) - low_[r]);
       y += high_[r].y() - low_[r].y() + gap;
     }
     Vector2d end(0, 0);
@@ -158,6 +158,7 @@ void wrap(const LayoutGraph& graph, DiagramLayout& layout) {
   while (count < layers && is_long(rows.width, static_cast<double>(count) * size.y()))
     rows = break_layers(left, right, ++count);
   std::vector<std::size_t> row;
+  row.reserve(layer.size());
   for (const std::size_t l : layer) row.push_back(rows.of_layer[l]);
   if (*std::max_element(row.begin(), row.end()) == 0) return;
   Wrapping wrapping(graph, layout, row);
