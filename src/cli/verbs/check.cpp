@@ -11,12 +11,12 @@
 #include <oblique/report/diagram_check.h>
 #include <oblique/report/diagram_check_json.h>
 #include <oblique/report/diagram_check_text.h>
+#include <oblique/report/file_kind.h>
 #include <oblique/report/mechanism_check_json.h>
 #include <oblique/report/mechanism_check_text.h>
 #include <oblique/report/pole_chart.h>
 #include <oblique/report/text_table.h>
 #include <oblique/text/file.h>
-#include "terminal/file_kind.h"
 #include "terminal/output_files.h"
 #include "terminal/plot_output.h"
 #include "terminal/terminal.h"
@@ -101,7 +101,8 @@ void check_request(const CheckRequest& request) {
 ExitStatus check_file(const Session& session, const CheckRequest& request) {
   check_request(request);
   const std::string text = text::read_file(request.file);  // once: it may be a pipe
-  if (kind_of_file(text, request.file) == FileKind::diagram) return check_diagram(session, request, text);
+  if (report::kind_of_file(text, request.file) == report::FileKind::diagram)
+    return check_diagram(session, request, text);
   return check_mechanism(request, text);
 }
 

@@ -3,10 +3,10 @@
 
 #include <oblique/mechanism/model/read_mechanism.h>
 
+#include <oblique/report/file_kind.h>
 #include <oblique/report/linkage_scene.h>
 #include <oblique/report/magnified.h>
 #include <oblique/text/file.h>
-#include "terminal/file_kind.h"
 #include "terminal/picture_output.h"
 #include "terminal/terminal.h"
 #include "verbs/command.h"
@@ -74,7 +74,7 @@ ExitStatus draw_file(const Session& session, const DrawRequest& request) {
   }
   const draw::Theme theme = theme_option(request.theme);
   const std::string text = text::read_file(request.file);  // once: it may be a pipe
-  const bool is_diagram = kind_of_file(text, request.file) == FileKind::diagram;
+  const bool is_diagram = report::kind_of_file(text, request.file) == report::FileKind::diagram;
   if (is_diagram) {
     check_options_of_diagram(request);
     return draw_diagram_file(session, request, text);

@@ -6,12 +6,12 @@
 
 #include <oblique/ensemble/plan/plan_file.h>
 #include <oblique/ensemble/study/study.h>
+#include <oblique/report/file_kind.h>
 #include <oblique/report/study/effects.h>
 #include <oblique/report/study/study_chart.h>
 #include <oblique/report/study/study_text.h>
 #include <oblique/text/file.h>
 #include <oblique/text/quantity.h>
-#include "terminal/file_kind.h"
 #include "terminal/output_files.h"
 #include "terminal/picture_output.h"
 #include "terminal/plot_output.h"
@@ -131,7 +131,7 @@ ExitStatus sweep(const Session& session, const SweepRequest& request) {
   if (!request.plan.empty()) check_output(request.plan, ".toml");
   const diagram::BlockLibrary library = session.blocks();
   const std::string text = text::read_file(request.file);
-  const bool mechanism = kind_of_file(text, request.file) == FileKind::mechanism;
+  const bool mechanism = report::kind_of_file(text, request.file) == report::FileKind::mechanism;
   const int threads =
       request.jobs > 0 ? request.jobs : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   const ensemble::Plan plan = plan_of(request, library, mechanism);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <span>
@@ -66,7 +67,7 @@ struct ComparedRun {
   std::vector<double> error_along;  ///< largest distance in each row [length unit]
   std::optional<ErrorParts> parts;  ///< of max_error; nothing where the loops do not rest, or the run of
                                     ///< tighter tolerance fails
-  long steps = 0;
+  std::int64_t steps = 0;
   double seconds = 0;  ///< of the run, wall clock
   std::vector<Overload> overloads;
   /// The first drive where its loops first hold another assembly mode than the mechanism's [rad] or [length

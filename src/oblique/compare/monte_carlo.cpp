@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 #include <span>
 #include <utility>
@@ -179,7 +180,7 @@ MonteCarlo monte_carlo(const mechanism::Mechanism& whole, const diagram::Diagram
   how.samples = options.positions;
   how.tolerance = tolerance_for(options.scatters);
   const solve::Run undisturbed = solve::run(network::Program(network::assemble(flat)), flat, how);
-  how.max_steps = kStepsOfAFailure * std::max(undisturbed.statistics.steps, 1L);
+  how.max_steps = kStepsOfAFailure * std::max(undisturbed.statistics.steps, std::int64_t{1});
   const Experiment experiment(mechanism, options, flat, how);
 
   const auto runs = static_cast<std::size_t>(options.runs);

@@ -54,7 +54,7 @@ double slowest_pole_of(const network::Program& program, const std::vector<solve:
 
 RecordedRun run_recorded(const PatchedMechanism& patched, const std::string& what, double tolerance,
                          const std::function<void(double)>& progress, const std::vector<double>& moments,
-                         std::optional<long> max_steps) {
+                         std::optional<std::int64_t> max_steps) {
   RecordedRun recorded;
   solve::RunOptions how = solve::options_of(patched.diagram.run);
   how.tolerance = tolerance;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <span>
@@ -19,7 +20,7 @@
 namespace oblique::compare {
 
 /// A run that takes so many times the steps of the undisturbed one, or of that on ideal elements, has failed.
-inline constexpr long kStepsOfAFailure = 100;
+inline constexpr std::int64_t kStepsOfAFailure = 100;
 
 /// A mechanism's diagram with all that running it takes. The library must outlive it.
 struct PatchedMechanism {
@@ -44,7 +45,7 @@ struct RecordedRun {
 /// `what`: ".
 RecordedRun run_recorded(const PatchedMechanism& patched, const std::string& what, double tolerance,
                          const std::function<void(double)>& progress = {},
-                         const std::vector<double>& moments = {}, std::optional<long> max_steps = {});
+                         const std::vector<double>& moments = {}, std::optional<std::int64_t> max_steps = {});
 
 /// The signals that left ±1 machine unit by more than the margin.
 std::vector<Overload> overloads_of(const network::Program& program, const solve::Run& run,

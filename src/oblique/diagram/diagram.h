@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -41,9 +42,9 @@ struct RunSettings {
   double until = 1;         ///< end of the run [s]
   double tolerance = 1e-8;  ///< of the solver, relative
   IntegrationMethod method = IntegrationMethod::automatic;
-  int samples = 1001;           ///< rows of the trajectory, both ends included
-  long max_steps = 10'000'000;  ///< of the solver, over the whole run
-  bool settle = true;           ///< servo loops are brought to rest before the clock starts
+  int samples = 1001;                   ///< rows of the trajectory, both ends included
+  std::int64_t max_steps = 10'000'000;  ///< of the solver, over the whole run
+  bool settle = true;                   ///< servo loops are brought to rest before the clock starts
   /// Absolute tolerances of single states [machine unit]: of a block (a composite stands for all in it) by
   /// its path.
   std::vector<std::pair<std::string, double>> tolerances;

@@ -2,6 +2,7 @@
 #include <oblique/diagram/diagram_reader.h>
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include <fmt/format.h>
@@ -143,12 +144,12 @@ class DiagramReader {
     return std::nullopt;
   }
 
-  static std::optional<long> whole(text::TableReader& reader, std::string_view key, double least,
-                                   double most) {
+  static std::optional<std::int64_t> whole(text::TableReader& reader, std::string_view key, double least,
+                                           double most) {
     const auto number = reader.quantity(key, "1");
     if (!number) return std::nullopt;
     if (*number >= least && *number <= most && *number == std::floor(*number))
-      return static_cast<long>(*number);
+      return static_cast<std::int64_t>(*number);
     reader.report(key, fmt::format("'{}' of [run] is {}", key, *number),
                   fmt::format("a whole number from {} to {}", least, most));
     return std::nullopt;

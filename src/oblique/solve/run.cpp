@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <iterator>
 
 #include <fmt/format.h>
@@ -23,7 +24,7 @@ namespace {
 Run run_seeing(const network::Program& program, const diagram::FlatDiagram& diagram,
                const RunOptions& options, const LoopStart& loop_start) {
   constexpr int kMostTries = 5;
-  constexpr long kMostTimesFirst = 100, kAlwaysAllowed = 100'000;  // steps of a finer run
+  constexpr std::int64_t kMostTimesFirst = 100, kAlwaysAllowed = 100'000;  // steps of a finer run
   Refinement refinement;
   RunOptions finer = options;
   for (int k = 0; k < kMostTries; ++k) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -34,7 +35,7 @@ struct RunOptions {
   double max_step = std::numeric_limits<double>::infinity();  ///< [s]
   diagram::IntegrationMethod method = diagram::IntegrationMethod::automatic;
   int samples = 1001;  ///< rows, evenly spaced, both ends included
-  long max_steps = 10'000'000;
+  std::int64_t max_steps = 10'000'000;
   bool settle = true;                 ///< bring servo loops to rest before the clock starts
   std::optional<RunState> from;       ///< goes on from there; `until` is then later than its time
   std::function<bool()> interrupted;  ///< asked all the time: true ends the run at its last whole step

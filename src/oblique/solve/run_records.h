@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 
 #include <oblique/diagram/diagram.h>
@@ -44,7 +45,7 @@ struct MethodChoice {
 
 /// What a run cost.
 struct SolverStatistics {
-  long steps = 0;
+  std::int64_t steps = 0;
   long evaluations = 0;  ///< of dx/dt
   long jacobians = 0;    ///< evaluations of the Jacobian
   long factorizations = 0;

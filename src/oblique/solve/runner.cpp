@@ -2,6 +2,7 @@
 #include <oblique/solve/runner.h>
 
 #include <algorithm>
+#include <cstdint>
 
 #include <oblique/network/program/program.h>
 #include <oblique/solve/events/along_branch.h>
@@ -163,7 +164,7 @@ void Runner::resume(const RunState& state) {
 
 /// Whether growth was not seen so long ago that the run, which must be made again, is not worth its end.
 bool Runner::ends_unseen() {
-  constexpr long kMore = 1000;
+  constexpr std::int64_t kMore = 1000;
   if (!may_end_unseen_ || !integration_ || !integration_->any_unseen_growth()) return false;
   if (!steps_unseen_) steps_unseen_ = steps_;
   return steps_ > 2 * *steps_unseen_ + kMore;
@@ -242,7 +243,7 @@ void Runner::pass_piece() {
   }
   integration_->end_step(passed, t_);
   ++steps_;
-  constexpr long kStepsPerReport = 256;
+  constexpr std::int64_t kStepsPerReport = 256;
   if (options_.progress && steps_ % kStepsPerReport == 0)
     options_.progress((t_ - begin_) / (options_.until - begin_));
 }

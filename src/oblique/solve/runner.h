@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -58,7 +59,7 @@ class Runner {
   StartOutcome outcome_of_start();
 
   /// After the run, also one that failed: the steps that it took.
-  long steps() const { return steps_; }
+  std::int64_t steps() const { return steps_; }
   /// And what it did not see.
   Unseen unseen() const;
 
@@ -104,8 +105,8 @@ class Runner {
   double piece_begin_ = 0, piece_end_ = 0;  ///< [s]
   bool in_step_ = false,
        looked_ahead_ = false;  ///< whether pieces are left of a step; one has been looked at
-  long steps_ = 0;
-  std::optional<long> steps_unseen_;  ///< until growth was first unseen
+  std::int64_t steps_ = 0;
+  std::optional<std::int64_t> steps_unseen_;  ///< until growth was first unseen
 
   RunSnapshot last_whole_;  ///< the last whole step, where the run may be interrupted
 };
@@ -117,7 +118,7 @@ StartChoice start_of(const network::Program& program, const diagram::FlatDiagram
 /// What became apparent in one run, also in one that failed.
 struct Observed {
   Unseen unseen;
-  long steps = 0;
+  std::int64_t steps = 0;
 };
 
 /// A Runner's whole run, and what became apparent in it. Throws SolveError.

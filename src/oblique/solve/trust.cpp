@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 
 #include <oblique/network/program/program.h>
@@ -15,8 +16,8 @@ namespace {
 constexpr double kFiner = 100, kLeastFiner = 3;  ///< times finer than the run
 /// Below it rounding decides; a run that is nearly as fine is held beside a coarser one.
 constexpr double kFinestTolerance = 1e-12;
-constexpr long kMostEffort = 20;      ///< steps of the other method, times those of the run
-constexpr long kLeastSteps = 10'000;  ///< that are allowed to it all the same
+constexpr std::int64_t kMostEffort = 20;      ///< steps of the other method, times those of the run
+constexpr std::int64_t kLeastSteps = 10'000;  ///< that are allowed to it all the same
 
 constexpr double kLost = 0.1;  ///< of the size: no digit stands
 

@@ -2,10 +2,10 @@
 #include <oblique/text/csv.h>
 
 #include <algorithm>
-#include <charconv>
 
 #include <fmt/format.h>
 
+#include <oblique/text/decimal.h>
 #include <oblique/text/encoding.h>
 #include <oblique/text/expression_grammar.h>
 #include <oblique/text/quantity.h>
@@ -60,7 +60,7 @@ std::optional<double> number_of(std::string_view cell) {
   text += cell;
   if (std::count(text.begin(), text.end(), ',') == 1) text[text.find(',')] = '.';
   double value = 0;
-  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const auto [rest, error] = read_decimal(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || rest != text.data() + text.size()) return std::nullopt;
   return value;
 }

@@ -2,11 +2,11 @@
 #include <oblique/text/expression_parser.h>
 
 #include <algorithm>
-#include <charconv>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include <oblique/text/decimal.h>
 #include <oblique/text/expression_grammar.h>
 
 namespace oblique::text {
@@ -155,7 +155,7 @@ class Parser {
     Expression node;
     node.column = static_cast<int>(at_) + 1;
     const char* const begin = text_.data() + at_;
-    const auto [end, error] = std::from_chars(begin, text_.data() + text_.size(), node.number);
+    const auto [end, error] = read_decimal(begin, text_.data() + text_.size(), node.number);
     if (error != std::errc{}) {
       if (error == std::errc::result_out_of_range) {
         fail(at_, "the number is out of range", "a magnitude between 2.3e-308 and 1.7e308");

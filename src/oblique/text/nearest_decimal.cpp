@@ -2,17 +2,19 @@
 #include <oblique/text/nearest_decimal.h>
 
 #include <array>
-#include <charconv>
+
+#include <fmt/format.h>
+
+#include <oblique/text/decimal.h>
 
 namespace oblique::text {
 
 double nearest_decimal(double value, int digits) {
   std::array<char, 32> text{};  // a sign, 17 digits, a point and an exponent
   char* const begin = text.data();
-  const char* const end =
-      std::to_chars(begin, begin + text.size(), value, std::chars_format::scientific, digits - 1).ptr;
+  const char* const end = fmt::format_to_n(begin, text.size(), "{:.{}e}", value, digits - 1).out;
   double rounded = value;
-  std::from_chars(begin, end, rounded);
+  read_decimal(begin, end, rounded);
   return rounded;
 }
 

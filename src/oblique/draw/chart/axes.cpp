@@ -16,8 +16,7 @@ using Extent = Eigen::AlignedBox<double, 2>;
 constexpr double kBetweenX = 62, kBetweenY = 40, kBetweenEqual = 50;
 constexpr double kBetweenNumbers = 10;  // [px]
 constexpr double kHalfDigit = 4;        // [px]
-constexpr Pen kGrid{Ink::faint, 0.75}, kFineGrid{Ink::faint, 0.35}, kZero{Ink::faint, 1.5},
-    kFrame{Ink::faint, 1};
+const Pen kGrid{Ink::faint, 0.75}, kFineGrid{Ink::faint, 0.35}, kZero{Ink::faint, 1.5}, kFrame{Ink::faint, 1};
 
 double width_of(const std::vector<Tick>& ticks) {
   double width = 0;

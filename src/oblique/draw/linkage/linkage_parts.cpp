@@ -179,7 +179,8 @@ std::span<const LinkagePart> parts_in(Layer layer, const std::vector<LinkagePart
                                           [&](const LinkagePart& part) { return layer_of(part) < layer; });
   const auto end = std::partition_point(begin, parts.end(),
                                         [&](const LinkagePart& part) { return layer_of(part) == layer; });
-  return {begin, end};
+  return std::span(parts).subspan(static_cast<std::size_t>(begin - parts.begin()),
+                                  static_cast<std::size_t>(end - begin));
 }
 
 PartPose pose_of(const LinkagePart& part, const mechanism::Mechanism& mechanism,

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -140,9 +141,9 @@ std::vector<Tick> Scale::ticks(double most) const {
   const bool ends_show = step_ > 0 && (high_ - low_) / step_ <= most + 2;
   const double step = ends_show ? step_ : this->step(most), unit = std::pow(10, power());
   const int decimals = std::max(0, -static_cast<int>(std::floor(std::log10(step / unit) + kRounding)));
-  const auto first = static_cast<long>(std::ceil(low_ / step - kRounding));
-  const auto last = static_cast<long>(std::floor(high_ / step + kRounding));
-  for (long k = first; k <= last; ++k) {
+  const auto first = static_cast<std::int64_t>(std::ceil(low_ / step - kRounding));
+  const auto last = static_cast<std::int64_t>(std::floor(high_ / step + kRounding));
+  for (std::int64_t k = first; k <= last; ++k) {
     const double value = static_cast<double>(k) * step;
     ticks.push_back({value, number_text(value / unit, decimals)});
   }

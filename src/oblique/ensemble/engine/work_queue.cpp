@@ -6,9 +6,33 @@
 #include <exception>
 #include <system_error>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace oblique::ensemble {
+namespace {
+
+/// Threads whose end is waited for. (Not every standard library has `std::jthread`.)
+class Threads {
+ public:
+  Threads() = default;
+  Threads(const Threads&) = delete;
+  Threads& operator=(const Threads&) = delete;
+  ~Threads() {
+    for (std::thread& thread : threads_) thread.join();
+  }
+
+  /// Throws std::system_error where there are no more to be had.
+  template <class Work>
+  void begin(Work work) {
+    threads_.emplace_back(std::move(work));
+  }
+
+ private:
+  std::vector<std::thread> threads_;
+};
+
+}  // namespace
 
 void work_off(std::uint64_t first, std::uint64_t count, int threads,
               const std::function<void(const Next& next)>& work,
@@ -31,10 +55,10 @@ void work_off(std::uint64_t first, std::uint64_t count, int threads,
     }
   };
   {
-    std::vector<std::jthread> others;
+    Threads others;
     try {
       for (std::uint64_t t = 1; t < std::min(static_cast<std::uint64_t>(std::max(threads, 1)), count); ++t)
-        others.emplace_back([&] { work_on(false); });
+        others.begin([&] { work_on(false); });
     } catch (const std::system_error&) {  // no more threads to be had: those there are do the work
     }
     work_on(true);

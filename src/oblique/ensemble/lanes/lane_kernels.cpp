@@ -14,6 +14,13 @@
 namespace oblique::ensemble {
 namespace {
 
+/// The widest instructions first.
+#if defined(__x86_64__)
+constexpr std::array<const LaneKernels*, 3> kSets{kernels_avx512, kernels_avx2, kernels_sse2};
+#else
+constexpr std::array<const LaneKernels*, 1> kSets{kernels_sse2};
+#endif
+
 /// Whether this processor has an instruction set.
 bool has(std::string_view set) {
 #if defined(__x86_64__)
@@ -26,7 +33,7 @@ bool has(std::string_view set) {
 }  // namespace
 
 const LaneKernels* lane_kernels(int width, const char* set) {
-  for (const LaneKernels* const kernels : {kernels_avx512, kernels_avx2, kernels_sse2}) {
+  for (const LaneKernels* const kernels : kSets) {
     if (!has(kernels->set) || (set != nullptr && std::string_view(set) != kernels->set)) continue;
     for (int k = 0; k < kWidths; ++k) {
       if (kernels[k].width == width) return &kernels[k];

@@ -2,8 +2,8 @@
 #include <oblique/network/graph/expression_graph.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <map>
 
@@ -22,6 +22,12 @@ struct Term {
     return {graph, graph->apply(op_of(operation), id, second.id)};
   }
 };
+
+std::uint64_t bits_of(double value) {
+  std::uint64_t bits = 0;
+  std::memcpy(&bits, &value, sizeof bits);
+  return bits;
+}
 
 }  // namespace
 
@@ -130,7 +136,7 @@ std::size_t ExpressionGraph::Hash::operator()(const Key& key) const {
 
 NodeId ExpressionGraph::intern(const Node& node) {
   Key key{node.op, node.a, node.b, node.c, node.variable};
-  if (node.op == Op::constant) key.bits = std::bit_cast<std::uint64_t>(node.value);
+  if (node.op == Op::constant) key.bits = bits_of(node.value);
   const auto [found, inserted] = index_.try_emplace(key, static_cast<NodeId>(nodes_.size()));
   if (inserted) nodes_.push_back(node);
   return found->second;
@@ -159,7 +165,7 @@ bool stays(Decided decided, double before, double now) {
     case Decided::value:
       break;
   }
-  return std::bit_cast<std::uint64_t>(before) == std::bit_cast<std::uint64_t>(now);
+  return bits_of(before) == bits_of(now);
 }
 
 NodeId ExpressionGraph::intern(const ConstantFormula& formula, double value) {

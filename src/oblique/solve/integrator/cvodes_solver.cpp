@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <new>
 #include <stdexcept>
@@ -90,8 +91,8 @@ struct CvodesSolver::Handles {
   double max_step;   ///< [s]
   double relative_tolerance, absolute_tolerance;
   std::vector<double> start_states;
-  long max_steps;
-  long steps = 0;
+  std::int64_t max_steps;
+  std::int64_t steps = 0;
   SolverStatistics before_restart;  ///< CVODES counts from its last start
   int small_steps = 0;
   bool saw_refusal = false;  ///< these two since the last step that was not small
@@ -365,7 +366,9 @@ std::span<const double> CvodesSolver::states() const {
 SolverStatistics CvodesSolver::statistics() const {
   void* const memory = handles_->memory.get();
   SolverStatistics s;
-  CVodeGetNumSteps(memory, &s.steps);
+  long steps = 0;
+  CVodeGetNumSteps(memory, &steps);
+  s.steps = steps;
   CVodeGetNumRhsEvals(memory, &s.evaluations);
   CVodeGetNumJacEvals(memory, &s.jacobians);
   CVodeGetNumLinSolvSetups(memory, &s.factorizations);

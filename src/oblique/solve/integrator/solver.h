@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <span>
 #include <vector>
@@ -14,7 +15,7 @@ namespace oblique::solve {
 struct SolverSettings {
   double relative_tolerance = 1e-8;
   double absolute_tolerance = 1e-8;  ///< [machine unit]
-  long max_steps = 10'000'000;
+  std::int64_t max_steps = 10'000'000;
   double max_step = std::numeric_limits<double>::infinity();  ///< [s] the longest step
   diagram::IntegrationMethod method = diagram::IntegrationMethod::bdf;
   std::vector<double> own_tolerances = {};  ///< [machine unit] of each state, where not all have that one

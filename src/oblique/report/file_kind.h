@@ -3,12 +3,12 @@
 
 #include <string>
 
-namespace oblique::cli {
+namespace oblique::report {
 
 enum class FileKind { diagram, mechanism };
 
-/// What a file's `format` says it is, for verbs that take both. Throws ReadError where it is neither, and as
+/// What a text's `format` says it is, for whoever takes both. Throws ReadError where it is neither, and as
 /// `parse_document`.
 FileKind kind_of_file(const std::string& text, const std::string& file);
 
-}  // namespace oblique::cli
+}  // namespace oblique::report

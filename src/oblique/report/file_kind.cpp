@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "terminal/file_kind.h"
+#include <oblique/report/file_kind.h>
 
 #include <oblique/text/document.h>
 
-namespace oblique::cli {
+namespace oblique::report {
 
 FileKind kind_of_file(const std::string& text, const std::string& file) {
   const text::Document document = text::parse_document(text, file);
@@ -18,4 +18,4 @@ FileKind kind_of_file(const std::string& text, const std::string& file) {
                        {}});
 }
 
-}  // namespace oblique::cli
+}  // namespace oblique::report

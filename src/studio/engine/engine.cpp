@@ -1,0 +1,389 @@
+// SPDX-License-Identifier: MIT
+#include "studio/engine/engine.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include <oblique/commission/judge.h>
+#include <oblique/diagram/diagram_reader.h>
+#include <oblique/diagram/diagram_writer.h>
+#include <oblique/diagram/flatten.h>
+#include <oblique/draw/linkage/linkage.h>
+#include <oblique/draw/picture/svg.h>
+#include <oblique/draw/schematic/diagram_drawing.h>
+#include <oblique/mechanism/model/read_mechanism.h>
+#include <oblique/mechanism/motion/motion.h>
+#include <oblique/mechanism/structure/structure.h>
+#include <oblique/network/assembly/network.h>
+#include <oblique/network/program/program.h>
+#include <oblique/report/file_kind.h>
+#include <oblique/report/judgement_text.h>
+#include <oblique/report/linkage_scene.h>
+#include <oblique/report/motion_text.h>
+#include <oblique/solve/run.h>
+
+#include "studio/engine/options.h"
+
+namespace oblique::studio {
+namespace {
+
+using report::FileKind;
+
+[[noreturn]] void refuse(const std::string& name, std::string what, std::string expected,
+                         std::string remedy = {}) {
+  throw text::ReadError(
+      text::Diagnostic{{name, {}}, std::move(what), std::move(expected), std::move(remedy)});
+}
+
+void expect_kind(const std::string& text, const std::string& name, FileKind wanted, const char* action) {
+  if (report::kind_of_file(text, name) == wanted) return;
+  const bool diagram = wanted == FileKind::diagram;
+  refuse(name,
+         fmt::format("this is a {}, and {} is of {}s", diagram ? "mechanism" : "diagram", action,
+                     diagram ? "diagram" : "mechanism"),
+         diagram ? "a diagram" : "a mechanism");
+}
+
+Json columns_of(const std::vector<text::TableColumn>& columns) {
+  Json list = Json::array();
+  for (const text::TableColumn& column : columns)
+    list.push_back({{"name", column.name}, {"unit", column.unit}});
+  return list;
+}
+
+const char* name_of(mechanism::MotionEvent::Kind kind) {
+  using Kind = mechanism::MotionEvent::Kind;
+  switch (kind) {
+    case Kind::limit:
+      return "limit";
+    case Kind::return_:
+      return "return";
+    case Kind::change:
+      return "change";
+    case Kind::infinity:
+      return "infinity";
+    case Kind::lost:
+      break;
+  }
+  return "lost";
+}
+
+Json trust_of(const solve::Trust& trust) {
+  Json json;
+  json["outputs"] = Json::array();
+  for (const solve::OutputError& output : trust.outputs) {
+    Json one{
+        {"name", output.name}, {"size", output.size}, {"largest", output.largest}, {"at_end", output.at_end}};
+    one["lost"] = output.lost ? Json(*output.lost) : Json();
+    json["outputs"].push_back(std::move(one));
+  }
+  json["event_shift"] = trust.event_shift;
+  json["events_part"] = trust.events_part ? Json(*trust.events_part) : Json();
+  json["failure"] = trust.failure;
+  return json;
+}
+
+/// A time that passes, asked for at every step.
+class Deadline {
+ public:
+  explicit Deadline(double seconds) : seconds_(seconds) {}
+
+  bool passed() const { return passed_; }
+  /// Looks at the clock now and then, which costs more than a step.
+  bool passes() {
+    constexpr std::uint32_t kAsked = 64;
+    if (passed_ || ++asked_ % kAsked != 0) return passed_;
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin_;
+    return passed_ = taken.count() >= seconds_;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  double seconds_;
+  std::uint32_t asked_ = 0;
+  bool passed_ = false;
+};
+
+draw::Theme theme_of(const Options& options) {
+  const std::string theme = options.word("theme").value_or("auto");
+  if (theme == "auto") return draw::Theme::automatic;
+  if (theme == "light") return draw::Theme::light;
+  if (theme == "dark") return draw::Theme::dark;
+  refuse({}, fmt::format("'theme' is '{}'", theme), "auto, light or dark");
+}
+
+std::string drawn_diagram(const diagram::Diagram& diagram, const diagram::BlockLibrary& library,
+                          const Options& options) {
+  constexpr int kDeepest = 100;
+  draw::DiagramDrawing drawing;
+  const std::string symbols = options.word("symbols").value_or("classic");
+  if (symbols != "classic" && symbols != "din")
+    refuse({}, fmt::format("'symbols' is '{}'", symbols), "classic or din");
+  if (symbols == "din") drawing.symbols = draw::SymbolStyle::din;
+  drawing.depth = options.whole("depth", 0, kDeepest).value_or(0);
+  return draw::to_svg(draw::draw_diagram(diagram, library, drawing), theme_of(options));
+}
+
+std::string drawn_mechanism(const mechanism::Mechanism& mechanism, const Options& options) {
+  constexpr int kMostPositions = 100;
+  const std::vector<std::size_t> traces = report::traced_points(mechanism, {});
+  report::TimedScene timed = report::linkage_scene(mechanism, options.quantity("time", "s").value_or(0),
+                                                   options.whole("positions", 1, kMostPositions).value_or(1));
+  if (!timed.scene.motion.empty()) timed.scene.traces = traces;
+  return draw::to_svg(draw::draw_linkage(mechanism, timed.scene), theme_of(options));
+}
+
+Json description_of(const diagram::Diagram& diagram, const diagram::BlockLibrary& library) {
+  const diagram::FlatDiagram flat = diagram::flatten(diagram, library);
+  const network::Program program(network::assemble(flat));
+  Json json;
+  json["kind"] = "diagram";
+  json["title"] = diagram.title;
+  json["until"] = diagram.run.until;
+  json["machine"] = diagram.machine.profile;
+  json["blocks"] = Json::array();
+  for (const diagram::BlockInstance& block : diagram.blocks)
+    json["blocks"].push_back({{"name", block.name}, {"type", block.type}});
+  json["outputs"] = Json::array();
+  for (const diagram::FlatOutput& output : flat.outputs)
+    json["outputs"].push_back({{"name", output.name}, {"unit", output.unit}});
+  json["signals"] = program.signal_names();
+  return json;
+}
+
+Json description_of(const mechanism::Mechanism& mechanism) {
+  Json json;
+  json["kind"] = "mechanism";
+  json["title"] = mechanism.title;
+  json["unit"] = mechanism.length_unit;
+  json["points"] = mechanism::names_of(mechanism.points);
+  json["bodies"] = mechanism::names_of(mechanism.bodies);
+  json["drives"] = Json::array();
+  for (const mechanism::Drive& drive : mechanism.drives)
+    json["drives"].push_back({{"name", drive.name}, {"slide", drive.slide.has_value()}});
+  json["groups"] = Json::array();
+  if (mechanism.drives.empty()) return json;  // a structure, which nothing moves
+  for (const mechanism::Group& group : mechanism::decompose(mechanism).groups)
+    json["groups"].push_back({{"name", group.name}, {"class", group.assur_class}});
+  return json;
+}
+
+}  // namespace
+
+Engine::Engine() : Engine(Limits{}) {}
+
+Engine::Engine(const Limits& limits)
+    : limits_(limits),
+      library_(std::make_shared<const diagram::BlockLibrary>(diagram::BlockLibrary::shipped())) {}
+
+Answer Engine::about() {
+  return answer([] {
+    Answer said;
+    said.object["version"] = OBLIQUE_VERSION;
+    said.object["solver"] = OBLIQUE_SOLVER;
+    return said;
+  });
+}
+
+Answer Engine::put_file(const std::string& name, const std::string& content) const {
+  return answer([&] {
+    check_size(content, name);
+    const std::filesystem::path path(name);
+    std::error_code trouble;
+    if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), trouble);
+    std::ofstream file(path, std::ios::binary);
+    if (!file.write(content.data(), static_cast<std::streamsize>(content.size())).flush())
+      refuse(name, "the file could not be kept", "a name of a file");
+    return Answer{};
+  });
+}
+
+Answer Engine::put_block(const std::string& name, const std::string& text) {
+  return answer([&] {
+    check_size(text, name);
+    auto library = std::make_shared<diagram::BlockLibrary>(*library_);  // consoles keep the one they have
+    library->add(diagram::parse_block(text, name + ".toml", name));
+    library_ = std::move(library);
+    return Answer{};
+  });
+}
+
+Answer Engine::open(const std::string& text, const std::string& name) const {
+  return answer([&] {
+    check_size(text, name);
+    Answer read;
+    read.object = report::kind_of_file(text, name) == FileKind::diagram
+                      ? description_of(diagram::parse_diagram(text, name), *library_)
+                      : description_of(mechanism::parse_mechanism(text, name));
+    return read;
+  });
+}
+
+Answer Engine::run(const std::string& text, const std::string& name, const std::string& options) const {
+  return answer([&] {
+    check_size(text, name);
+    constexpr int kMostSamples = 10'000'000;
+    const Options asked(options, {"until", "samples", "set", "trust"});
+    expect_kind(text, name, FileKind::diagram, "a run");
+    diagram::Diagram diagram = diagram::parse_diagram(text, name);
+    diagram.run.until = asked.quantity("until", "s").value_or(diagram.run.until);
+    if (!(diagram.run.until > 0 && std::isfinite(diagram.run.until)))
+      refuse(name, fmt::format("the run would end at t = {} s", diagram.run.until), "a finite time above 0");
+    std::vector<diagram::ParameterOverride> overrides;
+    for (auto& [path, value] : asked.settings("set")) overrides.push_back({path, value});
+    const diagram::FlatDiagram flat = diagram::flatten(diagram, *library_, overrides);
+    const network::Program program(network::assemble(flat));
+
+    solve::RunOptions how = solve::options_of(diagram.run);
+    how.samples = asked.whole("samples", 2, kMostSamples).value_or(how.samples);
+    how.max_steps = std::min(how.max_steps, static_cast<std::int64_t>(limits_.steps));
+    how.watch_overloads = diagram.machine.profile != "ideal";
+    how.trust = asked.flag("trust");
+    const std::vector<text::TableColumn> columns = solve::run_columns(flat, how);
+    check_numbers(static_cast<std::size_t>(how.samples), columns.size(), name);
+    Deadline deadline(limits_.seconds);
+    how.interrupted = [&] { return deadline.passes(); };
+    solve::Run done = solve::run(program, flat, how);
+
+    if (deadline.passed())
+      done.warnings.push_back({{name, {}},
+                               fmt::format("the run was ended at t = {:.9g} s: it had taken {:.3g} s of time",
+                                           done.state.time, limits_.seconds),
+                               {},
+                               "end the run earlier, or allow it more time"});
+    Answer ran;
+    Json& json = ran.object;
+    json["columns"] = columns_of(columns);
+    json["rows"] = done.trajectory.rows();
+    json["time"] = done.state.time;
+    json["complete"] = !deadline.passed();
+    json["method"] = diagram::method_name(done.method.method);
+    json["steps"] = done.statistics.steps;
+    json["seconds"] = done.seconds;
+    json["events"] = Json::array();
+    for (const solve::EventRecord& event : done.events)
+      json["events"].push_back({{"time", event.time}, {"what", event.what}});
+    json["overloads"] = Json::array();
+    for (const solve::OverloadRecord& overload : done.overloads) {
+      json["overloads"].push_back({{"signal", program.signal_names()[overload.signal]},
+                                   {"first", overload.first},
+                                   {"peak", overload.peak.value}});
+    }
+    json["warnings"] = to_json(done.warnings);
+    if (done.trust) json["trust"] = trust_of(*done.trust);
+    const std::span<const double> values = done.trajectory.values();
+    ran.numbers.assign(values.begin(), values.end());
+    return ran;
+  });
+}
+
+Answer Engine::patch(const std::string& text, const std::string& name, const std::string& options) const {
+  return answer([&] {
+    check_size(text, name);
+    const Options asked(options, {"gain", "bandwidth", "slower", "method", "split", "force", "period"});
+    expect_kind(text, name, FileKind::mechanism, "a patch");
+    patch::PatchOptions how;
+    const auto positive = [&](const char* key, std::string_view unit) {
+      const std::optional<double> value = asked.quantity(key, unit);
+      if (value && !(*value > 0)) refuse({}, fmt::format("'{}' is {}", key, *value), "a number above 0");
+      return value;
+    };
+    if (const auto method = asked.word("method")) {
+      const auto known = patch::parse_patch_method(*method);
+      if (!known) refuse({}, fmt::format("'method' is '{}'", *method), "triangles, gradient or paper");
+      how.method = *known;
+    }
+    how.gain = positive("gain", "1").value_or(how.gain);
+    how.bandwidth = positive("bandwidth", "Hz");
+    how.slower = positive("slower", "1");
+    how.period = positive("period", "s");
+    how.split = asked.words("split");
+    how.force = asked.flag("force");
+    const commission::JudgedPatch patched =
+        commission::judged_patch(mechanism::parse_mechanism(text, name), *library_, how);
+    Answer made;
+    made.object["text"] = diagram::write_diagram(patched.diagram);
+    made.object["judgement"] = report::judgement_text(patched.judgement);
+    return made;
+  });
+}
+
+Answer Engine::motion(const std::string& text, const std::string& name, const std::string& options) const {
+  return answer([&] {
+    check_size(text, name);
+    constexpr int kMostPositions = 10'000'000;
+    const Options asked(options, {"positions", "until", "at_limit"});
+    expect_kind(text, name, FileKind::mechanism, "a motion");
+    mechanism::MotionOptions how;
+    how.positions = asked.whole("positions", 2, kMostPositions).value_or(how.positions);
+    how.until = asked.quantity("until", "s");
+    if (how.until && !(*how.until > 0 && std::isfinite(*how.until)))
+      refuse({}, fmt::format("'until' is {}", *how.until), "a finite time above 0");
+    if (const auto at_limit = asked.word("at_limit")) {
+      how.at_limit = mechanism::parse_at_limit(*at_limit);
+      if (!how.at_limit) refuse({}, fmt::format("'at_limit' is '{}'", *at_limit), "open, stop or reverse");
+    }
+    const mechanism::Mechanism mechanism = mechanism::parse_mechanism(text, name);
+    if (mechanism.drives.empty())
+      mechanism::period(mechanism);  // says so, where `decompose` would speak of its mobility
+    const mechanism::Structure structure = mechanism::decompose(mechanism);
+    const std::vector<text::TableColumn> columns = report::motion_table_columns(mechanism);
+    check_numbers(static_cast<std::size_t>(how.positions), columns.size(), name);
+
+    Answer moved;
+    std::vector<double> values(columns.size());
+    const auto events =
+        mechanism::visit_motion(mechanism, structure, how, [&](const mechanism::MotionRow& row) {
+          mechanism::motion_values(mechanism, row, values);
+          values.back() = static_cast<double>(row.configuration.status);
+          moved.numbers.insert(moved.numbers.end(), values.begin(), values.end());
+        });
+    Json& json = moved.object;
+    json["columns"] = columns_of(columns);
+    json["rows"] = moved.numbers.size() / columns.size();
+    json["statuses"] = columns.back().labels;
+    json["events"] = Json::array();
+    for (const mechanism::MotionEvent& event : events) {
+      json["events"].push_back({{"time", event.time},
+                                {"kind", name_of(event.kind)},
+                                {"group", structure.groups[event.group].name}});
+    }
+    return moved;
+  });
+}
+
+Answer Engine::draw(const std::string& text, const std::string& name, const std::string& options) const {
+  return answer([&] {
+    check_size(text, name);
+    Answer drawn;
+    if (report::kind_of_file(text, name) == FileKind::diagram) {
+      drawn.object["svg"] = drawn_diagram(diagram::parse_diagram(text, name), *library_,
+                                          Options(options, {"theme", "symbols", "depth"}));
+    } else {
+      drawn.object["svg"] = drawn_mechanism(mechanism::parse_mechanism(text, name),
+                                            Options(options, {"theme", "time", "positions"}));
+    }
+    return drawn;
+  });
+}
+
+void Engine::check_size(const std::string& text, const std::string& name) const {
+  if (static_cast<double>(text.size()) <= limits_.text) return;
+  refuse(name, fmt::format("the file has {} bytes", text.size()), fmt::format("{} at most", limits_.text));
+}
+
+void Engine::check_numbers(std::size_t rows, std::size_t columns, const std::string& name) const {
+  const double numbers = static_cast<double>(rows) * static_cast<double>(columns);
+  if (numbers <= limits_.numbers) return;
+  refuse(name, fmt::format("{} rows of {} columns are too much for a page", rows, columns),
+         fmt::format("{} numbers at most", limits_.numbers), "ask for fewer rows");
+}
+
+}  // namespace oblique::studio

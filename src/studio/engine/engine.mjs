@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+// The engine as a page and its tests take it. Every function gives an object: {ok: true, …}, or {ok: false, error,
+// diagnostics: [{file, line, column, what, expected, remedy, message}]}; none throws. What the objects hold stands
+// in engine.h and live_console.h; `numbers` is a Float64Array, row by row.
+
+function refusal(what, remedy) {
+  const message = `${what}\n  remedy: ${remedy}`;
+  return {
+    ok: false,
+    error: "InternalError",
+    diagnostics: [{file: "", line: 0, column: 0, what, expected: "", remedy, message}],
+    numbers: new Float64Array(0),
+  };
+}
+
+const text = (given) => String(given ?? "");
+const texts = (given) => Array.from(given ?? [], text);
+
+// `createEngine` is what engine.js defines, `wasmBinary` the bytes of engine.wasm; `limits` may hold seconds, steps
+// and numbers, as `Limits` has them. Throws where this browser cannot run it.
+export async function loadEngine({createEngine, wasmBinary, limits = {}}) {
+  const wasm = await createEngine({wasmBinary});
+  let ended = false;
+
+  // What WebAssembly itself ends with (a stack that is used up) leaves an engine that nobody may trust.
+  const call = (work) => {
+    if (ended) return refusal("the engine has ended", "load it anew");
+    try {
+      return work();
+    } catch (error) {
+      ended = true;
+      return refusal(`the engine ended: ${error}`, "load it anew, and ask for less");
+    }
+  };
+  const limit = (name) => Number(limits[name] ?? 0);
+  const engine = new wasm.Engine(limit("seconds"), limit("steps"), limit("numbers"));
+  const ask = (verb) => (source, options, name) =>
+    call(() => engine[verb](text(source), text(name), JSON.stringify(options ?? {})));
+
+  function openConsole() {
+    const held = new wasm.Console(engine);
+    let closed = false;
+    const machine = (work) => (closed ? refusal("this console is closed", "take another") : call(work));
+    return {
+      open: (source, name) => machine(() => held.open(text(source), text(name))),
+      setMode: (mode) => machine(() => held.setMode(text(mode))),
+      repeat: (initial, operate) => machine(() => held.repeat(Number(initial), Number(operate))),
+      advance: (duration, names, rows = 1) =>
+        machine(() => held.advance(Number(duration), texts(names), Number(rows))),
+      turn: (pot, value) => machine(() => held.turn(text(pot), text(value))),
+      read: (...names) => machine(() => held.read(texts(names))),
+      overloads: () => machine(() => held.overloads()),
+      events: () => machine(() => held.events()),
+      save: () => machine(() => held.save()),
+      restore: (state) => machine(() => held.restore(text(state))),
+      close() {
+        if (!closed) held.delete();
+        closed = true;
+      },
+    };
+  }
+
+  return {
+    get ended() {
+      return ended;
+    },
+    about: () => call(() => wasm.Engine.about()),
+    putFile: (name, content) => call(() => engine.putFile(text(name), text(content))),
+    putBlock: (name, source) => call(() => engine.putBlock(text(name), text(source))),
+    open: (source, name) => call(() => engine.open(text(source), text(name))),
+    run: ask("run"),
+    patch: ask("patch"),
+    motion: ask("motion"),
+    draw: ask("draw"),
+    console: openConsole,
+  };
+}
