@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+// One page of it all: node build.mjs FOLDER, with the engine in FOLDER and what the lock file names in FOLDER/npm; checks the
+// types and writes FOLDER/studio.html.
+import {spawnSync} from "node:child_process";
+import {createHash} from "node:crypto";
+import {cpSync, readdirSync, readFileSync, renameSync, rmSync, writeFileSync} from "node:fs";
+import {dirname, join, relative, resolve} from "node:path";
+import {fileURLToPath} from "node:url";
+import {gzipSync} from "node:zlib";
+
+const here = dirname(fileURLToPath(import.meta.url));
+const folder = process.argv[2];
+const built = resolve(folder), stage = join(built, "npm");
+const diagrams = join(here, "../../../diagrams");
+
+// Beside the packages, where they are found.
+rmSync(join(stage, "src"), {recursive: true, force: true});
+cpSync(join(here, "src"), join(stage, "src"), {recursive: true});
+cpSync(join(here, "tsconfig.json"), join(stage, "tsconfig.json"));
+
+function run(program, given, options = {}) {
+  const done = spawnSync(program, given, {encoding: "utf8", cwd: stage, maxBuffer: 1 << 27, ...options});
+  if (done.status !== 0) throw new Error(`${program}: ${done.stdout ?? ""}${done.stderr ?? ""}${done.error ?? ""}`);
+  return done.stdout;
+}
+
+run(process.execPath, [join(stage, "node_modules/typescript/bin/tsc"), "-p", "."]);
+
+function bundle(entry, ...options) {
+  return run("esbuild", [join("src", entry), "--bundle", "--minify", "--target=es2022", "--charset=utf8", "--log-level=warning",
+    "--legal-comments=none", ...options]);
+}
+
+const files = (at) => readdirSync(at, {withFileTypes: true}).flatMap((entry) =>
+  entry.isDirectory() ? files(join(at, entry.name)) : entry.name.endsWith(".toml") ? [join(at, entry.name)] : []);
+const examples = files(diagrams).sort().map((path) => ({name: relative(diagrams, path), text: readFileSync(path, "utf8")}))
+  .filter(({text}) => /^format *= *"oblique-(diagram|mechanism)\/1"/m.test(text));
+const opening = examples.find(({name}) => name === "mechanisms/class-iii.toml");
+
+// No text of a file or of a program ends the element that it stands in.
+const inside = (text) => text.replaceAll("</", "<\\/").replaceAll("<!--", "<\\!--");
+const json = (value) => JSON.stringify(value).replaceAll("<", "\\u003c");
+
+const worker = bundle("worker.ts", "--format=iife", `--alias:engine=${join(built, "engine.mjs")}`, `--alias:engine-glue=${join(built, "engine.js")}`,
+  "--external:fs", "--external:path", "--external:crypto");
+const script = inside(bundle("main.tsx", "--format=iife", "--jsx=automatic", "--jsx-import-source=preact"));
+const style = bundle("page.css");
+const hash = (text) => `'sha256-${createHash("sha256").update(text).digest("base64")}'`;
+const policy = `default-src 'none'; script-src ${hash(script)} 'wasm-unsafe-eval' blob:; worker-src blob:; style-src 'unsafe-inline'; img-src data: blob:; ` +
+  "connect-src 'none'; form-action 'none'; base-uri 'none'";
+
+const parts = {
+  POLICY: policy,
+  STYLE: style,
+  OPENING: json(opening),
+  EXAMPLES: json(examples),
+  ENGINE: gzipSync(readFileSync(join(built, "engine.wasm")), {level: 9}).toString("base64"),
+  WORKER: inside(worker),
+  SCRIPT: script,
+};
+const page = readFileSync(join(here, "index.html"), "utf8").replace(/@([A-Z]+)@/g, (_, part) => parts[part]);
+writeFileSync(join(built, "studio.html.new"), page);
+renameSync(join(built, "studio.html.new"), join(built, "studio.html"));
+console.log(`${join(folder, "studio.html")}: ${(page.length / 1e6).toFixed(2)} MB`);

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: MIT
+// The page in Chromium, from file://. Prints its size, how long it takes until it can be used, and its frames a second.
+import assert from "node:assert/strict";
+import {mkdtempSync, rmSync, statSync} from "node:fs";
+import {createRequire} from "node:module";
+import {tmpdir} from "node:os";
+import {join} from "node:path";
+import {pathToFileURL} from "node:url";
+import test, {after, before} from "node:test";
+
+const built = process.env.OBLIQUE_ENGINE;
+const require = createRequire(join(built, "npm/package.json"));
+const puppeteer = require("puppeteer-core");
+const studio = join(built, "studio.html");
+const shots = process.env.OBLIQUE_SCREENSHOTS;  // a folder to leave pictures in
+
+let browser;
+const profile = mkdtempSync(join(tmpdir(), "oblique-studio-"));
+before(async () => {
+  browser = await puppeteer.launch({executablePath: process.env.OBLIQUE_CHROMIUM ?? "/usr/bin/chromium", headless: true,
+    userDataDir: profile, args: ["--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage"]});
+});
+after(async () => {
+  await browser.close();
+  rmSync(profile, {recursive: true, force: true});
+});
+
+// A page that is ready, what it asked for, and what went wrong in it.
+async function opened({fragment = "", width = 1280, height = 900, scheme = "light"} = {}) {
+  const page = await browser.newPage();
+  await page.setViewport({width, height});
+  await page.emulateMediaFeatures([{name: "prefers-color-scheme", value: scheme}]);
+  const requests = [], troubles = [];
+  page.on("request", (request) => requests.push(request.url()));
+  page.on("pageerror", (error) => troubles.push(error.message));
+  page.on("console", (said) => said.type() === "error" && troubles.push(said.text()));
+  page.on("dialog", (dialog) => {
+    troubles.push(`a dialog: ${dialog.message()}`);
+    void dialog.dismiss();
+  });
+  const begin = Date.now();
+  await page.goto(pathToFileURL(studio).href + fragment);
+  await page.waitForSelector(".schematic svg", {timeout: 30000});
+  return {page, requests, troubles, ready: Date.now() - begin};
+}
+
+const button = (page, name) => page.evaluate((wanted) => {
+  [...document.querySelectorAll("button")].find((one) => one.textContent === wanted).click();
+}, name);
+const text = (page, selector) => page.$eval(selector, (element) => element.textContent);
+const timeOf = async (page) => Number((await text(page, ".time")).match(/t = (\S+) s/)[1]);
+const wait = (milliseconds) => new Promise((done) => setTimeout(done, milliseconds));
+
+async function write(page, written) {
+  await page.$eval("textarea", (area, value) => {
+    area.value = value;
+    area.dispatchEvent(new Event("input", {bubbles: true}));
+  }, written);
+}
+async function choose(page, label, value) {
+  await page.select(`select[aria-label="${label}"]`, value);
+}
+
+const lag = (title = "A lag") => `format = "oblique-diagram/1"
+title = ${JSON.stringify(title)}
+[run]
+until = 4
+[blocks]
+a = { type = "constant", value = 0.5 }
+x = { type = "integrator", in = ["4*a", "-4*x"], initial = 0 }
+[outputs]
+x = "x"
+`;
+
+test("opens class III from a file, runs and moves it, and asks for nothing", async () => {
+  const {page, requests, troubles, ready} = await opened();
+  const size = statSync(studio).size;
+  console.log(`page ${(size / 1e6).toFixed(2)} MB (at most 2.5), ready in ${ready} ms (at most 1000 on two idle cores)`);
+  assert.ok(size <= 2.5e6);
+  assert.match(await text(page, "h1"), /Class III/);
+  const before = await page.$eval(".linkage", (element) => element.innerHTML);
+  await button(page, "OP");
+  await wait(1500);
+  assert.ok(await timeOf(page) > 0.3);
+  assert.notEqual(await page.$eval(".linkage", (element) => element.innerHTML), before);
+  const frames = await page.evaluate(() => new Promise((done) => {
+    let count = 0;
+    const begin = performance.now();
+    const step = () => (performance.now() - begin > 2000 ? done(count / 2) : (++count, requestAnimationFrame(step)));
+    requestAnimationFrame(step);
+  }));
+  console.log(`class III runs and moves at ${frames} frames a second`);
+  await button(page, "HOLD");
+  await wait(300);
+  const held = await timeOf(page);
+  await wait(300);
+  assert.equal(await timeOf(page), held);
+  assert.deepEqual(requests.filter((url) => !url.startsWith("file:") && !url.startsWith("blob:")), []);
+  assert.equal(requests.filter((url) => url.startsWith("file:")).length, 1);
+  assert.deepEqual(troubles, []);
+  await page.close();
+});
+
+test("a diagram is typed, run, its pot turned, its meter read", async () => {
+  const {page, troubles} = await opened();
+  await write(page, lag());
+  await page.waitForFunction(() => document.querySelector("h1").textContent.includes("A lag"));
+  await choose(page, "What the voltmeter shows", "x");
+  await button(page, "OP");
+  // x goes to a as e^(−4t): after 5 s by 2e-9
+  await page.waitForFunction(() => Number(document.querySelector(".time").textContent.match(/t = (\S+) s/)[1]) > 5, {timeout: 20000});
+  await wait(500);
+  assert.ok(Math.abs(parseFloat(await text(page, ".meter output")) - 0.5) < 1e-5, await text(page, ".meter output"));
+  await page.$eval("#pot-a\\.value", (input) => {
+    input.value = "0.25";
+    input.dispatchEvent(new Event("change", {bubbles: true}));
+  });
+  const turned = await timeOf(page);
+  await page.waitForFunction((from) => Number(document.querySelector(".time").textContent.match(/t = (\S+) s/)[1]) > from + 5, {timeout: 20000}, turned);
+  await wait(500);
+  assert.ok(Math.abs(parseFloat(await text(page, ".meter output")) - 0.25) < 1e-5, await text(page, ".meter output"));
+  await page.keyboard.press("Escape");
+  await page.evaluate(() => document.activeElement?.blur());
+  await page.keyboard.press("i");
+  await page.waitForFunction(() => document.querySelector(".time").textContent === "t = 0 s");
+  await page.keyboard.press("Space");
+  await wait(400);
+  assert.ok(await timeOf(page) > 0);
+  await button(page, "REP");
+  await wait(600);
+  assert.equal(await page.$(".findings"), null);
+  assert.deepEqual(troubles, []);
+  await page.close();
+});
+
+test("a wrong file is told by its line, and the machine before stays", async () => {
+  const {page, troubles} = await opened();
+  await write(page, lag());
+  await page.waitForFunction(() => document.querySelector("h1").textContent.includes("A lag"));
+  await write(page, lag().replace('"integrator"', '"integrater"'));
+  await page.waitForSelector(".findings");
+  assert.match(await text(page, ".findings"), /line 7.*integrater.*integrator/s);
+  await page.click(".findings .link");
+  const [begin, end] = await page.$eval("textarea", (area) => [area.selectionStart, area.selectionEnd]);
+  const chosen = (await page.$eval("textarea", (area) => area.value)).slice(begin, end);
+  assert.match(chosen, /integrater/);
+  await button(page, "OP");
+  await wait(500);
+  assert.ok(await timeOf(page) > 0);
+  await write(page, lag());
+  await page.waitForFunction(() => !document.querySelector(".findings"));
+  assert.deepEqual(troubles, []);
+  await page.close();
+});
+
+test("markup in a file is text", async () => {
+  const {page, troubles, requests} = await opened();
+  const evil = "<img src=https://example.org/x onerror=alert(1)></script><script>alert(2)</script>";
+  await write(page, lag(evil).replace("[outputs]", `[outputs]\n${JSON.stringify("<b onclick=alert(3)>y")} = "x"`)
+    .replace("value = 0.5", `value = 0.5, label = ${JSON.stringify(evil)}`));
+  await page.waitForFunction(() => document.querySelector("h1").textContent.includes("<img"));
+  await button(page, "OP");
+  await wait(500);
+  assert.equal(await page.$$eval("img, h1 script, svg script, b", (found) => found.length), 0);
+  assert.deepEqual(requests.filter((url) => url.startsWith("http")), []);
+  assert.deepEqual(troubles, []);
+  await page.close();
+});
+
+test("what computes too long is stopped, and the machine comes back", async () => {
+  const {page} = await opened();
+  await write(page, `format = "oblique-diagram/1"
+title = "Fast"
+[run]
+until = 1
+max_steps = 1000000000
+[blocks]
+s = { type = "sine-source", amplitude = 1, frequency = 1e8 }
+x = { type = "integrator", in = ["s", "-1*x"] }
+[outputs]
+x = "x"
+`);
+  await page.waitForFunction(() => document.querySelector("h1").textContent.includes("Fast"));
+  await button(page, "OP");
+  await page.waitForFunction(() => !document.querySelector(".stop").disabled, {timeout: 15000});
+  const begin = Date.now();
+  await page.click(".stop");
+  await page.waitForFunction(() => document.querySelector(".remark")?.textContent.includes("stopped"), {timeout: 15000});
+  assert.ok(Date.now() - begin < 8000);
+  assert.equal(await page.$eval(".stop", (one) => one.disabled), true);
+  await write(page, lag("After"));
+  await page.waitForFunction(() => document.querySelector("h1").textContent.includes("After"));
+  await button(page, "OP");
+  await wait(500);
+  assert.ok(await timeOf(page) > 0);
+  await page.close();
+});
+
+test("a link holds the file", async () => {
+  const {page} = await opened();
+  await write(page, lag("Shared — über Fragment"));
+  await page.waitForFunction(() => document.querySelector("h1").textContent.includes("Shared"));
+  await button(page, "Link");
+  await page.waitForFunction(() => location.hash.length > 10);
+  const fragment = await page.evaluate(() => location.hash);
+  await page.close();
+  const again = await opened({fragment});
+  assert.match(await text(again.page, "h1"), /Shared — über Fragment/);
+  assert.equal(await again.page.$eval("textarea", (area) => area.value), lag("Shared — über Fragment"));
+  await again.page.close();
+  const broken = await opened({fragment: "#nothing"});
+  assert.match(await text(broken.page, "h1"), /Class III/);
+  await broken.page.close();
+});
+
+for (const [width, scheme] of [[1280, "light"], [1280, "dark"], [390, "light"], [390, "dark"]]) {
+  test(`nothing is wider than ${width} px, ${scheme}`, async () => {
+    const {page} = await opened({width, scheme});
+    await button(page, "OP");
+    await wait(700);
+    assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
+    if (shots) await page.screenshot({path: join(shots, `studio-${width}-${scheme}.png`)});
+    await page.close();
+  });
+}
