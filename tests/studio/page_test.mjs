@@ -196,6 +196,18 @@ x = "x"
   await page.close();
 });
 
+test("a diagram with a timeline runs through its phases", async () => {
+  const {page, troubles} = await opened();
+  await choose(page, "Examples", "lessons/repetitive-operation.toml");
+  await page.waitForFunction(() => !document.querySelector("h1").textContent.includes("Class III"));
+  await button(page, "OP");
+  await wait(800);
+  assert.ok(await timeOf(page) > 0.1);
+  assert.equal(await page.$(".findings"), null);
+  assert.deepEqual(troubles, []);
+  await page.close();
+});
+
 test("a link holds the file", async () => {
   const {page} = await opened();
   await write(page, lag("Shared — über Fragment"));

@@ -59,7 +59,7 @@ export function App() {
 
   // What the loop of frames reads: the newest of what the page shows.
   const now = useRef({shown, speed, traces, traced, persists, held, asking: false, saved: "", patched: "", begun: 0,
-    mechanism: undefined as SharedFile | undefined, moved: 0, turned: new Map<string, string>()});
+    mechanism: undefined as SharedFile | undefined, moved: 0, asked: "", turned: new Map<string, string>()});
   Object.assign(now.current, {shown, speed, traces, traced, persists, held});
 
   const show = (change: Partial<Shown>) => {
@@ -87,6 +87,7 @@ export function App() {
   /// Reads a text and sets the machine up: at its initial condition. Where it is wrong, the machine before stays.
   async function open(next: SharedFile, how: {gain?: string; restore?: string} = {}): Promise<void> {
     setFindings([]);
+    now.current.asked = next.text;
     const opened = await machine.ask<Opened>("open", next.text, next.name);
     if (!good(opened)) return;
     const theme = {theme: "auto"};
@@ -105,6 +106,9 @@ export function App() {
     if (!good(set)) return;
     const drawn = await machine.ask<Drawn>("draw", diagram, theme, next.name);
     const values = await machine.ask<Read>("console.read", ...set.pots);
+    const mode: Mode = how.restore ? "hold" : "initial";
+    if (how.restore) await machine.ask("console.restore", how.restore);
+    else await machine.ask("console.setMode", mode);
     now.current.patched = diagram;
     now.current.turned.clear();
     now.current.mechanism = opened.kind === "mechanism" ? next : undefined;
@@ -120,10 +124,7 @@ export function App() {
     setAgainst(way.length === 2 ? way[0]! : "");
     setRemarks(said);
     now.current.held = set;
-    if (how.restore) await machine.ask("console.restore", how.restore);
-    const mode: Mode = "initial";
-    if (!how.restore) await machine.ask("console.setMode", mode);
-    show({...dark, mode: how.restore ? "hold" : mode, time: set.time, drawn: now.current.shown.drawn + 1});
+    show({...dark, mode, time: set.time, drawn: now.current.shown.drawn + 1});
     traces.clear();
   }
 
@@ -136,7 +137,12 @@ export function App() {
       time = set.time;
       if (!now.current.persists) now.current.traces.clear();
     }
-    if (!good(await machine.ask("console.setMode", mode))) return;
+    // A diagram with a timeline sets its modes itself: then the page lets it run, or not.
+    const set = await machine.ask("console.setMode", mode);
+    if (!set.ok && !/timeline/.test(set.diagnostics?.[0]?.what ?? "")) {
+      good(set);
+      return;
+    }
     show({mode, time, drawn: now.current.shown.drawn + 1});
     await lamps();
     await meter(now.current.shown.meter.name);
@@ -254,7 +260,9 @@ export function App() {
       setFindings([]);
       return;
     }
-    const later = setTimeout(() => void open({name: file.name, text: written}), 400);
+    const later = setTimeout(() => {
+      if (written !== now.current.asked) void open({name: file.name, text: written});
+    }, 400);
     return () => clearTimeout(later);
   }, [written, state]);
 

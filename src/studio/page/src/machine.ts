@@ -30,8 +30,9 @@ export class Machine {
     this.ready = this.bytes.then((bytes) => new Promise((done, failed) => {
       const worker = this.worker = new Worker(this.script);
       worker.onerror = (event) => failed(new Error(event.message));
-      worker.onmessage = (event: MessageEvent<Reply | "ready">) => {
+      worker.onmessage = (event: MessageEvent<Reply | "ready" | "failed">) => {
         if (event.data === "ready") return done();
+        if (event.data === "failed") return failed(new Error("the engine does not start"));
         const waits = this.asked.get(event.data.id);
         this.asked.delete(event.data.id);
         waits?.done(event.data.answer);

@@ -20,9 +20,13 @@ function answer({verb, given}: Question): Answer {
 
 self.onmessage = async (event: MessageEvent) => {
   if (event.data instanceof ArrayBuffer) {
-    engine = await loadEngine({createEngine, wasmBinary: new Uint8Array(event.data), limits: {seconds: 20}}) as unknown as Engine;
-    held = engine.console();
-    self.postMessage("ready");
+    try {
+      engine = await loadEngine({createEngine, wasmBinary: new Uint8Array(event.data), limits: {seconds: 20}}) as unknown as Engine;
+      held = engine.console();
+      self.postMessage("ready");
+    } catch {
+      self.postMessage("failed");
+    }
     return;
   }
   const question = event.data as Question;
