@@ -160,7 +160,8 @@ export function App() {
     const before = pots;
     setPots((all) => all.map((pot) => (pot.name === name ? {...pot, value} : pot)));
     const unit = pots.find((pot) => pot.name === name)?.unit ?? "";
-    const quantity = unit && !/^(machine unit|1)$/.test(unit) ? `${value} ${unit}` : String(value);
+    const number = Number.isFinite(value) ? String(value) : short(value);
+    const quantity = unit && !/^(machine unit|1)$/.test(unit) ? `${number} ${unit}` : number;
     const turned = await machine.ask("console.turn", name, quantity);
     if (!turned.ok) {
       setPots(before);

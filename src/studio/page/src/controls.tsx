@@ -5,8 +5,10 @@ import type {Diagnostic} from "./answers";
 
 export type Mode = "initial" | "operate" | "hold" | "repeat";
 
+/// A number to six digits, as files write it: an infinite one is "inf".
 export function short(value: number): string {
-  return Number.isFinite(value) ? String(Number(value.toPrecision(6))) : String(value);
+  if (Number.isFinite(value)) return String(Number(value.toPrecision(6)));
+  return Number.isNaN(value) ? "nan" : value > 0 ? "inf" : "-inf";
 }
 
 /// What the engine found, by lines; a click leads there.
@@ -33,17 +35,19 @@ export interface Pot {
 /// A knob: dragged over a factor of ten to each side, typed, or turned by the arrow keys.
 function Knob({pot, turn}: {pot: Pot; turn: (name: string, value: number) => void}) {
   const [centre, setCentre] = useState(pot.value);
-  const size = Math.abs(centre), low = centre === 0 ? -1 : centre > 0 ? 0 : -2 * size, high = centre === 0 ? 1 : centre > 0 ? 2 * size : 0;
+  const slides = Number.isFinite(centre);
+  const size = slides ? Math.abs(centre) : 1, low = centre === 0 ? -1 : centre > 0 ? 0 : -2 * size, high = centre === 0 ? 1 : centre > 0 ? 2 * size : 0;
   const typed = (event: Event) => {
-    const value = Number((event.target as HTMLInputElement).value);
-    if (!Number.isFinite(value)) return;
+    const written = (event.target as HTMLInputElement).value.trim();
+    const value = /^[+-]?inf$/.test(written) ? (written.startsWith("-") ? -Infinity : Infinity) : Number(written);
+    if (written === "" || Number.isNaN(value)) return;
     setCentre(value);
     turn(pot.name, value);
   };
   return (
     <div class="knob">
       <label for={`pot-${pot.name}`}>{pot.name}</label>
-      <input type="range" aria-label={`${pot.name}, dragged`} min={low} max={high} step={(high - low) / 400} value={pot.value}
+      <input type="range" aria-label={`${pot.name}, dragged`} disabled={!slides} min={low} max={high} step={(high - low) / 400} value={slides ? pot.value : 0}
         onInput={(event) => turn(pot.name, Number((event.target as HTMLInputElement).value))} />
       <input id={`pot-${pot.name}`} type="text" inputMode="decimal" value={short(pot.value)} onChange={typed} />
       <span class="unit">{/^(machine unit|1)$/.test(pot.unit) ? "" : pot.unit}</span>
