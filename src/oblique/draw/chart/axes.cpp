@@ -16,7 +16,8 @@ using Extent = Eigen::AlignedBox<double, 2>;
 constexpr double kBetweenX = 62, kBetweenY = 40, kBetweenEqual = 50;
 constexpr double kBetweenNumbers = 10;  // [px]
 constexpr double kHalfDigit = 4;        // [px]
-const Pen kGrid{Ink::faint, 0.75}, kFineGrid{Ink::faint, 0.35}, kZero{Ink::faint, 1.5}, kFrame{Ink::faint, 1};
+const Pen grid_pen{Ink::faint, 0.75}, fine_grid_pen{Ink::faint, 0.35}, zero_pen{Ink::faint, 1.5},
+    frame_pen{Ink::faint, 1};
 
 double width_of(const std::vector<Tick>& ticks) {
   double width = 0;
@@ -48,7 +49,7 @@ std::vector<Tick> ticks_along_x(const Scale& scale, double length, double betwee
 
 Mark grid_line(const Vector2d& from, const Vector2d& to, const Tick& tick, const Scale& scale) {
   const bool zero = !scale.is_logarithmic() && tick.value == 0;
-  return line_mark(from, to, zero ? kZero : tick.label.empty() ? kFineGrid : kGrid);
+  return line_mark(from, to, zero ? zero_pen : tick.label.empty() ? fine_grid_pen : grid_pen);
 }
 
 }  // namespace
@@ -124,7 +125,7 @@ std::vector<Mark> Axes::marks_without_x(double head) const {
     const double y = high.y() - y_.fraction(tick.value) * frame_.sizes().y();
     marks.push_back(label_mark({low.x() - kTickGap, y + kHalfDigit}, tick.label, Anchor::end, kNumberSize));
   }
-  marks.push_back(box_mark(low, frame_.sizes(), Ink::none, kFrame));
+  marks.push_back(box_mark(low, frame_.sizes(), Ink::none, frame_pen));
   const std::string title = y_.title();
   if (!title.empty())
     marks.push_back(label_mark({low.x(), low.y() - head}, title, Anchor::start, kTitleSize));

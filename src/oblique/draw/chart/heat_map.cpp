@@ -88,10 +88,10 @@ class MapPainter {
                     marks);
           continue;
         }
-        const Pen kCross{Ink::faint, 1};
+        const Pen cross{Ink::faint, 1};
         marks.push_back(box_mark(corner, size, Ink::paper, {Ink::none, 0}));
-        marks.push_back(line_mark(corner, corner + size, kCross));
-        marks.push_back(line_mark(corner + Vector2d(size.x(), 0), corner + Vector2d(0, size.y()), kCross));
+        marks.push_back(line_mark(corner, corner + size, cross));
+        marks.push_back(line_mark(corner + Vector2d(size.x(), 0), corner + Vector2d(0, size.y()), cross));
       }
     }
   }
