@@ -25,12 +25,9 @@ class Scanner {
   /// The whole word or nothing of it.
   bool take(std::string_view word) {
     const char* const from = at_;
-    for (const char c : word) {
-      if (take(c)) continue;
-      at_ = from;
-      return false;
-    }
-    return true;
+    const bool all = std::all_of(word.begin(), word.end(), [&](char c) { return take(c); });
+    if (!all) at_ = from;
+    return all;
   }
   bool take_digits() {
     const char* const from = at_;
