@@ -181,13 +181,19 @@ x = { type = "integrator", in = ["s", "-1*x"] }
 x = "x"
 `);
   await page.waitForFunction(() => document.querySelector("h1").textContent.includes("Fast"));
+  await page.$eval("#pot-s\\.amplitude", (input) => {
+    input.value = "0.75";
+    input.dispatchEvent(new Event("change", {bubbles: true}));
+  });
+  await wait(300);
   await button(page, "OP");
   await page.waitForFunction(() => !document.querySelector(".stop").disabled, {timeout: 15000});
   const begin = Date.now();
   await page.click(".stop");
   await page.waitForFunction(() => document.querySelector(".remark")?.textContent.includes("stopped"), {timeout: 15000});
   assert.ok(Date.now() - begin < 8000);
-  assert.equal(await page.$eval(".stop", (one) => one.disabled), true);
+  await page.waitForFunction(() => document.querySelector(".stop").disabled);
+  assert.equal(await page.$eval("#pot-s\\.amplitude", (one) => one.value), "0.75");
   await write(page, lag("After"));
   await page.waitForFunction(() => document.querySelector("h1").textContent.includes("After"));
   await button(page, "OP");

@@ -101,7 +101,14 @@ void LaneSettling::run(LaneArray& slots, std::vector<bool>& lanes) {
 /// What becomes of a lane after a step: it is taken, tried again shorter, or was the last.
 void LaneSettling::judge(LaneArray& slots, std::size_t l) {
   Way& way = ways_[l];
-  bool good = way.goes_on && growth_[l] < kMostGrowth;
+  const auto take_back = [&] {
+    for (std::size_t i = 0; i < n_; ++i) slots[(1 + i) * width_ + l] = before_[i * width_ + l];
+  };
+  if (!way.goes_on) {
+    take_back();
+    return;
+  }
+  bool good = growth_[l] < kMostGrowth;
   double moved = 0, farthest = 0;
   for (std::size_t i = 0; good && i < n_; ++i) {
     const std::size_t k = i * width_ + l;
@@ -111,9 +118,9 @@ void LaneSettling::judge(LaneArray& slots, std::size_t l) {
            std::signbit(reciprocals_[k]) == negative_[k];
   }
   if (!good || moved >= kMostMoved) {
-    for (std::size_t i = 0; i < n_; ++i) slots[(1 + i) * width_ + l] = before_[i * width_ + l];
+    take_back();
     h_[l] /= 4;
-    way.goes_on = way.goes_on && h_[l] > way.shortest;
+    way.goes_on = h_[l] > way.shortest;
     return;
   }
   way.rests = h_[l] >= kLongStep * way.unit && moved < kNearRest;

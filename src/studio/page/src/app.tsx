@@ -59,7 +59,7 @@ export function App() {
 
   // What the loop of frames reads: the newest of what the page shows.
   const now = useRef({shown, speed, traces, traced, persists, held, asking: false, saved: "", patched: "", begun: 0,
-    mechanism: undefined as SharedFile | undefined, moved: 0, asked: "", turned: new Map<string, string>()});
+    mechanism: undefined as SharedFile | undefined, moved: 0, asked: "", opens: 0, opening: 0, turned: new Map<string, string>()});
   Object.assign(now.current, {shown, speed, traces, traced, persists, held});
 
   const show = (change: Partial<Shown>) => {
@@ -85,32 +85,50 @@ export function App() {
   }
 
   /// Reads a text and sets the machine up: at its initial condition. Where it is wrong, the machine before stays.
-  async function open(next: SharedFile, how: {gain?: string; restore?: string} = {}): Promise<void> {
+  /// The newest call wins; meanwhile the machine stands.
+  async function open(next: SharedFile, how: {gain?: string; restore?: string; turned?: Map<string, string>} = {}): Promise<void> {
+    const mine = ++now.current.opens;
+    ++now.current.opening;
+    try {
+      await openAs(next, how, () => mine === now.current.opens);
+    } catch (error) {
+      if (!(error instanceof Stopped)) throw error;
+    } finally {
+      --now.current.opening;
+    }
+  }
+
+  async function openAs(next: SharedFile, how: {gain?: string; restore?: string; turned?: Map<string, string>}, isNewest: () => boolean): Promise<void> {
     setFindings([]);
     now.current.asked = next.text;
     const opened = await machine.ask<Opened>("open", next.text, next.name);
-    if (!good(opened)) return;
+    if (!isNewest() || !good(opened)) return;
     const theme = {theme: "auto"};
     let diagram = next.text;
     const said: string[] = [];
     let drawnLinkage = "";
     if (opened.kind === "mechanism") {
       const patched = await machine.ask<Patched>("patch", next.text, {gain: how.gain ?? gain}, next.name);
-      if (!good(patched)) return;
+      if (!isNewest() || !good(patched)) return;
       diagram = patched.text;
       if (patched.judgement) said.push(patched.judgement);
       const drawn = await machine.ask<Drawn>("draw", next.text, theme, next.name);
       if (drawn.ok) drawnLinkage = drawn.svg;
     }
+    if (!isNewest()) return;
     const set = await machine.ask<Held>("console.open", diagram, next.name);
-    if (!good(set)) return;
+    if (!isNewest() || !good(set)) return;
+    const turned = how.turned ?? new Map<string, string>();
+    for (const [pot, value] of turned) await machine.ask("console.turn", pot, value);
     const drawn = await machine.ask<Drawn>("draw", diagram, theme, next.name);
     const values = await machine.ask<Read>("console.read", ...set.pots);
     const mode: Mode = how.restore ? "hold" : "initial";
     if (how.restore) await machine.ask("console.restore", how.restore);
     else await machine.ask("console.setMode", mode);
+    if (!isNewest()) return;
     now.current.patched = diagram;
-    now.current.turned.clear();
+    now.current.turned = turned;
+    now.current.saved = how.restore ?? "";
     now.current.mechanism = opened.kind === "mechanism" ? next : undefined;
     setFile(next);
     setAbout({kind: opened.kind, title: opened.title});
@@ -178,10 +196,11 @@ export function App() {
 
   /// Ends whatever the engine does; the machine stands where it was last saved.
   async function stop(): Promise<void> {
+    const {saved, turned} = now.current;
     await machine.restart();
     setBusy(false);
     now.current.asking = false;
-    await open(file, {restore: now.current.saved});
+    await open(file, {restore: saved, turned: new Map(turned)});
     setRemarks((said) => [...said, "stopped: the machine stands where it last was whole"]);
   }
 
@@ -232,7 +251,7 @@ export function App() {
       if (ended) return;
       requestAnimationFrame(step);
       const current = now.current;
-      if (current.asking) {
+      if (current.asking || current.opening > 0) {
         setBusy(at - last > 700);
         return;
       }
