@@ -133,6 +133,31 @@ test("a diagram is typed, run, its pot turned, its meter read", async () => {
   await page.close();
 });
 
+test("scripts hold the machine by globalThis.oblique", async () => {
+  const {page, troubles} = await opened();
+  const opened_ = await page.evaluate((written) => oblique.open(written), lag("By a script"));
+  assert.equal(opened_.title, "By a script");
+  assert.deepEqual(opened_.outputs, ["x"]);
+  const ran = await page.evaluate((written) => oblique.run(written, {samples: 5}), lag());
+  assert.deepEqual(ran.columns.map(({name}) => name), ["t", "x"]);
+  assert.equal(ran.rows.length, 5);
+  // the solver's tolerance is 1e-8; a hundredfold for its global error
+  for (const [t, x] of ran.rows) assert.ok(Math.abs(x - 0.5 * (1 - Math.exp(-4 * t))) < 1e-6, `${t} ${x}`);
+  const values = await page.evaluate(async () => {
+    await oblique.turn("a.value", -0.25);
+    const time = await oblique.advance(1);
+    return [time, await oblique.read("x"), await oblique.read("a.value")];
+  });
+  assert.ok(Math.abs(values[0] - 1) < 1e-12 && values[2] === -0.25, String(values));
+  assert.ok(Math.abs(values[1] + 0.25 * (1 - Math.exp(-4))) < 1e-6, String(values));
+  const refused = await page.evaluate(() => oblique.open("format = 3").then(() => "taken", (error) => error.message));
+  assert.match(refused, /script\.toml:1.*format/s);
+  assert.match(await page.evaluate(() => oblique.read("nobody").then(() => "read", (error) => error.message)), /nobody/);
+  assert.equal(await text(page, "h1 .quiet"), "By a script");
+  assert.deepEqual(troubles, []);
+  await page.close();
+});
+
 test("a wrong file is told by its line, and the machine before stays", async () => {
   const {page, troubles} = await opened();
   await write(page, lag());

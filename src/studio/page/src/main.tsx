@@ -2,5 +2,9 @@
 import {render} from "preact";
 
 import {App} from "./app";
+import {scripting} from "./scripting";
+import {Session} from "./session";
 
-render(<App />, document.getElementById("studio")!);
+const session = new Session();
+Object.assign(globalThis, {oblique: scripting(session)});
+render(<App session={session} />, document.getElementById("studio")!);

@@ -2,12 +2,14 @@
 import {useEffect, useRef} from "preact/hooks";
 import uPlot from "uplot";
 
-import {short} from "./controls";
+import {short} from "./numbers";
+import {useShown, type Session} from "./session";
+import {save} from "./share";
 import type {Traces} from "./traces";
 
-export const colours = ["#4393c3", "#d6604d", "#5aae61", "#9970ab", "#c9a227", "#35978f", "#de77ae", "#8c8c8c"];
+const colours = ["#4393c3", "#d6604d", "#5aae61", "#9970ab", "#c9a227", "#35978f", "#de77ae", "#8c8c8c"];
 
-export function colourOf(trace: number): string {
+function colourOf(trace: number): string {
   return colours[trace % colours.length]!;
 }
 
@@ -15,7 +17,7 @@ function styleOf(name: string): string {
   return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 }
 
-export function rangeOf(columns: Float64Array[]): [number, number] {
+function rangeOf(columns: Float64Array[]): [number, number] {
   let low = Infinity, high = -Infinity;
   for (const column of columns) {
     for (const value of column) {
@@ -113,7 +115,36 @@ function OverSignal({traces, against, drawn, height}: Shown & {against: string})
     aria-label={`Oscilloscope: ${traces.names.filter((name) => name !== against).join(", ")} over ${against}`} />;
 }
 
-/// The screen: over the time where `against` is empty.
-export function Scope({against, ...shown}: Shown & {against: string}) {
-  return shown.traces.names.includes(against) && shown.traces.names.length > 1 ? <OverSignal against={against} {...shown} /> : <OverTime {...shown} />;
+/// The screen, over the time or over a signal, and what is shown on it.
+export function Scope({session}: {session: Session}) {
+  const traced = useShown(session, (shown) => shown.traced);
+  const against = useShown(session, (shown) => shown.against);
+  const persists = useShown(session, (shown) => shown.persists);
+  const drawn = useShown(session, (shown) => shown.drawn);
+  useShown(session, (shown) => shown.held);
+  const {channels, traces} = session;
+  const screen = {traces, drawn, height: 280};
+  return (
+    <>
+      {traced.includes(against) && traced.length > 1 ? <OverSignal against={against} {...screen} /> : <OverTime {...screen} />}
+      <div class="channels">
+        <label>over <select aria-label="What the traces are drawn against" value={against} onChange={(event) => {
+          const name = (event.target as HTMLSelectElement).value;
+          if (name && !traced.includes(name)) session.trace([...traced, name], name);
+          else session.set({against: name});
+        }}>
+          <option value="">t</option>
+          {channels.map((name) => <option value={name}>{name}</option>)}
+        </select></label>
+        <label>trace <select aria-label="Add a trace" value="" onChange={(event) => session.trace([...traced, (event.target as HTMLSelectElement).value])}>
+          <option value="">add …</option>
+          {channels.filter((name) => !traced.includes(name)).map((name) => <option value={name}>{name}</option>)}
+        </select></label>
+        {traced.map((name, k) => <button class="trace" style={{borderColor: colourOf(k)}} aria-label={`Take ${name} off the scope`}
+          onClick={() => session.trace(traced.filter((one) => one !== name))}>{name} ×</button>)}
+        <label><input type="checkbox" checked={persists} onChange={(event) => session.set({persists: (event.target as HTMLInputElement).checked})} /> persistence</label>
+        <button onClick={() => save("traces.csv", session.traces.csv(), "text/csv")}>CSV</button>
+      </div>
+    </>
+  );
 }

@@ -1,0 +1,376 @@
+// SPDX-License-Identifier: MIT
+// The machine that the page holds, and all that the page shows of it: one snapshot, and what may be done to it. The rooms
+// of the page only show the snapshot and call what stands here.
+import {useEffect, useReducer} from "preact/hooks";
+
+import type {Advanced, Answer, Diagnostic, Drawn, Held, Opened, Overloads, Patched, Read, Saved} from "./answers";
+import {carried, Machine, Stopped} from "./machine";
+import {short} from "./numbers";
+import {fromFragment, type SharedFile} from "./share";
+import {Traces} from "./traces";
+
+export const examples = JSON.parse(carried("examples")) as SharedFile[];
+const opening = JSON.parse(carried("opening")) as SharedFile;
+
+const mostRows = 20_000;  // that the scope remembers
+const rowsAFrame = 12;
+const restOfWriter = 400;  // ms after which what was written is looked at
+
+export type Mode = "initial" | "operate" | "hold" | "repeat";
+export const runs = (mode: Mode) => mode === "operate" || mode === "repeat";
+
+export interface Pot {
+  name: string;
+  value: number;
+  unit: string;
+}
+
+export interface Shown {
+  engine: "starting" | "ready" | "failed";
+  busy: boolean;
+  file: SharedFile;           ///< the one that the machine is of
+  written: string;            ///< what stands in the editor
+  findings: Diagnostic[];
+  remarks: string[];
+  kind: "" | "diagram" | "mechanism";
+  title: string;
+  diagram: string;            ///< what runs: the file, or the patch of a mechanism
+  schematic: string;          ///< SVG
+  linkage: string;            ///< SVG
+  gain: string;               ///< of the patch
+  held: Held | undefined;
+  pots: Pot[];
+  mode: Mode;
+  time: number;
+  speed: number;              ///< seconds of the machine a second
+  lamps: {signal: string; value: number}[];
+  meter: {name: string; value: number; unit: string};
+  values: ReadonlyMap<string, number>;  ///< of the signals that are watched
+  traced: string[];
+  against: string;            ///< what the traces are drawn over; empty: the time
+  persists: boolean;
+  drawn: number;              ///< counts up where the traces have something new
+}
+
+export interface Opening {
+  gain?: string;
+  restore?: string;
+  turned?: ReadonlyMap<string, string>;
+}
+
+/// First those of the diagram's own elements that do something, last what composites are made of.
+function inOrder(pots: Pot[]): Pot[] {
+  const sleeps = (pot: Pot) => pot.value === 0 || !Number.isFinite(pot.value) || /\.(noise_bandwidth|seed|segments)$/.test(pot.name);
+  const rank = (pot: Pot) => 2 * (pot.name.split(".").length - 2) + (sleeps(pot) ? 1 : 0);
+  return pots.map((pot, place) => ({pot, place})).sort((a, b) => rank(a.pot) - rank(b.pot) || a.place - b.place).map(({pot}) => pot);
+}
+
+export class Session {
+  readonly machine = new Machine();
+  shown: Shown = {
+    engine: "starting", busy: false, file: opening, written: opening.text, findings: [], remarks: [], kind: "", title: "", diagram: "", schematic: "", linkage: "",
+    gain: "1e5", held: undefined, pots: [], mode: "initial", time: 0, speed: 1, lamps: [], meter: {name: "", value: NaN, unit: ""}, values: new Map(),
+    traced: [], against: "", persists: false, drawn: 0,
+  };
+  traces = new Traces([], mostRows);
+  /// Resolves once the first file was opened.
+  readonly ready: Promise<void>;
+
+  private readonly listeners = new Set<() => void>();
+  private readonly watches = new Set<readonly string[]>();
+  private turned: ReadonlyMap<string, string> = new Map();
+  private saved = "";         // the state that the machine comes back to
+  private asked = "";         // the text that was looked at last
+  private opens = 0;          // the newest call of `open`
+  private opening = 0;        // how many of them are under way
+  private asking = false;     // a frame is
+  private moved = 0;          // when the linkage was drawn last
+  private later: ReturnType<typeof setTimeout> | undefined;
+
+  constructor() {
+    this.ready = this.begin();
+  }
+
+  set(change: Partial<Shown>): void {
+    this.shown = {...this.shown, ...change};
+    for (const listener of this.listeners) listener();
+  }
+
+  subscribe(listener: () => void): () => void {
+    this.listeners.add(listener);
+    return () => { this.listeners.delete(listener); };
+  }
+
+  /// Reads these signals in every frame, into `values`, until what it gives is called.
+  watch(names: readonly string[]): () => void {
+    this.watches.add(names);
+    void this.look().catch(ignoreStops);
+    return () => { this.watches.delete(names); };
+  }
+
+  /// How long the file says that a run lasts [s].
+  get span(): number {
+    const until = Number(/^\s*until\s*=\s*([0-9.eE+-]+)/m.exec(this.shown.diagram)?.[1]);
+    return until > 0 ? until : 1;
+  }
+
+  /// All that can be traced or measured.
+  get channels(): string[] {
+    const {held} = this.shown;
+    return held ? [...new Set([...held.outputs, ...held.signals])] : [];
+  }
+
+  /// Takes what is written; it is looked at as soon as the writer rests.
+  write(written: string): void {
+    this.set({written});
+    clearTimeout(this.later);
+    if (this.shown.engine !== "ready") return;
+    if (written === this.shown.file.text) {
+      this.asked = written;
+      this.set({findings: []});
+      return;
+    }
+    this.later = setTimeout(() => {
+      if (this.shown.written !== this.asked) void this.open({name: this.shown.file.name, text: this.shown.written});
+    }, restOfWriter);
+  }
+
+  /// Puts a file in place of the one before.
+  async load(file: SharedFile): Promise<boolean> {
+    clearTimeout(this.later);
+    this.set({written: file.text});
+    return this.open(file);
+  }
+
+  /// Reads a text and sets the machine up: at its initial condition. Where it is wrong, the machine before stays.
+  /// The newest call wins; meanwhile the machine stands. Whether it was taken.
+  async open(next: SharedFile, how: Opening = {}): Promise<boolean> {
+    const mine = ++this.opens;
+    ++this.opening;
+    try {
+      return await this.openAs(next, how, () => mine === this.opens);
+    } catch (error) {
+      ignoreStops(error);
+      return false;
+    } finally {
+      --this.opening;
+    }
+  }
+
+  async press(mode: Mode): Promise<void> {
+    let {time} = this.shown;
+    if (mode === "initial") {  // the clock too begins again, with the pots as they are turned
+      const set = await this.machine.ask<Held>("console.open", this.shown.diagram, this.shown.file.name);
+      if (!this.good(set)) return;
+      for (const [pot, value] of this.turned) await this.machine.ask("console.turn", pot, value);
+      time = set.time;
+      if (!this.shown.persists) this.traces.clear();
+    }
+    // A diagram with a timeline sets its modes itself: then the page lets it run, or not.
+    const set = await this.machine.ask("console.setMode", mode);
+    if (!set.ok && !/timeline/.test(set.diagnostics?.[0]?.what ?? "")) {
+      this.good(set);
+      return;
+    }
+    this.set({mode, time, drawn: this.shown.drawn + 1});
+    await this.lookAtAll();
+  }
+
+  /// Initial condition and a run, again and again.
+  async repeat(): Promise<void> {
+    if (!this.good(await this.machine.ask("console.repeat", this.span / 20, this.span))) return;
+    this.set({mode: "repeat", findings: [], drawn: this.shown.drawn + 1});
+  }
+
+  /// Turns a pot of the machine; whether it could be.
+  async turn(name: string, value: number): Promise<boolean> {
+    const {pots} = this.shown;
+    const unit = pots.find((pot) => pot.name === name)?.unit ?? "";
+    this.set({pots: pots.map((pot) => (pot.name === name ? {...pot, value} : pot))});
+    const number = Number.isFinite(value) ? String(value) : short(value);
+    const quantity = unit && !/^(machine unit|1)$/.test(unit) ? `${number} ${unit}` : number;
+    const turned = await this.machine.ask("console.turn", name, quantity);
+    if (!turned.ok) {
+      this.set({pots});
+      return this.good(turned);
+    }
+    this.set({findings: []});
+    this.turned = new Map([...this.turned, [name, quantity]]);
+    if (!runs(this.shown.mode)) await this.lookAtAll();
+    return true;
+  }
+
+  async meter(name: string): Promise<void> {
+    if (name === "") return this.set({meter: {name, value: NaN, unit: ""}});
+    if (!this.shown.held) return;
+    const read = await this.machine.ask<Read>("console.read", name);
+    if (read.ok) this.set({meter: {name, value: read.numbers[0]!, unit: read.units[0]!}});
+  }
+
+  trace(traced: string[], against = this.shown.against): void {
+    this.traces = new Traces(traced, mostRows);
+    this.set({traced, against: traced.includes(against) ? against : "", drawn: this.shown.drawn + 1});
+  }
+
+  /// Ends whatever the engine does; the machine stands where it was last saved.
+  async stop(): Promise<void> {
+    const {saved, turned} = this;
+    await this.machine.restart();
+    this.asking = false;
+    this.set({busy: false});
+    await this.open(this.shown.file, {restore: saved, turned});
+    this.set({remarks: [...this.shown.remarks, "stopped: the machine stands where it last was whole"]});
+  }
+
+  /// The findings of an answer that is none; whether it is one.
+  good(answer: Answer): boolean {
+    if (!answer.ok) this.set({findings: answer.diagnostics ?? []});
+    return answer.ok;
+  }
+
+  private async begin(): Promise<void> {
+    try {
+      await this.machine.start();
+    } catch {
+      this.set({engine: "failed"});
+      return;
+    }
+    this.set({engine: "ready"});
+    this.frames();
+    await this.load(await fromFragment(location.hash) ?? opening);
+  }
+
+  private async openAs(next: SharedFile, how: Opening, isNewest: () => boolean): Promise<boolean> {
+    const {machine} = this;
+    this.set({findings: []});
+    this.asked = next.text;
+    const opened = await machine.ask<Opened>("open", next.text, next.name);
+    if (!isNewest() || !this.good(opened)) return false;
+    const theme = {theme: "auto"};
+    const gain = how.gain ?? this.shown.gain;
+    let diagram = next.text, linkage = "";
+    const remarks: string[] = [];
+    if (opened.kind === "mechanism") {
+      const patched = await machine.ask<Patched>("patch", next.text, {gain}, next.name);
+      if (!isNewest() || !this.good(patched)) return false;
+      diagram = patched.text;
+      if (patched.judgement) remarks.push(patched.judgement);
+      const drawn = await machine.ask<Drawn>("draw", next.text, theme, next.name);
+      if (drawn.ok) linkage = drawn.svg;
+    }
+    if (!isNewest()) return false;
+    const held = await machine.ask<Held>("console.open", diagram, next.name);
+    if (!isNewest() || !this.good(held)) return false;
+    const turned = how.turned ?? new Map<string, string>();
+    for (const [pot, value] of turned) await machine.ask("console.turn", pot, value);
+    const drawn = await machine.ask<Drawn>("draw", diagram, theme, next.name);
+    const values = await machine.ask<Read>("console.read", ...held.pots);
+    const mode: Mode = how.restore ? "hold" : "initial";
+    if (how.restore) await machine.ask("console.restore", how.restore);
+    else await machine.ask("console.setMode", mode);
+    if (!isNewest()) return false;
+    this.turned = turned;
+    this.saved = how.restore ?? "";
+    // of a mechanism the way of its second moving point, else the first outputs over the time
+    const way = opened.kind === "mechanism" ? held.outputs.slice(2, 4) : [];
+    const isWay = way.length === 2;
+    this.set({
+      file: next, kind: opened.kind, title: opened.title, gain, diagram, linkage, schematic: drawn.ok ? drawn.svg : "", held, remarks, mode, time: held.time, lamps: [],
+      pots: inOrder(held.pots.map((name, k) => ({name, value: values.numbers[k]!, unit: values.units[k] ?? ""}))),
+      meter: {name: "", value: NaN, unit: ""}, values: new Map(),
+    });
+    this.trace(isWay ? way : held.outputs.slice(0, 4), isWay ? way[0]! : "");
+    await this.look();
+    return true;
+  }
+
+  private async lookAtLamps(): Promise<void> {
+    const lit = await this.machine.ask<Overloads>("console.overloads");
+    if (lit.ok) this.set({lamps: lit.signals.map((signal, k) => ({signal, value: lit.numbers[k]!}))});
+  }
+
+  /// Reads what is watched; names that this machine has not are passed over.
+  private async look(): Promise<void> {
+    const all = new Set(this.channels);
+    const names = [...new Set([...this.watches].flat())].filter((name) => all.has(name));
+    if (names.length === 0) return;
+    const read = await this.machine.ask<Read>("console.read", ...names);
+    if (read.ok) this.set({values: new Map(names.map((name, k) => [name, read.numbers[k]!]))});
+  }
+
+  private async lookAtAll(): Promise<void> {
+    await this.lookAtLamps();
+    await this.meter(this.shown.meter.name);
+    await this.look();
+  }
+
+  private async frame(seconds: number): Promise<void> {
+    const {speed, traced, persists} = this.shown;
+    const {span, traces} = this;
+    const duration = speed === Infinity ? span / 50 : seconds * speed;
+    const went = await this.machine.ask<Advanced>("console.advance", duration, traced, rowsAFrame);
+    if (!went.ok) {
+      this.good(went);
+      await this.machine.ask("console.setMode", "hold");
+      this.set({mode: "hold", drawn: this.shown.drawn + 1});
+      return;
+    }
+    traces.add(went.numbers, persists);
+    this.set({time: went.time, drawn: this.shown.drawn + 1});
+    await this.look();
+    if (this.shown.kind === "mechanism" && performance.now() - this.moved > 60) {
+      this.moved = performance.now();
+      const {name, text} = this.shown.file;
+      const drawn = await this.machine.ask<Drawn>("draw", text, {theme: "auto", time: went.time % span}, name);
+      if (drawn.ok) this.set({linkage: drawn.svg});
+    }
+    if (went.warnings.length > 0) this.set({remarks: went.warnings.map((warning) => warning.what)});
+  }
+
+  /// A frame of the page goes on by so much of the machine's time, where it runs.
+  private frames(): void {
+    let last = performance.now(), second = 0;
+    const whole = async (at: number, seconds: number) => {
+      await this.frame(seconds);
+      if (at - second < 300) return;
+      second = at;
+      await this.lookAtLamps();
+      await this.meter(this.shown.meter.name);
+      const saved = await this.machine.ask<Saved>("console.save");
+      if (saved.ok) this.saved = saved.state;
+    };
+    const step = (at: number) => {
+      requestAnimationFrame(step);
+      const busy = (this.asking || this.opening > 0) && at - last > 700;
+      if (busy !== this.shown.busy) this.set({busy});
+      if (this.asking || this.opening > 0) return;
+      const seconds = Math.min((at - last) / 1000, 0.1);
+      last = at;
+      if (!this.shown.held || !runs(this.shown.mode)) return;
+      this.asking = true;
+      whole(at, seconds).catch(ignoreStops).finally(() => { this.asking = false; });
+    };
+    requestAnimationFrame(step);
+  }
+}
+
+function ignoreStops(error: unknown): void {
+  if (!(error instanceof Stopped)) throw error;
+}
+
+/// A part of what a session shows; the component is drawn anew when the part is another one.
+export function useShown<Part>(session: Session, part: (shown: Shown) => Part): Part {
+  const [, again] = useReducer<number, void>((count) => count + 1, 0);
+  const current = part(session.shown);
+  useEffect(() => {
+    let before = current;
+    const look = () => {
+      const now = part(session.shown);
+      if (!Object.is(now, before)) again();
+      before = now;
+    };
+    look();
+    return session.subscribe(look);
+  }, [session]);
+  return current;
+}
