@@ -123,6 +123,7 @@ std::optional<ExitStatus> parse_arguments(int argc, char** argv, Chosen& chosen)
   add_ensemble(app, chosen);
   add_draw(app, chosen);
   add_animate(app, chosen);
+  add_studio(app, chosen);
   add_blocks(app, chosen);
   add_machines(app, chosen);
   if (argc < 2) {

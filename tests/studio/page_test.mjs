@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 // The page in Chromium, from file://. Prints its size, how long it takes until it can be used, and its frames a second.
 import assert from "node:assert/strict";
-import {mkdtempSync, rmSync, statSync} from "node:fs";
+import {mkdtempSync, rmSync, statSync, writeFileSync} from "node:fs";
 import {createRequire} from "node:module";
 import {tmpdir} from "node:os";
 import {join} from "node:path";
 import {pathToFileURL} from "node:url";
 import test, {after, before} from "node:test";
+
+import {runProgram} from "./support.mjs";
 
 const built = process.env.OBLIQUE_ENGINE;
 const require = createRequire(join(built, "npm/package.json"));
@@ -26,7 +28,7 @@ after(async () => {
 });
 
 // A page that is ready, what it asked for, and what went wrong in it.
-async function opened({fragment = "", width = 1280, height = 900, scheme = "light"} = {}) {
+async function opened({fragment = "", width = 1280, height = 900, scheme = "light", file = studio} = {}) {
   const page = await browser.newPage();
   await page.setViewport({width, height});
   await page.emulateMediaFeatures([{name: "prefers-color-scheme", value: scheme}]);
@@ -39,7 +41,7 @@ async function opened({fragment = "", width = 1280, height = 900, scheme = "ligh
     void dialog.dismiss();
   });
   const begin = Date.now();
-  await page.goto(pathToFileURL(studio).href + fragment);
+  await page.goto(pathToFileURL(file).href + fragment);
   await page.waitForSelector(".schematic svg", {timeout: 30000});
   return {page, requests, troubles, ready: Date.now() - begin};
 }
@@ -156,6 +158,35 @@ test("scripts hold the machine by globalThis.oblique", async () => {
   assert.equal(await text(page, "h1 .quiet"), "By a script");
   assert.deepEqual(troubles, []);
   await page.close();
+});
+
+test("the program puts a file inside, with the blocks and recordings that it needs", async () => {
+  const folder = mkdtempSync(join(tmpdir(), "oblique-studio-"));
+  writeFileSync(join(folder, "wind.csv"), "t,v\n0,0\n2,4\n");
+  writeFileSync(join(folder, "ball.toml"), `format = "oblique-diagram/1"
+title = "A ball </script><script>alert(1)</script> in the wind"
+[run]
+until = 2
+[blocks]
+ball = { type = "bouncing-ball", drop = 0.8 }
+wind = { type = "recording", points = { file = "wind.csv", x = "t", y = "v" } }
+[outputs]
+height = "ball.height"
+wind = "wind"
+`);
+  const said = runProgram(["--blocks", "diagrams/own-blocks/blocks", "studio", join(folder, "ball.toml"), "--stay", "-o", join(folder, "page.html")],
+    "", {...process.env, OBLIQUE_STUDIO: studio});
+  assert.equal(said.status, 0, said.err);
+  const {page, troubles} = await opened({file: join(folder, "page.html")});
+  assert.match(await text(page, "h1"), /A ball <\/script>.* in the wind/);
+  const {rows} = await page.evaluate(() => oblique.run());
+  const [t, height, wind] = rows.at(-1);
+  // the first flight after a bounce is 0.9² of the drop high
+  assert.ok(t === 2 && Math.abs(wind - 4) < 1e-9 && height >= 0);
+  assert.ok(Math.abs(Math.max(...rows.filter(([time]) => time > 0.4).map((row) => row[1])) - 0.648) < 2e-3);  // between two rows
+  assert.deepEqual(troubles, []);
+  await page.close();
+  rmSync(folder, {recursive: true});
 });
 
 test("a wrong file is told by its line, and the machine before stays", async () => {

@@ -19,8 +19,8 @@ export async function newEngine(limits) {
 }
 
 // Runs the program: {status, out, err}.
-export function runProgram(args, input = "") {
-  const done = spawnSync(program, args, {input, encoding: "utf8", maxBuffer: 1 << 28});
+export function runProgram(args, input = "", env = process.env) {
+  const done = spawnSync(program, args, {input, env, encoding: "utf8", maxBuffer: 1 << 28});
   if (done.error) throw done.error;
   return {status: done.status, out: done.stdout, err: done.stderr};
 }

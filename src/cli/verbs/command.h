@@ -231,6 +231,13 @@ struct BlocksRequest {
 };
 ExitStatus show_blocks(const Session& session, const BlocksRequest& request);
 
+struct StudioRequest {
+  std::string file;    ///< diagram or mechanism; empty: what the page opens with
+  std::string output;  ///< where the page goes; empty: into the user's cache
+  bool stay = false;   ///< open no browser
+};
+ExitStatus write_studio(const Session& session, const StudioRequest& request);
+
 struct MachinesRequest {
   std::string name;
   bool json = false;

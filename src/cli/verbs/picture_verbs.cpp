@@ -101,4 +101,18 @@ void add_animate(CLI::App& app, Chosen& chosen) {
   choose(verb, chosen, request, animate_mechanism);
 }
 
+void add_studio(CLI::App& app, Chosen& chosen) {
+  auto request = std::make_shared<StudioRequest>();
+  CLI::App* const verb = app.add_subcommand(
+      "studio", "Write the studio, a page with the whole machine in it, and open it in a browser");
+  verb->add_option("FILE", request->file,
+                   "diagram or mechanism that the page opens with, put inside with the files it names "
+                   "(default: a class III mechanism)");
+  verb->add_option("-o,--output", request->output,
+                   "write to PAGE.html (default: into the user's cache, by the name of FILE)")
+      ->type_name("PAGE");
+  verb->add_flag("--stay", request->stay, "open no browser");
+  choose(verb, chosen, request, write_studio);
+}
+
 }  // namespace oblique::cli

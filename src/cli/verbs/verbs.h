@@ -96,6 +96,7 @@ void add_fit(CLI::App& app, Chosen& chosen);
 void add_ensemble(CLI::App& app, Chosen& chosen);
 void add_draw(CLI::App& app, Chosen& chosen);
 void add_animate(CLI::App& app, Chosen& chosen);
+void add_studio(CLI::App& app, Chosen& chosen);
 void add_blocks(CLI::App& app, Chosen& chosen);
 void add_machines(CLI::App& app, Chosen& chosen);
 

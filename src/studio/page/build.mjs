@@ -3,8 +3,8 @@
 // types and writes FOLDER/studio.html.
 import {spawnSync} from "node:child_process";
 import {createHash} from "node:crypto";
-import {cpSync, readdirSync, readFileSync, renameSync, rmSync, writeFileSync} from "node:fs";
-import {dirname, join, relative, resolve} from "node:path";
+import {cpSync, existsSync, readdirSync, readFileSync, renameSync, rmSync, writeFileSync} from "node:fs";
+import {basename, dirname, join, relative, resolve} from "node:path";
 import {fileURLToPath} from "node:url";
 import {gzipSync} from "node:zlib";
 
@@ -33,7 +33,11 @@ function bundle(entry, ...options) {
 
 const files = (at) => readdirSync(at, {withFileTypes: true}).flatMap((entry) =>
   entry.isDirectory() ? files(join(at, entry.name)) : entry.name.endsWith(".toml") ? [join(at, entry.name)] : []);
-const examples = files(diagrams).sort().map((path) => ({name: relative(diagrams, path), text: readFileSync(path, "utf8")}))
+const blocksBeside = (path) => {
+  const folder = join(dirname(path), "blocks");
+  return existsSync(folder) ? {blocks: files(folder).sort().map((block) => ({name: basename(block, ".toml"), text: readFileSync(block, "utf8")}))} : {};
+};
+const examples = files(diagrams).sort().map((path) => ({name: relative(diagrams, path), text: readFileSync(path, "utf8"), ...blocksBeside(path)}))
   .filter(({text}) => /^format *= *"oblique-(diagram|mechanism)\/1"/m.test(text));
 const opening = examples.find(({name}) => name === "mechanisms/class-iii.toml");
 

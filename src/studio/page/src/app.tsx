@@ -22,7 +22,7 @@ function Header({session}: {session: Session}) {
     if (example) void session.load(example);
   }
   async function share(): Promise<void> {
-    location.hash = await toFragment({name: file.name, text: session.shown.written});
+    location.hash = await toFragment({...file, text: session.shown.written});
     await navigator.clipboard?.writeText(location.href).catch(() => undefined);
     session.set({remarks: ["the link in the address bar holds the file"]});
   }

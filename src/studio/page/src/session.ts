@@ -131,7 +131,7 @@ export class Session {
       return;
     }
     this.later = setTimeout(() => {
-      if (this.shown.written !== this.asked) void this.open({name: this.shown.file.name, text: this.shown.written});
+      if (this.shown.written !== this.asked) void this.open({...this.shown.file, text: this.shown.written});
     }, restOfWriter);
   }
 
@@ -244,6 +244,8 @@ export class Session {
     const {machine} = this;
     this.set({findings: []});
     this.asked = next.text;
+    for (const {name, text} of next.files ?? []) if (!this.good(await machine.ask("putFile", name, text))) return false;
+    for (const {name, text} of next.blocks ?? []) if (!this.good(await machine.ask("putBlock", name, text))) return false;
     const opened = await machine.ask<Opened>("open", next.text, next.name);
     if (!isNewest() || !this.good(opened)) return false;
     const theme = {theme: "auto"};

@@ -6,9 +6,15 @@ async function through(stream: CompressionStream | DecompressionStream, bytes: U
   return new Uint8Array(await new Response(out).arrayBuffer());
 }
 
-export interface SharedFile {
+interface Named {
   name: string;
   text: string;
+}
+
+/// A diagram or a mechanism, and what it needs beside it: files that it names, kinds of blocks of its own.
+export interface SharedFile extends Named {
+  files?: Named[];
+  blocks?: Named[];
 }
 
 export async function toFragment(file: SharedFile): Promise<string> {
