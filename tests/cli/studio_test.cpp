@@ -45,7 +45,7 @@ title = "</script><script>alert(1)</script> — ü"
 [run]
 until = 1
 [blocks]
-a = { type = "recording", points = { file = "wind.csv", x = "t", y = "v" } }
+a = { type = "recording", data = { file = "wind.csv", x = "t", y = "v" } }
 [outputs]
 a = "a"
 )toml";

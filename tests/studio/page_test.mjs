@@ -169,7 +169,7 @@ title = "A ball </script><script>alert(1)</script> in the wind"
 until = 2
 [blocks]
 ball = { type = "bouncing-ball", drop = 0.8 }
-wind = { type = "recording", points = { file = "wind.csv", x = "t", y = "v" } }
+wind = { type = "recording", data = { file = "wind.csv", x = "t", y = "v" } }
 [outputs]
 height = "ball.height"
 wind = "wind"
