@@ -59,6 +59,7 @@ EMSCRIPTEN_BINDINGS(oblique_studio) {
       .function("putBlock", &ask<&Engine::put_block, Text, Text>)
       .function("open", &ask<&Engine::open, Text, Text>)
       .function("run", &ask<&Engine::run, Text, Text, Text>)
+      .function("check", &ask<&Engine::check, Text, Text, Text>)
       .function("patch", &ask<&Engine::patch, Text, Text, Text>)
       .function("motion", &ask<&Engine::motion, Text, Text, Text>)
       .function("draw", &ask<&Engine::draw, Text, Text, Text>);

@@ -29,6 +29,7 @@
 #include <oblique/report/motion_text.h>
 #include <oblique/solve/run.h>
 
+#include "studio/engine/lesson.h"
 #include "studio/engine/options.h"
 
 namespace oblique::studio {
@@ -155,6 +156,7 @@ Json description_of(const diagram::Diagram& diagram, const diagram::BlockLibrary
   for (const diagram::FlatOutput& output : flat.outputs)
     json["outputs"].push_back({{"name", output.name}, {"unit", output.unit}});
   json["signals"] = program.signal_names();
+  json["lesson"] = diagram.lesson ? lesson_of(*diagram.lesson) : Json();
   return json;
 }
 
@@ -281,6 +283,25 @@ Answer Engine::run(const std::string& text, const std::string& name, const std::
     const std::span<const double> values = done.trajectory.values();
     ran.numbers.assign(values.begin(), values.end());
     return ran;
+  });
+}
+
+Answer Engine::check(const std::string& text, const std::string& name, const std::string& options) const {
+  return answer([&] {
+    check_size(text, name);
+    const Options asked(options, {"step", "set"});
+    expect_kind(text, name, FileKind::diagram, "a lesson");
+    const diagram::Diagram diagram = diagram::parse_diagram(text, name);
+    solve::RunOptions how = solve::options_of(diagram.run);
+    how.max_steps = std::min(how.max_steps, static_cast<std::int64_t>(limits_.steps));
+    Deadline deadline(limits_.seconds);
+    how.interrupted = [&] { return deadline.passes(); };
+    Answer held;
+    held.object = checked_lesson(diagram, *library_, asked, how);
+    if (deadline.passed())
+      refuse(name, fmt::format("the run had taken {:.3g} s of time before its end", limits_.seconds), {},
+             "turn back what makes it slow, or allow it more time");
+    return held;
   });
 }
 

@@ -41,8 +41,9 @@ class Engine {
 
   /// Reads it and looks whether all of it is wired: {"kind": "diagram", "title", "until", "machine",
   /// "blocks":
-  /// [{"name", "type"}], "outputs": [{"name", "unit"}], "signals"} or {"kind": "mechanism", "title", "unit",
-  /// "points", "bodies", "drives": [{"name", "slide"}], "groups": [{"name", "class"}]}.
+  /// [{"name", "type"}], "outputs": [{"name", "unit"}], "signals", "lesson" (null, or as lesson_of has it)}
+  /// or {"kind": "mechanism", "title", "unit", "points", "bodies", "drives": [{"name", "slide"}], "groups":
+  /// [{"name", "class"}]}.
   Answer open(const std::string& text, const std::string& name) const;
 
   /// Runs a diagram: {"columns": [{"name", "unit"}], "rows", "time", "complete", "method", "steps",
@@ -51,6 +52,10 @@ class Engine {
   /// {"trust": {"outputs": [{"name", "size", "largest", "at_end", "lost"}], "event_shift", "events_part",
   /// "failure"}}.
   Answer run(const std::string& text, const std::string& name, const std::string& options) const;
+
+  /// What a step of a diagram's lesson, or without one its question, expects, held against a run: {"met",
+  /// "checks": [{"what", "actual", "value", "within", "met"}]}. Options: "step" (from 1), "set" as `run`.
+  Answer check(const std::string& text, const std::string& name, const std::string& options) const;
 
   /// Patches a mechanism: {"text"} of the diagram, and {"judgement"} of it in words. Options: "gain",
   /// "bandwidth", "slower" (quantities as texts or numbers), "method", "split" [names], "force", "period"

@@ -69,6 +69,7 @@ export async function loadEngine({createEngine, wasmBinary, limits = {}}) {
     putBlock: (name, source) => call(() => engine.putBlock(text(name), text(source))),
     open: (source, name) => call(() => engine.open(text(source), text(name))),
     run: ask("run"),
+    check: ask("check"),
     patch: ask("patch"),
     motion: ask("motion"),
     draw: ask("draw"),

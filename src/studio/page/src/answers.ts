@@ -23,12 +23,32 @@ export interface Column {
   unit: string;
 }
 
+export interface LessonStep {
+  do: string;
+  set: {name: string; value: string}[];
+  see: string;
+  checked: boolean;
+}
+
+export interface Lesson {
+  title: string;
+  text: string;
+  steps: LessonStep[];
+  question: {ask: string; answer: string; hint: string} | null;
+}
+
+export interface Checked extends Answer {
+  met: boolean;
+  checks: {what: string; actual: number; value: number; within: number; met: boolean}[];
+}
+
 export interface Opened extends Answer {
   kind: "diagram" | "mechanism";
   title: string;
   until: number;
   outputs: Column[];
   signals: string[];
+  lesson: Lesson | null;
   unit: string;
 }
 

@@ -3,9 +3,12 @@ import {useEffect} from "preact/hooks";
 
 import {keysOf, Lamps, Meter, Modes, Pots} from "./controls";
 import {Editor} from "./editor";
+import {Lesson} from "./lesson";
 import {Scope} from "./scope";
 import {examples, useShown, type Session} from "./session";
 import {save, toFragment} from "./share";
+
+const folders = [...new Set(examples.map(({name}) => name.split("/")[0]!))];
 
 function Header({session}: {session: Session}) {
   const title = useShown(session, (shown) => shown.title);
@@ -32,7 +35,13 @@ function Header({session}: {session: Session}) {
       <h1>Oblique <span class="quiet">{title}</span></h1>
       <label>Example <select aria-label="Examples" onChange={(event) => choose((event.target as HTMLSelectElement).value)} value={file.name}>
         <option value="">…</option>
-        {examples.map((one) => <option value={one.name}>{one.name.replace(/\.toml$/, "").replaceAll("/", ": ")}</option>)}
+        {folders.map((folder) => (
+          <optgroup label={folder}>
+            {examples.filter((one) => one.name.startsWith(`${folder}/`)).map((one) => (
+              <option value={one.name}>{one.name.slice(folder.length + 1).replace(/\.toml$/, "")}</option>
+            ))}
+          </optgroup>
+        ))}
       </select></label>
       <label class="button">Open <input type="file" accept=".toml" onChange={(event) => void pick(event)} /></label>
       <button onClick={() => save(file.name.split("/").pop() || "machine.toml", session.shown.written, "text/plain")}>Save</button>
@@ -67,7 +76,10 @@ export function App({session}: {session: Session}) {
     <>
       <Header session={session} />
       <main>
-        <Editor session={session} />
+        <div class="papers">
+          <Lesson session={session} />
+          <Editor session={session} />
+        </div>
         <Pictures session={session} />
         <section class="desk" aria-label="Console">
           <Modes session={session} />

@@ -3,7 +3,7 @@
 // of the page only show the snapshot and call what stands here.
 import {useEffect, useReducer} from "preact/hooks";
 
-import type {Advanced, Answer, Diagnostic, Drawn, Held, Opened, Overloads, Patched, Read, Saved} from "./answers";
+import type {Advanced, Answer, Checked, Diagnostic, Drawn, Held, Lesson, Opened, Overloads, Patched, Read, Saved} from "./answers";
 import {carried, Machine, Stopped} from "./machine";
 import {short} from "./numbers";
 import {fromFragment, type SharedFile} from "./share";
@@ -34,6 +34,7 @@ export interface Shown {
   remarks: string[];
   kind: "" | "diagram" | "mechanism";
   title: string;
+  lesson: Lesson | null;      ///< of the diagram
   diagram: string;            ///< what runs: the file, or the patch of a mechanism
   schematic: string;          ///< SVG
   linkage: string;            ///< SVG
@@ -68,7 +69,7 @@ function inOrder(pots: Pot[]): Pot[] {
 export class Session {
   readonly machine = new Machine();
   shown: Shown = {
-    engine: "starting", busy: false, file: opening, written: opening.text, findings: [], remarks: [], kind: "", title: "", diagram: "", schematic: "", linkage: "",
+    engine: "starting", busy: false, file: opening, written: opening.text, findings: [], remarks: [], kind: "", title: "", lesson: null, diagram: "", schematic: "", linkage: "",
     gain: "1e5", held: undefined, pots: [], mode: "initial", time: 0, speed: 1, lamps: [], meter: {name: "", value: NaN, unit: ""}, values: new Map(),
     traced: [], against: "", persists: false, drawn: 0,
   };
@@ -200,6 +201,21 @@ export class Session {
     return true;
   }
 
+  /// Begins the file again with these settings, as texts with units.
+  async setFor(settings: readonly {name: string; value: string}[]): Promise<void> {
+    await this.open(this.shown.file, {turned: new Map(settings.map(({name, value}) => [name, value]))});
+  }
+
+  /// What a step of the lesson, or without a number its question, expects, held against a run with the pots as they are
+  /// turned; nothing where it could not be run.
+  async checkLesson(step?: number, answer?: {name: string; value: string}): Promise<Checked | undefined> {
+    const set = Object.fromEntries(answer ? [...this.turned, [answer.name, answer.value]] : this.turned);
+    const checked = await this.machine.ask<Checked>("check", this.shown.diagram, step === undefined ? {set} : {step, set}, this.shown.file.name);
+    if (!this.good(checked)) return undefined;
+    this.set({findings: []});
+    return checked;
+  }
+
   async meter(name: string): Promise<void> {
     if (name === "") return this.set({meter: {name, value: NaN, unit: ""}});
     if (!this.shown.held) return;
@@ -264,7 +280,7 @@ export class Session {
     const held = await machine.ask<Held>("console.open", diagram, next.name);
     if (!isNewest() || !this.good(held)) return false;
     const turned = how.turned ?? new Map<string, string>();
-    for (const [pot, value] of turned) await machine.ask("console.turn", pot, value);
+    for (const [pot, value] of turned) if (!this.good(await machine.ask("console.turn", pot, value))) return false;
     const drawn = await machine.ask<Drawn>("draw", diagram, theme, next.name);
     const values = await machine.ask<Read>("console.read", ...held.pots);
     const mode: Mode = how.restore ? "hold" : "initial";
@@ -277,7 +293,7 @@ export class Session {
     const way = opened.kind === "mechanism" ? held.outputs.slice(2, 4) : [];
     const isWay = way.length === 2;
     this.set({
-      file: next, kind: opened.kind, title: opened.title, gain, diagram, linkage, schematic: drawn.ok ? drawn.svg : "", held, remarks, mode, time: held.time, lamps: [],
+      file: next, lesson: opened.lesson ?? null, kind: opened.kind, title: opened.title, gain, diagram, linkage, schematic: drawn.ok ? drawn.svg : "", held, remarks, mode, time: held.time, lamps: [],
       pots: inOrder(held.pots.map((name, k) => ({name, value: values.numbers[k]!, unit: values.units[k] ?? ""}))),
       meter: {name: "", value: NaN, unit: ""}, values: new Map(),
     });
