@@ -189,6 +189,68 @@ wind = "wind"
   rmSync(folder, {recursive: true});
 });
 
+test("a lesson is followed a step at a time, and checked", async () => {
+  const {page, troubles} = await opened();
+  const taught = `${lag("A lesson")}
+[lesson]
+title = "Where a lag comes to rest"
+text = """
+A paragraph.
+
+Another <b>one</b>."""
+
+[[lesson.step]]
+do = "Halve a."
+set = { "a.value" = 0.25 }
+see = "x comes to rest half as high."
+expect = { "x at 4" = { value = 0.25, within = 1e-4 } }
+
+[lesson.question]
+ask = "Where must a stand for x to come to rest at 0.75?"
+answer = "a.value"
+hint = "At rest both inputs are the same."
+expect = { "x at 4" = { value = 0.75, within = 1e-3 } }
+`;
+  await write(page, taught);
+  await page.waitForSelector(".lesson");
+  assert.match(await text(page, ".lesson"), /Where a lag comes to rest.*A paragraph\..*Another <b>one<\/b>\./s);
+  await button(page, "Next");
+  assert.match(await text(page, ".lesson"), /step 1 of 1.*Halve a\..*half as high/s);
+  await button(page, "Check");  // nothing was turned yet
+  await page.waitForSelector(".lesson .missed");
+  assert.match(await text(page, ".verdict"), /not yet.*0\.5 where 0\.25 ± 0\.0001 should be/s);
+  await page.$eval("#pot-a\\.value", (input) => {
+    input.value = "0.25";
+    input.dispatchEvent(new Event("change", {bubbles: true}));
+  });
+  await button(page, "Check");
+  await page.waitForSelector(".lesson .met");
+  await page.$eval("#pot-a\\.value", (input) => {
+    input.value = "0.9";
+    input.dispatchEvent(new Event("change", {bubbles: true}));
+  });
+  await button(page, "Set it for me");
+  await page.waitForFunction(() => document.querySelector("#pot-a\\.value").value === "0.25");
+  await button(page, "Next");
+  const answer = async (given) => {
+    await page.$eval(".lesson form input", (input, value) => {
+      input.value = value;
+      input.dispatchEvent(new Event("input", {bubbles: true}));
+    }, given);
+    await wait(50);
+    await button(page, "Answer");
+  };
+  await answer("0.5");
+  await page.waitForSelector(".lesson .missed");
+  assert.match(await text(page, ".lesson form"), /wrong.*both inputs are the same/s);
+  await answer("3/4");
+  await page.waitForSelector(".lesson p.met");
+  await choose(page, "Examples", "lessons/circle.toml");
+  await page.waitForFunction(() => !document.querySelector(".lesson"));
+  assert.deepEqual(troubles, []);
+  await page.close();
+});
+
 test("a wrong file is told by its line, and the machine before stays", async () => {
   const {page, troubles} = await opened();
   await write(page, lag());
