@@ -133,7 +133,7 @@ Answer LiveConsole::advance(double duration, const std::vector<std::string>& nam
                      fmt::format("1 row or more, and {} numbers at most", engine_.limits().numbers),
                      {}});
     for (const std::string& name : names) console.read(name);
-    const double deadline = seconds_now() + engine_.limits().seconds;
+    const double begin = seconds_now(), deadline = begin + engine_.limits().seconds;
     Answer went;
     bool complete = true;
     int made = 0;
@@ -147,6 +147,7 @@ Answer LiveConsole::advance(double duration, const std::vector<std::string>& nam
     went.object["time"] = console.time();
     went.object["complete"] = complete;
     went.object["rows"] = made;
+    went.object["seconds"] = seconds_now() - begin;
     went.object["warnings"] = to_json(console.warnings());
     return went;
   });

@@ -30,7 +30,7 @@ class LiveConsole {
   Answer repeat(double initial, double operate);
 
   /// Goes on by so much [s], or as far as it comes in the engine's time: {"time", "complete", "rows",
-  /// "warnings"}, and as numbers `rows` rows, the last at the end, with the time and the values of `names`.
+  /// "seconds" of ours, "warnings"}, and as numbers `rows` rows, the last at the end, with the time and the values of `names`.
   Answer advance(double duration, const std::vector<std::string>& names, int rows);
 
   /// {"how": "at_once" or "compiled_anew"}.

@@ -52,6 +52,7 @@ export interface Advanced extends Answer {
   time: number;
   complete: boolean;
   rows: number;
+  seconds: number;
   warnings: Diagnostic[];
 }
 

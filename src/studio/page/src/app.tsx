@@ -3,9 +3,10 @@ import {useEffect} from "preact/hooks";
 
 import {keysOf, Lamps, Meter, Modes, Pots} from "./controls";
 import {Editor} from "./editor";
-import {Scope} from "./scope";
+import {Scope} from "./scope/scope";
 import {examples, useShown, type Session} from "./session";
 import {save, toFragment} from "./share";
+import {Schematic} from "./voltages/voltages";
 
 function Header({session}: {session: Session}) {
   const title = useShown(session, (shown) => shown.title);
@@ -45,11 +46,10 @@ function Header({session}: {session: Session}) {
 
 function Pictures({session}: {session: Session}) {
   const linkage = useShown(session, (shown) => shown.linkage);
-  const schematic = useShown(session, (shown) => shown.schematic);
   return (
     <section class="machine">
       {linkage && <div class="picture linkage" dangerouslySetInnerHTML={{__html: linkage}} />}
-      <div class="picture schematic" dangerouslySetInnerHTML={{__html: schematic}} />
+      <Schematic session={session} />
     </section>
   );
 }
