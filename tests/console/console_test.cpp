@@ -223,6 +223,50 @@ TEST(Console, GoesOnOnceAPotCanBeSolvedAgain) {
   EXPECT_NEAR(console.value("x"), 1 + 2, 1e-12);
 }
 
+// In machine units, also where an output has the name of a signal.
+TEST(Console, GivesAllSignalsAtOnce) {
+  Console console(
+      diagram_of("a = { type = \"constant\", value = 0.5 }\nx = { type = \"integrator\", in = \"a\" }\n",
+                 "[outputs]\nx = { signal = \"x\", scale = 10, unit = \"m\" }\n"),
+      testing::shipped_blocks());
+  console.advance(2);
+  EXPECT_NEAR(console.value("x"), 10, 1e-6);
+  ASSERT_THAT(console.signal_names(), ::testing::ElementsAre("a", "x"));
+  EXPECT_EQ(console.signals()[0], 0.5);
+  EXPECT_EQ(console.signals()[1], console.signal("x"));
+  console.turn("a.value", "0.25");
+  EXPECT_EQ(console.signals()[0], 0.25);
+}
+
+// A screen that takes the traces off sees the same ones as a probe that keeps them, and none twice.
+TEST(Console, GivesTracesThatHaveEnded) {
+  ProbeSettings settings;
+  settings.names = {"x"};
+  settings.interval = 0.1;
+  settings.length = 1;
+  settings.trigger = Trigger{"x", 0, Trigger::Slope::rising, 0};
+  const std::string circle =
+      "x = { type = \"integrator\", in = [\"y\"] }\ny = { type = \"integrator\", in = [\"-x\"], initial = 1 "
+      "}\n";
+  Console kept = console_of(circle), taken = console_of(circle);
+  const std::size_t keeping = kept.set_probe(settings), taking = taken.set_probe(settings);
+  std::vector<Trace> all;
+  for (int k = 1; k <= 300; ++k) {
+    kept.advance(0.1 * k);  // the pieces of the search for the trigger are the same, so that each bit is
+    taken.advance(0.1 * k);
+    for (Trace& trace : taken.take_traces(taking)) all.push_back(std::move(trace));
+  }
+  const std::vector<Trace>& whole = kept.traces(keeping);
+  ASSERT_THAT(all, SizeIs(5));  // x = sin t rises through 0 at 0, 2π … 8π
+  ASSERT_THAT(whole, SizeIs(5));
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    EXPECT_EQ(all[k].begin, whole[k].begin);
+    EXPECT_EQ(all[k].values, whole[k].values);
+  }
+  EXPECT_THAT(testing::message_of<ConsoleError>([&] { taken.take_traces(7); }),
+              ::testing::HasSubstr("there is no probe number 7"));
+}
+
 TEST(Console, ShowsOverloads) {
   Console console =
       console_of("a = { type = \"constant\", value = 1.5 }\nx = { type = \"integrator\", in = \"a\" }\n");

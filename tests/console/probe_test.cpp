@@ -113,6 +113,42 @@ TEST(Probe, FiresASingleShot) {
   EXPECT_THAT(probe.traces()[0].times, SizeIs(5));
 }
 
+// What has ended is given once; the hold-off and the number of traces count what was taken off too.
+TEST(Probe, GivesTracesThatHaveEnded) {
+  ProbeSettings settings = triggered(0.5, Trigger::Slope::rising, 1, kTurn + 1);
+  settings.most_traces = 3;
+  Probe taken(settings, 0), kept(settings, 0);
+  show(kept, 60, 0.3, sine);
+  std::vector<double> begun;
+  double t = 0;
+  for (int k = 1; k <= 200; ++k) {
+    const double end = k * 0.3;
+    taken.look(t, end, true, sine);
+    t = end;
+    for (const Trace& trace : taken.take_ended()) {
+      begun.push_back(trace.begin);
+      EXPECT_THAT(trace.times, SizeIs(5)) << "a whole one";
+    }
+    ASSERT_LE(taken.traces().size(), 1U) << "the one that is recorded stays";
+  }
+  // the hold-off, just over a turn, passes over every other turn
+  const auto near = [](double at) { return ::testing::DoubleNear(at, 1e-13); };  // as above, of t = 26
+  EXPECT_THAT(begun, ElementsAre(near(kTurn / 12), near(25 * kTurn / 12), near(49 * kTurn / 12)));
+  EXPECT_THAT(begins(kept), ElementsAre(near(begun[0]), near(begun[1]), near(begun[2])));
+  EXPECT_THAT(taken.take_ended(), IsEmpty());
+}
+
+// The time may go back: a hold-off of before does not count.
+TEST(Probe, IsReadyAtOnceWhereTheMachineStandsElsewhere) {
+  Probe probe(triggered(0.5, Trigger::Slope::rising, 1, 100), 0);
+  show(probe, 4, 0.3, sine);
+  EXPECT_THAT(begins(probe), SizeIs(1));
+  probe.jump(0);
+  show(probe, 4, 0.3, sine);
+  ASSERT_THAT(begins(probe), SizeIs(2));
+  EXPECT_EQ(begins(probe)[0], begins(probe)[1]);
+}
+
 TEST(Probe, IsTriggeredByAJump) {
   Probe probe(triggered(0.5, Trigger::Slope::rising, 1), 0);
   const auto step_at_2 = [&](double low) {

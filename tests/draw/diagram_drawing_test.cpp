@@ -2,11 +2,15 @@
 #include <oblique/draw/schematic/diagram_drawing.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <set>
+#include <sstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <oblique/diagram/diagram_reader.h>
+#include <oblique/diagram/flatten.h>
 #include <oblique/draw/schematic/schematic.h>
 #include <oblique/draw/schematic/symbols.h>
 
@@ -155,6 +159,72 @@ s     = { type = "summer", in = ["drive.excess"] }
     EXPECT_NE(find_mark(picture, "net-drive.excess"), nullptr) << depth;
     EXPECT_THAT(texts(picture), ::testing::Contains("excess")) << depth;
   }
+}
+
+/// The signals of all marks that have some, by a word each.
+std::vector<std::string> signals(const Picture& picture) {
+  std::vector<std::string> found;
+  for (const Mark& mark : picture.marks) {
+    std::istringstream words(mark.signals);
+    for (std::string word; words >> word;) found.push_back(word);
+  }
+  return found;
+}
+
+// Wires, leads and bodies say what a console reads there: behind a composite the inner block that it shows.
+TEST(DiagramDrawing, NamesSignalsAsAConsoleDoes) {
+  const diagram::Diagram quotient = diagram(R"(
+k = { type = "constant", value = 0.25 }
+a = { type = "sine-source" }
+b = { type = "sine-source" }
+r = { type = "resolver", length = "a", angle = "b" }
+q = { type = "divider", numerator = "0.5*a", denominator = "b" }
+s = { type = "summer", in = ["q", "k", "r.y"] }
+)");
+  const Picture folded = draw_diagram(quotient, library());
+  EXPECT_EQ(find_mark(folded, "net-a.out")->signals, "a");
+  EXPECT_EQ(find_mark(folded, "net-r.y")->signals, "r.y");
+  EXPECT_EQ(find_mark(folded, "net-q.out")->signals, "q.quotient");
+  EXPECT_EQ(find_mark(folded, "block-q")->signals, "q.quotient");
+  EXPECT_EQ(find_mark(folded, "block-q")->element, "q");
+  EXPECT_EQ(find_mark(folded, "block-r")->signals, "r.x r.y");
+  EXPECT_THAT(signals(folded), testing::Contains("k")) << "the lead of a constant that stands at its input";
+  // Inside, b arrives as it is; half of a is a signal that nothing gives.
+  const Picture open = draw_diagram(quotient, library(), {SymbolStyle::classic, 1});
+  EXPECT_EQ(find_mark(open, "net-q.denominator.denominator")->signals, "b");
+  EXPECT_EQ(find_mark(open, "net-q.numerator.numerator")->signals, "");
+  EXPECT_EQ(find_mark(open, "block-q.quotient")->element, "q.quotient");
+}
+
+// Every name is one of the flat diagram, and every signal of a wire that is not the sum at a composite's
+// input has one.
+TEST(DiagramDrawing, NamesSignalsThatThereAre) {
+  std::size_t named = 0;
+  for (const char* const folder : {"lessons", "historical"}) {
+    for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(OBLIQUE_SOURCE_DIR) /
+                                                                 "diagrams" / folder)) {
+      if (entry.path().extension() != ".toml") continue;
+      const diagram::Diagram shipped = diagram::read_diagram(entry.path());
+      const diagram::FlatDiagram flat = diagram::flatten(shipped, library());
+      std::set<std::string> known;
+      for (std::size_t b = 0; b < flat.blocks.size(); ++b) {
+        for (std::size_t k = 0; k < flat.blocks[b].definition->outputs.size(); ++k)
+          known.insert(flat.signal_name({b, k}));
+      }
+      for (const int depth : {0, 1, 9}) {
+        const Picture picture = draw_diagram(shipped, library(), {SymbolStyle::classic, depth});
+        for (const std::string& signal : signals(picture)) {
+          EXPECT_TRUE(known.contains(signal)) << entry.path() << ": " << signal;
+          ++named;
+        }
+        for (const Mark& mark : picture.marks) {
+          if (depth == 0 && (mark.id.starts_with("net-") || mark.id.starts_with("record-")))
+            EXPECT_NE(mark.signals, "") << entry.path() << ": " << mark.id;
+        }
+      }
+    }
+  }
+  EXPECT_GT(named, 1000U);
 }
 
 TEST(DiagramDrawing, DinSymbolsAreBoxes) {

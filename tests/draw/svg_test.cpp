@@ -46,6 +46,16 @@ TEST(Svg, WritesEachKindOfMark) {
 }
 
 // DejaVu Sans's widths: A and V 684, space 318 thousandths.
+TEST(Svg, SaysWhatMarksStandForWhereItIsAsked) {
+  Picture picture{100, 50, "", {}};
+  picture.marks.push_back(disc_mark({5, 6}, 3, Ink::paper));
+  picture.marks.back().element = "q";
+  picture.marks.back().signals = "q.x q.\"y\"";
+  const std::string with_data = to_svg(picture, Theme::light, 1, true);
+  EXPECT_THAT(with_data, HasSubstr(R"( data-element="q" data-signal="q.x q.&quot;y&quot;" cx="5")"));
+  EXPECT_THAT(to_svg(picture, Theme::light), ::testing::Not(HasSubstr("data-")));
+}
+
 TEST(Picture, MeasuresTexts) {
   EXPECT_DOUBLE_EQ(text_width("A V", 10), 16.86);
   const auto extent = extent_of(label_mark({100, 100}, "A V", Anchor::end, 10));

@@ -96,6 +96,85 @@ test("a state goes from the engine to the program and back", () => inScratch((fo
   held.close();
 }));
 
+// sin t and cos t: whatever the frames, a sweep begins where sin t rises through 1/2.
+const circle = `format = "oblique-diagram/1"
+[blocks]
+x = { type = "integrator", in = ["y"] }
+y = { type = "integrator", in = ["-x"], initial = 1 }
+[outputs]
+twice = { signal = "x", scale = 2, unit = "m" }
+`;
+
+test("a probe gives sweeps from where its trigger is", () => {
+  const held = engine.console();
+  assert.ok(held.open(circle).ok);
+  const {probe} = held.setProbe(["x", "y"], {interval: 0.1, length: "2 s", trigger: "twice", level: 1, slope: "rising"});
+  const sweeps = [];
+  for (let frame = 0; frame < 100; ++frame) {
+    held.advance(0.17);
+    const taken = held.takeTraces(probe);
+    let at = 0;
+    for (const {begin, rows, ended} of taken.traces) {
+      const numbers = taken.numbers.subarray(3 * at, 3 * (at += rows));
+      if (ended) sweeps.push({begin, rows, numbers});
+      else assert.ok(rows <= 20);
+    }
+    assert.equal(taken.numbers.length, 3 * at);
+  }
+  assert.equal(sweeps.length, 3);  // the last one at 12π/6 + … = 13.09; t ends at 17
+  sweeps.forEach(({begin, rows, numbers}, k) => {
+    assertNear(begin, Math.PI / 6 + 2 * Math.PI * k, 1e-6, "rises through 1/2");  // 1e-8 of the run, grown over 13 s
+    assert.equal(rows, 21);
+    for (let row = 0; row < rows; ++row) {
+      assertNear(numbers[3 * row], begin + 0.1 * row, 1e-12, "at the interval");
+      assertNear(numbers[3 * row + 1], Math.sin(numbers[3 * row]), 1e-6, "x");
+      assertNear(numbers[3 * row + 2], Math.cos(numbers[3 * row]), 1e-6, "y");
+    }
+  });
+  assert.ok(held.removeProbe(probe).ok);
+  for (const [answer, says] of [
+    [held.takeTraces(probe), /there is no probe number 0/],
+    [held.takeTraces(-1), /there is no probe number/],
+    [held.takeTraces("x"), /there is no probe number/],
+    [held.setProbe([], {}), /it has no names/],
+    [held.setProbe(["z"], {}), /there is no signal 'z' for a probe/],
+    [held.setProbe(["x"], {trigger: "z"}), /there is no signal 'z' for a probe/],
+    [held.setProbe(["x"], {trigger: "x", slope: "risin"}), /there is no slope 'risin'; expected rising, falling or either\n.*'rising'/],
+    [held.setProbe(["x"], {interval: 1e-9, length: 1}), /traces of 1000000000 rows of 1 values; expected 16000000 numbers at most/],
+    [held.setProbe(["x"], {length: "-1 s"}), /its traces have no length/],
+    [held.setProbe(["x"], {most: 0}), /'most' is 0; expected a whole number from 1/],
+    [held.setProbe(["x"], {lenght: 1}), /there is no option 'lenght'/],
+  ]) {
+    assert.equal(answer.ok, false);
+    assert.match(answer.diagnostics[0].message, says);
+  }
+  held.close();
+});
+
+test("all signals are given at once, in machine units", () => {
+  const held = engine.console();
+  const {signals} = held.open(circle);
+  assert.deepEqual(signals, ["x", "y"]);
+  held.advance(1);
+  const {numbers} = held.signals();
+  assertNear(numbers[0], Math.sin(1), 1e-7, "x");
+  assertNear(numbers[1], Math.cos(1), 1e-7, "y");
+  assert.equal(held.read("twice").numbers[0], 2 * numbers[0]);
+  held.close();
+});
+
+// What a page colours and points at: signals that the console knows.
+test("a schematic with data names what the console reads", () => {
+  const {held, answer} = opened(side);
+  const {svg} = engine.draw(readFileSync(side, "utf8"), {data: true}, side);
+  const named = [...svg.matchAll(/ data-signal="([^"]*)"/g)].flatMap(([, words]) => words.split(" "));
+  assert.ok(named.length > 20);
+  for (const name of named) assert.ok(answer.signals.includes(name), name);
+  assert.match(svg, / data-element="c" data-signal="c"/);
+  assert.doesNotMatch(engine.draw(readFileSync(side, "utf8"), {}, side).svg, /data-/);
+  held.close();
+});
+
 test("lamps show what is beyond the machine unit", () => {
   const text = 'format = "oblique-diagram/1"\n[blocks]\nx = { type = "integrator", in = "one" }\none = { type = "constant" }\n';
   const held = engine.console();

@@ -2,77 +2,12 @@
 // The page in Chromium, from file://. Prints its size, how long it takes until it can be used, and its frames a second.
 import assert from "node:assert/strict";
 import {mkdtempSync, rmSync, statSync, writeFileSync} from "node:fs";
-import {createRequire} from "node:module";
 import {tmpdir} from "node:os";
 import {join} from "node:path";
-import {pathToFileURL} from "node:url";
-import test, {after, before} from "node:test";
+import test from "node:test";
 
+import {button, choose, lag, opened, shots, studio, text, timeOf, wait, write} from "./browser.mjs";
 import {runProgram} from "./support.mjs";
-
-const built = process.env.OBLIQUE_ENGINE;
-const require = createRequire(join(built, "npm/package.json"));
-const puppeteer = require("puppeteer-core");
-const studio = join(built, "studio.html");
-const shots = process.env.OBLIQUE_SCREENSHOTS;  // a folder to leave pictures in
-
-let browser;
-const profile = mkdtempSync(join(tmpdir(), "oblique-studio-"));
-before(async () => {
-  browser = await puppeteer.launch({executablePath: process.env.OBLIQUE_CHROMIUM ?? "/usr/bin/chromium", headless: true,
-    userDataDir: profile, args: ["--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage"]});
-});
-after(async () => {
-  await browser.close();
-  rmSync(profile, {recursive: true, force: true});
-});
-
-// A page that is ready, what it asked for, and what went wrong in it.
-async function opened({fragment = "", width = 1280, height = 900, scheme = "light", file = studio} = {}) {
-  const page = await browser.newPage();
-  await page.setViewport({width, height});
-  await page.emulateMediaFeatures([{name: "prefers-color-scheme", value: scheme}]);
-  const requests = [], troubles = [];
-  page.on("request", (request) => requests.push(request.url()));
-  page.on("pageerror", (error) => troubles.push(error.message));
-  page.on("console", (said) => said.type() === "error" && troubles.push(said.text()));
-  page.on("dialog", (dialog) => {
-    troubles.push(`a dialog: ${dialog.message()}`);
-    void dialog.dismiss();
-  });
-  const begin = Date.now();
-  await page.goto(pathToFileURL(file).href + fragment);
-  await page.waitForSelector(".schematic svg", {timeout: 30000});
-  return {page, requests, troubles, ready: Date.now() - begin};
-}
-
-const button = (page, name) => page.evaluate((wanted) => {
-  [...document.querySelectorAll("button")].find((one) => one.textContent === wanted).click();
-}, name);
-const text = (page, selector) => page.$eval(selector, (element) => element.textContent);
-const timeOf = async (page) => Number((await text(page, ".time")).match(/t = (\S+) s/)[1]);
-const wait = (milliseconds) => new Promise((done) => setTimeout(done, milliseconds));
-
-async function write(page, written) {
-  await page.$eval("textarea", (area, value) => {
-    area.value = value;
-    area.dispatchEvent(new Event("input", {bubbles: true}));
-  }, written);
-}
-async function choose(page, label, value) {
-  await page.select(`select[aria-label="${label}"]`, value);
-}
-
-const lag = (title = "A lag") => `format = "oblique-diagram/1"
-title = ${JSON.stringify(title)}
-[run]
-until = 4
-[blocks]
-a = { type = "constant", value = 0.5 }
-x = { type = "integrator", in = ["4*a", "-4*x"], initial = 0 }
-[outputs]
-x = "x"
-`;
 
 test("opens class III from a file, runs and moves it, and asks for nothing", async () => {
   const {page, requests, troubles, ready} = await opened();

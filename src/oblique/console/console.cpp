@@ -113,6 +113,13 @@ class Console::Held {
                                         text::suggest(name, signal_names())});
   }
 
+  const std::vector<double>& signals() {
+    take_turned_pots();
+    if (!known_) machine_->runner.signals_at(time_, signals_);
+    known_ = true;
+    return signals_;
+  }
+
   std::vector<std::string> output_names() const {
     std::vector<std::string> names;
     for (const diagram::FlatOutput& output : pots_.flat()->outputs) names.push_back(output.name);
@@ -151,6 +158,11 @@ class Console::Held {
   }
 
   const std::vector<Trace>& traces(std::size_t number) const { return probe(number).probe->traces(); }
+
+  std::vector<Trace> take_traces(std::size_t number) {
+    probe(number);
+    return probes_[number].probe->take_ended();
+  }
 
   void remove_probe(std::size_t number) {
     probe(number);
@@ -287,13 +299,6 @@ class Console::Held {
                     });
   }
 
-  const std::vector<double>& signals() {
-    take_turned_pots();
-    if (!known_) machine_->runner.signals_at(time_, signals_);
-    known_ = true;
-    return signals_;
-  }
-
   void refuse_with_timeline() const {
     if (!has_timeline_) return;
     throw ConsoleError(text::Diagnostic{{pots_.diagram().file, {}},
@@ -373,6 +378,9 @@ Console::Reading Console::read(std::string_view name) const {
 double Console::signal(std::string_view name) const {
   return held_->signal(name);
 }
+std::vector<double> Console::signals() const {
+  return held_->signals();
+}
 std::vector<std::string> Console::output_names() const {
   return held_->output_names();
 }
@@ -393,6 +401,9 @@ std::size_t Console::set_probe(ProbeSettings settings) {
 }
 const std::vector<Trace>& Console::traces(std::size_t probe) const {
   return held_->traces(probe);
+}
+std::vector<Trace> Console::take_traces(std::size_t probe) {
+  return held_->take_traces(probe);
 }
 void Console::remove_probe(std::size_t probe) {
   held_->remove_probe(probe);

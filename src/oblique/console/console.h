@@ -58,6 +58,8 @@ class Console {
   double value(std::string_view name) const { return read(name).value; }
   /// A signal in machine units, where an output has its name, too. Throws ConsoleError.
   double signal(std::string_view name) const;
+  /// The values of all signals, in the order of `signal_names` [machine unit].
+  std::vector<double> signals() const;
   /// The names of all outputs, signals and pots that there are.
   std::vector<std::string> output_names() const;
   std::vector<std::string> signal_names() const;
@@ -75,6 +77,8 @@ class Console {
   std::size_t set_probe(ProbeSettings settings);
   /// What a probe has recorded until `time`. Throws ConsoleError for a number that no probe has.
   const std::vector<Trace>& traces(std::size_t probe) const;
+  /// Those of them that have ended; the probe forgets them. Throws ConsoleError likewise.
+  std::vector<Trace> take_traces(std::size_t probe);
   /// Takes a probe away.
   void remove_probe(std::size_t probe);
 

@@ -13,11 +13,22 @@ Probe::Probe(ProbeSettings settings, double now) : settings_(std::move(settings)
 void Probe::jump(double now) {
   recording_ = false;
   last_side_.reset();
+  triggered_at_.reset();
   if (!settings_.trigger) begin_trace(now);
 }
 
+std::vector<Trace> Probe::take_ended() {
+  std::vector<Trace> ended = std::exchange(traces_, {});
+  if (!recording_) return ended;
+  traces_.push_back(std::move(ended.back()));
+  ended.pop_back();
+  return ended;
+}
+
 void Probe::begin_trace(double t) {
-  if (traces_.size() >= settings_.most_traces) return;
+  if (begun_ >= settings_.most_traces) return;
+  ++begun_;
+  triggered_at_ = t;
   traces_.push_back({t, {}, std::vector<std::vector<double>>(settings_.names.size())});
   recording_ = true;
 }
@@ -33,8 +44,8 @@ void Probe::look(double begin, double end, bool whole, const Read& read) {
       recording_ = false;
       from = std::max(from, last);
     }
-    if (!settings_.trigger || traces_.size() >= settings_.most_traces) return;
-    if (!traces_.empty()) from = std::max(from, traces_.back().begin + settings_.trigger->hold_off);
+    if (!settings_.trigger || begun_ >= settings_.most_traces) return;
+    if (triggered_at_) from = std::max(from, *triggered_at_ + settings_.trigger->hold_off);
     if (from > begin) last_side_.reset();
     if (from > end) return;
     const auto at = triggered(from, end, read);

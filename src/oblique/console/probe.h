@@ -52,6 +52,8 @@ class Probe {
 
   const ProbeSettings& settings() const { return settings_; }
   const std::vector<Trace>& traces() const { return traces_; }
+  /// The traces that have ended, which are forgotten: what a screen takes off in every frame.
+  std::vector<Trace> take_ended();
 
  private:
   void begin_trace(double t);
@@ -62,8 +64,10 @@ class Probe {
 
   ProbeSettings settings_;
   std::vector<Trace> traces_;
-  bool recording_ = false;
-  std::optional<double> last_side_;  ///< of the trigger's signal to its level, where the last piece ended
+  bool recording_ = false;              ///< the last of them
+  std::size_t begun_ = 0;               ///< traces, those that were taken off too
+  std::optional<double> triggered_at_;  ///< [s] the last time
+  std::optional<double> last_side_;     ///< of the trigger's signal to its level, where the last piece ended
   std::vector<double> values_;
 };
 

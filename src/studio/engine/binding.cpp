@@ -42,6 +42,10 @@ val read(LiveConsole& console, val names) {
   return to_js(console.read(emscripten::vecFromJSArray<Text>(names)));
 }
 
+val set_probe(LiveConsole& console, val names, const Text& options) {
+  return to_js(console.set_probe(emscripten::vecFromJSArray<Text>(names), options));
+}
+
 /// 0 for the usual limit.
 Engine* make_engine(double seconds, double steps, double numbers) {
   Limits limits;
@@ -71,8 +75,12 @@ EMSCRIPTEN_BINDINGS(oblique_studio) {
       .function("advance", &advance)
       .function("turn", &operate<&LiveConsole::turn, Text, Text>)
       .function("read", &read)
+      .function("signals", &operate<&LiveConsole::signals>)
       .function("overloads", &operate<&LiveConsole::overloads>)
       .function("events", &operate<&LiveConsole::events>)
+      .function("setProbe", &set_probe)
+      .function("takeTraces", &operate<&LiveConsole::take_traces, double>)
+      .function("removeProbe", &operate<&LiveConsole::remove_probe, double>)
       .function("save", &operate<&LiveConsole::save>)
       .function("restore", &operate<&LiveConsole::restore, Text>);
 }

@@ -129,7 +129,8 @@ std::string drawn_diagram(const diagram::Diagram& diagram, const diagram::BlockL
     refuse({}, fmt::format("'symbols' is '{}'", symbols), "classic or din");
   if (symbols == "din") drawing.symbols = draw::SymbolStyle::din;
   drawing.depth = options.whole("depth", 0, kDeepest).value_or(0);
-  return draw::to_svg(draw::draw_diagram(diagram, library, drawing), theme_of(options));
+  return draw::to_svg(draw::draw_diagram(diagram, library, drawing), theme_of(options), 1,
+                      options.flag("data"));
 }
 
 std::string drawn_mechanism(const mechanism::Mechanism& mechanism, const Options& options) {
@@ -386,7 +387,7 @@ Answer Engine::draw(const std::string& text, const std::string& name, const std:
     Answer drawn;
     if (report::kind_of_file(text, name) == FileKind::diagram) {
       drawn.object["svg"] = drawn_diagram(diagram::parse_diagram(text, name), *library_,
-                                          Options(options, {"theme", "symbols", "depth"}));
+                                          Options(options, {"theme", "symbols", "depth", "data"}));
     } else {
       drawn.object["svg"] = drawn_mechanism(mechanism::parse_mechanism(text, name),
                                             Options(options, {"theme", "time", "positions"}));

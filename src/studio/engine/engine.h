@@ -68,7 +68,8 @@ class Engine {
   Answer motion(const std::string& text, const std::string& name, const std::string& options) const;
 
   /// {"svg"}: the schematic of a diagram or the linkage of a mechanism. Options: "theme" (auto, light, dark),
-  /// of a diagram "symbols" (classic, din) and "depth", of a mechanism "time" [s] and "positions".
+  /// of a diagram "symbols" (classic, din), "depth" and "data" (true: elements say what they stand for), of a
+  /// mechanism "time" [s] and "positions".
   Answer draw(const std::string& text, const std::string& name, const std::string& options) const;
 
  private:

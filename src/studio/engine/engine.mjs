@@ -49,8 +49,12 @@ export async function loadEngine({createEngine, wasmBinary, limits = {}}) {
         machine(() => held.advance(Number(duration), texts(names), Number(rows))),
       turn: (pot, value) => machine(() => held.turn(text(pot), text(value))),
       read: (...names) => machine(() => held.read(texts(names))),
+      signals: () => machine(() => held.signals()),
       overloads: () => machine(() => held.overloads()),
       events: () => machine(() => held.events()),
+      setProbe: (names, options) => machine(() => held.setProbe(texts(names), JSON.stringify(options ?? {}))),
+      takeTraces: (probe) => machine(() => held.takeTraces(Number(probe))),
+      removeProbe: (probe) => machine(() => held.removeProbe(Number(probe))),
       save: () => machine(() => held.save()),
       restore: (state) => machine(() => held.restore(text(state))),
       close() {

@@ -11,6 +11,8 @@
 #include <oblique/diagram/diagram_reader.h>
 #include <oblique/solve/run_state.h>
 
+#include "studio/engine/options.h"
+
 namespace oblique::studio {
 namespace {
 
@@ -29,6 +31,24 @@ diagram::OperatingMode mode_of(const std::string& name) {
                                          fmt::format("there is no mode of operation '{}'", name),
                                          "potset, initial, operate or hold",
                                          text::suggest(name, {"potset", "initial", "operate", "hold"})});
+}
+
+console::Trigger::Slope slope_of(const std::string& name) {
+  using Slope = console::Trigger::Slope;
+  if (name == "rising") return Slope::rising;
+  if (name == "falling") return Slope::falling;
+  if (name == "either") return Slope::either;
+  throw console::ConsoleError(Diagnostic{{},
+                                         fmt::format("there is no slope '{}'", name),
+                                         "rising, falling or either",
+                                         text::suggest(name, {"rising", "falling", "either"})});
+}
+
+/// What is no number of a probe is one that none has.
+std::size_t probe_of(double number) {
+  constexpr double kMost = 1e9;
+  return number >= 0 && number < kMost && number == std::floor(number) ? static_cast<std::size_t>(number)
+                                                                       : static_cast<std::size_t>(kMost);
 }
 
 }  // namespace
@@ -113,7 +133,7 @@ Answer LiveConsole::advance(double duration, const std::vector<std::string>& nam
                      fmt::format("1 row or more, and {} numbers at most", engine_.limits().numbers),
                      {}});
     for (const std::string& name : names) console.read(name);
-    const double deadline = seconds_now() + engine_.limits().seconds;
+    const double begin = seconds_now(), deadline = begin + engine_.limits().seconds;
     Answer went;
     bool complete = true;
     int made = 0;
@@ -127,6 +147,7 @@ Answer LiveConsole::advance(double duration, const std::vector<std::string>& nam
     went.object["time"] = console.time();
     went.object["complete"] = complete;
     went.object["rows"] = made;
+    went.object["seconds"] = seconds_now() - begin;
     went.object["warnings"] = to_json(console.warnings());
     return went;
   });
@@ -153,6 +174,14 @@ Answer LiveConsole::read(const std::vector<std::string>& names) {
   });
 }
 
+Answer LiveConsole::signals() {
+  return answer([&] {
+    Answer all;
+    all.numbers = held().signals();
+    return all;
+  });
+}
+
 Answer LiveConsole::overloads() {
   return answer([&] {
     Answer lit;
@@ -172,6 +201,61 @@ Answer LiveConsole::events() {
     for (const solve::EventRecord& event : held().events())
       happened.object["events"].push_back({{"time", event.time}, {"what", event.what}});
     return happened;
+  });
+}
+
+Answer LiveConsole::set_probe(const std::vector<std::string>& names, const std::string& options) {
+  return answer([&] {
+    const Options asked(options, {"interval", "length", "most", "trigger", "level", "slope", "hold_off"});
+    console::ProbeSettings settings;
+    settings.names = names;
+    settings.interval = asked.quantity("interval", "s").value_or(0);
+    settings.length = asked.quantity("length", "s").value_or(settings.length);
+    constexpr int kMostTraces = 1'000'000;
+    if (const auto most = asked.whole("most", 1, kMostTraces))
+      settings.most_traces = static_cast<std::size_t>(*most);
+    if (auto trigger = asked.word("trigger"))
+      settings.trigger = {std::move(*trigger), asked.quantity("level", "1").value_or(0),
+                          slope_of(asked.word("slope").value_or("rising")),
+                          asked.quantity("hold_off", "s").value_or(0)};
+    const double rows = settings.interval > 0 ? settings.length / settings.interval : 0;
+    if (std::isfinite(rows) && rows * static_cast<double>(names.size() + 1) > engine_.limits().numbers)
+      throw console::ConsoleError(
+          Diagnostic{{},
+                     fmt::format("traces of {:.0f} rows of {} values", rows, names.size()),
+                     fmt::format("{} numbers at most", engine_.limits().numbers),
+                     "a longer interval, or a shorter trace"});
+    Answer set;
+    set.object["probe"] = held().set_probe(std::move(settings));
+    return set;
+  });
+}
+
+Answer LiveConsole::take_traces(double probe) {
+  return answer([&] {
+    const std::size_t number = probe_of(probe);
+    Answer taken;
+    taken.object["traces"] = Json::array();
+    const auto add = [&](const std::vector<console::Trace>& traces, bool ended) {
+      for (const console::Trace& trace : traces) {
+        taken.object["traces"].push_back(
+            {{"begin", trace.begin}, {"rows", trace.times.size()}, {"ended", ended}});
+        for (std::size_t row = 0; row < trace.times.size(); ++row) {
+          taken.numbers.push_back(trace.times[row]);
+          for (const std::vector<double>& values : trace.values) taken.numbers.push_back(values[row]);
+        }
+      }
+    };
+    add(held().take_traces(number), true);
+    add(held().traces(number), false);
+    return taken;
+  });
+}
+
+Answer LiveConsole::remove_probe(double probe) {
+  return answer([&] {
+    held().remove_probe(probe_of(probe));
+    return stands();
   });
 }
 

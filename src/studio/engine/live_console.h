@@ -30,17 +30,30 @@ class LiveConsole {
   Answer repeat(double initial, double operate);
 
   /// Goes on by so much [s], or as far as it comes in the engine's time: {"time", "complete", "rows",
-  /// "warnings"}, and as numbers `rows` rows, the last at the end, with the time and the values of `names`.
+  /// "seconds" of ours, "warnings"}, and as numbers `rows` rows, the last at the end, with the time and the values of `names`.
   Answer advance(double duration, const std::vector<std::string>& names, int rows);
 
   /// {"how": "at_once" or "compiled_anew"}.
   Answer turn(const std::string& pot, const std::string& value);
   /// {"units"}, and the values as numbers.
   Answer read(const std::vector<std::string>& names);
-  /// {"signals"}, and their values as numbers.
+  /// The values of all signals as numbers, in the order in which `open` has named them [machine unit].
+  Answer signals();
+  /// Of those beyond 1 machine unit: {"signals"}, and their values as numbers.
   Answer overloads();
   /// {"events": [{"time", "what"}]}.
   Answer events();
+
+  /// Records these signals and outputs from now on (console::Probe): {"probe"}, its number. Options:
+  /// "interval" [s], "length" [s], "trigger", the name of a signal or an output, with "level", "slope"
+  /// ("rising", "falling", "either") and "hold_off" [s], and "most", how many traces. A probe ends with its
+  /// machine.
+  Answer set_probe(const std::vector<std::string>& names, const std::string& options);
+  /// What it has recorded since it was last asked: {"traces": [{"begin", "rows", "ended"}]}, and the rows of
+  /// all as numbers, the time first. One that has not ended is given again, as far as it is.
+  Answer take_traces(double probe);
+  /// Takes a probe away.
+  Answer remove_probe(double probe);
 
   /// {"state"}: a text with which `restore`, or the program, goes on.
   Answer save();

@@ -78,6 +78,8 @@ struct Mark {
   double opacity = 1;
   std::string id{};       ///< of the SVG element, for tests and scripts; empty: none
   std::string tooltip{};  ///< what a browser shows where the pointer rests
+  std::string element{};  ///< of a symbol: the path of its block, for a page that reads it
+  std::string signals{};  ///< that it carries, as a console calls them, with blanks between: for such a page
 };
 
 /// A picture as data: what writers write and tests measure.

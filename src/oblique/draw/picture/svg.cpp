@@ -66,6 +66,16 @@ std::string pair(const Eigen::Vector2d& p) {
 struct Element {
   const Mark& mark;
   std::string inside;  ///< the tooltip
+  bool with_data;
+
+  std::string attributes_of(bool is_text) const {
+    std::string text = attributes(mark, is_text);
+    if (with_data && !mark.element.empty())
+      text += fmt::format(" data-element=\"{}\"", escape_xml(mark.element));
+    if (with_data && !mark.signals.empty())
+      text += fmt::format(" data-signal=\"{}\"", escape_xml(mark.signals));
+    return text;
+  }
 
   std::string close(const std::string& head, const char* name) const {
     return inside.empty() ? head + "/>" : fmt::format("{}>{}</{}>", head, inside, name);
@@ -90,18 +100,18 @@ struct Element {
           break;
       }
     }
-    return close(fmt::format("<path{} d=\"{}\"", attributes(mark, false), d), "path");
+    return close(fmt::format("<path{} d=\"{}\"", attributes_of(false), d), "path");
   }
 
   std::string operator()(const Disc& disc) const {
     return close(
-        fmt::format(R"(<circle{} cx="{}" cy="{}" r="{}")", attributes(mark, false),
-                    svg_number(disc.centre.x()), svg_number(disc.centre.y()), svg_number(disc.radius)),
+        fmt::format(R"(<circle{} cx="{}" cy="{}" r="{}")", attributes_of(false), svg_number(disc.centre.x()),
+                    svg_number(disc.centre.y()), svg_number(disc.radius)),
         "circle");
   }
 
   std::string operator()(const Box& box) const {
-    std::string head = fmt::format(R"(<rect{} x="{}" y="{}" width="{}" height="{}")", attributes(mark, false),
+    std::string head = fmt::format(R"(<rect{} x="{}" y="{}" width="{}" height="{}")", attributes_of(false),
                                    svg_number(box.corner.x()), svg_number(box.corner.y()),
                                    svg_number(box.size.x()), svg_number(box.size.y()));
     if (box.rounding > 0) head += fmt::format(" rx=\"{}\"", svg_number(box.rounding));
@@ -111,8 +121,8 @@ struct Element {
   std::string operator()(const Label& label) const {
     constexpr std::array<const char*, 3> kAnchors{"start", "middle", "end"};
     std::string head =
-        fmt::format(R"(<text{} x="{}" y="{}" font-size="{}")", attributes(mark, true),
-                    svg_number(label.at.x()), svg_number(label.at.y()), svg_number(label.size));
+        fmt::format(R"(<text{} x="{}" y="{}" font-size="{}")", attributes_of(true), svg_number(label.at.x()),
+                    svg_number(label.at.y()), svg_number(label.size));
     if (label.anchor != Anchor::start)
       head += fmt::format(" text-anchor=\"{}\"", kAnchors[static_cast<std::size_t>(label.anchor)]);
     if (label.bold) head += " font-weight=\"bold\"";
@@ -169,10 +179,10 @@ std::string escape_xml(std::string_view text) {
   return out;
 }
 
-std::string svg_element(const Mark& mark) {
+std::string svg_element(const Mark& mark, bool with_data) {
   const std::string tooltip =
       mark.tooltip.empty() ? "" : fmt::format("<title>{}</title>", escape_xml(mark.tooltip));
-  return std::visit(Element{mark, tooltip}, mark.shape);
+  return std::visit(Element{mark, tooltip, with_data}, mark.shape);
 }
 
 std::string svg_style(Theme theme) {
@@ -187,7 +197,7 @@ std::string svg_style(Theme theme) {
   return text;
 }
 
-std::string to_svg(const Picture& picture, Theme theme, double zoom) {
+std::string to_svg(const Picture& picture, Theme theme, double zoom, bool with_data) {
   const std::string width = svg_number(picture.width), height = svg_number(picture.height);
   std::string text = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{}\" viewBox=\"0 0 {} {}\" "
@@ -196,7 +206,7 @@ std::string to_svg(const Picture& picture, Theme theme, double zoom) {
       "<rect class=\"f-paper s-none\" width=\"{}\" height=\"{}\"/>\n",
       svg_number(picture.width * zoom), svg_number(picture.height * zoom), width, height,
       escape_xml(picture.title), svg_style(theme), width, height);
-  for (const Mark& mark : picture.marks) text += svg_element(mark) + "\n";
+  for (const Mark& mark : picture.marks) text += svg_element(mark, with_data) + "\n";
   return text + "</svg>\n";
 }
 

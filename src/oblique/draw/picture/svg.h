@@ -16,12 +16,14 @@ enum class Theme {
 };
 
 /// The picture as SVG 1.1: the same picture gives the same bytes. Coordinates are rounded to a hundredth of a
-/// pixel. It is shown `zoom` times as large as it is at 100 %.
-std::string to_svg(const Picture& picture, Theme theme = Theme::automatic, double zoom = 1);
+/// pixel. It is shown `zoom` times as large as it is at 100 %. `with_data`: elements say what they stand for,
+/// as "data-element" and "data-signal".
+std::string to_svg(const Picture& picture, Theme theme = Theme::automatic, double zoom = 1,
+                   bool with_data = false);
 
 /// The element of one mark alone, for animations and pages that hold several pictures; the style sheet of
 /// `svg_style` must be there.
-std::string svg_element(const Mark& mark);
+std::string svg_element(const Mark& mark, bool with_data = false);
 
 /// The colour of an ink, "#0072b2", on a light or a dark ground; "none" for none.
 const char* colour_of(Ink ink, bool dark);

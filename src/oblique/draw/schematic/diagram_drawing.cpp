@@ -40,10 +40,13 @@ void draw_net(const Sheet& sheet, const RoutedNet& net, const std::string& prefi
   }
   Mark mark{std::move(outline), {ink, 1.2, {}}};
   mark.id = "net-" + prefix + block.name + "." + block.outputs[net.output];
+  mark.signals = block.reads[net.output];
   mark.tooltip = prefix + block.name + (block.outputs.size() > 1 ? "." + block.outputs[net.output] : "");
   picture.marks.push_back(std::move(mark));
-  for (const Vector2d& junction : net.junctions)
+  for (const Vector2d& junction : net.junctions) {
     picture.marks.push_back(disc_mark(at + junction, 2.5, ink, {Ink::none, 0, {}}));
+    picture.marks.back().signals = block.reads[net.output];
+  }
 }
 
 void draw_sheet(const Sheet& sheet, const std::string& prefix, const Vector2d& at, Picture& picture) {

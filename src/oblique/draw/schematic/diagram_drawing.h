@@ -25,7 +25,8 @@ struct DiagramDrawing {
 /// constant stands at each input that it feeds, what the diagram's outputs measure is written at the signal.
 /// The symbol is that of the block's file; a box with the names of its ports where there is none. Places of
 /// the diagram's `[layout]` win over the automatic ones. Marks carry the ids "block-PATH" and
-/// "net-PATH.OUTPUT". Throws DiagramError with all findings about the wiring and the layout.
+/// "net-PATH.OUTPUT", bodies the element and what it gives, wires their signal as the file has it. Throws
+/// DiagramError with all findings about the wiring and the layout.
 Picture draw_diagram(const diagram::Diagram& diagram, const diagram::BlockLibrary& library,
                      const DiagramDrawing& options = {});
 

@@ -31,6 +31,8 @@ struct Around {
   const std::vector<diagram::BlockPlace>* layout = nullptr;
   std::vector<Record> records;  ///< of the diagram
   std::vector<double> parameters;
+  std::string path;                    ///< of what is inside: "q." in the composite q
+  std::vector<std::string> inputs;     ///< what a console reads at each input; see Block::reads
   std::vector<std::string> outputs;    ///< as on its frame
   std::vector<Source> signals_inside;  ///< those of the outputs beyond the definition's
 };
@@ -59,6 +61,7 @@ class Builder {
     if (scope_.composite != nullptr) add_outputs();
     for (const Record& record : around_.records) write_record(record);
     mark_wired();
+    name_signals();
     for (std::size_t i = 0; i < scope_.blocks.size(); ++i) open(i);
     schematic_.layout = around_.layout;
     find_servo_loops(schematic_);
@@ -180,6 +183,7 @@ class Builder {
         input.weight = value_of(term.weight);
         if (!term.source.own_input && stands_at_inputs_[term.source.blocks.front()]) {
           input.constant = constant_text(term.source.blocks.front());
+          input.reads = around_.path + scope_.blocks[term.source.blocks.front()].instance->name;
         } else {
           input.signal = signal_of(term.source);
         }
@@ -188,7 +192,7 @@ class Builder {
       // so that composites of one kind look alike whichever of their inputs are used
       const diagram::InputPort& port = wired.definition->inputs[k];
       if (wired.inside != nullptr && !wired.inputs[k].connected && port.default_value)
-        inputs.push_back({port.name, k, 1, {}, reference_text(*port.default_value), false, {}});
+        inputs.push_back({port.name, k, 1, {}, reference_text(*port.default_value), false, {}, {}});
     }
     schematic_.blocks[index_[i]].inputs = std::move(inputs);
   }
@@ -215,12 +219,56 @@ class Builder {
     }
   }
 
+  /// The signal as a console calls it: that of a primitive block, whatever composites show it.
+  static std::string read_name(const std::string& path, const WiredBlock& block, std::size_t output) {
+    const std::string at = path + block.instance->name;
+    if (block.inside != nullptr) return read_name(at + ".", *block.inside, *block.inside->outputs[output]);
+    return block.definition->outputs.size() > 1 ? at + "." + block.definition->outputs[output].name : at;
+  }
+  static std::string read_name(std::string path, const Scope& scope, const Source& source) {
+    const WiredBlock* at = &scope.blocks[source.blocks.front()];
+    for (std::size_t k = 1; k < source.blocks.size(); ++k) {
+      path += at->instance->name + ".";
+      at = &at->inside->blocks[source.blocks[k]];
+    }
+    return read_name(path, *at, source.output);
+  }
+
+  void name_signals() {
+    for (std::size_t i = 0; i < scope_.blocks.size(); ++i) {
+      if (hidden_[i]) continue;
+      const WiredBlock& wired = scope_.blocks[i];
+      Block& block = schematic_.blocks[index_[i]];
+      const std::size_t own = wired.definition->outputs.size();
+      for (std::size_t k = 0; k < block.outputs.size(); ++k)
+        block.reads.push_back(
+            k < own ? read_name(around_.path, wired, k)
+                    : read_name(around_.path + block.name + ".", *wired.inside, inside_[i][k - own]));
+    }
+    for (std::size_t k = 0; k < inputs_.size(); ++k)
+      schematic_.blocks[inputs_[k]].reads = {around_.inputs[k]};
+    for (Block& block : schematic_.blocks) {
+      for (Input& input : block.inputs) {
+        if (input.signal) input.reads = schematic_.blocks[input.signal->block].reads[input.signal->output];
+      }
+    }
+  }
+
   void write_record(const Record& record) {
     const Signal signal = signal_of(record.source);
     Block& block = schematic_.blocks[signal.block];
     block.records.resize(block.outputs.size());
     std::string& text = block.records[signal.output];
     text += (text.empty() ? "" : ", ") + record.text;
+  }
+
+  /// The signal that arrives at an input of a block unchanged, as a console calls it; empty where none does.
+  static std::string arriving(const Block& block, std::size_t port) {
+    const auto at = [&](const Input& input) { return input.port_index == port; };
+    const auto first = std::find_if(block.inputs.begin(), block.inputs.end(), at);
+    if (first == block.inputs.end() || first->weight != 1) return {};
+    return std::find_if(std::next(first), block.inputs.end(), at) == block.inputs.end() ? first->reads
+                                                                                        : std::string{};
   }
 
   void open(std::size_t i) {
@@ -231,6 +279,8 @@ class Builder {
     around.scope = wired.inside;
     around.parameters = block.parameters;
     around.layout = &wired.definition->layout;
+    around.path = around_.path + block.name + ".";
+    for (std::size_t k = 0; k < wired.inputs.size(); ++k) around.inputs.push_back(arriving(block, k));
     around.outputs = block.outputs;
     around.signals_inside = inside_[i];
     block.inside.push_back(Builder(around, depth_ - 1).build());

@@ -28,6 +28,7 @@ struct Input {
   std::string constant;             ///< what stands at the wire's end then: "+1", "a = 0.3"
   bool in_loop = false;             ///< the wire is a part of the servo loop that the block is in
   std::optional<std::size_t> loop;  ///< that the wire's net is a part of
+  std::string reads;                ///< the signal at the wire's end, as a console calls it; may be empty
 };
 
 struct Schematic;
@@ -43,6 +44,9 @@ struct Block {
   std::vector<bool> given;                               ///< whether the file gives it
   std::vector<Input> inputs;
   std::vector<std::string> outputs;  ///< names: those of the definition, then signals inside that are used
+  /// What a console reads at each output; empty on the frame of a composite where a weighted sum arrives,
+  /// which has no name.
+  std::vector<std::string> reads;
   std::vector<bool> wired;           ///< whether a wire starts at an output
   std::vector<std::string> records;  ///< of each output, where it is measured: under what name, in what unit
   bool inverts = false;

@@ -50,6 +50,10 @@ class Artist {
   double height() const { return shape_.body.y(); }
 
   void put(Mark mark) { picture_.marks.push_back(std::move(mark)); }
+  void put_wire(Mark mark, const std::string& signal) {
+    mark.signals = signal;
+    put(std::move(mark));
+  }
   void write(const Vector2d& at, const std::string& text, Anchor anchor, double size) {
     if (!text.empty()) put(label_mark(at, text, anchor, size));
   }
@@ -57,6 +61,8 @@ class Artist {
   void add_body(Mark mark) {
     mark.fill = Ink::paper;
     mark.id = "block-" + path_;
+    mark.element = path_;
+    for (const std::string& signal : block_.reads) mark.signals += (mark.signals.empty() ? "" : " ") + signal;
     mark.tooltip = tooltip_of(block_, path_);
     put(std::move(mark));
   }
@@ -68,7 +74,8 @@ class Artist {
     write({input ? edge + 4 : edge - 4, y + 3.5}, shape_.text, input ? Anchor::start : Anchor::end, kSmall);
     const double end = input ? at_.x() + width() : at_.x();
     const double text = text_width(shape_.text, kSmall) + 8;
-    put(line_mark({input ? edge + text : edge - text, y}, {end, y}, {Ink::line, 1.2, {}}));
+    put_wire(line_mark({input ? edge + text : edge - text, y}, {end, y}, {Ink::line, 1.2, {}}),
+             input ? block_.reads.front() : block_.inputs.front().reads);
   }
 
   void draw_body() {
@@ -132,12 +139,12 @@ class Artist {
       const double edge = shape_.corner.x() + edge_at(y - shape_.corner.y());
       write(at_ + Vector2d(shape_.corner.x() - 3, y - 3), lead_text(block_, input), Anchor::end, kSmall);
       if (input.constant.empty()) {
-        put(line_mark(at_ + Vector2d(0, y), at_ + Vector2d(edge, y), lead_pen(input)));
+        put_wire(line_mark(at_ + Vector2d(0, y), at_ + Vector2d(edge, y), lead_pen(input)), input.reads);
         continue;
       }
       const double x = shape_.corner.x() - 3 - widest - 8;
-      put(line_mark(at_ + Vector2d(x, y), at_ + Vector2d(edge, y), wire));
-      put(disc_mark(at_ + Vector2d(x, y), 2, Ink::paper, wire));
+      put_wire(line_mark(at_ + Vector2d(x, y), at_ + Vector2d(edge, y), wire), input.reads);
+      put_wire(disc_mark(at_ + Vector2d(x, y), 2, Ink::paper, wire), input.reads);
       write(at_ + Vector2d(x - 5, y + 3.5), input.constant, Anchor::end, kSmall);
     }
     for (std::size_t k = 0; k < block_.outputs.size(); ++k) draw_output(k);
@@ -151,7 +158,8 @@ class Artist {
     const double bubble = inverts ? 2 * kBubble : 0;
     const bool is_used = block_.wired[k] || (k < block_.records.size() && !block_.records[k].empty());
     const double end = is_used ? shape_.node.size.x() : right + kLayoutGrid;
-    put(line_mark(at_ + Vector2d(right + bubble, y), at_ + Vector2d(end, y), output_pen()));
+    put_wire(line_mark(at_ + Vector2d(right + bubble, y), at_ + Vector2d(end, y), output_pen()),
+             block_.reads[k]);
     if (inverts) put(disc_mark(at_ + Vector2d(right + kBubble, y), kBubble, Ink::paper, {pen_.ink, 1.2, {}}));
     if (k >= block_.records.size() || block_.records[k].empty()) return;
     const Vector2d tip = at_ + Vector2d(right + bubble + kRecordIndent - 4, y);
@@ -159,7 +167,7 @@ class Artist {
         polyline_mark({tip, tip - Vector2d(7, 3.5), tip - Vector2d(7, -3.5)}, {Ink::none, 0, {}}, true);
     arrow.fill = output_pen().ink;
     arrow.id = "record-" + path_ + (block_.outputs.size() > 1 ? "." + block_.outputs[k] : "");
-    put(std::move(arrow));
+    put_wire(std::move(arrow), block_.reads[k]);
     write(tip + Vector2d(4, -3), block_.records[k], Anchor::start, kSmall);
   }
 

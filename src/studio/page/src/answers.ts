@@ -72,6 +72,7 @@ export interface Advanced extends Answer {
   time: number;
   complete: boolean;
   rows: number;
+  seconds: number;
   warnings: Diagnostic[];
 }
 

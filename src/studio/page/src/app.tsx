@@ -4,9 +4,10 @@ import {useEffect} from "preact/hooks";
 import {keysOf, Lamps, Meter, Modes, Pots} from "./controls";
 import {Editor} from "./editor";
 import {Lesson} from "./lesson";
-import {Scope} from "./scope";
+import {Scope} from "./scope/scope";
 import {examples, useShown, type Session} from "./session";
 import {save, toFragment} from "./share";
+import {Schematic} from "./voltages/voltages";
 
 const folders = [...new Set(examples.map(({name}) => name.split("/")[0]!))];
 
@@ -54,11 +55,10 @@ function Header({session}: {session: Session}) {
 
 function Pictures({session}: {session: Session}) {
   const linkage = useShown(session, (shown) => shown.linkage);
-  const schematic = useShown(session, (shown) => shown.schematic);
   return (
     <section class="machine">
       {linkage && <div class="picture linkage" dangerouslySetInnerHTML={{__html: linkage}} />}
-      <div class="picture schematic" dangerouslySetInnerHTML={{__html: schematic}} />
+      <Schematic session={session} />
     </section>
   );
 }

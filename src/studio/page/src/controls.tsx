@@ -3,8 +3,9 @@ import {useState} from "preact/hooks";
 
 import {short} from "./numbers";
 import {runs, useShown, type Pot, type Session} from "./session";
+import {Pointed} from "./voltages/voltages";
 
-const speeds = [0.001, 0.01, 0.1, 0.2, 0.5, 1, 2, 5, 10, 100, Infinity];
+const speeds = [0, 0.001, 0.01, 0.1, 0.2, 0.5, 1, 2, 5, 10, 100, Infinity];
 
 /// IC, OP, HOLD, REP, and how fast.
 export function Modes({session}: {session: Session}) {
@@ -22,7 +23,7 @@ export function Modes({session}: {session: Session}) {
       <button aria-pressed={mode === "repeat"} disabled={!held} title="key r" onClick={() => void session.repeat()}>REP</button>
       <output class="time" aria-label="Time of the machine">t = {short(time)} s</output>
       <label>speed <select value={String(speed)} onChange={(event) => session.set({speed: Number((event.target as HTMLSelectElement).value)})}>
-        {speeds.map((one) => <option value={String(one)}>{one === Infinity ? "as fast as it goes" : `${one} ×`}</option>)}
+        {speeds.map((one) => <option value={String(one)}>{one === 0 ? "frozen" : one === Infinity ? "as fast as it goes" : `${one} ×`}</option>)}
       </select></label>
       {kind === "mechanism" && <label>gain <input class="gain" type="text" value={gain} onChange={(event) => {
         const asked = (event.target as HTMLInputElement).value;
@@ -59,6 +60,7 @@ export function Lamps({session}: {session: Session}) {
 
 export function Meter({session}: {session: Session}) {
   const meter = useShown(session, (shown) => shown.meter);
+  const pointed = useShown(session, (shown) => shown.pointed);
   useShown(session, (shown) => shown.held);
   return (
     <div class="meter">
@@ -66,7 +68,7 @@ export function Meter({session}: {session: Session}) {
         <option value="">…</option>
         {session.channels.map((name) => <option value={name}>{name}</option>)}
       </select></label>
-      <output aria-label="Voltmeter">{meter.name && `${short(meter.value)} ${meter.unit}`}</output>
+      <output aria-label="Voltmeter">{pointed ? <Pointed session={session} /> : meter.name && `${short(meter.value)} ${meter.unit}`}</output>
     </div>
   );
 }

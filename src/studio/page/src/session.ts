@@ -6,14 +6,18 @@ import {useEffect, useReducer} from "preact/hooks";
 import type {Advanced, Answer, Checked, Diagnostic, Drawn, Held, Lesson, Opened, Overloads, Patched, Read, Saved} from "./answers";
 import {carried, Machine, Stopped} from "./machine";
 import {short} from "./numbers";
+import {Instrument} from "./scope/instrument";
+import {atFirst, type ScopeSettings} from "./scope/settings";
+import type {Repeats} from "./scope/sweeps";
 import {fromFragment, type SharedFile} from "./share";
 import {Traces} from "./traces";
+import {Levels} from "./voltages/levels";
 
 export const examples = JSON.parse(carried("examples")) as SharedFile[];
 const opening = JSON.parse(carried("opening")) as SharedFile;
 
 const mostRows = 20_000;  // that the scope remembers
-const rowsAFrame = 12;
+const shortFrame = 0.005, longFrame = 0.01;  // [s] that the engine takes for a frame as fast as it goes
 const restOfWriter = 400;  // ms after which what was written is looked at
 
 export type Mode = "initial" | "operate" | "hold" | "repeat";
@@ -43,14 +47,26 @@ export interface Shown {
   pots: Pot[];
   mode: Mode;
   time: number;
-  speed: number;              ///< seconds of the machine a second
+  speed: number;              ///< seconds of the machine a second; 0: frozen, Infinity: as fast as it goes
   lamps: {signal: string; value: number}[];
   meter: {name: string; value: number; unit: string};
+  pointed: {element: string; signals: readonly string[]} | undefined;  ///< in the schematic
+  levels: number;             ///< counts up where the voltages are others
   values: ReadonlyMap<string, number>;  ///< of the signals that are watched
   traced: string[];
   against: string;            ///< what the traces are drawn over; empty: the time
   persists: boolean;
+  scope: ScopeSettings;
+  repeats: Repeats | undefined;
   drawn: number;              ///< counts up where the traces have something new
+}
+
+/// A room of the page that lives with the machine.
+export interface Companion {
+  /// The machine is another one, or begins again.
+  opened?(): Promise<void>;
+  /// Called while the machine goes on; what it asks at once is of the frame's end.
+  went?(): Promise<void>;
 }
 
 export interface Opening {
@@ -70,10 +86,13 @@ export class Session {
   readonly machine = new Machine();
   shown: Shown = {
     engine: "starting", busy: false, file: opening, written: opening.text, findings: [], remarks: [], kind: "", title: "", lesson: null, diagram: "", schematic: "", linkage: "",
-    gain: "1e5", held: undefined, pots: [], mode: "initial", time: 0, speed: 1, lamps: [], meter: {name: "", value: NaN, unit: ""}, values: new Map(),
-    traced: [], against: "", persists: false, drawn: 0,
+    gain: "1e5", held: undefined, pots: [], mode: "initial", time: 0, speed: 1, lamps: [], meter: {name: "", value: NaN, unit: ""}, pointed: undefined, levels: 0, values: new Map(),
+    traced: [], against: "", persists: false, scope: atFirst, repeats: undefined, drawn: 0,
   };
   traces = new Traces([], mostRows);
+  readonly companions = new Set<Companion>();
+  readonly oscilloscope: Instrument;
+  readonly levels: Levels;
   /// Resolves once the first file was opened.
   readonly ready: Promise<void>;
 
@@ -85,10 +104,14 @@ export class Session {
   private opens = 0;          // the newest call of `open`
   private opening = 0;        // how many of them are under way
   private asking = false;     // a frame is
+  private pressed = Promise.resolve();  // the last button has done its work
   private moved = 0;          // when the linkage was drawn last
+  private until = 0;          // [s] of a diagram's run, where its file may say so by an expression
+  private stride = 0;         // [s] of a frame as fast as it goes
   private later: ReturnType<typeof setTimeout> | undefined;
 
   constructor() {
+    this.companions.add(this.oscilloscope = new Instrument(this)).add(this.levels = new Levels(this));
     this.ready = this.begin();
   }
 
@@ -111,6 +134,7 @@ export class Session {
 
   /// How long the file says that a run lasts [s].
   get span(): number {
+    if (this.until > 0) return this.until;
     const until = Number(/^\s*until\s*=\s*([0-9.eE+-]+)/m.exec(this.shown.diagram)?.[1]);
     return until > 0 ? until : 1;
   }
@@ -158,7 +182,12 @@ export class Session {
     }
   }
 
-  async press(mode: Mode): Promise<void> {
+  /// A button that is pressed before the one before has done its work waits.
+  press(mode: Mode): Promise<void> {
+    return this.inTurn(() => this.change(mode));
+  }
+
+  private async change(mode: Mode): Promise<void> {
     let {time} = this.shown;
     if (mode === "initial") {  // the clock too begins again, with the pots as they are turned
       const set = await this.machine.ask<Held>("console.open", this.shown.diagram, this.shown.file.name);
@@ -166,6 +195,8 @@ export class Session {
       for (const [pot, value] of this.turned) await this.machine.ask("console.turn", pot, value);
       time = set.time;
       if (!this.shown.persists) this.traces.clear();
+      this.set({held: set});
+      await this.tell();
     }
     // A diagram with a timeline sets its modes itself: then the page lets it run, or not.
     const set = await this.machine.ask("console.setMode", mode);
@@ -173,14 +204,36 @@ export class Session {
       this.good(set);
       return;
     }
-    this.set({mode, time, drawn: this.shown.drawn + 1});
+    this.set({mode, time, repeats: undefined, drawn: this.shown.drawn + 1});
     await this.lookAtAll();
   }
 
   /// Initial condition and a run, again and again.
-  async repeat(): Promise<void> {
-    if (!this.good(await this.machine.ask("console.repeat", this.span / 20, this.span))) return;
-    this.set({mode: "repeat", findings: [], drawn: this.shown.drawn + 1});
+  repeat(): Promise<void> {
+    return this.inTurn(() => this.beginRepeating());
+  }
+
+  private async beginRepeating(): Promise<void> {
+    const initial = this.span / 20, operate = this.span;
+    const set = await this.machine.ask<Held>("console.repeat", initial, operate);
+    if (!this.good(set)) return;
+    this.set({mode: "repeat", findings: [], repeats: {since: set.time, initial, operate}, drawn: this.shown.drawn + 1});
+  }
+
+  /// No frame goes on meanwhile.
+  private inTurn(work: () => Promise<void>): Promise<void> {
+    const done = this.pressed.then(async () => {
+      ++this.opening;
+      try {
+        await work();
+      } catch (error) {
+        ignoreStops(error);
+      } finally {
+        --this.opening;
+      }
+    });
+    this.pressed = done.catch(() => undefined);
+    return done;
   }
 
   /// Turns a pot of the machine; whether it could be.
@@ -281,25 +334,34 @@ export class Session {
     if (!isNewest() || !this.good(held)) return false;
     const turned = how.turned ?? new Map<string, string>();
     for (const [pot, value] of turned) if (!this.good(await machine.ask("console.turn", pot, value))) return false;
-    const drawn = await machine.ask<Drawn>("draw", diagram, theme, next.name);
+    const drawn = await machine.ask<Drawn>("draw", diagram, {...theme, data: true}, next.name);
     const values = await machine.ask<Read>("console.read", ...held.pots);
     const mode: Mode = how.restore ? "hold" : "initial";
     if (how.restore) await machine.ask("console.restore", how.restore);
     else await machine.ask("console.setMode", mode);
     if (!isNewest()) return false;
     this.turned = turned;
+    this.until = opened.kind === "diagram" ? opened.until : 0;
     this.saved = how.restore ?? "";
     // of a mechanism the way of its second moving point, else the first outputs over the time
     const way = opened.kind === "mechanism" ? held.outputs.slice(2, 4) : [];
     const isWay = way.length === 2;
     this.set({
-      file: next, lesson: opened.lesson ?? null, kind: opened.kind, title: opened.title, gain, diagram, linkage, schematic: drawn.ok ? drawn.svg : "", held, remarks, mode, time: held.time, lamps: [],
+      file: next, lesson: opened.lesson ?? null, kind: opened.kind, title: opened.title, gain, diagram, linkage, schematic: drawn.ok ? drawn.svg : "", held, remarks, mode, time: held.time, lamps: [], repeats: undefined,
       pots: inOrder(held.pots.map((name, k) => ({name, value: values.numbers[k]!, unit: values.units[k] ?? ""}))),
       meter: {name: "", value: NaN, unit: ""}, values: new Map(),
     });
     this.trace(isWay ? way : held.outputs.slice(0, 4), isWay ? way[0]! : "");
+    this.stride = this.span / 50;
+    await this.tell();
     await this.look();
+    await this.lookAtLamps();
     return true;
+  }
+
+  /// Tells the rooms that the machine is another one.
+  private async tell(): Promise<void> {
+    for (const companion of this.companions) await companion.opened?.();
   }
 
   private async lookAtLamps(): Promise<void> {
@@ -320,13 +382,17 @@ export class Session {
     await this.lookAtLamps();
     await this.meter(this.shown.meter.name);
     await this.look();
+    for (const companion of this.companions) await companion.went?.();
   }
 
   private async frame(seconds: number): Promise<void> {
     const {speed, traced, persists} = this.shown;
     const {span, traces} = this;
-    const duration = speed === Infinity ? span / 50 : seconds * speed;
-    const went = await this.machine.ask<Advanced>("console.advance", duration, traced, rowsAFrame);
+    const duration = speed === Infinity ? Math.min(this.stride, this.oscilloscope.farthest) : seconds * speed;
+    const advancing = this.machine.ask<Advanced>("console.advance", duration, traced, this.oscilloscope.rows(duration));
+    const [went] = await Promise.all([advancing, ...[...this.companions].map((companion) => companion.went?.())]);
+    if (speed === Infinity && went.seconds < shortFrame) this.stride = Math.min(2 * this.stride, this.oscilloscope.farthest);
+    if (speed === Infinity && went.seconds > longFrame) this.stride /= 2;
     if (!went.ok) {
       this.good(went);
       await this.machine.ask("console.setMode", "hold");
@@ -364,7 +430,7 @@ export class Session {
       if (this.asking || this.opening > 0) return;
       const seconds = Math.min((at - last) / 1000, 0.1);
       last = at;
-      if (!this.shown.held || !runs(this.shown.mode)) return;
+      if (!this.shown.held || !runs(this.shown.mode) || this.shown.speed === 0) return;
       this.asking = true;
       whole(at, seconds).catch(ignoreStops).finally(() => { this.asking = false; });
     };

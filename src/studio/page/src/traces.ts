@@ -5,6 +5,8 @@ export class Traces {
   private readonly columns: Float64Array[];
   private begin = 0;
   private count = 0;
+  private passed = 0;             // rows that were dropped
+  private begins: number[] = [];  // of the runs: rows, those that were dropped counted
 
   constructor(readonly names: readonly string[], private readonly most: number) {
     this.columns = [new Float64Array(most), ...names.map(() => new Float64Array(most))];
@@ -19,10 +21,9 @@ export class Traces {
   add(numbers: Float64Array, persists: boolean): void {
     const width = this.columns.length;
     for (let k = 0; k + width <= numbers.length; k += width) {
-      if (this.count > 0 && numbers[k]! < this.at(0, this.count - 1)) {
-        if (persists) this.push((c) => (c === 0 ? numbers[k]! : NaN));  // the beam is dark on its way back
-        else this.clear();
-      }
+      const goesBack = this.count > 0 && numbers[k]! < this.at(0, this.count - 1);
+      if (goesBack && !persists) this.clear();
+      if (this.count === 0 || goesBack) this.begins.push(this.passed + this.count);
       this.push((c) => numbers[k + c]!);
     }
   }
@@ -31,28 +32,38 @@ export class Traces {
     return this.columns[column]![(this.begin + row) % this.most]!;
   }
 
-  /// A column in the order of its rows.
-  column(column: number): Float64Array {
-    const of = this.columns[column]!, end = this.begin + this.count, out = new Float64Array(this.count);
-    out.set(of.subarray(this.begin, Math.min(end, this.most)));
-    if (end > this.most) out.set(of.subarray(0, end - this.most), this.most - this.begin);
+  /// A part of a column in the order of its rows.
+  column(column: number, from: number, to: number): Float64Array {
+    const of = this.columns[column]!, first = this.begin + from, last = this.begin + to, out = new Float64Array(to - from);
+    if (last <= this.most) out.set(of.subarray(first, last));
+    else if (first >= this.most) out.set(of.subarray(first - this.most, last - this.most));
+    else {
+      out.set(of.subarray(first, this.most));
+      out.set(of.subarray(0, last - this.most), this.most - first);
+    }
     return out;
   }
 
-  clear(): void {
-    this.begin = this.count = 0;
+  /// The rows between two beginnings of the machine.
+  runs(): {from: number; to: number}[] {
+    return this.begins.map((begin, k) => ({from: Math.max(0, begin - this.passed), to: (this.begins[k + 1] ?? this.passed + this.count) - this.passed}))
+      .filter(({from, to}) => to > from);
   }
 
-  csv(): string {
-    const lines = [["t", ...this.names].map((name) => (/[",\n]/.test(name) ? `"${name.replaceAll('"', '""')}"` : name)).join(",")];
-    for (let row = 0; row < this.count; ++row) lines.push(this.columns.map((_, c) => String(this.at(c, row))).join(","));
-    return lines.join("\n") + "\n";
+  clear(): void {
+    this.begin = this.count = this.passed = 0;
+    this.begins = [];
   }
 
   private push(value: (column: number) => number): void {
     const place = (this.begin + this.count) % this.most;
     this.columns.forEach((column, c) => { column[place] = value(c); });
-    if (this.count < this.most) ++this.count;
-    else this.begin = (this.begin + 1) % this.most;
+    if (this.count < this.most) {
+      ++this.count;
+    } else {
+      this.begin = (this.begin + 1) % this.most;
+      ++this.passed;
+      while (this.begins.length > 1 && this.begins[1]! <= this.passed) this.begins.shift();
+    }
   }
 }
