@@ -99,6 +99,7 @@ export class Session {
   private readonly listeners = new Set<() => void>();
   private readonly watches = new Set<readonly string[]>();
   private turned: ReadonlyMap<string, string> = new Map();
+  private turning: Promise<unknown> = Promise.resolve();  // the last turn of a pot
   private saved = "";         // the state that the machine comes back to
   private asked = "";         // the text that was looked at last
   private opens = 0;          // the newest call of `open`
@@ -237,7 +238,13 @@ export class Session {
   }
 
   /// Turns a pot of the machine; whether it could be.
-  async turn(name: string, value: number): Promise<boolean> {
+  turn(name: string, value: number): Promise<boolean> {
+    const done = this.turnTo(name, value);
+    this.turning = done.catch(() => undefined);
+    return done;
+  }
+
+  private async turnTo(name: string, value: number): Promise<boolean> {
     const {pots} = this.shown;
     const unit = pots.find((pot) => pot.name === name)?.unit ?? "";
     this.set({pots: pots.map((pot) => (pot.name === name ? {...pot, value} : pot))});
@@ -262,6 +269,7 @@ export class Session {
   /// What a step of the lesson, or without a number its question, expects, held against a run with the pots as they are
   /// turned; nothing where it could not be run.
   async checkLesson(step?: number, answer?: {name: string; value: string}): Promise<Checked | undefined> {
+    await this.turning;
     const set = Object.fromEntries(answer ? [...this.turned, [answer.name, answer.value]] : this.turned);
     const checked = await this.machine.ask<Checked>("check", this.shown.diagram, step === undefined ? {set} : {step, set}, this.shown.file.name);
     if (!this.good(checked)) return undefined;
