@@ -148,6 +148,9 @@ ratio = "q"
   await quotient.hover();
   const ratio = Number((await pointed(page, "^q\\.quotient = (\\S+) machine unit$"))[1]);
   assert.ok(Math.abs(ratio - Math.cos(1)) < 1e-4, String(ratio));  // the divider's gain is 1e6
+  // What is drawn on a body does not hide it: the sign in the middle.
+  const divider = await quotient.boundingBox();
+  assert.equal(await page.evaluate((x, y) => document.elementFromPoint(x, y).id, divider.x + divider.width / 2, divider.y + divider.height / 2), "block-q");
   // A click leaves the voltmeter there.
   await quotient.click();
   await page.mouse.move(5, 5);
@@ -213,6 +216,16 @@ for (const [width, scheme] of [[1280, "dark"], [390, "light"]]) {
     await button(page, "OP");
     await wait(1200);
     assert.ok(await page.$$eval(".schematic .live", (all) => all.length) > 20);
+    // What is read moves nothing, or the pointer would be elsewhere.
+    const place = async () => Object.values(await page.$eval(".schematic", (one) => one.getBoundingClientRect().toJSON()));
+    const body = await page.$('[id="block-B"]');
+    await body.evaluate((one) => one.scrollIntoView());
+    const before = await place();
+    await body.hover();
+    await pointed(page, "^B\\.\\w+ = ");
+    await wait(400);
+    await pointed(page, "^B\\.\\w+ = ");
+    assert.deepEqual(await place(), before);
     assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
     await page.$eval(".voltages", (one) => one.scrollIntoView());
     if (shots) await page.screenshot({path: join(shots, `voltages-class-iii-${width}-${scheme}.png`)});

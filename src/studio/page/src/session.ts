@@ -189,23 +189,23 @@ export class Session {
   }
 
   private async change(mode: Mode): Promise<void> {
-    let {time} = this.shown;
+    let begun: number | undefined;
     if (mode === "initial") {  // the clock too begins again, with the pots as they are turned
       const set = await this.machine.ask<Held>("console.open", this.shown.diagram, this.shown.file.name);
       if (!this.good(set)) return;
       for (const [pot, value] of this.turned) await this.machine.ask("console.turn", pot, value);
-      time = set.time;
+      begun = set.time;
       if (!this.shown.persists) this.traces.clear();
       this.set({held: set});
       await this.tell();
     }
     // A diagram with a timeline sets its modes itself: then the page lets it run, or not.
-    const set = await this.machine.ask("console.setMode", mode);
+    const set = await this.machine.ask<Held>("console.setMode", mode);
     if (!set.ok && !/timeline/.test(set.diagnostics?.[0]?.what ?? "")) {
       this.good(set);
       return;
     }
-    this.set({mode, time, repeats: undefined, drawn: this.shown.drawn + 1});
+    this.set({mode, time: set.ok ? set.time : begun ?? this.shown.time, repeats: undefined, drawn: this.shown.drawn + 1});
     await this.lookAtAll();
   }
 
