@@ -47,9 +47,11 @@ std::string path_of(const std::string& name) {
 }
 
 std::vector<std::string> diagrams() {
-  std::vector<std::string> names = files_in("historical");
-  const std::vector<std::string> lessons = files_in("lessons");
-  names.insert(names.end(), lessons.begin(), lessons.end());
+  std::vector<std::string> names;
+  for (const char* const folder : {"atlas", "historical", "lessons"}) {
+    const std::vector<std::string> files = files_in(folder);
+    names.insert(names.end(), files.begin(), files.end());
+  }
   return names;
 }
 
