@@ -38,6 +38,9 @@ TEST(Diagram, IsEqualToNoOther) {
   one.outputs = {{"a", "a", 1, "machine unit", {}}};
   one.expectations = {{"", "a", Expectation::Kind::at_time, 1, 2, 3, {}}};
   one.layout = {{"a", 1, 2, {}}};
+  one.published.emplace().values.emplace_back();
+  one.lesson.emplace().question.emplace();
+  one.lesson->steps.emplace_back();
   EXPECT_TRUE(one == Diagram(one));
   const auto is_equal_after = [&](const std::function<void(Diagram&)>& change) {
     Diagram other = one;
@@ -64,6 +67,31 @@ TEST(Diagram, IsEqualToNoOther) {
   EXPECT_FALSE(is_equal_after([](Diagram& d) { d.expectations[0].time = 7; }));
   EXPECT_FALSE(is_equal_after([](Diagram& d) { d.expectations[0].value = 7; }));
   EXPECT_FALSE(is_equal_after([](Diagram& d) { d.expectations[0].within = 7; }));
+  EXPECT_FALSE(is_equal_after([](Diagram& d) { d.published.reset(); }));
+  EXPECT_FALSE(is_equal_after([](Diagram& d) { d.published->kind = Published::Kind::equations; }));
+  for (std::string Published::*const member :
+       {&Published::author, &Published::title, &Published::in, &Published::number, &Published::page,
+        &Published::address, &Published::machine, &Published::subject, &Published::picture})
+    EXPECT_FALSE(is_equal_after([&](Diagram& d) { (*d.published).*member = "b"; }));
+  EXPECT_FALSE(is_equal_after([](Diagram& d) { d.published->year = 7; }));
+  EXPECT_FALSE(is_equal_after([](Diagram& d) { d.published->plot = {"b"}; }));
+  EXPECT_FALSE(is_equal_after([](Diagram& d) { d.published->errata = {"b"}; }));
+  EXPECT_FALSE(is_equal_after([](Diagram& d) { d.published->values[0].expected.value = 7; }));
+  EXPECT_FALSE(is_equal_after([](Diagram& d) { d.published->values[0].label = "b"; }));
+  EXPECT_FALSE(is_equal_after([](Diagram& d) { d.published->values[0].unit = "b"; }));
+  EXPECT_FALSE(is_equal_after([](Diagram& d) { d.published->values[0].factor = 7; }));
+  EXPECT_FALSE(is_equal_after([](Diagram& d) { d.published->values[0].because = "b"; }));
+  EXPECT_FALSE(is_equal_after([](Diagram& d) { d.published->values[0].set = {{"b", "7"}}; }));
+  EXPECT_FALSE(is_equal_after([](Diagram& d) { d.lesson->title = "b"; }));
+  EXPECT_FALSE(is_equal_after([](Diagram& d) { d.lesson->text = "b"; }));
+  EXPECT_FALSE(is_equal_after([](Diagram& d) { d.lesson->steps[0].action = "b"; }));
+  EXPECT_FALSE(is_equal_after([](Diagram& d) { d.lesson->steps[0].set = {{"b", "7"}}; }));
+  EXPECT_FALSE(is_equal_after([](Diagram& d) { d.lesson->steps[0].see = "b"; }));
+  EXPECT_FALSE(is_equal_after([](Diagram& d) { d.lesson->steps[0].expectations.emplace_back(); }));
+  EXPECT_FALSE(is_equal_after([](Diagram& d) { d.lesson->question->ask = "b"; }));
+  EXPECT_FALSE(is_equal_after([](Diagram& d) { d.lesson->question->answer = "b"; }));
+  EXPECT_FALSE(is_equal_after([](Diagram& d) { d.lesson->question->hint = "b"; }));
+  EXPECT_FALSE(is_equal_after([](Diagram& d) { d.lesson->question->expectations.emplace_back(); }));
   EXPECT_FALSE(is_equal_after([](Diagram& d) { d.layout[0].name = "b"; }));
   EXPECT_FALSE(is_equal_after([](Diagram& d) { d.layout[0].x = 7; }));
   EXPECT_FALSE(is_equal_after([](Diagram& d) { d.layout[0].y = 7; }));

@@ -73,6 +73,67 @@ c        = [0, 1]
 )toml");
 }
 
+TEST(WriteDiagram, HasWhatWasPublishedAndTheLesson) {
+  Diagram d;
+  d.blocks = {{"a", "reference", "", "", {}, {}}};
+  d.outputs = {{"x", "a", 1, "machine unit", {}}};
+  Published& p = d.published.emplace();
+  p.author = "A. Author";
+  p.title = "A title";
+  p.in = "A series";
+  p.year = 2019;
+  p.number = "36";
+  p.plot = {"x", "t"};
+  p.errata = {"0.15 is 1.5"};
+  PublishedValue value;
+  value.expected = {"x at 1/2", "x", Expectation::Kind::at_time, 0.5, 0.343, 0.001, {}};
+  value.label = "v₀";
+  value.set = {{"a.value", "1/3"}};
+  value.because = "it drifts";
+  p.values = {value};
+  d.lesson = Lesson{
+      "One",
+      "Of sums.",
+      {{"turn", {{"a.value", "2"}}, "more", {{"", "x", Expectation::Kind::maximum, 0, 1, 0.5, {}}}}},
+      LessonQuestion{"why?", "a.value", "look", {{"", "x", Expectation::Kind::minimum, 0, 1, 0.5, {}}}, {}}};
+  const std::string text = write_diagram(d);
+  EXPECT_EQ(text.substr(text.find("\n[published]")), R"toml(
+[published]
+author = "A. Author"
+title = "A title"
+in = "A series"
+year = 2019
+number = "36"
+plot = ["x", "t"]
+errata = ["0.15 is 1.5"]
+
+[[published.value]]
+name = "x"
+label = "v₀"
+value = 0.343
+within = 0.001
+at = "1/2"
+set = { "a.value" = "1/3" }
+because = "it drifts"
+
+[lesson]
+title = "One"
+text = "Of sums."
+
+[[lesson.step]]
+do = "turn"
+set = { "a.value" = "2" }
+see = "more"
+expect = { "x maximum" = { value = 1, within = 0.5 } }
+
+[lesson.question]
+ask = "why?"
+answer = "a.value"
+hint = "look"
+expect = { "x minimum" = { value = 1, within = 0.5 } }
+)toml");
+}
+
 TEST(WriteDiagram, HasWhatHoldsAGroup) {
   for (const auto& [initial, hold, written] : {std::array{"", "", "{ blocks = [\"x\"] }"},
                                                std::array{"u", "", "{ blocks = [\"x\"], initial = \"u\" }"},
@@ -181,6 +242,56 @@ Expectation any_expectation(const std::string& output) {
       output + " at " + std::to_string(time), output, Expectation::Kind::at_time, time, value, within, {}};
 }
 
+/// Parameters that are set; the blocks that they name are not looked for by the reader.
+std::vector<ParameterOverride> any_settings() {
+  std::vector<ParameterOverride> settings;
+  for (const std::string& path : *small(rc::gen::container<std::set<std::string>>(any_text())))
+    settings.push_back({path, *any_text()});
+  return settings;
+}
+
+PublishedValue any_published_value(const std::string& output) {
+  PublishedValue value;
+  value.expected = any_expectation(output);
+  value.label = *any_text();
+  value.set = any_settings();
+  value.because = *any_text();
+  if (*rc::gen::arbitrary<bool>()) value.unit = "machine unit";
+  return value;
+}
+
+Published any_published(const std::vector<OutputSpec>& outputs) {
+  Published p;
+  p.kind = *rc::gen::element(Published::Kind::programme, Published::Kind::equations);
+  for (std::string Published::*const member :
+       {&Published::author, &Published::title, &Published::in, &Published::number, &Published::page,
+        &Published::address, &Published::machine, &Published::subject})
+    p.*member = *any_text();
+  p.picture = "a" + *any_text();
+  if (*rc::gen::arbitrary<bool>()) p.year = *rc::gen::inRange(1800, 2200);
+  p.errata = *small(rc::gen::container<std::vector<std::string>>(any_text()));
+  for (const OutputSpec& output : outputs) {
+    if (output.unit == "machine unit" && *rc::gen::arbitrary<bool>())
+      p.values.push_back(any_published_value(output.name));
+  }
+  if (!outputs.empty()) p.plot = {outputs.back().name, "t"};
+  return p;
+}
+
+Lesson any_lesson(const std::vector<OutputSpec>& outputs) {
+  const auto expectations = [&] {
+    std::vector<Expectation> all;
+    for (const OutputSpec& output : outputs) all.push_back(any_expectation(output.name));
+    return all;
+  };
+  Lesson lesson{*any_text(), *any_text(), {}, {}};
+  for (int steps = *rc::gen::inRange(0, 3); steps > 0; --steps)
+    lesson.steps.push_back({"a" + *any_text(), any_settings(), "b" + *any_text(), expectations()});
+  if (!outputs.empty())
+    lesson.question = LessonQuestion{"a" + *any_text(), "b" + *any_text(), *any_text(), expectations(), {}};
+  return lesson;
+}
+
 Diagram any_diagram() {
   Diagram d;
   d.title = *any_text();
@@ -212,6 +323,8 @@ Diagram any_diagram() {
                          {}});
     if (*rc::gen::arbitrary<bool>()) d.expectations.push_back(any_expectation(name));
   }
+  if (*rc::gen::arbitrary<bool>()) d.published = any_published(d.outputs);
+  if (*rc::gen::arbitrary<bool>()) d.lesson = any_lesson(d.outputs);
   return d;
 }
 

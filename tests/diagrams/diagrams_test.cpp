@@ -16,7 +16,9 @@
 #include <oblique/mechanism/structure/structure.h>
 #include <oblique/network/assembly/network.h>
 #include <oblique/network/program/program.h>
+#include <oblique/report/atlas/published_check.h>
 #include <oblique/report/expectation_check.h>
+#include <oblique/report/file_kind.h>
 #include <oblique/text/file.h>
 
 #include "../support/rate_errors.h"
@@ -24,10 +26,12 @@
 namespace oblique::test {
 namespace {
 
+/// The diagrams and mechanisms of a folder; none where it is not there.
 std::vector<std::string> files_in(const std::string& folder) {
   std::vector<std::string> names;
-  for (const auto& entry :
-       std::filesystem::directory_iterator(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/" + folder)) {
+  const std::filesystem::path path = std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/" + folder;
+  if (!std::filesystem::exists(path)) return names;
+  for (const auto& entry : std::filesystem::directory_iterator(path)) {
     names.push_back(folder + "/" + entry.path().filename().string());
   }
   std::sort(names.begin(), names.end());
@@ -48,9 +52,11 @@ std::string path_of(const std::string& name) {
 
 std::vector<std::string> diagrams() {
   std::vector<std::string> names;
-  for (const char* const folder : {"atlas", "historical", "lessons"}) {
-    const std::vector<std::string> files = files_in(folder);
-    names.insert(names.end(), files.begin(), files.end());
+  for (const char* const folder : {"historical", "lessons", "atlas", "course"}) {
+    for (const std::string& name : files_in(folder)) {
+      if (report::kind_of_file(text::read_file(path_of(name)), name) == report::FileKind::diagram)
+        names.push_back(name);
+    }
   }
   return names;
 }
@@ -81,6 +87,32 @@ TEST_P(ShippedDiagram, GivesWhatItExpects) {
   for (const report::ExpectationResult& expectation : report::check_expectations(diagram, result)) {
     EXPECT_TRUE(expectation.met) << expectation.expectation.text << " = " << expectation.actual;
   }
+}
+
+TEST_P(ShippedDiagram, AgreesWithWhatWasPublishedOrSaysWhyNot) {
+  const diagram::BlockLibrary library = diagram::BlockLibrary::shipped();
+  const diagram::Diagram diagram = diagram::read_diagram(path_of(GetParam()));
+  if (!diagram.published || diagram.published->values.empty()) GTEST_SKIP() << "no value was published";
+  const oblique::solve::Run run =
+      report::run_with(diagram, library, {}, report::published_expectations(diagram));
+  for (const report::PublishedResult& result : report::check_published(diagram, library, {}, run))
+    EXPECT_TRUE(result.is_explained()) << report::to_text({result});
+}
+
+// Each step gives what it says is seen; the question is open as the file is shipped.
+TEST_P(ShippedDiagram, TeachesWhatIsSeen) {
+  const diagram::BlockLibrary library = diagram::BlockLibrary::shipped();
+  const diagram::Diagram diagram = diagram::read_diagram(path_of(GetParam()));
+  if (!diagram.lesson) GTEST_SKIP() << "no lesson";
+  for (const diagram::LessonStep& step : diagram.lesson->steps) {
+    const oblique::solve::Run run = report::run_with(diagram, library, step.set, step.expectations);
+    for (const report::ExpectationResult& seen : report::check_expectations(step.expectations, run))
+      EXPECT_TRUE(seen.met) << step.action << ": " << seen.expectation.text << " = " << seen.actual;
+  }
+  if (!diagram.lesson->question) return;
+  const std::vector<diagram::Expectation>& expected = diagram.lesson->question->expectations;
+  const auto held = report::check_expectations(expected, report::run_with(diagram, library, {}, expected));
+  EXPECT_FALSE(std::all_of(held.begin(), held.end(), [](const auto& r) { return r.met; }));
 }
 
 /// A mechanism and how it is patched.

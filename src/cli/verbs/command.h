@@ -35,9 +35,10 @@ struct RunRequest {
   std::string against;               ///< the column that the others are drawn against; empty: `t`
   std::string until;
   std::vector<std::string> settings;
-  std::string vary;  ///< NAME=VALUES: a run for each value
-  std::string from;  ///< a state file to go on from
-  std::string save;  ///< where the state at the end goes
+  std::optional<int> step;  ///< of the lesson, from 1
+  std::string vary;         ///< NAME=VALUES: a run for each value
+  std::string from;         ///< a state file to go on from
+  std::string save;         ///< where the state at the end goes
   bool check = false;
   bool events = false;
   bool static_test = false;

@@ -18,6 +18,9 @@ void add_run(CLI::App& app, Chosen& chosen) {
   verb->add_option("--set", request->settings, "change a parameter: block.parameter=value; may be repeated")
       ->type_name("SETTING")
       ->allow_extra_args(false);
+  verb->add_option("--step", request->step,
+                   "set what this step of the diagram's lesson sets; with --check, hold what it says is seen")
+      ->type_name("N");
   verb->add_option("--vary", request->vary,
                    "run with each of these values of a parameter or a weight, and give a family of curves: "
                    "c.gain=1e2,1e3,1e4 or x.in[1]=0.1..1:10")
@@ -29,8 +32,10 @@ void add_run(CLI::App& app, Chosen& chosen) {
                    "save the state at the end, or where Ctrl-C interrupts the run, to STATE.toml")
       ->type_name("STATE");
   verb->add_flag("--events", request->events, "list what switched, and when");
-  verb->add_flag("--check", request->check,
-                 "hold the run against the diagram's [expect]; status 1 where it fails");
+  verb->add_flag(
+      "--check", request->check,
+      "hold the run against the diagram's [expect] and [published], or against the lesson's question "
+      "where --set answers it; status 1 where it fails");
   verb->add_flag(
       "--static-test", request->static_test,
       "print every element's output and every integrator's input in initial condition; nothing is run");

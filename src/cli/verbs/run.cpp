@@ -14,6 +14,8 @@
 #include <oblique/diagram/flatten.h>
 #include <oblique/ensemble/study/family.h>
 #include <oblique/network/assembly/network.h>
+#include <oblique/report/atlas/lesson_check.h>
+#include <oblique/report/atlas/published_check.h>
 #include <oblique/report/run_chart.h>
 #include <oblique/report/run_text.h>
 #include <oblique/report/study/family_report.h>
@@ -147,6 +149,72 @@ ExitStatus run_family(const RunRequest& request, const diagram::Diagram& diagram
   return failed ? ExitStatus::solver_failed : ExitStatus::done;
 }
 
+/// What --check holds a run against.
+struct Claims {
+  std::vector<diagram::Expectation> expectations, published;
+  bool of_step = false, of_question = false;
+
+  std::vector<diagram::Expectation> all() const {
+    std::vector<diagram::Expectation> both = expectations;
+    both.insert(both.end(), published.begin(), published.end());
+    return both;
+  }
+};
+
+/// A step's expectations, or those of a question that is answered, or all that the diagram is known to give.
+/// Throws DiagramError where there is nothing to check.
+Claims claims_of(const RunRequest& request, const diagram::Diagram& diagram,
+                 const std::vector<diagram::ParameterOverride>& settings) {
+  Claims claims;
+  if (!request.check) return claims;
+  if (request.step) {
+    claims.of_step = true;
+    claims.expectations = report::lesson_step(diagram, *request.step).expectations;
+    if (!claims.expectations.empty()) return claims;
+    throw diagram::DiagramError(
+        text::Diagnostic{{diagram.file, {}},
+                         fmt::format("there is nothing to check: step {} has no 'expect'", *request.step),
+                         R"(expect = { "side at pi" = { value = 0.7, within = 1e-4 } } in [[lesson.step]])",
+                         {}});
+  }
+  if (report::is_answered(diagram, settings)) {
+    claims.of_question = true;
+    claims.expectations = diagram.lesson->question->expectations;
+    return claims;
+  }
+  claims.expectations = diagram.expectations;
+  claims.published = report::published_expectations(diagram);
+  const bool asks = diagram.lesson && diagram.lesson->question;
+  const bool was_published = diagram.published && !diagram.published->values.empty();
+  if (!claims.expectations.empty() || was_published || asks) return claims;
+  throw diagram::DiagramError(
+      text::Diagnostic{{diagram.file, {}},
+                       "there is nothing to check: the diagram has no [expect]",
+                       R"([expect] with lines such as "side at pi" = { value = 0.7, within = 1e-4 })",
+                       {}});
+}
+
+/// Holds the run against them and prints a line for each.
+ExitStatus check(const Claims& claims, const diagram::Diagram& diagram, const diagram::BlockLibrary& library,
+                 const std::vector<diagram::ParameterOverride>& settings, const solve::Run& result) {
+  const std::vector<report::ExpectationResult> checked =
+      report::check_expectations(claims.expectations, result);
+  bool good = std::all_of(checked.begin(), checked.end(), [](const auto& r) { return r.met; });
+  if (claims.of_question) {
+    print("\n" + report::verdict_text(*diagram.lesson->question, checked));
+    return good ? ExitStatus::done : ExitStatus::no;
+  }
+  print("\n" + report::to_text(checked));
+  if (!claims.of_step) {
+    const std::vector<report::PublishedResult> published =
+        report::check_published(diagram, library, settings, result);
+    good = good &&
+           std::all_of(published.begin(), published.end(), [](const auto& r) { return r.is_explained(); });
+    print(report::to_text(published) + report::open_question_text(diagram));
+  }
+  return good ? ExitStatus::done : ExitStatus::no;
+}
+
 }  // namespace
 
 ExitStatus run_diagram(const Session& session, const RunRequest& request) {
@@ -160,15 +228,10 @@ ExitStatus run_diagram(const Session& session, const RunRequest& request) {
                                            "a finite time above 0",
                                            "give --until, or 'until' in [run]"});
   }
-  if (request.check && diagram.expectations.empty()) {
-    throw diagram::DiagramError(
-        text::Diagnostic{{diagram.file, {}},
-                         "there is nothing to check: the diagram has no [expect]",
-                         R"([expect] with lines such as "side at pi" = { value = 0.7, within = 1e-4 })",
-                         {}});
-  }
   std::vector<diagram::ParameterOverride> overrides;
+  if (request.step) overrides = report::lesson_step(diagram, *request.step).set;
   for (const std::string& text : request.settings) overrides.push_back(parse_override(text));
+  const Claims claims = claims_of(request, diagram, overrides);
   if (!request.vary.empty()) return run_family(request, diagram, library, overrides);
 
   const diagram::FlatDiagram flat = diagram::flatten(diagram, library, overrides);
@@ -197,7 +260,7 @@ ExitStatus run_diagram(const Session& session, const RunRequest& request) {
                            "give a later --until"});
     }
   }
-  if (request.check) report::ask_for_expectations(diagram, options);
+  if (request.check) report::ask_for_expectations(claims.all(), diagram.file, options);
   if (drawn) report::ask_for_curves(options, columns.size());
   solve::Run result;
   {
@@ -241,10 +304,7 @@ ExitStatus run_diagram(const Session& session, const RunRequest& request) {
   if (result.trust) note(report::trust_text(*result.trust));
   if (result.halted) return ExitStatus::no;
   if (!request.check) return ExitStatus::done;
-  const std::vector<report::ExpectationResult> checked = report::check_expectations(diagram, result);
-  print("\n" + report::to_text(checked));
-  const bool all_met = std::all_of(checked.begin(), checked.end(), [](const auto& r) { return r.met; });
-  return all_met ? ExitStatus::done : ExitStatus::no;
+  return check(claims, diagram, library, overrides, result);
 }
 
 }  // namespace oblique::cli

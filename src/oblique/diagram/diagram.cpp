@@ -64,6 +64,22 @@ bool Expectation::operator==(const Expectation& other) const {
          value == other.value && within == other.within;
 }
 
+bool ParameterOverride::operator==(const ParameterOverride& other) const {
+  return path == other.path && value == other.value;
+}
+
+bool Published::operator==(const Published& other) const {
+  return kind == other.kind && author == other.author && title == other.title && in == other.in &&
+         year == other.year && number == other.number && page == other.page && address == other.address &&
+         machine == other.machine && subject == other.subject && picture == other.picture &&
+         plot == other.plot && errata == other.errata && values == other.values;
+}
+
+bool LessonQuestion::operator==(const LessonQuestion& other) const {
+  return ask == other.ask && answer == other.answer && hint == other.hint &&
+         expectations == other.expectations;
+}
+
 std::string_view mode_name(OperatingMode mode) {
   switch (mode) {
     case OperatingMode::potset:
@@ -89,7 +105,8 @@ bool Phase::operator==(const Phase& other) const {
 bool Diagram::operator==(const Diagram& other) const {
   return title == other.title && source == other.source && machine == other.machine && run == other.run &&
          groups == other.groups && timeline == other.timeline && blocks == other.blocks &&
-         outputs == other.outputs && expectations == other.expectations && layout == other.layout;
+         outputs == other.outputs && expectations == other.expectations && published == other.published &&
+         lesson == other.lesson && layout == other.layout;
 }
 
 text::Entry number_setting(std::string key, double value) {

@@ -78,6 +78,78 @@ struct Expectation {
   bool operator==(const Expectation& other) const;  ///< without places
 };
 
+/// A parameter to replace, by path, or the weight of a wire; the value is a quantity in the parameter's unit.
+struct ParameterOverride {
+  std::string path;  ///< "block.parameter", "block.input[2]" or "block.input[signal]"
+  std::string value;
+  text::Place place = {};  ///< where a file has it; without a file it is a setting of the caller
+  bool operator==(const ParameterOverride& other) const;  ///< without places
+};
+
+/// A result as it was published; a run is held against it as against an expectation.
+struct PublishedValue {
+  Expectation expected;  ///< `value` and `within` in `unit`; `within` is the uncertainty that was stated
+  std::string label;     ///< what people call it; empty: the text of `expected`
+  std::string unit;      ///< in which it was published; empty: that of the output
+  double factor = 1;     ///< what one of `unit` is in the unit of the output
+  std::vector<ParameterOverride> set;  ///< what is set for it, in a run of its own; empty: nothing
+  std::string because;                 ///< why the run differs from it by more than `within`
+  bool operator==(const PublishedValue&) const = default;
+};
+
+/// Where a programme was published, and what was published of it.
+struct Published {
+  enum class Kind {
+    programme,  ///< the circuit as it was patched
+    equations,  ///< equations alone: the circuit is composed here
+  };
+  Kind kind = Kind::programme;
+  std::string author;
+  std::string title;
+  std::string in;  ///< the journal, book or series
+  std::optional<int> year;
+  std::string number;   ///< in the series
+  std::string page;     ///< or pages
+  std::string address;  ///< where it can be read
+  std::string machine;  ///< on which it ran
+  std::string subject;  ///< the field that its problem belongs to
+  std::string picture;  ///< what a published picture shows
+  std::vector<std::string>
+      plot;  ///< outputs as on the plotter: the last is the horizontal axis; empty: `t` is
+  std::vector<std::string> errata;
+  std::vector<PublishedValue> values;
+  text::Place place;
+  bool operator==(const Published& other) const;  ///< without places
+};
+
+/// Something to change in a lesson's diagram as it is shipped, and what is then to be seen.
+struct LessonStep {
+  std::string action;  ///< in words; `do` in the file
+  std::vector<ParameterOverride> set;
+  std::string see;  ///< in words
+  std::vector<Expectation> expectations;
+  bool operator==(const LessonStep&) const = default;
+};
+
+/// A question that is answered by setting a parameter: right where the run then gives what is expected.
+struct LessonQuestion {
+  std::string ask;
+  std::string answer;  ///< the parameter, by path
+  std::string hint;    ///< for who answers it wrongly
+  std::vector<Expectation> expectations;
+  text::Place place;
+  bool operator==(const LessonQuestion& other) const;  ///< without places
+};
+
+/// What a diagram is to teach.
+struct Lesson {
+  std::string title;
+  std::string text;  ///< paragraphs before the first step
+  std::vector<LessonStep> steps;
+  std::optional<LessonQuestion> question;
+  bool operator==(const Lesson&) const = default;
+};
+
 /// Mode of operation of integrators. Setting the potentiometers, the machine holds its initial condition.
 enum class OperatingMode { potset, initial, operate, hold };
 
@@ -124,6 +196,8 @@ struct Diagram {
   std::vector<BlockInstance> blocks;
   std::vector<OutputSpec> outputs;
   std::vector<Expectation> expectations;
+  std::optional<Published> published;
+  std::optional<Lesson> lesson;
   std::vector<BlockPlace> layout;  ///< of the blocks whose place the drawing is not to choose
 
   bool operator==(const Diagram& other) const;  ///< without file, places and comments

@@ -9,8 +9,10 @@
 
 #include <oblique/diagram/expectations.h>
 #include <oblique/diagram/layout_reader.h>
+#include <oblique/diagram/lesson.h>
 #include <oblique/diagram/machine_profile.h>
 #include <oblique/diagram/names.h>
+#include <oblique/diagram/published.h>
 #include <oblique/diagram/timeline.h>
 #include <oblique/text/file.h>
 #include <oblique/text/table_reader.h>
@@ -52,12 +54,16 @@ class DiagramReader {
     }
     if (const text::Value* const table = reader_.table("outputs")) read_outputs(*table);
     if (const text::Value* const table = reader_.table("expect")) {
-      diagram_.expectations = read_expectations(diagram_, *table, last_time_, diagnostics_);
+      diagram_.expectations = read_expectations(diagram_, *table, "[expect]", last_time_, diagnostics_);
     }
+    if (const text::Value* const table = reader_.table("published"))
+      diagram_.published = read_published(diagram_, *table, last_time_, diagnostics_);
+    if (const text::Value* const table = reader_.table("lesson"))
+      diagram_.lesson = read_lesson(diagram_, *table, last_time_, diagnostics_);
     if (!diagram_.outputs.empty()) {
       std::vector<std::string> names;
       for (const OutputSpec& output : diagram_.outputs) names.push_back(output.name);
-      check_expected_outputs(diagram_.expectations, names, diagnostics_);
+      check_expected_outputs(diagram_, names, diagnostics_);
     }
     if (const text::Value* const table = reader_.table("layout"))
       diagram_.layout = read_layout(diagram_.file, *table, diagram_.blocks, diagnostics_);

@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 
 #include <oblique/diagram/expectations.h>
+#include <oblique/diagram/lesson.h>
+#include <oblique/diagram/published.h>
 #include <oblique/diagram/timeline.h>
 #include <oblique/text/toml_text.h>
 
@@ -155,16 +157,13 @@ std::string write_diagram(const Diagram& diagram) {
   }
   for (const OutputSpec& output : diagram.outputs)
     outputs.push_back({{}, text::toml_key(output.name), output_text(output)});
-  for (const Expectation& expectation : diagram.expectations) {
-    const std::string key = expectation.text.empty() ? expectation_key(expectation) : expectation.text;
-    expectations.push_back(
-        {{},
-         text::toml_string(key),
-         fmt::format("{{ value = {}, within = {} }}", expectation.value, expectation.within)});
-  }
+  for (const auto& [key, value] : expectation_lines(diagram.expectations))
+    expectations.push_back({{}, key, value});
   write_table("blocks", blocks, out);
   write_table("outputs", outputs, out);
   write_table("expect", expectations, out);
+  if (diagram.published) out += write_published(*diagram.published);
+  if (diagram.lesson) out += write_lesson(*diagram.lesson);
   out += write_layout(diagram.layout);
   return out;
 }

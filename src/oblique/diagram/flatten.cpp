@@ -294,6 +294,20 @@ void choose_outputs(const Diagram& diagram, const Scope& scope, const Layout& la
   }
 }
 
+/// Reports what `[published]` and `[lesson]` set and is not there, or cannot be set so.
+void check_settings(const Diagram& diagram, const Scope& scope, text::Diagnostics& diagnostics) {
+  const auto check = [&](const std::vector<ParameterOverride>& settings) {
+    if (!settings.empty()) wiring::resolve_overrides(scope, settings, diagnostics);
+  };
+  if (diagram.published) {
+    for (const PublishedValue& value : diagram.published->values) check(value.set);
+  }
+  if (!diagram.lesson) return;
+  for (const LessonStep& step : diagram.lesson->steps) check(step.set);
+  if (const auto& question = diagram.lesson->question)
+    wiring::check_override_path(scope, question->answer, question->place, diagnostics);
+}
+
 }  // namespace
 
 FlatDiagram flatten(const Diagram& diagram, const BlockLibrary& library,
@@ -338,7 +352,8 @@ FlatDiagram flatten(const Diagram& diagram, const BlockLibrary& library,
                      "another name",
                      "name it in [outputs]"});
   }
-  if (diagnostics.empty()) check_expected_outputs(diagram.expectations, names, diagnostics);
+  if (diagnostics.empty()) check_expected_outputs(diagram, names, diagnostics);
+  check_settings(diagram, scope, diagnostics);
   diagnostics.throw_if_any<DiagramError>();
   return flat;
 }

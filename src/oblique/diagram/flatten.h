@@ -10,12 +10,6 @@
 
 namespace oblique::diagram {
 
-/// A parameter to replace, by path, or the weight of a wire; the value is a quantity in the parameter's unit.
-struct ParameterOverride {
-  std::string path;  ///< "block.parameter", "block.input[2]" or "block.input[signal]"
-  std::string value;
-};
-
 /// Expands composites, resolves types, parameters and wires. Throws DiagramError with all findings: unknown
 /// types, keys and signals (each with the nearest valid name), open and doubly driven inputs, wrong units and
 /// ranges. `library` must outlive the result.

@@ -14,13 +14,15 @@
 namespace oblique::diagram::wiring {
 namespace {
 
-/// Finds one override; the place of its findings is the setting, since its text stands in no file.
+/// Finds one override; where its text stands in no file, the place of its findings is the setting.
 class Finder {
  public:
   Finder(const ParameterOverride& override, const std::string& machine, text::Diagnostics& diagnostics)
       : override_(override),
         machine_(machine),
-        place_{{}, {}, {"set", fmt::format("{}={}", override.path, override.value)}},
+        place_(override.place.file.empty()
+                   ? text::Place{{}, {}, {"set", fmt::format("{}={}", override.path, override.value)}}
+                   : override.place),
         diagnostics_(diagnostics) {}
 
   /// The block that a path names; nothing where there is none, or where it is broken and reported with its
@@ -50,7 +52,30 @@ class Finder {
     return found;
   }
 
-  std::optional<ReplacedParameter> parameter(const BlockDefinition& definition, std::string_view name) const {
+  /// A block, and one of its parameters or weights.
+  struct Named {
+    const WiredBlock* block;
+    std::string path;  ///< of the block
+    std::string name;
+    bool is_weight;
+  };
+
+  std::optional<Named> named(const Scope& diagram) const {
+    const std::size_t bracket = override_.path.find('[');  // a signal in brackets may hold dots
+    const std::size_t dot = override_.path.substr(0, bracket).rfind('.');
+    if (dot == std::string::npos) {
+      report(fmt::format("'{}' names no parameter", override_.path),
+             "BLOCK.PARAMETER=VALUE or BLOCK.INPUT[NUMBER]=VALUE");
+      return std::nullopt;
+    }
+    Named found{nullptr, override_.path.substr(0, dot), override_.path.substr(dot + 1),
+                bracket != std::string::npos};
+    found.block = block(diagram, found.path);
+    return found.block == nullptr ? std::nullopt : std::optional(std::move(found));
+  }
+
+  /// A parameter that is a number, by its place in the definition.
+  std::optional<std::size_t> parameter_index(const BlockDefinition& definition, std::string_view name) const {
     const auto index = definition.find_parameter(name);
     if (!index) {
       std::vector<std::string> names;
@@ -76,6 +101,13 @@ class Finder {
              "change the formula in the diagram");
       return std::nullopt;
     }
+    return index;
+  }
+
+  std::optional<ReplacedParameter> parameter(const BlockDefinition& definition, std::string_view name) const {
+    const auto index = parameter_index(definition, name);
+    if (!index) return std::nullopt;
+    const ParameterDefinition& parameter = definition.parameters[*index];
     try {
       const double value = text::parse_quantity(override_.value, unit_on(machine_, parameter.unit));
       check_range(parameter, value, "the value", place_, {}, diagnostics_);
@@ -86,9 +118,13 @@ class Finder {
     }
   }
 
-  /// The weight that a name such as "in[2]" or "in[crank.cos]" means.
-  std::optional<ReplacedWeight> weight(const WiredBlock& block, std::string_view path,
-                                       std::string_view name) const {
+  struct Wire {
+    std::size_t input, index;
+    const Term* term;
+  };
+
+  /// The wire that a name such as "in[2]" or "in[crank.cos]" means.
+  std::optional<Wire> wire(const WiredBlock& block, std::string_view path, std::string_view name) const {
     const std::size_t bracket = name.find('[');
     const std::string_view port = name.substr(0, bracket);
     std::string_view which = name.substr(bracket + 1);
@@ -103,11 +139,16 @@ class Finder {
       report_no_wires(block, path, port);
       return std::nullopt;
     }
-    const auto wire = find_wire(wires, which, fmt::format("{}.{}", path, port));
-    if (!wire) return std::nullopt;
+    return find_wire(wires, which, fmt::format("{}.{}", path, port));
+  }
+
+  std::optional<ReplacedWeight> weight(const WiredBlock& block, std::string_view path,
+                                       std::string_view name) const {
+    const auto found = wire(block, path, name);
+    if (!found) return std::nullopt;
     try {
       const double value = text::parse_quantity(override_.value, text::Unit{});
-      if (std::isfinite(value)) return ReplacedWeight{wire->input, wire->index, value};
+      if (std::isfinite(value)) return ReplacedWeight{found->input, found->index, value};
       report(fmt::format("the weight is {}", describe_number(value)), "a finite number");
     } catch (const text::ExpressionError& error) {
       report(error.what, error.expected, error.remedy);
@@ -120,11 +161,6 @@ class Finder {
   }
 
  private:
-  struct Wire {
-    std::size_t input, index;
-    const Term* term;
-  };
-
   /// The wires of an input in their order; where a block has several inputs and none is called "in", those of
   /// its list `in`, one to an input.
   static std::vector<Wire> wires_at(const WiredBlock& block, std::string_view port) {
@@ -199,25 +235,29 @@ Replacements resolve_overrides(const Scope& diagram, const std::vector<Parameter
   Replacements replacements;
   for (const ParameterOverride& override : overrides) {
     const Finder finder(override, diagram.machine, diagnostics);
-    const std::size_t bracket = override.path.find('[');  // a signal in brackets may hold dots
-    const std::size_t dot = override.path.substr(0, bracket).rfind('.');
-    if (dot == std::string::npos) {
-      finder.report(fmt::format("'{}' names no parameter", override.path),
-                    "BLOCK.PARAMETER=VALUE or BLOCK.INPUT[NUMBER]=VALUE");
-      continue;
-    }
-    const std::string path = override.path.substr(0, dot);
-    const WiredBlock* const block = finder.block(diagram, path);
-    if (block == nullptr) continue;
-    const std::string_view name = std::string_view(override.path).substr(dot + 1);
-    if (bracket != std::string::npos) {
-      if (const auto weight = finder.weight(*block, path, name))
-        replacements[path].weights.push_back(*weight);
-    } else if (const auto parameter = finder.parameter(*block->definition, name)) {
-      replacements[path].parameters.push_back(*parameter);
+    const auto named = finder.named(diagram);
+    if (!named) continue;
+    if (named->is_weight) {
+      if (const auto weight = finder.weight(*named->block, named->path, named->name))
+        replacements[named->path].weights.push_back(*weight);
+    } else if (const auto parameter = finder.parameter(*named->block->definition, named->name)) {
+      replacements[named->path].parameters.push_back(*parameter);
     }
   }
   return replacements;
+}
+
+void check_override_path(const Scope& diagram, const std::string& path, const text::Place& place,
+                         text::Diagnostics& diagnostics) {
+  const ParameterOverride override{path, {}, place};
+  const Finder finder(override, diagram.machine, diagnostics);
+  const auto named = finder.named(diagram);
+  if (!named) return;
+  if (named->is_weight) {
+    finder.wire(*named->block, named->path, named->name);
+  } else {
+    finder.parameter_index(*named->block->definition, named->name);
+  }
 }
 
 }  // namespace oblique::diagram::wiring

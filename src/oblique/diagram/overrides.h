@@ -41,4 +41,8 @@ std::string weight_name(std::string_view block, std::string_view input, std::siz
 Replacements resolve_overrides(const Scope& diagram, const std::vector<ParameterOverride>& overrides,
                                text::Diagnostics& diagnostics);
 
+/// Reports where `path` names no parameter and no weight of the diagram.
+void check_override_path(const Scope& diagram, const std::string& path, const text::Place& place,
+                         text::Diagnostics& diagnostics);
+
 }  // namespace oblique::diagram::wiring

@@ -11,6 +11,7 @@
 #include <oblique/diagram/machine_defaults.h>
 #include <oblique/diagram/names.h>
 #include <oblique/diagram/propose_scaling.h>
+#include <oblique/diagram/published.h>
 #include <oblique/text/expression_printer.h>
 #include <oblique/text/nearest_decimal.h>
 
@@ -77,6 +78,7 @@ class Writer {
     scaled.machine = diagram_.machine;
     scaled.run = diagram_.run;
     scaled.expectations = diagram_.expectations;
+    scaled.published = without_settings(diagram_.published);
     for (std::size_t b = 0; b < flat_.blocks.size(); ++b) {
       BlockInstance block = block_of(b);
       scaled.blocks.insert(scaled.blocks.end(), helpers_.begin(), helpers_.end());

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include <oblique/diagram/flatten.h>
+#include <oblique/diagram/published.h>
 #include <oblique/machine/carried_signals.h>
 #include <oblique/machine/circuit.h>
 #include <oblique/machine/input_weight.h>
@@ -232,6 +233,7 @@ class Writer {
                       machine_.title + (signed_ ? "." : "; minus_… carries the negative of a signal.");
     result_.machine = {machine_.name, machine_.inverting};
     result_.expectations = diagram_.expectations;
+    result_.published = diagram::without_settings(diagram_.published);
   }
 
   const diagram::Diagram& diagram_;

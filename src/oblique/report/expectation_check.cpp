@@ -44,24 +44,33 @@ std::string lines_of(const std::vector<Result>& results) {
 
 }  // namespace
 
-void ask_for_expectations(const diagram::Diagram& diagram, solve::RunOptions& options) {
-  options.extra_times = expectation_times(diagram, options.until);
+void ask_for_expectations(std::span<const diagram::Expectation> expectations, const std::string& file,
+                          solve::RunOptions& options) {
+  options.extra_times = expectation_times(expectations, options.until);
   if (options.from && !options.extra_times.empty() && options.extra_times.front() < options.from->time) {
     throw diagram::DiagramError(
-        text::Diagnostic{{diagram.file, {}},
+        text::Diagnostic{{file, {}},
                          fmt::format("[expect] asks for t = {} s, and the run goes on from t = {} s",
                                      options.extra_times.front(), options.from->time),
                          "expectations at later times",
                          "check the whole run, without a saved state"});
   }
-  for (const diagram::Expectation& e : diagram.expectations)
+  for (const diagram::Expectation& e : expectations)
     options.extremes = options.extremes || e.kind != diagram::Expectation::Kind::at_time;
 }
 
+void ask_for_expectations(const diagram::Diagram& diagram, solve::RunOptions& options) {
+  ask_for_expectations(diagram.expectations, diagram.file, options);
+}
+
 std::vector<double> expectation_times(const diagram::Diagram& diagram, double until) {
+  return expectation_times(diagram.expectations, until);
+}
+
+std::vector<double> expectation_times(std::span<const diagram::Expectation> expectations, double until) {
   std::vector<double> times;
   text::Diagnostics diagnostics;
-  for (const diagram::Expectation& e : diagram.expectations) {
+  for (const diagram::Expectation& e : expectations) {
     if (e.kind != diagram::Expectation::Kind::at_time) continue;
     if (e.time < 0 || e.time > until) {
       diagnostics.add({e.place,
@@ -78,11 +87,16 @@ std::vector<double> expectation_times(const diagram::Diagram& diagram, double un
 }
 
 std::vector<ExpectationResult> check_expectations(const diagram::Diagram& diagram, const solve::Run& run) {
+  return check_expectations(diagram.expectations, run);
+}
+
+std::vector<ExpectationResult> check_expectations(std::span<const diagram::Expectation> expectations,
+                                                  const solve::Run& run) {
   std::vector<ExpectationResult> results;
   text::Diagnostics diagnostics;
   std::vector<std::string> names;
   for (const auto& column : run.trajectory.columns()) names.push_back(column.name);
-  for (const diagram::Expectation& e : diagram.expectations) {
+  for (const diagram::Expectation& e : expectations) {
     const auto column = run.trajectory.find(e.output);
     if (!column) {
       diagnostics.add({e.place,

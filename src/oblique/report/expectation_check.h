@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -24,11 +25,22 @@ struct ExpectationResult {
 /// time outside [0, until].
 std::vector<double> expectation_times(const diagram::Diagram& diagram, double until);
 
-/// Lets a run keep what `check_expectations` looks at. Throws DiagramError as above.
+/// The same of any expectations.
+std::vector<double> expectation_times(std::span<const diagram::Expectation> expectations, double until);
+
+/// Lets a run keep what `check_expectations` looks at; `file` is the diagram's. Throws DiagramError as above.
+void ask_for_expectations(std::span<const diagram::Expectation> expectations, const std::string& file,
+                          solve::RunOptions& options);
+
+/// The same of `[expect]`.
 void ask_for_expectations(const diagram::Diagram& diagram, solve::RunOptions& options);
 
 /// Checks every expectation; `run` was made after `ask_for_expectations`. Throws DiagramError for an output
 /// that is not among the columns.
+std::vector<ExpectationResult> check_expectations(std::span<const diagram::Expectation> expectations,
+                                                  const solve::Run& run);
+
+/// The same of `[expect]`.
 std::vector<ExpectationResult> check_expectations(const diagram::Diagram& diagram, const solve::Run& run);
 
 /// A line for each: whether it was met, what came out and what was expected.

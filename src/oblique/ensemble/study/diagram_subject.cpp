@@ -42,6 +42,8 @@ class DiagramSubject : public Subject {
     asked_ = diagram_;
     asked_.outputs.clear();
     asked_.expectations.clear();
+    asked_.published.reset();
+    asked_.lesson.reset();
   }
 
   solve::RunOptions run_options() const override { return solve::options_of(diagram_.run); }
@@ -120,6 +122,8 @@ diagram::OutputSpec output_called(const diagram::Diagram& diagram, const diagram
   diagram::Diagram trial = diagram;
   trial.outputs = {output};
   trial.expectations.clear();
+  trial.published.reset();
+  trial.lesson.reset();
   try {
     diagram::flatten(trial, library);
   } catch (const diagram::DiagramError&) {

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <oblique/diagram/block_library.h>
+#include <oblique/diagram/diagram.h>
+#include <oblique/solve/run.h>
+
+namespace oblique::report {
+
+/// A published value held against a run.
+struct PublishedResult {
+  diagram::PublishedValue value;
+  double actual = 0;  ///< in the unit in which it was published
+
+  /// The difference as a part of the uncertainty that was stated; not a number where the run gives none.
+  double in_uncertainties() const;
+  bool met() const { return in_uncertainties() <= 1; }
+  /// Met, or the file says why it is not.
+  bool is_explained() const { return met() || !value.because.empty(); }
+};
+
+/// What a run of the diagram as it stands is to be asked for: the published values that set nothing.
+std::vector<diagram::Expectation> published_expectations(const diagram::Diagram& diagram);
+
+/// Holds all published values, in their order, against `run`, which was asked for `published_expectations`,
+/// and against further runs where they set something; these follow the `overrides` of `run`. Throws as
+/// flattening, assembly and runs do.
+std::vector<PublishedResult> check_published(const diagram::Diagram& diagram,
+                                             const diagram::BlockLibrary& library,
+                                             const std::vector<diagram::ParameterOverride>& overrides,
+                                             const solve::Run& run);
+
+/// Runs the diagram with these settings, so that `expectations` can be held against it. Throws as above.
+solve::Run run_with(const diagram::Diagram& diagram, const diagram::BlockLibrary& library,
+                    const std::vector<diagram::ParameterOverride>& settings,
+                    const std::vector<diagram::Expectation>& expectations);
+
+/// A line for each: what came out, what was published, and the difference as a part of its uncertainty; with
+/// the reason where the file gives one.
+std::string to_text(const std::vector<PublishedResult>& results);
+
+}  // namespace oblique::report
