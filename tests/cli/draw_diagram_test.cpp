@@ -52,7 +52,7 @@ TEST_F(DrawDiagram, WritesTheSameSvgEveryTime) {
 }
 
 TEST_F(DrawDiagram, OpensCompositesAndChangesSymbols) {
-  const std::string command = "oblique draw " + kDiagrams + "historical/class-three-mechanism.toml -o ";
+  const std::string command = "oblique draw " + kDiagrams + "atlas/class-three-mechanism.toml -o ";
   ASSERT_EQ(run(command + "folded.svg").status, 0);
   ASSERT_EQ(run(command + "open.svg --depth 1").status, 0);
   ASSERT_EQ(run(command + "din.svg --depth 1 --symbols din").status, 0);

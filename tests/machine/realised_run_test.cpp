@@ -72,7 +72,7 @@ INSTANTIATE_TEST_SUITE_P(Realise, ShippedDiagram,
                                            "lessons/pid-saturation", "lessons/inverse-sine",
                                            "historical/van-der-pol", "historical/heat-rod",
                                            "historical/lotka-volterra", "historical/nerve",
-                                           "historical/class-three-mechanism"),
+                                           "atlas/class-three-mechanism"),
                          [](const auto& tested) {
                            std::string name = tested.param;
                            for (char& c : name)
