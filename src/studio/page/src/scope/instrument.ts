@@ -79,6 +79,8 @@ export class Instrument {
     const {scope, persists} = this.session.shown;
     this.probe = undefined;
     if (!persists) this.clear();
+    else if (this.running) this.sweeps.push(this.running);
+    this.running = undefined;
     if (isTriggered(scope.source) && !this.session.channels.includes(scope.source))
       this.session.set({scope: {...scope, source: "", level: 0}});
     await this.arm();

@@ -47,12 +47,12 @@ function Beam({session, cursors, move, keep}: {session: Session; cursors: readon
     };
   }, []);
 
+  const begin = performance.now();
   const shows = given(session, cursors, width, height);
   const screen = width > 0 ? screenOf(shows) : undefined;
   const shift = shows.fromTrigger ? screen?.newest?.zero ?? 0 : 0;
   useEffect(() => {
     if (!screen) return;
-    const begin = performance.now();
     paint(screen.drawing, canvas.current!, theme, devicePixelRatio);
     keep(screen);
     const now = performance.now();
