@@ -83,6 +83,30 @@ test("normal waits, auto runs free, and a single sweep stands until it is armed 
   await page.close();
 });
 
+// Without persistence the beam goes over what it left of the sweep before: the screen is never empty behind it.
+test("the beam leaves the rest of the sweep before until it comes there", async () => {
+  const {page, troubles} = await opened();
+  await open(page, circle);
+  await trigger(page, "twice", {level: 0.8, base: 0.1});
+  await button(page, "OP");
+  await page.waitForFunction(() => {
+    const [, begin, unit] = document.querySelector(".screen").dataset.status.match(/triggered at t = (\S+) (m?s)/) ?? [];
+    const into = Number(document.querySelector(".time").textContent.match(/t = (\S+) s/)[1]) - Number(begin) * (unit === "ms" ? 1e-3 : 1);
+    return Number(begin) > 2 && into > 0.2 && into < 0.7;
+  }, {timeout: 30000});
+  await button(page, "HOLD");
+  await wait(300);
+  const {rows} = await table(page);
+  assert.ok(rows.every(([sweep]) => sweep === 1));
+  assert.ok(rows.length > 595 && rows[0][1] === 0 && rows.at(-1)[1] > 0.999, `${rows.length} ${rows.at(-1)}`);
+  rows.forEach(([, t, twice], k) => {
+    assert.ok(k === 0 || t > rows[k - 1][1], String(t));
+    assert.ok(Math.abs(twice - 1.6 * Math.sin(Math.PI / 6 + 3 * t)) < near, `${t} ${twice}`);
+  });
+  assert.deepEqual(troubles, []);
+  await page.close();
+});
+
 test("a trigger that another machine has not is taken off", async () => {
   const {page, troubles} = await opened();
   await open(page, circle);

@@ -183,7 +183,7 @@ class Builder {
         input.weight = value_of(term.weight);
         if (!term.source.own_input && stands_at_inputs_[term.source.blocks.front()]) {
           input.constant = constant_text(term.source.blocks.front());
-          input.reads = around_.path + scope_.blocks[term.source.blocks.front()].instance->name;
+          input.reads = read_name(around_.path, scope_.blocks[term.source.blocks.front()], 0);
         } else {
           input.signal = signal_of(term.source);
         }
