@@ -91,8 +91,9 @@ test("the beam leaves the rest of the sweep before until it comes there", async 
   await button(page, "OP");
   await page.waitForFunction(() => {
     const [, begin, unit] = document.querySelector(".screen").dataset.status.match(/triggered at t = (\S+) (m?s)/) ?? [];
-    const into = Number(document.querySelector(".time").textContent.match(/t = (\S+) s/)[1]) - Number(begin) * (unit === "ms" ? 1e-3 : 1);
-    return Number(begin) > 2 && into > 0.2 && into < 0.7;
+    const zero = Number(begin) * (unit === "ms" ? 1e-3 : 1);
+    const into = Number(document.querySelector(".time").textContent.match(/t = (\S+) s/)[1]) - zero;
+    return zero > 2 && into > 0.2 && into < 0.7;
   }, {timeout: 30000});
   await button(page, "HOLD");
   await wait(300);
