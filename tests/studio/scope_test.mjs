@@ -361,6 +361,17 @@ test("the speed goes from frozen to as fast as it goes", async () => {
   const frozen = await timeOf(page);
   await wait(300);
   assert.equal(await timeOf(page), frozen);
+  // The free beam goes on by a screen a frame at the most, of 500 rows: what is wider than a row is seen.
+  await choose(page, "Time base", "0.05");
+  await button(page, "IC");
+  await page.select(".modes select", "Infinity");
+  await button(page, "OP");
+  await page.waitForFunction(() => Number(document.querySelector(".time").textContent.match(/t = (\S+) s/)[1]) > 2, {timeout: 20000});
+  await button(page, "HOLD");
+  await wait(300);
+  const {rows} = await table(page);
+  assert.ok(rows.length >= 500, String(rows.length));
+  for (let k = 1; k < rows.length; ++k) assert.ok(rows[k][0] - rows[k - 1][0] < 0.00101, `${rows[k - 1][0]} ${rows[k][0]}`);
   assert.deepEqual(troubles, []);
   await page.close();
 });
