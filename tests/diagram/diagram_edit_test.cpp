@@ -160,6 +160,19 @@ TEST(DiagramEdit, WeighsWires) {
   EXPECT_EQ(edited([](DiagramEdit& edit) { edit.weigh("x", "in", 1, -1); }), by_hand("-4*x", "-x"));
 }
 
+TEST(DiagramEdit, KnowsTheSignalOfAWire) {
+  std::vector<text::Entry> settings{wire_setting("in", {{1, "x"}})};
+  for (const auto& [written, signal] :
+       std::vector<std::pair<const char*, const char*>>{{"-2*b.cos", "b.cos"},
+                                                        {"0.1*sin(pi/10)*u1 ", "u1"},
+                                                        {"1e3*x/2", "x"},
+                                                        {"a*b", ""},
+                                                        {"2*pi", ""}}) {
+    settings[0].value.text = written;
+    EXPECT_EQ(wires_of(settings, library().find("integrator")).at(0).signal, signal) << written;
+  }
+}
+
 TEST(DiagramEdit, SetsWhatAPersonWrites) {
   const auto set = [](const char* value) {
     return edited([&](DiagramEdit& edit) { edit.set("a", "value", value); });

@@ -98,6 +98,21 @@ TEST(TomlEdit, ChangesOneAfterTheOther) {
             "[b]\ny = [3]\n");
 }
 
+TEST(TomlEdit, AddsManyInTheirOrder) {
+  std::vector<TomlChange> changes;
+  std::string expected = "[a]\nx = 0\n";
+  for (int k = 0; k < 300; ++k) {
+    const std::string name = "y" + std::to_string(k);
+    changes.push_back({Kind::set, {"a", name}, std::to_string(k)});
+    expected += name + " = " + std::to_string(k) + "\n";
+  }
+  changes.push_back({Kind::set, {"a", "y3"}, "7"});  // one of them again
+  expected.replace(expected.find("y3 = 3"), 6, "y3 = 7");
+  EXPECT_EQ(edit_toml("[a]\nx = 0\n\n[b]\n", "x", changes), expected + "\n[b]\n");
+  EXPECT_EQ(edit_toml("[a]\nx = 0\n", "x", {{Kind::set, {"a", "y"}, "1"}, {Kind::set, {"a", "z"}, "2"}}),
+            "[a]\nx = 0\ny = 1\nz = 2\n");
+}
+
 TEST(TomlEdit, KeepsOtherBreaksOfLines) {
   EXPECT_EQ(edited(Kind::set, {"b", "d"}, "2", "[b]\r\nc = 1\r\n"), "[b]\r\nc = 1\r\nd = 2\r\n");
   EXPECT_EQ(edited(Kind::remove, {"b", "c"}, "", "[b]\r\nc = 1\r\nd = 2\r\n"), "[b]\r\nd = 2\r\n");

@@ -30,7 +30,7 @@ bool is_name_character(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
 }
 
-/// The names in an expression, each with where it begins: "c", "b.cos".
+/// The names in an expression that are no functions, each with where it begins: "c", "b.cos".
 std::vector<std::pair<std::size_t, std::string>> written_names(const std::string& text) {
   std::vector<std::pair<std::size_t, std::string>> names;
   for (std::size_t at = 0; at < text.size();) {
@@ -41,7 +41,9 @@ std::vector<std::pair<std::size_t, std::string>> written_names(const std::string
     std::size_t end = at;
     while (end < text.size() && (is_name_character(text[end]) || text[end] == '.')) ++end;
     const bool is_number = text[at] >= '0' && text[at] <= '9';
-    if (!is_number) names.emplace_back(at, text.substr(at, end - at));
+    const std::size_t next = text.find_first_not_of(' ', end);
+    const bool is_function = next != std::string::npos && text[next] == '(';
+    if (!is_number && !is_function) names.emplace_back(at, text.substr(at, end - at));
     at = end;
   }
   return names;
@@ -64,12 +66,14 @@ std::string signal_in(const std::string& wire) {
 
 /// An expression in which a block has another name.
 std::string with_other_name(const std::string& text, const std::string& block, const std::string& name) {
-  std::string result = text;
-  const auto names = written_names(text);
-  for (auto written = names.rbegin(); written != names.rend(); ++written) {
-    if (block_of(written->second) == block) result.replace(written->first, block.size(), name);
+  std::string result;
+  std::size_t copied = 0;
+  for (const auto& [at, written] : written_names(text)) {
+    if (block_of(written) != block) continue;
+    result += text.substr(copied, at - copied) + name;
+    copied = at + block.size();
   }
-  return result;
+  return result + text.substr(copied);
 }
 
 bool is_toml_number(const std::string& text) {

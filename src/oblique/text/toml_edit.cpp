@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <optional>
+#include <set>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -80,6 +82,21 @@ class TomlSource {
   }
 
   Value& root() { return root_; }
+
+  bool has(const TomlPath& path) {
+    Value* at = &root_;
+    for (const auto& step : path) {
+      at = stepped(*at, step);
+      if (at == nullptr) return false;
+    }
+    return true;
+  }
+  /// Whether it is a table that ends with a line "key = value" and its break.
+  bool has_lines(const TomlPath::value_type& table) {
+    const Value* const found = stepped(root_, table);
+    return found != nullptr && found->kind == Value::Kind::table && !found->entries.empty() &&
+           !is_inline(*found) && is_line(found->entries.back()) && text_.ends_with('\n');
+  }
 
   Splice splice_of(const TomlChange& change) {
     Value* parent = &root_;
@@ -301,7 +318,7 @@ class TomlSource {
         items.emplace_back(begin, end_of_value(begin));
       }
     } else {
-      const std::string& key = std::get<std::string>(change.path.back());
+      const auto& key = std::get<std::string>(change.path.back());
       for (const Entry& entry : parent.entries) {
         if (entry.key == key) which = items.size();
         items.emplace_back(offset(entry.position), end_of_value(begin_of(entry.value)));
@@ -313,7 +330,7 @@ class TomlSource {
   }
 
   static const Entry& entry_of(const Value& parent, const TomlChange& change) {
-    const std::string& key = std::get<std::string>(change.path.back());
+    const auto& key = std::get<std::string>(change.path.back());
     return *std::find_if(parent.entries.begin(), parent.entries.end(),
                          [&](const Entry& entry) { return entry.key == key; });
   }
@@ -395,23 +412,42 @@ bool apply(const TomlChange& change, const std::string& file, Value& root) {
                              "change it in the text"});
 }
 
-std::string edited(std::string_view text, const std::string& file, const TomlChange& change) {
+/// How many of these changes one look at the text does: all that add entries to one table of lines.
+std::size_t done_at_once(TomlSource& source, std::span<const TomlChange> changes) {
+  std::set<TomlPath> added;
+  const auto adds = [&](const TomlChange& change) {
+    return added.insert(change.path).second && change.kind == TomlChange::Kind::set &&
+           change.path.size() == 2 && change.path.front() == changes.front().path.front() &&
+           source.has_lines(change.path.front()) && !source.has(change.path);
+  };
+  std::size_t count = 0;
+  while (count < changes.size() && adds(changes[count])) ++count;
+  return std::max<std::size_t>(count, 1);
+}
+
+/// Does the first of these changes, or some of them, and takes them out.
+std::string edited(std::string_view text, const std::string& file, std::span<const TomlChange>& changes) {
   TomlSource source(text, file);
+  const auto now = changes.first(done_at_once(source, changes));
+  changes = changes.subspan(now.size());
   std::string result(text);
   try {
-    const Splice splice = source.splice_of(change);
+    Splice splice = source.splice_of(now.front());
+    for (const TomlChange& more : now.subspan(1)) splice.text += source.splice_of(more).text;
     result.replace(splice.begin, splice.end - splice.begin, splice.text);
   } catch (const NoPlace&) {
-    refuse(change, file);
+    refuse(now.front(), file);
   }
   Value meant = source.root();
-  if (!apply(change, file, meant)) refuse(change, file);
+  for (const TomlChange& change : now) {
+    if (!apply(change, file, meant)) refuse(change, file);
+  }
   try {
     if (means_the_same(parse_document(result, file).root, meant)) return result;
   } catch (const ReadError&) {
     // said below: what is wrong in a text that nobody sees helps nobody
   }
-  refuse(change, file);
+  refuse(now.front(), file);
 }
 
 }  // namespace
@@ -419,7 +455,7 @@ std::string edited(std::string_view text, const std::string& file, const TomlCha
 std::string edit_toml(std::string_view text, const std::string& file,
                       const std::vector<TomlChange>& changes) {
   std::string result(text);
-  for (const TomlChange& change : changes) result = edited(result, file, change);
+  for (std::span<const TomlChange> left = changes; !left.empty();) result = edited(result, file, left);
   return result;
 }
 
