@@ -34,6 +34,10 @@ val about() {
   return to_js(Engine::about());
 }
 
+val blocks(const Engine& engine) {
+  return to_js(engine.blocks());
+}
+
 val advance(LiveConsole& console, double duration, val names, int rows) {
   return to_js(console.advance(duration, emscripten::vecFromJSArray<Text>(names), rows));
 }
@@ -61,10 +65,15 @@ EMSCRIPTEN_BINDINGS(oblique_studio) {
       .function("run", &ask<&Engine::run, Text, Text, Text>)
       .function("patch", &ask<&Engine::patch, Text, Text, Text>)
       .function("motion", &ask<&Engine::motion, Text, Text, Text>)
-      .function("draw", &ask<&Engine::draw, Text, Text, Text>);
+      .function("draw", &ask<&Engine::draw, Text, Text, Text>)
+      .function("blocks", &blocks)
+      .function("panel", &ask<&Engine::panel, Text, Text, Text>)
+      .function("inside", &ask<&Engine::inside, Text, Text, Text>)
+      .function("edit", &ask<&Engine::edit, Text, Text, Text>);
   emscripten::class_<LiveConsole>("Console")
       .constructor<const Engine&>()
       .function("open", &operate<&LiveConsole::open, Text, Text>)
+      .function("exchange", &operate<&LiveConsole::exchange, Text, Text, Text>)
       .function("setMode", &operate<&LiveConsole::set_mode, Text>)
       .function("repeat", &operate<&LiveConsole::repeat, double, double>)
       .function("advance", &advance)

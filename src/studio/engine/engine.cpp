@@ -30,6 +30,7 @@
 #include <oblique/solve/run.h>
 
 #include "studio/engine/options.h"
+#include "studio/engine/patching.h"
 
 namespace oblique::studio {
 namespace {
@@ -371,6 +372,34 @@ Answer Engine::draw(const std::string& text, const std::string& name, const std:
                                             Options(options, {"theme", "time", "positions"}));
     }
     return drawn;
+  });
+}
+
+Answer Engine::blocks() const {
+  return answer([&] { return Answer{catalogue(*library_), {}}; });
+}
+
+Answer Engine::panel(const std::string& text, const std::string& name, const std::string& options) const {
+  return answer([&] {
+    check_size(text, name);
+    expect_kind(text, name, FileKind::diagram, "a patch panel");
+    return Answer{panel_of(text, name, *library_, Options(options, {"theme", "held"})), {}};
+  });
+}
+
+Answer Engine::inside(const std::string& text, const std::string& name, const std::string& options) const {
+  return answer([&] {
+    check_size(text, name);
+    expect_kind(text, name, FileKind::diagram, "a patch panel");
+    return Answer{inside_of(text, name, *library_, Options(options, {"theme", "path"})), {}};
+  });
+}
+
+Answer Engine::edit(const std::string& text, const std::string& name, const std::string& options) const {
+  return answer([&] {
+    check_size(text, name);
+    expect_kind(text, name, FileKind::diagram, "patching");
+    return Answer{edited(text, name, *library_, options), {}};
   });
 }
 

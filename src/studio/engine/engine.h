@@ -66,6 +66,13 @@ class Engine {
   /// of a diagram "symbols" (classic, din) and "depth", of a mechanism "time" [s] and "positions".
   Answer draw(const std::string& text, const std::string& name, const std::string& options) const;
 
+  /// The kinds of blocks that diagrams may use; a diagram that may be wrong as a patch panel, or the inside
+  /// of a composite of it; a diagram with steps of patching done: as patching.h says it.
+  Answer blocks() const;
+  Answer panel(const std::string& text, const std::string& name, const std::string& options) const;
+  Answer inside(const std::string& text, const std::string& name, const std::string& options) const;
+  Answer edit(const std::string& text, const std::string& name, const std::string& options) const;
+
  private:
   void check_size(const std::string& text, const std::string& name) const;
   void check_numbers(std::size_t rows, std::size_t columns, const std::string& name) const;

@@ -43,6 +43,8 @@ export async function loadEngine({createEngine, wasmBinary, limits = {}}) {
     const machine = (work) => (closed ? refusal("this console is closed", "take another") : call(work));
     return {
       open: (source, name) => machine(() => held.open(text(source), text(name))),
+      exchange: (source, renamed, name) =>
+        machine(() => held.exchange(text(source), text(name), JSON.stringify(renamed ?? []))),
       setMode: (mode) => machine(() => held.setMode(text(mode))),
       repeat: (initial, operate) => machine(() => held.repeat(Number(initial), Number(operate))),
       advance: (duration, names, rows = 1) =>
@@ -72,6 +74,10 @@ export async function loadEngine({createEngine, wasmBinary, limits = {}}) {
     patch: ask("patch"),
     motion: ask("motion"),
     draw: ask("draw"),
+    blocks: () => call(() => engine.blocks()),
+    panel: ask("panel"),
+    inside: ask("inside"),
+    edit: ask("edit"),
     console: openConsole,
   };
 }

@@ -44,23 +44,50 @@ Answer LiveConsole::stands() {
   return now;
 }
 
+diagram::Diagram LiveConsole::read_text(const std::string& text, const std::string& name) const {
+  if (static_cast<double>(text.size()) > engine_.limits().text)
+    throw text::ReadError(Diagnostic{{name, {}},
+                                     fmt::format("the file has {} bytes", text.size()),
+                                     fmt::format("{} at most", engine_.limits().text),
+                                     {}});
+  diagram::Diagram diagram = diagram::parse_diagram(text, name);
+  diagram.run.max_steps = std::min(diagram.run.max_steps, static_cast<std::int64_t>(engine_.limits().steps));
+  return diagram;
+}
+
+Answer LiveConsole::set_up() {
+  Answer opened = stands();
+  opened.object["outputs"] = console_->output_names();
+  opened.object["signals"] = console_->signal_names();
+  opened.object["pots"] = console_->pot_names();
+  return opened;
+}
+
 Answer LiveConsole::open(const std::string& text, const std::string& name) {
   return answer([&] {
-    if (static_cast<double>(text.size()) > engine_.limits().text)
-      throw text::ReadError(Diagnostic{{name, {}},
-                                       fmt::format("the file has {} bytes", text.size()),
-                                       fmt::format("{} at most", engine_.limits().text),
-                                       {}});
-    diagram::Diagram diagram = diagram::parse_diagram(text, name);
-    diagram.run.max_steps =
-        std::min(diagram.run.max_steps, static_cast<std::int64_t>(engine_.limits().steps));
+    diagram::Diagram diagram = read_text(text, name);
     std::shared_ptr<const diagram::BlockLibrary> library = engine_.library();
     console_ = console::Console(std::move(diagram), *library);
     library_ = std::move(library);
-    Answer opened = stands();
-    opened.object["outputs"] = console_->output_names();
-    opened.object["signals"] = console_->signal_names();
-    opened.object["pots"] = console_->pot_names();
+    return set_up();
+  });
+}
+
+Answer LiveConsole::exchange(const std::string& text, const std::string& name, const std::string& renamed) {
+  return answer([&] {
+    const Json asked = Json::parse(renamed, nullptr, false);
+    std::vector<std::pair<std::string, std::string>> names;
+    for (const Json& one : asked.is_array() ? asked : Json::array()) {
+      if (one.is_array() && one.size() == 2 && one[0].is_string() && one[1].is_string())
+        names.emplace_back(one[0].get<std::string>(), one[1].get<std::string>());
+    }
+    diagram::Diagram diagram = read_text(text, name);
+    std::shared_ptr<const diagram::BlockLibrary> library = engine_.library();
+    const auto kept = held().exchange(std::move(diagram), *library, names);
+    library_ = std::move(library);
+    Answer opened = set_up();
+    opened.object["turned"] = Json::object();
+    for (const diagram::ParameterOverride& pot : kept) opened.object["turned"][pot.path] = pot.value;
     return opened;
   });
 }

@@ -24,6 +24,10 @@ class LiveConsole {
   /// {"time", "outputs", "signals", "pots"}.
   Answer open(const std::string& text, const std::string& name);
 
+  /// Another diagram in place of the one that runs, at its time (console::Console::exchange). `renamed` is a
+  /// JSON list of [before, now]: {"time", "outputs", "signals", "pots", "turned": {pot: value}}.
+  Answer exchange(const std::string& text, const std::string& name, const std::string& renamed);
+
   /// "potset", "initial", "operate" or "hold": {"time"}.
   Answer set_mode(const std::string& mode);
   /// Initial condition for so long, then operation, and again [s]: {"time"}.
@@ -49,6 +53,8 @@ class LiveConsole {
  private:
   console::Console& held();
   Answer stands();
+  Answer set_up();
+  diagram::Diagram read_text(const std::string& text, const std::string& name) const;
   bool go(double until, double deadline);
 
   const Engine& engine_;
