@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT
-import {useEffect} from "preact/hooks";
+import {useEffect, useMemo} from "preact/hooks";
 
 import {keysOf, Lamps, Meter, Modes, Pots} from "./controls";
 import {Editor} from "./editor";
+import {PatchPanel} from "./panel/panel";
+import {Patching} from "./panel/patching";
 import {Scope} from "./scope";
 import {examples, useShown, type Session} from "./session";
 import {save, toFragment} from "./share";
 
-function Header({session}: {session: Session}) {
+function Header({session, patching}: {session: Session; patching: Patching}) {
   const title = useShown(session, (shown) => shown.title);
   const file = useShown(session, (shown) => shown.file);
   const engine = useShown(session, (shown) => shown.engine);
@@ -22,7 +24,7 @@ function Header({session}: {session: Session}) {
     if (example) void session.load(example);
   }
   async function share(): Promise<void> {
-    location.hash = await toFragment({...file, text: session.shown.written});
+    location.hash = await toFragment({...session.source, text: session.shown.written});
     await navigator.clipboard?.writeText(location.href).catch(() => undefined);
     session.set({remarks: ["the link in the address bar holds the file"]});
   }
@@ -34,8 +36,9 @@ function Header({session}: {session: Session}) {
         <option value="">…</option>
         {examples.map((one) => <option value={one.name}>{one.name.replace(/\.toml$/, "").replaceAll("/", ": ")}</option>)}
       </select></label>
+      <button onClick={() => patching.begin()}>New</button>
       <label class="button">Open <input type="file" accept=".toml" onChange={(event) => void pick(event)} /></label>
-      <button onClick={() => save(file.name.split("/").pop() || "machine.toml", session.shown.written, "text/plain")}>Save</button>
+      <button onClick={() => save(session.source.name.split("/").pop() || "machine.toml", session.shown.written, "text/plain")}>Save</button>
       <button onClick={() => void share()}>Link</button>
       <span class="state" data-state={engine}>{engine === "starting" ? "the engine starts …" : busy ? "computing …" : ""}</span>
       <button class="stop" disabled={!busy} onClick={() => void session.stop()}>Stop</button>
@@ -43,19 +46,19 @@ function Header({session}: {session: Session}) {
   );
 }
 
-function Pictures({session}: {session: Session}) {
+function Pictures({session, patching}: {session: Session; patching: Patching}) {
   const linkage = useShown(session, (shown) => shown.linkage);
-  const schematic = useShown(session, (shown) => shown.schematic);
   return (
     <section class="machine">
       {linkage && <div class="picture linkage" dangerouslySetInnerHTML={{__html: linkage}} />}
-      <div class="picture schematic" dangerouslySetInnerHTML={{__html: schematic}} />
+      <PatchPanel session={session} patching={patching} />
     </section>
   );
 }
 
 export function App({session}: {session: Session}) {
   const engine = useShown(session, (shown) => shown.engine);
+  const patching = useMemo(() => new Patching(session), [session]);
   useEffect(() => {
     const keys = (event: KeyboardEvent) => keysOf(session, event);
     addEventListener("keydown", keys);
@@ -65,10 +68,10 @@ export function App({session}: {session: Session}) {
   if (engine === "failed") return <p class="failed">This browser cannot run the engine: it needs WebAssembly with exceptions (Firefox 100, Chrome 95, Safari 15.2, or later).</p>;
   return (
     <>
-      <Header session={session} />
+      <Header session={session} patching={patching} />
       <main>
         <Editor session={session} />
-        <Pictures session={session} />
+        <Pictures session={session} patching={patching} />
         <section class="desk" aria-label="Console">
           <Modes session={session} />
           <Lamps session={session} />

@@ -3,7 +3,7 @@
 // of the page only show the snapshot and call what stands here.
 import {useEffect, useReducer} from "preact/hooks";
 
-import type {Advanced, Answer, Diagnostic, Drawn, Held, Opened, Overloads, Patched, Read, Saved} from "./answers";
+import type {Advanced, Answer, Diagnostic, Drawn, Exchanged, Held, Opened, Overloads, Patched, Read, Saved} from "./answers";
 import {carried, Machine, Stopped} from "./machine";
 import {short} from "./numbers";
 import {fromFragment, type SharedFile} from "./share";
@@ -56,6 +56,7 @@ export interface Opening {
   gain?: string;
   restore?: string;
   turned?: ReadonlyMap<string, string>;
+  keeps?: boolean;                ///< a machine of the same file goes on from where it stands
 }
 
 /// First those of the diagram's own elements that do something, last what composites are made of.
@@ -73,6 +74,12 @@ export class Session {
     traced: [], against: "", persists: false, drawn: 0,
   };
   traces = new Traces([], mostRows);
+  /// The file that what is written belongs to, right or wrong.
+  source: SharedFile = opening;
+  /// Blocks, before and now, that were renamed since the machine that runs was taken.
+  renamed: [string, string][] = [];
+  /// What was written last by hand.
+  typed: string | undefined;
   /// Resolves once the first file was opened.
   readonly ready: Promise<void>;
 
@@ -122,6 +129,7 @@ export class Session {
 
   /// Takes what is written; it is looked at as soon as the writer rests.
   write(written: string): void {
+    this.typed = written;
     this.set({written});
     clearTimeout(this.later);
     if (this.shown.engine !== "ready") return;
@@ -131,15 +139,27 @@ export class Session {
       return;
     }
     this.later = setTimeout(() => {
-      if (this.shown.written !== this.asked) void this.open({...this.shown.file, text: this.shown.written});
+      if (this.shown.written !== this.asked) void this.open({...this.source, text: this.shown.written}, {keeps: true});
     }, restOfWriter);
   }
 
   /// Puts a file in place of the one before.
   async load(file: SharedFile): Promise<boolean> {
     clearTimeout(this.later);
+    this.source = file;
+    this.typed = undefined;
     this.set({written: file.text});
     return this.open(file);
+  }
+
+  /// Puts the machine away.
+  clear(): void {
+    ++this.opens;
+    this.turned = new Map();
+    this.saved = "";
+    this.set({file: {name: "", text: ""}, held: undefined, kind: "", title: "", diagram: "", schematic: "", linkage: "", pots: [], lamps: [], remarks: [], mode: "initial", time: 0,
+      meter: {name: "", value: NaN, unit: ""}, values: new Map()});
+    this.trace([]);
   }
 
   /// Reads a text and sets the machine up: at its initial condition. Where it is wrong, the machine before stays.
@@ -158,22 +178,12 @@ export class Session {
   }
 
   async press(mode: Mode): Promise<void> {
-    let {time} = this.shown;
-    if (mode === "initial") {  // the clock too begins again, with the pots as they are turned
-      const set = await this.machine.ask<Held>("console.open", this.shown.diagram, this.shown.file.name);
-      if (!this.good(set)) return;
-      for (const [pot, value] of this.turned) await this.machine.ask("console.turn", pot, value);
-      time = set.time;
-      if (!this.shown.persists) this.traces.clear();
+    ++this.opening;  // no frame goes on meanwhile
+    try {
+      await this.pressed(mode);
+    } finally {
+      --this.opening;
     }
-    // A diagram with a timeline sets its modes itself: then the page lets it run, or not.
-    const set = await this.machine.ask("console.setMode", mode);
-    if (!set.ok && !/timeline/.test(set.diagnostics?.[0]?.what ?? "")) {
-      this.good(set);
-      return;
-    }
-    this.set({mode, time, drawn: this.shown.drawn + 1});
-    await this.lookAtAll();
   }
 
   /// Initial condition and a run, again and again.
@@ -228,6 +238,25 @@ export class Session {
     return answer.ok;
   }
 
+  private async pressed(mode: Mode): Promise<void> {
+    let {time} = this.shown;
+    if (mode === "initial") {  // the clock too begins again, with the pots as they are turned
+      const set = await this.machine.ask<Held>("console.open", this.shown.diagram, this.shown.file.name);
+      if (!this.good(set)) return;
+      for (const [pot, value] of this.turned) await this.machine.ask("console.turn", pot, value);
+      time = set.time;
+      if (!this.shown.persists) this.traces.clear();
+    }
+    // A diagram with a timeline sets its modes itself: then the page lets it run, or not.
+    const set = await this.machine.ask("console.setMode", mode);
+    if (!set.ok && !/timeline/.test(set.diagnostics?.[0]?.what ?? "")) {
+      this.good(set);
+      return;
+    }
+    this.set({mode, time, drawn: this.shown.drawn + 1});
+    await this.lookAtAll();
+  }
+
   private async begin(): Promise<void> {
     try {
       await this.machine.start();
@@ -261,28 +290,68 @@ export class Session {
       if (drawn.ok) linkage = drawn.svg;
     }
     if (!isNewest()) return false;
+    if (how.keeps && this.shown.held && opened.kind === "diagram" && this.shown.kind === "diagram" && this.shown.file.name === next.name) {
+      const went = await this.exchange(next, opened.title, isNewest);
+      if (went !== undefined) return went;
+      remarks.push("the timeline is another one: the machine begins anew");
+    }
     const held = await machine.ask<Held>("console.open", diagram, next.name);
     if (!isNewest() || !this.good(held)) return false;
     const turned = how.turned ?? new Map<string, string>();
     for (const [pot, value] of turned) await machine.ask("console.turn", pot, value);
-    const drawn = await machine.ask<Drawn>("draw", diagram, theme, next.name);
+    // a diagram is drawn by its patch panel
+    const drawn = opened.kind === "mechanism" ? await machine.ask<Drawn>("draw", diagram, theme, next.name) : undefined;
     const values = await machine.ask<Read>("console.read", ...held.pots);
     const mode: Mode = how.restore ? "hold" : "initial";
     if (how.restore) await machine.ask("console.restore", how.restore);
     else await machine.ask("console.setMode", mode);
     if (!isNewest()) return false;
     this.turned = turned;
+    this.renamed = [];
     this.saved = how.restore ?? "";
     // of a mechanism the way of its second moving point, else the first outputs over the time
     const way = opened.kind === "mechanism" ? held.outputs.slice(2, 4) : [];
     const isWay = way.length === 2;
     this.set({
-      file: next, kind: opened.kind, title: opened.title, gain, diagram, linkage, schematic: drawn.ok ? drawn.svg : "", held, remarks, mode, time: held.time, lamps: [],
+      file: next, kind: opened.kind, title: opened.title, gain, diagram, linkage, schematic: drawn?.ok ? drawn.svg : "", held, remarks, mode, time: held.time, lamps: [],
       pots: inOrder(held.pots.map((name, k) => ({name, value: values.numbers[k]!, unit: values.units[k] ?? ""}))),
       meter: {name: "", value: NaN, unit: ""}, values: new Map(),
     });
     this.trace(isWay ? way : held.outputs.slice(0, 4), isWay ? way[0]! : "");
     await this.look();
+    return true;
+  }
+
+  /// The machine goes on as another one; nothing where its timeline forbids.
+  private async exchange(next: SharedFile, title: string, isNewest: () => boolean): Promise<boolean | undefined> {
+    const {machine, renamed} = this;
+    const held = await machine.ask<Exchanged>("console.exchange", next.text, renamed, next.name);
+    if (!held.ok && /timeline/.test(held.diagnostics?.[0]?.what ?? "")) return undefined;
+    if (!this.good(held)) return false;
+    if (this.renamed === renamed) this.renamed = [];
+    const usual = this.shown.held?.outputs.slice(0, 4) ?? [];
+    this.turned = new Map(Object.entries(held.turned));
+    const isInitial = this.shown.mode === "initial";
+    if (isInitial) {  // nothing has happened yet that could go on
+      await machine.ask("console.open", next.text, next.name);
+      for (const [pot, value] of this.turned) await machine.ask("console.turn", pot, value);
+      await machine.ask("console.setMode", "initial");
+    }
+    const values = await machine.ask<Read>("console.read", ...held.pots);
+    const saved = await machine.ask<Saved>("console.save");
+    this.saved = saved.ok ? saved.state : "";
+    this.set({
+      file: next, kind: "diagram", title, diagram: next.text, held, remarks: [], time: isInitial ? 0 : held.time,
+      pots: inOrder(held.pots.map((name, k) => ({name, value: values.numbers[k]!, unit: values.units[k] ?? ""}))),
+    });
+    const all = new Set(this.channels), now = (name: string) => renamed.find(([old]) => old === name)?.[1] ?? name;
+    const {traced, against, meter} = this.shown;
+    const left = traced.map(now).filter((name) => all.has(name));
+    const shown = traced.join("\n") === usual.join("\n") ? held.outputs.slice(0, 4) : left;  // what was chosen stays
+    if (shown.join("\n") !== traced.join("\n")) this.trace(shown, now(against));
+    if (meter.name && !all.has(now(meter.name))) this.set({meter: {name: "", value: NaN, unit: ""}});
+    else if (meter.name !== now(meter.name)) this.set({meter: {...meter, name: now(meter.name)}});
+    if (isNewest()) await this.lookAtAll();
     return true;
   }
 
