@@ -177,16 +177,17 @@ TEST(DiagramEdit, SetsWhatAPersonWrites) {
   const auto set = [](const char* value) {
     return edited([&](DiagramEdit& edit) { edit.set("a", "value", value); });
   };
-  for (const auto& [written, kept] :
-       std::vector<std::pair<const char*, const char*>>{{"0.25", "0.25"},
-                                                        {" 1e-3 ", "1e-3"},
-                                                        {"2*pi", "\"2*pi\""},
-                                                        {"10 Hz", "\"10 Hz\""},
-                                                        {"01", "\"01\""},
-                                                        {".5", "\".5\""},
-                                                        {"1.", "\"1.\""},
-                                                        {"[[0, 1], [1, 2]]", "[[0, 1], [1, 2]]"},
-                                                        {"[[0, 1", "\"[[0, 1\""}}) {
+  for (const auto& [written, kept] : std::vector<std::pair<const char*, const char*>>{
+           {"0.25", "0.25"},
+           {" 1e-3 ", "1e-3"},
+           {"2*pi", "\"2*pi\""},
+           {"10 Hz", "\"10 Hz\""},
+           {"01", "\"01\""},
+           {".5", "\".5\""},
+           {"1.", "\"1.\""},
+           {"[[0, 1], [1, 2]]", "[[0, 1], [1, 2]]"},
+           {"[[0, 1", "\"[[0, 1\""},
+           {"{ file = \"a.csv\", x = \"t\" }", "{ file = \"a.csv\", x = \"t\" }"}}) {
     EXPECT_EQ(set(written), by_hand("value = 0.5", std::string("value = ") + kept)) << written;
   }
   EXPECT_EQ(set(""), by_hand(", value = 0.5", ""));

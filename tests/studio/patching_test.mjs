@@ -71,6 +71,22 @@ test("steps that cannot be done are refused, and say why", async () => {
   assert.match(engine.edit("[broken", {steps: []}, "x.toml").diagnostics[0].message, /^x\.toml:1:\d+: broken TOML/);
 });
 
+test("settings are given as they can be written again", async () => {
+  const engine = await newEngine();
+  const text = `format = "oblique-diagram/1"
+[blocks]
+w = { type = "recording", data = { file = "wind.csv", x = "t", y = "v" } }
+f = { type = "function-generator", in = "w", points = [[0, 0], [1, 0.5]], label = "a \\"b\\"" }
+`;
+  for (const block of engine.panel(text, {}, "x.toml").blocks) {
+    for (const [key, value] of Object.entries(block.settings)) {
+      if (key === "in") continue;
+      const again = engine.edit(text, {steps: [{do: "set", block: block.name, key, value}]}, "x.toml");
+      assert.equal(again.text, text, `${block.name}.${key}: ${value}`);
+    }
+  }
+});
+
 test("a machine goes on as another one", async () => {
   const engine = await newEngine();
   const console = engine.console();

@@ -102,7 +102,7 @@ bool is_toml_number(const std::string& text) {
 /// What a person writes as a value, as TOML has it.
 std::string value_as_toml(const std::string& value) {
   if (is_toml_number(value) || value == "true" || value == "false") return value;
-  if (value.front() == '[') {
+  if (value.front() == '[' || value.front() == '{') {
     try {
       text::parse_document("value = " + value, {});
       return value;

@@ -18,14 +18,28 @@ namespace {
   throw text::ReadError(text::Diagnostic{{}, std::move(what), std::move(expected), {}});
 }
 
-/// A value as a person would write it.
-std::string written(const text::Value& value) {
-  if (value.kind == text::Value::Kind::string) return value.text;
-  if (value.kind == text::Value::Kind::number) return fmt::format("{}", value.number);
-  if (value.kind == text::Value::Kind::boolean) return value.boolean ? "true" : "false";
-  std::string list = "[";
-  for (const text::Value& element : value.elements) list += (list.size() > 1 ? ", " : "") + written(element);
-  return list + "]";
+/// A value as a person would write it; a text within a list or a table is quoted.
+std::string written(const text::Value& value, bool is_inside = false) {
+  switch (value.kind) {
+    case text::Value::Kind::string:
+      return is_inside ? to_text(Json(value.text)) : value.text;
+    case text::Value::Kind::number:
+      return fmt::format("{}", value.number);
+    case text::Value::Kind::boolean:
+      return value.boolean ? "true" : "false";
+    case text::Value::Kind::table: {
+      std::string table = "{ ";
+      for (const text::Entry& entry : value.entries)
+        table += (table.size() > 2 ? ", " : "") + entry.key + " = " + written(entry.value, true);
+      return table + " }";
+    }
+    default: {
+      std::string list = "[";
+      for (const text::Value& element : value.elements)
+        list += (list.size() > 1 ? ", " : "") + written(element, true);
+      return list + "]";
+    }
+  }
 }
 
 /// What applies where a file says nothing.
