@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 // The patch panel in Chromium: diagrams patched, mended and undone by hand, with the mouse, by touch and by keys.
 import assert from "node:assert/strict";
-import {mkdtempSync, rmSync} from "node:fs";
+import {mkdtempSync, readFileSync, rmSync} from "node:fs";
 import {createRequire} from "node:module";
 import {tmpdir} from "node:os";
 import {join} from "node:path";
 import {pathToFileURL} from "node:url";
 import test, {after, before} from "node:test";
+import {deflateRawSync} from "node:zlib";
 
 const built = process.env.OBLIQUE_ENGINE;
 const require = createRequire(join(built, "npm/package.json"));
@@ -24,14 +25,14 @@ after(async () => {
   rmSync(profile, {recursive: true, force: true});
 });
 
-async function opened({width = 1280, height = 1000, scheme = "light", touch = false} = {}) {
+async function opened({width = 1280, height = 1000, scheme = "light", touch = false, fragment = ""} = {}) {
   const page = await browser.newPage();
   await page.setViewport({width, height, hasTouch: touch});
   await page.emulateMediaFeatures([{name: "prefers-color-scheme", value: scheme}]);
   const troubles = [];
   page.on("pageerror", (error) => troubles.push(error.message));
   page.on("console", (said) => said.type() === "error" && troubles.push(said.text()));
-  await page.goto(pathToFileURL(join(built, "studio.html")).href);
+  await page.goto(pathToFileURL(join(built, "studio.html")).href + fragment);
   await page.waitForSelector(".schematic svg", {timeout: 60000});
   return {page, troubles};
 }
@@ -431,6 +432,21 @@ test("a composite opens and closes; what cannot be done is said", async () => {
   await page.waitForSelector(".machine .findings");
   assert.match(await page.$eval(".machine .findings", (one) => one.textContent), /there is a block 'x' already; expected another name/);
   assert.equal(await file(page), text);
+  assert.deepEqual(troubles, []);
+  await page.close();
+});
+
+test("blocks of one's own come with the file", async () => {
+  const trigger = {name: "schmitt-trigger", text: readFileSync("diagrams/own-blocks/blocks/schmitt-trigger.toml", "utf8")};
+  const shared = {name: "triangle-wave.toml", text: readFileSync("diagrams/own-blocks/triangle-wave.toml", "utf8"), blocks: [trigger]};
+  const {page, troubles} = await opened({fragment: "#" + deflateRawSync(JSON.stringify(shared)).toString("base64url")});
+  await page.waitForFunction(() => document.querySelector("h1").textContent.length > "Oblique ".length, {timeout: 20000});
+  await button(page, "Add an element");
+  await page.waitForSelector('.palette [data-kind="schmitt-trigger"]', {timeout: 20000});
+  const name = /^(\w+) *= \{ type = "schmitt-trigger"/m.exec(shared.text)[1];
+  await page.mouse.click(...await middle(page, body(name)));
+  await page.waitForSelector('.form input[aria-label="upper"]', {timeout: 20000});
+  assert.deepEqual(await findings(page), []);
   assert.deepEqual(troubles, []);
   await page.close();
 });

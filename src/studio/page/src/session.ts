@@ -178,6 +178,7 @@ export class Session {
   }
 
   async press(mode: Mode): Promise<void> {
+    if (!this.shown.held) return;
     ++this.opening;  // no frame goes on meanwhile
     try {
       await this.pressed(mode);
@@ -228,7 +229,7 @@ export class Session {
     await this.machine.restart();
     this.asking = false;
     this.set({busy: false});
-    await this.open(this.shown.file, {restore: saved, turned});
+    if (this.shown.held) await this.open(this.shown.file, {restore: saved, turned});
     this.set({remarks: [...this.shown.remarks, "stopped: the machine stands where it last was whole"]});
   }
 
