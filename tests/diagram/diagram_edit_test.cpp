@@ -17,9 +17,9 @@ const BlockLibrary& library() {
   return shipped;
 }
 
-const std::string kEmpty = "format = \"oblique-diagram/1\"\n\n[blocks]\n";
+const std::string empty_diagram = "format = \"oblique-diagram/1\"\n\n[blocks]\n";
 
-const std::string kText = R"toml(format = "oblique-diagram/1"
+const std::string edited_diagram = R"toml(format = "oblique-diagram/1"
 
 [run]
 until = 4
@@ -42,19 +42,19 @@ z = "p"
 x = [10, 4]
 )toml";
 
-std::string edited(const std::function<void(DiagramEdit&)>& work, const std::string& text = kText) {
+std::string edited(const std::function<void(DiagramEdit&)>& work, const std::string& text = edited_diagram) {
   DiagramEdit edit(text, "x.toml", library());
   work(edit);
   return edit.text();
 }
 
-std::string by_hand(const std::string& from, const std::string& to, std::string text = kText) {
+std::string by_hand(const std::string& from, const std::string& to, std::string text = edited_diagram) {
   const std::size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos) << from;
   return text.replace(at, from.size(), to);
 }
 
-std::string refused(const std::function<void(DiagramEdit&)>& work, const std::string& text = kText) {
+std::string refused(const std::function<void(DiagramEdit&)>& work, const std::string& text = edited_diagram) {
   DiagramEdit edit(text, "x.toml", library());
   try {
     work(edit);
@@ -103,7 +103,7 @@ TEST(DiagramEdit, PatchesATriangleFromNothing) {
         edit.set_head("title", "By hand");
         edit.set_head("run.until", "2*pi");
       },
-      kEmpty);
+      empty_diagram);
   const Diagram patched = parse_diagram(made, "patched");
   const FlatDiagram flat = flatten(patched, library());
   const FlatDiagram shipped = flatten(
@@ -137,10 +137,10 @@ TEST(DiagramEdit, WiresAsTheFileHasIt) {
   EXPECT_EQ(connected("p", "x", "in", 0.25), by_hand("\"-4*x\"]", "\"-4*x\", \"0.25*p\"]"));
   EXPECT_EQ(connected("x", "p", "x"), by_hand("in = [\"a\", \"x\"]", "in = [\"x\", \"x\"]"));
   EXPECT_EQ(connected("a", "q", "y", -1), by_hand("y = \"p\"", "y = \"-a\""));
-  const std::string one = kEmpty + "x = { type = \"integrator\", in = \"x\" }\n";
+  const std::string one = empty_diagram + "x = { type = \"integrator\", in = \"x\" }\n";
   EXPECT_EQ(edited([](DiagramEdit& edit) { edit.connect("x", "x", "in", -1); }, one),
             by_hand("in = \"x\"", "in = [\"x\", \"-x\"]", one));
-  const std::string none = kEmpty + "x = { type = \"integrator\", in = [] }\n";
+  const std::string none = empty_diagram + "x = { type = \"integrator\", in = [] }\n";
   EXPECT_EQ(edited([](DiagramEdit& edit) { edit.connect("x", "x", "in"); }, none),
             by_hand("in = []", "in = [\"x\"]", none));
 }
@@ -193,11 +193,11 @@ TEST(DiagramEdit, SetsWhatAPersonWrites) {
   EXPECT_EQ(set(""), by_hand(", value = 0.5", ""));
   EXPECT_EQ(edited([](DiagramEdit& edit) { edit.set("a", "label", "1"); }),
             by_hand("value = 0.5", "value = 0.5, label = \"1\""));
-  EXPECT_EQ(edited([](DiagramEdit& edit) { edit.set("a", "initial", ""); }), kText);
+  EXPECT_EQ(edited([](DiagramEdit& edit) { edit.set("a", "initial", ""); }), edited_diagram);
 }
 
 TEST(DiagramEdit, RenamesWhereverTheFileNamesIt) {
-  std::string expected = kText;
+  std::string expected = edited_diagram;
   for (const auto& [from, to] :
        std::vector<std::pair<const char*, const char*>>{{"{ x = 1e-9", "{ speed = 1e-9"},
                                                         {"x = { type", "speed = { type"},
@@ -208,7 +208,7 @@ TEST(DiagramEdit, RenamesWhereverTheFileNamesIt) {
                                                         {"x = [10", "speed = [10"}})
     expected = by_hand(from, to, expected);
   EXPECT_EQ(edited([](DiagramEdit& edit) { edit.rename("x", "speed"); }), expected);
-  const std::string timed = kEmpty + R"toml(c = { type = "comparator", in = "e2.x" }
+  const std::string timed = empty_diagram + R"toml(c = { type = "comparator", in = "e2.x" }
 e2 = { type = "x" }
 
 [groups]
@@ -231,7 +231,7 @@ phases = [{ mode = "operate", until = "e2 > 2" }]
 }
 
 TEST(DiagramEdit, RemovesABlockWithAllThatHangsOnIt) {
-  std::string expected = kText;
+  std::string expected = edited_diagram;
   for (const auto& [from, to] : std::vector<std::pair<const char*, const char*>>{
            {"x = { type = \"integrator\", in = [\"4*a\", \"-4*x\"], initial = 0 }\n", ""},
            {"[\"a\", \"x\"]", "[\"a\"]"},
@@ -252,15 +252,15 @@ TEST(DiagramEdit, ChoosesNamesThatAreFree) {
         edit.show("y", "servo_amplifier2");
         edit.show("y", "servo_amplifier1");
       },
-      kEmpty);
-  EXPECT_EQ(made, kEmpty +
+      empty_diagram);
+  EXPECT_EQ(made, empty_diagram +
                       "servo_amplifier1 = { type = \"servo-amplifier\" }\nservo_amplifier2 = { type = "
                       "\"servo-amplifier\" }\n\n[layout]\nservo_amplifier1 = [4, 2.5]\n\n[outputs]\ny = "
                       "\"servo_amplifier1\"\n");
 }
 
 TEST(DiagramEdit, EditsWhatIsWrong) {
-  const std::string wrong = kEmpty + "x = { type = \"integrater\", in = [\"nobody\", 3] }\n";
+  const std::string wrong = empty_diagram + "x = { type = \"integrater\", in = [\"nobody\", 3] }\n";
   EXPECT_EQ(edited([](DiagramEdit& edit) { edit.set("x", "type", "integrator"); }, wrong),
             by_hand("integrater", "integrator", wrong));
   EXPECT_EQ(edited([](DiagramEdit& edit) { edit.disconnect("x", "in", 0); }, wrong),

@@ -21,7 +21,7 @@ const diagram::BlockLibrary& panel_library() {
   return shipped;
 }
 
-const std::string kHead = "format = \"oblique-diagram/1\"\n[blocks]\n";
+const std::string panel_head = "format = \"oblique-diagram/1\"\n[blocks]\n";
 
 /// A diagram that may be wrong; a panel points into it.
 diagram::Diagram sketched(const std::string& text) {
@@ -77,7 +77,7 @@ TEST(Panel, TellsWhereEverythingIs) {
 
 TEST(Panel, GivesPlacesThatDrawTheSame) {
   const std::string text =
-      kHead +
+      panel_head +
       "a = { type = \"constant\", value = 0.5 }\nx = { type = \"integrator\", in = [\"a\", "
       "\"-y\"] }\ny = { type = \"integrator\", in = \"x\" }\n";
   const diagram::Diagram free = sketched(text);
@@ -100,7 +100,7 @@ TEST(Panel, GivesPlacesThatDrawTheSame) {
 
 TEST(Panel, ShowsWhatIsMissing) {
   const diagram::Diagram diagram =
-      sketched(kHead +
+      sketched(panel_head +
                "m = { type = \"multiplier\", in = [\"nobody\"] }\nx = { type = "
                "\"integrator\" }\nw = { type = \"integrater\", in = [\"x\", \"m\"], gain = 3 }\n"
                "z = { type = \"integrator\", in = \"w\" }\nn = { }\n");
@@ -120,7 +120,7 @@ TEST(Panel, ShowsWhatIsMissing) {
 
 TEST(Panel, KeepsBlocksApart) {
   const std::string text =
-      kHead +
+      panel_head +
       "x = { type = \"integrator\", in = \"z\" }\ny = { type = \"integrator\", in = \"x\" }\n"
       "z = { type = \"integrator\", in = \"y\" }\n\n[layout]\n";
   const diagram::Diagram diagram = sketched(text + "x = [10, 10]\ny = [10, 10.5]\nz = [11, 9]\n");
@@ -139,7 +139,7 @@ TEST(Panel, KeepsBlocksApart) {
 
 TEST(Panel, LeavesConstantsWhereTheyWerePut) {
   const std::string text =
-      kHead +
+      panel_head +
       "a = { type = \"constant\" }\nx = { type = \"integrator\", in = \"a\" }\n\n[layout]\nx = [10, 4]\n";
   const diagram::Diagram at_input = sketched(text), apart = sketched(text + "a = [2, 4]\n");
   EXPECT_FALSE(block(draw_panel(at_input, panel_library()), "a").body);
@@ -149,7 +149,7 @@ TEST(Panel, LeavesConstantsWhereTheyWerePut) {
 }
 
 TEST(Panel, DrawsNothingOfAnEmptyDiagram) {
-  const diagram::Diagram empty = sketched(kHead);
+  const diagram::Diagram empty = sketched(panel_head);
   const Panel panel = draw_panel(empty, panel_library());
   EXPECT_TRUE(panel.blocks.empty());
   EXPECT_GT(panel.picture.width, 0);
@@ -157,7 +157,7 @@ TEST(Panel, DrawsNothingOfAnEmptyDiagram) {
 
 TEST(Panel, OpensOneComposite) {
   const diagram::Diagram diagram = diagram::parse_diagram(
-      kHead +
+      panel_head +
           "a = { type = \"constant\" }\nq = { type = \"divider\", numerator = \"a\", denominator = \"a\" }\n",
       "x.toml");
   const Picture inside = draw_inside(diagram, panel_library(), "q");

@@ -10,7 +10,7 @@ namespace {
 
 using Kind = TomlChange::Kind;
 
-const std::string kText = R"toml(# head
+const std::string toml_source = R"toml(# head
 title = "φ·ψ"   # said
 
 [blocks]   # all of them
@@ -27,12 +27,13 @@ in = "c"
 c = [1, 2]
 )toml";
 
-std::string edited(Kind kind, TomlPath path, const std::string& value = {}, const std::string& text = kText) {
+std::string edited(Kind kind, TomlPath path, const std::string& value = {},
+                   const std::string& text = toml_source) {
   return edit_toml(text, "x", {{kind, std::move(path), value}});
 }
 
 /// The text with the first `from` replaced: what a hand would have written.
-std::string by_hand(const std::string& from, const std::string& to, std::string text = kText) {
+std::string by_hand(const std::string& from, const std::string& to, std::string text = toml_source) {
   const std::size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos) << from;
   return text.replace(at, from.size(), to);
@@ -56,7 +57,7 @@ TEST(TomlEdit, AddsAtTheEndOfTablesAndArrays) {
             by_hand("gain = 1e5 }\n", "gain = 1e5 }\ne    = { type = \"y\" }\n"));
   EXPECT_EQ(edited(Kind::set, {"blocks", "d", "gain"}, "2"),
             by_hand("in = \"c\"\n", "in = \"c\"\ngain = 2\n"));
-  EXPECT_EQ(edited(Kind::set, {"outputs", "y"}, "\"c\""), kText + "\n[outputs]\ny = \"c\"\n");
+  EXPECT_EQ(edited(Kind::set, {"outputs", "y"}, "\"c\""), toml_source + "\n[outputs]\ny = \"c\"\n");
   EXPECT_EQ(edited(Kind::set, {"source"}, "\"s\""), by_hand("# said\n", "# said\nsource = \"s\"\n"));
 }
 
