@@ -30,6 +30,7 @@
 #include <oblique/solve/run.h>
 
 #include "studio/engine/options.h"
+#include "studio/engine/patch_request.h"
 
 namespace oblique::studio {
 namespace {
@@ -289,28 +290,15 @@ Answer Engine::patch(const std::string& text, const std::string& name, const std
     check_size(text, name);
     const Options asked(options, {"gain", "bandwidth", "slower", "method", "split", "force", "period"});
     expect_kind(text, name, FileKind::mechanism, "a patch");
-    patch::PatchOptions how;
-    const auto positive = [&](const char* key, std::string_view unit) {
-      const std::optional<double> value = asked.quantity(key, unit);
-      if (value && !(*value > 0)) refuse({}, fmt::format("'{}' is {}", key, *value), "a number above 0");
-      return value;
-    };
-    if (const auto method = asked.word("method")) {
-      const auto known = patch::parse_patch_method(*method);
-      if (!known) refuse({}, fmt::format("'method' is '{}'", *method), "triangles, gradient or paper");
-      how.method = *known;
-    }
-    how.gain = positive("gain", "1").value_or(how.gain);
-    how.bandwidth = positive("bandwidth", "Hz");
-    how.slower = positive("slower", "1");
-    how.period = positive("period", "s");
-    how.split = asked.words("split");
+    patch::PatchOptions how = patch_options(asked);
     how.force = asked.flag("force");
     const commission::JudgedPatch patched =
         commission::judged_patch(mechanism::parse_mechanism(text, name), *library_, how);
     Answer made;
     made.object["text"] = diagram::write_diagram(patched.diagram);
     made.object["judgement"] = report::judgement_text(patched.judgement);
+    made.object["split"] = patched.options.split;
+    if (patched.options.slower) made.object["slower"] = *patched.options.slower;
     return made;
   });
 }

@@ -52,9 +52,9 @@ class Engine {
   /// "failure"}}.
   Answer run(const std::string& text, const std::string& name, const std::string& options) const;
 
-  /// Patches a mechanism: {"text"} of the diagram, and {"judgement"} of it in words. Options: "gain",
-  /// "bandwidth", "slower" (quantities as texts or numbers), "method", "split" [names], "force", "period"
-  /// [s].
+  /// Patches a mechanism: {"text"} of the diagram, {"judgement"} of it in words, and {"split", "slower"}
+  /// where these were asked for or found by trial. Options: "gain", "bandwidth", "slower" (quantities as
+  /// texts or numbers), "method", "split" [names], "force", "period" [s].
   Answer patch(const std::string& text, const std::string& name, const std::string& options) const;
 
   /// The exact motion of a mechanism: {"columns": [{"name", "unit"}], "rows", "statuses": [names], "events":
@@ -66,8 +66,10 @@ class Engine {
   /// of a diagram "symbols" (classic, din) and "depth", of a mechanism "time" [s] and "positions".
   Answer draw(const std::string& text, const std::string& name, const std::string& options) const;
 
- private:
+  /// Throws ReadError for a text beyond the limit.
   void check_size(const std::string& text, const std::string& name) const;
+
+ private:
   void check_numbers(std::size_t rows, std::size_t columns, const std::string& name) const;
 
   Limits limits_;

@@ -57,6 +57,7 @@ Answer LiveConsole::open(const std::string& text, const std::string& name) {
     std::shared_ptr<const diagram::BlockLibrary> library = engine_.library();
     console_ = console::Console(std::move(diagram), *library);
     library_ = std::move(library);
+    begin(diagram::OperatingMode::operate, 0);
     Answer opened = stands();
     opened.object["outputs"] = console_->output_names();
     opened.object["signals"] = console_->signal_names();
@@ -67,7 +68,9 @@ Answer LiveConsole::open(const std::string& text, const std::string& name) {
 
 Answer LiveConsole::set_mode(const std::string& mode) {
   return answer([&] {
-    held().set_mode(mode_of(mode));
+    const diagram::OperatingMode wanted = mode_of(mode);
+    held().set_mode(wanted);
+    begin(wanted, time_of_operation());
     return stands();
   });
 }
@@ -75,6 +78,8 @@ Answer LiveConsole::set_mode(const std::string& mode) {
 Answer LiveConsole::repeat(double initial, double operate) {
   return answer([&] {
     held().repeat(initial, operate);
+    begin(diagram::OperatingMode::initial, 0);
+    repetition_ = Repetition{initial, operate};
     return stands();
   });
 }
@@ -175,6 +180,35 @@ Answer LiveConsole::events() {
   });
 }
 
+void LiveConsole::begin(diagram::OperatingMode mode, double operated) {
+  using Mode = diagram::OperatingMode;
+  mode_ = mode;
+  operated_ = mode == Mode::initial || mode == Mode::potset ? 0 : operated;
+  since_ = console_->time();
+  repetition_.reset();
+}
+
+double LiveConsole::time_of_operation() const {
+  if (!console_) return 0;
+  const double way = console_->time() - since_;
+  if (repetition_) {
+    const double within = std::fmod(way, repetition_->initial + repetition_->operate);
+    return std::max(0.0, within - repetition_->initial);
+  }
+  return mode_ == diagram::OperatingMode::operate ? operated_ + way : operated_;
+}
+
+std::optional<std::vector<double>> LiveConsole::outputs(const std::vector<std::string>& names) {
+  const std::vector<std::string> all = held().output_names();
+  std::vector<double> values;
+  values.reserve(names.size());
+  for (const std::string& name : names) {
+    if (std::find(all.begin(), all.end(), name) == all.end()) return std::nullopt;
+    values.push_back(held().value(name));
+  }
+  return values;
+}
+
 Answer LiveConsole::save() {
   return answer([&] {
     Answer saved = stands();
@@ -186,6 +220,7 @@ Answer LiveConsole::save() {
 Answer LiveConsole::restore(const std::string& state) {
   return answer([&] {
     held().restore(solve::parse_run_state(state, "state"));
+    begin(mode_, held().time());
     return stands();
   });
 }

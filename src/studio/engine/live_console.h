@@ -42,6 +42,12 @@ class LiveConsole {
   /// {"events": [{"time", "what"}]}.
   Answer events();
 
+  /// The outputs of these names, in their units; nothing where the machine has not all of them. Throws where
+  /// no machine is held.
+  std::optional<std::vector<double>> outputs(const std::vector<std::string>& names);
+  /// For how long it has been in operation since it was in initial condition [s].
+  double time_of_operation() const;
+
   /// {"state"}: a text with which `restore`, or the program, goes on.
   Answer save();
   Answer restore(const std::string& state);
@@ -50,10 +56,18 @@ class LiveConsole {
   console::Console& held();
   Answer stands();
   bool go(double until, double deadline);
+  void begin(diagram::OperatingMode mode, double operated);
 
   const Engine& engine_;
   std::shared_ptr<const diagram::BlockLibrary> library_;  ///< of the machine
   std::optional<console::Console> console_;
+  diagram::OperatingMode mode_ = diagram::OperatingMode::operate;
+  double operated_ = 0;  ///< until the mode was set [s]
+  double since_ = 0;     ///< the time at which that was [s]
+  struct Repetition {
+    double initial = 0, operate = 0;  ///< [s]
+  };
+  std::optional<Repetition> repetition_;
 };
 
 }  // namespace oblique::studio
