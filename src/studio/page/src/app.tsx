@@ -3,6 +3,7 @@ import {useEffect} from "preact/hooks";
 
 import {keysOf, Lamps, Meter, Modes, Pots} from "./controls";
 import {Editor} from "./editor";
+import {MechanismRoom} from "./mechanism/room";
 import {Scope} from "./scope";
 import {examples, useShown, type Session} from "./session";
 import {save, toFragment} from "./share";
@@ -44,11 +45,10 @@ function Header({session}: {session: Session}) {
 }
 
 function Pictures({session}: {session: Session}) {
-  const linkage = useShown(session, (shown) => shown.linkage);
   const schematic = useShown(session, (shown) => shown.schematic);
   return (
     <section class="machine">
-      {linkage && <div class="picture linkage" dangerouslySetInnerHTML={{__html: linkage}} />}
+      <MechanismRoom session={session} />
       <div class="picture schematic" dangerouslySetInnerHTML={{__html: schematic}} />
     </section>
   );

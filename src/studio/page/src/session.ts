@@ -36,8 +36,8 @@ export interface Shown {
   title: string;
   diagram: string;            ///< what runs: the file, or the patch of a mechanism
   schematic: string;          ///< SVG
-  linkage: string;            ///< SVG
   gain: string;               ///< of the patch
+  split: readonly string[];   ///< of its triad; empty: the one worth the most
   held: Held | undefined;
   pots: Pot[];
   mode: Mode;
@@ -54,6 +54,8 @@ export interface Shown {
 
 export interface Opening {
   gain?: string;
+  split?: readonly string[];
+  force?: boolean;            ///< patches what is unstable, too
   restore?: string;
   turned?: ReadonlyMap<string, string>;
 }
@@ -68,8 +70,8 @@ function inOrder(pots: Pot[]): Pot[] {
 export class Session {
   readonly machine = new Machine();
   shown: Shown = {
-    engine: "starting", busy: false, file: opening, written: opening.text, findings: [], remarks: [], kind: "", title: "", diagram: "", schematic: "", linkage: "",
-    gain: "1e5", held: undefined, pots: [], mode: "initial", time: 0, speed: 1, lamps: [], meter: {name: "", value: NaN, unit: ""}, values: new Map(),
+    engine: "starting", busy: false, file: opening, written: opening.text, findings: [], remarks: [], kind: "", title: "", diagram: "", schematic: "",
+    gain: "1e5", split: [], held: undefined, pots: [], mode: "initial", time: 0, speed: 1, lamps: [], meter: {name: "", value: NaN, unit: ""}, values: new Map(),
     traced: [], against: "", persists: false, drawn: 0,
   };
   traces = new Traces([], mostRows);
@@ -84,7 +86,6 @@ export class Session {
   private opens = 0;          // the newest call of `open`
   private opening = 0;        // how many of them are under way
   private asking = false;     // a frame is
-  private moved = 0;          // when the linkage was drawn last
   private later: ReturnType<typeof setTimeout> | undefined;
 
   constructor() {
@@ -158,6 +159,17 @@ export class Session {
   }
 
   async press(mode: Mode): Promise<void> {
+    ++this.opening;  // no frame goes on meanwhile
+    try {
+      await this.pressAs(mode);
+    } catch (error) {
+      ignoreStops(error);
+    } finally {
+      --this.opening;
+    }
+  }
+
+  private async pressAs(mode: Mode): Promise<void> {
     let {time} = this.shown;
     if (mode === "initial") {  // the clock too begins again, with the pots as they are turned
       const set = await this.machine.ask<Held>("console.open", this.shown.diagram, this.shown.file.name);
@@ -180,6 +192,33 @@ export class Session {
   async repeat(): Promise<void> {
     if (!this.good(await this.machine.ask("console.repeat", this.span / 20, this.span))) return;
     this.set({mode: "repeat", findings: [], drawn: this.shown.drawn + 1});
+  }
+
+  /// Has the machine stand where it is after so long in operation [s], of which it has been `since`: it goes on until
+  /// then, from its beginning where that is over.
+  async goTo(time: number, since: number): Promise<void> {
+    ++this.opening;
+    try {
+      const {machine} = this;
+      let from = since;
+      if (time < from) {
+        const set = await machine.ask<Held>("console.open", this.shown.diagram, this.shown.file.name);
+        if (!this.good(set)) return;
+        for (const [pot, value] of this.turned) await machine.ask("console.turn", pot, value);
+        from = set.time;
+      }
+      await machine.ask("console.setMode", "operate");
+      const went = await machine.ask<Advanced>("console.advance", time - from, this.shown.traced, rowsAFrame);
+      await machine.ask("console.setMode", "hold");
+      if (!this.good(went)) return;
+      this.traces.add(went.numbers, this.shown.persists);
+      this.set({mode: "hold", time: went.time, drawn: this.shown.drawn + 1});
+      await this.lookAtAll();
+    } catch (error) {
+      ignoreStops(error);
+    } finally {
+      --this.opening;
+    }
   }
 
   /// Turns a pot of the machine; whether it could be.
@@ -248,15 +287,14 @@ export class Session {
     if (!isNewest() || !this.good(opened)) return false;
     const theme = {theme: "auto"};
     const gain = how.gain ?? this.shown.gain;
-    let diagram = next.text, linkage = "";
+    const split = how.split ?? (next.name === this.shown.file.name ? this.shown.split : []);
+    let diagram = next.text;
     const remarks: string[] = [];
     if (opened.kind === "mechanism") {
-      const patched = await machine.ask<Patched>("patch", next.text, {gain}, next.name);
+      const patched = await machine.ask<Patched>("patch", next.text, {gain, split, force: how.force ?? false}, next.name);
       if (!isNewest() || !this.good(patched)) return false;
       diagram = patched.text;
       if (patched.judgement) remarks.push(patched.judgement);
-      const drawn = await machine.ask<Drawn>("draw", next.text, theme, next.name);
-      if (drawn.ok) linkage = drawn.svg;
     }
     if (!isNewest()) return false;
     const held = await machine.ask<Held>("console.open", diagram, next.name);
@@ -275,7 +313,7 @@ export class Session {
     const way = opened.kind === "mechanism" ? held.outputs.slice(2, 4) : [];
     const isWay = way.length === 2;
     this.set({
-      file: next, kind: opened.kind, title: opened.title, gain, diagram, linkage, schematic: drawn.ok ? drawn.svg : "", held, remarks, mode, time: held.time, lamps: [],
+      file: next, kind: opened.kind, title: opened.title, gain, split, diagram, schematic: drawn.ok ? drawn.svg : "", held, remarks, mode, time: held.time, lamps: [],
       pots: inOrder(held.pots.map((name, k) => ({name, value: values.numbers[k]!, unit: values.units[k] ?? ""}))),
       meter: {name: "", value: NaN, unit: ""}, values: new Map(),
     });
@@ -318,12 +356,6 @@ export class Session {
     traces.add(went.numbers, persists);
     this.set({time: went.time, drawn: this.shown.drawn + 1});
     await this.look();
-    if (this.shown.kind === "mechanism" && performance.now() - this.moved > 60) {
-      this.moved = performance.now();
-      const {name, text} = this.shown.file;
-      const drawn = await this.machine.ask<Drawn>("draw", text, {theme: "auto", time: went.time % span}, name);
-      if (drawn.ok) this.set({linkage: drawn.svg});
-    }
     if (went.warnings.length > 0) this.set({remarks: went.warnings.map((warning) => warning.what)});
   }
 
