@@ -184,9 +184,9 @@ test("a joint dragged with its lengths free changes the numbers of the file, and
   await wait(800);
   await page.$eval(".linkage-line input[type=checkbox]", (box) => box.click());
   const text_ = await written(page);
-  const axes = await axesOf(page, "pin-A");
   await button(page, "HOLD");
   await wait(400);
+  const axes = await axesOf(page, "pin-A");
   const held = await timeOf(page);
   const c = await middleOf(page, "pin-C"), b = await middleOf(page, "pin-B"), d = await middleOf(page, "pin-D");
   await dragTo(page, "pin-C", [20, 14], 6, {drop: false});

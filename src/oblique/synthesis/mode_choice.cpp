@@ -22,9 +22,9 @@ std::optional<mechanism::Configuration> start_of(const mechanism::Mechanism& mec
 }
 
 bool stands_in(const mechanism::AssemblyMode& mode, const mechanism::Configuration& start, double size) {
-  constexpr double kSameWithin = 1e-7;  // modes are farther apart, or they are one
+  constexpr double kOneMode = 1e-7;  // modes are farther apart, or they are one
   for (std::size_t k = 0; k < mode.points.size(); ++k) {
-    if (!((start.points[mode.points[k]].position - mode.positions[k]).norm() <= kSameWithin * size))
+    if (!((start.points[mode.points[k]].position - mode.positions[k]).norm() <= kOneMode * size))
       return false;
   }
   return true;

@@ -170,12 +170,12 @@ export class Session {
   }
 
   private async pressAs(mode: Mode): Promise<void> {
-    let {time} = this.shown;
+    let begun: number | undefined;
     if (mode === "initial") {  // the clock too begins again, with the pots as they are turned
       const set = await this.machine.ask<Held>("console.open", this.shown.diagram, this.shown.file.name);
       if (!this.good(set)) return;
       for (const [pot, value] of this.turned) await this.machine.ask("console.turn", pot, value);
-      time = set.time;
+      begun = set.time;
       if (!this.shown.persists) this.traces.clear();
     }
     // A diagram with a timeline sets its modes itself: then the page lets it run, or not.
@@ -184,7 +184,7 @@ export class Session {
       this.good(set);
       return;
     }
-    this.set({mode, time, drawn: this.shown.drawn + 1});
+    this.set({mode, time: begun ?? this.shown.time, drawn: this.shown.drawn + 1});
     await this.lookAtAll();
   }
 

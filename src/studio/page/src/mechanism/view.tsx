@@ -59,7 +59,7 @@ export function LinkageView({desk}: {desk: Desk}) {
     <div class="picture linkage">
       <div class="layers">
         <div dangerouslySetInnerHTML={{__html: mechanism.svg}} />
-        <svg ref={overlay} class="moving" viewBox={view} role="application" tabIndex={0}
+        <svg ref={overlay} class="moving" viewBox={view} role="application" tabindex={0}
           aria-label={`Mechanism: joint ${chosen}, moved by the arrow keys; ${locked ? "the mechanism follows" : "the lengths change"}`}
           onPointerDown={down} onPointerMove={move} onPointerUp={() => void desk.drop()} onPointerCancel={() => void desk.drop()} onKeyDown={keys}>
           <g class={dragging?.svg ? "left-behind" : ""} dangerouslySetInnerHTML={{__html: position?.svg ?? ""}} />
