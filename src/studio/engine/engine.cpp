@@ -59,23 +59,6 @@ Json columns_of(const std::vector<text::TableColumn>& columns) {
   return list;
 }
 
-const char* name_of(mechanism::MotionEvent::Kind kind) {
-  using Kind = mechanism::MotionEvent::Kind;
-  switch (kind) {
-    case Kind::limit:
-      return "limit";
-    case Kind::return_:
-      return "return";
-    case Kind::change:
-      return "change";
-    case Kind::infinity:
-      return "infinity";
-    case Kind::lost:
-      break;
-  }
-  return "lost";
-}
-
 Json trust_of(const solve::Trust& trust) {
   Json json;
   json["outputs"] = Json::array();
@@ -177,6 +160,23 @@ Json description_of(const mechanism::Mechanism& mechanism) {
 }
 
 }  // namespace
+
+const char* event_name(mechanism::MotionEvent::Kind kind) {
+  using Kind = mechanism::MotionEvent::Kind;
+  switch (kind) {
+    case Kind::limit:
+      return "limit";
+    case Kind::return_:
+      return "return";
+    case Kind::change:
+      return "change";
+    case Kind::infinity:
+      return "infinity";
+    case Kind::lost:
+      break;
+  }
+  return "lost";
+}
 
 Engine::Engine() : Engine(Limits{}) {}
 
@@ -340,7 +340,7 @@ Answer Engine::motion(const std::string& text, const std::string& name, const st
     json["events"] = Json::array();
     for (const mechanism::MotionEvent& event : events) {
       json["events"].push_back({{"time", event.time},
-                                {"kind", name_of(event.kind)},
+                                {"kind", event_name(event.kind)},
                                 {"group", structure.groups[event.group].name}});
     }
     return moved;

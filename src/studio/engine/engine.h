@@ -5,6 +5,7 @@
 #include <string>
 
 #include <oblique/diagram/block_library.h>
+#include <oblique/mechanism/motion/motion_event.h>
 
 #include "studio/engine/answer.h"
 
@@ -17,6 +18,9 @@ struct Limits {
   double numbers = 16e6;          ///< in the rows of an answer: 128 MB
   double text = 4 * 1024 * 1024;  ///< bytes of a file
 };
+
+/// "limit", "return", "change", "infinity", "lost".
+const char* event_name(mechanism::MotionEvent::Kind kind);
 
 /// Text of a diagram or a mechanism in, objects and numbers out: what a page needs of the library. Nothing is
 /// kept between two calls but the files put beside the texts and the kinds of blocks. `name` is what messages

@@ -4,23 +4,20 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include <fmt/format.h>
 
 #include <oblique/draw/picture/svg.h>
+#include <oblique/mechanism/model/plane.h>
 #include <oblique/mechanism/model/read_mechanism.h>
 #include <oblique/patch/range.h>
 #include <oblique/report/linkage_scene.h>
 #include <oblique/synthesis/drag.h>
-#include <oblique/synthesis/synthesis_error.h>
 
 namespace oblique::studio {
 namespace {
 
 using Eigen::Vector2d;
-
-constexpr double kTurn = 2 * std::numbers::pi;
 
 std::string elements_of(const std::vector<draw::Mark>& marks) {
   std::string text;
@@ -58,23 +55,6 @@ std::string words_of(mechanism::MotionEvent::Kind kind, const std::string& group
       break;
   }
   return fmt::format("no step leads {} on", group);
-}
-
-const char* kind_of(mechanism::MotionEvent::Kind kind) {
-  using Kind = mechanism::MotionEvent::Kind;
-  switch (kind) {
-    case Kind::limit:
-      return "limit";
-    case Kind::return_:
-      return "return";
-    case Kind::change:
-      return "change";
-    case Kind::infinity:
-      return "infinity";
-    case Kind::lost:
-      break;
-  }
-  return "lost";
 }
 
 [[noreturn]] void refuse(std::string what, std::string expected, text::Remedy remedy = {}) {
@@ -213,6 +193,7 @@ Answer LiveMechanism::follow(LiveConsole& console, double magnification) {
       refuse(fmt::format("the magnification is {}", magnification), "a finite number above 0");
     const Held& now = held();
     std::vector<std::string> names;
+    names.reserve(2 * now.moved.points.size());
     for (const mechanism::Point& point : now.moved.points) {
       if (point.fixed) continue;
       names.push_back(point.name + ".x");
@@ -220,6 +201,7 @@ Answer LiveMechanism::follow(LiveConsole& console, double magnification) {
     }
     const std::optional<std::vector<double>> values = console.outputs(names);
     std::vector<Vector2d> places;
+    places.reserve(now.moved.points.size());
     if (values) {
       std::size_t k = 0;
       for (const mechanism::Point& point : now.moved.points) {
@@ -311,7 +293,7 @@ Answer LiveMechanism::time_of(double drive) {
     // of a drive that turns on and on the same angle within its first turn
     const mechanism::Drive& first = moved.drives.front();
     double value = drive;
-    if (!first.slide && !first.law) value = first.start + std::fmod(drive - first.start, kTurn);
+    if (!first.slide && !first.law) value = first.start + std::fmod(drive - first.start, mechanism::kTurn);
     const auto time = mechanism::time_at_value(moved, value);
     Answer found;
     found.object["time"] = time ? Json(*time) : Json();
@@ -333,7 +315,7 @@ Answer LiveMechanism::events() {
     options.at_limit = mechanism::AtLimit::open;
     const auto add = [&](const mechanism::MotionEvent& event, bool reached, double drive) {
       const std::string& group = now.structure.groups[event.group].name;
-      json["events"].push_back({{"kind", kind_of(event.kind)},
+      json["events"].push_back({{"kind", event_name(event.kind)},
                                 {"what", words_of(event.kind, group)},
                                 {"group", group},
                                 {"time", reached ? Json(event.time) : Json()},

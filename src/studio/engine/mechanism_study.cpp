@@ -11,7 +11,6 @@
 #include <oblique/mechanism/motion/motion.h>
 #include <oblique/network/assembly/network.h>
 #include <oblique/patch/patch.h>
-#include <oblique/patch/patch_setup.h>
 #include <oblique/patch/triad_split.h>
 #include <oblique/report/mode_list.h>
 #include <oblique/solve/operating_point/quasi_steady.h>
@@ -25,7 +24,7 @@
 namespace oblique::studio {
 namespace {
 
-const char* const kSlower = "slower";
+constexpr const char* kSlower = "slower";
 
 mechanism::Mechanism read(const Engine& engine, const std::string& text, const std::string& name) {
   engine.check_size(text, name);
