@@ -37,7 +37,7 @@ set(replaced "hinge[ds]?|tours?|amidst|regularity|overdue")
 set(replaced_network "|surfaces?")
 set(replaced_solve "|surfaces?")
 
-set(verbs "run|ensemble|check|solve|modes|patch|compare|fit|draw|animate|report|blocks|machines")
+set(verbs "run|atlas|ensemble|check|solve|modes|patch|compare|fit|draw|animate|report|blocks|machines")
 set(most_units 33)
 file(GLOB_RECURSE files RELATIVE ${SOURCE}/src ${SOURCE}/src/oblique/*.h ${SOURCE}/src/oblique/*.cpp
      ${SOURCE}/src/oblique/*.def)

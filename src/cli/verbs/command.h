@@ -158,13 +158,23 @@ struct CompareRequest {
 ExitStatus compare_mechanism(const Session& session, const CompareRequest& request);
 
 struct ReportRequest {
-  std::string mechanism;
+  std::string file;
   std::string output;
   PatchChoice patch;
   std::string machine;  ///< whose pot sheet stands in it
   std::string theme = "auto";
 };
-ExitStatus report_mechanism(const Session& session, const ReportRequest& request);
+/// Reports on a mechanism or a diagram.
+ExitStatus report_file(const Session& session, const ReportRequest& request);
+
+struct AtlasRequest {
+  std::string folder;
+  std::string output;  ///< the folder of the pages; empty: none are written
+  std::string studio;  ///< the studio's page, which they lead to; empty: they do not
+  std::string theme = "auto";
+};
+/// Runs the published programmes of a folder.
+ExitStatus run_atlas(const Session& session, const AtlasRequest& request);
 
 struct FitRequest {
   std::string mechanism;

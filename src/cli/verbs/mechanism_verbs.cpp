@@ -151,9 +151,11 @@ void add_compare(CLI::App& app, Chosen& chosen) {
 
 void add_report(CLI::App& app, Chosen& chosen) {
   auto request = std::make_shared<ReportRequest>();
-  CLI::App* const verb = app.add_subcommand(
-      "report", "Report on a mechanism in one page: its groups, motion, patch, convergence, stability");
-  verb->add_option("MECHANISM", request->mechanism, "mechanism file (oblique-mechanism/1)")->required();
+  CLI::App* const verb = app.add_subcommand("report",
+                                            "Report in one page: on a mechanism its groups, motion, patch, "
+                                            "convergence, stability; on a diagram its "
+                                            "circuit, equations, curves, scaling, settings");
+  verb->add_option("FILE", request->file, "mechanism or diagram file")->required();
   verb->add_option("-o,--output", request->output, "write the page to FILE.html")
       ->required()
       ->type_name("FILE");
@@ -166,7 +168,8 @@ void add_report(CLI::App& app, Chosen& chosen) {
                    "auto: light or dark as the reader's screen; on paper always light")
       ->capture_default_str()
       ->type_name("auto|light|dark");
-  choose(verb, chosen, request, report_mechanism);
+  verb->footer("What is said of a patch and of a machine is asked of a mechanism; a diagram has its own.");
+  choose(verb, chosen, request, report_file);
 }
 
 void add_fit(CLI::App& app, Chosen& chosen) {
