@@ -13,8 +13,6 @@
 namespace oblique::diagram {
 namespace {
 
-constexpr std::string_view kSteps = "step";
-
 class LessonReader {
  public:
   LessonReader(const Diagram& diagram, const text::Value& table, double until, text::Diagnostics& diagnostics)
@@ -26,6 +24,7 @@ class LessonReader {
   Lesson read() {
     lesson_.title = reader_.string("title").value_or("");
     lesson_.text = reader_.string("text").value_or("");
+    constexpr std::string_view kSteps = "step";  // a key, which only happens to be a block's name too
     if (const text::Value* const steps = reader_.find(kSteps)) read_steps(*steps);
     if (const text::Value* const question = reader_.table("question")) read_question(*question);
     reader_.finish();
@@ -35,7 +34,7 @@ class LessonReader {
  private:
   void read_steps(const text::Value& steps) {
     if (steps.kind != text::Value::Kind::array) {
-      reader_.report(kSteps, fmt::format("'step' of [lesson] is {}", text::kind_name(steps.kind)),
+      reader_.report("step", fmt::format("'step' of [lesson] is {}", text::kind_name(steps.kind)),
                      "tables [[lesson.step]]");
       return;
     }
