@@ -48,7 +48,7 @@ at = 1
   EXPECT_NEAR(results[0].in_uncertainties(), std::abs(1839.4 - 5000 * std::exp(-1)) / 0.1, 0.01);
   EXPECT_TRUE(results[0].met());
   EXPECT_EQ(to_text(results),
-            "ok      x at 1 = 1839.4, published 1839.4 ± 0.1 mV: off by 0.028 times that\n");
+            "ok      x at 1 = 1839.397, published 1839.4 ± 0.1 mV: off by 0.028 times that\n");
 }
 
 // Each setting is a run of its own, after the settings of the first one; values keep their order.

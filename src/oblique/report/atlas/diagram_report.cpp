@@ -133,15 +133,26 @@ class DiagramWriter {
     page_.picture(draw::draw_diagram(diagram_, report_.blocks));
   }
 
+  /// The circuit in ideal elements, which invert as they do; as it is, where values are given in volts.
+  diagram::FlatDiagram ideal_circuit() const {
+    diagram::Diagram ideal = diagram_;
+    ideal.machine.profile = "ideal";
+    try {
+      return diagram::flatten(ideal, report_.blocks);
+    } catch (const diagram::DiagramError&) {
+      return flat_;
+    }
+  }
+
   void equations() {
     page_.heading("What it solves");
     page_.introduction(
         "Read back from the wires: summers, coefficients, signs and scale factors are multiplied out. "
         "Outputs "
         "stand in their units, other signals in machine units; t is the time of the run in seconds. "
-        "Every integrator operates here, and no amplifier saturates.");
+        "Every integrator operates here, and the amplifiers are ideal.");
     std::string lines;
-    for (const RecoveredEquation& equation : recovered_equations(flat_))
+    for (const RecoveredEquation& equation : recovered_equations(ideal_circuit()))
       lines += draw::escape_xml(printed(equation)) + "\n";
     page_.element("<pre class=\"equations\">" + lines + "</pre>");
   }
