@@ -181,7 +181,7 @@ foreach(entry IN LISTS entries)
 endforeach()
 
 # Every text file that is embedded stands in the list beside it.
-foreach(directory IN ITEMS blocks src/machines)
+foreach(directory IN ITEMS blocks src/machines src/machines/elements)
   if(EXISTS ${SOURCE}/${directory}/CMakeLists.txt)
     file(READ ${SOURCE}/${directory}/CMakeLists.txt embedded)
     string(REGEX MATCHALL "[A-Za-z0-9_-]+\\.toml" embedded "${embedded}")
