@@ -118,7 +118,7 @@ struct PatchChoice {
 };
 
 struct PatchRequest {
-  std::string mechanism;
+  std::string mechanism;  ///< or diagram, for a machine
   std::string output;
   std::string gain = "1e6";
   std::string bandwidth;
@@ -127,11 +127,13 @@ struct PatchRequest {
   std::string unit;
   std::string period;
   TriadChoice triads;
-  std::string machine;  ///< in whose elements
-  std::string sheets;   ///< how the names of its sheets begin
+  std::string machine;     ///< in whose elements
+  std::string sheets;      ///< how the names of its sheets begin
+  std::string time_scale;  ///< of a diagram: 1 s of it in so many of the machine; empty: as it takes
+  int segments = 0;        ///< of a diagram: straight lines of a function generator; 0: the usual number
   bool force = false;
 };
-ExitStatus patch_mechanism(const Session& session, const PatchRequest& request);
+ExitStatus patch_file(const Session& session, const PatchRequest& request);
 
 struct CompareRequest {
   std::string mechanism;

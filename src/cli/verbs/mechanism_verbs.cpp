@@ -40,8 +40,11 @@ void add_modes(CLI::App& app, Chosen& chosen) {
 
 void add_patch(CLI::App& app, Chosen& chosen) {
   auto request = std::make_shared<PatchRequest>();
-  CLI::App* const verb = app.add_subcommand("patch", "Patch a mechanism: the diagram that simulates it");
-  verb->add_option("MECHANISM", request->mechanism, "mechanism file (oblique-mechanism/1)")->required();
+  CLI::App* const verb = app.add_subcommand(
+      "patch", "Patch a mechanism: the diagram that simulates it; or put a diagram onto a machine");
+  verb->add_option("FILE", request->mechanism,
+                   "mechanism file (oblique-mechanism/1); with --machine also a diagram (oblique-diagram/1)")
+      ->required();
   verb->add_option("--gain", request->gain, "gain of the servo amplifiers; inf: ideal")
       ->capture_default_str();
   verb->add_option(
@@ -67,18 +70,32 @@ void add_patch(CLI::App& app, Chosen& chosen) {
                    "write it in the elements of this machine, with a component list: what it needs and what "
                    "is missing")
       ->type_name("NAME");
-  verb->add_option("--sheets", request->sheets,
-                   "with --machine: write PREFIX-patch.csv (connections), PREFIX-pots.csv (settings), "
-                   "PREFIX-static.csv (static test), and PREFIX.txt with all three for paper")
+  verb->add_option(
+          "--sheets", request->sheets,
+          "with --machine: write PREFIX-patch.csv (connections), PREFIX-pots.csv (settings), "
+          "PREFIX-static.csv (static test), of a diagram PREFIX-scales.csv (what its signals stand for), and "
+          "PREFIX.txt with all of them for paper")
       ->type_name("PREFIX");
-  choose(verb, chosen, request, patch_mechanism);
+  verb->add_option(
+          "--time-scale", request->time_scale,
+          "of a diagram: seconds of the machine for 1 s of it (default: 1, or as its integrators ask)")
+      ->type_name("N");
+  verb->add_option("--segments", request->segments,
+                   "of a diagram: straight lines of a function generator, at the most (default: 10)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1000));
+  choose(verb, chosen, request, patch_file);
 }
 
 void add_compare(CLI::App& app, Chosen& chosen) {
   auto request = std::make_shared<CompareRequest>();
-  CLI::App* const verb =
-      app.add_subcommand("compare", "Compare the patched mechanism with its exact motion, gain by gain");
-  verb->add_option("MECHANISM", request->mechanism, "mechanism file (oblique-mechanism/1)")->required();
+  CLI::App* const verb = app.add_subcommand(
+      "compare",
+      "Compare the patched mechanism with its exact motion, gain by gain; or a diagram with its ideal self");
+  verb->add_option("FILE", request->mechanism,
+                   "mechanism file (oblique-mechanism/1), or a diagram (oblique-diagram/1) with --machine or "
+                   "--tolerance")
+      ->required();
   verb->add_option("--gain", request->gains, "gains of the servo amplifiers (default 1e2,1e3,1e4,1e5,1e6)")
       ->delimiter(',')
       ->allow_extra_args(false)
