@@ -51,7 +51,7 @@ std::vector<Written> sheet_files(const PatchRequest& request, const diagram::Dia
   return files;
 }
 
-/// "multipliers, which 'xy', 'xz' are": the kinds that the machine has none of, with the blocks.
+/// "multipliers (for 'xy', 'xz')": the kinds that the machine has none of, with the blocks.
 std::vector<std::string> absent_blocks(const machine::ComponentList& components) {
   std::vector<std::string> kinds;
   for (const machine::ComponentListRow& row : components.rows) {
