@@ -37,7 +37,7 @@ set(replaced "hinge[ds]?|tours?|amidst|regularity|overdue")
 set(replaced_network "|surfaces?")
 set(replaced_solve "|surfaces?")
 
-set(verbs "run|ensemble|check|solve|modes|patch|compare|fit|draw|animate|report|blocks|machines")
+set(verbs "run|atlas|ensemble|check|solve|modes|patch|compare|fit|draw|animate|report|blocks|machines")
 set(most_units 33)
 file(GLOB_RECURSE files RELATIVE ${SOURCE}/src ${SOURCE}/src/oblique/*.h ${SOURCE}/src/oblique/*.cpp
      ${SOURCE}/src/oblique/*.def)
@@ -181,7 +181,7 @@ foreach(entry IN LISTS entries)
 endforeach()
 
 # Every text file that is embedded stands in the list beside it.
-foreach(directory IN ITEMS blocks src/machines)
+foreach(directory IN ITEMS blocks src/machines src/machines/elements)
   if(EXISTS ${SOURCE}/${directory}/CMakeLists.txt)
     file(READ ${SOURCE}/${directory}/CMakeLists.txt embedded)
     string(REGEX MATCHALL "[A-Za-z0-9_-]+\\.toml" embedded "${embedded}")

@@ -119,6 +119,7 @@ std::optional<ExitStatus> parse_arguments(int argc, char** argv, Chosen& chosen)
   add_patch(app, chosen);
   add_compare(app, chosen);
   add_report(app, chosen);
+  add_atlas(app, chosen);
   add_fit(app, chosen);
   add_ensemble(app, chosen);
   add_draw(app, chosen);

@@ -53,6 +53,7 @@ const std::vector<Call> kCalls{
      "four-bar.toml", "out.json"},
     {"Sweep", "sweep division.toml --vary q.gain=1e3,1e4 --jobs 2 -o out.csv", "division.toml", "out.csv"},
     {"Report", "report four-bar.toml -o out.html", "four-bar.toml", "out.html"},
+    {"ReportOnDiagram", "report division.toml -o out.html", "division.toml", "out.html"},
     {"Fit", "fit four-bar.toml --path path.csv --free AB=0.9..1.1 --starts 1 -o out.toml", "four-bar.toml",
      "out.toml"},
     {"Draw", "draw four-bar.toml -o out.svg", "four-bar.toml", "out.svg"},

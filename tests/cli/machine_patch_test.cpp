@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // `oblique patch --machine`: what it writes, and where it writes nothing.
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -208,6 +209,138 @@ out = "polarity*in"
               "/diagrams/mechanisms/four-bar.toml --machine tr-10 --gain 1e3 --blocks own");
   EXPECT_EQ(compared.status, 0) << compared.err;
   EXPECT_THAT(compared.out, Not(HasSubstr(" summer ")));
+}
+
+// A diagram of one's own in problem units: a mass on a spring, 40 mm from its rest.
+constexpr const char* kSpring = R"toml(format = "oblique-diagram/1"
+title = "Spring"
+[run]
+until = 10
+[blocks]
+v    = { type = "integrator", in = ["-0.2*v", "-4*x"] }
+x    = { type = "integrator", in = "v", initial = 40 }
+[outputs]
+x = { signal = "x", unit = "mm" }
+)toml";
+
+TEST_F(PatchForMachine, PutsADiagramOntoAMachine) {
+  write("spring.toml", kSpring);
+  const Outcome outcome = oblique("patch spring.toml --machine tr-10 --sheets made -o made.toml");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("elements of EAI PACE TR-10 (1959)\n"));
+  EXPECT_THAT(outcome.err, HasSubstr("\nit fits\n"));
+  EXPECT_THAT(outcome.err, ContainsRegex("its signals reach 0\\.9[0-9] \\('v'\\) to (1|0\\.99) "));
+  EXPECT_THAT(outcome.err,
+              ContainsRegex("outputs differ from the diagram's by [0-9.]+e-(08|09|10|11|12|13) of"));
+  EXPECT_THAT(outcome.err, Not(HasSubstr("warning")));
+  EXPECT_THAT(outcome.err, HasSubstr("run it with: oblique run made.toml\n"));
+  EXPECT_EQ(oblique("run made.toml --halt-on-overload").status, 0);
+  // 1 V of x is 4 mm, as 40 mm are the whole of the 10 V.
+  EXPECT_THAT(text_of("made-scales.csv"), HasSubstr(",x,4,10.0000\n"));
+  EXPECT_THAT(text_of("made-scales.csv"), StartsWith("element,signal,1 V is,largest [V]\n"));
+  EXPECT_THAT(text_of("made.txt"), HasSubstr("\nscales\n"));
+  EXPECT_THAT(text_of("made-pots.csv"), StartsWith("pot,setting,from,to,stands for\n"));
+  EXPECT_THAT(text_of("made-patch.csv"), HasSubstr("initial value"));
+}
+
+TEST_F(PatchForMachine, TakesTheTimeScaleThatIsAskedFor) {
+  write("spring.toml", kSpring);
+  const Outcome outcome = oblique("patch spring.toml --machine tr-10 --time-scale 5 -o made.toml");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("1 s of the diagram takes 5 s on the machine\n"));
+  EXPECT_THAT(text_of("made.toml"), ContainsRegex("until *= 50\n"));
+}
+
+TEST_F(PatchForMachine, RefusesADiagramThatTheMachineHasNoElementsFor) {
+  write("counted.toml", std::string(kSpring).insert(std::string(kSpring).find("[outputs]"),
+                                                    "turns = { type = \"counter\", clock = \"x\" }\n") +
+                            "turns = \"turns.out\"\n");
+  const Outcome counter = oblique("patch counted.toml --machine tr-10 -o made.toml");
+  EXPECT_EQ(counter.status, 2);
+  EXPECT_THAT(counter.err,
+              HasSubstr("counted.toml:8:1: the machine EAI PACE TR-10 (1959) has no counter, which "
+                        "'turns' is, and no circuit of its elements for it"));
+  EXPECT_THAT(counter.err,
+              HasSubstr("  remedy: build it of these; --force writes the diagram unscaled, with its own "
+                        "blocks\n"));
+  const Outcome forced = oblique("patch counted.toml --machine tr-10 -o made.toml --force");
+  EXPECT_EQ(forced.status, 0) << forced.err;
+  EXPECT_THAT(forced.err, HasSubstr("warning: not scaled: the machine EAI PACE TR-10 (1959) has no counter"));
+
+  const Outcome product = oblique("patch " + std::string(OBLIQUE_SOURCE_DIR) +
+                                  "/diagrams/historical/van-der-pol.toml --machine ec-1 -o other.toml");
+  EXPECT_EQ(product.status, 1);
+  EXPECT_THAT(product.err,
+              ContainsRegex("the machine Heathkit EC-1 has no multipliers \\(for '[a-z0-9_]+', .*\\), "
+                            "so nothing is written"));
+  EXPECT_THAT(product.err, HasSubstr("choose another machine (oblique machines)"));
+}
+
+TEST_F(PatchForMachine, TakesNoOptionsOfTheOtherKindOfFile) {
+  write("spring.toml", kSpring);
+  const auto says = [&](const std::string& options, const std::string& message) {
+    const Outcome outcome = oblique("patch spring.toml " + options);
+    EXPECT_EQ(outcome.status, 2) << options;
+    EXPECT_THAT(outcome.err, HasSubstr(message)) << options;
+  };
+  says(
+      "",
+      "spring.toml: this is a diagram already, and no machine is named to put it on; expected --machine NAME "
+      "beside it\n  remedy: oblique machines lists them");
+  says("--machine tr-10 --gain 1e4",
+       "--gain for a diagram; expected a mechanism beside it\n  remedy: leave it out");
+  says("--machine tr-10 --period '3 s'", "--period for a diagram");
+  says("--machine tr-10 --time-scale 0", "--time-scale 0");
+  const Outcome mechanism = patch("slider-crank", "--machine tr-10 --segments 5");
+  EXPECT_EQ(mechanism.status, 2);
+  EXPECT_THAT(mechanism.err, HasSubstr("--segments for a mechanism"));
+}
+
+// x = exp(-(1 + d) t) for a relative error d of the integrator's input, uniform within h: dx/dd is -t
+// exp(-t), which is largest at t = 1, so that x errs there by h/e at most, and by h/(e sqrt 3) in the root of
+// the mean square.
+TEST_F(PatchForMachine, ComparesADiagramWhoseElementsScatterWithItsIdealSelf) {
+  write("decay.toml", R"toml(format = "oblique-diagram/1"
+[run]
+until = 4
+[blocks]
+x = { type = "integrator", in = "-x", initial = 1 }
+)toml");
+  const Outcome outcome = oblique("compare decay.toml --tolerance 1% --budget --monte-carlo 200 --json");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto json = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(json["budget"]["point"], "x");
+  EXPECT_NEAR(json["budget"]["drive"].get<double>(), 1, 1e-9);  // a row stands there
+  EXPECT_NEAR(json["budget"]["error"].get<double>(), 0.01 / std::exp(1) / std::sqrt(3), 1e-7);
+  // 200 draws of a uniform number: the largest lies within some percent of the bound, the median within a
+  // sixth.
+  const auto& percentiles = json["monte_carlo"]["percentiles"];
+  EXPECT_NEAR(percentiles["100"].get<double>() * std::exp(1) / 0.01, 0.98, 0.03);
+  EXPECT_NEAR(percentiles["50"].get<double>() * std::exp(1) / 0.01, 0.5, 0.08);
+  EXPECT_THAT(oblique("compare decay.toml --tolerance 1% --budget").out,
+              HasSubstr("together they change output x by 2.124e-03 of its largest value"));
+}
+
+// Dow: a gain of 1000 in two integrators and an inverter costs the circle 0.0682 of its amplitude in ten
+// turns, as the lesson derives it.
+TEST_F(PatchForMachine, ComparesADiagramOnAMachineWithItsIdealSelf) {
+  const std::string circle = std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/lessons/circle-on-ec-1.toml";
+  const Outcome outcome = oblique("compare " + circle + " --machine ec-1 --json");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto json = nlohmann::json::parse(outcome.out);
+  EXPECT_NEAR(json["machine"]["max_error"].get<double>(), 1 - 0.8386025173132072 / 0.9, 1e-3);
+  EXPECT_NEAR(json["machine"]["explained"].get<double>(), 1, 0.05);
+  const Outcome text = oblique("compare " + circle + " --machine ec-1");
+  EXPECT_THAT(text.out, HasSubstr("on Heathkit EC-1, of as many elements as it takes\n"));
+  EXPECT_THAT(text.out, ContainsRegex("amplifier, open-loop gain +integrator +[0-9.]+e-02"));
+
+  const Outcome nothing = oblique("compare " + circle);
+  EXPECT_EQ(nothing.status, 2);
+  EXPECT_THAT(nothing.err,
+              HasSubstr("this is a diagram, and nothing is named to hold it against; expected --machine "
+                        "NAME, or --tolerance X with --budget or --monte-carlo N"));
+  EXPECT_THAT(oblique("compare " + circle + " --machine ec-1 --gain 1e4").err,
+              HasSubstr("--gain for a diagram"));
 }
 
 }  // namespace

@@ -133,6 +133,15 @@ TEST(ShippedMachines, HaveTheElementsThatArePublished) {
   EXPECT_EQ(count_of("avk-31", ElementKind::potentiometer), 34);
   EXPECT_EQ(count_of("mn-7", ElementKind::amplifier), -1);
   EXPECT_EQ(count_of("mpt-9", ElementKind::amplifier), -1);
+  EXPECT_EQ(count_of("meda-42", ElementKind::amplifier), 40);
+  EXPECT_EQ(count_of("meda-42", ElementKind::integrator), 12);
+  EXPECT_EQ(count_of("meda-42", ElementKind::potentiometer), 38);
+  EXPECT_EQ(count_of("meda-42", ElementKind::multiplier), 4);
+  EXPECT_EQ(count_of("meda-42", ElementKind::function_generator), 3);
+  EXPECT_EQ(count_of("dornier-240", ElementKind::amplifier), 49);
+  EXPECT_EQ(count_of("tr-20", ElementKind::amplifier), 20);
+  EXPECT_EQ(count_of("tr-48", ElementKind::amplifier), 48);
+  EXPECT_EQ(count_of("eai-580", ElementKind::amplifier), -1);
 }
 
 TEST(ShippedMachines, HaveTheUnitsAndStepsThatArePublished) {
@@ -144,6 +153,9 @@ TEST(ShippedMachines, HaveTheUnitsAndStepsThatArePublished) {
   EXPECT_THAT(find_machine("lucidac")->rates, ElementsAre(100, 10000));
   EXPECT_THAT(find_machine("model-1")->rates, ElementsAre(1, 10, 100, 1000));
   EXPECT_THAT(find_machine("tr-10")->input_gains, ElementsAre(1, 10));
+  EXPECT_THAT(find_machine("eai-580")->rates, ElementsAre(1, 10, 500, 5000));
+  EXPECT_EQ(find_machine("dornier-240")->unit, 10);
+  EXPECT_EQ(find_machine("tr-48")->unit, std::nullopt);
   EXPECT_TRUE(find_machine("lucidac")->signed_coefficients);
   EXPECT_FALSE(find_machine("tr-10")->signed_coefficients);
   EXPECT_FALSE(find_machine("ideal")->inverting);

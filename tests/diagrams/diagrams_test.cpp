@@ -99,12 +99,14 @@ TEST_P(ShippedDiagram, AgreesWithWhatWasPublishedOrSaysWhyNot) {
     EXPECT_TRUE(result.is_explained()) << report::to_text({result});
 }
 
-// Each step gives what it says is seen; the question is open as the file is shipped.
+// Each step gives what it says is seen; the question is open as the file is shipped. What a step without
+// numbers shows (that the run ends with an error, say) its page holds.
 TEST_P(ShippedDiagram, TeachesWhatIsSeen) {
   const diagram::BlockLibrary library = diagram::BlockLibrary::shipped();
   const diagram::Diagram diagram = diagram::read_diagram(path_of(GetParam()));
   if (!diagram.lesson) GTEST_SKIP() << "no lesson";
   for (const diagram::LessonStep& step : diagram.lesson->steps) {
+    if (step.expectations.empty()) continue;
     const oblique::solve::Run run = report::run_with(diagram, library, step.set, step.expectations);
     for (const report::ExpectationResult& seen : report::check_expectations(step.expectations, run))
       EXPECT_TRUE(seen.met) << step.action << ": " << seen.expectation.text << " = " << seen.actual;

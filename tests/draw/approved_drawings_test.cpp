@@ -17,6 +17,7 @@
 #include <oblique/diagram/diagram_reader.h>
 #include <oblique/draw/picture/svg.h>
 #include <oblique/draw/schematic/diagram_drawing.h>
+#include <oblique/text/file.h>
 
 namespace oblique::draw {
 namespace {
@@ -36,9 +37,10 @@ std::map<std::string, std::string> sums() {
   diagram::BlockLibrary library = diagram::BlockLibrary::shipped();
   library.add_directory(kSource / "diagrams/own-blocks/blocks");
   std::map<std::string, std::string> found;
-  for (const char* const folder : {"lessons", "historical", "own-blocks"}) {
+  for (const char* const folder : {"lessons", "historical", "course", "own-blocks"}) {
     for (const auto& entry : std::filesystem::directory_iterator(kSource / "diagrams" / folder)) {
       if (entry.path().extension() != ".toml") continue;
+      if (text::read_file(entry.path()).find("\"oblique-diagram/1\"") == std::string::npos) continue;
       const diagram::Diagram diagram = diagram::read_diagram(entry.path());
       const std::string name = fmt::format("{}/{}", folder, entry.path().stem().string());
       found[name] = sum_of(to_svg(draw_diagram(diagram, library)));

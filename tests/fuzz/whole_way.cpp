@@ -55,7 +55,8 @@ bool is_moved_by_rounding(const Trial& trial) {
            std::strtod(trial.message.c_str() + at + words.size(), nullptr) < kRounding;
   };
   const auto says = [&](std::string_view words) { return trial.message.find(words) != std::string::npos; };
-  return says("to which side it goes") || says("no digit of the output") ||
+  return says("to which side it goes") || says("no digit of the output") || says("it could as well stay") ||
+         says("when it leaves is known only roughly") ||
          (tells(trial, "of an unstable equilibrium") && is_within("from within ")) ||
          (tells(trial, "too small for the finest tolerance") && is_within("stays within ")) ||
          tells(trial, "which is its error");

@@ -39,6 +39,40 @@ TEST(ComparisonChart, DrawsTheRunsOfEachSeriesWhereOneIsLeftOut) {
   EXPECT_EQ(chart.panels[2].curves[1].points[1].y(), 1e-4);
 }
 
+// Errors 2/gain of which three quarters are static and a quarter lag; the first run is on another branch, the
+// last no clearer than what the tolerance leaves.
+TEST(ComparisonChart, DrawsThePartsOfTheErrorsAndALineOfOrderOne) {
+  compare::Comparison comparison;
+  comparison.size = 1;
+  comparison.unit = "m";
+  for (const double gain : {1e5, 1e3, 1e4, 1e2}) {
+    comparison.runs.push_back(run_of(gain, patch::PatchMethod::triangles, 2 / gain));
+    comparison.runs.back().parts = compare::ErrorParts{1.5 / gain, -0.5 / gain, 0.9e-6};
+  }
+  comparison.runs[3].left_branch = 1;
+  comparison.series = {{patch::PatchMethod::triangles, 20, 0, 4, 1e-5, {}}};
+  const draw::Chart chart = parts_chart(comparison);
+  ASSERT_EQ(chart.panels.size(), 1U);
+  EXPECT_TRUE(chart.panels[0].x.logarithmic && chart.panels[0].y.logarithmic);
+  const auto points_of = [&](const std::string& name) {
+    for (const draw::Curve& curve : chart.panels[0].curves) {
+      if (curve.name == name) return curve.points;
+    }
+    return std::vector<Eigen::Vector2d>();
+  };
+  using Points = std::vector<Eigen::Vector2d>;
+  EXPECT_EQ(points_of("largest error"), (Points{{1e3, 2e-3}, {1e4, 2e-4}, {1e5, 2e-5}}));
+  EXPECT_EQ(points_of("static"), (Points{{1e3, 1.5e-3}, {1e4, 1.5e-4}, {1e5, 1.5e-5}}));
+  EXPECT_EQ(points_of("lag"), (Points{{1e3, 0.5e-3}, {1e4, 0.5e-4}, {1e5, 0.5e-5}}));
+  EXPECT_EQ(points_of("solver"), Points{});  // below a tenth of the floor
+  EXPECT_EQ(points_of("on another branch"), (Points{{1e2, 2e-2}}));
+  const Points order = points_of("order −1");
+  ASSERT_EQ(order.size(), 2U);
+  for (const Eigen::Vector2d& point : order) EXPECT_NEAR(point.x() * point.y(), 2, 1e-12);
+  EXPECT_LT(order[0].x(), 1e2);
+  EXPECT_GT(order[1].x(), 1e5);
+}
+
 /// So many drawn machines, of which number k errs by k + 1 in both rows.
 MonteCarloReport drawn(std::size_t runs) {
   MonteCarloReport report;

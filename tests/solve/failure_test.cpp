@@ -24,6 +24,20 @@ testing::RunFailure failure(const std::string& blocks, const testing::Request& r
 
 // Algebraic loops without one solution.
 
+// The quotient is that of zeros all along: nothing is known of it in any row, though the last solution solves
+// it.
+TEST(SingularLoop, OfADividerOfZerosBetweenEventsAndRows) {
+  const auto f = failure(R"(
+f = { type = "function-generator", in = "-2*s", points = [[-1, 0.5], [0, 0], [0, 0.5], [1, 0.5]] }
+s = { type = "summer", in = ["2*f"] }
+q = { type = "divider", numerator = "2*s", denominator = "2*f", gain = inf, bandwidth = inf }
+)",
+                         {.until = 5, .samples = 41});
+  EXPECT_EQ(f.kind, SolveError::Kind::singular_loop);
+  EXPECT_THAT(f.message,
+              HasSubstr("the algebraic loop q.product → q.quotient → q.product is singular at t = 0.125 s"));
+}
+
 TEST(SingularLoop, OfASummerOnItself) {
   const auto f = failure("one = { type = \"constant\" }\ns = { type = \"summer\", in = [\"one\", \"s\"] }\n");
   EXPECT_EQ(f.kind, SolveError::Kind::singular_loop);

@@ -53,6 +53,7 @@ export async function opened({fragment = "", width = 1280, height = 900, scheme 
   const begin = Date.now();
   await page.goto(pathToFileURL(file).href + fragment);
   await page.waitForSelector(".schematic svg", {timeout: 30000});
+  await page.waitForFunction(() => document.querySelector("h1 .quiet").textContent !== "", {timeout: 30000});  // its machine is there
   return {page, requests, troubles, ready: Date.now() - begin};
 }
 

@@ -15,6 +15,7 @@ test("opens class III from a file, runs and moves it, and asks for nothing", asy
   console.log(`page ${(size / 1e6).toFixed(2)} MB (at most 2.5), ready in ${ready} ms (at most 1000 on two idle cores)`);
   assert.ok(size <= 2.5e6);
   assert.match(await text(page, "h1"), /Class III/);
+  await page.waitForSelector(".linkage");
   const before = await page.$eval(".linkage", (element) => element.innerHTML);
   await button(page, "OP");
   await wait(1500);

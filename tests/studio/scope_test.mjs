@@ -83,6 +83,31 @@ test("normal waits, auto runs free, and a single sweep stands until it is armed 
   await page.close();
 });
 
+// Without persistence the beam goes over what it left of the sweep before: the screen is never empty behind it.
+test("the beam leaves the rest of the sweep before until it comes there", async () => {
+  const {page, troubles} = await opened();
+  await open(page, circle);
+  await trigger(page, "twice", {level: 0.8, base: 0.1});
+  await button(page, "OP");
+  await page.waitForFunction(() => {
+    const [, begin, unit] = document.querySelector(".screen").dataset.status.match(/triggered at t = (\S+) (m?s)/) ?? [];
+    const zero = Number(begin) * (unit === "ms" ? 1e-3 : 1);
+    const into = Number(document.querySelector(".time").textContent.match(/t = (\S+) s/)[1]) - zero;
+    return zero > 2 && into > 0.2 && into < 0.7;
+  }, {timeout: 30000});
+  await button(page, "HOLD");
+  await wait(300);
+  const {rows} = await table(page);
+  assert.ok(rows.every(([sweep]) => sweep === 1));
+  assert.ok(rows.length > 595 && rows[0][1] === 0 && rows.at(-1)[1] > 0.999, `${rows.length} ${rows.at(-1)}`);
+  rows.forEach(([, t, twice], k) => {
+    assert.ok(k === 0 || t > rows[k - 1][1], String(t));
+    assert.ok(Math.abs(twice - 1.6 * Math.sin(Math.PI / 6 + 3 * t)) < near, `${t} ${twice}`);
+  });
+  assert.deepEqual(troubles, []);
+  await page.close();
+});
+
 test("a trigger that another machine has not is taken off", async () => {
   const {page, troubles} = await opened();
   await open(page, circle);
@@ -336,6 +361,17 @@ test("the speed goes from frozen to as fast as it goes", async () => {
   const frozen = await timeOf(page);
   await wait(300);
   assert.equal(await timeOf(page), frozen);
+  // The free beam goes on by a screen a frame at the most, of 500 rows: what is wider than a row is seen.
+  await choose(page, "Time base", "0.05");
+  await button(page, "IC");
+  await page.select(".modes select", "Infinity");
+  await button(page, "OP");
+  await page.waitForFunction(() => Number(document.querySelector(".time").textContent.match(/t = (\S+) s/)[1]) > 2, {timeout: 20000});
+  await button(page, "HOLD");
+  await wait(300);
+  const {rows} = await table(page);
+  assert.ok(rows.length >= 500, String(rows.length));
+  for (let k = 1; k < rows.length; ++k) assert.ok(rows[k][0] - rows[k - 1][0] < 0.00101, `${rows[k - 1][0]} ${rows[k][0]}`);
   assert.deepEqual(troubles, []);
   await page.close();
 });

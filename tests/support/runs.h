@@ -19,6 +19,7 @@ struct Request {
   int samples = 1001;
   long max_steps = 10'000'000;
   std::vector<double> extra_times = {};
+  diagram::IntegrationMethod method = diagram::IntegrationMethod::automatic;
 };
 
 inline solve::Run run_of(const Compiled& made, const Request& request = {}) {
@@ -28,6 +29,7 @@ inline solve::Run run_of(const Compiled& made, const Request& request = {}) {
   options.samples = request.samples;
   options.max_steps = request.max_steps;
   options.extra_times = request.extra_times;
+  options.method = request.method;
   return solve::run(made.program, made.flat, options);
 }
 

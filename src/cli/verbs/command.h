@@ -119,7 +119,7 @@ struct PatchChoice {
 };
 
 struct PatchRequest {
-  std::string mechanism;
+  std::string mechanism;  ///< or diagram, for a machine
   std::string output;
   std::string gain = "1e6";
   std::string bandwidth;
@@ -128,11 +128,13 @@ struct PatchRequest {
   std::string unit;
   std::string period;
   TriadChoice triads;
-  std::string machine;  ///< in whose elements
-  std::string sheets;   ///< how the names of its sheets begin
+  std::string machine;     ///< in whose elements
+  std::string sheets;      ///< how the names of its sheets begin
+  std::string time_scale;  ///< of a diagram: 1 s of it in so many of the machine; empty: as it takes
+  int segments = 0;        ///< of a diagram: straight lines of a function generator; 0: the usual number
   bool force = false;
 };
-ExitStatus patch_mechanism(const Session& session, const PatchRequest& request);
+ExitStatus patch_file(const Session& session, const PatchRequest& request);
 
 struct CompareRequest {
   std::string mechanism;
@@ -158,13 +160,23 @@ struct CompareRequest {
 ExitStatus compare_mechanism(const Session& session, const CompareRequest& request);
 
 struct ReportRequest {
-  std::string mechanism;
+  std::string file;
   std::string output;
   PatchChoice patch;
   std::string machine;  ///< whose pot sheet stands in it
   std::string theme = "auto";
 };
-ExitStatus report_mechanism(const Session& session, const ReportRequest& request);
+/// Reports on a mechanism or a diagram.
+ExitStatus report_file(const Session& session, const ReportRequest& request);
+
+struct AtlasRequest {
+  std::string folder;
+  std::string output;  ///< the folder of the pages; empty: none are written
+  std::string studio;  ///< the studio's page, which they lead to; empty: they do not
+  std::string theme = "auto";
+};
+/// Runs the published programmes of a folder.
+ExitStatus run_atlas(const Session& session, const AtlasRequest& request);
 
 struct FitRequest {
   std::string mechanism;

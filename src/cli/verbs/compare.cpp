@@ -9,21 +9,25 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <oblique/commission/diagram_on_machine.h>
 #include <oblique/commission/on_machine.h>
 #include <oblique/compare/budget.h>
 #include <oblique/compare/machine_comparison.h>
 #include <oblique/compare/monte_carlo.h>
 #include <oblique/mechanism/model/read_mechanism.h>
 
+#include <oblique/diagram/diagram_reader.h>
 #include <oblique/diagram/flatten.h>
 #include <oblique/report/budget_report.h>
 #include <oblique/report/comparison_chart.h>
 #include <oblique/report/comparison_report.h>
+#include <oblique/report/file_kind.h>
 #include <oblique/report/json_text.h>
 #include <oblique/report/judgement_text.h>
 #include <oblique/report/machine_comparison_report.h>
 #include <oblique/report/monte_carlo_report.h>
 #include <oblique/report/text_table.h>
+#include <oblique/text/file.h>
 #include "terminal/output_files.h"
 #include "terminal/plot_output.h"
 #include "terminal/terminal.h"
@@ -147,20 +151,23 @@ std::optional<double> until_within_option(const std::string& text) {
   return within;
 }
 
-report::MonteCarloReport draw_elements(const CompareRequest& request, const mechanism::Mechanism& mechanism,
+/// Errors are in `unit`; `draw` runs the machines.
+template <class Draw>
+report::MonteCarloReport draw_elements(const CompareRequest& request, const std::string& unit, double size,
                                        const diagram::Diagram& diagram, const diagram::BlockLibrary& library,
                                        const diagram::MachineProfile* machine,
-                                       std::optional<double> good_below, std::optional<double> until_within) {
+                                       std::optional<double> good_below, std::optional<double> until_within,
+                                       const Draw& draw) {
   report::MonteCarloReport report;
   report.tolerance = request.tolerance;
   if (request.tolerance.empty()) report.machine = machine->title;
-  report.unit = mechanism.length_unit;
+  report.unit = unit;
   report.options.scatters = scatters_of(request, library, machine);
   report.options.runs = request.runs;
   report.options.seed = request.seed;
   report.options.first_run = request.first_run;
   report.options.threads = threads_of(request);
-  report.size = mechanism.largest_length();
+  report.size = size;
   report.options.good_below = good_below;
   report.options.until_within = until_within;
   if (report.options.runs == 1) {
@@ -175,25 +182,110 @@ report::MonteCarloReport draw_elements(const CompareRequest& request, const mech
   Progress progress("drawing elements");
   report.options.progress = [&](double fraction) { progress.show(fraction); };
   const auto begin = std::chrono::steady_clock::now();
-  report.result = compare::monte_carlo(mechanism, diagram, library, report.options);
+  report.result = draw(report.options);
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return report;
 }
 
-report::BudgetReport budget_of(const CompareRequest& request, const mechanism::Mechanism& mechanism,
-                               const diagram::Diagram& diagram, const diagram::BlockLibrary& library,
-                               const diagram::MachineProfile* machine, bool turning) {
+/// `differentiate` finds the budget.
+template <class Differentiate>
+report::BudgetReport budget_of(const CompareRequest& request, const diagram::BlockLibrary& library,
+                               const diagram::MachineProfile* machine, const Differentiate& differentiate) {
   report::BudgetReport report;
-  report.unit = mechanism.length_unit;
-  report.turning = turning;
   report.scatter = request.tolerance.empty() ? fmt::format("as those of {} scatter", machine->title)
                                              : fmt::format("within ±{}", request.tolerance);
   compare::BudgetOptions options;
   options.scatters = scatters_of(request, library, machine);
   Progress progress("differentiating");
   options.progress = [&](double fraction) { progress.show(fraction); };
-  report.budget = compare::error_budget(mechanism, diagram, library, options);
+  report.budget = differentiate(options);
   return report;
+}
+
+/// A diagram takes none of the options that say how a mechanism becomes one, and no drawing.
+void check_diagram_request(const CompareRequest& request) {
+  const CompareRequest usual;
+  const std::pair<const char*, bool> options[] = {{"--gain", !request.gains.empty()},
+                                                  {"--bandwidth", !request.bandwidths.empty()},
+                                                  {"--method", request.methods != usual.methods},
+                                                  {"--split", !request.triads.split.empty()},
+                                                  {"--slower", !request.triads.slower.empty()},
+                                                  {"--plot", !request.plot.empty()}};
+  for (const auto& [option, given] : options) {
+    if (given)
+      refuse_comparison(fmt::format("{} for a diagram", option), "a mechanism beside it", "leave it out");
+  }
+  if (request.machine.empty() && request.runs == 0 && !request.budget) {
+    throw text::ReadError(
+        text::Diagnostic{{request.mechanism, {}},
+                         "this is a diagram, and nothing is named to hold it against",
+                         "--machine NAME, or --tolerance X with --budget or --monte-carlo N",
+                         "oblique machines lists the machines"});
+  }
+}
+
+/// Holds a diagram against its ideal self.
+ExitStatus compare_diagram(const diagram::BlockLibrary& library, const CompareRequest& request,
+                           const diagram::MachineProfile* machine, const std::string& file) {
+  check_diagram_request(request);
+  std::optional<double> good_below;
+  if (!request.yield.empty()) {
+    good_below = quantity_option("--yield", request.yield, "1");
+    if (!(*good_below > 0 && std::isfinite(*good_below)))
+      refuse_comparison(fmt::format("--yield {}", request.yield),
+                        "a part of the largest value of an output above 0, such as 1%");
+  }
+  const std::optional<double> until_within = until_within_option(request.until_within);
+  const diagram::Diagram given = diagram::parse_diagram(file, request.mechanism);
+  diagram::Diagram drawn = given;
+  std::string told;
+  if (machine != nullptr) {
+    const commission::DiagramOnMachine patched = commission::put_on_machine(given, library, *machine);
+    drawn = patched.made.diagram;
+    told = report::machine_text(patched, *machine) + "\n";
+  }
+  diagram::Diagram ideal = given;
+  ideal.machine.profile = "ideal";
+  const compare::MonteCarloOptions usual;
+  const auto reference = [&](int rows) {
+    solve::RunOptions options = solve::options_of(ideal.run);
+    options.samples = rows;
+    return solve::run(ideal, library, options).trajectory;
+  };
+  std::string text =
+      fmt::format("{}{}\n{}", request.mechanism, given.title.empty() ? "" : ": " + given.title, told);
+  nlohmann::ordered_json json{{"diagram", request.mechanism}};
+  bool failed = false;
+  if (machine != nullptr) {
+    Progress progress("figure by figure");
+    const compare::MachineComparison on_machine =
+        compare::compare_on_machine(reference(given.run.samples), drawn, library, *machine,
+                                    [&](double fraction) { progress.show(fraction); });
+    text += report::to_text(on_machine, command_line());
+    json["machine"] = report::to_json(on_machine);
+  }
+  if (request.budget) {
+    report::BudgetReport report = budget_of(
+        request, library, machine,
+        [&](const compare::BudgetOptions& budget) { return compare::error_budget(drawn, library, budget); });
+    report.of_outputs = true;
+    text += report::to_text(report);
+    json["budget"] = report::to_json(report);
+  }
+  if (request.runs > 0) {
+    const solve::Trajectory exact = reference(usual.positions);
+    const report::MonteCarloReport report =
+        draw_elements(request, "of the largest value", 0, drawn, library, machine, good_below, until_within,
+                      [&](const compare::MonteCarloOptions& drawing) {
+                        return compare::monte_carlo(exact, drawn, library, drawing);
+                      });
+    text += report::to_text(report, command_line());
+    json["monte_carlo"] = report::to_json(report, request.timings);
+    failed = !report.result.worst_run;
+  }
+  print(request.json ? report::json_text(json) : text);
+  if (!request.output.empty()) save(request.output, report::json_text(json));
+  return failed ? ExitStatus::solver_failed : ExitStatus::done;
 }
 
 }  // namespace
@@ -216,6 +308,10 @@ ExitStatus compare_mechanism(const Session& session, const CompareRequest& reque
   if (!request.tolerance.empty() && !scattered)
     refuse_comparison("--tolerance says how elements scatter, and nothing asks for it",
                       "--budget or --monte-carlo N");
+  if (scattered) scatters_of(request, library, machine);  // before the work, not after it
+  const std::string file = text::read_file(request.mechanism);
+  if (report::kind_of_file(file, request.mechanism) == report::FileKind::diagram)
+    return compare_diagram(library, request, machine, file);
   patch::PatchOptions single;
   if (machine != nullptr || scattered) {
     const char* const option = machine != nullptr ? "--machine"
@@ -224,8 +320,8 @@ ExitStatus compare_mechanism(const Session& session, const CompareRequest& reque
     single = single_patch(option, request, options);
     options.gains = {single.gain};
   }
-  if (scattered) scatters_of(request, library, machine);  // before the work, not after it
-  const mechanism::Mechanism mechanism = patch::within_range(mechanism::read_mechanism(request.mechanism));
+  const mechanism::Mechanism mechanism =
+      patch::within_range(mechanism::parse_mechanism(file, request.mechanism));
   const std::optional<double> good_below =
       request.yield.empty() ? std::nullopt : std::optional(yield_option(request.yield, mechanism));
   const std::optional<double> until_within = until_within_option(request.until_within);
@@ -261,14 +357,21 @@ ExitStatus compare_mechanism(const Session& session, const CompareRequest& reque
     json["machine"] = report::to_json(on_machine);
   }
   if (request.budget) {
-    const report::BudgetReport report =
-        budget_of(request, mechanism, drawn, library, machine, comparison.turning);
+    report::BudgetReport report =
+        budget_of(request, library, machine, [&](const compare::BudgetOptions& budget) {
+          return compare::error_budget(mechanism, drawn, library, budget);
+        });
+    report.unit = mechanism.length_unit;
+    report.turning = comparison.turning;
     text += report::to_text(report);
     json["budget"] = report::to_json(report);
   }
   if (request.runs > 0) {
     const report::MonteCarloReport report =
-        draw_elements(request, mechanism, drawn, library, machine, good_below, until_within);
+        draw_elements(request, mechanism.length_unit, mechanism.largest_length(), drawn, library, machine,
+                      good_below, until_within, [&](const compare::MonteCarloOptions& drawing) {
+                        return compare::monte_carlo(mechanism, drawn, library, drawing);
+                      });
     text += report::to_text(report, command_line());
     // Both sort the errors of ten thousand machines row by row, which takes as long as a tenth of their runs.
     if (request.json || !request.output.empty())

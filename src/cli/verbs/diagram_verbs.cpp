@@ -73,6 +73,25 @@ void add_check(CLI::App& app, Chosen& chosen) {
   choose(verb, chosen, request, check_file);
 }
 
+void add_atlas(CLI::App& app, Chosen& chosen) {
+  auto request = std::make_shared<AtlasRequest>();
+  CLI::App* const verb = app.add_subcommand("atlas",
+                                            "Run published programmes again: a table of what was published "
+                                            "against what is computed; status 1 where "
+                                            "a difference is not explained");
+  verb->add_option("FOLDER", request->folder, "folder with diagrams that have [published]")->required();
+  verb->add_option("-o,--output", request->output,
+                   "write an index and a page for each programme to this folder")
+      ->type_name("SITE");
+  verb->add_option("--studio", request->studio, "with -o: lead from the pages to this page of the studio")
+      ->type_name("PAGE");
+  verb->add_option("--theme", request->theme,
+                   "auto: light or dark as the reader's screen; on paper always light")
+      ->capture_default_str()
+      ->type_name("auto|light|dark");
+  choose(verb, chosen, request, run_atlas);
+}
+
 void add_blocks(CLI::App& app, Chosen& chosen) {
   auto request = std::make_shared<BlocksRequest>();
   CLI::App* const verb = app.add_subcommand("blocks", "List the blocks, or tell all about one");

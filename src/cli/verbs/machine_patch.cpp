@@ -2,7 +2,7 @@
 #include "verbs/machine_patch.h"
 
 #include <array>
-#include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -23,7 +23,8 @@
 namespace oblique::cli {
 namespace {
 
-constexpr std::array<const char*, 4> kSheetEndings{"-patch.csv", "-pots.csv", "-static.csv", ".txt"};
+constexpr std::array<const char*, 5> kSheetEndings{"-patch.csv", "-pots.csv", "-static.csv", ".txt",
+                                                   "-scales.csv"};  ///< the last of a diagram alone
 
 std::string table_of(const machine::Sheet& sheet) {
   report::Table table(sheet.columns);
@@ -31,21 +32,82 @@ std::string table_of(const machine::Sheet& sheet) {
   return sheet.title + "\n" + table.text(sheet.columns.size());
 }
 
+/// The files that --sheets asks for.
 std::vector<Written> sheet_files(const PatchRequest& request, const diagram::Diagram& diagram,
                                  const diagram::FlatDiagram& flat, const machine::ComponentList& components,
-                                 const diagram::BlockLibrary& library,
-                                 const diagram::MachineProfile& machine) {
+                                 const diagram::BlockLibrary& library, const diagram::MachineProfile& machine,
+                                 const std::optional<machine::Sheet>& scales) {
   const machine::MachineSheets sheets = machine::sheets_of(diagram, flat, library, machine);
-  const std::string text = fmt::format("{}\n\n{}\n{}\n{}\n{}", diagram.title, report::to_text(components),
-                                       table_of(sheets.connections), table_of(sheets.potentiometers),
-                                       table_of(sheets.static_test));
-  const std::array<std::string, 4> texts{machine::to_csv(sheets.connections),
-                                         machine::to_csv(sheets.potentiometers),
-                                         machine::to_csv(sheets.static_test), text};
+  std::string text = fmt::format("{}\n\n{}\n{}\n{}\n{}", diagram.title, report::to_text(components),
+                                 table_of(sheets.connections), table_of(sheets.potentiometers),
+                                 table_of(sheets.static_test));
+  if (scales) text += "\n" + table_of(*scales);
+  std::vector<std::string> texts{machine::to_csv(sheets.connections), machine::to_csv(sheets.potentiometers),
+                                 machine::to_csv(sheets.static_test), text};
+  if (scales) texts.push_back(machine::to_csv(*scales));
   std::vector<Written> files;
   for (std::size_t k = 0; k < texts.size(); ++k)
     files.push_back({request.sheets + kSheetEndings[k], texts[k]});
   return files;
+}
+
+/// "multipliers (for 'xy', 'xz')": the kinds that the machine has none of, with the blocks.
+std::vector<std::string> absent_blocks(const machine::ComponentList& components) {
+  std::vector<std::string> kinds;
+  for (const machine::ComponentListRow& row : components.rows) {
+    if (row.exists) continue;
+    kinds.push_back(row.blocks.empty()
+                        ? row.element
+                        : fmt::format("{} (for '{}')", row.element, fmt::join(row.blocks, "', '")));
+  }
+  return kinds;
+}
+
+ExitStatus refuse_absent(const PatchRequest& request, const diagram::MachineProfile& machine,
+                         const machine::ComponentList& needed, const std::vector<std::string>& absent) {
+  note(report::to_text(needed));
+  print_error(message(text::Diagnostic{
+      {request.mechanism, {}},
+      fmt::format("the machine {} has no {}, so nothing is written", machine.title,
+                  fmt::join(absent, ", no ")),
+      {},
+      "choose another machine (oblique machines), or write the diagram all the same with --force"}));
+  return ExitStatus::no;
+}
+
+/// Throws the error with what --force would do, where it would do anything.
+[[noreturn]] void refuse_diagram(const machine::RealiseError& error, const diagram::Diagram& diagram,
+                                 const diagram::BlockLibrary& library,
+                                 const diagram::MachineProfile& machine) {
+  std::vector<text::Diagnostic> findings = error.diagnostics();
+  try {
+    machine::realise(diagram, library, machine);
+    findings.back().remedy += "; --force writes the diagram unscaled, with its own blocks";
+  } catch (const machine::RealiseError&) {  // not even so
+  }
+  throw machine::RealiseError(findings);
+}
+
+/// Writes the diagram and the sheets, after the component list and what is told of the diagram.
+ExitStatus write_for_machine(const diagram::BlockLibrary& library, const PatchRequest& request,
+                             const diagram::MachineProfile& machine, const diagram::Diagram& realised,
+                             const std::string& told, const std::optional<machine::Sheet>& scales) {
+  const diagram::FlatDiagram flat = diagram::flatten(realised, library);
+  const machine::ComponentList components = machine::component_list_of(flat, machine);
+  note(report::to_text(components));
+  note(told);
+  std::vector<Written> files;
+  if (!request.sheets.empty())
+    files = sheet_files(request, realised, flat, components, library, machine, scales);
+  const std::string text = diagram::write_diagram(realised);
+  if (!request.output.empty()) files.insert(files.begin(), {request.output, text});
+  save_together(files);
+  if (request.output.empty()) {
+    print(text);
+  } else {
+    note(fmt::format("run it with: oblique run {}\n", request.output));
+  }
+  return ExitStatus::done;
 }
 
 }  // namespace
@@ -69,35 +131,34 @@ ExitStatus patch_for_machine(const diagram::BlockLibrary& library, const PatchRe
   const diagram::MachineProfile& machine = *diagram::find_machine(request.machine);
   const machine::ComponentList needed = machine::component_list_of(
       diagram::flatten(machine::realise(patched.diagram, library, machine).diagram, library), machine);
-  if (const auto absent = needed.absent(); !absent.empty() && !request.force) {
-    note(report::to_text(needed));
-    print_error(message(text::Diagnostic{
-        {request.mechanism, {}},
-        fmt::format("the machine {} has no {}, so nothing is written", machine.title,
-                    fmt::join(absent, ", no ")),
-        {},
-        "choose another machine (oblique machines), or write the diagram all the same with --force"}));
-    return ExitStatus::no;
-  }
+  if (const auto absent = needed.absent(); !absent.empty() && !request.force)
+    return refuse_absent(request, machine, needed, absent);
   const commission::MachinePatch on_machine =
       commission::put_on_machine(mechanism, library, machine, patched);
-  const diagram::Diagram& realised = on_machine.realised;
-  const diagram::FlatDiagram flat = diagram::flatten(realised, library);
-  const machine::ComponentList components = machine::component_list_of(flat, machine);
-  note(report::to_text(components));
-  note(report::bandwidth_text(on_machine, machine));
-  note(report::judgement_text(on_machine.judgement, command_line()));
-  std::vector<Written> files;
-  if (!request.sheets.empty()) files = sheet_files(request, realised, flat, components, library, machine);
-  const std::string text = diagram::write_diagram(realised);
-  if (!request.output.empty()) files.insert(files.begin(), {request.output, text});
-  save_together(files);
-  if (request.output.empty()) {
-    print(text);
-  } else {
-    note(fmt::format("run it with: oblique run {}\n", request.output));
+  const std::string told = report::bandwidth_text(on_machine, machine) +
+                           report::judgement_text(on_machine.judgement, command_line());
+  return write_for_machine(library, request, machine, on_machine.realised, told, {});
+}
+
+ExitStatus patch_for_machine(const diagram::BlockLibrary& library, const PatchRequest& request,
+                             const diagram::Diagram& diagram, const machine::ScalingOptions& options) {
+  const diagram::MachineProfile& machine = *diagram::find_machine(request.machine);
+  std::optional<commission::DiagramOnMachine> patched;
+  try {
+    patched = commission::put_on_machine(diagram, library, machine, options);
+  } catch (const machine::RealiseError& error) {
+    if (!request.force) refuse_diagram(error, diagram, library, machine);
+    const diagram::Diagram realised = machine::realise(diagram, library, machine).diagram;
+    const std::string told = fmt::format("warning: not scaled: {}\n", error.diagnostics().front().what);
+    return write_for_machine(library, request, machine, realised, told, {});
   }
-  return ExitStatus::done;
+  const machine::ComponentList needed =
+      machine::component_list_of(diagram::flatten(patched->made.diagram, library), machine);
+  if (const auto absent = absent_blocks(needed); !absent.empty() && !request.force)
+    return refuse_absent(request, machine, needed, absent);
+  return write_for_machine(library, request, machine, patched->made.diagram,
+                           report::machine_text(*patched, machine),
+                           machine::scale_sheet(patched->made, machine));
 }
 
 }  // namespace oblique::cli

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <oblique/commission/diagram_on_machine.h>
 #include <oblique/commission/on_machine.h>
 
 #include "verbs/command.h"
@@ -16,5 +17,10 @@ void check_machine_request(const PatchRequest& request);
 /// nothing is written, unless forced, and the status is `no`.
 ExitStatus patch_for_machine(const diagram::BlockLibrary& library, const PatchRequest& request,
                              const mechanism::Mechanism& mechanism, const commission::JudgedPatch& patched);
+
+/// The same of a diagram, which is scaled for the machine too. Forced, one with blocks that no machine has is
+/// written unscaled.
+ExitStatus patch_for_machine(const diagram::BlockLibrary& library, const PatchRequest& request,
+                             const diagram::Diagram& diagram, const machine::ScalingOptions& options);
 
 }  // namespace oblique::cli

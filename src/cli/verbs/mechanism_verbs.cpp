@@ -40,8 +40,11 @@ void add_modes(CLI::App& app, Chosen& chosen) {
 
 void add_patch(CLI::App& app, Chosen& chosen) {
   auto request = std::make_shared<PatchRequest>();
-  CLI::App* const verb = app.add_subcommand("patch", "Patch a mechanism: the diagram that simulates it");
-  verb->add_option("MECHANISM", request->mechanism, "mechanism file (oblique-mechanism/1)")->required();
+  CLI::App* const verb = app.add_subcommand(
+      "patch", "Patch a mechanism: the diagram that simulates it; or put a diagram onto a machine");
+  verb->add_option("FILE", request->mechanism,
+                   "mechanism file (oblique-mechanism/1); with --machine also a diagram (oblique-diagram/1)")
+      ->required();
   verb->add_option("--gain", request->gain, "gain of the servo amplifiers; inf: ideal")
       ->capture_default_str();
   verb->add_option(
@@ -67,18 +70,32 @@ void add_patch(CLI::App& app, Chosen& chosen) {
                    "write it in the elements of this machine, with a component list: what it needs and what "
                    "is missing")
       ->type_name("NAME");
-  verb->add_option("--sheets", request->sheets,
-                   "with --machine: write PREFIX-patch.csv (connections), PREFIX-pots.csv (settings), "
-                   "PREFIX-static.csv (static test), and PREFIX.txt with all three for paper")
+  verb->add_option(
+          "--sheets", request->sheets,
+          "with --machine: write PREFIX-patch.csv (connections), PREFIX-pots.csv (settings), "
+          "PREFIX-static.csv (static test), of a diagram PREFIX-scales.csv (what its signals stand for), and "
+          "PREFIX.txt with all of them for paper")
       ->type_name("PREFIX");
-  choose(verb, chosen, request, patch_mechanism);
+  verb->add_option(
+          "--time-scale", request->time_scale,
+          "of a diagram: seconds of the machine for 1 s of it (default: 1, or as its integrators ask)")
+      ->type_name("N");
+  verb->add_option("--segments", request->segments,
+                   "of a diagram: straight lines of a function generator, at the most (default: 10)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1000));
+  choose(verb, chosen, request, patch_file);
 }
 
 void add_compare(CLI::App& app, Chosen& chosen) {
   auto request = std::make_shared<CompareRequest>();
-  CLI::App* const verb =
-      app.add_subcommand("compare", "Compare the patched mechanism with its exact motion, gain by gain");
-  verb->add_option("MECHANISM", request->mechanism, "mechanism file (oblique-mechanism/1)")->required();
+  CLI::App* const verb = app.add_subcommand(
+      "compare",
+      "Compare the patched mechanism with its exact motion, gain by gain; or a diagram with its ideal self");
+  verb->add_option("FILE", request->mechanism,
+                   "mechanism file (oblique-mechanism/1), or a diagram (oblique-diagram/1) with --machine or "
+                   "--tolerance")
+      ->required();
   verb->add_option("--gain", request->gains, "gains of the servo amplifiers (default 1e2,1e3,1e4,1e5,1e6)")
       ->delimiter(',')
       ->allow_extra_args(false)
@@ -151,9 +168,11 @@ void add_compare(CLI::App& app, Chosen& chosen) {
 
 void add_report(CLI::App& app, Chosen& chosen) {
   auto request = std::make_shared<ReportRequest>();
-  CLI::App* const verb = app.add_subcommand(
-      "report", "Report on a mechanism in one page: its groups, motion, patch, convergence, stability");
-  verb->add_option("MECHANISM", request->mechanism, "mechanism file (oblique-mechanism/1)")->required();
+  CLI::App* const verb = app.add_subcommand("report",
+                                            "Report in one page: on a mechanism its groups, motion, patch, "
+                                            "convergence, stability; on a diagram its "
+                                            "circuit, equations, curves, scaling, settings");
+  verb->add_option("FILE", request->file, "mechanism or diagram file")->required();
   verb->add_option("-o,--output", request->output, "write the page to FILE.html")
       ->required()
       ->type_name("FILE");
@@ -166,7 +185,8 @@ void add_report(CLI::App& app, Chosen& chosen) {
                    "auto: light or dark as the reader's screen; on paper always light")
       ->capture_default_str()
       ->type_name("auto|light|dark");
-  choose(verb, chosen, request, report_mechanism);
+  verb->footer("What is said of a patch and of a machine is asked of a mechanism; a diagram has its own.");
+  choose(verb, chosen, request, report_file);
 }
 
 void add_fit(CLI::App& app, Chosen& chosen) {

@@ -211,6 +211,7 @@ ExitStatus check(const Claims& claims, const diagram::Diagram& diagram, const di
     good = good &&
            std::all_of(published.begin(), published.end(), [](const auto& r) { return r.is_explained(); });
     print(report::to_text(published) + report::open_question_text(diagram));
+    note(report::warnings_text(published, command_line()));
   }
   return good ? ExitStatus::done : ExitStatus::no;
 }

@@ -92,6 +92,7 @@ void add_modes(CLI::App& app, Chosen& chosen);
 void add_patch(CLI::App& app, Chosen& chosen);
 void add_compare(CLI::App& app, Chosen& chosen);
 void add_report(CLI::App& app, Chosen& chosen);
+void add_atlas(CLI::App& app, Chosen& chosen);
 void add_fit(CLI::App& app, Chosen& chosen);
 void add_ensemble(CLI::App& app, Chosen& chosen);
 void add_draw(CLI::App& app, Chosen& chosen);

@@ -28,10 +28,10 @@ struct BudgetEntry {
 struct ErrorBudget {
   std::vector<BudgetEntry> entries;  ///< the largest share first
   double error = 0;                  ///< of all together, where it is largest [length unit]
-  std::string point;                 ///< which is there,
-  double drive = 0;                  ///< at this value of the first drive [rad] or [length unit],
-  std::size_t row = 0;               ///< in this row
-  std::vector<double> along;         ///< the largest `error` of any point in each row [length unit]
+  std::string point;                 ///< which is there, of a diagram the output,
+  double drive = 0;           ///< at this value of the first drive [rad] or [length unit], or time [s],
+  std::size_t row = 0;        ///< in this row
+  std::vector<double> along;  ///< the largest `error` of any point in each row [length unit]
 };
 
 struct BudgetOptions {
@@ -45,5 +45,10 @@ struct BudgetOptions {
 /// not known.
 ErrorBudget error_budget(const mechanism::Mechanism& whole, const diagram::Diagram& diagram,
                          const diagram::BlockLibrary& library, const BudgetOptions& options);
+
+/// The same of the outputs of any diagram, each by itself, over the largest value that it has: `error` and
+/// the errors of the entries are parts of that.
+ErrorBudget error_budget(const diagram::Diagram& diagram, const diagram::BlockLibrary& library,
+                         const BudgetOptions& options);
 
 }  // namespace oblique::compare

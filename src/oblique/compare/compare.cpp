@@ -159,23 +159,6 @@ class Comparer {
   std::atomic<int> done_ = 0;
 };
 
-/// Least-squares slope of log error over log gain among the runs that the floor does not hide.
-std::optional<double> fitted_order(std::span<const ComparedRun> runs, double floor) {
-  double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
-  for (const ComparedRun& run : runs) {
-    if (run.left_branch || !stands_clear(run.max_error, floor) || !std::isfinite(run.gain)) continue;
-    const double x = std::log10(run.gain), y = std::log10(run.max_error);
-    n += 1;
-    sx += x;
-    sy += y;
-    sxx += x * x;
-    sxy += x * y;
-  }
-  const double spread = n * sxx - sx * sx;
-  if (n < 2 || spread <= 0) return std::nullopt;
-  return (n * sxy - sx * sy) / spread;
-}
-
 Comparison compare_within_range(const mechanism::Mechanism& mechanism, const diagram::BlockLibrary& library,
                                 const CompareOptions& options) {
   Comparison comparison;
@@ -255,6 +238,22 @@ Comparison compare_within_range(const mechanism::Mechanism& mechanism, const dia
 bool stands_clear(double error, double floor) {
   constexpr double kAboveFloor = 10;
   return error >= kAboveFloor * floor;
+}
+
+std::optional<double> fitted_order(std::span<const ComparedRun> runs, double floor) {
+  double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
+  for (const ComparedRun& run : runs) {
+    if (run.left_branch || !stands_clear(run.max_error, floor) || !std::isfinite(run.gain)) continue;
+    const double x = std::log10(run.gain), y = std::log10(run.max_error);
+    n += 1;
+    sx += x;
+    sy += y;
+    sxx += x * x;
+    sxy += x * y;
+  }
+  const double spread = n * sxx - sx * sx;
+  if (n < 2 || spread <= 0) return std::nullopt;
+  return (n * sxy - sx * sy) / spread;
 }
 
 Comparison compare(const mechanism::Mechanism& mechanism, const diagram::BlockLibrary& library,

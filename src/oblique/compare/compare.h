@@ -101,6 +101,10 @@ struct GainSeries {
 /// series. The order is fitted to such errors.
 bool stands_clear(double error, double floor);
 
+/// Least-squares slope of log error over log gain among the runs of one series that stand clear of its floor
+/// and are on the branch; nothing with fewer than two of them.
+std::optional<double> fitted_order(std::span<const ComparedRun> runs, double floor);
+
 struct Comparison {
   std::string mechanism;           ///< title
   std::string unit;                ///< of lengths

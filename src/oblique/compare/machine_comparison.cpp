@@ -2,6 +2,7 @@
 #include <oblique/compare/machine_comparison.h>
 
 #include <algorithm>
+#include <cstdint>
 
 #include <fmt/format.h>
 
@@ -155,6 +156,58 @@ MachineComparison compare_on_machine(const mechanism::Mechanism& whole, const di
         run_of(one, fmt::format("nothing but '{}' of each {}", acting.figure, acting.block)).run.trajectory;
     result.figures.push_back({acting.figure, acting.block, largest_distance(mechanism, one, alone, on_ideal),
                               along.dot(place_of(error.worst, alone, error.row) - by_ideal) + 0.0});  // no −0
+  }
+  result.overloads = overloads_of(all.program, on_machine.run, kMargin);
+  result.stable = slowest_pole_of(all.program, on_machine.instants) < 0;
+  return result;
+}
+
+MachineComparison compare_on_machine(const solve::Trajectory& reference, diagram::Diagram realised,
+                                     const diagram::BlockLibrary& library,
+                                     const diagram::MachineProfile& machine,
+                                     const std::function<void(double)>& progress) {
+  constexpr double kUsualGain = 1e6;
+  const std::vector<Acting> figures = acting_figures(machine, library, realised);
+  realised.run.samples = static_cast<int>(reference.rows());
+  const diagram::Diagram ideal = on_ideal_elements(realised, library, kUsualGain);
+  double done = 0;
+  const auto run_of = [&](const PatchedMechanism& diagram, const std::string& name) {
+    const auto total = static_cast<double>(figures.size() + 2);
+    RecordedRun recorded = run_recorded(diagram, name, realised.run.tolerance, [&](double fraction) {
+      if (progress) progress((done + fraction) / total);
+    });
+    ++done;
+    return recorded;
+  };
+  const PatchedMechanism none(ideal, library);
+  const RecordedRun on_ideal = run_of(none, "ideal elements");
+  realised.run.max_steps = kStepsOfAFailure * std::max(on_ideal.run.statistics.steps, std::int64_t{1});
+  const PatchedMechanism all(realised, library);
+  const RecordedRun on_machine = run_of(all, "all figures of " + machine.title);
+  const solve::Trajectory& analog = on_machine.run.trajectory;
+  const Distances error = relative_distances(analog.values(), reference);
+  const std::size_t column = 1 + error.worst.point;
+  const double size = largest_of(reference, column);
+  const double by_ideal = on_ideal.run.trajectory.at(error.row, column);
+  const double sign = analog.at(error.row, column) < reference.at(error.row, column) ? -1 : 1;
+
+  MachineComparison result;
+  result.machine = machine.title;
+  result.absent = machine::component_list_of(all.flat, machine).absent();
+  result.scatter = scatter_figures(machine);
+  result.max_error = error.largest;
+  result.rms_error = error.rms;
+  result.from_ideal = relative_distances(analog.values(), on_ideal.run.trajectory).largest;
+  result.ideal_error = relative_distances(on_ideal.run.trajectory.values(), reference).largest;
+  result.worst = {reference.columns()[column].name, analog.at(error.row, 0), 0, {}};
+  result.ideal_share = sign * (by_ideal - reference.at(error.row, column)) / size;
+  for (const Acting& acting : figures) {
+    const PatchedMechanism one(with_figure(realised, ideal, library, machine, acting), library);
+    const solve::Trajectory alone =
+        run_of(one, fmt::format("nothing but '{}' of each {}", acting.figure, acting.block)).run.trajectory;
+    result.figures.push_back({acting.figure, acting.block,
+                              relative_distances(alone.values(), on_ideal.run.trajectory).largest,
+                              sign * (alone.at(error.row, column) - by_ideal) / size + 0.0});  // no −0
   }
   result.overloads = overloads_of(all.program, on_machine.run, kMargin);
   result.stable = slowest_pole_of(all.program, on_machine.instants) < 0;

@@ -51,4 +51,12 @@ MachineComparison compare_on_machine(const mechanism::Mechanism& whole, const di
                                      const patch::PatchOptions& options,
                                      const std::function<void(double)>& progress = {});
 
+/// A diagram in the elements of a machine (`machine::realise`) against `reference`, the run of its ideal self
+/// with as many rows: errors are those of its outputs over the largest value that each has there, and
+/// `worst.point` is the output. Otherwise the same. Throws as `run` with the figure in the message.
+MachineComparison compare_on_machine(const solve::Trajectory& reference, diagram::Diagram realised,
+                                     const diagram::BlockLibrary& library,
+                                     const diagram::MachineProfile& machine,
+                                     const std::function<void(double)>& progress = {});
+
 }  // namespace oblique::compare

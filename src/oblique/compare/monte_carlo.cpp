@@ -31,14 +31,16 @@ double tolerance_for(const std::vector<diagram::BlockFigure>& scatters) {
 /// Runs machines by their numbers, at the tolerance of the options or finer ones, and measures them.
 class Experiment {
  public:
-  Experiment(const mechanism::Mechanism& mechanism, const MonteCarloOptions& options,
-             diagram::FlatDiagram flat, solve::RunOptions how)
+  /// Finds how far the rows of a run are from where they should be.
+  using Measure = std::function<Distances(std::span<const double> rows)>;
+
+  Experiment(const MonteCarloOptions& options, diagram::FlatDiagram flat, solve::RunOptions how,
+             Measure measure)
       : options_(options),
         flat_(std::move(flat)),
         elements_(ensemble::drawn_elements(flat_, options.scatters)),
         how_(std::move(how)),
-        exact_(mechanism::solve_motion(mechanism, options.positions)),
-        points_(point_outputs(mechanism, flat_)) {
+        measure_(std::move(measure)) {
     const network::ParameterNumbers numbers(flat_);
     const std::vector<double> all = network::parameter_values(flat_);
     for (const ensemble::DrawnElement& element : elements_) {
@@ -54,7 +56,6 @@ class Experiment {
     ensemble_.emplace(typical_, varied_, options_of(how_.tolerance));
   }
 
-  const mechanism::Motion& exact() const { return exact_; }
   std::size_t drawn() const { return elements_.size(); }
 
   /// Runs `count` machines of the experiment from its k-th on. At a coarse tolerance the solver may find no
@@ -102,7 +103,7 @@ class Experiment {
       const std::size_t place = places[run.number];
       failures[run.number] = run.failure;
       if (!run.failure.empty()) return;
-      Distances found = distances(points_, run.rows, 1 + flat_.outputs.size(), exact_);
+      Distances found = measure_(run.rows);
       result.errors[place] = found.largest;
       if (place < result.along.size()) result.along[place] = std::move(found.along);
     };
@@ -124,8 +125,7 @@ class Experiment {
   std::vector<double> nominal_;
   std::vector<std::size_t> places_;  ///< of each element among `varied_`
   solve::RunOptions how_;
-  mechanism::Motion exact_;
-  std::vector<PointOutputs> points_;
+  Measure measure_;
   std::optional<ensemble::Ensemble> ensemble_;
 };
 
@@ -171,17 +171,21 @@ std::vector<double> MonteCarlo::percentile_along(double percent) const {
   return percentiles;
 }
 
-MonteCarlo monte_carlo(const mechanism::Mechanism& whole, const diagram::Diagram& diagram,
-                       const diagram::BlockLibrary& library, const MonteCarloOptions& options) {
+namespace {
+
+/// `measure_of` gives what measures the rows of the flat diagram.
+template <class MeasureOf>
+MonteCarlo draw_machines(const diagram::Diagram& diagram, const diagram::BlockLibrary& library,
+                         const MonteCarloOptions& options, std::vector<double> drive,
+                         const MeasureOf& measure_of) {
   constexpr std::size_t kBatch = 100;  // between two looks at the yield
-  const mechanism::Mechanism mechanism = patch::within_range(whole);
   const diagram::FlatDiagram flat = diagram::flatten(diagram, library);
   solve::RunOptions how = solve::options_of(diagram.run);
   how.samples = options.positions;
   how.tolerance = tolerance_for(options.scatters);
   const solve::Run undisturbed = solve::run(network::Program(network::assemble(flat)), flat, how);
   how.max_steps = kStepsOfAFailure * std::max(undisturbed.statistics.steps, std::int64_t{1});
-  const Experiment experiment(mechanism, options, flat, how);
+  const Experiment experiment(options, flat, how, measure_of(flat));
 
   const auto runs = static_cast<std::size_t>(options.runs);
   MonteCarlo result;
@@ -189,7 +193,7 @@ MonteCarlo monte_carlo(const mechanism::Mechanism& whole, const diagram::Diagram
   result.tolerance = how.tolerance;
   result.errors.resize(runs);
   result.along.resize(std::min(runs, MonteCarlo::kMostAlong));
-  for (const auto& drives : experiment.exact().drives) result.drive.push_back(drives.front().value);
+  result.drive = std::move(drive);
   const bool looks = options.good_below && options.until_within;
   std::size_t done = 0;
   while (done < runs) {
@@ -209,6 +213,29 @@ MonteCarlo monte_carlo(const mechanism::Mechanism& whole, const diagram::Diagram
   if (worst != result.errors.end() && *worst)
     result.worst_run = options.first_run + static_cast<std::uint64_t>(worst - result.errors.begin());
   return result;
+}
+
+}  // namespace
+
+MonteCarlo monte_carlo(const mechanism::Mechanism& whole, const diagram::Diagram& diagram,
+                       const diagram::BlockLibrary& library, const MonteCarloOptions& options) {
+  const mechanism::Mechanism mechanism = patch::within_range(whole);
+  const mechanism::Motion exact = mechanism::solve_motion(mechanism, options.positions);
+  std::vector<double> drive;
+  for (const auto& drives : exact.drives) drive.push_back(drives.front().value);
+  return draw_machines(diagram, library, options, std::move(drive), [&](const diagram::FlatDiagram& flat) {
+    return [points = point_outputs(mechanism, flat), columns = 1 + flat.outputs.size(),
+            &exact](std::span<const double> rows) { return distances(points, rows, columns, exact); };
+  });
+}
+
+MonteCarlo monte_carlo(const solve::Trajectory& reference, const diagram::Diagram& diagram,
+                       const diagram::BlockLibrary& library, const MonteCarloOptions& options) {
+  std::vector<double> times;
+  for (std::size_t row = 0; row < reference.rows(); ++row) times.push_back(reference.at(row, 0));
+  return draw_machines(diagram, library, options, std::move(times), [&](const diagram::FlatDiagram&) {
+    return [&](std::span<const double> rows) { return relative_distances(rows, reference); };
+  });
 }
 
 }  // namespace oblique::compare

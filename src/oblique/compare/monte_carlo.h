@@ -11,6 +11,7 @@
 #include <oblique/ensemble/engine/ensemble.h>
 #include <oblique/ensemble/study/scatter.h>
 #include <oblique/mechanism/model/mechanism.h>
+#include <oblique/solve/trajectory.h>
 
 namespace oblique::compare {
 
@@ -65,6 +66,11 @@ struct MonteCarlo {
 /// takes a hundred times the steps of the undisturbed one has failed. Throws as `flatten`, `solve_motion`,
 /// and as `run` where the undisturbed run fails.
 MonteCarlo monte_carlo(const mechanism::Mechanism& whole, const diagram::Diagram& diagram,
+                       const diagram::BlockLibrary& library, const MonteCarloOptions& options);
+
+/// The same of any diagram: the largest distance of any output from that of `reference`, a run of
+/// `options.positions` rows, over the largest value of the output there. `drive` holds the times.
+MonteCarlo monte_carlo(const solve::Trajectory& reference, const diagram::Diagram& diagram,
                        const diagram::BlockLibrary& library, const MonteCarloOptions& options);
 
 }  // namespace oblique::compare

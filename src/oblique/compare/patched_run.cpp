@@ -140,4 +140,35 @@ Distances distances(const std::vector<PointOutputs>& points, std::span<const dou
   return found;
 }
 
+double largest_of(const solve::Trajectory& run, std::size_t column) {
+  double largest = 0;
+  for (std::size_t row = 0; row < run.rows(); ++row)
+    largest = std::max(largest, std::abs(run.at(row, column)));
+  return largest;
+}
+
+Distances relative_distances(std::span<const double> rows, const solve::Trajectory& reference) {
+  const std::size_t columns = reference.columns().size();
+  Distances found;
+  found.along.assign(reference.rows(), 0);
+  double sum = 0;
+  std::size_t number = 0;
+  for (std::size_t column = 1; column < columns; ++column) {
+    const double size = largest_of(reference, column);
+    if (size == 0) continue;
+    for (std::size_t row = 0; row < reference.rows(); ++row) {
+      const double distance = std::abs(rows[row * columns + column] - reference.at(row, column)) / size;
+      sum += distance * distance;
+      ++number;
+      found.along[row] = std::max(found.along[row], distance);
+      if (distance <= found.largest && number > 1) continue;
+      found.largest = distance;
+      found.worst.point = column - 1;
+      found.row = row;
+    }
+  }
+  found.rms = number > 0 ? std::sqrt(sum / static_cast<double>(number)) : 0;
+  return found;
+}
+
 }  // namespace oblique::compare

@@ -84,4 +84,11 @@ std::optional<Eigen::Vector2d> place_in(const PatchedMechanism& patched, const P
 /// Where a point stands in a row of a run [length unit].
 Eigen::Vector2d place_of(const PointOutputs& point, const solve::Trajectory& analog, std::size_t row);
 
+/// The largest magnitude of a column.
+double largest_of(const solve::Trajectory& run, std::size_t column);
+
+/// How far the outputs of a run are from those of another run of as many rows, each over the largest value
+/// that it has there; one that is 0 throughout is left out. `worst.point` is the output.
+Distances relative_distances(std::span<const double> rows, const solve::Trajectory& reference);
+
 }  // namespace oblique::compare

@@ -169,6 +169,28 @@ class Console::Held {
     probes_[number].probe.reset();
   }
 
+  std::vector<diagram::ParameterOverride> exchange(diagram::Diagram diagram,
+                                                   const diagram::BlockLibrary& library,
+                                                   const Renamed& renamed) {
+    if (!has_timeline_ && diagram.timeline.phases.empty()) {
+      diagram.timeline = pots_.diagram().timeline;  // the mode that is set
+    } else if (diagram.timeline != pots_.diagram().timeline || diagram.groups != pots_.diagram().groups) {
+      throw ConsoleError(text::Diagnostic{{diagram.file, {}},
+                                          "the timeline of the diagram is another one",
+                                          "the one with which the machine runs",
+                                          "begin again with the new one"});
+    }
+    const solve::RunState state = save();
+    std::vector<diagram::ParameterOverride> kept = kept_pots(diagram, renamed);
+    Pots next(std::move(diagram), library, kept);
+    go_on(next, carried_state(state, *pots_.program(), signals(), *next.program(), renamed));
+    pots_ = std::move(next);
+    for (SetProbe& set : probes_) {
+      if (set.probe) find_channels_again(set);
+    }
+    return kept;
+  }
+
   void set_mode(diagram::OperatingMode mode) {
     refuse_with_timeline();
     solve::PhasePosition position;
@@ -267,6 +289,57 @@ class Console::Held {
                                         fmt::format("there is no signal '{}' for a probe", name),
                                         "the name of an output, a block or one of its outputs",
                                         text::suggest(name, candidates)});
+  }
+
+  /// The pots that are turned and of which another diagram says the same.
+  std::vector<diagram::ParameterOverride> kept_pots(const diagram::Diagram& next,
+                                                    const Renamed& renamed) const {
+    std::vector<diagram::ParameterOverride> kept;
+    for (const diagram::BlockInstance& now : next.blocks) {
+      const std::string name = path_before(now.name, renamed);
+      const auto& blocks = pots_.diagram().blocks;
+      const auto before = std::find_if(
+          blocks.begin(), blocks.end(),
+          [&](const diagram::BlockInstance& block) { return block.name == name && block.type == now.type; });
+      if (before == blocks.end()) continue;
+      for (const diagram::ParameterOverride& turned : pots_.turned()) {
+        if (!turned.path.starts_with(name + ".")) continue;
+        const std::string pot = turned.path.substr(name.size() + 1);
+        if (says_the_same(*before, now, pot)) kept.push_back({now.name + "." + pot, turned.value});
+      }
+    }
+    return kept;
+  }
+
+  /// Whether two files say the same of a parameter of a block; of a weight or of what is inside, of the
+  /// whole.
+  static bool says_the_same(const diagram::BlockInstance& before, const diagram::BlockInstance& now,
+                            const std::string& pot) {
+    const auto said = [&](const diagram::BlockInstance& block) {
+      diagram::BlockInstance part;
+      const bool is_parameter = pot.find_first_of(".[") == std::string::npos;
+      for (const text::Entry& setting : block.settings) {
+        if (!is_parameter || setting.key == pot) part.settings.push_back(setting);
+      }
+      return part;
+    };
+    return said(before) == said(now);
+  }
+
+  /// Of a machine in which signals stand elsewhere.
+  void find_channels_again(SetProbe& set) {
+    const ProbeSettings& settings = set.probe->settings();
+    std::vector<std::string> names = settings.names;
+    if (settings.trigger) names.push_back(settings.trigger->name);
+    set.channels.clear();
+    for (const std::string& name : names) {
+      if (auto channel = channel_of(name)) {
+        set.channels.push_back(*channel);
+      } else {
+        set.probe.reset();
+        return;
+      }
+    }
   }
 
   [[noreturn]] void refuse_probe(const std::string& what, const std::string& expected) const {
@@ -392,6 +465,11 @@ std::vector<std::string> Console::pot_names() const {
 }
 Turned Console::turn(const std::string& pot, const std::string& value) {
   return held_->pots().turn(pot, value);
+}
+std::vector<diagram::ParameterOverride> Console::exchange(
+    diagram::Diagram diagram, const diagram::BlockLibrary& library,
+    const std::vector<std::pair<std::string, std::string>>& renamed) {
+  return held_->exchange(std::move(diagram), library, renamed);
 }
 std::vector<Console::Overload> Console::overloads() const {
   return held_->overloads();

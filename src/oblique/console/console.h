@@ -4,11 +4,13 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <oblique/console/probe.h>
 #include <oblique/diagram/block_library.h>
 #include <oblique/diagram/diagram.h>
+#include <oblique/diagram/flatten.h>
 #include <oblique/solve/run_records.h>
 #include <oblique/solve/run_state.h>
 #include <oblique/text/diagnostic.h>
@@ -87,6 +89,16 @@ class Console {
   /// discrete states are carried over by name. Throws DiagramError and NetworkError, and is then as it was;
   /// what it then cannot solve, those that run and read tell, until the pot is turned again.
   Turned turn(const std::string& pot, const std::string& value);
+
+  /// Puts another diagram in place of this one while the machine is held: it goes on at `time`, and what has
+  /// the same name, or one of `renamed` (the name before, the new one), goes on from where it stands; what is
+  /// new begins where it starts. Pots stay as they are turned where the file still says of them what it said,
+  /// and are given with their values; probes that show what there is no more are taken away. `library` must
+  /// outlive the console. Throws DiagramError, NetworkError, SolveError, and ConsoleError where the timeline
+  /// is another; the console is then as it was.
+  std::vector<diagram::ParameterOverride> exchange(
+      diagram::Diagram diagram, const diagram::BlockLibrary& library,
+      const std::vector<std::pair<std::string, std::string>>& renamed = {});
 
   /// Puts all integrators into a mode of operation. Throws ConsoleError where the diagram's timeline says in
   /// which they are, and SolveError.

@@ -21,8 +21,9 @@ const diagram::Behaviour* behaviour_of(const diagram::FlatBlock& block) {
 
 }  // namespace
 
-Pots::Pots(diagram::Diagram diagram, const diagram::BlockLibrary& library)
-    : diagram_(std::move(diagram)), library_(&library) {
+Pots::Pots(diagram::Diagram diagram, const diagram::BlockLibrary& library,
+           std::vector<diagram::ParameterOverride> overrides)
+    : diagram_(std::move(diagram)), library_(&library), overrides_(std::move(overrides)) {
   compile(flattened(overrides_));
 }
 

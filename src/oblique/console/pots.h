@@ -23,9 +23,12 @@ namespace oblique::console {
 class Pots {
  public:
   /// `library` must outlive it. Throws DiagramError and NetworkError.
-  Pots(diagram::Diagram diagram, const diagram::BlockLibrary& library);
+  Pots(diagram::Diagram diagram, const diagram::BlockLibrary& library,
+       std::vector<diagram::ParameterOverride> overrides = {});
 
   const diagram::Diagram& diagram() const { return diagram_; }
+  /// The pots that were turned, and to what.
+  const std::vector<diagram::ParameterOverride>& turned() const { return overrides_; }
   const std::shared_ptr<diagram::FlatDiagram>& flat() const { return flat_; }
   /// The equations with the pots as they are: the same one until a pot is turned.
   const std::shared_ptr<const network::Program>& program();

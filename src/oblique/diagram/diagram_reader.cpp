@@ -30,8 +30,10 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 class DiagramReader {
  public:
-  DiagramReader(const text::Document& document, Diagram& diagram)
-      : reader_(document.file, document.root, "the diagram", diagnostics_), diagram_(diagram) {}
+  DiagramReader(const text::Document& document, Diagram& diagram, text::Diagnostics& diagnostics)
+      : diagnostics_(diagnostics),
+        reader_(document.file, document.root, "the diagram", diagnostics_),
+        diagram_(diagram) {}
 
   void read() {
     if (!text::check_format(reader_, "oblique-diagram/1")) diagnostics_.throw_if_any<DiagramError>();
@@ -68,7 +70,6 @@ class DiagramReader {
     if (const text::Value* const table = reader_.table("layout"))
       diagram_.layout = read_layout(diagram_.file, *table, diagram_.blocks, diagnostics_);
     reader_.finish();
-    diagnostics_.throw_if_any<DiagramError>();
   }
 
  private:
@@ -198,7 +199,7 @@ class DiagramReader {
     reader.finish();
   }
 
-  text::Diagnostics diagnostics_;
+  text::Diagnostics& diagnostics_;
   text::TableReader reader_;
   Diagram& diagram_;
   double last_time_ = RunSettings{}.until;  ///< of expectations; infinite where `until` is wrong
@@ -206,10 +207,17 @@ class DiagramReader {
 
 }  // namespace
 
-Diagram parse_diagram(std::string_view text, std::string file) {
+Diagram parse_diagram(std::string_view text, std::string file, text::Diagnostics& diagnostics) {
   Diagram diagram;
   diagram.file = std::move(file);
-  DiagramReader(text::parse_document(text, diagram.file), diagram).read();
+  DiagramReader(text::parse_document(text, diagram.file), diagram, diagnostics).read();
+  return diagram;
+}
+
+Diagram parse_diagram(std::string_view text, std::string file) {
+  text::Diagnostics diagnostics;
+  Diagram diagram = parse_diagram(text, std::move(file), diagnostics);
+  diagnostics.throw_if_any<DiagramError>();
   return diagram;
 }
 

@@ -24,7 +24,8 @@ class LessonReader {
   Lesson read() {
     lesson_.title = reader_.string("title").value_or("");
     lesson_.text = reader_.string("text").value_or("");
-    if (const text::Value* const steps = reader_.find("step")) read_steps(*steps);
+    constexpr std::string_view kSteps = "step";  // a key, which only happens to be a block's name too
+    if (const text::Value* const steps = reader_.find(kSteps)) read_steps(*steps);
     if (const text::Value* const question = reader_.table("question")) read_question(*question);
     reader_.finish();
     return std::move(lesson_);

@@ -12,8 +12,10 @@ struct ShippedFile {
   std::string_view text;
 };
 
-/// All files of blocks/ and of src/machines/, in the order of the lists in their CMakeLists.txt.
+/// All files of blocks/, of src/machines/ and of src/machines/elements/, in the order of the lists in their
+/// CMakeLists.txt.
 std::span<const ShippedFile> shipped_blocks();
 std::span<const ShippedFile> shipped_machines();
+std::span<const ShippedFile> shipped_elements();
 
 }  // namespace oblique::diagram

@@ -39,19 +39,25 @@ class Counter {
     }
     for (const auto& [rate, needed] : rates_) {
       const std::string element = fmt::format("integrators with k0 = {:.4g} 1/s", rate);
-      if (!machine_.rates_known && rate != 1) list_.rows.push_back({element, needed, true, {}, {}});
+      if (!machine_.rates_known && rate != 1)
+        list_.rows.push_back({element, needed, true, {}, {}, false, {}});
       const bool lacks =
           std::find(machine_.rates.begin(), machine_.rates.end(), rate) == machine_.rates.end();
       if (machine_.rates.empty() || !lacks) continue;
-      list_.rows.push_back({element, needed, true, 0.0,
-                            fmt::format("k0 on this machine: {:g} 1/s", fmt::join(machine_.rates, ", "))});
+      list_.rows.push_back({element,
+                            needed,
+                            true,
+                            0.0,
+                            fmt::format("k0 on this machine: {:g} 1/s", fmt::join(machine_.rates, ", ")),
+                            false,
+                            {}});
     }
     add_potentiometers();
-    add(diagram::ElementKind::multiplier, "multipliers", multipliers_);
-    add(diagram::ElementKind::comparator, "comparators", comparators_);
-    add(diagram::ElementKind::function_generator, "function generators", generators_);
-    for (const auto& [block, needed] : others_) {
-      list_.rows.push_back({block, needed, false, {}, {}});
+    add_named(diagram::ElementKind::multiplier, "multipliers", multipliers_);
+    add_named(diagram::ElementKind::comparator, "comparators", comparators_);
+    add_named(diagram::ElementKind::function_generator, "function generators", generators_);
+    for (const auto& [block, paths] : others_) {
+      list_.rows.push_back({block, static_cast<double>(paths.size()), false, {}, {}, false, paths});
     }
     return std::move(list_);
   }
@@ -78,13 +84,13 @@ class Counter {
     } else if (role == Role::open_amplifier) {
       ++open_;
     } else if (is_product(role)) {
-      ++multipliers_;
+      multipliers_.push_back(block.path);
     } else if (role == Role::comparator) {
-      ++comparators_;
+      comparators_.push_back(block.path);
     } else if (role == Role::function_generator) {
-      ++generators_;
+      generators_.push_back(block.path);
     } else {
-      ++others_[block.definition->name];
+      others_[block.definition->name].push_back(block.path);
     }
     for (std::size_t port = 0; port < block.inputs.size(); ++port)
       count_weights(block.inputs[port], block.definition->inputs[port].sum);
@@ -115,17 +121,32 @@ class Counter {
   void add(diagram::ElementKind kind, std::string element, double needed, std::string note = {}) {
     if (needed == 0) return;
     const diagram::ElementCount* const has = machine_.find(kind);
-    list_.rows.push_back({std::move(element), needed, has != nullptr,
-                          has != nullptr ? has->count : std::optional<double>(), std::move(note), false});
+    list_.rows.push_back({std::move(element),
+                          needed,
+                          has != nullptr,
+                          has != nullptr ? has->count : std::optional<double>(),
+                          std::move(note),
+                          false,
+                          {}});
+  }
+
+  void add_named(diagram::ElementKind kind, std::string element, std::vector<std::string> blocks) {
+    if (blocks.empty()) return;
+    add(kind, std::move(element), static_cast<double>(blocks.size()));
+    list_.rows.back().blocks = std::move(blocks);
   }
 
   void add_potentiometers() {
     const bool at_least = weights_inputs_ && !machine_.input_gains_known;
     if (potentiometers_ == 0 && !at_least) return;
     const diagram::ElementCount* const has = machine_.find(diagram::ElementKind::potentiometer);
-    list_.rows.push_back({"potentiometers", potentiometers_, has != nullptr || potentiometers_ == 0,
+    list_.rows.push_back({"potentiometers",
+                          potentiometers_,
+                          has != nullptr || potentiometers_ == 0,
                           has != nullptr ? has->count : std::optional<double>(),
-                          at_least ? "the gains of inputs are not published" : "", at_least});
+                          at_least ? "the gains of inputs are not published" : "",
+                          at_least,
+                          {}});
   }
 
   void add_uncommitted() {
@@ -164,10 +185,10 @@ class Counter {
   bool signed_;
   bool weights_inputs_ = false;  ///< some sum has a weight other than ±1
   ComponentList list_;
-  double summers_ = 0, inverters_ = 0, integrators_ = 0, open_ = 0, multipliers_ = 0, potentiometers_ = 0;
-  double comparators_ = 0, generators_ = 0;
+  double summers_ = 0, inverters_ = 0, integrators_ = 0, open_ = 0, potentiometers_ = 0;
+  std::vector<std::string> multipliers_, comparators_, generators_;  ///< paths
   std::map<double, double> rates_;                          ///< how many integrators have which [1/s]
-  std::map<std::string, double> others_;                    ///< without a role, by the names of their blocks
+  std::map<std::string, std::vector<std::string>> others_;  ///< without a role, by the names of their blocks
   std::set<std::pair<std::size_t, std::size_t>> inverted_;  ///< signals that negative weights ask for
   /// Potentiometers that weights ask for: signal, its sign, setting.
   std::set<std::tuple<std::size_t, std::size_t, bool, std::string>> weighted_;

@@ -18,6 +18,7 @@ struct ComponentListRow {
   std::optional<double> available;  ///< nothing: not published; inf: as many as it takes
   std::string note;                 ///< "12 summers, 2 integrators …"
   bool at_least = false;  ///< `needed` is what is known to be: the machine's inputs are not published
+  std::vector<std::string> blocks;  ///< that are of the kind, of those that no other kind can stand in for
 
   double missing() const;  ///< 0 where the count is unknown
 };

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
+#include <vector>
 
 #include <oblique/diagram/block_library.h>
 #include <oblique/diagram/diagram.h>
@@ -19,6 +21,8 @@ class RealiseError : public text::Error {
 struct Realisation {
   diagram::Diagram diagram;   ///< of primitive blocks alone; `profile` and `inverting` are the machine's
   std::size_t inverters = 0;  ///< elements that only change a sign
+  /// The names of the active elements, in the order of the circuit that was written (`reduce`).
+  std::vector<std::string> elements;
 };
 
 /// Puts a diagram into a machine's elements. Its outputs stay what they are, with ideal elements.

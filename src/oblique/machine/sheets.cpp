@@ -205,4 +205,19 @@ MachineSheets sheets_of(const diagram::Diagram& diagram, const diagram::FlatDiag
   return make_sheets(flat, expected_readings(diagram, library), machine);
 }
 
+Sheet scale_sheet(const ScaledRealisation& made, const diagram::MachineProfile& machine) {
+  const std::string unit = machine.unit ? "V" : "machine unit";
+  const double volts = machine.unit.value_or(1);
+  Sheet sheet{
+      "scales", {"element", "signal", fmt::format("1 {} is", unit), fmt::format("largest [{}]", unit)}, {}};
+  for (const SignalScale& scale : made.scales) {
+    const auto block =
+        std::find_if(made.diagram.blocks.begin(), made.diagram.blocks.end(),
+                     [&](const diagram::BlockInstance& candidate) { return candidate.name == scale.signal; });
+    sheet.rows.push_back({block->label, scale.signal, fmt::format("{:.6g}", scale.unit / volts),
+                          fmt::format("{:.4f}", scale.largest * volts)});
+  }
+  return sheet;
+}
+
 }  // namespace oblique::machine

@@ -6,6 +6,7 @@
 
 #include <oblique/diagram/flat_diagram.h>
 #include <oblique/diagram/machine_profile.h>
+#include <oblique/machine/scaled_realisation.h>
 #include <oblique/solve/static_test.h>
 
 namespace oblique::machine {
@@ -38,5 +39,8 @@ MachineSheets make_sheets(const diagram::FlatDiagram& diagram,
 /// The same for a diagram in elements of the machine, with what the ideal machine would show as the readings.
 MachineSheets sheets_of(const diagram::Diagram& diagram, const diagram::FlatDiagram& flat,
                         const diagram::BlockLibrary& library, const diagram::MachineProfile& machine);
+
+/// What the elements of a diagram that was scaled for the machine stand for, and how far they go.
+Sheet scale_sheet(const ScaledRealisation& made, const diagram::MachineProfile& machine);
 
 }  // namespace oblique::machine

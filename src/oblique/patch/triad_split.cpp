@@ -205,14 +205,23 @@ void check_split_options(const mechanism::Mechanism& mechanism, const mechanism:
       PatchError::Kind::request);
 }
 
-std::vector<std::vector<std::string>> useful_splits(const mechanism::Mechanism& mechanism) {
+std::vector<NamedSplit> all_splits(const mechanism::Mechanism& mechanism) {
   const mechanism::Structure structure = mechanism::decompose(mechanism);
   const auto triad = std::find_if(structure.groups.begin(), structure.groups.end(), is_on_links);
   if (triad == structure.groups.end() || std::any_of(triad + 1, structure.groups.end(), is_on_links))
     return {};
-  std::vector<std::vector<std::string>> names;
+  std::vector<NamedSplit> all;
   for (const TriadSplit& split : splits_of(*triad, patch_motion(mechanism, structure))) {
-    if (split.worth() > kLeastWorth) names.push_back(legs_of(mechanism, *triad, split));
+    std::vector<std::string> legs = legs_of(mechanism, *triad, split);
+    all.push_back({std::move(legs), split});
+  }
+  return all;
+}
+
+std::vector<std::vector<std::string>> useful_splits(const mechanism::Mechanism& mechanism) {
+  std::vector<std::vector<std::string>> names;
+  for (NamedSplit& split : all_splits(mechanism)) {
+    if (split.split.worth() > kLeastWorth) names.push_back(std::move(split.legs));
   }
   return names;
 }

@@ -56,6 +56,16 @@ std::string split_name(const mechanism::Mechanism& mechanism, const mechanism::G
 TriadSplit choose_split(const mechanism::Mechanism& mechanism, const mechanism::Group& triad,
                         const mechanism::Motion& motion, const PatchOptions& options);
 
+/// A split with the names of its legs, as PatchOptions::split has them.
+struct NamedSplit {
+  std::vector<std::string> legs;
+  TriadSplit split;
+};
+
+/// The six splits of a mechanism's triad, the most worth first; none where it has no triad on three links, or
+/// several.
+std::vector<NamedSplit> all_splits(const mechanism::Mechanism& mechanism);
+
 /// The splits of a mechanism's triad that never flip and keep their gain, the most worth first, as
 /// PatchOptions::split names them; none where it has no triad on three links, or several.
 std::vector<std::vector<std::string>> useful_splits(const mechanism::Mechanism& mechanism);

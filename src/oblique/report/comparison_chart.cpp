@@ -220,6 +220,58 @@ draw::Chart chart_of(const compare::Comparison& comparison) {
   return chart;
 }
 
+draw::Chart parts_chart(const compare::Comparison& comparison) {
+  const compare::GainSeries& series = comparison.series.front();
+  std::vector<compare::ComparedRun> runs(comparison.runs_of(series).begin(),
+                                         comparison.runs_of(series).end());
+  std::sort(runs.begin(), runs.end(), [](const auto& a, const auto& b) { return a.gain < b.gain; });
+  const bool exact = is_exact(comparison, runs);
+  constexpr double kTall = 300;
+  draw::Panel panel{{"gain", "", true}, {"error", comparison.unit, !exact}, {}, kTall};
+  using Style = draw::Curve::Style;
+  draw::Curve whole{"largest error", {}, 0, Style::dotted_line},
+      off{"on another branch", {}, 5, Style::marks};
+  draw::Curve at_rest{"static", {}, 1, Style::dotted_line}, lag{"lag", {}, 2, Style::dotted_line},
+      solver{"solver", {}, 3, Style::dotted_line};
+  const double least = kBelowFloor * series.floor.value_or(0);
+  const auto add = [&](draw::Curve& curve, double gain, double part) {
+    if (exact || std::abs(part) > least) curve.points.emplace_back(gain, std::abs(part));
+  };
+  double n = 0, x = 0, y = 0;
+  for (const compare::ComparedRun& run : runs) {
+    add(run.left_branch ? off : whole, run.gain, exact ? 0 : run.max_error);
+    if (run.left_branch || exact) continue;
+    if (run.parts) {
+      add(at_rest, run.gain, run.parts->at_rest);
+      add(lag, run.gain, run.parts->lag);
+      add(solver, run.gain, run.parts->solver);
+    }
+    if (!compare::stands_clear(run.max_error, series.floor.value_or(0))) continue;
+    n += 1;
+    x += std::log10(run.gain);
+    y += std::log10(run.max_error);
+  }
+  if (!runs.empty()) {
+    const double from = runs.front().gain / 3, to = runs.back().gain * 3;
+    if (n > 0) {
+      draw::Curve order{"order −1", {}, draw::Curve::kPlain, Style::guide};
+      for (const double gain : {from, to})
+        order.points.emplace_back(gain, std::pow(10, y / n - (std::log10(gain) - x / n)));
+      panel.curves.push_back(std::move(order));
+    }
+    if (series.floor && *series.floor > 0 && !exact) {
+      panel.curves.push_back(
+          {"left by the tolerance", {{from, *series.floor}, {to, *series.floor}}, 4, Style::guide});
+    }
+  }
+  for (draw::Curve* curve : {&at_rest, &lag, &solver, &off, &whole}) {
+    if (!curve->points.empty()) panel.curves.push_back(std::move(*curve));
+  }
+  draw::Chart chart;
+  chart.panels.push_back(std::move(panel));
+  return chart;
+}
+
 std::vector<draw::Panel> panels_of(const compare::Comparison& comparison, const MonteCarloReport& report) {
   if (!report.result.worst_run) return {};  // all failed
   return {bands_of(comparison, report), histogram_of(report)};

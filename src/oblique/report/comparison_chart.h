@@ -12,6 +12,11 @@ namespace oblique::report {
 /// method and bandwidth the error along the way at each gain.
 draw::Chart chart_of(const compare::Comparison& comparison);
 
+/// The largest error of one series over the gain with its parts (`ErrorParts`, their magnitudes), a line of
+/// order −1 through what stands clear of the tolerance, and what the tolerance leaves. Runs that left their
+/// branch stand apart; parts far below what the tolerance leaves tell nothing and are left out. For gains that come one after the other: one run is enough.
+draw::Chart parts_chart(const compare::Comparison& comparison);
+
 /// What the runs of Monte Carlo tell: their errors along the way, as the bands of half and of 95 % of them
 /// about the median, and how often they err how much, with the errors that half and 95 % of them do not
 /// exceed.

@@ -124,54 +124,6 @@ std::string growth_text(const solve::DisturbanceGrowth& growth) {
       growth.factor, growth.exponent);
 }
 
-std::string verdict_text(const solve::StabilityReport& report) {
-  const auto pole = [](const solve::WorstMode& worst) {
-    const solve::Mode& mode = worst.mode;
-    return mode.pole.imag() == 0
-               ? fmt::format("{:+.3g} 1/s", mode.pole.real())
-               : fmt::format("{:+.3g} ± {}i 1/s", mode.pole.real(), number(mode.pole.imag()));
-  };
-  switch (report.verdict) {
-    case solve::StabilityVerdict::no_feedback:
-      return report.switches ? "no state acts back on itself between events; what switches and stores bring "
-                               "back is not told"
-                             : "no state acts back on itself, so that nothing grows or decays by itself";
-    case solve::StabilityVerdict::stable:
-      if (!report.proven) return "stable as far as was found: no mode that grows, which is no proof";
-      return report.varies
-                 ? "stable along this run: every frozen mode decays, and small disturbances do not grow"
-                 : "stable: every mode of the closed system decays";
-    case solve::StabilityVerdict::stable_when_frozen:
-      return "every frozen mode decays; the equations vary along the run, and whether small disturbances "
-             "grow "
-             "on it is not known";
-    case solve::StabilityVerdict::undamped:
-      if (!report.proven) return "undamped as far as was found: no mode that grows, which is no proof";
-      return "undamped: a mode neither decays nor grows, and none grows";
-    case solve::StabilityVerdict::grows:
-      if (report.rightmost && solve::verdict_on(*report.rightmost) == solve::ModeVerdict::grows) {
-        const auto& ideal = report.rightmost->ideal_pole;
-        const bool by_the_machine = ideal && ideal->real() < report.rightmost->mode.pole.real() / 2;
-        return fmt::format("the problem itself grows{}: {}",
-                           by_the_machine ? ", a little, by the errors of the amplifiers" : "",
-                           pole(*report.rightmost));
-      }
-      return "the problem itself grows along the run, although no frozen mode does";
-    case solve::StabilityVerdict::grows_at_times:
-      return fmt::format("a mode of the problem itself grows at times, {} at t = {} s, {}",
-                         pole(*report.rightmost), number(report.rightmost->time),
-                         !report.growth                   ? "and the growth along the run is not known"
-                         : report.growth->does_not_grow() ? "and small disturbances do not grow along the run"
-                                                          : "and hardly, or not for long, along the run");
-    case solve::StabilityVerdict::servos_unstable:
-      return fmt::format("unstable by the servo loops, not by the problem: {} at t = {} s",
-                         pole(*report.slowest_servo), number(report.slowest_servo->time));
-    case solve::StabilityVerdict::not_told:
-      break;
-  }
-  return "not known from what was examined";
-}
-
 std::string stability(const solve::StabilityReport& report, const network::Program& program,
                       bool has_servo_loops) {
   std::string text = fmt::format("\nstability (worst modes of the frozen equations at {})\n",
@@ -248,6 +200,54 @@ std::string scaling(const DiagramCheck& check, const text::Vocabulary& vocabular
 }
 
 }  // namespace
+
+std::string verdict_text(const solve::StabilityReport& report) {
+  const auto pole = [](const solve::WorstMode& worst) {
+    const solve::Mode& mode = worst.mode;
+    return mode.pole.imag() == 0
+               ? fmt::format("{:+.3g} 1/s", mode.pole.real())
+               : fmt::format("{:+.3g} ± {}i 1/s", mode.pole.real(), number(mode.pole.imag()));
+  };
+  switch (report.verdict) {
+    case solve::StabilityVerdict::no_feedback:
+      return report.switches ? "no state acts back on itself between events; what switches and stores bring "
+                               "back is not told"
+                             : "no state acts back on itself, so that nothing grows or decays by itself";
+    case solve::StabilityVerdict::stable:
+      if (!report.proven) return "stable as far as was found: no mode that grows, which is no proof";
+      return report.varies
+                 ? "stable along this run: every frozen mode decays, and small disturbances do not grow"
+                 : "stable: every mode of the closed system decays";
+    case solve::StabilityVerdict::stable_when_frozen:
+      return "every frozen mode decays; the equations vary along the run, and whether small disturbances "
+             "grow "
+             "on it is not known";
+    case solve::StabilityVerdict::undamped:
+      if (!report.proven) return "undamped as far as was found: no mode that grows, which is no proof";
+      return "undamped: a mode neither decays nor grows, and none grows";
+    case solve::StabilityVerdict::grows:
+      if (report.rightmost && solve::verdict_on(*report.rightmost) == solve::ModeVerdict::grows) {
+        const auto& ideal = report.rightmost->ideal_pole;
+        const bool by_the_machine = ideal && ideal->real() < report.rightmost->mode.pole.real() / 2;
+        return fmt::format("the problem itself grows{}: {}",
+                           by_the_machine ? ", a little, by the errors of the amplifiers" : "",
+                           pole(*report.rightmost));
+      }
+      return "the problem itself grows along the run, although no frozen mode does";
+    case solve::StabilityVerdict::grows_at_times:
+      return fmt::format("a mode of the problem itself grows at times, {} at t = {} s, {}",
+                         pole(*report.rightmost), number(report.rightmost->time),
+                         !report.growth                   ? "and the growth along the run is not known"
+                         : report.growth->does_not_grow() ? "and small disturbances do not grow along the run"
+                                                          : "and hardly, or not for long, along the run");
+    case solve::StabilityVerdict::servos_unstable:
+      return fmt::format("unstable by the servo loops, not by the problem: {} at t = {} s",
+                         pole(*report.slowest_servo), number(report.slowest_servo->time));
+    case solve::StabilityVerdict::not_told:
+      break;
+  }
+  return "not known from what was examined";
+}
 
 std::string_view verdict_name(solve::ModeVerdict verdict) {
   switch (verdict) {

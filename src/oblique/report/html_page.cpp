@@ -17,9 +17,10 @@ constexpr std::string_view kStyle = R"(  body { margin: 2rem auto; max-width: 54
   h3 { font-size: 1rem; margin: 1.5rem 0 .3rem }
   h3::first-letter { text-transform: uppercase }
   p { max-width: 46rem; margin: .6rem 0 }
+  pre { white-space: pre-wrap; overflow-wrap: anywhere; font-size: .9rem }
   nav ul { list-style: none; padding: 0; margin: 1rem 0 }
   nav li { display: inline-block; margin-right: 1.4rem }
-  nav a { color: inherit; text-underline-offset: .2em }
+  a { color: inherit; text-underline-offset: .2em }
   figure { margin: 1rem 0; overflow-x: auto }
   figure svg { max-width: 100%; height: auto }
   figure.broad svg { max-width: none }
@@ -75,6 +76,19 @@ bool is_number(std::string_view cell) {
 
 }  // namespace
 
+std::string inline_svg(const draw::Picture& picture) {
+  const std::string width = draw::svg_number(picture.width), height = draw::svg_number(picture.height);
+  std::string text = fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{}\" viewBox=\"0 0 {} {}\" "
+      "role=\"img\">\n<title>{}</title>\n",
+      width, height, width, height, draw::escape_xml(picture.title));
+  for (draw::Mark mark : picture.marks) {
+    mark.id.clear();  // several pictures of a page would share them
+    text += draw::svg_element(mark) + "\n";
+  }
+  return text + "</svg>";
+}
+
 void HtmlPage::heading(std::string_view text) {
   sections_.push_back(draw::escape_xml(text));
   body_ += fmt::format("<h2 id=\"section-{}\">{}</h2>\n", sections_.size(), sections_.back());
@@ -90,6 +104,15 @@ void HtmlPage::paragraph(std::string_view text) {
 
 void HtmlPage::introduction(std::string_view text) {
   body_ += fmt::format("<p class=\"lead\">{}</p>\n", draw::escape_xml(text));
+}
+
+void HtmlPage::link(std::string_view text, std::string_view address) {
+  body_ += fmt::format("<p><a href=\"{}\">{}</a></p>\n", draw::escape_xml(address), draw::escape_xml(text));
+}
+
+void HtmlPage::element(std::string_view html) {
+  body_ += html;
+  body_ += "\n";
 }
 
 void HtmlPage::list(const std::vector<std::string>& items) {
@@ -124,17 +147,8 @@ void HtmlPage::table(const std::vector<std::vector<std::string>>& rows) {
 }
 
 void HtmlPage::picture(const draw::Picture& picture) {
-  const std::string width = draw::svg_number(picture.width), height = draw::svg_number(picture.height);
-  body_ += fmt::format(
-      "<figure{}><svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{}\" viewBox=\"0 0 {} {}\" "
-      "role=\"img\">\n<title>{}</title>\n",
-      picture.width > kBroad ? " class=\"broad\"" : "", width, height, width, height,
-      draw::escape_xml(picture.title));
-  for (draw::Mark mark : picture.marks) {
-    mark.id.clear();  // several pictures of a page would share them
-    body_ += draw::svg_element(mark) + "\n";
-  }
-  body_ += "</svg></figure>\n";
+  body_ += fmt::format("<figure{}>{}</figure>\n", picture.width > kBroad ? " class=\"broad\"" : "",
+                       inline_svg(picture));
 }
 
 std::string HtmlPage::text(draw::Theme theme) const {

@@ -10,9 +10,12 @@
 
 namespace oblique::report {
 
+/// The element `<svg>` of a picture inside a page; the style sheet of `svg_style` must be there.
+std::string inline_svg(const draw::Picture& picture);
+
 /// A page in one file: contents, text, tables and pictures inside it, no scripts. On paper it is always
 /// light; headings and introductions stay with what follows them, pictures and short tables are not divided,
-/// and pictures that are broad have a sheet across. All texts are escaped.
+/// and pictures that are broad have a sheet across. All texts are escaped but elements that are given whole.
 class HtmlPage {
  public:
   explicit HtmlPage(std::string title) : title_(std::move(title)) {}
@@ -29,6 +32,10 @@ class HtmlPage {
   /// The same, with the header as the first of `rows`.
   void table(const std::vector<std::vector<std::string>>& rows);
   void picture(const draw::Picture& picture);
+  /// A paragraph that is a link.
+  void link(std::string_view text, std::string_view address);
+  /// An element of HTML as it stands.
+  void element(std::string_view html);
 
   std::string text(draw::Theme theme) const;
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/report/judgement_text.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -29,6 +30,61 @@ std::string bandwidth_text(const commission::MachinePatch& patch, const diagram:
   if (!patch.usual) return "";
   return fmt::format("servo amplifiers of {:g} Hz here: with {:g} Hz on the elements of {}, {}\n",
                      *patch.options.bandwidth, patch.usual->bandwidth, machine.title, patch.usual->fault);
+}
+
+namespace {
+
+std::string use_text(const std::vector<machine::SignalScale>& scales) {
+  const auto less = [](const machine::SignalScale& a, const machine::SignalScale& b) {
+    return a.largest < b.largest;
+  };
+  const auto least = std::min_element(scales.begin(), scales.end(), less);
+  const auto most = std::max_element(scales.begin(), scales.end(), less);
+  if (scales.empty()) return "";
+  return fmt::format("its signals reach {:.2g} ('{}') to {:.2g} ('{}') of the machine unit\n", least->largest,
+                     least->signal, most->largest, most->signal);
+}
+
+std::string loops_text(const commission::DiagramOnMachine& patched) {
+  if (!patched.loops) return "";
+  std::string text;
+  if (patched.loop_speed < 1) {
+    text = fmt::format("servo amplifiers {:g} times as fast as the diagram's: at full speed {}\n",
+                       patched.loop_speed, patched.loop_fault);
+  }
+  if (!patched.loops->well_damped())
+    return text + fmt::format("warning: {}\n", commission::fault_of(*patched.loops));
+  return text +
+         fmt::format("its servo loops come to rest everywhere: slowest pole {:.3g} 1/s, damping ζ ≥ {:.2g}\n",
+                     patched.loops->slowest_pole, patched.loops->damping);
+}
+
+}  // namespace
+
+std::string machine_text(const commission::DiagramOnMachine& patched,
+                         const diagram::MachineProfile& machine) {
+  std::string text;
+  if (patched.made.time != 1)
+    text += fmt::format("1 s of the diagram takes {:g} s on the machine\n", patched.made.time);
+  text += use_text(patched.made.scales);
+  for (const machine::GeneratedFunction& function : patched.made.functions) {
+    text += fmt::format("{} ({}): {} straight lines from {:.4g} to {:.4g}, within {:.2g}\n", function.signal,
+                        function.block, function.segments, function.low, function.high, function.error);
+  }
+  text += loops_text(patched);
+  text += fmt::format("with ideal elements its outputs differ from the diagram's by {:.1e} of their size\n",
+                      patched.difference);
+  constexpr double kSameOutputs = 1e-3;
+  if (patched.difference > kSameOutputs && patched.made.functions.empty())
+    text += "warning: that is more than the solver's tolerance explains, unless the diagram is chaotic\n";
+  if (!patched.failure.empty()) {
+    text +=
+        fmt::format("warning: on the elements of {} it does not run: {}\n", machine.title, patched.failure);
+  } else if (!patched.overloads.empty()) {
+    text += fmt::format("warning: on the elements of {} '{}' reaches {:.3g} machine units\n", machine.title,
+                        patched.overloads.front().signal, patched.overloads.front().peak);
+  }
+  return text;
 }
 
 }  // namespace oblique::report

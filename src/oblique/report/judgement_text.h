@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include <oblique/commission/diagram_on_machine.h>
 #include <oblique/commission/on_machine.h>
 #include <oblique/text/diagnostic.h>
 
@@ -14,5 +15,9 @@ std::string judgement_text(const commission::Judgement& judgement,
 
 /// Where a patch has slower amplifiers on this machine than elsewhere, and why; or nothing.
 std::string bandwidth_text(const commission::MachinePatch& patch, const diagram::MachineProfile& machine);
+
+/// What `patch` tells of a diagram on a machine: its time, how much of the machine unit it uses, functions
+/// that function generators stand for, servo loops, and how it does on ideal and on real elements.
+std::string machine_text(const commission::DiagramOnMachine& patched, const diagram::MachineProfile& machine);
 
 }  // namespace oblique::report

@@ -13,6 +13,10 @@ namespace oblique::report {
 std::string to_text(const compare::MachineComparison& machine, const compare::Comparison& comparison,
                     const text::Vocabulary& vocabulary = text::plain_vocabulary());
 
+/// The same of a diagram: errors are parts of the largest value of each output.
+std::string to_text(const compare::MachineComparison& machine,
+                    const text::Vocabulary& vocabulary = text::plain_vocabulary());
+
 /// The same for `--json` (docs/trust.md).
 nlohmann::ordered_json to_json(const compare::MachineComparison& machine);
 

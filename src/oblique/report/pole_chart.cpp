@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/network/program/program.h>
 #include <oblique/report/pole_chart.h>
 
 #include <algorithm>
 #include <array>
+
+#include <oblique/solve/stability/poles_along.h>
 
 namespace oblique::report {
 namespace {
@@ -16,24 +17,10 @@ draw::Chart pole_chart(const diagram::FlatDiagram& diagram, const network::Progr
                        const std::vector<solve::Instant>& instants, const std::string& title) {
   std::array<draw::Curve, 2> kinds{draw::Curve{"", {}, 0, draw::Curve::Style::marks},
                                    draw::Curve{"", {}, 1, draw::Curve::Style::marks}};
-  const auto groups = solve::coupled_groups(program);
-  solve::IdealMachine ideal(diagram, program);
-  network::Workspace workspace(program);
-  for (const solve::Instant& instant : instants) {
-    const auto linear = solve::Linearisation::at(program, workspace, instant);
-    if (!linear) continue;
-    ideal.look_at(instant, workspace);
-    for (const auto& group : groups) {
-      if (group.size() > solve::kMostStatesForModes) continue;
-      const std::vector<solve::Mode> modes = solve::modes_of(linear->block(group), group);
-      const auto of_the_problem = ideal.problem_modes(group, modes);
-      for (std::size_t m = 0; m < modes.size(); ++m) {
-        const solve::Mode& mode = modes[m];
-        draw::Curve& curve = kinds[of_the_problem[m] ? 1 : 0];
-        curve.points.emplace_back(mode.pole.real(), mode.pole.imag());
-        if (mode.pole.imag() != 0) curve.points.emplace_back(mode.pole.real(), -mode.pole.imag());
-      }
-    }
+  for (const solve::PoleAt& pole : solve::poles_along(diagram, program, instants)) {
+    draw::Curve& curve = kinds[pole.of_problem ? 1 : 0];
+    curve.points.emplace_back(pole.value.real(), pole.value.imag());
+    if (pole.value.imag() != 0) curve.points.emplace_back(pole.value.real(), -pole.value.imag());
   }
   draw::Chart chart;
   chart.title = title;

@@ -5,7 +5,7 @@
 
 #include <oblique/draw/chart/chart.h>
 #include <oblique/network/program/program.h>
-#include <oblique/solve/operating_point/ideal_machine.h>
+#include <oblique/solve/stability/linearisation.h>
 
 namespace oblique::report {
 

@@ -10,6 +10,7 @@
 #include <oblique/text/encoding.h>
 #include <oblique/text/expression_grammar.h>
 #include <oblique/text/file.h>
+#include <oblique/text/toml_text.h>
 
 // This is the only translation unit of toml++ 3.3, which asserts or assumes away things that malformed text
 // can bring about. Here an assertion that fails throws. It throws from a function because many asserts stand
@@ -108,26 +109,6 @@ Value convert(const toml::node& node) {
 
 [[noreturn]] void fail(std::string file, SourcePosition position, std::string what, std::string remedy) {
   throw ReadError(Diagnostic{{std::move(file), position}, std::move(what), {}, std::move(remedy)});
-}
-
-/// Where the quoted text that begins at `begin` ends (one past its quotes), or the end of an unfinished one.
-std::size_t end_of_string(std::string_view text, std::size_t begin) {
-  const char quote = text[begin];
-  const std::string three(3, quote);
-  const bool multi_line = text.substr(begin).starts_with(three);
-  for (std::size_t at = begin + (multi_line ? 3 : 1); at < text.size(); ++at) {
-    if (quote == '"' && text[at] == '\\') {
-      ++at;
-    } else if (!multi_line && (text[at] == quote || text[at] == '\n')) {
-      return at + 1;
-    } else if (multi_line && text.substr(at).starts_with(three)) {
-      at += 3;
-      // The last two of up to five quotes belong to the string.
-      while (at < text.size() && text[at] == quote) ++at;
-      return at;
-    }
-  }
-  return text.size();
 }
 
 /// The place of the first key of more than `kLongestKey` parts (`a.b.c…`): each part is a level of nesting.

@@ -29,4 +29,23 @@ std::string toml_key(std::string_view key) {
   return bare ? std::string(key) : toml_string(key);
 }
 
+std::size_t end_of_string(std::string_view text, std::size_t begin) {
+  const char quote = text[begin];
+  const std::string three(3, quote);
+  const bool multi_line = text.substr(begin).starts_with(three);
+  for (std::size_t at = begin + (multi_line ? 3 : 1); at < text.size(); ++at) {
+    if (quote == '"' && text[at] == '\\') {
+      ++at;
+    } else if (!multi_line && (text[at] == quote || text[at] == '\n')) {
+      return at + 1;
+    } else if (multi_line && text.substr(at).starts_with(three)) {
+      at += 3;
+      // The last two of up to five quotes belong to the string.
+      while (at < text.size() && text[at] == quote) ++at;
+      return at;
+    }
+  }
+  return text.size();
+}
+
 }  // namespace oblique::text

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -12,5 +13,8 @@ std::string toml_string(std::string_view text);
 
 /// A key of TOML: bare where it may be.
 std::string toml_key(std::string_view key);
+
+/// Where the quoted text that begins at `begin` ends (one past its quotes), or the end of an unfinished one.
+std::size_t end_of_string(std::string_view text, std::size_t begin);
 
 }  // namespace oblique::text

@@ -5,7 +5,10 @@
 #include <emscripten/val.h>
 
 #include "studio/engine/engine.h"
+#include "studio/engine/live_comparison.h"
 #include "studio/engine/live_console.h"
+#include "studio/engine/live_mechanism.h"
+#include "studio/engine/mechanism_study.h"
 
 namespace oblique::studio {
 namespace {
@@ -26,12 +29,30 @@ val ask(Engine& engine, Arguments... arguments) {
 }
 
 template <auto kFunction, class... Arguments>
+val study(Engine& engine, Arguments... arguments) {
+  return to_js(kFunction(engine, arguments...));
+}
+
+template <class Held, auto kFunction, class... Arguments>
+val hold(Held& held, Arguments... arguments) {
+  return to_js((held.*kFunction)(arguments...));
+}
+
+template <auto kFunction, class... Arguments>
 val operate(LiveConsole& console, Arguments... arguments) {
-  return to_js((console.*kFunction)(arguments...));
+  return hold<LiveConsole, kFunction>(console, arguments...);
+}
+
+val follow(LiveMechanism& mechanism, LiveConsole& console, double magnification) {
+  return to_js(mechanism.follow(console, magnification));
 }
 
 val about() {
   return to_js(Engine::about());
+}
+
+val blocks(const Engine& engine) {
+  return to_js(engine.blocks());
 }
 
 val advance(LiveConsole& console, double duration, val names, int rows) {
@@ -66,10 +87,18 @@ EMSCRIPTEN_BINDINGS(oblique_studio) {
       .function("check", &ask<&Engine::check, Text, Text, Text>)
       .function("patch", &ask<&Engine::patch, Text, Text, Text>)
       .function("motion", &ask<&Engine::motion, Text, Text, Text>)
-      .function("draw", &ask<&Engine::draw, Text, Text, Text>);
+      .function("draw", &ask<&Engine::draw, Text, Text, Text>)
+      .function("blocks", &blocks)
+      .function("panel", &ask<&Engine::panel, Text, Text, Text>)
+      .function("inside", &ask<&Engine::inside, Text, Text, Text>)
+      .function("edit", &ask<&Engine::edit, Text, Text, Text>)
+      .function("modes", &study<&modes, Text, Text>)
+      .function("splits", &study<&splits, Text, Text>)
+      .function("loops", &study<&loops, Text, Text, Text>);
   emscripten::class_<LiveConsole>("Console")
       .constructor<const Engine&>()
       .function("open", &operate<&LiveConsole::open, Text, Text>)
+      .function("exchange", &operate<&LiveConsole::exchange, Text, Text, Text>)
       .function("setMode", &operate<&LiveConsole::set_mode, Text>)
       .function("repeat", &operate<&LiveConsole::repeat, double, double>)
       .function("advance", &advance)
@@ -83,6 +112,21 @@ EMSCRIPTEN_BINDINGS(oblique_studio) {
       .function("removeProbe", &operate<&LiveConsole::remove_probe, double>)
       .function("save", &operate<&LiveConsole::save>)
       .function("restore", &operate<&LiveConsole::restore, Text>);
+  using M = LiveMechanism;
+  emscripten::class_<M>("Mechanism")
+      .constructor<const Engine&>()
+      .function("open", &hold<M, &M::open, Text, Text>)
+      .function("at", &hold<M, &M::at, double>)
+      .function("follow", &follow)
+      .function("nearest", &hold<M, &M::nearest, Text, double, double, double>)
+      .function("drag", &hold<M, &M::drag, Text, double, double, double>)
+      .function("timeOf", &hold<M, &M::time_of, double>)
+      .function("events", &hold<M, &M::events>);
+  using C = LiveComparison;
+  emscripten::class_<C>("Comparison")
+      .constructor<const Engine&>()
+      .function("open", &hold<C, &C::open, Text, Text, Text>)
+      .function("add", &hold<C, &C::add, double>);
 }
 
 }  // namespace

@@ -31,6 +31,8 @@
 
 #include "studio/engine/lesson.h"
 #include "studio/engine/options.h"
+#include "studio/engine/patch_request.h"
+#include "studio/engine/patching.h"
 
 namespace oblique::studio {
 namespace {
@@ -57,23 +59,6 @@ Json columns_of(const std::vector<text::TableColumn>& columns) {
   for (const text::TableColumn& column : columns)
     list.push_back({{"name", column.name}, {"unit", column.unit}});
   return list;
-}
-
-const char* name_of(mechanism::MotionEvent::Kind kind) {
-  using Kind = mechanism::MotionEvent::Kind;
-  switch (kind) {
-    case Kind::limit:
-      return "limit";
-    case Kind::return_:
-      return "return";
-    case Kind::change:
-      return "change";
-    case Kind::infinity:
-      return "infinity";
-    case Kind::lost:
-      break;
-  }
-  return "lost";
 }
 
 Json trust_of(const solve::Trust& trust) {
@@ -179,6 +164,23 @@ Json description_of(const mechanism::Mechanism& mechanism) {
 }
 
 }  // namespace
+
+const char* event_name(mechanism::MotionEvent::Kind kind) {
+  using Kind = mechanism::MotionEvent::Kind;
+  switch (kind) {
+    case Kind::limit:
+      return "limit";
+    case Kind::return_:
+      return "return";
+    case Kind::change:
+      return "change";
+    case Kind::infinity:
+      return "infinity";
+    case Kind::lost:
+      break;
+  }
+  return "lost";
+}
 
 Engine::Engine() : Engine(Limits{}) {}
 
@@ -311,28 +313,15 @@ Answer Engine::patch(const std::string& text, const std::string& name, const std
     check_size(text, name);
     const Options asked(options, {"gain", "bandwidth", "slower", "method", "split", "force", "period"});
     expect_kind(text, name, FileKind::mechanism, "a patch");
-    patch::PatchOptions how;
-    const auto positive = [&](const char* key, std::string_view unit) {
-      const std::optional<double> value = asked.quantity(key, unit);
-      if (value && !(*value > 0)) refuse({}, fmt::format("'{}' is {}", key, *value), "a number above 0");
-      return value;
-    };
-    if (const auto method = asked.word("method")) {
-      const auto known = patch::parse_patch_method(*method);
-      if (!known) refuse({}, fmt::format("'method' is '{}'", *method), "triangles, gradient or paper");
-      how.method = *known;
-    }
-    how.gain = positive("gain", "1").value_or(how.gain);
-    how.bandwidth = positive("bandwidth", "Hz");
-    how.slower = positive("slower", "1");
-    how.period = positive("period", "s");
-    how.split = asked.words("split");
+    patch::PatchOptions how = patch_options(asked);
     how.force = asked.flag("force");
     const commission::JudgedPatch patched =
         commission::judged_patch(mechanism::parse_mechanism(text, name), *library_, how);
     Answer made;
     made.object["text"] = diagram::write_diagram(patched.diagram);
     made.object["judgement"] = report::judgement_text(patched.judgement);
+    made.object["split"] = patched.options.split;
+    if (patched.options.slower) made.object["slower"] = *patched.options.slower;
     return made;
   });
 }
@@ -374,7 +363,7 @@ Answer Engine::motion(const std::string& text, const std::string& name, const st
     json["events"] = Json::array();
     for (const mechanism::MotionEvent& event : events) {
       json["events"].push_back({{"time", event.time},
-                                {"kind", name_of(event.kind)},
+                                {"kind", event_name(event.kind)},
                                 {"group", structure.groups[event.group].name}});
     }
     return moved;
@@ -393,6 +382,34 @@ Answer Engine::draw(const std::string& text, const std::string& name, const std:
                                             Options(options, {"theme", "time", "positions"}));
     }
     return drawn;
+  });
+}
+
+Answer Engine::blocks() const {
+  return answer([&] { return Answer{catalogue(*library_), {}}; });
+}
+
+Answer Engine::panel(const std::string& text, const std::string& name, const std::string& options) const {
+  return answer([&] {
+    check_size(text, name);
+    expect_kind(text, name, FileKind::diagram, "a patch panel");
+    return Answer{panel_of(text, name, *library_, Options(options, {"theme", "held", "data"})), {}};
+  });
+}
+
+Answer Engine::inside(const std::string& text, const std::string& name, const std::string& options) const {
+  return answer([&] {
+    check_size(text, name);
+    expect_kind(text, name, FileKind::diagram, "a patch panel");
+    return Answer{inside_of(text, name, *library_, Options(options, {"theme", "path", "data"})), {}};
+  });
+}
+
+Answer Engine::edit(const std::string& text, const std::string& name, const std::string& options) const {
+  return answer([&] {
+    check_size(text, name);
+    expect_kind(text, name, FileKind::diagram, "patching");
+    return Answer{edited(text, name, *library_, options), {}};
   });
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include <oblique/diagram/block_library.h>
+#include <oblique/mechanism/motion/motion_event.h>
 
 #include "studio/engine/answer.h"
 
@@ -17,6 +18,9 @@ struct Limits {
   double numbers = 16e6;          ///< in the rows of an answer: 128 MB
   double text = 4 * 1024 * 1024;  ///< bytes of a file
 };
+
+/// "limit", "return", "change", "infinity", "lost".
+const char* event_name(mechanism::MotionEvent::Kind kind);
 
 /// Text of a diagram or a mechanism in, objects and numbers out: what a page needs of the library. Nothing is
 /// kept between two calls but the files put beside the texts and the kinds of blocks. `name` is what messages
@@ -57,9 +61,9 @@ class Engine {
   /// "checks": [{"what", "actual", "value", "within", "met"}]}. Options: "step" (from 1), "set" as `run`.
   Answer check(const std::string& text, const std::string& name, const std::string& options) const;
 
-  /// Patches a mechanism: {"text"} of the diagram, and {"judgement"} of it in words. Options: "gain",
-  /// "bandwidth", "slower" (quantities as texts or numbers), "method", "split" [names], "force", "period"
-  /// [s].
+  /// Patches a mechanism: {"text"} of the diagram, {"judgement"} of it in words, and {"split", "slower"}
+  /// where these were asked for or found by trial. Options: "gain", "bandwidth", "slower" (quantities as
+  /// texts or numbers), "method", "split" [names], "force", "period" [s].
   Answer patch(const std::string& text, const std::string& name, const std::string& options) const;
 
   /// The exact motion of a mechanism: {"columns": [{"name", "unit"}], "rows", "statuses": [names], "events":
@@ -72,8 +76,17 @@ class Engine {
   /// mechanism "time" [s] and "positions".
   Answer draw(const std::string& text, const std::string& name, const std::string& options) const;
 
- private:
+  /// The kinds of blocks that diagrams may use; a diagram that may be wrong as a patch panel, or the inside
+  /// of a composite of it; a diagram with steps of patching done: as patching.h says it.
+  Answer blocks() const;
+  Answer panel(const std::string& text, const std::string& name, const std::string& options) const;
+  Answer inside(const std::string& text, const std::string& name, const std::string& options) const;
+  Answer edit(const std::string& text, const std::string& name, const std::string& options) const;
+
+  /// Throws ReadError for a text beyond the limit.
   void check_size(const std::string& text, const std::string& name) const;
+
+ private:
   void check_numbers(std::size_t rows, std::size_t columns, const std::string& name) const;
 
   Limits limits_;

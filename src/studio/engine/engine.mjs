@@ -37,12 +37,25 @@ export async function loadEngine({createEngine, wasmBinary, limits = {}}) {
   const ask = (verb) => (source, options, name) =>
     call(() => engine[verb](text(source), text(name), JSON.stringify(options ?? {})));
 
-  function openConsole() {
-    const held = new wasm.Console(engine);
+  // An object of the engine until it is closed, which frees its memory.
+  function keep(Kind, what) {
+    const held = new Kind(engine);
     let closed = false;
-    const machine = (work) => (closed ? refusal("this console is closed", "take another") : call(work));
-    return {
+    const use = (work) => (closed ? refusal(`this ${what} is closed`, "take another") : call(work));
+    const close = () => {
+      if (!closed) held.delete();
+      closed = true;
+    };
+    return {held, use, close};
+  }
+
+  const consoles = new WeakMap();
+  function openConsole() {
+    const {held, use: machine, close} = keep(wasm.Console, "console");
+    const taken = {
       open: (source, name) => machine(() => held.open(text(source), text(name))),
+      exchange: (source, renamed, name) =>
+        machine(() => held.exchange(text(source), text(name), JSON.stringify(renamed ?? []))),
       setMode: (mode) => machine(() => held.setMode(text(mode))),
       repeat: (initial, operate) => machine(() => held.repeat(Number(initial), Number(operate))),
       advance: (duration, names, rows = 1) =>
@@ -57,10 +70,36 @@ export async function loadEngine({createEngine, wasmBinary, limits = {}}) {
       removeProbe: (probe) => machine(() => held.removeProbe(Number(probe))),
       save: () => machine(() => held.save()),
       restore: (state) => machine(() => held.restore(text(state))),
-      close() {
-        if (!closed) held.delete();
-        closed = true;
+      close,
+    };
+    consoles.set(taken, {held, machine});
+    return taken;
+  }
+
+  function openMechanism() {
+    const {held, use, close} = keep(wasm.Mechanism, "mechanism");
+    return {
+      open: (source, name) => use(() => held.open(text(source), text(name))),
+      at: (time) => use(() => held.at(Number(time))),
+      follow(console, magnification = 1) {
+        const followed = consoles.get(console);
+        if (!followed) return refusal("there is no such console", "take one of this engine");
+        return use(() => followed.machine(() => held.follow(followed.held, Number(magnification))));
       },
+      nearest: (point, x, y, time) => use(() => held.nearest(text(point), Number(x), Number(y), Number(time))),
+      drag: (point, x, y, time) => use(() => held.drag(text(point), Number(x), Number(y), Number(time))),
+      timeOf: (drive) => use(() => held.timeOf(Number(drive))),
+      events: () => use(() => held.events()),
+      close,
+    };
+  }
+
+  function openComparison() {
+    const {held, use, close} = keep(wasm.Comparison, "comparison");
+    return {
+      open: (source, options, name) => use(() => held.open(text(source), text(name), JSON.stringify(options ?? {}))),
+      add: (gain) => use(() => held.add(Number(gain))),
+      close,
     };
   }
 
@@ -77,6 +116,15 @@ export async function loadEngine({createEngine, wasmBinary, limits = {}}) {
     patch: ask("patch"),
     motion: ask("motion"),
     draw: ask("draw"),
+    blocks: () => call(() => engine.blocks()),
+    panel: ask("panel"),
+    inside: ask("inside"),
+    edit: ask("edit"),
+    modes: (source, name) => call(() => engine.modes(text(source), text(name))),
+    splits: (source, name) => call(() => engine.splits(text(source), text(name))),
+    loops: ask("loops"),
     console: openConsole,
+    mechanism: openMechanism,
+    comparison: openComparison,
   };
 }

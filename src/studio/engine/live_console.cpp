@@ -64,30 +64,60 @@ Answer LiveConsole::stands() {
   return now;
 }
 
+diagram::Diagram LiveConsole::read_text(const std::string& text, const std::string& name) const {
+  if (static_cast<double>(text.size()) > engine_.limits().text)
+    throw text::ReadError(Diagnostic{{name, {}},
+                                     fmt::format("the file has {} bytes", text.size()),
+                                     fmt::format("{} at most", engine_.limits().text),
+                                     {}});
+  diagram::Diagram diagram = diagram::parse_diagram(text, name);
+  diagram.run.max_steps = std::min(diagram.run.max_steps, static_cast<std::int64_t>(engine_.limits().steps));
+  return diagram;
+}
+
+Answer LiveConsole::set_up() {
+  Answer opened = stands();
+  opened.object["outputs"] = console_->output_names();
+  opened.object["signals"] = console_->signal_names();
+  opened.object["pots"] = console_->pot_names();
+  return opened;
+}
+
 Answer LiveConsole::open(const std::string& text, const std::string& name) {
   return answer([&] {
-    if (static_cast<double>(text.size()) > engine_.limits().text)
-      throw text::ReadError(Diagnostic{{name, {}},
-                                       fmt::format("the file has {} bytes", text.size()),
-                                       fmt::format("{} at most", engine_.limits().text),
-                                       {}});
-    diagram::Diagram diagram = diagram::parse_diagram(text, name);
-    diagram.run.max_steps =
-        std::min(diagram.run.max_steps, static_cast<std::int64_t>(engine_.limits().steps));
+    diagram::Diagram diagram = read_text(text, name);
     std::shared_ptr<const diagram::BlockLibrary> library = engine_.library();
     console_ = console::Console(std::move(diagram), *library);
     library_ = std::move(library);
-    Answer opened = stands();
-    opened.object["outputs"] = console_->output_names();
-    opened.object["signals"] = console_->signal_names();
-    opened.object["pots"] = console_->pot_names();
+    begin(diagram::OperatingMode::operate, 0);
+    return set_up();
+  });
+}
+
+Answer LiveConsole::exchange(const std::string& text, const std::string& name, const std::string& renamed) {
+  return answer([&] {
+    const Json asked = Json::parse(renamed, nullptr, false);
+    std::vector<std::pair<std::string, std::string>> names;
+    for (const Json& one : asked.is_array() ? asked : Json::array()) {
+      if (one.is_array() && one.size() == 2 && one[0].is_string() && one[1].is_string())
+        names.emplace_back(one[0].get<std::string>(), one[1].get<std::string>());
+    }
+    diagram::Diagram diagram = read_text(text, name);
+    std::shared_ptr<const diagram::BlockLibrary> library = engine_.library();
+    const auto kept = held().exchange(std::move(diagram), *library, names);
+    library_ = std::move(library);
+    Answer opened = set_up();
+    opened.object["turned"] = Json::object();
+    for (const diagram::ParameterOverride& pot : kept) opened.object["turned"][pot.path] = pot.value;
     return opened;
   });
 }
 
 Answer LiveConsole::set_mode(const std::string& mode) {
   return answer([&] {
-    held().set_mode(mode_of(mode));
+    const diagram::OperatingMode wanted = mode_of(mode);
+    held().set_mode(wanted);
+    begin(wanted, time_of_operation());
     return stands();
   });
 }
@@ -95,6 +125,8 @@ Answer LiveConsole::set_mode(const std::string& mode) {
 Answer LiveConsole::repeat(double initial, double operate) {
   return answer([&] {
     held().repeat(initial, operate);
+    begin(diagram::OperatingMode::initial, 0);
+    repetition_ = Repetition{initial, operate};
     return stands();
   });
 }
@@ -259,6 +291,35 @@ Answer LiveConsole::remove_probe(double probe) {
   });
 }
 
+void LiveConsole::begin(diagram::OperatingMode mode, double operated) {
+  using Mode = diagram::OperatingMode;
+  mode_ = mode;
+  operated_ = mode == Mode::initial || mode == Mode::potset ? 0 : operated;
+  since_ = console_->time();
+  repetition_.reset();
+}
+
+double LiveConsole::time_of_operation() const {
+  if (!console_) return 0;
+  const double way = console_->time() - since_;
+  if (repetition_) {
+    const double within = std::fmod(way, repetition_->initial + repetition_->operate);
+    return std::max(0.0, within - repetition_->initial);
+  }
+  return mode_ == diagram::OperatingMode::operate ? operated_ + way : operated_;
+}
+
+std::optional<std::vector<double>> LiveConsole::outputs(const std::vector<std::string>& names) {
+  const std::vector<std::string> all = held().output_names();
+  std::vector<double> values;
+  values.reserve(names.size());
+  for (const std::string& name : names) {
+    if (std::find(all.begin(), all.end(), name) == all.end()) return std::nullopt;
+    values.push_back(held().value(name));
+  }
+  return values;
+}
+
 Answer LiveConsole::save() {
   return answer([&] {
     Answer saved = stands();
@@ -270,6 +331,7 @@ Answer LiveConsole::save() {
 Answer LiveConsole::restore(const std::string& state) {
   return answer([&] {
     held().restore(solve::parse_run_state(state, "state"));
+    begin(mode_, held().time());
     return stands();
   });
 }

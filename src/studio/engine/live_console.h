@@ -24,13 +24,18 @@ class LiveConsole {
   /// {"time", "outputs", "signals", "pots"}.
   Answer open(const std::string& text, const std::string& name);
 
+  /// Another diagram in place of the one that runs, at its time (console::Console::exchange). `renamed` is a
+  /// JSON list of [before, now]: {"time", "outputs", "signals", "pots", "turned": {pot: value}}.
+  Answer exchange(const std::string& text, const std::string& name, const std::string& renamed);
+
   /// "potset", "initial", "operate" or "hold": {"time"}.
   Answer set_mode(const std::string& mode);
   /// Initial condition for so long, then operation, and again [s]: {"time"}.
   Answer repeat(double initial, double operate);
 
   /// Goes on by so much [s], or as far as it comes in the engine's time: {"time", "complete", "rows",
-  /// "seconds" of ours, "warnings"}, and as numbers `rows` rows, the last at the end, with the time and the values of `names`.
+  /// "seconds" of ours, "warnings"}, and as numbers `rows` rows, the last at the end, with the time and the
+  /// values of `names`.
   Answer advance(double duration, const std::vector<std::string>& names, int rows);
 
   /// {"how": "at_once" or "compiled_anew"}.
@@ -54,6 +59,11 @@ class LiveConsole {
   Answer take_traces(double probe);
   /// Takes a probe away.
   Answer remove_probe(double probe);
+  /// The outputs of these names, in their units; nothing where the machine has not all of them. Throws where
+  /// no machine is held.
+  std::optional<std::vector<double>> outputs(const std::vector<std::string>& names);
+  /// For how long it has been in operation since it was in initial condition [s].
+  double time_of_operation() const;
 
   /// {"state"}: a text with which `restore`, or the program, goes on.
   Answer save();
@@ -62,11 +72,21 @@ class LiveConsole {
  private:
   console::Console& held();
   Answer stands();
+  Answer set_up();
+  diagram::Diagram read_text(const std::string& text, const std::string& name) const;
   bool go(double until, double deadline);
+  void begin(diagram::OperatingMode mode, double operated);
 
   const Engine& engine_;
   std::shared_ptr<const diagram::BlockLibrary> library_;  ///< of the machine
   std::optional<console::Console> console_;
+  diagram::OperatingMode mode_ = diagram::OperatingMode::operate;
+  double operated_ = 0;  ///< until the mode was set [s]
+  double since_ = 0;     ///< the time at which that was [s]
+  struct Repetition {
+    double initial = 0, operate = 0;  ///< [s]
+  };
+  std::optional<Repetition> repetition_;
 };
 
 }  // namespace oblique::studio

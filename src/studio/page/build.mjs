@@ -45,6 +45,8 @@ const opening = examples.find(({name}) => name === "mechanisms/class-iii.toml");
 const inside = (text) => text.replaceAll("</", "<\\/").replaceAll("<!--", "<\\!--");
 const json = (value) => JSON.stringify(value).replaceAll("<", "\\u003c");
 
+const packed = (content) => gzipSync(content, {level: 9}).toString("base64");
+
 const worker = bundle("worker.ts", "--format=iife", `--alias:engine=${join(built, "engine.mjs")}`, `--alias:engine-glue=${join(built, "engine.js")}`,
   "--external:fs", "--external:path", "--external:crypto");
 const script = inside(bundle("main.tsx", "--format=iife", "--jsx=automatic", "--jsx-import-source=preact"));
@@ -57,8 +59,8 @@ const parts = {
   POLICY: policy,
   STYLE: style,
   OPENING: json(opening),
-  EXAMPLES: json(examples),
-  ENGINE: gzipSync(readFileSync(join(built, "engine.wasm")), {level: 9}).toString("base64"),
+  EXAMPLES: packed(JSON.stringify(examples)),
+  ENGINE: packed(readFileSync(join(built, "engine.wasm"))),
   WORKER: inside(worker),
   SCRIPT: script,
 };

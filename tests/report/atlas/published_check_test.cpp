@@ -48,7 +48,7 @@ at = 1
   EXPECT_NEAR(results[0].in_uncertainties(), std::abs(1839.4 - 5000 * std::exp(-1)) / 0.1, 0.01);
   EXPECT_TRUE(results[0].met());
   EXPECT_EQ(to_text(results),
-            "ok      x at 1 = 1839.4, published 1839.4 ± 0.1 mV: off by 0.028 times that\n");
+            "ok      x at 1 = 1839.397, published 1839.4 ± 0.1 mV: off by 0.028 times that\n");
 }
 
 // Each setting is a run of its own, after the settings of the first one; values keep their order.
@@ -86,13 +86,35 @@ TEST(PublishedCheck, ForgivesOnlyWhatIsExplained) {
   const auto missed = check(value);
   EXPECT_FALSE(missed[0].met());
   EXPECT_FALSE(missed[0].is_explained());
-  EXPECT_EQ(to_text(missed), "FAILED  x at 1 = 1.8394, published 1.5 ± 0.1: off by 3.4 times that\n");
+  EXPECT_EQ(to_text(missed), "FAILED  x at 1 = 1.839, published 1.5 ± 0.1: off by 3.4 times that\n");
   const auto known = check(value + "because = \"the pot was misread\"\n");
   EXPECT_FALSE(known[0].met());
   EXPECT_TRUE(known[0].is_explained());
   EXPECT_EQ(to_text(known),
-            "known   x at 1 = 1.8394, published 1.5 ± 0.1: off by 3.4 times that\n"
+            "known   x at 1 = 1.839, published 1.5 ± 0.1: off by 3.4 times that\n"
             "        because the pot was misread\n");
+}
+
+TEST(PublishedCheck, ShowsTheDigitsThatMatter) {
+  EXPECT_EQ(number_within(0.34459535116, 0.001), "0.3446");
+  EXPECT_EQ(number_within(0.34459535116, 5e-9), "0.3445953512");
+  EXPECT_EQ(number_within(-1234.5678, 100), "-1235");
+  EXPECT_EQ(number_within(0.5, 10), "0.5");
+  EXPECT_EQ(number_within(1e-17, 0.1), "0");
+  EXPECT_EQ(number_within(std::nan(""), 0.1), "nan");
+}
+
+// Nobody else would tell of a run that is made for one value alone.
+TEST(PublishedCheck, KeepsTheWarningsOfItsOwnRuns) {
+  const Compiled made(
+      "x = { type = \"integrator\", in = [\"-y\"], initial = 1 }\ny = { type = \"integrator\", in = [\"x\"] "
+      "}\n",
+      "[run]\nmethod = \"adams\"\ntolerance = 0.01\n[published]\nauthor = \"A\"\ntitle = \"T\"\n"
+      "[[published.value]]\nname = \"x\"\nlabel = \"far\"\nvalue = 0.5\nwithin = 0.1\nat = 0\n"
+      "set = { \"x.initial\" = 0.5 }\n");
+  const auto results = check_published(made.diagram, testing::shipped_blocks(), {}, testing::run_of(made));
+  ASSERT_EQ(results.size(), 1U);
+  EXPECT_THAT(warnings_text(results, text::plain_vocabulary()), HasSubstr("warning: in the run for far: "));
 }
 
 TEST(PublishedCheck, IsNothingForADiagramOfItsOwn) {

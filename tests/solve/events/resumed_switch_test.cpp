@@ -68,6 +68,24 @@ TEST(ResumedSwitch, ThatSlidGoesOnSliding) {
   EXPECT_EQ(halves.second.event_count, 1) << "that it slides, at its start";
 }
 
+// x is 0 and s therefore −1, also when i, which it drives to its limit, slides along that: nothing asks s to
+// turn over where another switch does, though i could leave its limit then.
+TEST(ResumedSwitch, AtRestStaysWhereItWasBesideASlide) {
+  const testing::Compiled made(R"(
+x = { type = "transfer-lag", in = "0*x", time_constant = 1 }
+s = { type = "sign", in = "2*x" }
+i = { type = "integrator", in = ["-1.7*s", "-0.5*i"], limit = 1.2, gain = 1e4, bandwidth = 1e4 }
+wave = { type = "sine-source", frequency = 0.3 }
+c = { type = "comparator", in = ["wave"], hysteresis = 0.1 }
+)");
+  const Halves halves(made, 3, 1e-7);
+  EXPECT_THAT(halves.first.state.sliding, ::testing::Contains(true));
+  EXPECT_THAT(testing::row_values(halves.second, "s"), ::testing::Each(-1));
+  // The limit is that of the capacitor: the output is less by one part in the gain; a slide may drift by
+  // 1e-7.
+  for (const double i : testing::row_values(halves.second, "i")) EXPECT_NEAR(i, 1.2 / (1 + 1e-4), 2e-7);
+}
+
 // Of a run that goes on with a slide nothing is too small, and none of it is run finer.
 TEST(ResumedSwitch, ThatSlidIsKnown) {
   const testing::Compiled made(kSlide);

@@ -49,6 +49,74 @@ x = { type = "integrator", in = ["c"], initial = 0.1 }
             "end the run before, or add the disturbance that decides it on the machine");
 }
 
+// dx/dt = t − 0.5 where x > 0, else 0: x falls from 0.1 to the switching surface and stays there. From t =
+// 0.5 on its upper side drives away while below nothing moves: x = 0 and x = (t − 0.5)²/2 are both solutions.
+TEST(Slide, IsToldOfWhereOneSideDrivesAwayAndTheOtherRests) {
+  const Compiled made(R"toml(
+g = { type = "ramp", slope = 1, initial = -0.5 }
+s = { type = "electronic-switch", on = "g", control = "x", threshold = 0 }
+x = { type = "integrator", in = ["s"], initial = 0.1 }
+)toml");
+  const oblique::solve::Run result = run_of(made, {.until = 2, .samples = 41});
+  const std::vector<double> t = row_values(result, "t"), x = row_values(result, "x");
+  const double arrives = 0.5 - std::sqrt(0.05);
+  for (std::size_t row = 0; row < t.size(); ++row) {
+    const double parabola = (t[row] - 0.5) * (t[row] - 0.5) / 2;
+    const double truth = t[row] < arrives ? 0.1 - 0.125 + parabola : t[row] < 0.5 ? 0 : parabola;
+    // It is left where its upper side drives by 1e-6 of what it did, so 1e-6 · 0.5 s late at the most.
+    EXPECT_NEAR(x[row], truth, 1e-6) << t[row];
+  }
+  ASSERT_EQ(result.warnings.size(), 1u);
+  double told = 0;
+  ASSERT_EQ(
+      std::sscanf(result.warnings.front().what.c_str(),
+                  "'s' (control > threshold) leaves the switching surface that it slides along at t = %lf s",
+                  &told),
+      1);
+  EXPECT_NEAR(told, 0.5, 1e-6);
+  EXPECT_THAT(
+      result.warnings.front().what,
+      ::testing::EndsWith(" s, since one of its sides drives away from it from then on, and on the other "
+                          "nothing moves it: it could as well stay"));
+  EXPECT_EQ(result.warnings.front().remedy, "give the comparison a hysteresis");
+}
+
+// With g = t − 0.5, dx/dt = −1 − g where −g x > 0, else −g. Before t = 0.5 both drive to x = 0, with the
+// share −g; then g changes its sign, and the side below drives away: x = −(t − 0.5) − (t − 0.5)²/2. What is
+// compared is nothing but a product with g there, so that a level of ε instead of 0 moves the end by the root
+// of ε.
+TEST(Slide, IsToldOfWhereWhatItComparesFades) {
+  const Compiled made(R"toml(
+one = { type = "constant" }
+g = { type = "ramp", slope = 1, initial = -0.5 }
+p = { type = "multiplier", in = ["-g", "x"] }
+s = { type = "electronic-switch", on = "one", control = "p", threshold = 0 }
+x = { type = "integrator", in = ["-s", "-g"], initial = 0.1 }
+)toml");
+  for (const auto method : {diagram::IntegrationMethod::adams, diagram::IntegrationMethod::bdf,
+                            diagram::IntegrationMethod::rodas}) {
+    const oblique::solve::Run result = run_of(made, {.until = 2, .samples = 21, .method = method});
+    const std::vector<double> t = row_values(result, "t"), x = row_values(result, "x");
+    for (std::size_t row = 0; row < t.size(); ++row) {
+      const double since = t[row] - 0.5;
+      if (since < 0) continue;
+      // Told of within 1e-4 of the firmest grip, g = 0.5; it moves by 1 a second, and then by up to 2.5.
+      EXPECT_NEAR(x[row], -since - since * since / 2, 2.5 * 5e-5) << t[row];
+    }
+    ASSERT_GE(result.warnings.size(), 1u);
+    EXPECT_THAT(
+        result.warnings.front().what,
+        ::testing::StartsWith("'s' (control > threshold) leaves the switching surface that it slides along "
+                              "at t = 0."));
+    EXPECT_THAT(
+        result.warnings.front().what,
+        ::testing::EndsWith(" s, where what it switches hardly moves what it compares any more: when it "
+                            "leaves is known only roughly"));
+    EXPECT_EQ(result.warnings.front().remedy,
+              "end the run before, or compare what the switch moves all along");
+  }
+}
+
 // dx/dt = sign(x) from x = 0 is ±t as well as 0: what comes out is a solution, and it is told that it is not
 // the only one. From beside it, where it is crossed, and where it is driven to, nothing is told.
 TEST(Switches, OnASwitchingSurfaceThatBothSidesLeaveAreToldOf) {

@@ -101,7 +101,7 @@ double add_linkage_head(Picture& picture, const mechanism::Mechanism& mechanism,
   }
   for (std::size_t k = 0; k < scene.traces.size(); ++k)
     legend.line(trace_pen(scene, k), "path of " + mechanism.points[scene.traces[k]].name);
-  if (scene.analog) legend.text(scene.analog->caption, "error");
+  if (scene.analog && !scene.analog->caption.empty()) legend.text(scene.analog->caption, "error");
   return legend.any() ? legend.bottom() : bottom;
 }
 

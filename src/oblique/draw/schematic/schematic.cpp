@@ -35,6 +35,7 @@ struct Around {
   std::vector<std::string> inputs;     ///< what a console reads at each input; see Block::reads
   std::vector<std::string> outputs;    ///< as on its frame
   std::vector<Source> signals_inside;  ///< those of the outputs beyond the definition's
+  bool is_sketch = false;
 };
 
 /// Whether a block's equations change their sign on a machine whose amplifiers invert.
@@ -64,6 +65,7 @@ class Builder {
     name_signals();
     for (std::size_t i = 0; i < scope_.blocks.size(); ++i) open(i);
     schematic_.layout = around_.layout;
+    schematic_.is_sketch = around_.is_sketch;
     find_servo_loops(schematic_);
     return std::move(schematic_);
   }
@@ -90,9 +92,18 @@ class Builder {
     }
     for (const Source& source : around_.signals_inside) shown[source.blocks.front()] = true;
     for (std::size_t i = 0; i < scope_.blocks.size(); ++i)
-      stands_at_inputs_.push_back(is_constant(scope_.blocks[i]) && used[i] && !shown[i]);
+      stands_at_inputs_.push_back(is_constant(scope_.blocks[i]) && used[i] && !shown[i] && !has_own_place(i));
     hidden_ = stands_at_inputs_;
     for (const Record& record : around_.records) hidden_[record.source.blocks.front()] = false;
+  }
+
+  /// In a sketch what was put somewhere stays there.
+  bool has_own_place(std::size_t i) const {
+    const std::vector<diagram::BlockPlace>& places = *around_.layout;
+    return around_.is_sketch &&
+           std::any_of(places.begin(), places.end(), [&](const diagram::BlockPlace& place) {
+             return place.name == scope_.blocks[i].instance->name;
+           });
   }
 
   double value_of(const diagram::wiring::Constant& constant) const {
@@ -171,6 +182,15 @@ class Builder {
     return {index_[first], output};
   }
 
+  static bool may_stay_open(const WiredBlock& wired, std::size_t k) {
+    const diagram::InputPort& port = wired.definition->inputs[k];
+    if (port.default_value || (port.sum && wired.inputs[k].connected)) return true;
+    return std::any_of(port.open_with.begin(), port.open_with.end(), [&](const std::string& other) {
+      const auto input = wired.definition->find_input(other);
+      return input && wired.inputs[*input].connected;
+    });
+  }
+
   void connect(std::size_t i) {
     if (stands_at_inputs_[i]) return;
     const WiredBlock& wired = scope_.blocks[i];
@@ -181,9 +201,11 @@ class Builder {
         input.port = wired.definition->inputs[k].name;
         input.port_index = k;
         input.weight = value_of(term.weight);
+        input.source = term.signal;
+        input.position = term.position;
         if (!term.source.own_input && stands_at_inputs_[term.source.blocks.front()]) {
           input.constant = constant_text(term.source.blocks.front());
-          input.reads = around_.path + scope_.blocks[term.source.blocks.front()].instance->name;
+          input.reads = read_name(around_.path, scope_.blocks[term.source.blocks.front()], 0);
         } else {
           input.signal = signal_of(term.source);
         }
@@ -192,7 +214,10 @@ class Builder {
       // so that composites of one kind look alike whichever of their inputs are used
       const diagram::InputPort& port = wired.definition->inputs[k];
       if (wired.inside != nullptr && !wired.inputs[k].connected && port.default_value)
-        inputs.push_back({port.name, k, 1, {}, reference_text(*port.default_value), false, {}, {}});
+        inputs.push_back(
+            {port.name, k, 1, {}, reference_text(*port.default_value), false, {}, {}, {}, {}, false});
+      if (around_.is_sketch && wired.inputs[k].terms.empty() && !may_stay_open(wired, k))
+        inputs.push_back({port.name, k, 1, {}, "?", false, {}, {}, {}, {}, true});
     }
     schematic_.blocks[index_[i]].inputs = std::move(inputs);
   }
@@ -331,6 +356,28 @@ std::size_t blocks_seen(const Scope& scope, int depth,
   return known[{&scope, depth}] = seen;
 }
 
+/// `diagnostics` gets what is wrong with the wiring; where it is no sketch, that is thrown.
+Schematic schematic_of(const diagram::Diagram& diagram, const diagram::BlockLibrary& library, int depth,
+                       bool is_sketch, text::Diagnostics& diagnostics) {
+  diagram::wiring::Resolver resolver(library, diagnostics);
+  const Scope scope = resolver.diagram(diagram);
+  Around around;
+  around.scope = &scope;
+  around.layout = &diagram.layout;
+  around.is_sketch = is_sketch;
+  around.records = records_of(diagram, scope, diagnostics);
+  if (!is_sketch) diagnostics.throw_if_any<diagram::DiagramError>();
+  std::map<std::pair<const Scope*, int>, std::size_t> known;
+  if (blocks_seen(scope, depth, known) > kMostBlocks) {
+    throw diagram::DiagramError(
+        text::Diagnostic{{diagram.file, {}},
+                         fmt::format("opened that far, the drawing has more than {} blocks", kMostBlocks),
+                         {},
+                         "open fewer levels of composites"});
+  }
+  return Builder(around, depth).build();
+}
+
 }  // namespace
 
 std::string number_text(double value) {
@@ -341,22 +388,12 @@ std::string number_text(double value) {
 
 Schematic make_schematic(const diagram::Diagram& diagram, const diagram::BlockLibrary& library, int depth) {
   text::Diagnostics diagnostics;
-  diagram::wiring::Resolver resolver(library, diagnostics);
-  const Scope scope = resolver.diagram(diagram);
-  Around around;
-  around.scope = &scope;
-  around.layout = &diagram.layout;
-  around.records = records_of(diagram, scope, diagnostics);
-  diagnostics.throw_if_any<diagram::DiagramError>();
-  std::map<std::pair<const Scope*, int>, std::size_t> known;
-  if (blocks_seen(scope, depth, known) > kMostBlocks) {
-    throw diagram::DiagramError(
-        text::Diagnostic{{diagram.file, {}},
-                         fmt::format("opened that far, the drawing has more than {} blocks", kMostBlocks),
-                         {},
-                         "open fewer levels of composites"});
-  }
-  return Builder(around, depth).build();
+  return schematic_of(diagram, library, depth, false, diagnostics);
+}
+
+Schematic sketch_schematic(const diagram::Diagram& diagram, const diagram::BlockLibrary& library) {
+  text::Diagnostics diagnostics;
+  return schematic_of(diagram, library, 0, true, diagnostics);
 }
 
 }  // namespace oblique::draw::schematic

@@ -29,6 +29,9 @@ struct Input {
   bool in_loop = false;             ///< the wire is a part of the servo loop that the block is in
   std::optional<std::size_t> loop;  ///< that the wire's net is a part of
   std::string reads;                ///< the signal at the wire's end, as a console calls it; may be empty
+  std::string source;               ///< the signal as the file names it
+  text::SourcePosition position;    ///< of that name in the file
+  bool open = false;                ///< of a sketch: nothing is wired here, and something must be
 };
 
 struct Schematic;
@@ -59,11 +62,17 @@ struct Schematic {
   std::vector<Block> blocks;
   std::size_t loops = 0;                                     ///< servo loops
   const std::vector<diagram::BlockPlace>* layout = nullptr;  ///< as the file has it
+  bool is_sketch = false;                                    ///< of a diagram that may be wrong
 };
 
 /// Resolves the names of a diagram; composites are open `depth` levels deep. Throws DiagramError with all
 /// findings about its wiring and outputs. `diagram` and `library` must outlive the result.
 Schematic make_schematic(const diagram::Diagram& diagram, const diagram::BlockLibrary& library, int depth);
+
+/// The same of a diagram that may be wrong, as far as it is right: wires that name no signal are left out,
+/// inputs that must be wired have an open end. Constants with a place stand there. Every type of a block must
+/// be known. Throws where the diagram is too large.
+Schematic sketch_schematic(const diagram::Diagram& diagram, const diagram::BlockLibrary& library);
 
 /// "0.3142": four significant digits, with a true minus sign.
 std::string number_text(double value);

@@ -141,13 +141,28 @@ Sheet make_sheet(const Schematic& schematic, SymbolStyle style) {
   return std::move(make_sheets({&schematic}, style).front());
 }
 
+Sheet sketch_sheet(const Schematic& schematic, SymbolStyle style, const std::string& held) {
+  Sheet sheet;
+  sheet.schematic = &schematic;
+  sheet.inside.resize(schematic.blocks.size());
+  for (const Block& block : schematic.blocks) sheet.shapes.push_back(shape_of(block, style));
+  LayoutGraph graph = graph_of(schematic, sheet.shapes);
+  sheet.moved = give_room(schematic, sheet.shapes, held, graph);
+  sheet.layout = lay_out(graph);
+  for (std::size_t b = 0; b < graph.nodes.size(); ++b) {
+    if (graph.nodes[b].place) sheet.origin = sheet.layout.corners[b] - *graph.nodes[b].place;
+  }
+  return sheet;
+}
+
 std::vector<diagram::BlockPlace> places_of(const Sheet& sheet) {
   std::vector<diagram::BlockPlace> places;
   for (std::size_t b = 0; b < sheet.shapes.size(); ++b) {
     const Block& block = sheet.schematic->blocks[b];
     if (block.kind != Block::Kind::block) continue;
     const Vector2d middle =
-        (sheet.layout.corners[b] + sheet.shapes[b].corner + sheet.shapes[b].body / 2) / kPlaceUnit;
+        (sheet.layout.corners[b] - sheet.origin + sheet.shapes[b].corner + sheet.shapes[b].body / 2) /
+        kPlaceUnit;
     places.push_back({block.name, middle.x(), middle.y(), {}});
   }
   return places;

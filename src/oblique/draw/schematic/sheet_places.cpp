@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -63,26 +65,82 @@ void check_distances(const std::vector<Placed>& placed, const LayoutGraph& graph
   diagnostics.throw_if_any<diagram::DiagramError>();
 }
 
-}  // namespace
-
-void give_places(const Schematic& schematic, const std::vector<Shape>& shapes, SymbolStyle style,
-                 LayoutGraph& graph) {
-  if (schematic.layout == nullptr) return;
+/// The blocks that a schematic's layout gives places to.
+std::vector<Placed> placed_blocks(const Schematic& schematic) {
   std::vector<Placed> placed;
   for (const diagram::BlockPlace& given : *schematic.layout) {
     const auto block = std::find_if(schematic.blocks.begin(), schematic.blocks.end(), [&](const Block& b) {
       return b.kind == Block::Kind::block && b.name == given.name;
     });
     if (block == schematic.blocks.end()) continue;  // a constant: it stands at the inputs that it feeds
-    const auto index = static_cast<std::size_t>(block - schematic.blocks.begin());
-    placed.push_back({&given, index, kPlaceUnit * Vector2d(given.x, given.y)});
-    if (!block->inside.empty())
-      placed.back().growth = shapes[index].node.size - shape_of(*block, style).node.size;
+    placed.push_back({&given, static_cast<std::size_t>(block - schematic.blocks.begin()),
+                      kPlaceUnit * Vector2d(given.x, given.y)});
+  }
+  return placed;
+}
+
+/// The corner nearest to `wanted` at which a box is apart from all others, and has room for wires around it
+/// where it cannot stand there.
+Vector2d nearest_room(const Vector2d& wanted, const Vector2d& size, std::span<const Placed> others,
+                      const LayoutGraph& graph) {
+  const auto is_apart = [&](const Vector2d& corner, double room) {
+    return std::all_of(others.begin(), others.end(), [&](const Placed& p) {
+      const LayoutNode& other = graph.nodes[p.block];
+      const Vector2d reach =
+          (*other.place + other.size - corner).cwiseMin(corner + size - *other.place).array() + room;
+      return reach.minCoeff() <= 0;
+    });
+  };
+  if (is_apart(wanted, kLayoutGrid)) return wanted;
+  constexpr int kFarthestRing = 2000;
+  constexpr double kRoom = 3 * kLayoutGrid;
+  for (int ring = 1; ring < kFarthestRing; ++ring) {
+    std::optional<Vector2d> best;
+    for (int a = -ring; a <= ring; ++a) {
+      for (const Vector2d& step :
+           {Vector2d(a, ring), Vector2d(a, -ring), Vector2d(ring, a), Vector2d(-ring, a)}) {
+        const Vector2d corner = wanted + kLayoutGrid * step;
+        if (best && (*best - wanted).norm() <= kLayoutGrid * step.norm()) continue;
+        if (is_apart(corner, kRoom)) best = corner;
+      }
+    }
+    if (best) return *best;
+  }
+  return wanted;
+}
+
+}  // namespace
+
+void give_places(const Schematic& schematic, const std::vector<Shape>& shapes, SymbolStyle style,
+                 LayoutGraph& graph) {
+  if (schematic.layout == nullptr) return;
+  std::vector<Placed> placed = placed_blocks(schematic);
+  for (Placed& p : placed) {
+    const Block& block = schematic.blocks[p.block];
+    if (!block.inside.empty()) p.growth = shapes[p.block].node.size - shape_of(block, style).node.size;
   }
   spread(placed);
   for (const Placed& p : placed)
     graph.nodes[p.block].place = on_grid(p.middle - shapes[p.block].corner - shapes[p.block].body / 2);
   check_distances(placed, graph);
+}
+
+std::vector<diagram::BlockPlace> give_room(const Schematic& schematic, const std::vector<Shape>& shapes,
+                                           const std::string& held, LayoutGraph& graph) {
+  std::vector<Placed> placed = placed_blocks(schematic);
+  std::stable_partition(placed.begin(), placed.end(), [&](const Placed& p) { return p.given->name != held; });
+  std::vector<diagram::BlockPlace> moved;
+  for (std::size_t k = 0; k < placed.size(); ++k) {
+    const Placed& p = placed[k];
+    const Vector2d to_middle = shapes[p.block].corner + shapes[p.block].body / 2;
+    const Vector2d wanted = on_grid(p.middle - to_middle);
+    const Vector2d found = nearest_room(wanted, graph.nodes[p.block].size, std::span(placed).first(k), graph);
+    graph.nodes[p.block].place = found;
+    if (found == wanted) continue;
+    const Vector2d middle = (found + to_middle) / kPlaceUnit;
+    moved.push_back({p.given->name, middle.x(), middle.y(), p.given->place});
+  }
+  return moved;
 }
 
 void check_wires(const Schematic& schematic, const DiagramLayout& layout) {

@@ -18,6 +18,12 @@ inline constexpr double kPlaceUnit = 2 * kLayoutGrid;
 void give_places(const Schematic& schematic, const std::vector<Shape>& shapes, SymbolStyle style,
                  LayoutGraph& graph);
 
+/// The same for a sketch, whose composites are closed: what is too close to what stands before it in the
+/// table
+/// (`held` stands last) goes to the nearest place that has room. Gives the places that are others now.
+std::vector<diagram::BlockPlace> give_room(const Schematic& schematic, const std::vector<Shape>& shapes,
+                                           const std::string& held, LayoutGraph& graph);
+
 /// Throws DiagramError where a wire found no way among the places.
 void check_wires(const Schematic& schematic, const DiagramLayout& layout);
 

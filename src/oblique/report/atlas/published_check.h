@@ -14,6 +14,8 @@ namespace oblique::report {
 struct PublishedResult {
   diagram::PublishedValue value;
   double actual = 0;  ///< in the unit in which it was published
+  /// Of the run that was made for it; of several values with one such run the first has them.
+  std::vector<text::Diagnostic> warnings = {};
 
   /// The difference as a part of the uncertainty that was stated; not a number where the run gives none.
   double in_uncertainties() const;
@@ -37,6 +39,12 @@ std::vector<PublishedResult> check_published(const diagram::Diagram& diagram,
 solve::Run run_with(const diagram::Diagram& diagram, const diagram::BlockLibrary& library,
                     const std::vector<diagram::ParameterOverride>& settings,
                     const std::vector<diagram::Expectation>& expectations);
+
+/// What the runs that were made for published values warn of.
+std::string warnings_text(const std::vector<PublishedResult>& results, const text::Vocabulary& vocabulary);
+
+/// A value with a digit or two more than its uncertainty tells apart.
+std::string number_within(double value, double within);
 
 /// A line for each: what came out, what was published, and the difference as a part of its uncertainty; with
 /// the reason where the file gives one.

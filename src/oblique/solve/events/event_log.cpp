@@ -33,15 +33,16 @@ void EventLog::record_turn(std::size_t s, double position, double t) {
 }
 
 void EventLog::record_slides(const std::vector<std::uint32_t>& before,
-                             const std::vector<std::uint32_t>& repelled, const SlidingMode& slide, double t) {
+                             const std::vector<SlidingMode::Doubt>& doubts, const SlidingMode& slide,
+                             double t) {
   const auto tell = [&](std::uint32_t unit, const char* what) {
     const network::Switch& s = first_of(unit);
     record(t, fmt::format("{}: {} {} = 0", s.block, what, s.comparison));
   };
-  for (const std::uint32_t unit : before) {
-    if (contains(slide.units(), unit)) continue;
-    tell(unit, "leaves");
-    if (contains(repelled, unit)) warn_of_repulsion(unit, t);
+  for (std::size_t u = 0; u < before.size(); ++u) {
+    if (contains(slide.units(), before[u])) continue;
+    tell(before[u], "leaves");
+    warn_of_leaving(before[u], doubts[u], t);
   }
   for (const std::uint32_t unit : slide.units()) {
     if (!contains(before, unit)) tell(unit, "slides along");
@@ -72,14 +73,34 @@ void EventLog::warn_of_unit(std::uint32_t unit, const char* what, const std::str
   if (!told) warnings_.push_back({{file_, {}}, begin + rest, {}, remedy});
 }
 
-/// Tells that rounding decides where the solution goes.
-void EventLog::warn_of_repulsion(std::uint32_t unit, double t) {
-  warn_of_unit(
-      unit, "leaves the switching surface that it slides along",
-      fmt::format(" at t = {:.9g} s, since both of its sides drive away from it from then on: rounding "
-                  "decides to which side it goes",
-                  t),
-      "end the run before, or add the disturbance that decides it on the machine");
+/// Tells what is uncertain where a slide ends.
+void EventLog::warn_of_leaving(std::uint32_t unit, SlidingMode::Doubt doubt, double t) {
+  constexpr const char* kLeaves = "leaves the switching surface that it slides along";
+  switch (doubt) {
+    case SlidingMode::Doubt::none:
+      return;
+    case SlidingMode::Doubt::of_side:
+      return warn_of_unit(
+          unit, kLeaves,
+          fmt::format(" at t = {:.9g} s, since both of its sides drive away from it from then on: rounding "
+                      "decides to which side it goes",
+                      t),
+          "end the run before, or add the disturbance that decides it on the machine");
+    case SlidingMode::Doubt::of_whether:
+      return warn_of_unit(
+          unit, kLeaves,
+          fmt::format(" at t = {:.9g} s, since one of its sides drives away from it from then on, and on the "
+                      "other nothing moves it: it could as well stay",
+                      t),
+          "give the comparison a hysteresis");
+    case SlidingMode::Doubt::of_time:
+      return warn_of_unit(
+          unit, kLeaves,
+          fmt::format(" at t = {:.9g} s, where what it switches hardly moves what it compares any more: when "
+                      "it leaves is known only roughly",
+                      t),
+          "end the run before, or compare what the switch moves all along");
+  }
 }
 
 void EventLog::warn_of_no_side(std::uint32_t unit, double t) {

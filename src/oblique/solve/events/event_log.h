@@ -21,9 +21,9 @@ class EventLog {
   void record(double t, std::string what);
   /// That the comparison of a switch holds from now on, or no longer.
   void record_turn(std::size_t s, double position, double t);
-  /// Which slides have begun and ended since the units `before` slid; of those that have ended some were
-  /// `repelled`.
-  void record_slides(const std::vector<std::uint32_t>& before, const std::vector<std::uint32_t>& repelled,
+  /// Which slides have begun and ended since the units `before` slid, with what is uncertain of each that has
+  /// ended.
+  void record_slides(const std::vector<std::uint32_t>& before, const std::vector<SlidingMode::Doubt>& doubts,
                      const SlidingMode& slide, double t);
 
   /// A warning; once, however often it comes.
@@ -50,7 +50,7 @@ class EventLog {
  private:
   const network::Switch& first_of(std::uint32_t unit) const;
   void warn_of_unit(std::uint32_t unit, const char* what, const std::string& rest, const char* remedy);
-  void warn_of_repulsion(std::uint32_t unit, double t);
+  void warn_of_leaving(std::uint32_t unit, SlidingMode::Doubt doubt, double t);
   void warn_of_torn(const SlidingMode& slide, double t);
 
   const network::Program& program_;

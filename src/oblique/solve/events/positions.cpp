@@ -78,23 +78,23 @@ bool Positions::choose(const std::vector<std::uint32_t>& units,
   }
   const Combination present = present_sides(tried);
   trials_.run(tried, bends_, t, x);
-  if (const auto sides = standing(preferred)) return take(*sides, preferred_positions, t, x);
+  if (const auto sides = standing(preferred, true)) return take(*sides, preferred_positions, t, x);
   if (slide(present, t, x)) return true;
+  trials_.take_back();
+  if (const auto sides = standing(preferred, false)) return take(*sides, preferred_positions, t, x);
   trials_.take_back();
   return false;
 }
 
 /// The first combination, by how near it is to the preferred one, from which the solution goes where the
-/// units stand.
-std::optional<Combination> Positions::standing(Combination preferred) const {
+/// units stand; with `keeping`, none that turns a unit over that stays at zero.
+std::optional<Combination> Positions::standing(Combination preferred, bool keeping) const {
   const bool any_jump = trials_.any_jumps(trials_.combinations() - 1);
   const std::vector<Combination> nearest = nearest_first(preferred, trials_.units().size());
   for (const bool strictly : {true, false}) {
     if (!strictly && any_jump) continue;
-    for (const bool keeping : {true, false}) {  // else the order of the units would decide
-      for (const Combination sides : nearest) {
-        if ((!keeping || trials_.keeps(sides, preferred)) && trials_.stands(sides, strictly)) return sides;
-      }
+    for (const Combination sides : nearest) {
+      if ((!keeping || trials_.keeps(sides, preferred)) && trials_.stands(sides, strictly)) return sides;
     }
   }
   return std::nullopt;

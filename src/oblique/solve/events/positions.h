@@ -48,7 +48,7 @@ class Positions {
                                              const std::vector<double>& preferred,
                                              const network::Evaluation& here);
   Combination present_sides(const std::vector<std::uint32_t>& units) const;
-  std::optional<Combination> standing(Combination preferred) const;
+  std::optional<Combination> standing(Combination preferred, bool keeping) const;
   bool take(Combination sides, const std::vector<double>& preferred, double t, std::span<const double> x);
   void prefer_where_nothing_changes(std::uint32_t unit, const std::vector<double>& preferred, double t,
                                     std::span<const double> x);

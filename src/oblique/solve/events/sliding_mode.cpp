@@ -27,6 +27,9 @@ constexpr double kProbe = 1e-6;
 /// Of the drive of the other side.
 constexpr double kDrives = 1e-3;
 
+/// Of the firmest grip that a unit has had: below it the errors of the states, over the grip, move its end.
+constexpr double kNoGrip = 1e-4;
+
 constexpr std::size_t kMostUnits = 64;
 
 }  // namespace
@@ -39,6 +42,7 @@ SlidingMode::SlidingMode(const network::Program& program, network::Workspace& wo
       rests_(program.switches().size(), false),
       sides_(program.switch_structure()),
       strongest_(program.switch_structure().members.size()),
+      firmest_(strongest_.size()),
       scratch_(std::max(program.n_states(), program.jacobian_pattern().entries())),
       moved_(program.n_states()) {}
 
@@ -197,21 +201,65 @@ bool SlidingMode::evaluate(double t, std::span<const double> x) {
   for (SlideSide& side : sides_) valid = valid && evaluate(side, t, x);
   valid = valid && find_shares();
   load_base();
-  for (std::size_t u = 0; valid && u < units_.size(); ++u)
-    strongest_[units_[u]] = std::max(strongest_[units_[u]], std::abs(drive_apart(u)));
+  for (std::size_t u = 0; valid && u < units_.size(); ++u) {
+    double& strongest = strongest_[units_[u]];
+    double& firmest = firmest_[units_[u]];
+    strongest = std::max(strongest, std::abs(drive_apart(u)));
+    firmest = std::max(firmest, grip(u).value_or(0));
+  }
   return valid;
 }
 
+double SlidingMode::Drives::weaker() const {
+  return std::min(std::abs(above), std::abs(below));
+}
+
+double SlidingMode::Drives::stronger() const {
+  return std::max(std::abs(above), std::abs(below));
+}
+
+/// The side on which this unit alone is above; nothing of one that is coupled.
+const SlideSide* SlidingMode::upper_side_alone(std::size_t unit) const {
+  if (sides_.is_coupled(unit)) return nullptr;
+  const auto upper = std::find_if(sides_.begin(), sides_.end(), [&](const SlideSide& side) {
+    return side.bits == std::uint64_t{1} << unit;
+  });
+  return upper != sides_.end() ? &*upper : nullptr;
+}
+
+SlidingMode::Drives SlidingMode::drives(std::size_t unit) const {
+  const SlideSide* const upper = upper_side_alone(unit);
+  if (upper == nullptr) return {};
+  return {sides_.of_unit(upper->rates, unit), sides_.of_unit(sides_[0].rates, unit)};
+}
+
 /// How much more the upper side of a unit drives up than its lower one; nothing of one that is coupled, or of
-/// which one side does not drive, or both alike: that decides where it goes.
+/// which both drive alike: that decides where it goes.
 double SlidingMode::drive_apart(std::size_t unit) const {
-  const auto alone = [&](const SlideSide& side) { return side.bits == std::uint64_t{1} << unit; };
-  const auto upper = std::find_if(sides_.begin(), sides_.end(), alone);
-  if (sides_.is_coupled(unit) || upper == sides_.end()) return 0;
-  const double above = sides_.of_unit(upper->rates, unit), below = sides_.of_unit(sides_[0].rates, unit);
-  const double weaker = std::min(std::abs(above), std::abs(below));
-  const double stronger = std::max(std::abs(above), std::abs(below));
-  return std::min(weaker, std::abs(above - below)) > kDrives * stronger ? above - below : 0;
+  const Drives sides = drives(unit);
+  return std::abs(sides.apart()) > kDrives * sides.stronger() ? sides.apart() : 0;
+}
+
+/// How much the event function of a unit is moved by what its sides differ by, over the fastest state of
+/// that; nothing of one that is coupled, or whose sides do not differ.
+std::optional<double> SlidingMode::grip(std::size_t unit) const {
+  const SlideSide* const upper = upper_side_alone(unit);
+  if (upper == nullptr) return std::nullopt;
+  double fastest = 0;
+  for (std::size_t i = 0; i < upper->dxdt.size(); ++i)
+    fastest = std::max(fastest, std::abs(upper->dxdt[i] - sides_[0].dxdt[i]));
+  if (!(fastest > 0)) return std::nullopt;
+  return std::abs(drives(unit).apart()) / fastest;
+}
+
+SlidingMode::Doubt SlidingMode::doubt(std::size_t unit) const {
+  const Drives sides = drives(unit);
+  const bool is_let_go = repulsion(unit).value_or(-1) > -kNoDrive;
+  const bool other_drives = sides.weaker() > kDrives * sides.stronger();
+  if (is_let_go && other_drives && !(sides.above < 0) && !(sides.below > 0)) return Doubt::of_side;
+  const std::optional<double> firmness = grip(unit);
+  if (firmness && *firmness < kNoGrip * firmest_[units_[unit]]) return Doubt::of_time;
+  return is_let_go && !other_drives ? Doubt::of_whether : Doubt::none;
 }
 
 std::optional<double> SlidingMode::repulsion(std::size_t unit) const {

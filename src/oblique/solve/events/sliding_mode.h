@@ -55,9 +55,17 @@ class SlidingMode {
   /// Of each unit, that of its upper side: outside 0 and 1 where the slide is over.
   const std::vector<double>& shares() const { return shares_; }
   /// Of a unit that nothing couples, how much more its upper side drives up than its lower one does, over the
-  /// most by which they have ever driven together: above 0 both drive away from the switching surface.
-  /// Nothing of another, or where that tells nothing.
+  /// most by which they have ever driven together: above 0 they drive apart, and nothing holds it on the
+  /// switching surface. Nothing of another, or where that tells nothing.
   std::optional<double> repulsion(std::size_t unit) const;
+  /// What is uncertain where a unit would leave the switching surface here.
+  enum class Doubt {
+    none,
+    of_side,     ///< both sides drive away from it
+    of_whether,  ///< one drives away from it, and the other rests there
+    of_time,     ///< what the sides differ by hardly moves the event function any more
+  };
+  Doubt doubt(std::size_t unit) const;
   /// Rounding of it.
   static constexpr double kNoRepulsion = 1e-8;
   /// Sides that drive together or apart by less than this part of what they drove together do neither: a
@@ -82,7 +90,17 @@ class SlidingMode {
   bool evaluate(SlideSide& side, double t, std::span<const double> x);
   bool find_shares();
   bool find_only_share();
+  /// Of a unit that nothing couples, the rates of its event function on its two sides.
+  struct Drives {
+    double above = 0, below = 0;
+    double apart() const { return above - below; }
+    double weaker() const;
+    double stronger() const;
+  };
+  const SlideSide* upper_side_alone(std::size_t unit) const;
+  Drives drives(std::size_t unit) const;
   double drive_apart(std::size_t unit) const;
+  std::optional<double> grip(std::size_t unit) const;
   bool lasts(double t, std::span<const double> x);
 
   const network::Program& program_;
@@ -95,7 +113,9 @@ class SlidingMode {
   SlideSides sides_;
   std::vector<std::pair<std::uint32_t, double>> base_;  ///< positions that events see
   std::vector<double> shares_;
-  std::vector<double> strongest_;  ///< drive together of each unit of the program in all slides of the run
+  // Of each unit of the program the most in all slides of the run:
+  std::vector<double> strongest_;  ///< drive together
+  std::vector<double> firmest_;    ///< grip
   bool begun_ = false;
   std::vector<double> scratch_, moved_, signals_;
 };

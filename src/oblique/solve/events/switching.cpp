@@ -57,15 +57,12 @@ void Switching::start(double t, std::vector<double>& x, const std::function<void
   settling_.end({});
 }
 
-/// The units that slide though both of their sides drive away from their switching surfaces.
-std::vector<std::uint32_t> Switching::repelled_units(double t, std::span<const double> x) {
-  std::vector<std::uint32_t> repelled;
-  if (!slide_.active() || !slide_.evaluate(t, x)) return repelled;
-  for (std::size_t u = 0; u < slide_.units().size(); ++u) {
-    const auto repulsion = slide_.repulsion(u);
-    if (repulsion && *repulsion > -SlidingMode::kNoDrive) repelled.push_back(slide_.units()[u]);
-  }
-  return repelled;
+/// What is uncertain of each unit that slides, should it leave its switching surface.
+std::vector<SlidingMode::Doubt> Switching::doubts_of_slide(double t, std::span<const double> x) {
+  std::vector<SlidingMode::Doubt> doubts(slide_.units().size(), SlidingMode::Doubt::none);
+  if (!slide_.active() || !slide_.evaluate(t, x)) return doubts;
+  for (std::size_t u = 0; u < doubts.size(); ++u) doubts[u] = slide_.doubt(u);
+  return doubts;
 }
 
 /// Serves the events that are due; true where there were any.
@@ -94,7 +91,7 @@ void Switching::record_turns(const std::vector<double>& before, double t) {
 
 void Switching::settle(double t, std::vector<double>& x) {
   const std::vector<std::uint32_t> slid = slide_.units();
-  const std::vector<std::uint32_t> repelled = repelled_units(t, x);
+  const std::vector<SlidingMode::Doubt> doubts = doubts_of_slide(t, x);
   settling_.begin();
   event_functions_.evaluate(t, x, location_.announced());
   settling_.begin_instant();
@@ -111,7 +108,7 @@ void Switching::settle(double t, std::vector<double>& x) {
     if (!serve_events(t, x, false)) break;
     if (round > kMostRounds) throw log_.endless("events set each other off", t);
   }
-  log_.record_slides(slid, repelled, slide_, t);
+  log_.record_slides(slid, doubts, slide_, t);
   settling_.end(slid);
   location_.withdraw_all();
   event_functions_.evaluate(t, x, location_.announced());

@@ -98,7 +98,7 @@ class Switching {
   void resume(double t, std::vector<double>& x);
 
  private:
-  std::vector<std::uint32_t> repelled_units(double t, std::span<const double> x);
+  std::vector<SlidingMode::Doubt> doubts_of_slide(double t, std::span<const double> x);
   bool serve_events(double t, std::vector<double>& x, bool starting);
   std::vector<double> readings(double t, std::span<const double> x);
   void record_turns(const std::vector<double>& before, double t);

@@ -108,13 +108,15 @@ double Sampler::sample_time(int k) const {
 /// `last` is where something was evaluated last.
 void Sampler::evaluate(double last, double time, const Interpolant& solution) {
   constexpr double kSameTime = 1e-9;  // of the run: at the end of a branch stands the last value on it
+  bool known = false;
   const auto signals_at = [&](double at) {
     solution.states_at(at, states_);
-    return switching_.signals(at, states_.data(), signals_.data());
+    return known = switching_.signals(at, states_.data(), signals_.data());
   };
   const double reached = evaluate_along_branch(last, time, workspace_, signals_at);
   const double span = options_.until - (options_.from ? options_.from->time : 0);
-  if (reached != time && (std::abs(time - reached) > kSameTime * span || !signals_at(reached)))
+  const bool is_end = reached != time || !known;
+  if (is_end && (std::abs(time - reached) > kSameTime * span || !signals_at(reached)))
     throw loop_error(program_, workspace_.trouble(), time, diagram_.file);
   row_[0] = time;
   for (std::size_t i = 0; i < diagram_.outputs.size(); ++i) {

@@ -68,6 +68,10 @@ export interface Held extends Answer {
   pots: string[];
 }
 
+export interface Exchanged extends Held {
+  turned: Record<string, string>;
+}
+
 export interface Advanced extends Answer {
   time: number;
   complete: boolean;

@@ -1,20 +1,22 @@
 // SPDX-License-Identifier: MIT
-import {useEffect} from "preact/hooks";
+import {useEffect, useMemo} from "preact/hooks";
 
 import {keysOf, Lamps, Meter, Modes, Pots} from "./controls";
 import {Editor} from "./editor";
 import {Lesson} from "./lesson";
+import {MechanismRoom} from "./mechanism/room";
+import {PatchPanel} from "./panel/panel";
+import {Patching} from "./panel/patching";
 import {Scope} from "./scope/scope";
-import {examples, useShown, type Session} from "./session";
+import {useShown, type Session} from "./session";
 import {save, toFragment} from "./share";
-import {Schematic} from "./voltages/voltages";
 
-const folders = [...new Set(examples.map(({name}) => name.split("/")[0]!))];
-
-function Header({session}: {session: Session}) {
+function Header({session, patching}: {session: Session; patching: Patching}) {
   const title = useShown(session, (shown) => shown.title);
   const file = useShown(session, (shown) => shown.file);
   const engine = useShown(session, (shown) => shown.engine);
+  const examples = useShown(session, (shown) => shown.examples);
+  const folders = [...new Set(examples.map(({name}) => name.split("/")[0]!))];
   const busy = useShown(session, (shown) => shown.busy);
 
   async function pick(event: Event): Promise<void> {
@@ -26,7 +28,7 @@ function Header({session}: {session: Session}) {
     if (example) void session.load(example);
   }
   async function share(): Promise<void> {
-    location.hash = await toFragment({...file, text: session.shown.written});
+    location.hash = await toFragment({...session.source, text: session.shown.written});
     await navigator.clipboard?.writeText(location.href).catch(() => undefined);
     session.set({remarks: ["the link in the address bar holds the file"]});
   }
@@ -44,8 +46,9 @@ function Header({session}: {session: Session}) {
           </optgroup>
         ))}
       </select></label>
+      <button onClick={() => patching.begin()}>New</button>
       <label class="button">Open <input type="file" accept=".toml" onChange={(event) => void pick(event)} /></label>
-      <button onClick={() => save(file.name.split("/").pop() || "machine.toml", session.shown.written, "text/plain")}>Save</button>
+      <button onClick={() => save(session.source.name.split("/").pop() || "machine.toml", session.shown.written, "text/plain")}>Save</button>
       <button onClick={() => void share()}>Link</button>
       <span class="state" data-state={engine}>{engine === "starting" ? "the engine starts …" : busy ? "computing …" : ""}</span>
       <button class="stop" disabled={!busy} onClick={() => void session.stop()}>Stop</button>
@@ -53,18 +56,18 @@ function Header({session}: {session: Session}) {
   );
 }
 
-function Pictures({session}: {session: Session}) {
-  const linkage = useShown(session, (shown) => shown.linkage);
+function Pictures({session, patching}: {session: Session; patching: Patching}) {
   return (
     <section class="machine">
-      {linkage && <div class="picture linkage" dangerouslySetInnerHTML={{__html: linkage}} />}
-      <Schematic session={session} />
+      <MechanismRoom session={session} />
+      <PatchPanel session={session} patching={patching} />
     </section>
   );
 }
 
 export function App({session}: {session: Session}) {
   const engine = useShown(session, (shown) => shown.engine);
+  const patching = useMemo(() => new Patching(session), [session]);
   useEffect(() => {
     const keys = (event: KeyboardEvent) => keysOf(session, event);
     addEventListener("keydown", keys);
@@ -74,13 +77,13 @@ export function App({session}: {session: Session}) {
   if (engine === "failed") return <p class="failed">This browser cannot run the engine: it needs WebAssembly with exceptions (Firefox 100, Chrome 95, Safari 15.2, or later).</p>;
   return (
     <>
-      <Header session={session} />
+      <Header session={session} patching={patching} />
       <main>
         <div class="papers">
           <Lesson session={session} />
           <Editor session={session} />
         </div>
-        <Pictures session={session} />
+        <Pictures session={session} patching={patching} />
         <section class="desk" aria-label="Console">
           <Modes session={session} />
           <Lamps session={session} />

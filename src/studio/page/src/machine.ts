@@ -2,7 +2,8 @@
 // The worker with the engine, as functions that promise an answer.
 import type {Answer, Reply} from "./answers";
 
-async function bytesOf(base64: string): Promise<ArrayBuffer> {
+/// What was packed by gzip, and written in base64.
+export async function bytesOf(base64: string): Promise<ArrayBuffer> {
   const text = atob(base64);
   const zipped = new Uint8Array(text.length);
   for (let k = 0; k < text.length; ++k) zipped[k] = text.charCodeAt(k);
@@ -17,18 +18,21 @@ export function carried(id: string): string {
 
 export class Stopped extends Error {}
 
+// Of all machines: unzipped once.
+let bytes: Promise<ArrayBuffer> | undefined;
+let script: string | undefined;
+
 export class Machine {
   private worker: Worker | undefined;
   private readonly asked = new Map<number, {done: (answer: Answer) => void; failed: (why: Error) => void}>();
   private next = 1;
   private ready: Promise<void> | undefined;
-  private bytes: Promise<ArrayBuffer> | undefined;
-  private readonly script = URL.createObjectURL(new Blob([carried("worker")], {type: "text/javascript"}));
 
   start(): Promise<void> {
-    this.bytes ??= bytesOf(carried("engine"));
-    this.ready = this.bytes.then((bytes) => new Promise((done, failed) => {
-      const worker = this.worker = new Worker(this.script);
+    bytes ??= bytesOf(carried("engine"));
+    const from = script ??= URL.createObjectURL(new Blob([carried("worker")], {type: "text/javascript"}));
+    this.ready = bytes.then((bytes) => new Promise((done, failed) => {
+      const worker = this.worker = new Worker(from);
       worker.onerror = (event) => failed(new Error(event.message));
       worker.onmessage = (event: MessageEvent<Reply | "ready" | "failed">) => {
         if (event.data === "ready") return done();

@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: MIT
 
+/// A number to three digits, with a power of ten where it is very small or large.
+export function rough(value: number): string {
+  const size = Math.abs(value);
+  return size !== 0 && (size < 1e-3 || size >= 1e5) ? value.toExponential(2) : String(Number(value.toPrecision(3)));
+}
+
 /// A number to six digits, as files write it: an infinite one is "inf".
 export function short(value: number): string {
   if (Number.isFinite(value)) return String(Number(value.toPrecision(6)));

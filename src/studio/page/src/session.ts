@@ -3,8 +3,8 @@
 // of the page only show the snapshot and call what stands here.
 import {useEffect, useReducer} from "preact/hooks";
 
-import type {Advanced, Answer, Checked, Diagnostic, Drawn, Held, Lesson, Opened, Overloads, Patched, Read, Saved} from "./answers";
-import {carried, Machine, Stopped} from "./machine";
+import type {Advanced, Answer, Checked, Diagnostic, Drawn, Exchanged, Held, Lesson, Opened, Overloads, Patched, Read, Saved} from "./answers";
+import {bytesOf, carried, Machine, Stopped} from "./machine";
 import {short} from "./numbers";
 import {Instrument} from "./scope/instrument";
 import {atFirst, type ScopeSettings} from "./scope/settings";
@@ -13,7 +13,6 @@ import {fromFragment, type SharedFile} from "./share";
 import {Traces} from "./traces";
 import {Levels} from "./voltages/levels";
 
-export const examples = JSON.parse(carried("examples")) as SharedFile[];
 const opening = JSON.parse(carried("opening")) as SharedFile;
 
 const mostRows = 20_000;  // that the scope remembers
@@ -32,6 +31,7 @@ export interface Pot {
 export interface Shown {
   engine: "starting" | "ready" | "failed";
   busy: boolean;
+  examples: SharedFile[];     ///< none until they are unpacked
   file: SharedFile;           ///< the one that the machine is of
   written: string;            ///< what stands in the editor
   findings: Diagnostic[];
@@ -41,8 +41,8 @@ export interface Shown {
   lesson: Lesson | null;      ///< of the diagram
   diagram: string;            ///< what runs: the file, or the patch of a mechanism
   schematic: string;          ///< SVG
-  linkage: string;            ///< SVG
   gain: string;               ///< of the patch
+  split: readonly string[];   ///< of its triad; empty: the one worth the most
   held: Held | undefined;
   pots: Pot[];
   mode: Mode;
@@ -71,8 +71,11 @@ export interface Companion {
 
 export interface Opening {
   gain?: string;
+  split?: readonly string[];
+  force?: boolean;            ///< patches what is unstable, too
   restore?: string;
   turned?: ReadonlyMap<string, string>;
+  keeps?: boolean;                ///< a machine of the same file goes on from where it stands
 }
 
 /// First those of the diagram's own elements that do something, last what composites are made of.
@@ -85,14 +88,20 @@ function inOrder(pots: Pot[]): Pot[] {
 export class Session {
   readonly machine = new Machine();
   shown: Shown = {
-    engine: "starting", busy: false, file: opening, written: opening.text, findings: [], remarks: [], kind: "", title: "", lesson: null, diagram: "", schematic: "", linkage: "",
-    gain: "1e5", held: undefined, pots: [], mode: "initial", time: 0, speed: 1, lamps: [], meter: {name: "", value: NaN, unit: ""}, pointed: undefined, levels: 0, values: new Map(),
+    engine: "starting", busy: false, examples: [], file: opening, written: opening.text, findings: [], remarks: [], kind: "", title: "", lesson: null, diagram: "", schematic: "",
+    gain: "1e5", split: [], held: undefined, pots: [], mode: "initial", time: 0, speed: 1, lamps: [], meter: {name: "", value: NaN, unit: ""}, pointed: undefined, levels: 0, values: new Map(),
     traced: [], against: "", persists: false, scope: atFirst, repeats: undefined, drawn: 0,
   };
   traces = new Traces([], mostRows);
   readonly companions = new Set<Companion>();
   readonly oscilloscope: Instrument;
   readonly levels: Levels;
+  /// The file that what is written belongs to, right or wrong.
+  source: SharedFile = opening;
+  /// Blocks, before and now, that were renamed since the machine that runs was taken.
+  renamed: [string, string][] = [];
+  /// What was written last by hand.
+  typed: string | undefined;
   /// Resolves once the first file was opened.
   readonly ready: Promise<void>;
 
@@ -106,7 +115,6 @@ export class Session {
   private opening = 0;        // how many of them are under way
   private asking = false;     // a frame is
   private pressed = Promise.resolve();  // the last button has done its work
-  private moved = 0;          // when the linkage was drawn last
   private until = 0;          // [s] of a diagram's run, where its file may say so by an expression
   private stride = 0;         // [s] of a frame as fast as it goes
   private later: ReturnType<typeof setTimeout> | undefined;
@@ -148,6 +156,7 @@ export class Session {
 
   /// Takes what is written; it is looked at as soon as the writer rests.
   write(written: string): void {
+    this.typed = written;
     this.set({written});
     clearTimeout(this.later);
     if (this.shown.engine !== "ready") return;
@@ -157,15 +166,27 @@ export class Session {
       return;
     }
     this.later = setTimeout(() => {
-      if (this.shown.written !== this.asked) void this.open({...this.shown.file, text: this.shown.written});
+      if (this.shown.written !== this.asked) void this.open({...this.source, text: this.shown.written}, {keeps: true});
     }, restOfWriter);
   }
 
   /// Puts a file in place of the one before.
   async load(file: SharedFile): Promise<boolean> {
     clearTimeout(this.later);
+    this.source = file;
+    this.typed = undefined;
     this.set({written: file.text});
     return this.open(file);
+  }
+
+  /// Puts the machine away.
+  clear(): void {
+    ++this.opens;
+    this.turned = new Map();
+    this.saved = "";
+    this.set({file: {name: "", text: ""}, held: undefined, kind: "", title: "", diagram: "", schematic: "", pots: [], lamps: [], remarks: [], mode: "initial", time: 0,
+      meter: {name: "", value: NaN, unit: ""}, values: new Map()});
+    this.trace([]);
   }
 
   /// Reads a text and sets the machine up: at its initial condition. Where it is wrong, the machine before stays.
@@ -189,6 +210,7 @@ export class Session {
   }
 
   private async change(mode: Mode): Promise<void> {
+    if (!this.shown.held) return;
     let begun: number | undefined;
     if (mode === "initial") {  // the clock too begins again, with the pots as they are turned
       const set = await this.machine.ask<Held>("console.open", this.shown.diagram, this.shown.file.name);
@@ -235,6 +257,32 @@ export class Session {
     });
     this.pressed = done.catch(() => undefined);
     return done;
+  }
+
+  /// Has the machine stand where it is after so long in operation [s], of which it has been `since`: it goes on until
+  /// then, from its beginning where that is over.
+  goTo(time: number, since: number): Promise<void> {
+    return this.inTurn(() => this.standAt(time, since));
+  }
+
+  private async standAt(time: number, since: number): Promise<void> {
+    const {machine} = this;
+    let from = since;
+    if (time < from) {
+      const set = await machine.ask<Held>("console.open", this.shown.diagram, this.shown.file.name);
+      if (!this.good(set)) return;
+      for (const [pot, value] of this.turned) await machine.ask("console.turn", pot, value);
+      from = set.time;
+      this.set({held: set});
+      await this.tell();
+    }
+    await machine.ask("console.setMode", "operate");
+    const went = await machine.ask<Advanced>("console.advance", time - from, this.shown.traced, this.oscilloscope.rows(time - from));
+    await machine.ask("console.setMode", "hold");
+    if (!this.good(went)) return;
+    this.traces.add(went.numbers, this.shown.persists);
+    this.set({mode: "hold", time: went.time, repeats: undefined, drawn: this.shown.drawn + 1});
+    await this.lookAtAll();
   }
 
   /// Turns a pot of the machine; whether it could be.
@@ -295,7 +343,7 @@ export class Session {
     await this.machine.restart();
     this.asking = false;
     this.set({busy: false});
-    await this.open(this.shown.file, {restore: saved, turned});
+    if (this.shown.held) await this.open(this.shown.file, {restore: saved, turned});
     this.set({remarks: [...this.shown.remarks, "stopped: the machine stands where it last was whole"]});
   }
 
@@ -306,6 +354,7 @@ export class Session {
   }
 
   private async begin(): Promise<void> {
+    const unpacking = bytesOf(carried("examples"));
     try {
       await this.machine.start();
     } catch {
@@ -314,6 +363,7 @@ export class Session {
     }
     this.set({engine: "ready"});
     this.frames();
+    this.set({examples: JSON.parse(new TextDecoder().decode(await unpacking))});
     await this.load(await fromFragment(location.hash) ?? opening);
   }
 
@@ -327,22 +377,27 @@ export class Session {
     if (!isNewest() || !this.good(opened)) return false;
     const theme = {theme: "auto"};
     const gain = how.gain ?? this.shown.gain;
-    let diagram = next.text, linkage = "";
+    const split = how.split ?? (next.name === this.shown.file.name ? this.shown.split : []);
+    let diagram = next.text;
     const remarks: string[] = [];
     if (opened.kind === "mechanism") {
-      const patched = await machine.ask<Patched>("patch", next.text, {gain}, next.name);
+      const patched = await machine.ask<Patched>("patch", next.text, {gain, split, force: how.force ?? false}, next.name);
       if (!isNewest() || !this.good(patched)) return false;
       diagram = patched.text;
       if (patched.judgement) remarks.push(patched.judgement);
-      const drawn = await machine.ask<Drawn>("draw", next.text, theme, next.name);
-      if (drawn.ok) linkage = drawn.svg;
     }
     if (!isNewest()) return false;
+    if (how.keeps && this.shown.held && opened.kind === "diagram" && this.shown.kind === "diagram" && this.shown.file.name === next.name) {
+      const went = await this.exchange(next, opened, isNewest);
+      if (went !== undefined) return went;
+      remarks.push("the timeline is another one: the machine begins anew");
+    }
     const held = await machine.ask<Held>("console.open", diagram, next.name);
     if (!isNewest() || !this.good(held)) return false;
     const turned = how.turned ?? new Map<string, string>();
     for (const [pot, value] of turned) if (!this.good(await machine.ask("console.turn", pot, value))) return false;
-    const drawn = await machine.ask<Drawn>("draw", diagram, {...theme, data: true}, next.name);
+    // a diagram is drawn by its patch panel
+    const drawn = opened.kind === "mechanism" ? await machine.ask<Drawn>("draw", diagram, {...theme, data: true}, next.name) : undefined;
     const values = await machine.ask<Read>("console.read", ...held.pots);
     const mode: Mode = how.restore ? "hold" : "initial";
     if (how.restore) await machine.ask("console.restore", how.restore);
@@ -350,12 +405,13 @@ export class Session {
     if (!isNewest()) return false;
     this.turned = turned;
     this.until = opened.kind === "diagram" ? opened.until : 0;
+    this.renamed = [];
     this.saved = how.restore ?? "";
     // of a mechanism the way of its second moving point, else the first outputs over the time
     const way = opened.kind === "mechanism" ? held.outputs.slice(2, 4) : [];
     const isWay = way.length === 2;
     this.set({
-      file: next, lesson: opened.lesson ?? null, kind: opened.kind, title: opened.title, gain, diagram, linkage, schematic: drawn.ok ? drawn.svg : "", held, remarks, mode, time: held.time, lamps: [], repeats: undefined,
+      file: next, lesson: opened.lesson ?? null, kind: opened.kind, title: opened.title, gain, split, diagram, schematic: drawn?.ok ? drawn.svg : "", held, remarks, mode, time: held.time, lamps: [], repeats: undefined,
       pots: inOrder(held.pots.map((name, k) => ({name, value: values.numbers[k]!, unit: values.units[k] ?? ""}))),
       meter: {name: "", value: NaN, unit: ""}, values: new Map(),
     });
@@ -364,6 +420,41 @@ export class Session {
     await this.tell();
     await this.look();
     await this.lookAtLamps();
+    return true;
+  }
+
+  /// The machine goes on as another one; nothing where its timeline forbids.
+  private async exchange(next: SharedFile, opened: Opened, isNewest: () => boolean): Promise<boolean | undefined> {
+    const {machine, renamed} = this;
+    const held = await machine.ask<Exchanged>("console.exchange", next.text, renamed, next.name);
+    if (!held.ok && /timeline/.test(held.diagnostics?.[0]?.what ?? "")) return undefined;
+    if (!this.good(held)) return false;
+    if (this.renamed === renamed) this.renamed = [];
+    this.until = opened.until;
+    const usual = this.shown.held?.outputs.slice(0, 4) ?? [];
+    this.turned = new Map(Object.entries(held.turned));
+    const isInitial = this.shown.mode === "initial";
+    if (isInitial) {  // nothing has happened yet that could go on
+      await machine.ask("console.open", next.text, next.name);
+      for (const [pot, value] of this.turned) await machine.ask("console.turn", pot, value);
+      await machine.ask("console.setMode", "initial");
+    }
+    const values = await machine.ask<Read>("console.read", ...held.pots);
+    const saved = await machine.ask<Saved>("console.save");
+    this.saved = saved.ok ? saved.state : "";
+    this.set({
+      file: next, kind: "diagram", title: opened.title, lesson: opened.lesson ?? null, diagram: next.text, held, remarks: [], time: isInitial ? 0 : held.time,
+      pots: inOrder(held.pots.map((name, k) => ({name, value: values.numbers[k]!, unit: values.units[k] ?? ""}))),
+    });
+    const all = new Set(this.channels), now = (name: string) => renamed.find(([old]) => old === name)?.[1] ?? name;
+    const {traced, against, meter} = this.shown;
+    const left = traced.map(now).filter((name) => all.has(name));
+    const shown = traced.join("\n") === usual.join("\n") ? held.outputs.slice(0, 4) : left;  // what was chosen stays
+    if (shown.join("\n") !== traced.join("\n")) this.trace(shown, now(against));
+    if (meter.name && !all.has(now(meter.name))) this.set({meter: {name: "", value: NaN, unit: ""}});
+    else if (meter.name !== now(meter.name)) this.set({meter: {...meter, name: now(meter.name)}});
+    await this.tell();
+    if (isNewest()) await this.lookAtAll();
     return true;
   }
 
@@ -395,7 +486,7 @@ export class Session {
 
   private async frame(seconds: number): Promise<void> {
     const {speed, traced, persists} = this.shown;
-    const {span, traces} = this;
+    const {traces} = this;
     const duration = speed === Infinity ? Math.min(this.stride, this.oscilloscope.farthest) : seconds * speed;
     const advancing = this.machine.ask<Advanced>("console.advance", duration, traced, this.oscilloscope.rows(duration));
     const [went] = await Promise.all([advancing, ...[...this.companions].map((companion) => companion.went?.())]);
@@ -410,12 +501,6 @@ export class Session {
     traces.add(went.numbers, persists);
     this.set({time: went.time, drawn: this.shown.drawn + 1});
     await this.look();
-    if (this.shown.kind === "mechanism" && performance.now() - this.moved > 60) {
-      this.moved = performance.now();
-      const {name, text} = this.shown.file;
-      const drawn = await this.machine.ask<Drawn>("draw", text, {theme: "auto", time: went.time % span}, name);
-      if (drawn.ok) this.set({linkage: drawn.svg});
-    }
     if (went.warnings.length > 0) this.set({remarks: went.warnings.map((warning) => warning.what)});
   }
 

@@ -8,21 +8,24 @@ import type {Answer, Question, Reply} from "./answers";
 
 type Verb = (...given: unknown[]) => Answer;
 type Held = Record<string, Verb>;
-type Engine = Record<string, Verb> & {console: () => Held};
+type Kind = "console" | "mechanism" | "comparison";
+type Engine = Record<string, Verb> & Record<Kind, () => Held>;
 
 let engine: Engine;
-let held: Held;
+const held = {} as Record<Kind, Held>;
 
 function answer({verb, given}: Question): Answer {
-  const [object, name] = verb.startsWith("console.") ? [held, verb.slice("console.".length)] : [engine, verb];
-  return object[name]!(...given);
+  const [kind, name] = verb.split(".", 2) as [Kind, string];
+  if (name === undefined) return engine[verb]!(...given);
+  held[kind] ??= engine[kind]();
+  return verb === "mechanism.follow" ? held.mechanism.follow!(held.console, ...given) : held[kind][name]!(...given);
 }
 
 self.onmessage = async (event: MessageEvent) => {
   if (event.data instanceof ArrayBuffer) {
     try {
       engine = await loadEngine({createEngine, wasmBinary: new Uint8Array(event.data), limits: {seconds: 20}}) as unknown as Engine;
-      held = engine.console();
+      held.console = engine.console();
       self.postMessage("ready");
     } catch {
       self.postMessage("failed");

@@ -28,15 +28,13 @@ export interface OnScreen {
   status: string;
 }
 
-/// The beam on its way over the screen, before it what it has left of the sweep before.
+/// The beam on its way over the screen, before it what it has left of the sweep before: sweeps have the same rows.
 function written(running: Sweep, before: Sweep): Sweep {
-  const last = running.times[running.times.length - 1]! - running.zero, shift = running.zero - before.zero;
-  let from = 0;
-  while (from < before.times.length && before.times[from]! - before.zero <= last) ++from;
+  const from = running.times.length, shift = running.zero - before.zero;
   const times = before.times.slice(from).map((time) => time + shift);
   return {
     zero: running.zero,
-    times: Float64Array.of(...running.times, last + running.zero, ...times),
+    times: Float64Array.of(...running.times, running.times[from - 1]!, ...times),
     values: running.values.map((column, k) => Float64Array.of(...column, NaN, ...before.values[k]!.slice(from))),
   };
 }
@@ -79,6 +77,8 @@ export class Instrument {
     const {scope, persists} = this.session.shown;
     this.probe = undefined;
     if (!persists) this.clear();
+    else if (this.running) this.sweeps.push(this.running);
+    this.running = undefined;
     if (isTriggered(scope.source) && !this.session.channels.includes(scope.source))
       this.session.set({scope: {...scope, source: "", level: 0}});
     await this.arm();

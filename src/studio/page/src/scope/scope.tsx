@@ -47,16 +47,18 @@ function Beam({session, cursors, move, keep}: {session: Session; cursors: readon
     };
   }, []);
 
+  const begin = performance.now();
   const shows = given(session, cursors, width, height);
   const screen = width > 0 ? screenOf(shows) : undefined;
   const shift = shows.fromTrigger ? screen?.newest?.zero ?? 0 : 0;
+  const laidOut = performance.now() - begin;
   useEffect(() => {
     if (!screen) return;
-    const begin = performance.now();
+    const painting = performance.now();
     paint(screen.drawing, canvas.current!, theme, devicePixelRatio);
     keep(screen);
     const now = performance.now();
-    place.current!.dataset.took = (now - begin).toFixed(2);
+    place.current!.dataset.took = (laidOut + now - painting).toFixed(2);
     // What is read aloud does not change with every frame.
     if (runs(mode) && now - said.current.at < oftenEnough && said.current.title === screen.drawing.title) return;
     said.current = {at: now, title: screen.drawing.title};

@@ -109,8 +109,7 @@ export function useVoltages(session: Session, place: RefObject<HTMLElement>, col
       session.set({pointed: undefined});
       colour();
     };
-    const point = (target: EventTarget | null) => {
-      const found = (target as Element | null)?.closest?.("[data-signal]");
+    const point = (found: Element | null | undefined) => {
       if (!found || !container.contains(found)) return false;
       const signals = signalsOf(found).filter((signal) => session.levels.has(signal));
       if (signals.length === 0) return false;
@@ -118,17 +117,25 @@ export function useVoltages(session: Session, place: RefObject<HTMLElement>, col
       session.set({pointed: {element: found.getAttribute("data-element") ?? "", signals}});
       return true;
     };
-    const meets = (event: PointerEvent) => { if (event.pointerType === "mouse") point(event.target); };
+    // What lies there, whatever is laid over the picture.
+    const under = (event: PointerEvent) => document.elementsFromPoint(event.clientX, event.clientY).find((one) => one.hasAttribute("data-signal"));
+    let met: Element | undefined;
+    const meets = (event: PointerEvent) => {
+      const found = under(event);
+      if (event.pointerType !== "mouse" || found === met) return;
+      met = found;
+      if (!point(found)) session.set({pointed: undefined});
+    };
     const pressed = (event: PointerEvent) => {
-      if (!point(event.target)) session.set({pointed: undefined});
+      if (!point(under(event))) session.set({pointed: undefined});
       else if (event.pointerType === "mouse") void session.meter(session.shown.pointed!.signals[0]!);
     };
     const leaves = (event: PointerEvent) => {
-      const to = event.relatedTarget as Element | null;
-      if (event.pointerType === "mouse" && !to?.closest?.("[data-signal]")) session.set({pointed: undefined});
+      met = undefined;
+      if (event.pointerType === "mouse") session.set({pointed: undefined});
     };
     const focused = (event: FocusEvent) => {
-      if (!point(event.target)) return;
+      if (!point((event.target as Element).closest("[data-signal]"))) return;
       byKeys = true;
       for (const body of bodies) body.setAttribute("tabindex", body === event.target ? "0" : "-1");
     };
@@ -153,9 +160,9 @@ export function useVoltages(session: Session, place: RefObject<HTMLElement>, col
     watch.observe(container, {childList: true, subtree: true});
     const unsubscribe = session.subscribe(colour);
     darkly.addEventListener("change", recolour);
-    container.addEventListener("pointerover", meets);
+    container.addEventListener("pointermove", meets);
     container.addEventListener("pointerdown", pressed);
-    container.addEventListener("pointerout", leaves);
+    container.addEventListener("pointerleave", leaves);
     container.addEventListener("focusin", focused);
     container.addEventListener("focusout", blurred);
     container.addEventListener("keydown", keys);
@@ -164,9 +171,9 @@ export function useVoltages(session: Session, place: RefObject<HTMLElement>, col
       unsubscribe();
       watch.disconnect();
       darkly.removeEventListener("change", recolour);
-      container.removeEventListener("pointerover", meets);
+      container.removeEventListener("pointermove", meets);
       container.removeEventListener("pointerdown", pressed);
-      container.removeEventListener("pointerout", leaves);
+      container.removeEventListener("pointerleave", leaves);
       container.removeEventListener("focusin", focused);
       container.removeEventListener("focusout", blurred);
       container.removeEventListener("keydown", keys);
@@ -191,7 +198,7 @@ export function Pointed({session}: {session: Session}) {
 }
 
 /// What the colours mean, and the reading of what is pointed at.
-function Legend({session, coloured, setColoured}: {session: Session; coloured: boolean; setColoured: (on: boolean) => void}) {
+export function Legend({session, coloured, setColoured}: {session: Session; coloured: boolean; setColoured: (on: boolean) => void}) {
   const [dark, setDark] = useState(darkly.matches);
   useEffect(() => {
     const turn = () => setDark(darkly.matches);
@@ -215,16 +222,9 @@ function Legend({session, coloured, setColoured}: {session: Session; coloured: b
   );
 }
 
-/// The schematic of the machine, alive.
-export function Schematic({session}: {session: Session}) {
-  const place = useRef<HTMLDivElement>(null);
-  const schematic = useShown(session, (shown) => shown.schematic);
+/// What colours a picture in `place`, with the legend above it.
+export function Voltages({session, place}: {session: Session; place: RefObject<HTMLElement>}) {
   const [coloured, setColoured] = useState(true);
   useVoltages(session, place, coloured);
-  return (
-    <>
-      <Legend session={session} coloured={coloured} setColoured={setColoured} />
-      <div class="picture schematic" ref={place} role="group" aria-label="Schematic: the arrow keys go from element to element, the voltmeter reads it" dangerouslySetInnerHTML={{__html: schematic}} />
-    </>
-  );
+  return <Legend session={session} coloured={coloured} setColoured={setColoured} />;
 }

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "verbs.h"
+#include "../verbs.h"
 
 namespace oblique::test {
 namespace {

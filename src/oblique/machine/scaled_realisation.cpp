@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/machine/scaled_realisation.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <unordered_map>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <oblique/diagram/expectations.h>
+#include <oblique/diagram/flatten.h>
+#include <oblique/diagram/propose_scaling.h>
+#include <oblique/machine/circuit.h>
+#include <oblique/machine/circuit_scaling.h>
+#include <oblique/machine/element_library.h>
+#include <oblique/machine/element_writer.h>
+#include <oblique/machine/signal_ranges.h>
+#include <oblique/machine/tabulated_functions.h>
+#include <oblique/solve/solve_error.h>
+
+namespace oblique::machine {
+namespace {
+
+diagram::Diagram on_ideal_machine(diagram::Diagram diagram) {
+  diagram.machine.profile = "ideal";
+  return diagram;
+}
+
+/// The machine without any errors, so that a diagram written for it says all of its own.
+diagram::MachineProfile without_errors(diagram::MachineProfile machine) {
+  machine.errors.clear();
+  return machine;
+}
+
+/// Elements without a role that are still there have no place on any machine.
+void check_elements(const Circuit& circuit, const diagram::MachineProfile& machine) {
+  std::map<std::string, std::vector<const CircuitElement*>> others;  // by the names of their blocks
+  for (const CircuitElement& element : circuit.elements) {
+    if (element.role == Role::other) others[element.definition->name].push_back(&element);
+  }
+  text::Diagnostics diagnostics;
+  for (const auto& [block, elements] : others) {
+    std::vector<std::string> names;
+    for (const CircuitElement* const element : elements) names.push_back("'" + element->path + "'");
+    diagnostics.add(
+        {elements.front()->block->place,
+         fmt::format("the machine {} has no {}, which {} {}, and no circuit of its elements for it",
+                     machine.title, block, fmt::join(names, ", "), names.size() == 1 ? "is" : "are"),
+         "amplifiers, potentiometers, multipliers, comparators, and functions of one signal",
+         "build it of these"});
+  }
+  diagnostics.throw_if_any<RealiseError>();
+}
+
+std::string names_of(const std::vector<TabulatedFunction>& functions) {
+  std::vector<std::string> names;
+  for (const TabulatedFunction& function : functions) names.push_back("'" + function.path + "'");
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+/// The time of the run, and of what is expected of it, on the machine.
+diagram::Diagram in_machine_time(diagram::Diagram diagram, double time) {
+  if (time == 1) return diagram;
+  diagram.run.until *= time;
+  if (diagram.run.max_step) *diagram.run.max_step *= time;
+  for (diagram::Expectation& expectation : diagram.expectations) {
+    if (expectation.kind != diagram::Expectation::Kind::at_time) continue;
+    expectation.time *= time;
+    expectation.text = diagram::expectation_key(expectation);
+  }
+  return diagram;
+}
+
+/// The peaks of all signals of a diagram by name.
+std::unordered_map<std::string, double> peaks_of(const diagram::FlatDiagram& flat,
+                                                 const diagram::RunSettings& run) {
+  std::unordered_map<std::string, double> peaks;
+  const std::vector<SignalRange> ranges = signal_ranges(flat, run);
+  std::size_t signal = 0;
+  for (std::size_t b = 0; b < flat.blocks.size(); ++b) {
+    double& peak = peaks[flat.blocks[b].path];
+    for (std::size_t k = 0; k < flat.blocks[b].definition->outputs.size(); ++k)
+      peak = std::max(peak, ranges[signal++].peak());
+  }
+  return peaks;
+}
+
+}  // namespace
+
+class MachineScaling::State {
+ public:
+  State(const diagram::Diagram& diagram, const diagram::BlockLibrary& library,
+        const diagram::MachineProfile& machine, const ScalingOptions& options)
+      : diagram_(diagram),
+        library_(library),
+        elements_(element_library(library)),
+        machine_(machine),
+        time_(options.time) {
+    check_is_one_run(diagram);
+    flat_ = diagram::flatten(on_ideal_machine(diagram), elements_);
+    const bool has_others = std::any_of(flat_.blocks.begin(), flat_.blocks.end(), [](const auto& block) {
+      return block.definition->role == diagram::Role::other;
+    });
+    if (has_others) {
+      functions_ = tabulate_functions(flat_, elements_, signal_ranges(flat_, diagram.run), diagram.run.until,
+                                      options.segments);
+    }
+    circuit_ = reduce(flat_, elements_, most_weight_of_one(machine));
+    check_elements(circuit_, machine);
+    const Realisation unscaled = write_elements(diagram, flat_, elements_, without_errors(machine), circuit_);
+    const auto peaks = [&] {
+      try {
+        return peaks_by_name(on_ideal_machine(unscaled.diagram));
+      } catch (const solve::SolveError& error) {
+        if (functions_.empty()) throw;
+        throw RealiseError(
+            text::Diagnostic{{diagram.file, {}},
+                             fmt::format("with straight lines in the place of {} it does not run: {}",
+                                         names_of(functions_), error.diagnostics().front().what),
+                             {},
+                             text::Remedy{"more lines or fewer (", text::Setting{"segments"},
+                                          "), or a servo amplifier elsewhere than about a function"}});
+      }
+    }();
+    for (const std::string& element : unscaled.elements) peaks_.push_back(peaks.at(element));
+  }
+
+  ScaledRealisation realise(double loop_speed) const {
+    const CircuitScaling scaling = choose_scaling(circuit_, peaks_, machine_, time_);
+    diagram::FlatDiagram flat = flat_;
+    Circuit circuit = circuit_;
+    for (CircuitElement& element : circuit.elements) {
+      if (element.block != nullptr)
+        element.block = flat.blocks.data() + (element.block - flat_.blocks.data());
+    }
+    apply_scaling(scaling, loop_speed, circuit, flat);
+    Realisation written =
+        write_elements(in_machine_time(diagram_, scaling.time), flat, elements_, machine_, circuit);
+    ScaledRealisation result{std::move(written.diagram), scaling.time, {}, {}};
+    for (std::size_t e = 0; e < written.elements.size(); ++e)
+      result.scales.push_back({written.elements[e], 1 / scaling.signals[e], peaks_[e] * scaling.signals[e]});
+    for (const TabulatedFunction& function : functions_)
+      result.functions.push_back(
+          {function.path, function.block, function.segments, function.low, function.high, function.error});
+    return result;
+  }
+
+  bool make_room(const ScaledRealisation& realised) {
+    const auto peaks = peaks_by_name(realised.diagram);
+    bool more = false;
+    for (std::size_t e = 0; e < realised.scales.size(); ++e) {
+      const double peak = peaks.at(realised.scales[e].signal);
+      if (peak <= 1 + diagram::kOverloadTolerance) continue;
+      const double wanted = peak * realised.scales[e].unit;
+      if (wanted <= peaks_[e]) continue;
+      peaks_[e] = wanted;
+      more = true;
+    }
+    return more;
+  }
+
+ private:
+  /// Where no amplifier saturates: a peak that is cut off tells no scale.
+  std::unordered_map<std::string, double> peaks_by_name(const diagram::Diagram& diagram) const {
+    return peaks_of(diagram::without_saturation(diagram::flatten(diagram, library_)), diagram.run);
+  }
+
+  const diagram::Diagram& diagram_;
+  const diagram::BlockLibrary& library_;
+  diagram::BlockLibrary elements_;
+  const diagram::MachineProfile& machine_;
+  std::optional<double> time_;
+  diagram::FlatDiagram flat_;  ///< unscaled, as `circuit_`, which refers to it
+  std::vector<TabulatedFunction> functions_;
+  Circuit circuit_;
+  std::vector<double> peaks_;  ///< of each element, unscaled
+};
+
+MachineScaling::MachineScaling(const diagram::Diagram& diagram, const diagram::BlockLibrary& library,
+                               const diagram::MachineProfile& machine, const ScalingOptions& options)
+    : state_(std::make_unique<State>(diagram, library, machine, options)) {}
+
+MachineScaling::~MachineScaling() = default;
+
+ScaledRealisation MachineScaling::realise(double loop_speed) const {
+  return state_->realise(loop_speed);
+}
+
+bool MachineScaling::make_room(const ScaledRealisation& realised) {
+  return state_->make_room(realised);
+}
+
+ScaledRealisation realise_scaled(const diagram::Diagram& diagram, const diagram::BlockLibrary& library,
+                                 const diagram::MachineProfile& machine, const ScalingOptions& options) {
+  return MachineScaling(diagram, library, machine, options).realise();
+}
+
+}  // namespace oblique::machine

@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/machine/tabulated_functions.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include <oblique/diagram/names.h>
+#include <oblique/machine/line_segments.h>
+#include <oblique/machine/realise.h>
+#include <oblique/machine/role.h>
+
+namespace oblique::machine {
+namespace {
+
+/// Of the span of a function: by less than this a straight line is what it says.
+constexpr double kStraight = 1e-12;
+constexpr double kMostError = 0.05;  ///< of the span: lines that miss by more do not stand for the function
+
+/// Finds what a block computes from its one argument.
+class FunctionReader {
+ public:
+  explicit FunctionReader(diagram::FlatBlock block)
+      : block_(std::move(block)), definition_(*block_.definition) {}
+
+  /// Whether its outputs depend on one input or on time alone, and on nothing that was before.
+  bool is_function() {
+    const auto& equations = block_.behaviour->equations;
+    const auto assigns = [](const diagram::Equation& equation) {
+      return equation.kind == diagram::Equation::Kind::assignment;
+    };
+    if (!definition_.memories.empty() || !std::all_of(equations.begin(), equations.end(), assigns))
+      return false;
+    bool time = false;
+    for (const diagram::Equation& equation : equations) {
+      for (const text::Expression* const name : diagram::names_in(equation.expression)) {
+        if (name->name == "time") time = true;
+      }
+    }
+    for (std::size_t i = 0; i < block_.inputs.size(); ++i) {
+      if (block_.inputs[i].terms.empty()) continue;
+      if (time || input_) return false;
+      input_ = i;
+    }
+    if (!time && !input_) return false;
+    try {  // a table, a mode of operation: no function that is known here
+      for (std::size_t k = 0; k < definition_.outputs.size(); ++k) value(k, 0.5);
+    } catch (const text::ExpressionError&) {
+      return false;
+    }
+    return true;
+  }
+
+  /// The input that is the argument; nothing: it is time.
+  std::optional<std::size_t> input() const { return input_; }
+
+  double value(std::size_t output, double argument) const {
+    return value_of(definition_.outputs[output].name, argument);
+  }
+
+ private:
+  double value_of(std::string_view target, double argument) const {
+    const auto& equations = block_.behaviour->equations;
+    const auto equation = std::find_if(equations.begin(), equations.end(),
+                                       [&](const diagram::Equation& e) { return e.target == target; });
+    return text::evaluate(equation->expression, [&](std::string_view name) -> std::optional<double> {
+      if (name == "time") return argument;
+      if (name == "polarity") return block_.polarity;
+      if (const auto p = definition_.find_parameter(name)) return block_.parameters[*p];
+      if (const auto i = definition_.find_input(name))
+        return i == input_ ? argument : block_.inputs[*i].constant;
+      const bool known = std::any_of(equations.begin(), equations.end(),
+                                     [&](const diagram::Equation& e) { return e.target == name; });
+      return known ? std::optional(value_of(name, argument)) : std::nullopt;
+    });
+  }
+
+  diagram::FlatBlock block_;
+  const diagram::BlockDefinition& definition_;
+  std::optional<std::size_t> input_;
+};
+
+class Tabulator {
+ public:
+  Tabulator(diagram::FlatDiagram& flat, const diagram::BlockLibrary& library,
+            const std::vector<SignalRange>& ranges, double until, int segments)
+      : flat_(flat), library_(library), ranges_(ranges), until_(until), segments_(segments) {
+    for (const diagram::FlatBlock& block : flat.blocks) {
+      first_.push_back(signals_);
+      signals_ += block.definition->outputs.size();
+    }
+  }
+
+  std::vector<TabulatedFunction> tabulate() {
+    const std::size_t n = flat_.blocks.size();
+    for (std::size_t b = 0; b < n; ++b) {
+      if (flat_.blocks[b].definition->role != Role::other) continue;
+      FunctionReader function(flat_.blocks[b]);
+      if (function.is_function()) replace(b, function);
+    }
+    diagnostics_.throw_if_any<RealiseError>();
+    return std::move(functions_);
+  }
+
+ private:
+  void replace(std::size_t b, const FunctionReader& function) {
+    const diagram::FlatBlock block = flat_.blocks[b];  // whose place others take
+    const diagram::FlatInput argument = function.input() ? block.inputs[*function.input()] : time();
+    SignalRange range{0, until_};
+    if (function.input()) range = range_of(argument);
+    const auto& outputs = block.definition->outputs;
+    std::vector<diagram::FlatBlock> made;
+    for (std::size_t k = 0; k < outputs.size(); ++k) {
+      const std::string path = outputs.size() == 1 ? block.path : block.path + "." + outputs[k].name;
+      const auto value = [&](double x) { return function_at(function, k, x); };
+      made.push_back(element_for(value, block, path, argument, range));
+    }
+    flat_.blocks[b] = std::move(made.front());
+    for (std::size_t k = 1; k < made.size(); ++k) {
+      redirect({b, k}, {flat_.blocks.size(), 0});
+      flat_.blocks.push_back(std::move(made[k]));
+    }
+  }
+
+  static double function_at(const FunctionReader& function, std::size_t output, double x) {
+    try {
+      return function.value(output, x);
+    } catch (const text::ExpressionError&) {
+      return std::nan("");
+    }
+  }
+
+  diagram::FlatBlock element_for(const std::function<double(double)>& value, const diagram::FlatBlock& block,
+                                 const std::string& path, const diagram::FlatInput& argument,
+                                 const SignalRange& range) {
+    const double middle = (range.low + range.high) / 2;
+    const LineSegments one = range.high > range.low ? line_segments(value, range.low, range.high, 1)
+                                                    : LineSegments{{{middle}, {value(middle)}}, 0};
+    double size = 0;
+    for (const double y : one.points.y) size = std::max(size, std::abs(y));
+    if (one.error <= kStraight * size) return summer(one.points, block, path, argument);
+    const LineSegments lines = line_segments(value, range.low, range.high, segments_);
+    if (!std::isfinite(lines.error)) {
+      diagnostics_.add(
+          {block.place,
+           fmt::format("'{}' ({}) jumps, or is not finite, where its argument runs from {:.4g} to "
+                       "{:.4g}",
+                       path, block.definition->name, range.low, range.high),
+           "a continuous function, which a function generator can be set for",
+           "a comparator makes a jump; limit the argument where there is no value"});
+      return block;
+    }
+    double low = lines.points.y.front(), high = low;
+    for (const double y : lines.points.y) {
+      low = std::min(low, y);
+      high = std::max(high, y);
+    }
+    if (lines.error > kMostError * (high - low)) {
+      diagnostics_.add(
+          {block.place,
+           fmt::format("{} straight lines miss '{}' ({}) by {:.2g}, which itself goes from {:.4g} to "
+                       "{:.4g}",
+                       lines.points.x.size() - 1, path, block.definition->name, lines.error, low, high),
+           "a function that a function generator can be set for",
+           text::Remedy{"more lines (", text::Setting{"segments"}, "), if the machine has them"}});
+      return block;
+    }
+    functions_.push_back({path, block.definition->name, static_cast<int>(lines.points.x.size()) - 1,
+                          range.low, range.high, lines.error});
+    diagram::FlatBlock generator = element(Role::function_generator, block, path);
+    const auto& parameters = generator.definition->parameters;
+    generator.points.resize(parameters.size());
+    for (std::size_t k = 0; k < parameters.size(); ++k) {
+      if (parameters[k].points) generator.points[k] = lines.points;
+    }
+    generator.inputs = {argument};
+    return generator;
+  }
+
+  /// y = slope · argument + what is left.
+  diagram::FlatBlock summer(const text::PointTable& line, const diagram::FlatBlock& block,
+                            const std::string& path, const diagram::FlatInput& argument) const {
+    diagram::FlatBlock sum = element(Role::summer, block, path);
+    const double slope = line.x.size() < 2 ? 0 : (line.y[1] - line.y[0]) / (line.x[1] - line.x[0]);
+    sum.inputs = {argument};
+    for (diagram::FlatTerm& term : sum.inputs.front().terms) term.weight *= slope;
+    sum.inputs.front().constant = line.y[0] - slope * (line.x[0] - argument.constant);
+    return sum;
+  }
+
+  /// An element without inputs that has its defaults.
+  diagram::FlatBlock element(Role role, const diagram::FlatBlock& of, const std::string& path) const {
+    diagram::FlatBlock made;
+    made.definition = &element_block(library_, role);
+    made.path = path;
+    made.place = of.place;
+    made.group = of.group;
+    for (const diagram::ParameterDefinition& parameter : made.definition->parameters)
+      made.parameters.push_back(parameter.default_value);
+    made.choose_behaviour();
+    for (const diagram::InputPort& input : made.definition->inputs)
+      made.inputs.push_back({{}, input.default_value.value_or(0)});
+    return made;
+  }
+
+  /// The signal that rises by 1 machine unit a second from 0.
+  diagram::FlatInput time() {
+    if (!clock_) {
+      const auto taken = [&](const std::string& name) {
+        return std::any_of(flat_.blocks.begin(), flat_.blocks.end(),
+                           [&](const diagram::FlatBlock& block) { return block.path == name; });
+      };
+      std::string name = "clock";
+      while (taken(name)) name += "_";
+      diagram::FlatBlock clock = element(Role::integrator, flat_.blocks.front(), name);
+      for (std::size_t i = 0; i < clock.inputs.size(); ++i) {
+        if (clock.definition->inputs[i].sum) clock.inputs[i].constant = 1;
+      }
+      clock_ = flat_.blocks.size();
+      flat_.blocks.push_back(std::move(clock));
+    }
+    return {{{1, {*clock_, 0}}}, 0};
+  }
+
+  SignalRange range_of(const diagram::FlatInput& input) const {
+    SignalRange sum{input.constant, input.constant};
+    for (const diagram::FlatTerm& term : input.terms) {
+      const SignalRange& signal = ranges_[first_[term.signal.block] + term.signal.output];
+      const double a = term.weight * signal.low, b = term.weight * signal.high;
+      sum.low += std::min(a, b);
+      sum.high += std::max(a, b);
+    }
+    return sum;
+  }
+
+  void redirect(diagram::SignalRef from, diagram::SignalRef to) {
+    const auto follow = [&](diagram::SignalRef& signal) {
+      if (signal == from) signal = to;
+    };
+    for (diagram::FlatBlock& block : flat_.blocks) {
+      for (diagram::FlatInput& input : block.inputs) {
+        for (diagram::FlatTerm& term : input.terms) follow(term.signal);
+      }
+    }
+    for (diagram::FlatOutput& output : flat_.outputs) follow(output.signal);
+  }
+
+  diagram::FlatDiagram& flat_;
+  const diagram::BlockLibrary& library_;
+  const std::vector<SignalRange>& ranges_;
+  double until_;
+  int segments_;
+  std::vector<std::size_t> first_;  ///< signal of each block
+  std::size_t signals_ = 0;
+  std::optional<std::size_t> clock_;
+  std::vector<TabulatedFunction> functions_;
+  text::Diagnostics diagnostics_;
+};
+
+}  // namespace
+
+std::vector<TabulatedFunction> tabulate_functions(diagram::FlatDiagram& flat,
+                                                  const diagram::BlockLibrary& library,
+                                                  const std::vector<SignalRange>& ranges, double until,
+                                                  int segments) {
+  return Tabulator(flat, library, ranges, until, segments).tabulate();
+}
+
+}  // namespace oblique::machine

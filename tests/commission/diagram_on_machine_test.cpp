@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/commission/diagram_on_machine.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <oblique/diagram/diagram_reader.h>
+#include <oblique/diagram/flatten.h>
+#include <oblique/network/assembly/network.h>
+#include <oblique/network/program/program.h>
+#include <oblique/solve/run.h>
+
+#include "../support/compiled.h"
+
+namespace oblique::commission {
+namespace {
+
+using testing::shipped_blocks;
+
+DiagramOnMachine on(const std::string& machine, const std::string& file) {
+  const diagram::Diagram diagram =
+      diagram::read_diagram(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/" + file + ".toml");
+  return put_on_machine(diagram, shipped_blocks(), *diagram::find_machine(machine));
+}
+
+/// The overloads of a run on the machine's elements, by the run's own watch.
+std::size_t overloads_of(const diagram::Diagram& diagram) {
+  const diagram::FlatDiagram flat = diagram::flatten(diagram, shipped_blocks());
+  solve::RunOptions options = solve::options_of(diagram.run);
+  options.watch_overloads = true;
+  return solve::run(network::Program(network::assemble(flat)), flat, options).overloads.size();
+}
+
+// A multiplier of 1 MHz in the loop of an amplifier of gain 1e6 and 10 Hz: 1e7 Hz of unity gain meet a pole
+// at a tenth of it. The loop must be slower, and is then well damped.
+TEST(DiagramOnMachine, SlowsServoLoopsThatTheMultipliersCannotFollow) {
+  const DiagramOnMachine patched = on("the-analog-thing", "lessons/division");
+  EXPECT_LT(patched.loop_speed, 1);
+  EXPECT_GT(patched.loop_speed, 1e-3);
+  EXPECT_THAT(patched.loop_fault, ::testing::HasSubstr("badly damped"));
+  ASSERT_TRUE(patched.loops);
+  EXPECT_TRUE(patched.loops->well_damped());
+  EXPECT_LT(patched.difference, 1e-6);
+  EXPECT_EQ(patched.failure, "");
+}
+
+// The multipliers of a TR-10 err by 0.8 % of the machine unit: scaled for ideal elements alone signals would
+// leave the range.
+TEST(DiagramOnMachine, MakesRoomForTheErrorsOfTheMachine) {
+  for (const std::string file : {"historical/van-der-pol", "historical/nerve", "lessons/duffing"}) {
+    const DiagramOnMachine patched = on("tr-10", file);
+    EXPECT_EQ(patched.failure, "") << file;
+    EXPECT_TRUE(patched.overloads.empty()) << file << ": " << patched.overloads.front().signal;
+    EXPECT_EQ(overloads_of(patched.made.diagram), 0U) << file;
+    const auto most = std::max_element(patched.made.scales.begin(), patched.made.scales.end(),
+                                       [](const auto& a, const auto& b) { return a.largest < b.largest; });
+    EXPECT_GT(most->largest, 0.9) << file;
+    EXPECT_LT(patched.difference, 1e-6) << file;
+  }
+}
+
+TEST(DiagramOnMachine, TellsOfADiagramWithoutServoLoopsNothingOfThem) {
+  const DiagramOnMachine patched = on("tr-10", "lessons/circle");
+  EXPECT_FALSE(patched.loops);
+  EXPECT_EQ(patched.loop_speed, 1);
+  EXPECT_LT(patched.difference, 1e-4);  // a thousand turns at a tolerance of 1e-8
+}
+
+}  // namespace
+}  // namespace oblique::commission

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+// A mechanism that is shown live, measured at the numbers of its axes.
+#include <oblique/draw/linkage/live_linkage.h>
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include <oblique/mechanism/motion/motion.h>
+
+#include "../support/shipped.h"
+#include "reading.h"
+
+namespace oblique::test {
+namespace {
+
+using Eigen::Vector2d;
+
+const draw::Mark* find_in(const std::vector<draw::Mark>& marks, const std::string& id) {
+  for (const draw::Mark& mark : marks) {
+    if (mark.id == id) return &mark;
+  }
+  return nullptr;
+}
+
+draw::LinkageScene scene_of(const mechanism::Motion& motion) {
+  draw::LinkageScene scene;
+  scene.motion = motion.configurations;
+  scene.shown = motion.configurations.front();
+  scene.analog = draw::AnalogOverlay{{}, {}, "analog, its error magnified", {}};
+  return scene;
+}
+
+TEST(LiveLinkage, PutsPinsWhereTheAxesSayAtEveryMoment) {
+  for (const char* const name : {"four-bar", "class-iii", "slider-crank", "jansen"}) {
+    const mechanism::Mechanism mechanism = shipped(name);
+    const mechanism::Motion motion = mechanism::solve_motion(mechanism, 61);
+    const draw::LiveLinkage live(mechanism, scene_of(motion));
+    const draw::Picture background = live.background();
+    const Reading reading(background.marks);
+    const Eigen::AlignedBox<double, 2> paper(Vector2d(0, 0), Vector2d(background.width, background.height));
+    for (const mechanism::Configuration& here : motion.configurations) {
+      const std::vector<draw::Mark> marks = live.exact(here);
+      for (std::size_t p = 0; p < mechanism.points.size(); ++p) {
+        const Vector2d& place = here.points[p].position;
+        // labels of axes lie at their ticks to a hundredth of a pixel
+        EXPECT_LT((live.pixel(place) - reading.pixel(place)).norm(), 0.01);
+        EXPECT_LT((live.place(live.pixel(place)) - place).norm(), 1e-12 * mechanism.largest_length());
+        const draw::Mark* const pin = find_in(marks, "pin-" + mechanism.points[p].name);
+        if (pin == nullptr) continue;
+        EXPECT_LT((std::get<draw::Disc>(pin->shape).centre - live.pixel(place)).norm(), 1e-9);
+      }
+      for (const draw::Mark& mark : marks)
+        EXPECT_TRUE(paper.contains(draw::extent_of(mark))) << name << mark.id;
+    }
+  }
+}
+
+TEST(LiveLinkage, DrawsTheAnalogMechanismWhereItIsTold) {
+  const mechanism::Mechanism mechanism = shipped("four-bar");
+  const mechanism::Motion motion = mechanism::solve_motion(mechanism, 61);
+  const draw::LiveLinkage live(mechanism, scene_of(motion));
+  std::vector<Vector2d> places;
+  for (const mechanism::PointState& point : motion.configurations[7].points)
+    places.push_back(point.position + Vector2d(0.1, -0.2));
+  const std::size_t c = mechanism.find_point("C").value();
+  const draw::Mark* const pin = find_in(live.analog(places), "analog-pin-C");
+  ASSERT_NE(pin, nullptr);
+  EXPECT_LT((std::get<draw::Disc>(pin->shape).centre - live.pixel(places[c])).norm(), 1e-9);
+  const std::size_t all = live.analog(places).size();
+  places[c].x() = std::nan("");
+  const std::vector<draw::Mark> fewer = live.analog(places);
+  EXPECT_EQ(find_in(fewer, "analog-pin-C"), nullptr);
+  EXPECT_EQ(fewer.size(), all - 3);  // the pin and the two links that it joins
+}
+
+}  // namespace
+}  // namespace oblique::test

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/report/atlas/diagram_report.h>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "../../support/compiled.h"
+
+namespace oblique::report {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+const std::string kReported = R"toml(# A ring of two integrators & a sign,
+# drawn by many.
+#
+#     x″ = −x
+#     y = −x′
+#
+# It turns.
+format = "oblique-diagram/1"
+title = "A <circle>"
+source = "a book"
+[machine]
+profile = "tr-10"
+[run]
+until = 10
+[blocks]
+x = { type = "integrator", in = ["2*y"], initial = 0.5, label = "x/10" }
+y = { type = "integrator", in = ["-0.5*x"] }
+[outputs]
+x = { signal = "x", scale = 10, unit = "V" }
+y = { signal = "y", scale = 20, unit = "V" }
+[expect]
+"x minimum" = { value = -5, within = 0.1 }
+)toml";
+
+const std::string kReportedAsPublished = R"toml([published]
+author = "A. Author"
+title = "Rings"
+year = 1960
+address = "https://example.org/rings"
+machine = "TR-10 no. 7"
+errata = ["The sign is missing."]
+plot = ["y", "x"]
+[[published.value]]
+name = "x"
+value = 4.5
+within = 0.1
+at = "maximum"
+because = "the ink was thick"
+)toml";
+
+std::string page_of(const std::string& text, const std::string& index = "", const std::string& studio = "") {
+  const Programme programme = run_programme("ring.toml", text, testing::shipped_blocks());
+  DiagramReport report{programme, testing::shipped_blocks()};
+  report.index = index;
+  report.studio = studio;
+  return report.page().text(draw::Theme::automatic);
+}
+
+TEST(HeadComment, IsParagraphsAndFormulas) {
+  EXPECT_THAT(head_comment(kReported), ElementsAre("A ring of two integrators & a sign, drawn by many.",
+                                                   "    x″ = −x\n    y = −x′", "It turns."));
+  EXPECT_THAT(head_comment("format = 3\n# late\n"), ElementsAre());
+}
+
+TEST(DiagramReport, HasAllThatIsKnownOfADiagram) {
+  const std::string page = page_of(kReported);
+  EXPECT_THAT(page, AllOf(HasSubstr("<h1>A &lt;circle&gt;</h1>"), HasSubstr("<p>a book.</p>"),
+                          HasSubstr("A ring of two integrators &amp; a sign, drawn by many."),
+                          HasSubstr("<pre>    x″ = −x\n")));
+  // x = 10 x̂ and y = 20 ŷ, and the machine's integrators invert
+  EXPECT_THAT(page, HasSubstr("dx/dt = −y,   from 5\ndy/dt = x,   from 0\n"));
+  EXPECT_THAT(page, HasSubstr("<td>x.in</td><td>x/10</td><td class=\"n\">2</td><td>weight of y</td>"));
+  EXPECT_THAT(page, HasSubstr("<td>x.initial</td><td>x/10</td><td class=\"n\">0.5</td>"));
+  EXPECT_THAT(page, HasSubstr("50 %</td><td>x = 10 V</td>"));  // the largest x, of the machine unit
+  EXPECT_THAT(page,
+              HasSubstr("<td>x</td><td class=\"n\">5</td><td class=\"n\">0</td>"));  // static test, in V
+  EXPECT_THAT(page, HasSubstr("<td>x minimum</td><td class=\"n\">-5</td>"));
+  for (const char* const section :
+       {"Where it comes from", "The circuit", "What it solves", "Curves", "Against an independent solution",
+        "Scaling", "Settings", "Static test", "Stability", "Machines"})
+    EXPECT_THAT(page, HasSubstr(std::string(">") + section + "</h2>"));
+  EXPECT_THAT(page, Not(HasSubstr("Published and computed")));
+  for (const char* const outside : {"<script", "src=", "url(", "href=\"http"})
+    EXPECT_THAT(page, Not(HasSubstr(outside)));
+}
+
+TEST(DiagramReport, HoldsWhatWasPublished) {
+  const std::string page = page_of(kReported + kReportedAsPublished, "index.html", "studio.html#abc");
+  EXPECT_THAT(page, AllOf(HasSubstr("<p>A. Author, Rings, 1960.</p>"),
+                          HasSubstr("href=\"https://example.org/rings\""),
+                          HasSubstr("The circuit as it was patched, on: TR-10 no. 7."),
+                          HasSubstr("<li>The sign is missing.</li>"), HasSubstr("As on the plotter:"),
+                          HasSubstr("<td>x maximum</td><td class=\"n\">4.5</td><td class=\"n\">0.1</td>"),
+                          HasSubstr("x maximum differs because the ink was thick."),
+                          HasSubstr("<a href=\"index.html\">"), HasSubstr("<a href=\"studio.html#abc\">")));
+  EXPECT_THAT(page_of(kReported + "[published]\nauthor = \"A\"\ntitle = \"T\"\nkind = \"equations\"\n"),
+              AllOf(HasSubstr("Composed here: only the equations were published."),
+                    HasSubstr("No value was published to hold the run against.")));
+}
+
+// y against x is a circle of 5 V here: the axes have one scale.
+TEST(DiagramReport, DrawsAsThePlotterDid) {
+  const Programme programme =
+      run_programme("ring.toml", kReported + kReportedAsPublished, testing::shipped_blocks());
+  const draw::Chart chart = plotter_chart(programme, testing::shipped_blocks());
+  ASSERT_EQ(chart.panels.size(), 1U);
+  EXPECT_EQ(chart.panels[0].x.name, "x");
+  EXPECT_EQ(chart.panels[0].y.name, "y");
+  EXPECT_TRUE(chart.panels[0].equal);
+  for (const auto& point : chart.panels[0].curves.at(0).points) EXPECT_NEAR(point.norm(), 5, 0.01);
+}
+
+}  // namespace
+}  // namespace oblique::report
