@@ -321,14 +321,16 @@ x = { type = "integrator", in = "-x", initial = 1 }
               HasSubstr("together they change output x by 2.124e-03 of its largest value"));
 }
 
-// Dow: a gain of 1000 in two integrators and an inverter costs the circle 0.0682 of its amplitude in ten
-// turns, as the lesson derives it.
+// A gain of μ = 1000 in two integrators and an inverter: the amplitude falls by e^(−t/μ), and the frequency
+// by 2/μ, half of it by the inverter (−1/(1 + 2/μ)) and half by the integrators. At t = 61.8, where the
+// program finds its largest error, the vector of the circle is 0.940 long and 0.124 rad behind: 0.134 away;
+// the next order in 1/μ is a hundredth of that.
 TEST_F(PatchForMachine, ComparesADiagramOnAMachineWithItsIdealSelf) {
   const std::string circle = std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/lessons/circle-on-ec-1.toml";
   const Outcome outcome = oblique("compare " + circle + " --machine ec-1 --json");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const auto json = nlohmann::json::parse(outcome.out);
-  EXPECT_NEAR(json["machine"]["max_error"].get<double>(), 1 - 0.8386025173132072 / 0.9, 1e-3);
+  EXPECT_NEAR(json["machine"]["max_error"].get<double>(), 0.134, 2e-3);
   EXPECT_NEAR(json["machine"]["explained"].get<double>(), 1, 0.05);
   const Outcome text = oblique("compare " + circle + " --machine ec-1");
   EXPECT_THAT(text.out, HasSubstr("on Heathkit EC-1, of as many elements as it takes\n"));

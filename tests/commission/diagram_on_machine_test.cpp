@@ -13,6 +13,7 @@
 #include <oblique/network/assembly/network.h>
 #include <oblique/network/program/program.h>
 #include <oblique/solve/run.h>
+#include <oblique/text/file.h>
 
 #include "../support/compiled.h"
 
@@ -38,7 +39,13 @@ std::size_t overloads_of(const diagram::Diagram& diagram) {
 // A multiplier of 1 MHz in the loop of an amplifier of gain 1e6 and 10 Hz: 1e7 Hz of unity gain meet a pole
 // at a tenth of it. The loop must be slower, and is then well damped.
 TEST(DiagramOnMachine, SlowsServoLoopsThatTheMultipliersCannotFollow) {
-  const DiagramOnMachine patched = on("the-analog-thing", "lessons/division");
+  const std::string file = std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/lessons/division.toml";
+  const std::string of_lesson = "gain = 1e8, bandwidth = inf";
+  std::string text = text::read_file(file);
+  ASSERT_NE(text.find(of_lesson), std::string::npos);
+  text.replace(text.find(of_lesson), of_lesson.size(), R"(gain = 1e6, bandwidth = "10 Hz")");
+  const DiagramOnMachine patched = put_on_machine(diagram::parse_diagram(text, file), shipped_blocks(),
+                                                  *diagram::find_machine("the-analog-thing"));
   EXPECT_LT(patched.loop_speed, 1);
   EXPECT_GT(patched.loop_speed, 1e-3);
   EXPECT_THAT(patched.loop_fault, ::testing::HasSubstr("badly damped"));

@@ -51,8 +51,9 @@ TEST(PatchPanel, TellsWhereEverythingIs) {
     if (!one.body) continue;
     const Mark* const mark = test::find_mark(panel.picture, "block-" + one.instance->name);
     ASSERT_NE(mark, nullptr);
-    // the outline with its pen; a round back bulges a little
-    EXPECT_LT((extent_of(*mark).center() - rectangle(*one.body).center()).norm(), 5);
+    // the outline with its pen; a round back bulges a little, and the triangle of an integrator stands 6 px
+    // to the right of the middle, beside its bar
+    EXPECT_LT((extent_of(*mark).center() - rectangle(*one.body).center()).norm(), 7);
     EXPECT_TRUE(one.open_inputs.empty());
     for (const PatchPanelWire& wire : one.wires) {
       ASSERT_TRUE(wire.at) << wire.written.text;

@@ -91,7 +91,7 @@ const std::map<std::string, Fate> kFates = {
     {"lessons/triangle-aas", {1e-5}},
     {"lessons/triangle-asa", {1e-5}},
     // The start of a run latches a table in a servo loop at its first line, where this loop diverges.
-    {"lessons/triangle-sas", {0, "with straight lines in the place of 'vector_cosine'"}},
+    {"lessons/triangle-sas", {0, "with straight lines in the place of 'vector.cosine'"}},
     {"lessons/triangle-side", {1e-4}},
     {"lessons/triangle-sss", {1e-4}},
     {"historical/chua", {1e-5, {}, 10}},
@@ -352,10 +352,10 @@ std::map<std::string, double> units_of(const ScaledRealisation& made) {
 }
 
 // Published programmes give their scale by their coefficients. B. Ulmann, Analog Paradigm application note 1,
-// Roessler: x' = -0.8 y - 2.3 z, y' = 1.25 x + 0.2 y, z' = 0.005 + 15 z (x - 0.3796), which is x/15, y/12, z/34.5.
-// Note 2, Lorenz, ten times slower: x' = 1.8 y - x, y' = 1.5556 x - 2.68 x z - 0.1 y, z' = 1.5 x y - 0.2667 z, which is
-// x/20, y/36, z/48. Ours use as much of the range (to the two digits of a factor) or more; by more than twice they
-// would not be scales of the same attractor.
+// Roessler: x' = -0.8 y - 2.3 z, y' = 1.25 x + 0.2 y, z' = 0.005 + 15 z (x - 0.3796), which is x/15, y/12,
+// z/34.5. Note 2, Lorenz, ten times slower: x' = 1.8 y - x, y' = 1.5556 x - 2.68 x z - 0.1 y, z' = 1.5 x y -
+// 0.2667 z, which is x/20, y/36, z/48. Ours use as much of the range (to the two digits of a factor) or more;
+// by more than twice they would not be scales of the same attractor.
 TEST(ScaledRealisation, UsesMoreOfTheRangeThanPublishedScalings) {
   const auto units = [](const char* blocks, double until) {
     diagram::Diagram diagram = parsed(std::string("[blocks]\none = { type = \"constant\" }\n") + blocks);

@@ -39,7 +39,7 @@ TEST_F(LessonVerbs, RunHoldsWhatWasPublished) {
       "[[published.value]]\nname = \"x\"\nvalue = 0.4\nwithin = 0.05\nset = { \"answer.value\" = 0.5 }\n";
   Outcome outcome = oblique("run " + with(kExpect + published) + " --check");
   EXPECT_EQ(outcome.status, 1) << outcome.err;
-  EXPECT_THAT(outcome.out, HasSubstr("\nok      x at 20 = 0.2"));
+  EXPECT_THAT(outcome.out, HasSubstr("\nok      x at 20 = 0.19999"));
   EXPECT_THAT(
       outcome.out,
       EndsWith(
@@ -56,7 +56,7 @@ TEST_F(LessonVerbs, RunSaysRightAndWrong) {
   const std::string run = "run " + with(kExpect + kQuestion) + " --check";
   const Outcome open = oblique(run);
   EXPECT_EQ(open.status, 0);
-  EXPECT_THAT(open.out, HasSubstr("\nok      x at 20 = 0.2"));
+  EXPECT_THAT(open.out, HasSubstr("\nok      x at 20 = 0.19999"));
   EXPECT_THAT(open.out,
               EndsWith("\nopen    question: Where must it rest? (answer by setting answer.value)\n"));
   const Outcome wrong = oblique(run + " --set answer.value=0.7");
@@ -77,10 +77,10 @@ TEST_F(LessonVerbs, RunTakesAStep) {
   const std::string run = "run " + with(kExpect + kStep + expect + kStep) + " --step ";
   const Outcome good = oblique(run + "1 --check");
   EXPECT_EQ(good.status, 0) << good.err;
-  EXPECT_THAT(good.out, HasSubstr("\n\nok      x at 20 = 0.4"));
+  EXPECT_THAT(good.out, HasSubstr("\n\nok      x at 20 = 0.39999"));
   const Outcome turned = oblique(run + "1 --check --set answer.value=0.5");  // goes before the step's
   EXPECT_EQ(turned.status, 1);
-  EXPECT_THAT(turned.out, HasSubstr("FAILED  x at 20 = 0.5"));
+  EXPECT_THAT(turned.out, HasSubstr("FAILED  x at 20 = 0.49999"));
   const Outcome bare = oblique(run + "2");
   EXPECT_EQ(bare.status, 0);
   EXPECT_THAT(bare.out, HasSubstr("0.4\n"));
