@@ -14,7 +14,8 @@ draw::Chart chart_of(const compare::Comparison& comparison);
 
 /// The largest error of one series over the gain with its parts (`ErrorParts`, their magnitudes), a line of
 /// order −1 through what stands clear of the tolerance, and what the tolerance leaves. Runs that left their
-/// branch stand apart; parts far below what the tolerance leaves tell nothing and are left out. For gains that come one after the other: one run is enough.
+/// branch stand apart; parts far below what the tolerance leaves tell nothing and are left out. For gains
+/// that come one after the other: one run is enough.
 draw::Chart parts_chart(const compare::Comparison& comparison);
 
 /// What the runs of Monte Carlo tell: their errors along the way, as the bands of half and of 95 % of them
