@@ -40,7 +40,7 @@ path variable(const char* name) {
 /// The page as it was built: the one that OBLIQUE_STUDIO names, else beside an installed program, else in the
 /// build folder that the program is of.
 path built_page() {
-  if (const path named = variable("OBLIQUE_STUDIO"); !named.empty()) return named;
+  if (path named = variable("OBLIQUE_STUDIO"); !named.empty()) return named;
   std::error_code trouble;
   const path program = std::filesystem::read_symlink("/proc/self/exe", trouble).parent_path();
   const std::array<path, 2> places{program / "../share/oblique/studio.html",
