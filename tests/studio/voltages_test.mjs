@@ -176,7 +176,7 @@ ratio = "q"
   assert.equal(await page.evaluate(() => document.activeElement.getAttribute("aria-label")), `${await page.evaluate(() => document.activeElement.getAttribute("data-element") ?? "constant")}: ${await text(page, ".pointed")}`);
   await page.keyboard.press("Enter");
   await page.waitForFunction((name) => document.querySelector('select[aria-label="What the voltmeter shows"]').value === name, {}, first);
-  assert.equal(await page.$$eval(".schematic [tabindex='0']", (all) => all.length), 1);  // one stop of the tab key
+  assert.equal(await page.$$eval(".schematic svg:not(.overlay) [tabindex='0']", (all) => all.length), 1);  // one stop of the tab key
 
   // It follows the machine, also while it stands and a pot is turned.
   await page.$eval('[id="block-phi"]', (one) => one.focus());
