@@ -24,7 +24,7 @@ struct SparsePattern {
 };
 
 /// A part of the equations that follows the time alone, or clocks, and not along a straight line; or one that
-/// follows states, and may be next to nothing here and a peak there.
+/// follows states, and may be next to nothing here and a peak there, or is an event function that bends.
 struct Source {
   std::uint32_t slot = 0, derivative_slot = 0;  ///< its value, and d value/dt (of one by states no use)
   bool acts = false;                            ///< on dx/dt, or on the event function of a switch

@@ -5,6 +5,7 @@
 #include <array>
 #include <functional>
 #include <map>
+#include <set>
 
 #include <oblique/network/program/tangents.h>
 
@@ -81,6 +82,65 @@ void find_peaks(Compilation& c, const std::vector<bool>& acts, const std::vector
     const bool state = node.op == Op::variable && c.is_state(node.variable);
     if (state && reached[id] && !clocks[c.state_of(node.variable)])
       c.code.source_states.push_back(c.state_of(node.variable));
+  }
+}
+
+/// Of each node whether it is a function of what moves other than a sum of it: only then bounds tell more of
+/// an event function than the cubic that a search draws through it.
+std::vector<bool> bent_nodes(const ExpressionGraph& graph, const std::vector<Follows>& follows) {
+  std::vector<bool> bent(follows.size());
+  const auto moves = [&](NodeId id) { return follows[id] != Follows::nothing; };
+  for (NodeId id = 0; id < bent.size(); ++id) {
+    const Node& node = graph[id];
+    if (!moves(id) || node.op == Op::variable) continue;
+    for (int i = 0; i < operand_count(node.op); ++i) bent[id] = bent[id] || bent[node.operand(i)];
+    switch (node.op) {
+      case Op::add:
+      case Op::subtract:
+      case Op::negate:
+      case Op::select:
+      case Op::gate:
+      case Op::table_value:
+        break;
+      case Op::multiply:
+        bent[id] = bent[id] || (moves(node.a) && moves(node.b));
+        break;
+      case Op::divide:
+        bent[id] = bent[id] || moves(node.b);
+        break;
+      default:
+        bent[id] = true;
+    }
+  }
+  return bent;
+}
+
+/// The event functions of switches that read states, and bend: a peak of the time, or a valley of the states,
+/// that leads over a level and back may be far smaller than what it stands on.
+void find_bent_comparisons(Compilation& c, const std::vector<Follows>& follows) {
+  const ExpressionGraph& graph = c.network.graph;
+  const std::vector<bool> bent = bent_nodes(graph, follows);
+  std::set<std::size_t> known(c.code.source_states.begin(), c.code.source_states.end());
+  for (std::uint32_t s = 0; s < c.network.switches.size(); ++s) {
+    const NodeId root = c.network.switches[s].event_function;
+    if (follows[root] != Follows::states || !bent[root]) continue;
+    std::vector<std::size_t> states;
+    bool by_unknowns = false;
+    std::vector<bool> seen(root + 1);
+    seen[root] = true;
+    for (NodeId id = root + 1; id-- > 0 && !by_unknowns;) {
+      if (!seen[id]) continue;
+      const Node& node = graph[id];
+      for (int i = 0; i < operand_count(node.op); ++i) seen[node.operand(i)] = true;
+      if (node.op != Op::variable) continue;
+      by_unknowns = c.is_unknown(node.variable);
+      if (c.is_state(node.variable)) states.push_back(c.state_of(node.variable));
+    }
+    if (by_unknowns) continue;
+    for (const std::size_t state : states) {
+      if (known.insert(state).second) c.code.source_states.push_back(state);
+    }
+    c.sources.push_back({root, root, true, true, s});
   }
 }
 
@@ -225,6 +285,7 @@ void find_sources(Compilation& c) {
     return variable == 0 ? graph.constant(1) : c.network.states[variable - 1].derivative;
   });
   c.turning_rates = turning_rates(c, acts, follows, derivatives);
+  find_bent_comparisons(c, follows);
   std::map<NodeId, std::size_t> source_of;
   for (NodeId id = 0; id < size; ++id) {
     if (!is_root[id] || follows[id] != Follows::time) continue;

@@ -4,12 +4,18 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <vector>
 
 #include <oblique/network/program/program.h>
 #include <oblique/solve/events/time_resolution.h>
 
 namespace oblique::solve {
+namespace {
+
+/// An edge that comes as soon as this [of the time] ends a segment in any case, so that what it ends keeps
+/// its length. (What is no time at all is what rounding has left of the instant.)
+constexpr double kNear = 1e-9;
+
+}  // namespace
 
 EventLocation::EventLocation(const network::Program& program, network::Workspace& workspace,
                              SlidingMode& slide, EventFunctions& event_functions, double span,
@@ -18,9 +24,18 @@ EventLocation::EventLocation(const network::Program& program, network::Workspace
       workspace_(workspace),
       event_functions_(event_functions),
       search_(program, workspace, slide, event_functions.thresholds(), span, file),
-      announced_(program.switches().size()) {}
+      announced_(program.switches().size()),
+      let_pass_(program.switches().size()) {}
 
-std::optional<double> EventLocation::known_wait(double t, std::span<const double> x) {
+void EventLocation::let_pass(bool pass) {
+  for (const std::size_t s : due_) let_pass_[s] = pass;
+}
+
+bool EventLocation::lets_pass() const {
+  return std::find(let_pass_.begin(), let_pass_.end(), true) != let_pass_.end();
+}
+
+std::optional<double> EventLocation::known_wait(double t, std::span<const double> x, Of which) {
   if (announced_.empty()) return std::nullopt;
   std::optional<double> next;
   std::vector<std::optional<double>> waits(announced_.size());
@@ -32,6 +47,9 @@ std::optional<double> EventLocation::known_wait(double t, std::span<const double
     if (closed ? *rate >= 0 : *rate <= 0) continue;
     const double wait = event_functions_.is_off_zero(s) ? std::max(0.0, -event_functions_[s] / *rate) : 0;
     if (!std::isfinite(wait)) continue;
+    if (which == Of::let_pass && !let_pass_[s]) continue;
+    const bool keeps_length = wait > time_resolution(t) && wait <= kNear * std::abs(t);
+    if (which == Of::ends_of_segments && let_pass_[s] && !keeps_length) continue;
     waits[s] = wait;
     next = std::min(next.value_or(wait), wait);
   }
@@ -53,10 +71,12 @@ std::optional<EventSearch::Found> EventLocation::search(double from, std::span<c
 }
 
 void EventLocation::withdraw_early(double t) {
+  due_.clear();
   for (std::size_t s = 0; s < announced_.size(); ++s) {
     const auto rate = event_functions_.known_rate(s);
-    if (rate && std::abs(event_functions_[s]) > 8 * time_resolution(t) * std::abs(*rate))
-      announced_[s].reset();
+    if (!rate) continue;
+    if (std::abs(event_functions_[s]) > 8 * time_resolution(t) * std::abs(*rate)) announced_[s].reset();
+    if (announced_[s]) due_.push_back(s);
   }
 }
 

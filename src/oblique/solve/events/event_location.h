@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include <oblique/network/program/program.h>
 #include <oblique/solve/events/event_functions.h>
@@ -23,17 +24,23 @@ class EventLocation {
   void limit_samples(double samples) { search_.limit_samples(samples); }
   void end_when(const Interruption& interruption) { search_.end_when(interruption); }
 
-  /// How long after t the next switch that follows time alone turns over [s], which is announced; nothing
-  /// where none does.
-  std::optional<double> known_wait(double t, std::span<const double> x);
+  /// How long after t the next switch that follows time alone turns over [s], of all, or of those that are
+  /// let pass, or of those that end a segment; it is announced. Nothing where none does.
+  enum class Of { all, let_pass, ends_of_segments };
+  std::optional<double> known_wait(double t, std::span<const double> x, Of which);
+  /// Whether those that follow time alone and were due last are let pass from now on: no segment ends where
+  /// they turn over.
+  void let_pass(bool pass);
+  bool lets_pass() const;
 
   /// The first crossing after `from`, which is announced; nothing where there is none: see EventSearch.
   std::optional<EventSearch::Found> search(double from, std::span<const double> sample_times,
                                            const Interpolant& solution);
 
   const Announced& announced() const { return announced_; }
-  /// Withdraws switches that follow time alone and are not due yet at t, where the event functions were
-  /// evaluated last: the segment may have ended before their time.
+  /// At the beginning of an instant that is settled: withdraws switches that follow time alone and are not
+  /// due yet at t, where the event functions were evaluated last: the segment may have ended before their
+  /// time.
   void withdraw_early(double t);
   /// Withdraws switches whose event functions have moved away from zero; or all.
   void withdraw_past(bool all);
@@ -45,6 +52,8 @@ class EventLocation {
   EventFunctions& event_functions_;
   EventSearch search_;
   Announced announced_;
+  std::vector<std::size_t> due_;  ///< switches that follow time alone, when it was settled last
+  std::vector<bool> let_pass_;    ///< of each switch
 };
 
 }  // namespace oblique::solve

@@ -51,7 +51,14 @@ class Switching {
   void settle(double t, std::vector<double>& x);
 
   /// How long after t the next switch that follows time alone turns over [s]; nothing where none does.
-  std::optional<double> known_wait(double t, std::span<const double> x) { return location_.known_wait(t, x); }
+  std::optional<double> known_wait(double t, std::span<const double> x,
+                                   EventLocation::Of which = EventLocation::Of::all) {
+    return location_.known_wait(t, x, which);
+  }
+  /// Whether the switches that followed time alone and turned over last act on nothing, as far as is known:
+  /// no smooth segment of the run then ends where they turn over.
+  void let_pass(bool pass) { location_.let_pass(pass); }
+  bool lets_pass() const { return location_.lets_pass(); }
 
   /// Ends a run in which something is always due. Throws SolveError.
   [[noreturn]] void throw_endless(double t) const;

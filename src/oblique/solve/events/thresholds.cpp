@@ -21,7 +21,7 @@ Thresholds::Thresholds(const network::Program& program)
       excursions_(program.switches().size(), 0.0),
       of_time_(program.switches().size(), false) {
   for (const network::Source& source : program.sources()) {
-    if (source.switch_index) of_time_[*source.switch_index] = true;
+    if (source.switch_index && !source.by_states) of_time_[*source.switch_index] = true;
   }
 }
 

@@ -10,6 +10,19 @@
 #include <oblique/solve/solve_error.h>
 
 namespace oblique::solve {
+namespace {
+
+constexpr int kMostAtOnce = 1000;  ///< turns of what follows time alone, at one instant
+constexpr double kSoon = 1e-3;     ///< of a step
+
+}  // namespace
+
+/// What events keep may act on the states later: by when they came, as sensitivities see it, or in a loop
+/// that is looked at only along its branch.
+Segments::Segments(const Parts& parts) : parts_(parts), memories_act_(!parts.options.sensitivity.empty()) {
+  for (std::size_t loop = 0; loop < parts.program.loops().size(); ++loop)
+    memories_act_ = memories_act_ || parts.program.loop_has_branches(loop);
+}
 
 void Segments::follow_phases(double t) {
   constexpr int kMostPhases = 1000;
@@ -63,11 +76,12 @@ void Segments::begin(double t) {
   if (parts_.switching.active()) {
     wait = parts_.switching.known_wait(t, parts_.states);
     for (int settled = 0; wait && !(*wait > 0); ++settled) {
-      constexpr int kMostSettled = 1000;
-      if (settled > kMostSettled) parts_.switching.throw_endless(t);
+      if (settled > kMostAtOnce) parts_.switching.throw_endless(t);
       settle(t, false);
       wait = parts_.switching.known_wait(t, parts_.states);
     }
+    if (parts_.switching.lets_pass())
+      wait = parts_.switching.known_wait(t, parts_.states, EventLocation::Of::ends_of_segments);
   }
   const double last = std::min(parts_.clock.end(), parts_.options.until);
   end_ = wait ? std::min(t + *wait, last) : last;
@@ -93,10 +107,29 @@ void Segments::take_step(double from, double t, std::span<const double> sample_t
   step_.end = t;
 }
 
+/// The first time in what is left of the step at which a switch turns over.
+std::optional<double> Segments::find_event() {
+  if (parts_.program.switches().empty() || !(step_.end > step_.begin)) return std::nullopt;
+  std::vector<double> times(step_.times_left().begin(), step_.times_left().end());
+  if (!parts_.switching.lets_pass()) return parts_.switching.search(step_.begin, times, *step_.solution);
+  step_.solution->states_at(step_.begin, parts_.states);
+  const auto wait = parts_.switching.known_wait(step_.begin, parts_.states, EventLocation::Of::let_pass);
+  const double edge = wait ? step_.begin + *wait : step_.end;
+  step_.edges_at_begin = edge > step_.begin ? 0 : step_.edges_at_begin + 1;
+  if (step_.edges_at_begin > kMostAtOnce) parts_.switching.throw_endless(step_.begin);
+  // One at the end of the step comes with the next, or with all that ends the segment there.
+  if (!(edge < step_.end - time_resolution(step_.end)))
+    return parts_.switching.search(step_.begin, times, *step_.solution);
+  if (edge > step_.begin) {
+    std::erase_if(times, [&](double time) { return time >= edge; });
+    times.push_back(edge);
+    if (const auto event = parts_.switching.search(step_.begin, times, *step_.solution)) return event;
+  }
+  return edge;
+}
+
 double Segments::look_ahead() {
-  step_.event.reset();
-  if (!parts_.program.switches().empty() && step_.end > step_.begin)
-    step_.event = parts_.switching.search(step_.begin, step_.times_left(), *step_.solution);
+  step_.event = find_event();
   const double end = step_.event.value_or(step_.end);
   step_.reached = look_through(step_.begin, end, step_.times_left(), *step_.solution);
   return step_.reached;
@@ -108,7 +141,9 @@ Segments::Passed Segments::pass(double& t) {
   bool settled = false;
   if (step_.event && !step_.branch_end && *step_.event < step_.end && *step_.event < end_) {
     settled = true;
-    if (turns_without_effect(*step_.event, step_.times_left(), *step_.solution)) {
+    const bool without_effect = turns_without_effect(*step_.event, step_.times_left(), *step_.solution);
+    parts_.switching.let_pass(without_effect);
+    if (without_effect) {
       step_.begin = *step_.event;
       return Passed::piece;
     }
@@ -116,8 +151,39 @@ Segments::Passed Segments::pass(double& t) {
   const auto branch_end = step_.event ? std::nullopt : step_.branch_end;
   const bool ends = step_.event || branch_end || (t >= end_ && t < parts_.options.until);
   if (!ends || t >= parts_.options.until) return Passed::step;
+  if (!step_.event && !branch_end) {
+    step_.solution->states_at(t, parts_.states);
+    if (parts_.switching.lets_pass()) parts_.switching.known_wait(t, parts_.states);  // what is due with it
+    settled = true;
+    parts_.switching.let_pass(stands(t));
+  }
   pass_end(t, branch_end, settled);
   return Passed::segment;
+}
+
+/// dx/dt at t and within the step before, with the discrete states as they are now; nothing where there is
+/// none, or a slide.
+std::vector<double> Segments::rates_behind(double t) {
+  const std::size_t n = parts_.states.size();
+  std::vector<double> states(n), rates(n), all;
+  for (const double part : {0.5, kSoon, 0.0}) {
+    const double time = t - part * (t - step_.begin);
+    step_.solution->states_at(time, states);
+    if (parts_.switching.slides() || !parts_.switching.derivatives(time, states.data(), rates.data()))
+      return {};
+    all.insert(all.end(), rates.begin(), rates.end());
+  }
+  return all;
+}
+
+/// Settles what the time alone turns over at t, the end of the segment, and tells whether the states go on as
+/// they went: none has jumped, and dx/dt, held against the step before, is the same to the bit.
+bool Segments::stands(double t) {
+  const bool looked = !memories_act_ && t - step_.begin > time_resolution(t);
+  const std::vector<double> states = parts_.states;
+  const std::vector<double> before = looked ? rates_behind(t) : std::vector<double>();
+  settle(t, false);
+  return !before.empty() && parts_.states == states && before == rates_behind(t);
 }
 
 /// Settles what there is at t, where a switch turns over, or soon after, where a branch ends.
@@ -157,17 +223,19 @@ double Segments::look_through(double begin, double end, std::span<const double> 
 }
 
 /// Settles what turns over at `at`, and tells whether the solver may go on with its step as if nothing had
-/// been: no state, continuous or discrete, changes, dx/dt is the same at every one of `sample_times`, which
-/// show what the time alone does, and the segment does not end earlier. (A condition that others mask may
-/// turn over at every rounding.)
+/// been: no state jumps, dx/dt is the same to the bit soon after, halfway to the end of the step, and at
+/// every one of `sample_times`, which show what the time alone does, and the segment does not end earlier. (A
+/// condition that others mask may turn over at every rounding; a counter acts on nothing that is integrated.)
 bool Segments::turns_without_effect(double at, std::span<const double> sample_times,
                                     const Interpolant& solution) {
   std::vector<std::vector<double>> states_there, before;
   std::vector<double> after(parts_.states.size());
   bool known = !parts_.switching.slides();
-  for (const double sample_time : sample_times) {
-    solution.states_at(sample_time, states_there.emplace_back(parts_.states.size()));
-    known = known && parts_.switching.derivatives(sample_time, states_there.back().data(),
+  std::vector<double> times(sample_times.begin(), sample_times.end());
+  if (!memories_act_) times.insert(times.begin(), {at + kSoon * (step_.end - at), at + (step_.end - at) / 2});
+  for (const double time : times) {
+    solution.states_at(time, states_there.emplace_back(parts_.states.size()));
+    known = known && parts_.switching.derivatives(time, states_there.back().data(),
                                                   before.emplace_back(parts_.states.size()).data());
   }
   std::vector<double> discrete_states(parts_.workspace.discrete_states().begin(),
@@ -178,15 +246,13 @@ bool Segments::turns_without_effect(double at, std::span<const double> sample_ti
   if (!known || parts_.switching.slides() || parts_.states != states) return false;
   for (const network::Switch& s : parts_.program.switches())
     discrete_states[s.discrete_state] = parts_.workspace.discrete_state(s.discrete_state);
-  if (!std::equal(discrete_states.begin(), discrete_states.end(), parts_.workspace.discrete_states().begin()))
-    return false;
-  for (std::size_t k = 0; k < sample_times.size(); ++k) {
-    if (!parts_.switching.derivatives(sample_times[k], states_there[k].data(), after.data()) ||
-        before[k] != after)
+  if (memories_act_ && !std::ranges::equal(discrete_states, parts_.workspace.discrete_states())) return false;
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    if (!parts_.switching.derivatives(times[k], states_there[k].data(), after.data()) || before[k] != after)
       return false;
   }
   // What it turned over may have brought the next switch forward that follows the time alone.
-  const auto wait = parts_.switching.known_wait(at, parts_.states);
+  const auto wait = parts_.switching.known_wait(at, parts_.states, EventLocation::Of::ends_of_segments);
   if (wait && at + *wait < end_ - time_resolution(end_)) return false;
   if (parts_.overloads) parts_.overloads->restart(at, parts_.states);
   return true;

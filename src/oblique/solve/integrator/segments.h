@@ -20,7 +20,9 @@ namespace oblique::solve {
 /// The smooth segments of a run, and what lies between them: switches that turn over, phases of the timeline,
 /// ends of branches of algebraic loops. Whoever makes the steps gives each of them to `take_step`, looks at
 /// it piece by piece, and starts anew where the end of a piece has settled something. Between `look_ahead`
-/// and `pass` the solution of the piece can be read up to its end. Not installed.
+/// and `pass` the solution of the piece can be read up to its end. A clock whose edge has acted on nothing
+/// that is integrated (it counts, samples, paces a recording) ends no further segment: its edges are then
+/// looked for within the steps, and it does so again from the first one on that acts. Not installed.
 class Segments {
  public:
   /// What a run is made of; `overloads` only where they are watched.
@@ -37,7 +39,7 @@ class Segments {
     std::vector<double>& states;
   };
   /// All of them must outlive this.
-  explicit Segments(const Parts& parts) : parts_(parts) {}
+  explicit Segments(const Parts& parts);
 
   /// Begins the phases that are due at t.
   void follow_phases(double t);
@@ -73,6 +75,9 @@ class Segments {
   double look_through(double begin, double end, std::span<const double> sample_times,
                       const Interpolant& solution);
   bool turns_without_effect(double at, std::span<const double> sample_times, const Interpolant& solution);
+  std::optional<double> find_event();
+  bool stands(double t);
+  std::vector<double> rates_behind(double t);
 
   /// The step that was taken, from the beginning of its next piece, and what ends that.
   struct Step {
@@ -81,10 +86,12 @@ class Segments {
     const Interpolant* solution = nullptr;
     std::optional<double> branch_end, event;  ///< [s]
     double reached = 0;                       ///< [s] by the samples
+    int edges_at_begin = 0;                   ///< of clocks, one after the other
     std::span<const double> times_left() const;
   };
 
   Parts parts_;
+  bool memories_act_;
   double end_ = 0, length_ = 0;  ///< [s]
   Step step_;
 };

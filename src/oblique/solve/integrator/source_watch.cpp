@@ -24,6 +24,20 @@ constexpr double kNothing = 1e-9;
 /// bounds cannot know that.
 constexpr double kStaysAtZero = 1e-4;
 
+/// An event function of states that is as near to zero as this [machine unit] at both ends of a part, and
+/// whose bounds are of its size, may rest there (a slide, a contact): bounds do not end that.
+constexpr double kRestsAtZero = 1e-6;
+
+/// Its range over a part in which it passes zero, beside what its ends show, where it does so once.
+constexpr double kPlainPassage = 2;
+
+/// Where bounds of event functions of states cannot tell, so many parts of a step are enough (a difference of
+/// two functions of one state, whose bounds do not know that): the search for events sees the rest.
+constexpr int kMostForStates = 256;
+
+/// Parts of a step that are shorter than this power of a half are not looked at for them.
+constexpr int kDeepestForStates = 24;
+
 constexpr int kDeepest = 40;
 constexpr int kDeepestUnknown = 6;  ///< of a source by states that may be any number, as a quotient of zeros
 constexpr std::size_t kMostSamples = 1'000'000;  ///< in a step
@@ -80,6 +94,17 @@ SourceWatch::Values SourceWatch::values_at(double t) {
   return values;
 }
 
+/// Whether an event function with these values at the ends of a part, and this range between, which holds
+/// zero, may pass it in between unseen.
+bool SourceWatch::may_turn(const network::Source& source, double a, double b, const network::Interval& range,
+                           int depth) {
+  if (!source.by_states) return !(a == 0 && b == 0 && range.width() <= kStaysAtZero);
+  if (std::max(std::abs(a), std::abs(b)) <= kRestsAtZero && range.width() <= kStaysAtZero) return false;
+  const bool passes = (a < 0 && b > 0) || (a > 0 && b < 0);
+  if (passes && range.width() <= kPlainPassage * std::abs(b - a)) return false;
+  return depth < kDeepestForStates && parts_for_states_++ < kMostForStates;
+}
+
 /// Whether every source goes from `from` to `to` as its values there tell.
 bool SourceWatch::is_plain(double from, const Values& at_from, double to, const Values& at_to, int depth) {
   bound(from, at_from, to, at_to);
@@ -95,8 +120,7 @@ bool SourceWatch::is_plain(double from, const Values& at_from, double to, const 
       value.high = std::min(value.high, a + derivative.high * (to - from));
     }
     if (watched_[k].switch_index) {
-      const bool stays_at_zero = a == 0 && b == 0 && value.width() <= kStaysAtZero;
-      if (value.contains(0) && !stays_at_zero) return false;
+      if (value.contains(0) && may_turn(watched_[k], a, b, value, depth)) return false;
       continue;
     }
     const double shown =
@@ -136,6 +160,7 @@ const std::vector<double>& SourceWatch::sample_times(double from, double to, con
     return times_;
   }
   solution_ = &solution;
+  parts_for_states_ = 0;
   const Values at_from = values_at(from);
   part(from, at_from, to, values_at(to), 0);
   return times_;

@@ -10,12 +10,14 @@
 namespace oblique::solve {
 
 /// Sees to it that no step hides what the time alone does, or a clock (an integrator of a constant), or what
-/// a function makes of the states that is next to nothing here and a peak there.
+/// a function makes of the states that is next to nothing here and a peak there, or leads an event function
+/// over zero and back.
 ///
 /// A pulse may lie between two times at which a solver looks, and a fast sine may look slow. Whether it does
 /// is not guessed: interval arithmetic bounds every source over the whole of a step, and those of the time
 /// their derivatives. A step is parted until over each part every source is monotone, or within what its ends
-/// show; the event function of a switch that follows the time alone, until it is monotone or has no zero. The
+/// show; the event function of a switch that follows the time alone, until it is monotone or has no zero; one
+/// that bends and reads states, until it has no zero or passes it once, as far as bounds can tell. The
 /// states are bounded by the cubic through their values and rates at the ends of a part, and twice its bend.
 class SourceWatch {
  public:
@@ -39,6 +41,7 @@ class SourceWatch {
     std::vector<double> sources, states, rates;
   };
   void part(double from, const Values& at_from, double to, const Values& at_to, int depth);
+  bool may_turn(const network::Source& source, double a, double b, const network::Interval& range, int depth);
   bool is_plain(double from, const Values& at_from, double to, const Values& at_to, int depth);
   Values values_at(double t);
   void bound(double from, const Values& at_from, double to, const Values& at_to);
@@ -54,6 +57,7 @@ class SourceWatch {
   std::vector<network::Interval> ranges_;  ///< of the source states
   std::vector<double> largest_;            ///< magnitude of each source so far
   std::vector<double> times_;
+  int parts_for_states_ = 0;  ///< of this step, in which an event function of states had to be looked at
 };
 
 }  // namespace oblique::solve

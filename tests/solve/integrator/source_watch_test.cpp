@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+// Event functions of states that bend between the steps of a solver, against closed forms.
+#include <cmath>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "../../support/runs.h"
+
+namespace oblique::solve {
+namespace {
+
+using testing::Compiled;
+using testing::row_values;
+using testing::run_of;
+
+// A dip of a thousandth of a second and a twentieth of what it stands on, under a state that is nearly at
+// rest: a step of the solver leads far over it, and to a quarter of its size the source is smooth.
+TEST(BentComparisons, AShallowDipOfTheTimeUnderAStateIsFound) {
+  const Compiled made(R"toml(
+u = { type = "time-function", formula = "10 - 0.5*exp(-((time - 53.3)/1e-3)^2)" }
+ten = { type = "constant", value = 9.8 }
+x = { type = "transfer-lag", in = "ten", time_constant = 3, initial = 9.7 }
+c = { type = "comparator", in = ["x", "-u"] }
+n = { type = "counter", in = "c" }
+)toml");
+  for (const auto method : {diagram::IntegrationMethod::adams, diagram::IntegrationMethod::bdf,
+                            diagram::IntegrationMethod::rodas}) {
+    const auto result = run_of(made, {.until = 100, .method = method});
+    EXPECT_EQ(row_values(result, "n.out").back(), 1);
+    // Up and down, where exp(−s²) = 0.4: s = ±√ln 2.5 = ±0.957.
+    EXPECT_EQ(result.event_count, 2 + 1);  // and the count
+  }
+}
+
+// cos t to the 256th power is above a half within 0.0736 of each n π, 319 times in 1000: the first, at 0,
+// from the start on, and all others by a step up and one down.
+TEST(BentComparisons, APowerBySquarersOfAnOscillationIsAboveItsLevelOnceEachHalfTurn) {
+  const Compiled made(R"toml(
+x = { type = "integrator", in = "v", initial = 1 }
+v = { type = "integrator", in = "-x" }
+p2 = { type = "squarer", in = "x" }
+p4 = { type = "squarer", in = "p2" }
+p8 = { type = "squarer", in = "p4" }
+p16 = { type = "squarer", in = "p8" }
+p32 = { type = "squarer", in = "p16" }
+p64 = { type = "squarer", in = "p32" }
+p128 = { type = "squarer", in = "p64" }
+p256 = { type = "squarer", in = "p128" }
+half = { type = "constant", value = 0.5 }
+c = { type = "comparator", in = ["p256", "-half"] }
+)toml");
+  const auto result = run_of(made, {.until = 1000});
+  EXPECT_EQ(result.event_count, 1 + 2 * 318);
+}
+
+// What bounds cannot tell does not cost more than the steps themselves: x − x y/y is zero to rounding.
+TEST(BentComparisons, ADifferenceOfTwoFormsOfOneSignalEndsTheSearch) {
+  const Compiled made(R"toml(
+x = { type = "integrator", in = "v", initial = 1 }
+v = { type = "integrator", in = "-x" }
+two = { type = "constant", value = 2 }
+y = { type = "summer", in = ["v", "two"] }
+p = { type = "multiplier", in = ["x", "y"] }
+q = { type = "divider", numerator = "p", denominator = "y" }
+level = { type = "constant", value = 1e-3 }
+c = { type = "comparator", in = ["x", "-q", "-level"] }
+)toml");
+  EXPECT_EQ(run_of(made, {.until = 100}).event_count, 0);
+}
+
+}  // namespace
+}  // namespace oblique::solve
