@@ -48,15 +48,36 @@ TEST(Branch, EndsWithAJumpThatIsAnEvent) {
   }
 }
 
-// A relay and two loops of amplifiers whose branches end at nearly every turn: at one of them the search for
-// the next event begins where the loop has no value on its branch any more, and must look without it. (It
-// read what the evaluation had left that had failed.) What turns over is the same to ten times the tolerance;
-// the times agree to some thousand tolerances, for the branches end steeply.
+// A relay that moves when its delay is over, whatever the coil did since, and two loops of amplifiers whose
+// branches end at nearly every turn: at one of them the search for the next event begins where the loop has
+// no value on its branch any more, and must look without it. (It read what the evaluation had left that had
+// failed.) What turns over is the same to ten times the tolerance; the times agree to some thousand
+// tolerances, for the branches end steeply.
 TEST(Branch, MayHaveEndedWhereASearchBegins) {
+  const diagram::BlockLibrary library = testing::shipped_blocks_and("late-relay", R"toml(
+[inputs]
+coil = {}
+make = {}
+[outputs]
+out = {}
+[memories]
+pulled = 0
+since = 0
+contact = 0
+[equations]
+out = "if(contact == 1, make, 0)"
+[[events]]
+when = "coil > 1.1875"
+set = { pulled = 1, since = "time" }
+[[events]]
+when = "-0.078125 > coil"
+set = { pulled = 0, since = "time" }
+[[events]]
+when = "pulled != contact and time - since >= 0.46875"
+set = { contact = "pulled" }
+)toml");
   constexpr const char* kBlocks =
-      "b0 = { type = \"relay\", coil = \"-1.7*b4\", make = \"0.3*b3\", pull_in = 1.1875, drop_out = "
-      "-0.078125,"
-      " delay = 0.46875 }\n"
+      "b0 = { type = \"late-relay\", coil = \"-1.7*b4\", make = \"0.3*b3\" }\n"
       "b1 = { type = \"integrator\", in = \"-b0\", rate = 3.296875 }\n"
       "b2 = { type = \"arc-tangent\", in = \"b3\" }\n"
       "b3 = { type = \"servo-amplifier\", in = [\"2*b6\", \"b3\"], gain = 5100, bandwidth = inf,"
@@ -69,7 +90,7 @@ TEST(Branch, MayHaveEndedWhereASearchBegins) {
       "b7 = { type = \"counter\", clock = \"-b2\", step = 0.28125 }\n"
       "b8 = { type = \"monostable\", trigger = \"b2\", length = 0.4819140625, high = 0.0028906250000000355 "
       "}\n";
-  const Compiled made(kBlocks);
+  const Compiled made(kBlocks, "", library);
   const auto events_at = [&](double tolerance) {
     RunOptions options;
     options.until = 0.8;

@@ -236,17 +236,34 @@ f = { type = "function-generator", in = "-x", points = [[-1, 0.5], [0, 0], [0, 1
   }
 }
 
-// A relay that pulls in at an amplitude is never above it; where errors let it be, what is made of that comes
+// A delayed trigger at an amplitude is never above it; where errors let it be, what is made of that comes
 // later only, by its delay, and is told of all the same. (What else is there cuts the steps.)
 TEST(FaintTurn, ThatOnlyAMemoryKeepsIsToldOf) {
+  const diagram::BlockLibrary library = testing::shipped_blocks_and("delayed-trigger", R"(
+[inputs]
+in = {}
+[outputs]
+out = {}
+[memories]
+since = 1e9
+fired = 0
+[equations]
+out = "fired"
+[[events]]
+when = "in > 1"
+set = { since = "time" }
+[[events]]
+when = "time - since >= 0.06"
+set = { fired = 1 }
+)");
   const testing::Compiled made(R"(
 x = { type = "crank-generator", rate = -2.5 }
 y = { type = "crank-generator", rate = 1 }
 z = { type = "transfer-lag", in = "x.sin", time_constant = 0.09375, gain = 1.5 }
 c = { type = "comparator", in = ["y.sin", "-0.5*y.cos", "-2*z"], hysteresis = 0.5 }
-r = { type = "relay", coil = "-x.cos", make = "one", pull_in = 1, drop_out = 0.1, delay = 0.06 }
-one = { type = "constant" }
-)");
+r = { type = "delayed-trigger", in = "-x.cos" }
+)",
+                               "", library);
   int wrong = 0;
   for (double tolerance = 1e-9; tolerance < 2e-6; tolerance *= 2) {
     const oblique::solve::Run run = testing::run_of(made, {.until = 3.5, .tolerance = tolerance});
