@@ -214,9 +214,9 @@ void visit_below(const SwitchStructure& structure, NodeId root, const Visit& vis
 
 }  // namespace
 
-std::vector<std::uint32_t> SwitchStructure::positions_below(std::size_t s) const {
+std::vector<std::uint32_t> SwitchStructure::positions_in(NodeId node) const {
   std::vector<std::uint32_t> found;
-  visit_below(*this, event_functions[s], [&](NodeId id) {
+  visit_below(*this, node, [&](NodeId id) {
     if (switch_at[id] != kNone) found.push_back(switch_at[id]);
   });
   std::sort(found.begin(), found.end());

@@ -26,7 +26,9 @@ struct SwitchStructure {
     return (coupled[unit_a % coupled.size()] >> (unit_b % coupled.size()) & 1U) != 0;
   }
   /// The switches on whose positions the event function of switch s depends, ascending.
-  std::vector<std::uint32_t> positions_below(std::size_t s) const;
+  std::vector<std::uint32_t> positions_below(std::size_t s) const { return positions_in(event_functions[s]); }
+  /// The switches on whose positions a node depends, ascending.
+  std::vector<std::uint32_t> positions_in(NodeId node) const;
   /// Whether the event function of switch s depends on the position of switch `other`.
   bool depends(std::size_t s, std::size_t other) const;
   /// Of each switch: whether its event function depends on the position of one of `these` (one flag for each

@@ -35,6 +35,7 @@ EventActions::EventActions(const network::Program& program, network::Workspace& 
       held_(program.events().size(), false),
       came_(program.events().size(), false),
       paces_(program.events().size()),
+      uncertain_(program, workspace, slide, log, file),
       signals_(program.n_signals()) {}
 
 /// Whether events come ever faster at t that know what they go over into: others may follow them.
@@ -132,17 +133,24 @@ std::optional<EventActions::Effect> EventActions::serve(double t, std::vector<do
   const auto here = program_.signals(t, x.data(), signals_.data(), workspace_);
   if (!here) throw loop_error(program_, workspace_.trouble(), t, file_);
   std::vector<Change> changes;
+  std::vector<std::size_t> events;
   for (const Come& come : served) {
     const network::Event& event = program_.events()[come.event];
     came_[come.event] = sets_states(event);
     if (is_zeno(come, t)) {
       came_[come.event] = false;
       log_.record(t, program_.events()[*event.piling_up].block + ": its events pile up");
-      add_changes(*event.piling_up, *here, t, changes);
+      events.push_back(*event.piling_up);
     } else {
       log_.record(t, event.block);
-      add_changes(come.event, *here, t, changes);
+      events.push_back(come.event);
     }
+    add_changes(events.back(), *here, t, changes);
+  }
+  if (!starting) {
+    std::vector<double> values;
+    for (const Change& change : changes) values.push_back(change.value);
+    uncertain_.look(events, values, t, x);
   }
   Effect effect;
   for (const Change& change : changes) {

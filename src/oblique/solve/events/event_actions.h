@@ -14,6 +14,7 @@
 #include <oblique/solve/events/event_pace.h>
 #include <oblique/solve/events/sliding_mode.h>
 #include <oblique/solve/events/switch_settling.h>
+#include <oblique/solve/events/uncertain_readings.h>
 
 namespace oblique::solve {
 
@@ -29,7 +30,12 @@ class EventActions {
   void end_at(double t) { end_ = t; }
 
   /// A new instant: no event has come at it yet.
-  void begin_instant() { came_.assign(came_.size(), false); }
+  void begin_instant() {
+    came_.assign(came_.size(), false);
+    uncertain_.begin_instant();
+  }
+  /// Which switches have turned over at this instant: see UncertainReadings.
+  void note_turns(std::span<const double> before) { uncertain_.note_turns(before); }
 
   /// What events have done at one instant.
   struct Effect {
@@ -74,6 +80,7 @@ class EventActions {
   std::vector<bool> held_;  ///< see `conditions`
   std::vector<bool> came_;  ///< of each event that sets states: whether it came at this instant
   std::vector<EventPace> paces_;
+  UncertainReadings uncertain_;
   std::vector<double> signals_;
 };
 

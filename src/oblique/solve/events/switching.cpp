@@ -104,7 +104,10 @@ void Switching::settle(double t, std::vector<double>& x) {
   actions_.begin_instant();
   for (int round = 0;; ++round) {
     settling_.settle(t, x);
-    if (round == 0) record_turns(before, t);
+    if (round == 0) {
+      record_turns(before, t);
+      actions_.note_turns(before);
+    }
     if (!serve_events(t, x, false)) break;
     if (round > kMostRounds) throw log_.endless("events set each other off", t);
   }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include <Eigen/Dense>
+
 namespace oblique::solve {
 namespace {
 
@@ -18,6 +20,10 @@ constexpr double kGrown = 2;
 /// A Jacobian is looked at after so many steps, or where the step has become longer by so much.
 constexpr int kStepsBetween = 8;
 constexpr double kLonger = 1.5;
+
+/// More states than these are not asked by differences.
+constexpr std::size_t kMostByDifferences = 100;
+constexpr double kDifference = 1e-7;  ///< [of a state, or machine unit]
 
 }  // namespace
 
@@ -72,6 +78,32 @@ void GrowthWatch::advance(double t, std::span<const double> x) {
   std::copy(x.begin(), x.end(), before_.begin());
 }
 
+/// Whether a mode of these states grows about as fast as the Jacobian says. That of a slide does not: it
+/// takes the shares of the two sides as they are, and it is their change that holds the states on the
+/// switching surface.
+bool GrowthWatch::grows_by_differences(double t, std::span<const double> x,
+                                       const std::vector<std::size_t>& states, double rate) {
+  if (states.size() > kMostByDifferences) return true;
+  const auto n = static_cast<Eigen::Index>(states.size());
+  Eigen::MatrixXd matrix(n, n);
+  std::vector<double> moved(x.begin(), x.end()), above(x.size()), below(x.size());
+  for (Eigen::Index column = 0; column < n; ++column) {
+    const std::size_t i = states[static_cast<std::size_t>(column)];
+    const double off = kDifference * std::max(1.0, std::abs(x[i]));
+    moved[i] = x[i] + off;
+    if (!system_.derivatives(t, moved.data(), above.data())) return true;
+    moved[i] = x[i] - off;
+    if (!system_.derivatives(t, moved.data(), below.data())) return true;
+    moved[i] = x[i];
+    for (Eigen::Index row = 0; row < n; ++row) {
+      const std::size_t k = states[static_cast<std::size_t>(row)];
+      matrix(row, column) = (above[k] - below[k]) / (2 * off);
+    }
+  }
+  if (!matrix.allFinite()) return true;
+  return matrix.eigenvalues().real().maxCoeff() >= rate / 2;
+}
+
 void GrowthWatch::judge(double t, std::span<const double> x, double step) {
   if (!system_.jacobian(t, x.data(), jacobian_.data())) return;
   ++looked_;
@@ -112,7 +144,7 @@ void GrowthWatch::judge(double t, std::span<const double> x, double step) {
     const bool held = !closed.eigenvalues.empty() &&
                       std::all_of(closed.eigenvalues.begin(), closed.eigenvalues.end(),
                                   [&](const std::complex<double>& mode) { return mode.real() < rate / 2; });
-    if (held) {
+    if (held || (!system_.is_jacobian_exact() && !grows_by_differences(t, x, group.states, rate))) {
       held_since_[first] = looked_;
       for (const std::size_t i : group.states) growth_[i] = 0;
       continue;
