@@ -267,6 +267,66 @@ TEST(DiagramEdit, EditsWhatIsWrong) {
             by_hand("\"nobody\", ", "", wrong));
 }
 
+// However its keys are written, all that a hand does to a diagram can be done to it.
+TEST(DiagramEdit, EditsKeysWithDotsAndInQuotes) {
+  const std::string text = R"toml(format = "oblique-diagram/1"
+run.until = 4
+
+[blocks]
+a.type  = "constant"   # of x
+a.value = 0.5
+x.type    = "integrator"
+x.in      = ["4*a", "-4*x"]
+"p" = { type = "multiplier", "in" = ["a", 'x'] }
+
+[outputs]
+y.signal = "x"
+y.unit = "m"
+)toml";
+  const std::string after = edited(
+      [](DiagramEdit& edit) {
+        edit.set("x", "initial", "0.1");
+        edit.weigh("x", "in", 0, 2);
+        edit.disconnect("x", "in", 1);
+        edit.rename("x", "lag");
+        edit.rename("p", "q");
+        edit.connect("a", "q", "y");
+        edit.set("a", "label", "A");
+        edit.set_head("run.until", "8");
+        edit.show("z", "q");
+      },
+      text);
+  EXPECT_EQ(after, R"toml(format = "oblique-diagram/1"
+run.until = 8
+
+[blocks]
+a.type  = "constant"   # of x
+a.value = 0.5
+a.label = "A"
+lag.type  = "integrator"
+lag.in    = ["2*a"]
+lag.initial = 0.1
+q = { type = "multiplier", "in" = ["a", "a"] }
+
+[outputs]
+y.signal = "lag"
+y.unit = "m"
+z = "q"
+)toml");
+  EXPECT_EQ(edited([](DiagramEdit& edit) { edit.remove("lag"); }, after), R"toml(format = "oblique-diagram/1"
+run.until = 8
+
+[blocks]
+a.type  = "constant"   # of x
+a.value = 0.5
+a.label = "A"
+q = { type = "multiplier", "in" = ["a", "a"] }
+
+[outputs]
+z = "q"
+)toml");
+}
+
 TEST(DiagramEdit, SaysWhatItCannot) {
   EXPECT_EQ(refused([](DiagramEdit& edit) { edit.add("integrater"); }),
             "x.toml: there is no block type 'integrater'\n  remedy: did you mean 'integrator'?");

@@ -62,6 +62,17 @@ TEST(SketchEdit, FillsAnEmptySketchAndMakesOneWhereThereIsNone) {
             "[motion]\nuntil = 2\n\n[sketch]\nC = [1, 2]\n");
 }
 
+TEST(SketchEdit, ChangesKeysWithDots) {
+  const std::string head = "format = \"oblique-mechanism/1\"\n";
+  const std::string text = head + "sketch.C = [1, 2]\n" + std::string(kHead).substr(head.size());
+  const mechanism::Mechanism mechanism = mechanism::parse_mechanism(text, "m.toml");
+  const std::string result =
+      with_sketch(text, mechanism,
+                  {{mechanism.find_point("F").value(), {7, 8}}, {mechanism.find_point("C").value(), {3, 4}}},
+                  NewPoints::add);
+  EXPECT_TRUE(result.starts_with(head + "sketch.C = [3, 4]\nsketch.F = [7, 8]\n[frame]\n")) << result;
+}
+
 TEST(SketchEdit, EndsLinesAsTheFileDoes) {
   EXPECT_EQ(edited("[sketch]\r\nC = [3, 2]\r\n", {{"F", {1, 2}}}, NewPoints::add),
             "[sketch]\r\nC = [3, 2]\r\nF = [1, 2]\r\n");

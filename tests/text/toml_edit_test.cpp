@@ -90,6 +90,73 @@ TEST(TomlEdit, RenamesInItsColumns) {
   EXPECT_EQ(edited(Kind::rename, {"blocks", "phi", "in"}, "x"), by_hand("in = [\"one\"]", "x = [\"one\"]"));
 }
 
+// Of a table that is written by keys with dots.
+const std::string dotted = R"toml(title = "t"
+[blocks]
+x.type  = "integrator"   # that one
+x.in    = ["4*a", "-4*x"]
+a.type = "constant"
+"x y"."a.b" = { p.q = 1, p.r = 2, s = 3 }
+)toml";
+
+TEST(TomlEdit, ChangesKeysWithDots) {
+  EXPECT_EQ(edited(Kind::set, {"blocks", "x", "in", 1UL}, "\"-x\"", dotted),
+            by_hand("\"-4*x\"", "\"-x\"", dotted));
+  EXPECT_EQ(edited(Kind::set, {"blocks", "x", "initial"}, "0.5", dotted),
+            by_hand("\"-4*x\"]\n", "\"-4*x\"]\nx.initial = 0.5\n", dotted));
+  EXPECT_EQ(edited(Kind::set, {"blocks", "a", "value"}, "2", dotted),
+            by_hand("\"constant\"\n", "\"constant\"\na.value = 2\n", dotted));
+  EXPECT_EQ(edited(Kind::set, {"blocks", "x y", "n"}, "2", dotted),
+            by_hand("s = 3 }\n", "s = 3 }\n\"x y\".n = 2\n", dotted));
+  EXPECT_EQ(edited(Kind::set, {"blocks", "x y", "a.b", "p", "t"}, "4", dotted),
+            by_hand("p.r = 2", "p.r = 2, p.t = 4", dotted));
+  EXPECT_EQ(edited(Kind::set, {"blocks", "new"}, "{ type = \"y\" }", dotted),
+            dotted + "new = { type = \"y\" }\n");
+}
+
+TEST(TomlEdit, RemovesKeysWithDots) {
+  EXPECT_EQ(edited(Kind::remove, {"blocks", "x", "in"}, "", dotted),
+            by_hand("x.in    = [\"4*a\", \"-4*x\"]\n", "", dotted));
+  EXPECT_EQ(edited(Kind::remove, {"blocks", "x"}, "", dotted),
+            by_hand("x.type  = \"integrator\"   # that one\nx.in    = [\"4*a\", \"-4*x\"]\n", "", dotted));
+  EXPECT_EQ(edited(Kind::remove, {"blocks", "x y", "a.b", "p"}, "", dotted),
+            by_hand("p.q = 1, p.r = 2, ", "", dotted));
+  EXPECT_EQ(edited(Kind::remove, {"blocks", "x y", "a.b", "p", "r"}, "", dotted),
+            by_hand(", p.r = 2", "", dotted));
+  // a table with tables below it, and comments between
+  EXPECT_EQ(edited(Kind::remove, {"b", "d"}, "", "[b.d]\nx = 1\n# of d\ny = 2\n\n[b.d.e]\nz = 3\n\n[b.f]\n"),
+            "[b.f]\n");
+}
+
+TEST(TomlEdit, RenamesKeysWithDots) {
+  EXPECT_EQ(edited(Kind::rename, {"blocks", "x"}, "yy", dotted),
+            by_hand("x.in    =", "yy.in   =", by_hand("x.type  =", "yy.type =", dotted)));
+  EXPECT_EQ(edited(Kind::rename, {"blocks", "x y"}, "z", dotted), by_hand("\"x y\".", "z.", dotted));
+  EXPECT_EQ(edited(Kind::rename, {"blocks", "x y", "a.b", "p"}, "w", dotted),
+            by_hand("p.q = 1, p.r", "w.q = 1, w.r", dotted));
+  EXPECT_EQ(edited(Kind::rename, {"a"}, "c d", "[ a . b ]\nx = 1\n[a.e]\n"),
+            "[ \"c d\" . b ]\nx = 1\n[\"c d\".e]\n");
+}
+
+TEST(TomlEdit, ChangesQuotedKeys) {
+  const std::string quoted =
+      "[blocks]\n\"x\" = { 'type' = \"a\" }\n'y'  = { type = \"b\" }\n[\"blocks\".\"z\"]\ntype = 1\n";
+  EXPECT_EQ(edited(Kind::set, {"blocks", "x", "type"}, "\"c\"", quoted), by_hand("\"a\"", "\"c\"", quoted));
+  EXPECT_EQ(edited(Kind::rename, {"blocks", "y"}, "w", quoted), by_hand("'y'", "w", quoted));
+  EXPECT_EQ(edited(Kind::rename, {"blocks", "z"}, "w", quoted), by_hand("\"z\"", "w", quoted));
+  EXPECT_EQ(edited(Kind::remove, {"blocks", "x"}, "", quoted),
+            by_hand("\"x\" = { 'type' = \"a\" }\n", "", quoted));
+  EXPECT_EQ(edited(Kind::set, {"blocks", "z", "gain"}, "2", quoted), quoted + "gain = 2\n");
+}
+
+TEST(TomlEdit, ChangesTablesOfArrays) {
+  const std::string steps = "[[s.t]]\nx = 1\n[s.t.u]\ny = 2\n[[s.t]]\nx = 3\n";
+  EXPECT_EQ(edited(Kind::set, {"s", "t", 1UL, "x"}, "4", steps), by_hand("x = 3", "x = 4", steps));
+  EXPECT_EQ(edited(Kind::set, {"s", "t", 0UL, "u", "z"}, "4", steps),
+            by_hand("y = 2\n", "y = 2\nz = 4\n", steps));
+  EXPECT_EQ(edited(Kind::remove, {"s", "t", 0UL}, "", steps), "[[s.t]]\nx = 3\n");
+}
+
 TEST(TomlEdit, ChangesOneAfterTheOther) {
   EXPECT_EQ(edit_toml("[b]\nx = [1, 2]\n", "x",
                       {{Kind::remove, {"b", "x", 0UL}, {}},
@@ -112,6 +179,16 @@ TEST(TomlEdit, AddsManyInTheirOrder) {
   EXPECT_EQ(edit_toml("[a]\nx = 0\n\n[b]\n", "x", changes), expected + "\n[b]\n");
   EXPECT_EQ(edit_toml("[a]\nx = 0\n", "x", {{Kind::set, {"a", "y"}, "1"}, {Kind::set, {"a", "z"}, "2"}}),
             "[a]\nx = 0\ny = 1\nz = 2\n");
+  // at places of their own, whatever their order; one within another that is set before it
+  EXPECT_EQ(edit_toml("[a]\nx = [0, 1]\ny = { z = 1 }\n", "x",
+                      {{Kind::set, {"a", "y", "z"}, "2"},
+                       {Kind::set, {"a", "x", 1UL}, "3"},
+                       {Kind::set, {"a", "x", 0UL}, "4"},
+                       {Kind::set, {"a", "y"}, "{ z = 5, w = 6 }"},
+                       {Kind::set, {"a", "y", "w"}, "7"},
+                       {Kind::set, {"b", "c"}, "1"},
+                       {Kind::set, {"b", "d"}, "2"}}),
+            "[a]\nx = [4, 3]\ny = { z = 5, w = 7 }\n\n[b]\nc = 1\nd = 2\n");
 }
 
 TEST(TomlEdit, KeepsOtherBreaksOfLines) {

@@ -2,14 +2,15 @@
 #include <oblique/text/toml_edit.h>
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
-#include <set>
 #include <span>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include <oblique/text/document.h>
+#include <oblique/text/toml_layout.h>
 #include <oblique/text/toml_text.h>
 
 namespace oblique::text {
@@ -23,6 +24,7 @@ struct Splice {
   std::size_t begin = 0, end = 0;
   std::string text;
 };
+using Splices = std::vector<Splice>;
 
 bool is_blank(char c) {
   return c == ' ' || c == '\t';
@@ -69,145 +71,66 @@ Value* stepped(Value& from, const std::variant<std::string, std::size_t>& step) 
   return from.kind == Value::Kind::array && index < from.elements.size() ? &from.elements[index] : nullptr;
 }
 
-/// A text with the entries that it was read to have.
+/// A text with what is written in it, and where.
 class TomlSource {
  public:
-  TomlSource(std::string_view text, const std::string& file)
-      : text_(text), root_(parse_document(text, file).root) {
+  explicit TomlSource(std::string_view text) : text_(text), items_(toml_layout(text)) {
     if (text_.starts_with("\xEF\xBB\xBF")) first_ = 3;
-    lines_.push_back(first_);
-    for (std::size_t at = first_; at < text_.size(); ++at) {
-      if (text_[at] == '\n') lines_.push_back(at + 1);
-    }
   }
 
-  Value& root() { return root_; }
-
-  bool has(const TomlPath& path) {
-    Value* at = &root_;
-    for (const auto& step : path) {
-      at = stepped(*at, step);
-      if (at == nullptr) return false;
-    }
-    return true;
-  }
-  /// Whether it is a table that ends with a line "key = value" and its break.
-  bool has_lines(const TomlPath::value_type& table) {
-    const Value* const found = stepped(root_, table);
-    return found != nullptr && found->kind == Value::Kind::table && !found->entries.empty() &&
-           !is_inline(*found) && is_line(found->entries.back()) && text_.ends_with('\n');
+  /// What does a change; nothing, where it is not found as it should look.
+  Splices splices_of(const TomlChange& change) const {
+    if (change.path.empty()) throw NoPlace{};
+    if (change.kind == TomlChange::Kind::remove) return removal(change.path);
+    if (change.kind == TomlChange::Kind::rename) return renaming(change);
+    if (const TomlItem* const item = item_at(items_, change.path))
+      return {{item->value, item->end, change.text}};
+    if (is_written(items_, change.path)) throw NoPlace{};  // a table that is not written at one place
+    return {insertion(change)};
   }
 
-  Splice splice_of(const TomlChange& change) {
-    Value* parent = &root_;
-    for (std::size_t k = 0; k + 1 < change.path.size(); ++k) {
-      Value* const next = stepped(*parent, change.path[k]);
-      if (next == nullptr) return with_new_table(change);
-      parent = next;
-    }
-    Value* const value = stepped(*parent, change.path.back());
-    if (value == nullptr) {
-      if (change.kind != TomlChange::Kind::set) throw NoPlace{};
-      return insertion(*parent, change);
-    }
-    if (change.kind == TomlChange::Kind::set) {
-      const std::size_t begin = begin_of(*value);
-      return {begin, end_of_value(begin), change.text};
-    }
-    return change.kind == TomlChange::Kind::remove ? removal(*parent, change) : renaming(*parent, change);
+  /// Whether it sets a value that there is, or adds a line to a table that there is: then all other places
+  /// stay.
+  bool is_plain(const TomlChange& change) const {
+    if (change.kind != TomlChange::Kind::set || change.path.empty()) return false;
+    if (item_at(items_, change.path) != nullptr) return true;
+    return text_.ends_with('\n') && last_of({change.path.begin(), change.path.end() - 1}) != nullptr;
   }
 
  private:
-  std::size_t offset(SourcePosition position) const {
-    if (position.line < 1 || static_cast<std::size_t>(position.line) > lines_.size()) throw NoPlace{};
-    std::size_t at = lines_[static_cast<std::size_t>(position.line) - 1];
-    for (int column = 1; column < position.column; ++column) {
-      if (at >= text_.size()) throw NoPlace{};
-      ++at;
-      while (at < text_.size() && (static_cast<unsigned char>(text_[at]) & 0xC0U) == 0x80U) ++at;
+  using Items = std::vector<TomlItem>;
+
+  /// The line, entry or element of a path.
+  static const TomlItem* item_at(const Items& items, const TomlPath& path) {
+    for (const TomlItem& item : items) {
+      if (item.kind == TomlItem::Kind::header || !leads_through(path, item.path)) continue;
+      if (item.path.size() == path.size()) return &item;
+      if (const TomlItem* const inner = item_at(item.inner, path)) return inner;
     }
-    return at;
+    return nullptr;
   }
-  std::size_t begin_of(const Value& value) const { return offset(value.position); }
+  /// Whether anything stands at a path, or below it.
+  static bool is_written(const Items& items, const TomlPath& path) {
+    return std::any_of(items.begin(), items.end(), [&](const TomlItem& item) {
+      return leads_through(item.path, path) ||
+             (leads_through(path, item.path) && is_written(item.inner, path));
+    });
+  }
 
   char at(std::size_t place) const { return place < text_.size() ? text_[place] : '\0'; }
-
   std::size_t line_begin(std::size_t place) const {
-    const auto next = std::upper_bound(lines_.begin(), lines_.end(), place);
-    return *(next - 1);
+    const std::size_t before = place == 0 ? std::string_view::npos : text_.rfind('\n', place - 1);
+    return before == std::string_view::npos ? first_ : before + 1;
   }
   /// One past the line's end, its break included.
   std::size_t line_end(std::size_t place) const {
-    const auto next = std::upper_bound(lines_.begin(), lines_.end(), place);
-    return next == lines_.end() ? text_.size() : *next;
+    const std::size_t end = text_.find('\n', place);
+    return end == std::string_view::npos ? text_.size() : end + 1;
   }
   /// The break of lines that the text has.
   std::string line_break() const { return text_.find("\r\n") != std::string_view::npos ? "\r\n" : "\n"; }
 
-  std::size_t end_of_value(std::size_t begin) const {
-    const char first = at(begin);
-    if (first == '"' || first == '\'') return end_of_string(text_, begin);
-    if (first != '[' && first != '{') {
-      std::size_t end = text_.find_first_of(",]}#\r\n", begin);
-      end = std::min(end, text_.size());
-      while (end > begin && is_blank(text_[end - 1])) --end;
-      if (end == begin) throw NoPlace{};
-      return end;
-    }
-    int depth = 0;
-    for (std::size_t place = begin; place < text_.size();) {
-      const char c = text_[place];
-      if (c == '"' || c == '\'') {
-        place = end_of_string(text_, place);
-        continue;
-      }
-      if (c == '#') {
-        place = std::min(text_.find('\n', place), text_.size());
-        continue;
-      }
-      if (c == '[' || c == '{') ++depth;
-      if ((c == ']' || c == '}') && --depth == 0) return place + 1;
-      ++place;
-    }
-    throw NoPlace{};
-  }
-
-  std::size_t end_of_key(std::size_t begin) const {
-    if (at(begin) == '"' || at(begin) == '\'') return end_of_string(text_, begin);
-    const auto bare = [](char c) {
-      return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
-             c == '-';
-    };
-    std::size_t end = begin;
-    while (bare(at(end))) ++end;
-    if (end == begin) throw NoPlace{};
-    return end;
-  }
-
-  /// The text between brackets or braces is on one line of a table, or is a table of its own lines.
-  bool is_inline(const Value& table) const { return &table != &root_ && at(begin_of(table)) == '{'; }
-  bool has_header(const Value& table) const {
-    if (&table == &root_) return false;
-    const std::size_t begin = begin_of(table);
-    return at(begin) == '[' && is_alone(begin);
-  }
-  /// Whether nothing stands before it on its line.
-  bool is_alone(std::size_t place) const {
-    for (std::size_t k = line_begin(place); k < place; ++k) {
-      if (!is_blank(text_[k])) return false;
-    }
-    return true;
-  }
-
-  /// An entry that is "key = value" in the lines of its table.
-  bool is_line(const Entry& entry) const {
-    const std::size_t key = offset(entry.position);
-    if (!is_alone(key) || at(key) == '[') return false;
-    std::size_t place = end_of_key(key);
-    while (is_blank(at(place))) ++place;
-    return at(place) == '=';
-  }
-
+  /// The column of a line's equal sign.
   std::optional<std::size_t> equal_sign(std::size_t place) const {
     const std::size_t begin = line_begin(place), end = line_end(place);
     std::size_t k = begin;
@@ -217,124 +140,6 @@ class TomlSource {
     if (sign == std::string_view::npos || sign >= end) return std::nullopt;
     return sign - begin;
   }
-
-  Splice with_new_table(const TomlChange& change) const {
-    const auto* const table = change.path.empty() ? nullptr : std::get_if<std::string>(&change.path.front());
-    if (change.kind != TomlChange::Kind::set || table == nullptr || change.path.size() != 2) throw NoPlace{};
-    std::string text;
-    if (!text_.empty() && text_.back() != '\n') text += line_break();
-    if (text_.size() > first_) text += line_break();
-    text += "[" + toml_key(*table) + "]" + line_break() + line_of(change);
-    return {text_.size(), text_.size(), text};
-  }
-
-  static std::string key_of(const TomlChange& change) {
-    const auto* const key = std::get_if<std::string>(&change.path.back());
-    if (key == nullptr) throw NoPlace{};
-    return toml_key(*key);
-  }
-  std::string line_of(const TomlChange& change) const {
-    return key_of(change) + " = " + change.text + line_break();
-  }
-
-  /// A line for a new entry that looks like the one at `model`.
-  std::string line_like(std::size_t model, const TomlChange& change) const {
-    const std::size_t begin = line_begin(model);
-    std::string text(text_.substr(begin, model - begin));
-    text += key_of(change);
-    const auto sign = equal_sign(model);
-    const std::size_t spaces = sign && *sign > text.size() ? *sign - text.size() : 1;
-    return text + std::string(spaces, ' ') + "= " + change.text + line_break();
-  }
-
-  Splice insertion(const Value& parent, const TomlChange& change) const {
-    if (parent.kind == Value::Kind::array) return element_insertion(parent, change);
-    if (parent.kind != Value::Kind::table) throw NoPlace{};
-    if (is_inline(parent)) {
-      const std::string entry = key_of(change) + " = " + change.text;
-      const std::size_t begin = begin_of(parent), close = end_of_value(begin) - 1;
-      if (parent.entries.empty()) return {begin, close + 1, "{ " + entry + " }"};
-      return {end_of_last(parent), end_of_last(parent), ", " + entry};
-    }
-    const Entry* last = nullptr;
-    for (const Entry& entry : parent.entries) {
-      if (is_line(entry)) last = &entry;
-    }
-    if (last != nullptr) {
-      const std::size_t end = line_end(end_of_value(begin_of(last->value)) - 1);
-      const bool unfinished = end == text_.size() && text_.back() != '\n';
-      return {end, end, (unfinished ? line_break() : "") + line_like(offset(last->position), change)};
-    }
-    if (has_header(parent)) {
-      const std::size_t end = line_end(begin_of(parent));
-      const bool unfinished = end == text_.size() && text_.back() != '\n';
-      return {end, end, (unfinished ? line_break() : "") + line_of(change)};
-    }
-    if (&parent == &root_) return {first_, first_, line_of(change)};
-    return with_new_table(change);
-  }
-
-  std::size_t end_of_last(const Value& parent) const {
-    const Value& last =
-        parent.kind == Value::Kind::array ? parent.elements.back() : parent.entries.back().value;
-    return end_of_value(begin_of(last));
-  }
-
-  Splice element_insertion(const Value& array, const TomlChange& change) const {
-    const std::size_t begin = begin_of(array);
-    if (at(begin) != '[' || std::get<std::size_t>(change.path.back()) != array.elements.size())
-      throw NoPlace{};
-    if (array.elements.empty()) return {begin, end_of_value(begin), "[" + change.text + "]"};
-    return {end_of_last(array), end_of_last(array), ", " + change.text};
-  }
-
-  Splice removal(const Value& parent, const TomlChange& change) const {
-    if (parent.kind == Value::Kind::array || is_inline(parent)) return item_removal(parent, change);
-    const Entry& entry = entry_of(parent, change);
-    if (is_line(entry)) {
-      const std::size_t key = offset(entry.position);
-      return {line_begin(key), line_end(end_of_value(begin_of(entry.value)) - 1), ""};
-    }
-    if (!has_header(entry.value)) throw NoPlace{};
-    // the lines of a table of its own, until the next header
-    const std::size_t begin = line_begin(begin_of(entry.value));
-    std::size_t end = line_end(begin_of(entry.value));
-    for (const Entry& inner : entry.value.entries) {
-      if (!is_line(inner)) throw NoPlace{};
-      end = std::max(end, line_end(end_of_value(begin_of(inner.value)) - 1));
-    }
-    while (end < text_.size() && (at(end) == '\n' || at(end) == '\r')) end = line_end(end);
-    return {begin, end, ""};
-  }
-
-  Splice item_removal(const Value& parent, const TomlChange& change) const {
-    // of each item where it begins and ends
-    std::vector<std::pair<std::size_t, std::size_t>> items;
-    std::size_t which = 0;
-    if (parent.kind == Value::Kind::array) {
-      which = std::get<std::size_t>(change.path.back());
-      for (const Value& element : parent.elements) {
-        const std::size_t begin = begin_of(element);
-        items.emplace_back(begin, end_of_value(begin));
-      }
-    } else {
-      const auto& key = std::get<std::string>(change.path.back());
-      for (const Entry& entry : parent.entries) {
-        if (entry.key == key) which = items.size();
-        items.emplace_back(offset(entry.position), end_of_value(begin_of(entry.value)));
-      }
-    }
-    if (which > 0) return {items[which - 1].second, items[which].second, ""};
-    if (items.size() > 1) return {items[0].first, items[1].first, ""};
-    return {items[0].first, items[0].second, ""};
-  }
-
-  static const Entry& entry_of(const Value& parent, const TomlChange& change) {
-    const auto& key = std::get<std::string>(change.path.back());
-    return *std::find_if(parent.entries.begin(), parent.entries.end(),
-                         [&](const Entry& entry) { return entry.key == key; });
-  }
-
   /// Whether the line before or after has its equal sign in the same column.
   bool is_aligned(std::size_t place) const {
     const auto sign = equal_sign(place);
@@ -343,26 +148,159 @@ class TomlSource {
                     (end < text_.size() && equal_sign(end) == sign));
   }
 
-  Splice renaming(const Value& parent, const TomlChange& change) const {
-    if (parent.kind != Value::Kind::table) throw NoPlace{};
-    const Entry& entry = entry_of(parent, change);
-    const std::size_t begin = offset(entry.position);
-    std::size_t end = end_of_key(begin);
-    std::string key = toml_key(change.text);
-    if (is_line(entry) && is_aligned(begin)) {
-      std::size_t spaces = 0;
-      while (is_blank(at(end + spaces))) ++spaces;
-      const std::size_t whole = end - begin + spaces;
-      end += spaces;
-      key += std::string(whole > key.size() ? whole - key.size() : 1, ' ');
+  /// A key as the text has it, with what it writes before it on the way there: "blocks.x.".
+  std::string key_of(const TomlChange& change, const TomlItem* beside = nullptr) const {
+    const auto* const key = std::get_if<std::string>(&change.path.back());
+    if (key == nullptr) throw NoPlace{};
+    std::string dotted;
+    if (beside != nullptr) {
+      for (const TomlKey& part : beside->keys) {
+        if (part.depth + 1 < change.path.size())
+          dotted += std::string(text_.substr(part.begin, part.end - part.begin)) + ".";
+      }
     }
-    return {begin, end, key};
+    return dotted + toml_key(*key);
+  }
+  std::string line_of(const TomlChange& change) const {
+    return key_of(change) + " = " + change.text + line_break();
+  }
+  /// A line in the place behind another one; the break that the text's last line has not.
+  Splice line_behind(std::size_t place, std::string line) const {
+    const std::size_t end = line_end(place);
+    const bool unfinished = end == text_.size() && text_.back() != '\n';
+    return {end, end, (unfinished ? line_break() : "") + std::move(line)};
+  }
+  /// A new line behind one that it looks like.
+  Splice line_like(const TomlItem& model, const TomlChange& change) const {
+    const std::size_t begin = line_begin(model.begin);
+    std::string line(text_.substr(begin, model.begin - begin));
+    line += key_of(change, &model);
+    const bool has_column = model.keys.size() == 1 || is_aligned(model.begin);
+    const auto sign = has_column ? equal_sign(model.begin) : std::nullopt;
+    const std::size_t spaces = sign && *sign > line.size() ? *sign - line.size() : 1;
+    return line_behind(model.end - 1, line + std::string(spaces, ' ') + "= " + change.text + line_break());
+  }
+
+  Splice insertion(const TomlChange& change) const {
+    const TomlPath parent(change.path.begin(), change.path.end() - 1);
+    if (const TomlItem* const item = item_at(items_, parent)) return insertion_in(*item, change);
+    if (const TomlItem* const beside = dotted_in(items_, parent)) {
+      if (beside->kind == TomlItem::Kind::line) return line_like(*beside, change);
+      return {beside->end, beside->end, ", " + key_of(change, beside) + " = " + change.text};
+    }
+    if (const TomlItem* const last = last_of(parent))
+      return last->kind == TomlItem::Kind::line ? line_like(*last, change)
+                                                : line_behind(last->begin, line_of(change));
+    if (parent.empty()) return {first_, first_, line_of(change)};
+    return with_new_table(change);
+  }
+
+  /// The last line of a table, or its header.
+  const TomlItem* last_of(const TomlPath& table) const {
+    const TomlItem* last = nullptr;
+    for (const TomlItem& item : items_) {
+      const bool is_header = item.kind == TomlItem::Kind::header;
+      if (item.table() == table && (!is_header || last == nullptr)) last = &item;
+    }
+    return last;
+  }
+  /// The last line or entry that writes the last step to a table before a dot.
+  static const TomlItem* dotted_in(const Items& items, const TomlPath& table) {
+    const TomlItem* last = nullptr;
+    for (const TomlItem& item : items) {
+      const bool writes = item.kind != TomlItem::Kind::header && leads_through(item.path, table) &&
+                          std::any_of(item.keys.begin(), item.keys.end(),
+                                      [&](const TomlKey& key) { return key.depth + 1 == table.size(); });
+      if (writes) last = &item;
+      if (!leads_through(table, item.path)) continue;
+      if (const TomlItem* const inner = dotted_in(item.inner, table)) last = inner;
+    }
+    return last;
+  }
+
+  Splice insertion_in(const TomlItem& outer, const TomlChange& change) const {
+    const auto* const index = std::get_if<std::size_t>(&change.path.back());
+    const bool is_list = at(outer.value) == '[';
+    if (is_list ? index == nullptr || *index != outer.inner.size() : at(outer.value) != '{') throw NoPlace{};
+    const std::string text = is_list ? change.text : key_of(change) + " = " + change.text;
+    if (outer.inner.empty()) return {outer.value, outer.end, is_list ? "[" + text + "]" : "{ " + text + " }"};
+    return {outer.inner.back().end, outer.inner.back().end, ", " + text};
+  }
+
+  Splice with_new_table(const TomlChange& change) const {
+    const auto* const table = std::get_if<std::string>(&change.path.front());
+    if (table == nullptr || change.path.size() != 2) throw NoPlace{};
+    std::string text;
+    if (!text_.empty() && text_.back() != '\n') text += line_break();
+    if (text_.size() > first_) text += line_break();
+    text += "[" + toml_key(*table) + "]" + line_break() + line_of(change);
+    return {text_.size(), text_.size(), text};
+  }
+
+  Splices removal(const TomlPath& path) const {
+    Splices splices;
+    for (auto item = items_.begin(); item != items_.end(); ++item) {
+      if (!leads_through(item->path, path)) {
+        if (leads_through(path, item->path)) remove_inside(*item, path, splices);
+        continue;
+      }
+      const std::size_t begin = line_begin(item->begin);
+      std::size_t end = line_end(item->end - 1);
+      if (item->kind == TomlItem::Kind::header) {  // the lines of a table of its own, until the next header
+        while (std::next(item) != items_.end() && std::next(item)->kind == TomlItem::Kind::line)
+          end = line_end((++item)->end - 1);
+        while (end < text_.size() && (at(end) == '\n' || at(end) == '\r')) end = line_end(end);
+      }
+      splices.push_back({begin, end, ""});
+    }
+    return splices;
+  }
+
+  /// With the commas that are too many then.
+  static void remove_inside(const TomlItem& outer, const TomlPath& path, Splices& splices) {
+    const Items& items = outer.inner;
+    for (std::size_t k = 0; k < items.size(); ++k) {
+      if (!leads_through(items[k].path, path)) {
+        if (leads_through(path, items[k].path)) remove_inside(items[k], path, splices);
+        continue;
+      }
+      const std::size_t first = k;
+      while (k + 1 < items.size() && leads_through(items[k + 1].path, path)) ++k;
+      if (first > 0) {
+        splices.push_back({items[first - 1].end, items[k].end, ""});
+      } else {
+        splices.push_back({items[0].begin, k + 1 < items.size() ? items[k + 1].begin : items[k].end, ""});
+      }
+    }
+  }
+
+  Splices renaming(const TomlChange& change) const {
+    Splices splices;
+    if (std::holds_alternative<std::string>(change.path.back())) rename_in(items_, change, splices);
+    return splices;
+  }
+  void rename_in(const Items& items, const TomlChange& change, Splices& splices) const {
+    const TomlPath& path = change.path;
+    for (const TomlItem& item : items) {
+      if (leads_through(path, item.path) && item.path.size() < path.size())
+        rename_in(item.inner, change, splices);
+      if (!leads_through(item.path, path)) continue;
+      for (const TomlKey& key : item.keys) {
+        if (key.depth + 1 != path.size()) continue;
+        const std::string name = toml_key(change.text);
+        splices.push_back({key.begin, key.end, name});
+        if (item.kind != TomlItem::Kind::line || !is_aligned(item.begin)) continue;
+        // its equal sign stays in its column, if there is room
+        const std::size_t begin = item.keys.back().end, sign = text_.find('=', begin);
+        const std::size_t whole = key.end - key.begin + sign - begin;
+        splices.push_back({begin, sign, std::string(whole > name.size() ? whole - name.size() : 1, ' ')});
+      }
+    }
   }
 
   std::string_view text_;
-  Value root_;
-  std::size_t first_ = 0;           ///< after a byte order mark
-  std::vector<std::size_t> lines_;  ///< where each begins
+  std::size_t first_ = 0;  ///< after a byte order mark
+  std::vector<TomlItem> items_;
 };
 
 /// What a change means.
@@ -412,37 +350,55 @@ bool apply(const TomlChange& change, const std::string& file, Value& root) {
                              "change it in the text"});
 }
 
-/// How many of these changes one look at the text does: all that add entries to one table of lines.
-std::size_t done_at_once(TomlSource& source, std::span<const TomlChange> changes) {
-  std::set<TomlPath> added;
-  const auto adds = [&](const TomlChange& change) {
-    return added.insert(change.path).second && change.kind == TomlChange::Kind::set &&
-           change.path.size() == 2 && change.path.front() == changes.front().path.front() &&
-           source.has_lines(change.path.front()) && !source.has(change.path);
+/// How many of these changes one look at the text does.
+std::size_t done_at_once(const TomlSource& source, std::span<const TomlChange> changes) {
+  const auto is_apart = [&](std::size_t count) {
+    const TomlPath& path = changes[count].path;
+    return std::none_of(changes.begin(), changes.begin() + static_cast<std::ptrdiff_t>(count),
+                        [&](const TomlChange& before) {
+                          return leads_through(before.path, path) || leads_through(path, before.path);
+                        });
   };
-  std::size_t count = 0;
-  while (count < changes.size() && adds(changes[count])) ++count;
-  return std::max<std::size_t>(count, 1);
+  std::size_t count = 1;
+  while (count < changes.size() && source.is_plain(changes[count - 1]) && source.is_plain(changes[count]) &&
+         is_apart(count))
+    ++count;
+  return count;
+}
+
+std::string spliced(std::string_view text, Splices splices) {
+  std::stable_sort(splices.begin(), splices.end(),
+                   [](const Splice& a, const Splice& b) { return a.begin < b.begin; });
+  std::string result;
+  std::size_t copied = 0;
+  for (const Splice& splice : splices) {
+    result += text.substr(copied, splice.begin - copied);
+    result += splice.text;
+    copied = splice.end;
+  }
+  return result += text.substr(copied);
 }
 
 /// Does the first of these changes, or some of them, and takes them out.
 std::string edited(std::string_view text, const std::string& file, std::span<const TomlChange>& changes) {
-  TomlSource source(text, file);
+  Value meant = parse_document(text, file).root;
+  const TomlSource source(text);
   const auto now = changes.first(done_at_once(source, changes));
   changes = changes.subspan(now.size());
-  std::string result(text);
+  Splices splices;
   try {
-    Splice splice = source.splice_of(now.front());
-    for (const TomlChange& more : now.subspan(1)) splice.text += source.splice_of(more).text;
-    result.replace(splice.begin, splice.end - splice.begin, splice.text);
+    for (const TomlChange& change : now) {
+      Splices more = source.splices_of(change);
+      std::move(more.begin(), more.end(), std::back_inserter(splices));
+    }
   } catch (const NoPlace&) {
     refuse(now.front(), file);
   }
-  Value meant = source.root();
   for (const TomlChange& change : now) {
     if (!apply(change, file, meant)) refuse(change, file);
   }
   try {
+    std::string result = spliced(text, std::move(splices));
     if (means_the_same(parse_document(result, file).root, meant)) return result;
   } catch (const ReadError&) {
     // said below: what is wrong in a text that nobody sees helps nobody

@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <cstddef>
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
+
+#include <oblique/text/toml_layout.h>
 
 /// Changes of a TOML text at the places of its entries: comments, order and formatting of the rest stay. Not
 /// installed.
 namespace oblique::text {
-
-/// The way to an entry: keys, and numbers of elements of arrays.
-using TomlPath = std::vector<std::variant<std::string, std::size_t>>;
 
 /// A change of one entry.
 struct TomlChange {

@@ -21,13 +21,13 @@ Configuration frame_configuration(const Mechanism& mechanism) {
 }
 
 void clear(const Mechanism& mechanism, Configuration& configuration) {
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  const Eigen::Vector2d nothing = Eigen::Vector2d::Constant(kNaN);
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  const Eigen::Vector2d nothing = Eigen::Vector2d::Constant(kUnknown);
   for (std::size_t i = 0; i < mechanism.points.size(); ++i) {
     if (!mechanism.points[i].fixed) configuration.points[i] = {nothing, nothing, nothing};
   }
-  configuration.bodies.assign(mechanism.bodies.size(), {kNaN, kNaN, kNaN, kNaN, kNaN});
-  configuration.slides.assign(mechanism.slides.size(), {kNaN, kNaN, kNaN});
+  configuration.bodies.assign(mechanism.bodies.size(), {kUnknown, kUnknown, kUnknown, kUnknown, kUnknown});
+  configuration.slides.assign(mechanism.slides.size(), {kUnknown, kUnknown, kUnknown});
 }
 
 void turn_back(Configuration& configuration) {

@@ -75,7 +75,6 @@ EventSearch::EventSearch(const network::Program& program, network::Workspace& wo
       workspace_(workspace),
       slide_(slide),
       thresholds_(thresholds),
-      span_(span),
       file_(file),
       check_interval_(span / kFewestSamples),
       states_(program.n_states()),

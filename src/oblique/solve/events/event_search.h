@@ -68,7 +68,6 @@ class EventSearch {
   network::Workspace& workspace_;
   SlidingMode& slide_;
   Thresholds& thresholds_;
-  double span_;
   const std::string& file_;
   double check_interval_;
   int splits_left_ = 0;

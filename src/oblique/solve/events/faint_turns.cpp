@@ -77,11 +77,11 @@ bool FaintTurns::is_faint(const Approach& approach, double error, double excursi
   constexpr double kAfar = 30, kNear = 10;  // errors
   constexpr double kSlow = 1000;            // errors: a decay to within them takes some 30 of its times
   constexpr double kStandsStill = 1e-5;     // of the excursion: short steps make much of their errors
-  constexpr double kZenoTime = 1e-4;        // of the run: turns that come more quickly may be those of a ball
+  constexpr double kShortestTurn = 1e-4;        // of the run: turns that come more quickly may be those of a ball
   const bool is_near = excursion <= kNear * error;
   const bool is_slow = approach.speed * since <= std::max(kSlow * error, kStandsStill * excursion);
   const bool has_decayed =
-      is_near && farthest_[approach.number] >= kAfar * error && since >= kZenoTime * span_;
+      is_near && farthest_[approach.number] >= kAfar * error && since >= kShortestTurn * span_;
   const bool never_left = is_near && is_slow && last_turn == 0;  // what a step sets off at a rest is not slow
   // What does not slow down comes back at least as fast as it went away: the short flights of a ball.
   const bool decays = excursion >= kAfar * error && is_slow && approach.speed * since < excursion;

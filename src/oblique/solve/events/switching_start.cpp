@@ -16,7 +16,7 @@ namespace oblique::solve {
 
 void take_starts(const network::Program& program, network::Workspace& workspace, double t,
                  std::vector<double>& x, EventLog& log, const std::string& file) {
-  constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+  constexpr double kUnitRounding = std::numeric_limits<double>::epsilon();
   constexpr long kMostRoundsInCircle = 100;
   const long starts = std::count_if(program.states().begin(), program.states().end(),
                                     [](const network::State& state) { return state.start_node.has_value(); });
@@ -30,7 +30,7 @@ void take_starts(const network::Program& program, network::Workspace& workspace,
     for (std::size_t i = 0; i < x.size(); ++i) {
       const auto value = here->start_value(i);
       if (!value) continue;
-      const bool same = std::abs(*value - x[i]) <= 4 * kEpsilon * (1 + std::abs(*value));
+      const bool same = std::abs(*value - x[i]) <= 4 * kUnitRounding * (1 + std::abs(*value));
       if (same && std::isfinite(*value)) continue;
       changes = true;
       finite = finite && std::isfinite(*value);

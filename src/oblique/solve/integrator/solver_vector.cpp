@@ -7,6 +7,14 @@
 
 #include <nvector/nvector_serial.h>
 
+// No element of a result depends on another one, though a result may stand in place of what it is made of;
+// g++ must be told.
+#ifdef __clang__
+#define OBLIQUE_ELEMENTS_APART
+#else
+#define OBLIQUE_ELEMENTS_APART _Pragma("GCC ivdep")
+#endif
+
 namespace oblique::solve {
 namespace {
 
@@ -33,7 +41,7 @@ void linear_sum(double a, N_Vector x, double b, N_Vector y, N_Vector z) {
   const double* const ys = elements(y);
   double* const zs = elements(z);
   const sunindextype n = NV_LENGTH_S(x);
-#pragma GCC ivdep
+  OBLIQUE_ELEMENTS_APART
   for (sunindextype i = 0; i < n; ++i) zs[i] = a * xs[i] + b * ys[i];
 }
 
@@ -42,7 +50,7 @@ void scale(double c, N_Vector x, N_Vector z) {
   const double* const xs = elements(x);
   double* const zs = elements(z);
   const sunindextype n = NV_LENGTH_S(x);
-#pragma GCC ivdep
+  OBLIQUE_ELEMENTS_APART
   for (sunindextype i = 0; i < n; ++i) zs[i] = c * xs[i];
 }
 
