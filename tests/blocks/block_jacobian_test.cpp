@@ -40,6 +40,15 @@ const std::multimap<std::string, std::string> kImperfect{
     {"comparator", "hysteresis = 0.1"},
     {"relay", "delay = 0.1"},
     {"track-and-store", "acquisition_time = 0.2"},
+    {"diode", "drop = 0.2, breakdown = 0.4"},
+    {"junction-diode", "saturation = 0.1, thermal = 0.5"},
+    {"junction-diode", "saturation = 0.1, thermal = 0.5, resistance = 2"},
+    {"diode-segment", "side = -1, slope = -2"},
+    {"diode-amplifier", "low = -0.3, high = 0.2, resistance = 0.1, gain = 50, limit = 0.5"},
+    {"diode-amplifier", "low = -0.3, high = 0.2, resistance = 0.1, feedback = 0, limit = 0.5"},
+    {"logarithmic-amplifier", "saturation = 0.1, thermal = 0.5, limit = 0.7"},
+    {"logarithmic-amplifier", "saturation = 0.1, thermal = 0.5, pair = 1, limit = 0.7"},
+    {"delay-line", "straight = 1, stages = 3"},
 };
 
 /// The block "b" with each input wired to a state and each output into another.

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
-// monostable, flip-flop, jk-flip-flop, counter, digital-potentiometer. Times are those of known edges, so the
-// levels are exact; rows do not fall on edges.
+// monostable, flip-flop, jk-flip-flop, counter, preset-counter, multiplexer, demultiplexer,
+// digital-potentiometer. Times are those of known edges, so the levels are exact; rows do not fall on edges.
+#include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "closed_form.h"
 
@@ -119,6 +121,60 @@ c = { type = "counter", clock = "clock", reset = "r" })");
     const double all = std::floor(t + 0.5);
     return t < 2.75 ? all : t < 3.75 ? 0 : all - 4;
   });
+}
+
+TEST(PresetCounter, CountsDownToZeroAndStaysThere) {
+  const Compiled made(R"(clock = { type = "pulse-train", delay = 0.5 }
+on = { type = "step", at = 1.2 }
+c = { type = "preset-counter", clock = "clock", preset = 4, step = 0.25, enable = "on" })");
+  const auto result = run_of(made, {.until = 8, .samples = 83});  // edges at 1.5, 2.5, … count
+  const auto left = [](double t) { return std::max(0.0, 4 - std::max(0.0, std::floor(t - 0.5))); };
+  expect_form(result, "c.out", 0, [&](double t) { return 0.25 * left(t); });
+  expect_form(result, "c.zero", 0, [&](double t) { return left(t) == 0 ? 1 : 0; });
+}
+
+TEST(PresetCounter, DividesItsClockWhereItReloads) {
+  const Compiled made(R"(clock = { type = "pulse-train", delay = 0.5 }
+c = { type = "preset-counter", clock = "clock", preset = 2, reload = 1 }
+n = { type = "counter", clock = "c.zero" })");
+  expect_form(run_of(made, {.until = 10, .samples = 103}), "n.out", 0,
+              [](double t) { return std::floor((t + 1.5) / 3); });  // zero from 1.5, 4.5, 7.5 on
+}
+
+TEST(PresetCounter, IsLoaded) {
+  const Compiled made(R"(clock = { type = "pulse-train", delay = 0.5 }
+load = { type = "pulse-train", period = 100, delay = 2.75, width = 1 }
+c = { type = "preset-counter", clock = "clock", preset = 5, load = "load" })");
+  expect_form(run_of(made, {.until = 7, .samples = 72}), "c.out", 0, [](double t) {
+    if (t < 2.75) return 5 - std::floor(t + 0.5);
+    return t < 3.75 ? 5 : 5 - std::floor(t + 0.5 - 4);
+  });
+}
+
+/// Eight constants 0.1, 0.2, … on a multiplexer, whose address rises by 0.5 a second from −0.6 on.
+TEST(Multiplexer, PassesTheInputThatIsAddressed) {
+  std::string blocks = "a = { type = \"ramp\", initial = -0.6, slope = 0.5 }\n", inputs;
+  for (int k = 0; k < 8; ++k) {
+    blocks +=
+        "c" + std::to_string(k) + " = { type = \"constant\", value = 0." + std::to_string(k + 1) + " }\n";
+    inputs += "in" + std::to_string(k) + " = \"c" + std::to_string(k) + "\", ";
+  }
+  const Compiled made(blocks + "m = { " + inputs + "type = \"multiplexer\", address = \"a\", step = 0.5 }\n");
+  expect_form(run_of(made, {.until = 10, .samples = 98}), "m", kRounding,
+              [](double t) { return 0.1 * (1 + std::clamp(std::round((-0.6 + 0.5 * t) / 0.5), 0.0, 7.0)); });
+}
+
+TEST(Demultiplexer, PassesItsInputToTheOutputThatIsAddressed) {
+  const Compiled made(R"(a = { type = "ramp", initial = -0.9 }
+u = { type = "constant", value = 0.3 }
+d = { type = "demultiplexer", in = "u", address = "a" }
+one = { type = "demultiplexer", address = "a" })");
+  const auto result = run_of(made, {.until = 10, .samples = 98});
+  for (int k = 0; k < 8; ++k) {
+    const auto chosen = [&](double t) { return std::clamp(std::round(t - 0.9), 0.0, 7.0) == k; };
+    expect_form(result, "d.out" + std::to_string(k), 0, [&](double t) { return chosen(t) ? 0.3 : 0; });
+    expect_form(result, "one.out" + std::to_string(k), 0, [&](double t) { return chosen(t) ? 1 : 0; });
+  }
 }
 
 TEST(DigitalPotentiometer, IsSteppedWithinItsRangeAndQuantised) {

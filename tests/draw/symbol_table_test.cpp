@@ -24,6 +24,8 @@ const std::vector<std::string> kIcons{"function-generator",
                                       "backlash",
                                       "dead-zone",
                                       "limiter",
+                                      "bounded",
+                                      "diode",
                                       "sign",
                                       "step",
                                       "ramp",
@@ -84,8 +86,8 @@ TEST(Icons, LieWithinTheirSquareAndFillIt) {
 // A signal over time and a function over its argument have one value at each.
 TEST(Icons, OfFunctionsAndSignalsGoFromLeftToRight) {
   for (const char* const icon :
-       {"function-generator", "comparator", "absolute-value", "dead-zone", "limiter", "sign", "step", "ramp",
-        "pulse-train", "noise", "source", "monostable", "counter"}) {
+       {"function-generator", "comparator", "absolute-value", "dead-zone", "limiter", "bounded", "sign",
+        "step", "ramp", "pulse-train", "noise", "source", "monostable", "counter"}) {
     const Line line = curve_of(icon);
     EXPECT_EQ(line.front().x(), -1) << icon;
     EXPECT_EQ(line.back().x(), 1) << icon;
@@ -94,7 +96,7 @@ TEST(Icons, OfFunctionsAndSignalsGoFromLeftToRight) {
 }
 
 TEST(Icons, OfOddFunctionsAreOddAndOfEvenOnesEven) {
-  for (const char* const icon : {"dead-zone", "limiter", "sign", "comparator", "source"})
+  for (const char* const icon : {"dead-zone", "limiter", "bounded", "sign", "comparator", "source"})
     expect_same(curve_of(icon), mirrored(curve_of(icon), -1, -1), icon);
   for (const char* const icon : {"absolute-value", "pulse-train", "monostable"})
     expect_same(curve_of(icon), mirrored(curve_of(icon), -1, 1), icon);
@@ -141,6 +143,27 @@ TEST(Icons, OfFunctionsHaveTheirShape) {
   for (std::size_t k = 1; k + 1 < noise.size(); ++k) {
     EXPECT_LT(noise[k].y() * noise[k + 1].y(), 0) << k;  // it changes its sign from each to the next
   }
+}
+
+// A wire, an arrow that points along it, and a bar at its tip.
+TEST(Icons, OfADiodeIsAnArrowAgainstABar) {
+  const auto lines = icon_lines("diode");
+  ASSERT_EQ(lines.size(), 3U);
+  const Line &wire = lines[0], &arrow = lines[1], &bar = lines[2];
+  EXPECT_EQ(wire[0], Vector2d(-1, 0));
+  EXPECT_EQ(wire[1], Vector2d(1, 0));
+  ASSERT_EQ(arrow.size(), 4U);
+  EXPECT_EQ(arrow[0], arrow[3]);
+  expect_same(bar, mirrored(bar, 1, -1), "diode");
+  EXPECT_EQ(arrow[0], Vector2d(arrow[2].x(), -arrow[2].y()));
+  EXPECT_EQ(arrow[1].y(), 0);
+  EXPECT_GT(arrow[1].x(), arrow[0].x());
+  EXPECT_EQ(bar[0].x(), arrow[1].x());
+}
+
+// It inverts: high before, low after.
+TEST(Icons, OfTheBoundedAmplifierFall) {
+  expect_same(curve_of("bounded"), mirrored(curve_of("limiter"), -1, 1), "bounded");
 }
 
 // A counter goes up by one and one: steps of one width and one height.

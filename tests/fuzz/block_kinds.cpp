@@ -90,6 +90,37 @@ constexpr ParameterKind kNoise[] = {{"rms", 0, 0.25, kValue, true},
 constexpr ParameterKind kCurve[] = {{"points", -1, 1, kPlain, true, Form::curve}};
 constexpr ParameterKind kJumpingCurve[] = {{"points", -1, 1, kPlain, true, Form::jumping_curve}};
 constexpr ParameterKind kFormula[] = {{"formula", 0.25, 4.25, kRate, true, Form::sine}};
+constexpr ParameterKind kDiode[] = {{"drop", 0, 0.5, kValue, true},
+                                    {"breakdown", 0.25, 1.25, kValue},
+                                    {"resistance", 0.25, 1.25, kPlain, true}};
+constexpr ParameterKind kJunction[] = {{"saturation", 0.0625, 0.3125, kValue, true},
+                                       {"thermal", 0.25, 1.25, kValue, true},
+                                       {"resistance", 0.25, 2.25, kPlain, true}};
+constexpr ParameterKind kSegment[] = {
+    {"at", -1, 1, kValue, true}, {"slope", -2, 2, kPlain, true}, {"side", -1, 1, kPlain}};
+constexpr ParameterKind kBounds[] = {{"low", -1, -0.0625, kValue, true},
+                                     {"high", 0.0625, 1.0625, kValue, true},
+                                     {"resistance", 0, 0.5, kPlain},
+                                     {"feedback", 0.5, 1.5, kPlain},
+                                     {"gain", 100, 1700, kPlain}};
+constexpr ParameterKind kLogarithm[] = {{"saturation", 0.0625, 0.3125, kValue, true},
+                                        {"thermal", 0.25, 1.25, kValue, true},
+                                        {"pair", 1, 1, kPlain, true}};
+constexpr ParameterKind kPade[] = {{"delay", 0.25, 1.25, kTime, true}, {"initial", -1, 1, kValue}};
+constexpr ParameterKind kLine[] = {{"delay", 0.25, 1.25, kTime, true},
+                                   {"stages", 1, 9, kPlain, true, Form::whole},
+                                   {"straight", 0, 1, kPlain, false, Form::whole},
+                                   {"initial", -1, 1, kValue}};
+constexpr PortKind kMultiplexerIn[] = {
+    {"in0", kValue}, {"in1", kValue, false, false}, {"in2", kValue, false, false}, {"address", kPlain}};
+constexpr ParameterKind kAddress[] = {{"step", 0.25, 1.25, kPlain, true}};
+constexpr PortKind kDemultiplexerIn[] = {{"in", kValue}, {"address", kPlain}};
+constexpr OutputKind kDemultiplexerOut[] = {{"out0", kValue}, {"out1", kValue}, {"out7", kValue}};
+constexpr PortKind kPresetIn[] = {{"clock", kPlain}, {"load", kPlain, false, false}};
+constexpr OutputKind kPresetOut[] = {{"out", kPlain}, {"zero", kPlain}};
+constexpr ParameterKind kPreset[] = {{"preset", 1, 9, kPlain, true, Form::whole},
+                                     {"step", 0.0625, 0.3125, kPlain, true},
+                                     {"reload", 0, 1, kPlain, false, Form::whole}};
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr ParameterKind kFastServo[] = {{"gain", 100, 16100, kPlain, true},
                                         {"bandwidth", kInfinity, kInfinity, kRate, true},
@@ -127,6 +158,17 @@ constexpr BlockKind kKinds[] = {
     {"function-generator", 1, kOnePlain, kPlainOut, kJumpingCurve},
     {"limiter", 2, kOneValue, kValueOut, kLimits},
     {"dead-zone", 2, kOneValue, kValueOut, kLimits},
+    {"diode", 1, kOneValue, kValueOut, kDiode},
+    {"junction-diode", 1, kOneValue, kValueOut, kJunction},
+    {"diode-segment", 1, kOneValue, kValueOut, kSegment},
+    {"diode-amplifier", 1, kSumOfValues, kValueOut, kBounds},
+    {"logarithmic-amplifier", 1, kSumOfValues, kValueOut, kLogarithm},
+    {"pade-delay-2", 1, kOneValue, kValueOut, kPade},
+    {"pade-delay-3", 1, kOneValue, kValueOut, kPade},
+    {"delay-line", 1, kOneValue, kValueOut, kLine},
+    {"multiplexer", 1, kMultiplexerIn, kValueOut, kAddress},
+    {"demultiplexer", 1, kDemultiplexerIn, kDemultiplexerOut, kAddress},
+    {"preset-counter", 1, kPresetIn, kPresetOut, kPreset},
     {"backlash", 1, kOneValue, kValueOut, kBacklash, true},
     {"comparator", 3, kSumOfValues, kPlainOut, kComparator},
     {"relay", 2, kRelayIn, kValueOut, kRelay},
