@@ -65,7 +65,7 @@ TEST(Machines, WithoutErrorsActOnNothing) {
 
 TEST(Machines, AreJson) {
   const json all = json::parse(oblique("machines --json").out);
-  EXPECT_EQ(all.size(), 17U);
+  EXPECT_EQ(all.size(), 21U);
   EXPECT_EQ(all[0]["name"], "ideal");
   EXPECT_EQ(all[0]["elements"][0]["count"], "any");
   const json machine = json::parse(oblique("machines gp-6 --json").out);
