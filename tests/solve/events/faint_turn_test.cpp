@@ -236,6 +236,42 @@ f = { type = "function-generator", in = "-x", points = [[-1, 0.5], [0, 0], [0, 1
   }
 }
 
+// sin t beside a level a billionth above its amplitude, which is within its error, or at it; and, far enough
+// beside its error, a ten-millionth above it.
+TEST(FaintTurn, ThatDidNotComeIsToldOf) {
+  const auto warnings_at = [](const std::string& level) {
+    const testing::Compiled made(R"(
+x = { type = "integrator", in = "v" }
+v = { type = "integrator", in = "-x", initial = 1 }
+l = { type = "constant", value = )" +
+                                 level + R"( }
+c = { type = "comparator", in = ["x", "-l"] }
+n = { type = "counter", clock = "c" }
+)");
+    const oblique::solve::Run run = testing::run_of(made, {.until = 20});
+    EXPECT_EQ(testing::row_values(run, "n.out").back(), 0) << level;
+    return run.warnings;
+  };
+  for (const char* const level : {"1.000000001", "1"}) {
+    const auto warnings = warnings_at(level);
+    ASSERT_EQ(warnings.size(), 1U) << level;
+    EXPECT_THAT(warnings[0].what, HasSubstr("'c' (in > 0) does not turn over at t = 1.5707963")) << level;
+  }
+  EXPECT_THAT(warnings_at("1.0000001"), IsEmpty());
+}
+
+// A turn that nobody reads is not told of, nor one of what only bends.
+TEST(FaintTurn, ThatDidNotComeAndChangesNothingIsNotToldOf) {
+  const testing::Compiled made(R"(
+x = { type = "integrator", in = "v" }
+v = { type = "integrator", in = "-x", initial = 1 }
+one = { type = "constant" }
+m = { type = "maximum", in = ["x", "one"] }
+l = { type = "limiter", in = "x", low = -1, high = 1 }
+)");
+  EXPECT_THAT(testing::run_of(made, {.until = 20}).warnings, IsEmpty());
+}
+
 // A delayed trigger at an amplitude is never above it; where errors let it be, what is made of that comes
 // later only, by its delay, and is told of all the same. (What else is there cuts the steps.)
 TEST(FaintTurn, ThatOnlyAMemoryKeepsIsToldOf) {

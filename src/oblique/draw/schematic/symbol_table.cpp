@@ -75,7 +75,7 @@ std::vector<Vector2d> arc(const Vector2d& centre, double radius, double from, do
   constexpr int kPoints = 24;
   for (int k = 0; k <= kPoints; ++k) {
     const double angle = from + (to - from) * k / kPoints;
-    line.push_back(centre + radius * Vector2d(std::cos(angle), std::sin(angle)));
+    line.emplace_back(centre + radius * Vector2d(std::cos(angle), std::sin(angle)));
   }
   return line;
 }
@@ -113,7 +113,7 @@ Lines wave() {
   constexpr int kPoints = 24;
   for (int k = 0; k <= kPoints; ++k) {
     const double x = -1 + 2.0 * k / kPoints;
-    line.push_back({x, 0.8 * std::sin(std::numbers::pi * (x + 1))});
+    line.emplace_back(x, 0.8 * std::sin(std::numbers::pi * (x + 1)));
   }
   return {line};
 }

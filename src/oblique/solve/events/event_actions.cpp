@@ -148,8 +148,9 @@ std::optional<EventActions::Effect> EventActions::serve(double t, std::vector<do
     add_changes(events.back(), *here, t, changes);
   }
   if (!starting) {
-    std::vector<double> values;
-    for (const Change& change : changes) values.push_back(change.value);
+    std::vector<double> values(changes.size());
+    std::transform(changes.begin(), changes.end(), values.begin(),
+                   [](const Change& change) { return change.value; });
     uncertain_.look(events, values, t, x);
   }
   Effect effect;

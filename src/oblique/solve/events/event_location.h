@@ -37,6 +37,7 @@ class EventLocation {
   std::optional<EventSearch::Found> search(double from, std::span<const double> sample_times,
                                            const Interpolant& solution);
 
+  const std::vector<EventSearch::NearMiss>& near_misses() const { return search_.near_misses(); }
   const Announced& announced() const { return announced_; }
   /// At the beginning of an instant that is settled: withdraws switches that follow time alone and are not
   /// due yet at t, where the event functions were evaluated last: the segment may have ended before their

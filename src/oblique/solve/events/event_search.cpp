@@ -32,6 +32,9 @@ constexpr double kEdge = 1e-5;
 /// did.
 constexpr double kAttracted = -1;
 
+/// A top that is as near below zero as this [machine unit] may be above it but for the errors of the states.
+constexpr double kNearMiss = 1e-5;
+
 constexpr int kDeepest = 60;
 constexpr int kMostSplits = 1000;  ///< of a part between two samples: more is asked for by rounding alone
 
@@ -142,6 +145,7 @@ bool EventSearch::is_due(const Sample& at) const {
 std::optional<EventSearch::Found> EventSearch::search(double from, std::span<const double> sample_times,
                                                       const Interpolant& solution) {
   Sample left, right;
+  near_misses_.clear();
   reached_ = sample_times.empty() ? from : sample_times.back();  // where the solver was last
   sample(from, solution, left);
   // Where the solver starts anew an event function may still lie within rounding of zero on the wrong side.
@@ -222,6 +226,7 @@ std::optional<EventSearch::Found> EventSearch::split(const Sample& from, const S
   }
   double highest = 0, at = 0.5;
   bool hides = false;
+  std::vector<NearMiss> near_misses;
   for (std::size_t k = 0; k < to.crossed.size(); ++k) {
     const double a = from.crossed[k], b = to.crossed[k];
     if (a == -kInfinity || b == -kInfinity || b > 0) continue;
@@ -232,7 +237,11 @@ std::optional<EventSearch::Found> EventSearch::split(const Sample& from, const S
     double height = top ? bound(*top) : -kInfinity;
     for (const double u : {1.0 / 32, 0.125, 0.25, 0.5, 0.75, 0.875, 31.0 / 32})
       height = std::max(height, bound(u));
-    if (!(height > 0)) continue;
+    if (!(height > 0)) {
+      if (top && k < event_functions_.size() && height > -kNearMiss)
+        near_misses.push_back({static_cast<std::uint32_t>(k), from.time + *top * length});
+      continue;
+    }
     if (!hides || height > highest) {
       highest = height;
       at = top ? std::clamp(*top, 0.02, 0.98) : 0.5;
@@ -241,6 +250,7 @@ std::optional<EventSearch::Found> EventSearch::split(const Sample& from, const S
   }
   if (!hides) {
     if (due) return locate(from, to, solution);
+    near_misses_.insert(near_misses_.end(), near_misses.begin(), near_misses.end());
     return std::nullopt;
   }
   Sample between;

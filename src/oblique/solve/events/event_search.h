@@ -41,6 +41,13 @@ class EventSearch {
   /// one `to`.
   std::optional<Found> search(double from, std::span<const double> sample_times, const Interpolant& solution);
 
+  /// Tops of event functions that the last search has seen just below zero, before what it has found.
+  struct NearMiss {
+    std::uint32_t number;  ///< in Program::switches
+    double time;           ///< [s]
+  };
+  const std::vector<NearMiss>& near_misses() const { return near_misses_; }
+
   /// How often to look between steps in all, where something turns fast.
   void limit_samples(double samples) { samples_left_ = samples; }
   /// `search` then throws Interrupted.
@@ -74,6 +81,7 @@ class EventSearch {
   double reached_ = 0;  ///< [s] where the event functions were evaluated last
   double samples_left_ = std::numeric_limits<double>::infinity();
   Interruption interruption_;
+  std::vector<NearMiss> near_misses_;
   std::vector<double> states_, rates_, event_functions_, event_function_rates_;
 };
 

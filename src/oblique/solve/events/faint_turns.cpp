@@ -9,6 +9,8 @@
 namespace oblique::solve {
 namespace {
 
+constexpr double kAfar = 30;  ///< errors
+
 /// Whether so much more than errors of this size lies between two values of the signals: a kink, also behind
 /// a high gain, changes them by some errors, unless these are so large that what they do cannot be told.
 bool jumps(const std::vector<double>& before, const std::vector<double>& after, double error) {
@@ -69,15 +71,23 @@ bool FaintTurns::evaluate(double t, const Interpolant& solution) {
   return there.has_value();
 }
 
+bool FaintTurns::is_known(std::uint32_t s) const {
+  return std::any_of(found_.begin(), found_.end(), [s](const FaintTurn& turn) { return turn.number == s; });
+}
+
+bool FaintTurns::comes_from_afar(double event_function, double error, double excursion) const {
+  return std::abs(event_function) <= error && excursion >= kAfar * error;
+}
+
 /// At t, by the error of the event function, how far it has been from zero since it turned over last, and
 /// when that was [s]; 0 where it never has.
 bool FaintTurns::is_faint(const Approach& approach, double error, double excursion, double t,
                           double last_turn) const {
   const double since = t - last_turn;
-  constexpr double kAfar = 30, kNear = 10;  // errors
-  constexpr double kSlow = 1000;            // errors: a decay to within them takes some 30 of its times
-  constexpr double kStandsStill = 1e-5;     // of the excursion: short steps make much of their errors
-  constexpr double kShortestTurn = 1e-4;        // of the run: turns that come more quickly may be those of a ball
+  constexpr double kNear = 10;            // errors
+  constexpr double kSlow = 1000;          // errors: a decay to within them takes some 30 of its times
+  constexpr double kStandsStill = 1e-5;   // of the excursion: short steps make much of their errors
+  constexpr double kShortestTurn = 1e-4;  // of the run: turns that come more quickly may be those of a ball
   const bool is_near = excursion <= kNear * error;
   const bool is_slow = approach.speed * since <= std::max(kSlow * error, kStandsStill * excursion);
   const bool has_decayed =
@@ -98,10 +108,8 @@ std::vector<FaintTurn> FaintTurns::due(double t, const Announced& announced, Eve
     const std::uint32_t s = approach.number;
     const double excursion = event_functions.thresholds().excursion(s);
     farthest_[s] = std::max(farthest_[s], excursion);
-    const bool told =
-        std::any_of(found_.begin(), found_.end(), [s](const FaintTurn& turn) { return turn.number == s; });
-    if (!told && announced[s] && is_faint(approach, errors[s], excursion, t, last_turn(s)))
-      found.push_back({s, t, errors[s], event_functions.states_behind(s)});
+    if (!is_known(s) && announced[s] && is_faint(approach, errors[s], excursion, t, last_turn(s)))
+      found.push_back({s, t, errors[s], true, event_functions.states_behind(s)});
   }
   approaches_.clear();
   return found;

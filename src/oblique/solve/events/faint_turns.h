@@ -42,6 +42,10 @@ class FaintTurns {
   /// after.
   void keep(std::vector<FaintTurn> turns, const std::vector<double>& before,
             const std::vector<double>& after);
+  /// Whether a turn of a switch was found before.
+  bool is_known(std::uint32_t s) const;
+  /// Whether an event function has been far from zero, beside its error, and is within that now.
+  bool comes_from_afar(double event_function, double error, double excursion) const;
   /// The first of each switch.
   const std::vector<FaintTurn>& found() const { return found_; }
 

@@ -148,9 +148,42 @@ void Switching::throw_endless(double t) const {
 std::optional<double> Switching::search(double from, std::span<const double> sample_times,
                                         const Interpolant& solution) {
   const auto found = location_.search(from, sample_times, solution);
+  for (const EventSearch::NearMiss& miss : location_.near_misses()) look_at_miss(miss, solution);
   if (!found) return std::nullopt;
   faint_turns_.approach(from, found->time, found->turned, solution);
   return found->time;
+}
+
+/// Keeps a top of an event function as a faint turn where it is nearer to zero than its errors, and the turn
+/// would have had an effect.
+void Switching::look_at_miss(const EventSearch::NearMiss& miss, const Interpolant& solution) {
+  const std::uint32_t s = miss.number;
+  if (program_.switches()[s].turning != network::Turning::jumps || slide_.active() ||
+      faint_turns_.is_known(s))
+    return;
+  std::vector<double> x(program_.n_states());
+  solution.states_at(miss.time, x);
+  event_functions_.evaluate(miss.time, x, location_.announced());
+  const EventFunctionErrors& errors = event_functions_.weigh_errors();
+  if (!faint_turns_.comes_from_afar(event_functions_[s], errors[s],
+                                    event_functions_.thresholds().excursion(s)))
+    return;
+  FaintTurn turn{s, miss.time, errors[s], false, event_functions_.states_behind(s)};
+  const auto looked = [&] {
+    std::vector<double> values = readings(miss.time, x);
+    if (values.empty()) return values;
+    const network::Evaluation& here = evaluate(miss.time, x);
+    for (std::size_t e = 0; e < program_.events().size(); ++e) values.push_back(here.condition(e) ? 1 : 0);
+    return values;
+  };
+  const std::uint32_t discrete_state = program_.switches()[s].discrete_state;
+  const double position = workspace_.discrete_state(discrete_state);
+  const std::vector<double> before = looked();
+  workspace_.set_discrete_state(discrete_state, 1 - position);
+  const std::vector<double> after = looked();
+  workspace_.set_discrete_state(discrete_state, position);
+  event_functions_.evaluate(miss.time, x, location_.announced());  // back to the solutions of the loops
+  if (!before.empty() && !after.empty()) faint_turns_.keep({std::move(turn)}, before, after);
 }
 
 const network::Evaluation& Switching::evaluate(double t, std::span<const double> x) {

@@ -108,6 +108,7 @@ class Switching {
   std::vector<SlidingMode::Doubt> doubts_of_slide(double t, std::span<const double> x);
   bool serve_events(double t, std::vector<double>& x, bool starting);
   std::vector<double> readings(double t, std::span<const double> x);
+  void look_at_miss(const EventSearch::NearMiss& miss, const Interpolant& solution);
   void record_turns(const std::vector<double>& before, double t);
 
   const network::Program& program_;

@@ -131,10 +131,10 @@ std::vector<text::Diagnostic> warnings_of(const Unseen& unseen, const network::P
     const network::Switch& made = program.switches()[turn.number];
     warnings.push_back(
         {{diagram.file, {}},
-         fmt::format(
-             "'{}' ({}) turns over at t = {:.9g} s, where what it compares is equal to within {:.2g}, "
-             "which is its error: what follows may be wrong",
-             made.block, made.comparison, turn.time, turn.error),
+         fmt::format("'{}' ({}) {} at t = {:.9g} s, where what it compares is equal to within {:.2g}, "
+                     "which is its error: what follows may be wrong",
+                     made.block, made.comparison, turn.turned ? "turns over" : "does not turn over",
+                     turn.time, turn.error),
          {},
          "compare with a level that is passed, give the comparison a hysteresis, or end the run before"});
   }
