@@ -497,6 +497,8 @@ export class Session {
     const {traced, against, meter} = this.shown;
     const left = traced.map(now).filter((name) => all.has(name));
     const shown = traced.join("\n") === usual.join("\n") ? held.outputs.slice(0, 4) : left;  // what was chosen stays
+    const {scope} = this.shown;
+    if (renamed.length > 0 && scope.own.size > 0) this.set({scope: {...scope, own: new Map([...scope.own].map(([name, scale]) => [now(name), scale]))}});
     if (shown.join("\n") !== traced.join("\n")) this.trace(shown, now(against));
     if (meter.name && !all.has(now(meter.name))) this.set({meter: {name: "", value: NaN, unit: ""}});
     else if (meter.name !== now(meter.name)) this.set({meter: {...meter, name: now(meter.name)}});
