@@ -24,7 +24,8 @@ after(async () => {
 });
 
 // A page that is ready, what it asked for, and what went wrong in it. What it saves is kept in it, not on the disk.
-export async function opened({fragment = "", width = 1280, height = 900, scheme = "light", file = studio} = {}) {
+// `prepare` comes before the page's own script.
+export async function opened({fragment = "", width = 1280, height = 900, scheme = "light", file = studio, prepare} = {}) {
   const page = await browser.newPage();
   await page.setViewport({width, height});
   await page.emulateMediaFeatures([{name: "prefers-color-scheme", value: scheme}]);
@@ -50,8 +51,10 @@ export async function opened({fragment = "", width = 1280, height = 900, scheme 
       else click.call(this);
     };
   });
+  if (prepare) await page.evaluateOnNewDocument(prepare);
   const begin = Date.now();
   await page.goto(pathToFileURL(file).href + fragment);
+  if (prepare) return {page, troubles};
   await page.waitForSelector(".schematic svg", {timeout: 30000});
   await page.waitForFunction(() => document.querySelector("h1 .quiet").textContent !== "", {timeout: 30000});  // its machine is there
   return {page, requests, troubles, ready: Date.now() - begin};

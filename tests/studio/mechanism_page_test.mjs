@@ -84,11 +84,12 @@ const axesOf = async (page, origin) => {
   assert.ok(Math.abs(pin[0] - x.zero) < 0.02, `${pin} ${x.zero}`);  // both are written to 0.01 px
   return {x, y: {zero: pin[1], scale: -x.scale}};
 };
+const middleOnScreen = (page, id) => page.$eval(`.moving [id='${id}']`, (mark) => {
+  const box = mark.getBoundingClientRect();
+  return [box.x + box.width / 2, box.y + box.height / 2];
+});
 const dragTo = async (page, id, [dx, dy], steps = 8, {drop = true} = {}) => {
-  const from = await page.$eval(`.moving [id='${id}']`, (mark) => {
-    const box = mark.getBoundingClientRect();
-    return [box.x + box.width / 2, box.y + box.height / 2];
-  });
+  const from = await middleOnScreen(page, id);
   const scale = await page.$eval(".moving", (svg) => svg.getScreenCTM().a);
   await page.mouse.move(...from);
   await page.mouse.down();
@@ -179,6 +180,27 @@ test("a dragged joint takes the mechanism and the machine along, its lengths loc
     await wait(400);
   }
   assert.notEqual(await driveOf(page), turned);
+  assert.deepEqual(troubles, []);
+  await page.close();
+});
+
+// Back is where the machine has been: there it begins again and runs to where the joint is.
+test("a joint stays in the hand where the machine begins again meanwhile", async () => {
+  const {page, troubles} = await opened({file: "four-bar"});
+  await page.evaluate(() => oblique.advance(1.5));
+  await page.waitForFunction(() => Math.abs(Number(document.querySelector(".drive-words p").textContent.match(/= ([\d.]+)/)?.[1]) - 1.5 * 180 / Math.PI) < 0.01, patience);
+  const axes = await axesOf(page, "pin-A"), scale = await page.$eval(".moving", (svg) => svg.getScreenCTM().a);
+  const from = await middleOnScreen(page, "pin-B");
+  const at = (angle) => [from[0] + scale * axes.x.scale * (Math.cos(angle) - Math.cos(1.5)), from[1] + scale * axes.y.scale * (Math.sin(angle) - Math.sin(1.5))];
+  await page.mouse.move(...from);
+  await page.mouse.down();
+  for (let angle = 1.4; angle > 0.25; angle -= 0.1) {
+    await page.mouse.move(...at(angle));
+    await page.waitForFunction((shown) => Math.abs(Number(document.querySelector(".time").textContent.match(/t = (\S+) s/)[1]) - shown) < 0.02, patience, angle);
+    assert.ok(await page.$(".moving .hold"), `at ${angle}`);
+  }
+  await page.mouse.up();
+  await page.waitForFunction(() => !document.querySelector(".moving .hold"), patience);
   assert.deepEqual(troubles, []);
   await page.close();
 });

@@ -301,6 +301,91 @@ test("the screen is saved as SVG and PNG, with axes and units", async () => {
   await page.close();
 });
 
+// What a person does with the numbers at the axis, which are those of `twice`, and with the divisions for the other trace.
+test("each trace has a scale and a position of its own, on the screen and in what is saved", async () => {
+  const {page, troubles} = await opened();
+  await open(page, circle);
+  await trigger(page, "twice", {level: 0.8, mode: "single", base: 0.1});
+  await button(page, "OP");
+  await until(page, "^single: done");
+  await button(page, "HOLD");
+  await page.$eval(".own summary", (summary) => summary.click());
+  await choose(page, "Vertical scale of twice", "0.5");
+  await enter(page, "Position of twice, divisions above the middle", "0.5");
+  await choose(page, "Vertical scale of y", "0.5");
+  await enter(page, "Position of y, divisions above the middle", "-1.5");
+  await page.waitForFunction(() => document.querySelector(".screen canvas").getAttribute("aria-label").includes("1.5 divisions below"));
+  assert.match(await says(page), /twice 0\.5 m a division, its zero 0\.5 divisions above the middle\. y 0\.5 machine unit a division, its zero 1\.5 divisions below the middle\./);
+  assert.doesNotMatch(await says(page), /screen from/);
+  const exact = {twice: (t) => 1.6 * Math.sin(Math.PI / 6 + 3 * t), y: (t) => 0.8 * Math.cos(Math.PI / 6 + 3 * t)};
+
+  const {text: svg} = await savedBy(page, "SVG");
+  const {labels, up, traces} = reading(svg);
+  for (const one of ["twice [m], 0.5 a division", "y [machine unit], 0.5 a division", "twice [m]"]) assert.ok(labels.includes(one), `${one}: ${labels}`);
+  assert.deepEqual(up.map(({words}) => words), ["−2.25", "−1.75", "−1.25", "−0.75", "−0.25", "0.25", "0.75", "1.25", "1.75"]);
+  assert.equal(labels.filter((one) => one === "▸").length, 2);
+  const [twice, y] = ["#0072b2", "#d55e00"].map((colour) => traces.find((one) => one.colour === colour));
+  // written to 0.01 px, of some 50 a division
+  for (const [t, value] of twice.points) assert.ok(Math.abs(value - exact.twice(t)) < 0.001, `${t} ${value}`);
+  // divisions above the middle by the axis of `twice`, whose zero is 0.5 above it
+  for (const [t, at] of y.points) assert.ok(Math.abs((at / 0.5 + 0.5 + 1.5) * 0.5 - exact.y(t)) < 0.001, `${t} ${at}`);
+  assert.ok(twice.points.length > 200 && y.points.length === twice.points.length);
+
+  await button(page, "PNG");
+  await page.waitForFunction(() => globalThis.savedFiles.at(-1).name === "scope.png");
+  const coloured = await page.evaluate(async (pixels) => {
+    const bitmap = await createImageBitmap(globalThis.savedFiles.at(-1).blob), pen = Object.assign(document.createElement("canvas"), {width: bitmap.width, height: bitmap.height}).getContext("2d");
+    pen.drawImage(bitmap, 0, 0);
+    const {data} = pen.getImageData(0, 0, bitmap.width, bitmap.height);
+    return pixels.map((of) => of.filter(([x, y]) => {
+      const at = 4 * (Math.round(2 * y) * bitmap.width + Math.round(2 * x));
+      return Math.abs(data[at + 2] - data[at]) > 30;  // blue or orange, on white and grey
+    }).length);
+  }, [twice.pixels, y.pixels]);
+  assert.ok(coloured[0] > 0.95 * twice.pixels.length && coloured[1] > 0.95 * y.pixels.length, String(coloured));
+
+  // Numbers are numbers, whatever the scale.
+  const {head, rows} = await table(page);
+  assert.deepEqual(head, ["sweep", "t", "twice", "y"]);
+  for (const [, t, a, b] of rows) assert.ok(Math.abs(a - exact.twice(t)) < near && Math.abs(b - exact.y(t)) < near, `${t} ${a} ${b}`);
+
+  // By keys and by the mouse.
+  const ground = (name) => page.$eval(`[data-ground="${name}"]`, (mark) => {
+    const box = mark.getBoundingClientRect();
+    return {role: mark.getAttribute("role"), label: mark.getAttribute("aria-label"), now: Number(mark.getAttribute("aria-valuenow")), says: mark.getAttribute("aria-valuetext"), x: box.x + box.width / 2, y: box.y + box.height / 2};
+  });
+  const before = await ground("y");
+  assert.deepEqual([before.role, before.label, before.now, before.says], ["slider", "Position of y on the screen", -1.5, "zero 1.5 divisions below the middle, 0.5 machine unit a division"]);
+  await page.focus('[data-ground="y"]');
+  for (const key of ["ArrowUp", "ArrowUp", "PageUp", "ArrowDown"]) await page.keyboard.press(key);
+  assert.equal((await ground("y")).now, -0.4);
+  await page.keyboard.press("Home");
+  assert.equal((await ground("y")).says, "zero in the middle, 0.5 machine unit a division");
+  await page.keyboard.press("+");
+  assert.equal((await ground("y")).says, "zero in the middle, 0.2 machine unit a division");
+  await page.keyboard.press("-");
+  await page.keyboard.press("-");
+  assert.equal(await page.$eval('select[aria-label="Vertical scale of y"]', (one) => one.value), "1");
+  const from = await ground("y"), division = (from.y - (await ground("twice")).y) / 0.5;  // where the zero of `twice` is
+  await page.mouse.move(from.x, from.y);
+  await page.mouse.down();
+  await page.mouse.move(from.x, from.y - division, {steps: 4});
+  await page.mouse.up();
+  await page.mouse.move(from.x, from.y);  // let go: it stays
+  assert.ok(Math.abs((await ground("y")).now - 1) < 1.5 / division, `${(await ground("y")).now}, ${division} px a division`);
+
+  // The numbers at the left are of what is drawn alike; what is fitted is all on the screen.
+  await choose(page, "Vertical scale of twice", "");
+  await choose(page, "Vertical scale of y", "fit");
+  await wait(300);
+  const mixed = reading((await savedBy(page, "SVG")).text);
+  for (const [t, value] of mixed.traces.find(({colour}) => colour === "#0072b2").points) assert.ok(Math.abs(value - exact.twice(t)) < 0.002, `${t} ${value}`);
+  assert.match(await says(page), /screen from -1\.5 to 2\.5 m\. y 0\.5 machine unit a division/);
+  assert.ok(mixed.traces.find(({colour}) => colour === "#d55e00").points.every(([, at]) => at > -1.5 && at < 2.5));
+  assert.deepEqual(troubles, []);
+  await page.close();
+});
+
 test("signals over another one, and the free beam with what was before", async () => {
   const {page, troubles} = await opened();
   await open(page, circle);

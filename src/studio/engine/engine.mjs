@@ -16,10 +16,22 @@ function refusal(what, remedy) {
 const text = (given) => String(given ?? "");
 const texts = (given) => Array.from(given ?? [], text);
 
-// `createEngine` is what engine.js defines, `wasmBinary` the bytes of engine.wasm; `limits` may hold seconds, steps
-// and numbers, as `Limits` has them. Throws where this browser cannot run it.
-export async function loadEngine({createEngine, wasmBinary, limits = {}}) {
-  const wasm = await createEngine({wasmBinary});
+// Of a module that is compiled already; createEngine itself would wait for ever for one that cannot be instantiated.
+function instantiated(createEngine, module) {
+  return new Promise((done, failed) => {
+    const instantiateWasm = (imports, take) => {
+      WebAssembly.instantiate(module, imports).then((instance) => take(instance, module)).catch(failed);
+      return {};
+    };
+    createEngine({instantiateWasm}).then(done, failed);
+  });
+}
+
+// `createEngine` is what engine.js defines, `wasmBinary` the bytes of engine.wasm, or in place of them `wasmModule` what
+// they were compiled to; `limits` may hold seconds, steps and numbers, as `Limits` has them. Throws where this browser
+// cannot run it.
+export async function loadEngine({createEngine, wasmBinary, wasmModule, limits = {}}) {
+  const wasm = await (wasmModule ? instantiated(createEngine, wasmModule) : createEngine({wasmBinary}));
   let ended = false;
 
   // What WebAssembly itself ends with (a stack that is used up) leaves an engine that nobody may trust.

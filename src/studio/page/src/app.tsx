@@ -21,7 +21,7 @@ function Header({session, patching}: {session: Session; patching: Patching}) {
 
   async function pick(event: Event): Promise<void> {
     const chosen = (event.target as HTMLInputElement).files?.[0];
-    if (chosen) await session.load({name: chosen.name, text: await chosen.text()});
+    if (chosen) await session.load(chosen.text().then((text) => ({name: chosen.name, text})));
   }
   function choose(name: string): void {
     const example = examples.find((one) => one.name === name);
@@ -74,7 +74,7 @@ export function App({session}: {session: Session}) {
     return () => removeEventListener("keydown", keys);
   }, [session]);
 
-  if (engine === "failed") return <p class="failed">This browser cannot run the engine: it needs WebAssembly with exceptions (Firefox 100, Chrome 95, Safari 15.2, or later).</p>;
+  if (engine === "failed") return <p class="failed">This browser cannot run the engine: it needs WebAssembly with exceptions, and streams that unpack (Firefox 113, Chrome 103, Safari 16.4, or later).</p>;
   return (
     <>
       <Header session={session} patching={patching} />

@@ -2,13 +2,20 @@
 // The worker with the engine, as functions that promise an answer.
 import type {Answer, Reply} from "./answers";
 
-/// What was packed by gzip, and written in base64.
-export async function bytesOf(base64: string): Promise<ArrayBuffer> {
-  const text = atob(base64);
-  const zipped = new Uint8Array(text.length);
-  for (let k = 0; k < text.length; ++k) zipped[k] = text.charCodeAt(k);
-  const stream = new Blob([zipped]).stream().pipeThrough(new DecompressionStream("gzip"));
-  return new Response(stream).arrayBuffer();
+const piece = 1 << 17;  // characters of base64 that are unpacked in one go: whole groups of four
+
+/// What was packed by gzip, and written in base64, as it is unpacked.
+export function unpacked(base64: string, type: string): Response {
+  let at = 0;
+  const zipped = new ReadableStream<BufferSource>({
+    pull(taker) {
+      const text = atob(base64.slice(at, at += piece)), bytes = new Uint8Array(text.length);
+      for (let k = 0; k < text.length; ++k) bytes[k] = text.charCodeAt(k);
+      taker.enqueue(bytes);
+      if (at >= base64.length) taker.close();
+    },
+  });
+  return new Response(zipped.pipeThrough(new DecompressionStream("gzip")), {headers: {"Content-Type": type}});
 }
 
 /// What a page carries in an element that is no script of it.
@@ -16,10 +23,15 @@ export function carried(id: string): string {
   return document.getElementById(id)?.textContent ?? "";
 }
 
+// Rejects, too, where the browser has not what it needs.
+async function compiled(): Promise<WebAssembly.Module> {
+  return WebAssembly.compileStreaming(unpacked(carried("engine"), "application/wasm"));
+}
+
 export class Stopped extends Error {}
 
-// Of all machines: unzipped once.
-let bytes: Promise<ArrayBuffer> | undefined;
+// Of all machines: compiled once, while it is unpacked.
+let engine: Promise<WebAssembly.Module> | undefined;
 let script: string | undefined;
 
 export class Machine {
@@ -27,12 +39,15 @@ export class Machine {
   private readonly asked = new Map<number, {done: (answer: Answer) => void; failed: (why: Error) => void}>();
   private next = 1;
   private ready: Promise<void> | undefined;
+  /// How many workers it has had: what one was told the next one does not know.
+  starts = 0;
 
   start(): Promise<void> {
-    bytes ??= bytesOf(carried("engine"));
+    ++this.starts;
+    engine ??= compiled();
     const from = script ??= URL.createObjectURL(new Blob([carried("worker")], {type: "text/javascript"}));
-    this.ready = bytes.then((bytes) => new Promise((done, failed) => {
-      const worker = this.worker = new Worker(from);
+    const worker = this.worker = new Worker(from);  // it reads its script meanwhile
+    this.ready = new Promise((done, failed) => {
       worker.onerror = (event) => failed(new Error(event.message));
       worker.onmessage = (event: MessageEvent<Reply | "ready" | "failed">) => {
         if (event.data === "ready") return done();
@@ -41,8 +56,8 @@ export class Machine {
         this.asked.delete(event.data.id);
         waits?.done(event.data.answer);
       };
-      worker.postMessage(bytes);
-    }));
+      engine!.then((module) => worker.postMessage(module), failed);
+    });
     return this.ready;
   }
 

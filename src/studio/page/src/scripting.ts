@@ -12,6 +12,8 @@ function refuse(answer: Answer): never {
   throw new Error((answer.diagnostics ?? []).map((finding) => finding.message).join("\n") || "the engine gave no answer");
 }
 
+const stopped: Advanced = {ok: false, numbers: new Float64Array(0), time: NaN, complete: false, rows: 0, seconds: 0, warnings: []};
+
 function good<Given extends Answer>(answer: Given): Given {
   return answer.ok ? answer : refuse(answer);
 }
@@ -55,12 +57,7 @@ export function scripting(session: Session) {
     /// Operates for so long [s] and holds: the time then.
     async advance(duration: number): Promise<number> {
       await session.ready;
-      session.set({mode: "hold"});  // no frame goes on meanwhile
-      await machine.ask("console.setMode", "operate");
-      const went = await machine.ask<Advanced>("console.advance", Number(duration), [], 1);
-      await machine.ask("console.setMode", "hold");
-      session.set({time: good(went).time});
-      return went.time;
+      return good(await session.advance(Number(duration)) ?? stopped).time;
     },
   };
 }

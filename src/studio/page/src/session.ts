@@ -4,7 +4,7 @@
 import {useEffect, useReducer} from "preact/hooks";
 
 import type {Advanced, Answer, Checked, Diagnostic, Drawn, Exchanged, Held, Lesson, Opened, Overloads, Patched, Read, Saved} from "./answers";
-import {bytesOf, carried, Machine, Stopped} from "./machine";
+import {carried, Machine, Stopped, unpacked} from "./machine";
 import {short} from "./numbers";
 import {Instrument} from "./scope/instrument";
 import {atFirst, type ScopeSettings} from "./scope/settings";
@@ -111,9 +111,11 @@ export class Session {
   private turning: Promise<unknown> = Promise.resolve();  // the last turn of a pot
   private saved = "";         // the state that the machine comes back to
   private asked = "";         // the text that was looked at last
+  private loads = 0;          // what was put on the page last: a file, or what is typed
   private opens = 0;          // the newest call of `open`
-  private opening = 0;        // how many of them are under way
+  private opening = 0;        // how much is done in turn, when no frame goes on
   private asking = false;     // a frame is
+  private framing: Promise<unknown> = Promise.resolve();  // the last frame
   private pressed = Promise.resolve();  // the last button has done its work
   private until = 0;          // [s] of a diagram's run, where its file may say so by an expression
   private stride = 0;         // [s] of a frame as fast as it goes
@@ -156,10 +158,10 @@ export class Session {
 
   /// Takes what is written; it is looked at as soon as the writer rests.
   write(written: string): void {
+    ++this.loads;
     this.typed = written;
     this.set({written});
     clearTimeout(this.later);
-    if (this.shown.engine !== "ready") return;
     if (written === this.shown.file.text) {
       this.asked = written;
       this.set({findings: []});
@@ -170,38 +172,43 @@ export class Session {
     }, restOfWriter);
   }
 
-  /// Puts a file in place of the one before.
-  async load(file: SharedFile): Promise<boolean> {
+  /// Puts a file in place of the one before, as soon as it is read, if nothing else has come meanwhile.
+  async load(file: SharedFile | Promise<SharedFile>): Promise<boolean> {
+    const mine = ++this.loads;
+    const next = file instanceof Promise ? await file : file;
+    if (mine !== this.loads) return false;
     clearTimeout(this.later);
-    this.source = file;
+    this.source = next;
     this.typed = undefined;
-    this.set({written: file.text});
-    return this.open(file);
+    this.set({written: next.text});
+    return this.open(next);
   }
 
   /// Puts the machine away.
-  clear(): void {
+  clear(): Promise<void> {
     ++this.opens;
-    this.turned = new Map();
-    this.saved = "";
-    this.set({file: {name: "", text: ""}, held: undefined, kind: "", title: "", diagram: "", schematic: "", pots: [], lamps: [], remarks: [], mode: "initial", time: 0,
-      meter: {name: "", value: NaN, unit: ""}, values: new Map()});
-    this.trace([]);
+    return this.inTurn(async () => {
+      this.turned = new Map();
+      this.saved = "";
+      this.set({file: {name: "", text: ""}, held: undefined, kind: "", title: "", diagram: "", schematic: "", pots: [], lamps: [], remarks: [], mode: "initial", time: 0,
+        meter: {name: "", value: NaN, unit: ""}, values: new Map()});
+      this.trace([]);
+    });
   }
 
   /// Reads a text and sets the machine up: at its initial condition. Where it is wrong, the machine before stays.
-  /// The newest call wins; meanwhile the machine stands. Whether it was taken.
+  /// One is opened after the other, and none that is not the newest any more; meanwhile the machine stands. Whether it was
+  /// taken.
   async open(next: SharedFile, how: Opening = {}): Promise<boolean> {
     const mine = ++this.opens;
-    ++this.opening;
-    try {
-      return await this.openAs(next, how, () => mine === this.opens);
-    } catch (error) {
-      ignoreStops(error);
-      return false;
-    } finally {
-      --this.opening;
-    }
+    let taken = false;
+    await this.inTurn(async () => {
+      const isNewest = () => mine === this.opens;
+      if (isNewest()) taken = await this.openAs(next, how, isNewest);
+      // what came with a file that was not taken is taken back
+      if (!taken && (next.files?.length || next.blocks?.length)) await this.putBeside(this.shown.file);
+    });
+    return taken;
   }
 
   /// A button that is pressed before the one before has done its work waits.
@@ -248,6 +255,7 @@ export class Session {
     const done = this.pressed.then(async () => {
       ++this.opening;
       try {
+        await this.framing;
         await work();
       } catch (error) {
         ignoreStops(error);
@@ -285,6 +293,19 @@ export class Session {
     await this.lookAtAll();
   }
 
+  /// Operates for so long [s], and holds.
+  async advance(duration: number): Promise<Advanced | undefined> {
+    let went: Advanced | undefined;
+    await this.inTurn(async () => {
+      await this.machine.ask("console.setMode", "operate");
+      went = await this.machine.ask<Advanced>("console.advance", duration, [], 1);
+      await this.machine.ask("console.setMode", "hold");
+      this.set({mode: "hold", time: went.ok ? went.time : this.shown.time, repeats: undefined, drawn: this.shown.drawn + 1});
+      await this.lookAtAll();
+    });
+    return went;
+  }
+
   /// Turns a pot of the machine; whether it could be.
   turn(name: string, value: number): Promise<boolean> {
     const done = this.turnTo(name, value);
@@ -293,12 +314,14 @@ export class Session {
   }
 
   private async turnTo(name: string, value: number): Promise<boolean> {
-    const {pots} = this.shown;
+    if (this.opening > 0) await this.pressed;  // the pot may be another machine's then
+    const {pots, held} = this.shown;
     const unit = pots.find((pot) => pot.name === name)?.unit ?? "";
     this.set({pots: pots.map((pot) => (pot.name === name ? {...pot, value} : pot))});
     const number = Number.isFinite(value) ? String(value) : short(value);
     const quantity = unit && !/^(machine unit|1)$/.test(unit) ? `${number} ${unit}` : number;
     const turned = await this.machine.ask("console.turn", name, quantity);
+    if (held !== this.shown.held) return turned.ok;
     if (!turned.ok) {
       this.set({pots});
       return this.good(turned);
@@ -354,28 +377,37 @@ export class Session {
   }
 
   private async begin(): Promise<void> {
-    const unpacking = bytesOf(carried("examples"));
+    const starting = this.machine.start();
+    void starting.then(async () => this.set({examples: await unpacked(carried("examples"), "application/json").json()}), () => undefined);
+    const first = this.load(starting.then(async () => {
+      this.set({engine: "ready"});
+      this.frames();
+      return await fromFragment(location.hash) ?? opening;
+    }));
     try {
-      await this.machine.start();
+      await starting;
     } catch {
+      first.catch(() => undefined);  // for the same reason
       this.set({engine: "failed"});
       return;
     }
-    this.set({engine: "ready"});
-    this.frames();
-    this.set({examples: JSON.parse(new TextDecoder().decode(await unpacking))});
-    await this.load(await fromFragment(location.hash) ?? opening);
+    await first;
+  }
+
+  /// What a file needs beside it: whether it could be had.
+  private async putBeside({files, blocks}: SharedFile): Promise<boolean> {
+    for (const {name, text} of files ?? []) if (!this.good(await this.machine.ask("putFile", name, text))) return false;
+    for (const {name, text} of blocks ?? []) if (!this.good(await this.machine.ask("putBlock", name, text))) return false;
+    return true;
   }
 
   private async openAs(next: SharedFile, how: Opening, isNewest: () => boolean): Promise<boolean> {
     const {machine} = this;
     this.set({findings: []});
     this.asked = next.text;
-    for (const {name, text} of next.files ?? []) if (!this.good(await machine.ask("putFile", name, text))) return false;
-    for (const {name, text} of next.blocks ?? []) if (!this.good(await machine.ask("putBlock", name, text))) return false;
+    if (!(await this.putBeside(next))) return false;
     const opened = await machine.ask<Opened>("open", next.text, next.name);
     if (!isNewest() || !this.good(opened)) return false;
-    const theme = {theme: "auto"};
     const gain = how.gain ?? this.shown.gain;
     const split = how.split ?? (next.name === this.shown.file.name ? this.shown.split : []);
     let diagram = next.text;
@@ -386,23 +418,28 @@ export class Session {
       diagram = patched.text;
       if (patched.judgement) remarks.push(patched.judgement);
     }
+    // a diagram is drawn by its patch panel
+    const drawn = opened.kind === "mechanism" ? await machine.ask<Drawn>("draw", diagram, {theme: "auto", data: true}, next.name) : undefined;
     if (!isNewest()) return false;
+    // from here on the engine changes: to the end, or back
     if (how.keeps && this.shown.held && opened.kind === "diagram" && this.shown.kind === "diagram" && this.shown.file.name === next.name) {
-      const went = await this.exchange(next, opened, isNewest);
+      const went = await this.exchange(next, opened);
       if (went !== undefined) return went;
       remarks.push("the timeline is another one: the machine begins anew");
     }
+    const before = await machine.ask<Saved>("console.save");
     const held = await machine.ask<Held>("console.open", diagram, next.name);
-    if (!isNewest() || !this.good(held)) return false;
+    if (!this.good(held)) return false;
     const turned = how.turned ?? new Map<string, string>();
-    for (const [pot, value] of turned) if (!this.good(await machine.ask("console.turn", pot, value))) return false;
-    // a diagram is drawn by its patch panel
-    const drawn = opened.kind === "mechanism" ? await machine.ask<Drawn>("draw", diagram, {...theme, data: true}, next.name) : undefined;
+    for (const [pot, value] of turned) {
+      if (this.good(await machine.ask("console.turn", pot, value))) continue;
+      if (before.ok) await this.comeBack(before.state);
+      return false;
+    }
     const values = await machine.ask<Read>("console.read", ...held.pots);
     const mode: Mode = how.restore ? "hold" : "initial";
     if (how.restore) await machine.ask("console.restore", how.restore);
     else await machine.ask("console.setMode", mode);
-    if (!isNewest()) return false;
     this.turned = turned;
     this.until = opened.kind === "diagram" ? opened.until : 0;
     this.renamed = [];
@@ -423,8 +460,18 @@ export class Session {
     return true;
   }
 
+  /// The engine holds the machine of the page again, in this state.
+  private async comeBack(state: string): Promise<void> {
+    await this.machine.ask("console.open", this.shown.diagram, this.shown.file.name);
+    for (const [pot, value] of this.turned) await this.machine.ask("console.turn", pot, value);
+    await this.machine.ask("console.restore", state);
+    await this.machine.ask("console.setMode", "hold");
+    this.set({mode: "hold"});
+    await this.tell();
+  }
+
   /// The machine goes on as another one; nothing where its timeline forbids.
-  private async exchange(next: SharedFile, opened: Opened, isNewest: () => boolean): Promise<boolean | undefined> {
+  private async exchange(next: SharedFile, opened: Opened): Promise<boolean | undefined> {
     const {machine, renamed} = this;
     const held = await machine.ask<Exchanged>("console.exchange", next.text, renamed, next.name);
     if (!held.ok && /timeline/.test(held.diagnostics?.[0]?.what ?? "")) return undefined;
@@ -450,11 +497,13 @@ export class Session {
     const {traced, against, meter} = this.shown;
     const left = traced.map(now).filter((name) => all.has(name));
     const shown = traced.join("\n") === usual.join("\n") ? held.outputs.slice(0, 4) : left;  // what was chosen stays
+    const {scope} = this.shown;
+    if (renamed.length > 0 && scope.own.size > 0) this.set({scope: {...scope, own: new Map([...scope.own].map(([name, scale]) => [now(name), scale]))}});
     if (shown.join("\n") !== traced.join("\n")) this.trace(shown, now(against));
     if (meter.name && !all.has(now(meter.name))) this.set({meter: {name: "", value: NaN, unit: ""}});
     else if (meter.name !== now(meter.name)) this.set({meter: {...meter, name: now(meter.name)}});
     await this.tell();
-    if (isNewest()) await this.lookAtAll();
+    await this.lookAtAll();
     return true;
   }
 
@@ -525,7 +574,7 @@ export class Session {
       last = at;
       if (!this.shown.held || !runs(this.shown.mode) || this.shown.speed === 0) return;
       this.asking = true;
-      whole(at, seconds).catch(ignoreStops).finally(() => { this.asking = false; });
+      this.framing = whole(at, seconds).catch(ignoreStops).finally(() => { this.asking = false; });
     };
     requestAnimationFrame(step);
   }

@@ -21,10 +21,11 @@ function answer({verb, given}: Question): Answer {
   return verb === "mechanism.follow" ? held.mechanism.follow!(held.console, ...given) : held[kind][name]!(...given);
 }
 
+self.onmessageerror = () => self.postMessage("failed");
 self.onmessage = async (event: MessageEvent) => {
-  if (event.data instanceof ArrayBuffer) {
+  if (event.data instanceof WebAssembly.Module) {
     try {
-      engine = await loadEngine({createEngine, wasmBinary: new Uint8Array(event.data), limits: {seconds: 20}}) as unknown as Engine;
+      engine = await loadEngine({createEngine, wasmModule: event.data, limits: {seconds: 20}}) as unknown as Engine;
       held.console = engine.console();
       self.postMessage("ready");
     } catch {

@@ -28,14 +28,21 @@ export interface DeskShown {
 
 const none: DeskShown = {mechanism: undefined, position: undefined, events: undefined, from: 0, to: 0, magnification: 1000, locked: true, dragging: undefined};
 
+/// The file whose mechanism the engine holds, and the worker that does.
+interface Opened {
+  name: string;
+  text: string;
+  starts: number;
+}
+
 export class Desk extends Store<DeskShown> {
   readonly study = new Study();
   private readonly follows = new Newest();
   private readonly drags = new Newest();
   private held: unknown;       // the machine of the session
-  private opened: unknown;     // that whose mechanism is shown
+  private opened: Opened | undefined;
   private drawn = -1;
-  private fits = true;         // the magnification is still to be found
+  private fits = "";           // the diagram whose magnification was found
   private resumes: Mode = "hold";
   private edited: DraggedAnswer | undefined;
   private operated = 0;        // for how long the machine has been in operation [s]
@@ -50,7 +57,8 @@ export class Desk extends Store<DeskShown> {
     const {shown} = this.session;
     if (shown.kind !== "mechanism") {
       if (this.now.mechanism) this.set({...none, magnification: this.now.magnification, locked: this.now.locked});
-      this.held = this.opened = shown.held;
+      this.held = shown.held;
+      this.opened = undefined;
       return;
     }
     const isOther = shown.held !== this.held;
@@ -63,12 +71,17 @@ export class Desk extends Store<DeskShown> {
     return this.session.machine.ask<Given>(verb, ...given);
   }
 
+  /// Has the engine hold the mechanism of the file, where it does not yet. A machine that begins again, or is patched anew, has
+  /// the same one: what is in the hand stays there.
   private async open(): Promise<void> {
-    const {file} = this.session.shown, {held} = this;
-    const mechanism = await this.ask<OpenedMechanism>("mechanism.open", file.text, file.name);
+    const {file: {name, text}, kind} = this.session.shown, {starts} = this.session.machine, before = this.opened;
+    if (kind !== "mechanism") return;
+    const isSame = before?.name === name && before.text === text;
+    if (isSame && before.starts === starts) return;
+    const mechanism = await this.ask<OpenedMechanism>("mechanism.open", text, name);
     if (!mechanism.ok) return;
-    this.opened = held;
-    this.fits = true;
+    this.opened = {name, text, starts};
+    if (isSame) return;
     this.set({mechanism, events: undefined, dragging: undefined});
     // what is met takes the way of a whole round: after the page can be used
     setTimeout(() => void this.meet(mechanism).catch(ignoreStops), 200);
@@ -80,11 +93,11 @@ export class Desk extends Store<DeskShown> {
   }
 
   private async follow(): Promise<void> {
-    if (this.opened !== this.held) await this.open();
+    await this.open();
     const position = await this.ask<Position>("mechanism.follow", this.now.magnification);
     if (!position.ok) return;
-    if (this.fits && position.suggested && this.session.shown.time > 0) {
-      this.fits = false;
+    const {diagram, time} = this.session.shown;
+    if (this.fits !== diagram && position.suggested && time > 0) {
       this.magnify(Math.min(1e6, Math.max(1, position.suggested)));
     }
     this.operated = position.time;
@@ -92,7 +105,7 @@ export class Desk extends Store<DeskShown> {
   }
 
   magnify(magnification: number): void {
-    this.fits = false;
+    this.fits = this.session.shown.diagram;
     this.set({magnification});
     this.follows.ask(() => this.follow());
   }
@@ -127,6 +140,7 @@ export class Desk extends Store<DeskShown> {
   private async turn(x: number, y: number): Promise<void> {
     const {dragging, position} = this.now;
     if (!dragging || !position) return;
+    await this.open();
     const nearest = await this.ask<Nearest>("mechanism.nearest", dragging.point, x, y, position.time);
     if (!nearest.ok) return this.fail(nearest);
     const at = await this.ask<Position>("mechanism.at", nearest.time);
@@ -142,6 +156,7 @@ export class Desk extends Store<DeskShown> {
   private async stretch(x: number, y: number): Promise<void> {
     const {dragging, position} = this.now;
     if (!dragging || !position) return;
+    await this.open();
     const dragged = await this.ask<DraggedAnswer>("mechanism.drag", dragging.point, x, y, position.time);
     if (!dragged.ok) return this.fail(dragged);
     this.edited = dragged;

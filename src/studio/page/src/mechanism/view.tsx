@@ -32,7 +32,7 @@ export function LinkageView({desk}: {desk: Desk}) {
   };
   const down = (event: PointerEvent) => {
     const point = nearest(placeOf(event));
-    if (point === "" || dragging) return;
+    if (point === "" || desk.now.dragging) return;
     event.preventDefault();
     overlay.current!.setPointerCapture(event.pointerId);
     setJoint(point);
@@ -40,7 +40,7 @@ export function LinkageView({desk}: {desk: Desk}) {
   };
   const move = (event: PointerEvent) => {
     const at = placeOf(event);
-    if (dragging) desk.drag(...at);
+    if (desk.now.dragging) desk.drag(...at);  // also before what is drawn knows of it
     else if (event.pointerType === "mouse") overlay.current!.style.cursor = nearest(at) ? "grab" : "";
   };
   const keys = (event: KeyboardEvent) => {

@@ -140,7 +140,7 @@ export class Patching {
 
   /// An empty diagram in place of what is here.
   begin(): void {
-    this.session.clear();
+    void this.session.clear();
     void this.session.load(emptyFile);
   }
 

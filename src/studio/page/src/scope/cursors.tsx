@@ -10,7 +10,7 @@ const small = 500, large = 10;  // parts of the screen's time that a key goes on
 function nearest(screen: Screen, sweep: Sweep, across: number, trace: number, x: number, y: number, shift: number): number {
   let least = Infinity, found = screen.time[0];
   for (let k = 0; k < sweep.times.length; ++k) {
-    const away = (screen.toX(sweep.values[across]![k]!) - x) ** 2 + (screen.toY(sweep.values[trace]![k]!) - y) ** 2;
+    const away = (screen.toX(sweep.values[across]![k]!) - x) ** 2 + (screen.toY(trace, sweep.values[trace]![k]!) - y) ** 2;
     if (away < least) {
       least = away;
       found = sweep.times[k]! - shift;
@@ -57,7 +57,7 @@ export function Handles({screen, names, units, against, shift, at, move}: Given)
       {at.map((time, cursor) => {
         const says = `${inUnit(time, "s")}${traces.map((trace, k) => `${k === 0 ? ": " : ", "}${names[trace]} = ${quantity(screen.read(trace, time), units[trace] ?? "")}`).join("")}`;
         const x = against < 0 ? screen.toX(time) : screen.toX(screen.read(against, time));
-        const y = against < 0 || traces.length === 0 ? NaN : screen.toY(screen.read(traces[0]!, time));
+        const y = against < 0 || traces.length === 0 ? NaN : screen.toY(traces[0]!, screen.read(traces[0]!, time));
         const place = against < 0 ? {left: `${x}px`, top: `${frame.y}px`, height: `${frame.height}px`}
           : Number.isNaN(x) || Number.isNaN(y) ? {left: `${frame.x + 14 + 30 * cursor}px`, top: `${frame.y + 2}px`, height: "24px"}
             : {left: `${x}px`, top: `${y - 12}px`, height: "24px"};

@@ -5,8 +5,9 @@ import {runs, useShown, type Session} from "../session";
 import {save} from "../share";
 import {Handles, Readings} from "./cursors";
 import {colourOf, paint, toSvg, type Theme} from "./drawing";
+import {Grounds, OwnScales} from "./grounds";
 import {screenOf, type Given, type Screen} from "./screen";
-import {everyRun, inUnit, steps, type ScopeSettings, type Slope, type TriggerMode} from "./settings";
+import {everyRun, inUnit, scaleSteps, timeSteps, type ScopeSettings, type Slope, type TriggerMode} from "./settings";
 import {csvOf} from "./sweeps";
 
 const height = 320;
@@ -67,6 +68,7 @@ function Beam({session, cursors, move, keep}: {session: Session; cursors: readon
   return (
     <div class="screen" ref={place} data-sweeps={shows.sweeps.length} data-status={shows.status}>
       <canvas ref={canvas} role="img" style={{width: "100%", height: `${height}px`}} />
+      {screen && <Grounds session={session} screen={screen} names={shows.names} units={shows.units} />}
       {screen && cursors.length > 0 && <Handles screen={screen} names={shows.names} units={shows.units} against={shows.against} shift={shift} at={cursors} move={move} />}
     </div>
   );
@@ -113,11 +115,11 @@ function Channels({session, save: keep}: {session: Session; save: (kind: "csv" |
   );
 }
 
-const bases = steps(1e-6, 10), scales = steps(1e-6, 100);
-
 /// Time base, scale, trigger.
 function Settings({session}: {session: Session}) {
   const scope = useShown(session, (shown) => shown.scope);
+  const traced = useShown(session, (shown) => shown.traced);
+  const against = useShown(session, (shown) => shown.against);
   const held = useShown(session, (shown) => shown.held);
   const set = (change: Partial<ScopeSettings>) => session.set({scope: {...session.shown.scope, ...change}, drawn: session.shown.drawn + 1});
   const number = (event: Event, take: (value: number) => void) => {
@@ -125,16 +127,17 @@ function Settings({session}: {session: Session}) {
     if (written !== "" && Number.isFinite(value)) take(value);
     else (event.target as HTMLInputElement).value = String(scope.level);
   };
+  const upright = traced.filter((name) => name !== against || traced.length === 1);
   const triggers = scope.source !== "" && scope.source !== everyRun;
   return (
     <div class="channels scope-settings">
       <label>time <select aria-label="Time base" value={String(scope.base)} onChange={(event) => set({base: Number((event.target as HTMLSelectElement).value)})}>
         <option value="0">automatic</option>
-        {bases.map((one) => <option value={String(one)}>{inUnit(one, "s")} a division</option>)}
+        {timeSteps.map((one) => <option value={String(one)}>{inUnit(one, "s")} a division</option>)}
       </select></label>
       <label>scale <select aria-label="Vertical scale" value={String(scope.volts)} onChange={(event) => set({volts: Number((event.target as HTMLSelectElement).value)})}>
         <option value="0">automatic</option>
-        {scales.map((one) => <option value={String(one)}>{one} a division</option>)}
+        {scaleSteps.map((one) => <option value={String(one)}>{one} a division</option>)}
       </select></label>
       {scope.volts > 0 && <label>centre <input class="level" type="text" inputMode="decimal" aria-label="Middle of the screen" value={String(scope.centre)} onChange={(event) => number(event, (centre) => set({centre}))} /></label>}
       <label>trigger <select aria-label="Trigger" value={scope.source} disabled={!held} onChange={(event) => set({source: (event.target as HTMLSelectElement).value})}>
@@ -159,6 +162,7 @@ function Settings({session}: {session: Session}) {
         </>
       )}
       <label><input type="checkbox" checked={scope.cursors} onChange={(event) => set({cursors: (event.target as HTMLInputElement).checked})} /> cursors</label>
+      {upright.length > 0 && <OwnScales session={session} names={upright} theme={themeNow()} />}
     </div>
   );
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The screen of the scope as a drawing: axes, sweeps, cursors, and all of it in words.
 import {dashOf, widthOf, type Drawing, type Frame, type Label, type Line} from "./drawing";
-import {divisionsAcross, divisionsUp, inUnit, type ScopeSettings} from "./settings";
+import {divisionsAcross, divisionsUp, fitted, inUnit, niceStep, type OwnScale, placeInWords, type ScopeSettings} from "./settings";
 import {valueAt, type Sweep} from "./sweeps";
 import {short} from "../numbers";
 
@@ -22,8 +22,10 @@ export interface Given {
 export interface Screen {
   drawing: Drawing;
   toX: (value: number) => number;    ///< [px]
-  toY: (value: number) => number;
+  toY: (trace: number, value: number) => number;
   fromX: (pixel: number) => number;
+  /// The traces with a scale of their own.
+  own: readonly {trace: number; scale: OwnScale}[];
   time: [number, number];            ///< what the screen shows, as it is written at the axis [s]
   newest: Sweep | undefined;
   /// A trace at a time as it is written at the axis: of the newest sweep that has come there; NaN where none has.
@@ -34,13 +36,7 @@ const plain = (unit: string) => (unit === "1" ? "" : unit);
 export const withUnit = (name: string, unit: string) => (plain(unit) ? `${name} [${plain(unit)}]` : name);
 export const quantity = (value: number, unit: string) => `${short(value)}${plain(unit) ? ` ${plain(unit)}` : ""}`;
 
-/// The step of 1, 2 or 5 times a power of ten that divides so much into `most` parts at the most.
-export function niceStep(size: number, most: number): number {
-  const rough = size / most, power = 10 ** Math.floor(Math.log10(rough));
-  return (rough <= power ? 1 : rough <= 2 * power ? 2 : rough <= 5 * power ? 5 : 10) * power;
-}
-
-function rangeOf(columns: readonly Float64Array[]): [number, number] {
+export function rangeOf(columns: readonly Float64Array[]): [number, number] {
   let low = Infinity, high = -Infinity;
   for (const column of columns) {
     for (const value of column) {
@@ -52,7 +48,7 @@ function rangeOf(columns: readonly Float64Array[]): [number, number] {
 }
 
 /// With room around it; of what is constant so much that the rounding of its last digits is no curve.
-function roomAround([low, high]: [number, number]): [number, number] {
+export function roomAround([low, high]: [number, number]): [number, number] {
   if (!(low <= high)) return [-1, 1];
   const size = Math.max(Math.abs(low), Math.abs(high)), more = high - low > 1e-9 * size ? 0.06 * (high - low) : 0.1 * Math.max(size, 1e-3);
   return [low - more, high + more];
@@ -119,10 +115,19 @@ export function screenOf(given: Given): Screen {
     const first = sweeps.reduce((least, sweep) => Math.min(least, sweep.times[0] ?? least), newest?.times[0] ?? 0);
     [begin, end] = length > 0 ? [Math.max(last - length, 0), Math.max(last, length)] : [first, last > first ? last : first + 1];
   }
-  const inSight = sweeps.map((sweep) => shownTraces.map((trace) => sweep.values[trace]!)).flat();
+  const own = shownTraces.flatMap((trace) => {
+    const scale = settings.own.get(names[trace]!);
+    return scale ? [{trace, scale}] : [];
+  });
+  const alike = shownTraces.filter((trace) => !own.some((one) => one.trace === trace));
+  // the numbers at the left are of those that are drawn alike; without any, of the first one
+  const numbered = alike[0] ?? shownTraces[0];
+  const ownInk = alike.length === 0 && own.length > 0 ? own[0]!.trace : undefined;
+  const screenful = ({volts, position}: OwnScale): [number, number] => [(-divisionsUp / 2 - position) * volts, (divisionsUp / 2 - position) * volts];
   const fixed: [number, number] = [settings.centre - settings.volts * divisionsUp / 2, settings.centre + settings.volts * divisionsUp / 2];
-  const [low, high] = settings.volts > 0 ? fixed : roomAround(rangeOf(inSight));
-  const yStep = settings.volts > 0 ? settings.volts : niceStep(high - low, divisionsUp);
+  const inSight = roomAround(rangeOf(sweeps.flatMap((sweep) => alike.map((trace) => sweep.values[trace]!))));
+  const [low, high] = ownInk !== undefined ? screenful(own[0]!.scale) : settings.volts > 0 ? fixed : own.length > 0 ? screenful(fitted(inSight)) : inSight;
+  const yStep = own.length > 0 ? (high - low) / divisionsUp : settings.volts > 0 ? settings.volts : niceStep(high - low, divisionsUp);
   const [left, right] = !overSignal ? [begin, end] : settings.volts > 0 ? fixed : roomAround(rangeOf(sweeps.map((sweep) => sweep.values[against]!)));
   const xStep = overSignal ? (settings.volts > 0 ? settings.volts : niceStep(right - left, 8))
     : length > 0 ? length / divisionsAcross : niceStep(right - left, divisionsAcross);
@@ -131,13 +136,16 @@ export function screenOf(given: Given): Screen {
   const size = 12;
   const [timeScale, timeUnit] = overSignal ? timeUnits[0]! : timeUnits.find(([scale]) => right - left >= 0.5 * scale) ?? timeUnits.at(-1)!;
   const asText = (value: number, step: number) => short(Number((Math.round(value / step) * step).toPrecision(9))).replace("-", "−");
-  const yTicks = ticks(low, high, yStep), xTicks = ticks(left, right, xStep);
-  const common = new Set(shownTraces.map((trace) => plain(units[trace] ?? "")));
+  // where traces have scales of their own the lines are those of the divisions
+  const yTicks = own.length > 0 ? Array.from({length: divisionsUp + 1}, (_, k) => low + k * yStep) : ticks(low, high, yStep), xTicks = ticks(left, right, xStep);
+  const atTick = (tick: number) => (own.length > 0 ? short(Number((Math.abs(tick) < 1e-9 * yStep ? 0 : tick).toPrecision(6))).replace("-", "−") : asText(tick, yStep));
+  const common = new Set(alike.map((trace) => plain(units[trace] ?? "")));
   const yUnit = common.size === 1 ? [...common][0]! : "";
   const labels: Label[] = [], lines: Line[] = [];
   let row = 0, at = 8;
   for (const trace of shownTraces) {
-    const text = withUnit(names[trace]!, units[trace] ?? "");
+    const scale = settings.own.get(names[trace]!);
+    const text = withUnit(names[trace]!, units[trace] ?? "") + (scale ? `, ${short(scale.volts)} a division` : "");
     const wide = 26 + widthOf(text, size) + 14;
     if (at > 8 && at + wide > width) {
       ++row;
@@ -154,11 +162,15 @@ export function screenOf(given: Given): Screen {
     labels.push({x: width - 14, y: 15 + 16 * row, text, anchor: "end", ink: "ink", size});
   }
   const top = 28 + 16 * row;
-  const widest = Math.max(0, ...yTicks.map((tick) => widthOf(asText(tick, yStep), size)));
+  const widest = Math.max(0, ...yTicks.map((tick) => widthOf(atTick(tick), size)));
   const frame: Frame = {x: Math.ceil(26 + widest), y: top, width: 0, height: Math.max(height - top - 42, 40)};
   frame.width = Math.max(width - frame.x - 14, 40);
   const toX = (value: number) => frame.x + (value - left) / (right - left) * frame.width;
-  const toY = (value: number) => frame.y + frame.height - (value - low) / (high - low) * frame.height;
+  const toY = (trace: number, value: number) => {
+    const scale = settings.own.get(names[trace]!);
+    const [least, most] = scale ? screenful(scale) : [low, high];
+    return frame.y + frame.height - (value - least) / (most - least) * frame.height;
+  };
   const fromX = (pixel: number) => left + (pixel - frame.x) / frame.width * (right - left);
 
   let clear = -Infinity;
@@ -170,12 +182,19 @@ export function screenOf(given: Given): Screen {
     labels.push({x: toX(tick), y: frame.y + frame.height + 15, text, anchor: "middle", ink: "ink", size});
   }
   for (const tick of yTicks) {
-    lines.push({points: [frame.x, toY(tick), frame.x + frame.width, toY(tick)], ink: "faint", width: 1, opacity: 1});
-    labels.push({x: frame.x - 5, y: toY(tick) + 4, text: asText(tick, yStep), anchor: "end", ink: "ink", size});
+    const y = toY(numbered ?? -1, tick);
+    lines.push({points: [frame.x, y, frame.x + frame.width, y], ink: "faint", width: 1, opacity: 1});
+    labels.push({x: frame.x - 5, y: y + 4, text: atTick(tick), anchor: "end", ink: ownInk ?? "ink", size});
+  }
+  // where the zero of each is; beyond the screen at its edge
+  for (const {trace} of own) {
+    const y = toY(trace, 0), bottom = frame.y + frame.height;
+    labels.push({x: frame.x + 2, y: Math.min(Math.max(y, frame.y + 8), bottom - 4) + 4, text: y < frame.y ? "▴" : y > bottom ? "▾" : "▸", anchor: "start", ink: trace, size: 14, halo: true});
   }
   const xLabel = overSignal ? withUnit(names[against]!, units[against] ?? "") : `${given.fromTrigger ? "t from the trigger" : "t"} [${timeUnit}]`;
   labels.push({x: frame.x, y: frame.y + frame.height + 34, text: xLabel, anchor: "start", ink: "ink", size});
-  labels.push({x: 14, y: frame.y + frame.height / 2, text: yUnit ? `[${yUnit}]` : shownTraces.length === 1 ? names[shownTraces[0]!]! : "in the unit of each", anchor: "middle", ink: "ink", size, upwards: true});
+  labels.push({x: 14, y: frame.y + frame.height / 2, text: ownInk !== undefined ? withUnit(names[ownInk]!, units[ownInk] ?? "") : yUnit ? `[${yUnit}]` : alike.length === 1 ? names[alike[0]!]! : "in the unit of each",
+    anchor: "middle", ink: ownInk ?? "ink", size, upwards: true});
   if (given.status) labels.push({x: frame.x + frame.width, y: frame.y + frame.height + 34, text: given.status, anchor: "end", ink: "quiet", size: 11});
 
   // sweeps: the older, the fainter
@@ -183,8 +202,9 @@ export function screenOf(given: Given): Screen {
     const age = sweeps.length - 1 - k, opacity = age === 0 ? 1 : Math.max(0.1, 0.6 * 0.8 ** (age - 1));
     const zero = given.fromTrigger ? sweep.zero : 0;
     for (const trace of shownTraces) {
-      const points = overSignal ? way(sweep.values[against]!, sweep.values[trace]!, toX, toY)
-        : thinned(sweep.times, sweep.values[trace]!, (t) => toX(t - zero), toY);
+      const up = (value: number) => toY(trace, value);
+      const points = overSignal ? way(sweep.values[against]!, sweep.values[trace]!, toX, up)
+        : thinned(sweep.times, sweep.values[trace]!, (t) => toX(t - zero), up);
       lines.push({points, ink: trace, width: age === 0 ? 1.7 : 1.2, opacity, dash: dashOf(trace)});
     }
   });
@@ -198,9 +218,10 @@ export function screenOf(given: Given): Screen {
     }
     return NaN;
   };
-  if (given.fromTrigger && settings.volts >= 0 && shownTraces.some((trace) => names[trace] === settings.source) && !overSignal) {
-    const y = Math.min(Math.max(toY(settings.level), frame.y), frame.y + frame.height);
-    labels.push({x: frame.x + frame.width + 12, y: y + 4, text: "◂", anchor: "end", ink: names.indexOf(settings.source), size: 14});
+  const triggering = shownTraces.find((trace) => names[trace] === settings.source);
+  if (given.fromTrigger && triggering !== undefined && !overSignal) {
+    const y = Math.min(Math.max(toY(triggering, settings.level), frame.y), frame.y + frame.height);
+    labels.push({x: frame.x + frame.width + 12, y: y + 4, text: "◂", anchor: "end", ink: triggering, size: 14});
   }
   cursors.forEach((time, k) => {
     const name = "AB"[k]!;
@@ -212,8 +233,9 @@ export function screenOf(given: Given): Screen {
     const across = overSignal ? read(against, time) : time;
     values.forEach((value, v) => {
       if (Number.isNaN(value) || Number.isNaN(across)) return;
-      discs.push({x: toX(across), y: toY(value), radius: 3.5, ink: shownTraces[v]!});
-      if (overSignal && v === 0) labels.push({x: toX(across) + 6, y: toY(value) - 5, text: name, anchor: "start", ink: "ink", size, halo: true});
+      const y = toY(shownTraces[v]!, value);
+      discs.push({x: toX(across), y, radius: 3.5, ink: shownTraces[v]!});
+      if (overSignal && v === 0) labels.push({x: toX(across) + 6, y: y - 5, text: name, anchor: "start", ink: "ink", size, halo: true});
     });
     words.push(`cursor ${name} at ${inUnit(time, "s")}: ${shownTraces.map((trace, v) => `${names[trace]} ${Number.isNaN(values[v]!) ? "not reached" : `= ${quantity(values[v]!, units[trace] ?? "")}`}`).join(", ")}`);
   });
@@ -227,12 +249,13 @@ export function screenOf(given: Given): Screen {
   const description = [
     `${ranges.join("; ") || "no trace"}`,
     overSignal ? `${names[against]} across, from ${short(left)} to ${quantity(right, units[against] ?? "")}` : `time from ${inUnit(left, "s")} to ${inUnit(right, "s")}`,
-    `screen from ${short(low)} to ${quantity(high, yUnit)}`,
+    alike.length > 0 || own.length === 0 ? `screen from ${short(low)} to ${quantity(high, yUnit)}` : "",
+    ...own.map(({trace, scale}) => `${names[trace]} ${quantity(scale.volts, units[trace] ?? "")} a division, its zero ${placeInWords(scale.position)}`),
     sweeps.length > 1 ? `${sweeps.length} sweeps, the older fainter` : "",
     given.status, ...words,
   ].filter(Boolean).join(". ") + ".";
   const title = `Oscilloscope: ${shownTraces.map((trace) => names[trace]).join(", ") || "nothing"} over ${over}`;
-  return {drawing: {width, height, title, description, frame, lines, discs, labels}, toX, toY, fromX, time: [begin, end], newest, read};
+  return {drawing: {width, height, title, description, frame, lines, discs, labels}, toX, toY, fromX, own, time: [begin, end], newest, read};
 }
 
 /// "50 Hz", with its sign.
