@@ -54,7 +54,7 @@ Runner::Runner(const network::Program& program, const diagram::FlatDiagram& diag
                diagram.file),
       branches_(program, workspace_, begin_, options, diagram.file),
       states_(program.start()),
-      segments_({program, diagram, options, workspace_, switching_, clock_, branches_, sampler_, overloads_,
+      segments_({program, diagram, options, workspace_, switching_, clock_, branches_, sources_, sampler_, overloads_,
                  states_}) {
   constexpr double kSamplesAStep = 100, kSourceSamplesAStep = 10;
   switching_.end_at(options.until);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Where a smooth segment ends and the states go on as they went, the solver does so too.
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -36,6 +37,24 @@ n = { type = "counter", in = "p" }
     // The steps are the same, but in the first period of the clock, at whose edges the solver begins anew.
     EXPECT_LE(error(beside), 2 * error(alone));
     EXPECT_LE(beside.statistics.evaluations, 1.5 * static_cast<double>(alone.statistics.evaluations));
+  }
+}
+
+// A switch lets through, from t = 5.01 on, a source that is nothing until a pulse at t = 5.04, of a
+// thousandth of a second: the edge of its clock acts on nothing at first, and neither it nor the clock's
+// later edges may hide the pulse.
+TEST(Clocks, OneThatOpensTheWayToAPulseDoesNotHideIt) {
+  for (const auto method : {diagram::IntegrationMethod::adams, diagram::IntegrationMethod::rodas}) {
+    const auto result = run_of(Compiled(R"toml(
+p = { type = "pulse-train", period = 0.5, width = 0.2, delay = 0.01 }
+u = { type = "time-function", formula = "exp(-((time - 5.04)/5e-4)^2)" }
+g = { type = "multiplier", in = ["p", "u"] }
+x = { type = "integrator", in = "g" }
+one = { type = "constant" }
+y = { type = "transfer-lag", in = "one" }
+)toml"),
+                               {.until = 10, .method = method});
+    EXPECT_NEAR(row_values(result, "x").back(), 5e-4 * std::sqrt(std::numbers::pi), 1e-9);
   }
 }
 

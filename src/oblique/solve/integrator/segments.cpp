@@ -251,7 +251,12 @@ bool Segments::turns_without_effect(double at, std::span<const double> sample_ti
     if (!parts_.switching.derivatives(times[k], states_there[k].data(), after.data()) || before[k] != after)
       return false;
   }
-  // What it turned over may have brought the next switch forward that follows the time alone.
+  // What it turned over may have opened the way to something short, which is not seen from where the step was
+  // looked at.
+  const auto left =
+      std::count_if(sample_times.begin(), sample_times.end(), [&](double time) { return time > at; });
+  if (std::ssize(parts_.sources.sample_times(at, step_.end, solution)) > left) return false;
+  // And it may have brought the next switch forward that follows the time alone.
   const auto wait = parts_.switching.known_wait(at, parts_.states, EventLocation::Of::ends_of_segments);
   if (wait && at + *wait < end_ - time_resolution(end_)) return false;
   if (parts_.overloads) parts_.overloads->restart(at, parts_.states);

@@ -13,6 +13,7 @@
 #include <oblique/solve/integrator/overload.h>
 #include <oblique/solve/integrator/phase_clock.h>
 #include <oblique/solve/integrator/sampler.h>
+#include <oblique/solve/integrator/source_watch.h>
 #include <oblique/solve/run.h>
 
 namespace oblique::solve {
@@ -34,6 +35,7 @@ class Segments {
     Switching& switching;
     PhaseClock& clock;
     BranchWatch& branches;
+    SourceWatch& sources;
     Sampler& sampler;
     std::optional<OverloadWatch>& overloads;
     std::vector<double>& states;
