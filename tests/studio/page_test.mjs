@@ -335,7 +335,7 @@ x = "x"
 });
 
 test("a browser that is too old is told so", async () => {
-  for (const prepare of [() => delete globalThis.DecompressionStream, () => delete WebAssembly.compileStreaming, () => delete WebAssembly.Module]) {
+  for (const prepare of [() => delete globalThis.DecompressionStream, () => delete WebAssembly.compileStreaming]) {
     const {page, troubles} = await opened({prepare});
     await page.waitForSelector(".failed", {timeout: 20000});
     assert.match(await text(page, ".failed"), /cannot run the engine.*Firefox 113, Chrome 103, Safari 16\.4, or later/);
@@ -371,6 +371,48 @@ test("a link holds the file", async () => {
   const broken = await opened({fragment: "#nothing"});
   assert.match(await text(broken.page, "h1"), /Class III/);
   await broken.page.close();
+});
+
+// What lies on something else of the page, or leaves it; pictures, and lists that are scrolled, have their own order.
+const collisions = (page) => page.evaluate(() => {
+  const all = [...document.querySelectorAll("button, select, input, output, summary, h1, h2, p, td, textarea, .knob label, .unit, .picture, .screen")]
+    .filter((one) => one.offsetParent !== null && !one.closest(".picture *, .screen *, .palette ul, .pointed, .button"));
+  const found = [];
+  all.forEach((one, k) => {
+    const a = one.getBoundingClientRect(), says = `${one.tagName} ${one.className} ${one.textContent.slice(0, 20)}`;
+    if (a.left < 0 || a.right > innerWidth) found.push(`${says} from ${a.left} to ${a.right}`);
+    for (const other of all.slice(k + 1)) {
+      const b = other.getBoundingClientRect(), wide = Math.min(a.right, b.right) - Math.max(a.left, b.left), high = Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top);
+      if (wide > 1 && high > 1 && !one.contains(other)) found.push(`${says} / ${other.tagName} ${other.className} ${other.textContent.slice(0, 20)}`);
+    }
+  });
+  return found;
+});
+
+test("on a telephone nothing lies on anything else, and the lesson stands first", async () => {
+  const {page, troubles} = await opened({width: 390, height: 844});
+  await page.evaluate(() => document.querySelectorAll("details").forEach((one) => { one.open = true; }));
+  await page.waitForSelector(".mode svg", {timeout: 60000});
+  await button(page, "OP");
+  await wait(700);
+  await button(page, "HOLD");
+  assert.deepEqual(await collisions(page), []);
+  if (shots) await page.screenshot({path: join(shots, "telephone-mechanism.png"), fullPage: true});
+  await choose(page, "Examples", "course/1-open-amplifier.toml");
+  await page.waitForSelector(".lesson");
+  await button(page, "Next");
+  await button(page, "Check");
+  await page.waitForSelector(".lesson .verdict");
+  await button(page, "Add an element");
+  await page.evaluate(() => { document.querySelector(".own").open = true; });
+  for (const name of await page.$$eval(".own select", (all) => all.map((one) => one.getAttribute("aria-label")))) await choose(page, name, "0.5");
+  await wait(300);
+  assert.deepEqual(await collisions(page), []);
+  const tops = await page.evaluate(() => [".lesson", ".desk", ".machine", ".text"].map((one) => document.querySelector(one).getBoundingClientRect().top));
+  assert.deepEqual(tops, [...tops].sort((a, b) => a - b));
+  if (shots) await page.screenshot({path: join(shots, "telephone-lesson.png"), fullPage: true});
+  assert.deepEqual(troubles, []);
+  await page.close();
 });
 
 for (const [width, scheme] of [[1280, "light"], [1280, "dark"], [390, "light"], [390, "dark"]]) {

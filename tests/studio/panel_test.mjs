@@ -418,6 +418,38 @@ test("a file that is wrong is opened and mended in the panel, and its errors sta
   await page.close();
 });
 
+test("keys with dots and in quotes are edited by hand as any others", async () => {
+  const {page, troubles} = await opened();
+  const text = `format = "oblique-diagram/1"
+[run]
+until = 4
+[blocks]
+a.type  = "constant"
+a.value = 0.5   # of x
+x.type  = "integrator"
+x.in    = ["4*a", "-4*x"]
+"y" = { type = "inverter", 'in' = "x" }
+[outputs]
+x.signal = "x"
+`;
+  await page.evaluate((given) => oblique.open(given, "dots.toml"), text);
+  await page.mouse.click(...await middle(page, body("x")));
+  await set(page, "label", "speed");
+  await says(page, 'x.label = "speed"');
+  await set(page, "name", "v");
+  await says(page, "v.type");
+  await page.mouse.click(...await middle(page, body("y")));
+  await button(page, "Delete y");
+  await page.waitForFunction(() => !document.querySelector("textarea").value.includes("inverter"), {timeout: 20000});
+  assert.equal(await file(page), text.replace("x.type ", "v.type ").replace("x.in    = [\"4*a\", \"-4*x\"]\n", "v.in    = [\"4*a\", \"-4*v\"]\nv.label = \"speed\"\n")
+    .replace(/"y" = .*\n/, "").replace('signal = "x"', 'signal = "v"'));
+  assert.equal(await page.$(".machine .findings"), null);
+  for (let k = 0; k < 3; ++k) await button(page, "Undo");
+  await page.waitForFunction((before) => document.querySelector("textarea").value === before, {timeout: 20000}, text);
+  assert.deepEqual(troubles, []);
+  await page.close();
+});
+
 test("a composite opens and closes; what cannot be done is said", async () => {
   const {page, troubles} = await opened();
   const text = lag.replace("[outputs]", 'q = { type = "divider", numerator = "x", denominator = "a" }\n[outputs]');

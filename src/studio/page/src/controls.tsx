@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 import {useState} from "preact/hooks";
 
-import {short} from "./numbers";
+import {besideNumber, short} from "./numbers";
 import {runs, useShown, type Pot, type Session} from "./session";
 import {Pointed} from "./voltages/voltages";
 
@@ -91,15 +91,17 @@ function Knob({pot, turn}: {pot: Pot; turn: (name: string, value: number) => voi
       <input type="range" aria-label={`${pot.name}, dragged`} disabled={!slides} min={low} max={high} step={(high - low) / 400} value={slides ? pot.value : 0}
         onInput={(event) => turn(pot.name, Number((event.target as HTMLInputElement).value))} />
       <input id={`pot-${pot.name}`} type="text" inputMode="decimal" value={short(pot.value)} onChange={typed} />
-      <span class="unit">{/^(machine unit|1)$/.test(pot.unit) ? "" : pot.unit}</span>
+      <span class="unit">{besideNumber(pot.unit)}</span>
     </div>
   );
 }
 
+const narrow = matchMedia("(max-width: 700px)");
+
 export function Pots({session}: {session: Session}) {
   const pots = useShown(session, (shown) => shown.pots);
   const [filter, setFilter] = useState("");
-  const most = 40;
+  const most = narrow.matches ? 8 : 40;
   const found = pots.filter((pot) => pot.name.toLowerCase().includes(filter.toLowerCase()));
   return (
     <section class="pots" aria-label="Potentiometers">

@@ -11,3 +11,8 @@ export function short(value: number): string {
   if (Number.isFinite(value)) return String(Number(value.toPrecision(6)));
   return Number.isNaN(value) ? "nan" : value > 0 ? "inf" : "-inf";
 }
+
+/// A unit as it stands beside a number: none is the machine unit.
+export function besideNumber(unit: string): string {
+  return /^(machine unit|1)$/.test(unit) ? "" : unit.replace(/^machine unit(?=\/)/, "1");
+}

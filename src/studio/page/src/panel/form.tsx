@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 import {useState} from "preact/hooks";
 
+import {besideNumber} from "../numbers";
 import type {Session} from "../session";
 import type {Patching} from "./patching";
 import type {Element, Kind, Wire} from "./sheet";
@@ -17,7 +18,7 @@ function Line({label, said, hint = "", unit = "", title = "", clears = false, ta
           take(written);
           if (clears) (event.target as HTMLInputElement).value = "";
         }} />
-      <span class="unit">{/^(machine unit|1)$/.test(unit) ? "" : unit}</span>
+      <span class="unit">{besideNumber(unit)}</span>
     </label>
   );
 }
