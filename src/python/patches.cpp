@@ -97,7 +97,7 @@ py::dict patched_on(const MechanismModel& model, const Library& library, const s
   all["components_text"] = to_str(report::to_text(components));
   all["fits"] = components.verdict() == machine::ComponentList::Verdict::fits;
   all["sheets"] = py::make_tuple(table_of(sheets.connections), table_of(sheets.potentiometers),
-                                 table_of(sheets.static_test));
+                                 table_of(sheets.static_test), table_of(sheets.functions));
   return all;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Functions given by points, in the diagram or in a file.
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -12,14 +13,16 @@
 #include <oblique/diagram/flatten.h>
 #include <oblique/network/assembly/network.h>
 #include <oblique/network/program/program.h>
-#include "../support/runs.h"
 #include "../support/scratch_folder.h"
+#include "closed_form.h"
 
 namespace oblique::test {
 namespace {
 
 using testing::Compiled;
+using testing::expect_form;
 using ::testing::HasSubstr;
+using testing::kRounding;
 using testing::message_of;
 using testing::row_values;
 using testing::run_of;
@@ -67,6 +70,26 @@ TEST(Recording, FollowsAColumnOfAFile) {
               1e-9);  // tolerance 1e-8 of few steps of low order
 }
 
+// 0.1 + x/2 about 0; above it 2 x from 0.2 on and −x from 0.6 on; below it level from −0.4 on.
+TEST(FunctionGenerator, TakesBreakpointsAndSlopesAsOnPaper) {
+  const Compiled made(R"(u = { type = "ramp", initial = -2 }
+f = { type = "function-generator", in = "u", points = { at_zero = 0.1, slope = 0.5, segments = [[0.6, -1], [-0.4, 0], [0.2, 2]] } }
+g = { type = "function-generator", in = "u", points = { at_zero = 0.5, slope = -1, segments = [[0, 3]] } })");
+  const auto result = run_of(made, {.until = 4, .samples = 402});
+  expect_form(result, "f", kRounding, [](double t) {
+    const double x = t - 2;
+    return x < -0.4 ? -0.1 : x < 0.2 ? 0.1 + 0.5 * x : x < 0.6 ? 0.2 + 2 * (x - 0.2) : 1 - (x - 0.6);
+  });
+  expect_form(result, "g", kRounding, [](double t) { return 0.5 + (t < 2 ? -(t - 2) : 3 * (t - 2)); });
+}
+
+TEST(FunctionGenerator, TakesSlopesInUnits) {
+  const Compiled made(
+      R"(r = { type = "recording", data = { at_zero = 0.5, slope = "2 machine unit/min", segments = [["1 min", 0]] } })");
+  expect_form(run_of(made, {.until = 100, .samples = 101}), "r", kRounding,
+              [](double t) { return 0.5 + std::min(t, 60.0) / 30; });
+}
+
 std::string refusal(const std::string& points) {
   return message_of<diagram::DiagramError>(
       [&] { Compiled("f = { type = \"function-generator\", in = \"f\", points = " + points + " }\n"); });
@@ -82,6 +105,19 @@ TEST(FunctionGenerator, RefusesPointsThatMakeNoFunction) {
   EXPECT_THAT(refusal("{ file = \"none.csv\", x = \"a\" }"),
               HasSubstr("parameter 'f.points' has no 'y'; expected the name of the column of the value"));
   EXPECT_THAT(refusal("{ file = \"none.csv\", x = \"a\", y = \"b\" }"), HasSubstr("none.csv"));
+  EXPECT_EQ(refusal("{ at_zero = 0, slope = 1 }"),
+            "d.toml:3:55: parameter 'f.points' has no segments; expected segments = [[breakpoint, slope "
+            "beyond it], "
+            "…], at least one");
+  EXPECT_THAT(refusal("{ at_zero = 0, slope = 1, segments = [] }"), HasSubstr("has no segments"));
+  EXPECT_THAT(refusal("{ at_zero = 0, slope = 1, segments = [0.5] }"),
+              HasSubstr("has something other than a segment; expected [breakpoint, slope beyond it]"));
+  EXPECT_THAT(refusal("{ at_zero = 0, slope = 1, segments = [[1, 2], [1, 3]] }"),
+              HasSubstr("has two segments from 1 on; expected breakpoints that differ"));
+  EXPECT_THAT(refusal("{ segments = [[1, 2]] }"), HasSubstr("parameter 'f.points' has no 'at_zero'"));
+  EXPECT_THAT(refusal("{ at_zero = 0, slope = 1, segments = [[1, 2]], beyond = \"hold\" }"),
+              HasSubstr("'beyond'"));
+  EXPECT_THAT(refusal("{ at_zero = 0, slope = 1, segments = [[1, \"inf\"]] }"), HasSubstr("not finite"));
   EXPECT_THAT(
       message_of<diagram::DiagramError>([] { Compiled("s = { type = \"summer\", in = [[0, 1]] }\n"); }),
       HasSubstr("input 's.in' is given an array; expected the name of a signal, or a list of names"));

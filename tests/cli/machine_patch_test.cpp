@@ -243,6 +243,24 @@ TEST_F(PatchForMachine, PutsADiagramOntoAMachine) {
   EXPECT_THAT(text_of("made-patch.csv"), HasSubstr("initial value"));
 }
 
+// A stop of 20 mm, six times as stiff as the spring: a diode, which the machine makes of a function
+// generator.
+TEST_F(PatchForMachine, SaysHowFunctionGeneratorsAreSet) {
+  std::string stopped = kSpring;
+  stopped.replace(stopped.find("\"-4*x\""), 6, "\"-4*x\", \"-24*stop\"");
+  stopped.insert(stopped.find("[outputs]"), "stop = { type = \"diode\", in = \"x\", drop = 20 }\n");
+  write("stopped.toml", stopped);
+  const Outcome outcome = oblique("patch stopped.toml --machine tr-10 --sheets made -o made.toml");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("wrote made-functions.csv\n"));
+  // The stop throws x back to −55.5 mm: it gets the factor 0.018 of two digits, by which 20 mm are 3.6 V.
+  const std::string functions = text_of("made-functions.csv");
+  EXPECT_THAT(functions, StartsWith("element,signal,breakpoint [V],output [V],slope beyond,slope added\n"
+                                    "F1,stop,0.0000,0.0000,0.0000,\n"));
+  EXPECT_THAT(functions, HasSubstr("F1,stop,3.6000,0.0000,"));
+  EXPECT_THAT(text_of("made.txt"), HasSubstr("\nfunction generators\n"));
+}
+
 TEST_F(PatchForMachine, TakesTheTimeScaleThatIsAskedFor) {
   write("spring.toml", kSpring);
   const Outcome outcome = oblique("patch spring.toml --machine tr-10 --time-scale 5 -o made.toml");

@@ -82,6 +82,8 @@ const std::map<std::string, Fate> kFates = {
     {"lessons/double-pendulum", {1e-6}},
     {"lessons/inverse-sine", {1e-4}},
     {"lessons/iterative-operation", {0, "[groups] or a [timeline]"}},
+    {"lessons/logarithmic-multiplier", {1e-4}},
+    {"lessons/oscilloscope-switch", {0, "'channel.out0' (demultiplexer) jumps"}},
     {"lessons/range-of-a-throw", {0, "[groups] or a [timeline]"}},
     {"lessons/relay-oscillator", {0, "has no counter, which 'periods' is"}},
     {"lessons/repetitive-operation", {0, "[groups] or a [timeline]"}},

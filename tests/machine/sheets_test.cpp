@@ -89,6 +89,29 @@ TEST(Sheets, TellWhatEveryElementShowsAtTheStart) {
   EXPECT_THAT(test.rows, Contains(ElementsAre("P2", "pot_2", "potentiometer", "-2.0000", "")));
 }
 
+// By hand: about 0 the line from (−0.4, −0.1) to (0.2, 0.2), of slope ½; above it 1, below it −1; then a jump
+// of 0.5 at 0.5, beyond which it is level.
+TEST(Sheets, GiveTheSettingsOfFunctionGenerators) {
+  const diagram::FlatDiagram flat = diagram::flatten(diagram::parse_diagram(testing::diagram_text(R"(
+x = { type = "integrator", in = ["f"] }
+f = { type = "function-generator", in = "x", points = [[-1, 0.5], [-0.4, -0.1], [0.2, 0.2], [0.5, 0.5], [0.5, 0], [1, 0]] }
+)"),
+                                                                            "d.toml"),
+                                                     shipped_blocks());
+  const Sheet functions =
+      make_sheets(flat, solve::static_test(network::Program(network::assemble(flat)), "d.toml"), ten_volts())
+          .functions;
+  EXPECT_THAT(functions.columns, ElementsAre("element", "signal", "breakpoint [V]", "output [V]",
+                                             "slope beyond", "slope added"));
+  EXPECT_THAT(functions.rows,
+              ElementsAre(ElementsAre("F1", "f", "0.0000", "1.0000", "0.5000", ""),
+                          ElementsAre("F1", "f", "2.0000", "2.0000", "1.0000", "0.5000"),
+                          ElementsAre("F1", "f", "5.0000", "5.0000", "jump", ""),
+                          ElementsAre("F1", "f", "5.0000", "0.0000", "0.0000", ""),
+                          ElementsAre("F1", "f", "-4.0000", "-1.0000", "-1.0000", "-1.5000")));
+  EXPECT_TRUE(sheets(ten_volts()).functions.rows.empty());
+}
+
 TEST(Sheets, ComputeInMachineUnitsWhereTheVoltageIsNotKnown) {
   const Sheet test = sheets(inverting_machine()).static_test;
   EXPECT_THAT(test.columns, ElementsAre("element", "signal", "kind", "output [machine unit]",

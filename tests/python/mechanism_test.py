@@ -140,7 +140,8 @@ def test_patches(four_bar):
 def test_patches_for_a_machine(four_bar):
     patch = four_bar.patch(machine="tr-10")
     assert patch.machine == "tr-10" and patch.components and patch.components_text and patch.fits in (True, False)
-    assert [sheet.title for sheet in patch.sheets] and patch.sheets[1].rows and "<table>" in patch.sheets[1]._repr_html_()
+    assert [sheet.title for sheet in patch.sheets] == ["patch list", "potentiometers", "static test", "function generators"]
+    assert patch.sheets[1].rows and not patch.sheets[3].rows and "<table>" in patch.sheets[1]._repr_html_()
     study = four_bar.compare(machine="tr-10")
     assert study.machine["max_error"] > study.errors[0]
 

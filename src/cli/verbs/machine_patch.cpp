@@ -3,6 +3,8 @@
 
 #include <array>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -23,8 +25,14 @@
 namespace oblique::cli {
 namespace {
 
-constexpr std::array<const char*, 5> kSheetEndings{"-patch.csv", "-pots.csv", "-static.csv", ".txt",
-                                                   "-scales.csv"};  ///< the last of a diagram alone
+constexpr const char* kPatchEnding = "-patch.csv";
+constexpr const char* kPotsEnding = "-pots.csv";
+constexpr const char* kStaticEnding = "-static.csv";
+constexpr const char* kFunctionsEnding = "-functions.csv";  ///< where there are function generators
+constexpr const char* kScalesEnding = "-scales.csv";        ///< of a diagram alone
+constexpr const char* kPaperEnding = ".txt";                ///< all of them
+constexpr std::array kSheetEndings{kPatchEnding,     kPotsEnding,   kStaticEnding,
+                                   kFunctionsEnding, kScalesEnding, kPaperEnding};
 
 std::string table_of(const machine::Sheet& sheet) {
   report::Table table(sheet.columns);
@@ -38,16 +46,18 @@ std::vector<Written> sheet_files(const PatchRequest& request, const diagram::Dia
                                  const diagram::BlockLibrary& library, const diagram::MachineProfile& machine,
                                  const std::optional<machine::Sheet>& scales) {
   const machine::MachineSheets sheets = machine::sheets_of(diagram, flat, library, machine);
-  std::string text = fmt::format("{}\n\n{}\n{}\n{}\n{}", diagram.title, report::to_text(components),
-                                 table_of(sheets.connections), table_of(sheets.potentiometers),
-                                 table_of(sheets.static_test));
-  if (scales) text += "\n" + table_of(*scales);
-  std::vector<std::string> texts{machine::to_csv(sheets.connections), machine::to_csv(sheets.potentiometers),
-                                 machine::to_csv(sheets.static_test), text};
-  if (scales) texts.push_back(machine::to_csv(*scales));
+  std::vector<std::pair<const char*, const machine::Sheet*>> all{{kPatchEnding, &sheets.connections},
+                                                                 {kPotsEnding, &sheets.potentiometers},
+                                                                 {kStaticEnding, &sheets.static_test}};
+  if (!sheets.functions.rows.empty()) all.emplace_back(kFunctionsEnding, &sheets.functions);
+  if (scales) all.emplace_back(kScalesEnding, &*scales);
+  std::string paper = diagram.title + "\n\n" + report::to_text(components);
   std::vector<Written> files;
-  for (std::size_t k = 0; k < texts.size(); ++k)
-    files.push_back({request.sheets + kSheetEndings[k], texts[k]});
+  for (const auto& [ending, sheet] : all) {
+    paper += "\n" + table_of(*sheet);
+    files.push_back({request.sheets + ending, machine::to_csv(*sheet)});
+  }
+  files.push_back({request.sheets + kPaperEnding, paper});
   return files;
 }
 

@@ -59,6 +59,9 @@ class PointReader {
 
   std::optional<text::PointTable> from_table(const text::Value& value, bool& hold) {
     text::TableReader reader(file_, value, subject_, diagnostics_);
+    for (const char* const key : {"at_zero", "slope", "segments"}) {
+      if (value.find(key) != nullptr) return from_slopes(reader);
+    }
     if (const auto beyond = reader.string("beyond")) {
       hold = *beyond == "hold";
       if (!hold && *beyond != "extrapolate") {
@@ -89,6 +92,80 @@ class PointReader {
       for (const text::Diagnostic& finding : error.diagnostics()) diagnostics_.add(finding);
       return std::nullopt;
     }
+  }
+
+  /// Where a line of the function begins, counted from 0 outwards, and its slope.
+  struct Segment {
+    double breakpoint, slope;
+  };
+
+  /// A function as the sheet of a diode function generator has it: value and slope at 0, and the slopes
+  /// beyond its breakpoints.
+  std::optional<text::PointTable> from_slopes(text::TableReader& reader) {
+    const text::Unit slope_unit = slope_of(units_);
+    const auto at_zero = reader.required_quantity("at_zero", units_.y);
+    const auto slope = reader.required_quantity("slope", slope_unit);
+    const text::Value* const list = reader.find("segments");
+    reader.finish();
+    if (list == nullptr || list->kind != text::Value::Kind::array || list->elements.empty())
+      return report((list != nullptr ? *list : reader.table()).position, "has no segments",
+                    "segments = [[breakpoint, slope beyond it], …], at least one");
+    std::vector<Segment> below, above;  // from 0 outwards
+    for (const text::Value& element : list->elements) {
+      if (element.kind != text::Value::Kind::array || element.elements.size() != 2)
+        return report(element.position, "has something other than a segment",
+                      "[breakpoint, slope beyond it]");
+      const auto x = text::read_quantity(file_, element.elements[0], units_.x, subject_, diagnostics_);
+      const auto beyond = text::read_quantity(file_, element.elements[1], slope_unit, subject_, diagnostics_);
+      if (!x || !beyond) return std::nullopt;
+      std::vector<Segment>& side = *x < 0 ? below : above;
+      const auto same = [&](const Segment& other) { return other.breakpoint == *x; };
+      if (std::any_of(side.begin(), side.end(), same))
+        return report(element.position, fmt::format("has two segments from {} on", *x),
+                      "breakpoints that differ");
+      side.push_back({*x, *beyond});
+    }
+    if (!at_zero || !slope) return std::nullopt;
+    const auto nearer = [](const Segment& a, const Segment& b) {
+      return std::abs(a.breakpoint) < std::abs(b.breakpoint);
+    };
+    std::sort(below.begin(), below.end(), nearer);
+    std::sort(above.begin(), above.end(), nearer);
+    text::PointTable table = outwards(-1, *at_zero, *slope, below);
+    std::reverse(table.x.begin(), table.x.end());
+    std::reverse(table.y.begin(), table.y.end());
+    const text::PointTable right = outwards(1, *at_zero, *slope, above);
+    table.x.insert(table.x.end(), right.x.begin(), right.x.end());
+    table.y.insert(table.y.end(), right.y.begin(), right.y.end());
+    return table;
+  }
+
+  /// The breakpoints on one side of 0, and a point beyond them, by which the last line goes on.
+  static text::PointTable outwards(double side, double y, double slope,
+                                   const std::vector<Segment>& segments) {
+    text::PointTable table;
+    double x = 0;
+    const auto add = [&](double next) {
+      y += slope * (next - x);
+      x = next;
+      table.x.push_back(x);
+      table.y.push_back(y);
+    };
+    for (const Segment& segment : segments) {
+      add(segment.breakpoint);
+      slope = segment.slope;
+    }
+    add(x + side * std::max(1.0, std::abs(x)));
+    return table;
+  }
+
+  /// Of y over x.
+  static text::Unit slope_of(const PointUnits& units) {
+    text::Unit unit = units.y;
+    unit.name = units.x.name == units.y.name ? "1" : units.y.name + "/" + units.x.name;
+    unit.scale /= units.x.scale;
+    for (std::size_t k = 0; k < unit.exponents.size(); ++k) unit.exponents[k] -= units.x.exponents[k];
+    return unit;
   }
 
   /// A column in the unit that is wanted, where its heading tells one that can stand for it.

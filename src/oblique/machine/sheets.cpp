@@ -73,6 +73,21 @@ class SheetMaker {
     return sheet;
   }
 
+  Sheet functions() const {
+    Sheet sheet{"function generators",
+                {"element", "signal", fmt::format("breakpoint [{}]", unit_),
+                 fmt::format("output [{}]", unit_), "slope beyond", "slope added"},
+                {}};
+    for (std::size_t b = 0; b < diagram_.blocks.size(); ++b) {
+      const diagram::FlatBlock& block = diagram_.blocks[b];
+      if (block.definition->role != Role::function_generator) continue;
+      for (std::size_t k = 0; k < block.definition->parameters.size(); ++k) {
+        if (block.definition->parameters[k].points) add_function(sheet, b, block.points[k]);
+      }
+    }
+    return sheet;
+  }
+
   Sheet static_test(const std::vector<solve::StaticReading>& readings) const {
     Sheet sheet{"static test",
                 {"element", "signal", "kind", fmt::format("output [{}]", unit_),
@@ -95,6 +110,33 @@ class SheetMaker {
   }
 
  private:
+  /// The line about 0, the breakpoints above it, and those below it, each outwards.
+  void add_function(Sheet& sheet, std::size_t block, const text::PointTable& points) const {
+    const std::vector<double>&x = points.x, &y = points.y;
+    const auto slope = [&](std::size_t line) { return (y[line + 1] - y[line]) / (x[line + 1] - x[line]); };
+    const auto row = [&](double at, double value, const std::string& beyond, const std::string& added) {
+      sheet.rows.push_back(
+          {numbers_[block], diagram_.blocks[block].path, voltage(at), voltage(value), beyond, added});
+    };
+    const auto breakpoint = [&](std::size_t point, std::size_t before, std::size_t beyond) {
+      // Two points of one x: what follows is a jump there.
+      if (x[beyond] == x[beyond + 1]) return row(x[point], y[point], "jump", "");
+      const bool jumps = x[before] == x[before + 1];
+      row(x[point], y[point], rounded(slope(beyond)), jumps ? "" : rounded(slope(beyond) - slope(before)));
+    };
+    std::size_t middle = 0;
+    while (middle + 2 < x.size() && !(x[middle + 1] > 0)) ++middle;
+    row(0, y[middle] - slope(middle) * x[middle], rounded(slope(middle)), "");
+    for (std::size_t point = middle + 1; point + 1 < x.size(); ++point) breakpoint(point, point - 1, point);
+    for (std::size_t point = middle; point > 0; --point) breakpoint(point, point, point - 1);
+  }
+
+  /// Rounded, and never "-0.0000".
+  static std::string rounded(double value) {
+    constexpr double kDigits = 1e4;
+    return fmt::format("{:.4f}", std::round(value * kDigits) / kDigits + 0.0);
+  }
+
   void connect(std::size_t block, std::size_t port, const diagram::FlatTerm& term) {
     if (term.weight == 0) return;
     const auto same = std::find_if(connections_.begin(), connections_.end(), [&](const Connection& c) {
@@ -145,11 +187,7 @@ class SheetMaker {
                        reference ? "" : " of " + diagram_.signal_name(source), block.path);
   }
 
-  /// Rounded, and never "-0.0000".
-  std::string voltage(double value) const {
-    constexpr double kDigits = 1e4;
-    return fmt::format("{:.4f}", std::round(value * volts_ * kDigits) / kDigits + 0.0);
-  }
+  std::string voltage(double value) const { return rounded(value * volts_); }
 
   const diagram::FlatDiagram& diagram_;
   double volts_;  ///< 1 machine unit [V]
@@ -185,7 +223,7 @@ MachineSheets make_sheets(const diagram::FlatDiagram& diagram,
                           const std::vector<solve::StaticReading>& readings,
                           const diagram::MachineProfile& machine) {
   const SheetMaker maker(diagram, machine);
-  return {maker.connections(), maker.potentiometers(), maker.static_test(readings)};
+  return {maker.connections(), maker.potentiometers(), maker.static_test(readings), maker.functions()};
 }
 
 namespace {

@@ -29,6 +29,8 @@ struct MachineSheets {
   Sheet potentiometers;  ///< settings to four digits, and what they stand for
   Sheet static_test;  ///< what everything is and shows at t = 0 [V], with derivatives of integrators [V/s];
                       ///< in machine units where their voltage is not published
+  Sheet functions;    ///< of function generators: value and slope at 0, breakpoints and slopes from there
+                      ///< outwards
 };
 
 /// `diagram` is flattened from one that `realise` has made; `readings` are its `static_test`.

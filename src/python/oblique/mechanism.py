@@ -104,7 +104,8 @@ class Patch(Diagram):
         self.components_text: str = found.get("components_text", "") + found.get("bandwidth_text", "")
         self.sheets = tuple(Sheet(title, tuple(columns), tuple(tuple(row) for row in rows), csv)
                             for title, columns, rows, csv in found.get("sheets", ()))
-        """On a machine: the connections, the settings of potentiometers, the static test."""
+        """On a machine: the connections, the settings of potentiometers, the static test, the function generators (without
+        rows where there are none)."""
 
 
 class FittedDimension(NamedTuple):
