@@ -100,9 +100,8 @@ TEST(Lesson, RefusesToSetWhatIsNotThere) {
       "d.toml:13:9: 'valu' of block type 'reference' is not a parameter\n  remedy: did you mean 'value'?");
   EXPECT_EQ(step_message("set = { \"b.in[3]\" = 1 }\n"),
             "d.toml:13:9: input 'b.in' has no wire 3; expected a number from 1 to 2");
-  EXPECT_EQ(
-      step_message("set = { a = 1 }\n"),
-      "d.toml:13:9: 'a' names no parameter; expected BLOCK.PARAMETER=VALUE or BLOCK.INPUT[NUMBER]=VALUE");
+  EXPECT_EQ(step_message("set = { a = 1 }\n"),
+            "d.toml:13:9: 'a' is a block, not one of its values; expected a.value");
   EXPECT_EQ(step_message("set = { \"a.value\" = true }\n"),
             "d.toml:13:21: 'a.value' in 'set' of step 1 in [lesson] is true or false; expected a number or a "
             "quantity");
@@ -142,8 +141,7 @@ TEST(Lesson, QuestionsCanBeAnswered) {
   EXPECT_EQ(question_message("answer = \"b.in[7]\"\n" + expect),
             "d.toml:12:10: input 'b.in' has no wire 7; expected a number from 1 to 2");
   EXPECT_EQ(question_message("answer = \"a\"\n" + expect),
-            "d.toml:12:10: 'a' names no parameter; expected BLOCK.PARAMETER=VALUE or "
-            "BLOCK.INPUT[NUMBER]=VALUE");
+            "d.toml:12:10: 'a' is a block, not one of its values; expected a.value");
 }
 
 }  // namespace
