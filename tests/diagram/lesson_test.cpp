@@ -52,6 +52,7 @@ do = "run it"
 see = "3"
 [[lesson.step]]
 do = "turn a"
+guess = "what will it be?"
 set = { "a.value" = 0.25, "b.in[2]" = "-1/2", "b.gain" = inf }
 see = "something else"
 expect = { "x at 1" = { value = 0.125, within = 1e-3 } }
@@ -67,8 +68,9 @@ hint = "a third"
   EXPECT_EQ(lesson.title, "Lesson 1");
   EXPECT_EQ(lesson.text, "Of sums.\n\nAnd more.");
   ASSERT_EQ(lesson.steps.size(), 2U);
-  EXPECT_EQ(lesson.steps[0], (LessonStep{"run it", {}, "3", {}}));
+  EXPECT_EQ(lesson.steps[0], (LessonStep{"run it", "", {}, "3", {}}));
   EXPECT_EQ(lesson.steps[1], (LessonStep{"turn a",
+                                         "what will it be?",
                                          {{"a.value", "0.25"}, {"b.in[2]", "-1/2"}, {"b.gain", "inf"}},
                                          "something else",
                                          {{"x at 1", "x", Expectation::Kind::at_time, 1, 0.125, 1e-3, {}}}}));
