@@ -76,6 +76,18 @@ text::Diagnostic explain_verb(const CLI::App& app, const std::optional<std::stri
   return {{}, fmt::format("there is no command '{}'", *word), {}, text::suggest(*word, verbs)};
 }
 
+/// "y.gain=10" of the arguments "y.gain", "=" and "10", which blanks have made of it.
+std::optional<std::string> torn_setting(const std::vector<std::string>& arguments) {
+  for (std::size_t k = 0; k + 1 < arguments.size(); ++k) {
+    const std::string &word = arguments[k], &next = arguments[k + 1];
+    if (word.starts_with("-")) continue;
+    if (word.ends_with("=")) return word + next;
+    if (next == "=") return word + next + (k + 2 < arguments.size() ? arguments[k + 2] : "");
+    if (next.starts_with("=")) return word + next;
+  }
+  return std::nullopt;
+}
+
 /// CLI11's finding with the nearest verb or option added, which it does not know.
 text::Diagnostic explain(const CLI::App& app, const CLI::ParseError& error,
                          const std::vector<std::string>& arguments) {
@@ -95,6 +107,8 @@ text::Diagnostic explain(const CLI::App& app, const CLI::ParseError& error,
     if (!argument.starts_with("--") || std::find(names.begin(), names.end(), name) != names.end()) continue;
     return {{}, fmt::format("'{}' has no option '{}'", verb, name), {}, text::suggest(name, names)};
   }
+  if (const auto setting = torn_setting(arguments))
+    return {{}, "a blank stands beside '='", *setting, "leave the blanks out"};
   return {{}, error.what(), {}, fmt::format("oblique {} --help tells how to call it", verb)};
 }
 

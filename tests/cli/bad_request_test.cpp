@@ -194,6 +194,17 @@ INSTANTIATE_TEST_SUITE_P(
                        "--set c.in[b3]=1: no wire of input 'c.in' comes from 'b3'"},
         BadRequestCase{"SetWithoutValue", "oblique run diagrams/lessons/triangle-side.toml --set c.gain", 2,
                        "--set c.gain: this sets nothing"},
+        BadRequestCase{"SetOfABlock", "oblique run diagrams/lessons/triangle-side.toml --set a=0.3", 2,
+                       "--set a=0.3: 'a' is a block, not one of its values; expected a.value\n"},
+        BadRequestCase{
+            "SetWithABlankOnEachSide", "oblique run diagrams/lessons/triangle-side.toml --set c.gain = 10", 2,
+            "error: a blank stands beside '='; expected c.gain=10\n  remedy: leave the blanks out\n"},
+        BadRequestCase{"SetWithABlankBehind",
+                       "oblique run diagrams/lessons/triangle-side.toml --set c.gain= 10 --check", 2,
+                       "error: a blank stands beside '='; expected c.gain=10\n"},
+        BadRequestCase{"SetWithABlankBefore",
+                       "oblique sweep --vary c.gain =10 diagrams/lessons/triangle-side.toml", 2,
+                       "error: a blank stands beside '='; expected c.gain=10\n"},
         BadRequestCase{
             "OutputOfAnUnknownKind", "oblique run diagrams/lessons/triangle-side.toml -o x.xls", 2,
             "error: x.xls: cannot write a '.xls' file; expected a name that ends in .csv, .npy, .mat or "

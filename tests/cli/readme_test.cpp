@@ -49,6 +49,8 @@ INSTANTIATE_TEST_SUITE_P(
         ShownPicture{"course-2-loop.svg", "docs/course/2-loop.md",
                      "oblique draw diagrams/course/2-loop.toml -o"},
         ShownPicture{"course-3-sign.svg", "docs/course/3-sign.md",
+                     "oblique draw diagrams/course/3-sign.toml -o"},
+        ShownPicture{"course-3-curves.svg", "docs/course/3-sign.md",
                      "oblique run diagrams/course/3-sign.toml --vary y.initial=-0.51,-0.49,0,0.9 --columns y "
                      "--plot"},
         ShownPicture{"course-4-two-equations.svg", "docs/course/4-two-equations.md",

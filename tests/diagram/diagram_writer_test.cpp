@@ -94,7 +94,11 @@ TEST(WriteDiagram, HasWhatWasPublishedAndTheLesson) {
   d.lesson = Lesson{
       "One",
       "Of sums.",
-      {{"turn", {{"a.value", "2"}}, "more", {{"", "x", Expectation::Kind::maximum, 0, 1, 0.5, {}}}}},
+      {{"turn",
+        "how far?",
+        {{"a.value", "2"}},
+        "more",
+        {{"", "x", Expectation::Kind::maximum, 0, 1, 0.5, {}}}}},
       LessonQuestion{"why?", "a.value", "look", {{"", "x", Expectation::Kind::minimum, 0, 1, 0.5, {}}}, {}}};
   const std::string text = write_diagram(d);
   EXPECT_EQ(text.substr(text.find("\n[published]")), R"toml(
@@ -122,6 +126,7 @@ text = "Of sums."
 
 [[lesson.step]]
 do = "turn"
+guess = "how far?"
 set = { "a.value" = "2" }
 see = "more"
 expect = { "x maximum" = { value = 1, within = 0.5 } }
@@ -286,7 +291,8 @@ Lesson any_lesson(const std::vector<OutputSpec>& outputs) {
   };
   Lesson lesson{*any_text(), *any_text(), {}, {}};
   for (int steps = *rc::gen::inRange(0, 3); steps > 0; --steps)
-    lesson.steps.push_back({"a" + *any_text(), any_settings(), "b" + *any_text(), expectations()});
+    lesson.steps.push_back(
+        {"a" + *any_text(), *any_text(), any_settings(), "b" + *any_text(), expectations()});
   if (!outputs.empty())
     lesson.question = LessonQuestion{"a" + *any_text(), "b" + *any_text(), *any_text(), expectations(), {}};
   return lesson;

@@ -271,6 +271,9 @@ TEST_F(Overrides, SayWhatIsWrong) {
             "set gain=1: 'gain' names no parameter; expected BLOCK.PARAMETER=VALUE or "
             "BLOCK.INPUT[NUMBER]=VALUE");
   EXPECT_EQ(message("x.gain", "1"), "set x.gain=1: there is no block 'x'\n  remedy: known: a, C");
+  EXPECT_EQ(message("a", "1"), "set a=1: 'a' is a block, not one of its values; expected a.value");
+  EXPECT_EQ(message("C.b", "1"),
+            "set C.b=1: 'C.b' is a block, not one of its values; expected one of C.b.k, C.b.x[1]");
   EXPECT_EQ(message("C.bx.k", "1"), "set C.bx.k=1: there is no block 'C.bx'\n  remedy: known: b");
   EXPECT_EQ(message("a.b.k", "1"), "set a.b.k=1: 'a' (reference) has no inner blocks");
   EXPECT_EQ(message("a.valeu", "1"),

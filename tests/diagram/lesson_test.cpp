@@ -52,6 +52,7 @@ do = "run it"
 see = "3"
 [[lesson.step]]
 do = "turn a"
+guess = "what will it be?"
 set = { "a.value" = 0.25, "b.in[2]" = "-1/2", "b.gain" = inf }
 see = "something else"
 expect = { "x at 1" = { value = 0.125, within = 1e-3 } }
@@ -67,8 +68,9 @@ hint = "a third"
   EXPECT_EQ(lesson.title, "Lesson 1");
   EXPECT_EQ(lesson.text, "Of sums.\n\nAnd more.");
   ASSERT_EQ(lesson.steps.size(), 2U);
-  EXPECT_EQ(lesson.steps[0], (LessonStep{"run it", {}, "3", {}}));
+  EXPECT_EQ(lesson.steps[0], (LessonStep{"run it", "", {}, "3", {}}));
   EXPECT_EQ(lesson.steps[1], (LessonStep{"turn a",
+                                         "what will it be?",
                                          {{"a.value", "0.25"}, {"b.in[2]", "-1/2"}, {"b.gain", "inf"}},
                                          "something else",
                                          {{"x at 1", "x", Expectation::Kind::at_time, 1, 0.125, 1e-3, {}}}}));
@@ -100,9 +102,8 @@ TEST(Lesson, RefusesToSetWhatIsNotThere) {
       "d.toml:13:9: 'valu' of block type 'reference' is not a parameter\n  remedy: did you mean 'value'?");
   EXPECT_EQ(step_message("set = { \"b.in[3]\" = 1 }\n"),
             "d.toml:13:9: input 'b.in' has no wire 3; expected a number from 1 to 2");
-  EXPECT_EQ(
-      step_message("set = { a = 1 }\n"),
-      "d.toml:13:9: 'a' names no parameter; expected BLOCK.PARAMETER=VALUE or BLOCK.INPUT[NUMBER]=VALUE");
+  EXPECT_EQ(step_message("set = { a = 1 }\n"),
+            "d.toml:13:9: 'a' is a block, not one of its values; expected a.value");
   EXPECT_EQ(step_message("set = { \"a.value\" = true }\n"),
             "d.toml:13:21: 'a.value' in 'set' of step 1 in [lesson] is true or false; expected a number or a "
             "quantity");
@@ -142,8 +143,7 @@ TEST(Lesson, QuestionsCanBeAnswered) {
   EXPECT_EQ(question_message("answer = \"b.in[7]\"\n" + expect),
             "d.toml:12:10: input 'b.in' has no wire 7; expected a number from 1 to 2");
   EXPECT_EQ(question_message("answer = \"a\"\n" + expect),
-            "d.toml:12:10: 'a' names no parameter; expected BLOCK.PARAMETER=VALUE or "
-            "BLOCK.INPUT[NUMBER]=VALUE");
+            "d.toml:12:10: 'a' is a block, not one of its values; expected a.value");
 }
 
 }  // namespace

@@ -96,6 +96,8 @@ TEST(Published, CitesWhatIsKnown) {
   p.number = "7";
   p.page = "3";
   EXPECT_EQ(citation(p), "A. Author, A title, 7, p. 3");
+  p.page = "fig. 2";
+  EXPECT_EQ(citation(p), "A. Author, A title, 7, fig. 2");
 }
 
 TEST(Published, ReadsValuesInTheirOwnUnit) {

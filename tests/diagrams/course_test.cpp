@@ -67,9 +67,11 @@ TEST_P(CourseLesson, HasThreeThingsToChangeAndAQuestion) {
   const diagram::Lesson& lesson = *diagram_.lesson;
   EXPECT_FALSE(lesson.text.empty());
   ASSERT_GE(lesson.steps.size(), 4u);
-  EXPECT_TRUE(lesson.steps[0].set.empty());  // first it is looked at as it is
-  EXPECT_FALSE(lesson.steps[0].expectations.empty());
-  for (std::size_t k = 1; k < lesson.steps.size(); ++k) EXPECT_FALSE(lesson.steps[k].set.empty()) << k + 1;
+  EXPECT_FALSE(lesson.steps[0].expectations.empty());  // first it is looked at as it is
+  for (std::size_t k = 0; k < lesson.steps.size(); ++k) {
+    EXPECT_EQ(lesson.steps[k].set.empty(), k == 0) << k + 1;
+    EXPECT_THAT(lesson.steps[k].guess, HasSubstr("?")) << k + 1;
+  }
   ASSERT_TRUE(lesson.question);
   EXPECT_EQ(lesson.question->answer, "answer.value");
   EXPECT_FALSE(lesson.question->hint.empty());
@@ -82,7 +84,7 @@ TEST_P(CourseLesson, IsToldByItsPage) {
   for (const diagram::LessonStep& step : lesson.steps) {
     std::string command = "$ oblique run " + file_;
     for (const diagram::ParameterOverride& set : step.set) command += " --set " + set.path + "=" + set.value;
-    told.insert(told.end(), {step.action, command, step.see});
+    told.insert(told.end(), {step.action, "Guess first: " + step.guess, command, step.see});
   }
   told.push_back(lesson.question->ask);
   const std::string text = flowing(page(".md"));

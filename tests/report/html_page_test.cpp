@@ -34,6 +34,28 @@ TEST(HtmlPage, EscapesEveryText) {
     EXPECT_THAT(page.text(draw::Theme::light), HasSubstr(text));
 }
 
+TEST(HtmlPage, ShowsWhatStandsInBackticksAsCode) {
+  HtmlPage page("page");
+  page.paragraph("`a < b` and `c`, not ` alone");
+  page.introduction("`d`");
+  page.list({"e `f`"});
+  for (const char* const text : {"<p><code>a &lt; b</code> and <code>c</code>, not ` alone</p>",
+                                 "<p class=\"lead\"><code>d</code></p>", "<li>e <code>f</code></li>"})
+    EXPECT_THAT(page.text(draw::Theme::light), HasSubstr(text));
+}
+
+// On a narrow window they keep a width at which they can be read, and are scrolled.
+TEST(HtmlPage, GivesBroadPicturesTheWidthOfTheWindow) {
+  HtmlPage page("page");
+  page.picture({901, 30, "broad", {}});
+  page.picture({900, 30, "not", {}});
+  const std::string text = page.text(draw::Theme::light);
+  EXPECT_THAT(text,
+              HasSubstr("<figure class=\"broad\"><svg xmlns=\"http://www.w3.org/2000/svg\" width=\"901\""));
+  EXPECT_THAT(text, HasSubstr("<figure><svg xmlns=\"http://www.w3.org/2000/svg\" width=\"900\""));
+  EXPECT_THAT(text, HasSubstr("figure.broad { margin-inline: calc(50% - 50vw + 1rem);"));
+}
+
 TEST(HtmlPage, PutsColumnsOfNumbersToTheRight) {
   HtmlPage page("page");
   page.table({{"name", "size", "mixed"}, {"a", "-1.5e-3", "2"}, {"b", "4", "two"}});

@@ -20,6 +20,20 @@ TEST(PageText, HasNumbersAsPeopleWriteThem) {
   EXPECT_EQ(readable(std::numeric_limits<double>::quiet_NaN()), "unknown");
 }
 
+TEST(PageText, PrintsExpressionsAsBooksDo) {
+  EXPECT_EQ(printed_expression("10*y - 1.5e+08*x"), "10·y − 1.5·10⁸·x");
+  EXPECT_EQ(printed_expression("-1e-05"), "−1·10⁻⁵");
+  EXPECT_EQ(printed_expression("rate - e"), "rate − e");
+}
+
+TEST(PageText, PutsLongNamesOfDerivativesInParentheses) {
+  EXPECT_EQ(derivative_of("x"), "dx/dt");
+  EXPECT_EQ(derivative_of("φ"), "dφ/dt");
+  EXPECT_EQ(derivative_of("x12"), "dx12/dt");
+  EXPECT_EQ(derivative_of("xB"), "d(xB)/dt");
+  EXPECT_EQ(derivative_of("crank.sine"), "d(crank.sine)/dt");
+}
+
 TEST(PageText, TellsAFailureInASentence) {
   const text::Error error(
       text::Diagnostic{{"d.toml", {1, 2}}, "it is 3", "a number\nbelow 2", "count again"});

@@ -148,6 +148,7 @@ Another <b>one</b>."""
 
 [[lesson.step]]
 do = "Halve a."
+guess = "How high will x be?"
 set = { "a.value" = 0.25 }
 see = "x comes to rest half as high."
 expect = { "x at 4" = { value = 0.25, within = 1e-4 } }
@@ -162,7 +163,8 @@ expect = { "x at 4" = { value = 0.75, within = 1e-3 } }
   await page.waitForSelector(".lesson");
   assert.match(await text(page, ".lesson"), /Where a lag comes to rest.*A paragraph\..*Another <b>one<\/b>\./s);
   await button(page, "Next");
-  assert.match(await text(page, ".lesson"), /step 1 of 1.*Halve a\..*half as high/s);
+  assert.match(await text(page, ".lesson"), /step 1 of 1.*Halve a\..*Guess first: How high will x be\?.*half as high/s);
+  assert.equal(await page.$(".lesson details[open]"), null);  // what is seen is not told before it was guessed
   await button(page, "Check");  // nothing was turned yet
   await page.waitForSelector(".lesson .missed");
   assert.match(await text(page, ".verdict"), /not yet.*0\.5 where 0\.25 ± 0\.0001 should be/s);

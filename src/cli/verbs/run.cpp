@@ -31,6 +31,11 @@
 namespace oblique::cli {
 namespace {
 
+std::string without_blanks_around(const std::string& text) {
+  const std::size_t first = text.find_first_not_of(' ');
+  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(' ') + 1 - first);
+}
+
 diagram::ParameterOverride parse_override(const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0) {
@@ -39,7 +44,7 @@ diagram::ParameterOverride parse_override(const std::string& text) {
                                            "block.parameter=value",
                                            "for example --set c.gain=1e4"});
   }
-  return {text.substr(0, equals), text.substr(equals + 1)};
+  return {without_blanks_around(text.substr(0, equals)), without_blanks_around(text.substr(equals + 1))};
 }
 
 /// The columns that fit on a terminal, and what became of the others.

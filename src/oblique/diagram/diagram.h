@@ -125,6 +125,7 @@ struct Published {
 /// Something to change in a lesson's diagram as it is shipped, and what is then to be seen.
 struct LessonStep {
   std::string action;  ///< in words; `do` in the file
+  std::string guess;   ///< what to ask oneself before it is done
   std::vector<ParameterOverride> set;
   std::string see;  ///< in words
   std::vector<Expectation> expectations;

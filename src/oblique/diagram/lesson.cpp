@@ -46,6 +46,7 @@ class LessonReader {
     LessonStep& step = lesson_.steps.emplace_back();
     text::TableReader reader(diagram_.file, table, what, diagnostics_);
     step.action = words(reader, "do", "what the learner is to do");
+    step.guess = reader.string("guess").value_or("");
     step.see = words(reader, "see", "what is then to be seen");
     if (const text::Value* const set = reader.table("set"))
       step.set = read_settings(diagram_.file, *set, fmt::format("'set' of {}", what), diagnostics_);
@@ -115,6 +116,7 @@ std::string write_lesson(const Lesson& lesson) {
   for (const LessonStep& step : lesson.steps) {
     out += "\n[[lesson.step]]\n";
     line("do", step.action);
+    if (!step.guess.empty()) line("guess", step.guess);
     if (!step.set.empty()) out += "set = " + settings_text(step.set) + "\n";
     line("see", step.see);
     write_expectations(step.expectations, out);

@@ -63,6 +63,10 @@ class Finder {
   std::optional<Named> named(const Scope& diagram) const {
     const std::size_t bracket = override_.path.find('[');  // a signal in brackets may hold dots
     const std::size_t dot = override_.path.substr(0, bracket).rfind('.');
+    if (const WiredBlock* const whole = whole_block(diagram)) {
+      report_block(*whole);
+      return std::nullopt;
+    }
     if (dot == std::string::npos) {
       report(fmt::format("'{}' names no parameter", override_.path),
              "BLOCK.PARAMETER=VALUE or BLOCK.INPUT[NUMBER]=VALUE");
@@ -172,6 +176,41 @@ class Finder {
         wires.push_back({input, k, &block.inputs[input].terms[k]});
     }
     return wires;
+  }
+
+  /// The block that the whole path names, where it names one and no parameter.
+  const WiredBlock* whole_block(const Scope& diagram) const {
+    const Scope* scope = &diagram;
+    const BlockDefinition* around = nullptr;
+    for (std::size_t at = 0; scope != nullptr;) {
+      const std::size_t end = std::min(override_.path.find('.', at), override_.path.size());
+      const std::string_view name = std::string_view(override_.path).substr(at, end - at);
+      const auto index = scope->index.find(name);
+      if (index == scope->index.end() || (around != nullptr && around->find_parameter(name))) return nullptr;
+      const WiredBlock& block = scope->blocks[index->second];
+      if (block.definition == nullptr) return nullptr;
+      if (end == override_.path.size()) return &block;
+      around = block.definition;
+      scope = block.inside;
+      at = end + 1;
+    }
+    return nullptr;
+  }
+
+  void report_block(const WiredBlock& block) const {
+    std::vector<std::string> names;
+    for (const ParameterDefinition& parameter : block.definition->parameters) {
+      if (!parameter.points && !parameter.formula)
+        names.push_back(fmt::format("{}.{}", override_.path, parameter.name));
+    }
+    for (std::size_t k = 0; k < block.inputs.size(); ++k) {
+      if (!block.inputs[k].terms.empty())
+        names.push_back(weight_name(override_.path, block.definition->inputs[k].name, 0));
+    }
+    report(fmt::format("'{}' is a block, not one of its values", override_.path),
+           names.empty()       ? "a block that has any"
+           : names.size() == 1 ? names.front()
+                               : fmt::format("one of {}", fmt::join(names, ", ")));
   }
 
   void report_no_wires(const WiredBlock& block, std::string_view path, std::string_view port) const {

@@ -291,8 +291,9 @@ std::string citation(const Published& published) {
                                                        : published.in + " " + published.number);
   if (published.year) add(fmt::format("{}", *published.year));
   if (!published.page.empty()) {
+    const bool is_number = published.page.front() >= '0' && published.page.front() <= '9';  // not "fig. 2"
     const bool several = published.page.find_first_of("-–,") != std::string::npos;
-    add((several ? "pp. " : "p. ") + published.page);
+    add((!is_number ? "" : several ? "pp. " : "p. ") + published.page);
   }
   return text;
 }

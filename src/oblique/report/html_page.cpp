@@ -18,12 +18,14 @@ constexpr std::string_view kStyle = R"(  body { margin: 2rem auto; max-width: 54
   h3::first-letter { text-transform: uppercase }
   p { max-width: 46rem; margin: .6rem 0 }
   pre { white-space: pre-wrap; overflow-wrap: anywhere; font-size: .9rem }
+  pre span { display: block; padding-left: 2em; text-indent: -2em }
   nav ul { list-style: none; padding: 0; margin: 1rem 0 }
   nav li { display: inline-block; margin-right: 1.4rem }
   a { color: inherit; text-underline-offset: .2em }
   figure { margin: 1rem 0; overflow-x: auto }
   figure svg { max-width: 100%; height: auto }
-  figure.broad svg { max-width: none }
+  figure.broad { margin-inline: calc(50% - 50vw + 1rem); text-align: center }
+  figure.broad svg { max-width: max(100%, 56rem) }
   .scroll { overflow-x: auto; margin: .6rem 0 }
   table { border-collapse: collapse; font-size: 13px; font-variant-numeric: tabular-nums }
   th, td { padding: .15rem .8rem .15rem 0; text-align: left; vertical-align: top }
@@ -74,6 +76,20 @@ bool is_number(std::string_view cell) {
          cell == "inf";
 }
 
+/// Words, in which what stands between two backticks is code.
+std::string prose(std::string_view text) {
+  std::string html;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t begin = text.find('`', at);
+    const std::size_t end = begin == std::string_view::npos ? begin : text.find('`', begin + 1);
+    html += draw::escape_xml(text.substr(at, end == std::string_view::npos ? end : begin - at));
+    if (end == std::string_view::npos) break;
+    html += "<code>" + draw::escape_xml(text.substr(begin + 1, end - begin - 1)) + "</code>";
+    at = end + 1;
+  }
+  return html;
+}
+
 }  // namespace
 
 std::string inline_svg(const draw::Picture& picture) {
@@ -99,11 +115,11 @@ void HtmlPage::subheading(std::string_view text) {
 }
 
 void HtmlPage::paragraph(std::string_view text) {
-  body_ += fmt::format("<p>{}</p>\n", draw::escape_xml(text));
+  body_ += fmt::format("<p>{}</p>\n", prose(text));
 }
 
 void HtmlPage::introduction(std::string_view text) {
-  body_ += fmt::format("<p class=\"lead\">{}</p>\n", draw::escape_xml(text));
+  body_ += fmt::format("<p class=\"lead\">{}</p>\n", prose(text));
 }
 
 void HtmlPage::link(std::string_view text, std::string_view address) {
@@ -117,7 +133,7 @@ void HtmlPage::element(std::string_view html) {
 
 void HtmlPage::list(const std::vector<std::string>& items) {
   body_ += "<ul>\n";
-  for (const std::string& item : items) body_ += fmt::format("  <li>{}</li>\n", draw::escape_xml(item));
+  for (const std::string& item : items) body_ += fmt::format("  <li>{}</li>\n", prose(item));
   body_ += "</ul>\n";
 }
 

@@ -33,6 +33,7 @@ Json lesson_of(const diagram::Lesson& lesson) {
     for (const diagram::ParameterOverride& one : step.set)
       set.push_back({{"name", one.path}, {"value", one.value}});
     json["steps"].push_back({{"do", step.action},
+                             {"guess", step.guess},
                              {"set", std::move(set)},
                              {"see", step.see},
                              {"checked", !step.expectations.empty()}});

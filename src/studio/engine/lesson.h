@@ -10,8 +10,9 @@
 
 namespace oblique::studio {
 
-/// {"title", "text", "steps": [{"do", "set": [{"name", "value"}], "see", "checked"}], "question": {"ask",
-/// "answer", "hint"} or null}: what a page shows of it. "checked" tells whether a step expects anything.
+/// {"title", "text", "steps": [{"do", "guess", "set": [{"name", "value"}], "see", "checked"}], "question":
+/// {"ask", "answer", "hint"} or null}: what a page shows of it. "checked" tells whether a step expects
+/// anything.
 Json lesson_of(const diagram::Lesson& lesson);
 
 /// What a step (from 1) or the question expects, held against a run with these settings: {"met", "checks":

@@ -61,7 +61,9 @@ TEST_F(LessonVerbs, RunSaysRightAndWrong) {
               EndsWith("\nopen    question: Where must it rest? (answer by setting answer.value)\n"));
   const Outcome wrong = oblique(run + " --set answer.value=0.7");
   EXPECT_EQ(wrong.status, 1);
-  EXPECT_THAT(wrong.out, EndsWith("\n\nwrong   question: Where must it rest? Hint: Think.\n"));
+  EXPECT_THAT(wrong.out,
+              EndsWith("\n\nwrong   question: Where must it rest?\n        your answer gives x at 20 = 0.7\n"
+                       "        hint: Think.\n"));
   EXPECT_THAT(wrong.out, Not(HasSubstr("expected")));  // the answer is not given away
   const Outcome right = oblique(run + " --set answer.value=3/4");
   EXPECT_EQ(right.status, 0);

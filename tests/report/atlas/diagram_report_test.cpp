@@ -74,7 +74,10 @@ TEST(DiagramReport, HasAllThatIsKnownOfADiagram) {
                           HasSubstr("A ring of two integrators &amp; a sign, drawn by many."),
                           HasSubstr("<pre>    x″ = −x\n")));
   // x = 10 x̂ and y = 20 ŷ, and the machine's integrators invert
-  EXPECT_THAT(page, HasSubstr("dx/dt = −y,   from 5\ndy/dt = x,   from 0\n"));
+  EXPECT_THAT(
+      page,
+      HasSubstr(
+          "<pre><span>dx/dt = −y,   starting from 5</span><span>dy/dt = x,   starting from 0</span></pre>"));
   EXPECT_THAT(page, HasSubstr("<td>x.in</td><td>x/10</td><td class=\"n\">2</td><td>weight of y</td>"));
   EXPECT_THAT(page, HasSubstr("<td>x.initial</td><td>x/10</td><td class=\"n\">0.5</td>"));
   EXPECT_THAT(page, HasSubstr("50 %</td><td>x = 10 V</td>"));  // the largest x, of the machine unit
@@ -88,6 +91,24 @@ TEST(DiagramReport, HasAllThatIsKnownOfADiagram) {
   EXPECT_THAT(page, Not(HasSubstr("Published and computed")));
   for (const char* const outside : {"<script", "src=", "url(", "href=\"http"})
     EXPECT_THAT(page, Not(HasSubstr(outside)));
+}
+
+TEST(DiagramReport, RepeatsNothingThatSaysNothing) {
+  const std::string page = page_of(R"toml(format = "oblique-diagram/1"
+[run]
+until = 1
+[blocks]
+speed = { type = "integrator", in = ["-2*speed"], initial = 0.5, label = "speed" }
+half = { type = "summer", in = ["0.5*speed"], label = "ẋ" }
+[outputs]
+speed = { signal = "speed", scale = 10, unit = "1" }
+half = "half"
+)toml");
+  EXPECT_THAT(page, HasSubstr("d(speed)/dt = −2·speed"));
+  EXPECT_THAT(page, HasSubstr("<td>speed</td><td></td><td>Integrator</td>"));  // its label is its name
+  EXPECT_THAT(page, HasSubstr("<td>half</td><td>ẋ</td>"));
+  EXPECT_THAT(page, HasSubstr("50 %</td><td>speed = 10</td>"));  // of no unit
+  EXPECT_THAT(page, HasSubstr("25 %</td><td></td>"));            // 1 machine unit is 1 machine unit
 }
 
 TEST(DiagramReport, HoldsWhatWasPublished) {

@@ -36,13 +36,16 @@ TEST(LessonQuestion, IsAnsweredBySettingItsParameter) {
   EXPECT_FALSE(is_answered(asking("[lesson]\n"), {{"x.value", "1"}}));
 }
 
-TEST(LessonQuestion, IsOneLine) {
+TEST(LessonQuestion, IsAnsweredInWords) {
   const diagram::Diagram plain = asking(kQuestion), hinted = asking(kQuestion + "hint = \"Count\\n it.\"\n");
   EXPECT_EQ(open_question_text(plain), "open    question: How much is it? (answer by setting x.value)\n");
   EXPECT_EQ(verdict(plain, 3, true), "right   question: How much is it?\n");
-  EXPECT_EQ(verdict(plain, 2, false), "wrong   question: How much is it?\n");
+  EXPECT_EQ(verdict(plain, 2, false),
+            "wrong   question: How much is it?\n        your answer gives x at 1 = 2\n");
   EXPECT_EQ(verdict(hinted, 3, true), "right   question: How much is it?\n");
-  EXPECT_EQ(verdict(hinted, 2, false), "wrong   question: How much is it? Hint: Count it.\n");
+  EXPECT_EQ(
+      verdict(hinted, 2, false),
+      "wrong   question: How much is it?\n        your answer gives x at 1 = 2\n        hint: Count it.\n");
   EXPECT_EQ(open_question_text(asking("")), "");
 }
 

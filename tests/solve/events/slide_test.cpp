@@ -34,8 +34,7 @@ x = { type = "integrator", in = ["-s", "0.5*c"], initial = 1 })");
   }
   ASSERT_FALSE(result.events.empty());
   bool reported = false;
-  for (const EventRecord& event : result.events)
-    reported = reported || event.what == "s: slides along in > 0 = 0";
+  for (const EventRecord& event : result.events) reported = reported || event.what == "s: stays at in = 0";
   EXPECT_TRUE(reported);
 }
 

@@ -2,7 +2,6 @@
 #include <oblique/report/atlas/diagram_report.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -33,34 +32,11 @@ bool is_top_level(const std::string& path) {
   return path.find('.') == std::string::npos;
 }
 
-/// An expression as it is printed in books: "10·y − 1.5·10⁸·x".
-std::string printed(const std::string& expression) {
-  std::string text;
-  for (std::size_t k = 0; k < expression.size(); ++k) {
-    const char c = expression[k];
-    const bool follows_digit = k > 0 && std::isdigit(static_cast<unsigned char>(expression[k - 1])) != 0;
-    if (c == 'e' && follows_digit && k + 2 < expression.size() &&
-        (expression[k + 1] == '+' || expression[k + 1] == '-')) {
-      std::size_t end = k + 2;
-      while (end < expression.size() && std::isdigit(static_cast<unsigned char>(expression[end])) != 0) ++end;
-      text += "·" + draw::power_of_ten(std::stoi(expression.substr(k + 1, end - k - 1)));
-      k = end - 1;
-    } else if (c == '*') {
-      text += "·";
-    } else if (c == '-') {
-      text += "−";
-    } else {
-      text += c;
-    }
-  }
-  return text;
-}
-
 std::string printed(const RecoveredEquation& equation) {
   std::string left = equation.left;
-  if (left.starts_with("der(")) left = "d" + left.substr(4, left.size() - 5) + "/dt";
-  std::string text = left + " = " + printed(equation.right);
-  if (!equation.start.empty()) text += ",   from " + printed(equation.start);
+  if (left.starts_with("der(")) left = derivative_of(left.substr(4, left.size() - 5));
+  std::string text = left + " = " + printed_expression(equation.right);
+  if (!equation.start.empty()) text += ",   starting from " + printed_expression(equation.start);
   return text;
 }
 
@@ -101,7 +77,7 @@ class DiagramWriter {
   void origin() {
     page_.heading("Where it comes from");
     if (const auto& published = diagram_.published) {
-      page_.paragraph(diagram::citation(*published) + ".");
+      page_.paragraph(capitalised(diagram::citation(*published)) + ".");
       if (published->address.starts_with("http")) page_.link(published->address, published->address);
       page_.paragraph(published->kind == diagram::Published::Kind::equations
                           ? "Composed here: only the equations were published."
@@ -153,8 +129,8 @@ class DiagramWriter {
         "Every integrator operates here, and the amplifiers are ideal.");
     std::string lines;
     for (const RecoveredEquation& equation : recovered_equations(ideal_circuit()))
-      lines += draw::escape_xml(printed(equation)) + "\n";
-    page_.element("<pre class=\"equations\">" + lines + "</pre>");
+      lines += "<span>" + draw::escape_xml(printed(equation)) + "</span>";
+    page_.element("<pre>" + lines + "</pre>");
   }
 
   void curves() {
@@ -229,8 +205,9 @@ class DiagramWriter {
     std::string text;
     for (const diagram::FlatOutput& output : flat_.outputs) {
       if (!(output.signal == diagram::SignalRef{block, port})) continue;
-      text += fmt::format("{}{} = {} {}", text.empty() ? "" : ", ", output.name, readable(output.scale),
-                          output.unit);
+      if (output.unit == "machine unit" && output.scale == 1) continue;
+      text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", output.name, readable(output.scale));
+      if (output.unit != "1") text += " " + output.unit;
     }
     return text;
   }
@@ -238,7 +215,7 @@ class DiagramWriter {
   std::string label_of(const std::string& path) const {
     const auto block = std::find_if(diagram_.blocks.begin(), diagram_.blocks.end(),
                                     [&](const diagram::BlockInstance& b) { return b.name == path; });
-    return block == diagram_.blocks.end() ? "" : block->label;
+    return block == diagram_.blocks.end() || block->label == path ? "" : block->label;
   }
 
   void scaling(const DiagramCheck& check) {
@@ -252,7 +229,8 @@ class DiagramWriter {
         "The largest signal of each amplifier over the run, and how much of the machine unit it makes use "
         "of; "
         "what goes beyond 100 % overloads a real machine.");
-    Table table({"element", "", "kind", "largest [machine unit]", "at t [s]", "use", "1 machine unit is"});
+    Table table(
+        {"element", "label", "kind", "largest [machine unit]", "at t [s]", "use", "1 machine unit is"});
     std::size_t signal = 0;
     for (std::size_t b = 0; b < flat_.blocks.size(); ++b) {
       const diagram::FlatBlock& block = flat_.blocks[b];

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <oblique/diagram/expectations.h>
 #include <oblique/report/text_table.h>
 
 namespace oblique::report {
@@ -45,8 +46,15 @@ std::string open_question_text(const diagram::Diagram& diagram) {
 std::string verdict_text(const diagram::LessonQuestion& question,
                          const std::vector<ExpectationResult>& results) {
   const bool right = std::all_of(results.begin(), results.end(), [](const auto& r) { return r.met; });
-  const std::string hint = right || question.hint.empty() ? "" : " Hint: " + one_line(question.hint);
-  return fmt::format("{}   question: {}{}\n", right ? "right" : "wrong", one_line(question.ask), hint);
+  std::string text = fmt::format("{}   question: {}\n", right ? "right" : "wrong", one_line(question.ask));
+  if (right) return text;
+  for (const ExpectationResult& result : results) {
+    if (!result.met)
+      text += fmt::format("        your answer gives {} = {}\n", diagram::expectation_key(result.expectation),
+                          short_number(result.actual));
+  }
+  if (!question.hint.empty()) text += fmt::format("        hint: {}\n", one_line(question.hint));
+  return text;
 }
 
 const diagram::LessonStep& lesson_step(const diagram::Diagram& diagram, int number) {

@@ -15,8 +15,8 @@ bool is_answered(const diagram::Diagram& diagram, const std::vector<diagram::Par
 /// "open    question: …", and how to answer it; nothing where the lesson asks none.
 std::string open_question_text(const diagram::Diagram& diagram);
 
-/// One line: "right   question: …" or "wrong   question: …" with the hint. It names no value, so that the
-/// answer remains to be found.
+/// "right   question: …", or "wrong   question: …" with what the answer gives and the hint, a line each. What
+/// it should give it does not say: the answer remains to be found.
 std::string verdict_text(const diagram::LessonQuestion& question,
                          const std::vector<ExpectationResult>& results);
 

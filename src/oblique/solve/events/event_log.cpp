@@ -16,6 +16,15 @@ bool contains(const std::vector<std::uint32_t>& units, std::uint32_t unit) {
   return std::find(units.begin(), units.end(), unit) != units.end();
 }
 
+/// Where a comparison, "in > 0", turns over: "in = 0".
+std::string boundary_of(std::string comparison) {
+  constexpr std::string_view kAbove = " > ";
+  const std::size_t at = comparison.find(kAbove);
+  if (at == std::string::npos || comparison.find(kAbove, at + 1) != std::string::npos)
+    return fmt::format("where {} turns over", comparison);
+  return comparison.replace(at, kAbove.size(), " = ");
+}
+
 }  // namespace
 
 const network::Switch& EventLog::first_of(std::uint32_t unit) const {
@@ -37,7 +46,7 @@ void EventLog::record_slides(const std::vector<std::uint32_t>& before,
                              double t) {
   const auto tell = [&](std::uint32_t unit, const char* what) {
     const network::Switch& s = first_of(unit);
-    record(t, fmt::format("{}: {} {} = 0", s.block, what, s.comparison));
+    record(t, fmt::format("{}: {} {}", s.block, what, boundary_of(s.comparison)));
   };
   for (std::size_t u = 0; u < before.size(); ++u) {
     if (contains(slide.units(), before[u])) continue;
@@ -45,7 +54,7 @@ void EventLog::record_slides(const std::vector<std::uint32_t>& before,
     warn_of_leaving(before[u], doubts[u], t);
   }
   for (const std::uint32_t unit : slide.units()) {
-    if (!contains(before, unit)) tell(unit, "slides along");
+    if (!contains(before, unit)) tell(unit, "stays at");
   }
   warn_of_torn(slide, t);
 }

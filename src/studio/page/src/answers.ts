@@ -25,6 +25,7 @@ export interface Column {
 
 export interface LessonStep {
   do: string;
+  guess: string;
   set: {name: string; value: string}[];
   see: string;
   checked: boolean;

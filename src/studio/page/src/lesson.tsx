@@ -28,10 +28,11 @@ function Step({session, step, number}: {session: Session; step: LessonStep; numb
   return (
     <>
       <Paragraphs text={step.do} />
+      {step.guess && <p><b>Guess first:</b> {step.guess}</p>}
       {step.set.length > 0 && (
         <p><button onClick={() => void session.setFor(step.set)}>Set it for me</button> <span class="quiet">{step.set.map(({name, value}) => `${name} = ${value}`).join(", ")}</span></p>
       )}
-      <Paragraphs text={step.see} />
+      {step.guess ? <details><summary>What is seen</summary><Paragraphs text={step.see} /></details> : <Paragraphs text={step.see} />}
       {step.checked && <p><button onClick={() => void session.checkLesson(number).then(setChecked)}>Check</button></p>}
       {checked && <Verdict checked={checked} />}
     </>
