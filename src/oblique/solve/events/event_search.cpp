@@ -25,8 +25,11 @@ constexpr double kFewestSamples = 1000;
 constexpr double kMostTurn = 0.5;
 constexpr double kMostSamples = 1e6;  ///< in a step
 
-/// How far beyond 0 and 1 the shares of a slide are where it ends.
-constexpr double kEdge = 1e-5;
+/// How far beyond 0 and 1 the shares of a slide are where it ends: rounding of them.
+constexpr double kEdge = 1e-9;
+
+/// Of the time from sample to sample: how far apart the rates of what has none that is known are taken.
+constexpr double kRateStep = 1e-4;
 
 /// The repulsion of a unit of which none is known: as if its sides drove together as strongly as they ever
 /// did.
@@ -88,9 +91,43 @@ EventSearch::EventSearch(const network::Program& program, network::Workspace& wo
     check_interval_ = std::min(check_interval_, s.check_interval);
 }
 
+/// Of a slide, in the order of a sample: above 0 where a share leaves its range, the sides drive apart, or
+/// what follows on a side is due.
+std::vector<double> EventSearch::slide_crossed() {
+  std::vector<double> crossed;
+  for (const double share : slide_.shares()) {
+    crossed.push_back(-share - kEdge);
+    crossed.push_back(share - 1 - kEdge);
+  }
+  for (std::size_t unit = 0; unit < slide_.units().size(); ++unit)
+    crossed.push_back(slide_.repulsion(unit).value_or(kAttracted) - SlidingMode::kNoRepulsion);
+  for (std::size_t side = 0; side < slide_.sides(); ++side) {
+    for (std::size_t f = 0; f < slide_.followers().size(); ++f)
+      crossed.push_back(slide_.crossed(side, f) - thresholds_[slide_.followers()[f]]);
+  }
+  return crossed;
+}
+
+/// The same a little apart from t, within the step, and that time; nothing where there is none.
+std::optional<std::pair<double, std::vector<double>>> EventSearch::slide_beside(double t,
+                                                                                const Interpolant& solution) {
+  const double apart = kRateStep * std::min(check_interval_, end_ - begin_);
+  if (!slide_.active() || !(apart > time_resolution(t))) return std::nullopt;
+  const double beside = t + apart <= end_ ? t + apart : t - apart;
+  bool known = false;
+  reached_ = evaluate_along_branch(reached_, beside, workspace_, [&](double time) {
+    solution.states_at(time, states_);
+    known = slide_.evaluate(time, states_);
+    return known;
+  });
+  if (!known || reached_ != beside) return std::nullopt;
+  return std::pair(beside, slide_crossed());
+}
+
 void EventSearch::sample(double t, const Interpolant& solution, Sample& at) {
   interruption_.check();
   at.time = t;
+  const auto beside = slide_beside(t, solution);
   std::optional<network::Evaluation> here;
   const double reached = evaluate_along_branch(reached_, t, workspace_, [&](double time) {
     solution.states_at(time, states_);
@@ -125,17 +162,12 @@ void EventSearch::sample(double t, const Interpolant& solution, Sample& at) {
     if (slide_.rests(s)) at.crossed[s] -= SlidingMode::drift();
     if (program_.switches()[s].rate || slide_.holds(s) || slide_.follows(s)) at.crossed[s] = -kInfinity;
   }
-  for (const double share : slide_.shares()) {
-    at.crossed.push_back(-share - kEdge);
-    at.crossed.push_back(share - 1 - kEdge);
-  }
-  for (std::size_t unit = 0; unit < slide_.units().size(); ++unit)
-    at.crossed.push_back(slide_.repulsion(unit).value_or(kAttracted) - SlidingMode::kNoRepulsion);
-  for (std::size_t side = 0; side < slide_.sides(); ++side) {
-    for (std::size_t f = 0; f < slide_.followers().size(); ++f)
-      at.crossed.push_back(slide_.crossed(side, f) - thresholds_[slide_.followers()[f]]);
-  }
+  const std::vector<double> of_slide = slide_crossed();
+  at.crossed.insert(at.crossed.end(), of_slide.begin(), of_slide.end());
   at.rates.resize(at.crossed.size(), std::numeric_limits<double>::quiet_NaN());
+  if (!beside || beside->second.size() != of_slide.size()) return;
+  for (std::size_t k = 0; k < of_slide.size(); ++k)
+    at.rates[n + k] = (beside->second[k] - of_slide[k]) / (beside->first - t);
 }
 
 bool EventSearch::is_due(const Sample& at) const {
@@ -146,6 +178,8 @@ std::optional<EventSearch::Found> EventSearch::search(double from, std::span<con
                                                       const Interpolant& solution) {
   Sample left, right;
   near_misses_.clear();
+  begin_ = from;
+  end_ = sample_times.empty() ? from : sample_times.back();
   reached_ = sample_times.empty() ? from : sample_times.back();  // where the solver was last
   sample(from, solution, left);
   // Where the solver starts anew an event function may still lie within rounding of zero on the wrong side.

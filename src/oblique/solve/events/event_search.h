@@ -63,6 +63,8 @@ class EventSearch {
     double phase_rate = 0;  ///< [rad/s]
   };
 
+  std::vector<double> slide_crossed();
+  std::optional<std::pair<double, std::vector<double>>> slide_beside(double t, const Interpolant& solution);
   void sample(double t, const Interpolant& solution, Sample& at);
   bool is_due(const Sample& at) const;
   std::optional<Found> between(const Sample& from, const Sample& to, const Interpolant& solution);
@@ -78,7 +80,8 @@ class EventSearch {
   const std::string& file_;
   double check_interval_;
   int splits_left_ = 0;
-  double reached_ = 0;  ///< [s] where the event functions were evaluated last
+  double begin_ = 0, end_ = 0;  ///< [s] of the search
+  double reached_ = 0;          ///< [s] where the event functions were evaluated last
   double samples_left_ = std::numeric_limits<double>::infinity();
   Interruption interruption_;
   std::vector<NearMiss> near_misses_;

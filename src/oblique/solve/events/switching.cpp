@@ -57,11 +57,26 @@ void Switching::start(double t, std::vector<double>& x, const std::function<void
   settling_.end({});
 }
 
-/// What is uncertain of each unit that slides, should it leave its switching surface.
+/// What is uncertain of each unit that slides, should it leave its switching surface: with the other switches
+/// as they are, and as those that are due will be. (A limited integrator comes back where what drives it
+/// turns over.)
 std::vector<SlidingMode::Doubt> Switching::doubts_of_slide(double t, std::span<const double> x) {
   std::vector<SlidingMode::Doubt> doubts(slide_.units().size(), SlidingMode::Doubt::none);
   if (!slide_.active() || !slide_.evaluate(t, x)) return doubts;
   for (std::size_t u = 0; u < doubts.size(); ++u) doubts[u] = slide_.doubt(u);
+  const std::vector<double> before(workspace_.discrete_states().begin(), workspace_.discrete_states().end());
+  for (std::size_t s = 0; s < program_.switches().size(); ++s) {
+    if (location_.announced()[s] && !slide_.holds(s) && !slide_.follows(s))
+      workspace_.set_discrete_state(program_.switches()[s].discrete_state, *location_.announced()[s]);
+  }
+  if (!std::ranges::equal(before, workspace_.discrete_states())) {
+    const bool known = slide_.evaluate(t, x);
+    for (std::size_t u = 0; known && u < doubts.size(); ++u) {
+      if (slide_.doubt(u) == SlidingMode::Doubt::none) doubts[u] = SlidingMode::Doubt::none;
+    }
+    workspace_.load_discrete_states(before);
+    slide_.evaluate(t, x);
+  }
   return doubts;
 }
 
