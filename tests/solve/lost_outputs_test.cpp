@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Outputs that show nothing but the errors of the states.
 #include <cmath>
+#include <string>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -42,6 +43,24 @@ TEST(LostOutput, IsToldOfWhereItDividesByWhatHasDecayed) {
       text::to_string(lost.warnings.front()),
       HasSubstr("remedy: look for a division by what comes to zero, or a difference of what is nearly "
                 "alike; where it is meant, a finer 'tolerance' in [run] carries further"));
+}
+
+// The same read by a switch for two tenths of a second alone, from t = 33.9 on: neither a step at which it is
+// looked at nor the end of the run need lie there.
+TEST(LostOutput, IsToldOfWhereItIsReadBetweenTwoEventsAlone) {
+  const std::string window =
+      "g = { type = \"sine-source\", amplitude = 1, frequency = 0.0073529411764705881 }\n"
+      "s = { type = \"electronic-switch\", on = \"x\", off = \"one\", control = \"g\", threshold = 0.99999 "
+      "}\n"
+      "z = { type = \"divider\", numerator = \"1e-4*one\", denominator = \"s\", gain = inf, bandwidth = inf "
+      "}\n";
+  const oblique::solve::Run lost = testing::run_of(
+      testing::Compiled(kReciprocal + window, "[outputs]\nz = { signal = \"z\" }\n"), {.until = 40});
+  ASSERT_THAT(lost.events, SizeIs(2));
+  ASSERT_THAT(lost.warnings, SizeIs(1));
+  EXPECT_THAT(
+      lost.warnings.front().what,
+      HasSubstr(fmt::format("no digit of the output 'z' is known: at t = {:.6g} s", lost.events[0].time)));
 }
 
 // What is not shown, a zero that is subtracted to rounding, and a state that is large are no such outputs.

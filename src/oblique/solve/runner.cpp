@@ -236,6 +236,7 @@ void Runner::pass_piece() {
   }
   piece_begin_ = t_;
   in_step_ = passed == Segments::Passed::piece;
+  if (in_step_ && integration_) integration_->go_on(t_);
   if (in_step_) return;
   if (!integration_) {
     if (passed == Segments::Passed::segment) segments_.begin(t_);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -296,6 +297,26 @@ TEST(Events, ALoopWithoutAnAgreeingModeIsRefusedByName) {
            {.until = 1});
   });
   EXPECT_THAT(message, HasSubstr("'s' switches without end at t = 0 s (no position of its switch agrees"));
+}
+
+// A comparison of what goes through a pole turns over there, and all that comes after it is found: the
+// rounding of the pole, which is large, is that of a moment. y = min(−t, −1.7 n/d) at every row, where d
+// passes zero each half period of 0.4 s.
+TEST(Events, AreFoundAfterAPole) {
+  for (const double scale : {1.0, 2.0, 4.0}) {
+    const auto result = run_of(Compiled(fmt::format(R"toml(
+d = {{ type = "sine-source", amplitude = {0}, frequency = 2.5, phase = 0.375 }}
+n = {{ type = "sine-source", amplitude = {0}, frequency = 0.6, phase = 1 }}
+q = {{ type = "divider", numerator = "n", denominator = "{1}*d", gain = inf, bandwidth = inf }}
+r = {{ type = "ramp", slope = -{0} }}
+y = {{ type = "minimum", x = "r", y = "-1.7*q" }}
+)toml",
+                                                    0.25 * scale, 1 / scale)),
+                               {.until = 4, .samples = 401});
+    const auto q = row_values(result, "q"), r = row_values(result, "r"), y = row_values(result, "y");
+    for (std::size_t row = 0; row < y.size(); ++row)
+      EXPECT_DOUBLE_EQ(y[row], std::min(r[row], -1.7 * q[row])) << row << " of scale " << scale;
+  }
 }
 
 // --- tables

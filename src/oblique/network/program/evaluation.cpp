@@ -93,6 +93,14 @@ std::optional<double> SignalEvaluation::start_value(std::size_t state) const {
   return slot ? std::optional(value(*slot)) : std::nullopt;
 }
 
+Eigen::VectorXd SignalEvaluation::loop_residuals(std::size_t loop) const {
+  const LoopCode& code = program_->code_->loop_codes[loop];
+  Eigen::VectorXd residuals(static_cast<Eigen::Index>(code.size()));
+  for (std::size_t i = 0; i < code.size(); ++i)
+    residuals[static_cast<Eigen::Index>(i)] = value(code.residual_slots[i]);
+  return residuals;
+}
+
 Eigen::MatrixXd SignalEvaluation::loop_jacobian(std::size_t loop) const {
   const LoopCode& code = program_->code_->loop_codes[loop];
   const auto n = static_cast<Eigen::Index>(code.size());

@@ -59,6 +59,8 @@ class SignalEvaluation : public Evaluation {
   double action_value(std::size_t event, std::size_t action) const;
   /// Where a state starts if that follows from signals; nothing for another.
   std::optional<double> start_value(std::size_t state) const;
+  /// g of an algebraic loop, in the order of its unknowns: zero where it is solved.
+  Eigen::VectorXd loop_residuals(std::size_t loop) const;
   /// dg/dz of an algebraic loop, rows and columns in the order of its unknowns.
   Eigen::MatrixXd loop_jacobian(std::size_t loop) const;
 

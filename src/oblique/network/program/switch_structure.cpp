@@ -107,15 +107,22 @@ class Finder {
     const ExpressionGraph& graph = network_.graph;
     for (const Switch& s : network_.switches) structure_.event_functions.push_back(s.event_function);
     structure_.switch_at.assign(graph.size(), SwitchStructure::kNone);
+    structure_.discrete_state_at.assign(graph.size(), SwitchStructure::kNone);
+    structure_.loop_at.assign(graph.size(), SwitchStructure::kNone);
+    structure_.n_discrete_states = network_.discrete_states.size();
     // The residuals of a loop stand with the first of its unknowns, and the others lead there.
     std::vector<std::uint32_t> first_unknown(network_.loops.size(), SwitchStructure::kNone);
     structure_.first_operand.push_back(0);
     for (NodeId id = 0; id < graph.size(); ++id) {
       const Node& node = graph[id];
-      if (node.op == Op::discrete_state) structure_.switch_at[id] = switch_of_[node.variable];
+      if (node.op == Op::discrete_state) {
+        structure_.discrete_state_at[id] = node.variable;
+        structure_.switch_at[id] = switch_of_[node.variable];
+      }
       std::vector<std::uint32_t>& operands = structure_.operands;
       for (int i = 0; i < operand_count(node.op); ++i) operands.push_back(node.operand(i));
       if (is_unknown(node)) {
+        structure_.loop_at[id] = static_cast<std::uint32_t>(loop_of(node));
         std::uint32_t& first = first_unknown[loop_of(node)];
         if (first == SwitchStructure::kNone) {
           first = id;
@@ -227,6 +234,28 @@ bool SwitchStructure::depends(std::size_t s, std::size_t other) const {
   bool found = false;
   visit_below(*this, event_functions[s], [&](NodeId id) { found = found || switch_at[id] == other; });
   return found;
+}
+
+std::vector<bool> SwitchStructure::followers_of_loop(std::size_t loop) const {
+  std::vector<bool> direct(event_functions.size(), false);
+  for (std::size_t s = 0; s < direct.size(); ++s) {
+    bool found = false;
+    visit_below(*this, event_functions[s], [&](NodeId id) { found = found || loop_at[id] == loop; });
+    direct[s] = found;
+  }
+  std::vector<bool> follows = followers_of(direct);
+  for (std::size_t s = 0; s < direct.size(); ++s) follows[s] = follows[s] || direct[s];
+  return follows;
+}
+
+std::vector<bool> SwitchStructure::discrete_states_below_loop(std::size_t loop) const {
+  std::vector<bool> below(n_discrete_states, false);
+  const auto unknown = std::find(loop_at.begin(), loop_at.end(), loop);
+  if (unknown == loop_at.end()) return below;
+  visit_below(*this, static_cast<NodeId>(unknown - loop_at.begin()), [&](NodeId id) {
+    if (discrete_state_at[id] != kNone) below[discrete_state_at[id]] = true;
+  });
+  return below;
 }
 
 std::vector<bool> SwitchStructure::followers_of(const std::vector<bool>& these) const {

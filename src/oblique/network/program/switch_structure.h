@@ -31,6 +31,11 @@ struct SwitchStructure {
   std::vector<std::uint32_t> positions_in(NodeId node) const;
   /// Whether the event function of switch s depends on the position of switch `other`.
   bool depends(std::size_t s, std::size_t other) const;
+  /// Of each switch: whether its event function depends on an unknown of this algebraic loop, itself or by
+  /// the position of another that does.
+  std::vector<bool> followers_of_loop(std::size_t loop) const;
+  /// Of each discrete state: whether the equations of this algebraic loop depend on it.
+  std::vector<bool> discrete_states_below_loop(std::size_t loop) const;
   /// Of each switch: whether its event function depends on the position of one of `these` (one flag for each
   /// switch), or on that of another that does.
   std::vector<bool> followers_of(const std::vector<bool>& these) const;
@@ -44,8 +49,10 @@ struct SwitchStructure {
   /// of an unknown included: those of node i are `operands[first_operand[i]] … operands[first_operand[i + 1]
   /// − 1]`.
   std::vector<std::uint32_t> first_operand, operands;
-  std::vector<std::uint32_t> switch_at;  ///< of each node: the switch whose position it is
-  std::vector<NodeId> event_functions;   ///< of each switch
+  std::vector<std::uint32_t> switch_at;                   ///< of each node: the switch whose position it is
+  std::vector<std::uint32_t> discrete_state_at, loop_at;  ///< of each node: what it is, the unknown of a loop
+  std::size_t n_discrete_states = 0;
+  std::vector<NodeId> event_functions;  ///< of each switch
 };
 
 SwitchStructure find_switch_structure(const Network& network);

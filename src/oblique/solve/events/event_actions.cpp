@@ -93,8 +93,14 @@ bool EventActions::comes_at_once(std::size_t event, double t, std::span<const do
   return hangs;
 }
 
-/// Looks at all conditions; the events that have come.
+/// Looks at all conditions; the events that have come. While tables are moved along nothing else comes: on
+/// the way to the segment that belongs to it a table gives values that are nobody's.
 std::vector<EventActions::Come> EventActions::look(double t, std::span<const double> x, bool starting) {
+  std::vector<Come> tables;
+  for (std::size_t e = 0; e < held_.size(); ++e) {
+    if (program_.events()[e].repeats && event_functions_.here().condition(e)) tables.push_back({e, false});
+  }
+  if (!tables.empty()) return tables;
   const std::vector<bool> held_before = held_;
   for (std::size_t e = 0; e < held_.size(); ++e) held_[e] = event_functions_.here().condition(e);
   std::vector<Come> found;
@@ -154,6 +160,7 @@ std::optional<EventActions::Effect> EventActions::serve(double t, std::vector<do
     uncertain_.look(events, values, t, x);
   }
   Effect effect;
+  effect.tables = program_.events()[served.front().event].repeats;
   for (const Change& change : changes) {
     if (change.action->on_state) {
       effect.sets_states = true;

@@ -40,7 +40,8 @@ class EventActions {
   /// What events have done at one instant.
   struct Effect {
     bool sets_states = false;
-    bool jumps = false;  ///< a state has another value now
+    bool jumps = false;   ///< a state has another value now
+    bool tables = false;  ///< nothing has come but that tables were moved along
   };
   /// Serves all events whose conditions have become true at (t, x), where all event functions were evaluated;
   /// while `starting` only those that come at a start. Nothing where there are none. Throws SolveError.

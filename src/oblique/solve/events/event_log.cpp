@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <oblique/solve/run_errors.h>
+
 namespace oblique::solve {
 namespace {
 
@@ -128,6 +130,28 @@ void EventLog::warn_of_halt(std::uint32_t unit, double t) {
                   "it stays",
                   t),
       "give the comparison a hysteresis, or do not read it while it rests");
+}
+
+void EventLog::warn_of_choice(const std::vector<std::uint32_t>& switches, const network::Workspace& workspace,
+                              double t) {
+  std::vector<std::string> names;
+  for (const std::uint32_t s : switches) names.push_back(fmt::format("'{}'", program_.switches()[s].block));
+  const network::Switch& first = program_.switches()[switches.front()];
+  const std::string begin =
+      fmt::format("the loop of the switches of {} has several solutions", shortened(names));
+  const bool told = std::any_of(warnings_.begin(), warnings_.end(), [&](const text::Diagnostic& warning) {
+    return warning.what.starts_with(begin);
+  });
+  if (told) return;
+  warnings_.push_back(
+      {{file_, {}},
+       fmt::format("{}: at t = {:.9g} s the run goes on with '{}' ({}) {}; nothing in the diagram chooses "
+                   "between them",
+                   begin, t, first.block, first.comparison,
+                   workspace.discrete_state(first.discrete_state) == 1 ? "true" : "false"),
+       {},
+       "set the latch by one of its inputs then, or give one of its comparators a hysteresis and an "
+       "'initial'"});
 }
 
 /// Tells of switches with events that follow what slides: what these would do is not counted.

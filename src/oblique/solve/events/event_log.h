@@ -34,6 +34,10 @@ class EventLog {
   /// Tells that nothing decides on which side a solution stops that slid.
   void warn_of_halt(std::uint32_t unit, double t);
 
+  /// Tells that switches which depend on each other may stand in more than one way, and how they do.
+  void warn_of_choice(const std::vector<std::uint32_t>& switches, const network::Workspace& workspace,
+                      double t);
+
   /// The error of a run in which this block switches without end.
   SolveError endless(const std::string& block, const std::string& what, double t) const;
   /// The same of what was recorded last.

@@ -2,6 +2,7 @@
 #include <oblique/solve/events/self_consistent.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include <oblique/network/program/program.h>
@@ -67,9 +68,9 @@ std::optional<network::Evaluation> place_others(const network::Program& program,
   return std::nullopt;
 }
 
-bool choose_any(const network::Program& program, network::Workspace& workspace, const SlidingMode& slide,
-                const Thresholds& thresholds, double span, std::vector<std::uint32_t> restless, double t,
-                std::span<const double> x) {
+Agreement choose_any(const network::Program& program, network::Workspace& workspace, const SlidingMode& slide,
+                     const Thresholds& thresholds, double span, std::vector<std::uint32_t> restless, double t,
+                     std::span<const double> x) {
   constexpr std::size_t kMostTogether = 12;  // switches of which all combinations are tried
   const network::SwitchStructure& structure = program.switch_structure();
   for (std::size_t k = 0; k < restless.size(); ++k) {
@@ -81,7 +82,7 @@ bool choose_any(const network::Program& program, network::Workspace& workspace, 
   }
   std::sort(restless.begin(), restless.end());
   restless.erase(std::unique(restless.begin(), restless.end()), restless.end());
-  if (restless.size() > kMostTogether) return false;
+  if (restless.size() > kMostTogether) return {};
   const std::vector<double> before(workspace.discrete_states().begin(), workspace.discrete_states().end());
   Combination present = 0;
   std::vector<bool> placed(program.switches().size(), false);
@@ -89,17 +90,29 @@ bool choose_any(const network::Program& program, network::Workspace& workspace, 
     placed[restless[k]] = true;
     if (workspace.discrete_state(program.switches()[restless[k]].discrete_state) == 1) present |= 1U << k;
   }
-  std::vector<double> event_functions(program.switches().size());
+  std::vector<double> event_functions(program.switches().size()), chosen;
+  Combination first = 0;
   for (const Combination sides : nearest_first(present, restless.size())) {
+    if (!chosen.empty() && std::popcount(sides ^ present) > std::popcount(first ^ present)) break;
     workspace.load_discrete_states(before);
     for (std::size_t k = 0; k < restless.size(); ++k)
       workspace.set_discrete_state(program.switches()[restless[k]].discrete_state, has(sides, k) ? 1 : 0);
-    if (place_others(program, workspace, thresholds, placed, t, x, event_functions) &&
-        agrees(program, workspace, slide, thresholds, span, t, x))
-      return true;
+    if (!place_others(program, workspace, thresholds, placed, t, x, event_functions) ||
+        !agrees(program, workspace, slide, thresholds, span, t, x))
+      continue;
+    if (!chosen.empty()) {
+      workspace.load_discrete_states(chosen);
+      Agreement several{true, {}};
+      for (std::size_t k = 0; k < restless.size(); ++k) {
+        if (has(sides, k) != has(first, k)) several.open.push_back(restless[k]);
+      }
+      return several;
+    }
+    first = sides;
+    chosen.assign(workspace.discrete_states().begin(), workspace.discrete_states().end());
   }
-  workspace.load_discrete_states(before);
-  return false;
+  workspace.load_discrete_states(chosen.empty() ? before : chosen);
+  return {!chosen.empty(), {}};
 }
 
 }  // namespace oblique::solve

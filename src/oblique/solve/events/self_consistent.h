@@ -22,11 +22,17 @@ std::optional<network::Evaluation> place_others(const network::Program& program,
                                                 std::span<const double> x,
                                                 std::vector<double>& event_functions);
 
+/// What agrees with itself: nothing, or switches of which one or several combinations as near do.
+struct Agreement {
+  bool any = false;
+  std::vector<std::uint32_t> open;  ///< the switches that stand otherwise in another one
+};
+
 /// Tries all combinations of `restless` and of the switches that share their algebraic loops, the nearest to
-/// the present one first, until one agrees with itself at (t, x); false, with nothing changed, where none
+/// the present one first, until one agrees with itself at (t, x); nothing, and nothing changed, where none
 /// does, or they are too many. `span` is the length of the run [s].
-bool choose_any(const network::Program& program, network::Workspace& workspace, const SlidingMode& slide,
-                const Thresholds& thresholds, double span, std::vector<std::uint32_t> restless, double t,
-                std::span<const double> x);
+Agreement choose_any(const network::Program& program, network::Workspace& workspace, const SlidingMode& slide,
+                     const Thresholds& thresholds, double span, std::vector<std::uint32_t> restless, double t,
+                     std::span<const double> x);
 
 }  // namespace oblique::solve

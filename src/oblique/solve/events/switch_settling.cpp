@@ -243,8 +243,7 @@ void SwitchSettling::decide(Units units, double t, std::span<const double> x) {
     std::vector<std::uint32_t> members;
     for (const std::uint32_t unit : units)
       members.insert(members.end(), structure.members[unit].begin(), structure.members[unit].end());
-    if (units.size() > Positions::kMostUnits ||
-        !choose_any(program_, workspace_, slide_, event_functions_.thresholds(), span_, members, t, x))
+    if (units.size() > Positions::kMostUnits || !choose_restless(members, t, x))
       throw no_position(members.front(), t);
   }
   note_choice(t, x);
@@ -253,6 +252,15 @@ void SwitchSettling::decide(Units units, double t, std::span<const double> x) {
     workspace_.set_discrete_state(program_.switches()[s].discrete_state, before[s]);
     turn(s, chosen, t);
   }
+}
+
+/// Puts switches that go on turning over where they and all others agree, and tells where that is not the
+/// only way; false where there is none.
+bool SwitchSettling::choose_restless(const Units& switches, double t, std::span<const double> x) {
+  const Agreement found =
+      choose_any(program_, workspace_, slide_, event_functions_.thresholds(), span_, switches, t, x);
+  if (!found.open.empty()) log_.warn_of_choice(found.open, workspace_, t);
+  return found.any;
 }
 
 /// Whether some signal is another with the unit on its other side.
@@ -311,7 +319,7 @@ bool SwitchSettling::settle(double t, std::span<const double> x) {
       // These go on turning over: their event functions depend on their own positions.
       restless.insert(restless.end(), turned.begin(), turned.end());
       if (round <= 2 * most) continue;
-      if (!choose_any(program_, workspace_, slide_, event_functions_.thresholds(), span_, restless, t, x))
+      if (!choose_restless(restless, t, x))
         throw no_position(*std::min_element(restless.begin(), restless.end()), t);
       event_functions_.evaluate(t, x, announced_);
       return true;

@@ -76,6 +76,7 @@ class SwitchSettling {
   void turn_in_order(double t, std::span<const double> x);
   void add_preferred(std::uint32_t unit, std::vector<double>& preferred) const;
   void decide(Units units, double t, std::span<const double> x);
+  bool choose_restless(const Units& switches, double t, std::span<const double> x);
   bool matters(std::uint32_t unit, double t, std::span<const double> x) const;
   void note_choice(double t, std::span<const double> x);
   SolveError no_position(std::uint32_t s, double t) const;

@@ -2,6 +2,7 @@
 #include <oblique/solve/events/switching.h>
 
 #include <algorithm>
+#include <utility>
 
 #include <oblique/network/program/program.h>
 #include <oblique/solve/events/switching_start.h>
@@ -25,7 +26,10 @@ Switching::Switching(const network::Program& program, network::Workspace& worksp
       location_(program, workspace, slide_, event_functions_, span, file),
       settling_(program, workspace, slide_, event_functions_, location_.announced(), log_, span),
       actions_(program, workspace, event_functions_, slide_, settling_, log_, span, file),
-      faint_turns_(program, workspace, span) {}
+      faint_turns_(program, workspace, span),
+      loop_jumps_(program, workspace, event_functions_.thresholds()) {
+  loop_jumps_.begin();
+}
 
 void Switching::end_when(const Interruption& interruption) {
   interruption_ = interruption;
@@ -33,7 +37,8 @@ void Switching::end_when(const Interruption& interruption) {
   location_.end_when(interruption);
 }
 
-void Switching::start(double t, std::vector<double>& x, const std::function<void()>& bring_to_rest) {
+void Switching::start(double t, std::vector<double>& x, const std::function<void()>& bring_to_rest,
+                      bool loops_go) {
   const bool any_start =
       std::any_of(program_.states().begin(), program_.states().end(),
                   [](const network::State& state) { return state.start_node.has_value(); });
@@ -47,12 +52,14 @@ void Switching::start(double t, std::vector<double>& x, const std::function<void
                                        bring_to_rest))
       bring_to_rest();
     first = false;
-    if (!active()) return;
     settling_.begin();
-    if (settling_.settle(t, x)) continue;
-    if (!serve_events(t, x, starting)) break;
-    starting = false;
+    if (active() && settling_.settle(t, x)) continue;
+    const auto effect = active() ? serve_events(t, x, starting) : std::nullopt;
+    starting = starting && (!effect || effect->tables);
+    if (effect) continue;
+    if (!std::exchange(loops_go, false) || slide_.active() || !loop_jumps_.settle(t, x)) break;
   }
+  if (!active()) return;
   log_.record_slides({}, {}, slide_, t);
   settling_.end({});
 }
@@ -80,14 +87,18 @@ std::vector<SlidingMode::Doubt> Switching::doubts_of_slide(double t, std::span<c
   return doubts;
 }
 
-/// Serves the events that are due; true where there were any.
-bool Switching::serve_events(double t, std::vector<double>& x, bool starting) {
+/// Serves the events that are due; nothing where there were none. Tables in an algebraic loop may lead each
+/// other, or themselves, from line to line and back: then its elements find the lines.
+std::optional<EventActions::Effect> Switching::serve_events(double t, std::vector<double>& x, bool starting) {
+  constexpr int kManyHops = 40;
   const auto effect = actions_.serve(t, x, starting);
-  if (!effect) return false;
+  hops_ = effect && effect->tables ? hops_ + 1 : 0;
+  if (!effect) return effect;
+  if (hops_ == kManyHops && !slide_.active()) loop_jumps_.settle(t, x);
   settling_.begin_after_events(effect->sets_states, effect->jumps);
   event_functions_.evaluate(t, x, location_.announced());
   location_.withdraw_past(effect->jumps);
-  return true;
+  return effect;
 }
 
 /// Records which of the announced switches have turned over; the solution leads the others back at once.
@@ -104,9 +115,19 @@ void Switching::record_turns(const std::vector<double>& before, double t) {
   }
 }
 
+/// All switches, and the loops between them, where nothing has been served yet that follows from them.
+void Switching::settle_switches(double t, std::span<const double> x) {
+  settling_.settle(t, x);
+  if (!loop_jumps_.any()) return;
+  if (!slide_.active() && loop_jumps_.settle(t, x)) settling_.settle(t, x);
+  loop_jumps_.note(t, x);
+  event_functions_.evaluate(t, x, location_.announced());
+}
+
 void Switching::settle(double t, std::vector<double>& x) {
   const std::vector<std::uint32_t> slid = slide_.units();
   const std::vector<SlidingMode::Doubt> doubts = doubts_of_slide(t, x);
+  loop_jumps_.note(t, x);
   settling_.begin();
   event_functions_.evaluate(t, x, location_.announced());
   settling_.begin_instant();
@@ -118,7 +139,7 @@ void Switching::settle(double t, std::vector<double>& x) {
   if (before_turns.empty()) faint.clear();
   actions_.begin_instant();
   for (int round = 0;; ++round) {
-    settling_.settle(t, x);
+    settle_switches(t, x);
     if (round == 0) {
       record_turns(before, t);
       actions_.note_turns(before);

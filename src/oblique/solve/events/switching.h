@@ -14,6 +14,7 @@
 #include <oblique/solve/events/event_location.h>
 #include <oblique/solve/events/event_log.h>
 #include <oblique/solve/events/faint_turns.h>
+#include <oblique/solve/events/loop_jumps.h>
 #include <oblique/solve/events/sliding_mode.h>
 #include <oblique/solve/events/switch_settling.h>
 #include <oblique/solve/integrator/interpolant.h>
@@ -43,8 +44,10 @@ class Switching {
 
   /// Settles switches and events at the start of the run, and the states that start from signals.
   /// `bring_to_rest` is called whenever something has changed that servo loops may follow; it throws
-  /// SolveError where they do not settle. Throws SolveError.
-  void start(double t, std::vector<double>& x, const std::function<void()>& bring_to_rest);
+  /// SolveError where they do not settle. With `loops_go` the algebraic loops without amplifiers go to where
+  /// their elements take them from the guesses; else they stay where Newton's method finds them. Throws
+  /// SolveError.
+  void start(double t, std::vector<double>& x, const std::function<void()>& bring_to_rest, bool loops_go);
 
   /// Settles everything at time t, after the switches that `known_wait` or `search` announced have turned
   /// over. Throws SolveError.
@@ -106,7 +109,8 @@ class Switching {
 
  private:
   std::vector<SlidingMode::Doubt> doubts_of_slide(double t, std::span<const double> x);
-  bool serve_events(double t, std::vector<double>& x, bool starting);
+  std::optional<EventActions::Effect> serve_events(double t, std::vector<double>& x, bool starting);
+  void settle_switches(double t, std::span<const double> x);
   std::vector<double> readings(double t, std::span<const double> x);
   void look_at_miss(const EventSearch::NearMiss& miss, const Interpolant& solution);
   void record_turns(const std::vector<double>& before, double t);
@@ -122,6 +126,8 @@ class Switching {
   SwitchSettling settling_;
   EventActions actions_;
   FaintTurns faint_turns_;
+  LoopJumps loop_jumps_;
+  int hops_ = 0;  ///< of tables, one after the other at one instant
 };
 
 }  // namespace oblique::solve

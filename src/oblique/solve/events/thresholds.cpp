@@ -47,10 +47,10 @@ double Thresholds::rounding_of(std::size_t s, double compared_size) const {
 std::optional<double> Thresholds::leave_behind(std::size_t s, double event_function, double rounding) {
   excursions_[s] = std::max(excursions_[s], std::abs(event_function));
   if (slack_[s] == 0 || excursions_[s] <= 2 * slack_[s]) return std::nullopt;
-  const double before = now_[s];
+  const double less = along_solution(s, rounding) - rounding;
   now_[s] = rounding;
   slack_[s] = 0;
-  return before - now_[s];
+  return less;
 }
 
 }  // namespace oblique::solve

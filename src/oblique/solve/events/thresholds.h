@@ -29,11 +29,9 @@ class Thresholds {
   double resolution(std::size_t s) const { return resolutions_[s]; }
   /// Rounding where it compares what has this magnitude: a part of it, at least of a machine unit.
   double rounding_of(std::size_t s, double compared_size) const;
-  /// The threshold in a search along a solution, by the rounding there: what the time alone does is known to
-  /// that.
-  double along_solution(std::size_t s, double rounding) const {
-    return of_time_[s] && slack_[s] == 0 ? rounding : now_[s];
-  }
+  /// The threshold in a search along a solution, by the rounding there: beside a pole it is large for a
+  /// moment only.
+  double along_solution(std::size_t s, double rounding) const { return std::max(rounding, slack_[s]); }
 
   /// Lets an event function go back so far by the errors of the states, until it has left them behind; from
   /// the next `update` on. Where the errors are large for a moment only, as beside a pole, that is no reason

@@ -91,6 +91,7 @@ void Integration::end_step(Segments::Passed passed, double t) {
     restart(t);
     growth_.restart(t, parts_.states);
     short_steps_.restart();
+    lost_.begin_segment(t, parts_.states);
   } else {
     std::copy(solver_->states().begin(), solver_->states().end(), parts_.states.begin());
     growth_.advance(t, parts_.states);

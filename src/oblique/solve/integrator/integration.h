@@ -54,6 +54,8 @@ class Integration {
   bool take_step(double& t);
   /// Goes on from t, where a step has ended or the segment with it.
   void end_step(Segments::Passed passed, double t);
+  /// Goes on with a step at t, where switches have turned over that the states do not notice.
+  void go_on(double t) { lost_.begin_segment(t, parts_.states); }
   /// Looks at the end of the run.
   void end(double t);
 

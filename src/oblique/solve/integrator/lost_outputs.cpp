@@ -2,6 +2,7 @@
 #include <oblique/solve/integrator/lost_outputs.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <utility>
@@ -40,6 +41,11 @@ void LostOutputs::advance(double t, std::span<const double> x) {
   if (steps_++ < next_look_) return;
   next_look_ = 2 * next_look_ + 1;
   look(t, x);
+}
+
+void LostOutputs::begin_segment(double t, std::span<const double> x) {
+  constexpr unsigned long kAll = 64;
+  if (++segments_ <= kAll || std::has_single_bit(segments_)) look(t, x);
 }
 
 void LostOutputs::look(double t, std::span<const double> x) {

@@ -13,9 +13,9 @@ namespace oblique::solve {
 
 /// Watches the steps of a solver for outputs that lose their last digit on the way from the states: what
 /// divides by a state that has come to zero, or subtracts what is nearly alike, shows little but the errors
-/// that the tolerance leaves to the states. At some of the steps, ever fewer, and at the end of the run these
-/// errors are put into all states together, with some combinations of their signs, and the outputs are looked
-/// at. (`RunOptions::trust` estimates the whole error of every output.) Not installed.
+/// that the tolerance leaves to the states. At some of the steps and events, ever fewer, and at the end of
+/// the run these errors are put into all states together, with some combinations of their signs, and the
+/// outputs are looked at. (`RunOptions::trust` estimates the whole error of every output.) Not installed.
 class LostOutputs {
  public:
   /// Gives the outputs at (t, x), false where they have no values.
@@ -26,6 +26,8 @@ class LostOutputs {
 
   /// Looks at the states (t, x) that a step has reached.
   void advance(double t, std::span<const double> x);
+  /// The same after an event, which may let an output show what it has not read before.
+  void begin_segment(double t, std::span<const double> x);
   /// Looks at the end (t, x) of the run.
   void end(double t, std::span<const double> x) { look(t, x); }
 
@@ -48,6 +50,7 @@ class LostOutputs {
   std::vector<Loss> losses_;
   std::vector<double> values_, moved_, off_states_;
   long steps_ = 0, next_look_ = 16;
+  unsigned long segments_ = 0;
 };
 
 }  // namespace oblique::solve

@@ -41,9 +41,11 @@ std::vector<text::Diagnostic> settle_start(const StartParts& parts, double t, st
   std::vector<text::Diagnostic> warnings;
   std::vector<double> signals(program.n_signals());
   const auto settle_all = [&] {
-    parts.switching.start(t, states, [&] {
+    const auto rest = [&] {
       if (parts.options.settle) warnings = bring_to_rest(program, parts.workspace, t, states, file);
-    });
+    };
+    // From another start others are sought.
+    parts.switching.start(t, states, rest, !parts.loop_start.loop);
     if (!parts.switching.signals(t, states.data(), signals.data()))
       throw loop_error(program, parts.workspace.trouble(), t, file);
   };

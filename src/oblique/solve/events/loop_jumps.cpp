@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/solve/events/loop_jumps.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/LU>
+
+#include <oblique/network/program/program.h>
+
+namespace oblique::solve {
+namespace {
+
+/// Larger loops are left to Newton's method.
+constexpr std::size_t kMostUnknowns = 32;
+
+/// Of 1 + |z|: a smooth way does not change by this in a moment.
+constexpr double kJump = 1e-3;
+
+/// The largest part, of 1 + |z|, by which one is off the other.
+double part_between(const Eigen::VectorXd& from, const Eigen::VectorXd& to) {
+  return ((to - from).array().abs() / (1 + from.array().abs())).maxCoeff();
+}
+
+/// Whether the elements of a loop come back to a solution, as far as one number tells: where the determinant
+/// is below zero they run away, whatever their lags are; and it is the same for whichever of them are the
+/// unknowns.
+bool is_stable(const Eigen::MatrixXd& rates) {
+  return rates.partialPivLu().determinant() > 0;
+}
+
+/// Whether nothing but elements whose outputs follow their inputs is on a loop.
+bool is_blind(const network::Program& program, std::size_t loop) {
+  const std::vector<std::size_t>& unknowns = program.loops()[loop].unknowns;
+  return unknowns.size() <= kMostUnknowns &&
+         std::all_of(unknowns.begin(), unknowns.end(),
+                     [&](std::size_t u) { return program.unknowns()[u].torn; });
+}
+
+}  // namespace
+
+LoopJumps::LoopJumps(const network::Program& program, network::Workspace& workspace,
+                     const Thresholds& thresholds)
+    : program_(program),
+      workspace_(workspace),
+      thresholds_(thresholds),
+      event_functions_(program.switches().size()),
+      signals_(program.n_signals()) {
+  for (std::size_t loop = 0; loop < program.loops().size(); ++loop) {
+    if (!is_blind(program, loop)) continue;
+    Watched watched;
+    watched.loop = loop;
+    const std::vector<bool> follows = program.switch_structure().followers_of_loop(loop);
+    const std::vector<bool> acts = program.switch_structure().discrete_states_below_loop(loop);
+    for (std::uint32_t s = 0; s < follows.size(); ++s) {
+      const network::Switch& made = program.switches()[s];
+      if (!follows[s] || made.rate) continue;
+      const auto segment = made.moves_along
+                               ? std::optional(program.events()[*made.moves_along].actions.front().index)
+                               : std::nullopt;
+      if (!acts[segment.value_or(made.discrete_state)]) continue;
+      watched.switches.push_back(s);
+      watched.discrete_states.push_back(made.discrete_state);
+      if (!segment) continue;
+      watched.tables.push_back(*made.moves_along);
+      watched.discrete_states.push_back(*segment);
+    }
+    // Of linear equations that nothing changes on the way there is one solution.
+    if (!program.loop_is_linear(loop) || !watched.switches.empty()) watched_.push_back(std::move(watched));
+  }
+}
+
+Eigen::VectorXd LoopJumps::unknowns_of(const Watched& watched, const std::vector<double>& all) const {
+  const std::vector<std::size_t>& unknowns = program_.loops()[watched.loop].unknowns;
+  Eigen::VectorXd z(static_cast<Eigen::Index>(unknowns.size()));
+  for (std::size_t i = 0; i < unknowns.size(); ++i) z[static_cast<Eigen::Index>(i)] = all[unknowns[i]];
+  return z;
+}
+
+void LoopJumps::begin() {
+  if (watched_.empty()) return;
+  unknowns_.clear();
+  for (std::size_t u = 0; u < program_.unknowns().size(); ++u) unknowns_.push_back(workspace_.unknown(u));
+  discrete_states_.assign(workspace_.discrete_states().begin(), workspace_.discrete_states().end());
+  for (Watched& watched : watched_) watched.stable = true;
+}
+
+void LoopJumps::note(double t, std::span<const double> x) {
+  if (watched_.empty()) return;
+  std::vector<bool> stable;
+  for (const Watched& watched : watched_) {
+    const auto here = pull(watched, t, x, workspace_);
+    stable.push_back(!here || is_stable(here->rates));
+  }
+  begin();
+  for (std::size_t k = 0; k < watched_.size(); ++k) watched_[k].stable = stable[k];
+}
+
+bool LoopJumps::settle(double t, std::span<const double> x) {
+  bool any = false;
+  for (const Watched& watched : watched_) {
+    const auto here = pull(watched, t, x, workspace_);
+    if (!here) continue;
+    std::vector<double> now;
+    for (std::size_t u = 0; u < unknowns_.size(); ++u) now.push_back(workspace_.unknown(u));
+    const bool jumps = part_between(unknowns_of(watched, unknowns_), unknowns_of(watched, now)) > kJump;
+    if ((jumps || (watched.stable && !is_stable(here->rates))) && go_from_before(watched, t, x)) any = true;
+  }
+  return any;
+}
+
+/// What moves the unknowns of a loop, as they are; nothing where some loop has no solution.
+std::optional<LoopJumps::Pull> LoopJumps::pull(const Watched& watched, double t, std::span<const double> x,
+                                               network::Workspace& workspace) {
+  const auto here = program_.signals(t, x.data(), signals_.data(), workspace);
+  if (!here) return std::nullopt;
+  Pull found{here->loop_residuals(watched.loop), -here->loop_jacobian(watched.loop)};
+  if (!found.residuals.allFinite() || !found.rates.allFinite()) return std::nullopt;
+  return found;
+}
+
+/// The same with its unknowns at z, whether they solve it or not, and all that hangs on them in place.
+std::optional<LoopJumps::Pull> LoopJumps::pull_at(const Watched& watched, const Eigen::VectorXd& z, double t,
+                                                  std::span<const double> x, network::Workspace& workspace) {
+  workspace.hold_loop(watched.loop, t, {z.begin(), z.end()}, true);
+  if (!place(watched, t, x, workspace)) return std::nullopt;
+  return pull(watched, t, x, workspace);
+}
+
+/// Puts the switches and tables of a loop where its unknowns, held, ask for them; false where they go on
+/// turning over.
+bool LoopJumps::place(const Watched& watched, double t, std::span<const double> x,
+                      network::Workspace& workspace) {
+  const std::size_t most = 2 * watched.discrete_states.size() + 2;
+  for (std::size_t round = 0; round <= most; ++round) {
+    if (!program_.event_functions(t, x.data(), event_functions_.data(), workspace)) return false;
+    bool turned = false;
+    for (const std::uint32_t s : watched.switches) {
+      if (std::abs(event_functions_[s]) <= thresholds_[s]) continue;
+      const std::uint32_t discrete_state = program_.switches()[s].discrete_state;
+      const double position = event_functions_[s] > 0 ? 1 : 0;
+      turned = turned || workspace.discrete_state(discrete_state) != position;
+      workspace.set_discrete_state(discrete_state, position);
+    }
+    const auto here = program_.signals(t, x.data(), signals_.data(), workspace);
+    if (!here) return false;
+    std::vector<std::pair<std::uint32_t, double>> segments;
+    for (const std::size_t event : watched.tables) {
+      if (here->condition(event))
+        segments.emplace_back(program_.events()[event].actions.front().index, here->action_value(event, 0));
+    }
+    for (const auto& [segment, value] : segments) workspace.set_discrete_state(segment, value);
+    if (!turned && segments.empty()) return true;
+  }
+  return false;
+}
+
+/// Lets the unknowns follow what the elements give until they rest: implicit Euler steps, short at first so
+/// that they go where the elements go, then ever longer until they are Newton's method. False where they do
+/// not come to rest.
+bool LoopJumps::follow(const Watched& watched, Eigen::VectorXd& z, double t, std::span<const double> x,
+                       network::Workspace& workspace) {
+  constexpr double kMostChange = 0.2;  // of 1 + |z|, in a step
+  constexpr double kSmallChange = 0.02;
+  constexpr double kLongest = 1e18, kShortest = 1e-9;  // of a step, in lags
+  constexpr double kAtRest = 1e-12;
+  constexpr double kFarAway = 1e6;  // [machine unit]
+  constexpr int kMostSteps = 500;
+  const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(z.size(), z.size());
+  auto here = pull_at(watched, z, t, x, workspace);
+  double h = 0.01, last = 1;
+  for (int step = 0; here && step < kMostSteps && h > kShortest; ++step) {
+    const auto matrix = (one / h + here->rates).partialPivLu();
+    if (!(matrix.determinant() > 0)) {
+      h /= 4;
+      continue;
+    }
+    const Eigen::VectorXd next = z + matrix.solve(here->residuals);
+    const double change = part_between(z, next);
+    if (!(change < kMostChange)) {
+      h /= 4;
+      continue;
+    }
+    z = next;
+    if (h >= kLongest && change < kAtRest && change >= last) return is_stable(here->rates);
+    if (z.cwiseAbs().maxCoeff() > kFarAway) return false;
+    here = pull_at(watched, z, t, x, workspace);
+    last = change;
+    if (h < kLongest && change < kSmallChange) {
+      h *= 10;
+    } else if (h < kLongest && change < kMostChange / 2) {
+      h *= 2;
+    }
+  }
+  return false;
+}
+
+/// Puts a loop where its elements take it from where it was; false where that leads nowhere, or where it is
+/// there.
+bool LoopJumps::go_from_before(const Watched& watched, double t, std::span<const double> x) {
+  network::Workspace trial = workspace_;
+  for (const std::uint32_t d : watched.discrete_states) trial.set_discrete_state(d, discrete_states_[d]);
+  Eigen::VectorXd z = unknowns_of(watched, unknowns_);
+  if (!follow(watched, z, t, x, trial)) return false;
+  trial.hold_loop(watched.loop, std::numeric_limits<double>::quiet_NaN(), {}, false);
+  if (!pull(watched, t, x, trial)) return false;
+  std::vector<double> there, here;
+  for (std::size_t u = 0; u < unknowns_.size(); ++u) {
+    there.push_back(trial.unknown(u));
+    here.push_back(workspace_.unknown(u));
+  }
+  if (part_between(z, unknowns_of(watched, there)) > kJump) return false;
+  const bool same = std::equal(trial.discrete_states().begin(), trial.discrete_states().end(),
+                               workspace_.discrete_states().begin()) &&
+                    part_between(unknowns_of(watched, here), unknowns_of(watched, there)) <= kJump;
+  if (same) return false;
+  workspace_.load_discrete_states(trial.discrete_states());
+  for (std::size_t u = 0; u < there.size(); ++u) workspace_.set_unknown(u, there[u]);
+  return true;
+}
+
+}  // namespace oblique::solve

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <oblique/network/program/program.h>
+#include <oblique/solve/events/thresholds.h>
+
+namespace oblique::solve {
+
+/// Looks after the algebraic loops of elements without memory where an event has come. Between events such a
+/// loop keeps to its solution. An event may take that away, or leave the loop at one from which its elements
+/// would run away; and where there are several, Newton's method goes to any. The loop then goes where its
+/// elements take it from where it was, if they follow their inputs with one short lag, while the switches and
+/// tables in it turn over on the way. (Of amplifiers see BranchWatch.) Not installed.
+class LoopJumps {
+ public:
+  /// All must outlive this.
+  LoopJumps(const network::Program& program, network::Workspace& workspace, const Thresholds& thresholds);
+
+  /// Whether there is any such loop.
+  bool any() const { return !watched_.empty(); }
+  /// Notes the guesses from which the loops begin.
+  void begin();
+  /// Notes the solutions at (t, x), before what happens next.
+  void note(double t, std::span<const double> x);
+  /// Looks at all loops at (t, x), where everything has settled. True where one was put elsewhere: everything
+  /// is then to be settled again.
+  bool settle(double t, std::span<const double> x);
+
+ private:
+  /// A loop, and what in it turns over with its unknowns.
+  struct Watched {
+    std::size_t loop = 0;
+    std::vector<std::uint32_t> switches;
+    std::vector<std::size_t> tables;             ///< the events that move them along
+    std::vector<std::uint32_t> discrete_states;  ///< of these
+    bool stable = true;                          ///< when it was noted
+  };
+
+  /// The residuals of a loop, and how they move its unknowns.
+  struct Pull {
+    Eigen::VectorXd residuals;
+    Eigen::MatrixXd rates;  ///< −d residual/dz
+  };
+
+  std::optional<Pull> pull(const Watched& watched, double t, std::span<const double> x,
+                           network::Workspace& workspace);
+  std::optional<Pull> pull_at(const Watched& watched, const Eigen::VectorXd& z, double t,
+                              std::span<const double> x, network::Workspace& workspace);
+  bool place(const Watched& watched, double t, std::span<const double> x, network::Workspace& workspace);
+  bool follow(const Watched& watched, Eigen::VectorXd& z, double t, std::span<const double> x,
+              network::Workspace& workspace);
+  bool go_from_before(const Watched& watched, double t, std::span<const double> x);
+  Eigen::VectorXd unknowns_of(const Watched& watched, const std::vector<double>& all) const;
+
+  const network::Program& program_;
+  network::Workspace& workspace_;
+  const Thresholds& thresholds_;
+  std::vector<Watched> watched_;
+  std::vector<double> unknowns_, discrete_states_;  ///< as they were noted
+  std::vector<double> event_functions_, signals_;
+};
+
+}  // namespace oblique::solve

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/solve/events/loop_jumps.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "../../support/runs.h"
+
+namespace oblique::solve {
+namespace {
+
+using ::testing::AllOf;
+using testing::Compiled;
+using ::testing::HasSubstr;
+using testing::row_values;
+using testing::run_of;
+using ::testing::StartsWith;
+
+constexpr double kNewton = 1e-9;  ///< loops are solved to rounding; what is compared here is of order 1
+
+/// The same blocks in both orders.
+std::vector<std::string> both_orders(const std::vector<std::string>& blocks) {
+  std::string forward, backward;
+  for (const std::string& block : blocks) {
+    forward += block + "\n";
+    backward.insert(0, block + "\n");
+  }
+  return {forward, backward};
+}
+
+// Where the store begins to track, at t = 0.5, the loop closes: z = 1.7 atan(1.7 z) has the roots 0, from
+// which the elements run away (its slope there is 2.89), and ±2.23. They go to the one on the side of the
+// −0.375 that was stored, as they do one after the other.
+TEST(LoopJumps, GoWhereTheElementsOfALoopTakeItThatAnEventCloses) {
+  double truth = -0.375;
+  for (int k = 0; k < 100; ++k) truth = 1.7 * std::atan(1.7 * truth);
+  for (const std::string& blocks : both_orders(
+           {R"(z = { type = "track-and-store", in = "-1.7*a", track = "g", initial = -0.375 })",
+            R"(a = { type = "arc-tangent", in = "-1.7*z" })", R"(g = { type = "ramp", slope = 1 })"})) {
+    const auto result = run_of(Compiled(blocks), {.until = 1, .samples = 5});
+    EXPECT_TRUE(result.warnings.empty());
+    const std::vector<double> z = row_values(result, "z");
+    EXPECT_NEAR(z[1], -0.375, kNewton);
+    EXPECT_NEAR(z[4], truth, kNewton) << blocks;
+  }
+}
+
+// y = c − 0.18 y² where c steps from 7.8 to 0.44: y falls to the nearer root (√(1 + 0.72 c) − 1)/0.36. From
+// the other one, −(√(1 + 0.72 c) + 1)/0.36, the elements run away.
+TEST(LoopJumps, FallToTheNearerSolutionOfAParabola) {
+  for (const std::string& blocks : both_orders(
+           {R"(y = { type = "summer", in = ["c", "-2*q"] })", R"(q = { type = "squarer", in = "0.3*y" })",
+            R"(c = { type = "step", at = 0.5, from = 7.8, to = 0.44 })"})) {
+    const auto result = run_of(Compiled(blocks), {.until = 1, .samples = 5});
+    const std::vector<double> y = row_values(result, "y");
+    const auto root = [](double c) { return (std::sqrt(1 + 0.72 * c) - 1) / 0.36; };
+    EXPECT_NEAR(y[1], root(7.8), kNewton) << blocks;
+    EXPECT_NEAR(y[4], root(0.44), kNewton) << blocks;
+  }
+}
+
+// y = 2 atan 4y + 1.088 at −1.77, at −0.18, from which the elements run away, and at 4.06. From the guess, 0,
+// they go up.
+TEST(LoopJumps, LeaveNoStartFromWhichTheElementsRunAway) {
+  double truth = 0;
+  for (int k = 0; k < 100; ++k) truth = 2 * std::atan(4 * truth) + 1.088;
+  for (const std::string& blocks :
+       both_orders({R"(y = { type = "summer", in = ["-2*a", "1.088*one"] })",
+                    R"(a = { type = "arc-tangent", in = "-2*d" })",
+                    R"(d = { type = "gain", in = "y", factor = 2 })", R"(one = { type = "constant" })"})) {
+    EXPECT_NEAR(row_values(run_of(Compiled(blocks)), "y").front(), truth, kNewton) << blocks;
+  }
+}
+
+/// T(u): 0 below 0, where it rises by 2 to 1 at 0.5, and falls by 3.25 to −0.625 at 1 and on.
+constexpr const char* kTable = "points = [[-1, 0], [0, 0], [0.5, 1], [1, -0.625]]";
+
+// u = b + T(u) has, for b from −0.5 to 0, three solutions: u = b, one on the rising line, from which the
+// elements run away, and one beyond. b = −|t − 0.5| touches 0, where the first two meet: u stays with b.
+TEST(LoopJumps, KeepToABranchThatMerelyTouchesItsEnd) {
+  for (const std::string& blocks : both_orders(
+           {R"(g = { type = "ramp", slope = 1, initial = -0.5 })",
+            R"(b = { type = "absolute-value", in = "g" })", R"(u = { type = "summer", in = ["-b", "c"] })",
+            std::string(R"(c = { type = "function-generator", in = "u", )") + kTable + " }"})) {
+    const auto result = run_of(Compiled(blocks), {.until = 1, .samples = 11});
+    const std::vector<double> t = row_values(result, "t"), u = row_values(result, "u");
+    for (std::size_t row = 0; row < t.size(); ++row)
+      EXPECT_NEAR(u[row], -std::abs(t[row] - 0.5), kNewton) << blocks;
+  }
+}
+
+// The same with b = t − 0.5: where it passes 0, at t = 0.5, u jumps over the rising line to the falling one,
+// u = (b + 1 + 3.25/2)/4.25.
+TEST(LoopJumps, GoOverTheLinesOfATableWhereNoneOfThemHoldsThem) {
+  for (const std::string& blocks :
+       both_orders({R"(b = { type = "ramp", slope = 1, initial = -0.5 })",
+                    R"(u = { type = "summer", in = ["b", "c"] })",
+                    std::string(R"(c = { type = "function-generator", in = "u", )") + kTable + " }"})) {
+    const auto result = run_of(Compiled(blocks), {.until = 1, .samples = 11});
+    const std::vector<double> t = row_values(result, "t"), u = row_values(result, "u");
+    for (std::size_t row = 0; row < t.size(); ++row) {
+      if (t[row] == 0.5) continue;  // both lines meet there
+      const double b = t[row] - 0.5;
+      EXPECT_NEAR(u[row], b < 0 ? b : (b + 1 + 3.25 / 2) / 4.25, kNewton) << blocks;
+    }
+  }
+}
+
+// The block counts how often its input has passed 0.25. The table's argument is −c = 1 all along, so that its
+// value is −0.5; on the line where it stands before the start has settled it would be 1.
+TEST(LoopJumps, AreNoEventsOfWhatReadsATableThatIsNotSettledYet) {
+  const diagram::BlockLibrary library = testing::shipped_blocks_and("times", R"toml(
+[inputs]
+in = { doc = "a plain number" }
+[outputs]
+out = { doc = "how often" }
+[memories]
+n = 0
+[equations]
+out = "n"
+[[events]]
+when = "in > 0.25"
+set = { n = "n + 1" }
+)toml");
+  const Compiled made(
+      "c = { type = \"constant\", value = -1 }\n"
+      "f = { type = \"function-generator\", in = \"-c\", points = [[-1, -1], [0, 0], [0.5, 0.5], [1, -0.5]] "
+      "}\n"
+      "n = { type = \"times\", in = \"f\" }\n",
+      "", library);
+  EXPECT_EQ(row_values(run_of(made), "n").back(), 0);
+}
+
+/// Two gates of which each is low while the other, or its own input, is high.
+std::vector<std::string> latch(const std::string& set) {
+  return {R"(q = { type = "comparator", in = ["0.5*one", "-r", "-p"] })",
+          R"(p = { type = "comparator", in = ["0.5*one", ")" + set + R"(", "-q"] })",
+          R"(one = { type = "constant" })", R"(s = { type = "step", at = 0.5, from = 1, to = 0 })",
+          R"(r = { type = "constant", value = 0 })"};
+}
+
+TEST(LoopJumps, OfALatchThatNothingSetsAreTold) {
+  for (const std::string& blocks : both_orders(latch("-r"))) {
+    const auto result = run_of(Compiled(blocks));
+    EXPECT_EQ(row_values(result, "q").back() + row_values(result, "p").back(), 1);
+    ASSERT_EQ(result.warnings.size(), 1U) << blocks;
+    EXPECT_THAT(result.warnings[0].what,
+                AllOf(StartsWith("the loop of the switches of '"),
+                      HasSubstr("' has several solutions: at t = 0 s the run goes on with '"),
+                      HasSubstr("' (in > 0) "), HasSubstr("; nothing in the diagram chooses between them")));
+    EXPECT_EQ(result.warnings[0].remedy,
+              "set the latch by one of its inputs then, or give one of its comparators a hysteresis and an "
+              "'initial'");
+  }
+}
+
+// It is set where the run starts, and keeps that when the input falls.
+TEST(LoopJumps, OfALatchThatIsSetAreItsOwn) {
+  for (const std::string& blocks : both_orders(latch("-s"))) {
+    const auto result = run_of(Compiled(blocks));
+    EXPECT_TRUE(result.warnings.empty());
+    for (const std::size_t row : {std::size_t{0}, std::size_t{1000}}) {
+      EXPECT_EQ(row_values(result, "q")[row], 1);
+      EXPECT_EQ(row_values(result, "p")[row], 0);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace oblique::solve
