@@ -12,6 +12,7 @@
 #include <oblique/diagram/flatten.h>
 #include <oblique/network/assembly/network.h>
 #include <oblique/network/program/program.h>
+#include <oblique/report/expectation_check.h>
 #include <oblique/solve/run.h>
 #include <oblique/text/file.h>
 
@@ -67,6 +68,24 @@ TEST(DiagramOnMachine, MakesRoomForTheErrorsOfTheMachine) {
                                        [](const auto& a, const auto& b) { return a.largest < b.largest; });
     EXPECT_GT(most->largest, 0.9) << file;
     EXPECT_LT(patched.difference, 1e-6) << file;
+  }
+}
+
+// What is expected of iterative and repetitive operation is met by the same diagrams on a machine.
+TEST(DiagramOnMachine, KeepsModesOfOperation) {
+  for (const std::string file :
+       {"lessons/iterative-operation", "lessons/repetitive-operation", "historical/shooting"}) {
+    const DiagramOnMachine patched = on("model-1", file);
+    EXPECT_EQ(patched.failure, "") << file;
+    EXPECT_LT(patched.difference, 1e-5) << file;
+    const diagram::Diagram& made = patched.made.diagram;
+    ASSERT_FALSE(made.expectations.empty()) << file;
+    const diagram::FlatDiagram flat = diagram::flatten(made, shipped_blocks());
+    solve::RunOptions options = solve::options_of(made.run);
+    report::ask_for_expectations(made, options);
+    const solve::Run run = solve::run(network::Program(network::assemble(flat)), flat, options);
+    for (const report::ExpectationResult& result : report::check_expectations(made, run))
+      EXPECT_TRUE(result.met) << file << ": " << result.expectation.text << " = " << result.actual;
   }
 }
 

@@ -2,6 +2,7 @@
 #include <oblique/machine/realise.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -308,14 +309,20 @@ TEST(Realise, GivesAbsoluteTolerancesToTheStatesTheyWereMeantFor) {
   EXPECT_EQ(made.run.tolerances[0].second, 1e-12);
 }
 
-TEST(Realise, RefusesADiagramWithATimeline) {
-  const std::string message = message_of<RealiseError>([] {
-    realise(diagram::read_diagram(std::string(OBLIQUE_SOURCE_DIR) +
-                                  "/diagrams/lessons/repetitive-operation.toml"),
-            shipped_blocks(), inverting_machine());
-  });
-  EXPECT_THAT(message,
-              HasSubstr("a diagram with [groups] or a [timeline] is not put into a machine's elements"));
+// x is carried as its negative, or not: its phase ends where x is below 0.
+TEST(Realise, KeepsTheTimelineAndTheGroups) {
+  const diagram::Diagram made = realise(diagram::read_diagram(std::string(OBLIQUE_SOURCE_DIR) +
+                                                              "/diagrams/lessons/repetitive-operation.toml"),
+                                        shipped_blocks(), inverting_machine())
+                                    .diagram;
+  ASSERT_EQ(made.groups.size(), 1U);
+  EXPECT_EQ(made.groups[0].hold, "is_below");
+  ASSERT_EQ(made.groups[0].blocks.size(), 1U);
+  EXPECT_THAT(made.groups[0].blocks[0], ::testing::EndsWith("time_above"));
+  ASSERT_EQ(made.timeline.phases.size(), 2U);
+  EXPECT_EQ(made.timeline.phases[0].duration, 0.4);
+  EXPECT_THAT(made.timeline.phases[1].until, ::testing::AnyOf("x < 0", "minus_x > 0"));
+  EXPECT_TRUE(std::isinf(made.timeline.cycles));
 }
 
 TEST(Realise, RefusesPotentiometersWithImperfectionsOfTheirOwn) {

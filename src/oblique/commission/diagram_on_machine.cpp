@@ -19,14 +19,21 @@ diagram::Diagram without_machine(diagram::Diagram diagram) {
   return diagram;
 }
 
-/// The largest difference between two runs of the same outputs, over the largest value of the output.
-double difference_of(const solve::Trajectory& a, const solve::Trajectory& b) {
+/// The largest difference between two runs of the same outputs, over the largest value of the output. Where
+/// phases follow each other, integrators jump: a row that lies a rounding before such a jump in one of them
+/// alone does not count.
+double difference_of(const solve::Trajectory& a, const solve::Trajectory& b, bool has_phases) {
   double largest = 0;
   for (std::size_t c = 1; c < a.columns().size(); ++c) {
     double size = 0, difference = 0;
-    for (std::size_t r = 0; r < std::min(a.rows(), b.rows()); ++r) {
+    const std::size_t rows = std::min(a.rows(), b.rows());
+    for (std::size_t r = 0; r < rows; ++r) {
       size = std::max(size, std::abs(a.at(r, c)));
-      difference = std::max(difference, std::abs(a.at(r, c) - b.at(r, c)));
+      double here = std::abs(a.at(r, c) - b.at(r, c));
+      for (const std::size_t beside : {r - 1, r + 1}) {
+        if (has_phases && beside < rows) here = std::min(here, std::abs(a.at(r, c) - b.at(beside, c)));
+      }
+      difference = std::max(difference, here);
     }
     if (size > 0) largest = std::max(largest, difference / size);
   }
@@ -41,7 +48,7 @@ bool has_servos(const diagram::Diagram& diagram, const diagram::BlockLibrary& li
 
 /// The speeds that servo amplifiers are tried at, each less than the one before.
 std::vector<double> loop_speeds() {
-  constexpr int kDecades = 6;
+  constexpr int kDecades = 12;
   std::vector<double> speeds;
   for (int decade = 1; decade <= kDecades; ++decade) {
     for (const double step : {5.0, 2.0, 1.0}) speeds.push_back(step / std::pow(10.0, decade));
@@ -49,11 +56,26 @@ std::vector<double> loop_speeds() {
   return speeds;
 }
 
+/// Where the errors of elements leave instant loops no rest, at the start perhaps alone, the run itself shows
+/// how they fare.
+Judgement judge_loops(const diagram::Diagram& diagram, const diagram::BlockLibrary& library) {
+  Judgement at_rest = judge(diagram, library);
+  if (at_rest.no_rest.empty()) return at_rest;
+  try {
+    constexpr std::int64_t kMostSteps = 200'000;
+    diagram::Diagram limited = diagram;
+    limited.run.max_steps = std::min(limited.run.max_steps, kMostSteps);
+    return judge_along_run(limited, library);
+  } catch (const solve::SolveError&) {
+    return at_rest;
+  }
+}
+
 /// Slows the servo amplifiers where the machine's elements are slow beside their loops, by bisection: what is
 /// slow enough is taken to stay so when slower.
 void fit_loops(const machine::MachineScaling& scaling, const diagram::BlockLibrary& library,
                DiagramOnMachine& result) {
-  result.loops = judge(result.made.diagram, library);
+  result.loops = judge_loops(result.made.diagram, library);
   if (result.loops->well_damped()) return;
   result.loop_fault = fault_of(*result.loops);
   const std::vector<double> speeds = loop_speeds();
@@ -62,7 +84,7 @@ void fit_loops(const machine::MachineScaling& scaling, const diagram::BlockLibra
     for (auto from = speeds.begin(), to = speeds.end(); from != to;) {
       const auto middle = from + (to - from) / 2;
       machine::ScaledRealisation slower = scaling.realise(*middle);
-      Judgement loops = judge(slower.diagram, library);
+      Judgement loops = judge_loops(slower.diagram, library);
       if (!((loops.*is_fine)())) {
         from = middle + 1;
         continue;
@@ -77,9 +99,7 @@ void fit_loops(const machine::MachineScaling& scaling, const diagram::BlockLibra
   }
 }
 
-void find_overloads(const diagram::BlockLibrary& library, DiagramOnMachine& result) {
-  const diagram::FlatDiagram flat =
-      diagram::without_saturation(diagram::flatten(result.made.diagram, library));
+void find_overloads(const diagram::FlatDiagram& flat, DiagramOnMachine& result) {
   const network::Program program(network::assemble(flat));
   solve::RunOptions options = solve::options_of(result.made.diagram.run);
   options.watch_overloads = true;
@@ -87,6 +107,18 @@ void find_overloads(const diagram::BlockLibrary& library, DiagramOnMachine& resu
     result.overloads.push_back({program.signal_names()[record.signal], std::abs(record.peak.value)});
   std::stable_sort(result.overloads.begin(), result.overloads.end(),
                    [](const auto& a, const auto& b) { return a.peak > b.peak; });
+}
+
+/// What grows without bound on amplifiers that do not saturate stays within their limits on those that do.
+void find_end(const solve::SolveError& unbounded, const diagram::BlockLibrary& library,
+              DiagramOnMachine& result) {
+  try {
+    find_overloads(diagram::flatten(result.made.diagram, library), result);
+  } catch (const solve::SolveError&) {
+    result.failure = unbounded.diagnostics().front().what;
+    return;
+  }
+  if (result.overloads.empty()) result.failure = unbounded.diagnostics().front().what;
 }
 
 }  // namespace
@@ -102,12 +134,13 @@ DiagramOnMachine put_on_machine(const diagram::Diagram& diagram, const diagram::
     constexpr int kRounds = 4;  // each gives room by what the one before went too far
     for (int round = 0; round < kRounds && scaling.make_room(result.made); ++round)
       result.made = scaling.realise(result.loop_speed);
-    find_overloads(library, result);
+    find_overloads(diagram::without_saturation(diagram::flatten(result.made.diagram, library)), result);
   } catch (const solve::SolveError& error) {
-    result.failure = error.diagnostics().front().what;
+    find_end(error, library, result);
   }
   result.difference = difference_of(solve::run(without_machine(diagram), library).trajectory,
-                                    solve::run(without_machine(result.made.diagram), library).trajectory);
+                                    solve::run(without_machine(result.made.diagram), library).trajectory,
+                                    !diagram.timeline.phases.empty());
   return result;
 }
 

@@ -127,18 +127,12 @@ bool Judgement::well_damped() const {
   return good() && damping >= solve::kBadDamping;
 }
 
-Judgement judge(const diagram::Diagram& diagram, const diagram::BlockLibrary& library) {
-  const diagram::FlatDiagram flat = diagram::flatten(diagram, library);
-  const network::Program program(network::assemble(flat));
+namespace {
+
+Judgement judge_at(const std::vector<solve::Instant>& instants, const diagram::FlatDiagram& flat,
+                   const network::Program& program) {
   Judgement judgement;
   judgement.slowest_pole = -std::numeric_limits<double>::infinity();
-  std::vector<solve::Instant> instants;
-  try {
-    instants = solve::quasi_steady_instants(program, flat, solve::options_of(diagram.run), kInstants);
-  } catch (const solve::SolveError& error) {
-    judgement.no_rest = error.diagnostics().front().what;
-    return judgement;
-  }
   const solve::SignalFlow flow(flat, program);
   const solve::StabilityReport stability = solve::judge_stability(program, flow, instants, {}, false);
   if (stability.slowest_servo) {
@@ -166,6 +160,33 @@ Judgement judge(const diagram::Diagram& diagram, const diagram::BlockLibrary& li
   }
   find_largest_signal(program, instants, judgement);
   return judgement;
+}
+
+}  // namespace
+
+Judgement judge(const diagram::Diagram& diagram, const diagram::BlockLibrary& library) {
+  const diagram::FlatDiagram flat = diagram::flatten(diagram, library);
+  const network::Program program(network::assemble(flat));
+  std::vector<solve::Instant> instants;
+  try {
+    instants = solve::quasi_steady_instants(program, flat, solve::options_of(diagram.run), kInstants);
+  } catch (const solve::SolveError& error) {
+    Judgement judgement;
+    judgement.slowest_pole = -std::numeric_limits<double>::infinity();
+    judgement.no_rest = error.diagnostics().front().what;
+    return judgement;
+  }
+  return judge_at(instants, flat, program);
+}
+
+Judgement judge_along_run(const diagram::Diagram& diagram, const diagram::BlockLibrary& library) {
+  const diagram::FlatDiagram flat = diagram::flatten(diagram, library);
+  const network::Program program(network::assemble(flat));
+  solve::RunOptions options = solve::options_of(diagram.run);
+  std::vector<solve::Instant> instants;
+  solve::collect_instants(options, kInstants, instants);
+  solve::run(program, flat, options);
+  return judge_at(instants, flat, program);
 }
 
 JudgedPatch judged_patch(const mechanism::Mechanism& mechanism, const diagram::BlockLibrary& library,

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <oblique/machine/mode_control.h>
 #include <oblique/machine/realise.h>
 
 namespace oblique::machine {
@@ -35,6 +36,8 @@ class Reducer {
   Circuit make() {
     for (const diagram::FlatOutput& output : flat_.outputs)
       circuit_.outputs.push_back(resolve(output.signal));
+    for (const diagram::SignalRef signal : mode_signals(flat_.timeline))
+      circuit_.mode_sources.push_back(resolve(signal));
     // What an element is fed with may keep further elements, behind it.
     for (std::size_t e = 0; e < order_.size(); ++e) {
       if (circuit_.elements[e].inputs.empty()) connect(e);
@@ -285,6 +288,7 @@ class Reducer {
       for (CircuitInput& input : element.inputs) std::for_each(input.terms.begin(), input.terms.end(), move);
     }
     std::for_each(circuit_.outputs.begin(), circuit_.outputs.end(), move);
+    std::for_each(circuit_.mode_sources.begin(), circuit_.mode_sources.end(), move);
     circuit_.elements = std::move(elements);
   }
 

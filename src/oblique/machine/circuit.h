@@ -36,7 +36,8 @@ struct CircuitElement {
 /// A diagram in active elements and weighted connections, with no machine in mind.
 struct Circuit {
   std::vector<CircuitElement> elements;
-  std::vector<CircuitTerm> outputs;  ///< one for each output of the flat diagram
+  std::vector<CircuitTerm> outputs;       ///< one for each output of the flat diagram
+  std::vector<CircuitTerm> mode_sources;  ///< one for each of its `mode_signals`
 };
 
 /// Reduces a flat diagram: constants become weights of the reference; potentiometers, gains, inverters and

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include <oblique/diagram/block_scaling.h>
 #include <oblique/diagram/propose_scaling.h>
+#include <oblique/machine/input_weight.h>
 #include <oblique/machine/role.h>
 #include <oblique/text/nearest_decimal.h>
 #include <oblique/text/quantity.h>
@@ -16,12 +18,10 @@ namespace {
 
 constexpr int kDigits = 14;  ///< of scaled numbers: 0.2 comes out as 0.2
 
-/// The largest number of two digits that brings `peak` to at most 1 machine unit. What is smaller than the
-/// static error of any loop is taken for zero.
-double largest_factor(double peak) {
-  constexpr double kNothing = 1e-9;
-  if (peak < kNothing) return 1;
-  const double wanted = (1 + diagram::kOverloadTolerance) / peak;
+/// The largest number of two digits that brings `peak` to at most `most` machine units; 1 for no signal.
+double largest_factor(double peak, double most = 1 + diagram::kOverloadTolerance) {
+  const double wanted = most / peak;
+  if (!std::isnormal(wanted)) return 1;
   const double unit = std::pow(10, std::floor(std::log10(wanted)) - 1);
   return text::nearest_decimal(std::floor(wanted / unit * (1 + 1e-12)) * unit, 2);
 }
@@ -43,11 +43,40 @@ bool has_fixed_level(const CircuitElement& element, std::size_t port) {
          element.definition->inputs[port].name != "start";
 }
 
+/// The largest weight of a residual in the scale of the machine, its amplifier's output being scaled by
+/// `out`.
+double largest_weight(const CircuitElement& element, double out, const std::vector<double>& factors) {
+  double largest = 0;
+  for (const CircuitInput& input : element.inputs) {
+    for (const CircuitTerm& term : input.terms)
+      largest =
+          std::max(largest, std::abs(term.weight) * out / (term.signal ? factors[term.signal->block] : 1));
+  }
+  return largest;
+}
+
+/// The rate of an integrator [1/s] above which its amplifier is slow: with 2π bandwidth its ten-thousandth,
+/// by which an oscillation is late each radian.
+double quick_rate(const diagram::MachineProfile& machine) {
+  constexpr double kLate = 1e-4;
+  for (const diagram::BlockFigure& error : machine.errors) {
+    if (error.role == Role::integrator && error.parameter == "bandwidth")
+      return kLate * 2 * std::numbers::pi * error.value;
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
 class Chooser {
  public:
-  Chooser(const Circuit& circuit, const std::vector<double>& peaks, const diagram::MachineProfile& machine)
-      : elements_(circuit.elements), machine_(machine), pinned_(elements_.size(), false) {
-    for (std::size_t e = 0; e < elements_.size(); ++e) factors_.push_back(start_of(e, peaks[e]));
+  Chooser(const Circuit& circuit, const std::vector<double>& peaks, double until,
+          const diagram::MachineProfile& machine)
+      : elements_(circuit.elements),
+        peaks_(peaks),
+        until_(until),
+        machine_(machine),
+        quick_(quick_rate(machine)),
+        pinned_(elements_.size(), false) {
+    for (std::size_t e = 0; e < elements_.size(); ++e) factors_.push_back(start_of(e));
     for (const CircuitElement& element : elements_) {
       for (std::size_t port = 0; port < element.inputs.size(); ++port) {
         if (!has_fixed_level(element, port)) continue;
@@ -65,17 +94,61 @@ class Chooser {
       changed = false;
       for (std::size_t e = 0; e < elements_.size(); ++e) changed = relax(e) || changed;
     }
-    CircuitScaling scaling{factors_, 1};
+    CircuitScaling scaling{factors_, {}, 1};
+    for (std::size_t e = 0; e < elements_.size(); ++e) scaling.residuals.push_back(residual_of(e));
     scaling.time = time.value_or(choose_time());
     return scaling;
   }
 
  private:
-  double start_of(std::size_t e, double peak) const {
-    if (is_free(elements_[e].role)) return largest_factor(peak);
-    // Levels of logic stay 0 and 1.
-    if (elements_[e].role == Role::comparator) return std::min(1.0, largest_factor(peak));
-    return 1;
+  double start_of(std::size_t e) const {
+    const CircuitElement& element = elements_[e];
+    if (element.role == Role::comparator) return largest_factor(level_of(e));
+    if (!is_free(element.role)) return 1;
+    // What is left of terms that cancel is rounding and errors of the run, whatever the units.
+    constexpr double kNothing = 1e-9;
+    const double reach = reach_of(element);
+    double factor = largest_factor(peaks_[e] < kNothing * reach ? reach : peaks_[e]);
+    // A potentiometer at the reference sets the start, which leaves no room for an error of the run.
+    const double initial =
+        element.role == Role::integrator ? std::abs(parameter_of(*element.block, "initial")) : 0;
+    return initial > 0 ? std::min(factor, largest_factor(initial, 1)) : factor;
+  }
+
+  /// The larger level of a comparator, also where the run never has it.
+  double level_of(std::size_t e) const {
+    double level = 0;
+    for (const std::string_view name : {"low", "high"}) {
+      if (elements_[e].definition->find_parameter(name))
+        level = std::max(level, std::abs(parameter_of(*elements_[e].block, name)));
+    }
+    return level > 0 ? level : peaks_[e];
+  }
+
+  /// How far its inputs could drive a summer, or an integrator until the end of the run; 0 for other
+  /// elements.
+  double reach_of(const CircuitElement& element) const {
+    if (element.role == Role::open_amplifier || element.role == Role::function_generator) return 0;
+    double reach = 0;
+    for (std::size_t port = 0; port < element.inputs.size(); ++port) {
+      const bool integrated = element.role == Role::integrator && element.definition->inputs[port].sum;
+      for (const CircuitTerm& term : element.inputs[port].terms) {
+        const double peak = term.signal ? peaks_[term.signal->block] : 1;
+        reach += std::abs(term.weight) * peak * (integrated ? until_ * rate_of(element) : 1);
+      }
+    }
+    return reach;
+  }
+
+  /// The factor of a residual: that of the output, unless its largest weight then is none between 1 and the
+  /// greatest gain. The zero of a residual is the same in any scale.
+  double residual_of(std::size_t e) const {
+    const CircuitElement& element = elements_[e];
+    if (element.role != Role::open_amplifier || !element.definition->find_parameter("gain"))
+      return factors_[e];
+    const double largest = largest_weight(element, factors_[e], factors_);
+    if (!std::isnormal(largest)) return factors_[e];
+    return factors_[e] * std::clamp(largest, 1.0, std::max(1.0, greatest_gain())) / largest;
   }
 
   void pin(std::size_t e) {
@@ -113,28 +186,23 @@ class Chooser {
 
   double greatest_gain() const { return machine_.input_gains.empty() ? 10 : machine_.input_gains.back(); }
 
-  /// What the largest coefficient of an integrator is in the diagram's own time [1/s]; 0 without inputs.
-  double speed_of(std::size_t e) const {
-    double largest = 0;
+  /// The coefficients of an integrator in the diagram's own time [1/s].
+  std::vector<double> speeds_of(std::size_t e) const {
+    std::vector<double> speeds;
     for (std::size_t port = 0; port < elements_[e].inputs.size(); ++port) {
       if (!elements_[e].definition->inputs[port].sum) continue;
       for (const CircuitTerm& term : elements_[e].inputs[port].terms)
-        largest = std::max(largest, std::abs(term.weight) * factors_[e] / source_factor(term));
+        speeds.push_back(std::abs(term.weight) * factors_[e] / source_factor(term) * rate_of(elements_[e]));
     }
-    return largest == 0 ? 0 : largest * rate_of(elements_[e]);
+    return speeds;
   }
 
   double choose_time() const {
     if (machine_.rates.empty()) return 1;
-    constexpr double kLeastSetting = 0.1, kRounding = 1 + 1e-9;
-    const double most = machine_.rates.back() * greatest_gain() * kRounding;
-    const double least = machine_.rates.front() *
-                         (machine_.input_gains.empty() ? 1 : machine_.input_gains.front()) * kLeastSetting /
-                         kRounding;
-    std::vector<double> speeds;
+    std::vector<std::vector<double>> speeds;  // of each integrator
     for (std::size_t e = 0; e < elements_.size(); ++e) {
-      if (elements_[e].role != Role::integrator) continue;
-      if (const double speed = speed_of(e); speed > 0) speeds.push_back(speed);
+      if (elements_[e].role == Role::integrator) speeds.push_back(speeds_of(e));
+      if (!speeds.empty() && speeds.back().empty()) speeds.pop_back();
     }
     if (speeds.empty()) return 1;
     double best = 1, least_cost = std::numeric_limits<double>::infinity();
@@ -143,7 +211,7 @@ class Chooser {
       for (const double step : {1.0, 2.0, 5.0}) {
         const double power = std::pow(10.0, std::abs(decade));
         const double time = decade < 0 ? step / power : step * power;
-        const double cost = cost_of(time, speeds, least, most);
+        const double cost = cost_of(time, speeds);
         if (cost >= least_cost) continue;
         least_cost = cost;
         best = time;
@@ -152,21 +220,31 @@ class Chooser {
     return best;
   }
 
-  /// In decades: by how much the largest coefficients of integrators are too small, together; what is too
-  /// large counts so much that it never is where that can be; and then how far the time is from the
-  /// diagram's.
-  static double cost_of(double time, const std::vector<double>& speeds, double least, double most) {
-    constexpr double kTooLarge = 1e6, kAway = 1e-3;
+  /// In decades: by how much the settings before the inputs of integrators are below a tenth of the least
+  /// gain, together, each integrator having the time factor that it gets (`choose_rate`), and by how much
+  /// they are too fast for their amplifiers; a coefficient that is too large for the greatest time factor
+  /// counts so much that it never is where that can be; and then how far the time is from the diagram's.
+  double cost_of(double time, const std::vector<std::vector<double>>& speeds) const {
+    constexpr double kTooLarge = 1e6, kAway = 0.02, kLeastSetting = 0.1, kRounding = 1 + 1e-9;
+    const double most = machine_.rates.back() * greatest_gain() * kRounding;
+    const double least =
+        (machine_.input_gains.empty() ? 1 : machine_.input_gains.front()) * kLeastSetting / kRounding;
     double cost = kAway * std::abs(std::log10(time));
-    for (const double speed : speeds) {
-      cost += kTooLarge * std::max(0.0, std::log10(speed / time / most));
-      cost += std::max(0.0, std::log10(least / (speed / time)));
+    for (const std::vector<double>& of_one : speeds) {
+      const double largest = *std::max_element(of_one.begin(), of_one.end()) / time;
+      cost += kTooLarge * std::max(0.0, std::log10(largest / most));
+      cost += std::max(0.0, std::log10(largest / quick_));
+      const double rate = choose_rate(std::min(largest, most), 1, machine_.rates, machine_.input_gains);
+      for (const double speed : of_one) cost += std::max(0.0, std::log10(least * rate * time / speed));
     }
     return cost;
   }
 
   const std::vector<CircuitElement>& elements_;
+  const std::vector<double>& peaks_;
+  double until_;
   const diagram::MachineProfile& machine_;
+  double quick_;  ///< [1/s]
   std::vector<bool> pinned_;
   std::vector<double> factors_;
 };
@@ -179,6 +257,8 @@ class Scaler {
   void scale() {
     for (std::size_t e = 0; e < circuit_.elements.size(); ++e) scale(e);
     for (CircuitTerm& term : circuit_.outputs) term.weight /= source_factor(term);
+    for (CircuitTerm& term : circuit_.mode_sources) term.weight /= source_factor(term);
+    for (diagram::FlatPhase& phase : flat_.timeline.phases) phase.duration *= scaling_.time;
   }
 
  private:
@@ -193,7 +273,7 @@ class Scaler {
         element.block == nullptr
             ? nullptr
             : &flat_.blocks[static_cast<std::size_t>(element.block - flat_.blocks.data())];
-    std::vector<double> inputs(element.inputs.size(), out);
+    std::vector<double> inputs(element.inputs.size(), scaling_.residuals[e]);
     if (element.role == Role::comparator || element.role == Role::function_generator ||
         element.role == Role::multiplier || element.role == Role::other) {
       for (std::size_t port = 0; port < inputs.size(); ++port)
@@ -207,6 +287,8 @@ class Scaler {
     if (block == nullptr) return;
     if (element.role == Role::comparator) {
       scale_comparator(*block, inputs, out);
+    } else if (element.role == Role::open_amplifier) {
+      scale_open_amplifier(*block, scaling_.residuals[e], out);
     } else {
       for (std::size_t k = 0; k < block->parameters.size(); ++k) {
         if (element.role == Role::function_generator && block->definition->parameters[k].points)
@@ -215,12 +297,31 @@ class Scaler {
       }
       block->tolerance *= out;
     }
-    if (element.role == Role::open_amplifier) {
-      for (std::size_t k = 0; k < block->parameters.size(); ++k) {
-        if (block->definition->parameters[k].name == "bandwidth") block->parameters[k] *= loop_speed_;
-      }
-    }
     block->choose_behaviour();
+  }
+
+  /// An amplifier of gain μ whose output y counts s times and its residual r = −y/μ counts ρ times has the
+  /// gain μ s/ρ; what is added to the residual goes with it. Its capacitor keeps T_c (1 + μ), the time in
+  /// which the amplifier integrates the residual; for μ = ∞ that is T_c μ.
+  void scale_open_amplifier(diagram::FlatBlock& block, double residual, double out) const {
+    double change = 1;  // of T_c
+    for (std::size_t k = 0; k < block.parameters.size(); ++k) {
+      const std::string& name = block.definition->parameters[k].name;
+      double& value = block.parameters[k];
+      if (name == "gain" && std::isinf(value)) {
+        change = residual / out;
+      } else if (name == "gain") {
+        const double scaled = text::nearest_decimal(value * out / residual, kDigits);
+        change = (1 + value) / (1 + scaled);
+        value = scaled;
+      } else {
+        scale_parameter(block, k, name == "offset" || name == "drift" || name == "noise" ? residual : out);
+      }
+      if (name == "bandwidth") value *= loop_speed_;
+    }
+    if (const auto capacitor = block.definition->find_parameter("capacitor"))
+      block.parameters[*capacitor] *= change;
+    block.tolerance *= out;
   }
 
   /// The factor of an input with which its largest weight becomes 1.
@@ -243,6 +344,8 @@ class Scaler {
     if (signals == 0 && (seconds == 0 || scaling_.time == 1)) return;
     value =
         text::nearest_decimal(value * std::pow(factor, signals) * std::pow(scaling_.time, seconds), kDigits);
+    constexpr double kRounding = 1e-15;  // of a machine unit: a sine of π is nothing to be set
+    if (signals == 1 && seconds == 0 && std::abs(value) < kRounding) value = 0;
   }
 
   /// Its switching points go with the input, its levels with the output.
@@ -269,9 +372,9 @@ class Scaler {
 
 }  // namespace
 
-CircuitScaling choose_scaling(const Circuit& circuit, const std::vector<double>& peaks,
+CircuitScaling choose_scaling(const Circuit& circuit, const std::vector<double>& peaks, double until,
                               const diagram::MachineProfile& machine, std::optional<double> time) {
-  return Chooser(circuit, peaks, machine).choose(time);
+  return Chooser(circuit, peaks, until, machine).choose(time);
 }
 
 void apply_scaling(const CircuitScaling& scaling, double loop_speed, Circuit& circuit,

@@ -13,6 +13,7 @@
 #include <oblique/diagram/published.h>
 #include <oblique/machine/carried_signals.h>
 #include <oblique/machine/input_weight.h>
+#include <oblique/machine/mode_control.h>
 #include <oblique/text/expression_printer.h>
 
 namespace oblique::machine {
@@ -24,15 +25,6 @@ std::vector<double> gains_of_one(const diagram::MachineProfile& machine) {
 double most_weight_of_one(const diagram::MachineProfile& machine) {
   const std::vector<double> gains = gains_of_one(machine);
   return gains.empty() ? std::numeric_limits<double>::infinity() : gains.back();
-}
-
-void check_is_one_run(const diagram::Diagram& diagram) {
-  if (diagram.groups.empty() && diagram.timeline.phases.empty()) return;
-  throw RealiseError(
-      text::Diagnostic{{diagram.file, {}},
-                       "a diagram with [groups] or a [timeline] is not put into a machine's elements",
-                       "one run in the mode \"operate\"",
-                       "take them out"});
 }
 
 namespace {
@@ -60,6 +52,7 @@ class Writer {
     result_.run.tolerances.clear();
     for (std::size_t e = 0; e < circuit_.elements.size(); ++e) write_element(e);
     for (std::size_t k = 0; k < flat_.outputs.size(); ++k) write_output(k);
+    write_modes();
     write_references();
     number();
     describe();
@@ -161,7 +154,8 @@ class Writer {
   /// An initial value comes from the reference through a potentiometer, unless coefficients have signs.
   bool connect_start(std::size_t e, Terms& terms) {
     const double initial = parameter_of(*circuit_.elements[e].block, "initial");
-    if (signed_ || initial == 0 || std::abs(initial) > 1) return false;
+    constexpr double kRounding = 1e-12;
+    if (signed_ || initial == 0 || std::abs(initial) > 1 + kRounding) return false;
     connect(terms, signals_.is_negative(e) ? -initial : initial, std::nullopt, gains_of_one_);
     return true;
   }
@@ -221,6 +215,22 @@ class Writer {
     const double scale = (negative ? -output.scale : output.scale) * term.weight;
     result_.outputs.push_back(
         {output.name, signals_.source(term.signal, negative), scale, output.unit, {}, output.offset});
+  }
+
+  void write_modes() {
+    const diagram::FlatTimeline& timeline = flat_.timeline;
+    if (timeline.groups.empty()) return;
+    std::vector<std::vector<std::string>> members(timeline.groups.size());
+    for (std::size_t e = 0; e < circuit_.elements.size(); ++e) {
+      const CircuitElement& element = circuit_.elements[e];
+      if (element.role == Role::integrator) members[element.block->group].push_back(signals_.name(e));
+    }
+    std::vector<ModeSource> sources;
+    for (const CircuitTerm& term : circuit_.mode_sources) {
+      const bool negative = term.signal && signals_.is_negative(*term.signal);
+      sources.push_back({signals_.source(term.signal, negative), negative ? -term.weight : term.weight});
+    }
+    machine::write_modes(timeline, members, sources, result_);
   }
 
   void write_references() {

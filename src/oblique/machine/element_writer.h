@@ -15,9 +15,6 @@ std::vector<double> gains_of_one(const diagram::MachineProfile& machine);
 /// The greatest weight there.
 double most_weight_of_one(const diagram::MachineProfile& machine);
 
-/// Throws RealiseError where a diagram has [groups] or a [timeline].
-void check_is_one_run(const diagram::Diagram& diagram);
-
 /// Writes a circuit in the elements of a machine, as `realise` says. `flat` is the diagram that the circuit
 /// was reduced from; of `diagram` come the run, what is expected, titles and comments.
 Realisation write_elements(const diagram::Diagram& diagram, const diagram::FlatDiagram& flat,

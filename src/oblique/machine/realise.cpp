@@ -4,16 +4,17 @@
 #include <oblique/diagram/flatten.h>
 #include <oblique/machine/circuit.h>
 #include <oblique/machine/element_writer.h>
+#include <oblique/machine/mode_control.h>
 
 namespace oblique::machine {
 
 Realisation realise(const diagram::Diagram& diagram, const diagram::BlockLibrary& library,
                     const diagram::MachineProfile& machine) {
-  check_is_one_run(diagram);
   // What the diagram itself says of its blocks counts, not what another machine would add.
   diagram::Diagram ideal = diagram;
   ideal.machine.profile = "ideal";
-  const diagram::FlatDiagram flat = diagram::flatten(ideal, library);
+  diagram::FlatDiagram flat = diagram::flatten(ideal, library);
+  prepare_modes(flat, flat, library, machine);
   const Circuit circuit = reduce(flat, library, most_weight_of_one(machine));
   return write_elements(diagram, flat, library, machine, circuit);
 }

@@ -43,7 +43,7 @@ struct Realisation {
 ///
 /// Elements are written as the blocks of the library that have their roles.
 ///
-/// `[expect]` is kept. Throws DiagramError as `flatten`; RealiseError for [groups], a [timeline],
+/// `[expect]` is kept. Throws DiagramError as `flatten`; RealiseError for modes that the machine has not, for
 /// potentiometers and gains with imperfections of their own, and a role that no block has.
 Realisation realise(const diagram::Diagram& diagram, const diagram::BlockLibrary& library,
                     const diagram::MachineProfile& machine);

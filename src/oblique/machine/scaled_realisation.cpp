@@ -17,6 +17,7 @@
 #include <oblique/machine/circuit_scaling.h>
 #include <oblique/machine/element_library.h>
 #include <oblique/machine/element_writer.h>
+#include <oblique/machine/mode_control.h>
 #include <oblique/machine/signal_ranges.h>
 #include <oblique/machine/tabulated_functions.h>
 #include <oblique/solve/solve_error.h>
@@ -99,7 +100,6 @@ class MachineScaling::State {
         elements_(element_library(library)),
         machine_(machine),
         time_(options.time) {
-    check_is_one_run(diagram);
     flat_ = diagram::flatten(on_ideal_machine(diagram), elements_);
     const bool has_others = std::any_of(flat_.blocks.begin(), flat_.blocks.end(), [](const auto& block) {
       return block.definition->role == diagram::Role::other;
@@ -108,6 +108,7 @@ class MachineScaling::State {
       functions_ = tabulate_functions(flat_, elements_, signal_ranges(flat_, diagram.run), diagram.run.until,
                                       options.segments);
     }
+    prepare_modes(flat_, diagram::flatten(on_ideal_machine(diagram), library), elements_, machine);
     circuit_ = reduce(flat_, elements_, most_weight_of_one(machine));
     check_elements(circuit_, machine);
     const Realisation unscaled = write_elements(diagram, flat_, elements_, without_errors(machine), circuit_);
@@ -129,7 +130,7 @@ class MachineScaling::State {
   }
 
   ScaledRealisation realise(double loop_speed) const {
-    const CircuitScaling scaling = choose_scaling(circuit_, peaks_, machine_, time_);
+    const CircuitScaling scaling = choose_scaling(circuit_, peaks_, diagram_.run.until, machine_, time_);
     diagram::FlatDiagram flat = flat_;
     Circuit circuit = circuit_;
     for (CircuitElement& element : circuit.elements) {

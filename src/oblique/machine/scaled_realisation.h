@@ -51,8 +51,8 @@ struct ScaledRealisation {
 /// `time` times the moments, but for the errors of the function generators.
 class MachineScaling {
  public:
-  /// Throws RealiseError for [groups], a [timeline], and blocks that neither are an element nor become a
-  /// circuit of some, all in one go; solve::SolveError where the diagram does not run.
+  /// Throws RealiseError for modes that the machine has not, and blocks that neither are an element nor
+  /// become a circuit of some, all in one go; solve::SolveError where the diagram does not run.
   MachineScaling(const diagram::Diagram& diagram, const diagram::BlockLibrary& library,
                  const diagram::MachineProfile& machine, const ScalingOptions& options);
   ~MachineScaling();

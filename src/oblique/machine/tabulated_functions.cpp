@@ -246,6 +246,13 @@ class Tabulator {
       }
     }
     for (diagram::FlatOutput& output : flat_.outputs) follow(output.signal);
+    for (diagram::FlatGroup& group : flat_.timeline.groups) {
+      if (group.initial) follow(*group.initial);
+      if (group.hold) follow(*group.hold);
+    }
+    for (diagram::FlatPhase& phase : flat_.timeline.phases) {
+      if (phase.until) follow(phase.until->signal);
+    }
   }
 
   diagram::FlatDiagram& flat_;

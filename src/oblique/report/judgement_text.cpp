@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <oblique/machine/mode_control.h>
+
 namespace oblique::report {
 
 std::string judgement_text(const commission::Judgement& judgement, const text::Vocabulary& vocabulary) {
@@ -72,6 +74,9 @@ std::string machine_text(const commission::DiagramOnMachine& patched,
                         function.block, function.segments, function.low, function.high, function.error);
   }
   text += loops_text(patched);
+  if (!patched.made.diagram.groups.empty() && !machine::has_mode_groups(machine))
+    text += fmt::format("whether groups of integrators can have modes of their own on {} is not published\n",
+                        machine.title);
   text += fmt::format("with ideal elements its outputs differ from the diagram's by {:.1e} of their size\n",
                       patched.difference);
   constexpr double kSameOutputs = 1e-3;

@@ -209,6 +209,41 @@ x = { type = "integrator", in = ["-s", "ramp"], initial = 0.1 })");
   EXPECT_EQ(row_values(result, "s").back(), 1);
 }
 
+// A block with a Coulomb friction of 1 under a push of (1 + ε) sin ωt sticks but for a hundredth of each
+// half-wave, of which there are 32 in the run: it breaks loose where the push is 1, at θ₁ = asin(1/(1 + ε)),
+// and stops where its speed ω v = (1 + ε)(cos θ₁ − cos θ) − (θ − θ₁) is zero again, at θ₂
+// = 1.599079702426146. The way of a half-wave is the integral of v, here that of all. The slide ends where
+// its share is 1e-6 beyond 1, which takes a hundredth of ε and of the way, at most, and by its square root in
+// time much less.
+TEST(Slides, AShortSlipAtThePeakOfASlowPushIsSeen) {
+  constexpr double kEpsilon = 1e-4, kOmega = 1e-4, kStops = 1.599079702426146;
+  const double breaks = std::asin(1 / (1 + kEpsilon)), angle = kStops - breaks;
+  const double way = ((1 + kEpsilon) * (std::cos(breaks) * angle - (std::sin(kStops) - std::sin(breaks))) -
+                      angle * angle / 2) /
+                     (kOmega * kOmega);
+  const Compiled made(R"toml(
+f = { type = "sine-source", frequency = "0.0001/(2*pi)", amplitude = 1.0001
+}
+s = { type = "sign", in = "v" }
+v = { type = "integrator", in = ["f", "-s"] }
+a = { type = "absolute-value", in = "v" }
+y = { type = "integrator", in = "a" }
+)toml");
+  EXPECT_NEAR(row_values(run_of(made, {.until = 1e6}), "y").back(), 32 * way, 3e-4 * 32 * way);
+}
+
+// A limited integrator comes back as soon as its input turns over: of that nothing is uncertain. x = 1 − cos
+// t up to 1 at π/2, stays until π, and then follows 2 + cos t.
+TEST(Slides, ALimitedIntegratorThatComesBackIsNotWarnedOf) {
+  const Compiled made(R"toml(
+f = { type = "sine-source", frequency = "1/(2*pi)" }
+x = { type = "integrator", in = "f", limit = 1 }
+)toml");
+  const auto result = run_of(made, {.until = 4});
+  EXPECT_TRUE(result.warnings.empty());
+  EXPECT_NEAR(row_values(result, "x").back(), 2 + std::cos(4.0), 1e-7);  // ten tolerances
+}
+
 /// One bit of memory that conditions on `in` set and clear.
 diagram::BlockLibrary library_with_bit(const std::string& set, const std::string& clear) {
   return shipped_blocks_and(

@@ -9,7 +9,8 @@
 namespace oblique::solve {
 namespace {
 
-constexpr double kAfar = 30;  ///< errors
+constexpr double kAfar = 30;            ///< errors
+constexpr double kShortestTurn = 1e-4;  ///< of the run: turns that come more quickly may be those of a ball
 
 /// Whether so much more than errors of this size lies between two values of the signals: a kink, also behind
 /// a high gain, changes them by some errors, unless these are so large that what they do cannot be told.
@@ -75,8 +76,8 @@ bool FaintTurns::is_known(std::uint32_t s) const {
   return std::any_of(found_.begin(), found_.end(), [s](const FaintTurn& turn) { return turn.number == s; });
 }
 
-bool FaintTurns::comes_from_afar(double event_function, double error, double excursion) const {
-  return std::abs(event_function) <= error && excursion >= kAfar * error;
+bool FaintTurns::comes_from_afar(double event_function, double error, double excursion, double since) const {
+  return std::abs(event_function) <= error && excursion >= kAfar * error && since >= kShortestTurn * span_;
 }
 
 /// At t, by the error of the event function, how far it has been from zero since it turned over last, and
@@ -84,10 +85,9 @@ bool FaintTurns::comes_from_afar(double event_function, double error, double exc
 bool FaintTurns::is_faint(const Approach& approach, double error, double excursion, double t,
                           double last_turn) const {
   const double since = t - last_turn;
-  constexpr double kNear = 10;            // errors
-  constexpr double kSlow = 1000;          // errors: a decay to within them takes some 30 of its times
-  constexpr double kStandsStill = 1e-5;   // of the excursion: short steps make much of their errors
-  constexpr double kShortestTurn = 1e-4;  // of the run: turns that come more quickly may be those of a ball
+  constexpr double kNear = 10;           // errors
+  constexpr double kSlow = 1000;         // errors: a decay to within them takes some 30 of its times
+  constexpr double kStandsStill = 1e-5;  // of the excursion: short steps make much of their errors
   const bool is_near = excursion <= kNear * error;
   const bool is_slow = approach.speed * since <= std::max(kSlow * error, kStandsStill * excursion);
   const bool has_decayed =

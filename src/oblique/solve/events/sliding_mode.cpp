@@ -22,7 +22,7 @@ constexpr double kMostReturn = 1e-6;
 constexpr double kEdgeOfSlide = 2 * kMostReturn;
 
 /// How far the states are moved to see whether a slide lasts [machine unit].
-constexpr double kProbe = 1e-6;
+constexpr double kSoon = 1e-6;
 
 /// Of the drive of the other side.
 constexpr double kDrives = 1e-3;
@@ -307,7 +307,7 @@ bool SlidingMode::lasts(double t, std::span<const double> x) {
     for (std::size_t i = 0; i < moved_.size(); ++i) moved_[i] += side.weight * side.dxdt[i];
   }
   for (const double rate : moved_) fastest = std::max(fastest, std::abs(rate));
-  const double dt = std::min(kProbe / fastest, kProbe * span_);
+  const double dt = std::min(kSoon / fastest, kSoon * span_);
   for (std::size_t i = 0; i < moved_.size(); ++i) moved_[i] = x[i] + dt * moved_[i];
   const bool valid = evaluate(t + dt, moved_);
   bool stays = valid;

@@ -202,7 +202,8 @@ void Switching::look_at_miss(const EventSearch::NearMiss& miss, const Interpolan
   event_functions_.evaluate(miss.time, x, location_.announced());
   const EventFunctionErrors& errors = event_functions_.weigh_errors();
   if (!faint_turns_.comes_from_afar(event_functions_[s], errors[s],
-                                    event_functions_.thresholds().excursion(s)))
+                                    event_functions_.thresholds().excursion(s),
+                                    miss.time - settling_.last_turn(s)))
     return;
   FaintTurn turn{s, miss.time, errors[s], false, event_functions_.states_behind(s)};
   const auto looked = [&] {

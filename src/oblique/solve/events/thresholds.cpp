@@ -8,7 +8,7 @@ namespace oblique::solve {
 namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-constexpr double kRounding = 1e-13;  ///< of what a switch compares, or of a machine unit
+constexpr double kSmallestDifference = 1e-13;  ///< of what a switch compares, or of a machine unit
 
 }  // namespace
 
@@ -41,7 +41,7 @@ void Thresholds::update(double t, const network::Evaluation& here) {
 double Thresholds::rounding_of(std::size_t s, double compared_size) const {
   const bool finite = std::isfinite(compared_size);
   if (of_time_[s] && finite) return 8 * kEpsilon * compared_size;
-  return kRounding * (finite ? std::max(1.0, compared_size) : 1);
+  return kSmallestDifference * (finite ? std::max(1.0, compared_size) : 1);
 }
 
 std::optional<double> Thresholds::leave_behind(std::size_t s, double event_function, double rounding) {

@@ -248,19 +248,22 @@ bool Segments::turns_without_effect(double at, std::span<const double> sample_ti
     discrete_states[s.discrete_state] = parts_.workspace.discrete_state(s.discrete_state);
   const bool memories_stand = std::ranges::equal(discrete_states, parts_.workspace.discrete_states());
   if (memories_act_ && !memories_stand) return false;
-}
-// A memory or a clock may have opened the way to something short, which was not seen where the step was
-// looked at.
-if (!memories_stand || parts_.switching.lets_pass()) {
-  const auto left =
-      std::count_if(sample_times.begin(), sample_times.end(), [&](double time) { return time > at; });
-  if (std::ssize(parts_.sources.sample_times(at, step_.end, solution)) > left) return false;
-}
-// And it may have brought the next switch forward that follows the time alone.
-const auto wait = parts_.switching.known_wait(at, parts_.states, EventLocation::Of::ends_of_segments);
-if (wait && at + *wait < end_ - time_resolution(end_)) return false;
-if (parts_.overloads) parts_.overloads->restart(at, parts_.states);
-return true;
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    if (!parts_.switching.derivatives(times[k], states_there[k].data(), after.data()) || before[k] != after)
+      return false;
+  }
+  // A memory or a clock may have opened the way to something short, which was not seen where the step was
+  // looked at.
+  if (!memories_stand || parts_.switching.lets_pass()) {
+    const auto left =
+        std::count_if(sample_times.begin(), sample_times.end(), [&](double time) { return time > at; });
+    if (std::ssize(parts_.sources.sample_times(at, step_.end, solution)) > left) return false;
+  }
+  // And it may have brought the next switch forward that follows the time alone.
+  const auto wait = parts_.switching.known_wait(at, parts_.states, EventLocation::Of::ends_of_segments);
+  if (wait && at + *wait < end_ - time_resolution(end_)) return false;
+  if (parts_.overloads) parts_.overloads->restart(at, parts_.states);
+  return true;
 }
 
 }  // namespace oblique::solve

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: MIT
+// [groups] and [timeline] on a machine.
+#include <oblique/machine/mode_control.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <oblique/diagram/diagram_reader.h>
+#include <oblique/diagram/diagram_writer.h>
+#include <oblique/machine/realise.h>
+#include <oblique/machine/scaled_realisation.h>
+
+#include "machine_runs.h"
+#include "profiles.h"
+
+namespace oblique::machine {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::inverting_machine;
+using ::testing::Not;
+using testing::shipped_blocks;
+using testing::trajectory_of;
+
+diagram::MachineProfile machine_with_modes() {
+  diagram::MachineProfile machine = inverting_machine();
+  machine.rates = {1, 10, 100, 1000};
+  return machine;
+}
+
+diagram::MachineProfile machine_of_one_mode() {
+  diagram::MachineProfile machine = machine_with_modes();
+  machine.title = "Desk";
+  machine.figures.push_back({"integrators, modes", "common: one switch", "its manual"});
+  return machine;
+}
+
+diagram::Diagram diagram_with_modes(const std::string& text) {
+  return diagram::parse_diagram("format = \"oblique-diagram/1\"\n" + text, "test.toml");
+}
+
+ScaledRealisation made_with_modes(const std::string& text,
+                                  const diagram::MachineProfile& machine = machine_with_modes()) {
+  return realise_scaled(diagram_with_modes(text), shipped_blocks(), machine);
+}
+
+double last_of(const solve::Trajectory& run, const char* output) {
+  return run.at(run.rows() - 1, run.find(output).value());
+}
+
+TEST(HasModeGroups, IsToldByAFigureOrUnknown) {
+  EXPECT_EQ(has_mode_groups(machine_with_modes()), std::nullopt);
+  EXPECT_EQ(has_mode_groups(machine_of_one_mode()), false);
+  EXPECT_EQ(has_mode_groups(*diagram::find_machine("ideal")), true);
+  EXPECT_EQ(has_mode_groups(*diagram::find_machine("the-analog-thing")), false);
+  EXPECT_EQ(has_mode_groups(*diagram::find_machine("model-1")), std::nullopt);
+}
+
+// x' = 10 from −20 in initial condition for 0.5 s; it operates until it is 30, 5 s later, and holds. Time
+// passes a thousand times as fast at 0.001 s, and x is carried with either sign and as a part of the unit.
+TEST(Modes, OfATimelineKeepTheirConditionsInAnyScale) {
+  const std::string text = R"toml(
+[run]
+until = 8
+[timeline]
+phases = [
+  { mode = "initial", for = 0.5 },
+  { mode = "operate", until = "x > 30" },
+  { mode = "hold", for = 10 },
+]
+[blocks]
+one = { type = "constant" }
+x   = { type = "integrator", in = "10*one", initial = -20 }
+y   = { type = "integrator", in = "one" }
+[outputs]
+x = "x"
+y = "y"
+)toml";
+  for (const double time : {1.0, 0.001, 50.0}) {
+    ScalingOptions options;
+    options.time = time;
+    const ScaledRealisation made =
+        realise_scaled(diagram_with_modes(text), shipped_blocks(), machine_with_modes(), options);
+    const solve::Trajectory run = trajectory_of(made.diagram);
+    EXPECT_NEAR(run.at(run.rows() - 1, 0), 8 * time, 1e-9 * time);
+    EXPECT_NEAR(last_of(run, "x"), 30, 1e-6);
+    EXPECT_NEAR(last_of(run, "y"), 5, 1e-6);
+    EXPECT_TRUE(diagram::parse_diagram(diagram::write_diagram(made.diagram), "made.toml") == made.diagram);
+  }
+}
+
+// The oscillator that a source becomes goes on while x waits: x = ∫ sin 2πt from 0.3 on.
+TEST(Modes, LeaveWhatStandsForASourceInOperation) {
+  const std::string text = R"toml(
+[run]
+until = 1.3
+[timeline]
+phases = [{ mode = "initial", for = 0.3 }, { mode = "operate", for = 1 }]
+[blocks]
+s = { type = "sine-source", frequency = "1 Hz" }
+x = { type = "integrator", in = "s" }
+[outputs]
+x = "x"
+s = "s"
+)toml";
+  const ScaledRealisation made = made_with_modes(text);
+  EXPECT_THAT(diagram::write_diagram(made.diagram), HasSubstr("sources = \"operate\""));
+  const solve::Trajectory run = trajectory_of(made.diagram);
+  constexpr double kTurn = 2 * std::numbers::pi;
+  EXPECT_NEAR(last_of(run, "s"), std::sin(kTurn * 1.3), 1e-6);
+  EXPECT_NEAR(last_of(run, "x"), (std::cos(kTurn * 0.3) - std::cos(kTurn * 1.3)) / kTurn, 1e-6);
+  try {
+    made_with_modes(text, machine_of_one_mode());
+    ADD_FAILURE() << "realised";
+  } catch (const RealiseError& error) {
+    EXPECT_THAT(
+        error.what(),
+        HasSubstr("test.toml: the machine Desk has one mode for all its integrators, and 's.sine', "
+                  "'s.cosine' go on while others do not operate; expected one mode for all at any time\n"
+                  "  remedy: choose another machine, or take [groups] or the [timeline] out"));
+  }
+}
+
+// A stop watch that runs while x = cos t is above a half, which a signal of 5 for 1 says.
+TEST(Modes, OfALineThatIsNoLogicGetAComparator) {
+  const std::string text = R"toml(
+[run]
+until = 1.5
+[groups]
+watch = { blocks = ["passed"], hold = "below" }
+[blocks]
+one    = { type = "constant" }
+v      = { type = "integrator", in = "-x" }
+x      = { type = "integrator", in = "v", initial = 1 }
+below  = { type = "summer", in = ["5.5*one", "-10*x"] }
+passed = { type = "integrator", in = "one" }
+[outputs]
+passed = "passed"
+)toml";
+  const ScaledRealisation made = made_with_modes(text);
+  const std::string written = diagram::write_diagram(made.diagram);
+  EXPECT_THAT(written, HasSubstr("hold = \"watch_hold\""));
+  // 5.5 − 10 x > 0.5 from x = 0.5 on: at π/3.
+  EXPECT_NEAR(last_of(trajectory_of(made.diagram), "passed"), std::numbers::pi / 3, 1e-6);
+  try {
+    made_with_modes(text, machine_of_one_mode());
+    ADD_FAILURE() << "realised";
+  } catch (const RealiseError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("the groups 'watch' have modes of their own"));
+  }
+}
+
+// A timeline alone is what any machine has: its integrators change their mode together.
+TEST(Modes, OfAllIntegratorsTogetherSuitEveryMachine) {
+  const ScaledRealisation made = made_with_modes(R"toml(
+[run]
+until = 3
+[timeline]
+phases = [{ mode = "initial", for = 0.5 }, { mode = "operate", for = 1 }]
+cycles = 2
+[blocks]
+x = { type = "integrator", in = "-x", initial = 7 }
+)toml",
+                                                 machine_of_one_mode());
+  EXPECT_THAT(diagram::write_diagram(made.diagram), Not(HasSubstr("[groups]")));
+  EXPECT_NEAR(std::abs(trajectory_of(made.diagram).at(1000, 1)), 7 * std::exp(-1), 1e-6);
+}
+
+}  // namespace
+}  // namespace oblique::machine
