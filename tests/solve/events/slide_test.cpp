@@ -222,8 +222,7 @@ TEST(Slides, AShortSlipAtThePeakOfASlowPushIsSeen) {
                       angle * angle / 2) /
                      (kOmega * kOmega);
   const Compiled made(R"toml(
-f = { type = "sine-source", frequency = "0.0001/(2*pi)", amplitude = 1.0001
-}
+f = { type = "sine-source", frequency = "0.0001/(2*pi)", amplitude = 1.0001 }
 s = { type = "sign", in = "v" }
 v = { type = "integrator", in = ["f", "-s"] }
 a = { type = "absolute-value", in = "v" }
