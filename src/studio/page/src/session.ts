@@ -421,21 +421,16 @@ export class Session {
     // a diagram is drawn by its patch panel
     const drawn = opened.kind === "mechanism" ? await machine.ask<Drawn>("draw", diagram, {theme: "auto", data: true}, next.name) : undefined;
     if (!isNewest()) return false;
-    // from here on the engine changes: to the end, or back
+    // from here on the engine changes: to the end
     if (how.keeps && this.shown.held && opened.kind === "diagram" && this.shown.kind === "diagram" && this.shown.file.name === next.name) {
       const went = await this.exchange(next, opened);
       if (went !== undefined) return went;
       remarks.push("the timeline is another one: the machine begins anew");
     }
-    const before = await machine.ask<Saved>("console.save");
     const held = await machine.ask<Held>("console.open", diagram, next.name);
     if (!this.good(held)) return false;
-    const turned = how.turned ?? new Map<string, string>();
-    for (const [pot, value] of turned) {
-      if (this.good(await machine.ask("console.turn", pot, value))) continue;
-      if (before.ok) await this.comeBack(before.state);
-      return false;
-    }
+    const turned = new Map<string, string>();
+    for (const [pot, value] of how.turned ?? []) if (this.good(await machine.ask("console.turn", pot, value))) turned.set(pot, value);
     const values = await machine.ask<Read>("console.read", ...held.pots);
     const mode: Mode = how.restore ? "hold" : "initial";
     if (how.restore) await machine.ask("console.restore", how.restore);
@@ -458,16 +453,6 @@ export class Session {
     await this.look();
     await this.lookAtLamps();
     return true;
-  }
-
-  /// The engine holds the machine of the page again, in this state.
-  private async comeBack(state: string): Promise<void> {
-    await this.machine.ask("console.open", this.shown.diagram, this.shown.file.name);
-    for (const [pot, value] of this.turned) await this.machine.ask("console.turn", pot, value);
-    await this.machine.ask("console.restore", state);
-    await this.machine.ask("console.setMode", "hold");
-    this.set({mode: "hold"});
-    await this.tell();
   }
 
   /// The machine goes on as another one; nothing where its timeline forbids.
