@@ -83,6 +83,7 @@ void Runner::start() {
   }
   segments_.follow_phases(begin_);
   workspace_.follow_branches(true);
+  if (!switching_.slides()) branches_.look(begin_, states_, true);
   if (sensitivities_) {
     if (switching_.slides()) sensitivities_->refuse_slide(begin_);
     sensitivities_->start(begin_, states_, workspace_, options_.from.has_value());

@@ -354,6 +354,50 @@ TEST(Branch, GoesWhereAFastAmplifierGoes) {
   EXPECT_GT(tried, 50);
 }
 
+/// Two ideal amplifiers: k (x − 1) + y³ − 1 = 0 and k (y − 1) − x³ + 1 = 0. At x = y = 1 the eigenvalues of
+/// their loop are k ± 3i.
+std::string pair_of_amplifiers(const std::string& k) {
+  return "k = { type = " + k + " }\n" + R"toml(
+one = { type = "constant" }
+xx = { type = "squarer", in = "x" }
+xxx = { type = "multiplier", in = ["xx", "x"] }
+yy = { type = "squarer", in = "y" }
+yyy = { type = "multiplier", in = ["yy", "y"] }
+dx = { type = "summer", in = ["x", "-one"] }
+dy = { type = "summer", in = ["y", "-one"] }
+kx = { type = "multiplier", in = ["k", "dx"] }
+ky = { type = "multiplier", in = ["k", "dy"] }
+x = { type = "servo-amplifier", in = ["kx", "yyy", "-one"], gain = inf, bandwidth = inf, initial = 1 }
+y = { type = "servo-amplifier", in = ["ky", "-xxx", "one"], gain = inf, bandwidth = inf, initial = 1 }
+)toml";
+}
+
+TEST(Branch, IsToldOfOnceWhereEventsLeaveAmplifiersThatRunAway) {
+  const auto result =
+      run_of(Compiled(pair_of_amplifiers(
+                 "\"pulse-train\", period = 0.25, width = 0.125, delay = 0.5, low = 1, high = -1")),
+             {.until = 1, .samples = 5});
+  for (const double x : row_values(result, "x")) EXPECT_NEAR(x, 1, 1e-12);
+  ASSERT_EQ(result.warnings.size(), 1U);
+  EXPECT_EQ(result.warnings[0].what,
+            "from t = 0.5 s on the equations of 'x', 'y' are solved where a machine would not settle: its "
+            "amplifiers run away from x = 1");
+}
+
+TEST(Branch, IsToldOfWhereItsAmplifiersSwing) {
+  const auto result = run_of(Compiled(pair_of_amplifiers("\"constant\", value = 0")), {.until = 1});
+  ASSERT_EQ(result.warnings.size(), 1U);
+  EXPECT_EQ(result.warnings[0].what,
+            "from t = 0 s on the equations of 'x', 'y' are solved where a machine would not settle: its "
+            "amplifiers swing about x = 1");
+}
+
+// Where they are damped nothing is told.
+TEST(Branch, IsNotToldOfWhereItsAmplifiersSettle) {
+  EXPECT_TRUE(run_of(Compiled(pair_of_amplifiers("\"step\", at = 0.5, from = 1, to = 2")), {.until = 1})
+                  .warnings.empty());
+}
+
 // cos 3y = y at 0.3901, −0.8876 and −0.9795 (Newton's method on a pocket calculator, to the digits given).
 TEST(Branch, TellsThatALoopHasOtherSolutions) {
   const auto result = run_of(Compiled("y = { type = \"cosine\", in = \"3*y\" }\n"), {.until = 1});

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <utility>
 
@@ -25,9 +26,12 @@ bool held_by_amplifier(const network::Program& program, std::size_t unknown) {
   return program.unknowns()[unknown].held_by_amplifier;
 }
 
-/// Smallest real part of the eigenvalues of dg/dz of the amplifiers' equations, the rest of the loop solved,
-/// over the largest: below 0 where the amplifiers do not rest.
-double least_rise(const network::Program& program, const network::SignalEvaluation& here, std::size_t loop) {
+/// What the amplifiers of a loop do about a solution, infinitely fast.
+enum class Motion { rest, swing, run_away };
+
+/// By the eigenvalues of dg/dz of the amplifiers' equations, the rest of the loop solved: where the real part
+/// of one is below 0 they run away, where one has none but an imaginary part they swing for ever.
+Motion motion_of(const network::Program& program, const network::SignalEvaluation& here, std::size_t loop) {
   const std::vector<std::size_t>& unknowns = program.loops()[loop].unknowns;
   std::vector<Eigen::Index> amplifiers, others;
   for (std::size_t i = 0; i < unknowns.size(); ++i)
@@ -39,15 +43,16 @@ double least_rise(const network::Program& program, const network::SignalEvaluati
     own -= jacobian(amplifiers, others) *
            inner.partialPivLu().solve(Eigen::MatrixXd(jacobian(others, amplifiers)));
   }
-  if (!own.allFinite()) return 0;
-  const Eigen::VectorXcd values = eigenvalues_of(own);
-  return values.real().minCoeff() /
-         std::max(values.cwiseAbs().maxCoeff(), std::numeric_limits<double>::min());
-}
-
-bool rests(const network::Program& program, const network::SignalEvaluation& here, std::size_t loop) {
+  if (!own.allFinite()) return Motion::rest;
   constexpr double kRounding = 1e-9;  // a root of even order has no derivative but that of its rounding
-  return least_rise(program, here, loop) > -kRounding;
+  constexpr double kTurn = 1e-6;
+  const Eigen::VectorXcd values = eigenvalues_of(own);
+  const double largest = std::max(values.cwiseAbs().maxCoeff(), std::numeric_limits<double>::min());
+  if (values.real().minCoeff() <= -kRounding * largest) return Motion::run_away;
+  const bool swings = std::any_of(values.begin(), values.end(), [&](const std::complex<double>& value) {
+    return value.real() <= kRounding * largest && std::abs(value.imag()) > kTurn * largest;
+  });
+  return swings ? Motion::swing : Motion::rest;
 }
 
 std::string amplifier_names(const network::Program& program, std::size_t loop) {
@@ -59,13 +64,14 @@ std::string amplifier_names(const network::Program& program, std::size_t loop) {
 }
 
 text::Diagnostic unstable_warning(const network::Program& program, const network::Workspace& workspace,
-                                  std::size_t loop, double t, const std::string& file) {
+                                  std::size_t loop, Motion motion, double t, const std::string& file) {
   const std::size_t first = program.loops()[loop].unknowns.front();
   return {{file, {}},
           fmt::format(
               "from t = {:.6g} s on the equations of {} are solved where a machine would not settle: its "
-              "amplifiers run away from {} = {:.6g}",
-              t, amplifier_names(program, loop), program.unknowns()[first].name, workspace.unknown(first)),
+              "amplifiers {} {} = {:.6g}",
+              t, amplifier_names(program, loop), motion == Motion::swing ? "swing about" : "run away from",
+              program.unknowns()[first].name, workspace.unknown(first)),
           {},
           "reverse the signs at the amplifier's inputs, give it another 'initial', or a finite gain and "
           "bandwidth to see what a machine does"};
@@ -91,7 +97,8 @@ BranchWatch::BranchWatch(const network::Program& program, network::Workspace& wo
       row_(span_ / std::max(1, options.samples - 1)),
       resolution_(1e-10 * span_) {
   for (std::size_t loop = 0; loop < program.loops().size(); ++loop) {
-    if (!program.loop_has_branches(loop)) continue;
+    told_.push_back(!program.loop_has_branches(loop));
+    if (told_.back()) continue;
     any_ = true;
     unseen_ = unseen_ || !program.derivatives_need(loop);
   }
@@ -153,7 +160,8 @@ void BranchWatch::pass(double t, const std::vector<double>& states) {
   for (std::size_t loop = 0; loop < program_.loops().size(); ++loop) {
     if (!program_.loop_has_branches(loop)) continue;
     const bool jumps = change_of(program_, workspace_, loop, before) > kJump;
-    if (rests(program_, *here, loop)) {
+    const Motion motion = motion_of(program_, *here, loop);
+    if (motion != Motion::run_away) {
       if (!jumps) continue;
       std::vector<std::string> ways;
       for (const std::size_t u : program_.loops()[loop].unknowns) {
@@ -165,9 +173,25 @@ void BranchWatch::pass(double t, const std::vector<double>& states) {
     } else if (jumps) {
       const std::size_t first = program_.loops()[loop].unknowns.front();
       throw loop_error(program_, {loop, network::LoopFailure::lost, 0, before[first]}, t, file_);
-    } else {
-      warnings_.push_back(unstable_warning(program_, workspace_, loop, t, file_));
+    } else if (!told_[loop]) {
+      told_[loop] = true;
+      warnings_.push_back(unstable_warning(program_, workspace_, loop, motion, t, file_));
     }
+  }
+}
+
+void BranchWatch::look(double t, const std::vector<double>& states, bool told) {
+  const bool all_told = std::find(told_.begin(), told_.end(), false) == told_.end();
+  if (!any_ || all_told) return;
+  std::vector<double> signals(program_.n_signals());
+  const auto here = program_.signals(t, states.data(), signals.data(), workspace_);
+  if (!here) return;  // whoever looks there next says what is wrong
+  for (std::size_t loop = 0; loop < told_.size(); ++loop) {
+    if (told_[loop]) continue;
+    const Motion motion = motion_of(program_, *here, loop);
+    if (motion == Motion::rest) continue;
+    told_[loop] = true;
+    if (!told) warnings_.push_back(unstable_warning(program_, workspace_, loop, motion, t, file_));
   }
 }
 
@@ -192,7 +216,9 @@ std::vector<text::Diagnostic> unstable_branches(const network::Program& program,
   const auto here = program.signals(t, states.data(), signals.data(), workspace);
   if (!here) throw loop_error(program, workspace.trouble(), t, file);
   for (const std::size_t loop : with_branches) {
-    if (!rests(program, *here, loop)) warnings.push_back(unstable_warning(program, workspace, loop, t, file));
+    const Motion motion = motion_of(program, *here, loop);
+    if (motion != Motion::rest)
+      warnings.push_back(unstable_warning(program, workspace, loop, motion, t, file));
   }
   return warnings;
 }

@@ -62,6 +62,10 @@ class BranchWatch {
   /// Throws SolveError for any other. The workspace must not follow branches.
   void pass(double t, const std::vector<double>& states);
 
+  /// Tells, once of each, of loops that an event at t has left where their amplifiers do not rest; those that
+  /// are `told` of already are noted alone. Not while something slides, which mixes two solutions.
+  void look(double t, const std::vector<double>& states, bool told);
+
   /// To another branch, where the amplifiers rest.
   const std::vector<EventRecord>& jumps() const { return jumps_; }
   /// All events by time.
@@ -78,6 +82,7 @@ class BranchWatch {
   double span_, row_, resolution_;  ///< [s]
   bool any_ = false;                ///< any loop has branches
   bool unseen_ = false;             ///< one that no derivative needs
+  std::vector<bool> told_;          ///< of each loop: it has no branches, or a warning
   std::optional<double> tried_;     ///< [s] where the solver was let to start anew
   std::vector<EventRecord> jumps_;
   std::vector<text::Diagnostic> warnings_;

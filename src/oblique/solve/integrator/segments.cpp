@@ -48,6 +48,7 @@ void Segments::settle(double t, bool at_branch_end) {
   parts_.switching.settle(t, parts_.states);
   follow_phases(t);
   parts_.workspace.follow_branches(true);
+  if (!parts_.switching.slides()) parts_.branches.look(t, parts_.states, false);
 }
 
 /// Whether a switch turns over between `from` and t, where a branch of an algebraic loop has ended; t is
