@@ -105,9 +105,10 @@ std::string agreement_summary(const std::vector<Programme>& programmes) {
     if (programme.diagram.published->kind == diagram::Published::Kind::equations) ++composed;
   }
   std::string text = fmt::format(
-      "{}, {}: {} within the uncertainty that was stated, {} beyond it and explained, {} beyond it",
+      "{}, {}: {} within the uncertainty that was stated, {} beyond it and explained, {} unexplained",
       count(programmes.size(), "programme", "programmes"),
-      count(values, "published value", "published values"), agree, explained, values - agree - explained);
+      count(values, "published value", "published values"), agree, explained,
+      agree + explained == values ? "none" : fmt::format("{}", values - agree - explained));
   if (pictures > 0)
     text += fmt::format("; {} held against a picture alone", count(pictures, "programme", "programmes"));
   if (composed > 0)
