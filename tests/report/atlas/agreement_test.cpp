@@ -60,6 +60,24 @@ TEST(Agreement, IsATableOfDifferencesOverUncertainties) {
   EXPECT_FALSE(all_explained(programmes));
 }
 
+TEST(Agreement, NamesNoUnitOfWhatHasNone) {
+  const Table table = agreement_table({programme(R"toml(format = "oblique-diagram/1"
+[blocks]
+one = { type = "constant", value = 1 }
+[outputs]
+n = { signal = "one", unit = "1" }
+[published]
+author = "A"
+title = "T"
+[[published.value]]
+name = "n"
+value = 1
+within = 0.1
+)toml")});
+  ASSERT_EQ(table.rows().size(), 2U);
+  EXPECT_EQ(table.rows()[1][4], "");
+}
+
 TEST(Agreement, CountsWhatAgrees) {
   const std::string head =
       "format = \"oblique-diagram/1\"\n[blocks]\none = { type = \"constant\" }\n[published]\nauthor = "

@@ -81,8 +81,9 @@ Table agreement_table(const std::vector<Programme>& programmes) {
                        [&](const diagram::OutputSpec& spec) { return spec.name == value.expected.output; });
       const std::string own =
           output == programme.diagram.outputs.end() ? diagram::OutputSpec{}.unit : output->unit;
+      const std::string unit = value.unit.empty() ? own : value.unit;
       table.add({programme.name, diagram::name_of(value), fmt::format("{}", value.expected.value),
-                 fmt::format("{}", value.expected.within), value.unit.empty() ? own : value.unit,
+                 fmt::format("{}", value.expected.within), unit == "1" ? "" : unit,
                  number_within(result.actual, value.expected.within),
                  fmt::format("{:.2g}", result.in_uncertainties()),
                  result.met()            ? ""

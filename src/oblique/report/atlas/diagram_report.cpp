@@ -170,7 +170,7 @@ class DiagramWriter {
     if (!diagram_.published) return;
     page_.heading("Published and computed");
     if (!diagram_.published->picture.empty())
-      page_.paragraph("The published picture shows: " + diagram_.published->picture);
+      page_.paragraph("The published picture shows: " + diagram_.published->picture + ".");
     if (programme_.results.empty()) {
       page_.paragraph("No value was published to hold the run against.");
       return;
