@@ -271,7 +271,7 @@ y = {{ type = "summer", in = ["x", "{}*vv"] }}
     const auto result = run_of(made, {.until = 6, .tolerance = tolerance});
     EXPECT_LT(result.event_count, 10'000) << tolerance;  // it used to go on, with a million
     const auto slides = std::find_if(result.events.begin(), result.events.end(), [](const EventRecord& e) {
-      return e.what.find("slides") != std::string::npos;
+      return e.what.find("stays at") != std::string::npos;
     });
     ASSERT_NE(slides, result.events.end());
     EXPECT_NEAR(slides->time, end, 1e-3)
