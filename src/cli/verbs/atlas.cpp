@@ -37,7 +37,9 @@ std::string studio_from(const path& site, const std::string& studio) {
                                            "the page of the studio is not there",
                                            "build/web/studio.html",
                                            "build it with ./bootstrap web"});
-  const path found = std::filesystem::relative(studio, site, trouble);
+  // The folder of the site may not be there yet: relative() takes such a path for one that leads nowhere.
+  const path found =
+      std::filesystem::relative(std::filesystem::absolute(studio), std::filesystem::absolute(site), trouble);
   return trouble || found.empty() ? std::filesystem::absolute(studio).string() : found.generic_string();
 }
 

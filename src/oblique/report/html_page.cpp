@@ -25,7 +25,7 @@ constexpr std::string_view kStyle = R"(  body { margin: 2rem auto; max-width: 54
   figure { margin: 1rem 0; overflow-x: auto }
   figure svg { max-width: 100%; height: auto }
   figure.broad { margin-inline: calc(50% - 50vw + 1rem); text-align: center }
-  figure.broad svg { max-width: max(100%, 56rem) }
+  figure.broad svg { max-width: max(100%, var(--least)) }
   .scroll { overflow-x: auto; margin: .6rem 0 }
   table { border-collapse: collapse; font-size: 13px; font-variant-numeric: tabular-nums }
   th, td { padding: .15rem .8rem .15rem 0; text-align: left; vertical-align: top }
@@ -52,6 +52,8 @@ constexpr std::string_view kPrint = R"(  @page { margin: 16mm }
 
 /// Wider pictures would be too small on a sheet upright [px].
 constexpr double kBroad = 900;
+/// Of its size, a broad picture can just be read: in a narrower window it is scrolled.
+constexpr double kReadable = 0.5;
 /// Rows of a table that is not divided between sheets.
 constexpr std::size_t kShort = 32;
 
@@ -163,8 +165,11 @@ void HtmlPage::table(const std::vector<std::vector<std::string>>& rows) {
 }
 
 void HtmlPage::picture(const draw::Picture& picture) {
-  body_ += fmt::format("<figure{}>{}</figure>\n", picture.width > kBroad ? " class=\"broad\"" : "",
-                       inline_svg(picture));
+  const std::string broad =
+      picture.width > kBroad
+          ? fmt::format(" class=\"broad\" style=\"--least: {:.0f}px\"", kReadable * picture.width)
+          : "";
+  body_ += fmt::format("<figure{}>{}</figure>\n", broad, inline_svg(picture));
 }
 
 std::string HtmlPage::text(draw::Theme theme) const {

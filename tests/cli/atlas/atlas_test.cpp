@@ -50,6 +50,10 @@ TEST_F(AtlasVerbs, AtlasWritesASite) {
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(bytes_of("site/deep/index.html"), HasSubstr("href=\"met.html\""));
   EXPECT_THAT(bytes_of("site/deep/met.html"), HasSubstr("href=\"../../studio.html#"));
+  const Outcome beside =
+      run_command("oblique atlas " + folder() + " -o new/site --studio studio.html", file("."));
+  EXPECT_EQ(beside.status, 0) << beside.err;
+  EXPECT_THAT(bytes_of("new/site/met.html"), HasSubstr("href=\"../../studio.html#"));
   const Outcome dark = oblique("atlas " + folder() + " -o " + site + " --theme dark");
   EXPECT_EQ(dark.status, 0) << dark.err;
   EXPECT_THAT(bytes_of("site/deep/met.html"), HasSubstr("color-scheme: dark"));

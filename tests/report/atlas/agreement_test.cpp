@@ -60,6 +60,24 @@ TEST(Agreement, IsATableOfDifferencesOverUncertainties) {
   EXPECT_FALSE(all_explained(programmes));
 }
 
+TEST(Agreement, NamesNoUnitOfWhatHasNone) {
+  const Table table = agreement_table({programme(R"toml(format = "oblique-diagram/1"
+[blocks]
+one = { type = "constant", value = 1 }
+[outputs]
+n = { signal = "one", unit = "1" }
+[published]
+author = "A"
+title = "T"
+[[published.value]]
+name = "n"
+value = 1
+within = 0.1
+)toml")});
+  ASSERT_EQ(table.rows().size(), 2U);
+  EXPECT_EQ(table.rows()[1][4], "");
+}
+
 TEST(Agreement, CountsWhatAgrees) {
   const std::string head =
       "format = \"oblique-diagram/1\"\n[blocks]\none = { type = \"constant\" }\n[published]\nauthor = "
@@ -68,7 +86,7 @@ TEST(Agreement, CountsWhatAgrees) {
       agreement_summary({programme(kThree), programme(head + "picture = \"a line\"\n"),
                          programme(head + "kind = \"equations\"\n")}),
       "3 programmes, 3 published values: 1 within the uncertainty that was stated, 1 beyond it and "
-      "explained, 1 beyond it; 1 programme held against a picture alone; 1 programme composed here from "
+      "explained, 1 unexplained; 1 programme held against a picture alone; 1 programme composed here from "
       "equations");
   EXPECT_TRUE(all_explained({programme(head + "kind = \"equations\"\n")}));
 }

@@ -42,10 +42,10 @@ TEST(AtlasSite, ListsAndShowsAllProgrammes) {
   EXPECT_THAT(
       index,
       HasSubstr("<a class=\"card\" href=\"one.html\" data-year=\"1961\" data-author=\"A. &quot;One&quot;\" "
-                "data-machine=\"Ideal machine\" data-subject=\"decay\" data-elements=\"integrator\">"));
+                "data-machine=\"Ideal machine\" data-subject=\"decay\" data-elements=\"Integrator\">"));
   EXPECT_THAT(index, HasSubstr("<a class=\"card\" href=\"two.html\" data-year=\"unknown\""));
   EXPECT_THAT(index, AllOf(HasSubstr("<option>1961</option><option>unknown</option>"),
-                           HasSubstr("<option>integrator</option></select>"), HasSubstr("<li>1 &lt; 2</li>"),
+                           HasSubstr("<option>Integrator</option></select>"), HasSubstr("<li>1 &lt; 2</li>"),
                            HasSubstr("2 programmes, 1 published value: 1 within"), HasSubstr("<td>one</td>"),
                            HasSubstr("Decay &amp; more")));
   EXPECT_THAT(pages[1].text,

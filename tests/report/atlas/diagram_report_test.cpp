@@ -111,6 +111,14 @@ half = "half"
   EXPECT_THAT(page, HasSubstr("25 %</td><td></td>"));            // 1 machine unit is 1 machine unit
 }
 
+TEST(DiagramReport, SaysWhatAnAmplifierSolvesFor) {
+  EXPECT_THAT(page_of("format = \"oblique-diagram/1\"\n[run]\nuntil = 1\n[blocks]\n"
+                      "x = { type = \"constant\", value = 0.5 }\n"
+                      "y = { type = \"servo-amplifier\", gain = 10, limit = 1, in = [\"-0.1*x\", \"y\"] }\n"
+                      "[outputs]\ny = \"y\"\n"),
+              HasSubstr("<span>0 = y − 0.05,   solved for y</span>"));
+}
+
 TEST(DiagramReport, HoldsWhatWasPublished) {
   const std::string page = page_of(kReported + kReportedAsPublished, "index.html", "studio.html#abc");
   EXPECT_THAT(page, AllOf(HasSubstr("<p>A. Author, Rings, 1960.</p>"),
@@ -118,7 +126,7 @@ TEST(DiagramReport, HoldsWhatWasPublished) {
                           HasSubstr("The circuit as it was patched, on: TR-10 no. 7."),
                           HasSubstr("<li>The sign is missing.</li>"), HasSubstr("As on the plotter:"),
                           HasSubstr("<td>x maximum</td><td class=\"n\">4.5</td><td class=\"n\">0.1</td>"),
-                          HasSubstr("x maximum differs because the ink was thick."),
+                          HasSubstr("x maximum differs: the ink was thick."),
                           HasSubstr("<a href=\"index.html\">"), HasSubstr("<a href=\"studio.html#abc\">")));
   EXPECT_THAT(page_of(kReported + "[published]\nauthor = \"A\"\ntitle = \"T\"\nkind = \"equations\"\n"),
               AllOf(HasSubstr("Composed here: only the equations were published."),

@@ -29,7 +29,8 @@ std::vector<std::string> equations(const std::string& blocks, const std::string&
   const Compiled made(blocks, rest);
   for (const RecoveredEquation& equation : recovered_equations(made.flat))
     lines.push_back(equation.left + " = " + equation.right +
-                    (equation.start.empty() ? "" : ", from " + equation.start));
+                    (equation.start.empty() ? "" : ", from " + equation.start) +
+                    (equation.unknown.empty() ? "" : ", solved for " + equation.unknown));
   return lines;
 }
 
@@ -73,7 +74,7 @@ xq = { type = "multiplier", in = ["x", "q"] }
 q = { type = "servo-amplifier", in = ["xq", "-z"], gain = inf }
 )toml",
                         "[outputs]\nq = \"q\"\n"),
-              ElementsAre("der(x) = 0.3, from 0.5", "0 = x*q - 0.3"));
+              ElementsAre("der(x) = 0.3, from 0.5", "0 = x*q - 0.3, solved for q"));
 }
 
 std::vector<std::string> shipped_diagrams() {

@@ -81,8 +81,9 @@ Table agreement_table(const std::vector<Programme>& programmes) {
                        [&](const diagram::OutputSpec& spec) { return spec.name == value.expected.output; });
       const std::string own =
           output == programme.diagram.outputs.end() ? diagram::OutputSpec{}.unit : output->unit;
+      const std::string unit = value.unit.empty() ? own : value.unit;
       table.add({programme.name, diagram::name_of(value), fmt::format("{}", value.expected.value),
-                 fmt::format("{}", value.expected.within), value.unit.empty() ? own : value.unit,
+                 fmt::format("{}", value.expected.within), unit == "1" ? "" : unit,
                  number_within(result.actual, value.expected.within),
                  fmt::format("{:.2g}", result.in_uncertainties()),
                  result.met()            ? ""
@@ -105,9 +106,10 @@ std::string agreement_summary(const std::vector<Programme>& programmes) {
     if (programme.diagram.published->kind == diagram::Published::Kind::equations) ++composed;
   }
   std::string text = fmt::format(
-      "{}, {}: {} within the uncertainty that was stated, {} beyond it and explained, {} beyond it",
+      "{}, {}: {} within the uncertainty that was stated, {} beyond it and explained, {} unexplained",
       count(programmes.size(), "programme", "programmes"),
-      count(values, "published value", "published values"), agree, explained, values - agree - explained);
+      count(values, "published value", "published values"), agree, explained,
+      agree + explained == values ? "none" : fmt::format("{}", values - agree - explained));
   if (pictures > 0)
     text += fmt::format("; {} held against a picture alone", count(pictures, "programme", "programmes"));
   if (composed > 0)

@@ -13,6 +13,7 @@
 #include <oblique/diagram/published.h>
 #include <oblique/report/atlas/diagram_report.h>
 #include <oblique/report/atlas/studio_link.h>
+#include <oblique/report/page_text.h>
 
 namespace oblique::report {
 namespace {
@@ -69,12 +70,12 @@ constexpr std::array<Filter, 5> kFilters{{{"year", "Year", &Facets::year},
                                           {"subject", "Subject", &Facets::subject},
                                           {"elements", "Takes", &Facets::elements}}};
 
-/// "open amplifier": what a block is on a real machine, else the title of its kind.
+/// "Open amplifier": what a block is on a real machine, else the title of its kind.
 std::string element_of(const diagram::BlockDefinition& definition) {
   if (definition.role == diagram::Role::other) return definition.title;
   std::string name(diagram::role_name(definition.role));
   std::replace(name.begin(), name.end(), '-', ' ');
-  return name;
+  return capitalised(std::move(name));
 }
 
 Facets facets_of(const Programme& programme, const diagram::BlockLibrary& blocks) {

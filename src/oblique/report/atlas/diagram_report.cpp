@@ -15,6 +15,7 @@
 #include <oblique/network/assembly/network.h>
 #include <oblique/network/program/program.h>
 #include <oblique/report/atlas/equations.h>
+#include <oblique/report/atlas/ideal_amplifiers.h>
 #include <oblique/report/component_list_text.h>
 #include <oblique/report/diagram_check.h>
 #include <oblique/report/diagram_check_text.h>
@@ -37,6 +38,7 @@ std::string printed(const RecoveredEquation& equation) {
   if (left.starts_with("der(")) left = derivative_of(left.substr(4, left.size() - 5));
   std::string text = left + " = " + printed_expression(equation.right);
   if (!equation.start.empty()) text += ",   starting from " + printed_expression(equation.start);
+  if (!equation.unknown.empty()) text += ",   solved for " + equation.unknown;
   return text;
 }
 
@@ -128,7 +130,7 @@ class DiagramWriter {
         "stand in their units, other signals in machine units; t is the time of the run in seconds. "
         "Every integrator operates here, and the amplifiers are ideal.");
     std::string lines;
-    for (const RecoveredEquation& equation : recovered_equations(ideal_circuit()))
+    for (const RecoveredEquation& equation : recovered_equations(with_ideal_amplifiers(ideal_circuit())))
       lines += "<span>" + draw::escape_xml(printed(equation)) + "</span>";
     page_.element("<pre>" + lines + "</pre>");
   }
@@ -168,7 +170,7 @@ class DiagramWriter {
     if (!diagram_.published) return;
     page_.heading("Published and computed");
     if (!diagram_.published->picture.empty())
-      page_.paragraph("The published picture shows: " + diagram_.published->picture);
+      page_.paragraph("The published picture shows: " + diagram_.published->picture + ".");
     if (programme_.results.empty()) {
       page_.paragraph("No value was published to hold the run against.");
       return;
@@ -181,8 +183,7 @@ class DiagramWriter {
     page_.table(rows);
     for (const PublishedResult& result : programme_.results) {
       if (!result.met() && result.is_explained())
-        page_.paragraph(
-            fmt::format("{} differs because {}.", diagram::name_of(result.value), result.value.because));
+        page_.paragraph(fmt::format("{} differs: {}.", diagram::name_of(result.value), result.value.because));
     }
   }
 

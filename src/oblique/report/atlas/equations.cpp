@@ -65,7 +65,8 @@ class EquationReader {
       std::vector<Monomial> terms = scaled(unknown.residual, 1 / z.factor);
       if (unknown.torn)
         terms.push_back({1, {z.name}, {}});  // the residual is what the block gives less itself
-      equations.push_back({unknown.torn ? z.name : "0", sum_text(merged(std::move(terms))), ""});
+      equations.push_back(
+          {unknown.torn ? z.name : "0", sum_text(merged(std::move(terms))), "", unknown.torn ? "" : z.name});
     }
     for (const auto& [name, node, scale, offset] : outputs_) {
       const bool own = apart_.contains(node);

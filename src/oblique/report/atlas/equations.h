@@ -11,9 +11,10 @@ namespace oblique::report {
 /// An equation that a circuit solves: `left` = `right`, in the language of expressions as long as nothing in
 /// it switches.
 struct RecoveredEquation {
-  std::string left;   ///< "der(x)", "xy", "0"
-  std::string right;  ///< "10*y - 10*x"
-  std::string start;  ///< of a state: its initial value; empty where it follows from signals
+  std::string left;          ///< "der(x)", "xy", "0"
+  std::string right;         ///< "10*y - 10*x"
+  std::string start;         ///< of a state: its initial value; empty where it follows from signals
+  std::string unknown = {};  ///< of an equation "0 = …": what it is solved for
 };
 
 /// The same circuit where every integrator operates all the time and no amplifier saturates.
