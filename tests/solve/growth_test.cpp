@@ -65,20 +65,6 @@ f = { type = "multiplier", in = ["s", "m"] }
   EXPECT_NEAR(row_values(result, "x").back(), 0.1624416511, 1e-6);  // a hundred tolerances
 }
 
-// The narrow place of p′ = w − sin p with w a little above 1 looks like an equilibrium to its linearised
-// equation, and is none: from 0 on the phase slips by 2π in 2π/√(w² − 1).
-TEST(UnseenGrowth, IsNotANarrowPlace) {
-  const double w = 1 + 1e-7, slip = 2 * std::numbers::pi / std::sqrt(w * w - 1);
-  const Compiled made(R"(
-p = { type = "integrator", in = ["w", "-s"] }
-s = { type = "sine", in = "p" }
-w = { type = "constant", value = 1.0000001 })");
-  const oblique::solve::Run result = run_of(made, {.until = slip});
-  EXPECT_TRUE(result.warnings.empty());
-  // An error of the tolerance, in front of the narrow place, grows there by as much as it falls behind.
-  EXPECT_NEAR(row_values(result, "p").back(), 2 * std::numbers::pi, 1e-5);
-}
-
 // x″ = x from x = 0, x′ = 1e-11: neither state grows alone. x = 1e-11 sinh t.
 TEST(UnseenGrowth, IsSeenInPairs) {
   const oblique::solve::Run result =

@@ -42,8 +42,8 @@ class GrowthWatch {
   double near_distance(std::size_t i, double x) const;  ///< [machine unit]
   bool is_near_rest(std::span<const double> x);
   void judge(double t, std::span<const double> x, double step);
-  bool leaves_an_equilibrium(double t, std::span<const double> x, const std::vector<std::size_t>& states,
-                             double rate);
+  bool grows_by_differences(double t, std::span<const double> x, const std::vector<std::size_t>& states,
+                            double rate);
 
   OdeSystem& system_;
   const SolverSettings& settings_;
