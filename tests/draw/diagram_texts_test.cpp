@@ -36,7 +36,7 @@ const diagram::BlockLibrary& text_library() {
 std::vector<std::pair<std::string, diagram::Diagram>> all_diagrams() {
   std::vector<std::pair<std::string, diagram::Diagram>> diagrams;
   std::vector<std::filesystem::path> paths;
-  for (const char* const folder : {"lessons", "historical", "own-blocks"}) {
+  for (const char* const folder : {"lessons", "historical", "atlas", "own-blocks"}) {
     for (const auto& entry : std::filesystem::directory_iterator(kDiagrams / folder)) {
       if (entry.path().extension() == ".toml") paths.push_back(entry.path());
     }

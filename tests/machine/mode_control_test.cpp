@@ -150,7 +150,7 @@ passed = "passed"
     made_with_modes(text, machine_of_one_mode());
     ADD_FAILURE() << "realised";
   } catch (const RealiseError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("the groups 'watch' have modes of their own"));
+    EXPECT_THAT(error.what(), HasSubstr("the integrators of 'watch' have modes of their own"));
   }
 }
 

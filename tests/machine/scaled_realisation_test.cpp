@@ -300,6 +300,40 @@ y = "y"
   EXPECT_LE(off, GetParam().within > 1e-7 ? 0U : 1U) << diagram::write_diagram(made.diagram);
 }
 
+// A machine that has comparators and multipliers, and no function generators, as a Model-1. What these give
+// is continuous: no row is off.
+TEST(ScaledRealisation, MakesCornersOfComparatorsWhereThereIsNoFunctionGenerator) {
+  diagram::MachineProfile machine = desk_machine();
+  std::erase_if(machine.elements, [](const diagram::ElementCount& element) {
+    return element.kind == diagram::ElementKind::function_generator;
+  });
+  for (const std::string block : {R"({ type = "limiter", in = "u", low = -0.4, high = 1.3 })",
+                                  R"({ type = "dead-zone", in = "3*u", low = -0.4, high = 1.3 })",
+                                  R"({ type = "minimum", x = "u", y = "2*v" })",
+                                  R"({ type = "ramp", slope = 3, start = 0.5, stop = 2.5, initial = -2 })"}) {
+    const diagram::Diagram diagram = parsed(fmt::format(R"toml(
+[run]
+until = 5
+[blocks]
+u = {{ type = "integrator", in = ["3*w"], initial = 0.1 }}
+w = {{ type = "integrator", in = ["-3*u"], initial = 2 }}
+one = {{ type = "constant", value = 1 }}
+v = {{ type = "integrator", in = ["0.4*one"], initial = -1 }}
+y = {}
+[outputs]
+y = "y"
+)toml",
+                                                        block));
+    const ScaledRealisation made = realise_scaled(diagram, shipped_blocks(), machine);
+    expect_machine_elements(made.diagram, false);
+    EXPECT_THAT(diagram::write_diagram(made.diagram), ::testing::Not(HasSubstr("function-generator")))
+        << block;
+    EXPECT_TRUE(made.functions.empty()) << block;
+    EXPECT_LE(greatest_signal(made.diagram), 1 + 1e-5) << block;
+    EXPECT_LT(testing::difference(diagram, made.diagram), 1e-6) << block;
+  }
+}
+
 // The small difference of two large signals is not blown up: no input is weighted more than ×10.
 TEST(ScaledRealisation, LeavesASmallDifferenceSmall) {
   const diagram::Diagram diagram = parsed(R"toml(

@@ -108,10 +108,10 @@ class Chooser {
     // What is left of terms that cancel is rounding and errors of the run, whatever the units.
     constexpr double kNothing = 1e-9;
     const double reach = reach_of(element);
-    double factor = largest_factor(peaks_[e] < kNothing * reach ? reach : peaks_[e]);
+    const double factor = largest_factor(peaks_[e] < kNothing * reach ? reach : peaks_[e]);
     // A potentiometer at the reference sets the start, which leaves no room for an error of the run.
-    const double initial =
-        element.role == Role::integrator ? std::abs(parameter_of(*element.block, "initial")) : 0;
+    if (element.role != Role::integrator || !element.definition->find_parameter("initial")) return factor;
+    const double initial = std::abs(parameter_of(*element.block, "initial"));
     return initial > 0 ? std::min(factor, largest_factor(initial, 1)) : factor;
   }
 

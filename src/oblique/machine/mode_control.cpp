@@ -112,8 +112,9 @@ void prepare_modes(diagram::FlatDiagram& flat, const diagram::FlatDiagram& own,
     for (std::size_t g = 1; g < flat.timeline.groups.size(); ++g)
       groups.push_back("'" + flat.timeline.groups[g].name + "'");
     const std::string why =
-        sources.empty() ? fmt::format("the groups {} have modes of their own", fmt::join(groups, ", "))
-                        : fmt::format("'{}' go on while others do not operate", fmt::join(sources, "', '"));
+        sources.empty()
+            ? fmt::format("the integrators of {} have modes of their own", fmt::join(groups, ", "))
+            : fmt::format("'{}' go on while others do not operate", fmt::join(sources, "', '"));
     throw RealiseError(text::Diagnostic{
         {flat.file, {}},
         fmt::format("the machine {} has one mode for all its integrators, and {}", machine.title, why),

@@ -105,8 +105,8 @@ class MachineScaling::State {
       return block.definition->role == diagram::Role::other;
     });
     if (has_others) {
-      functions_ = tabulate_functions(flat_, elements_, signal_ranges(flat_, diagram.run), diagram.run.until,
-                                      options.segments);
+      functions_ = tabulate_functions(flat_, elements_, machine, signal_ranges(flat_, diagram.run),
+                                      diagram.run.until, options.segments);
     }
     prepare_modes(flat_, diagram::flatten(on_ideal_machine(diagram), library), elements_, machine);
     circuit_ = reduce(flat_, elements_, most_weight_of_one(machine));

@@ -86,8 +86,16 @@ class FunctionReader {
 class Tabulator {
  public:
   Tabulator(diagram::FlatDiagram& flat, const diagram::BlockLibrary& library,
-            const std::vector<SignalRange>& ranges, double until, int segments)
-      : flat_(flat), library_(library), ranges_(ranges), until_(until), segments_(segments) {
+            const diagram::MachineProfile& machine, const std::vector<SignalRange>& ranges, double until,
+            int segments)
+      : flat_(flat),
+        library_(library),
+        switches_corners_(machine.find(diagram::ElementKind::function_generator) == nullptr &&
+                          machine.find(diagram::ElementKind::comparator) != nullptr &&
+                          machine.find(diagram::ElementKind::multiplier) != nullptr),
+        ranges_(ranges),
+        until_(until),
+        segments_(segments) {
     for (const diagram::FlatBlock& block : flat.blocks) {
       first_.push_back(signals_);
       signals_ += block.definition->outputs.size();
@@ -168,6 +176,10 @@ class Tabulator {
            text::Remedy{"more lines (", text::Setting{"segments"}, "), if the machine has them"}});
       return block;
     }
+    constexpr std::size_t kMostCorners = 4;
+    const bool has_few_corners =
+        lines.error <= kStraight * (high - low) && lines.points.x.size() <= kMostCorners + 2;
+    if (switches_corners_ && has_few_corners) return corners(lines.points, block, path, argument);
     functions_.push_back({path, block.definition->name, static_cast<int>(lines.points.x.size()) - 1,
                           range.low, range.high, lines.error});
     diagram::FlatBlock generator = element(Role::function_generator, block, path);
@@ -189,6 +201,48 @@ class Tabulator {
     for (diagram::FlatTerm& term : sum.inputs.front().terms) term.weight *= slope;
     sum.inputs.front().constant = line.y[0] - slope * (line.x[0] - argument.constant);
     return sum;
+  }
+
+  /// Straight lines without a function generator: the one with the least slope, and at each corner x_k away
+  /// from it a comparator that lets the change of slope through, d_k (x − x_k) [x > x_k], or [x < x_k]. So
+  /// what is small is no difference of what is large.
+  diagram::FlatBlock corners(text::PointTable lines, const diagram::FlatBlock& block, const std::string& path,
+                             const diagram::FlatInput& argument) {
+    const std::size_t n = lines.x.size() - 1;
+    for (std::vector<double>* const values : {&lines.x, &lines.y}) {
+      const auto [least, most] = std::minmax_element(values->begin(), values->end());
+      const double rounding = kStraight * (*most - *least);
+      for (double& value : *values) value = std::abs(value) <= rounding ? 0 : value;
+    }
+    std::vector<double> slopes;
+    for (std::size_t k = 0; k < n; ++k)
+      slopes.push_back((lines.y[k + 1] - lines.y[k]) / (lines.x[k + 1] - lines.x[k]));
+    const auto flattest = std::min_element(slopes.begin(), slopes.end(),
+                                           [](double a, double b) { return std::abs(a) < std::abs(b); });
+    const auto base = static_cast<std::size_t>(flattest - slopes.begin());
+    diagram::FlatBlock sum = summer({{lines.x[base], lines.x[base + 1]}, {lines.y[base], lines.y[base + 1]}},
+                                    block, path, argument);
+    for (std::size_t k = 1; k < n; ++k) {
+      const double side = k > base ? 1 : -1;
+      diagram::FlatInput beyond = argument;
+      beyond.constant -= lines.x[k];
+      diagram::FlatInput compared = beyond;
+      for (diagram::FlatTerm& term : compared.terms) term.weight *= side;
+      compared.constant *= side;
+      diagram::FlatBlock above = element(Role::comparator, block, fmt::format("{}.above_{}", path, k));
+      for (std::size_t i = 0; i < above.inputs.size(); ++i) {
+        if (above.definition->inputs[i].sum) above.inputs[i] = compared;
+      }
+      diagram::FlatBlock passed = element(Role::multiplier, block, fmt::format("{}.beyond_{}", path, k));
+      passed.inputs = {beyond, {{{1, append(std::move(above))}}, 0}};
+      sum.inputs.front().terms.push_back({side * (slopes[k] - slopes[k - 1]), append(std::move(passed))});
+    }
+    return sum;
+  }
+
+  diagram::SignalRef append(diagram::FlatBlock block) {
+    flat_.blocks.push_back(std::move(block));
+    return {flat_.blocks.size() - 1, 0};
   }
 
   /// An element without inputs that has its defaults.
@@ -257,6 +311,7 @@ class Tabulator {
 
   diagram::FlatDiagram& flat_;
   const diagram::BlockLibrary& library_;
+  bool switches_corners_;
   const std::vector<SignalRange>& ranges_;
   double until_;
   int segments_;
@@ -271,9 +326,10 @@ class Tabulator {
 
 std::vector<TabulatedFunction> tabulate_functions(diagram::FlatDiagram& flat,
                                                   const diagram::BlockLibrary& library,
+                                                  const diagram::MachineProfile& machine,
                                                   const std::vector<SignalRange>& ranges, double until,
                                                   int segments) {
-  return Tabulator(flat, library, ranges, until, segments).tabulate();
+  return Tabulator(flat, library, machine, ranges, until, segments).tabulate();
 }
 
 }  // namespace oblique::machine

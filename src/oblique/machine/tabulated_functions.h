@@ -6,6 +6,7 @@
 
 #include <oblique/diagram/block_library.h>
 #include <oblique/diagram/flat_diagram.h>
+#include <oblique/diagram/machine_profile.h>
 #include <oblique/machine/signal_ranges.h>
 
 // Not installed.
@@ -22,11 +23,13 @@ struct TabulatedFunction {
 
 /// Puts function generators of at most `segments` straight lines in the place of blocks without a role whose
 /// outputs are functions of one signal, or of time, and of nothing else: for time an integrator of a constant
-/// is added, "clock". What is a straight line itself becomes a summer. `ranges` are those of the signals of
-/// `flat` (`signal_ranges`), which is run for `until` [s]. Throws RealiseError for a function that jumps or
-/// is not finite somewhere in the range.
+/// is added, "clock". What is a straight line itself becomes a summer; what has a few corners and is straight
+/// between them comparators and multipliers, where the machine has these and no function generators. `ranges`
+/// are those of the signals of `flat` (`signal_ranges`), which is run for `until` [s]. Throws RealiseError
+/// for a function that jumps or is not finite somewhere in the range.
 std::vector<TabulatedFunction> tabulate_functions(diagram::FlatDiagram& flat,
                                                   const diagram::BlockLibrary& library,
+                                                  const diagram::MachineProfile& machine,
                                                   const std::vector<SignalRange>& ranges, double until,
                                                   int segments);
 
