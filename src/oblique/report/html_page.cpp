@@ -167,7 +167,7 @@ void HtmlPage::table(const std::vector<std::vector<std::string>>& rows) {
 void HtmlPage::picture(const draw::Picture& picture) {
   const std::string broad =
       picture.width > kBroad
-          ? fmt::format(" class=\"broad\" style=\"--least: {:.0f}px\"", kReadable * picture.width)
+          ? fmt::format(R"( class="broad" style="--least: {:.0f}px")", kReadable * picture.width)
           : "";
   body_ += fmt::format("<figure{}>{}</figure>\n", broad, inline_svg(picture));
 }

@@ -111,6 +111,23 @@ half = "half"
   EXPECT_THAT(page, HasSubstr("25 %</td><td></td>"));            // 1 machine unit is 1 machine unit
 }
 
+TEST(DiagramReport, TestsWhatStandsOnThePanel) {
+  const std::string page = page_of(R"toml(format = "oblique-diagram/1"
+[run]
+until = 1
+[blocks]
+crank = { type = "crank-generator", rate = 1 }
+across = { type = "summer", in = ["0.5*crank.sin", "0.25*crank.cos"] }
+parts = { type = "resolver", length = "across", angle = "across" }
+[outputs]
+across = "across"
+)toml");
+  const std::string test = page.substr(page.find(">Static test</h2>"));
+  EXPECT_THAT(test, HasSubstr("<td>across</td><td class=\"n\">0.25</td>"));
+  EXPECT_THAT(test, HasSubstr("<td>parts.x</td><td class=\"n\">0.2422</td>"));  // 0.25 cos 0.25
+  EXPECT_THAT(test, Not(HasSubstr("<td>crank.")));                              // the inside of a composite
+}
+
 TEST(DiagramReport, SaysWhatAnAmplifierSolvesFor) {
   EXPECT_THAT(page_of("format = \"oblique-diagram/1\"\n[run]\nuntil = 1\n[blocks]\n"
                       "x = { type = \"constant\", value = 0.5 }\n"

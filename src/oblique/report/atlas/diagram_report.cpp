@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -291,17 +292,22 @@ class DiagramWriter {
   void static_test() {
     page_.heading("Static test");
     page_.introduction(
-        "What each element shows, and how fast each integrator begins to run, before the clock starts.");
+        "What each element of the panel shows, and how fast each integrator begins to run, before the clock "
+        "starts. `oblique run --static-test` tells it of those inside of blocks too.");
     const diagram::MachineProfile* const machine = diagram::find_machine(diagram_.machine.profile);
     const double volts = machine->unit.value_or(1);
     const bool in_volts = diagram_.machine.profile != "ideal" && machine->unit.has_value();
     Table table({"element", in_volts ? "output [V]" : "output [machine unit]",
                  in_volts ? "d/dt [V/s]" : "d/dt [machine unit/s]"});
+    std::set<std::string> shown;
+    for (std::size_t b = 0; b < flat_.blocks.size(); ++b) {
+      if (!is_top_level(flat_.blocks[b].path)) continue;
+      for (std::size_t port = 0; port < flat_.blocks[b].definition->outputs.size(); ++port)
+        shown.insert(flat_.signal_name({b, port}));
+    }
     try {
       for (const solve::StaticReading& reading : solve::static_test(program_, diagram_.file)) {
-        if (!is_top_level(reading.signal.substr(0, reading.signal.rfind('.'))) &&
-            !is_top_level(reading.signal))
-          continue;
+        if (!shown.contains(reading.signal)) continue;
         table.add({reading.signal, readable(reading.output * (in_volts ? volts : 1)),
                    !reading.derivative ? ""
                    : reading.at_rest   ? "at rest"
