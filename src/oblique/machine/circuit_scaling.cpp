@@ -306,18 +306,19 @@ class Scaler {
   void scale_open_amplifier(diagram::FlatBlock& block, double residual, double out) const {
     double change = 1;  // of T_c
     for (std::size_t k = 0; k < block.parameters.size(); ++k) {
-      const std::string& name = block.definition->parameters[k].name;
+      const std::string& parameter = block.definition->parameters[k].name;
       double& value = block.parameters[k];
-      if (name == "gain" && std::isinf(value)) {
+      if (parameter == "gain" && std::isinf(value)) {
         change = residual / out;
-      } else if (name == "gain") {
+      } else if (parameter == "gain") {
         const double scaled = text::nearest_decimal(value * out / residual, kDigits);
         change = (1 + value) / (1 + scaled);
         value = scaled;
       } else {
-        scale_parameter(block, k, name == "offset" || name == "drift" || name == "noise" ? residual : out);
+        scale_parameter(
+            block, k, parameter == "offset" || parameter == "drift" || parameter == "noise" ? residual : out);
       }
-      if (name == "bandwidth") value *= loop_speed_;
+      if (parameter == "bandwidth") value *= loop_speed_;
     }
     if (const auto capacitor = block.definition->find_parameter("capacitor"))
       block.parameters[*capacitor] *= change;
