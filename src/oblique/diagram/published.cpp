@@ -175,7 +175,7 @@ class PublishedReader {
                      [&](const OutputSpec& spec) { return spec.name == value.expected.output; });
     const std::string output_unit = output == diagram_.outputs.end() ? OutputSpec{}.unit : output->unit;
     if (*unit == output_unit) return own;
-    const auto known = text::parse_unit(*unit);
+    auto known = text::parse_unit(*unit);
     const bool output_known = text::parse_unit(output_unit).has_value();
     const auto factor = known && output_known ? text::factor_between(*known, own) : std::nullopt;
     if (!factor || *factor == 0) {
