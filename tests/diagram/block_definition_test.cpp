@@ -340,5 +340,24 @@ TEST(ParseBlock, ReportsAllFindingsInTheOrderOfTheFile) {
   }
 }
 
+TEST(BlockDefinition, SaysWhatItRequires) {
+  const std::string body =
+      "[outputs]\nout = {}\n[parameters]\nn = { default = 3 }\n[equations]\nout = \"n\"\n";
+  const BlockDefinition block =
+      parse_block(kHead + body + "[requires]\nstore = \"n + 1\"\nflip_flop = 2\n", "b.toml", "b");
+  ASSERT_EQ(block.needs.size(), 2U);
+  EXPECT_EQ(block.needs[0].kind, ElementKind::store);
+  EXPECT_EQ(block.needs[1].kind, ElementKind::flip_flop);
+  EXPECT_EQ(text::evaluate(block.needs[1].count), 2);
+  EXPECT_THAT(
+      block_message(body + "[requires]\nstorre = 1\ndiode = \"m\"\n"),
+      ::testing::AllOf(HasSubstr("b.toml:10:1: there is no kind of element 'storre'"),
+                       HasSubstr("did you mean 'store'?"), HasSubstr("b.toml:11:"), HasSubstr("'m'")));
+  EXPECT_THAT(
+      block_message("role = \"reference\"\n[outputs]\nout = {}\n[parameters]\nvalue = {}\n[equations]\nout = "
+                    "\"value\"\n[requires]\nstore = 1\n"),
+      HasSubstr("a block with a role has 'requires'"));
+}
+
 }  // namespace
 }  // namespace oblique::diagram

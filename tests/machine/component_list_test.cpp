@@ -183,5 +183,34 @@ TEST(ComponentList, CannotTellWhereTimeFactorsAreNotPublished) {
             ComponentList::Verdict::fits);
 }
 
+// 5 samples and the one that goes out; two Zener diodes, one diode, and the amplifiers about two of them.
+TEST(ComponentList, CountsWhatBlocksWithoutARoleRequire) {
+  diagram::MachineProfile machine = inverting_machine();
+  const std::string blocks = R"(
+x = { type = "integrator", in = ["a", "l", "s", "d"] }
+l = { type = "delay-line", in = "x", stages = 4.5 }
+s = { type = "track-and-store", in = "x", track = "l" }
+a = { type = "diode-amplifier", in = ["x"], feedback = 0, gain = 1e4 }
+r = { type = "diode-amplifier", in = ["a"], low = "-inf", high = 0 }
+d = { type = "diode", in = "r" }
+)";
+  ComponentList counted = components(blocks, machine);
+  EXPECT_EQ(row(counted, "stores").needed, 7);
+  EXPECT_THAT(row(counted, "stores").blocks, ElementsAre("l", "s"));
+  EXPECT_EQ(row(counted, "diodes").needed, 4);
+  EXPECT_EQ(row(counted, "amplifiers").needed, 3);
+  EXPECT_EQ(row(counted, "amplifiers").note, "1 integrator, 2 open amplifiers");
+  // A profile that does not name them does not say by that that there are none.
+  EXPECT_TRUE(row(counted, "stores").exists);
+  EXPECT_FALSE(row(counted, "stores").available);
+  EXPECT_EQ(counted.verdict(), ComponentList::Verdict::cannot_tell);
+  set_count(machine, diagram::ElementKind::store, 6);
+  set_count(machine, diagram::ElementKind::diode, 4);
+  counted = components(blocks, machine);
+  EXPECT_EQ(row(counted, "stores").missing(), 1);
+  EXPECT_EQ(row(counted, "diodes").missing(), 0);
+  EXPECT_EQ(counted.verdict(), ComponentList::Verdict::does_not_fit);
+}
+
 }  // namespace
 }  // namespace oblique::machine

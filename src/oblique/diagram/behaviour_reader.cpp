@@ -37,6 +37,7 @@ class BehaviourReader {
       if (definition_.check_interval)
         expressions_.resolve(*definition_.check_interval, *interval, "'check_interval'", constants_);
     }
+    if (const text::Value* const needs = reader_.table("requires")) read_needs(*needs);
   }
 
  private:
@@ -48,6 +49,20 @@ class BehaviourReader {
   };
 
   text::Place place(text::SourcePosition position) const { return {definition_.file, position}; }
+
+  void read_needs(const text::Value& table) {
+    if (definition_.role != Role::other)
+      reader_.report("requires", "a block with a role has 'requires'", {},
+                     "leave it out: the role says what it takes");
+    for (const text::Entry& entry : table.entries) {
+      const std::string what = fmt::format("'{}' of 'requires'", entry.key);
+      const auto kind = read_element_kind(entry.key, place(entry.position), diagnostics_);
+      auto count = expressions_.read(entry.value, what);
+      if (!count || !kind) continue;
+      if (expressions_.resolve(*count, entry.value, what, constants_))
+        definition_.needs.push_back({*kind, std::move(*count)});
+    }
+  }
 
   void report(text::SourcePosition position, std::string what, std::string expected = {},
               std::string remedy = {}) {

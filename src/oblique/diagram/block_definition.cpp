@@ -215,8 +215,8 @@ class BlockReader {
   }
 
   void read_composite(const text::Value& blocks) {
-    for (const std::string_view key :
-         {"let", "equations", "implicit", "cases", "start", "memories", "events", "check_interval"}) {
+    for (const std::string_view key : {"let", "equations", "implicit", "cases", "start", "memories", "events",
+                                       "check_interval", "requires"}) {
       if (reader_.find(key) == nullptr) continue;
       reader_.report(key, fmt::format("a block with [blocks] has '{}' too", key), "one or the other",
                      "put the equations into a block file of their own");

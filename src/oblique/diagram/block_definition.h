@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include <oblique/diagram/element_kind.h>
 #include <oblique/diagram/role.h>
 #include <oblique/text/document.h>
 #include <oblique/text/expression.h>
@@ -104,6 +105,12 @@ struct EventRule {
   text::Place place;
 };
 
+/// What a block without a role takes of a machine's elements.
+struct ElementNeed {
+  ElementKind kind = ElementKind::amplifier;
+  text::Expression count;  ///< of parameters
+};
+
 /// One block of a diagram or of a composite as its file has it. Which key of `settings` is an input and which
 /// a parameter only the block's definition tells, so that is settled by `flatten`.
 struct BlockInstance {
@@ -146,6 +153,7 @@ struct BlockDefinition {
   std::vector<EventRule> events;
   std::optional<text::Expression>
       check_interval;  ///< [s] of parameters: how often at least its switches look
+  std::vector<ElementNeed> needs;  ///< `requires`
 
   std::vector<BlockInstance> blocks;
   std::vector<BlockPlace> layout;  ///< of the inner blocks, where an open composite is drawn

@@ -101,28 +101,6 @@ std::optional<std::string> nearest_machine(std::string_view name) {
 
 }  // namespace
 
-std::string_view element_name(ElementKind kind) {
-  switch (kind) {
-    case ElementKind::amplifier:
-      return "amplifier";
-    case ElementKind::integrator:
-      return "integrator";
-    case ElementKind::summer:
-      return "summer";
-    case ElementKind::inverter:
-      return "inverter";
-    case ElementKind::potentiometer:
-      return "potentiometer";
-    case ElementKind::multiplier:
-      return "multiplier";
-    case ElementKind::comparator:
-      return "comparator";
-    case ElementKind::function_generator:
-      break;
-  }
-  return "function generator";
-}
-
 std::optional<std::size_t> BlockFigure::acts_on(const BlockDefinition& definition) const {
   const bool same_role = role != Role::other && role == definition.role;
   return same_role || block == definition.name ? definition.find_parameter(parameter) : std::nullopt;

@@ -7,27 +7,12 @@
 #include <string_view>
 #include <vector>
 
+#include <oblique/diagram/element_kind.h>
 #include <oblique/diagram/role.h>
 #include <oblique/text/diagnostic.h>
 #include <oblique/text/quantity.h>
 
 namespace oblique::diagram {
-
-/// The elements a machine is made of. An amplifier is uncommitted: with its networks it becomes a summer, an
-/// inverter, an integrator or an open amplifier.
-enum class ElementKind {
-  amplifier,
-  integrator,  ///< where amplifiers are uncommitted: the network that makes one an integrator
-  summer,
-  inverter,
-  potentiometer,
-  multiplier,
-  comparator,
-  function_generator,
-};
-
-/// "amplifier", "potentiometer" …
-std::string_view element_name(ElementKind kind);
 
 /// How many elements of a kind a machine has, nothing where that is not published.
 struct ElementCount {

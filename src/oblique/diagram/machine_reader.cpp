@@ -2,7 +2,6 @@
 #include <oblique/diagram/machine_reader.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -14,18 +13,6 @@ namespace oblique::diagram {
 namespace {
 
 constexpr std::string_view kUnknown = "unknown";
-
-constexpr std::array kElementKinds{ElementKind::amplifier,     ElementKind::integrator,
-                                   ElementKind::summer,        ElementKind::inverter,
-                                   ElementKind::potentiometer, ElementKind::multiplier,
-                                   ElementKind::comparator,    ElementKind::function_generator};
-
-/// The key of an element: its name, as an identifier.
-std::string key_of(ElementKind kind) {
-  std::string key(element_name(kind));
-  std::replace(key.begin(), key.end(), ' ', '_');
-  return key;
-}
 
 bool is_text(const text::Value& value, std::string_view text) {
   return value.kind == text::Value::Kind::string && value.text == text;
@@ -109,15 +96,8 @@ class MachineReader {
   }
 
   void read_element(const text::Entry& entry) {
-    const auto kind = std::find_if(kElementKinds.begin(), kElementKinds.end(),
-                                   [&](ElementKind k) { return key_of(k) == entry.key; });
-    if (kind == kElementKinds.end()) {
-      std::vector<std::string> known(kElementKinds.size());
-      std::transform(kElementKinds.begin(), kElementKinds.end(), known.begin(), key_of);
-      report(entry.position, fmt::format("there is no kind of element '{}'", entry.key), {},
-             text::suggest(entry.key, known));
-      return;
-    }
+    const auto kind = read_element_kind(entry.key, {file_, entry.position}, diagnostics_);
+    if (!kind) return;
     ElementCount element;
     element.kind = *kind;
     const std::string subject = fmt::format("element '{}'", entry.key);

@@ -56,6 +56,17 @@ class Counter {
     add_named(diagram::ElementKind::multiplier, "multipliers", multipliers_);
     add_named(diagram::ElementKind::comparator, "comparators", comparators_);
     add_named(diagram::ElementKind::function_generator, "function generators", generators_);
+    for (const auto& [kind, needed] : needs_) {
+      if (is_always_told(kind)) continue;  // added above
+      const diagram::ElementCount* const has = machine_.find(kind);
+      list_.rows.push_back({diagram::elements_name(kind),
+                            needed.count,
+                            true,
+                            has != nullptr ? has->count : std::optional<double>(),
+                            {},
+                            false,
+                            needed.blocks});
+    }
     for (const auto& [block, paths] : others_) {
       list_.rows.push_back({block, static_cast<double>(paths.size()), false, {}, {}, false, paths});
     }
@@ -89,11 +100,57 @@ class Counter {
       comparators_.push_back(block.path);
     } else if (role == Role::function_generator) {
       generators_.push_back(block.path);
+    } else if (!block.definition->needs.empty()) {
+      count_needs(block);
     } else {
       others_[block.definition->name].push_back(block.path);
     }
     for (std::size_t port = 0; port < block.inputs.size(); ++port)
       count_weights(block.inputs[port], block.definition->inputs[port].sum);
+  }
+
+  /// A block that says itself what it is made of.
+  void count_needs(const diagram::FlatBlock& block) {
+    for (const diagram::ElementNeed& need : block.definition->needs) {
+      const double count =
+          std::ceil(text::evaluate(need.count, [&](std::string_view name) -> std::optional<double> {
+            if (name == "polarity") return block.polarity;
+            return parameter_of(block, name);
+          }));
+      if (count > 0) count_need(need.kind, count, block.path);
+    }
+  }
+
+  void count_need(diagram::ElementKind kind, double count, const std::string& path) {
+    switch (kind) {
+      case diagram::ElementKind::amplifier:  // without a network that would make it another
+        open_ += count;
+        return;
+      case diagram::ElementKind::integrator:
+        integrators_ += count;
+        return;
+      case diagram::ElementKind::summer:
+        summers_ += count;
+        return;
+      case diagram::ElementKind::inverter:
+        inverters_ += count;
+        return;
+      case diagram::ElementKind::potentiometer:
+        potentiometers_ += count;
+        return;
+      case diagram::ElementKind::multiplier:
+      case diagram::ElementKind::comparator:
+      case diagram::ElementKind::function_generator:
+      case diagram::ElementKind::store:
+      case diagram::ElementKind::electronic_switch:
+      case diagram::ElementKind::counter:
+      case diagram::ElementKind::flip_flop:
+      case diagram::ElementKind::diode:
+        break;
+    }
+    Needed& needed = needs_[kind];
+    needed.count += count;
+    needed.blocks.push_back(path);
   }
 
   void count_gain(double factor) {
@@ -131,8 +188,13 @@ class Counter {
   }
 
   void add_named(diagram::ElementKind kind, std::string element, std::vector<std::string> blocks) {
+    double needed = static_cast<double>(blocks.size());
+    if (const auto others = needs_.find(kind); others != needs_.end()) {
+      needed += others->second.count;
+      blocks.insert(blocks.end(), others->second.blocks.begin(), others->second.blocks.end());
+    }
     if (blocks.empty()) return;
-    add(kind, std::move(element), static_cast<double>(blocks.size()));
+    add(kind, std::move(element), needed);
     list_.rows.back().blocks = std::move(blocks);
   }
 
@@ -187,7 +249,12 @@ class Counter {
   ComponentList list_;
   double summers_ = 0, inverters_ = 0, integrators_ = 0, open_ = 0, potentiometers_ = 0;
   std::vector<std::string> multipliers_, comparators_, generators_;  ///< paths
-  std::map<double, double> rates_;                          ///< how many integrators have which [1/s]
+  std::map<double, double> rates_;  ///< how many integrators have which [1/s]
+  struct Needed {
+    double count = 0;
+    std::vector<std::string> blocks;  ///< paths
+  };
+  std::map<diagram::ElementKind, Needed> needs_;            ///< of blocks that say what they require
   std::map<std::string, std::vector<std::string>> others_;  ///< without a role, by the names of their blocks
   std::set<std::pair<std::size_t, std::size_t>> inverted_;  ///< signals that negative weights ask for
   /// Potentiometers that weights ask for: signal, its sign, setting.

@@ -26,8 +26,8 @@ std::string range_of(const diagram::ParameterDefinition& p) {
 /// The part of a block's file that says what it does, without the tables that stand above it already.
 std::string definition_of(const diagram::BlockDefinition& block) {
   std::size_t begin = block.text.size();
-  for (const std::string_view section :
-       {"\n[let]", "\n[equations]", "\n[implicit]", "\n[[cases]]", "\n[machine]", "\n[blocks]"}) {
+  for (const std::string_view section : {"\n[requires]", "\n[let]", "\n[equations]", "\n[implicit]",
+                                         "\n[[cases]]", "\n[machine]", "\n[blocks]"}) {
     begin = std::min(begin, block.text.find(section));
   }
   return begin < block.text.size() ? block.text.substr(begin + 1) : block.text;
