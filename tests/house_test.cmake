@@ -79,7 +79,6 @@ foreach(file IN LISTS files)
   endif()
   file(STRINGS ${SOURCE}/src/${file} words REGEX "\"[^\"]*(--[a-z]|oblique (${verbs}))")
   list(FILTER words EXCLUDE REGEX "^[ \t]*//")
-  list(FILTER words EXCLUDE REGEX "style=.--[a-z]")  # a property of a style sheet
   if(words)
     finding("src/${file}: no stage spells an option or a verb of the program (text::Setting, text::Action)")
   endif()

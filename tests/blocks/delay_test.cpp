@@ -99,7 +99,8 @@ out = { type = "delay-line", in = "u", delay = 0.75, stages = 2.5, straight = 1 
 one = { type = "delay-line", in = "u", delay = 0.75, stages = 1 })");
   const auto result = run_of(made, {.until = 2.93, .samples = 334});
   expect_form(result, "out", kRounding, [](double t) { return std::max(0.0, t - 0.75); });
-  expect_form(result, "one", kRounding, [](double t) { return 0.75 * std::max(0.0, std::floor(t / 0.75 + 1e-9) - 1); });
+  expect_form(result, "one", kRounding,
+              [](double t) { return 0.75 * std::max(0.0, std::floor(t / 0.75 + 1e-9) - 1); });
 }
 
 }  // namespace

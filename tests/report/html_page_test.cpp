@@ -50,7 +50,7 @@ TEST(HtmlPage, GivesBroadPicturesTheWidthOfTheWindow) {
   page.picture({1000, 30, "broad", {}});
   page.picture({900, 30, "not", {}});
   const std::string text = page.text(draw::Theme::light);
-  EXPECT_THAT(text, HasSubstr("<figure class=\"broad\" style=\"--least: 500px\"><svg "
+  EXPECT_THAT(text, HasSubstr("<figure class=\"broad\"><div style=\"min-width: 500px\"><svg "
                               "xmlns=\"http://www.w3.org/2000/svg\" width=\"1000\""));
   EXPECT_THAT(text, HasSubstr("<figure><svg xmlns=\"http://www.w3.org/2000/svg\" width=\"900\""));
   EXPECT_THAT(text, HasSubstr("figure.broad { margin-inline: calc(50% - 50vw + 1rem);"));

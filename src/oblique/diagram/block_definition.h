@@ -152,7 +152,7 @@ struct BlockDefinition {
   std::vector<MemoryRule> memories;
   std::vector<EventRule> events;
   std::optional<text::Expression>
-      check_interval;  ///< [s] of parameters: how often at least its switches look
+      check_interval;              ///< [s] of parameters: how often at least its switches look
   std::vector<ElementNeed> needs;  ///< `requires`
 
   std::vector<BlockInstance> blocks;

@@ -58,6 +58,7 @@ void check_elements(const Circuit& circuit, const diagram::MachineProfile& machi
 
 std::string names_of(const std::vector<TabulatedFunction>& functions) {
   std::vector<std::string> names;
+  names.reserve(functions.size());
   for (const TabulatedFunction& function : functions) names.push_back("'" + function.path + "'");
   return fmt::format("{}", fmt::join(names, ", "));
 }
@@ -81,9 +82,9 @@ std::unordered_map<std::string, double> peaks_of(const diagram::FlatDiagram& fla
   std::unordered_map<std::string, double> peaks;
   const std::vector<SignalRange> ranges = signal_ranges(flat, run);
   std::size_t signal = 0;
-  for (std::size_t b = 0; b < flat.blocks.size(); ++b) {
-    double& peak = peaks[flat.blocks[b].path];
-    for (std::size_t k = 0; k < flat.blocks[b].definition->outputs.size(); ++k)
+  for (const diagram::FlatBlock& block : flat.blocks) {
+    double& peak = peaks[block.path];
+    for (std::size_t k = 0; k < block.definition->outputs.size(); ++k)
       peak = std::max(peak, ranges[signal++].peak());
   }
   return peaks;

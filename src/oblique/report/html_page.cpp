@@ -25,7 +25,6 @@ constexpr std::string_view kStyle = R"(  body { margin: 2rem auto; max-width: 54
   figure { margin: 1rem 0; overflow-x: auto }
   figure svg { max-width: 100%; height: auto }
   figure.broad { margin-inline: calc(50% - 50vw + 1rem); text-align: center }
-  figure.broad svg { max-width: max(100%, var(--least)) }
   .scroll { overflow-x: auto; margin: .6rem 0 }
   table { border-collapse: collapse; font-size: 13px; font-variant-numeric: tabular-nums }
   th, td { padding: .15rem .8rem .15rem 0; text-align: left; vertical-align: top }
@@ -42,7 +41,8 @@ constexpr std::string_view kPrint = R"(  @page { margin: 16mm }
     figure { break-inside: avoid; overflow: visible }
     figure svg { max-height: 235mm }
     figure.broad { page: across; margin: 0 }
-    figure.broad svg { max-width: 100%; max-height: 180mm }
+    figure.broad div { min-width: 0 !important }
+    figure.broad svg { max-height: 180mm }
     .scroll { overflow: visible }
     .short, tr, li { break-inside: avoid }
     table { font-size: 8pt }
@@ -165,11 +165,11 @@ void HtmlPage::table(const std::vector<std::vector<std::string>>& rows) {
 }
 
 void HtmlPage::picture(const draw::Picture& picture) {
-  const std::string broad =
-      picture.width > kBroad
-          ? fmt::format(R"( class="broad" style="--least: {:.0f}px")", kReadable * picture.width)
-          : "";
-  body_ += fmt::format("<figure{}>{}</figure>\n", broad, inline_svg(picture));
+  std::string svg = inline_svg(picture);
+  const bool is_broad = picture.width > kBroad;
+  if (is_broad)
+    svg = fmt::format("<div style=\"min-width: {:.0f}px\">{}</div>", kReadable * picture.width, svg);
+  body_ += fmt::format("<figure{}>{}</figure>\n", is_broad ? R"( class="broad")" : "", svg);
 }
 
 std::string HtmlPage::text(draw::Theme theme) const {

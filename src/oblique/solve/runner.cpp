@@ -54,8 +54,8 @@ Runner::Runner(const network::Program& program, const diagram::FlatDiagram& diag
                diagram.file),
       branches_(program, workspace_, begin_, options, diagram.file),
       states_(program.start()),
-      segments_({program, diagram, options, workspace_, switching_, clock_, branches_, sources_, sampler_, overloads_,
-                 states_}) {
+      segments_({program, diagram, options, workspace_, switching_, clock_, branches_, sources_, sampler_,
+                 overloads_, states_}) {
   constexpr double kSamplesAStep = 100, kSourceSamplesAStep = 10;
   switching_.end_at(options.until);
   switching_.end_when(interruption_);

@@ -19,7 +19,8 @@ std::vector<StaticReading> static_test(const network::Program& program, const st
   for (const std::uint32_t mode : program.mode_states())
     workspace.set_discrete_state(mode, static_cast<double>(diagram::OperatingMode::initial));
   Switching switching(program, workspace, 1, 0, 0, file);
-  switching.start(0, states, [&] { bring_to_rest(program, workspace, 0, states, file); }, true);
+  switching.start(
+      0, states, [&] { bring_to_rest(program, workspace, 0, states, file); }, true);
   std::vector<double> outputs(program.n_signals()), derivatives(program.n_states());
   const bool has_outputs = switching.signals(0, states.data(), outputs.data()) ||
                            (hold_singular_start(program, workspace, 0, states, 1) &&

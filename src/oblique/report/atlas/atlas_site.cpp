@@ -189,7 +189,7 @@ class SiteWriter {
                           draw::escape_xml(fmt::format("{}", fmt::join(facets_[k].*filter.values, "|"))));
     const std::string year = published.year ? fmt::format(", {}", *published.year) : "";
     return fmt::format(
-        "<a class=\"card\" href=\"{}.html\"{}>{}<strong>{}</strong><span>{}{}</span></a>",
+        R"(<a class="card" href="{}.html"{}>{}<strong>{}</strong><span>{}{}</span></a>)",
         draw::escape_xml(programme.name), data, inline_svg(thumbnail(programme, site_.blocks)),
         draw::escape_xml(programme.diagram.title.empty() ? programme.name : programme.diagram.title),
         draw::escape_xml(published.author), year);

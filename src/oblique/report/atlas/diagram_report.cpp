@@ -293,7 +293,7 @@ class DiagramWriter {
     page_.heading("Static test");
     page_.introduction(
         "What each element of the panel shows, and how fast each integrator begins to run, before the clock "
-        "starts. The static test of a run tells it of those inside of blocks too.");
+        "starts; what stands inside of blocks is left out.");
     const diagram::MachineProfile* const machine = diagram::find_machine(diagram_.machine.profile);
     const double volts = machine->unit.value_or(1);
     const bool in_volts = diagram_.machine.profile != "ideal" && machine->unit.has_value();

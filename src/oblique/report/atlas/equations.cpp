@@ -127,7 +127,7 @@ class EquationReader {
     std::vector<int> uses(network_.graph.size(), 0);
     std::vector<bool> reached(network_.graph.size(), false);
     for (const NodeId root : roots) reached[root] = true;
-    for (NodeId id = static_cast<NodeId>(network_.graph.size()); id-- > 0;) {
+    for (auto id = static_cast<NodeId>(network_.graph.size()); id-- > 0;) {
       if (!reached[id]) continue;
       const Node& node = network_.graph[id];
       for (int k = 0; k < network::operand_count(node.op); ++k) {

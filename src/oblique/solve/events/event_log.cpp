@@ -135,6 +135,7 @@ void EventLog::warn_of_halt(std::uint32_t unit, double t) {
 void EventLog::warn_of_choice(const std::vector<std::uint32_t>& switches, const network::Workspace& workspace,
                               double t) {
   std::vector<std::string> names;
+  names.reserve(switches.size());
   for (const std::uint32_t s : switches) names.push_back(fmt::format("'{}'", program_.switches()[s].block));
   const network::Switch& first = program_.switches()[switches.front()];
   const std::string begin =

@@ -25,8 +25,8 @@ constexpr double kFewestSamples = 1000;
 constexpr double kMostTurn = 0.5;
 constexpr double kMostSamples = 1e6;  ///< in a step
 
-/// How far beyond 0 and 1 the shares of a slide are where it ends: nearer than this what the states have drifted from the
-/// switching surface takes them back to it.
+/// How far beyond 0 and 1 the shares of a slide are where it ends: nearer than this what the states have
+/// drifted from the switching surface takes them back to it.
 constexpr double kEdge = 1e-6;
 
 /// Of the time from sample to sample: how far apart the rates of what has none that is known are taken.
