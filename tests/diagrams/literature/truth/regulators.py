@@ -89,16 +89,3 @@ def coupled_multivibrators():
         counts[hit] += q[hit] > 0
     return {"a at 17": motion(17)[0], "a at 39": motion(39)[0], "b at 39": motion(39)[1], "na at 40": float(counts[0]),
             "nb at 40": float(counts[1])}
-
-
-def thyristors_back_to_back():
-    """i′ = sin t − i/2 from each firing, at 1.1 rad of every half turn, until i is 0 again."""
-    forced = lambda t: (0.5 * np.sin(t) - np.cos(t)) / 1.25
-    pulse = lambda t: forced(t) - forced(1.1) * np.exp((1.1 - t) / 2)
-    ends = brentq(pulse, 2, 6, xtol=1e-15)
-    whole = lambda t: (-0.5 * np.cos(t) - np.sin(t)) / 1.25 + 2 * forced(1.1) * np.exp((1.1 - t) / 2)
-    one = lambda t: pulse(t) if 1.1 < t < ends else 0.0
-    both = lambda t: one(t % (2 * np.pi)) - one((t - np.pi) % (2 * np.pi))
-    assert ends < 1.1 + np.pi + 1.1
-    area = 3 * (whole(ends) - whole(1.1)) + whole(20 - 6 * np.pi) - whole(1.1)
-    return {"i at 3": both(3), "i at 6.5": both(6.5), "i at 19": both(19), "q at 20": area}
