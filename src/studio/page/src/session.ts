@@ -190,7 +190,7 @@ export class Session {
     return this.inTurn(async () => {
       this.turned = new Map();
       this.saved = "";
-      this.set({file: {name: "", text: ""}, held: undefined, kind: "", title: "", diagram: "", schematic: "", pots: [], lamps: [], remarks: [], mode: "initial", time: 0,
+      this.set({file: {name: "", text: ""}, held: undefined, kind: "", title: "", lesson: null, diagram: "", schematic: "", pots: [], lamps: [], remarks: [], mode: "initial", time: 0,
         meter: {name: "", value: NaN, unit: ""}, values: new Map()});
       this.trace([]);
     });
@@ -416,7 +416,7 @@ export class Session {
       const patched = await machine.ask<Patched>("patch", next.text, {gain, split, force: how.force ?? false}, next.name);
       if (!isNewest() || !this.good(patched)) return false;
       diagram = patched.text;
-      if (patched.judgement) remarks.push(patched.judgement);
+      if (patched.judgement) remarks.push(`as patched, ${patched.judgement}`);
     }
     // a diagram is drawn by its patch panel
     const drawn = opened.kind === "mechanism" ? await machine.ask<Drawn>("draw", diagram, {theme: "auto", data: true}, next.name) : undefined;
