@@ -345,6 +345,44 @@ x = "x"
   await page.close();
 });
 
+// Rockers in a row, each driven by the one before: their patch is judged for ten seconds.
+const rockers = (count) => {
+  const all = Array.from({length: count}, (_, k) => k + 1);
+  return `format = "oblique-mechanism/1"
+title = "Rockers in a row"
+[frame]
+A = [0, 1]
+${all.map((k) => `F${k} = [${k}, 0]`).join("\n")}
+[bodies]
+AP = { points = ["A", "P0"], length = 0.2 }
+${all.map((k) => `C${k} = { points = ["P${k - 1}", "P${k}"], length = 1 }\nR${k} = { points = ["F${k}", "P${k}"], length = 1 }`).join("\n")}
+[sketch]
+P0 = [0.2, 1]
+${all.map((k) => `P${k} = [${k + 0.19}, 0.98]`).join("\n")}
+[drives]
+crank = { turns = "AP", about = "A", speed = 1 }
+`;
+};
+
+test("a patch that takes too long is stopped, and the machine before stands where it stood", async () => {
+  const {page, troubles} = await opened();
+  await page.evaluate(() => oblique.advance(0.5));
+  const before = await text(page, "h1 .quiet");
+  await write(page, rockers(300));
+  await page.waitForFunction(() => !document.querySelector(".stop").disabled, {timeout: 60000});
+  await page.click(".stop");
+  await page.waitForFunction(() => [...document.querySelectorAll(".remark")].some((one) => one.textContent.includes("stopped")), {timeout: 30000});
+  assert.equal(await text(page, "h1 .quiet"), before);
+  assert.equal(await page.$eval("textarea", (area) => area.value), rockers(300));  // what was written stays
+  assert.equal(await timeOf(page), 0.5);
+  await button(page, "OP");
+  await page.waitForFunction(() => Number(document.querySelector(".time").textContent.match(/t = (\S+) s/)[1]) > 0.6, {timeout: 20000});
+  await write(page, rockers(3));  // and may be made one that is quicker to patch
+  await page.waitForFunction(() => document.querySelector("h1").textContent.includes("Rockers"), {timeout: 30000});
+  assert.deepEqual(troubles, []);
+  await page.close();
+});
+
 test("a browser that is too old is told so", async () => {
   for (const prepare of [() => delete globalThis.DecompressionStream, () => delete WebAssembly.compileStreaming]) {
     const {page, troubles} = await opened({prepare});
