@@ -76,7 +76,8 @@ std::vector<SlidingMode::Doubt> Switching::doubts_of_slide(double t, std::span<c
     if (location_.announced()[s] && !slide_.holds(s) && !slide_.follows(s))
       workspace_.set_discrete_state(program_.switches()[s].discrete_state, *location_.announced()[s]);
   }
-  if (!std::ranges::equal(before, workspace_.discrete_states())) {
+  const std::span<const double> after = workspace_.discrete_states();
+  if (!std::equal(before.begin(), before.end(), after.begin(), after.end())) {
     const bool known = slide_.evaluate(t, x);
     for (std::size_t u = 0; known && u < doubts.size(); ++u) {
       if (slide_.doubt(u) == SlidingMode::Doubt::none) doubts[u] = SlidingMode::Doubt::none;
