@@ -285,7 +285,7 @@ test("the screen is saved as SVG and PNG, with axes and units", async () => {
       return data[at + 2] - data[at];
     };
     const bytes = new Uint8Array(await blob.arrayBuffer());
-    return {type: blob.type, width: bitmap.width, height: bitmap.height, corner: [...data.slice(0, 4)], blue: pixels.filter((one) => blue(one) > 30).length, base64: btoa(String.fromCharCode(...bytes))};
+    return {type: blob.type, width: bitmap.width, height: bitmap.height, corner: [...data.slice(0, 4)], blue: pixels.filter((one) => blue(one) > 30).length, base64: btoa(bytes.reduce((all, byte) => all + String.fromCharCode(byte), ""))};
   }, twice[0].pixels);
   assert.deepEqual([png.type, png.width, png.height], ["image/png", 1800, 960]);
   assert.deepEqual(png.corner, [255, 255, 255, 255]);  // on paper, also of a dark page

@@ -80,9 +80,11 @@ export class Desk extends Store<DeskShown> {
     if (isSame && before.starts === starts) return;
     const mechanism = await this.ask<OpenedMechanism>("mechanism.open", text, name);
     if (!mechanism.ok) return;
-    this.opened = {name, text, starts};
+    const mine = this.opened = {name, text, starts};
     if (isSame) return;
-    this.set({mechanism, events: undefined, dragging: undefined});
+    const position = await this.ask<Position>("mechanism.follow", this.now.magnification);
+    if (this.opened !== mine) return;
+    this.set({mechanism, position: position.ok ? position : undefined, events: undefined, dragging: undefined});  // at once: both are of one picture
     // what is met takes the way of a whole round: after the page can be used
     setTimeout(() => void this.meet(mechanism).catch(ignoreStops), 200);
   }
