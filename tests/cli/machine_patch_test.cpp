@@ -239,6 +239,12 @@ TEST_F(PatchForMachine, PutsADiagramOntoAMachine) {
   EXPECT_THAT(text_of("made-scales.csv"), HasSubstr(",x,4,10.0000\n"));
   EXPECT_THAT(text_of("made-scales.csv"), StartsWith("element,signal,1 V is,largest [V]\n"));
   EXPECT_THAT(text_of("made.txt"), HasSubstr("\nscales\n"));
+  // The paper alone says what to read where, and how long to run: 20 s for the 10 s of the diagram.
+  EXPECT_THAT(text_of("made-outputs.csv"),
+              ContainsRegex("^output,element,signal,1 V is,0 V is,unit\nx,A[0-9],(minus_)?x,-?4,0,mm\n$"));
+  EXPECT_THAT(text_of("made-modes.csv"),
+              ContainsRegex("hold by,for [0-9]+ s\nall,\"A[0-9], A[0-9]\",,,operate\n$"));
+  EXPECT_THAT(text_of("made.txt"), HasSubstr("outputs differ from the diagram's by"));
   EXPECT_THAT(text_of("made-pots.csv"), StartsWith("pot,setting,from,to,stands for\n"));
   EXPECT_THAT(text_of("made-patch.csv"), HasSubstr("initial value"));
 }

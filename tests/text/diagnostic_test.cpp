@@ -108,6 +108,11 @@ TEST(Suggest, NamesTheNearestOrListsTheKnown) {
   EXPECT_EQ(suggest("colour", {}), "");
 }
 
+TEST(Suggest, ListsFirstWhatHoldsTheWord) {
+  EXPECT_EQ(suggest("servo", {"gain", "servo-amplifier", "noise", "servo-resolver"}),
+            "known: servo-amplifier, servo-resolver, gain, noise");
+}
+
 TEST(Suggest, KeepsALongListShort) {
   std::vector<std::string> names;
   for (int i = 0; i < 15; ++i) names.push_back("block" + std::to_string(i));

@@ -87,6 +87,7 @@ void Segments::begin(double t) {
   const double last = std::min(parts_.clock.end(), parts_.options.until);
   end_ = wait ? std::min(t + *wait, last) : last;
   length_ = wait ? std::min(*wait, last - t) : last - t;
+  parts_.switching.lies_between(t, end_);
 }
 
 std::span<const double> Segments::Step::times_left() const {
