@@ -73,7 +73,8 @@ void add_patch(CLI::App& app, Chosen& chosen) {
   verb->add_option(
           "--sheets", request->sheets,
           "with --machine: write PREFIX-patch.csv (connections), PREFIX-pots.csv (settings), "
-          "PREFIX-static.csv (static test), of a diagram PREFIX-scales.csv (what its signals stand for), and "
+          "PREFIX-static.csv (static test), PREFIX-outputs.csv (what is read where), PREFIX-modes.csv (how "
+          "long, and in which modes), of a diagram PREFIX-scales.csv (what its signals stand for), and "
           "PREFIX.txt with all of them for paper")
       ->type_name("PREFIX");
   verb->add_option(

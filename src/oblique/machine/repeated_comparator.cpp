@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/machine/repeated_comparator.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <string_view>
@@ -31,14 +33,14 @@ double value_at(const diagram::FlatBlock& comparator, double sum) {
 bool only_repeats(const diagram::FlatBlock& comparator, double weight, double offset,
                   const diagram::FlatBlock& source) {
   const diagram::BlockDefinition& definition = *comparator.definition;
-  if (source.definition != &definition) return false;
-  for (const std::string_view name : {"low", "high"}) {
-    const auto parameter = definition.find_parameter(name);
-    if (!parameter) return false;
-    const double level = source.parameters[*parameter];
-    if (value_at(comparator, weight * level + offset) != level) return false;
-  }
-  return true;
+  constexpr std::array<std::string_view, 2> kLevels{"low", "high"};
+  return source.definition == &definition &&
+         std::all_of(kLevels.begin(), kLevels.end(), [&](std::string_view name) {
+           const auto parameter = definition.find_parameter(name);
+           if (!parameter) return false;
+           const double level = source.parameters[*parameter];
+           return value_at(comparator, weight * level + offset) == level;
+         });
 }
 
 }  // namespace oblique::machine

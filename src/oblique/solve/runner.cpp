@@ -149,6 +149,7 @@ std::vector<text::Diagnostic> Runner::warnings() const {
 Unseen Runner::unseen() const {
   Unseen unseen = integration_ ? integration_->unseen() : Unseen{};
   unseen.faint = switching_.faint_turns();
+  if (integration_) unseen.lost = integration_->lost(sampler_.states_without_value());
   return unseen;
 }
 

@@ -150,7 +150,8 @@ void Sampler::evaluate(double last, double time, const Interpolant& solution) {
     row_[i + 1] = output.scale * signals_[program_.signal_index(output.signal)] + output.offset;
   }
   for (std::size_t s = 0; s < signals_.size(); ++s) {
-    if (!std::isfinite(signals_[s])) throw_not_finite(diagram_.file, program_.signal_names()[s], time);
+    found_no_value_ = !std::isfinite(signals_[s]);
+    if (found_no_value_) throw_not_finite(diagram_.file, program_.signal_names()[s], time);
     if (std::abs(signals_[s]) > std::abs(result.peaks[s].value)) result.peaks[s] = {signals_[s], time};
   }
 }

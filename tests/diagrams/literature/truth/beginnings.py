@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Where a run begins: singular points, circles of initial values, roots beside others; and small units."""
+"""Where a run begins: singular points, circles of initial values, roots beside others; small units and decays."""
 import numpy as np
 from mpmath import mp
 from scipy.optimize import brentq
@@ -92,3 +92,7 @@ def bateman_chain():
             return float(mp.fprod(rates[:k]) * mp.fsum(terms))
 
     return {"n3 at 1": n(3, 1), "n3 at 10": n(3, 10), "n7 at 100": n(7, 100), "n7 at 1000": n(7, 1000)}
+
+
+def logarithm_of_a_decay():
+    return {"log_x at 20": -20.0, "log_x at 60": -60.0, **{f"log_y at {t}": 30 * np.sin(t) for t in (5, 11, 60)}}
