@@ -26,7 +26,7 @@ endfunction()
 
 plant(CMakeLists.txt "")
 plant(src/oblique/text/a.h "#include <string>\n// \"--help\" of the program\nnamespace oblique::text {")
-plant(src/oblique/diagram/a.cpp "#include <oblique/text/a.h>\nstd::snprintf(text)")
+plant(src/oblique/diagram/a.cpp "#include <oblique/text/a.h>\nstd::snprintf(text)\n// as std::jthread does")
 plant(src/oblique/diagram/a.h "json[\"tour\"] = detour  // a surface that is drawn")
 plant(src/oblique/solve/events/tested.h "")
 plant(src/oblique/solve/events/tested.cpp "")
@@ -55,6 +55,7 @@ plant(src/oblique/network/a.cpp "if (block.definition->name == \"sine\") return"
 plant(src/oblique/network/b.cpp "if (\"sine\" != type) return")
 plant(src/oblique/machine/a.cpp "library.find(\"sine\")")
 plant(src/oblique/machine/b.cpp "kRoles{{\"sine\", Role::other}}")
+plant(src/oblique/diagram/a.h "std::ranges::equal(a, b)")
 plant(src/oblique/solve/b.cpp "namespace oblique {\n\"end it with --until\"")
 plant(src/oblique/solve/c.cpp "namespace oblique::text {\n\"see oblique check\"")
 plant(src/oblique/solve/events/stray.cpp "std::vector<double> surfaces_;")
@@ -77,6 +78,7 @@ expect(
   "src/oblique/text/a.h: no SUNDIALS or toml++ in a public header"
   "src/oblique/text/a.h: includes <oblique/text/hidden.h>, which is not installed"
   "src/oblique/text/hidden.h: stage 'text' may not know stage 'diagram'"
+  "src/oblique/diagram/a.h: the page's compiler has no such thing in its standard library"
   "src/oblique/mechanism/a.cpp: stage 'mechanism' may not know stage 'diagram'"
   "src/oblique/mechanism/a.cpp: includes begin with oblique/, not with ../"
   "src/oblique/cellar/a.cpp: there is no stage 'cellar'"

@@ -2,12 +2,14 @@
 #include "arguments.h"
 
 #include <algorithm>
+#include <cctype>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
 #include <oblique/text/diagnostic.h>
 
+#include "help.h"
 #include "terminal/terminal.h"
 #include "verbs/verbs.h"
 
@@ -18,14 +20,6 @@ constexpr const char* kIntroduction =
     "Oblique, an analog computer in software: runs block diagrams with high-gain servo loops as the "
     "equations they\n"
     "are, patches mechanisms into such diagrams, and compares them with the exact motion.";
-
-constexpr const char* kEpilogue =
-    "First steps:\n"
-    "  oblique compare diagrams/mechanisms/four-bar.toml     analog against exact, gain by gain\n"
-    "  oblique run diagrams/lessons/triangle-side.toml       one oblique triangle, tracked by a servo "
-    "amplifier\n"
-    "  oblique blocks                                        what diagrams are made of\n"
-    "Exit status: 0 done, 1 the answer is no, 2 the request or a file is wrong, 3 the solver failed.";
 
 std::vector<std::string> verb_names(const CLI::App& app) {
   std::vector<std::string> names;
@@ -76,16 +70,34 @@ text::Diagnostic explain_verb(const CLI::App& app, const std::optional<std::stri
   return {{}, fmt::format("there is no command '{}'", *word), {}, text::suggest(*word, verbs)};
 }
 
-/// "y.gain=10" of the arguments "y.gain", "=" and "10", which blanks have made of it.
-std::optional<std::string> torn_setting(const std::vector<std::string>& arguments) {
+/// A word that blanks have torn apart.
+struct Torn {
+  char at;  ///< '=' or ','
+  std::string whole;
+};
+
+/// "y.gain=10" of the arguments "y.gain", "=" and "10"; "c.gain=1,2" of "c.gain=1," and "2".
+std::optional<Torn> torn_word(const std::vector<std::string>& arguments) {
   for (std::size_t k = 0; k + 1 < arguments.size(); ++k) {
     const std::string &word = arguments[k], &next = arguments[k + 1];
     if (word.starts_with("-")) continue;
-    if (word.ends_with("=")) return word + next;
-    if (next == "=") return word + next + (k + 2 < arguments.size() ? arguments[k + 2] : "");
-    if (next.starts_with("=")) return word + next;
+    for (const char at : {'=', ','}) {
+      if (!word.ends_with(at) && !next.starts_with(at)) continue;
+      const bool stands_alone = next.size() == 1 && next.starts_with(at) && k + 2 < arguments.size();
+      return Torn{at, word + next + (stands_alone ? arguments[k + 2] : "")};
+    }
   }
   return std::nullopt;
+}
+
+/// Whether it is written as an option, and CLI11 would know it for one: not a number, not -oFILE.
+bool is_unknown_option(const std::string& argument, const std::vector<std::string>& names,
+                       const CLI::App& verb) {
+  const std::string name = argument.substr(0, argument.find('='));
+  if (std::find(names.begin(), names.end(), name) != names.end()) return false;
+  if (name.starts_with("--")) return true;
+  return name.size() > 2 && name.front() == '-' && std::isalpha(static_cast<unsigned char>(name[1])) != 0 &&
+         verb.get_option_no_throw(name.substr(0, 2)) == nullptr;
 }
 
 /// CLI11's finding with the nearest verb or option added, which it does not know.
@@ -102,13 +114,13 @@ text::Diagnostic explain(const CLI::App& app, const CLI::ParseError& error,
   std::vector<std::string> names = option_names(chosen);
   for (const std::string& name : option_names(app)) names.push_back(name);
   for (const std::string& argument : arguments) {
-    const std::string name = argument.substr(0, argument.find('='));
     if (argument == "--") break;
-    if (!argument.starts_with("--") || std::find(names.begin(), names.end(), name) != names.end()) continue;
+    if (!is_unknown_option(argument, names, chosen)) continue;
+    const std::string name = argument.substr(0, argument.find('='));
     return {{}, fmt::format("'{}' has no option '{}'", verb, name), {}, text::suggest(name, names)};
   }
-  if (const auto setting = torn_setting(arguments))
-    return {{}, "a blank stands beside '='", *setting, "leave the blanks out"};
+  if (const auto torn = torn_word(arguments))
+    return {{}, fmt::format("a blank stands beside '{}'", torn->at), torn->whole, "leave the blanks out"};
   return {{}, error.what(), {}, fmt::format("oblique {} --help tells how to call it", verb)};
 }
 
@@ -116,8 +128,8 @@ text::Diagnostic explain(const CLI::App& app, const CLI::ParseError& error,
 
 std::optional<ExitStatus> parse_arguments(int argc, char** argv, Chosen& chosen) {
   CLI::App app(kIntroduction, "oblique");
-  app.footer(kEpilogue);
-  app.set_version_flag("--version", "oblique " OBLIQUE_VERSION "\nsolver: " OBLIQUE_SOLVER);
+  app.set_version_flag("--version", "oblique " OBLIQUE_VERSION "\nsolver: " OBLIQUE_SOLVER,
+                       "print the version");
   app.add_option("--blocks", chosen.session.block_directories,
                  "folder with further blocks (*.toml); may be repeated")
       ->type_name("DIR")
@@ -141,16 +153,24 @@ std::optional<ExitStatus> parse_arguments(int argc, char** argv, Chosen& chosen)
   add_studio(app, chosen);
   add_blocks(app, chosen);
   add_machines(app, chosen);
+  write_help(app);
   if (argc < 2) {
     print(app.help());
     return ExitStatus::done;
   }
+  std::vector<std::string> arguments(argv + 1, argv + argc);
+  if (arguments.front() == "help") {  // of all, or of the verb behind it
+    arguments.erase(arguments.begin());
+    const std::vector<std::string> verbs = verb_names(app);
+    if (arguments.empty() || std::find(verbs.begin(), verbs.end(), arguments.front()) != verbs.end())
+      arguments.emplace_back("--help");
+  }
   try {
-    app.parse(argc, argv);
+    app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
   } catch (const CLI::Success& success) {  // --help, --version
     return static_cast<ExitStatus>(app.exit(success));
   } catch (const CLI::ParseError& error) {
-    print_error(message(explain(app, error, std::vector<std::string>(argv + 1, argv + argc))));
+    print_error(message(explain(app, error, arguments)));
     return ExitStatus::bad_request;
   }
   return std::nullopt;

@@ -15,8 +15,8 @@ struct Chosen {
 };
 
 /// Reads the command line into `chosen`. Gives a status where there is nothing to run: --help, --version, or
-/// a mistake, which it has then reported with the nearest verb or option. CLI11 is used here and nowhere
-/// else.
+/// a mistake, which it has then reported with the nearest verb or option. CLI11 is used here, in the help and
+/// the descriptions of the verbs, and nowhere else.
 std::optional<ExitStatus> parse_arguments(int argc, char** argv, Chosen& chosen);
 
 }  // namespace oblique::cli

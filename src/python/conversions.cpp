@@ -30,7 +30,7 @@ bool SignalWatch::asked() {
 }
 
 const text::Vocabulary& python_words() {
-  static const text::Vocabulary spelled{
+  static const text::Vocabulary words{
       [](const text::Setting& setting) {
         if (setting.name == "rescale") return std::string("`.rescaled()`");
         std::string name = setting.name == "from" ? "state" : setting.name;  // `from` is a word of Python's
@@ -57,7 +57,7 @@ const text::Vocabulary& python_words() {
         return action.name == "machines" ? std::string("`oblique.machines`")
                                          : fmt::format("`.{}()`", action.name);
       }};
-  return spelled;
+  return words;
 }
 
 py::str to_str(std::string_view text) {

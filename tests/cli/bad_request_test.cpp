@@ -205,6 +205,20 @@ INSTANTIATE_TEST_SUITE_P(
         BadRequestCase{"SetWithABlankBefore",
                        "oblique sweep --vary c.gain =10 diagrams/lessons/triangle-side.toml", 2,
                        "error: a blank stands beside '='; expected c.gain=10\n"},
+        BadRequestCase{"VaryWithABlankBehindAComma",
+                       "oblique sweep diagrams/lessons/triangle-side.toml --vary c.gain=1e3, 1e4", 2,
+                       "error: a blank stands beside ','; expected c.gain=1e3,1e4\n"},
+        BadRequestCase{"OptionWithOneDash", "oblique run diagrams/lessons/triangle-side.toml -set c.gain=10",
+                       2, "error: 'run' has no option '-set'\n  remedy: did you mean '--set'?\n"},
+        BadRequestCase{"SetOfANumberInAUnit",
+                       "oblique run diagrams/lessons/triangle-side.toml --set c.gain='10 Hz'", 2,
+                       "'Hz' is the wrong unit here; expected a number without a unit\n"
+                       "  remedy: leave the unit out\n"},
+        BadRequestCase{"FileOfANearName", "oblique run diagrams/course/1-open-amplifer.toml", 2,
+                       "remedy: did you mean 'diagrams/course/1-open-amplifier.toml'?\n"},
+        BadRequestCase{"FileInNoFolder", "oblique run diagram/course/1-open-amplifier.toml", 2,
+                       "remedy: there is no folder 'diagram/course': check its spelling and the folder you "
+                       "stand in\n"},
         BadRequestCase{
             "OutputOfAnUnknownKind", "oblique run diagrams/lessons/triangle-side.toml -o x.xls", 2,
             "error: x.xls: cannot write a '.xls' file; expected a name that ends in .csv, .npy, .mat or "

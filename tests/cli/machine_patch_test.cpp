@@ -126,7 +126,8 @@ TEST_F(PatchForMachine, WritesSheets) {
   EXPECT_THAT(text_of("made-static.csv"),
               HasSubstr("\nA3,crank_cosine,\"integrator, k0 = 500 1/s\",10.0000,0.0000\n"));
   const std::string paper = text_of("made.txt");
-  for (const char* const part : {"it fits\n\npatch list\n", "\n\npotentiometers\n", "\n\nstatic test\n"})
+  for (const char* const part : {"it fits\n", "come to rest everywhere", "\n\npatch list\n",
+                                 "\n\npotentiometers\n", "\n\nstatic test\n"})
     EXPECT_THAT(paper, HasSubstr(part));
 }
 
@@ -239,6 +240,12 @@ TEST_F(PatchForMachine, PutsADiagramOntoAMachine) {
   EXPECT_THAT(text_of("made-scales.csv"), HasSubstr(",x,4,10.0000\n"));
   EXPECT_THAT(text_of("made-scales.csv"), StartsWith("element,signal,1 V is,largest [V]\n"));
   EXPECT_THAT(text_of("made.txt"), HasSubstr("\nscales\n"));
+  // What is read where, and for how long it runs.
+  EXPECT_THAT(text_of("made-outputs.csv"),
+              ContainsRegex("^output,element,signal,1 V is,0 V is,unit\nx,A[0-9],(minus_)?x,-?4,0,mm\n$"));
+  EXPECT_THAT(text_of("made-modes.csv"),
+              ContainsRegex("hold by,for [0-9]+ s\nall,\"A[0-9], A[0-9]\",,,operate\n$"));
+  EXPECT_THAT(text_of("made.txt"), HasSubstr("outputs differ from the diagram's by"));
   EXPECT_THAT(text_of("made-pots.csv"), StartsWith("pot,setting,from,to,stands for\n"));
   EXPECT_THAT(text_of("made-patch.csv"), HasSubstr("initial value"));
 }

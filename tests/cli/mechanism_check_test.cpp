@@ -103,13 +103,13 @@ TEST_F(MechanismCheck, SaysNoAndBetweenWhichLimitsItMoves) {
                     HasSubstr("frame-AB-BC-CD  triple rocker  AB"),
                     HasSubstr("remarks\n  the transmission angle of BC-CD rises to 180.00° (above 150°) at "
                               "rocker = -137.87°\n")));
-  const auto json = nlohmann::json::parse(oblique("check --json " + file("d.toml")).out);
-  EXPECT_FALSE(json.at("ok").get<bool>());
+  const auto answer = nlohmann::json::parse(oblique("check --json " + file("d.toml")).out);
+  EXPECT_FALSE(answer.at("ok").get<bool>());
   const double limit = std::acos((60. * 60 + 100 * 100 - 150 * 150) / (2 * 60 * 100));
-  EXPECT_NEAR(json.at("tour").at("forward_limit").at("drive").get<double>(), limit, 1e-9);
-  EXPECT_NEAR(json.at("tour").at("backward_limit").at("drive").get<double>(), -limit, 1e-9);
-  EXPECT_EQ(json.at("tour").at("forward_limit").at("group"), "BC-CD");
-  EXPECT_TRUE(json.at("paths").at(0).at("area").is_null());
+  EXPECT_NEAR(answer.at("tour").at("forward_limit").at("drive").get<double>(), limit, 1e-9);
+  EXPECT_NEAR(answer.at("tour").at("backward_limit").at("drive").get<double>(), -limit, 1e-9);
+  EXPECT_EQ(answer.at("tour").at("forward_limit").at("group"), "BC-CD");
+  EXPECT_TRUE(answer.at("paths").at(0).at("area").is_null());
 }
 
 TEST_F(MechanismCheck, ADriveThatMovesASlideHasARange) {
@@ -165,20 +165,20 @@ TEST_F(MechanismCheck, SolveTellsWhereABranchEndsAndBeginsAgain) {
 }
 
 TEST_F(MechanismCheck, JsonHasTheDocumentedKeysAlone) {
-  const auto json = nlohmann::json::parse(oblique("check --json " + file("s.toml", kSliderCrank)).out);
+  const auto answer = nlohmann::json::parse(oblique("check --json " + file("s.toml", kSliderCrank)).out);
   std::vector<std::string> keys;
-  for (const auto& [key, value] : json.items()) keys.push_back(key);
+  for (const auto& [key, value] : answer.items()) keys.push_back(key);
   EXPECT_THAT(keys, ::testing::UnorderedElementsAre(
                         "file", "kind", "title", "bodies", "mobility", "drives", "groups", "ok", "finding",
                         "length_unit", "mobility_by_rank", "four_bars", "sliders", "tour", "transmissions",
                         "swings", "paths", "instant_centres", "inertia", "remarks"));
-  EXPECT_EQ(json.at("mobility_by_rank").at("verdict"), "agrees");
-  EXPECT_EQ(json.at("sliders").at(0).at("rotation"), "the crank turns fully");
-  const auto& piston = json.at("swings").at(1);
+  EXPECT_EQ(answer.at("mobility_by_rank").at("verdict"), "agrees");
+  EXPECT_EQ(answer.at("sliders").at(0).at("rotation"), "the crank turns fully");
+  const auto& piston = answer.at("swings").at(1);
   EXPECT_EQ(piston.at("slide"), "piston");
   EXPECT_NEAR(piston.at("stroke").get<double>(), std::sqrt(38400.) - std::sqrt(8400.), 1e-10);
-  EXPECT_EQ(json.at("instant_centres").size(), 3U);
-  EXPECT_NEAR(json.at("inertia").at("bars").at(1).at("inertia").get<double>(), 0.9 * 0.0225 / 12, 1e-17);
+  EXPECT_EQ(answer.at("instant_centres").size(), 3U);
+  EXPECT_NEAR(answer.at("inertia").at("bars").at(1).at("inertia").get<double>(), 0.9 * 0.0225 / 12, 1e-17);
 }
 
 TEST_F(MechanismCheck, OfAStructureNeedsNoDrive) {
@@ -194,9 +194,9 @@ C = [2, 2]
   const Outcome outcome = oblique("check " + file("f.toml", text));
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("ok: a structure, which can be assembled and does not move\n"));
-  const auto json = nlohmann::json::parse(oblique("check --json " + file("f.toml")).out);
-  EXPECT_TRUE(json.at("tour").is_null());
-  EXPECT_EQ(json.at("mobility_by_rank").at("mobility"), 0);
+  const auto answer = nlohmann::json::parse(oblique("check --json " + file("f.toml")).out);
+  EXPECT_TRUE(answer.at("tour").is_null());
+  EXPECT_EQ(answer.at("mobility_by_rank").at("mobility"), 0);
 }
 
 TEST_F(MechanismCheck, OverconstrainedOnesAreToldWhetherTheyClose) {

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <oblique/mechanism/structure/structure.h>
-#include "plot_reading.h"
+#include "plots/plot_reading.h"
 
 namespace oblique::test {
 namespace {

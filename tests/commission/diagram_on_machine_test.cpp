@@ -56,6 +56,34 @@ TEST(DiagramOnMachine, SlowsServoLoopsThatTheMultipliersCannotFollow) {
   EXPECT_EQ(patched.failure, "");
 }
 
+// Monod's culture: of what it feeds on little is left in the end, so that the divisor of its growth is small.
+const char* const kChemostat = R"toml(format = "oblique-diagram/1"
+[run]
+until = 40
+[blocks]
+one   = { type = "constant" }
+d     = { type = "summer", in = ["s", "0.12*one"] }
+m     = { type = "divider", numerator = "s", denominator = "d" }
+grown = { type = "multiplier", in = ["m", "x"] }
+s     = { type = "integrator", in = ["0.3*4*one", "-0.3*s", "-0.53/0.4*grown"], initial = 4 }
+x     = { type = "integrator", in = ["0.53*grown", "-0.3*x"], initial = 0.05 }
+[outputs]
+x = "x"
+)toml";
+
+// Its amplifier is too fast for the multiplier of 1 MHz at full speed, and too slow for the culture at a
+// millionth of it, the middle of what is tried.
+TEST(DiagramOnMachine, FindsASpeedOfServoLoopsBetweenTooFastAndTooSlow) {
+  const DiagramOnMachine patched =
+      put_on_machine(diagram::parse_diagram(kChemostat, "chemostat.toml"), shipped_blocks(),
+                     *diagram::find_machine("the-analog-thing"));
+  EXPECT_LT(patched.loop_speed, 1);
+  EXPECT_GT(patched.loop_speed, 1e-4);
+  ASSERT_TRUE(patched.loops);
+  EXPECT_TRUE(patched.loops->well_damped());
+  EXPECT_EQ(patched.failure, "");
+}
+
 // The multipliers of a TR-10 err by 0.8 % of the machine unit: scaled for ideal elements alone signals would
 // leave the range.
 TEST(DiagramOnMachine, MakesRoomForTheErrorsOfTheMachine) {

@@ -166,7 +166,9 @@ TEST(Compare, IsTheSameWithAnyNumberOfThreads) {
               std::tie(b.method, b.gain, b.bandwidth, b.max_error, b.rms_error, b.error_along, b.steps,
                        b.slowest_pole, b.worst.point, b.worst.reason));
     ASSERT_EQ(a.parts.has_value(), b.parts.has_value());
-    if (a.parts) EXPECT_EQ(a.parts->solver, b.parts->solver);
+    if (a.parts) {
+      EXPECT_EQ(a.parts->solver, b.parts->solver);
+    }
   }
   ASSERT_EQ(one.series.size(), five.series.size());
   for (std::size_t k = 0; k < one.series.size(); ++k) {

@@ -120,7 +120,7 @@ TEST(MonteCarlo, TellsTheYieldAndStopsWhereItIsKnown) {
 /// The largest error of the four-bar over 73 positions when the summers of its patch err in their ratio:
 /// those of B, of the vector B → D, of C and of M, each for x and y; exact triangles, in closed form.
 double four_bar_error(const std::array<double, 8>& e) {
-  constexpr double kCoupler = 3.5, kRocker = 3, kFrame = 4;
+  constexpr double kCouplerLength = 3.5, kRockerLength = 3, kFrameLength = 4;
   using Vector = Eigen::Vector2d;
   const auto scaled = [&](const Vector& v, std::size_t k) {
     return Vector((1 + e[k]) * v.x(), (1 + e[k + 1]) * v.y());
@@ -131,15 +131,16 @@ double four_bar_error(const std::array<double, 8>& e) {
   const auto place = [&](double angle, auto&& summed) {
     Points p;
     p.b = summed(Vector(std::cos(angle), std::sin(angle)), 0);
-    const Vector d = summed(Vector(kFrame, 0) - p.b, 2);
+    const Vector d = summed(Vector(kFrameLength, 0) - p.b, 2);
     const double length = d.norm();
     const double cosine =
-        (kCoupler * kCoupler + length * length - kRocker * kRocker) / (2 * kCoupler * length);
+        (kCouplerLength * kCouplerLength + length * length - kRockerLength * kRockerLength) /
+        (2 * kCouplerLength * length);
     const double sine = std::sqrt(1 - cosine * cosine);
     const Vector along = d / length, across(-along.y(), along.x());
-    p.c = summed(p.b + kCoupler * (cosine * along + sine * across), 4);
+    p.c = summed(p.b + kCouplerLength * (cosine * along + sine * across), 4);
     const Vector bc = p.c - p.b;
-    p.m = summed(p.b + 0.5 * bc + Vector(-bc.y(), bc.x()) / kCoupler, 6);
+    p.m = summed(p.b + 0.5 * bc + Vector(-bc.y(), bc.x()) / kCouplerLength, 6);
     return p;
   };
   double largest = 0;

@@ -349,6 +349,41 @@ TEST(Console, SavesAndRestores) {
   EXPECT_NEAR(testing::row_values(run, "x").back(), x, 1e-6);
 }
 
+// x = e^−t while it operates. A console that has just begun takes what another one saved, in whatever mode
+// that was, and the other way round.
+TEST(Console, RestoresTheModeWithTheState) {
+  using diagram::OperatingMode;
+  Console saving = console_of(kDecay);
+  const solve::RunState begins = saving.save();
+  saving.set_mode(OperatingMode::operate);
+  saving.advance(1);
+  const solve::RunState operates = saving.save();
+  saving.set_mode(OperatingMode::hold);
+  saving.advance(2);
+  const solve::RunState holds = saving.save();
+  saving.repeat(0.5, 3);
+  saving.advance(3.25);  // from 2 to 2.5 in initial condition, then in operation
+  const solve::RunState repeats = saving.save();
+
+  const auto goes_on = [](Console& console, const solve::RunState& state, double x_after_one) {
+    console.restore(state);
+    EXPECT_EQ(console.time(), state.time);
+    console.advance(state.time + 1);
+    EXPECT_NEAR(console.value("x"), x_after_one, 1e-7);  // the run's tolerance is 1e-9
+  };
+  for (const bool by_hand : {false, true}) {
+    for (const auto& [state, x] : {std::pair{begins, std::exp(-1)},
+                                   {operates, std::exp(-2)},
+                                   {holds, std::exp(-1)},
+                                   {repeats, std::exp(-1.75)}}) {
+      Console fresh = console_of(kDecay);
+      if (by_hand) fresh.set_mode(OperatingMode::initial);
+      goes_on(fresh, state, x);
+    }
+  }
+  goes_on(saving, holds, std::exp(-1));
+}
+
 TEST(Console, RefusesWhatItCannotDo) {
   Console console = console_of(kDecay);
   console.advance(2);

@@ -218,8 +218,9 @@ TEST(DiagramDrawing, NamesSignalsThatThereAre) {
           ++named;
         }
         for (const Mark& mark : picture.marks) {
-          if (depth == 0 && (mark.id.starts_with("net-") || mark.id.starts_with("record-")))
+          if (depth == 0 && (mark.id.starts_with("net-") || mark.id.starts_with("record-"))) {
             EXPECT_NE(mark.signals, "") << entry.path() << ": " << mark.id;
+          }
         }
       }
     }

@@ -212,5 +212,19 @@ d = { type = "diode", in = "r" }
   EXPECT_EQ(counted.verdict(), ComponentList::Verdict::does_not_fit);
 }
 
+// A magnitude is two amplifiers with two diodes, a limiter one with a diode for each of its limits.
+TEST(ComponentList, CountsTheDiodesOfMagnitudesAndLimiters) {
+  const ComponentList counted = components(R"(
+x = { type = "integrator", in = ["m", "l", "k"] }
+m = { type = "absolute-value", in = "x" }
+l = { type = "limiter", in = "x" }
+k = { type = "limiter", in = "x", low = 0, high = "inf" }
+)",
+                                           inverting_machine());
+  EXPECT_EQ(row(counted, "diodes").needed, 5);
+  EXPECT_EQ(row(counted, "amplifiers").needed, 5);
+  EXPECT_EQ(counted.verdict(), ComponentList::Verdict::cannot_tell);
+}
+
 }  // namespace
 }  // namespace oblique::machine

@@ -119,6 +119,25 @@ TEST(Sheets, ComputeInMachineUnitsWhereTheVoltageIsNotKnown) {
   EXPECT_THAT(test.rows, Contains(ElementsAre("A1", "x", "integrator, k0 = 1 1/s", "0.6000", "2.7000")));
 }
 
+// What is set at an element itself, not by a potentiometer: in volts, but for what is the machine's.
+TEST(Sheets, SayWhatIsSetAtAnElementItself) {
+  const diagram::FlatDiagram flat = diagram::flatten(diagram::parse_diagram(testing::diagram_text(R"(
+x = { type = "integrator", in = "k", rate = 10, initial = 0.2, limit = 0.5 }
+k = { type = "comparator", in = "x", low = -1, hysteresis = 0.05 }
+a = { type = "servo-amplifier", in = ["x", "a"], gain = 1e5, bandwidth = 20 }
+)"),
+                                                                            "d.toml"),
+                                                     shipped_blocks());
+  const Sheet test =
+      make_sheets(flat, solve::static_test(network::Program(network::assemble(flat)), "d.toml"), ten_volts())
+          .static_test;
+  std::vector<std::string> kinds;
+  for (const auto& row : test.rows) kinds.push_back(row[2]);
+  EXPECT_THAT(kinds, ElementsAre("integrator, k0 = 10 1/s, starts at 2 V, limited to ±5 V",
+                                 "comparator, -10 or 10 V, hysteresis 0.5 V",
+                                 "open amplifier, gain 1e+05, bandwidth 20 Hz"));
+}
+
 TEST(Sheets, AreQuotedAsCsvWhereTheyHaveTo) {
   const Sheet sheet{"title", {"a", "b"}, {{"1, 2", "say \"x\""}, {"", "plain"}}};
   EXPECT_EQ(to_csv(sheet), "a,b\n\"1, 2\",\"say \"\"x\"\"\"\n,plain\n");

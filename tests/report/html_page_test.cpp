@@ -65,6 +65,14 @@ TEST(HtmlPage, PutsColumnsOfNumbersToTheRight) {
               HasSubstr("<tr><td>b</td><td class=\"n\">4</td><td>two</td></tr>"));
 }
 
+TEST(HtmlPage, LeadsFromTheRowsOfATable) {
+  HtmlPage page("page");
+  page.table({"name", "size"}, {{"a < b", "1"}, {"c", "2"}}, {"a.html?x&y", ""});
+  EXPECT_THAT(page.text(draw::Theme::light),
+              HasSubstr("<tr><td><a href=\"a.html?x&amp;y\">a &lt; b</a></td><td class=\"n\">1</td></tr>\n"
+                        "<tr><td>c</td><td class=\"n\">2</td></tr>"));
+}
+
 TEST(HtmlPage, HasPicturesWithoutIdsAndIsLightOnPaper) {
   draw::Picture picture{40, 30, "a disc", {draw::disc_mark({20, 15}, 5, draw::Ink::blue)}};
   picture.marks.front().id = "disc";

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Poles, damping and participation of systems whose eigenvalues are known in closed form.
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -47,6 +48,22 @@ TEST(Modes, OfADampedOscillatorHaveItsFrequencyAndDamping) {
     EXPECT_NEAR(modes[0].damping_ratio(), damping, 1e-13);
     EXPECT_NEAR(modes[0].pole.imag(), kFrequency * std::sqrt(1 - damping * damping), 1e-12);
   }
+}
+
+// A ring of 60 lags, 59 wires of which have the gain 5 and the last 1e-30: (λ + 1)⁶⁰ = 5⁵⁹ · 1e-30. To
+// rounding the matrix without that wire is the same, and has −1 alone.
+TEST(Modes, OfARingThatIsHardlyClosedAreKnown) {
+  constexpr Eigen::Index n = 60;
+  Eigen::MatrixXd a = -Eigen::MatrixXd::Identity(n, n);
+  std::vector<std::size_t> group;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    a(i, (i + 1) % n) = i + 1 < n ? 5 : 1e-30;
+    group.push_back(static_cast<std::size_t>(i));
+  }
+  double rightmost = -1;
+  for (const Mode& mode : modes_of(a, group)) rightmost = std::max(rightmost, mode.pole.real());
+  // Powers of 2 leave the matrix so far from balanced that this mode is known to a tenth.
+  EXPECT_NEAR(rightmost, std::pow(5, 59.0 / 60) * std::pow(10, -0.5) - 1, 0.1);
 }
 
 TEST(Modes, OfDecoupledSystemsShareNothing) {

@@ -66,6 +66,16 @@ TEST(Overload, InsideOneStepIsFound) {
   EXPECT_LT(x.duration, 0.3);
 }
 
+// 0.95 + 0.1 sin 1000t, without any state: outside for acos(1/2)/π of the time, with three rows.
+TEST(Overload, OfARippleBetweenTheRowsIsFound) {
+  const Compiled made("r = { type = \"time-function\", formula = \"0.95 + 0.1*sin(1000*time)\" }\n");
+  const auto result = watched(made, pi / 10);
+  ASSERT_EQ(result.overloads.size(), 1U);
+  EXPECT_NEAR(result.overloads[0].peak.value, 1.05, 1e-3);  // to which overloads are found
+  EXPECT_NEAR(result.overloads[0].first, std::asin(0.5) / 1000, 1e-9);
+  EXPECT_NEAR(result.overloads[0].duration, pi / 30, 1e-3);  // of each peak of 2 ms by less than 1e-5
+}
+
 TEST(Overload, OfAPolynomialIsExact) {
   // p = (2 t)² − 2 leaves the range at −1 at t = 1/2 for the inside and at √3/2 upwards; it starts at −2.
   const Compiled made(R"toml(one = { type = "constant" }

@@ -54,7 +54,7 @@ x = { type = "integrator", in = ["q"] }
 )toml");
   const network::Workspace workspace(made.program);
   const std::string file = "d.toml";
-  SourceWatch watch(made.program, workspace, false, file);
+  SourceWatch watch(made.program, workspace, SourceWatch::Shown::nothing, file);
   const std::vector<double> states = made.program.start();
   EXPECT_LE(watch.sample_times(0, 3, ConstantStates(states)).size(), 16U);
 }

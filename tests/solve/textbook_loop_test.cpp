@@ -313,6 +313,30 @@ TEST(TimeVarying, VinogradsSystemGrowsAlthoughNoFrozenModeDoes) {
   EXPECT_EQ(report.verdict, Verdict::grows);
 }
 
+// Frozen, both eigenvalues are −1 and −10; the solution is e^(2t) (cos 6t + 2 sin 6t, 2 cos 6t − sin 6t).
+// Rows are 0.03 s apart, in which A turns by 0.36.
+TEST(TimeVarying, ASystemThatTurnsQuicklyGrowsAlthoughNoFrozenModeDoes) {
+  const StabilityReport report =
+      analysis_of(
+          Compiled(R"toml(a = { type = "time-function", formula = "-1 - 9*cos(6*time)^2 + 6*sin(12*time)" }
+b = { type = "time-function", formula = "12*cos(6*time)^2 + 4.5*sin(12*time)" }
+c = { type = "time-function", formula = "-12*sin(6*time)^2 + 4.5*sin(12*time)" }
+d = { type = "time-function", formula = "-1 - 9*sin(6*time)^2 - 6*sin(12*time)" }
+ax = { type = "multiplier", in = ["a", "x"] }
+by = { type = "multiplier", in = ["b", "y"] }
+cx = { type = "multiplier", in = ["c", "x"] }
+dy = { type = "multiplier", in = ["d", "y"] }
+x = { type = "integrator", in = ["ax", "by"], initial = 0.01 }
+y = { type = "integrator", in = ["cx", "dy"], initial = 0.01 }
+)toml"),
+          30)
+          .stability;
+  EXPECT_EQ(report.growing, 0U);
+  ASSERT_TRUE(report.growth);
+  EXPECT_NEAR(report.growth->exponent, 2, 0.05);  // fourth order in 0.72
+  EXPECT_EQ(report.verdict, Verdict::grows);
+}
+
 // x′ = (2 cos t − k) x: multiplied by e^(−2πk) a turn, though it grows at times for k < 2.
 TEST(TimeVarying, AFrozenModeThatGrowsAtTimesNeedNotGrow) {
   for (const double decay : {1.0, 3.0}) {

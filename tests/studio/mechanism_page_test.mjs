@@ -255,9 +255,17 @@ test("an assembly mode is chosen from pictures of all of them", async () => {
   await page.$eval(".mode[aria-pressed=false]", (mode) => mode.click());
   await page.waitForFunction(() => /^B = \[1\.16708, 0\.626948\]/m.test(document.querySelector("textarea").value), patience);
   await page.waitForFunction(() => /1\.167, 0\.6269/.test(document.querySelector(".mode[aria-pressed=true]")?.getAttribute("aria-label") ?? ""), patience);
-  const axes = await axesOf(page, "pin-O"), b = await middleOf(page, "pin-B");
-  assert.ok(Math.abs((b[0] - axes.x.zero) / axes.x.scale - 1.16708) < 0.05 / axes.x.scale);
-  assert.ok(Math.abs((b[1] - axes.y.zero) / axes.y.scale - 0.626948) < 0.05 / axes.x.scale);
+  // the modes are looked for in a worker of its own, which may be done before the machine is patched anew
+  const place = async () => {
+    const axes = await axesOf(page, "pin-O"), b = await middleOf(page, "pin-B");
+    return [(b[0] - axes.x.zero) / axes.x.scale - 1.16708, (b[1] - axes.y.zero) / axes.y.scale - 0.626948, 0.05 / axes.x.scale];
+  };
+  let [x, y, within] = await place();
+  for (let k = 0; k < 200 && Math.hypot(x, y) > within; ++k) {
+    await wait(100);
+    [x, y, within] = await place();
+  }
+  assert.ok(Math.hypot(x, y) < within, `${x} ${y}`);
   assert.deepEqual(troubles, []);
   await page.close();
 });

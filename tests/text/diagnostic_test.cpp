@@ -108,6 +108,14 @@ TEST(Suggest, NamesTheNearestOrListsTheKnown) {
   EXPECT_EQ(suggest("colour", {}), "");
 }
 
+TEST(Suggest, ListsFirstWhatHoldsTheWordWhereTheListIsCut) {
+  std::vector<std::string> names = {"gain", "servo-amplifier", "noise", "servo-resolver"};
+  EXPECT_EQ(suggest("servo", names), "known: gain, servo-amplifier, noise, servo-resolver");
+  names.resize(13, "x");
+  EXPECT_THAT(suggest("servo", names),
+              ::testing::StartsWith("known: servo-amplifier, servo-resolver, gain, noise, x"));
+}
+
 TEST(Suggest, KeepsALongListShort) {
   std::vector<std::string> names;
   for (int i = 0; i < 15; ++i) names.push_back("block" + std::to_string(i));

@@ -206,6 +206,24 @@ TEST_F(File, ThatIsMissingCannotBeRead) {
                   "spelling and the folder you stand in"));
 }
 
+TEST_F(File, ThatIsMissingIsLookedForByItsNeighbours) {
+  write_file(folder_ / "lesson.toml", "a = 1");
+  const auto remedy = [](const std::filesystem::path& path) {
+    try {
+      read_file(path);
+    } catch (const ReadError& error) {
+      const std::string message = error.what();
+      return message.substr(message.find("remedy: ") + 8);
+    }
+    return std::string();
+  };
+  EXPECT_EQ(remedy(folder_ / "leson.toml"), "did you mean '" + (folder_ / "lesson.toml").string() + "'?");
+  EXPECT_EQ(remedy(folder_ / "other-name.toml"), "check the spelling and the folder you stand in");
+  EXPECT_EQ(remedy(folder_ / "none" / "lesson.toml"),
+            "there is no folder '" + (folder_ / "none").string() +
+                "': check its spelling and the folder you stand in");
+}
+
 TEST_F(File, ThatMayNotBeReadSaysSo) {
   write_file(folder_ / "a.toml", "a = 1");
   std::filesystem::permissions(folder_ / "a.toml", std::filesystem::perms::none);

@@ -100,15 +100,22 @@ TEST(Quantity, SaysWhichUnitWasMeant) {
             "4: there is no unit 'rads'; expected a quantity in 'rad'; did you mean 'rad'?");
 }
 
+TEST(Quantity, WithAUnitWhereNoneBelongsSaysSo) {
+  EXPECT_EQ(quantity_message("10 Hz", "1"),
+            "4: 'Hz' is the wrong unit here; expected a number without a unit; leave the unit out");
+  EXPECT_EQ(quantity_message("1k", "1"),
+            "2: there is no unit 'k'; expected a number without a unit; known: 1, %");
+}
+
 TEST(Quantity, SaysHowToWriteAProduct) {
   EXPECT_EQ(quantity_message("2 pi", "rad"),
             "3: there is no unit 'pi'; expected a quantity in 'rad'; a product is written with '*': 2*pi");
   EXPECT_EQ(
       quantity_message("2 pi rad", "rad"),
       "3: there is no unit 'pi rad'; expected a quantity in 'rad'; a product is written with '*': 2*pi rad");
-  EXPECT_EQ(
-      quantity_message("2 (1+1)", "1"),
-      "3: there is no unit '(1+1)'; expected a quantity in '1'; a product is written with '*': 2*(1+1)");
+  EXPECT_EQ(quantity_message("2 (1+1)", "1"),
+            "3: there is no unit '(1+1)'; expected a number without a unit; a product is written with '*': "
+            "2*(1+1)");
 }
 
 TEST(Quantity, CountsTurnsWhereOneIsWantedAndTheOtherGiven) {

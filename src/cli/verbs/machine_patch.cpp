@@ -29,10 +29,12 @@ constexpr const char* kPatchEnding = "-patch.csv";
 constexpr const char* kPotsEnding = "-pots.csv";
 constexpr const char* kStaticEnding = "-static.csv";
 constexpr const char* kFunctionsEnding = "-functions.csv";  ///< where there are function generators
-constexpr const char* kScalesEnding = "-scales.csv";        ///< of a diagram alone
-constexpr const char* kPaperEnding = ".txt";                ///< all of them
-constexpr std::array kSheetEndings{kPatchEnding,     kPotsEnding,   kStaticEnding,
-                                   kFunctionsEnding, kScalesEnding, kPaperEnding};
+constexpr const char* kOutputsEnding = "-outputs.csv";
+constexpr const char* kModesEnding = "-modes.csv";
+constexpr const char* kScalesEnding = "-scales.csv";  ///< of a diagram alone
+constexpr const char* kPaperEnding = ".txt";          ///< all of them
+constexpr std::array kSheetEndings{kPatchEnding,   kPotsEnding,  kStaticEnding, kFunctionsEnding,
+                                   kOutputsEnding, kModesEnding, kScalesEnding, kPaperEnding};
 
 std::string table_of(const machine::Sheet& sheet) {
   report::Table table(sheet.columns);
@@ -44,14 +46,16 @@ std::string table_of(const machine::Sheet& sheet) {
 std::vector<Written> sheet_files(const PatchRequest& request, const diagram::Diagram& diagram,
                                  const diagram::FlatDiagram& flat, const machine::ComponentList& components,
                                  const diagram::BlockLibrary& library, const diagram::MachineProfile& machine,
-                                 const std::optional<machine::Sheet>& scales) {
+                                 const std::string& told, const std::optional<machine::Sheet>& scales) {
   const machine::MachineSheets sheets = machine::sheets_of(diagram, flat, library, machine);
   std::vector<std::pair<const char*, const machine::Sheet*>> all{{kPatchEnding, &sheets.connections},
                                                                  {kPotsEnding, &sheets.potentiometers},
                                                                  {kStaticEnding, &sheets.static_test}};
   if (!sheets.functions.rows.empty()) all.emplace_back(kFunctionsEnding, &sheets.functions);
+  all.emplace_back(kOutputsEnding, &sheets.outputs);
+  all.emplace_back(kModesEnding, &sheets.modes);
   if (scales) all.emplace_back(kScalesEnding, &*scales);
-  std::string paper = diagram.title + "\n\n" + report::to_text(components);
+  std::string paper = diagram.title + "\n\n" + report::to_text(components) + told;
   std::vector<Written> files;
   for (const auto& [ending, sheet] : all) {
     paper += "\n" + table_of(*sheet);
@@ -108,7 +112,7 @@ ExitStatus write_for_machine(const diagram::BlockLibrary& library, const PatchRe
   note(told);
   std::vector<Written> files;
   if (!request.sheets.empty())
-    files = sheet_files(request, realised, flat, components, library, machine, scales);
+    files = sheet_files(request, realised, flat, components, library, machine, told, scales);
   const std::string text = diagram::write_diagram(realised);
   if (!request.output.empty()) files.insert(files.begin(), {request.output, text});
   save_together(files);

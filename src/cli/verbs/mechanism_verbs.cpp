@@ -73,7 +73,8 @@ void add_patch(CLI::App& app, Chosen& chosen) {
   verb->add_option(
           "--sheets", request->sheets,
           "with --machine: write PREFIX-patch.csv (connections), PREFIX-pots.csv (settings), "
-          "PREFIX-static.csv (static test), of a diagram PREFIX-scales.csv (what its signals stand for), and "
+          "PREFIX-static.csv (static test), PREFIX-outputs.csv (what is read where), PREFIX-modes.csv (how "
+          "long, and in which modes), of a diagram PREFIX-scales.csv (what its signals stand for), and "
           "PREFIX.txt with all of them for paper")
       ->type_name("PREFIX");
   verb->add_option(
@@ -99,20 +100,20 @@ void add_compare(CLI::App& app, Chosen& chosen) {
   verb->add_option("--gain", request->gains, "gains of the servo amplifiers (default 1e2,1e3,1e4,1e5,1e6)")
       ->delimiter(',')
       ->allow_extra_args(false)
-      ->type_name("G,G,…");
+      ->type_name("G,G,...");
   verb->add_option(
           "--bandwidth", request->bandwidths,
           "bandwidths of the servo amplifiers, in Hz or with a unit; each is run with each gain "
           "(default: 100 times the crank's frequency; with --machine less where its elements need it)")
       ->delimiter(',')
       ->allow_extra_args(false)
-      ->type_name("B,B,…");
+      ->type_name("B,B,...");
   verb->add_option("--method", request->methods,
                    "which of triangles, gradient and paper to compare, as in `patch` "
                    "(default triangles)")
       ->delimiter(',')
       ->allow_extra_args(false)
-      ->type_name("M,M,…");
+      ->type_name("M,M,...");
   add_triad_choice(verb, request->triads);
   verb->add_option(
           "--machine", request->machine,
@@ -208,7 +209,7 @@ void add_fit(CLI::App& app, Chosen& chosen) {
       ->required()
       ->delimiter(',')
       ->allow_extra_args(false)
-      ->type_name("NAME,…");
+      ->type_name("NAME,...");
   verb->add_option("--starts", request->starts,
                    "number of searches, spread over the bounds; 1: from the file only")
       ->capture_default_str()

@@ -11,7 +11,7 @@ void add_looks(CLI::App* verb, Request& request) {
                    "points whose paths are drawn, or none (default: the points of couplers)")
       ->delimiter(',')
       ->allow_extra_args(false)
-      ->type_name("POINT,…");
+      ->type_name("POINT,...");
   verb->add_option("--theme", request.theme, "auto: light or dark as the reader's screen")
       ->capture_default_str()
       ->type_name("auto|light|dark");

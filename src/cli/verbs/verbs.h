@@ -29,7 +29,7 @@ void add_table_options(CLI::App* verb, Request& request) {
   verb->add_option("--columns", request.columns, "write these columns only, in this order")
       ->delimiter(',')
       ->allow_extra_args(false)
-      ->type_name("NAME,NAME,…");
+      ->type_name("NAME,NAME,...");
 }
 
 /// --plot of a verb that draws curves; `what` begins its description.

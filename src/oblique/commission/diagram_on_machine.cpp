@@ -46,9 +46,10 @@ bool has_servos(const diagram::Diagram& diagram, const diagram::BlockLibrary& li
   });
 }
 
+constexpr int kDecades = 12;  ///< by which servo amplifiers may be slowed
+
 /// The speeds that servo amplifiers are tried at, each less than the one before.
 std::vector<double> loop_speeds() {
-  constexpr int kDecades = 12;
   std::vector<double> speeds;
   for (int decade = 1; decade <= kDecades; ++decade) {
     for (const double step : {5.0, 2.0, 1.0}) speeds.push_back(step / std::pow(10.0, decade));
@@ -72,7 +73,8 @@ Judgement judge_loops(const diagram::Diagram& diagram, const diagram::BlockLibra
 }
 
 /// Slows the servo amplifiers where the machine's elements are slow beside their loops, by bisection: what is
-/// slow enough is taken to stay so when slower.
+/// slow enough is taken to stay so when slower. Where that finds nothing for loops that are stable, since
+/// they can be too slow for what they follow as well, decade after decade is tried.
 void fit_loops(const machine::MachineScaling& scaling, const diagram::BlockLibrary& library,
                DiagramOnMachine& result) {
   result.loops = judge_loops(result.made.diagram, library);
@@ -80,22 +82,31 @@ void fit_loops(const machine::MachineScaling& scaling, const diagram::BlockLibra
   result.loop_fault = fault_of(*result.loops);
   const std::vector<double> speeds = loop_speeds();
   for (const auto is_fine : {&Judgement::well_damped, &Judgement::good}) {
+    const auto takes = [&](double speed) {
+      machine::ScaledRealisation slower = scaling.realise(speed);
+      Judgement loops = judge_loops(slower.diagram, library);
+      if (!(loops.*is_fine)()) return false;
+      result.made = std::move(slower);
+      result.loops = std::move(loops);
+      result.loop_speed = speed;
+      return true;
+    };
     bool found = false;
     for (auto from = speeds.begin(), to = speeds.end(); from != to;) {
       const auto middle = from + (to - from) / 2;
-      machine::ScaledRealisation slower = scaling.realise(*middle);
-      Judgement loops = judge_loops(slower.diagram, library);
-      if (!((loops.*is_fine)())) {
+      if (takes(*middle)) {
+        to = middle;
+        found = true;
+      } else {
         from = middle + 1;
-        continue;
       }
-      result.made = std::move(slower);
-      result.loops = std::move(loops);
-      result.loop_speed = *middle;
-      to = middle;
-      found = true;
     }
-    if (found || result.loops->good()) return;
+    if (found) return;
+    if (!result.loops->good()) continue;
+    for (int decade = 1; decade <= kDecades; ++decade) {
+      if (takes(std::pow(10.0, -decade))) return;
+    }
+    return;
   }
 }
 

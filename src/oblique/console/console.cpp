@@ -57,6 +57,36 @@ diagram::Phase whole_phase(diagram::OperatingMode mode) {
 constexpr diagram::OperatingMode kModes[] = {diagram::OperatingMode::operate, diagram::OperatingMode::initial,
                                              diagram::OperatingMode::hold, diagram::OperatingMode::potset};
 
+diagram::Timeline modes_by_hand() {
+  diagram::Timeline timeline;
+  for (const diagram::OperatingMode each : kModes) timeline.phases.push_back(whole_phase(each));
+  return timeline;
+}
+
+solve::PhasePosition position_in(diagram::OperatingMode mode) {
+  solve::PhasePosition position;
+  position.phase =
+      static_cast<std::size_t>(std::find(std::begin(kModes), std::end(kModes), mode) - std::begin(kModes));
+  return position;
+}
+
+/// Modes that were set by hand are in a state that was saved then: sets those of a machine so that it has
+/// them too, and none where the state knows of none.
+void take_modes_of(solve::RunState& state, Pots& pots) {
+  const auto known = std::find_if(state.memories.begin(), state.memories.end(), [](const auto& memory) {
+    return memory.first.starts_with("mode of group ");
+  });
+  const std::vector<diagram::Phase>& phases = pots.diagram().timeline.phases;
+  if (known == state.memories.end()) {
+    if (!phases.empty()) pots.set_timeline({});
+    return;
+  }
+  const auto mode = static_cast<diagram::OperatingMode>(static_cast<int>(known->second));
+  if (state.position.phase < phases.size() && phases[state.position.phase].mode == mode) return;
+  pots.set_timeline(modes_by_hand());
+  state.position = position_in(mode);
+}
+
 }  // namespace
 
 class Console::Held {
@@ -193,12 +223,7 @@ class Console::Held {
 
   void set_mode(diagram::OperatingMode mode) {
     refuse_with_timeline();
-    solve::PhasePosition position;
-    position.phase =
-        static_cast<std::size_t>(std::find(std::begin(kModes), std::end(kModes), mode) - std::begin(kModes));
-    diagram::Timeline timeline;
-    for (const diagram::OperatingMode each : kModes) timeline.phases.push_back(whole_phase(each));
-    go_through(std::move(timeline), position);
+    go_through(modes_by_hand(), position_in(mode));
   }
 
   void repeat(double initial, double operate) {
@@ -225,10 +250,13 @@ class Console::Held {
     return machine_->runner.state_at(time_);
   }
 
-  void restore(const solve::RunState& state) {
-    solve::check_run_state(state, *pots_.program(), pots_.diagram().file);
+  void restore(solve::RunState state) {
+    Pots pots = pots_;
+    if (!has_timeline_) take_modes_of(state, pots);
+    solve::check_run_state(state, *pots.program(), pots.diagram().file);
     horizon_ = std::max(horizon_, 2 * state.time);
-    go_on(pots_, state);
+    go_on(pots, std::move(state));
+    pots_ = std::move(pots);
     for (const SetProbe& set : probes_) {
       if (set.probe) set.probe->jump(time_);
     }

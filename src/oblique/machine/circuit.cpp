@@ -12,6 +12,7 @@
 
 #include <oblique/machine/mode_control.h>
 #include <oblique/machine/realise.h>
+#include <oblique/machine/repeated_comparator.h>
 
 namespace oblique::machine {
 namespace {
@@ -91,6 +92,8 @@ class Reducer {
       case Role::multiplier:
       case Role::squarer:
         return has_defaults(block) ? product(index) : std::nullopt;
+      case Role::comparator:
+        return repeated(block);
       default:
         return std::nullopt;
     }
@@ -136,6 +139,22 @@ class Reducer {
     if (is_new) return std::nullopt;
     if (blocks_[found->second].state != State::kept) keep(found->second);
     return blocks_[found->second].value;
+  }
+
+  /// A comparator of a comparator, as before a switch, is one too many.
+  std::optional<CircuitTerm> repeated(const diagram::FlatBlock& block) {
+    if (block.inputs.size() != 1) return std::nullopt;
+    double offset = 0;
+    std::optional<CircuitTerm> compared;
+    for (const CircuitTerm& term : gathered(block, 0).terms) {
+      if (term.signal && compared) return std::nullopt;
+      if (term.signal) compared = term;
+      if (!term.signal) offset = term.weight;
+    }
+    if (!compared) return std::nullopt;
+    const diagram::FlatBlock* const source = circuit_.elements[compared->signal->block].block;
+    if (source == nullptr || !only_repeats(block, compared->weight, offset, *source)) return std::nullopt;
+    return CircuitTerm{1, compared->signal};
   }
 
   std::pair<CircuitInput, CircuitInput> factors(const diagram::FlatBlock& block) {

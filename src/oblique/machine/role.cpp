@@ -65,4 +65,15 @@ std::string ElementNumbers::next(Role role) {
   return fmt::format("{}{}", kind, ++last_[kind]);
 }
 
+std::vector<std::string> element_numbers(const diagram::FlatDiagram& diagram) {
+  ElementNumbers numbers;
+  std::vector<std::string> all;
+  for (const diagram::FlatBlock& block : diagram.blocks) {
+    const bool reference = block.definition->role == Role::reference;
+    all.push_back(reference ? (parameter_of(block, "value") < 0 ? "−REF" : "+REF")
+                            : numbers.next(block.definition->role));
+  }
+  return all;
+}
+
 }  // namespace oblique::machine

@@ -5,6 +5,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <oblique/diagram/block_library.h>
 #include <oblique/diagram/flat_diagram.h>
@@ -42,5 +43,8 @@ class ElementNumbers {
  private:
   std::map<char, int> last_;
 };
+
+/// Those of a diagram's blocks; +REF and −REF are the reference.
+std::vector<std::string> element_numbers(const diagram::FlatDiagram& diagram);
 
 }  // namespace oblique::machine

@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 
 #include <oblique/diagram/flatten.h>
+#include <oblique/machine/operating_sheets.h>
 #include <oblique/machine/role.h>
 #include <oblique/network/assembly/network.h>
 #include <oblique/network/program/program.h>
@@ -28,13 +29,12 @@ struct Connection {
 class SheetMaker {
  public:
   SheetMaker(const diagram::FlatDiagram& diagram, const diagram::MachineProfile& machine)
-      : diagram_(diagram), volts_(machine.unit.value_or(1)), unit_(machine.unit ? "V" : "machine unit") {
-    ElementNumbers numbers;
+      : diagram_(diagram),
+        volts_(machine.unit.value_or(1)),
+        unit_(machine.unit ? "V" : "machine unit"),
+        numbers_(element_numbers(diagram)) {
     for (std::size_t b = 0; b < diagram.blocks.size(); ++b) {
       const diagram::FlatBlock& block = diagram.blocks[b];
-      const bool reference = block.definition->role == Role::reference;
-      numbers_.push_back(reference ? (parameter_of(block, "value") < 0 ? "−REF" : "+REF")
-                                   : numbers.next(block.definition->role));
       for (std::size_t port = 0; port < block.inputs.size(); ++port) {
         for (const diagram::FlatTerm& term : block.inputs[port].terms) connect(b, port, term);
       }
@@ -149,16 +149,38 @@ class SheetMaker {
     }
   }
 
-  /// "summer", "integrator, k0 = 500 1/s", "open amplifier".
-  static std::string kind_text(const diagram::FlatBlock& block) {
+  /// "summer", "integrator, k0 = 500 1/s, limited to ±8 V", "open amplifier, gain 1e+06, bandwidth 10 Hz",
+  /// "comparator, 0 or 10 V, hysteresis 0.5 V": the kind, and what is set at the element itself.
+  std::string kind_text(const diagram::FlatBlock& block) const {
+    const std::string limit = own(block, "limit", ", limited to ±", volts_, unit_);
     switch (block.definition->role) {
       case Role::integrator:
-        return fmt::format("integrator, k0 = {:.6g} 1/s", parameter_of(block, "rate"));
+        return fmt::format("integrator, k0 = {:.6g} 1/s", parameter_of(block, "rate")) +
+               own(block, "initial", ", starts at ", volts_, unit_) + limit;
       case Role::open_amplifier:
-        return "open amplifier";
+        return "open amplifier" + own(block, "gain", ", gain ", 1, "") +
+               own(block, "bandwidth", ", bandwidth ", 1, "Hz") + limit;
+      case Role::comparator: {
+        const auto low = block.definition->find_parameter("low"),
+                   high = block.definition->find_parameter("high");
+        if (!low || !high) return block.definition->name;
+        return fmt::format("comparator, {:.4g} or {:.4g} {}", block.parameters[*low] * volts_,
+                           block.parameters[*high] * volts_, unit_) +
+               own(block, "hysteresis", ", hysteresis ", volts_, unit_);
+      }
       default:
-        return block.definition->name;
+        return block.definition->name + limit;
     }
+  }
+
+  /// A finite parameter that is not zero, and that is not the machine's saturation, behind some words.
+  static std::string own(const diagram::FlatBlock& block, std::string_view parameter, const char* words,
+                         double volts, const std::string& unit) {
+    const auto k = block.definition->find_parameter(parameter);
+    if (!k || block.saturation == k) return {};
+    const double value = block.parameters[*k];
+    if (value == 0 || !std::isfinite(value)) return {};
+    return fmt::format("{}{:.4g}{}{}", words, value * volts, unit.empty() ? "" : " ", unit);
   }
 
   /// "×10", "3 inputs ×10", "x", "initial value": where a wire ends.
@@ -223,7 +245,8 @@ MachineSheets make_sheets(const diagram::FlatDiagram& diagram,
                           const std::vector<solve::StaticReading>& readings,
                           const diagram::MachineProfile& machine) {
   const SheetMaker maker(diagram, machine);
-  return {maker.connections(), maker.potentiometers(), maker.static_test(readings), maker.functions()};
+  return {maker.connections(), maker.potentiometers(),         maker.static_test(readings),
+          maker.functions(),   output_sheet(diagram, machine), {}};
 }
 
 namespace {
@@ -240,7 +263,9 @@ std::vector<solve::StaticReading> expected_readings(diagram::Diagram diagram,
 
 MachineSheets sheets_of(const diagram::Diagram& diagram, const diagram::FlatDiagram& flat,
                         const diagram::BlockLibrary& library, const diagram::MachineProfile& machine) {
-  return make_sheets(flat, expected_readings(diagram, library), machine);
+  MachineSheets sheets = make_sheets(flat, expected_readings(diagram, library), machine);
+  sheets.modes = mode_sheet(flat, diagram.run.until, machine);
+  return sheets;
 }
 
 Sheet scale_sheet(const ScaledRealisation& made, const diagram::MachineProfile& machine) {

@@ -7,19 +7,10 @@
 #include <oblique/diagram/flat_diagram.h>
 #include <oblique/diagram/machine_profile.h>
 #include <oblique/machine/scaled_realisation.h>
+#include <oblique/machine/sheet.h>
 #include <oblique/solve/static_test.h>
 
 namespace oblique::machine {
-
-/// A table for a machine room, of cells as they are read.
-struct Sheet {
-  std::string title;
-  std::vector<std::string> columns;
-  std::vector<std::vector<std::string>> rows;
-};
-
-/// The sheet as comma-separated values (RFC 4180), the columns' names first.
-std::string to_csv(const Sheet& sheet);
 
 /// What a machine room works from. Elements have the numbers that `realise` gives them as labels: A1 …
 /// amplifiers, P1 … potentiometers, M1 … multipliers, K1 … comparators, F1 … function generators, X1 …
@@ -31,6 +22,8 @@ struct MachineSheets {
                       ///< in machine units where their voltage is not published
   Sheet functions;    ///< of function generators: value and slope at 0, breakpoints and slopes from there
                       ///< outwards
+  Sheet outputs;      ///< where each output is read, and what a volt of it stands for
+  Sheet modes;        ///< how long and in which mode each group of integrators is; of `sheets_of`
 };
 
 /// `diagram` is flattened from one that `realise` has made; `readings` are its `static_test`.

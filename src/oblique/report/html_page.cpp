@@ -10,7 +10,8 @@
 namespace oblique::report {
 namespace {
 
-constexpr std::string_view kStyle = R"(  body { margin: 2rem auto; max-width: 54rem; padding: 0 1rem;
+constexpr std::string_view kStyle =
+    R"(  body { margin: 2rem auto; max-width: 54rem; padding: 0 1rem; overflow-wrap: break-word;
          font: 15px/1.5 Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif }
   h1 { font-size: 1.7rem; line-height: 1.2; margin-bottom: .5rem }
   h2 { font-size: 1.25rem; margin-top: 2.4rem; border-bottom: 1px solid #8886; padding-bottom: .15rem }
@@ -92,6 +93,10 @@ std::string prose(std::string_view text) {
   return html;
 }
 
+std::string anchor(std::string_view text, std::string_view address) {
+  return fmt::format("<a href=\"{}\">{}</a>", draw::escape_xml(address), draw::escape_xml(text));
+}
+
 }  // namespace
 
 std::string inline_svg(const draw::Picture& picture) {
@@ -125,7 +130,7 @@ void HtmlPage::introduction(std::string_view text) {
 }
 
 void HtmlPage::link(std::string_view text, std::string_view address) {
-  body_ += fmt::format("<p><a href=\"{}\">{}</a></p>\n", draw::escape_xml(address), draw::escape_xml(text));
+  body_ += fmt::format("<p>{}</p>\n", anchor(text, address));
 }
 
 void HtmlPage::element(std::string_view html) {
@@ -140,23 +145,26 @@ void HtmlPage::list(const std::vector<std::string>& items) {
 }
 
 void HtmlPage::table(const std::vector<std::string>& header,
-                     const std::vector<std::vector<std::string>>& rows) {
+                     const std::vector<std::vector<std::string>>& rows,
+                     const std::vector<std::string>& links) {
   std::vector<const char*> marks;
   for (std::size_t c = 0; c < header.size(); ++c) {
     const bool numbers =
         std::all_of(rows.begin(), rows.end(), [&](const auto& row) { return is_number(row[c]); });
     marks.push_back(numbers ? " class=\"n\"" : "");
   }
-  const auto line = [&](const std::vector<std::string>& cells, const char* tag) {
+  const auto line = [&](const std::vector<std::string>& cells, const char* tag, const std::string& address) {
     body_ += "<tr>";
     for (std::size_t c = 0; c < cells.size(); ++c)
-      body_ += fmt::format("<{0}{1}>{2}</{0}>", tag, marks[c], draw::escape_xml(cells[c]));
+      body_ +=
+          fmt::format("<{0}{1}>{2}</{0}>", tag, marks[c],
+                      c == 0 && !address.empty() ? anchor(cells[c], address) : draw::escape_xml(cells[c]));
     body_ += "</tr>\n";
   };
   body_ += fmt::format("<div class=\"scroll{}\"><table>\n<thead>", rows.size() <= kShort ? " short" : "");
-  line(header, "th");
+  line(header, "th", {});
   body_ += "</thead>\n<tbody>\n";
-  for (const auto& row : rows) line(row, "td");
+  for (std::size_t r = 0; r < rows.size(); ++r) line(rows[r], "td", r < links.size() ? links[r] : "");
   body_ += "</tbody>\n</table></div>\n";
 }
 

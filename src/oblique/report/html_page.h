@@ -27,8 +27,10 @@ class HtmlPage {
   /// A paragraph that belongs to what follows it.
   void introduction(std::string_view text);
   void list(const std::vector<std::string>& items);
-  /// Columns of numbers are aligned to the right, those of words to the left.
-  void table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows);
+  /// Columns of numbers are aligned to the right, those of words to the left. The first cell of each row
+  /// leads to its address in `links`, where there are any.
+  void table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows,
+             const std::vector<std::string>& links = {});
   /// The same, with the header as the first of `rows`.
   void table(const std::vector<std::vector<std::string>>& rows);
   void picture(const draw::Picture& picture);

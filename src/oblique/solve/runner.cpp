@@ -50,7 +50,10 @@ Runner::Runner(const network::Program& program, const diagram::FlatDiagram& diag
       interruption_(options.interrupted),
       system_(program, switching_, interruption_),
       sampler_(program, diagram, options, workspace_, switching_),
-      sources_(program, workspace_, options.extremes || options.watch_overloads || options.halt_on_overload,
+      sources_(program, workspace_,
+               options.extremes                                      ? SourceWatch::Shown::extremes
+               : options.watch_overloads || options.halt_on_overload ? SourceWatch::Shown::overloads
+                                                                     : SourceWatch::Shown::nothing,
                diagram.file),
       branches_(program, workspace_, begin_, options, diagram.file),
       states_(program.start()),
@@ -146,6 +149,7 @@ std::vector<text::Diagnostic> Runner::warnings() const {
 Unseen Runner::unseen() const {
   Unseen unseen = integration_ ? integration_->unseen() : Unseen{};
   unseen.faint = switching_.faint_turns();
+  if (integration_) unseen.lost = integration_->lost(sampler_.states_without_value());
   return unseen;
 }
 

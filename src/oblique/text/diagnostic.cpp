@@ -140,9 +140,14 @@ std::string suggest(std::string_view name, const std::vector<std::string>& candi
   if (candidates.empty()) return {};
   constexpr std::size_t kMostNames = 12;
   const std::size_t shown = std::min(candidates.size(), kMostNames);
+  std::vector<std::string> names = candidates;
+  if (shown < names.size()) {  // of a list that is cut, first those that hold the name
+    std::stable_partition(names.begin(), names.end(), [&](const std::string& candidate) {
+      return candidate.find(name) != std::string::npos;
+    });
+  }
   std::string text = fmt::format(
-      "known: {}",
-      fmt::join(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(shown), ", "));
+      "known: {}", fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(shown), ", "));
   if (shown < candidates.size()) text += fmt::format(" and {} more", candidates.size() - shown);
   return text;
 }

@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstring>
 #include <system_error>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -27,6 +28,23 @@ constexpr std::size_t kMost = 268'435'456;  ///< of a file [bytes]: a device may
   throw ReadError(Diagnostic{{path.string(), {}}, std::move(what), {}, std::move(remedy)});
 }
 
+/// Where there is no such file: the nearest name in its folder, or that the folder is missing.
+std::string remedy_of_missing(const std::filesystem::path& path) {
+  std::error_code error;
+  std::vector<std::string> names;
+  const std::filesystem::path folder = path.parent_path();
+  for (auto at = std::filesystem::directory_iterator(folder.empty() ? "." : folder, error);
+       !error && at != std::filesystem::directory_iterator(); at.increment(error))
+    names.push_back(at->path().filename().string());
+  std::sort(names.begin(), names.end());
+  if (const auto nearest = nearest_name(path.filename().string(), names))
+    return fmt::format("did you mean '{}'?", (folder / *nearest).string());
+  if (!folder.empty() && !std::filesystem::exists(folder, error))
+    return fmt::format("there is no folder '{}': check its spelling and the folder you stand in",
+                       folder.string());
+  return "check the spelling and the folder you stand in";
+}
+
 /// A file for reading. Not a stream of the standard library: those take a file that cannot be read any
 /// further, and memory that runs out, for its end.
 class OpenFile {
@@ -36,7 +54,7 @@ class OpenFile {
     if (descriptor_ >= 0) return;
     const int reason = errno;
     fail(path, fmt::format("cannot open the file: {}", std::strerror(reason)),
-         reason == ENOENT ? "check the spelling and the folder you stand in" : "check its permissions");
+         reason == ENOENT ? remedy_of_missing(path) : "check its permissions");
   }
   ~OpenFile() { close(descriptor_); }
   OpenFile(const OpenFile&) = delete;

@@ -144,6 +144,11 @@ bool has_value(std::string_view text, const NameLookup& lookup) {
   }
 }
 
+/// What a message says is expected.
+std::string expectation(const Unit& wanted) {
+  return wanted.name == "1" ? "a number without a unit" : fmt::format("a quantity in '{}'", wanted.name);
+}
+
 /// The units that may stand for `wanted`.
 std::vector<std::string> names_like(const Unit& wanted) {
   std::vector<std::string> names{wanted.name};
@@ -192,12 +197,14 @@ double unit_factor(std::string_view text, std::size_t rest, const Unit& wanted, 
     std::string remedy = has_value(unit_text, lookup)
                              ? fmt::format("a product is written with '*': {}*{}", number_text, unit_text)
                              : suggest(unit_text, names_like(wanted));
-    throw ExpressionError{column, fmt::format("there is no unit '{}'", unit_text),
-                          fmt::format("a quantity in '{}'", wanted.name), std::move(remedy)};
+    throw ExpressionError{column, fmt::format("there is no unit '{}'", unit_text), expectation(wanted),
+                          std::move(remedy)};
   }
   if (const auto factor = factor_between(*unit, wanted)) return *factor;
   std::string what = fmt::format("'{}' is the wrong unit here", unit_text);
-  std::string remedy = fmt::format("give it in '{}', or as a number without a unit", wanted.name);
+  std::string remedy = wanted.name == "1"
+                           ? "leave the unit out"
+                           : fmt::format("give it in '{}', or as a number without a unit", wanted.name);
   if (unit->exponents[Unit::voltage] != 0 && wanted.exponents[Unit::signal] != 0 && !wanted.machine.empty()) {
     what = fmt::format("'{}' is a voltage, and the unit of the machine '{}' is no known voltage", unit_text,
                        wanted.machine);
@@ -208,8 +215,7 @@ double unit_factor(std::string_view text, std::size_t rest, const Unit& wanted, 
   } else if (is_frequency(*unit) && is_angular_velocity(wanted)) {
     remedy = "of radians give it in 'rad/s', of turns in 'Hz' or 'rpm'";
   }
-  throw ExpressionError{column, std::move(what), fmt::format("a quantity in '{}'", wanted.name),
-                        std::move(remedy)};
+  throw ExpressionError{column, std::move(what), expectation(wanted), std::move(remedy)};
 }
 
 }  // namespace oblique::text

@@ -39,8 +39,8 @@ namespace {
 
 using report::FileKind;
 
-[[noreturn]] void refuse(const std::string& name, std::string what, std::string expected,
-                         std::string remedy = {}) {
+[[noreturn]] void refuse_file(const std::string& name, std::string what, std::string expected,
+                              std::string remedy = {}) {
   throw text::ReadError(
       text::Diagnostic{{name, {}}, std::move(what), std::move(expected), std::move(remedy)});
 }
@@ -48,10 +48,10 @@ using report::FileKind;
 void expect_kind(const std::string& text, const std::string& name, FileKind wanted, const char* action) {
   if (report::kind_of_file(text, name) == wanted) return;
   const bool diagram = wanted == FileKind::diagram;
-  refuse(name,
-         fmt::format("this is a {}, and {} is of {}s", diagram ? "mechanism" : "diagram", action,
-                     diagram ? "diagram" : "mechanism"),
-         diagram ? "a diagram" : "a mechanism");
+  refuse_file(name,
+              fmt::format("this is a {}, and {} is of {}s", diagram ? "mechanism" : "diagram", action,
+                          diagram ? "diagram" : "mechanism"),
+              diagram ? "a diagram" : "a mechanism");
 }
 
 Json columns_of(const std::vector<text::TableColumn>& columns) {
@@ -102,7 +102,7 @@ draw::Theme theme_of(const Options& options) {
   if (theme == "auto") return draw::Theme::automatic;
   if (theme == "light") return draw::Theme::light;
   if (theme == "dark") return draw::Theme::dark;
-  refuse({}, fmt::format("'theme' is '{}'", theme), "auto, light or dark");
+  refuse_file({}, fmt::format("'theme' is '{}'", theme), "auto, light or dark");
 }
 
 std::string drawn_diagram(const diagram::Diagram& diagram, const diagram::BlockLibrary& library,
@@ -111,7 +111,7 @@ std::string drawn_diagram(const diagram::Diagram& diagram, const diagram::BlockL
   draw::DiagramDrawing drawing;
   const std::string symbols = options.word("symbols").value_or("classic");
   if (symbols != "classic" && symbols != "din")
-    refuse({}, fmt::format("'symbols' is '{}'", symbols), "classic or din");
+    refuse_file({}, fmt::format("'symbols' is '{}'", symbols), "classic or din");
   if (symbols == "din") drawing.symbols = draw::SymbolStyle::din;
   drawing.depth = options.whole("depth", 0, kDeepest).value_or(0);
   return draw::to_svg(draw::draw_diagram(diagram, library, drawing), theme_of(options), 1,
@@ -205,7 +205,7 @@ Answer Engine::put_file(const std::string& name, const std::string& content) con
     if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), trouble);
     std::ofstream file(path, std::ios::binary);
     if (!file.write(content.data(), static_cast<std::streamsize>(content.size())).flush())
-      refuse(name, "the file could not be kept", "a name of a file");
+      refuse_file(name, "the file could not be kept", "a name of a file");
     return Answer{};
   });
 }
@@ -240,7 +240,8 @@ Answer Engine::run(const std::string& text, const std::string& name, const std::
     diagram::Diagram diagram = diagram::parse_diagram(text, name);
     diagram.run.until = asked.quantity("until", "s").value_or(diagram.run.until);
     if (!(diagram.run.until > 0 && std::isfinite(diagram.run.until)))
-      refuse(name, fmt::format("the run would end at t = {} s", diagram.run.until), "a finite time above 0");
+      refuse_file(name, fmt::format("the run would end at t = {} s", diagram.run.until),
+                  "a finite time above 0");
     std::vector<diagram::ParameterOverride> overrides;
     for (auto& [path, value] : asked.settings("set")) overrides.push_back({path, value});
     const diagram::FlatDiagram flat = diagram::flatten(diagram, *library_, overrides);
@@ -302,8 +303,8 @@ Answer Engine::check(const std::string& text, const std::string& name, const std
     Answer held;
     held.object = checked_lesson(diagram, *library_, asked, how);
     if (deadline.passed())
-      refuse(name, fmt::format("the run had taken {:.3g} s of time before its end", limits_.seconds), {},
-             "turn back what makes it slow, or allow it more time");
+      refuse_file(name, fmt::format("the run had taken {:.3g} s of time before its end", limits_.seconds), {},
+                  "turn back what makes it slow, or allow it more time");
     return held;
   });
 }
@@ -336,10 +337,11 @@ Answer Engine::motion(const std::string& text, const std::string& name, const st
     how.positions = asked.whole("positions", 2, kMostPositions).value_or(how.positions);
     how.until = asked.quantity("until", "s");
     if (how.until && !(*how.until > 0 && std::isfinite(*how.until)))
-      refuse({}, fmt::format("'until' is {}", *how.until), "a finite time above 0");
+      refuse_file({}, fmt::format("'until' is {}", *how.until), "a finite time above 0");
     if (const auto at_limit = asked.word("at_limit")) {
       how.at_limit = mechanism::parse_at_limit(*at_limit);
-      if (!how.at_limit) refuse({}, fmt::format("'at_limit' is '{}'", *at_limit), "open, stop or reverse");
+      if (!how.at_limit)
+        refuse_file({}, fmt::format("'at_limit' is '{}'", *at_limit), "open, stop or reverse");
     }
     const mechanism::Mechanism mechanism = mechanism::parse_mechanism(text, name);
     if (mechanism.drives.empty())
@@ -415,14 +417,15 @@ Answer Engine::edit(const std::string& text, const std::string& name, const std:
 
 void Engine::check_size(const std::string& text, const std::string& name) const {
   if (static_cast<double>(text.size()) <= limits_.text) return;
-  refuse(name, fmt::format("the file has {} bytes", text.size()), fmt::format("{} at most", limits_.text));
+  refuse_file(name, fmt::format("the file has {} bytes", text.size()),
+              fmt::format("{} at most", limits_.text));
 }
 
 void Engine::check_numbers(std::size_t rows, std::size_t columns, const std::string& name) const {
   const double numbers = static_cast<double>(rows) * static_cast<double>(columns);
   if (numbers <= limits_.numbers) return;
-  refuse(name, fmt::format("{} rows of {} columns are too much for a page", rows, columns),
-         fmt::format("{} numbers at most", limits_.numbers), "ask for fewer rows");
+  refuse_file(name, fmt::format("{} rows of {} columns are too much for a page", rows, columns),
+              fmt::format("{} numbers at most", limits_.numbers), "ask for fewer rows");
 }
 
 }  // namespace oblique::studio

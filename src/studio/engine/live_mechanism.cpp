@@ -57,7 +57,7 @@ std::string words_of(mechanism::MotionEvent::Kind kind, const std::string& group
   return fmt::format("no step leads {} on", group);
 }
 
-[[noreturn]] void refuse(std::string what, std::string expected, text::Remedy remedy = {}) {
+[[noreturn]] void refuse_question(std::string what, std::string expected, text::Remedy remedy = {}) {
   throw text::ReadError(text::Diagnostic{{}, std::move(what), std::move(expected), std::move(remedy)});
 }
 
@@ -65,14 +65,14 @@ std::string words_of(mechanism::MotionEvent::Kind kind, const std::string& group
 
 LiveMechanism::Held& LiveMechanism::held() {
   if (held_) return *held_;
-  refuse("no mechanism is held", "a mechanism", "open one");
+  refuse_question("no mechanism is held", "a mechanism", "open one");
 }
 
 std::size_t LiveMechanism::point_named(const std::string& name) {
   const mechanism::Mechanism& mechanism = held().moved;
   if (const auto point = mechanism.find_point(name)) return *point;
-  refuse(fmt::format("there is no point '{}'", name), {},
-         text::suggest(name, mechanism::names_of(mechanism.points)));
+  refuse_question(fmt::format("there is no point '{}'", name), {},
+                  text::suggest(name, mechanism::names_of(mechanism.points)));
 }
 
 Answer LiveMechanism::open(const std::string& text, const std::string& name) {
@@ -131,7 +131,7 @@ double LiveMechanism::within_span(double time) {
 const mechanism::Configuration& LiveMechanism::go(double time) {
   Held& now = held();
   const double wanted = within_span(time);
-  if (!std::isfinite(wanted)) refuse(fmt::format("the time is {} s", wanted), "a finite time");
+  if (!std::isfinite(wanted)) refuse_question(fmt::format("the time is {} s", wanted), "a finite time");
   mechanism::check_travel(now.moved, wanted);
   // from the start it is nearer than all the way back
   if (!now.follower || wanted < now.follower->time() / 2) now.follower.emplace(now.moved, now.structure);
@@ -190,7 +190,7 @@ Answer LiveMechanism::at(double time) {
 Answer LiveMechanism::follow(LiveConsole& console, double magnification) {
   return answer([&] {
     if (!(magnification > 0 && std::isfinite(magnification)))
-      refuse(fmt::format("the magnification is {}", magnification), "a finite number above 0");
+      refuse_question(fmt::format("the magnification is {}", magnification), "a finite number above 0");
     const Held& now = held();
     std::vector<std::string> names;
     names.reserve(2 * now.moved.points.size());
@@ -239,14 +239,15 @@ Answer LiveMechanism::nearest(const std::string& point, double x, double y, doub
     constexpr double kMuchNearer = 0.05;  // of the size
     Held& now = held();
     const std::size_t p = point_named(point);
-    if (now.motion.times.empty()) refuse("the mechanism has no drive that could follow", "a drive");
+    if (now.motion.times.empty()) refuse_question("the mechanism has no drive that could follow", "a drive");
     if (!now.path || now.path_of != p) now.path.emplace(now.motion, p);
     now.path_of = p;
     const Vector2d target = now.linkage->place({x, y});
     const double from = within_span(time);
     const auto anywhere = now.path->nearest(target);
     const auto beside = synthesis::PathCurve(around(from), p).nearest(target);
-    if (!anywhere && !beside) refuse(fmt::format("'{}' has no path", point), "a mechanism that moves");
+    if (!anywhere && !beside)
+      refuse_question(fmt::format("'{}' has no path", point), "a mechanism that moves");
     const bool leaps =
         !beside || (anywhere && anywhere->difference.norm() <
                                     beside->difference.norm() - kMuchNearer * now.moved.largest_length());
@@ -265,8 +266,8 @@ Answer LiveMechanism::drag(const std::string& point, double x, double y, double 
     const std::size_t p = point_named(point);
     const mechanism::Configuration here = go(time);
     if (here.status == mechanism::Status::open)
-      refuse(fmt::format("'{}' stands nowhere: the mechanism is open", point),
-             "a mechanism that is assembled");
+      refuse_question(fmt::format("'{}' stands nowhere: the mechanism is open", point),
+                      "a mechanism that is assembled");
     const Held& now = held();
     const synthesis::DraggedMechanism dragged =
         synthesis::drag(text_, now.file, {p, now.linkage->place({x, y}), drive_value(), here});
@@ -289,7 +290,7 @@ Answer LiveMechanism::drag(const std::string& point, double x, double y, double 
 Answer LiveMechanism::time_of(double drive) {
   return answer([&] {
     const mechanism::Mechanism& moved = held().moved;
-    if (moved.drives.empty()) refuse("the mechanism has no drive", "a drive");
+    if (moved.drives.empty()) refuse_question("the mechanism has no drive", "a drive");
     // of a drive that turns on and on the same angle within its first turn
     const mechanism::Drive& first = moved.drives.front();
     double value = drive;

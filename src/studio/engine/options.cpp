@@ -11,7 +11,7 @@
 namespace oblique::studio {
 namespace {
 
-[[noreturn]] void refuse(std::string_view key, const Json& value, std::string expected) {
+[[noreturn]] void refuse_value(std::string_view key, const Json& value, std::string expected) {
   throw text::ReadError(
       text::Diagnostic{{}, fmt::format("'{}' is {}", key, to_text(value)), std::move(expected), {}});
 }
@@ -40,14 +40,14 @@ const Json* Options::find(const char* key) const {
 bool Options::flag(const char* key) const {
   const Json* const value = find(key);
   if (value == nullptr) return false;
-  if (!value->is_boolean()) refuse(key, *value, "true or false");
+  if (!value->is_boolean()) refuse_value(key, *value, "true or false");
   return value->get<bool>();
 }
 
 std::optional<std::string> Options::word(const char* key) const {
   const Json* const value = find(key);
   if (value == nullptr) return std::nullopt;
-  if (!value->is_string()) refuse(key, *value, "a text");
+  if (!value->is_string()) refuse_value(key, *value, "a text");
   return value->get<std::string>();
 }
 
@@ -55,9 +55,9 @@ std::vector<std::string> Options::words(const char* key) const {
   std::vector<std::string> all;
   const Json* const value = find(key);
   if (value == nullptr) return all;
-  if (!value->is_array()) refuse(key, *value, "a list of texts");
+  if (!value->is_array()) refuse_value(key, *value, "a list of texts");
   for (const Json& one : *value) {
-    if (!one.is_string()) refuse(key, *value, "a list of texts");
+    if (!one.is_string()) refuse_value(key, *value, "a list of texts");
     all.push_back(one.get<std::string>());
   }
   return all;
@@ -67,7 +67,7 @@ std::optional<double> Options::quantity(const char* key, std::string_view unit) 
   const Json* const value = find(key);
   if (value == nullptr) return std::nullopt;
   if (value->is_number()) return value->get<double>();
-  if (!value->is_string()) refuse(key, *value, "a number or a quantity as text");
+  if (!value->is_string()) refuse_value(key, *value, "a number or a quantity as text");
   const auto text = value->get<std::string>();
   try {
     return text::parse_quantity(text, text::parse_unit(unit).value());
@@ -82,7 +82,7 @@ std::optional<int> Options::whole(const char* key, int least, int most) const {
   if (value == nullptr) return std::nullopt;
   const double number = value->is_number() ? value->get<double>() : std::nan("");
   if (!(number >= least && number <= most && number == std::floor(number)))
-    refuse(key, *value, fmt::format("a whole number from {} to {}", least, most));
+    refuse_value(key, *value, fmt::format("a whole number from {} to {}", least, most));
   return static_cast<int>(number);
 }
 
@@ -90,9 +90,9 @@ std::vector<std::pair<std::string, std::string>> Options::settings(const char* k
   std::vector<std::pair<std::string, std::string>> all;
   const Json* const value = find(key);
   if (value == nullptr) return all;
-  if (!value->is_object()) refuse(key, *value, R"(an object such as {"c.gain": "1e4"})");
+  if (!value->is_object()) refuse_value(key, *value, R"(an object such as {"c.gain": "1e4"})");
   for (const auto& [name, setting] : value->items()) {
-    if (!setting.is_string() && !setting.is_number()) refuse(key, *value, "texts or numbers");
+    if (!setting.is_string() && !setting.is_number()) refuse_value(key, *value, "texts or numbers");
     all.emplace_back(name, setting.is_string() ? setting.get<std::string>() : to_text(setting));
   }
   return all;

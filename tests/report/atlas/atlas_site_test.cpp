@@ -42,11 +42,14 @@ TEST(AtlasSite, ListsAndShowsAllProgrammes) {
   EXPECT_THAT(
       index,
       HasSubstr("<a class=\"card\" href=\"one.html\" data-year=\"1961\" data-author=\"A. &quot;One&quot;\" "
-                "data-machine=\"Ideal machine\" data-subject=\"decay\" data-elements=\"Integrator\">"));
+                "data-machine=\"Ideal machine\" data-subject=\"decay\" data-elements=\"Integrator\" "
+                "data-circuit=\"as patched\">"));
   EXPECT_THAT(index, HasSubstr("<a class=\"card\" href=\"two.html\" data-year=\"unknown\""));
   EXPECT_THAT(index, AllOf(HasSubstr("<option>1961</option><option>unknown</option>"),
                            HasSubstr("<option>Integrator</option></select>"), HasSubstr("<li>1 &lt; 2</li>"),
-                           HasSubstr("2 programmes, 1 published value: 1 within"), HasSubstr("<td>one</td>"),
+                           HasSubstr("2 programmes, 1 published value: 1 within"),
+                           HasSubstr("<td><a href=\"one.html\">one</a></td>"),
+                           HasSubstr("<p><a href=\"one.html\">Decay &amp; more</a></p>"),
                            HasSubstr("Decay &amp; more")));
   EXPECT_THAT(pages[1].text,
               HasSubstr("href=\"../../web/studio.html" + studio_fragment("one.toml", first) + "\""));

@@ -177,8 +177,12 @@ b = {{ type = "ball", e = {} }}
       // As soon as it has come n times: Σ of the flights.
       for (std::size_t row = 0; row < t.size(); ++row) {
         const int impacts = static_cast<int>(std::lround(n[row] / 0.01));
-        if (impacts > 0) EXPECT_GE(t[row] + 1e-6, impact_time(impacts, 1, e, 10)) << t[row];
-        if (t[row] < impact_time(5, 1, e, 10)) EXPECT_LE(t[row] - 1e-6, impact_time(impacts + 1, 1, e, 10));
+        if (impacts > 0) {
+          EXPECT_GE(t[row] + 1e-6, impact_time(impacts, 1, e, 10)) << t[row];
+        }
+        if (t[row] < impact_time(5, 1, e, 10)) {
+          EXPECT_LE(t[row] - 1e-6, impact_time(impacts + 1, 1, e, 10));
+        }
       }
     }
   }
@@ -278,7 +282,9 @@ y = {{ type = "summer", in = ["x", "{}*vv"] }}
         << tolerance;  // what the errors of the states leave to the last turns
     const auto t = row_values(result, "t"), x = row_values(result, "x"), v = row_values(result, "v");
     for (std::size_t k = 0; k < t.size(); ++k) {
-      if (t[k] < first) EXPECT_NEAR(x[k], 1 - t[k] * t[k] / 2, 100 * tolerance) << t[k];
+      if (t[k] < first) {
+        EXPECT_NEAR(x[k], 1 - t[k] * t[k] / 2, 100 * tolerance) << t[k];
+      }
       if (t[k] < end + 1e-3) continue;
       EXPECT_NEAR(x[k], 0, 100 * tolerance) << t[k];
       EXPECT_NEAR(v[k], 0, std::sqrt(100 * tolerance)) << t[k];  // x is within its error for that long

@@ -17,6 +17,24 @@ constexpr double kSmallestFraction = 1e-9;  ///< of a Newton step, below which t
 /// along a longer one that does not, there is no solution.)
 constexpr double kNoise = 1e-8;
 
+/// Beside this many times the derivatives of an equation, an amplifier's own motion is all there is.
+constexpr double kInstant = 1e15;
+
+/// The largest derivative of a residual by an unknown.
+double largest_derivative(const LoopCode& loop, const double* slots) {
+  double largest = 0;
+  for (const MatrixEntry& entry : loop.jacobian) largest = std::max(largest, std::abs(slots[entry.slot]));
+  return largest;
+}
+
+/// Whether a mode of the amplifiers grows at the solution that the slots hold: the determinant of dg/dz then
+/// has another sign than where their own motion outweighs it. Leaves dg/dz factored.
+bool runs_away(const LoopCode& loop, const double* slots, LoopMatrix& matrix) {
+  const double mass = kInstant * largest_derivative(loop, slots);
+  const int rising = matrix.factor(loop, slots, mass) ? matrix.determinant_sign() : 0;
+  return matrix.factor(loop, slots) && matrix.determinant_sign() * rising < 0;
+}
+
 /// Size of an unknown for relative tests; the floor only keeps a zero from dividing.
 double magnitude(double z) {
   return std::abs(z) + std::numeric_limits<double>::min();
@@ -76,7 +94,8 @@ LoopFailure LoopWorkspace::solve_loop(const LoopCode& loop, std::span<const Inst
 bool LoopWorkspace::solves(const LoopCode& loop, std::span<const Instruction> body, double* slots,
                            std::span<const double> unknowns) {
   constexpr double kConsistent =
-      1e-7;  // of the terms of an equation: what is told where a derivative is lost
+      1e-7;                            // of the terms of an equation: what is told where a derivative is lost
+  constexpr double kRounding = 1e-13;  // [machine unit] of terms without unknowns that take each other away
   for (std::size_t i = 0; i < loop.size(); ++i) slots[loop.unknown_slots[i]] = unknowns[i];
   run_tape(body, slots);
   if (held_whatever_) return true;
@@ -89,7 +108,7 @@ bool LoopWorkspace::solves(const LoopCode& loop, std::span<const Instruction> bo
       rest -= term;
       terms += std::abs(term);
     }
-    if (!(std::abs(residual) <= kConsistent * (terms + std::abs(rest)))) return false;
+    if (!(std::abs(residual) <= kConsistent * (terms + std::abs(rest)) + kRounding)) return false;
   }
   return true;
 }
@@ -182,6 +201,8 @@ LoopWorkspace::Search LoopWorkspace::newton(const LoopCode& loop, std::span<cons
 LoopFailure LoopWorkspace::solve_branched(const LoopCode& loop, std::span<const Instruction> body,
                                           double* slots) {
   constexpr double kLongWay = 0.05;  // of 1 + |z|: a way along which another branch may lie
+  constexpr double kNoWay =
+      1e-6;  // of 1 + |z|: the guess is this solution, to the digits that it is written with
   read(loop, slots, origin_);
   const auto accept = [&] {
     branch_ = matrix_.determinant_sign();
@@ -203,7 +224,7 @@ LoopFailure LoopWorkspace::solve_branched(const LoopCode& loop, std::span<const 
     if (straight && is_on_branch(search)) return LoopFailure::none;
     if (search.failure == LoopFailure::singular && rests()) return LoopFailure::none;
   } else if (straight && way(loop, slots) < kLongWay) {
-    return accept();
+    if (way(loop, slots) < kNoWay || !runs_away(loop, slots, matrix_)) return accept();
   }
   write(loop, slots, origin_);
   if (relax(loop, body, slots)) {
@@ -261,7 +282,6 @@ bool LoopWorkspace::relax(const LoopCode& loop, std::span<const Instruction> bod
   constexpr double kShortest = 1e-9;  // of the first step
   constexpr double kAtRest = 1e-12;
   constexpr double kFarAway = 1e6;  // [machine unit]
-  constexpr double kInstant = 1e15;
   constexpr int kMostSteps = 1000;
   const std::size_t n = loop.size();
   const bool all_held = std::find(loop.held_by_amplifier.begin(), loop.held_by_amplifier.end(), false) ==
@@ -272,14 +292,9 @@ bool LoopWorkspace::relax(const LoopCode& loop, std::span<const Instruction> bod
   };
   run_tape(body, slots);
   if (!finite()) return false;
-  const auto fastest = [&] {
-    double rate = 0;
-    for (const MatrixEntry& entry : loop.jacobian) rate = std::max(rate, std::abs(slots[entry.slot]));
-    return rate;
-  };
   // Where a branch ends, derivatives are near zero, and say nothing about how fast the amplifiers move later.
   const auto natural_step = [&] {
-    double rate = fastest();
+    double rate = largest_derivative(loop, slots);
     for (std::size_t i = 0; i < n; ++i) {
       const double z = std::abs(slots[loop.unknown_slots[i]]);
       if (loop.held_by_amplifier[i])
@@ -293,9 +308,10 @@ bool LoopWorkspace::relax(const LoopCode& loop, std::span<const Instruction> bod
   for (int step = 0; step < kMostSteps && h > shortest; ++step) {
     read(loop, slots, target_);
     // The determinant changes its sign across the step where the amplifiers run away from rest.
-    const int rising = all_held                                            ? 1
-                       : matrix_.factor(loop, slots, kInstant * fastest()) ? matrix_.determinant_sign()
-                                                                           : 0;
+    const int rising = all_held ? 1
+                       : matrix_.factor(loop, slots, kInstant * largest_derivative(loop, slots))
+                           ? matrix_.determinant_sign()
+                           : 0;
     bool good = rising != 0 && matrix_.factor(loop, slots, 1 / h) && matrix_.determinant_sign() == rising;
     double change = 0;
     if (good) {

@@ -56,7 +56,7 @@ constexpr std::string_view kIndexScript = R"(<script>
 
 /// What a programme is found by, for each filter; several values where it has them.
 struct Facets {
-  std::vector<std::string> year, author, machine, subject, elements;
+  std::vector<std::string> year, author, machine, subject, elements, circuit;
 };
 
 struct Filter {
@@ -64,11 +64,12 @@ struct Filter {
   const char* label;
   std::vector<std::string> Facets::*values;
 };
-constexpr std::array<Filter, 5> kFilters{{{"year", "Year", &Facets::year},
+constexpr std::array<Filter, 6> kFilters{{{"year", "Year", &Facets::year},
                                           {"author", "Author", &Facets::author},
                                           {"machine", "Machine", &Facets::machine},
                                           {"subject", "Subject", &Facets::subject},
-                                          {"elements", "Takes", &Facets::elements}}};
+                                          {"elements", "Takes", &Facets::elements},
+                                          {"circuit", "Circuit", &Facets::circuit}}};
 
 /// "Open amplifier": what a block is on a real machine, else the title of its kind.
 std::string element_of(const diagram::BlockDefinition& definition) {
@@ -92,6 +93,7 @@ Facets facets_of(const Programme& programme, const diagram::BlockLibrary& blocks
     if (block.definition->role != diagram::Role::reference) elements.insert(element_of(*block.definition));
   }
   facets.elements = {elements.begin(), elements.end()};
+  facets.circuit = {published.kind == diagram::Published::Kind::equations ? "composed here" : "as patched"};
   return facets;
 }
 
@@ -138,8 +140,8 @@ class SiteWriter {
     HtmlPage page("The atlas: published analog programmes, run again");
     page.element(kIndexStyle);
     page.paragraph(
-        "Each programme as it was published and patched: its circuit, its settings, what its author got, and "
-        "what comes out here.");
+        "Each programme as it was published and patched, or composed here where only equations were published: "
+        "its circuit, its settings, what its author got, and what comes out here.");
     page.paragraph(agreement_summary(site_.programmes) + ".");
     page.heading("Programmes");
     page.element(filters());
@@ -151,8 +153,7 @@ class SiteWriter {
         "What was published against what is computed; the difference is over the uncertainty that was "
         "stated, and "
         "up to 1 of it is agreement. The page of a programme says why one differs by more.");
-    const Table agreement = agreement_table(site_.programmes);
-    if (agreement.rows().size() > 1) page.table(agreement.rows());
+    add_agreement(page);
     page.heading("Errata");
     page.introduction("What was found wrong in the publications.");
     for (const Programme& programme : site_.programmes) {
@@ -160,9 +161,24 @@ class SiteWriter {
       if (published.errata.empty()) continue;
       page.subheading(diagram::citation(published));
       page.list(published.errata);
+      page.link(title_of(programme), programme.name + ".html");
     }
     page.element(kIndexScript);
     return page.text(site_.theme);
+  }
+
+  void add_agreement(HtmlPage& page) const {
+    const Table table = agreement_table(site_.programmes);
+    const std::vector<std::vector<std::string>> rows(table.rows().begin() + 1, table.rows().end());
+    if (rows.empty()) return;
+    std::vector<std::string> links;
+    links.reserve(rows.size());
+    for (const std::vector<std::string>& row : rows) links.push_back(row.front() + ".html");
+    page.table(table.rows().front(), rows, links);
+  }
+
+  static std::string title_of(const Programme& programme) {
+    return programme.diagram.title.empty() ? programme.name : programme.diagram.title;
   }
 
   std::string filters() const {
@@ -188,11 +204,9 @@ class SiteWriter {
       data += fmt::format(" data-{}=\"{}\"", filter.name,
                           draw::escape_xml(fmt::format("{}", fmt::join(facets_[k].*filter.values, "|"))));
     const std::string year = published.year ? fmt::format(", {}", *published.year) : "";
-    return fmt::format(
-        R"(<a class="card" href="{}.html"{}>{}<strong>{}</strong><span>{}{}</span></a>)",
-        draw::escape_xml(programme.name), data, inline_svg(thumbnail(programme, site_.blocks)),
-        draw::escape_xml(programme.diagram.title.empty() ? programme.name : programme.diagram.title),
-        draw::escape_xml(published.author), year);
+    return fmt::format(R"(<a class="card" href="{}.html"{}>{}<strong>{}</strong><span>{}{}</span></a>)",
+                       draw::escape_xml(programme.name), data, inline_svg(thumbnail(programme, site_.blocks)),
+                       draw::escape_xml(title_of(programme)), draw::escape_xml(published.author), year);
   }
 
   const AtlasSite& site_;

@@ -177,7 +177,8 @@ class DiagramWriter {
       return;
     }
     page_.introduction(
-        "The uncertainty is what the author stated; the difference is a part of it, and up to 1 of it is "
+        "The uncertainty is what the author stated, or that of reading the published plot; the difference is "
+        "a part of it, and up to 1 of it is "
         "agreement.");
     std::vector<std::vector<std::string>> rows = agreement_table({programme_}).rows();
     for (std::vector<std::string>& row : rows) row.erase(row.begin());  // the programme's name

@@ -99,9 +99,37 @@ class EquationReader {
     for (const network::Unknown& unknown : network_.unknowns) variables_.push_back({unknown.name, 1});
     std::set<std::size_t> shown;
     for (const diagram::FlatOutput& output : diagram.outputs) {
-      const Node& node = network_.graph[node_of(output)];
-      if (node.op != Op::variable || node.variable == 0 || output.offset != 0 || output.scale == 0) continue;
-      if (shown.insert(node.variable).second) variables_[node.variable] = {output.name, 1 / output.scale};
+      const auto part = multiple_of_variable(node_of(output));
+      if (!part || part->factor * output.scale == 0 || output.offset != 0) continue;
+      if (shown.insert(part->variable).second)
+        variables_[part->variable] = {output.name, 1 / (part->factor * output.scale)};
+    }
+  }
+
+  struct Multiple {
+    std::size_t variable;
+    double factor;
+  };
+
+  /// What is a number times a state or an unknown, as behind inverters and coefficients.
+  std::optional<Multiple> multiple_of_variable(NodeId id) const {
+    double factor = 1;
+    for (;;) {
+      const Node& node = network_.graph[id];
+      const auto value = [&](NodeId operand) { return network_.graph[operand].value; };
+      if (node.op == Op::variable && node.variable != 0) return Multiple{node.variable, factor};
+      if (node.op == Op::negate) {
+        factor = -factor;
+        id = node.a;
+      } else if (node.op == Op::multiply && network_.graph.is_constant(node.a)) {
+        factor *= value(node.a);
+        id = node.b;
+      } else if ((node.op == Op::multiply || node.op == Op::divide) && network_.graph.is_constant(node.b)) {
+        factor = node.op == Op::divide ? factor / value(node.b) : factor * value(node.b);
+        id = node.a;
+      } else {
+        return std::nullopt;
+      }
     }
   }
 
@@ -157,8 +185,8 @@ class EquationReader {
   void outputs(const diagram::FlatDiagram& diagram) {
     for (const diagram::FlatOutput& output : diagram.outputs) {
       const NodeId id = node_of(output);
-      const Node& node = network_.graph[id];
-      if (node.op == Op::variable && node.variable != 0 && variables_[node.variable].name == output.name)
+      if (const auto part = multiple_of_variable(id);
+          part && output.offset == 0 && variables_[part->variable].name == output.name)
         continue;
       if (apart_.contains(id) && output.offset == 0 && output.scale != 0 && asked_.insert(id).second) {
         names_.at(id) = {output.name, 1 / output.scale};

@@ -2,10 +2,12 @@
 #include <oblique/solve/events/switching.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <oblique/network/program/program.h>
 #include <oblique/solve/events/switching_start.h>
+#include <oblique/solve/events/time_resolution.h>
 #include <oblique/solve/solve_error.h>
 
 namespace oblique::solve {
@@ -78,7 +80,8 @@ std::vector<SlidingMode::Doubt> Switching::doubts_of_slide(double t, std::span<c
     if (due && !slide_.holds(s) && !slide_.follows(s))
       workspace_.set_discrete_state(program_.switches()[s].discrete_state, *due);
   }
-  if (!std::ranges::equal(before, workspace_.discrete_states())) {
+  const std::span<const double> after = workspace_.discrete_states();
+  if (!std::equal(before.begin(), before.end(), after.begin(), after.end())) {
     const bool known = slide_.evaluate(t, x);
     for (std::size_t u = 0; known && u < doubts.size(); ++u) {
       if (slide_.doubt(u) == SlidingMode::Doubt::none) doubts[u] = SlidingMode::Doubt::none;
@@ -230,18 +233,39 @@ const network::Evaluation& Switching::evaluate(double t, std::span<const double>
   return event_functions_.here();
 }
 
+/// Calls `evaluate` at t; on an edge of the segment where some of the values are none, a moment inside.
+template <class Evaluate>
+bool Switching::inside(double t, std::span<const double> values, const Evaluate& evaluate) const {
+  const double near = time_resolution(t);
+  const double inwards = t - begin_ <= near ? 1 : end_ - t <= near ? -1 : 0;
+  if (inwards == 0) return evaluate(t);
+  const auto has_values = [&](double at) {
+    return evaluate(at) &&
+           std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+  };
+  for (const double distance : {0, 2, 16}) {
+    if (has_values(t + inwards * distance * near)) return true;
+  }
+  return evaluate(t);
+}
+
 bool Switching::derivatives(double t, const double* x, double* dxdt) {
-  return slide_.active() ? slide_.derivatives(t, x, dxdt) : program_.derivatives(t, x, dxdt, workspace_);
+  if (slide_.active()) return slide_.derivatives(t, x, dxdt);
+  return inside(t, {dxdt, program_.n_states()},
+                [&](double at) { return program_.derivatives(at, x, dxdt, workspace_); });
 }
 
 bool Switching::jacobian(double t, const double* x, double* values) {
-  return slide_.active() ? slide_.jacobian(t, x, values) : program_.jacobian(t, x, values, workspace_);
+  if (slide_.active()) return slide_.jacobian(t, x, values);
+  return inside(t, {values, program_.jacobian_pattern().entries()},
+                [&](double at) { return program_.jacobian(at, x, values, workspace_); });
 }
 
 bool Switching::signals(double t, const double* x, double* values) {
   interruption_.check();
-  return slide_.active() ? slide_.signals(t, x, values)
-                         : program_.signals(t, x, values, workspace_).has_value();
+  if (slide_.active()) return slide_.signals(t, x, values);
+  return inside(t, {values, program_.n_signals()},
+                [&](double at) { return program_.signals(at, x, values, workspace_).has_value(); });
 }
 
 }  // namespace oblique::solve

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -74,6 +75,13 @@ class Switching {
   /// All event functions at (t, x), and what else follows there. Throws SolveError.
   const network::Evaluation& evaluate(double t, std::span<const double> x);
 
+  /// Where the smooth segment lies that begins now [s]. What has no value on an edge of it, where rounding
+  /// decides whether √(1 − t) is still real, and 0 · ln 0 is nothing, is taken a moment inside.
+  void lies_between(double begin, double end) {
+    begin_ = begin;
+    end_ = end;
+  }
+
   /// dx/dt, its Jacobian and all signals, with what slides held on its switching surfaces.
   bool derivatives(double t, const double* x, double* dxdt);
   bool jacobian(double t, const double* x, double* values);
@@ -108,6 +116,8 @@ class Switching {
   void resume(double t, std::vector<double>& x);
 
  private:
+  template <class Evaluate>
+  bool inside(double t, std::span<const double> values, const Evaluate& evaluate) const;
   std::vector<SlidingMode::Doubt> doubts_of_slide(double t, std::span<const double> x);
   std::optional<EventActions::Effect> serve_events(double t, std::vector<double>& x, bool starting);
   void settle_switches(double t, std::span<const double> x);
@@ -127,6 +137,7 @@ class Switching {
   EventActions actions_;
   FaintTurns faint_turns_;
   LoopJumps loop_jumps_;
+  double begin_ = -std::numeric_limits<double>::infinity(), end_ = std::numeric_limits<double>::infinity();
   int hops_ = 0;  ///< of tables, one after the other at one instant
 };
 

@@ -17,7 +17,7 @@ namespace oblique::solve {
 void take_starts(const network::Program& program, network::Workspace& workspace, double t,
                  std::vector<double>& x, EventLog& log, const std::string& file) {
   constexpr double kUnitRounding = std::numeric_limits<double>::epsilon();
-  constexpr long kMostRoundsInCircle = 100;
+  constexpr long kMostRoundsInCircle = 10'000;  // each may bring them nearer by a thousandth only
   const long starts = std::count_if(program.states().begin(), program.states().end(),
                                     [](const network::State& state) { return state.start_node.has_value(); });
   std::vector<double> signals(program.n_signals());

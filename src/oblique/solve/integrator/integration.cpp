@@ -2,6 +2,7 @@
 #include <oblique/solve/integrator/integration.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <oblique/network/program/program.h>
@@ -114,6 +115,17 @@ Unseen Integration::unseen() const {
     return parts_.program.states()[small.state].tolerance > 0;
   });
   return unseen;
+}
+
+std::vector<std::size_t> Integration::lost(std::span<const double> x) const {
+  constexpr double kErrors = 100;  // of the absolute tolerance: what the steps together leave
+  const std::vector<double> tolerances = absolute_tolerances(settings_, x.size());
+  std::vector<std::size_t> lost;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const bool asked_for = parts_.program.states()[i].tolerance > 0;
+    if (!asked_for && x[i] != 0 && std::abs(x[i]) <= kErrors * tolerances[i]) lost.push_back(i);
+  }
+  return lost;
 }
 
 std::vector<text::Diagnostic> Integration::warnings() const {

@@ -64,6 +64,8 @@ class Integration {
   std::vector<std::vector<double>> sensitivities_at(double t) const { return cvodes_->sensitivities_at(t); }
   /// What the steps did not see.
   Unseen unseen() const;
+  /// Those of the states x, as far as no tolerance was asked for them, that are zero but for errors.
+  std::vector<std::size_t> lost(std::span<const double> x) const;
   /// Whether there was growth that they did not see.
   bool any_unseen_growth() const { return !growth_.found().empty(); }
   /// Warnings about outputs that the states do not give.

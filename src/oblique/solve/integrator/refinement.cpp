@@ -70,6 +70,7 @@ void refine(const Unseen& unseen, std::size_t n_states, Refinement& refinement) 
   for (const FaintTurn& turn : unseen.faint) {
     for (const std::size_t state : turn.states) reach_to(state, kSmallest);
   }
+  for (const std::size_t state : unseen.lost) reach_to(state, kSmallest);
 }
 
 SolverSettings solver_settings(const std::vector<network::State>& states, const RunOptions& options,

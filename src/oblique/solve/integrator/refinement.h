@@ -19,8 +19,9 @@ struct Unseen {
   std::vector<UnseenGrowth> growth;
   std::vector<SmallState> small;
   std::vector<FaintTurn> faint;
+  std::vector<std::size_t> lost;  ///< states that were zero but for errors where a signal had no value
 
-  bool empty() const { return growth.empty() && small.empty() && faint.empty(); }
+  bool empty() const { return growth.empty() && small.empty() && faint.empty() && lost.empty(); }
 };
 
 /// Where a run is to be finer than its tolerance asks, because states that matter are smaller.

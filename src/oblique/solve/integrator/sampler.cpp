@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -66,8 +68,9 @@ void Sampler::advance(double t, const Interpolant& solution) {
   }
 }
 
-/// In the middle of the segment and at its ends, and once more where a parabola through these has its top:
-/// what is missed is of third order in the solver's step.
+/// In the middle of the segment and at its ends; and where a parabola through these has its top, if that may
+/// be an extreme of the run, by parabolas through ever closer neighbours, whose error falls with the third
+/// power of their distance. Missed is a second top between two points of the solver.
 void Sampler::watch(double from, double to, const Interpolant& solution) {
   if (!options_.extremes) return;
   double last = to;
@@ -84,9 +87,32 @@ void Sampler::watch(double from, double to, const Interpolant& solution) {
   const std::vector<double> end = row_;
   for (std::size_t c = 1; c <= diagram_.outputs.size(); ++c) {
     const double curvature = begin_[c] - 2 * middle_[c] + end[c];
-    if (curvature == 0) continue;
-    const double top = 0.5 - (end[c] - begin_[c]) / (4 * curvature);
-    if (top > 0 && top < 1 && top != 0.5) at(from + top * (to - from));
+    double best = 0.5 - (end[c] - begin_[c]) / (4 * curvature);  // as a part of the segment
+    if (!(best > 0 && best < 1)) continue;
+    const auto [low, high] = std::minmax({begin_[c], middle_[c], end[c]});
+    const double doubt = high - low;  // the parabola may miss as much
+    const Extremes& known = result.extremes[c - 1];
+    if (curvature < 0 ? high + doubt <= known.maximum.value : low - doubt >= known.minimum.value) continue;
+    const auto value_at = [&](double part) {
+      at(from + part * (to - from));
+      return row_[c];
+    };
+    double extreme = value_at(best);
+    for (const double distance : {1.0 / 4, 1.0 / 16, 1.0 / 64, 1.0 / 256}) {
+      const double centre = std::clamp(best, distance, 1 - distance);
+      const auto look_at = [&](double part, double value) {
+        if (curvature < 0 ? value > extreme : value < extreme)
+          std::tie(best, extreme) = std::pair(part, value);
+      };
+      const double before = value_at(centre - distance), middle = value_at(centre),
+                   after = value_at(centre + distance);
+      look_at(centre - distance, before);
+      look_at(centre, middle);
+      look_at(centre + distance, after);
+      const double bend = before - 2 * middle + after;
+      const double top = centre - distance * (after - before) / (2 * bend);
+      if (std::abs(top - centre) < distance) look_at(top, value_at(top));
+    }
   }
 }
 
@@ -124,7 +150,8 @@ void Sampler::evaluate(double last, double time, const Interpolant& solution) {
     row_[i + 1] = output.scale * signals_[program_.signal_index(output.signal)] + output.offset;
   }
   for (std::size_t s = 0; s < signals_.size(); ++s) {
-    if (!std::isfinite(signals_[s])) throw_not_finite(diagram_.file, program_.signal_names()[s], time);
+    found_no_value_ = !std::isfinite(signals_[s]);
+    if (found_no_value_) throw_not_finite(diagram_.file, program_.signal_names()[s], time);
     if (std::abs(signals_[s]) > std::abs(result.peaks[s].value)) result.peaks[s] = {signals_[s], time};
   }
 }

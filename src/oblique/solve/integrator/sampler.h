@@ -25,6 +25,11 @@ class Sampler {
   /// Looks for the extremes of the outputs in a segment without events.
   void watch(double from, double to, const Interpolant& solution);
 
+  /// The states where a signal was no finite number; none where there was no such signal.
+  std::span<const double> states_without_value() const {
+    return found_no_value_ ? std::span(states_) : std::span<const double>();
+  }
+
   /// What the rows alone warn of.
   std::vector<text::Diagnostic> warnings() const { return runaway_.warnings(diagram_.file); }
 
@@ -46,6 +51,7 @@ class Sampler {
   RunawayWatch runaway_;
   std::vector<double> states_, signals_, row_;
   std::vector<double> begin_, middle_;  ///< rows of `watch`
+  bool found_no_value_ = false;
   int next_sample_ = 0;
   std::size_t next_extra_ = 0;
 };

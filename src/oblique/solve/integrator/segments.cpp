@@ -87,6 +87,7 @@ void Segments::begin(double t) {
   const double last = std::min(parts_.clock.end(), parts_.options.until);
   end_ = wait ? std::min(t + *wait, last) : last;
   length_ = wait ? std::min(*wait, last - t) : last - t;
+  parts_.switching.lies_between(t, end_);
 }
 
 std::span<const double> Segments::Step::times_left() const {
@@ -247,7 +248,9 @@ bool Segments::turns_without_effect(double at, std::span<const double> sample_ti
   if (!known || parts_.switching.slides() || parts_.states != states) return false;
   for (const network::Switch& s : parts_.program.switches())
     discrete_states[s.discrete_state] = parts_.workspace.discrete_state(s.discrete_state);
-  const bool memories_stand = std::ranges::equal(discrete_states, parts_.workspace.discrete_states());
+  const std::span<const double> now = parts_.workspace.discrete_states();
+  const bool memories_stand =
+      std::equal(now.begin(), now.end(), discrete_states.begin(), discrete_states.end());
   if (memories_act_ && !memories_stand) return false;
   for (std::size_t k = 0; k < times.size(); ++k) {
     if (!parts_.switching.derivatives(times[k], states_there[k].data(), after.data()) || before[k] != after)

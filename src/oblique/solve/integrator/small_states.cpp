@@ -21,6 +21,10 @@ constexpr double kMuch = 1e4;
 /// by far more than what they are rates of.)
 constexpr double kMuchOfEventFunction = 1e-2;
 
+/// A diagram that nowhere comes to so much stands in small units; less than the second is nothing in any
+/// [machine unit].
+constexpr double kSmallUnit = 1e-4, kNothing = 1e-13;
+
 constexpr std::size_t kMostStates = 100;  ///< looked at one by one
 constexpr double kRounding = 1e-15, kAboveRounding = 10;
 
@@ -51,6 +55,7 @@ bool SmallStates::is_small(std::size_t i) const {
 
 void SmallStates::advance(double t, std::span<const double> x) {
   for (std::size_t i = 0; i < x.size(); ++i) peaks_[i] = std::max(peaks_[i], std::abs(x[i]));
+  slides_ = slides_ || !system_.is_jacobian_exact();
   if (steps_++ < next_look_) return;
   next_look_ = 2 * next_look_ + 1;
   look(t, x);
@@ -125,9 +130,13 @@ std::optional<std::size_t> SmallStates::reader_of(std::size_t state) const {
 
 std::vector<SmallState> SmallStates::found() const {
   std::vector<SmallState> found;
+  const bool small_units =
+      n_relative_ > 0 && !slides_ &&
+      std::all_of(peaks_.begin(), peaks_.end(), [](double peak) { return peak < kSmallUnit; });
   for (std::size_t i = 0; i < peaks_.size(); ++i) {
     if (!is_small(i) || peaks_[i] <= kAboveRounding * noise_[i]) continue;
-    if (const auto reader = reader_of(i)) found.push_back({i, peaks_[i], *reader});
+    const auto reader = reader_of(i);
+    if (reader || (small_units && peaks_[i] > kNothing)) found.push_back({i, peaks_[i], reader.value_or(0)});
   }
   return found;
 }

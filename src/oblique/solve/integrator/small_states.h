@@ -24,7 +24,9 @@ struct SmallState {
 /// error that the solver leaves to each such state is put into it, alone and with what it grows to in the
 /// other states (by implicit steps of the linearised equations), and the readings are looked at: outputs in
 /// their units, and the event functions of switches beside their own size. States that are no more than the
-/// rounding of what they integrate are not told of: nothing would make them known. Not installed.
+/// rounding of what they integrate are not told of: nothing would make them known. Where all states of a
+/// diagram are below 1e-4 it stands in small units (amperes of a nerve), and all above 1e-13 matter, but for
+/// slides, which hold states at zero to within errors. Not installed.
 class SmallStates {
  public:
   /// Gives `n_readings` values at (t, x), false where they have none; those from `n_relative` on matter
@@ -41,7 +43,7 @@ class SmallStates {
   /// Looks at the end (t, x) of the run.
   void end(double t, std::span<const double> x) { look(t, x); }
 
-  /// Of the states that were small all the time, those that were read.
+  /// Of the states that were small all the time, those that were read; all of them in small units.
   std::vector<SmallState> found() const;
 
  private:
@@ -59,6 +61,7 @@ class SmallStates {
   std::vector<double> peaks_, noise_;  ///< of the states: largest magnitude, and what rounding makes of them
   std::vector<double> sizes_;          ///< of the readings
   std::vector<double> values_, moved_, off_states_;
+  bool slides_ = false;
   std::map<std::size_t, std::vector<double>>
       moves_;  ///< of each small state, by how much it moves the readings
   /// The first look is late: many a state begins at zero, and is small for some steps only.

@@ -19,6 +19,9 @@ constexpr double kSmooth = 0.25;
 /// What is below this part of the largest value that a source has had is nothing.
 constexpr double kNothing = 1e-9;
 
+/// Of the largest value of a source: extremes are found to this, and overloads.
+constexpr double kSameExtreme = 1e-6, kSamePeak = 1e-3;
+
 /// An event function that is exactly zero at both ends of a part, and within it by bounds as near to zero as
 /// this [machine unit], is the same throughout: a difference of two signals that are one, for a while, whose
 /// bounds cannot know that.
@@ -44,14 +47,16 @@ constexpr std::size_t kMostSamples = 1'000'000;  ///< in a step
 
 }  // namespace
 
-SourceWatch::SourceWatch(const network::Program& program, const network::Workspace& workspace, bool outputs,
+SourceWatch::SourceWatch(const network::Program& program, const network::Workspace& workspace, Shown shown,
                          const std::string& file)
-    : program_(program), workspace_(workspace), file_(file) {
+    : program_(program), workspace_(workspace), file_(file), shown_(shown) {
   for (const network::Source& source : program.sources()) {
-    if (source.acts || outputs) watched_.push_back(source);
+    if (source.acts || shown != Shown::nothing) watched_.push_back(source);
   }
   if (!watched_.empty()) slots_ = program.source_slots();
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   largest_.assign(watched_.size(), 0);
+  seen_.assign(watched_.size(), {kInfinity, -kInfinity});
   if (!active()) return;
   ranges_.resize(program.source_states().size());
   states_.resize(program.n_states());
@@ -89,7 +94,9 @@ SourceWatch::Values SourceWatch::values_at(double t) {
   for (std::size_t k = 0; k < watched_.size(); ++k) {
     const double value = slots_[watched_[k].slot].low;
     values.sources.push_back(value);
-    if (std::isfinite(value)) largest_[k] = std::max(largest_[k], std::abs(value));
+    if (!std::isfinite(value)) continue;
+    largest_[k] = std::max(largest_[k], std::abs(value));
+    seen_[k] = {std::min(seen_[k].low, value), std::max(seen_[k].high, value)};
   }
   return values;
 }
@@ -103,6 +110,20 @@ bool SourceWatch::may_turn(const network::Source& source, double a, double b, co
   const bool passes = (a < 0 && b > 0) || (a > 0 && b < 0);
   if (passes && range.width() <= kPlainPassage * std::abs(b - a)) return false;
   return depth < kDeepestForStates && parts_for_states_++ < kMostForStates;
+}
+
+/// Whether a source with this range over a part of a step, and these values at its ends, may have a new
+/// extreme there, or leave ±1 machine unit and come back.
+bool SourceWatch::hides_extreme(std::size_t k, double a, double b, const network::Interval& range) const {
+  if (shown_ == Shown::nothing) return false;
+  const double same = (shown_ == Shown::extremes ? kSameExtreme : kSamePeak) * largest_[k];
+  network::Interval known = seen_[k];
+  if (shown_ == Shown::overloads) {
+    if (range.low >= -1 - same && range.high <= 1 + same) return false;
+    const bool stays_outside = range.low > 1 - same || range.high < same - 1;
+    if (!stays_outside) known = {std::min(a, b), std::max(a, b)};
+  }
+  return range.high > known.high + same || range.low < known.low - same;
 }
 
 /// Whether every source goes from `from` to `to` as its values there tell.
@@ -127,6 +148,7 @@ bool SourceWatch::is_plain(double from, const Values& at_from, double to, const 
         2 * std::abs(b - a) + kSmooth * std::min(std::abs(a), std::abs(b)) + kNothing * largest_[k];
     if (watched_[k].by_states && depth >= kDeepestUnknown && !std::isfinite(value.width())) continue;
     if (!(value.width() <= shown)) return false;
+    if (!watched_[k].by_states && hides_extreme(k, a, b, value)) return false;
   }
   return true;
 }

@@ -21,9 +21,12 @@ namespace oblique::solve {
 /// states are bounded by the cubic through their values and rates at the ends of a part, and twice its bend.
 class SourceWatch {
  public:
-  /// Looks at the sources that act on the states and switches, and with `outputs` at those too that are only
-  /// shown. Both must outlive this.
-  SourceWatch(const network::Program& program, const network::Workspace& workspace, bool outputs,
+  /// What of the sources is shown: their extremes, or whether they leave ±1 machine unit.
+  enum class Shown { nothing, overloads, extremes };
+
+  /// Looks at the sources that act on the states and switches, and at those too that are only `shown`; of all
+  /// of these no extreme that matters there is hidden. Program, workspace and file must outlive this.
+  SourceWatch(const network::Program& program, const network::Workspace& workspace, Shown shown,
               const std::string& file);
 
   /// How often it may look at most in the whole run.
@@ -43,12 +46,14 @@ class SourceWatch {
   void part(double from, const Values& at_from, double to, const Values& at_to, int depth);
   bool may_turn(const network::Source& source, double a, double b, const network::Interval& range, int depth);
   bool is_plain(double from, const Values& at_from, double to, const Values& at_to, int depth);
+  bool hides_extreme(std::size_t k, double a, double b, const network::Interval& range) const;
   Values values_at(double t);
   void bound(double from, const Values& at_from, double to, const Values& at_to);
 
   const network::Program& program_;
   const network::Workspace& workspace_;
   const std::string& file_;
+  Shown shown_;
   double samples_left_ = 1e9;
   std::vector<network::Source> watched_;
   std::vector<network::Interval> slots_;
@@ -56,6 +61,7 @@ class SourceWatch {
   std::vector<double> states_, rates_;     ///< all of them, at a time
   std::vector<network::Interval> ranges_;  ///< of the source states
   std::vector<double> largest_;            ///< magnitude of each source so far
+  std::vector<network::Interval> seen_;    ///< values of each source so far
   std::vector<double> times_;
   int parts_for_states_ = 0;  ///< of this step, in which an event function of states had to be looked at
 };

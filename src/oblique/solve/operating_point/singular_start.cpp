@@ -130,6 +130,7 @@ bool hold_singular_start(const network::Program& program, network::Workspace& wo
                          const std::vector<double>& states, double span) {
   constexpr double kLongest = 1e-4, kShortest = 1e-9;  // of the run
   constexpr double kAgrees = 1e-6;                     // of 1 + |z|, between two moments
+  constexpr double kRounding = 1e-13;                  // by so little a limit is not made better
   workspace.reset();
   Start start(program, workspace, t, states);
   bool found = false;
@@ -137,9 +138,15 @@ bool hold_singular_start(const network::Program& program, network::Workspace& wo
     for (double h = kLongest * span; h > kShortest * span && !found; h /= 10) {
       Eigen::VectorXd later = start.guess(), sooner = later;
       if (!start.solve(h, later) || !start.solve(h / 2, sooner)) continue;
-      const Eigen::VectorXd limit = 2 * sooner - later;  // the moment's error is of first order
-      found =
-          ((limit - sooner).array().abs() < kAgrees * (1 + limit.array().abs())).all() && start.keep(limit);
+      Eigen::VectorXd limit = 2 * sooner - later;  // the moment's error is of first order
+      if (!((limit - sooner).array().abs() < kAgrees * (1 + limit.array().abs())).all()) continue;
+      Eigen::VectorXd soonest = sooner;
+      if (start.solve(h / 4, soonest)) {  // and of second, unless that one is another solution
+        const Eigen::VectorXd nearer = (8 * soonest - 6 * sooner + later) / 3;
+        const Eigen::ArrayXd change = (nearer - limit).array().abs(), before = (sooner - later).array().abs();
+        if ((change <= before).all() && change.maxCoeff() > kRounding) limit = nearer;
+      }
+      found = start.keep(limit);
     }
   }
   // A root of even order that the loop starts from (y² = x at x = 0) is left with an infinite derivative.

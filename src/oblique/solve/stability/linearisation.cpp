@@ -90,13 +90,13 @@ std::vector<double> Linearisation::largest_in_rows() const {
 
 Eigen::VectorXd balance(const Eigen::MatrixXd& matrix) {
   Eigen::MatrixXd balanced = matrix;
+  balanced.diagonal().setZero();  // it stays as it is, and may be so large beside the rest that this is lost
   Eigen::VectorXd scale = Eigen::VectorXd::Ones(matrix.rows());
-  constexpr int kMostSweeps = 30;
+  constexpr int kMostSweeps = 300;  // of a ring of states it takes about half as many as there are
   for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
     bool changed = false;
     for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
-      const double own = std::abs(balanced(i, i));
-      const double column = balanced.col(i).lpNorm<1>() - own, row = balanced.row(i).lpNorm<1>() - own;
+      const double column = balanced.col(i).lpNorm<1>(), row = balanced.row(i).lpNorm<1>();
       if (!(column > 0) || !(row > 0)) continue;
       const double factor = std::exp2(std::round(std::log2(row / column) / 2));
       if (factor == 1) continue;

@@ -87,7 +87,7 @@ function Knob({pot, turn}: {pot: Pot; turn: (name: string, value: number) => voi
   };
   return (
     <div class="knob">
-      <label for={`pot-${pot.name}`}>{pot.name}</label>
+      <label for={`pot-${pot.name}`}>{pot.name.split(/(?<=[._])/).map((part) => <>{part}<wbr /></>)}</label>
       <input type="range" aria-label={`${pot.name}, dragged`} disabled={!slides} min={low} max={high} step={(high - low) / 400} value={slides ? pot.value : 0}
         onInput={(event) => turn(pot.name, Number((event.target as HTMLInputElement).value))} />
       <input id={`pot-${pot.name}`} type="text" inputMode="decimal" value={short(pot.value)} onChange={typed} />

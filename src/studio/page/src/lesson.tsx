@@ -60,20 +60,21 @@ function Question({session, question}: {session: Session; question: NonNullable<
 
 export function Lesson({session}: {session: Session}) {
   const lesson = useShown(session, (shown) => shown.lesson);
+  const file = useShown(session, (shown) => shown.file.name);
   const [at, setAt] = useState(0);
-  useEffect(() => setAt(0), [lesson?.title]);
+  useEffect(() => setAt(0), [file]);
   if (!lesson) return null;
   const last = lesson.steps.length + (lesson.question ? 1 : 0);
   const step = lesson.steps[at - 1];
   return (
     <section class="lesson" aria-label="Lesson">
-      <h2>{lesson.title}</h2>
+      {lesson.title && <h2>{lesson.title}</h2>}
       <div class="lesson-steps" role="group" aria-label="Steps of the lesson">
         <button disabled={at === 0} onClick={() => setAt(at - 1)}>Back</button>
         <output>{at === 0 ? "to begin with" : step ? `step ${at} of ${lesson.steps.length}` : "a question"}</output>
         <button disabled={at === last} onClick={() => setAt(at + 1)}>Next</button>
       </div>
-      {at === 0 ? <Paragraphs text={lesson.text} /> : step ? <Step key={at} session={session} step={step} number={at} /> : <Question session={session} question={lesson.question!} />}
+      {at === 0 ? <Paragraphs text={lesson.text} /> : step ? <Step key={`${file} ${at}`} session={session} step={step} number={at} /> : <Question key={file} session={session} question={lesson.question!} />}
     </section>
   );
 }

@@ -190,7 +190,7 @@ export class Session {
     return this.inTurn(async () => {
       this.turned = new Map();
       this.saved = "";
-      this.set({file: {name: "", text: ""}, held: undefined, kind: "", title: "", diagram: "", schematic: "", pots: [], lamps: [], remarks: [], mode: "initial", time: 0,
+      this.set({file: {name: "", text: ""}, held: undefined, kind: "", title: "", lesson: null, diagram: "", schematic: "", pots: [], lamps: [], remarks: [], mode: "initial", time: 0,
         meter: {name: "", value: NaN, unit: ""}, values: new Map()});
       this.trace([]);
     });
@@ -416,7 +416,7 @@ export class Session {
       const patched = await machine.ask<Patched>("patch", next.text, {gain, split, force: how.force ?? false}, next.name);
       if (!isNewest() || !this.good(patched)) return false;
       diagram = patched.text;
-      if (patched.judgement) remarks.push(patched.judgement);
+      if (patched.judgement) remarks.push(`as patched, ${patched.judgement}`);
     }
     // a diagram is drawn by its patch panel
     const drawn = opened.kind === "mechanism" ? await machine.ask<Drawn>("draw", diagram, {theme: "auto", data: true}, next.name) : undefined;
@@ -433,8 +433,8 @@ export class Session {
     for (const [pot, value] of how.turned ?? []) if (this.good(await machine.ask("console.turn", pot, value))) turned.set(pot, value);
     const values = await machine.ask<Read>("console.read", ...held.pots);
     const mode: Mode = how.restore ? "hold" : "initial";
-    if (how.restore) await machine.ask("console.restore", how.restore);
-    else await machine.ask("console.setMode", mode);
+    if (how.restore) this.good(await machine.ask("console.restore", how.restore));
+    const stands = await machine.ask<Held>("console.setMode", mode);
     this.turned = turned;
     this.until = opened.kind === "diagram" ? opened.until : 0;
     this.renamed = [];
@@ -443,7 +443,7 @@ export class Session {
     const way = opened.kind === "mechanism" ? held.outputs.slice(2, 4) : [];
     const isWay = way.length === 2;
     this.set({
-      file: next, lesson: opened.lesson ?? null, kind: opened.kind, title: opened.title, gain, split, diagram, schematic: drawn?.ok ? drawn.svg : "", held, remarks, mode, time: held.time, lamps: [], repeats: undefined,
+      file: next, lesson: opened.lesson ?? null, kind: opened.kind, title: opened.title, gain, split, diagram, schematic: drawn?.ok ? drawn.svg : "", held, remarks, mode, time: stands.ok ? stands.time : held.time, lamps: [], repeats: undefined,
       pots: inOrder(held.pots.map((name, k) => ({name, value: values.numbers[k]!, unit: values.units[k] ?? ""}))),
       meter: {name: "", value: NaN, unit: ""}, values: new Map(),
     });
@@ -516,6 +516,13 @@ export class Session {
     await this.meter(this.shown.meter.name);
     await this.look();
     for (const companion of this.companions) await companion.went?.();
+    if (this.shown.mode === "hold") await this.save();
+  }
+
+  /// Keeps the state that the machine comes back to.
+  private async save(): Promise<void> {
+    const saved = await this.machine.ask<Saved>("console.save");
+    if (saved.ok) this.saved = saved.state;
   }
 
   private async frame(seconds: number): Promise<void> {
@@ -547,8 +554,7 @@ export class Session {
       second = at;
       await this.lookAtLamps();
       await this.meter(this.shown.meter.name);
-      const saved = await this.machine.ask<Saved>("console.save");
-      if (saved.ok) this.saved = saved.state;
+      await this.save();
     };
     const step = (at: number) => {
       requestAnimationFrame(step);

@@ -72,19 +72,22 @@ export class Desk extends Store<DeskShown> {
   }
 
   /// Has the engine hold the mechanism of the file, where it does not yet. A machine that begins again, or is patched anew, has
-  /// the same one: what is in the hand stays there.
-  private async open(): Promise<void> {
+  /// the same one: what is in the hand stays there. Where another one stands, if one was opened.
+  private async open(): Promise<Position | undefined> {
     const {file: {name, text}, kind} = this.session.shown, {starts} = this.session.machine, before = this.opened;
-    if (kind !== "mechanism") return;
+    if (kind !== "mechanism") return undefined;
     const isSame = before?.name === name && before.text === text;
-    if (isSame && before.starts === starts) return;
+    if (isSame && before.starts === starts) return undefined;
     const mechanism = await this.ask<OpenedMechanism>("mechanism.open", text, name);
-    if (!mechanism.ok) return;
-    this.opened = {name, text, starts};
-    if (isSame) return;
-    this.set({mechanism, events: undefined, dragging: undefined});
+    if (!mechanism.ok) return undefined;
+    const mine = this.opened = {name, text, starts};
+    if (isSame) return undefined;
+    const position = await this.ask<Position>("mechanism.follow", this.now.magnification);
+    if (this.opened !== mine) return undefined;
+    this.set({mechanism, position: position.ok ? position : undefined, events: undefined, dragging: undefined});  // at once: both are of one picture
     // what is met takes the way of a whole round: after the page can be used
     setTimeout(() => void this.meet(mechanism).catch(ignoreStops), 200);
+    return position;
   }
 
   private async meet(mechanism: OpenedMechanism): Promise<void> {
@@ -93,8 +96,7 @@ export class Desk extends Store<DeskShown> {
   }
 
   private async follow(): Promise<void> {
-    await this.open();
-    const position = await this.ask<Position>("mechanism.follow", this.now.magnification);
+    const position = await this.open() ?? await this.ask<Position>("mechanism.follow", this.now.magnification);
     if (!position.ok) return;
     const {diagram, time} = this.session.shown;
     if (this.fits !== diagram && position.suggested && time > 0) {

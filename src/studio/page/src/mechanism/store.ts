@@ -34,7 +34,7 @@ export class Newest {
 
   ask(work: () => Promise<void>): void {
     this.waits = work;
-    this.running ??= this.work().finally(() => { this.running = undefined; });
+    this.running ??= this.work();
   }
 
   /// Resolves where nothing is under way any more.
@@ -43,13 +43,17 @@ export class Newest {
   }
 
   private async work(): Promise<void> {
-    for (let next = this.waits; next; next = this.waits) {
-      this.waits = undefined;
-      try {
-        await next();
-      } catch (error) {
-        if (!(error instanceof Stopped)) throw error;
+    try {
+      for (let next = this.waits; next; next = this.waits) {
+        this.waits = undefined;
+        try {
+          await next();
+        } catch (error) {
+          if (!(error instanceof Stopped)) throw error;
+        }
       }
+    } finally {
+      this.running = undefined;  // at once: what is asked from here on is no more seen above
     }
   }
 }

@@ -23,6 +23,19 @@ function keysOf(patching: Patching, event: KeyboardEvent): void {
   void (key === "y" || event.shiftKey ? patching.redo() : patching.undo());
 }
 
+/// How large the picture is.
+function Zoom({zoom, least, set}: {zoom: number; least: number; set: (zoom: number) => void}) {
+  return (
+    <>
+      <button aria-label="Smaller" disabled={zoom <= least} onClick={() => set(Math.max(least, zoom / 1.25))}>−</button>
+      <button aria-label="Larger" disabled={zoom >= 3} onClick={() => set(Math.min(3, zoom * 1.25))}>+</button>
+    </>
+  );
+}
+
+/// A picture that is shown as wide as its place, or zoomed.
+const zoomed = (classes: string, zoom: number) => ({class: zoom > 1 ? `${classes} zoomed` : classes, style: {"--zoom": zoom}});
+
 function Bench({session, patching}: {session: Session; patching: Patching}) {
   const {sheet, isOld, from, refusal} = usePanel(patching);
   const machine = useShown(session, (shown) => (shown.held ? shown.file.name : ""));
@@ -65,8 +78,7 @@ function Bench({session, patching}: {session: Session; patching: Patching}) {
         <button disabled={!patching.panel.canUndo} title="Ctrl+Z" onClick={() => void patching.undo()}>Undo</button>
         <button disabled={!patching.panel.canRedo} title="Ctrl+Y" onClick={() => void patching.redo()}>Redo</button>
         <button aria-pressed={adds} onClick={() => setAdds(!adds)}>Add an element</button>
-        <button aria-label="Smaller" onClick={() => setZoom(Math.max(0.25, zoom / 1.25))}>−</button>
-        <button aria-label="Larger" onClick={() => setZoom(Math.min(3, zoom * 1.25))}>+</button>
+        <Zoom zoom={zoom} least={0.25} set={setZoom} />
         {from && <span role="status">from {from}: pick an input</span>}
       </div>
       <Voltages session={session} place={place} />
@@ -92,12 +104,12 @@ function Bench({session, patching}: {session: Session; patching: Patching}) {
 }
 
 /// The patch of a mechanism, to be seen only.
-function Shown({session, schematic}: {session: Session; schematic: string}) {
+function Shown({session, schematic, zoom}: {session: Session; schematic: string; zoom: number}) {
   const place = useRef<HTMLDivElement>(null);
   return (
     <>
       <Voltages session={session} place={place} />
-      <div class="picture schematic" ref={place} role="group" aria-label="Schematic: the arrow keys go from element to element, the voltmeter reads it" dangerouslySetInnerHTML={{__html: schematic}} />
+      <div {...zoomed("picture schematic", zoom)} ref={place} role="group" aria-label="Schematic: the arrow keys go from element to element, the voltmeter reads it" dangerouslySetInnerHTML={{__html: schematic}} />
     </>
   );
 }
@@ -105,6 +117,7 @@ function Shown({session, schematic}: {session: Session; schematic: string}) {
 /// The inside of a composite, with a way back.
 function Inside({session, patching, path, svg}: {session: Session; patching: Patching; path: string; svg: string}) {
   const place = useRef<HTMLDivElement>(null);
+  const [zoom, setZoom] = useState(1);
   const parts = path.split(".");
   const enter = (event: Event) => {
     const id = (event.target as SVGElement).closest("[id^='block-']")?.id.slice("block-".length);
@@ -115,10 +128,11 @@ function Inside({session, patching, path, svg}: {session: Session; patching: Pat
       <div class="tools" role="toolbar" aria-label="Composite">
         <button onClick={() => void patching.open("")}>Back to the diagram</button>
         {parts.map((part, k) => <button class="link" onClick={() => void patching.open(parts.slice(0, k + 1).join("."))}>{part}</button>)}
+        <Zoom zoom={zoom} least={1} set={setZoom} />
         <span class="quiet">as the block's file has it, to be seen only</span>
       </div>
       <Voltages session={session} place={place} />
-      <div class="picture schematic inside" ref={place} dangerouslySetInnerHTML={{__html: svg}} onDblClick={enter} />
+      <div {...zoomed("picture schematic inside", zoom)} ref={place} dangerouslySetInnerHTML={{__html: svg}} onDblClick={enter} />
     </>
   );
 }
@@ -127,6 +141,7 @@ export function PatchPanel({session, patching}: {session: Session; patching: Pat
   const {sheet, inside, isOld} = usePanel(patching);
   const schematic = useShown(session, (shown) => shown.schematic);
   const kind = useShown(session, (shown) => shown.kind);
+  const [zoom, setZoom] = useState(1);
   useEffect(() => {
     const keys = (event: KeyboardEvent) => keysOf(patching, event);
     addEventListener("keydown", keys);
@@ -140,8 +155,9 @@ export function PatchPanel({session, patching}: {session: Session; patching: Pat
         <button disabled={!patching.panel.canUndo} title="Ctrl+Z" onClick={() => void patching.undo()}>Undo</button>
         <button disabled={!patching.panel.canRedo} title="Ctrl+Y" onClick={() => void patching.redo()}>Redo</button>
         {kind === "mechanism" && <button title="the patch becomes a diagram of its own" onClick={() => void patching.editPatch()}>Edit the patch</button>}
+        <Zoom zoom={zoom} least={1} set={setZoom} />
       </div>
-      <Shown session={session} schematic={schematic} />
+      <Shown session={session} schematic={schematic} zoom={zoom} />
     </>
   );
 }

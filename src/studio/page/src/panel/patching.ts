@@ -140,8 +140,9 @@ export class Patching {
 
   /// An empty diagram in place of what is here.
   begin(): void {
-    void this.session.clear();
-    void this.session.load(emptyFile);
+    const {session} = this;
+    void session.clear();
+    void session.load(emptyFile).then(() => { if (session.shown.written === emptyFile.text) session.set({findings: []}); });  // that it is empty is meant
   }
 
   /// The patch of a mechanism becomes a diagram of one's own.

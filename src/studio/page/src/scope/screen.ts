@@ -193,7 +193,7 @@ export function screenOf(given: Given): Screen {
   }
   const xLabel = overSignal ? withUnit(names[against]!, units[against] ?? "") : `${given.fromTrigger ? "t from the trigger" : "t"} [${timeUnit}]`;
   labels.push({x: frame.x, y: frame.y + frame.height + 34, text: xLabel, anchor: "start", ink: "ink", size});
-  labels.push({x: 14, y: frame.y + frame.height / 2, text: ownInk !== undefined ? withUnit(names[ownInk]!, units[ownInk] ?? "") : yUnit ? `[${yUnit}]` : alike.length === 1 ? names[alike[0]!]! : "in the unit of each",
+  labels.push({x: 14, y: frame.y + frame.height / 2, text: ownInk !== undefined ? withUnit(names[ownInk]!, units[ownInk] ?? "") : yUnit ? `[${yUnit}]` : alike.length === 1 ? names[alike[0]!]! : alike.length > 1 ? "in the unit of each" : "",
     anchor: "middle", ink: ownInk ?? "ink", size, upwards: true});
   if (given.status) labels.push({x: frame.x + frame.width, y: frame.y + frame.height + 34, text: given.status, anchor: "end", ink: "quiet", size: 11});
 

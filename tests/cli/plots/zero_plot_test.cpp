@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "../support/arm.h"
+#include "../../support/arm.h"
 #include "plot_reading.h"
 
 namespace oblique::test {

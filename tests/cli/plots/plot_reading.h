@@ -16,8 +16,8 @@
 
 #include <oblique/draw/picture/picture.h>
 
-#include "../support/process.h"
-#include "../support/scratch_folder.h"
+#include "../../support/process.h"
+#include "../../support/scratch_folder.h"
 
 // What the tests of --plot and report share.
 namespace oblique::test {
