@@ -167,5 +167,19 @@ TEST(SwitchAtZero, HoldsNeitherWay) {
   }
 }
 
+// Nor do they where something else goes by them.
+TEST(SwitchAtZero, HoldsNeitherWayWhereIntegratorsReadIt) {
+  const std::string rest = "x = { type = \"integrator\", in = \"0*x\" }\n";
+  const std::string above = "a = { type = \"comparator\", in = \"x\" }\n";
+  const std::string below = "b = { type = \"comparator\", in = \"-x\" }\n";
+  const std::string readers =
+      "i = { type = \"integrator\", in = \"a\" }\nj = { type = \"integrator\", in = \"b\" }\n";
+  for (const std::string& blocks : {rest + above + below + readers, readers + below + above + rest}) {
+    const oblique::solve::Run run = testing::run_of(testing::Compiled(blocks));
+    EXPECT_THAT(testing::row_values(run, "i"), ::testing::Each(0)) << blocks;
+    EXPECT_THAT(testing::row_values(run, "j"), ::testing::Each(0)) << blocks;
+  }
+}
+
 }  // namespace
 }  // namespace oblique::solve

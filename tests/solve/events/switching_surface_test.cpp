@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 #include <string>
 
 #include <fmt/format.h>
@@ -235,6 +236,43 @@ c = { type = "sign", in = "clock" }
     if (t[row] == 1) continue;                                                             // there it jumps
     EXPECT_NEAR(x[row], std::min(0.5, t[row] < 1 ? t[row] : t[row] - 1), 1e-7) << t[row];  // ten tolerances
   }
+}
+
+// At its limit of 0.5 an integrator of sin t + 0.35 stays until that falls below zero, at t = π + arcsin
+// 0.35, and then goes down: from both sides, so that nothing is open there.
+TEST(Slide, IsLeftInSilenceByALimitedIntegrator) {
+  const Compiled made(R"toml(
+f = { type = "time-function", formula = "sin(time) + 0.35" }
+a = { type = "integrator", in = "f", limit = 0.5 }
+b = { type = "integrator", in = "a", limit = 0.8 }
+c = { type = "integrator", in = "b", limit = 1.1 }
+)toml");
+  const oblique::solve::Run result = run_of(made, {.until = 8, .samples = 81});
+  EXPECT_THAT(result.warnings, ::testing::IsEmpty());
+  const double leaves = std::numbers::pi + std::asin(0.35);
+  const std::vector<double> t = row_values(result, "t"), a = row_values(result, "a");
+  for (std::size_t row = 0; row < t.size(); ++row) {
+    if (t[row] < leaves || t[row] > 5) continue;
+    const double truth = 0.5 + std::cos(leaves) - std::cos(t[row]) + 0.35 * (t[row] - leaves);
+    EXPECT_NEAR(a[row], truth, 1e-6) << t[row];
+  }
+}
+
+// c = ±1 by the sign of 0.5 c − x, x = 0.1: it agrees with itself on both sides.
+TEST(Switch, IsToldOfWhereItCouldStartOnItsOtherSide) {
+  const std::string rest = "c = { type = \"comparator\", in = \"m\", low = -1, high = 1 }\n";
+  const auto told = run_of(Compiled("x = { type = \"integrator\", in = \"c\", initial = 0.1 }\n"
+                                    "m = { type = \"summer\", in = [\"-x\", \"0.5*c\"] }\n" +
+                                    rest),
+                           {.until = 1});
+  ASSERT_EQ(told.warnings.size(), 1U);
+  EXPECT_THAT(told.warnings.front().what,
+              ::testing::StartsWith("the loop of the switches of 'c' has several solutions: at t = 0 s"));
+  const auto one = run_of(Compiled("x = { type = \"integrator\", in = \"c\", initial = 0.6 }\n"
+                                   "m = { type = \"summer\", in = [\"-x\", \"0.5*c\"] }\n" +
+                                   rest),
+                          {.until = 1});
+  EXPECT_THAT(one.warnings, ::testing::IsEmpty());
 }
 
 }  // namespace

@@ -7,6 +7,17 @@
 
 namespace oblique::solve {
 
+std::optional<double> announced_position(const network::SwitchStructure& structure,
+                                         const Announced& announced, std::size_t s) {
+  std::optional<double> position;
+  for (const std::uint32_t member : structure.members[structure.unit[s]]) {
+    if (announced[member])
+      position =
+          structure.opposite[member] == structure.opposite[s] ? *announced[member] : 1 - *announced[member];
+  }
+  return position;
+}
+
 EventFunctions::EventFunctions(const network::Program& program, network::Workspace& workspace,
                                double tolerance, double absolute_tolerance, const std::string& file)
     : program_(program),

@@ -18,6 +18,10 @@ namespace oblique::solve {
 /// is.
 using Announced = std::vector<std::optional<double>>;
 
+/// Where the announced ones of a unit of switches put one of them; nothing where none is.
+std::optional<double> announced_position(const network::SwitchStructure& structure,
+                                         const Announced& announced, std::size_t s);
+
 /// The event functions of all switches at one instant, and how well they are known there. Not installed.
 class EventFunctions {
  public:

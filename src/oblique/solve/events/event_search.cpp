@@ -92,8 +92,8 @@ EventSearch::EventSearch(const network::Program& program, network::Workspace& wo
     check_interval_ = std::min(check_interval_, s.check_interval);
 }
 
-/// Of a slide, in the order of a sample: above 0 where a share leaves its range, the sides drive apart, or
-/// what follows on a side is due.
+/// Of a slide, in the order of a sample: above 0 where a share leaves its range, the sides drive apart, an
+/// event function jumps between them, or what follows on a side is due.
 std::vector<double> EventSearch::slide_crossed() {
   std::vector<double> crossed;
   for (const double share : slide_.shares()) {
@@ -102,6 +102,8 @@ std::vector<double> EventSearch::slide_crossed() {
   }
   for (std::size_t unit = 0; unit < slide_.units().size(); ++unit)
     crossed.push_back(slide_.repulsion(unit).value_or(kAttracted) - SlidingMode::kNoRepulsion);
+  const auto jump = slide_.largest_jump();
+  crossed.push_back(jump ? *jump - SlidingMode::drift() : -kInfinity);
   for (std::size_t side = 0; side < slide_.sides(); ++side) {
     for (std::size_t f = 0; f < slide_.followers().size(); ++f)
       crossed.push_back(slide_.crossed(side, f) - thresholds_[slide_.followers()[f]]);

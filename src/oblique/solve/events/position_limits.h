@@ -21,6 +21,13 @@ inline constexpr double kAboutToTurn = 0.05;
 /// Rounding of a rate, of the fastest state's; and of an event function [machine unit].
 inline constexpr double kRounding = 1e-13;
 
+/// What is no jump of an event function with the position of another unit, where units lie as far as `off`
+/// from their switching points: what bends there differs by as much.
+inline double no_jump(double off) {
+  constexpr double kSteepest = 10;
+  return kRounding + kSteepest * off;
+}
+
 /// Whether a rate takes an event function out of its rounding at all in a run as long as `span` [s]: where
 /// all is at rest there is no faster state beside which to see that it is rounding.
 inline bool leaves_rounding(double rate, double span) {

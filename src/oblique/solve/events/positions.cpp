@@ -114,25 +114,37 @@ bool Positions::take(Combination sides, const std::vector<double>& preferred, do
 }
 
 /// Puts the switches of a unit that stays at zero where each prefers to be, which no side of it may be: at
-/// zero exactly none of them need hold. But only where the equations are then the same.
+/// zero exactly none of them need hold. But only where nothing changes in that it stays there.
 void Positions::prefer_where_nothing_changes(std::uint32_t unit, const std::vector<double>& preferred,
                                              double t, std::span<const double> x) {
   const std::vector<double> positions(workspace_.discrete_states().begin(),
                                       workspace_.discrete_states().end());
-  using Equations = std::pair<std::vector<double>, std::vector<double>>;  // dx/dt and event functions
-  const auto evaluate = [&]() -> std::optional<Equations> {
-    Equations found{std::vector<double>(program_.n_states()), std::vector<double>(preferred.size())};
-    const auto here = program_.event_functions(t, x.data(), found.second.data(), workspace_);
+  struct Surface {
+    std::vector<double> event_functions, rates;
+  };
+  const auto evaluate = [&]() -> std::optional<Surface> {
+    Surface found{std::vector<double>(preferred.size()), std::vector<double>(preferred.size())};
+    std::vector<double> derivatives(program_.n_states());
+    const auto here = program_.event_functions(t, x.data(), found.event_functions.data(), workspace_);
     if (!here) return std::nullopt;
-    here->derivatives(found.first.data());
+    here->derivatives(derivatives.data());
+    here->event_function_rates(derivatives.data(), found.rates.data());
     return found;
   };
   const auto before = evaluate();
   if (!before) return;
-  for (const std::uint32_t s : program_.switch_structure().members[unit])
+  const auto& members = program_.switch_structure().members[unit];
+  for (const std::uint32_t s : members) {
     workspace_.set_discrete_state(program_.switches()[s].discrete_state,
-                                  before->second[s] == 0 ? 0 : preferred[s]);
-  if (evaluate() != before) workspace_.load_discrete_states(positions);
+                                  before->event_functions[s] == 0 ? 0 : preferred[s]);
+  }
+  const auto after = evaluate();
+  const bool stays =
+      after && std::all_of(members.begin(), members.end(), [&](std::uint32_t s) {
+        const double still = std::max(std::abs(before->rates[s]), kRounding * trials_.fastest());
+        return after->event_functions[s] == before->event_functions[s] && std::abs(after->rates[s]) <= still;
+      });
+  if (!stays) workspace_.load_discrete_states(positions);
 }
 
 /// Slides along as few units as possible. To events, what slides stays where it was.

@@ -115,4 +115,29 @@ Agreement choose_any(const network::Program& program, network::Workspace& worksp
   return {!chosen.empty(), {}};
 }
 
+std::optional<std::uint32_t> find_open(const network::Program& program, const network::Workspace& workspace,
+                                       const SlidingMode& slide, const Thresholds& thresholds, double span,
+                                       double t, std::span<const double> x) {
+  std::vector<double> event_functions(program.switches().size());
+  std::vector<bool> in_loop(event_functions.size(), false);
+  for (std::size_t loop = 0; loop < program.loops().size(); ++loop) {
+    const std::vector<bool> follows = program.switch_structure().followers_of_loop(loop);
+    for (std::size_t s = 0; s < follows.size(); ++s) in_loop[s] = in_loop[s] || follows[s];
+  }
+  for (std::uint32_t s = 0; s < event_functions.size(); ++s) {
+    const network::Switch& made = program.switches()[s];
+    const bool feeds_itself =
+        made.turning == network::Turning::jumps && !made.rate && program.switch_structure().depends(s, s);
+    if (!feeds_itself || in_loop[s] || slide.holds(s) || slide.follows(s)) continue;
+    network::Workspace trial = workspace;
+    std::vector<bool> placed(event_functions.size(), false);
+    placed[s] = true;
+    trial.set_discrete_state(made.discrete_state, 1 - workspace.discrete_state(made.discrete_state));
+    if (place_others(program, trial, thresholds, placed, t, x, event_functions) &&
+        agrees(program, trial, slide, thresholds, span, t, x))
+      return s;
+  }
+  return std::nullopt;
+}
+
 }  // namespace oblique::solve

@@ -35,4 +35,10 @@ Agreement choose_any(const network::Program& program, network::Workspace& worksp
                      const Thresholds& thresholds, double span, std::vector<std::uint32_t> restless, double t,
                      std::span<const double> x);
 
+/// The first switch with a jump that agrees with itself on its other side too, all others settled with it;
+/// nothing where there is none. (Of algebraic loops see OtherSolutions: those are left out.)
+std::optional<std::uint32_t> find_open(const network::Program& program, const network::Workspace& workspace,
+                                       const SlidingMode& slide, const Thresholds& thresholds, double span,
+                                       double t, std::span<const double> x);
+
 }  // namespace oblique::solve

@@ -36,11 +36,41 @@ SideTrials::SideTrials(const network::Program& program, network::Workspace& work
 
 void SideTrials::run(std::vector<std::uint32_t> units, Bends& bends, double t, std::span<const double> x) {
   units_ = std::move(units);
-  broken_by_ = broken_by(program_, units_);
   before_.assign(workspace_.discrete_states().begin(), workspace_.discrete_states().end());
   fastest_ = 0;
   trials_.clear();
   for (Combination sides = 0; sides < combinations(); ++sides) trials_.push_back(attempt(sides, bends, t, x));
+  find_broken();
+}
+
+/// Where an event function jumps with the position of another unit, but by nothing here, it is not broken by
+/// that: a level that a product with zero makes, say.
+void SideTrials::find_broken() {
+  broken_by_ = broken_by(program_, units_);
+  double off = 0;
+  for (std::size_t u = 0; u < units_.size(); ++u) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const auto& trial : trials_) {
+      if (trial) nearest = std::min(nearest, std::abs(trial->event_functions[u]));
+    }
+    off = std::max(off, nearest);
+  }
+  for (std::size_t u = 0; u < units_.size(); ++u) {
+    for (std::size_t v = 0; v < units_.size(); ++v) {
+      if (u != v && largest_jump(u, v) <= no_jump(off)) broken_by_[u] &= ~(std::uint64_t{1} << v);
+    }
+  }
+}
+
+/// By how much the event function of a unit jumps at most with the position of another.
+double SideTrials::largest_jump(std::size_t unit, std::size_t with) const {
+  double largest = 0;
+  for (Combination sides = 0; sides < combinations(); ++sides) {
+    const auto &here = trials_[sides], &there = trials_[sides ^ (1U << with)];
+    if (!here || !there) return std::numeric_limits<double>::infinity();
+    largest = std::max(largest, std::abs(here->event_functions[unit] - there->event_functions[unit]));
+  }
+  return largest;
 }
 
 double SideTrials::of_unit(const std::vector<double>& of_switches, std::size_t unit) const {

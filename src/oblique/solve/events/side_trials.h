@@ -67,6 +67,8 @@ class SideTrials {
   };
 
   std::optional<Trial> attempt(Combination sides, Bends& bends, double t, std::span<const double> x);
+  void find_broken();
+  double largest_jump(std::size_t unit, std::size_t with) const;
   int direction(Combination sides, std::size_t unit) const;
   bool jumps(std::size_t unit) const;
   std::vector<double> of_units(const std::vector<double>& of_switches) const;

@@ -13,8 +13,8 @@
 namespace oblique::solve {
 
 /// Of each of these units, up to 64, the others (as bits) whose positions break its event function: a unit
-/// whose event function jumps or bends with its own position, or jumps with that of another, is none to slide
-/// on.
+/// whose event function jumps or bends with its own position is none to slide on, nor is one that jumps with
+/// that of another, where that makes a difference.
 std::vector<std::uint64_t> broken_by(const network::Program& program,
                                      const std::vector<std::uint32_t>& units);
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include <oblique/solve/events/position_limits.h>
 #include <oblique/solve/events/slide_shares.h>
 
 namespace oblique::solve {
@@ -154,10 +155,15 @@ bool SlidingMode::begin(std::vector<std::uint32_t> units, double t, std::span<co
   bool possible = sides_.are_all();
   for (SlideSide& side : sides_) possible = possible && settle(side, t, x);
   const std::vector<std::uint64_t> broken = broken_by(program_, units_);
-  possible = possible && std::none_of(broken.begin(), broken.end(), [](std::uint64_t by) { return by != 0; });
+  may_jump_.assign(units_.size(), false);
+  for (std::size_t u = 0; u < units_.size(); ++u) {
+    may_jump_[u] = broken[u] != 0;
+    possible = possible && (broken[u] >> u & 1U) == 0;
+  }
   shares_.assign(units_.size(), 0.5);
   const auto within = [](double share) { return share >= -kEdgeOfSlide && share <= 1 + kEdgeOfSlide; };
-  if (possible && evaluate(t, x) && std::all_of(shares_.begin(), shares_.end(), within) && lasts(t, x)) {
+  if (possible && evaluate(t, x) && !(largest_jump().value_or(0) > 0) &&
+      std::all_of(shares_.begin(), shares_.end(), within) && lasts(t, x)) {
     bool attracts = true;
     for (std::size_t u = 0; u < units_.size(); ++u)
       attracts = attracts && !(repulsion(u).value_or(0) > kNoRepulsion);
@@ -175,6 +181,7 @@ bool SlidingMode::begin(std::vector<std::uint32_t> units, double t, std::span<co
 void SlidingMode::end() {
   if (active()) load_base();
   units_.clear();
+  may_jump_.clear();
   followers_.clear();
   segments_.clear();
   std::fill(follows_.begin(), follows_.end(), false);
@@ -310,10 +317,27 @@ bool SlidingMode::lasts(double t, std::span<const double> x) {
   const double dt = std::min(kSoon / fastest, kSoon * span_);
   for (std::size_t i = 0; i < moved_.size(); ++i) moved_[i] = x[i] + dt * moved_[i];
   const bool valid = evaluate(t + dt, moved_);
-  bool stays = valid;
+  bool stays = valid && !(largest_jump().value_or(0) > 0);
   for (std::size_t u = 0; stays && u < now.size(); ++u) stays = std::abs(shares_[u] - now[u]) < kJump;
   shares_ = now;
   return evaluate(t, x) && stays;
+}
+
+std::optional<double> SlidingMode::largest_jump() const {
+  if (std::find(may_jump_.begin(), may_jump_.end(), true) == may_jump_.end()) return std::nullopt;
+  double off = 0, largest = 0;
+  for (std::size_t u = 0; u < units_.size(); ++u) {
+    double lowest = std::numeric_limits<double>::infinity(), highest = -lowest, nearest = lowest;
+    for (const SlideSide& side : sides_) {
+      const double value = sides_.of_unit(side.event_functions, u);
+      lowest = std::min(lowest, value);
+      highest = std::max(highest, value);
+      nearest = std::min(nearest, std::abs(value));
+    }
+    off = std::max(off, nearest);
+    if (may_jump_[u]) largest = std::max(largest, highest - lowest);
+  }
+  return largest - no_jump(off);
 }
 
 void SlidingMode::mixed_rates(std::span<double> rates) const {

@@ -77,6 +77,10 @@ class SlidingMode {
   bool is_torn(std::size_t s) const;
   /// How far from zero an event function that has been slid along may have drifted [as the event function].
   static double drift() { return 1e-7; }
+  /// By how much more than where they bend the event functions of units jump between the sides: those that
+  /// depend on a position that jumps, where that makes no difference as long as they slide. Nothing where
+  /// none does.
+  std::optional<double> largest_jump() const;
   std::size_t sides() const { return sides_.size(); }
   /// By how much a follower's event function has passed zero against its position on a side.
   double crossed(std::size_t side, std::size_t follower) const;
@@ -107,6 +111,7 @@ class SlidingMode {
   network::Workspace& workspace_;
   double span_;
   std::vector<std::uint32_t> units_;
+  std::vector<bool> may_jump_;  ///< of each unit: its event function depends on another that jumps
   std::vector<bool> follows_, rests_;
   std::vector<std::uint32_t> followers_;
   std::vector<std::uint32_t> segments_;  ///< the discrete states of tables whose ends are followers

@@ -214,11 +214,7 @@ void SwitchSettling::add_preferred(std::uint32_t unit, std::vector<double>& pref
   const auto& members = structure.members[unit];
   for (const std::uint32_t s : members) {
     preferred[s] = set_ && event_functions_[s] == 0 ? 0 : position(s);  // put on its level it is not above it
-    for (const std::uint32_t member : members) {
-      if (!announced_[member]) continue;
-      const double there = *announced_[member];
-      preferred[s] = structure.opposite[member] == structure.opposite[s] ? there : 1 - there;
-    }
+    preferred[s] = announced_position(structure, announced_, s).value_or(preferred[s]);
     if (event_functions_[s] == 0) preferred[s] = 0;
   }
 }
@@ -261,6 +257,11 @@ bool SwitchSettling::choose_restless(const Units& switches, double t, std::span<
       choose_any(program_, workspace_, slide_, event_functions_.thresholds(), span_, switches, t, x);
   if (!found.open.empty()) log_.warn_of_choice(found.open, workspace_, t);
   return found.any;
+}
+
+void SwitchSettling::tell_of_open(double t, std::span<const double> x) {
+  const auto open = find_open(program_, workspace_, slide_, event_functions_.thresholds(), span_, t, x);
+  if (open) log_.warn_of_choice({*open}, workspace_, t);
 }
 
 /// Whether some signal is another with the unit on its other side.

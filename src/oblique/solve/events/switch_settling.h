@@ -28,6 +28,8 @@ class SwitchSettling {
   SwitchSettling(const network::Program& program, network::Workspace& workspace, SlidingMode& slide,
                  EventFunctions& event_functions, const Announced& announced, EventLog& log, double span);
 
+  /// Tells, where all has been settled at the start, whether a switch could as well stand on its other side.
+  void tell_of_open(double t, std::span<const double> x);
   /// A new instant after the start, with the event functions evaluated: events have set no states at it yet.
   void begin_instant();
   /// Begins to settle: what lies on its switching surface is decided anew, and what slides is looked at as if

@@ -62,6 +62,7 @@ void Switching::start(double t, std::vector<double>& x, const std::function<void
     if (!std::exchange(loops_go, false) || slide_.active() || !loop_jumps_.settle(t, x)) break;
   }
   if (!active()) return;
+  settling_.tell_of_open(t, x);
   log_.record_slides({}, {}, slide_, t);
   settling_.end({});
 }
@@ -75,8 +76,9 @@ std::vector<SlidingMode::Doubt> Switching::doubts_of_slide(double t, std::span<c
   for (std::size_t u = 0; u < doubts.size(); ++u) doubts[u] = slide_.doubt(u);
   const std::vector<double> before(workspace_.discrete_states().begin(), workspace_.discrete_states().end());
   for (std::size_t s = 0; s < program_.switches().size(); ++s) {
-    if (location_.announced()[s] && !slide_.holds(s) && !slide_.follows(s))
-      workspace_.set_discrete_state(program_.switches()[s].discrete_state, *location_.announced()[s]);
+    const auto due = announced_position(program_.switch_structure(), location_.announced(), s);
+    if (due && !slide_.holds(s) && !slide_.follows(s))
+      workspace_.set_discrete_state(program_.switches()[s].discrete_state, *due);
   }
   const std::span<const double> after = workspace_.discrete_states();
   if (!std::equal(before.begin(), before.end(), after.begin(), after.end())) {
