@@ -140,7 +140,8 @@ class SiteWriter {
     HtmlPage page("The atlas: published analog programmes, run again");
     page.element(kIndexStyle);
     page.paragraph(
-        "Each programme as it was published and patched, or composed here where only equations were published: "
+        "Each programme as it was published and patched, or composed here where only equations were "
+        "published: "
         "its circuit, its settings, what its author got, and what comes out here.");
     page.paragraph(agreement_summary(site_.programmes) + ".");
     page.heading("Programmes");
