@@ -25,18 +25,19 @@ using testing::shipped_blocks_and;
 
 constexpr double kPi = std::numbers::pi;
 
-/// y, the integral of an expression of x = sin t, which two integrators make.
-Compiled integral_of(const std::string& expression) {
-  return Compiled(R"(
+/// The shipped blocks and 'own', which makes an expression of its input.
+diagram::BlockLibrary blocks_with(const std::string& expression) {
+  return shipped_blocks_and(
+      "own", "[inputs]\nin = {}\n[outputs]\nout = {}\n[equations]\nout = \"" + expression + "\"\n");
+}
+
+/// y is the integral of what 'own' makes of x = sin t, which two integrators make.
+const char* const kIntegral = R"toml(
 x = { type = "integrator", in = "w" }
 w = { type = "integrator", in = "-x", initial = 1 }
 f = { type = "own", in = "x" }
 y = { type = "integrator", in = "f" }
-)",
-                  "",
-                  shipped_blocks_and("own", "[inputs]\nin = {}\n[outputs]\nout = {}\n[equations]\nout = \"" +
-                                                expression + "\"\n"));
-}
+)toml";
 
 /// The integral of the power p of the sine over a half turn.
 double half_turn(double p) {
@@ -56,7 +57,8 @@ TEST(EdgeValues, AreThoseOfTheLastPlaceInside) {
                            {"if(in > 0, in*log(in), 0)", 2 * (std::log(2) - 1)},
                            {"if(in > 0, in*in/in, 0)", 2},
                            {"acos(clip(1 - in, -1, 1)) - acos(clip(1 + in, -1, 1))", 0}}) {
-    const Compiled compiled = integral_of(made.expression);
+    const diagram::BlockLibrary blocks = blocks_with(made.expression);
+    const Compiled compiled(kIntegral, "", blocks);
     for (const auto method : {diagram::IntegrationMethod::adams, diagram::IntegrationMethod::bdf,
                               diagram::IntegrationMethod::rodas}) {
       const solve::Run run = run_of(compiled, {.until = 10 * kPi, .samples = 11, .method = method});
@@ -85,26 +87,24 @@ TEST(EdgeValues, AreShownWhereASwitchTurnsOver) {
 // ln(1 − t) ends at 1, where no switch turns over: neither one that did so a little before nor one that rests
 // at its level gives it a value beyond.
 TEST(EdgeValues, AreNoneWhereNoSwitchLeavesItsSide) {
+  const diagram::BlockLibrary blocks = blocks_with("log(1 - in)^3");
   const Compiled made(R"toml(
 one = { type = "constant", value = 1 }
-t = { type = "integrator", in = "one" }
-f = { type = "own", in = "t" }
+r = { type = "integrator", in = "one" }
+f = { type = "own", in = "r" }
 y = { type = "integrator", in = "f" }
 early = { type = "constant", value = 0.99 }
-c = { type = "comparator", in = ["t", "-early"] }
+c = { type = "comparator", in = ["r", "-early"] }
 rest = { type = "integrator", in = "0*one" }
 d = { type = "comparator", in = "rest" }
 z = { type = "integrator", in = ["c", "d"] }
 )toml",
-                      "",
-                      shipped_blocks_and("own",
-                                         "[inputs]\nin = {}\n[outputs]\nout = {}\n[equations]\nout = "
-                                         "\"log(1 - in)^3\"\n"));
+                      "", blocks);
   EXPECT_THAT(message_of<SolveError>([&] { run_of(made, {.until = 2}); }),
               HasSubstr("the run stopped at t = 1 s"));
 }
 
-// 1/√s is without bound on the edge from which it starts, and has no limit there.
+// 1/t is without bound on the edge from which it starts, and has no limit there.
 TEST(EdgeValues, AreNoneWhereThereIsNoLimit) {
   const Compiled made(R"toml(
 f = { type = "time-function", formula = "if(time > 0, 1/time, 0)" }
