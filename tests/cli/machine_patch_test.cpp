@@ -301,6 +301,55 @@ TEST_F(PatchForMachine, RefusesADiagramThatTheMachineHasNoElementsFor) {
   EXPECT_THAT(product.err, HasSubstr("choose another machine (oblique machines)"));
 }
 
+// x′ = −0.00008 x − y, y′ = x: ten times as fast, the pot of the leak is at 0.0008, of 4000 steps 3.2.
+TEST_F(PatchForMachine, WarnsOfASettingBelowTheStepsOfThePotentiometers) {
+  const auto leak = [&](const std::string& weight) {
+    write("leak.toml",
+          "format = \"oblique-diagram/1\"\n[run]\nuntil = 10\n[blocks]\n"
+          "x = { type = \"integrator\", in = [\"" +
+              weight +
+              "*x\", \"-y\"], initial = 1 }\ny = { type = \"integrator\", in = \"x\" }\n"
+              "[outputs]\nx = \"x\"\n");
+    return oblique("patch leak.toml --machine tr-10 --sheets made -o made.toml");
+  };
+  const Outcome small = leak("-0.00008");
+  EXPECT_EQ(small.status, 0) << small.err;
+  const std::string told =
+      "warning: P1 ('pot_1') is set to 0.0008, and the potentiometers of EAI PACE TR-10 (1959) have steps of "
+      "0.00025: it may be off by 16 %\n  remedy: scale the signals so that it is larger, or put 2 "
+      "potentiometers in series, each at 0.0283\n";
+  EXPECT_THAT(small.err, HasSubstr(told));
+  EXPECT_THAT(text_of("made.txt"), HasSubstr(told));
+  EXPECT_THAT(text_of("made-pots.csv"), HasSubstr("\nP1,0.0008,"));
+  EXPECT_THAT(leak("-0.008").err, Not(HasSubstr("warning")));
+  EXPECT_THAT(leak("0").err, Not(HasSubstr("warning")));
+}
+
+// A root that begins at zero: the machine's offset and multiplier take it below, where there is none.
+TEST_F(PatchForMachine, WritesNothingThatDoesNotRunOnTheMachine) {
+  write("root.toml", R"toml(format = "oblique-diagram/1"
+[run]
+until = 5
+[blocks]
+one = { type = "constant" }
+z = { type = "integrator", in = "0.2*one" }
+r = { type = "square-root", in = "z" }
+[outputs]
+r = "r"
+)toml");
+  const Outcome refused = oblique("patch root.toml --machine tr-10 -o made.toml");
+  EXPECT_EQ(refused.status, 1);
+  EXPECT_THAT(refused.err,
+              AllOf(HasSubstr("root.toml: on the elements of EAI PACE TR-10 (1959) it does not run, so "
+                              "nothing is written: the servo loops do not come to rest"),
+                    HasSubstr("or write the diagram all the same with --force\n")));
+  EXPECT_EQ(text_of("made.toml"), "");
+  const Outcome forced = oblique("patch root.toml --machine tr-10 --force -o made.toml");
+  EXPECT_EQ(forced.status, 0) << forced.err;
+  EXPECT_THAT(forced.err, HasSubstr("warning: on the elements of EAI PACE TR-10 (1959) it does not run: "));
+  EXPECT_EQ(oblique("run made.toml").status, 3);
+}
+
 TEST_F(PatchForMachine, TakesNoOptionsOfTheOtherKindOfFile) {
   write("spring.toml", kSpring);
   const auto says = [&](const std::string& options, const std::string& message) {

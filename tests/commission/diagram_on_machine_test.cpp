@@ -99,6 +99,55 @@ TEST(DiagramOnMachine, MakesRoomForTheErrorsOfTheMachine) {
   }
 }
 
+// An orbit about a centre, by dividers: y reaches the machine unit and goes over it by a millionth, for which
+// the gain of the amplifiers is to blame, and its square by two. The square is what the scale of y makes it.
+TEST(DiagramOnMachine, MakesRoomForProductsInTheirFactors) {
+  const diagram::Diagram diagram = diagram::parse_diagram(R"toml(format = "oblique-diagram/1"
+[run]
+until = 7
+[blocks]
+xx = { type = "squarer", in = "x" }
+yy = { type = "squarer", in = "y" }
+rr = { type = "summer", in = ["xx", "yy"] }
+r  = { type = "square-root", in = "rr" }
+r3 = { type = "multiplier", in = ["r", "rr"] }
+ax = { type = "divider", numerator = "x", denominator = "r3" }
+ay = { type = "divider", numerator = "y", denominator = "r3" }
+u  = { type = "integrator", in = "-ax" }
+v  = { type = "integrator", in = "-ay", initial = 1 }
+x  = { type = "integrator", in = "u", initial = 1 }
+y  = { type = "integrator", in = "v" }
+[outputs]
+x = "x"
+y = "y"
+)toml",
+                                                          "orbit.toml");
+  const DiagramOnMachine placed = put_on_machine(diagram, shipped_blocks(), *diagram::find_machine("gp-6"));
+  EXPECT_EQ(placed.failure, "");
+  EXPECT_TRUE(placed.overloads.empty()) << placed.overloads.front().signal;
+}
+
+// A circular orbit in r and r′: what the dividers' gain of 1e6 leaves of r′ is nobody's signal, and what
+// becomes of it on the machine no difference. r = 1 is off by about as much.
+TEST(DiagramOnMachine, TakesAnOutputThatIsNothingForNothing) {
+  const diagram::Diagram diagram = diagram::parse_diagram(R"toml(format = "oblique-diagram/1"
+[run]
+until = 60
+[blocks]
+one = { type = "constant" }
+u   = { type = "divider", numerator = "one", denominator = "r" }
+uu  = { type = "squarer", in = "u" }
+uuu = { type = "multiplier", in = ["uu", "u"] }
+v   = { type = "integrator", in = ["uuu", "-uu"] }
+r   = { type = "integrator", in = "v", initial = 1 }
+[outputs]
+r = "r"
+v = "v"
+)toml",
+                                                          "orbit.toml");
+  EXPECT_LT(put_on_machine(diagram, shipped_blocks(), *diagram::find_machine("model-1")).difference, 1e-5);
+}
+
 // What is expected of iterative and repetitive operation is met by the same diagrams on a machine.
 TEST(DiagramOnMachine, KeepsModesOfOperation) {
   for (const std::string file :

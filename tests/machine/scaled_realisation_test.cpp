@@ -485,5 +485,24 @@ TEST(ScaledRealisation, RefusesAFunctionThatHasNoLines) {
                 "to 1; expected a continuous function, which a function generator can be set for"));
 }
 
+// A circular orbit, r″ = 1/r³ − 1/r² from r = 1: what is left of r′ is what the amplifier of the divider does
+// not see, a millionth. That is no signal to scale up, and none to wait for.
+TEST(ScaledRealisation, TakesWhatServoAmplifiersLeaveForNothing) {
+  const ScaledRealisation made = realise_scaled(parsed(R"toml(
+[run]
+until = 60
+[blocks]
+one = { type = "constant" }
+u   = { type = "divider", numerator = "one", denominator = "r" }
+uu  = { type = "squarer", in = "u" }
+uuu = { type = "multiplier", in = ["uu", "u"] }
+v   = { type = "integrator", in = ["uuu", "-uu"] }
+r   = { type = "integrator", in = "v", initial = 1 }
+)toml"),
+                                                shipped_blocks(), desk_machine());
+  EXPECT_LE(made.time, 1);
+  for (const SignalScale& scale : made.scales) EXPECT_GT(scale.unit, 0.1) << scale.signal;
+}
+
 }  // namespace
 }  // namespace oblique::machine

@@ -56,5 +56,18 @@ a = { type = "servo-amplifier", in = ["a", "-u"], gain = 0.5, bandwidth = 10 }
   EXPECT_THAT(to_text(checked(made)), ContainsRegex("\na +∞ +– +–\n"));
 }
 
+// x″ = −x on a TR-10, whose amplifiers of f = 200 kHz are late by ω/2πf, the inverter by twice that: the
+// circle grows by half of the four together each radian, by 2/f a turn.
+TEST(DiagramCheck, TellsByHowMuchAnOscillationGrowsByTheMachine) {
+  const Compiled made(R"toml(x = { type = "integrator", in = "m", initial = 0.9 }
+m = { type = "inverter", in = "u" }
+u = { type = "integrator", in = "x" }
+)toml",
+                      "[machine]\nprofile = \"tr-10\"\ninverting = true\n[run]\nuntil = 60\n");
+  EXPECT_THAT(to_text(checked(made)),
+              ContainsRegex("grows, a little, by the errors of the amplifiers: \\+1.59e-06 ± 1i 1/s, by "
+                            "0.001 % a turn\n"));
+}
+
 }  // namespace
 }  // namespace oblique::report

@@ -53,6 +53,27 @@ TEST(JudgementText, NamesTheLoopsThatDoNotSettle) {
             "warning: it is unstable: the loops 'c' diverge, at 12 1/s at t = 0.5 s\n");
 }
 
+TEST(SettingsText, TellsThreeWithTheirStepAndRemedyAndNamesTheRest) {
+  const diagram::MachineProfile& machine = *diagram::find_machine("tr-10");
+  EXPECT_EQ(settings_text({}, machine), "");
+  // Half a step, 0.000125, is 15.6 % of 0.0008; 0.0283² = 0.0008.
+  const machine::CoarseSetting coarse{"P3", "pot_3", 0.0008, 0.00025, true, 2};
+  const std::string first =
+      "warning: P3 ('pot_3') is set to 0.0008, and the potentiometers of EAI PACE TR-10 (1959) have steps of "
+      "0.00025: it may be off by 16 %\n"
+      "  remedy: scale the signals so that it is larger, or put 2 potentiometers in series, each at 0.0283\n";
+  EXPECT_EQ(settings_text({coarse}, machine), first);
+  const machine::CoarseSetting fourth{"P7", "pot_7", 0.001, 0.00025, true, 2},
+      fifth{"P9", "pot_9", 0.001, 0.00025, true, 2};
+  EXPECT_EQ(settings_text({coarse, coarse, coarse, fourth, fifth}, machine),
+            first + first + first + "warning: as small are the settings of P7, P9\n");
+  EXPECT_EQ(settings_text({{"P1", "pot_1", -1e-8, 1e-4, false, 3}}, *diagram::find_machine("model-1")),
+            "warning: P1 ('pot_1') is set to -1e-08, and the pot sheet has steps of 0.0001 (those of Analog "
+            "Paradigm Model-1 are not published): it may be off by 100 %\n"
+            "  remedy: scale the signals so that it is larger, or put 3 potentiometers in series, each at "
+            "0.00215\n");
+}
+
 TEST(BandwidthText, IsForSlowerAmplifiersOnly) {
   commission::MachinePatch patch;
   const diagram::MachineProfile& machine = *diagram::find_machine("ec-1");

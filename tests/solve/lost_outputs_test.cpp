@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Outputs that show nothing but the errors of the states.
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -19,22 +20,29 @@ using ::testing::SizeIs;
 const char* const kReciprocal = R"(
 one = { type = "constant", value = 1 }
 x = { type = "integrator", in = "-x", initial = 1 }
-y = { type = "divider", numerator = "1e-4*one", denominator = "x", gain = inf, bandwidth = inf }
+y = { type = "divider", numerator = "1e-18*one", denominator = "x", gain = inf, bandwidth = inf }
 )";
 
-// x = e^(−t), y = 1e-4 e^t: x is known to a part of its size down to its absolute tolerance, 1e-12 here,
-// which it passes at t = 27.6.
-TEST(LostOutput, IsToldOfWhereItDividesByWhatHasDecayed) {
-  const testing::Compiled made(kReciprocal, "[outputs]\ny = { signal = \"y\" }\n");
+const char* const kDifference = R"(
+one = { type = "constant", value = 1 }
+x = { type = "integrator", in = ["one", "-x"] }
+d = { type = "summer", in = ["one", "-x"] }
+y = { type = "divider", numerator = "1e-12*one", denominator = "d", gain = inf, bandwidth = inf }
+)";
+
+// x = 1 − e^(−t), y = 1e-12 e^t: 1 − x is known to the relative tolerance of x, 1e-10 here in each step,
+// which it passes at t = 23.
+TEST(LostOutput, IsToldOfWhereItDividesByADifferenceThatComesToZero) {
+  const testing::Compiled made(kDifference, "[outputs]\ny = { signal = \"y\" }\n");
   const oblique::solve::Run known = testing::run_of(made, {.until = 13});
   EXPECT_THAT(known.warnings, IsEmpty());
-  // e^13 = 4e5 times the absolute tolerance is a part of 4e-7 of the denominator in each of some steps
-  EXPECT_NEAR(1e4 * testing::row_values(known, "y").back() / std::exp(13), 1, 1e-5);
+  // e^13 times the errors of some steps, 1e-10 each, is 1e-3 of the denominator at most.
+  EXPECT_NEAR(1e12 * testing::row_values(known, "y").back() / std::exp(13), 1, 1e-3);
 
-  const oblique::solve::Run lost = testing::run_of(made, {.until = 40});
+  const oblique::solve::Run lost = testing::run_of(made, {.until = 28});
   ASSERT_THAT(lost.warnings, SizeIs(1));
   const double last = testing::row_values(lost, "y").back();
-  ASSERT_GT(std::abs(1e4 * last / std::exp(40) - 1), 0.3) << "it is known after all";
+  ASSERT_GT(std::abs(1e12 * last / std::exp(28) - 1), 0.3) << "it is known after all";
   EXPECT_THAT(text::to_string(lost.warnings.front()),
               HasSubstr("no digit of the output 'y' is known: at t = "));
   EXPECT_THAT(text::to_string(lost.warnings.front()),
@@ -45,22 +53,57 @@ TEST(LostOutput, IsToldOfWhereItDividesByWhatHasDecayed) {
                 "alike; where it is meant, a finer 'tolerance' in [run] carries further"));
 }
 
-// The same read by a switch for two tenths of a second alone, from t = 33.9 on: neither a step at which it is
+// The same read by a switch for two tenths of a second alone, from t = 26.9 on: neither a step at which it is
 // looked at nor the end of the run need lie there.
 TEST(LostOutput, IsToldOfWhereItIsReadBetweenTwoEventsAlone) {
   const std::string window =
-      "g = { type = \"sine-source\", amplitude = 1, frequency = 0.0073529411764705881 }\n"
-      "s = { type = \"electronic-switch\", on = \"x\", off = \"one\", control = \"g\", threshold = 0.99999 "
+      "g = { type = \"sine-source\", amplitude = 1, frequency = \"1/108\" }\n"
+      "s = { type = \"electronic-switch\", on = \"d\", off = \"one\", control = \"g\", threshold = 0.99999 "
       "}\n"
-      "z = { type = \"divider\", numerator = \"1e-4*one\", denominator = \"s\", gain = inf, bandwidth = inf "
+      "z = { type = \"divider\", numerator = \"1e-12*one\", denominator = \"s\", gain = inf, bandwidth = inf "
       "}\n";
-  const oblique::solve::Run lost = testing::run_of(
-      testing::Compiled(kReciprocal + window, "[outputs]\nz = { signal = \"z\" }\n"), {.until = 40});
+  const std::string difference = kDifference;
+  const oblique::solve::Run lost =
+      testing::run_of(testing::Compiled(difference.substr(0, difference.find("y = ")) + window,
+                                        "[outputs]\nz = { signal = \"z\" }\n"),
+                      {.until = 40});
   ASSERT_THAT(lost.events, SizeIs(2));
   ASSERT_THAT(lost.warnings, SizeIs(1));
   EXPECT_THAT(
       lost.warnings.front().what,
       HasSubstr(fmt::format("no digit of the output 'z' is known: at t = {:.6g} s", lost.events[0].time)));
+}
+
+const char* const kLogarithms = R"toml(
+x = { type = "integrator", in = "-x", initial = 1 }
+rate = { type = "time-function", formula = "30*cos(time)" }
+grown = { type = "multiplier", in = ["rate", "y"] }
+y = { type = "integrator", in = "grown", initial = 1 }
+log_x = { type = "logarithm", in = "x" }
+log_y = { type = "logarithm", in = "y" }
+)toml";
+
+// x = e^(−t) itself is known relatively where an output needs it: 1e-18/x, and the logarithm beside what
+// takes short steps (y = e^(30 sin t)), by which x is good far below its absolute tolerance anyway.
+TEST(LostOutput, OfADecayIsNone) {
+  const oblique::solve::Run reciprocal =
+      testing::run_of(testing::Compiled(kReciprocal, "[outputs]\ny = { signal = \"y\" }\n"), {.until = 40});
+  EXPECT_THAT(reciprocal.warnings, IsEmpty());
+  // 1000 times the tolerance, as the errors of the steps add up.
+  EXPECT_NEAR(1e18 * testing::row_values(reciprocal, "y").back() / std::exp(40), 1, 1e-5);
+  const testing::Compiled made(kLogarithms,
+                               "[outputs]\nlog_x = { signal = \"log_x\" }\nlog_y = { signal = \"log_y\" }\n");
+  const oblique::solve::Run logarithms = testing::run_of(made, {.until = 60, .samples = 61});
+  const std::vector<double> t = testing::row_values(logarithms, "t"),
+                            log_x = testing::row_values(logarithms, "log_x"),
+                            log_y = testing::row_values(logarithms, "log_y");
+  for (std::size_t k = 0; k < t.size(); ++k) {
+    EXPECT_NEAR(log_x[k], -t[k], 1e-5) << t[k];
+    EXPECT_NEAR(log_y[k], 30 * std::sin(t[k]), 1e-5) << t[k];
+  }
+  EXPECT_FALSE(std::any_of(logarithms.warnings.begin(), logarithms.warnings.end(), [](const auto& warning) {
+    return warning.what.find("no digit") != std::string::npos;
+  }));
 }
 
 // What is not shown, a zero that is subtracted to rounding, and a state that is large are no such outputs.

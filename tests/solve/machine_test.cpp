@@ -71,5 +71,35 @@ TEST(Machine, Tr10OffsetIsAmplifiedByTheNoiseGain) {
   EXPECT_NEAR(end[1], -kU + 2 * 20e-6 / 10, 1e-10);
 }
 
+// x″ = −x/r³ from (0.99, 0) with (0, 1), scaled: a circle. The quotients x/r³ pass zero, where their relative
+// tolerance does too: what Newton's iteration leaves of them there is more than it, at every step however
+// short. A hundred times the tolerance for each of the six turns.
+TEST(Machine, FollowsServoLoopsThroughZero) {
+  const Compiled made(R"toml(reference = { type = "constant", value = 1 }
+minus_reference = { type = "constant", value = -1 }
+xx = { type = "multiplier", in = ["minus_x", "minus_x"] }
+yy = { type = "multiplier", in = ["minus_y", "minus_y"] }
+minus_rr = { type = "summer", in = ["1.010101010101*xx", "0.99*yy"] }
+r_square = { type = "multiplier", in = ["r_root", "r_root"] }
+r_root = { type = "servo-amplifier", in = ["r_square", "1.010101010101*minus_rr"], gain = 1e6, bandwidth = 10, initial = 1 }
+minus_r_root = { type = "inverter", in = "r_root" }
+r3 = { type = "multiplier", in = ["minus_r_root", "minus_rr"] }
+ax_product = { type = "multiplier", in = ["r3", "ax"] }
+ax = { type = "servo-amplifier", in = ["1.010101010101*ax_product", "1.010101010101*minus_x"], gain = 1e6, bandwidth = 10 }
+ay_product = { type = "multiplier", in = ["r3", "ay"] }
+ay = { type = "servo-amplifier", in = ["1.010101010101*ay_product", "minus_y"], gain = 1e6, bandwidth = 10 }
+u = { type = "integrator", in = "ax" }
+v = { type = "integrator", in = "ay", start = "reference" }
+pot_1 = { type = "potentiometer", in = "minus_reference", setting = 0.99 }
+minus_x = { type = "integrator", in = "0.99*u", start = "pot_1" }
+minus_y = { type = "integrator", in = "v" }
+)toml",
+                      "[machine]\nprofile = \"gp-6\"\ninverting = true\n[outputs]\nx = { signal = "
+                      "\"minus_x\", scale = -1.0101010101010102 }\n");
+  const Trajectory trajectory = run_of(made, {.until = 40}).trajectory;
+  // The amplifiers' gain makes the pull weaker by some millionths, and the angle by as much times the time.
+  EXPECT_NEAR(trajectory.at(trajectory.rows() - 1, 1), std::cos(40.0), 1e-4);
+}
+
 }  // namespace
 }  // namespace oblique::solve

@@ -175,7 +175,8 @@ TEST(Document, TakesAByteOrderMarkAndTypesetSigns) {
 TEST(Document, SaysWhatIsTypesetAndWhereACommaIsNoPoint) {
   EXPECT_THAT(document_message("a = 1\nb = \u201cx\u201d\n"), HasSubstr("the quotes here are typeset"));
   EXPECT_THAT(document_message("a = { x = 0,5 }\n"),
-              HasSubstr("remedy: numbers have a decimal point, not a comma"));
+              HasSubstr("remedy: numbers have a decimal point, not a comma: write 0.5"));
+  EXPECT_THAT(document_message("a = -141,25e-3\n"), HasSubstr("not a comma: write 141.25e-3"));
   EXPECT_THAT(document_message("a = [0,5, x]\n"),
               HasSubstr("words, and numbers with a unit, stand in quotes"));
   EXPECT_THAT(document_message("\xFE\xFFx"), HasSubstr("the file is in UTF-16"));

@@ -110,6 +110,18 @@ TEST(ExpressionMessages, PointAtTheMistake) {
             "3: '; aaaaaaaaaaaaaaaaa…' does not belong here; expected an operator or the end");
 }
 
+// Germans, Frenchmen and Russians write them. Within a call a comma may part arguments.
+TEST(ExpressionMessages, AskForADecimalPoint) {
+  EXPECT_EQ(message_of("-0,5*x"),
+            "3: there is a comma in the number; expected a decimal point; write -0.5*x");
+  EXPECT_EQ(message_of("max(1, 2)*1,5 + 0,25"),
+            "12: there is a comma in the number; expected a decimal point; write max(1, 2)*1.5 + 0.25");
+  EXPECT_EQ(
+      message_of("sqrt(0,5)"),
+      "1: sqrt was given 2 arguments; expected 1; square root; a number has a decimal point, not a comma");
+  EXPECT_EQ(message_of("1, 2"), "2: ', 2' does not belong here; expected an operator or the end");
+}
+
 TEST(ExpressionMessages, KnowTheFunctions) {
   EXPECT_EQ(message_of("sinn(1)"), "1: there is no function 'sinn'; did you mean 'sin'?");
   EXPECT_EQ(message_of("1+sin()"), "3: sin was given 0 arguments; expected 1; sine of an angle in radians");

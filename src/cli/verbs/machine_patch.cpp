@@ -10,6 +10,7 @@
 #include <fmt/ranges.h>
 
 #include <oblique/diagram/machine_profile.h>
+#include <oblique/machine/coarse_settings.h>
 #include <oblique/machine/realise.h>
 #include <oblique/machine/sheets.h>
 #include <oblique/network/assembly/network.h>
@@ -102,11 +103,24 @@ ExitStatus refuse_absent(const PatchRequest& request, const diagram::MachineProf
   throw machine::RealiseError(findings);
 }
 
+/// Of a diagram that cannot run on the machine's elements.
+ExitStatus refuse_failing(const PatchRequest& request, const diagram::MachineProfile& machine,
+                          const machine::ComponentList& needed, const std::string& failure) {
+  note(report::to_text(needed));
+  print_error(message(text::Diagnostic{
+      {request.mechanism, {}},
+      fmt::format("on the elements of {} it does not run, so nothing is written: {}", machine.title, failure),
+      {},
+      "choose another machine (oblique machines), or write the diagram all the same with --force"}));
+  return ExitStatus::no;
+}
+
 /// Writes the diagram and the sheets, after the component list and what is told of the diagram.
 ExitStatus write_for_machine(const diagram::BlockLibrary& library, const PatchRequest& request,
                              const diagram::MachineProfile& machine, const diagram::Diagram& realised,
-                             const std::string& told, const std::optional<machine::Sheet>& scales) {
+                             const std::string& findings, const std::optional<machine::Sheet>& scales) {
   const diagram::FlatDiagram flat = diagram::flatten(realised, library);
+  const std::string told = findings + report::settings_text(machine::coarse_settings(flat, machine), machine);
   const machine::ComponentList components = machine::component_list_of(flat, machine);
   note(report::to_text(components));
   note(told);
@@ -170,6 +184,8 @@ ExitStatus patch_for_machine(const diagram::BlockLibrary& library, const PatchRe
       machine::component_list_of(diagram::flatten(patched->made.diagram, library), machine);
   if (const auto absent = absent_blocks(needed); !absent.empty() && !request.force)
     return refuse_absent(request, machine, needed, absent);
+  if (!patched->failure.empty() && !request.force)
+    return refuse_failing(request, machine, needed, patched->failure);
   return write_for_machine(library, request, machine, patched->made.diagram,
                            report::machine_text(*patched, machine),
                            machine::scale_sheet(patched->made, machine));

@@ -18,8 +18,8 @@ void check_machine_request(const PatchRequest& request);
 ExitStatus patch_for_machine(const diagram::BlockLibrary& library, const PatchRequest& request,
                              const mechanism::Mechanism& mechanism, const commission::JudgedPatch& patched);
 
-/// The same of a diagram, which is scaled for the machine too. Forced, one with blocks that no machine has is
-/// written unscaled.
+/// The same of a diagram, which is scaled for the machine too; one that does not run on the machine's
+/// elements is not written either. Forced, one with blocks that no machine has is written unscaled.
 ExitStatus patch_for_machine(const diagram::BlockLibrary& library, const PatchRequest& request,
                              const diagram::Diagram& diagram, const machine::ScalingOptions& options);
 

@@ -19,10 +19,12 @@ diagram::Diagram without_machine(diagram::Diagram diagram) {
   return diagram;
 }
 
-/// The largest difference between two runs of the same outputs, over the largest value of the output. Where
-/// phases follow each other, integrators jump: a row that lies a rounding before such a jump in one of them
-/// alone does not count.
-double difference_of(const solve::Trajectory& a, const solve::Trajectory& b, bool has_phases) {
+/// The largest difference between two runs of the same outputs, over the largest value of the output; one
+/// that `made` never brings to a millionth of the machine unit is nothing. Where phases follow each other,
+/// integrators jump: a row that lies a rounding before such a jump in one of them alone does not count.
+double difference_of(const solve::Trajectory& a, const solve::Trajectory& b, const diagram::Diagram& made) {
+  constexpr double kNothing = 1e-6;
+  const bool has_phases = !made.timeline.phases.empty();
   double largest = 0;
   for (std::size_t c = 1; c < a.columns().size(); ++c) {
     double size = 0, difference = 0;
@@ -35,7 +37,8 @@ double difference_of(const solve::Trajectory& a, const solve::Trajectory& b, boo
       }
       difference = std::max(difference, here);
     }
-    if (size > 0) largest = std::max(largest, difference / size);
+    const double unit = c <= made.outputs.size() ? std::abs(made.outputs[c - 1].scale) : 0;
+    if (size > kNothing * unit) largest = std::max(largest, difference / size);
   }
   return largest;
 }
@@ -151,7 +154,7 @@ DiagramOnMachine put_on_machine(const diagram::Diagram& diagram, const diagram::
   }
   result.difference = difference_of(solve::run(without_machine(diagram), library).trajectory,
                                     solve::run(without_machine(result.made.diagram), library).trajectory,
-                                    !diagram.timeline.phases.empty());
+                                    result.made.diagram);
   return result;
 }
 

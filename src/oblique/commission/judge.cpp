@@ -164,12 +164,16 @@ Judgement judge_at(const std::vector<solve::Instant>& instants, const diagram::F
 
 }  // namespace
 
-Judgement judge(const diagram::Diagram& diagram, const diagram::BlockLibrary& library) {
+namespace {
+
+/// At so many moments of its run with instant servos, the first one the start.
+Judgement judge_moments(const diagram::Diagram& diagram, const diagram::BlockLibrary& library,
+                        std::size_t moments) {
   const diagram::FlatDiagram flat = diagram::flatten(diagram, library);
   const network::Program program(network::assemble(flat));
   std::vector<solve::Instant> instants;
   try {
-    instants = solve::quasi_steady_instants(program, flat, solve::options_of(diagram.run), kInstants);
+    instants = solve::quasi_steady_instants(program, flat, solve::options_of(diagram.run), moments);
   } catch (const solve::SolveError& error) {
     Judgement judgement;
     judgement.slowest_pole = -std::numeric_limits<double>::infinity();
@@ -177,6 +181,18 @@ Judgement judge(const diagram::Diagram& diagram, const diagram::BlockLibrary& li
     return judgement;
   }
   return judge_at(instants, flat, program);
+}
+
+}  // namespace
+
+Judgement judge(const diagram::Diagram& diagram, const diagram::BlockLibrary& library) {
+  return judge_moments(diagram, library, kInstants);
+}
+
+Judgement judge_start(diagram::Diagram diagram, const diagram::BlockLibrary& library) {
+  constexpr double kMoment = 1e-9;  // of the run
+  diagram.run.until *= kMoment;
+  return judge_moments(diagram, library, 1);
 }
 
 Judgement judge_along_run(const diagram::Diagram& diagram, const diagram::BlockLibrary& library) {

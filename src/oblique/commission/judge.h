@@ -48,6 +48,9 @@ std::string fault_of(const Judgement& judgement);
 /// Judges a diagram. Throws DiagramError where it is not one.
 Judgement judge(const diagram::Diagram& diagram, const diagram::BlockLibrary& library);
 
+/// The same at the start alone, which costs next to nothing: one that is not good there is not good.
+Judgement judge_start(diagram::Diagram diagram, const diagram::BlockLibrary& library);
+
 /// The same at moments of its own run: where the loops stand, not where they would stand at rest. Throws
 /// SolveError where it does not run.
 Judgement judge_along_run(const diagram::Diagram& diagram, const diagram::BlockLibrary& library);

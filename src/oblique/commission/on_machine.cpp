@@ -29,37 +29,41 @@ double step_down(double value) {
 }
 
 /// The patch with the greatest bandwidth, smaller than that of `patched`, with which it `is_fine` on the
-/// machine, by bisection.
+/// machine: found by bisection at the start, and the next smaller ones where it is not along the whole
+/// motion.
 std::optional<MachinePatch> slower_patch(const mechanism::Mechanism& mechanism,
                                          const diagram::BlockLibrary& library,
                                          const diagram::MachineProfile& machine, const MachinePatch& patched,
                                          bool (Judgement::*is_fine)() const) {
   patch::PatchOptions options = patched.options;
   const double usual = patch::bandwidth_of(mechanism, options);
-  std::optional<MachinePatch> found;
-  if (!std::isfinite(usual)) return found;
+  if (!std::isfinite(usual)) return std::nullopt;
   std::vector<double> bandwidths;
   double bandwidth = step_down(usual);
   while (bandwidth > least_bandwidth(usual, options.gain)) {
     bandwidths.push_back(bandwidth);
     bandwidth = step_down(bandwidth);
   }
-  for (auto from = bandwidths.begin(), to = bandwidths.end(); from != to;) {
-    const auto middle = from + (to - from) / 2;
-    options.bandwidth = *middle;
-    MachinePatch slower{patch::patch(mechanism, options), {}, options, {}, {}};
+  const auto with = [&](double slower_bandwidth) {
+    options.bandwidth = slower_bandwidth;
+    MachinePatch slower{patch::patch(mechanism, options),
+                        {},
+                        options,
+                        {},
+                        MachinePatch::Usual{usual, fault_of(patched.judgement)}};
     slower.ideal.file = patched.ideal.file;
     slower.realised = machine::realise(slower.ideal, library, machine).diagram;
+    return slower;
+  };
+  auto fastest = std::partition_point(bandwidths.begin(), bandwidths.end(), [&](double slower_bandwidth) {
+    return !(judge_start(with(slower_bandwidth).realised, library).*is_fine)();
+  });
+  for (; fastest != bandwidths.end(); ++fastest) {
+    MachinePatch slower = with(*fastest);
     slower.judgement = judge(slower.realised, library);
-    slower.usual = {usual, fault_of(patched.judgement)};
-    if ((slower.judgement.*is_fine)()) {
-      found = std::move(slower);
-      to = middle;
-    } else {
-      from = middle + 1;
-    }
+    if ((slower.judgement.*is_fine)()) return slower;
   }
-  return found;
+  return std::nullopt;
 }
 
 }  // namespace
@@ -68,7 +72,9 @@ MachinePatch put_on_machine(const mechanism::Mechanism& mechanism, const diagram
                             const diagram::MachineProfile& machine, JudgedPatch patched) {
   MachinePatch usual{std::move(patched.diagram), {}, std::move(patched.options), {}, {}};
   usual.realised = machine::realise(usual.ideal, library, machine).diagram;
-  usual.judgement = judge(usual.realised, library);
+  // A run of loops that diverge is long: where they do at the start, that is told.
+  usual.judgement = judge_start(usual.realised, library);
+  if (usual.judgement.good()) usual.judgement = judge(usual.realised, library);
   if (usual.judgement.well_damped() || usual.options.force) return usual;
   const auto slower = [&](bool (Judgement::*is_fine)() const) {
     return slower_patch(mechanism, library, machine, usual, is_fine);

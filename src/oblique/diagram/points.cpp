@@ -46,8 +46,11 @@ class PointReader {
   std::optional<text::PointTable> from_list(const text::Value& list) {
     text::PointTable table;
     for (const text::Value& point : list.elements) {
-      if (point.kind != text::Value::Kind::array || point.elements.size() != 2)
-        return report(point.position, "has something other than a point", "[x, y]");
+      const std::size_t numbers = point.kind == text::Value::Kind::array ? point.elements.size() : 0;
+      if (numbers != 2) {
+        return report(point.position, "has something other than a point", "[x, y]",
+                      numbers > 2 ? "numbers have a decimal point, not a comma" : "");
+      }
       const auto x = text::read_quantity(file_, point.elements[0], units_.x, subject_, diagnostics_);
       const auto y = text::read_quantity(file_, point.elements[1], units_.y, subject_, diagnostics_);
       if (!x || !y) return std::nullopt;

@@ -105,8 +105,9 @@ class Chooser {
     const CircuitElement& element = elements_[e];
     if (element.role == Role::comparator) return largest_factor(level_of(e));
     if (!is_free(element.role)) return 1;
-    // What is left of terms that cancel is rounding and errors of the run, whatever the units.
-    constexpr double kNothing = 1e-9;
+    // What is left of terms that cancel is rounding, errors of the run and what servo amplifiers of a gain of
+    // a million leave over, whatever the units.
+    constexpr double kNothing = 1e-7;
     const double reach = reach_of(element);
     const double factor = largest_factor(peaks_[e] < kNothing * reach ? reach : peaks_[e]);
     // A potentiometer at the reference sets the start, which leaves no room for an error of the run.

@@ -157,14 +157,38 @@ class MachineScaling::State {
       const double peak = peaks.at(realised.scales[e].signal);
       if (peak <= 1 + diagram::kOverloadTolerance) continue;
       const double wanted = peak * realised.scales[e].unit;
-      if (wanted <= peaks_[e]) continue;
-      peaks_[e] = wanted;
-      more = true;
+      if (is_product(circuit_.elements[e].role)) {
+        std::vector<bool> seen(peaks_.size(), false);
+        more = give_factors_room(e, peak, seen) || more;
+      } else if (wanted > peaks_[e]) {
+        peaks_[e] = wanted;
+        more = true;
+      }
     }
     return more;
   }
 
  private:
+  /// The scale of a product is that of its factors, so that these get `by` times the room. Whether there are
+  /// any.
+  bool give_factors_room(std::size_t product, double by, std::vector<bool>& seen) {
+    bool any = false;
+    for (const CircuitInput& input : circuit_.elements[product].inputs) {
+      for (const CircuitTerm& term : input.terms) {
+        if (!term.signal || seen[term.signal->block]) continue;
+        const std::size_t factor = term.signal->block;
+        seen[factor] = true;
+        if (is_product(circuit_.elements[factor].role)) {
+          any = give_factors_room(factor, by, seen) || any;
+        } else {
+          peaks_[factor] *= by;
+          any = true;
+        }
+      }
+    }
+    return any;
+  }
+
   /// Where no amplifier saturates: a peak that is cut off tells no scale.
   std::unordered_map<std::string, double> peaks_by_name(const diagram::Diagram& diagram) const {
     return peaks_of(diagram::without_saturation(diagram::flatten(diagram, library_)), diagram.run);

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <numbers>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -229,9 +231,13 @@ std::string verdict_text(const solve::StabilityReport& report) {
       if (report.rightmost && solve::verdict_on(*report.rightmost) == solve::ModeVerdict::grows) {
         const auto& ideal = report.rightmost->ideal_pole;
         const bool by_the_machine = ideal && ideal->real() < report.rightmost->mode.pole.real() / 2;
-        return fmt::format("the problem itself grows{}: {}",
-                           by_the_machine ? ", a little, by the errors of the amplifiers" : "",
-                           pole(*report.rightmost));
+        if (!by_the_machine) return "the problem itself grows: " + pole(*report.rightmost);
+        const std::complex<double> found = report.rightmost->mode.pole;
+        const double turn = 2 * std::numbers::pi * found.real() / found.imag();
+        return fmt::format(
+            "the problem itself grows, a little, by the errors of the amplifiers: {}{}",
+            pole(*report.rightmost),
+            found.imag() == 0 ? "" : fmt::format(", by {:.2g} % a turn", 100 * std::expm1(turn)));
       }
       return "the problem itself grows along the run, although no frozen mode does";
     case solve::StabilityVerdict::grows_at_times:

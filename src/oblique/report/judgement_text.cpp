@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <oblique/machine/mode_control.h>
 
@@ -88,6 +89,31 @@ std::string machine_text(const commission::DiagramOnMachine& patched,
   } else if (!patched.overloads.empty()) {
     text += fmt::format("warning: on the elements of {} '{}' reaches {:.3g} machine units\n", machine.title,
                         patched.overloads.front().signal, patched.overloads.front().peak);
+  }
+  return text;
+}
+
+std::string settings_text(const std::vector<machine::CoarseSetting>& settings,
+                          const diagram::MachineProfile& machine) {
+  constexpr std::size_t kMost = 3;  // told one by one
+  std::string text;
+  for (std::size_t k = 0; k < std::min(kMost, settings.size()); ++k) {
+    const machine::CoarseSetting& coarse = settings[k];
+    const double size = std::abs(coarse.setting);
+    text += fmt::format(
+        "warning: {} ('{}') is set to {:.3g}, and {} steps of {:.2g}{}: it may be off by {:.0f} %\n"
+        "  remedy: scale the signals so that it is larger, or put {} potentiometers in series, each at "
+        "{:.3g}\n",
+        coarse.number, coarse.signal, coarse.setting,
+        coarse.is_published ? "the potentiometers of " + machine.title + " have" : "the pot sheet has",
+        coarse.step, coarse.is_published ? "" : " (those of " + machine.title + " are not published)",
+        100 * std::min(1.0, coarse.step / 2 / size), coarse.in_series,
+        std::pow(size, 1.0 / coarse.in_series));
+  }
+  if (settings.size() > kMost) {
+    std::vector<std::string> others;
+    for (std::size_t k = kMost; k < settings.size(); ++k) others.push_back(settings[k].number);
+    text += fmt::format("warning: as small are the settings of {}\n", fmt::join(others, ", "));
   }
   return text;
 }

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <oblique/commission/diagram_on_machine.h>
 #include <oblique/commission/on_machine.h>
+#include <oblique/machine/coarse_settings.h>
 #include <oblique/text/diagnostic.h>
 
 namespace oblique::report {
@@ -19,5 +21,10 @@ std::string bandwidth_text(const commission::MachinePatch& patch, const diagram:
 /// What `patch` tells of a diagram on a machine: its time, how much of the machine unit it uses, functions
 /// that function generators stand for, servo loops, and how it does on ideal and on real elements.
 std::string machine_text(const commission::DiagramOnMachine& patched, const diagram::MachineProfile& machine);
+
+/// What `patch` tells of potentiometers whose settings are too small for their steps: each with the step, how
+/// far it may be off, and what to do; or nothing.
+std::string settings_text(const std::vector<machine::CoarseSetting>& settings,
+                          const diagram::MachineProfile& machine);
 
 }  // namespace oblique::report

@@ -149,7 +149,9 @@ std::vector<text::Diagnostic> Runner::warnings() const {
 Unseen Runner::unseen() const {
   Unseen unseen = integration_ ? integration_->unseen() : Unseen{};
   unseen.faint = switching_.faint_turns();
-  if (integration_) unseen.lost = integration_->lost(sampler_.states_without_value());
+  if (!integration_) return unseen;
+  const std::vector<std::size_t> lost = integration_->lost(sampler_.states_without_value());
+  unseen.lost.insert(unseen.lost.end(), lost.begin(), lost.end());
   return unseen;
 }
 

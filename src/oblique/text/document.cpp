@@ -178,8 +178,10 @@ std::string remedy_for(std::string_view text, int line) {
     std::size_t first = at;
     while (first > 0 && is_digit(text[first - 1])) --first;
     const std::size_t before = text.substr(0, first).find_last_not_of(" -+");
-    if (before != std::string_view::npos && text[before] == '=')
-      return "numbers have a decimal point, not a comma";
+    if (before == std::string_view::npos || text[before] != '=') continue;
+    const std::size_t end = std::min(text.find_first_not_of("0123456789eE+-", at + 1), text.size());
+    return fmt::format("numbers have a decimal point, not a comma: write {}.{}",
+                       text.substr(first, at - first), text.substr(at + 1, end - at - 1));
   }
   return "words, and numbers with a unit, stand in quotes (\"60 rpm\"); the syntax is at "
          "https://toml.io/en/v1.0.0";

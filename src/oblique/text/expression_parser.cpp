@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <oblique/text/decimal.h>
+#include <oblique/text/decimal_comma.h>
 #include <oblique/text/expression_grammar.h>
 
 namespace oblique::text {
@@ -205,8 +206,10 @@ class Parser {
     }
     const std::size_t count = node.operands.size();
     if (count < info->min_arguments || count > info->max_arguments) {
+      const bool comma = count > info->max_arguments && has_decimal_comma(text_.substr(start, at_ - start));
       fail(start, fmt::format("{} was given {} argument{}", info->name, count, count == 1 ? "" : "s"),
-           argument_range(*info), std::string(info->doc));
+           argument_range(*info),
+           std::string(info->doc) + (comma ? "; a number has a decimal point, not a comma" : ""));
     }
     const bool points = count == 2 && node.operands[1].kind == Expression::Kind::name;
     if (info->function == Function::table && !points && (count < 5 || count % 2 == 0)) {
@@ -214,6 +217,14 @@ class Parser {
            {}, std::string(info->doc));
     }
     return node;
+  }
+
+  /// Whether some comma of it stands between two digits.
+  static bool has_decimal_comma(std::string_view call) {
+    for (std::size_t k = 1; k < call.size(); ++k) {
+      if (is_digit(call[k - 1]) && is_decimal_comma(call, k)) return true;
+    }
+    return false;
   }
 
   static std::string argument_range(const FunctionInfo& info) {
@@ -240,6 +251,7 @@ Expression parse_expression(std::string_view text) {
   std::size_t rest = 0;
   Expression expression = parse_expression_prefix(text, rest);
   if (rest < text.size()) {
+    if (is_decimal_comma(text, rest)) throw decimal_comma(text, rest);
     const bool product = is_letter(text[rest]) || is_digit(text[rest]) || text[rest] == '(';
     fail(rest, fmt::format("'{}' does not belong here", excerpt(text.substr(rest))), "an operator or the end",
          product ? "a product is written with '*'" : "");

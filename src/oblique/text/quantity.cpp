@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include <oblique/text/decimal_comma.h>
 #include <oblique/text/expression_grammar.h>
 #include <oblique/text/expression_parser.h>
 
@@ -188,11 +189,7 @@ double unit_factor(std::string_view text, std::size_t rest, const Unit& wanted, 
   const int column = static_cast<int>(rest) + 1;
   const auto unit = parse_unit(unit_text);
   if (!unit) {
-    if (unit_text.front() == ',' && unit_text.size() > 1 && is_digit(unit_text[1])) {
-      std::string point(text);
-      std::replace(point.begin(), point.end(), ',', '.');
-      throw ExpressionError{column, "there is a comma in the number", "a decimal point", "write " + point};
-    }
+    if (is_decimal_comma(unit_text, 0)) throw decimal_comma(text, rest);
     const std::string number_text(trim(text.substr(0, rest)));
     std::string remedy = has_value(unit_text, lookup)
                              ? fmt::format("a product is written with '*': {}*{}", number_text, unit_text)

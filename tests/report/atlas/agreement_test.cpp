@@ -86,8 +86,8 @@ TEST(Agreement, CountsWhatAgrees) {
       agreement_summary({programme(kThree), programme(head + "picture = \"a line\"\n"),
                          programme(head + "kind = \"equations\"\n")}),
       "3 programmes, 3 published values: 1 within the uncertainty that was stated, 1 beyond it and "
-      "explained, 1 unexplained; 1 programme held against a picture alone; 1 programme composed here from "
-      "equations");
+      "explained, 1 unexplained; 1 programme held against a picture alone; 1 programme without a published "
+      "result");
   EXPECT_TRUE(all_explained({programme(head + "kind = \"equations\"\n")}));
 }
 

@@ -146,7 +146,7 @@ TEST(DiagramReport, HoldsWhatWasPublished) {
                           HasSubstr("x maximum differs: the ink was thick."),
                           HasSubstr("<a href=\"index.html\">"), HasSubstr("<a href=\"studio.html#abc\">")));
   EXPECT_THAT(page_of(kReported + "[published]\nauthor = \"A\"\ntitle = \"T\"\nkind = \"equations\"\n"),
-              AllOf(HasSubstr("Composed here: only the equations were published."),
+              AllOf(HasSubstr("Composed here: no result of a machine was published."),
                     HasSubstr("No value was published to hold the run against.")));
 }
 

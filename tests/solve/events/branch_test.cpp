@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Ideal amplifiers where the solution of their loop ends, is lost, or is singular when the run starts.
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -457,6 +458,47 @@ TEST(Branch, TellsOfAChoiceThatTheAmplifiersHaveFollowed) {
   const auto result = run_of(Compiled(y + c + s), {.until = 1});
   ASSERT_EQ(result.warnings.size(), 1U);
   EXPECT_THAT(result.warnings[0].what, HasSubstr(" has several solutions: "));
+}
+
+constexpr const char* kRoot = "q = { type = \"square-root\", in = \"h\", gain = inf, bandwidth = inf }\n";
+
+// A tank that runs dry (Torricelli): √h falls by 1/2 a second, and what flows out comes to rest with it. What
+// holds the level above zero anyway changes nothing.
+TEST(Branch, RestsAtItsEndWhereWhatDrivesItThereDoes) {
+  const std::string dry = std::string("h = { type = \"integrator\", in = \"-q\", initial = 1 }\n");
+  const std::string held =
+      "p = { type = \"maximum\", in = [\"h\", \"0*h\"] }\n"
+      "q = { type = \"square-root\", in = \"p\", gain = inf, bandwidth = inf }\n";
+  for (const auto method : {diagram::IntegrationMethod::adams, diagram::IntegrationMethod::bdf,
+                            diagram::IntegrationMethod::rodas}) {
+    for (const std::string& root : {std::string(kRoot), held}) {
+      const auto run = run_of(Compiled(dry + root), {.until = 5, .samples = 101, .method = method});
+      EXPECT_TRUE(run.warnings.empty());
+      const auto t = row_values(run, "t"), h = row_values(run, "h");
+      // The errors of the steps add up to some ten tolerances.
+      for (std::size_t r = 0; r < t.size(); ++r)
+        EXPECT_NEAR(h[r], t[r] < 2 ? (1 - t[r] / 2) * (1 - t[r] / 2) : 0, 1e-7) << t[r];
+    }
+  }
+}
+
+// Into the dry tank flows 1/2 from t = 4 on: t − 4 = −2 √h − ln(1 − 2 √h).
+TEST(Branch, BeginsAnewWhereItHasRested) {
+  const auto run =
+      run_of(Compiled(std::string("u = { type = \"step\", at = 4, to = 0.5 }\n") +
+                      "h = { type = \"integrator\", in = [\"u\", \"-q\"], initial = 1 }\n" + kRoot),
+             {.until = 8, .samples = 81});
+  EXPECT_TRUE(run.warnings.empty());
+  const auto t = row_values(run, "t"), h = row_values(run, "h");
+  for (std::size_t r = 0; r < t.size(); ++r) {
+    if (t[r] < 4) {
+      EXPECT_NEAR(h[r], t[r] < 2 ? (1 - t[r] / 2) * (1 - t[r] / 2) : 0, 1e-7) << t[r];
+    } else {
+      const double root = std::sqrt(std::max(h[r], 0.0));
+      // √h is off by at most √1e-10 where h begins within 1e-10 of zero.
+      EXPECT_NEAR(-2 * root - std::log(1 - 2 * root), t[r] - 4, 2e-5) << t[r];
+    }
+  }
 }
 
 }  // namespace

@@ -35,6 +35,29 @@ bool runs_away(const LoopCode& loop, const double* slots, LoopMatrix& matrix) {
   return matrix.factor(loop, slots) && matrix.determinant_sign() * rising < 0;
 }
 
+/// Whether the unknown of a loop of one, which has no root any more near `origin`, is the root of what has
+/// come to zero but for the errors of the states: it then rests at zero, where its equation has no
+/// derivative. What only its root drives comes to rest there, as the level of a tank that runs dry. The
+/// unknown is then zero.
+bool is_root_of_nothing(const LoopCode& loop, std::span<const Instruction> body, double* slots,
+                        double origin) {
+  constexpr double kNothing = 1e-10;  // [machine unit]: the absolute tolerance of a run that asks for none
+  constexpr double kNear = 0.05;      // [machine unit]
+  constexpr double kBeside = 1e-6;    // [machine unit]: where the bend of the equation is looked at
+  if (loop.size() != 1 || !(std::abs(origin) < kNear)) return false;
+  const auto slope_at = [&](double z) {
+    slots[loop.unknown_slots[0]] = z;
+    run_tape(body, slots);
+    double slope = 0;
+    for (const MatrixEntry& entry : loop.jacobian) slope += slots[entry.slot];
+    return slope;
+  };
+  const double bend = slope_at(kBeside) / kBeside;
+  if (slope_at(0) != 0) return false;
+  const double residual = slots[loop.residual_slots[0]];
+  return bend * residual >= 0 && bend != 0 && std::abs(residual) <= kNothing;
+}
+
 /// Size of an unknown for relative tests; the floor only keeps a zero from dividing.
 double magnitude(double z) {
   return std::abs(z) + std::numeric_limits<double>::min();
@@ -223,6 +246,8 @@ LoopFailure LoopWorkspace::solve_branched(const LoopCode& loop, std::span<const 
   if (solved_) {
     if (straight && is_on_branch(search)) return LoopFailure::none;
     if (search.failure == LoopFailure::singular && rests()) return LoopFailure::none;
+    if (search.failure != LoopFailure::none && is_root_of_nothing(loop, body, slots, origin_[0]))
+      return LoopFailure::none;
   } else if (straight && way(loop, slots) < kLongWay) {
     if (way(loop, slots) < kNoWay || !runs_away(loop, slots, matrix_)) return accept();
   }

@@ -138,8 +138,13 @@ bool Program::differentiate_loops(Workspace& workspace) const {
         }
       }
     }
-    if (!workspace.loops_[l].matrix().factor(code_->loop_codes[l], slots)) {
-      const std::uint32_t first = code_->loop_codes[l].unknown_slots.front();
+    const LoopCode& loop = code_->loop_codes[l];
+    if (!workspace.loops_[l].matrix().factor(loop, slots)) {
+      if (loop.size() == 1 && loop.has_branches()) {  // solved where its branch ends: nothing moves it there
+        dz_dx.setZero();
+        continue;
+      }
+      const std::uint32_t first = loop.unknown_slots.front();
       workspace.trouble_ = {l, LoopFailure::singular, 0, slots[first]};
       return false;
     }

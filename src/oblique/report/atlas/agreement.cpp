@@ -113,7 +113,7 @@ std::string agreement_summary(const std::vector<Programme>& programmes) {
   if (pictures > 0)
     text += fmt::format("; {} held against a picture alone", count(pictures, "programme", "programmes"));
   if (composed > 0)
-    text += fmt::format("; {} composed here from equations", count(composed, "programme", "programmes"));
+    text += fmt::format("; {} without a published result", count(composed, "programme", "programmes"));
   return text;
 }
 

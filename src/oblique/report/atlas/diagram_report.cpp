@@ -83,7 +83,7 @@ class DiagramWriter {
       page_.paragraph(capitalised(diagram::citation(*published)) + ".");
       if (published->address.starts_with("http")) page_.link(published->address, published->address);
       page_.paragraph(published->kind == diagram::Published::Kind::equations
-                          ? "Composed here: only the equations were published."
+                          ? "Composed here: no result of a machine was published."
                           : "The circuit as it was patched" +
                                 (published->machine.empty() ? "." : ", on: " + published->machine + "."));
     } else if (!diagram_.source.empty()) {

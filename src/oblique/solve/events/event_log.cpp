@@ -132,6 +132,26 @@ void EventLog::warn_of_halt(std::uint32_t unit, double t) {
       "give the comparison a hysteresis, or do not read it while it rests");
 }
 
+void EventLog::warn_of_stop(std::uint32_t unit, double t) {
+  warn_of_unit(
+      unit, "stops at its level",
+      fmt::format(" at t = {:.9g} s, where nothing moves what it compares as long as neither it nor its "
+                  "negative is above zero: the least offset lets it go on",
+                  t),
+      "give the comparisons a hysteresis, or let a flip-flop keep what they decide");
+}
+
+void EventLog::warn_of_rest(std::uint32_t unit, double since, double t) {
+  warn_of_unit(
+      unit, "rests at its level",
+      fmt::format(" from t = {:.9g} s on, where its own turn has stopped what it compares, and at t = {:.9g} "
+                  "s what follows depends on it: at its level it does not hold, but by the least offset it "
+                  "would",
+                  since, t),
+      "give the comparison a hysteresis, compare with a level beside this one, or do not read it while it "
+      "rests");
+}
+
 void EventLog::warn_of_choice(const std::vector<std::uint32_t>& switches, const network::Workspace& workspace,
                               double t) {
   std::vector<std::string> names;

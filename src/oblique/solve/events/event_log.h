@@ -34,6 +34,13 @@ class EventLog {
   /// Tells that nothing decides on which side a solution stops that slid.
   void warn_of_halt(std::uint32_t unit, double t);
 
+  /// Tells that a solution stops at a level from which either side would lead it away.
+  void warn_of_stop(std::uint32_t unit, double t);
+
+  /// Tells that it makes a difference at t that a comparison does not hold which has rested at its level
+  /// since an earlier time, by its own turn.
+  void warn_of_rest(std::uint32_t unit, double since, double t);
+
   /// Tells that switches which depend on each other may stand in more than one way, and how they do.
   void warn_of_choice(const std::vector<std::uint32_t>& switches, const network::Workspace& workspace,
                       double t);

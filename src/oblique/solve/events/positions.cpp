@@ -8,6 +8,7 @@
 
 #include <oblique/network/program/program.h>
 #include <oblique/solve/events/position_limits.h>
+#include <oblique/solve/events/self_consistent.h>
 
 namespace oblique::solve {
 namespace {
@@ -28,8 +29,10 @@ Positions::Positions(const network::Program& program, network::Workspace& worksp
     : program_(program),
       workspace_(workspace),
       slide_(slide),
+      thresholds_(thresholds),
       bends_(program, workspace, span),
-      trials_(program, workspace, thresholds, span) {}
+      trials_(program, workspace, thresholds, span),
+      level_rest_(program, workspace, thresholds, span) {}
 
 /// Sets those apart that only bend where there are no others, or too many for trials. Together with a few
 /// others they take part in the trials: they may rest while these slide. The others are left.
@@ -65,10 +68,12 @@ Combination Positions::present_sides(const std::vector<std::uint32_t>& units) co
 }
 
 bool Positions::choose(const std::vector<std::uint32_t>& units,
-                       const std::vector<double>& preferred_positions, const network::Evaluation& here,
-                       double t, std::span<const double> x) {
+                       const std::vector<double>& preferred_positions,
+                       const std::vector<std::uint32_t>& may_stop, const network::Evaluation& here, double t,
+                       std::span<const double> x) {
   undecided_.clear();
   resting_.clear();
+  stopped_.clear();
   const std::vector<std::uint32_t> tried = set_bends_apart(units, preferred_positions, here);
   if (tried.size() > kMostUnits) return false;
   Combination preferred = 0;
@@ -78,10 +83,16 @@ bool Positions::choose(const std::vector<std::uint32_t>& units,
   }
   const Combination present = present_sides(tried);
   trials_.run(tried, bends_, t, x);
-  if (const auto sides = standing(preferred, true)) return take(*sides, preferred_positions, t, x);
-  if (slide(present, t, x)) return true;
-  trials_.take_back();
-  if (const auto sides = standing(preferred, false)) return take(*sides, preferred_positions, t, x);
+  auto sides = standing(preferred, true);
+  if (!sides) {
+    if (slide(present, t, x)) return true;
+    trials_.take_back();
+    sides = standing(preferred, false);
+  }
+  if (sides && take(*sides, preferred_positions, t, x)) {
+    stop(*sides, may_stop, t, x);
+    return true;
+  }
   trials_.take_back();
   return false;
 }
@@ -114,7 +125,8 @@ bool Positions::take(Combination sides, const std::vector<double>& preferred, do
 }
 
 /// Puts the switches of a unit that stays at zero where each prefers to be, which no side of it may be: at
-/// zero exactly none of them need hold. But only where nothing changes in that it stays there.
+/// zero exactly none of them need hold; what follows from them goes along. But only where nothing changes in
+/// that it stays there.
 void Positions::prefer_where_nothing_changes(std::uint32_t unit, const std::vector<double>& preferred,
                                              double t, std::span<const double> x) {
   const std::vector<double> positions(workspace_.discrete_states().begin(),
@@ -138,13 +150,33 @@ void Positions::prefer_where_nothing_changes(std::uint32_t unit, const std::vect
     workspace_.set_discrete_state(program_.switches()[s].discrete_state,
                                   before->event_functions[s] == 0 ? 0 : preferred[s]);
   }
-  const auto after = evaluate();
+  std::vector<bool> placed(preferred.size(), false);
+  for (const std::uint32_t other : trials_.units()) {
+    for (const std::uint32_t s : program_.switch_structure().members[other]) placed[s] = true;
+  }
+  for (const auto& bend : bends_.positions()) placed[bend.first] = true;
+  std::vector<double> event_functions(preferred.size());
+  const bool agrees =
+      place_others(program_, workspace_, thresholds_, placed, t, x, event_functions).has_value();
+  const auto after = agrees ? evaluate() : std::nullopt;
   const bool stays =
       after && std::all_of(members.begin(), members.end(), [&](std::uint32_t s) {
         const double still = std::max(std::abs(before->rates[s]), kRounding * trials_.fastest());
         return after->event_functions[s] == before->event_functions[s] && std::abs(after->rates[s]) <= still;
       });
   if (!stays) workspace_.load_discrete_states(positions);
+}
+
+/// Leaves units where they are that move on either side, but stay as long as no comparison holds.
+void Positions::stop(Combination sides, const std::vector<std::uint32_t>& may_stop, double t,
+                     std::span<const double> x) {
+  for (std::size_t u = 0; u < trials_.units().size(); ++u) {
+    const std::uint32_t unit = trials_.units()[u];
+    const bool may = std::find(may_stop.begin(), may_stop.end(), unit) != may_stop.end();
+    if (!may || trials_.rests(sides, u) || !level_rest_.is_third_position(unit)) continue;
+    if (level_rest_.take(unit, trials_.units(), trials_.fastest(), t, x)) stopped_.push_back(unit);
+  }
+  resting_.insert(resting_.end(), stopped_.begin(), stopped_.end());
 }
 
 /// Slides along as few units as possible. To events, what slides stays where it was.

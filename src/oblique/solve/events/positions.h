@@ -9,6 +9,7 @@
 #include <oblique/network/program/program.h>
 #include <oblique/solve/events/bends.h>
 #include <oblique/solve/events/combinations.h>
+#include <oblique/solve/events/level_rest.h>
 #include <oblique/solve/events/side_trials.h>
 #include <oblique/solve/events/sliding_mode.h>
 #include <oblique/solve/events/thresholds.h>
@@ -28,10 +29,12 @@ class Positions {
             const Thresholds& thresholds, double span);
 
   /// Places the units, and the switches that follow from them, at (t, x), of which `here` was evaluated;
-  /// `preferred` are the positions of the program's switches to be taken where either is possible. False,
-  /// with nothing changed, where nothing agrees.
+  /// `preferred` are the positions of the program's switches to be taken where either is possible;
+  /// `may_stop` are the units that stay at their level where they do so as long as no comparison holds.
+  /// False, with nothing changed, where nothing agrees.
   bool choose(const std::vector<std::uint32_t>& units, const std::vector<double>& preferred,
-              const network::Evaluation& here, double t, std::span<const double> x);
+              const std::vector<std::uint32_t>& may_stop, const network::Evaluation& here, double t,
+              std::span<const double> x);
 
   /// The units that the last `choose` could as well have put on the other side: both sides drive away from
   /// the event function.
@@ -39,6 +42,8 @@ class Positions {
 
   /// Those whose event functions stay at zero where the last `choose` put them.
   const std::vector<std::uint32_t>& resting() const { return resting_; }
+  /// Those of them that either side would lead away.
+  const std::vector<std::uint32_t>& stopped() const { return stopped_; }
 
   /// Of so many `choose` tries all combinations; those at which the equations only bend do not count.
   static constexpr std::size_t kMostUnits = 10;
@@ -52,6 +57,8 @@ class Positions {
   bool take(Combination sides, const std::vector<double>& preferred, double t, std::span<const double> x);
   void prefer_where_nothing_changes(std::uint32_t unit, const std::vector<double>& preferred, double t,
                                     std::span<const double> x);
+  void stop(Combination sides, const std::vector<std::uint32_t>& may_stop, double t,
+            std::span<const double> x);
   bool slide(Combination present, double t, std::span<const double> x);
   bool try_slide(Combination sliding, Combination sides, double t, std::span<const double> x);
   bool fits_slide(Combination sliding, Combination sides);
@@ -59,9 +66,11 @@ class Positions {
   const network::Program& program_;
   network::Workspace& workspace_;
   SlidingMode& slide_;
+  const Thresholds& thresholds_;
   Bends bends_;  ///< apart from the units that are tried
   SideTrials trials_;
-  std::vector<std::uint32_t> undecided_, resting_;
+  LevelRest level_rest_;
+  std::vector<std::uint32_t> undecided_, resting_, stopped_;
 };
 
 }  // namespace oblique::solve

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <oblique/network/program/program.h>
+#include <oblique/solve/events/position_limits.h>
 #include <oblique/solve/events/self_consistent.h>
 
 namespace oblique::solve {
@@ -40,6 +41,8 @@ SwitchSettling::SwitchSettling(const network::Program& program, network::Workspa
       log_(log),
       span_(span),
       positions_(program, workspace, slide, event_functions.thresholds(), span),
+      level_rest_(program, workspace, event_functions.thresholds(), span),
+      resting_(program, workspace, event_functions.thresholds(), log),
       chained_(known_follow_from_others()),
       stays_(program.switches().size(), false),
       decided_(program.switch_structure().members.size(), false),
@@ -219,6 +222,13 @@ void SwitchSettling::add_preferred(std::uint32_t unit, std::vector<double>& pref
   }
 }
 
+/// Whether a unit lies at its level to what its time is known to, where it was announced, or to rounding.
+bool SwitchSettling::is_at_level(std::uint32_t unit) const {
+  const std::uint32_t s = program_.switch_structure().members[unit].front();
+  const double near = is_announced(unit) ? SlidingMode::drift() : event_functions_.thresholds().rounding(s);
+  return std::abs(event_functions_[s]) <= near;
+}
+
 /// Lets the solution decide where the units go that lie on their switching surfaces, together with those that
 /// slide.
 void SwitchSettling::decide(Units units, double t, std::span<const double> x) {
@@ -228,14 +238,16 @@ void SwitchSettling::decide(Units units, double t, std::span<const double> x) {
   }
   slide_.end();
   std::vector<double> preferred(event_functions_.size());
+  Units may_stop;
   for (const std::uint32_t unit : units) {
     decided_[unit] = true;
     add_preferred(unit, preferred);
+    if (is_at_level(unit) && !has_unit(slid_, unit)) may_stop.push_back(unit);
   }
   std::vector<double> before;
   for (std::size_t s = 0; s < event_functions_.size(); ++s) before.push_back(position(s));
   event_functions_.weigh_errors();
-  if (!positions_.choose(units, preferred, event_functions_.here(), t, x)) {
+  if (!positions_.choose(units, preferred, may_stop, event_functions_.here(), t, x)) {
     std::vector<std::uint32_t> members;
     for (const std::uint32_t unit : units)
       members.insert(members.end(), structure.members[unit].begin(), structure.members[unit].end());
@@ -287,6 +299,10 @@ void SwitchSettling::note_choice(double t, std::span<const double> x) {
   for (const std::uint32_t unit : positions_.resting()) {
     for (const std::uint32_t member : program_.switch_structure().members[unit]) stays_[member] = true;
     if (has_unit(slid_, unit) && matters(unit, t, x)) log_.warn_of_halt(unit, t);
+  }
+  for (const std::uint32_t unit : positions_.stopped()) {
+    keep_at_level(unit);
+    log_.warn_of_stop(unit, t);
   }
   for (const std::uint32_t unit : positions_.undecided()) {
     if (has_unit(slid_, unit) || is_announced(unit)) continue;  // what slid is told of apart
@@ -362,6 +378,65 @@ void SwitchSettling::begin_after_events(bool set_states, bool jumped) {
   slid_.clear();
   std::fill(rested_.begin(), rested_.end(), false);
   event_functions_.thresholds().take_all_slack();
+}
+
+/// Whether the event function of a unit, evaluated last, stays where it is by its rate.
+bool SwitchSettling::rests(std::uint32_t unit) {
+  const std::uint32_t s = program_.switch_structure().members[unit].front();
+  std::vector<double> rates(event_functions_.size());
+  event_functions_.here().derivatives(derivatives_.data());
+  event_functions_.here().event_function_rates(derivatives_.data(), rates.data());
+  return level_rest_.stands_still(s, rates[s]);
+}
+
+/// Whether a comparison of a unit holds which is where it was when this instant began, within what its time
+/// is known to of its level.
+bool SwitchSettling::holds_at_level(std::uint32_t unit) const {
+  const auto& members = program_.switch_structure().members[unit];
+  const std::uint32_t s = members.front();
+  if (event_functions_.is_known(s) || slide_.holds(s) || slide_.follows(s)) return false;
+  const bool holds = std::any_of(members.begin(), members.end(), [&](std::uint32_t m) {
+    return position(m) == 1 && program_.switches()[m].turning == network::Turning::jumps;
+  });
+  return holds && event_functions_[s] == before_instant_[s] &&
+         std::abs(event_functions_[s]) <= SlidingMode::drift();
+}
+
+/// What a unit is found off its level, as its time is found, counts as nothing until it has left that behind.
+void SwitchSettling::keep_at_level(std::uint32_t unit) {
+  for (const std::uint32_t s : program_.switch_structure().members[unit]) {
+    const double off = 2 * std::abs(event_functions_[s]);
+    if (off > event_functions_.thresholds()[s]) event_functions_.thresholds().widen(s, off);
+  }
+}
+
+bool SwitchSettling::lower_resting(const Units& came, double t, std::span<const double> x) {
+  for (const std::uint32_t unit : came) {
+    if (!holds_at_level(unit)) continue;
+    event_functions_.evaluate(t, x, announced_);
+    if (!rests(unit)) continue;
+    const auto& members = program_.switch_structure().members[unit];
+    std::vector<double> turned;
+    for (const std::uint32_t m : members) turned.push_back(position(m));
+    const bool lowered = level_rest_.take(unit, {}, fastest_of(derivatives_, 0), t, x);
+    if (lowered) {
+      resting_.add(unit, std::move(turned), t, x);
+      keep_at_level(unit);
+    }
+    event_functions_.evaluate(t, x, announced_);
+    if (lowered) return true;
+  }
+  return false;
+}
+
+void SwitchSettling::look_at_resting(double t, std::span<const double> x) {
+  if (!resting_.any()) return;
+  for (const std::uint32_t unit : resting_.units()) {
+    const std::uint32_t s = program_.switch_structure().members[unit].front();
+    if (std::abs(event_functions_[s]) > SlidingMode::drift() || !rests(unit)) resting_.remove(unit);
+  }
+  resting_.look(t, x);
+  event_functions_.evaluate(t, x, announced_);
 }
 
 void SwitchSettling::end(const std::vector<std::uint32_t>& slid) {

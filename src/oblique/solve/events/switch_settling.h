@@ -10,7 +10,9 @@
 #include <oblique/solve/events/event_functions.h>
 #include <oblique/solve/events/event_log.h>
 #include <oblique/solve/events/event_pace.h>
+#include <oblique/solve/events/level_rest.h>
 #include <oblique/solve/events/positions.h>
+#include <oblique/solve/events/resting_comparisons.h>
 #include <oblique/solve/events/sliding_mode.h>
 
 namespace oblique::solve {
@@ -39,6 +41,13 @@ class SwitchSettling {
   void begin_after_events(bool set_states, bool jumped);
   /// All switches to a fixed point; true where any turned over. Throws SolveError where there is none.
   bool settle(double t, std::span<const double> x);
+  /// Of the units that `came` to their levels at this instant, where all is settled and no event is due: puts
+  /// the first that rests there, as its turn and what followed have left it, where none of its comparisons
+  /// holds. True where there was one: events may follow.
+  bool lower_resting(const std::vector<std::uint32_t>& came, double t, std::span<const double> x);
+  /// Looks at (t, x), where no event has been served yet that is due, whether it makes a difference that the
+  /// comparisons do not hold which were put so.
+  void look_at_resting(double t, std::span<const double> x);
   /// The instant is settled; before it these units slid.
   void end(const std::vector<std::uint32_t>& slid);
   /// Where an event function, evaluated after that, still lies on the wrong side, it goes back at once: it
@@ -77,6 +86,10 @@ class SwitchSettling {
   bool turn_by_event_functions(double t, Units& at_zero, std::vector<std::uint32_t>& turned);
   void turn_in_order(double t, std::span<const double> x);
   void add_preferred(std::uint32_t unit, std::vector<double>& preferred) const;
+  bool is_at_level(std::uint32_t unit) const;
+  void keep_at_level(std::uint32_t unit);
+  bool rests(std::uint32_t unit);
+  bool holds_at_level(std::uint32_t unit) const;
   void decide(Units units, double t, std::span<const double> x);
   bool choose_restless(const Units& switches, double t, std::span<const double> x);
   bool matters(std::uint32_t unit, double t, std::span<const double> x) const;
@@ -91,6 +104,8 @@ class SwitchSettling {
   EventLog& log_;
   double span_;
   Positions positions_;
+  LevelRest level_rest_;
+  RestingComparisons resting_;
   bool chained_;  ///< whether a known switch depends on the position of another
 
   std::vector<bool> stays_;    ///< see `stays`

@@ -144,13 +144,18 @@ void Switching::settle(double t, std::vector<double>& x) {
   const std::vector<double> before_turns = faint.empty() ? std::vector<double>() : readings(t, x);
   if (before_turns.empty()) faint.clear();
   actions_.begin_instant();
+  std::vector<std::uint32_t> came;  // to their levels
+  for (std::uint32_t s = 0; s < event_functions_.size(); ++s) {
+    if (location_.announced()[s]) came.push_back(program_.switch_structure().unit[s]);
+  }
   for (int round = 0;; ++round) {
     settle_switches(t, x);
     if (round == 0) {
       record_turns(before, t);
       actions_.note_turns(before);
     }
-    if (!serve_events(t, x, false)) break;
+    settling_.look_at_resting(t, x);
+    if (!serve_events(t, x, false) && !settling_.lower_resting(came, t, x)) break;
     if (round > kMostRounds) throw log_.endless("events set each other off", t);
   }
   log_.record_slides(slid, doubts, slide_, t);

@@ -328,8 +328,18 @@ double CvodesSolver::step() {
   Handles& h = *handles_;
   if (h.steps >= h.max_steps) throw SolverFailure{SolverFailure::Kind::step_budget, h.t, 0};
   if (h.small_steps == 0) h.saw_refusal = h.saw_not_finite = false;
-  const double before = h.clock;
+  double before = h.clock;
   int code = h.take_step(1);
+  // Newton's iteration leaves the state of a servo loop within a tolerance that shrinks where it passes zero,
+  // and no shorter step takes that back: another start lets the loop settle. One that comes no farther than
+  // this [of the time] has met what no start passes.
+  constexpr double kFarther = 1e-6;
+  if (code == CV_ERR_FAILURE && before > kFarther * (std::abs(h.t) + h.length)) {
+    const std::vector<double> states(this->states().begin(), this->states().end());
+    restart(h.t, states, h.end, h.length - before);
+    before = 0;
+    code = h.take_step(1);
+  }
   // CVODES begins with no shorter step than 1e-14 of the time to go, and gives up after some tries with a
   // tenth each: beside a long run a fast decay needs another start.
   constexpr double kNearer = 1e-6, kNearest = 1e-20;

@@ -28,7 +28,7 @@ Integration::Integration(const Parts& parts, SolverSettings settings, double t)
           parts.system, settings_, parts.options.tolerance, parts.options.until - t,
           [this](double at, const double* x, double* values) { return read(at, x, values); },
           parts.diagram.outputs.size() + parts.program.switches().size(), parts.diagram.outputs.size()),
-      lost_(parts.diagram, settings_,
+      lost_(parts.diagram, parts.system, settings_, parts.options.until - t,
             [this](double at, const double* x, double* values) { return read_outputs(at, x, values); }),
       short_steps_(HiddenMotion(parts.system, settings_.relative_tolerance,
                                 absolute_tolerances(settings_, parts.states.size())),
@@ -115,6 +115,10 @@ Unseen Integration::unseen() const {
   std::erase_if(unseen.small, [this](const SmallState& small) {  // it was asked for
     return parts_.program.states()[small.state].tolerance > 0;
   });
+  if (parts_.options.absolute_tolerance) return unseen;
+  for (const std::size_t i : lost_.decayed()) {
+    if (!(parts_.program.states()[i].tolerance > 0)) unseen.lost.push_back(i);
+  }
   return unseen;
 }
 

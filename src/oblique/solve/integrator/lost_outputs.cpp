@@ -22,19 +22,30 @@ constexpr double kLeast = 1e4;
 
 }  // namespace
 
-LostOutputs::LostOutputs(const diagram::FlatDiagram& diagram, const SolverSettings& settings, Outputs outputs)
+LostOutputs::LostOutputs(const diagram::FlatDiagram& diagram, OdeSystem& system,
+                         const SolverSettings& settings, double span, Outputs outputs)
     : diagram_(diagram),
+      system_(system),
       settings_(settings),
+      span_(span),
       outputs_(std::move(outputs)),
       sizes_(diagram.outputs.size(), 0),
       losses_(diagram.outputs.size()),
       values_(diagram.outputs.size()),
       moved_(diagram.outputs.size()) {}
 
+double LostOutputs::absolute_tolerance(std::size_t i) const {
+  return settings_.own_tolerances.empty() ? settings_.absolute_tolerance : settings_.own_tolerances[i];
+}
+
 double LostOutputs::error_of_state(std::size_t i, double x) const {
-  const double absolute =
-      settings_.own_tolerances.empty() ? settings_.absolute_tolerance : settings_.own_tolerances[i];
-  return kErrors * (settings_.relative_tolerance * std::abs(x) + absolute);
+  return kErrors * (settings_.relative_tolerance * std::abs(x) + absolute_tolerance(i));
+}
+
+/// Whether what the states were moved by has taken the last digit of an output.
+bool LostOutputs::is_lost(std::size_t output) const {
+  return std::abs(moved_[output] - values_[output]) >
+         std::max(kNoDigit * sizes_[output], kLeast * settings_.relative_tolerance);
 }
 
 void LostOutputs::advance(double t, std::span<const double> x) {
@@ -50,6 +61,7 @@ void LostOutputs::begin_segment(double t, std::span<const double> x) {
 
 void LostOutputs::look(double t, std::span<const double> x) {
   constexpr std::uint64_t kTrials = 4;
+  bool any_lost = false;
   if (!outputs_(t, x.data(), values_.data())) return;
   for (std::size_t k = 0; k < values_.size(); ++k) sizes_[k] = std::max(sizes_[k], std::abs(values_[k]));
   off_states_.resize(x.size());
@@ -61,12 +73,34 @@ void LostOutputs::look(double t, std::span<const double> x) {
     }
     if (!outputs_(t, off_states_.data(), moved_.data())) continue;
     for (std::size_t k = 0; k < values_.size(); ++k) {
-      const double moved = std::abs(moved_[k] - values_[k]);
-      const double much = std::max(kNoDigit * sizes_[k], kLeast * settings_.relative_tolerance);
-      if (losses_[k].time < 0 && moved > much) losses_[k] = {t, values_[k], moved};
+      if (losses_[k].time >= 0 || !is_lost(k)) continue;
+      losses_[k] = {t, values_[k], std::abs(moved_[k] - values_[k])};
+      any_lost = true;
     }
   }
+  if (any_lost) find_decayed(t, x);
   outputs_(t, x.data(), values_.data());  // leaves the solutions of algebraic loops where they were
+}
+
+/// Looks which states are within their errors, hardly move, and take the last digit of an output by
+/// themselves. One that crosses zero moves, and is known as it was.
+void LostOutputs::find_decayed(double t, std::span<const double> x) {
+  constexpr double kSoon = 1e-3;  // of the run
+  std::vector<double> rates(x.size());
+  if (!system_.derivatives(t, x.data(), rates.data())) return;
+  off_states_.assign(x.begin(), x.end());
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double error = error_of_state(i, x[i]);
+    if (x[i] == 0 || std::abs(x[i]) > error || std::abs(rates[i]) * kSoon * span_ > error) continue;
+    for (const double off : {error, -error}) {
+      off_states_[i] = x[i] + off;
+      if (!outputs_(t, off_states_.data(), moved_.data())) continue;
+      for (std::size_t k = 0; k < values_.size(); ++k) {
+        if (is_lost(k)) decayed_.insert(i);
+      }
+    }
+    off_states_[i] = x[i];
+  }
 }
 
 std::vector<text::Diagnostic> LostOutputs::warnings(const std::vector<bool>& told) const {

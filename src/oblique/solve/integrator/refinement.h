@@ -19,7 +19,8 @@ struct Unseen {
   std::vector<UnseenGrowth> growth;
   std::vector<SmallState> small;
   std::vector<FaintTurn> faint;
-  std::vector<std::size_t> lost;  ///< states that were zero but for errors where a signal had no value
+  std::vector<std::size_t> lost;  ///< states that were zero but for errors where a signal had no value, or an
+                                  ///< output no digit
 
   bool empty() const { return growth.empty() && small.empty() && faint.empty() && lost.empty(); }
 };

@@ -34,6 +34,10 @@ constexpr double kRestsAtZero = 1e-6;
 /// Its range over a part in which it passes zero, beside what its ends show, where it does so once.
 constexpr double kPlainPassage = 2;
 
+/// A part at whose one end an event function is zero, to this part of what it is at the other, begins or ends
+/// with an event. It has no other where the bounds go no further beyond zero than this part of it.
+constexpr double kZeroAtOneEnd = 1e-6, kPlainBeginning = 0.1;
+
 /// Where bounds of event functions of states cannot tell, so many parts of a step are enough (a difference of
 /// two functions of one state, whose bounds do not know that): the search for events sees the rest.
 constexpr int kMostForStates = 256;
@@ -111,6 +115,10 @@ bool SourceWatch::may_turn(const network::Source& source, double a, double b, co
   if (std::max(std::abs(a), std::abs(b)) <= kRestsAtZero && range.width() <= kStaysAtZero) return false;
   const bool passes = (a < 0 && b > 0) || (a > 0 && b < 0);
   if (passes && range.width() <= kPlainPassage * std::abs(b - a)) return false;
+  const double larger = std::abs(a) > std::abs(b) ? a : b, beyond = larger > 0 ? -range.low : range.high;
+  if (std::min(std::abs(a), std::abs(b)) <= kZeroAtOneEnd * std::abs(larger) &&
+      beyond <= kPlainBeginning * std::abs(larger))
+    return false;
   return depth < kDeepestForStates && parts_for_states_++ < kMostForStates;
 }
 

@@ -8,6 +8,12 @@ from scipy.optimize import brentq
 from .tools import Motion, ode
 
 
+def torricelli_cascade():
+    """√h1 = 1 − t/2 until t = 2; h2′ = √h1 − √h2, and when h1 is dry √h2 falls by 1/2 a second."""
+    left = ode(lambda t, y: [1 - t / 2 - np.sqrt(y[0])], [0.5], 2)(2)[0]
+    return {"h1 at 1": 0.25, "h1 at 2.5": 0.0, "h2 at 2": left, "h2 at 2.5": (np.sqrt(left) - 0.25)**2, "h2 at 5": 0.0}
+
+
 def relaxation_singular():
     """x′ = −y on y³/3 − y = x: from y = 2 the time is 2 − y²/2 − ln(2/y), until the fold at 1, from where it jumps to
     −2."""

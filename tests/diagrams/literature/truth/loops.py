@@ -72,6 +72,19 @@ def thyristor():
     return {"q at 20.6": 20 * voltage(blocks) + voltage(0.6) - 0.3 * current(0.6), "i at 20.6": current(0.6)}
 
 
+def dimmer():
+    """Thyristors fire at 0.2 and 0.7 of each period; 0.3 i′ = sin 2πt − i until i comes to zero, before the other."""
+    w = 2 * np.pi
+    steady = lambda t: np.imag(np.exp(1j * w * t) / (1 + 0.3j * w))
+    fires = 0.2
+    current = lambda t: steady(t) - steady(fires) * np.exp(-(t - fires) / 0.3)
+    blocks = brentq(current, 0.5, 0.7, xtol=1e-15)
+    # The charge is the integral of the voltage less 0.3 i; that of the other half-waves takes it back.
+    voltage = lambda t: (np.cos(w * fires) - np.cos(w * t)) / w
+    return {"i at 7.4": current(0.4), "q at 7.4": voltage(0.4) - 0.3 * current(0.4), "i at 7.69": 0.0,
+            "q at 7.69": voltage(blocks), "i at 7.9": -current(0.4)}
+
+
 def pwm_natural():
     """H. S. Black 1953: 0.8 sin 2πt against a triangle of 50 Hz, whose slopes are passed once each."""
     triangle = lambda t: 2 / np.pi * np.arcsin(np.sin(100 * np.pi * t))
