@@ -75,5 +75,22 @@ x = { type = "integrator", in = ["-x"], initial = 1 }
   EXPECT_EQ(made.program.clocks(), 0U);
 }
 
+// x^16 by four squarers is none, x^32 by five is: the whole of it, and not its parts.
+TEST(Sources, AreProductsOfManyFactors) {
+  std::string blocks = "x = { type = \"integrator\", in = [\"-x\"], initial = 1 }\n";
+  std::string last = "x";
+  for (int k = 1; k <= 5; ++k) {
+    const std::string next = "p" + std::to_string(k);
+    blocks += next + " = { type = \"squarer\", in = \"" + last + "\" }\n";
+    last = next;
+    const Compiled made(blocks + "y = { type = \"integrator\", in = \"" + last + "\" }\n");
+    ASSERT_EQ(made.program.sources().size(), k < 5 ? 0U : 1U);
+    if (k == 5) {
+      EXPECT_TRUE(made.program.sources()[0].by_states);
+      EXPECT_TRUE(made.program.sources()[0].acts);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace oblique::network

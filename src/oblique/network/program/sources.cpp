@@ -52,8 +52,26 @@ Follows follows_of(const ExpressionGraph& graph, const Node& node, const std::ve
   }
 }
 
+/// A product of more states than this, or of one so many times, is narrow beside what its states do: x^16
+/// halves where x falls by a twentieth.
+constexpr double kMostFactors = 16;
+
+/// Of each node of how many factors by states its longest product is.
+std::vector<double> factors_by_states(const ExpressionGraph& graph,
+                                      const std::function<bool(NodeId)>& follows_states) {
+  std::vector<double> factors(graph.size());
+  for (NodeId id = 0; id < graph.size(); ++id) {
+    const Node& node = graph[id];
+    if (!follows_states(id)) continue;
+    double most = node.op == Op::variable ? 1 : 0;
+    for (int i = 0; i < operand_count(node.op); ++i) most = std::max(most, factors[node.operand(i)]);
+    factors[id] = node.op == Op::multiply ? factors[node.a] + factors[node.b] : most;
+  }
+  return factors;
+}
+
 /// The largest parts of the equations made by functions that can be next to nothing here and a peak there, of
-/// states that a solver follows (of sums, products, sines and cosines of those it sees what they do).
+/// states that a solver follows (of sums, short products, sines and cosines of those it sees what they do).
 void find_peaks(Compilation& c, const std::vector<bool>& acts, const std::vector<bool>& clocks,
                 const std::function<bool(NodeId)>& follows_states) {
   const ExpressionGraph& graph = c.network.graph;
@@ -64,9 +82,11 @@ void find_peaks(Compilation& c, const std::vector<bool>& acts, const std::vector
     for (int i = 0; i < operand_count(node.op); ++i)
       by_unknowns[id] = by_unknowns[id] || by_unknowns[node.operand(i)];
   }
+  const std::vector<double> factors = factors_by_states(graph, follows_states);
   const auto makes_peaks = [&](const Node& node) {
     const auto operation = smooth_operation(node.op);
     if (!operation) return false;
+    if (node.op == Op::multiply && factors[node.a] + factors[node.b] > kMostFactors) return true;
     const text::OperationInfo& info = text::info_of(*operation);
     return info.is(text::kPeaks) || (info.is(text::kPeaksByDivisor) && follows_states(node.b));
   };

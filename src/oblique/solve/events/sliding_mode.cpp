@@ -35,9 +35,11 @@ constexpr std::size_t kMostUnits = 64;
 
 }  // namespace
 
-SlidingMode::SlidingMode(const network::Program& program, network::Workspace& workspace, double span)
+SlidingMode::SlidingMode(const network::Program& program, network::Workspace& workspace, EdgeValues& edges,
+                         double span)
     : program_(program),
       workspace_(workspace),
+      edges_(edges),
       span_(span),
       follows_(program.switches().size(), false),
       rests_(program.switches().size(), false),
@@ -196,9 +198,12 @@ bool SlidingMode::evaluate(SlideSide& side, double t, std::span<const double> x)
   side.dxdt.resize(program_.n_states());
   side.event_functions.resize(follows_.size());
   side.rates.resize(follows_.size());
-  const auto here = program_.event_functions(t, x.data(), side.event_functions.data(), workspace_);
+  auto here = program_.event_functions(t, x.data(), side.event_functions.data(), workspace_);
   if (!here) return false;
   here->derivatives(side.dxdt.data());
+  if (edges_.complete_derivatives(t, x.data(), side.dxdt))
+    here = program_.event_functions(t, x.data(), side.event_functions.data(), workspace_);
+  if (!here) return false;
   here->event_function_rates(side.dxdt.data(), side.rates.data());
   return true;
 }
@@ -385,6 +390,7 @@ bool SlidingMode::jacobian(double t, const double* x, double* values) {
   for (const SlideSide& side : sides_) {
     load(side);
     valid = valid && program_.jacobian(t, x, scratch_.data(), workspace_);
+    if (valid) edges_.complete_jacobian(t, x, std::span(scratch_).first(entries));
     for (std::size_t k = 0; k < entries; ++k) values[k] += side.weight * scratch_[k];
   }
   load_base();
@@ -402,6 +408,7 @@ bool SlidingMode::signals(double t, const double* x, double* values) {
   for (const SlideSide& side : sides_) {
     load(side);
     valid = valid && program_.signals(t, x, of_side.data(), workspace_);
+    if (valid) edges_.complete_signals(t, x, of_side);
     for (std::size_t i = 0; i < of_side.size(); ++i) values[i] += side.weight * of_side[i];
   }
   load_base();

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <oblique/network/program/program.h>
+#include <oblique/solve/events/edge_values.h>
 #include <oblique/solve/events/slide_sides.h>
 
 namespace oblique::solve {
@@ -23,8 +24,8 @@ namespace oblique::solve {
 /// 1998); units that are not coupled are each mixed by themselves, and what they do is added.
 class SlidingMode {
  public:
-  /// Both must outlive this; `span` is the length of the run [s].
-  SlidingMode(const network::Program& program, network::Workspace& workspace, double span);
+  /// All must outlive this; `span` is the length of the run [s].
+  SlidingMode(const network::Program& program, network::Workspace& workspace, EdgeValues& edges, double span);
 
   bool active() const { return !units_.empty(); }
   const std::vector<std::uint32_t>& units() const { return units_; }
@@ -109,6 +110,7 @@ class SlidingMode {
 
   const network::Program& program_;
   network::Workspace& workspace_;
+  EdgeValues& edges_;
   double span_;
   std::vector<std::uint32_t> units_;
   std::vector<bool> may_jump_;  ///< of each unit: its event function depends on another that jumps

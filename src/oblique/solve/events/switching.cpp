@@ -23,7 +23,8 @@ Switching::Switching(const network::Program& program, network::Workspace& worksp
       workspace_(workspace),
       file_(file),
       log_(program, file),
-      slide_(program, workspace, span),
+      edges_(program, workspace, span),
+      slide_(program, workspace, edges_, span),
       event_functions_(program, workspace, tolerance, absolute_tolerance, file),
       location_(program, workspace, slide_, event_functions_, span, file),
       settling_(program, workspace, slide_, event_functions_, location_.announced(), log_, span),
@@ -256,21 +257,30 @@ bool Switching::inside(double t, std::span<const double> values, const Evaluate&
 
 bool Switching::derivatives(double t, const double* x, double* dxdt) {
   if (slide_.active()) return slide_.derivatives(t, x, dxdt);
-  return inside(t, {dxdt, program_.n_states()},
-                [&](double at) { return program_.derivatives(at, x, dxdt, workspace_); });
+  const std::span<double> values(dxdt, program_.n_states());
+  if (!inside(t, values, [&](double at) { return program_.derivatives(at, x, dxdt, workspace_); }))
+    return false;
+  edges_.complete_derivatives(t, x, values);
+  return true;
 }
 
 bool Switching::jacobian(double t, const double* x, double* values) {
   if (slide_.active()) return slide_.jacobian(t, x, values);
-  return inside(t, {values, program_.jacobian_pattern().entries()},
-                [&](double at) { return program_.jacobian(at, x, values, workspace_); });
+  const std::span<double> entries(values, program_.jacobian_pattern().entries());
+  if (!inside(t, entries, [&](double at) { return program_.jacobian(at, x, values, workspace_); }))
+    return false;
+  edges_.complete_jacobian(t, x, entries);
+  return true;
 }
 
 bool Switching::signals(double t, const double* x, double* values) {
   interruption_.check();
   if (slide_.active()) return slide_.signals(t, x, values);
-  return inside(t, {values, program_.n_signals()},
-                [&](double at) { return program_.signals(at, x, values, workspace_).has_value(); });
+  const std::span<double> all(values, program_.n_signals());
+  if (!inside(t, all, [&](double at) { return program_.signals(at, x, values, workspace_).has_value(); }))
+    return false;
+  edges_.complete_signals(t, x, all);
+  return true;
 }
 
 }  // namespace oblique::solve

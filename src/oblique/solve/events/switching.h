@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <oblique/network/program/program.h>
+#include <oblique/solve/events/edge_values.h>
 #include <oblique/solve/events/event_actions.h>
 #include <oblique/solve/events/event_functions.h>
 #include <oblique/solve/events/event_location.h>
@@ -82,6 +83,10 @@ class Switching {
     end_ = end;
   }
 
+  /// The solver stands at (t, x): what has no value beyond the edge of a branch has that of its last place
+  /// inside.
+  void stand_at(double t, std::span<const double> x) { edges_.stand_at(t, x); }
+
   /// dx/dt, its Jacobian and all signals, with what slides held on its switching surfaces.
   bool derivatives(double t, const double* x, double* dxdt);
   bool jacobian(double t, const double* x, double* values);
@@ -130,6 +135,7 @@ class Switching {
   const std::string& file_;
   Interruption interruption_;
   EventLog log_;
+  EdgeValues edges_;
   SlidingMode slide_;
   EventFunctions event_functions_;
   EventLocation location_;

@@ -95,6 +95,7 @@ void Integration::end_step(Segments::Passed passed, double t) {
     lost_.begin_segment(t, parts_.states);
   } else {
     std::copy(solver_->states().begin(), solver_->states().end(), parts_.states.begin());
+    parts_.switching.stand_at(t, parts_.states);
     growth_.advance(t, parts_.states);
     short_steps_.advance(t, parts_.states, parts_.segments.end());
   }

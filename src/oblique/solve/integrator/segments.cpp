@@ -88,6 +88,7 @@ void Segments::begin(double t) {
   end_ = wait ? std::min(t + *wait, last) : last;
   length_ = wait ? std::min(*wait, last - t) : last - t;
   parts_.switching.lies_between(t, end_);
+  parts_.switching.stand_at(t, parts_.states);
 }
 
 std::span<const double> Segments::Step::times_left() const {

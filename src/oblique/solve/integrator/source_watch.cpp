@@ -46,7 +46,9 @@ constexpr int kMostForStates = 256;
 constexpr int kDeepestForStates = 24;
 
 constexpr int kDeepest = 40;
-constexpr int kDeepestUnknown = 6;  ///< of a source by states that may be any number, as a quotient of zeros
+/// Of a source by states that may be any number, as a quotient of zeros, or one of the time that has no value
+/// at either end, as beyond the edge of its branch.
+constexpr int kDeepestUnknown = 6;
 constexpr std::size_t kMostSamples = 1'000'000;  ///< in a step
 
 }  // namespace
@@ -154,7 +156,9 @@ bool SourceWatch::is_plain(double from, const Values& at_from, double to, const 
     }
     const double shown =
         2 * std::abs(b - a) + kSmooth * std::min(std::abs(a), std::abs(b)) + kNothing * largest_[k];
-    if (watched_[k].by_states && depth >= kDeepestUnknown && !std::isfinite(value.width())) continue;
+    const bool beyond = !std::isfinite(a) && !std::isfinite(b);
+    if (depth >= kDeepestUnknown && !std::isfinite(value.width()) && (watched_[k].by_states || beyond))
+      continue;
     if (!(value.width() <= shown)) return false;
     if (!watched_[k].by_states && hides_extreme(k, a, b, value)) return false;
   }
