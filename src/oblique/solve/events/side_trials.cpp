@@ -133,9 +133,10 @@ std::optional<SideTrials::Trial> SideTrials::attempt(Combination sides, Bends& b
   trial.rates = of_units(rates_);
   const double fastest = fastest_of(derivatives_, std::numeric_limits<double>::min());
   fastest_ = std::max(fastest_, fastest);
-  const double step = std::min(kProbe / fastest, kProbe * span_);
-  for (std::size_t i = 0; i < x.size(); ++i) moved_[i] = x[i] + step * derivatives_[i];
-  const auto later = program_.event_functions(t + step, moved_.data(), event_functions_.data(), workspace_);
+  trial.step = std::min(kProbe / fastest, kProbe * span_);
+  for (std::size_t i = 0; i < x.size(); ++i) moved_[i] = x[i] + trial.step * derivatives_[i];
+  const auto later =
+      program_.event_functions(t + trial.step, moved_.data(), event_functions_.data(), workspace_);
   if (!later) return std::nullopt;
   later->derivatives(derivatives_.data());
   later->event_function_rates(derivatives_.data(), rates_.data());
@@ -161,7 +162,7 @@ int SideTrials::direction(Combination sides, std::size_t unit) const {
   const double rate = trial->rates[unit], later = trial->later[unit];
   if (!leaves_rounding(rate, span_) && !leaves_rounding(later, span_)) return 0;
   if (std::abs(rate) > kNoRate * largest_rate(unit) && std::abs(rate) > kRounding * fastest_ &&
-      std::abs(rate) > kAboutToTurn * std::abs(later - rate))
+      !is_about_to_turn(rate, later, trial->step))
     return sign_of(rate);
   double largest_later = 0;
   for (const auto& other : trials_) {

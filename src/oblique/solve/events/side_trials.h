@@ -64,6 +64,7 @@ class SideTrials {
   /// What one combination of sides leads to.
   struct Trial {
     std::vector<double> event_functions, rates, later;  ///< of each unit; `later` is the rate a moment on
+    double step = 0;                                    ///< that moment [s]
   };
 
   std::optional<Trial> attempt(Combination sides, Bends& bends, double t, std::span<const double> x);
