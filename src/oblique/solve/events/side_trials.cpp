@@ -122,6 +122,23 @@ std::optional<network::Evaluation> SideTrials::place(Combination sides, Bends& b
   return here;
 }
 
+/// What the rounding of the states makes of the rates of units at (t, x): much, where something fast is
+/// nearly in balance.
+std::vector<double> SideTrials::noise_of(const std::vector<double>& rates, double t,
+                                         std::span<const double> x) {
+  constexpr double kOfState = 1e-15;
+  std::vector<double> moved_derivatives(x.size());
+  for (std::size_t i = 0; i < x.size(); ++i) moved_[i] = x[i] * (1 + (i % 2 == 0 ? 1 : -1) * kOfState);
+  const auto moved = program_.event_functions(t, moved_.data(), event_functions_.data(), workspace_);
+  if (!moved) return std::vector<double>(rates.size(), 0.0);
+  moved->derivatives(moved_derivatives.data());
+  moved->event_function_rates(moved_derivatives.data(), rates_.data());
+  std::vector<double> noise = of_units(rates_);
+  for (std::size_t u = 0; u < noise.size(); ++u)
+    noise[u] = std::isfinite(noise[u]) ? std::abs(noise[u] - rates[u]) : 0;
+  return noise;
+}
+
 std::optional<SideTrials::Trial> SideTrials::attempt(Combination sides, Bends& bends, double t,
                                                      std::span<const double> x) {
   const auto here = place(sides, bends, t, x);
@@ -131,6 +148,7 @@ std::optional<SideTrials::Trial> SideTrials::attempt(Combination sides, Bends& b
   here->derivatives(derivatives_.data());
   here->event_function_rates(derivatives_.data(), rates_.data());
   trial.rates = of_units(rates_);
+  trial.noise = noise_of(trial.rates, t, x);
   const double fastest = fastest_of(derivatives_, std::numeric_limits<double>::min());
   fastest_ = std::max(fastest_, fastest);
   trial.step = std::min(kProbe / fastest, kProbe * span_);
@@ -159,16 +177,16 @@ int SideTrials::direction(Combination sides, std::size_t unit) const {
   const std::uint32_t s = program_.switch_structure().members[units_[unit]].front();
   if (std::abs(trial->event_functions[unit]) > std::max(thresholds_[s], SlidingMode::drift()))
     return sign_of(trial->event_functions[unit]);
-  const double rate = trial->rates[unit], later = trial->later[unit];
+  const double rate = trial->rates[unit], later = trial->later[unit], noise = trial->noise[unit];
   if (!leaves_rounding(rate, span_) && !leaves_rounding(later, span_)) return 0;
-  if (std::abs(rate) > kNoRate * largest_rate(unit) && std::abs(rate) > kRounding * fastest_ &&
-      !is_about_to_turn(rate, later, trial->step))
+  if (std::abs(rate) > noise && std::abs(rate) > kNoRate * largest_rate(unit) &&
+      std::abs(rate) > kRounding * fastest_ && !is_about_to_turn(rate, later, trial->step))
     return sign_of(rate);
   double largest_later = 0;
   for (const auto& other : trials_) {
     if (other) largest_later = std::max(largest_later, std::abs(other->later[unit]));
   }
-  const bool moves = std::abs(later) > kNoLaterRate * largest_later &&
+  const bool moves = std::abs(later) > noise && std::abs(later) > kNoLaterRate * largest_later &&
                      std::abs(later) > 10 * kRounding * fastest_ &&
                      largest_later > std::numeric_limits<double>::min();
   return moves ? sign_of(later) : 0;

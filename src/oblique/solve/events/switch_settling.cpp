@@ -394,7 +394,7 @@ void SwitchSettling::end(const std::vector<std::uint32_t>& slid) {
 }
 
 void SwitchSettling::let_touch(std::size_t s) {
-  const double error = std::min(event_functions_.last_errors()[s], SlidingMode::drift());
+  const double error = std::min(event_functions_.last_errors().undamped(s), SlidingMode::drift());
   if (event_functions_.is_known(s) || !(std::abs(event_functions_[s]) <= error)) return;
   event_functions_.thresholds().forget(s);
   event_functions_.thresholds().widen(s, error);
@@ -432,7 +432,8 @@ bool SwitchSettling::limit_slack() {
   const EventFunctionErrors& errors = event_functions_.weigh_errors();
   bool any = false;
   for (std::size_t s = 0; s < event_functions_.size(); ++s) {
-    if (!thresholds.let_since(s)) continue;
+    // One that was announced and did not turn over would be announced again at once.
+    if (!thresholds.let_since(s) || unrest_[s].touches) continue;
     thresholds.limit_slack(s, errors[s]);
     any = any || event_functions_.against(s) > thresholds.along_solution(s, thresholds.rounding(s));
   }
