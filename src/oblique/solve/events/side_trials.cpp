@@ -15,6 +15,10 @@
 namespace oblique::solve {
 namespace {
 
+constexpr double kRoundingOfState = 1e-15;  ///< of it
+/// Of the time in which what is fast answers: as long as this it goes straight on.
+constexpr double kStraight = 0.1;
+
 constexpr std::size_t kMostTrials = 3;  ///< of bends and others that follow each other
 
 int sign_of(double value) {
@@ -126,9 +130,9 @@ std::optional<network::Evaluation> SideTrials::place(Combination sides, Bends& b
 /// nearly in balance.
 std::vector<double> SideTrials::noise_of(const std::vector<double>& rates, double t,
                                          std::span<const double> x) {
-  constexpr double kOfState = 1e-15;
   std::vector<double> moved_derivatives(x.size());
-  for (std::size_t i = 0; i < x.size(); ++i) moved_[i] = x[i] * (1 + (i % 2 == 0 ? 1 : -1) * kOfState);
+  for (std::size_t i = 0; i < x.size(); ++i)
+    moved_[i] = x[i] * (1 + (i % 2 == 0 ? 1 : -1) * kRoundingOfState);
   const auto moved = program_.event_functions(t, moved_.data(), event_functions_.data(), workspace_);
   if (!moved) return std::vector<double>(rates.size(), 0.0);
   moved->derivatives(moved_derivatives.data());
@@ -152,6 +156,9 @@ std::optional<SideTrials::Trial> SideTrials::attempt(Combination sides, Bends& b
   const double fastest = fastest_of(derivatives_, std::numeric_limits<double>::min());
   fastest_ = std::max(fastest_, fastest);
   trial.step = std::min(kProbe / fastest, kProbe * span_);
+  for (const double noise : trial.noise) {
+    if (noise > 0) trial.step = std::min(trial.step, kStraight * kRoundingOfState / noise);
+  }
   for (std::size_t i = 0; i < x.size(); ++i) moved_[i] = x[i] + trial.step * derivatives_[i];
   const auto later =
       program_.event_functions(t + trial.step, moved_.data(), event_functions_.data(), workspace_);
