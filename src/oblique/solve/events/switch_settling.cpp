@@ -447,6 +447,8 @@ void SwitchSettling::tell_of_hidden(double t, std::span<const double> x) {
   for (std::uint32_t s = 0; s < event_functions_.size(); ++s) {
     const std::uint32_t unit = program_.switch_structure().unit[s];
     const auto since = thresholds.let_since(s);
+    // What has not turned over yet, or was looked at and let touch, is a decay, which stays on its side.
+    if (unrest_[s].last == 0 || unrest_[s].touches) continue;
     if (!since || told_hidden_[unit] || !(t - *since > kLong * span_)) continue;
     if (!matters(unit, t, x) && !moves_states(unit, t, x)) continue;
     told_hidden_[unit] = true;
