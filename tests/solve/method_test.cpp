@@ -37,6 +37,26 @@ TEST(ChooseMethod, TakesAdamsForAnOscillator) {
   EXPECT_THAT(choice.reason, HasSubstr("the fastest mode at the start oscillates, at 3 rad/s"));
 }
 
+// The diode conducts from t = 0.1 s on: a decay of 1e8 1/s, which shows later only.
+// It holds the top of the sine to the 1e-8 that it takes.
+TEST(StiffMethod, IsTakenWhereARunBecomesStiff) {
+  const Compiled made(R"(
+u = { type = "time-function", formula = "sin(time) - 0.1" }
+d = { type = "summer", in = ["u", "-v"] }
+i = { type = "diode", in = "d", resistance = 1e-8 }
+v = { type = "integrator", in = "i" }
+)",
+                      "[outputs]\nv = { signal = \"v\" }\n");
+  RunOptions options;
+  options.until = 8;
+  const auto found = oblique::solve::run(made.program, made.flat, options);
+  EXPECT_EQ(found.method.method, diagram::IntegrationMethod::bdf);
+  EXPECT_THAT(found.method.reason, HasSubstr("1e+08 1/s at t = 0."));
+  const std::size_t last = found.trajectory.rows() - 1;
+  EXPECT_NEAR(found.trajectory.at(last, 1), 0.9, 1e-7);
+  EXPECT_TRUE(found.warnings.empty());
+}
+
 TEST(ChooseMethod, TakesBdfForServoLoops) {
   const MethodChoice choice =
       choice_for(Compiled(ring(1) + "q = { type = \"servo-amplifier\", in = [\"q\", \"-x\"] }\n"));

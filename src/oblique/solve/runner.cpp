@@ -109,7 +109,9 @@ Run Runner::run() {
 
 void Runner::step_to_end() {
   const auto keep_statistics = [&] {
-    if (integration_) sampler_.result.statistics = integration_->solver().statistics();
+    if (!integration_) return;
+    sampler_.result.statistics = integration_->solver().statistics();
+    sampler_.result.method = integration_->method();
   };
   try {
     while (look_ahead()) pass();
@@ -188,14 +190,13 @@ bool Runner::goes_on(double t) {
 void Runner::begin_steps() {
   t_ = begin_;
   if (program_.n_states() == 0) return segments_.begin(t_);
-  const MethodChoice method =
+  MethodChoice method =
       choose_method(options_.method, program_, workspace_, begin_, states_, options_.until - begin_);
-  sampler_.result.method = method;
   segments_.begin(t_);
   integration_.emplace(
       Integration::Parts{program_, diagram_, options_, workspace_, switching_, system_, branches_, sources_,
                          segments_, overloads_, states_, sensitivities_},
-      solver_settings(program_.states(), options_, method.method, refinement_), begin_);
+      std::move(method), refinement_, begin_);
 }
 
 /// Takes the next step; false where none came of it. A diagram without states follows the time alone: in

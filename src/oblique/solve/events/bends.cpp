@@ -70,21 +70,20 @@ std::optional<network::Evaluation> Bends::follow(const network::Evaluation& here
   if (const auto later =
           program_.event_functions(t + step, moved_.data(), event_functions_.data(), workspace_)) {
     later->derivatives(derivatives_.data());
-    program_.decide_in_order(
-        t + step, moved_.data(), derivatives_.data(), workspace_,
-        [&](std::uint32_t s, double /*event_function*/, double later_rate) {
-          if (!is_one_[s]) return;
-          const double rate = first_rates_[s];
-          if (moves(rate, kRounding) && std::abs(rate) > kAboutToTurn * std::abs(later_rate - rate)) {
-            go(s, rate);
-            at_once[s] = true;
-          } else if (moves(later_rate, 10 * kRounding)) {
-            go(s, later_rate);
-            by_later[s] = true;
-          } else if (s == structure.members[structure.unit[s]].front()) {
-            resting_.push_back(structure.unit[s]);
-          }
-        });
+    program_.decide_in_order(t + step, moved_.data(), derivatives_.data(), workspace_,
+                             [&](std::uint32_t s, double /*event_function*/, double later_rate) {
+                               if (!is_one_[s]) return;
+                               const double rate = first_rates_[s];
+                               if (moves(rate, kRounding) && !is_about_to_turn(rate, later_rate, step)) {
+                                 go(s, rate);
+                                 at_once[s] = true;
+                               } else if (moves(later_rate, 10 * kRounding)) {
+                                 go(s, later_rate);
+                                 by_later[s] = true;
+                               } else if (s == structure.members[structure.unit[s]].front()) {
+                                 resting_.push_back(structure.unit[s]);
+                               }
+                             });
     keep_where_both_sides_lead_back(t + step, moved_, by_later);
     keep_where_both_sides_lead_back(t, x, at_once);
   }

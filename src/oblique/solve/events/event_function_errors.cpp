@@ -15,7 +15,8 @@ EventFunctionErrors::EventFunctionErrors(const network::Program& program, double
     : program_(program),
       tolerance_(tolerance),
       absolute_tolerance_(absolute_tolerance),
-      errors_(program.switches().size(), 0.0) {}
+      errors_(program.switches().size(), 0.0),
+      undamped_(errors_) {}
 
 /// The absolute error that the solver leaves to a state.
 double EventFunctionErrors::error_of_state(std::size_t i) const {
@@ -24,7 +25,14 @@ double EventFunctionErrors::error_of_state(std::size_t i) const {
   return reach_.empty() || reach_[i] == 0 ? least : std::min(least, tolerance_ * reach_[i]);
 }
 
-void EventFunctionErrors::weigh(const network::Evaluation& here, std::span<const double> states) {
+/// By how much an event function that changes so for errors of the states is off.
+double EventFunctionErrors::change(double rate, double still) const {
+  const double error = std::abs(rate - still);
+  return std::isfinite(error) ? error : tolerance_;
+}
+
+void EventFunctionErrors::weigh(const network::Evaluation& here, std::span<const double> states,
+                                ErrorDamping* damping) {
   constexpr std::uint64_t kTrials = 4;
   constexpr double kErrorOfClock = 1e-13;  // it is a straight line to any method
   std::vector<bool> clocks(program_.n_states(), false);
@@ -32,6 +40,7 @@ void EventFunctionErrors::weigh(const network::Evaluation& here, std::span<const
   std::vector<double> off(program_.n_states(), 0.0), rates(errors_.size()), still(errors_.size());
   here.event_function_rates(off.data(), still.data());
   std::fill(errors_.begin(), errors_.end(), 0.0);
+  std::fill(undamped_.begin(), undamped_.end(), 0.0);
   for (std::uint64_t trial = 0; trial < kTrials; ++trial) {
     std::uint64_t signs = 0x9E3779B97F4A7C15 * (trial + 1);
     for (std::size_t i = 0; i < off.size(); ++i) {
@@ -41,11 +50,16 @@ void EventFunctionErrors::weigh(const network::Evaluation& here, std::span<const
       signs = 6364136223846793005 * signs + 1442695040888963407;
     }
     here.event_function_rates(off.data(), rates.data());
-    for (std::size_t s = 0; s < errors_.size(); ++s) {
-      const double error = std::abs(rates[s] - still[s]);
-      errors_[s] = std::max(errors_[s], std::isfinite(error) ? error : tolerance_);
-    }
+    for (std::size_t s = 0; s < errors_.size(); ++s)
+      undamped_[s] = std::max(undamped_[s], change(rates[s], still[s]));
+    if (damping == nullptr) continue;
+    damping->apply(off);
+    here.event_function_rates(off.data(), rates.data());
+    for (std::size_t s = 0; s < errors_.size(); ++s)
+      errors_[s] = std::max(errors_[s], change(rates[s], still[s]));
   }
+  if (damping == nullptr) errors_ = undamped_;
+  for (std::size_t s = 0; s < errors_.size(); ++s) errors_[s] = std::min(errors_[s], undamped_[s]);
 }
 
 std::vector<std::size_t> EventFunctionErrors::states_behind(std::uint32_t s, const network::Evaluation& here,

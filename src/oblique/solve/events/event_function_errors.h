@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <oblique/network/program/program.h>
+#include <oblique/solve/events/error_damping.h>
 
 namespace oblique::solve {
 
@@ -21,10 +22,13 @@ class EventFunctionErrors {
   void know_states(std::span<const double> reach) { reach_.assign(reach.begin(), reach.end()); }
 
   /// The most for some combinations of the signs of the errors; `here` is what was evaluated at `states`.
-  void weigh(const network::Evaluation& here, std::span<const double> states);
+  /// With `damping`, what that leaves of them where it is less.
+  void weigh(const network::Evaluation& here, std::span<const double> states, ErrorDamping* damping);
 
   /// Where they were weighed last.
   double operator[](std::size_t s) const { return errors_[s]; }
+  /// The same without damping, as they soon are on another branch.
+  double undamped(std::size_t s) const { return undamped_[s]; }
 
   /// The states that are hardly known and move the event function of a switch, itself or by the states that
   /// they drive; the others as for `weigh`.
@@ -33,11 +37,12 @@ class EventFunctionErrors {
 
  private:
   double error_of_state(std::size_t i) const;
+  double change(double rate, double still) const;
 
   const network::Program& program_;
   double tolerance_, absolute_tolerance_;
   std::vector<double> reach_;  ///< see `know_states`
-  std::vector<double> errors_;
+  std::vector<double> errors_, undamped_;
 };
 
 }  // namespace oblique::solve

@@ -25,11 +25,13 @@ EventFunctions::EventFunctions(const network::Program& program, network::Workspa
       file_(file),
       thresholds_(program),
       errors_(program, tolerance, absolute_tolerance),
+      damping_(program),
       values_(program.switches().size()),
       known_rates_(values_.size()) {}
 
 void EventFunctions::evaluate(double t, std::span<const double> x, const Announced& announced) {
   interruption_.check();
+  time_ = t;
   states_.assign(x.begin(), x.end());
   weighed_ = false;
   here_ = program_.event_functions(t, x.data(), values_.data(), workspace_);
@@ -58,8 +60,22 @@ bool EventFunctions::is_any_due(const Announced& announced) const {
   return false;
 }
 
+bool EventFunctions::is_any_fine() {
+  constexpr double kNear = 1000;  // undamped errors
+  constexpr double kPart = 0.1;   // of them: what is damped
+  const EventFunctionErrors& errors = weigh_errors();
+  for (std::size_t s = 0; s < values_.size(); ++s) {
+    const double undamped = errors.undamped(s);
+    if (!is_known(s) && errors[s] < kPart * undamped && std::abs(values_[s]) < kNear * undamped) return true;
+  }
+  return false;
+}
+
 const EventFunctionErrors& EventFunctions::weigh_errors() {
-  if (!weighed_) errors_.weigh(here(), states_);
+  if (!weighed_) {
+    const bool damped = damping_.any() && damping_.linearise(time_, states_, workspace_);
+    errors_.weigh(here(), states_, damped ? &damping_ : nullptr);
+  }
   weighed_ = true;
   return errors_;
 }

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include <oblique/network/program/program.h>
+#include <oblique/solve/events/damped_solution.h>
+#include <oblique/solve/events/error_damping.h>
 #include <oblique/solve/events/event_function_errors.h>
 #include <oblique/solve/events/thresholds.h>
 #include <oblique/solve/interruption.h>
@@ -35,6 +37,14 @@ class EventFunctions {
   /// `evaluate` then throws Interrupted.
   void end_when(const Interruption& interruption) { interruption_ = interruption; }
   void know_states(std::span<const double> reach) { errors_.know_states(reach); }
+  /// See ErrorDamping.
+  void take_steps(double length) { damping_.take_steps(length); }
+  bool steps_damp() const { return damping_.any(); }
+  /// Whether some event function, evaluated at the end of a step, is so near to zero that only its damped
+  /// error tells its side: then the solution within the step is to be read by `damped`.
+  bool is_any_fine();
+  /// The solution with its errors damped, as linearised by `is_any_fine`.
+  DampedSolution& damped() { return damped_; }
 
   // As `evaluate` has found them, whatever has been evaluated since:
   std::size_t size() const { return values_.size(); }
@@ -69,8 +79,11 @@ class EventFunctions {
   Interruption interruption_;
   Thresholds thresholds_;
   EventFunctionErrors errors_;
+  ErrorDamping damping_;
+  DampedSolution damped_{damping_};
   std::optional<network::Evaluation> here_;
   std::vector<double> values_, states_;
+  double time_ = 0;
   std::vector<std::optional<double>> known_rates_;
   bool weighed_ = false;  ///< whether the errors are those of `states_`
 };

@@ -37,6 +37,7 @@ class EventLocation {
   std::optional<EventSearch::Found> search(double from, std::span<const double> sample_times,
                                            const Interpolant& solution);
 
+  double nearest() const { return search_.nearest(); }
   const std::vector<EventSearch::NearMiss>& near_misses() const { return search_.near_misses(); }
   const Announced& announced() const { return announced_; }
   /// At the beginning of an instant that is settled: withdraws switches that follow time alone and are not

@@ -123,6 +123,18 @@ void EventLog::warn_of_no_side(std::uint32_t unit, double t) {
       "begin a little to the side that is meant, or add the disturbance that decides it on the machine");
 }
 
+void EventLog::warn_of_hidden(std::uint32_t s, bool holds, double since, double t, double error) {
+  const network::Switch& made = program_.switches()[s];
+  warn({{file_, {}},
+        fmt::format(
+            "'{}' ({}) {} from t = {:.9g} s to t = {:.9g} s, though what it compares lies on the other "
+            "side: by less than its error, {:.2g}, so that it may be late or never turn over",
+            made.block, made.comparison, holds ? "holds" : "does not hold", since, t, error),
+        {},
+        {"tighten ", text::Setting{"tolerance"},
+         ", or make what it compares larger: a slower element, a higher resistance, a lower rate"}});
+}
+
 void EventLog::warn_of_halt(std::uint32_t unit, double t) {
   warn_of_unit(
       unit, "stops on the switching surface that it slid along",

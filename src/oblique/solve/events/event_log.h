@@ -31,6 +31,9 @@ class EventLog {
   /// Tells that nothing decides where the solution goes.
   void warn_of_no_side(std::uint32_t unit, double t);
 
+  /// Tells that what a switch compares lies since a time on the other side than the one on which the switch
+  /// stands, by less than its error.
+  void warn_of_hidden(std::uint32_t s, bool holds, double since, double t, double error);
   /// Tells that nothing decides on which side a solution stops that slid.
   void warn_of_halt(std::uint32_t unit, double t);
 

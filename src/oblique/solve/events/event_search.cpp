@@ -209,7 +209,10 @@ std::optional<EventSearch::Found> EventSearch::search(double from, std::span<con
       if (parts > 1)
         sample(k == parts ? to : begin + (to - begin) * static_cast<double>(k) / static_cast<double>(parts),
                solution, right);
-      if (auto found = between(left, right, solution)) return found;
+      if (auto found = between(left, right, solution)) {
+        nearest_ = 0;
+        return found;
+      }
       std::swap(left, right);
       leave_behind(left);
     }
@@ -219,7 +222,16 @@ std::optional<EventSearch::Found> EventSearch::search(double from, std::span<con
 
 /// Takes its slack from every event function that is beyond the errors of the states.
 void EventSearch::leave_behind(Sample& at) {
+  nearest_ = kInfinity;
   for (std::size_t s = 0; s < at.event_functions.size(); ++s) {
+    const bool closed = workspace_.discrete_state(program_.switches()[s].discrete_state) == 1;
+    const bool watched = at.crossed[s] != -kInfinity;
+    if (watched) nearest_ = std::min(nearest_, std::abs(at.event_functions[s]));
+    thresholds_.note_side(s,
+                          !watched ? 0
+                          : closed ? -at.event_functions[s]
+                                   : at.event_functions[s],
+                          at.roundings[s], at.time);
     if (const auto less = thresholds_.leave_behind(s, at.event_functions[s], at.roundings[s]))
       at.crossed[s] += *less;
   }

@@ -48,6 +48,10 @@ class EventSearch {
   };
   const std::vector<NearMiss>& near_misses() const { return near_misses_; }
 
+  /// Of the event functions where the last search has ended the one that is nearest to zero, of those that
+  /// depend on states and may turn over: its magnitude.
+  double nearest() const { return nearest_; }
+
   /// How often to look between steps in all, where something turns fast.
   void limit_samples(double samples) { samples_left_ = samples; }
   /// `search` then throws Interrupted.
@@ -80,6 +84,7 @@ class EventSearch {
   const std::string& file_;
   double check_interval_;
   int splits_left_ = 0;
+  double nearest_ = 0;          ///< see `nearest`
   double begin_ = 0, end_ = 0;  ///< [s] of the search
   double reached_ = 0;          ///< [s] where the event functions were evaluated last
   double samples_left_ = std::numeric_limits<double>::infinity();

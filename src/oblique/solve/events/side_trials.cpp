@@ -15,6 +15,10 @@
 namespace oblique::solve {
 namespace {
 
+constexpr double kRoundingOfState = 1e-15;  ///< of it
+/// Of the time in which what is fast answers: as long as this it goes straight on.
+constexpr double kStraight = 0.1;
+
 constexpr std::size_t kMostTrials = 3;  ///< of bends and others that follow each other
 
 int sign_of(double value) {
@@ -122,6 +126,23 @@ std::optional<network::Evaluation> SideTrials::place(Combination sides, Bends& b
   return here;
 }
 
+/// What the rounding of the states makes of the rates of units at (t, x): much, where something fast is
+/// nearly in balance.
+std::vector<double> SideTrials::noise_of(const std::vector<double>& rates, double t,
+                                         std::span<const double> x) {
+  std::vector<double> moved_derivatives(x.size());
+  for (std::size_t i = 0; i < x.size(); ++i)
+    moved_[i] = x[i] * (1 + (i % 2 == 0 ? 1 : -1) * kRoundingOfState);
+  const auto moved = program_.event_functions(t, moved_.data(), event_functions_.data(), workspace_);
+  if (!moved) return std::vector<double>(rates.size(), 0.0);
+  moved->derivatives(moved_derivatives.data());
+  moved->event_function_rates(moved_derivatives.data(), rates_.data());
+  std::vector<double> noise = of_units(rates_);
+  for (std::size_t u = 0; u < noise.size(); ++u)
+    noise[u] = std::isfinite(noise[u]) ? std::abs(noise[u] - rates[u]) : 0;
+  return noise;
+}
+
 std::optional<SideTrials::Trial> SideTrials::attempt(Combination sides, Bends& bends, double t,
                                                      std::span<const double> x) {
   const auto here = place(sides, bends, t, x);
@@ -131,11 +152,16 @@ std::optional<SideTrials::Trial> SideTrials::attempt(Combination sides, Bends& b
   here->derivatives(derivatives_.data());
   here->event_function_rates(derivatives_.data(), rates_.data());
   trial.rates = of_units(rates_);
+  trial.noise = noise_of(trial.rates, t, x);
   const double fastest = fastest_of(derivatives_, std::numeric_limits<double>::min());
   fastest_ = std::max(fastest_, fastest);
-  const double step = std::min(kProbe / fastest, kProbe * span_);
-  for (std::size_t i = 0; i < x.size(); ++i) moved_[i] = x[i] + step * derivatives_[i];
-  const auto later = program_.event_functions(t + step, moved_.data(), event_functions_.data(), workspace_);
+  trial.step = std::min(kProbe / fastest, kProbe * span_);
+  for (const double noise : trial.noise) {
+    if (noise > 0) trial.step = std::min(trial.step, kStraight * kRoundingOfState / noise);
+  }
+  for (std::size_t i = 0; i < x.size(); ++i) moved_[i] = x[i] + trial.step * derivatives_[i];
+  const auto later =
+      program_.event_functions(t + trial.step, moved_.data(), event_functions_.data(), workspace_);
   if (!later) return std::nullopt;
   later->derivatives(derivatives_.data());
   later->event_function_rates(derivatives_.data(), rates_.data());
@@ -158,16 +184,16 @@ int SideTrials::direction(Combination sides, std::size_t unit) const {
   const std::uint32_t s = program_.switch_structure().members[units_[unit]].front();
   if (std::abs(trial->event_functions[unit]) > std::max(thresholds_[s], SlidingMode::drift()))
     return sign_of(trial->event_functions[unit]);
-  const double rate = trial->rates[unit], later = trial->later[unit];
+  const double rate = trial->rates[unit], later = trial->later[unit], noise = trial->noise[unit];
   if (!leaves_rounding(rate, span_) && !leaves_rounding(later, span_)) return 0;
-  if (std::abs(rate) > kNoRate * largest_rate(unit) && std::abs(rate) > kRounding * fastest_ &&
-      std::abs(rate) > kAboutToTurn * std::abs(later - rate))
+  if (std::abs(rate) > noise && std::abs(rate) > kNoRate * largest_rate(unit) &&
+      std::abs(rate) > kRounding * fastest_ && !is_about_to_turn(rate, later, trial->step))
     return sign_of(rate);
   double largest_later = 0;
   for (const auto& other : trials_) {
     if (other) largest_later = std::max(largest_later, std::abs(other->later[unit]));
   }
-  const bool moves = std::abs(later) > kNoLaterRate * largest_later &&
+  const bool moves = std::abs(later) > noise && std::abs(later) > kNoLaterRate * largest_later &&
                      std::abs(later) > 10 * kRounding * fastest_ &&
                      largest_later > std::numeric_limits<double>::min();
   return moves ? sign_of(later) : 0;

@@ -64,9 +64,12 @@ class SideTrials {
   /// What one combination of sides leads to.
   struct Trial {
     std::vector<double> event_functions, rates, later;  ///< of each unit; `later` is the rate a moment on
+    std::vector<double> noise;                          ///< what rounding of the states makes of the rates
+    double step = 0;                                    ///< that moment [s]
   };
 
   std::optional<Trial> attempt(Combination sides, Bends& bends, double t, std::span<const double> x);
+  std::vector<double> noise_of(const std::vector<double>& rates, double t, std::span<const double> x);
   void find_broken();
   double largest_jump(std::size_t unit, std::size_t with) const;
   int direction(Combination sides, std::size_t unit) const;

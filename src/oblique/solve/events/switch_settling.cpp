@@ -50,7 +50,8 @@ SwitchSettling::SwitchSettling(const network::Program& program, network::Workspa
       before_instant_(program.switches().size()),
       rates_before_(program.switches().size()),
       derivatives_(program.n_states()),
-      unrest_(program.switches().size()) {}
+      unrest_(program.switches().size()),
+      told_hidden_(decided_.size(), false) {}
 
 /// Then the time at which one comes tells nothing of where it goes before the others are known.
 bool SwitchSettling::known_follow_from_others() const {
@@ -126,7 +127,8 @@ void SwitchSettling::turn(std::size_t s, double position, double t) {
   unrest.touches = false;
   thresholds.forget(s);
   // An event function that is merely touched goes back and forth by the errors of the states.
-  if (!known && is_announced(program_.switch_structure().unit[s])) thresholds.give_slack(s, errors[s]);
+  if (!known && is_announced(program_.switch_structure().unit[s]))
+    thresholds.give_slack(s, errors.undamped(s));
   if (++unrest.turns > kMostTurns) throw log_.endless(made.block, made.comparison, t);
 }
 
@@ -276,22 +278,37 @@ void SwitchSettling::tell_of_open(double t, std::span<const double> x) {
   if (open) log_.warn_of_choice({*open}, workspace_, t);
 }
 
-/// Whether some signal is another with the unit on its other side.
-bool SwitchSettling::matters(std::uint32_t unit, double t, std::span<const double> x) const {
-  constexpr double kMuch = 1e-6;  // of 1 + the signal
+/// Whether some value that `evaluate` gives is another with a unit on its other side.
+template <class Evaluate>
+bool SwitchSettling::differs(std::uint32_t unit, std::size_t n_values, const Evaluate& evaluate) const {
+  constexpr double kMuch = 1e-6;  // of 1 + the value
   const std::vector<double> positions(workspace_.discrete_states().begin(),
                                       workspace_.discrete_states().end());
-  std::vector<double> here(program_.n_signals()), there(program_.n_signals());
-  const bool known = program_.signals(t, x.data(), here.data(), workspace_).has_value();
+  std::vector<double> here(n_values), there(n_values);
+  const bool known = evaluate(here);
   for (const std::uint32_t s : program_.switch_structure().members[unit])
     workspace_.set_discrete_state(program_.switches()[s].discrete_state, 1 - position(s));
-  const bool known_there = program_.signals(t, x.data(), there.data(), workspace_).has_value();
+  const bool known_there = evaluate(there);
   workspace_.load_discrete_states(positions);
   if (!known || !known_there) return false;
   for (std::size_t i = 0; i < here.size(); ++i) {
     if (std::abs(there[i] - here[i]) > kMuch * (1 + std::abs(here[i]))) return true;
   }
   return false;
+}
+
+/// Whether some signal is another with the unit on its other side.
+bool SwitchSettling::matters(std::uint32_t unit, double t, std::span<const double> x) const {
+  return differs(unit, program_.n_signals(), [&](std::vector<double>& signals) {
+    return program_.signals(t, x.data(), signals.data(), workspace_).has_value();
+  });
+}
+
+/// Whether some rate of the states is.
+bool SwitchSettling::moves_states(std::uint32_t unit, double t, std::span<const double> x) const {
+  return differs(unit, x.size(), [&](std::vector<double>& rates) {
+    return program_.derivatives(t, x.data(), rates.data(), workspace_);
+  });
 }
 
 /// What the last choice of positions tells besides.
@@ -452,7 +469,7 @@ void SwitchSettling::end(const std::vector<std::uint32_t>& slid) {
 }
 
 void SwitchSettling::let_touch(std::size_t s) {
-  const double error = std::min(event_functions_.last_errors()[s], SlidingMode::drift());
+  const double error = std::min(event_functions_.last_errors().undamped(s), SlidingMode::drift());
   if (event_functions_.is_known(s) || !(std::abs(event_functions_[s]) <= error)) return;
   event_functions_.thresholds().forget(s);
   event_functions_.thresholds().widen(s, error);
@@ -482,6 +499,35 @@ void SwitchSettling::allow_wrong_sides() {
     if (event_functions_.is_known(s) || slide_.holds(s) || slide_.follows(s)) continue;
     const double wrong = event_functions_.against(s);
     if (wrong > thresholds[s]) thresholds.widen(s, 2 * wrong);
+  }
+}
+
+bool SwitchSettling::limit_slack() {
+  Thresholds& thresholds = event_functions_.thresholds();
+  const EventFunctionErrors& errors = event_functions_.weigh_errors();
+  bool any = false;
+  for (std::size_t s = 0; s < event_functions_.size(); ++s) {
+    // One that was announced and did not turn over would be announced again at once.
+    if (!thresholds.let_since(s) || unrest_[s].touches) continue;
+    thresholds.limit_slack(s, errors[s]);
+    any = any || event_functions_.against(s) > thresholds.along_solution(s, thresholds.rounding(s));
+  }
+  return any;
+}
+
+void SwitchSettling::tell_of_hidden(double t, std::span<const double> x) {
+  constexpr double kLong = 1e-3;  // of the run: what is late by less shows in no output
+  const Thresholds& thresholds = event_functions_.thresholds();
+  const EventFunctionErrors& errors = event_functions_.weigh_errors();
+  for (std::uint32_t s = 0; s < event_functions_.size(); ++s) {
+    const std::uint32_t unit = program_.switch_structure().unit[s];
+    const auto since = thresholds.let_since(s);
+    // What has not turned over yet, or was looked at and let touch, is a decay, which stays on its side.
+    if (unrest_[s].last == 0 || unrest_[s].touches) continue;
+    if (!since || told_hidden_[unit] || !(t - *since > kLong * span_)) continue;
+    if (!matters(unit, t, x) && !moves_states(unit, t, x)) continue;
+    told_hidden_[unit] = true;
+    log_.warn_of_hidden(s, position(s) == 1, *since, t, errors[s]);
   }
 }
 

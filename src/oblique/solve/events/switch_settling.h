@@ -63,6 +63,12 @@ class SwitchSettling {
   /// stay where they are until they have left these behind. On which side they lie, rounding decides.
   void keep_positions_within_errors();
 
+  /// Of the event functions, evaluated at (t, x), that lie on the wrong side because their slack lets them:
+  /// takes what is more than their errors there. Whether any lies there by more than that.
+  bool limit_slack();
+  /// Tells of those that have lain there for long, where the other position would make something else.
+  void tell_of_hidden(double t, std::span<const double> x);
+
   /// Whether an event function, at zero, was found to stay there.
   bool stays(std::size_t s) const { return stays_[s]; }
   /// When a switch turned over last [s]; 0 where it has not.
@@ -92,7 +98,10 @@ class SwitchSettling {
   bool holds_at_level(std::uint32_t unit) const;
   void decide(Units units, double t, std::span<const double> x);
   bool choose_restless(const Units& switches, double t, std::span<const double> x);
+  template <class Evaluate>
+  bool differs(std::uint32_t unit, std::size_t n_values, const Evaluate& evaluate) const;
   bool matters(std::uint32_t unit, double t, std::span<const double> x) const;
+  bool moves_states(std::uint32_t unit, double t, std::span<const double> x) const;
   void note_choice(double t, std::span<const double> x);
   SolveError no_position(std::uint32_t s, double t) const;
 
@@ -131,6 +140,7 @@ class SwitchSettling {
     long beyond = 0;                 ///< turns after that, within the errors of the states
   };
   std::vector<Unrest> unrest_;
+  std::vector<bool> told_hidden_;  ///< of each unit
 };
 
 }  // namespace oblique::solve

@@ -22,6 +22,7 @@ Switching::Switching(const network::Program& program, network::Workspace& worksp
     : program_(program),
       workspace_(workspace),
       file_(file),
+      tolerance_(tolerance),
       log_(program, file),
       edges_(program, workspace, span),
       slide_(program, workspace, edges_, span),
@@ -194,11 +195,38 @@ void Switching::throw_endless(double t) const {
 
 std::optional<double> Switching::search(double from, std::span<const double> sample_times,
                                         const Interpolant& solution) {
-  const auto found = location_.search(from, sample_times, solution);
+  auto found = location_.search(from, sample_times, solution);
+  if (event_functions_.thresholds().lets_any()) {
+    if (look_at_hidden(found ? found->time : sample_times.back(), solution) && !found)
+      found = location_.search(from, sample_times, solution);
+  }
   for (const EventSearch::NearMiss& miss : location_.near_misses()) look_at_miss(miss, solution);
   if (!found) return std::nullopt;
   faint_turns_.approach(from, found->time, found->turned, solution);
   return found->time;
+}
+
+const Interpolant& Switching::looked_at(double t, const Interpolant& solution) {
+  constexpr double kNear = 1e4;  // tolerances of a machine unit
+  if (!event_functions_.steps_damp() || !(location_.nearest() < kNear * tolerance_)) return solution;
+  std::vector<double> x(program_.n_states());
+  solution.states_at(t, x);
+  event_functions_.evaluate(t, x, location_.announced());
+  if (!event_functions_.is_any_fine()) return solution;
+  event_functions_.damped().begin(solution, t);
+  return event_functions_.damped();
+}
+
+/// Looks at t at what lies on the wrong side by less than an error that it had at another time: whether that
+/// is more than it has now, so that an event has been overlooked.
+bool Switching::look_at_hidden(double t, const Interpolant& solution) {
+  std::vector<double> x(program_.n_states());
+  solution.states_at(t, x);
+  event_functions_.evaluate(t, x, location_.announced());
+  const bool overlooked = event_functions_.steps_damp() && settling_.limit_slack();
+  if (!overlooked) settling_.tell_of_hidden(t, x);
+  event_functions_.evaluate(t, x, location_.announced());  // back to the solutions of the loops
+  return overlooked;
 }
 
 /// Keeps a top of an event function as a faint turn where it is nearer to zero than its errors, and the turn

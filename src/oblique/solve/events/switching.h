@@ -92,6 +92,13 @@ class Switching {
   bool jacobian(double t, const double* x, double* values);
   bool signals(double t, const double* x, double* values);
 
+  /// A step of this length [s] has led to where events are searched for next; it damps what is fast, or is 0.
+  void take_step(double length) { event_functions_.take_steps(slide_.active() ? 0 : length); }
+
+  /// The solution within a step that ends at t, by which to look at it: with its errors damped where an event
+  /// function is so small that these would tell its side. `solution` must last as long as that is used.
+  const Interpolant& looked_at(double t, const Interpolant& solution);
+
   void limit_samples(double samples) { location_.limit_samples(samples); }
   /// Whoever evaluates or settles then throws Interrupted; but `derivatives` and `jacobian`, which solvers
   /// call that know no exceptions.
@@ -127,12 +134,14 @@ class Switching {
   std::optional<EventActions::Effect> serve_events(double t, std::vector<double>& x, bool starting);
   void settle_switches(double t, std::span<const double> x);
   std::vector<double> readings(double t, std::span<const double> x);
+  bool look_at_hidden(double t, const Interpolant& solution);
   void look_at_miss(const EventSearch::NearMiss& miss, const Interpolant& solution);
   void record_turns(const std::vector<double>& before, double t);
 
   const network::Program& program_;
   network::Workspace& workspace_;
   const std::string& file_;
+  double tolerance_;
   Interruption interruption_;
   EventLog log_;
   EdgeValues edges_;

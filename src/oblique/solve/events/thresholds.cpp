@@ -19,6 +19,7 @@ Thresholds::Thresholds(const network::Program& program)
       resolutions_(program.switches().size(), 0.0),
       slack_(program.switches().size(), 0.0),
       excursions_(program.switches().size(), 0.0),
+      let_since_(program.switches().size()),
       of_time_(program.switches().size(), false) {
   for (const network::Source& source : program.sources()) {
     if (source.switch_index && !source.by_states) of_time_[*source.switch_index] = true;
@@ -42,6 +43,13 @@ double Thresholds::rounding_of(std::size_t s, double compared_size) const {
   const bool finite = std::isfinite(compared_size);
   if (of_time_[s] && finite) return 8 * kEpsilon * compared_size;
   return kSmallestDifference * (finite ? std::max(1.0, compared_size) : 1);
+}
+
+void Thresholds::note_side(std::size_t s, double against, double rounding, double t) {
+  const bool let = slack_[s] > 0 && against > rounding;
+  if (let == let_since_[s].has_value()) return;
+  lets_ += let ? 1 : -1;
+  let_since_[s] = let ? std::optional(t) : std::nullopt;
 }
 
 std::optional<double> Thresholds::leave_behind(std::size_t s, double event_function, double rounding) {

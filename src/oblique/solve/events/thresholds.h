@@ -45,16 +45,31 @@ class Thresholds {
   /// states: by how much its threshold has become smaller then; it is the rounding there.
   std::optional<double> leave_behind(std::size_t s, double event_function, double rounding);
 
+  /// Takes as much of the slack of a switch as is more than this.
+  void limit_slack(std::size_t s, double most) { slack_[s] = std::min(slack_[s], most); }
+
+  /// Notes at time t whether an event function lies this far on the side on which its switch does not stand,
+  /// and only its slack lets it.
+  void note_side(std::size_t s, double against, double rounding, double t);
+  /// Since when the event function of a switch has been let lie there [s]; nothing where it does not.
+  std::optional<double> let_since(std::size_t s) const { return let_since_[s]; }
+  bool lets_any() const { return lets_ > 0; }
+
   /// How far the event function of a switch has been from zero since `forget`.
   double excursion(std::size_t s) const { return excursions_[s]; }
-  void forget(std::size_t s) { excursions_[s] = 0; }
+  void forget(std::size_t s) {
+    excursions_[s] = 0;
+    note_side(s, 0, 0, 0);
+  }
 
  private:
   const network::Program& program_;
   std::vector<double> now_, roundings_, resolutions_;
   std::vector<double> slack_;  ///< of them, for the errors of the states
   std::vector<double> excursions_;
-  std::vector<bool> of_time_;  ///< the event function follows the time alone, to rounding
+  std::vector<std::optional<double>> let_since_;  ///< see `let_since`
+  long lets_ = 0;                                 ///< how many
+  std::vector<bool> of_time_;                     ///< the event function follows the time alone, to rounding
 };
 
 }  // namespace oblique::solve

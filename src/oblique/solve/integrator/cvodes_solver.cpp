@@ -83,12 +83,13 @@ bool all_finite(const double* values, std::size_t size) {
 
 struct CvodesSolver::Handles {
   OdeSystem* system;
-  double start;      ///< the time at which CVODES' clock is zero [s]
-  double t;          ///< reached [s]
-  double end;        ///< [s]
-  double clock = 0;  ///< CVODES' own: since `start` [s]
-  double length;     ///< from `start` to `end` [s]
-  double max_step;   ///< [s]
+  double start;                                            ///< the time at which CVODES' clock is zero [s]
+  double t;                                                ///< reached [s]
+  double end;                                              ///< [s]
+  double clock = 0;                                        ///< CVODES' own: since `start` [s]
+  double length;                                           ///< from `start` to `end` [s]
+  double max_step;                                         ///< [s]
+  double limit = std::numeric_limits<double>::infinity();  ///< see `limit_step`
   double relative_tolerance, absolute_tolerance;
   std::vector<double> start_states;
   std::int64_t max_steps;
@@ -306,6 +307,22 @@ void CvodesSolver::restart(double t, std::span<const double> x, double end, doub
   h.begin();
 }
 
+void CvodesSolver::change_settings(const SolverSettings& settings) {
+  const Handles& h = *handles_;
+  auto next = std::make_unique<Handles>(*h.system, h.t, states(), h.end, h.length - h.clock, settings);
+  next->before_restart = statistics();
+  next->steps = h.steps;
+  const double limit = h.limit;
+  handles_ = std::move(next);
+  limit_step(limit);
+}
+
+int CvodesSolver::last_order() const {
+  int order = 0;
+  CVodeGetLastOrder(handles_->memory.get(), &order);
+  return order;
+}
+
 void CvodesSolver::follow(Sensitivities& sensitivities) {
   handles_->follow(sensitivities);
 }
@@ -320,6 +337,7 @@ std::vector<std::vector<double>> CvodesSolver::sensitivities_at(double t) const 
 }
 
 void CvodesSolver::limit_step(double longest) {
+  handles_->limit = longest;
   const double most = std::min(longest, handles_->max_step);
   check_setup(CVodeSetMaxStep(handles_->memory.get(), std::isinf(most) ? 0 : most));
 }

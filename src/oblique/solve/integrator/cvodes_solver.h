@@ -25,6 +25,9 @@ class CvodesSolver final : public Solver {
 
   void restart(double t, std::span<const double> x, double end, double length) override;
 
+  /// Goes on from where it is with these settings. No sensitivities are followed.
+  void change_settings(const SolverSettings& settings);
+
   /// Integrates these sensitivities along with the states from the start on, each after the states' step
   /// (staggered), and holds their errors within the tolerances, too. Must outlive this.
   void follow(Sensitivities& sensitivities);
@@ -41,6 +44,8 @@ class CvodesSolver final : public Solver {
   std::span<const double> states() const override;
   SolverStatistics statistics() const override;
   std::vector<double> weighted_errors() const override;
+  /// The order of the last step.
+  int last_order() const;
 
  private:
   struct Handles;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <oblique/network/program/program.h>
+#include <oblique/solve/integrator/method.h>
 #include <oblique/solve/integrator/rosenbrock_solver.h>
 #include <oblique/solve/interruption.h>
 
@@ -19,9 +20,11 @@ std::vector<double> absolute_tolerances(const SolverSettings& settings, std::siz
 
 }  // namespace
 
-Integration::Integration(const Parts& parts, SolverSettings settings, double t)
+Integration::Integration(const Parts& parts, MethodChoice method, const Refinement& refinement, double t)
     : parts_(parts),
-      settings_(std::move(settings)),
+      method_(std::move(method)),
+      refinement_(refinement),
+      settings_(solver_settings(parts.program.states(), parts.options, method_.method, refinement)),
       solver_(make_solver(t)),
       growth_(parts.system, settings_),
       small_(
@@ -32,7 +35,8 @@ Integration::Integration(const Parts& parts, SolverSettings settings, double t)
             [this](double at, const double* x, double* values) { return read_outputs(at, x, values); }),
       short_steps_(HiddenMotion(parts.system, settings_.relative_tolerance,
                                 absolute_tolerances(settings_, parts.states.size())),
-                   *solver_, parts.options.until - t) {
+                   *solver_, parts.options.until - t),
+      begin_(t) {
   if (parts_.sensitivities) cvodes_->follow(*parts_.sensitivities);
   growth_.restart(t, parts.states);
   small_.advance(t, parts.states);
@@ -71,6 +75,8 @@ bool Integration::take_step(double& t) {
         throw;
     }
   }
+  const bool damps = settings_.method != diagram::IntegrationMethod::adams;
+  parts_.switching.take_step(damps ? solver_->statistics().last_step : 0);
   const std::vector<double>& sample_times = parts_.sources.sample_times(from, t, *solver_);
   // The states are still those of `from`.
   if (short_steps_.take_back(from, parts_.states, sample_times, parts_.segments.end())) {
@@ -81,7 +87,28 @@ bool Integration::take_step(double& t) {
   return true;
 }
 
+/// Looks whether the run has become stiff, and leaves it to BDF then. A decay that is much faster than what
+/// else moves holds Adams' formulas at the first two orders, whose steps alone do not multiply it; those of
+/// the second turn it over at each step, and leave what follows it quickly off by an error.
+void Integration::look_for_stiffness(double t) {
+  constexpr int kHeldOrder = 2;
+  if (settings_.method != diagram::IntegrationMethod::adams || parts_.sensitivities ||
+      parts_.options.method != diagram::IntegrationMethod::automatic || parts_.switching.slides())
+    return;
+  low_steps_ = cvodes_->last_order() <= kHeldOrder ? low_steps_ + 1 : 0;
+  if (low_steps_ < next_look_) return;
+  next_look_ *= 2;
+  auto stiff =
+      stiff_method(parts_.program, parts_.workspace, t, parts_.states, parts_.options.until - begin_);
+  if (!stiff) return;
+  method_ = *std::move(stiff);
+  settings_ = solver_settings(parts_.program.states(), parts_.options, method_.method, refinement_);
+  cvodes_->change_settings(settings_);
+}
+
 void Integration::restart(double t) {
+  low_steps_ = 0;
+  parts_.switching.take_step(0);
   parts_.segments.begin(t);
   solver_->restart(t, parts_.states, parts_.segments.end(), parts_.segments.length());
   if (parts_.sensitivities) cvodes_->set_sensitivities(parts_.sensitivities->states());
@@ -98,6 +125,7 @@ void Integration::end_step(Segments::Passed passed, double t) {
     parts_.switching.stand_at(t, parts_.states);
     growth_.advance(t, parts_.states);
     short_steps_.advance(t, parts_.states, parts_.segments.end());
+    if (cvodes_ != nullptr) look_for_stiffness(t);
   }
   small_.advance(t, parts_.states);
   lost_.advance(t, parts_.states);

@@ -45,8 +45,9 @@ class Integration {
     std::optional<Sensitivities>& sensitivities;
   };
 
-  /// Begins at time t with the settings of `solver_settings`. All must outlive this.
-  Integration(const Parts& parts, SolverSettings settings, double t);
+  /// Begins at time t with this method, which may become another where the diagram leaves it open. All must
+  /// outlive this.
+  Integration(const Parts& parts, MethodChoice method, const Refinement& refinement, double t);
 
   /// Takes a step from t into the segments; t is then where it ends. False where none came of it: it is to be
   /// tried again, from the t that is left. Throws SolverFailure, SolveError and
@@ -60,6 +61,7 @@ class Integration {
   void end(double t);
 
   const Solver& solver() const { return *solver_; }
+  const MethodChoice& method() const { return method_; }
   /// The sensitivities that are followed, at a time within the last step.
   std::vector<std::vector<double>> sensitivities_at(double t) const { return cvodes_->sensitivities_at(t); }
   /// What the steps did not see.
@@ -76,8 +78,11 @@ class Integration {
   bool read_outputs(double t, const double* x, double* values);
   bool read(double t, const double* x, double* values);
   void restart(double t);
+  void look_for_stiffness(double t);
 
   Parts parts_;
+  MethodChoice method_;
+  const Refinement& refinement_;
   SolverSettings settings_;
   CvodesSolver* cvodes_ = nullptr;  ///< the solver, if that is what it is
   std::unique_ptr<Solver> solver_;
@@ -85,6 +90,9 @@ class Integration {
   SmallStates small_;
   LostOutputs lost_;
   ShortSteps short_steps_;
+  double begin_;                                   ///< [s]
+  long low_steps_ = 0, next_look_ = kFewLowSteps;  ///< see `look_for_stiffness`
+  static constexpr long kFewLowSteps = 10;
 };
 
 }  // namespace oblique::solve

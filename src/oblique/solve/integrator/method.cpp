@@ -49,49 +49,49 @@ void count(std::complex<double> mode, double span, Rates& rates) {
   }
 }
 
-MethodChoice from_rates(const Rates& rates, double span) {
+MethodChoice from_rates(const Rates& rates, double span, const std::string& when) {
   using Method = diagram::IntegrationMethod;
   const double constants = rates.fastest_decay * span;
   // What oscillates or grows asks for short steps all the time; slow decays do so only where nothing else
   // moves.
   if (rates.lasting > 0 && rates.fastest_decay > kStiff * rates.lasting && constants > kShortRun) {
-    return {Method::bdf, fmt::format("a decay of {:.3g} 1/s at the start, beside what moves at {:.3g} 1/s",
-                                     rates.fastest_decay, rates.lasting)};
+    return {Method::bdf, fmt::format("a decay of {:.3g} 1/s {}, beside what moves at {:.3g} 1/s",
+                                     rates.fastest_decay, when, rates.lasting)};
   }
   if (rates.lasting == 0 && rates.fastest_decay > kStiff * rates.slowest_decay && constants > kShortRun) {
-    return {Method::bdf, fmt::format("decays from {:.3g} to {:.3g} 1/s at the start", rates.slowest_decay,
-                                     rates.fastest_decay)};
+    return {Method::bdf, fmt::format("decays from {:.3g} to {:.3g} 1/s {}", rates.slowest_decay,
+                                     rates.fastest_decay, when)};
   }
   if (rates.lasting == 0 && constants > kLongRun) {
-    return {Method::bdf, fmt::format("a decay of {:.3g} 1/s at the start of a run of {:.3g} s",
-                                     rates.fastest_decay, span)};
+    return {Method::bdf,
+            fmt::format("a decay of {:.3g} 1/s {} of a run of {:.3g} s", rates.fastest_decay, when, span)};
   }
   if (rates.oscillates && rates.lasting > rates.fastest_decay) {
     return {Method::adams,
-            fmt::format("the fastest mode at the start oscillates, at {:.3g} rad/s", rates.lasting)};
+            fmt::format("the fastest mode {} oscillates, at {:.3g} rad/s", when, rates.lasting)};
   }
-  return {Method::adams, "nothing is fast at the start"};
+  return {Method::adams, "nothing is fast " + when};
 }
 
 MethodChoice from_linearisation(const network::Program& program, network::Workspace& workspace, double t,
-                                std::span<const double> states, double span) {
+                                std::span<const double> states, double span, const std::string& when) {
   const network::SparsePattern& pattern = program.jacobian_pattern();
   std::vector<double> values(pattern.entries());
   const auto unknown = [](std::string why) {
     return MethodChoice{diagram::IntegrationMethod::bdf, std::move(why)};
   };
   if (!program.jacobian(t, states.data(), values.data(), workspace))
-    return unknown("the equations have no linearisation at the start");
+    return unknown("the equations have no linearisation " + when);
   Rates rates;
   for (const CoupledModes& group : coupled_modes(pattern, values, std::vector<bool>(pattern.size(), true))) {
     if (group.eigenvalues.empty() && group.states.size() > 1) {
       return unknown(fmt::format("{} states that act on each other, too many to look for fast ones",
                                  group.states.size()));
     }
-    if (group.eigenvalues.empty()) return unknown("the equations have no linearisation at the start");
+    if (group.eigenvalues.empty()) return unknown("the equations have no linearisation " + when);
     for (const std::complex<double>& mode : group.eigenvalues) count(mode, span, rates);
   }
-  return from_rates(rates, span);
+  return from_rates(rates, span, when);
 }
 
 }  // namespace
@@ -107,7 +107,15 @@ MethodChoice choose_method(diagram::IntegrationMethod asked, const network::Prog
         fmt::format("{} {} faster than what {} {}", servos, servos == 1 ? "servo loop is" : "servo loops are",
                     servos == 1 ? "it" : "they", servos == 1 ? "follows" : "follow")};
   }
-  return from_linearisation(program, workspace, t, states, span);
+  return from_linearisation(program, workspace, t, states, span, "at the start");
+}
+
+std::optional<MethodChoice> stiff_method(const network::Program& program, network::Workspace& workspace,
+                                         double t, std::span<const double> states, double span) {
+  const MethodChoice choice =
+      from_linearisation(program, workspace, t, states, span, fmt::format("at t = {:.6g} s", t));
+  if (choice.method != diagram::IntegrationMethod::bdf) return std::nullopt;
+  return choice;
 }
 
 }  // namespace oblique::solve

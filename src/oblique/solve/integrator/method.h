@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 
@@ -19,5 +20,10 @@ namespace oblique::solve {
 MethodChoice choose_method(diagram::IntegrationMethod asked, const network::Program& program,
                            network::Workspace& workspace, double t, std::span<const double> states,
                            double span);
+
+/// The method for a run that Adams' formulas have begun, from the equations linearised at (t, states), if it
+/// is another: a switch may have let in a fast decay.
+std::optional<MethodChoice> stiff_method(const network::Program& program, network::Workspace& workspace,
+                                         double t, std::span<const double> states, double span);
 
 }  // namespace oblique::solve

@@ -99,7 +99,7 @@ std::span<const double> Segments::Step::times_left() const {
 void Segments::take_step(double from, double t, std::span<const double> sample_times,
                          const Interpolant& solution) {
   step_.begin = from;
-  step_.solution = &solution;
+  step_.solution = &parts_.switching.looked_at(t, solution);
   step_.branch_end = parts_.branches.find(from, t, solution);
   step_.times.assign(sample_times.begin(), sample_times.end());
   if (step_.branch_end) {

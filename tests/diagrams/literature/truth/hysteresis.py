@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Hysteresis, friction in a row, sliding that ends, switching that comes to rest."""
 import numpy as np
+from scipy.optimize import brentq
 
 from .mechanics import _friction
 from .tools import Motion, ode
@@ -108,3 +109,39 @@ def pursuit_curve():
     motion = ode(f, [1, 0], 2.7)  # caught at 1.2/0.44 = 2.727
     return {"x at 1": motion(1)[0], "y at 2": motion(2)[1], "x at 2.7": motion(2.7)[0],
             "y at 2.7": motion(2.7)[1]}
+
+
+def half_wave_rectifier():
+    """sin t until v′ = −v/10, then a decay until the sine is as high."""
+    off = np.pi - np.arctan(10)
+
+    def v(t):
+        n = np.floor((t - off) / (2 * np.pi))
+        if n < 0:
+            return np.sin(t)
+        begin = off + 2 * np.pi * n
+        decay = lambda at: np.sin(off) * np.exp(-0.1 * (at - begin))
+        on = brentq(lambda at: np.sin(at) - decay(at), begin + 1.5 * np.pi - off, begin + 2 * np.pi)
+        return decay(t) if t < on else np.sin(t)
+
+    return {f"v at {t:g}": v(t) for t in (5, 8.5, 10, 15, 29)}
+
+
+def prandtl_ishlinskii():
+    """The play operator from one turning point of e^(−t/20) sin t to the next."""
+    u = lambda t: np.exp(-t / 20) * np.sin(t)
+    turns = np.arctan(20) + np.pi * np.arange(4)
+
+    def w(t):
+        out = np.zeros(3)
+        for at in [*turns[turns < t], t]:
+            out = np.clip(out, u(at) - np.array([0.1, 0.25, 0.4]), u(at) + np.array([0.1, 0.25, 0.4]))
+        return out.sum()
+
+    return {f"w at {t:g}": w(t) for t in (1, 2, 4, 6, 9.5)}
+
+
+def slope_by_a_fast_lag():
+    """cos t < 0 from π/2 to 3π/2 in each turn."""
+    falling = lambda t: np.pi * (t // (2 * np.pi)) + np.clip(t % (2 * np.pi) - np.pi / 2, 0, np.pi)
+    return {"n at 39": 6.0, "falling at 20": falling(20), "falling at 40": falling(40)}

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <oblique/network/program/program.h>
+#include <oblique/solve/integrator/step_matrix.h>
+
+namespace oblique::solve {
+
+/// What implicit steps leave of errors of the states. A step of the length h divides an error along a mode of
+/// the eigenvalue λ by 1 − hλ: a state that follows another quickly is known to its tolerance, and its
+/// distance from that other, which is its rate times a short time, far better. Not installed.
+class ErrorDamping {
+ public:
+  /// The program must outlive this.
+  explicit ErrorDamping(const network::Program& program) : program_(program) {}
+
+  /// The steps that lead to what is weighed next damp what is fast, and are as long as this [s]; 0: they do
+  /// not, or there have been none since the states jumped.
+  void take_steps(double length) { length_ = length; }
+  bool any() const { return length_ > 0; }
+  double step_length() const { return length_; }
+
+  /// Takes the equations linearised at (t, x) with the discrete states of `workspace`, which is left as it
+  /// is; false where they tell nothing.
+  bool linearise(double t, std::span<const double> x, const network::Workspace& workspace);
+  /// Replaces errors of all states by what is left of them.
+  void apply(std::span<double> errors);
+  /// dx/dt with those discrete states; false where it has no value.
+  bool derivatives(double t, std::span<const double> x, std::span<double> dxdt);
+
+ private:
+  const network::Program& program_;
+  std::optional<network::Workspace> scratch_;  ///< these two once they are needed
+  std::optional<StepMatrix> matrix_;
+  std::vector<double> jacobian_;
+  double length_ = 0;  ///< [s]
+};
+
+}  // namespace oblique::solve
