@@ -519,11 +519,13 @@ void SwitchSettling::tell_of_hidden(double t, std::span<const double> x) {
   constexpr double kLong = 1e-3;  // of the run: what is late by less shows in no output
   const Thresholds& thresholds = event_functions_.thresholds();
   const EventFunctionErrors& errors = event_functions_.weigh_errors();
+  const std::vector<std::uint32_t> resting = resting_.units();  // at their level, of which `resting_` tells
   for (std::uint32_t s = 0; s < event_functions_.size(); ++s) {
     const std::uint32_t unit = program_.switch_structure().unit[s];
     const auto since = thresholds.let_since(s);
     // What has not turned over yet, or was looked at and let touch, is a decay, which stays on its side.
     if (unrest_[s].last == 0 || unrest_[s].touches) continue;
+    if (std::find(resting.begin(), resting.end(), unit) != resting.end()) continue;
     if (!since || told_hidden_[unit] || !(t - *since > kLong * span_)) continue;
     if (!matters(unit, t, x) && !moves_states(unit, t, x)) continue;
     told_hidden_[unit] = true;
