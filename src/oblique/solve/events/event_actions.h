@@ -9,12 +9,12 @@
 #include <vector>
 
 #include <oblique/network/program/program.h>
-#include <oblique/solve/events/event_functions.h>
 #include <oblique/solve/events/event_log.h>
 #include <oblique/solve/events/event_pace.h>
 #include <oblique/solve/events/sliding_mode.h>
 #include <oblique/solve/events/switch_settling.h>
 #include <oblique/solve/events/uncertain_readings.h>
+#include <oblique/solve/readings/event_functions.h>
 
 namespace oblique::solve {
 

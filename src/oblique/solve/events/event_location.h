@@ -7,9 +7,9 @@
 #include <vector>
 
 #include <oblique/network/program/program.h>
-#include <oblique/solve/events/event_functions.h>
 #include <oblique/solve/events/event_search.h>
 #include <oblique/solve/integrator/interpolant.h>
+#include <oblique/solve/readings/event_functions.h>
 
 namespace oblique::solve {
 

@@ -10,9 +10,9 @@
 
 #include <oblique/network/program/program.h>
 #include <oblique/solve/events/sliding_mode.h>
-#include <oblique/solve/events/thresholds.h>
 #include <oblique/solve/integrator/interpolant.h>
 #include <oblique/solve/interruption.h>
+#include <oblique/solve/readings/thresholds.h>
 
 namespace oblique::solve {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <oblique/network/program/program.h>
-#include <oblique/solve/events/thresholds.h>
+#include <oblique/solve/readings/thresholds.h>
 
 namespace oblique::solve {
 

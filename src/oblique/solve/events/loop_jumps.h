@@ -10,7 +10,7 @@
 #include <Eigen/Core>
 
 #include <oblique/network/program/program.h>
-#include <oblique/solve/events/thresholds.h>
+#include <oblique/solve/readings/thresholds.h>
 
 namespace oblique::solve {
 

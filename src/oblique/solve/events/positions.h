@@ -12,7 +12,7 @@
 #include <oblique/solve/events/level_rest.h>
 #include <oblique/solve/events/side_trials.h>
 #include <oblique/solve/events/sliding_mode.h>
-#include <oblique/solve/events/thresholds.h>
+#include <oblique/solve/readings/thresholds.h>
 
 namespace oblique::solve {
 

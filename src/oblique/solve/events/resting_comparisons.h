@@ -7,7 +7,7 @@
 
 #include <oblique/network/program/program.h>
 #include <oblique/solve/events/event_log.h>
-#include <oblique/solve/events/thresholds.h>
+#include <oblique/solve/readings/thresholds.h>
 
 namespace oblique::solve {
 

@@ -8,7 +8,7 @@
 
 #include <oblique/network/program/program.h>
 #include <oblique/solve/events/sliding_mode.h>
-#include <oblique/solve/events/thresholds.h>
+#include <oblique/solve/readings/thresholds.h>
 
 // Positions of switches that agree with the event functions that follow from them. Not installed.
 namespace oblique::solve {

@@ -9,7 +9,7 @@
 #include <oblique/network/program/program.h>
 #include <oblique/solve/events/bends.h>
 #include <oblique/solve/events/combinations.h>
-#include <oblique/solve/events/thresholds.h>
+#include <oblique/solve/readings/thresholds.h>
 
 namespace oblique::solve {
 

@@ -7,13 +7,13 @@
 #include <vector>
 
 #include <oblique/network/program/program.h>
-#include <oblique/solve/events/event_functions.h>
 #include <oblique/solve/events/event_log.h>
 #include <oblique/solve/events/event_pace.h>
 #include <oblique/solve/events/level_rest.h>
 #include <oblique/solve/events/positions.h>
 #include <oblique/solve/events/resting_comparisons.h>
 #include <oblique/solve/events/sliding_mode.h>
+#include <oblique/solve/readings/event_functions.h>
 
 namespace oblique::solve {
 

@@ -12,7 +12,6 @@
 #include <oblique/network/program/program.h>
 #include <oblique/solve/events/edge_values.h>
 #include <oblique/solve/events/event_actions.h>
-#include <oblique/solve/events/event_functions.h>
 #include <oblique/solve/events/event_location.h>
 #include <oblique/solve/events/event_log.h>
 #include <oblique/solve/events/faint_turns.h>
@@ -21,6 +20,7 @@
 #include <oblique/solve/events/switch_settling.h>
 #include <oblique/solve/integrator/interpolant.h>
 #include <oblique/solve/interruption.h>
+#include <oblique/solve/readings/event_functions.h>
 
 namespace oblique::solve {
 

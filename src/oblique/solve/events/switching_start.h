@@ -6,8 +6,8 @@
 #include <vector>
 
 #include <oblique/network/program/program.h>
-#include <oblique/solve/events/event_functions.h>
 #include <oblique/solve/events/event_log.h>
+#include <oblique/solve/readings/event_functions.h>
 
 // How a run with switches starts. Not installed.
 namespace oblique::solve {

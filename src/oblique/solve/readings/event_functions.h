@@ -8,11 +8,11 @@
 #include <vector>
 
 #include <oblique/network/program/program.h>
-#include <oblique/solve/events/damped_solution.h>
-#include <oblique/solve/events/error_damping.h>
-#include <oblique/solve/events/event_function_errors.h>
-#include <oblique/solve/events/thresholds.h>
 #include <oblique/solve/interruption.h>
+#include <oblique/solve/readings/damped_solution.h>
+#include <oblique/solve/readings/error_damping.h>
+#include <oblique/solve/readings/event_function_errors.h>
+#include <oblique/solve/readings/thresholds.h>
 
 namespace oblique::solve {
 

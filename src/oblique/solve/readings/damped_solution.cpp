@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/solve/events/damped_solution.h>
+#include <oblique/solve/readings/damped_solution.h>
 
 #include <algorithm>
 #include <cmath>

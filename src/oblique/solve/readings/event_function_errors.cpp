@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/solve/events/event_function_errors.h>
+#include <oblique/solve/readings/event_function_errors.h>
 
 #include <algorithm>
 #include <cmath>

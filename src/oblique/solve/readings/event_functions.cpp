@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/solve/events/event_functions.h>
+#include <oblique/solve/readings/event_functions.h>
 
 #include <oblique/network/program/program.h>
 #include <oblique/solve/run_errors.h>

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <oblique/network/program/program.h>
-#include <oblique/solve/events/error_damping.h>
+#include <oblique/solve/readings/error_damping.h>
 
 namespace oblique::solve {
 

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include <oblique/solve/events/error_damping.h>
 #include <oblique/solve/integrator/interpolant.h>
+#include <oblique/solve/readings/error_damping.h>
 
 namespace oblique::solve {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/network/program/program.h>
-#include <oblique/solve/events/thresholds.h>
+#include <oblique/solve/readings/thresholds.h>
 
 #include <limits>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/solve/events/error_damping.h>
+#include <oblique/solve/readings/error_damping.h>
 
 #include <algorithm>
 #include <cmath>
