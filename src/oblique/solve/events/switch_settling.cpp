@@ -51,7 +51,8 @@ SwitchSettling::SwitchSettling(const network::Program& program, network::Workspa
       rates_before_(program.switches().size()),
       derivatives_(program.n_states()),
       unrest_(program.switches().size()),
-      told_hidden_(decided_.size(), false) {}
+      told_hidden_(decided_.size(), false),
+      cuts_(program_.switches().size(), 0) {}
 
 /// Then the time at which one comes tells nothing of where it goes before the others are known.
 bool SwitchSettling::known_follow_from_others() const {
@@ -503,14 +504,18 @@ void SwitchSettling::allow_wrong_sides() {
 }
 
 bool SwitchSettling::limit_slack() {
+  // What turns over and back by rounding would be cut and turn at every instant that a number can tell.
+  constexpr int kMostCuts = 4;  // in a step
   Thresholds& thresholds = event_functions_.thresholds();
   const EventFunctionErrors& errors = event_functions_.weigh_errors();
   bool any = false;
   for (std::size_t s = 0; s < event_functions_.size(); ++s) {
     // One that was announced and did not turn over would be announced again at once.
-    if (!thresholds.let_since(s) || unrest_[s].touches) continue;
+    if (!thresholds.let_since(s) || unrest_[s].touches || cuts_[s] >= kMostCuts) continue;
     thresholds.limit_slack(s, errors[s]);
-    any = any || event_functions_.against(s) > thresholds.along_solution(s, thresholds.rounding(s));
+    if (event_functions_.against(s) <= thresholds.along_solution(s, thresholds.rounding(s))) continue;
+    ++cuts_[s];
+    any = true;
   }
   return any;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -66,6 +67,8 @@ class SwitchSettling {
   /// Of the event functions, evaluated at (t, x), that lie on the wrong side because their slack lets them:
   /// takes what is more than their errors there. Whether any lies there by more than that.
   bool limit_slack();
+  /// Another step has been taken.
+  void take_step() { std::fill(cuts_.begin(), cuts_.end(), 0); }
   /// Tells of those that have lain there for long, where the other position would make something else.
   void tell_of_hidden(double t, std::span<const double> x);
 
@@ -141,6 +144,7 @@ class SwitchSettling {
   };
   std::vector<Unrest> unrest_;
   std::vector<bool> told_hidden_;  ///< of each unit
+  std::vector<int> cuts_;          ///< of the slack of each switch, in this step
 };
 
 }  // namespace oblique::solve

@@ -93,7 +93,10 @@ class Switching {
   bool signals(double t, const double* x, double* values);
 
   /// A step of this length [s] has led to where events are searched for next; it damps what is fast, or is 0.
-  void take_step(double length) { event_functions_.take_steps(slide_.active() ? 0 : length); }
+  void take_step(double length) {
+    event_functions_.take_steps(slide_.active() ? 0 : length);
+    settling_.take_step();
+  }
 
   /// The solution within a step that ends at t, by which to look at it: with its errors damped where an event
   /// function is so small that these would tell its side. `solution` must last as long as that is used.
