@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include <gtest/gtest.h>
@@ -31,6 +32,22 @@ Interval range_of(const ExpressionGraph& graph, NodeId root, std::span<const Int
   std::copy(variables.begin(), variables.end(), slots.begin());
   run_tape(writer.instructions(), slots);
   return slots[slot];
+}
+
+TEST(Interval, AnAngleIsThatOfTheCornersUnlessItJumpsBetweenThem) {
+  ExpressionGraph graph;
+  const NodeId angle = graph.apply(Op::atan2, graph.variable(0), graph.variable(1));
+  const auto of = [&](Interval y, Interval x) { return range_of(graph, angle, std::array{y, x}); };
+  constexpr double kPi = std::numbers::pi;
+  const Interval across_the_right = of({-1, 1}, {1, 2}), to_the_left = of({0, 1}, {-2, -1});
+  EXPECT_DOUBLE_EQ(across_the_right.low, -kPi / 4);
+  EXPECT_DOUBLE_EQ(across_the_right.high, kPi / 4);
+  EXPECT_DOUBLE_EQ(to_the_left.low, 3 * kPi / 4);
+  EXPECT_DOUBLE_EQ(to_the_left.high, kPi);
+  for (const Interval& jumps : {of({-1, 1}, {-2, -1}), of({-1, 0}, {-2, -1}), of({-1, 1}, {-1, 1})}) {
+    EXPECT_DOUBLE_EQ(jumps.low, -kPi);
+    EXPECT_DOUBLE_EQ(jumps.high, kPi);
+  }
 }
 
 TEST(Interval, ContainsTheValuesOfEveryOperation) {

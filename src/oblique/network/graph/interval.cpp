@@ -78,6 +78,15 @@ Interval tangent(const Interval& x) {
   return hull({std::tan(x.low), std::tan(x.high)});
 }
 
+/// Of the vectors (x, y): from one corner of their rectangle to another, unless the angle jumps within it, as
+/// it does where y falls below zero on the left, and anywhere about the origin.
+Interval angle(const Interval& y, const Interval& x) {
+  const bool jumps = y.low < 0 && y.high >= 0 && x.low <= 0;
+  if (jumps) return {-std::numbers::pi, std::numbers::pi};
+  return hull({std::atan2(y.low, x.low), std::atan2(y.low, x.high), std::atan2(y.high, x.low),
+               std::atan2(y.high, x.high)});
+}
+
 Interval magnitude(const Interval& x) {
   const Interval ends = hull({std::abs(x.low), std::abs(x.high)});
   return x.contains(0) ? Interval{0, ends.high} : ends;
@@ -171,8 +180,7 @@ void run_tape(std::span<const Instruction> instructions, std::span<Interval> slo
         value = rising([](double x) { return std::atan(x); }, a);
         break;
       case Code::atan2:
-        value = is_point(a) && is_point(b) ? hull({std::atan2(a.low, b.low)})
-                                           : Interval{-std::numbers::pi, std::numbers::pi};
+        value = angle(a, b);
         break;
       case Code::exp:
         value = rising([](double x) { return std::exp(x); }, a);

@@ -222,3 +222,20 @@ def pade_delay():
     """y = x − 12 w′, w″ = −12 w − 6 w′ + x, x′ = −1.2 y."""
     a = np.array([[0, 1, 0], [-12, -6, 1], [0, 14.4, -1.2]])
     return {f"x at {t}": expm(a * t)[2, 2] for t in (5, 30)}
+
+
+def sawtooth_phase_detector():
+    """θ′ = 4 − θ from 0, then from −π, up to π each; the phase is not wrapped."""
+    first, period = -np.log(1 - np.pi / 4), np.log((4 + np.pi) / (4 - np.pi))
+
+    def phase(t):
+        slips, since = divmod(t - first, period)
+        return 2 * np.pi * (slips + 1) + 4 - (4 + np.pi) * np.exp(-since)
+
+    return {"phase at 10": phase(10), "phase at 60": phase(60)}
+
+
+def angle_of_an_oscillation():
+    wrapped = lambda t: (t + np.pi) % (2 * np.pi) - np.pi
+    return {"angle at 20": wrapped(20), "area at 20": wrapped(20)**2 / 2, "area at 50": wrapped(50)**2 / 2,
+            "turns at 50": np.floor((50 + np.pi) / (2 * np.pi))}
