@@ -45,17 +45,26 @@ constexpr int kMostForStates = 256;
 /// Parts of a step that are shorter than this power of a half are not looked at for them.
 constexpr int kDeepestForStates = 24;
 
+/// Where bounds of a peak of states cannot tell: so many parts of the first steps, of a single one, and for
+/// every step that follows. A peak in an otherwise quiet step takes two of every length down to its own.
+constexpr int kSavedForPeaks = 20'000, kMostForPeaks = 4096, kEarnedForPeaks = 16;
+
 constexpr int kDeepest = 40;
 /// Of a source by states that may be any number, as a quotient of zeros, or one of the time that has no value
 /// at either end, as beyond the edge of its branch.
 constexpr int kDeepestUnknown = 6;
 constexpr std::size_t kMostSamples = 1'000'000;  ///< in a step
 
+/// Parts that are not longer than this are not halved.
+double resolution(double t) {
+  return 16 * std::numeric_limits<double>::epsilon() * std::abs(t);
+}
+
 }  // namespace
 
 SourceWatch::SourceWatch(const network::Program& program, const network::Workspace& workspace, Shown shown,
                          const std::string& file)
-    : program_(program), workspace_(workspace), file_(file), shown_(shown) {
+    : program_(program), workspace_(workspace), file_(file), shown_(shown), saved_for_peaks_(kSavedForPeaks) {
   for (const network::Source& source : program.sources()) {
     if (source.acts || shown != Shown::nothing) watched_.push_back(source);
   }
@@ -136,9 +145,11 @@ bool SourceWatch::hides_extreme(std::size_t k, double a, double b, const network
   return range.high > known.high + same || range.low < known.low - same;
 }
 
-/// Whether every source goes from `from` to `to` as its values there tell.
-bool SourceWatch::is_plain(double from, const Values& at_from, double to, const Values& at_to, int depth) {
+/// Whether not every source goes from `from` to `to` as its values there tell.
+SourceWatch::Hidden SourceWatch::hidden(double from, const Values& at_from, double to, const Values& at_to,
+                                        int depth) {
   bound(from, at_from, to, at_to);
+  Hidden found = Hidden::nothing;
   for (std::size_t k = 0; k < watched_.size(); ++k) {
     const double a = at_from.sources[k], b = at_to.sources[k];
     network::Interval value = slots_[watched_[k].slot];
@@ -151,7 +162,7 @@ bool SourceWatch::is_plain(double from, const Values& at_from, double to, const 
       value.high = std::min(value.high, a + derivative.high * (to - from));
     }
     if (watched_[k].switch_index) {
-      if (value.contains(0) && may_turn(watched_[k], a, b, value, depth)) return false;
+      if (value.contains(0) && may_turn(watched_[k], a, b, value, depth)) return Hidden::other;
       continue;
     }
     const double shown =
@@ -159,12 +170,17 @@ bool SourceWatch::is_plain(double from, const Values& at_from, double to, const 
     const bool beyond = !std::isfinite(a) && !std::isfinite(b);
     if (depth >= kDeepestUnknown && !std::isfinite(value.width()) && (watched_[k].by_states || beyond))
       continue;
-    if (!(value.width() <= shown)) return false;
-    if (!watched_[k].by_states && hides_extreme(k, a, b, value)) return false;
+    const bool is_shown = value.width() <= shown;
+    if (!watched_[k].by_states) {
+      if (!is_shown || hides_extreme(k, a, b, value)) return Hidden::other;
+    } else if (!is_shown && parts_for_peaks_ > 0) {
+      found = Hidden::peak_of_states;
+    }
   }
-  return true;
+  return found;
 }
 
+/// Takes the halves of a part that may hide something, as far as they are parts that may.
 void SourceWatch::part(double from, const Values& at_from, double to, const Values& at_to, int depth) {
   if (--samples_left_ < 0) {
     throw SolveError(
@@ -176,15 +192,21 @@ void SourceWatch::part(double from, const Values& at_from, double to, const Valu
          "end the run before, leave fast signals out, or give more 'max_steps' in [run]"});
   }
   const double middle = from + (to - from) / 2;
-  const double resolution = 16 * std::numeric_limits<double>::epsilon() * std::abs(to);
-  if (depth >= kDeepest || to - from <= resolution || times_.size() >= kMostSamples ||
-      is_plain(from, at_from, to, at_to, depth)) {
-    times_.push_back(to);
-    return;
-  }
+  const auto take = [&](double a, const Values& at_a, double b, const Values& at_b, Hidden what) {
+    const bool goes_on = depth + 1 < kDeepest && b - a > resolution(b) && times_.size() < kMostSamples;
+    if (what == Hidden::nothing || !goes_on) return times_.push_back(b);
+    if (what == Hidden::peak_of_states) --parts_for_peaks_;
+    part(a, at_a, b, at_b, depth + 1);
+  };
   const Values at_middle = values_at(middle);
-  part(from, at_from, middle, at_middle, depth + 1);
-  part(middle, at_middle, to, at_to, depth + 1);
+  const Hidden first = hidden(from, at_from, middle, at_middle, depth + 1);
+  const Hidden second = hidden(middle, at_middle, to, at_to, depth + 1);
+  const bool both = first != Hidden::nothing && second != Hidden::nothing;
+  const int kept = both ? parts_for_peaks_ / 2 : 0;
+  parts_for_peaks_ -= kept;
+  take(from, at_from, middle, at_middle, first);
+  parts_for_peaks_ += kept;
+  take(middle, at_middle, to, at_to, second);
 }
 
 const std::vector<double>& SourceWatch::sample_times(double from, double to, const Interpolant& solution) {
@@ -195,8 +217,15 @@ const std::vector<double>& SourceWatch::sample_times(double from, double to, con
   }
   solution_ = &solution;
   parts_for_states_ = 0;
-  const Values at_from = values_at(from);
-  part(from, at_from, to, values_at(to), 0);
+  const int most = std::min(saved_for_peaks_, kMostForPeaks);
+  parts_for_peaks_ = most;
+  const Values at_from = values_at(from), at_to = values_at(to);
+  if (to - from <= resolution(to) || hidden(from, at_from, to, at_to, 0) == Hidden::nothing) {
+    times_.push_back(to);
+  } else {
+    part(from, at_from, to, at_to, 0);
+  }
+  saved_for_peaks_ = std::min(saved_for_peaks_ - (most - parts_for_peaks_) + kEarnedForPeaks, kSavedForPeaks);
   return times_;
 }
 

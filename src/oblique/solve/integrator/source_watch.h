@@ -19,6 +19,8 @@ namespace oblique::solve {
 /// show; the event function of a switch that follows the time alone, until it is monotone or has no zero; one
 /// that bends and reads states, until it has no zero or passes it once, as far as bounds can tell. The
 /// states are bounded by the cubic through their values and rates at the ends of a part, and twice its bend.
+/// What a function makes of differences of states, which hardly change where each of the states does, has no
+/// bounds that tell: of such parts there are some to spend, and a few more at every step.
 class SourceWatch {
  public:
   /// What of the sources is shown: their extremes, or whether they leave ±1 machine unit.
@@ -43,9 +45,11 @@ class SourceWatch {
   struct Values {
     std::vector<double> sources, states, rates;
   };
+  /// What a part of a step may hide.
+  enum class Hidden { nothing, peak_of_states, other };
+  Hidden hidden(double from, const Values& at_from, double to, const Values& at_to, int depth);
   void part(double from, const Values& at_from, double to, const Values& at_to, int depth);
   bool may_turn(const network::Source& source, double a, double b, const network::Interval& range, int depth);
-  bool is_plain(double from, const Values& at_from, double to, const Values& at_to, int depth);
   bool hides_extreme(std::size_t k, double a, double b, const network::Interval& range) const;
   Values values_at(double t);
   void bound(double from, const Values& at_from, double to, const Values& at_to);
@@ -64,6 +68,8 @@ class SourceWatch {
   std::vector<network::Interval> seen_;    ///< values of each source so far
   std::vector<double> times_;
   int parts_for_states_ = 0;  ///< of this step, in which an event function of states had to be looked at
+  int parts_for_peaks_ = 0;   ///< which may still be parted for peaks of states alone, here
+  int saved_for_peaks_;       ///< of them in the run so far
 };
 
 }  // namespace oblique::solve

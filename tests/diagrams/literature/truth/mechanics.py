@@ -279,3 +279,16 @@ def rocket_in_two_stages():
     way = lambda jet, m, q, t: jet * ((m / q - t) * np.log(1 - q * t / m) + t)
     s = way(3, 1, 0.05, 10) + 10 * v1 + way(4, 0.4, 0.025, 10) + 10 * v1 + 10 * v2
     return {"v at 5": 3 * np.log(1 / 0.75), "v at 10": v1, "v at 40": v2, "s at 40": s}
+
+
+def elastic_chain():
+    def f(_, y):
+        points, speeds = np.vstack([[0, 0], y[:6].reshape(3, 2)]), y[6:]
+        links = np.diff(points, axis=0)
+        lengths = np.hypot(links[:, 0], links[:, 1])
+        pulls = (400 * (lengths - 1) / lengths)[:, None] * links  # of each link on its first end
+        forces = np.vstack([pulls[1:], [[0, 0]]]) - pulls - [0, 1]
+        return np.concatenate([speeds, forces.ravel()])
+
+    motion = ode(f, [1, 0, 2, 0, 3, 0] + [0] * 6, 6)
+    return {f"{name} at {t}": motion(t)[i] for t in (3, 6) for name, i in (("x", 4), ("y", 5))}

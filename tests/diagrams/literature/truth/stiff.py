@@ -128,3 +128,16 @@ def akzo_nobel():
     y = _stiff(f, [0.444, 0.00123, 0, 0.007, 0], 180)(180)
     assert abs(y[0] - 0.1150794920661702) < 1e-10  # the test set's
     return {f"y{k + 1} at 180": y[k] for k in range(5)} | {"y6 at 180": 115.83 * y[0] * y[3]}
+
+
+def melting_slab():
+    place = np.arange(1, 10) / 10
+
+    def f(_, y):
+        s, u = y[0], np.concatenate([[1], y[1:], [0]])
+        speed = (4 * u[9] - u[8]) / (0.2 * s)
+        return np.concatenate([[speed], (u[2:] - 2 * u[1:-1] + u[:-2]) * 100 / s**2
+                               + place * speed / s * (u[2:] - u[:-2]) * 5])
+
+    motion = _stiff(f, np.concatenate([[1e-3], 1 - place]), 5)
+    return {f"{name} at {t}": motion(t)[i] for t in (0.1, 5) for name, i in (("front", 0), ("middle", 5))}
