@@ -110,7 +110,33 @@ LoopFailure LoopWorkspace::solve_loop(const LoopCode& loop, std::span<const Inst
   if (t == held_time_ && solves(loop, body, slots, held_)) return LoopFailure::none;
   if (loop.linear) return solve_linear(loop, body, slots);
   if (loop.has_branches()) return solve_branched(loop, body, slots);
-  return newton(loop, body, slots).failure;
+  return solve_unbranched(loop, body, slots);
+}
+
+/// Newton's method, which keeps to the side of a pole on which it begins, and from solution to solution to
+/// the sign of the determinant of dg/dz, as long as there is such a solution: between two branches lies a
+/// fold, or a pole.
+LoopFailure LoopWorkspace::solve_unbranched(const LoopCode& loop, std::span<const Instruction> body,
+                                            double* slots) {
+  const bool known = solved_;
+  read(loop, slots, origin_);
+  const bool has_poles = poles_.needed(loop, body);
+  Search search = newton(loop, body, slots, Steps::guarded);
+  if (search.failure != LoopFailure::none && has_poles) {
+    write(loop, slots, origin_);
+    search = newton(loop, body, slots);
+  }
+  solved_ = search.failure == LoopFailure::none;
+  if (!solved_ || !known || search.even_order || matrix_.determinant_sign() == search.first_sign)
+    return search.failure;
+  read(loop, slots, target_);
+  write(loop, slots, origin_);
+  const Search shorter = newton(loop, body, slots, Steps::parts);
+  if (shorter.failure != LoopFailure::none || matrix_.determinant_sign() != shorter.first_sign) {
+    write(loop, slots, target_);
+    run_tape(body, slots);
+  }
+  return LoopFailure::none;
 }
 
 /// Whether these unknowns solve the loop, as far as an equation tells that has lost its derivative.
@@ -168,7 +194,9 @@ LoopFailure LoopWorkspace::solve_linear(const LoopCode& loop, std::span<const In
 
 /// Newton's method from what the slots hold, damped where the residual would grow.
 LoopWorkspace::Search LoopWorkspace::newton(const LoopCode& loop, std::span<const Instruction> body,
-                                            double* slots) {
+                                            double* slots, Steps steps) {
+  constexpr double kShort = 0.01;  // of |z|: a step that is not looked at for poles, and taken whole
+  constexpr double kPart = 0.25;
   Search search;
   run_tape(body, slots);
   double last_change = std::numeric_limits<double>::infinity();
@@ -190,6 +218,7 @@ LoopWorkspace::Search LoopWorkspace::newton(const LoopCode& loop, std::span<cons
       step_(eigen_index(i), 0) = -slots[loop.residual_slots[i]];
       start_[eigen_index(i)] = slots[loop.unknown_slots[i]];
     }
+    if (iteration == 0) search.first_sign = matrix_.determinant_sign();
     const double norm = matrix_.residual_norm(loop, slots);
     if (norm == 0) return search;
     matrix_.solve(step_);
@@ -197,9 +226,18 @@ LoopWorkspace::Search LoopWorkspace::newton(const LoopCode& loop, std::span<cons
 
     double fraction = 1;
     double change = move(loop, slots, fraction);
+    if (steps == Steps::parts && change > kShort) {
+      fraction = kPart;
+      change = move(loop, slots, fraction);
+    }
     run_tape(body, slots);
     // Steps at the level of rounding are not judged by the residual, which is noise there.
-    while (change > 1e-13 && !(matrix_.residual_norm(loop, slots) < (1 - 1e-4 * fraction) * norm)) {
+    const auto leaps = [&] {
+      return steps != Steps::any && change > kShort && poles_.needed(loop, body) &&
+             !poles_.has_values(loop, body, slots, start_);
+    };
+    while (change > 1e-13 &&
+           (!(matrix_.residual_norm(loop, slots) < (1 - 1e-4 * fraction) * norm) || leaps())) {
       search.damped = search.damped || !small;
       fraction /= 2;
       if (fraction < kSmallestFraction) {

@@ -9,6 +9,7 @@
 #include <Eigen/Dense>
 
 #include <oblique/network/program/loop_matrix.h>
+#include <oblique/network/program/pole_guard.h>
 #include <oblique/network/program/tape.h>
 
 namespace oblique::network {
@@ -48,13 +49,18 @@ class LoopWorkspace {
   void hold(double t, std::vector<double> unknowns, bool whatever);
 
  private:
-  /// How Newton's method has ended.
+  /// How Newton's method is to go: as it likes; over no pole; or so too, and by a part of its long steps.
+  enum class Steps : std::uint8_t { any, guarded, parts };
+  /// How it has ended.
   struct Search {
     LoopFailure failure = LoopFailure::none;
     bool damped = false;      ///< a step has led uphill
     bool even_order = false;  ///< each step was half the one before it: the root has no derivative
+    int first_sign = 0;       ///< of the determinant of dg/dz where it began
   };
-  Search newton(const LoopCode& loop, std::span<const Instruction> body, double* slots);
+  Search newton(const LoopCode& loop, std::span<const Instruction> body, double* slots,
+                Steps steps = Steps::any);
+  LoopFailure solve_unbranched(const LoopCode& loop, std::span<const Instruction> body, double* slots);
   LoopFailure solve_linear(const LoopCode& loop, std::span<const Instruction> body, double* slots);
   LoopFailure solve_branched(const LoopCode& loop, std::span<const Instruction> body, double* slots);
   bool solves(const LoopCode& loop, std::span<const Instruction> body, double* slots,
@@ -67,6 +73,7 @@ class LoopWorkspace {
   void write(const LoopCode& loop, double* slots, const Eigen::VectorXd& unknowns) const;
 
   LoopMatrix matrix_;
+  PoleGuard poles_;
   Eigen::MatrixXd step_;             ///< one column
   Eigen::VectorXd start_;            ///< iterate that the step starts from
   Eigen::VectorXd origin_, target_;  ///< where a search began and ended
