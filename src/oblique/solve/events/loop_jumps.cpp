@@ -30,12 +30,18 @@ bool is_stable(const Eigen::MatrixXd& rates) {
   return rates.partialPivLu().determinant() > 0;
 }
 
-/// Whether nothing but elements whose outputs follow their inputs is on a loop.
-bool is_blind(const network::Program& program, std::size_t loop) {
+/// How the residual of each unknown of a loop moves it; empty where one is of an equation that says nothing
+/// of that, or they are too many.
+Eigen::VectorXd directions_of(const network::Program& program, std::size_t loop) {
   const std::vector<std::size_t>& unknowns = program.loops()[loop].unknowns;
-  return unknowns.size() <= kMostUnknowns &&
-         std::all_of(unknowns.begin(), unknowns.end(),
-                     [&](std::size_t u) { return program.unknowns()[u].torn; });
+  if (unknowns.size() > kMostUnknowns) return {};
+  Eigen::VectorXd directions(static_cast<Eigen::Index>(unknowns.size()));
+  for (std::size_t i = 0; i < unknowns.size(); ++i) {
+    const network::Unknown& unknown = program.unknowns()[unknowns[i]];
+    if (!unknown.torn && !unknown.held_by_amplifier) return {};
+    directions[static_cast<Eigen::Index>(i)] = unknown.torn ? 1 : -1;
+  }
+  return directions;
 }
 
 }  // namespace
@@ -48,9 +54,11 @@ LoopJumps::LoopJumps(const network::Program& program, network::Workspace& worksp
       event_functions_(program.switches().size()),
       signals_(program.n_signals()) {
   for (std::size_t loop = 0; loop < program.loops().size(); ++loop) {
-    if (!is_blind(program, loop)) continue;
     Watched watched;
     watched.loop = loop;
+    watched.directions = directions_of(program, loop);
+    if (watched.directions.size() == 0) continue;
+    watched.blind = watched.directions.minCoeff() > 0;
     const std::vector<bool> follows = program.switch_structure().followers_of_loop(loop);
     const std::vector<bool> acts = program.switch_structure().discrete_states_below_loop(loop);
     for (std::uint32_t s = 0; s < follows.size(); ++s) {
@@ -67,7 +75,9 @@ LoopJumps::LoopJumps(const network::Program& program, network::Workspace& worksp
       watched.discrete_states.push_back(*segment);
     }
     // Of linear equations that nothing changes on the way there is one solution.
-    if (!program.loop_is_linear(loop) || !watched.switches.empty()) watched_.push_back(std::move(watched));
+    if (program.loop_is_linear(loop) && watched.switches.empty()) continue;
+    any_blind_ = any_blind_ || watched.blind;
+    watched_.push_back(std::move(watched));
   }
 }
 
@@ -87,10 +97,10 @@ void LoopJumps::begin() {
 }
 
 void LoopJumps::note(double t, std::span<const double> x) {
-  if (watched_.empty()) return;
+  if (!any_blind_) return;
   std::vector<bool> stable;
   for (const Watched& watched : watched_) {
-    const auto here = pull(watched, t, x, workspace_);
+    const auto here = watched.blind ? pull(watched, t, x, workspace_) : std::nullopt;
     stable.push_back(!here || is_stable(here->rates));
   }
   begin();
@@ -100,7 +110,7 @@ void LoopJumps::note(double t, std::span<const double> x) {
 bool LoopJumps::settle(double t, std::span<const double> x) {
   bool any = false;
   for (const Watched& watched : watched_) {
-    const auto here = pull(watched, t, x, workspace_);
+    const auto here = watched.blind ? pull(watched, t, x, workspace_) : std::nullopt;
     if (!here) continue;
     std::vector<double> now;
     for (std::size_t u = 0; u < unknowns_.size(); ++u) now.push_back(workspace_.unknown(u));
@@ -110,12 +120,18 @@ bool LoopJumps::settle(double t, std::span<const double> x) {
   return any;
 }
 
+bool LoopJumps::go_from_guesses(double t, std::span<const double> x) {
+  return std::any_of(watched_.begin(), watched_.end(),
+                     [&](const Watched& watched) { return go_from_before(watched, t, x); });
+}
+
 /// What moves the unknowns of a loop, as they are; nothing where some loop has no solution.
 std::optional<LoopJumps::Pull> LoopJumps::pull(const Watched& watched, double t, std::span<const double> x,
                                                network::Workspace& workspace) {
   const auto here = program_.signals(t, x.data(), signals_.data(), workspace);
   if (!here) return std::nullopt;
-  Pull found{here->loop_residuals(watched.loop), -here->loop_jacobian(watched.loop)};
+  Pull found{watched.directions.cwiseProduct(here->loop_residuals(watched.loop)),
+             -(watched.directions.asDiagonal() * here->loop_jacobian(watched.loop))};
   if (!found.residuals.allFinite() || !found.rates.allFinite()) return std::nullopt;
   return found;
 }

@@ -18,14 +18,15 @@ namespace oblique::solve {
 /// loop keeps to its solution. An event may take that away, or leave the loop at one from which its elements
 /// would run away; and where there are several, Newton's method goes to any. The loop then goes where its
 /// elements take it from where it was, if they follow their inputs with one short lag, while the switches and
-/// tables in it turn over on the way. (Of amplifiers see BranchWatch.) Not installed.
+/// tables in it turn over on the way. (Of amplifiers see BranchWatch; only where a run finds no start do they
+/// go so too.) Not installed.
 class LoopJumps {
  public:
   /// All must outlive this.
   LoopJumps(const network::Program& program, network::Workspace& workspace, const Thresholds& thresholds);
 
   /// Whether there is any such loop.
-  bool any() const { return !watched_.empty(); }
+  bool any() const { return any_blind_; }
   /// Notes the guesses from which the loops begin.
   void begin();
   /// Notes the solutions at (t, x), before what happens next.
@@ -33,11 +34,16 @@ class LoopJumps {
   /// Looks at all loops at (t, x), where everything has settled. True where one was put elsewhere: everything
   /// is then to be settled again.
   bool settle(double t, std::span<const double> x);
+  /// Where a run finds no start at (t, x): lets the first loop go from its guess that comes to rest
+  /// elsewhere, one of amplifiers too. False where there is none.
+  bool go_from_guesses(double t, std::span<const double> x);
 
  private:
   /// A loop, and what in it turns over with its unknowns.
   struct Watched {
     std::size_t loop = 0;
+    bool blind = true;           ///< of elements without memory alone
+    Eigen::VectorXd directions;  ///< of each unknown: an amplifier moves as −residual, another as +residual
     std::vector<std::uint32_t> switches;
     std::vector<std::size_t> tables;             ///< the events that move them along
     std::vector<std::uint32_t> discrete_states;  ///< of these
@@ -64,6 +70,7 @@ class LoopJumps {
   network::Workspace& workspace_;
   const Thresholds& thresholds_;
   std::vector<Watched> watched_;
+  bool any_blind_ = false;
   std::vector<double> unknowns_, discrete_states_;  ///< as they were noted
   std::vector<double> event_functions_, signals_;
 };

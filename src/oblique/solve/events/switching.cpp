@@ -46,22 +46,32 @@ void Switching::start(double t, std::vector<double>& x, const std::function<void
   const bool any_start =
       std::any_of(program_.states().begin(), program_.states().end(),
                   [](const network::State& state) { return state.start_node.has_value(); });
-  bool starting = true, first = true;
-  for (int round = 0;; ++round) {
-    if (round > kMostRounds) throw log_.endless("the start does not settle", t);
+  bool starting = true, first = true, has_gone = false;
+  const auto goes_on = [&] {
     settling_.begin();
     if (starting && any_start) take_starts(program_, workspace_, t, x, log_, file_);
-    if (active() && settling_.settle(t, x) && starting && any_start) continue;
+    if (active() && settling_.settle(t, x) && starting && any_start) return true;
     if (!first || !rests_within_limits(program_, workspace_, event_functions_, location_.announced(), t, x,
                                        bring_to_rest))
       bring_to_rest();
     first = false;
     settling_.begin();
-    if (active() && settling_.settle(t, x)) continue;
+    if (active() && settling_.settle(t, x)) return true;
     const auto effect = active() ? serve_events(t, x, starting) : std::nullopt;
     starting = starting && (!effect || effect->tables);
-    if (effect) continue;
-    if (!std::exchange(loops_go, false) || slide_.active() || !loop_jumps_.settle(t, x)) break;
+    if (effect) return true;
+    return std::exchange(loops_go, false) && !slide_.active() && loop_jumps_.settle(t, x);
+  };
+  for (int round = 0;; ++round) {
+    if (round > kMostRounds) throw log_.endless("the start does not settle", t);
+    try {
+      if (!goes_on()) break;
+    } catch (const SolveError& failure) {
+      // Where the switches in it stand for no signals yet, a loop may have no solution.
+      if (failure.kind() != SolveError::Kind::singular_loop || std::exchange(has_gone, true) ||
+          !loop_jumps_.go_from_guesses(t, x))
+        throw;
+    }
   }
   if (!active()) return;
   settling_.tell_of_open(t, x);

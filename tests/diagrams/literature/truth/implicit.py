@@ -145,3 +145,36 @@ def tantalus_cup():
     assert rest < drain
     s = brentq(lambda s: way(s) - way(high) - rest, low, high, xtol=1e-15)
     return {"h at 200": s * s, "n at 200": n + 1}
+
+
+def weak_acid_titration():
+    def ph(t):
+        balance = lambda p: 10**-p - 1e-14 * 10**p + 0.02 * t - 1.8e-7 / (1.8e-5 + 10**-p)
+        return brentq(balance, 0, 14, xtol=1e-15)
+
+    return {f"ph at {t}": ph(t) for t in (0.25, 0.5, 0.6, 1)} | {"hydrogen minimum": 10**-ph(1)}
+
+
+def positive_root_of_a_sine():
+    root = lambda b: (b + np.sqrt(b * b + 0.004)) / 2 if b > 0 else 0.002 / (np.sqrt(b * b + 0.004) - b)
+    return {f"x at {t}": root(3 * np.sin(5 * t)) for t in (0.9, 2.2, 10)} | {"x minimum": root(-3)}
+
+
+def shortest_path_by_minima():
+    first, second = lambda t: 1 + 0.9 * np.sin(t), lambda t: 1.2 + 0.8 * np.cos(1.7 * t)
+    d1, d2 = lambda t: min(first(t), 0.2 + second(t)), lambda t: min(second(t), 0.2 + first(t))
+    return {"d1 at 2": d1(2), "d2 at 2": d2(2), "d1 at 11": d1(11), "d2 at 17.3": d2(17.3)}
+
+
+def turbulent_pipe_by_an_amplifier():
+    def q(t):
+        p = 2 * np.cos(t)
+        return np.sign(p) * (np.sqrt(1 + 4 * abs(p)) - 1) / 2
+
+    zeros = [np.pi / 2 + k * np.pi for k in range(6)]
+    volume = sum(quad(q, a, b, epsabs=1e-13)[0] for a, b in zip([0] + zeros, zeros + [20]))
+    return {"q at 0": q(0), "q at 4": q(4), "volume at 20": volume}
+
+
+def angle_from_row_to_row():
+    return {f"angle at {t}": np.arcsin(0.95 * np.sin(5 * t)) for t in (1, 7, 10)}
