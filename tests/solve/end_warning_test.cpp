@@ -43,6 +43,26 @@ TEST(CoarseTolerance, IsToldOfAdamsAlone) {
   EXPECT_THAT(warnings(0.01, diagram::IntegrationMethod::bdf), ::testing::IsEmpty());
 }
 
+TEST(InitialCondition, ThatIsTooShortToFollowAChangingStartIsTold) {
+  const auto warnings = [](const std::string& start, const std::string& more, const std::string& length) {
+    const Compiled made(
+        "u = { type = \"sine-source\", frequency = 7e6 }\nc = { type = \"constant\" }\n"
+        "h = { type = \"integrator\", in = \"c\" }\n"
+        "x = { type = \"integrator\", in = \"c\", start = \"" +
+            start + "\"" + more + " }\n",
+        "[timeline]\nphases = [ { mode = \"initial\", for = \"" + length +
+            "\" }, { mode = \"operate\", for = 5e-8 } ]\n");
+    return warnings_of(made, 1e-7);
+  };
+  EXPECT_THAT(warnings("u", "", "50 ns"),
+              ::testing::ElementsAre(::testing::HasSubstr(
+                  "'x' follows its 'start' with a time constant of 1 µs, in a phase of 5e-08 s")));
+  EXPECT_THAT(warnings("u", ", charging = 1e-12", "50 ns"), ::testing::IsEmpty());
+  EXPECT_THAT(warnings("c", "", "50 ns"), ::testing::IsEmpty());
+  EXPECT_THAT(warnings("h", "", "50 ns"), ::testing::IsEmpty());  // which does not operate then
+  EXPECT_THAT(warnings("u", "", "1 ms"), ::testing::IsEmpty());
+}
+
 TEST(EndOfARecording, IsTold) {
   EXPECT_THAT(
       warnings_of(recording(kPoints), 10),

@@ -85,6 +85,44 @@ void warn_of_timeline(const diagram::FlatTimeline& timeline, const std::string& 
        std::move(remedy)});
 }
 
+/// Whether a signal may vary in a phase: that of a constant does not, nor that of an integrator that is not
+/// let operate.
+bool varies_in(const diagram::FlatDiagram& diagram, const diagram::FlatPhase& phase,
+               const diagram::FlatTerm& term) {
+  const diagram::FlatBlock& source = diagram.blocks[term.signal.block];
+  if (source.definition->role == diagram::Role::integrator)
+    return phase.modes[source.group] == diagram::OperatingMode::operate;
+  return source.definition->role != diagram::Role::reference;
+}
+
+/// An integrator in initial condition follows a changing `start` with a lag of its own, unless it is given
+/// one.
+void warn_of_follower(const diagram::FlatDiagram& diagram, const diagram::FlatBlock& block,
+                      std::vector<text::Diagnostic>& warnings) {
+  constexpr double kShort = 1e-4;  // [s]: a hundred of its lags
+  const auto start = block.definition->find_input("start");
+  const auto charging = block.definition->find_parameter("charging");
+  if (block.definition->role != diagram::Role::integrator || !start || !charging ||
+      block.parameters[*charging] > 0)
+    return;
+  const std::vector<diagram::FlatTerm>& terms = block.inputs[*start].terms;
+  for (const diagram::FlatPhase& phase : diagram.timeline.phases) {
+    const bool follows = std::any_of(terms.begin(), terms.end(), [&](const diagram::FlatTerm& term) {
+      return varies_in(diagram, phase, term);
+    });
+    if (!follows || phase.modes[block.group] != diagram::OperatingMode::initial || phase.duration >= kShort)
+      continue;
+    warnings.push_back({block.place,
+                        fmt::format("'{}' follows its 'start' with a time constant of 1 µs, in a phase of "
+                                    "{:.3g} s",
+                                    block.path, phase.duration),
+                        "a phase that is far longer",
+                        {"give it a time constant of its own, a thousandth of that: ",
+                         text::Setting{block.path + ".charging"}}});
+    return;
+  }
+}
+
 }  // namespace
 
 std::vector<text::Diagnostic> warnings_at_end(const diagram::FlatDiagram& diagram, const RunOptions& options,
@@ -92,6 +130,7 @@ std::vector<text::Diagnostic> warnings_at_end(const diagram::FlatDiagram& diagra
   std::vector<text::Diagnostic> warnings;
   const double begin = options.from ? options.from->time : 0;
   for (const diagram::FlatBlock& block : diagram.blocks) {
+    warn_of_follower(diagram, block, warnings);
     for (const diagram::Equation& equation : block.behaviour->equations) {
       const text::PointTable* const points = points_over_time(block, equation.expression);
       if (points != nullptr) warn_of_points(block, *points, begin, run.state.time, warnings);

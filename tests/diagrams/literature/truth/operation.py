@@ -101,3 +101,9 @@ def poincare_store():
     motion = ode(lambda t, y: [y[1], 7.5 * np.cos(t) - 0.05 * y[1] - y[0]**3], [2.5, 0], 18)
     one, two = motion(1.5 * np.pi), motion(3.5 * np.pi)
     return {"x at 5": one[0], "v at 5": one[1], "x at 13": two[0], "v at 13": two[1]}
+
+
+def tracks_in_nanoseconds():
+    signal = lambda t: np.sin(0.014 * np.pi * t)  # t in ns
+    return {"held at 133e-9": signal(133), "held at 180e-9": signal(150), "held at 921e-9": signal(921),
+            "held at 980e-9": signal(950)}
